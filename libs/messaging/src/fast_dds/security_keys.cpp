@@ -1,8 +1,7 @@
 // Fast DDS 2.9.1 copies the keys that a peer sends by the lengths that stand before them, without a
-// look at the room there is (AESGCMGMAC_KeyExchange::KeyMaterialCDRDeserialize; issue 6345 of its
-// repository). And when a message comes it goes through the readers and writers of a participant,
-// and their keys, without a lock (AESGCMGMAC_Transform::lookup_reader), while other threads add
-// some (AESGCMGMAC_KeyFactory).
+// look at the room there is (AESGCMGMAC_KeyExchange::KeyMaterialCDRDeserialize). And when a message
+// comes it goes through the readers and writers of a participant, and their keys, without a lock
+// (AESGCMGMAC_Transform::lookup_reader), while other threads add some (AESGCMGMAC_KeyFactory).
 //
 // Here keys are checked first, and who changes the lists waits for who goes through them. The
 // functions take the places of the library's, which calls them through its symbols. Should a
@@ -14,7 +13,7 @@
 #include <memory>
 #include <mutex>
 #include <shared_mutex>
-#include <utility>
+#include <type_traits>
 #include <vector>
 
 #include <fastdds/rtps/common/BinaryProperty.h>
@@ -27,6 +26,7 @@
 #include <fastdds/rtps/security/exceptions/SecurityException.h>
 
 #include "library_function.hpp"
+#include "packet_reader.hpp"
 #include "packet_shield.hpp"
 
 namespace {
@@ -63,11 +63,13 @@ class Turn {
   static inline thread_local int depth_ = 0;
 };
 
-/// Calls a function of the library that changes the lists.
-template <class Function, class... Arguments>
-auto change_lists(Function function, Arguments&&... arguments) {
+/// Calls the function of the library whose place a member has taken, and which changes the lists.
+template <class Class, class Result, class... Parameters>
+Result change_lists(const char* symbol, Result (Class::* /*member*/)(Parameters...), Class* object,
+                    std::type_identity_t<Parameters>... arguments) {
+  const auto original = messaging::library_function<Result (*)(Class*, Parameters...)>(symbol);
   const Turn turn;
-  return function(std::forward<Arguments>(arguments)...);
+  return original(object, arguments...);
 }
 
 bool readable(const Tokens& tokens) {
@@ -114,7 +116,6 @@ constexpr const char* kSetReadersKeys =
 constexpr const char* kSetWritersKeys =
     "_ZN8eprosima8fastrtps4rtps8security22AESGCMGMAC_KeyExchange35set_remote_datawriter_crypt"
     "o_tokensERNS2_6HandleES5_RKSt6vectorINS1_10DataHolderESaIS7_EERNS2_17SecurityExceptionE";
-
 constexpr const char* kForget =
     "_ZN8eprosima8fastrtps4rtps8security21AESGCMGMAC_KeyFactory19release_participantERNS2_"
     "10HandleImplINS2_20ParticipantKeyHandleES3_EE";
@@ -173,76 +174,71 @@ bool AESGCMGMAC_Transform::preprocess_secure_submsg(Handle** writer, Handle** re
 
 void AESGCMGMAC_KeyFactory::release_participant(
     HandleImpl<ParticipantKeyHandle, AESGCMGMAC_KeyFactory>& participant) {
-  using Function = void (*)(void*, HandleImpl<ParticipantKeyHandle, AESGCMGMAC_KeyFactory>&);
-  change_lists(messaging::library_function<Function>(kForget), this, participant);
+  change_lists(kForget, &AESGCMGMAC_KeyFactory::release_participant, this, participant);
 }
 
 Handle* AESGCMGMAC_KeyFactory::register_local_datareader(Handle& participant,
                                                          const Properties& properties,
                                                          const Attributes& attributes,
                                                          Error& error) {
-  using Function = Handle* (*)(void*, Handle&, const Properties&, const Attributes&, Error&);
-  return change_lists(messaging::library_function<Function>(kAddReader), this, participant,
-                      properties, attributes, error);
+  return change_lists(kAddReader, &AESGCMGMAC_KeyFactory::register_local_datareader, this,
+                      participant, properties, attributes, error);
 }
 
 Handle* AESGCMGMAC_KeyFactory::register_local_datawriter(Handle& participant,
                                                          const Properties& properties,
                                                          const Attributes& attributes,
                                                          Error& error) {
-  using Function = Handle* (*)(void*, Handle&, const Properties&, const Attributes&, Error&);
-  return change_lists(messaging::library_function<Function>(kAddWriter), this, participant,
-                      properties, attributes, error);
+  return change_lists(kAddWriter, &AESGCMGMAC_KeyFactory::register_local_datawriter, this,
+                      participant, properties, attributes, error);
 }
 
 Handle* AESGCMGMAC_KeyFactory::register_matched_remote_datareader(Handle& writer, Handle& peer,
                                                                   const Handle& secret,
                                                                   bool relay_only, Error& error) {
-  using Function = Handle* (*)(void*, Handle&, Handle&, const Handle&, bool, Error&);
-  return change_lists(messaging::library_function<Function>(kAddPeersReader), this, writer, peer,
-                      secret, relay_only, error);
+  return change_lists(kAddPeersReader, &AESGCMGMAC_KeyFactory::register_matched_remote_datareader,
+                      this, writer, peer, secret, relay_only, error);
 }
 
 Handle* AESGCMGMAC_KeyFactory::register_matched_remote_datawriter(Handle& reader, Handle& peer,
                                                                   const Handle& secret,
                                                                   Error& error) {
-  using Function = Handle* (*)(void*, Handle&, Handle&, const Handle&, Error&);
-  return change_lists(messaging::library_function<Function>(kAddPeersWriter), this, reader, peer,
-                      secret, error);
+  return change_lists(kAddPeersWriter, &AESGCMGMAC_KeyFactory::register_matched_remote_datawriter,
+                      this, reader, peer, secret, error);
 }
 
 bool AESGCMGMAC_KeyFactory::unregister_datareader(std::shared_ptr<Handle>& reader, Error& error) {
-  using Function = bool (*)(void*, std::shared_ptr<Handle>&, Error&);
-  return change_lists(messaging::library_function<Function>(kRemoveReader), this, reader, error);
+  return change_lists(kRemoveReader, &AESGCMGMAC_KeyFactory::unregister_datareader, this, reader,
+                      error);
 }
 
 bool AESGCMGMAC_KeyFactory::unregister_datawriter(std::shared_ptr<Handle>& writer, Error& error) {
-  using Function = bool (*)(void*, std::shared_ptr<Handle>&, Error&);
-  return change_lists(messaging::library_function<Function>(kRemoveWriter), this, writer, error);
+  return change_lists(kRemoveWriter, &AESGCMGMAC_KeyFactory::unregister_datawriter, this, writer,
+                      error);
 }
 
 bool AESGCMGMAC_KeyExchange::set_remote_participant_crypto_tokens(const Handle& own, Handle& peer,
                                                                   const Tokens& tokens,
                                                                   Error& error) {
-  using Function = bool (*)(void*, const Handle&, Handle&, const Tokens&, Error&);
-  return readable(tokens) && change_lists(messaging::library_function<Function>(kSetKeys), this,
-                                          own, peer, tokens, error);
+  return readable(tokens) &&
+         change_lists(kSetKeys, &AESGCMGMAC_KeyExchange::set_remote_participant_crypto_tokens, this,
+                      own, peer, tokens, error);
 }
 
 bool AESGCMGMAC_KeyExchange::set_remote_datareader_crypto_tokens(Handle& own, Handle& peer,
                                                                  const Tokens& tokens,
                                                                  Error& error) {
-  using Function = bool (*)(void*, Handle&, Handle&, const Tokens&, Error&);
-  return readable(tokens) && change_lists(messaging::library_function<Function>(kSetReadersKeys),
-                                          this, own, peer, tokens, error);
+  return readable(tokens) &&
+         change_lists(kSetReadersKeys, &AESGCMGMAC_KeyExchange::set_remote_datareader_crypto_tokens,
+                      this, own, peer, tokens, error);
 }
 
 bool AESGCMGMAC_KeyExchange::set_remote_datawriter_crypto_tokens(Handle& own, Handle& peer,
                                                                  const Tokens& tokens,
                                                                  Error& error) {
-  using Function = bool (*)(void*, Handle&, Handle&, const Tokens&, Error&);
-  return readable(tokens) && change_lists(messaging::library_function<Function>(kSetWritersKeys),
-                                          this, own, peer, tokens, error);
+  return readable(tokens) &&
+         change_lists(kSetWritersKeys, &AESGCMGMAC_KeyExchange::set_remote_datawriter_crypto_tokens,
+                      this, own, peer, tokens, error);
 }
 
 }  // namespace eprosima::fastrtps::rtps::security
@@ -251,35 +247,22 @@ bool AESGCMGMAC_KeyExchange::set_remote_datawriter_crypto_tokens(Handle& own, Ha
 namespace topogeo::messaging {
 
 bool check_key_material(std::span<const std::uint8_t> bytes) {
-  constexpr std::size_t kIdSize = 4;
-  constexpr std::uint8_t kLastKind = 4;  // AES256_GCM
-  constexpr std::uint32_t kLongestKey = 32;
-  std::size_t at = 0;
-  const auto number = [&]() -> std::uint32_t {  // beyond the end, one that is too large
-    if (bytes.size() - at < 4) return 0xFFFFFFFF;
-    const std::uint8_t* const b = bytes.data() + at;
-    at += 4;
-    return std::uint32_t{b[0]} << 24U | std::uint32_t{b[1]} << 16U | std::uint32_t{b[2]} << 8U |
-           b[3];
-  };
-  const auto skip = [&](std::size_t count) {
-    if (bytes.size() - at < count) return false;
-    at += count;
-    return true;
-  };
+  constexpr std::size_t kId_bytes = 4;
+  constexpr std::uint32_t kLastKind = 4;  // AES256_GCM
+  constexpr std::uint32_t kLongestKey_bytes = 32;
+  PacketReader reader(bytes, false);
   const auto skip_key = [&] {
-    const std::uint32_t length = number();
-    return length <= kLongestKey && skip(length);
+    const std::uint32_t length = reader.u32();
+    reader.skip(length);
+    return length <= kLongestKey_bytes;
   };
-  const std::uint32_t kind = number();
-  if (kind == 0) return true;  // none: nothing else is read
-  if (kind > kLastKind) return false;
-  if (!skip_key() || !skip(kIdSize) || !skip_key()) return false;  // salt, id and key of the sender
-  const std::size_t id = at;
-  if (!skip(kIdSize)) return false;
-  const auto ids = bytes.subspan(id, kIdSize);
-  const bool own = std::ranges::any_of(ids, [](std::uint8_t byte) { return byte != 0; });
-  return !own || skip_key();  // the key for this receiver alone
+  const std::uint32_t kind = reader.u32();
+  if (kind == 0) return reader.ok();                  // none: nothing else is read
+  if (kind > kLastKind || !skip_key()) return false;  // the salt
+  reader.skip(kId_bytes);
+  if (!skip_key()) return false;              // of the sender
+  const bool has_own = reader.entity() != 0;  // the id of a key for this receiver alone
+  return (!has_own || skip_key()) && reader.ok();
 }
 
 void keep_security_keys() {}
