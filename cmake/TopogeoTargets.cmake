@@ -125,6 +125,18 @@ function(topogeo_add_test)
 endfunction()
 include(GoogleTest)
 
+# topogeo_add_script_test(container.hosts 600 hosts_test.sh [arguments]): the test of the given name and time limit in
+# seconds is a script of this folder, or with a path, that is given the build folder first. Its label is what stands
+# before the dot. It exits with 77, and a message, where the machine has not what it needs: skipped.
+function(topogeo_add_script_test name timeout script)
+  cmake_path(ABSOLUTE_PATH script NORMALIZE)
+  math(EXPR timeout "${timeout} * ${TOPOGEO_TIME_FACTOR}")
+  string(REGEX REPLACE "[.].*" "" label ${name})
+  add_test(NAME ${name} COMMAND bash ${script} ${CMAKE_BINARY_DIR} ${ARGN})
+  set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT ${timeout} SKIP_RETURN_CODE 77
+    ENVIRONMENT TOPOGEO_TIME_FACTOR=${TOPOGEO_TIME_FACTOR})
+endfunction()
+
 # Registers each test suite of a program under <program>.<suite>, listed anew whenever it was built.
 function(topogeo_discover_suites target timeout labels)
   set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake)
