@@ -34,12 +34,13 @@ there() {
 }
 
 # Programs with a sanitizer in containers report where others of this build do. What looks for leaks traces its process.
+sanitizer_options=(ASAN_OPTIONS LSAN_OPTIONS UBSAN_OPTIONS TSAN_OPTIONS)
 sanitized=()
 if [ -n "${ASAN_OPTIONS:-}${TSAN_OPTIONS:-}" ]; then
   mkdir -p "$build/reports"
   chmod 1777 "$build/reports"
   sanitized=(-v "$build/reports:$build/reports" -v "$source_dir/tests/sanitizers:$source_dir/tests/sanitizers:ro"
-    --cap-add SYS_PTRACE -e ASAN_OPTIONS -e LSAN_OPTIONS -e UBSAN_OPTIONS -e TSAN_OPTIONS)
+    --cap-add SYS_PTRACE "${sanitizer_options[@]/#/--env=}")
   ! command -v docker > /dev/null || docker() {
     if [ "$1" = run ]; then command docker run "${sanitized[@]}" "${@:2}"; else command docker "$@"; fi
   }

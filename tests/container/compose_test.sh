@@ -41,7 +41,7 @@ if [ ${#sanitized[@]} -gt 0 ]; then  # as common.sh does with `docker run`; and 
   sed -nE '/^services:/,$ s/^  ([a-z_0-9]+):$/\1/p' "$source_dir/deploy/compose.yaml" | while read -r service; do
     printf '  %s:\n    mem_limit: 2g\n    cap_add: [SYS_PTRACE]\n    volumes: ["%s", "%s"]\n    environment:\n' "$service" \
       "$build/reports:$build/reports" "$source_dir/tests/sanitizers:$source_dir/tests/sanitizers:ro"
-    printf '      %s:\n' ASAN_OPTIONS LSAN_OPTIONS UBSAN_OPTIONS TSAN_OPTIONS
+    printf '      %s:\n' "${sanitizer_options[@]}"
   done >> "$work/sanitized.yaml"
   files+=(-f "$work/sanitized.yaml")
 fi

@@ -39,7 +39,8 @@ if [ ${#sanitized[@]} -gt 0 ]; then
   here systemctl daemon-reload
 fi
 
-as_topogeo() { here sudo -u topogeo --preserve-env=TOPOGEO_DOMAIN,ASAN_OPTIONS,LSAN_OPTIONS,UBSAN_OPTIONS,TSAN_OPTIONS "$@"; }
+kept=$(IFS=,; echo "TOPOGEO_DOMAIN,${sanitizer_options[*]}")
+as_topogeo() { here sudo -u topogeo --preserve-env="$kept" "$@"; }
 state() { here systemctl show -P "$2" "$1"; }
 is_state() { [ "$(state "$1" "$2")" = "$3" ]; }
 
