@@ -100,8 +100,8 @@ need_packages() {
 need_engine() {
   need docker
   # Of GCC 12; elsewhere than in a container ./run starts it with fixed addresses.
-  [ -z "${TSAN_OPTIONS:-}" ] || [ "$(cat /proc/sys/vm/mmap_rnd_bits)" -le 28 ] ||
-    skip "the thread sanitizer does not know the addresses here (sysctl vm.mmap_rnd_bits=28)"
+  [ -z "${TSAN_OPTIONS:-}${ASAN_OPTIONS:-}" ] || [ "$(cat /proc/sys/vm/mmap_rnd_bits)" -le 28 ] ||
+    skip "the sanitizer does not know the addresses here (sysctl vm.mmap_rnd_bits=28)"
   docker info > /dev/null 2>&1 || skip "no container engine runs (tests/container/start_engine starts one)"
 }
 
