@@ -139,6 +139,7 @@ bool TaskBoard::is_open(std::uint64_t task_id) const {
 TaskBoard::Assignment TaskBoard::assign(std::size_t index, WorkerLoads::Workers::value_type& worker,
                                         BoardTime now) {
   worker.second.in_hand.push_back({batch_.at(index).task.task_id, now});
+  holders_.add(worker.first, batch_.at(index).task.reference_hash);
   ++counts_.sent;
   if (batch_.at(index).sends > 0) ++counts_.resent;
   batch_.change(index, [&](BoardTask& task) {
@@ -175,7 +176,7 @@ std::optional<TaskBoard::Assignment> TaskBoard::place_waiting(BoardTime now) {
   if (batch_.fresh().empty()) return {};
   auto* worker = workers_.choose({}, now);
   if (worker == nullptr) return {};
-  return assign(*batch_.fresh().begin(), *worker, now);
+  return assign(holders_.choose(worker->first, batch_.fresh(), batch_), *worker, now);
 }
 
 std::optional<std::size_t> TaskBoard::next_local(BoardTime now) {
@@ -320,6 +321,7 @@ void TaskBoard::take_from(const std::string& worker_id, Worker& worker, std::uin
 
 void TaskBoard::take_all_from(const std::string& worker_id, Worker& worker) {
   while (!worker.in_hand.empty()) take_from(worker_id, worker, worker.in_hand.front().task_id);
+  holders_.forget(worker_id);
   // Should it come back, it has a fresh chance.
   for (std::size_t i = 0; i < batch_.size(); ++i) {
     if (!batch_.at(i).tried.contains(worker_id)) continue;

@@ -17,6 +17,7 @@
 
 #include "topogeo/localization/matching/match.hpp"
 #include "topogeo/search_pool/recovery.hpp"
+#include "topogeo/search_pool/reference_holders.hpp"
 #include "topogeo/search_pool/task_batch.hpp"
 #include "topogeo/search_pool/worker_loads.hpp"
 
@@ -142,6 +143,7 @@ class TaskBoard {
 
   BoardConfig options_;
   WorkerLoads workers_;
+  ReferenceHolders holders_;
   RecoveryWatch recovery_;
   TaskBatch batch_;
   std::set<std::size_t> audits_;             // answered, to be compared
