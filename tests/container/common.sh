@@ -56,12 +56,18 @@ eventually() {
   done
 }
 
-# A DDS domain that no other test has, for all that is started from here on: a worker serves each partition of its
-# domain, and this machine hears what containers say to a bridge.
-claim_domain() {
-  for domain in {1..100}; do
-    exec 5>> "${TMPDIR:-/tmp}/topogeo_test_domain_$domain.lock"
-    ! flock -n 5 || { export TOPOGEO_DOMAIN=$domain; return; }
+# A DDS domain that no other test has, in VARIABLE or, without one, for all that is started from here on: a worker serves
+# each partition of its domain, and this machine hears what containers say to a bridge.
+claim_domain() {  # [VARIABLE]
+  local lock number
+  for number in {1..100}; do
+    exec {lock}>> "${TMPDIR:-/tmp}/topogeo_test_domain_$number.lock"
+    if flock -n "$lock"; then
+      printf -v "${1:-TOPOGEO_DOMAIN}" %s "$number"
+      export TOPOGEO_DOMAIN
+      return
+    fi
+    exec {lock}>&-
   done
   fail "no free DDS domain from 1 to 100"
 }

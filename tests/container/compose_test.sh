@@ -9,6 +9,7 @@ there docker-compose "nothing can be composed" || skip "no docker-compose"
 need openssl
 need_image
 claim_domain
+claim_domain truth  # of the simulator, which is not of the robot, and has no certificate
 export TOPOGEO_DDS_PARTICIPANT=udp_only
 chmod 755 "$work"
 
@@ -17,8 +18,8 @@ step "certificates, a laser and a base"
   { tail -n 3 "$work/keys.log"; fail "no certificates"; }
 mkdir "$work/map"
 chown -R 1000 "$work/keys/robot" "$work/map"
-# Its own domain: it is not of the robot, and has no certificate.
-"$bin/simulator" --domain 101 --world "$source_dir/tests/data/room.world.yaml" --laser-port "$work/laser" \
+# shellcheck disable=SC2154  # claim_domain sets it
+"$bin/simulator" --domain "$truth" --world "$source_dir/tests/data/room.world.yaml" --laser-port "$work/laser" \
   --base-port "$work/base" > "$work/simulator.log" 2>&1 &
 cleanups+=("kill $!")
 eventually 20 test -L "$work/base" || { tail -n 3 "$work/simulator.log"; fail "the simulator makes no ports"; }
@@ -106,7 +107,7 @@ one_is_unhealthy "${containers[@]}"
 down
 
 step "profile demo"
-mkdir "$OUT"
+mkdir "$OUT" || { ls -laR --time-style=full-iso "$OUT"; compose ps -a; fail "something made $OUT before"; }
 profile=demo
 up
 eventually 120 test -e "$OUT/map.pb" || { compose logs --tail 5; fail "the demo makes no map"; }

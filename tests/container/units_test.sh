@@ -5,6 +5,8 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need_image
 claim_domain
+# Of the simulator, so that it is not of the robot, and of who watches where the robot really is.
+claim_domain truth
 machine=topogeo-machine-$$
 
 step "a machine with systemd"
@@ -53,8 +55,9 @@ here journalctl -u topogeo-sensor-gateway --no-pager | grep -q "expected at leas
 
 step "a laser and a base"
 docker cp "$source_dir/tests/data/room.world.yaml" $machine:/root/ > /dev/null
-docker exec -d $machine /usr/libexec/topogeo/simulator --domain 101 --world /root/room.world.yaml --laser-port /root/laser \
-  --base-port /root/base
+# shellcheck disable=SC2154  # claim_domain sets it
+docker exec -d $machine /usr/libexec/topogeo/simulator --domain "$truth" --world /root/room.world.yaml \
+  --laser-port /root/laser --base-port /root/base
 eventually 20 here test -L /root/base || fail "the simulator makes no ports"
 # shellcheck disable=SC2016  # expanded in the container
 here sh -ec 'for device in laser base; do
@@ -73,7 +76,7 @@ eventually 30 here test -e /var/lib/topogeo/map/map.sqlite || fail "no map"
 
 [ -x "$build/tests/drive_watch" ] || fail "drive_watch is not built"
 docker cp "$build/tests/drive_watch" $machine:/root/ > /dev/null
-docker exec -d $machine sh -c 'exec nice -n -20 /root/drive_watch --domain 101 --log-level off > /root/motion'
+docker exec -d $machine sh -c "exec nice -n -20 /root/drive_watch --domain $truth --log-level off > /root/motion"
 docker exec -d $machine sh -c 'exec nice -n -20 /root/drive_watch --commands --log-level off > /root/commands'
 now_ms() { echo $(($(date +%s%N) / 1000000)); }
 drives() { here tail -n 1 /root/motion | awk '{ exit !($2 > 0.1) }'; }
