@@ -150,7 +150,7 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
   send_to_each_host_apart();
   shield_packets();
   let_timers_end_alone();
-  let_readers_end_beside_matches();
+  let_readers_end_beside_peers();
   let_writers_end_undisturbed();
   load_profiles(options.profiles_file);
   std::string profile = options.profile;

@@ -1,8 +1,12 @@
-// Readers of the middleware that end while a writer is found for them.
+// Readers of the middleware that end while a writer is found for them, or lost.
 #include "fast_dds/reader_end.hpp"
 
+#include <atomic>
+#include <chrono>
 #include <cstdlib>
+#include <future>
 #include <stdexcept>
+#include <thread>
 
 #include <fastdds/rtps/RTPSDomain.h>
 #include <fastdds/rtps/attributes/HistoryAttributes.h>
@@ -23,8 +27,54 @@
 namespace topogeo::messaging {
 namespace {
 
+namespace fastdds = eprosima::fastdds::dds;
 namespace fastrtps = eprosima::fastrtps;
 namespace rtps = eprosima::fastrtps::rtps;
+
+/// A reader and a writer of one participant. They stay: the processes of these tests end without.
+struct Endpoints {
+  rtps::RTPSReader* reader;
+  rtps::RTPSWriter* writer;
+  rtps::WriterHistory* sent;
+};
+
+// Both have a lease that the writer has to renew by writing; 0: it need not.
+Endpoints make_endpoints(rtps::ReaderListener& listener, double lease_s) {
+  rtps::RTPSParticipantAttributes attributes;
+  attributes.builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::SIMPLE;
+  rtps::RTPSParticipant* const participant = rtps::RTPSDomain::createParticipant(0, attributes);
+  if (participant == nullptr) throw std::runtime_error("no participant");
+  rtps::ReaderAttributes reader_attributes;
+  rtps::WriterAttributes writer_attributes;
+  fastrtps::ReaderQos reader_qos;
+  fastrtps::WriterQos writer_qos;
+  writer_qos.m_reliability.kind = fastdds::BEST_EFFORT_RELIABILITY_QOS;
+  if (lease_s > 0.0) {
+    const fastrtps::Duration_t lease(static_cast<long double>(lease_s));
+    const auto kind = fastdds::MANUAL_BY_TOPIC_LIVELINESS_QOS;
+    reader_attributes.liveliness_kind_ = writer_attributes.liveliness_kind = kind;
+    reader_attributes.liveliness_lease_duration = writer_attributes.liveliness_lease_duration =
+        lease;
+    reader_qos.m_liveliness.kind = writer_qos.m_liveliness.kind = kind;
+    reader_qos.m_liveliness.lease_duration = writer_qos.m_liveliness.lease_duration = lease;
+  }
+  auto* const received = new rtps::ReaderHistory{rtps::HistoryAttributes()};
+  auto* const sent = new rtps::WriterHistory{rtps::HistoryAttributes()};
+  rtps::RTPSReader* const reader =
+      rtps::RTPSDomain::createRTPSReader(participant, reader_attributes, received, &listener);
+  rtps::RTPSWriter* const writer =
+      rtps::RTPSDomain::createRTPSWriter(participant, writer_attributes, sent);
+  fastrtps::TopicAttributes topic;
+  topic.topicKind = rtps::NO_KEY;
+  topic.topicName = "topic";
+  topic.topicDataType = "type";
+  if (reader == nullptr || writer == nullptr ||
+      !participant->registerReader(reader, topic, reader_qos) ||
+      !participant->registerWriter(writer, topic, writer_qos)) {
+    throw std::runtime_error("no reader or writer");
+  }
+  return {reader, writer, sent};
+}
 
 /// Goes when it is told of a match for the first time, as one of a reader that ends in another
 /// thread.
@@ -39,37 +89,47 @@ class GoingListener : public rtps::ReaderListener {
 };
 
 [[noreturn]] void match_a_reader_that_ends() {
-  let_readers_end_beside_matches();
-  rtps::RTPSParticipantAttributes attributes;
-  attributes.builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::SIMPLE;
-  rtps::RTPSParticipant* const participant = rtps::RTPSDomain::createParticipant(0, attributes);
-  if (participant == nullptr) throw std::runtime_error("no participant");
-  rtps::ReaderHistory received{rtps::HistoryAttributes()};
+  let_readers_end_beside_peers();
   GoingListener listener;
-  rtps::ReaderAttributes reader_attributes;
-  rtps::RTPSReader* const reader =
-      rtps::RTPSDomain::createRTPSReader(participant, reader_attributes, &received, &listener);
-  rtps::WriterHistory sent{rtps::HistoryAttributes()};
-  rtps::WriterAttributes writer_attributes;
-  rtps::RTPSWriter* const writer =
-      rtps::RTPSDomain::createRTPSWriter(participant, writer_attributes, &sent);
-  fastrtps::TopicAttributes topic;
-  topic.topicKind = rtps::NO_KEY;
-  topic.topicName = "topic";
-  topic.topicDataType = "type";
-  fastrtps::WriterQos writer_qos;
-  writer_qos.m_reliability.kind = eprosima::fastdds::dds::BEST_EFFORT_RELIABILITY_QOS;
-  if (reader == nullptr || writer == nullptr ||
-      !participant->registerReader(reader, topic, fastrtps::ReaderQos()) ||
-      !participant->registerWriter(writer, topic, writer_qos)) {
-    throw std::runtime_error("no reader or writer");
-  }
+  make_endpoints(listener, 0.0);
   std::_Exit(listener.calls == 1 ? 0 : 2);
 }
 
 TEST(ReaderEndDeathTest, AReaderWithoutListenerIsMatched) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(match_a_reader_that_ends(), ::testing::ExitedWithCode(0), "");
+}
+
+/// Takes its time when it is told that a writer is not alive any more.
+class SlowListener : public rtps::ReaderListener {
+ public:
+  void on_liveliness_changed(rtps::RTPSReader* /*reader*/,
+                             const fastdds::LivelinessChangedStatus& status) override {
+    if (status.not_alive_count == 0) return;
+    begun.set_value();
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    done = true;
+  }
+  std::promise<void> begun;
+  std::atomic<bool> done = false;
+};
+
+[[noreturn]] void remove_a_reader_that_is_told_of_a_loss() {
+  let_readers_end_beside_peers();
+  SlowListener listener;
+  const Endpoints endpoints = make_endpoints(listener, 0.05);
+  rtps::CacheChange_t* const change = endpoints.writer->new_change([] { return 8U; }, rtps::ALIVE);
+  if (change == nullptr || !endpoints.sent->add_change(change)) std::_Exit(3);
+  if (listener.begun.get_future().wait_for(std::chrono::seconds(30)) != std::future_status::ready) {
+    std::_Exit(4);
+  }
+  rtps::RTPSDomain::removeRTPSReader(endpoints.reader);
+  std::_Exit(listener.done ? 0 : 2);
+}
+
+TEST(ReaderEndDeathTest, AReaderStaysUntilItIsToldOfALoss) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(remove_a_reader_that_is_told_of_a_loss(), ::testing::ExitedWithCode(0), "");
 }
 
 }  // namespace
