@@ -142,9 +142,9 @@ make_log() {
   flock 6
   if [ ! -e "$all" ]; then
     # The demo writes the log first; what it makes of it is not needed here.
-    "$bin/topogeo" demo --out "$work/demo" --workers 0 > "$work/demo.log" 2>&1 ||
-      { cat "$work/demo.log"; fail "topogeo demo"; }
-    gunzip -c "$work/demo/floor.clf.gz" > "$all.new"
+    "$bin/topogeo" demo --out "$work/made_log" --workers 0 > "$work/made_log.log" 2>&1 ||
+      { cat "$work/made_log.log"; fail "topogeo demo"; }
+    gunzip -c "$work/made_log/floor.clf.gz" > "$all.new"
     mv "$all.new" "$all"
   fi
   exec 6>&-
