@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <optional>
 
+#include "topogeo/localization/matching/matcher.hpp"
+
 namespace topogeo::search_pool {
 namespace {
 
-constexpr std::size_t kHeld = 16;       // as many references as a matcher keeps
 constexpr std::size_t kLookAhead = 64;  // so that a batch of any size is given out in linear time
 
 bool contains(const std::deque<std::uint64_t>& held, std::uint64_t reference_hash) {
@@ -24,7 +25,7 @@ void ReferenceHolders::add(const std::string& worker_id, std::uint64_t reference
     ++holders_of_[reference_hash];
   }
   held.push_back(reference_hash);
-  if (held.size() <= kHeld) return;
+  if (held.size() <= localization::Matcher::kKeptReferences) return;
   release(held.front());
   held.pop_front();
 }

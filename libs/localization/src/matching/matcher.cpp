@@ -20,8 +20,6 @@ namespace {
 
 using geometry::Pose2;
 
-constexpr std::size_t kCachedReferences = 16;  // of about 150 kB; answers do not depend on it
-
 // Rivals are rated by what refines a match; where nothing does, by the requested form.
 double rating(const MatchContext& context, const Pose2& T) {
   const geometry::SinCos heading = geometry::sincos(T.theta_rad);
@@ -128,7 +126,7 @@ const Reference& Matcher::reference(const MatchTask& task) {
     references_.splice(references_.begin(), references_, found);
   } else {
     references_.push_front({id, hash, by_scan, make_reference(seen)});
-    if (references_.size() > kCachedReferences) references_.pop_back();
+    if (references_.size() > kKeptReferences) references_.pop_back();
   }
   return references_.front().reference;
 }

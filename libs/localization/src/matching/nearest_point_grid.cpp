@@ -61,7 +61,7 @@ void NearestPointGrid::build(const std::vector<Eigen::Vector2d>& points_m, doubl
   rows_ = static_cast<int>(rows);
   count_ = static_cast<std::uint16_t>(points_m.size());
   const auto cells = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
-  // As wide as the distances.
+  // As wide as a distance, so that vectors hold as many of both.
   std::vector<std::int32_t> nearest(cells, count_);
   std::vector<float> squared(cells, std::numeric_limits<float>::max());  // of the nearest so far
   const int width = 2 * reach_cells + 1;

@@ -12,7 +12,8 @@
 // ends meanwhile is taken from the list and deleted. Here who takes one from the list waits until
 // nobody goes through it. It holds no lock then (RTPSParticipantImpl::deleteUserEndpoint), so that
 // it keeps nobody from getting through; and who goes through waits for nobody but while one is
-// taken out. Readers that are added are not looked at: the list is short, and may grow beside that.
+// taken out. Left as it is: a reader that is added may move the list meanwhile. It takes a
+// lock of discovery for that, so that one of ours around it could end in a deadlock.
 //
 // Should a library have no such functions, nothing calls these.
 #include "reader_end.hpp"
@@ -32,7 +33,8 @@ namespace topogeo::messaging {
 namespace {
 
 /// Of the lists of readers of all participants: who goes through one keeps others from taking a
-/// reader out.
+/// reader out. Unlike with a std::shared_mutex, who goes through may do so again inside, and waits
+/// for nobody who waits.
 class Passages {
  public:
   static Passages& of_process() {
@@ -80,15 +82,19 @@ class Passages {
 using topogeo::messaging::library_function;
 using topogeo::messaging::Passages;
 
-// Their arguments are passed on as they come: GUID, kind, duration and two counts; `protocol` is a
-// WLP. NOLINTBEGIN: the names of member functions of the library
+// Arguments are passed on as they come: a WLP, GUID, kind, duration, and two counts; a WLP and
+// reader.
+using LivelinessChanged = void(void*, const void*, const void*, const void*, std::int32_t,
+                               std::int32_t);
+using RemoveLocalReader = bool(void*, rtps::RTPSReader*);
+
+// NOLINTBEGIN: the names of member functions of the library
 extern "C" rtps::ReaderListener* topogeo_listener_of(const rtps::RTPSReader* reader) __asm__(
     "_ZNK8eprosima8fastrtps4rtps10RTPSReader11getListenerEv");
-extern "C" void
-topogeo_liveliness_changed(void* protocol, const void* writer, const void* kind, const void* lease, std::int32_t alive, std::int32_t not_alive) __asm__(
+extern "C" LivelinessChanged topogeo_liveliness_changed __asm__(
     "_ZN8eprosima8fastrtps4rtps3WLP22sub_liveliness_changedERKNS1_6GUID_"
     "tERKNS_7fastdds3dds23LivelinessQosPolicyKindERKNS0_6Time_tEii");
-extern "C" bool topogeo_remove_local_reader(void* protocol, rtps::RTPSReader* reader) __asm__(
+extern "C" RemoveLocalReader topogeo_remove_local_reader __asm__(
     "_ZN8eprosima8fastrtps4rtps3WLP19remove_local_readerEPNS1_10RTPSReaderE");
 // NOLINTEND
 
@@ -104,9 +110,7 @@ extern "C" rtps::ReaderListener* topogeo_listener_of(const rtps::RTPSReader* rea
 extern "C" void topogeo_liveliness_changed(void* protocol, const void* writer, const void* kind,
                                            const void* lease, std::int32_t alive,
                                            std::int32_t not_alive) {
-  using Function =
-      void (*)(void*, const void*, const void*, const void*, std::int32_t, std::int32_t);
-  static const auto original = library_function<Function>(
+  static const auto original = library_function<LivelinessChanged*>(
       "_ZN8eprosima8fastrtps4rtps3WLP22sub_liveliness_changedERKNS1_6GUID_"
       "tERKNS_7fastdds3dds23LivelinessQosPolicyKindERKNS0_6Time_tEii");
   Passages::of_process().through(
@@ -114,8 +118,7 @@ extern "C" void topogeo_liveliness_changed(void* protocol, const void* writer, c
 }
 
 extern "C" bool topogeo_remove_local_reader(void* protocol, rtps::RTPSReader* reader) {
-  using Function = bool (*)(void*, rtps::RTPSReader*);
-  static const auto original = library_function<Function>(
+  static const auto original = library_function<RemoveLocalReader*>(
       "_ZN8eprosima8fastrtps4rtps3WLP19remove_local_readerEPNS1_10RTPSReaderE");
   return Passages::of_process().between([&] { return original(protocol, reader); });
 }

@@ -2,6 +2,7 @@
 // ga_worker runs, and what a localizer runs itself when it has no worker.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <list>
 #include <map>
@@ -22,6 +23,10 @@ namespace topogeo::localization {
 
 class Matcher {
  public:
+  /// So many references that were searched in last stay worked up, some 150 kB each. Answers do not
+  /// depend on it.
+  static constexpr std::size_t kKeptReferences = 16;
+
   /// Keeps the features of the map (some 20 kB, twice that where tasks ask for them without the
   /// scan) under its id; a later map of the same id replaces it.
   void add_map(const topomap::LocalMap& map);
