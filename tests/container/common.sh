@@ -56,20 +56,25 @@ eventually() {
   done
 }
 
-# A DDS domain that no other test has, in VARIABLE or, without one, for all that is started from here on: a worker serves
-# each partition of its domain, and this machine hears what containers say to a bridge.
-claim_domain() {  # [VARIABLE]
+# A DDS domain that no other test has, in VARIABLE.
+claim_domain_as() {  # VARIABLE
   local lock number
   for number in {1..100}; do
     exec {lock}>> "${TMPDIR:-/tmp}/topogeo_test_domain_$number.lock"
     if flock -n "$lock"; then
-      printf -v "${1:-TOPOGEO_DOMAIN}" %s "$number"
-      export TOPOGEO_DOMAIN
+      printf -v "$1" %s "$number"
       return
     fi
     exec {lock}>&-
   done
   fail "no free DDS domain from 1 to 100"
+}
+
+# One for all that is started from here on: a worker serves each partition of its domain, and this machine hears what
+# containers say to a bridge.
+claim_domain() {
+  claim_domain_as TOPOGEO_DOMAIN
+  export TOPOGEO_DOMAIN
 }
 
 need_programs() {

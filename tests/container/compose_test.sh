@@ -9,7 +9,7 @@ there docker-compose "nothing can be composed" || skip "no docker-compose"
 need openssl
 need_image
 claim_domain
-claim_domain truth  # of the simulator, which is not of the robot, and has no certificate
+claim_domain_as truth  # of the simulator, which is not of the robot, and has no certificate
 export TOPOGEO_DDS_PARTICIPANT=udp_only
 chmod 755 "$work"
 
@@ -18,7 +18,7 @@ step "certificates, a laser and a base"
   { tail -n 3 "$work/keys.log"; fail "no certificates"; }
 mkdir "$work/map"
 chown -R 1000 "$work/keys/robot" "$work/map"
-# shellcheck disable=SC2154  # claim_domain sets it
+# shellcheck disable=SC2154  # claim_domain_as sets it
 "$bin/simulator" --domain "$truth" --world "$source_dir/tests/data/room.world.yaml" --laser-port "$work/laser" \
   --base-port "$work/base" > "$work/simulator.log" 2>&1 &
 cleanups+=("kill $!")

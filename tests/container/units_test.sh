@@ -6,7 +6,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 need_image
 claim_domain
 # Of the simulator, so that it is not of the robot, and of who watches where the robot really is.
-claim_domain truth
+claim_domain_as truth
 machine=topogeo-machine-$$
 
 step "a machine with systemd"
@@ -55,7 +55,7 @@ here journalctl -u topogeo-sensor-gateway --no-pager | grep -q "expected at leas
 
 step "a laser and a base"
 docker cp "$source_dir/tests/data/room.world.yaml" $machine:/root/ > /dev/null
-# shellcheck disable=SC2154  # claim_domain sets it
+# shellcheck disable=SC2154  # claim_domain_as sets it
 docker exec -d $machine /usr/libexec/topogeo/simulator --domain "$truth" --world /root/room.world.yaml \
   --laser-port /root/laser --base-port /root/base
 eventually 20 here test -L /root/base || fail "the simulator makes no ports"
