@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace topogeo::localization {
 namespace {
@@ -13,10 +14,36 @@ namespace {
 constexpr std::size_t kMostPoints = std::numeric_limits<std::uint16_t>::max() - 1U;
 constexpr double kMostCells = 4'194'304.0;  // 200 m x 200 m; single precision counts to 2^24
 
+// Around each point a window of cells that it may be nearest to.
+struct Window {
+  int first_row;
+  int first_column;
+  double y;  // of the point, in cells
+};
+
+// What is worked on: windows of `width` columns and rows, and for each of them the squared
+// distances of its columns.
+struct Windows {
+  std::vector<Window> all;
+  std::vector<float> across_squared;
+  int width;
+};
+
+// Rows of the grid, from `first_row` on.
+struct Band {
+  int first_row;
+  int end_row;
+  std::size_t columns;
+  // As wide as a distance, so that vectors hold as many of both.
+  std::vector<std::int32_t> nearest;
+  std::vector<float> squared;  // of the nearest so far
+};
+
 // Of `count` cells of one row: point `i`, in those to which it is nearer than the `nearest` so far.
 // With masks, as the compiler makes vectors of that and not of two choices.
-void take_nearer(const float* __restrict across_squared, int count, float dy_squared,
-                 std::int32_t i, float* __restrict squared, std::int32_t* __restrict nearest) {
+inline void take_nearer(const float* __restrict across_squared, int count, float dy_squared,
+                        std::int32_t i, float* __restrict squared,
+                        std::int32_t* __restrict nearest) {
   for (int c = 0; c < count; ++c) {
     const float distance = across_squared[c] + dy_squared;
     const float before = squared[c];
@@ -26,10 +53,37 @@ void take_nearer(const float* __restrict across_squared, int count, float dy_squ
   }
 }
 
+// Twice the vectors where the processor has them: their arithmetic is the same. What checks memory
+// cannot be asked that early which processor it is.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define TOPOGEO_WIDE_VECTORS __attribute__((target_clones("avx2", "default")))
+#else
+#define TOPOGEO_WIDE_VECTORS
+#endif
+
+TOPOGEO_WIDE_VECTORS void fill(const Windows& windows, Band& band) {
+  const int width = windows.width;
+  for (std::size_t i = 0; i < windows.all.size(); ++i) {
+    const Window& window = windows.all[i];
+    const float* const across_squared =
+        &windows.across_squared[i * static_cast<std::size_t>(width)];
+    const int end = std::min(window.first_row + width, band.end_row);
+    for (int r = std::max(window.first_row, band.first_row); r < end; ++r) {
+      const auto dy = static_cast<float>(r + 0.5 - window.y);
+      const std::size_t first = static_cast<std::size_t>(r - band.first_row) * band.columns +
+                                static_cast<std::size_t>(window.first_column);
+      take_nearer(across_squared, width, dy * dy, static_cast<std::int32_t>(i),
+                  &band.squared[first], &band.nearest[first]);
+    }
+  }
+}
+
 }  // namespace
 
 void NearestPointGrid::build(const std::vector<Eigen::Vector2d>& points_m, double cell_m,
                              double reach_m) {
+  std::vector<std::uint16_t> memory = std::move(nearest_);
   *this = NearestPointGrid();
   if (points_m.empty()) return;
   if (points_m.size() > kMostPoints) {
@@ -60,31 +114,39 @@ void NearestPointGrid::build(const std::vector<Eigen::Vector2d>& points_m, doubl
   columns_ = static_cast<int>(columns);
   rows_ = static_cast<int>(rows);
   count_ = static_cast<std::uint16_t>(points_m.size());
-  const auto cells = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
-  // As wide as a distance, so that vectors hold as many of both.
-  std::vector<std::int32_t> nearest(cells, count_);
-  std::vector<float> squared(cells, std::numeric_limits<float>::max());  // of the nearest so far
-  const int width = 2 * reach_cells + 1;
-  std::vector<float> across_squared(static_cast<std::size_t>(width));
+  const auto in_row = static_cast<std::size_t>(columns_);
+  memory.resize(in_row * static_cast<std::size_t>(rows_));
 
-  for (std::size_t i = 0; i < points_m.size(); ++i) {
-    const double x = (points_m[i].x() - origin_x_m_) * cells_per_m_;
-    const double y = (points_m[i].y() - origin_y_m_) * cells_per_m_;
+  Windows windows;
+  windows.width = 2 * reach_cells + 1;
+  windows.all.reserve(points_m.size());
+  windows.across_squared.reserve(points_m.size() * static_cast<std::size_t>(windows.width));
+  for (const Eigen::Vector2d& p : points_m) {
+    const double x = (p.x() - origin_x_m_) * cells_per_m_;
+    const double y = (p.y() - origin_y_m_) * cells_per_m_;
     const int first_column = static_cast<int>(x) - reach_cells;
-    const int first_row = static_cast<int>(y) - reach_cells;
-    for (int c = 0; c < width; ++c) {
+    windows.all.push_back({static_cast<int>(y) - reach_cells, first_column, y});
+    for (int c = 0; c < windows.width; ++c) {
       const float dx = static_cast<float>(first_column + 0.5 - x) + static_cast<float>(c);
-      across_squared[static_cast<std::size_t>(c)] = dx * dx;
-    }
-    for (int r = first_row; r < first_row + width; ++r) {
-      const auto dy = static_cast<float>(r + 0.5 - y);
-      const std::size_t first = static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) +
-                                static_cast<std::size_t>(first_column);
-      take_nearer(across_squared.data(), width, dy * dy, static_cast<std::int32_t>(i),
-                  &squared[first], &nearest[first]);
+      windows.across_squared.push_back(dx * dx);
     }
   }
-  nearest_.assign(nearest.begin(), nearest.end());
+
+  // A band at a time, so that what is worked on stays in the fast memory of the processor.
+  constexpr int kBandRows = 32;
+  const std::size_t most_cells = static_cast<std::size_t>(std::min(kBandRows, rows_)) * in_row;
+  Band band{0, 0, in_row, std::vector<std::int32_t>(most_cells), std::vector<float>(most_cells)};
+  auto filled = memory.begin();
+  for (; band.end_row < rows_; band.first_row = band.end_row) {
+    band.end_row = std::min(band.first_row + kBandRows, rows_);
+    std::fill(band.nearest.begin(), band.nearest.end(), count_);
+    std::fill(band.squared.begin(), band.squared.end(), std::numeric_limits<float>::max());
+    fill(windows, band);
+    const auto cells = static_cast<std::ptrdiff_t>(band.end_row - band.first_row) * columns_;
+    filled = std::transform(band.nearest.begin(), band.nearest.begin() + cells, filled,
+                            [](std::int32_t i) { return static_cast<std::uint16_t>(i); });
+  }
+  nearest_ = std::move(memory);
 }
 
 }  // namespace topogeo::localization
