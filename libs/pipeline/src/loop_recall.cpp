@@ -172,7 +172,7 @@ bool in_view(const topomap::LocalMap& earlier, const topomap::LocalMap& later,
       localization::make_reference(localization::extract_features(earlier));
   const auto there = [&](const topomap::ScanPoint& point) {
     const Eigen::Vector2d p = T_earlier_later * Eigen::Vector2d(point.x_m, point.y_m);
-    const auto view = older.features.profile.view(p, kSeenThere_m);
+    const auto view = older.features->profile.view(p, kSeenThere_m);
     if (view != localization::RangeProfile::View::kFree &&
         view != localization::RangeProfile::View::kSurface) {
       return false;
@@ -180,7 +180,7 @@ bool in_view(const topomap::LocalMap& earlier, const topomap::LocalMap& later,
     const std::int32_t found = older.surface_grid.find(p.x(), p.y());
     if (found == localization::NearestPointGrid::kNone) return false;
     const localization::SurfacePoint& nearest =
-        older.features.surface[static_cast<std::size_t>(found)];
+        older.features->surface[static_cast<std::size_t>(found)];
     const Eigen::Vector2d off_m = p - nearest.position_m;
     return off_m.norm() <= kSame_m || (nearest.on_line && off_m.norm() <= kOutline_m &&
                                        std::fabs(off_m.dot(nearest.normal)) <= kSame_m);

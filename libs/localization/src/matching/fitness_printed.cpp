@@ -78,7 +78,7 @@ struct PrintedFitness::Mean {
 };
 
 void PrintedFitness::bind(const Reference& reference, const MatchFeatures& query) {
-  reference_ = &reference.features;
+  reference_ = reference.features.get();
   query_ = &query;
   chord_angles(reference_->curves, reference_angles_rad_);
   chord_angles(query.curves, query_angles_rad_);

@@ -109,7 +109,7 @@ double TopologicalFitness::node_scores(const FloatPose& T) const {
     const float x = T.x_m + T.cos * px - T.sin * py;
     const float y = T.y_m + T.sin * px + T.cos * py;
     float best = 0.0F;
-    for (const topomap::LocalNode& other : reference_->features.nodes) {
+    for (const topomap::LocalNode& other : reference_->features->nodes) {
       const float dx = static_cast<float>(other.position_m.x()) - x;
       const float dy = static_cast<float>(other.position_m.y()) - y;
       const float squared = dx * dx + dy * dy;

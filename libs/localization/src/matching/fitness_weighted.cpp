@@ -74,7 +74,7 @@ double WeightedFitness::of_branches(const geometry::Pose2& T, const geometry::Si
     const double y = T.y_m + r.sin * sample.position_m.x() + r.cos * sample.position_m.y();
     const std::int32_t found = reference_->branch_grid.find(x, y);
     if (found == NearestPointGrid::kNone) continue;
-    const BranchSample& other = reference_->features.branches[static_cast<std::size_t>(found)];
+    const BranchSample& other = reference_->features->branches[static_cast<std::size_t>(found)];
     sum += sample.weight * score(sample, other, x, y, r);
   }
   return sum;
@@ -86,7 +86,7 @@ double WeightedFitness::of_nodes(const geometry::Pose2& T, const geometry::SinCo
     const double x = T.x_m + r.cos * node.position_m.x() - r.sin * node.position_m.y();
     const double y = T.y_m + r.sin * node.position_m.x() + r.cos * node.position_m.y();
     double best = 0.0;
-    for (const topomap::LocalNode& other : reference_->features.nodes) {
+    for (const topomap::LocalNode& other : reference_->features->nodes) {
       const double dx = other.position_m.x() - x;
       const double dy = other.position_m.y() - y;
       const double squared = dx * dx + dy * dy;

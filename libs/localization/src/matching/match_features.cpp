@@ -290,11 +290,18 @@ MatchFeatures extract_features(const topomap::LocalMap& map) {
 }
 
 Reference make_reference(MatchFeatures features) {
-  constexpr float kFarAway_m = 1e9F;
   Reference reference;
+  remake_reference(std::make_shared<const MatchFeatures>(std::move(features)), reference);
+  return reference;
+}
+
+void remake_reference(std::shared_ptr<const MatchFeatures> made_of, Reference& reference) {
+  constexpr float kFarAway_m = 1e9F;
+  const MatchFeatures& features = *made_of;
   const double cell_m = grid_cell_m(features.surface);
   std::vector<Eigen::Vector2d> positions_m;
   positions_m.reserve(std::max(features.surface.size(), features.branches.size()));
+  reference.surfaces.clear();
   reference.surfaces.reserve(features.surface.size() + 1);
   for (const SurfacePoint& p : features.surface) {
     positions_m.push_back(p.position_m);
@@ -305,6 +312,7 @@ Reference make_reference(MatchFeatures features) {
   reference.surfaces.push_back({kFarAway_m, kFarAway_m, 0.0F, 0.0F});
   reference.surface_grid.build(positions_m, cell_m, kReach_m);
   positions_m.clear();
+  reference.branches.clear();
   reference.branches.reserve(features.branches.size() + 1);
   for (const BranchSample& s : features.branches) {
     positions_m.push_back(s.position_m);
@@ -314,8 +322,7 @@ Reference make_reference(MatchFeatures features) {
   }
   reference.branches.push_back({kFarAway_m, kFarAway_m, 0.0F, 0.0F, 0.0F});
   reference.branch_grid.build(positions_m, cell_m, kReach_m);
-  reference.features = std::move(features);
-  return reference;
+  reference.features = std::move(made_of);
 }
 
 }  // namespace topogeo::localization

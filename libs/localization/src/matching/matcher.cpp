@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <memory>
 #include <stdexcept>
 #include <string>
 
@@ -83,7 +85,10 @@ MatchTask finer_task(const MatchTask& task, const Pose2& T_solution) {
 
 void Matcher::add_map(const topomap::LocalMap& map) {
   KnownMap& known = maps_[map.id];
-  known = {topomap::content_hash(map), extract_features(map), {}, {}};
+  known = {topomap::content_hash(map),
+           std::make_shared<const MatchFeatures>(extract_features(map)),
+           {},
+           {}};
   known.branches.branches = map.branches;
   known.branches.T_robot_laser = map.T_robot_laser;
 }
@@ -104,29 +109,40 @@ Matcher::KnownMap& Matcher::known(std::uint32_t id, std::uint64_t hash) {
   return found->second;
 }
 
-const MatchFeatures& Matcher::features(std::uint32_t id, std::uint64_t hash,
-                                       MatchEvidence evidence) {
+const std::shared_ptr<const MatchFeatures>& Matcher::features(std::uint32_t id, std::uint64_t hash,
+                                                              MatchEvidence evidence) {
   KnownMap& map = known(id, hash);
   if (evidence == MatchEvidence::kScan) return map.features;
   if (!map.by_branches) {
-    map.by_branches = with_walls(map.features, walls_of_branches(map.branches));
+    map.by_branches = std::make_shared<const MatchFeatures>(
+        with_walls(*map.features, walls_of_branches(map.branches)));
   }
-  return *map.by_branches;
+  return map.by_branches;
 }
 
 const Reference& Matcher::reference(const MatchTask& task) {
   const std::uint32_t id = task.reference_map_id;
   const std::uint64_t hash = task.reference_hash;
   const bool by_scan = task.evidence == MatchEvidence::kScan;
-  const MatchFeatures& seen = features(id, hash, task.evidence);
+  const std::shared_ptr<const MatchFeatures>& seen = features(id, hash, task.evidence);
   const auto found = std::find_if(references_.begin(), references_.end(), [&](const auto& cached) {
     return cached.id == id && cached.hash == hash && cached.by_scan == by_scan;
   });
   if (found != references_.end()) {
     references_.splice(references_.begin(), references_, found);
   } else {
-    references_.push_front({id, hash, by_scan, make_reference(seen)});
-    if (references_.size() > kKeptReferences) references_.pop_back();
+    // In the memory of the one that was used longest ago; gone if it cannot be made.
+    std::list<CachedReference> made;
+    if (references_.size() < kKeptReferences) {
+      made.emplace_back();
+    } else {
+      made.splice(made.begin(), references_, std::prev(references_.end()));
+    }
+    remake_reference(seen, made.front().reference);
+    made.front().id = id;
+    made.front().hash = hash;
+    made.front().by_scan = by_scan;
+    references_.splice(references_.begin(), made);
   }
   return references_.front().reference;
 }
@@ -149,13 +165,13 @@ MatchResult Matcher::solve(const MatchTask& task) {
     return result;
   }
   check(task);
-  const MatchFeatures& query = features(task.query_map_id, task.query_hash, task.evidence);
+  const MatchFeatures& query = *features(task.query_map_id, task.query_hash, task.evidence);
   const Reference& against = reference(task);
   forms_.bind(against, query, task);
 
   MatchResult result;
   result.evaluations =
-      search_.run(task, forms_.chosen(), hypotheses_.find(task, against.features, query));
+      search_.run(task, forms_.chosen(), hypotheses_.find(task, *against.features, query));
   result.solutions.reserve(task.solutions_wanted);
   search_.best_distinct(
       task.solutions_wanted,

@@ -125,7 +125,7 @@ std::string faults_of_choice(const MatchResult& right) {
 std::string Matcher::verify(const MatchTask& task, const MatchResult& result) {
   if (task.places) return field(*task.places).verify(*task.places, result.solutions);
   check(task);
-  const MatchFeatures& query = features(task.query_map_id, task.query_hash, task.evidence);
+  const MatchFeatures& query = *features(task.query_map_id, task.query_hash, task.evidence);
   const Reference& against = reference(task);
   std::string fault = faults_of_form(task, result);
   if (!fault.empty()) return fault;

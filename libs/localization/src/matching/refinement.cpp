@@ -34,7 +34,7 @@ const WallEdge* same_edge(const Reference& reference, const WallEdge& edge, doub
   constexpr double kSameHeight_m = 0.03;   // and a quarter of the height
   const WallEdge* nearest = nullptr;
   double least_m = gate_m;
-  for (const WallEdge& other : reference.features.edges) {
+  for (const WallEdge& other : reference.features->edges) {
     if (edge.direction.dot(other.direction) < kSameDirection) continue;
     if (std::fabs(other.step_m - edge.step_m) > kSameHeight_m + 0.25 * other.step_m) continue;
     const Eigen::Vector2d d = edge.position_m - other.position_m;
@@ -77,7 +77,7 @@ NormalEquations linearize(const Reference& reference, const MatchFeatures& query
     const double dy = r.sin * point.position_m.x() + r.cos * point.position_m.y();
     const std::int32_t found = reference.surface_grid.find(T.x_m + dx, T.y_m + dy);
     if (found == NearestPointGrid::kNone) continue;
-    const SurfacePoint& other = reference.features.surface[static_cast<std::size_t>(found)];
+    const SurfacePoint& other = reference.features->surface[static_cast<std::size_t>(found)];
     const double ox = T.x_m + dx - other.position_m.x();
     const double oy = T.y_m + dy - other.position_m.y();
     if (ox * ox + oy * oy > gate_m * gate_m || !other.on_line) continue;
@@ -107,7 +107,7 @@ ReverseView look_back(const Reference& reference, const MatchFeatures& query, co
   ReverseView counts;
   const Pose2 T_query_reference = geometry::inverse(T);
   const geometry::SinCos r = geometry::sincos(T_query_reference.theta_rad);
-  for (const SurfacePoint& point : reference.features.surface) {
+  for (const SurfacePoint& point : reference.features->surface) {
     const SurfacePoint p = moved(point, T_query_reference, r);
     const RangeProfile::View view =
         query.profile.view_of_face(p.position_m, p.normal, kViewTolerance_m);
@@ -129,9 +129,9 @@ void compare_views(const Reference& reference, const MatchFeatures& query, const
     const SurfacePoint here = moved(point, T, r);
     const Eigen::Vector2d& p = here.position_m;
     const std::int32_t found = reference.surface_grid.find(p.x(), p.y());
-    const RangeProfile& profile = reference.features.profile;
+    const RangeProfile& profile = reference.features->profile;
     if (found != NearestPointGrid::kNone && !profile.turned_away(p, here.normal)) {
-      const SurfacePoint& other = reference.features.surface[static_cast<std::size_t>(found)];
+      const SurfacePoint& other = reference.features->surface[static_cast<std::size_t>(found)];
       const Eigen::Vector2d o = p - other.position_m;
       const double across =
           other.on_line ? o.x() * other.normal.x() + o.y() * other.normal.y() : 0.0;

@@ -188,7 +188,7 @@ void PlaceRecognition::count_seen(const Submap& submap, const Reference& referen
     const SurfacePoint p = moved(point, T, heading);
     const std::int32_t found = reference.surface_grid.find(p.position_m.x(), p.position_m.y());
     if (found != NearestPointGrid::kNone &&
-        (reference.features.surface[static_cast<std::size_t>(found)].position_m - p.position_m)
+        (reference.features->surface[static_cast<std::size_t>(found)].position_m - p.position_m)
                 .squaredNorm() <= kThere_m * kThere_m) {
       ++there;
       continue;

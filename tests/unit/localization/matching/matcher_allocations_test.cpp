@@ -38,7 +38,7 @@ TEST_F(Allocations, AWarmSearchHasNone) {
   GeneticSearch search;
   const auto run = [&] {
     forms.bind(reference, query, task_);
-    return search.run(task_, forms.chosen(), hypotheses.find(task_, reference.features, query));
+    return search.run(task_, forms.chosen(), hypotheses.find(task_, *reference.features, query));
   };
   for (const FitnessForm form : kForms) {
     task_.fitness_form = form;

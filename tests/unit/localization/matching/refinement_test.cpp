@@ -154,7 +154,7 @@ std::vector<double> residuals(const Reference& reference, const MatchFeatures& q
     const Eigen::Vector2d at = T_association * point.position_m;
     const std::int32_t found = reference.surface_grid.find(at.x(), at.y());
     if (found == NearestPointGrid::kNone) continue;
-    const SurfacePoint& other = reference.features.surface[static_cast<std::size_t>(found)];
+    const SurfacePoint& other = reference.features->surface[static_cast<std::size_t>(found)];
     if (!other.on_line || (at - other.position_m).norm() > 0.2) continue;
     const Pose2 only_turn{0.0, 0.0, T_association.theta_rad};
     const double cosine = (only_turn * point.normal).dot(other.normal);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -150,9 +151,10 @@ struct Reference {
     float x_m, y_m;
     float normal_x, normal_y;
   };
-  MatchFeatures features;
-  NearestPointGrid surface_grid;  ///< on features.surface
-  NearestPointGrid branch_grid;   ///< on features.branches
+  std::shared_ptr<const MatchFeatures> features =
+      std::make_shared<const MatchFeatures>();  ///< never null
+  NearestPointGrid surface_grid;                ///< on features->surface
+  NearestPointGrid branch_grid;                 ///< on features->branches
   std::vector<Surface> surfaces;
   std::vector<Branch> branches;
 };
@@ -163,5 +165,9 @@ inline constexpr double kReach_m = 0.60;
 
 /// Throws std::invalid_argument when the points lie too far apart (see NearestPointGrid::build).
 Reference make_reference(MatchFeatures features);
+
+/// Makes another reference in the memory of this one; `features` not null. Throws like
+/// make_reference(), then the reference is to be made again.
+void remake_reference(std::shared_ptr<const MatchFeatures> features, Reference& reference);
 
 }  // namespace topogeo::localization

@@ -52,9 +52,10 @@ class Matcher {
  private:
   struct KnownMap {
     std::uint64_t hash = 0;
-    MatchFeatures features;
+    std::shared_ptr<const MatchFeatures> features;
     topomap::LocalMap branches;  // they and the laser's place alone, of which walls are made
-    std::optional<MatchFeatures> by_branches;  // the walls in place of the scan, once asked for
+    // The walls in place of the scan, once asked for.
+    std::shared_ptr<const MatchFeatures> by_branches;
   };
   struct CachedReference {
     std::uint32_t id = 0;
@@ -65,7 +66,8 @@ class Matcher {
 
   KnownMap& known(std::uint32_t id, std::uint64_t hash);
   // What the task's evidence reads of the maps that it names.
-  const MatchFeatures& features(std::uint32_t id, std::uint64_t hash, MatchEvidence evidence);
+  const std::shared_ptr<const MatchFeatures>& features(std::uint32_t id, std::uint64_t hash,
+                                                       MatchEvidence evidence);
   const Reference& reference(const MatchTask& task);
   // Searches once more around each of the starts; how many individuals were scored.
   std::uint32_t search_finer(const MatchTask& task);
