@@ -54,13 +54,14 @@ GaWorkerService::GaWorkerService(service::Service& service, const WorkerOptions&
       options_(options),
       statuses_(service.advertise<msg::WorkerStatus>()),
       requests_(service.advertise<msg::MapRequest>()),
-      results_(service, options.worker_id, clients_),
-      intake_(intake_options(options)) {
+      results_(service, options.worker_id, clients_, [this] { take_outcomes(); }),
+      intake_(intake_options(options)),
+      outcomes_([this] { service_.loop().post([this] { take_outcomes(); }); }) {
   messaging::EventLoop& loop = service_.loop();
   const std::size_t per_slot = half_of_memory(options_) / std::max(1U, options_.slots);
   runner_.emplace(options_.slots, std::max(per_slot, kLeastPerSlot_bytes), options_.scheduling,
-                  [this, &loop](search_pool::TaskRunner::Outcome outcome) {
-                    loop.post([this, outcome = std::move(outcome)] { on_outcome(outcome); });
+                  [this](search_pool::TaskRunner::Outcome outcome) {
+                    outcomes_.add(std::move(outcome));
                   });
   fill_status();
   listen();
@@ -183,6 +184,7 @@ void GaWorkerService::on_tasks(const msg::MatchTasks& message, const messaging::
     }
   }
   if (intake_.waiting() > 0) request_missing_maps();
+  outcomes_.wake_at(results_.until_due());
 }
 
 void GaWorkerService::take(const msg::MatchTask& message, const Asked& asked,
@@ -198,6 +200,11 @@ void GaWorkerService::take(const msg::MatchTask& message, const Asked& asked,
   if (std::optional<search_pool::ReadyJob> ready = intake_.add(std::move(job), Clock::now())) {
     runner_->add(std::move(*ready));
   }
+}
+
+void GaWorkerService::take_outcomes() {
+  for (const search_pool::TaskRunner::Outcome& outcome : outcomes_.take()) on_outcome(outcome);
+  outcomes_.wake_at(results_.until_due());
 }
 
 void GaWorkerService::on_outcome(const search_pool::TaskRunner::Outcome& outcome) {

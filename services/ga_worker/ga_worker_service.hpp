@@ -17,6 +17,7 @@
 #include "topogeo/msg/match.h"
 #include "topogeo/msg/status.h"
 #include "topogeo/search_pool/client_registry.hpp"
+#include "topogeo/search_pool/outcome_queue.hpp"
 #include "topogeo/search_pool/task_intake.hpp"
 #include "topogeo/search_pool/task_runner.hpp"
 #include "topogeo/service/conversions.hpp"
@@ -60,6 +61,8 @@ class GaWorkerService {
   void on_tasks(const msg::MatchTasks& message, const messaging::SampleInfo& info);
   /// Gives the task to the runner, or to those that wait for maps.
   void take(const msg::MatchTask& message, const Asked& asked, const std::string& robot_id);
+  /// Answers what the slots have finished.
+  void take_outcomes();
   void on_outcome(const search_pool::TaskRunner::Outcome& outcome);
   void on_event(const messaging::Event& event);
 
@@ -95,6 +98,7 @@ class GaWorkerService {
   Clock::time_point last_status_ = start_;
   std::chrono::nanoseconds busy_at_last_status_{0};
   std::deque<std::pair<Clock::time_point, std::uint64_t>> done_history_;
+  search_pool::OutcomeQueue outcomes_;
   std::optional<search_pool::TaskRunner> runner_;  // last: its threads end first
 };
 

@@ -11,15 +11,17 @@ namespace topogeo::ga_worker {
 namespace {
 
 /// Many short searches, and little beside the time of a batch that has so many tasks.
-constexpr std::chrono::milliseconds kLongestWait{25};
+constexpr std::chrono::milliseconds kLongestWait{40};
 
 }  // namespace
 
 ResultSender::ResultSender(service::Service& service, std::string worker_id,
-                           const search_pool::ClientRegistry& clients)
+                           const search_pool::ClientRegistry& clients,
+                           std::function<void()> collect)
     : service_(service),
       worker_id_(std::move(worker_id)),
       clients_(clients),
+      collect_(std::move(collect)),
       results_(service.advertise<msg::MatchResults>()) {}
 
 void ResultSender::expect(const std::string& client_id, std::size_t tasks) {
@@ -33,12 +35,30 @@ void ResultSender::add(const std::string& client_id, msg::MatchResult result,
   Outbox& outbox = found->second;
   outbox.answers.push_back({std::move(result), stamp_ns, Clock::now()});
   if (outbox.tasks_in_hand > 0) --outbox.tasks_in_hand;
-  if (outbox.answers.size() >=
-      std::min<std::size_t>(outbox.tasks_in_hand, msg::kMaxTasksInMessage)) {
+  if (until_due(outbox) == 0) {
     send(client_id, outbox);
   } else {
     wait_for_more();
   }
+}
+
+std::size_t ResultSender::until_due(const Outbox& outbox) {
+  const std::size_t waiting = outbox.answers.size();
+  const std::size_t most = msg::kMaxTasksInMessage;
+  if (waiting >= std::min(outbox.tasks_in_hand, most)) return 0;
+  // Each one more that waits is one less in hand.
+  return std::min((outbox.tasks_in_hand - waiting + 1) / 2, most - waiting);
+}
+
+std::size_t ResultSender::until_due() const {
+  std::size_t least = msg::kMaxTasksInMessage;
+  for (const auto& [client_id, outbox] : outboxes_) {
+    if (outbox.tasks_in_hand == 0) continue;
+    // The first one sets the timer.
+    least = outbox.answers.empty() ? 1 : std::clamp<std::size_t>(until_due(outbox), 1, least);
+    if (least == 1) break;
+  }
+  return least;
 }
 
 void ResultSender::wait_for_more() {
@@ -54,6 +74,7 @@ void ResultSender::wait_for_more() {
   if (left.count() <= 0) left = kLongestWait;  // its client takes nothing at the moment
   timer_ = service_.loop().call_after(left, [this] {
     timer_.reset();
+    collect_();
     const Clock::time_point due = Clock::now() - kLongestWait;
     for (auto& [client_id, outbox] : outboxes_) {
       if (!outbox.answers.empty() && outbox.answers.front().since <= due) send(client_id, outbox);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -17,14 +18,15 @@
 namespace topogeo::ga_worker {
 
 /// The answers of a client leave when they are as many as its tasks that are still in hand: it
-/// sends new ones while the worker is busy with the rest. None waits longer than 25 ms for others.
+/// sends new ones while the worker is busy with the rest. None waits longer than 40 ms for others.
 class ResultSender {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// `service` and `clients`, which knows whom answers go to, must outlive it.
+  /// `service` and `clients`, which knows whom answers go to, must outlive it. `collect` is called
+  /// before answers leave that have waited long, and adds what there is.
   ResultSender(service::Service& service, std::string worker_id,
-               const search_pool::ClientRegistry& clients);
+               const search_pool::ClientRegistry& clients, std::function<void()> collect);
 
   /// So many tasks of the client have come: an answer to each will be added.
   void expect(const std::string& client_id, std::size_t tasks);
@@ -40,6 +42,9 @@ class ResultSender {
 
   /// Answers that wait.
   [[nodiscard]] std::size_t waiting() const;
+  /// So many more answers, at least 1, can be added before those of a client leave, or begin to
+  /// wait.
+  [[nodiscard]] std::size_t until_due() const;
   void wait_for_acknowledgments(std::chrono::nanoseconds patience);
 
  private:
@@ -53,6 +58,8 @@ class ResultSender {
     std::deque<Answer> answers;
   };
 
+  /// So many more answers and those of this client leave; 0: they are to leave now.
+  static std::size_t until_due(const Outbox& outbox);
   /// A result to a client whose reader is not connected yet would be lost: it waits.
   [[nodiscard]] bool is_reachable(const std::string& client_id) const;
   void send(const std::string& client_id, Outbox& outbox);
@@ -64,6 +71,7 @@ class ResultSender {
   service::Service& service_;
   std::string worker_id_;
   const search_pool::ClientRegistry& clients_;
+  std::function<void()> collect_;
   messaging::Writer<msg::MatchResults> results_;
   std::map<std::string, Outbox> outboxes_;  // by client id
   std::optional<std::uint64_t> timer_;
