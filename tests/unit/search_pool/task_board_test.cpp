@@ -46,7 +46,7 @@ TEST(TaskBoard, WorkersHoldHalfOfTheirShareOfABatch) {
   BoardConfig config;
   config.probation = 0;
   for (const auto& [batch, sent] : {std::pair{4, 4}, std::pair{8, 4}, std::pair{12, 6},
-                                    std::pair{100, 50}, std::pair{1000, 64}}) {
+                                    std::pair{100, 50}, std::pair{1000, 128}}) {
     TaskBoard board(config);
     for (const char* worker : {"a", "b"}) {
       board.worker_up(worker, 1, seconds(0));
@@ -64,7 +64,7 @@ TEST(TaskBoard, ANewWorkerHoldsTwoTasksBeforeItsProbationIsOver) {
   board.begin(tasks(100, 100));
   EXPECT_EQ(sent_at_once(board), 2);
   for (const auto& [task_id, next] :
-       {std::pair{100U, 1}, std::pair{101U, 1}, std::pair{102U, 31}}) {
+       {std::pair{100U, 1}, std::pair{101U, 1}, std::pair{102U, 47}}) {
     board.answer("a", answer_to(task_id), seconds(0));
     EXPECT_EQ(sent_at_once(board), next) << task_id;
   }
