@@ -59,10 +59,9 @@ GaWorkerService::GaWorkerService(service::Service& service, const WorkerOptions&
       outcomes_([this] { service_.loop().post([this] { take_outcomes(); }); }) {
   messaging::EventLoop& loop = service_.loop();
   const std::size_t per_slot = half_of_memory(options_) / std::max(1U, options_.slots);
-  runner_.emplace(options_.slots, std::max(per_slot, kLeastPerSlot_bytes), options_.scheduling,
-                  [this](search_pool::TaskRunner::Outcome outcome) {
-                    outcomes_.add(std::move(outcome));
-                  });
+  runner_.emplace(
+      options_.slots, std::max(per_slot, kLeastPerSlot_bytes), options_.scheduling,
+      [this](search_pool::TaskRunner::Outcome outcome) { outcomes_.add(std::move(outcome)); });
   fill_status();
   listen();
   loop.add_timer(kStatusPeriod, [this] { publish_status(); });
