@@ -54,9 +54,9 @@ GaWorkerService::GaWorkerService(service::Service& service, const WorkerOptions&
       options_(options),
       statuses_(service.advertise<msg::WorkerStatus>()),
       requests_(service.advertise<msg::MapRequest>()),
-      results_(service, options.worker_id, clients_, [this] { take_outcomes(); }),
-      intake_(intake_options(options)),
-      outcomes_([this] { service_.loop().post([this] { take_outcomes(); }); }) {
+      outcomes_([this] { service_.loop().post([this] { take_outcomes(); }); }),
+      results_(service, options.worker_id, clients_, outcomes_, [this] { take_outcomes(); }),
+      intake_(intake_options(options)) {
   messaging::EventLoop& loop = service_.loop();
   const std::size_t per_slot = half_of_memory(options_) / std::max(1U, options_.slots);
   runner_.emplace(
@@ -183,7 +183,6 @@ void GaWorkerService::on_tasks(const msg::MatchTasks& message, const messaging::
     }
   }
   if (intake_.waiting() > 0) request_missing_maps();
-  outcomes_.wake_at(results_.until_due());
 }
 
 void GaWorkerService::take(const msg::MatchTask& message, const Asked& asked,
@@ -203,7 +202,6 @@ void GaWorkerService::take(const msg::MatchTask& message, const Asked& asked,
 
 void GaWorkerService::take_outcomes() {
   for (const search_pool::TaskRunner::Outcome& outcome : outcomes_.take()) on_outcome(outcome);
-  outcomes_.wake_at(results_.until_due());
 }
 
 void GaWorkerService::on_outcome(const search_pool::TaskRunner::Outcome& outcome) {

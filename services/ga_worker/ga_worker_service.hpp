@@ -85,6 +85,7 @@ class GaWorkerService {
   messaging::Writer<msg::WorkerStatus> statuses_;
   messaging::Writer<msg::MapRequest> requests_;
   search_pool::ClientRegistry clients_;
+  search_pool::OutcomeQueue outcomes_;
   ResultSender results_;
   search_pool::TaskIntake intake_;
   std::optional<std::uint64_t> request_timer_;
@@ -98,7 +99,6 @@ class GaWorkerService {
   Clock::time_point last_status_ = start_;
   std::chrono::nanoseconds busy_at_last_status_{0};
   std::deque<std::pair<Clock::time_point, std::uint64_t>> done_history_;
-  search_pool::OutcomeQueue outcomes_;
   std::optional<search_pool::TaskRunner> runner_;  // last: its threads end first
 };
 

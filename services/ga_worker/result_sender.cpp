@@ -17,15 +17,17 @@ constexpr std::chrono::milliseconds kLongestWait{40};
 
 ResultSender::ResultSender(service::Service& service, std::string worker_id,
                            const search_pool::ClientRegistry& clients,
-                           std::function<void()> collect)
+                           search_pool::OutcomeQueue& outcomes, std::function<void()> collect)
     : service_(service),
       worker_id_(std::move(worker_id)),
       clients_(clients),
+      outcomes_(outcomes),
       collect_(std::move(collect)),
       results_(service.advertise<msg::MatchResults>()) {}
 
 void ResultSender::expect(const std::string& client_id, std::size_t tasks) {
   outboxes_[client_id].tasks_in_hand += tasks;
+  tell_when_to_wake();
 }
 
 void ResultSender::add(const std::string& client_id, msg::MatchResult result,
@@ -40,6 +42,7 @@ void ResultSender::add(const std::string& client_id, msg::MatchResult result,
   } else {
     wait_for_more();
   }
+  tell_when_to_wake();
 }
 
 std::size_t ResultSender::until_due(const Outbox& outbox) {
@@ -50,7 +53,7 @@ std::size_t ResultSender::until_due(const Outbox& outbox) {
   return std::min((outbox.tasks_in_hand - waiting + 1) / 2, most - waiting);
 }
 
-std::size_t ResultSender::until_due() const {
+void ResultSender::tell_when_to_wake() {
   std::size_t least = msg::kMaxTasksInMessage;
   for (const auto& [client_id, outbox] : outboxes_) {
     if (outbox.tasks_in_hand == 0) continue;
@@ -58,7 +61,7 @@ std::size_t ResultSender::until_due() const {
     least = outbox.answers.empty() ? 1 : std::clamp<std::size_t>(until_due(outbox), 1, least);
     if (least == 1) break;
   }
-  return least;
+  outcomes_.wake_at(least);
 }
 
 void ResultSender::wait_for_more() {
@@ -74,17 +77,24 @@ void ResultSender::wait_for_more() {
   if (left.count() <= 0) left = kLongestWait;  // its client takes nothing at the moment
   timer_ = service_.loop().call_after(left, [this] {
     timer_.reset();
-    collect_();
-    const Clock::time_point due = Clock::now() - kLongestWait;
-    for (auto& [client_id, outbox] : outboxes_) {
-      if (!outbox.answers.empty() && outbox.answers.front().since <= due) send(client_id, outbox);
-    }
-    wait_for_more();
+    send_old();
   });
 }
 
+void ResultSender::send_old() {
+  collect_();
+  const Clock::time_point due = Clock::now() - kLongestWait;
+  for (auto& [client_id, outbox] : outboxes_) {
+    if (!outbox.answers.empty() && outbox.answers.front().since <= due) send(client_id, outbox);
+  }
+  wait_for_more();
+  tell_when_to_wake();
+}
+
 void ResultSender::send_all() {
+  collect_();
   for (auto& [client_id, outbox] : outboxes_) send(client_id, outbox);
+  tell_when_to_wake();
 }
 
 bool ResultSender::is_reachable(const std::string& client_id) const {
@@ -123,10 +133,12 @@ void ResultSender::drop_older(Clock::time_point before) {
   for (auto& [client_id, outbox] : outboxes_) {
     std::erase_if(outbox.answers, [&](const Answer& answer) { return answer.since < before; });
   }
+  tell_when_to_wake();
 }
 
 void ResultSender::forget(const std::string& client_id) {
   outboxes_.erase(client_id);
+  tell_when_to_wake();
   // The writer has room for a limited number of instances, and a client is one.
   msg::MatchResults result;
   messaging::set_client_id(result, client_id);

@@ -13,6 +13,7 @@
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/match.h"
 #include "topogeo/search_pool/client_registry.hpp"
+#include "topogeo/search_pool/outcome_queue.hpp"
 #include "topogeo/service/service.hpp"
 
 namespace topogeo::ga_worker {
@@ -23,10 +24,12 @@ class ResultSender {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// `service` and `clients`, which knows whom answers go to, must outlive it. `collect` is called
-  /// before answers leave that have waited long, and adds what there is.
+  /// All that is passed by reference must outlive it: `clients` knows whom answers go to, and
+  /// `outcomes`, of which answers are made, is told when to wake the loop. `collect` adds the
+  /// answers to what waits there; it is called before those leave that have waited long.
   ResultSender(service::Service& service, std::string worker_id,
-               const search_pool::ClientRegistry& clients, std::function<void()> collect);
+               const search_pool::ClientRegistry& clients, search_pool::OutcomeQueue& outcomes,
+               std::function<void()> collect);
 
   /// So many tasks of the client have come: an answer to each will be added.
   void expect(const std::string& client_id, std::size_t tasks);
@@ -42,9 +45,6 @@ class ResultSender {
 
   /// Answers that wait.
   [[nodiscard]] std::size_t waiting() const;
-  /// So many more answers, at least 1, can be added before those of a client leave, or begin to
-  /// wait.
-  [[nodiscard]] std::size_t until_due() const;
   void wait_for_acknowledgments(std::chrono::nanoseconds patience);
 
  private:
@@ -60,6 +60,10 @@ class ResultSender {
 
   /// So many more answers and those of this client leave; 0: they are to leave now.
   static std::size_t until_due(const Outbox& outbox);
+  /// To be called after each change: the loop is woken when answers of a client are to leave, or
+  /// begin to wait.
+  void tell_when_to_wake();
+  void send_old();
   /// A result to a client whose reader is not connected yet would be lost: it waits.
   [[nodiscard]] bool is_reachable(const std::string& client_id) const;
   void send(const std::string& client_id, Outbox& outbox);
@@ -71,6 +75,7 @@ class ResultSender {
   service::Service& service_;
   std::string worker_id_;
   const search_pool::ClientRegistry& clients_;
+  search_pool::OutcomeQueue& outcomes_;
   std::function<void()> collect_;
   messaging::Writer<msg::MatchResults> results_;
   std::map<std::string, Outbox> outboxes_;  // by client id

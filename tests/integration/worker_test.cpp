@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <csignal>
 #include <fstream>
+#include <iterator>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -317,6 +319,34 @@ TEST_F(WorkerTest, AnswersLeaveWhenTheyAreAsManyAsTheTasksStillInHand) {
   peer->send_together(worker, tasks);
   ASSERT_TRUE(peer->wait_until([&] { return peer->results.size() == 17; }));
   EXPECT_THAT(peer->together, ::testing::ElementsAre(8, 4, 2, 1, 1));
+}
+
+TEST_F(WorkerTest, AnAnswerDoesNotWaitForASearchThatTakesLong) {
+  const auto process = start();
+  const auto peer = client();
+  const std::string worker = peer->find(name_);
+  publish_both(*peer);
+  MatchTask short_task = task(*zero_, *one_, 0);
+  peer->send(worker, short_task);
+  ASSERT_TRUE(peer->wait_until([&] { return peer->results.size() == 1; }));
+  peer->together.clear();
+  MatchTask long_task = short_task;
+  long_task.genetic.individuals = 1000;
+  long_task.genetic.generations = 1000;         // as many evaluations as a search may have
+  long_task.genetic.finer_resolution_m = 0.01;  // and several searches
+  long_task.genetic.finer_resolution_rad = 0.01;
+  MatchTask between = long_task;
+  between.genetic.generations = 200;  // longer than answers wait for each other
+  std::vector<MatchTask> tasks{short_task, between, short_task};
+  tasks.insert(tasks.end(), 5, long_task);
+  for (std::size_t i = 0; i < tasks.size(); ++i) tasks[i].task_id = 1 + i;
+  peer->send_together(worker, tasks);
+  ASSERT_TRUE(peer->wait_until([&] { return peer->results.size() >= 4; }));
+  std::vector<std::size_t> had_left;
+  std::partial_sum(peer->together.begin(), peer->together.end(), std::back_inserter(had_left));
+  EXPECT_THAT(had_left, ::testing::Contains(3)) << "the third left with that of a long search";
+  process->send_signal(SIGTERM);
+  process->send_signal(SIGTERM);
 }
 
 TEST_F(WorkerTest, TellsWhatItIsAndDoes) {
