@@ -14,29 +14,28 @@ namespace {
 constexpr std::size_t kMostPoints = std::numeric_limits<std::uint16_t>::max() - 1U;
 constexpr double kMostCells = 4'194'304.0;  // 200 m x 200 m; single precision counts to 2^24
 
-// Around each point a window of cells that it may be nearest to.
+// The cells that a point may be nearest to: a square around it.
 struct Window {
   int first_row;
   int first_column;
   double y;  // of the point, in cells
 };
 
-// What is worked on: windows of `width` columns and rows, and for each of them the squared
-// distances of its columns.
+// Those of all points, in their order.
 struct Windows {
-  std::vector<Window> all;
-  std::vector<float> across_squared;
-  int width;
+  int width;  // of each, in cells
+  std::vector<Window> windows;
+  std::vector<float> across_squared;  // from the point to its columns, `width` for each window
 };
 
-// Rows of the grid, from `first_row` on.
+// Some rows of the grid.
 struct Band {
   int first_row;
   int end_row;
   std::size_t columns;
   // As wide as a distance, so that vectors hold as many of both.
   std::vector<std::int32_t> nearest;
-  std::vector<float> squared;  // of the nearest so far
+  std::vector<float> squared;  // distance of the nearest so far
 };
 
 // Of `count` cells of one row: point `i`, in those to which it is nearer than the `nearest` so far.
@@ -55,7 +54,7 @@ inline void take_nearer(const float* __restrict across_squared, int count, float
 
 // Twice the vectors where the processor has them: their arithmetic is the same. What checks memory
 // cannot be asked that early which processor it is.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define TOPOGEO_WIDE_VECTORS __attribute__((target_clones("avx2", "default")))
 #else
@@ -64,8 +63,8 @@ inline void take_nearer(const float* __restrict across_squared, int count, float
 
 TOPOGEO_WIDE_VECTORS void fill(const Windows& windows, Band& band) {
   const int width = windows.width;
-  for (std::size_t i = 0; i < windows.all.size(); ++i) {
-    const Window& window = windows.all[i];
+  for (std::size_t i = 0; i < windows.windows.size(); ++i) {
+    const Window& window = windows.windows[i];
     const float* const across_squared =
         &windows.across_squared[i * static_cast<std::size_t>(width)];
     const int end = std::min(window.first_row + width, band.end_row);
@@ -79,11 +78,50 @@ TOPOGEO_WIDE_VECTORS void fill(const Windows& windows, Band& band) {
   }
 }
 
+Windows windows_around(const std::vector<Eigen::Vector2d>& points_m,
+                       const Eigen::Vector2d& origin_m, double cells_per_m, int reach_cells) {
+  Windows around{2 * reach_cells + 1, {}, {}};
+  around.windows.reserve(points_m.size());
+  around.across_squared.reserve(points_m.size() * static_cast<std::size_t>(around.width));
+  for (const Eigen::Vector2d& p : points_m) {
+    const double x = (p.x() - origin_m.x()) * cells_per_m;
+    const double y = (p.y() - origin_m.y()) * cells_per_m;
+    const int first_column = static_cast<int>(x) - reach_cells;
+    around.windows.push_back({static_cast<int>(y) - reach_cells, first_column, y});
+    for (int c = 0; c < around.width; ++c) {
+      const float dx = static_cast<float>(first_column + 0.5 - x) + static_cast<float>(c);
+      around.across_squared.push_back(dx * dx);
+    }
+  }
+  return around;
+}
+
+// The nearest point of each cell, row by row; `none` where there is none. A band at a time, so that
+// what is worked on stays in the fast memory of the processor.
+void find_nearest(const Windows& windows, int rows, int columns, std::uint16_t none,
+                  std::vector<std::uint16_t>& nearest) {
+  constexpr int kBandRows = 32;
+  const auto row_cells = static_cast<std::size_t>(columns);
+  nearest.resize(static_cast<std::size_t>(rows) * row_cells);
+  const std::size_t most_cells = static_cast<std::size_t>(std::min(kBandRows, rows)) * row_cells;
+  Band band{0, 0, row_cells, std::vector<std::int32_t>(most_cells), std::vector<float>(most_cells)};
+  auto found = nearest.begin();
+  for (; band.end_row < rows; band.first_row = band.end_row) {
+    band.end_row = std::min(band.first_row + kBandRows, rows);
+    std::fill(band.nearest.begin(), band.nearest.end(), none);
+    std::fill(band.squared.begin(), band.squared.end(), std::numeric_limits<float>::max());
+    fill(windows, band);
+    const auto cells = static_cast<std::ptrdiff_t>(band.end_row - band.first_row) * columns;
+    found = std::transform(band.nearest.begin(), band.nearest.begin() + cells, found,
+                           [](std::int32_t i) { return static_cast<std::uint16_t>(i); });
+  }
+}
+
 }  // namespace
 
 void NearestPointGrid::build(const std::vector<Eigen::Vector2d>& points_m, double cell_m,
                              double reach_m) {
-  std::vector<std::uint16_t> memory = std::move(nearest_);
+  std::vector<std::uint16_t> recycled = std::move(nearest_);
   *this = NearestPointGrid();
   if (points_m.empty()) return;
   if (points_m.size() > kMostPoints) {
@@ -96,57 +134,30 @@ void NearestPointGrid::build(const std::vector<Eigen::Vector2d>& points_m, doubl
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  cells_per_m_ = 1.0 / cell_m;
+  NearestPointGrid made;
+  made.cells_per_m_ = 1.0 / cell_m;
   // Rounded up: a place just within reach must not fall into a cell that was left out.
-  const int reach_cells = static_cast<int>(std::ceil(reach_m * cells_per_m_));
+  const int reach_cells = static_cast<int>(std::ceil(reach_m * made.cells_per_m_));
   const double margin_m = (reach_cells + 2) * cell_m;  // the outermost cells stay empty
-  origin_x_m_ = low.x() - margin_m;
-  origin_y_m_ = low.y() - margin_m;
-  float_cells_per_m_ = static_cast<float>(cells_per_m_);
-  float_origin_x_m_ = static_cast<float>(origin_x_m_);
-  float_origin_y_m_ = static_cast<float>(origin_y_m_);
-  const double columns = std::floor((high.x() + margin_m - origin_x_m_) * cells_per_m_) + 1.0;
-  const double rows = std::floor((high.y() + margin_m - origin_y_m_) * cells_per_m_) + 1.0;
+  const Eigen::Vector2d origin_m(low.x() - margin_m, low.y() - margin_m);
+  made.origin_x_m_ = origin_m.x();
+  made.origin_y_m_ = origin_m.y();
+  made.float_cells_per_m_ = static_cast<float>(made.cells_per_m_);
+  made.float_origin_x_m_ = static_cast<float>(origin_m.x());
+  made.float_origin_y_m_ = static_cast<float>(origin_m.y());
+  const double columns = std::floor((high.x() + margin_m - origin_m.x()) * made.cells_per_m_) + 1.0;
+  const double rows = std::floor((high.y() + margin_m - origin_m.y()) * made.cells_per_m_) + 1.0;
   if (!(columns * rows <= kMostCells)) {
     throw std::invalid_argument("nearest-point grid: the points lie too far apart for a grid of " +
                                 std::to_string(cell_m) + " m, or are not finite");
   }
-  columns_ = static_cast<int>(columns);
-  rows_ = static_cast<int>(rows);
-  count_ = static_cast<std::uint16_t>(points_m.size());
-  const auto in_row = static_cast<std::size_t>(columns_);
-  memory.resize(in_row * static_cast<std::size_t>(rows_));
-
-  Windows windows;
-  windows.width = 2 * reach_cells + 1;
-  windows.all.reserve(points_m.size());
-  windows.across_squared.reserve(points_m.size() * static_cast<std::size_t>(windows.width));
-  for (const Eigen::Vector2d& p : points_m) {
-    const double x = (p.x() - origin_x_m_) * cells_per_m_;
-    const double y = (p.y() - origin_y_m_) * cells_per_m_;
-    const int first_column = static_cast<int>(x) - reach_cells;
-    windows.all.push_back({static_cast<int>(y) - reach_cells, first_column, y});
-    for (int c = 0; c < windows.width; ++c) {
-      const float dx = static_cast<float>(first_column + 0.5 - x) + static_cast<float>(c);
-      windows.across_squared.push_back(dx * dx);
-    }
-  }
-
-  // A band at a time, so that what is worked on stays in the fast memory of the processor.
-  constexpr int kBandRows = 32;
-  const std::size_t most_cells = static_cast<std::size_t>(std::min(kBandRows, rows_)) * in_row;
-  Band band{0, 0, in_row, std::vector<std::int32_t>(most_cells), std::vector<float>(most_cells)};
-  auto filled = memory.begin();
-  for (; band.end_row < rows_; band.first_row = band.end_row) {
-    band.end_row = std::min(band.first_row + kBandRows, rows_);
-    std::fill(band.nearest.begin(), band.nearest.end(), count_);
-    std::fill(band.squared.begin(), band.squared.end(), std::numeric_limits<float>::max());
-    fill(windows, band);
-    const auto cells = static_cast<std::ptrdiff_t>(band.end_row - band.first_row) * columns_;
-    filled = std::transform(band.nearest.begin(), band.nearest.begin() + cells, filled,
-                            [](std::int32_t i) { return static_cast<std::uint16_t>(i); });
-  }
-  nearest_ = std::move(memory);
+  made.columns_ = static_cast<int>(columns);
+  made.rows_ = static_cast<int>(rows);
+  made.count_ = static_cast<std::uint16_t>(points_m.size());
+  made.nearest_ = std::move(recycled);
+  find_nearest(windows_around(points_m, origin_m, made.cells_per_m_, reach_cells), made.rows_,
+               made.columns_, made.count_, made.nearest_);
+  *this = std::move(made);
 }
 
 }  // namespace topogeo::localization

@@ -1,6 +1,7 @@
 #include "topogeo/localization/matching/match_features.hpp"
 
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -249,6 +250,32 @@ TEST(MatchFeaturesTest, TheArraysOfAReferenceAreItsFeaturesAndOneFarAway) {
   EXPECT_EQ(reference.branches[0].clearance_m, 0.7F);
   EXPECT_GT(reference.branches[1].x_m, 1e8F);
   EXPECT_EQ(make_reference({}).surfaces.size(), 1U);
+}
+
+TEST(MatchFeaturesTest, AReferenceMadeInTheMemoryOfAnotherIsLikeANewOne) {
+  MatchFeatures large = test::features_at(test::world("floor"), {6.0, 1.0, 0.0});
+  large.branches = {test::sample(1.0, 2.0, 0.5, 0.7), test::sample(2.0, 2.0, 0.5, 0.7)};
+  const MatchFeatures small = test::features_at(test::l_room(), {});
+  Reference reference;
+  for (const MatchFeatures& features : {large, small, MatchFeatures(), large}) {
+    const Reference fresh = make_reference(features);
+    remake_reference(std::make_shared<const MatchFeatures>(features), reference);
+    ASSERT_EQ(reference.features->surface.size(), features.surface.size());
+    ASSERT_EQ(reference.surfaces.size(), fresh.surfaces.size());
+    ASSERT_EQ(reference.branches.size(), fresh.branches.size());
+    for (std::size_t i = 0; i < fresh.surfaces.size(); ++i) {
+      EXPECT_EQ(reference.surfaces[i].x_m, fresh.surfaces[i].x_m);
+    }
+    for (std::size_t i = 0; i < fresh.branches.size(); ++i) {
+      EXPECT_EQ(reference.branches[i].x_m, fresh.branches[i].x_m);
+    }
+    for (double x = -12.0; x < 12.0; x += 0.07) {
+      for (double y = -12.0; y < 12.0; y += 0.07) {
+        ASSERT_EQ(reference.surface_grid.find(x, y), fresh.surface_grid.find(x, y));
+        ASSERT_EQ(reference.branch_grid.find(x, y), fresh.branch_grid.find(x, y));
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -194,7 +194,15 @@ TEST_F(MatcherTest, AnswersTheSameAgainAndAfterItsCacheWasFilledWithOthers) {
   const MatchResult first = matcher_.solve(task_);
   ASSERT_EQ(first.status, MatchStatus::kSolved);
   expect_same(first, matcher_.solve(task_));
-  for (std::size_t i = 1; i < 7; ++i) matcher_.solve(task(i, i + 1));
+  for (std::size_t i = 0; i < Matcher::kKeptReferences; ++i) {
+    topomap::LocalMap another = maps_[2 + i % 4];
+    another.id = static_cast<std::uint32_t>(100 + i);
+    matcher_.add_map(another);
+    MatchTask on_another = task_;
+    on_another.reference_map_id = another.id;
+    on_another.reference_hash = topomap::content_hash(another);
+    matcher_.solve(on_another);
+  }
   expect_same(first, matcher_.solve(task_));
   Matcher other;
   other.add_map(maps_[1]);

@@ -71,6 +71,40 @@ INSTANTIATE_TEST_SUITE_P(Resolutions, NearestPointGridTest,
                                   std::to_string(std::lround(100 * resolution.param.reach_m));
                          });
 
+TEST_P(NearestPointGridTest, EachCellHasThePointNearestToItsCentre) {
+  const auto [cell_m, reach_m] = GetParam();
+  support::Random random(7);
+  std::vector<Eigen::Vector2d> points;
+  points.reserve(150);
+  for (int i = 0; i < 150; ++i) {
+    points.emplace_back(random.uniform(-4.0, 4.0), random.uniform(-3.0, 5.0));
+  }
+  NearestPointGrid grid;
+  grid.build(points, cell_m, reach_m);
+  Eigen::Vector2d low = points.front();
+  for (const auto& p : points) low = low.cwiseMin(p);
+  const double margin_m = (std::ceil(reach_m / cell_m) + 2.0) * cell_m;
+  const Eigen::Vector2d first_centre = low.array() - margin_m + 0.5 * cell_m;
+  const int cells = static_cast<int>((8.0 + 2.0 * margin_m) / cell_m);
+  const double slack_m = 1e-4 * cell_m;  // of single precision
+  int with_point = 0;
+  for (int row = 0; row < cells; ++row) {
+    for (int column = 0; column < cells; ++column) {
+      const Eigen::Vector2d centre = first_centre + cell_m * Eigen::Vector2d(column, row);
+      double nearest_m = std::numeric_limits<double>::max();
+      for (const auto& p : points) nearest_m = std::min(nearest_m, (p - centre).norm());
+      const std::int32_t found = grid.find(centre.x(), centre.y());
+      // Further away it is found in the corners of the square around a point alone.
+      if (nearest_m > reach_m) continue;
+      ASSERT_NE(found, NearestPointGrid::kNone) << centre.transpose();
+      ++with_point;
+      ASSERT_LE((points[static_cast<std::size_t>(found)] - centre).norm(), nearest_m + slack_m)
+          << centre.transpose();
+    }
+  }
+  EXPECT_GT(with_point, 200);
+}
+
 // Single precision may put a place on a border into the cell beside.
 TEST_P(NearestPointGridTest, FourAtOnceAreTheSame) {
   const auto [cell_m, reach_m] = GetParam();
