@@ -252,8 +252,10 @@ void GaWorkerService::forget(const std::vector<search_pool::ClientRegistry::Entr
     const search_pool::ClientRegistry::Client& client = entry.second;
     spdlog::info("client {}, robot {}, is gone after {} answers", client_id, client.robot_id,
                  client.answered);
-    for (const std::uint64_t ticket : runner_->remove(client_id)) asked_.erase(ticket);
-    for (const std::uint64_t ticket : intake_.remove(client_id)) asked_.erase(ticket);
+    runner_->remove(client_id);
+    intake_.remove(client_id);
+    // Those, too, that a slot has begun or finished: should the client come back, it asks anew.
+    std::erase_if(asked_, [&](const auto& task) { return task.second.client_id == client_id; });
     results_.forget(client_id);
     // The writer has room for a limited number of instances, and a client is one.
     msg::MapRequest request;

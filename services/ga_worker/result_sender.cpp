@@ -1,7 +1,9 @@
 #include "result_sender.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
+#include <vector>
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
@@ -23,78 +25,44 @@ ResultSender::ResultSender(service::Service& service, std::string worker_id,
       clients_(clients),
       outcomes_(outcomes),
       collect_(std::move(collect)),
-      results_(service.advertise<msg::MatchResults>()) {}
+      results_(service.advertise<msg::MatchResults>()),
+      outboxes_({msg::kMaxTasksInMessage, kLongestWait}) {}
 
 void ResultSender::expect(const std::string& client_id, std::size_t tasks) {
-  outboxes_[client_id].tasks_in_hand += tasks;
-  tell_when_to_wake();
+  outboxes_.expect(client_id, tasks);
+  schedule();
 }
 
 void ResultSender::add(const std::string& client_id, msg::MatchResult result,
                        std::int64_t stamp_ns) {
-  const auto found = outboxes_.find(client_id);
-  if (found == outboxes_.end()) return;  // nobody waits for it any more
-  Outbox& outbox = found->second;
-  outbox.answers.push_back({std::move(result), stamp_ns, Clock::now()});
-  if (outbox.tasks_in_hand > 0) --outbox.tasks_in_hand;
-  if (until_due(outbox) == 0) {
-    send(client_id, outbox);
-  } else {
-    wait_for_more();
-  }
-  tell_when_to_wake();
+  const Clock::time_point now = Clock::now();
+  outboxes_.add(client_id, {std::move(result), stamp_ns}, now);
+  if (outboxes_.is_due(client_id, now)) send(client_id);
+  schedule();
 }
 
-std::size_t ResultSender::until_due(const Outbox& outbox) {
-  const std::size_t waiting = outbox.answers.size();
-  const std::size_t most = msg::kMaxTasksInMessage;
-  if (waiting >= std::min(outbox.tasks_in_hand, most)) return 0;
-  // Each one more that waits is one less in hand.
-  return std::min((outbox.tasks_in_hand - waiting + 1) / 2, most - waiting);
+void ResultSender::schedule() {
+  outcomes_.wake_at(outboxes_.until_due());
+  const std::optional<Clock::time_point> due = outboxes_.next_due();
+  if (!due || (timer_ && timer_due_ <= *due)) return;
+  if (timer_) service_.loop().cancel_timer(*timer_);
+  timer_due_ = *due;
+  timer_ = service_.loop().call_after(
+      std::max<std::chrono::nanoseconds>(std::chrono::nanoseconds::zero(), *due - Clock::now()),
+      [this] { send_due(); });
 }
 
-void ResultSender::tell_when_to_wake() {
-  std::size_t least = msg::kMaxTasksInMessage;
-  for (const auto& [client_id, outbox] : outboxes_) {
-    if (outbox.tasks_in_hand == 0) continue;
-    // The first one sets the timer.
-    least = outbox.answers.empty() ? 1 : std::clamp<std::size_t>(until_due(outbox), 1, least);
-    if (least == 1) break;
-  }
-  outcomes_.wake_at(least);
-}
-
-void ResultSender::wait_for_more() {
-  if (timer_) return;
-  std::optional<Clock::time_point> oldest;
-  for (const auto& [client_id, outbox] : outboxes_) {
-    if (outbox.answers.empty() || !is_reachable(client_id)) continue;
-    const Clock::time_point since = outbox.answers.front().since;
-    if (!oldest || since < *oldest) oldest = since;
-  }
-  if (!oldest) return;
-  std::chrono::nanoseconds left = *oldest + kLongestWait - Clock::now();
-  if (left.count() <= 0) left = kLongestWait;  // its client takes nothing at the moment
-  timer_ = service_.loop().call_after(left, [this] {
-    timer_.reset();
-    send_old();
-  });
-}
-
-void ResultSender::send_old() {
+void ResultSender::send_due() {
   collect_();
-  const Clock::time_point due = Clock::now() - kLongestWait;
-  for (auto& [client_id, outbox] : outboxes_) {
-    if (!outbox.answers.empty() && outbox.answers.front().since <= due) send(client_id, outbox);
-  }
-  wait_for_more();
-  tell_when_to_wake();
+  for (const std::string& client_id : outboxes_.due(Clock::now())) send(client_id);
+  timer_.reset();
+  schedule();
 }
 
 void ResultSender::send_all() {
   collect_();
-  for (auto& [client_id, outbox] : outboxes_) send(client_id, outbox);
-  tell_when_to_wake();
+  for (const std::string& client_id : outboxes_.with_answers()) send(client_id);
+  schedule();
 }
 
 bool ResultSender::is_reachable(const std::string& client_id) const {
@@ -102,53 +70,48 @@ bool ResultSender::is_reachable(const std::string& client_id) const {
   return client != nullptr && clients_.is_connected(client->participant);
 }
 
-void ResultSender::send(const std::string& client_id, Outbox& outbox) {
-  if (!is_reachable(client_id)) return;
-  while (!outbox.answers.empty()) {
-    if (send_message(client_id, outbox)) continue;
-    service_.status().fault("send blocked", "client " + client_id);
+void ResultSender::send(const std::string& client_id) {
+  if (!is_reachable(client_id)) {
+    outboxes_.blocked(client_id, Clock::now());
     return;
   }
+  do {
+    if (!send_message(client_id)) {
+      service_.status().fault("send blocked", "client " + client_id);
+      outboxes_.blocked(client_id, Clock::now());
+      return;
+    }
+  } while (outboxes_.sent(client_id));
 }
 
-bool ResultSender::send_message(const std::string& client_id, Outbox& outbox) {
+bool ResultSender::send_message(const std::string& client_id) {
+  const std::vector<const Answer*> answers = outboxes_.next_message(client_id);
   service::MatchAddress address;
   address.robot_id = clients_.find(client_id)->robot_id;  // which is reachable
-  address.stamp_ns = outbox.answers.front().stamp_ns;
+  address.stamp_ns = answers.front()->stamp_ns;
   address.sequence_number = messages_sent_;
   address.worker_id = worker_id_;
   address.client_id = client_id;
   msg::MatchResults message = service::results_for(address);
-  const std::size_t count = std::min<std::size_t>(outbox.answers.size(), msg::kMaxTasksInMessage);
-  const auto end = outbox.answers.begin() + static_cast<std::ptrdiff_t>(count);
-  std::transform(outbox.answers.begin(), end, std::back_inserter(message.results()),
-                 [](const Answer& answer) { return answer.result; });
+  std::transform(answers.begin(), answers.end(), std::back_inserter(message.results()),
+                 [](const Answer* answer) { return answer->result; });
   if (!results_.write(message)) return false;
-  outbox.answers.erase(outbox.answers.begin(), end);
   ++messages_sent_;
   return true;
 }
 
 void ResultSender::drop_older(Clock::time_point before) {
-  for (auto& [client_id, outbox] : outboxes_) {
-    std::erase_if(outbox.answers, [&](const Answer& answer) { return answer.since < before; });
-  }
-  tell_when_to_wake();
+  outboxes_.drop_older(before);
+  schedule();
 }
 
 void ResultSender::forget(const std::string& client_id) {
-  outboxes_.erase(client_id);
-  tell_when_to_wake();
+  outboxes_.forget(client_id);
+  schedule();
   // The writer has room for a limited number of instances, and a client is one.
   msg::MatchResults result;
   messaging::set_client_id(result, client_id);
   results_.dispose(result);
-}
-
-std::size_t ResultSender::waiting() const {
-  std::size_t sum = 0;
-  for (const auto& [client_id, outbox] : outboxes_) sum += outbox.answers.size();
-  return sum;
 }
 
 void ResultSender::wait_for_acknowledgments(std::chrono::nanoseconds patience) {

@@ -1,18 +1,17 @@
-// Sends the answers to tasks to their clients, several in a message where more are about to come.
+// Sends the answers to tasks to their clients.
 #pragma once
 
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/match.h"
 #include "topogeo/search_pool/client_registry.hpp"
+#include "topogeo/search_pool/outboxes.hpp"
 #include "topogeo/search_pool/outcome_queue.hpp"
 #include "topogeo/service/service.hpp"
 
@@ -24,9 +23,9 @@ class ResultSender {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// All that is passed by reference must outlive it: `clients` knows whom answers go to, and
-  /// `outcomes`, of which answers are made, is told when to wake the loop. `collect` adds the
-  /// answers to what waits there; it is called before those leave that have waited long.
+  /// All that is passed by reference must outlive it. `clients` knows whom answers go to.
+  /// `outcomes`, of which answers are made, learns after each change when to wake the loop.
+  /// `collect` adds the answers to what waits there.
   ResultSender(service::Service& service, std::string worker_id,
                const search_pool::ClientRegistry& clients, search_pool::OutcomeQueue& outcomes,
                std::function<void()> collect);
@@ -44,33 +43,24 @@ class ResultSender {
   void forget(const std::string& client_id);
 
   /// Answers that wait.
-  [[nodiscard]] std::size_t waiting() const;
+  [[nodiscard]] std::size_t waiting() const { return outboxes_.waiting(); }
   void wait_for_acknowledgments(std::chrono::nanoseconds patience);
 
  private:
   struct Answer {
     msg::MatchResult result;
     std::int64_t stamp_ns = 0;
-    Clock::time_point since;
-  };
-  struct Outbox {
-    std::size_t tasks_in_hand = 0;
-    std::deque<Answer> answers;
   };
 
-  /// So many more answers and those of this client leave; 0: they are to leave now.
-  static std::size_t until_due(const Outbox& outbox);
-  /// To be called after each change: the loop is woken when answers of a client are to leave, or
-  /// begin to wait.
-  void tell_when_to_wake();
-  void send_old();
   /// A result to a client whose reader is not connected yet would be lost: it waits.
   [[nodiscard]] bool is_reachable(const std::string& client_id) const;
-  void send(const std::string& client_id, Outbox& outbox);
-  /// Sets the timer for the oldest answer.
-  void wait_for_more();
+  /// All that waits for the client.
+  void send(const std::string& client_id);
   /// The oldest answers, as many as go into a message; false when they are not sent.
-  [[nodiscard]] bool send_message(const std::string& client_id, Outbox& outbox);
+  [[nodiscard]] bool send_message(const std::string& client_id);
+  void send_due();
+  /// To be called after each change: what is due next sets the timer and the queue.
+  void schedule();
 
   service::Service& service_;
   std::string worker_id_;
@@ -78,8 +68,9 @@ class ResultSender {
   search_pool::OutcomeQueue& outcomes_;
   std::function<void()> collect_;
   messaging::Writer<msg::MatchResults> results_;
-  std::map<std::string, Outbox> outboxes_;  // by client id
+  search_pool::Outboxes<Answer> outboxes_;
   std::optional<std::uint64_t> timer_;
+  Clock::time_point timer_due_;  // while there is a timer
   std::uint64_t messages_sent_ = 0;
 };
 

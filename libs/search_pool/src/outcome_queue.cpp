@@ -10,7 +10,7 @@ void OutcomeQueue::add(TaskRunner::Outcome outcome) {
   {
     const std::lock_guard lock(mutex_);
     waiting_.push_back(std::move(outcome));
-    if (!wakes()) return;
+    if (!claim_wake()) return;
   }
   wake_();
 }
@@ -25,12 +25,12 @@ void OutcomeQueue::wake_at(std::size_t outcomes) {
   {
     const std::lock_guard lock(mutex_);
     wake_at_ = outcomes;
-    if (!wakes()) return;
+    if (!claim_wake()) return;
   }
   wake_();
 }
 
-bool OutcomeQueue::wakes() {
+bool OutcomeQueue::claim_wake() {
   if (woken_ || waiting_.empty() || waiting_.size() < wake_at_) return false;
   woken_ = true;
   return true;

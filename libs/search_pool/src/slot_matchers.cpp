@@ -11,7 +11,7 @@ namespace topogeo::search_pool {
 
 namespace {
 
-/// Grids on the reference maps that a matcher used last: four of them on maps of 20 m by 20 m.
+/// Grids on the reference maps that a matcher used last: Matcher::kKeptReferences of them.
 constexpr std::size_t kGrid_bytes = std::size_t{3} << 20U;
 /// View of the laser by direction, for each map.
 constexpr std::size_t kProfile_bytes = 6000;

@@ -185,18 +185,10 @@ std::optional<TaskIntake::Time> TaskIntake::next_check() const {
   return next;
 }
 
-std::vector<std::uint64_t> TaskIntake::remove(const std::string& client_id) {
-  std::vector<std::uint64_t> tickets;
-  for (auto it = waiting_.begin(); it != waiting_.end();) {
-    if (it->job.job.client_id != client_id) {
-      ++it;
-      continue;
-    }
-    tickets.push_back(it->job.job.ticket);
-    it = waiting_.erase(it);
-  }
+void TaskIntake::remove(const std::string& client_id) {
+  waiting_.remove_if(
+      [&](const Waiting& waiting) { return waiting.job.job.client_id == client_id; });
   forget_requests();
-  return tickets;
 }
 
 void TaskIntake::forget_requests() {

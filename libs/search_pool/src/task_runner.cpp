@@ -49,12 +49,9 @@ void TaskRunner::add(ReadyJob job) {
   changed_.notify_one();
 }
 
-std::vector<std::uint64_t> TaskRunner::remove(const std::string& client_id) {
-  std::vector<std::uint64_t> tickets;
+void TaskRunner::remove(const std::string& client_id) {
   const std::lock_guard lock(mutex_);
-  for (const ReadyJob& job : queue_.remove(client_id)) tickets.push_back(job.job.ticket);
-  in_hand_ -= tickets.size();
-  return tickets;
+  in_hand_ -= queue_.remove(client_id).size();
 }
 
 std::size_t TaskRunner::in_hand() const {

@@ -194,7 +194,7 @@ TEST_F(TaskIntakeTest, AJobKeepsTheMapThatCameFirstEvenWithoutMemory) {
 TEST_F(TaskIntakeTest, ForgetsAClientThatIsGone) {
   intake_.add(job(zero_, one_, 1, "goes"), at(0));
   intake_.add(job(zero_, one_, 2, "stays"), at(0));
-  EXPECT_THAT(intake_.remove("goes"), ::testing::ElementsAre(1));
+  intake_.remove("goes");
   EXPECT_EQ(intake_.waiting(), 1U);
   const TaskIntake::Due due = intake_.check(at(100));
   ASSERT_THAT(due.requests, SizeIs(2));

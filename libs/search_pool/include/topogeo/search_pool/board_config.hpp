@@ -17,7 +17,8 @@ struct BoardConfig {
   /// At most: a large batch travels in messages of several tasks. Of a small one each worker gets a
   /// half of its share, so that all end together.
   std::uint32_t most_tasks_per_slot = 64;
-  /// Tasks given to one worker at most; the task history of a worker on the wire holds 128.
+  /// Tasks given to one worker at most, whatever its slots; the task history of a worker on the
+  /// wire holds 128 messages, of one task each at worst.
   std::uint32_t tasks_per_worker = 100;
   /// A task without an answer for so long is also given to another worker ...
   BoardTime straggler_floor = std::chrono::milliseconds(250);

@@ -24,8 +24,8 @@ class OutcomeQueue {
   void wake_at(std::size_t outcomes);
 
  private:
-  /// True when it is time to wake, once until take().
-  [[nodiscard]] bool wakes();
+  /// True for who is to wake: when it is time, and once until take().
+  [[nodiscard]] bool claim_wake();
 
   std::function<void()> wake_;
   std::mutex mutex_;  // guards all below

@@ -67,8 +67,8 @@ class TaskIntake {
   Due check(Time now);
   /// When check() has something to do next; nothing while no job waits.
   [[nodiscard]] std::optional<Time> next_check() const;
-  /// Takes out the waiting jobs of a client that is gone and returns their tickets.
-  std::vector<std::uint64_t> remove(const std::string& client_id);
+  /// Takes out the waiting jobs of a client that is gone.
+  void remove(const std::string& client_id);
 
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
   [[nodiscard]] const MapCache& maps() const { return maps_; }

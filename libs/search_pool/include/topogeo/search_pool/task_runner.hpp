@@ -49,8 +49,8 @@ class TaskRunner {
   ~TaskRunner();
 
   void add(ReadyJob job);
-  /// Takes out the jobs of a client that no slot has begun and returns their tickets.
-  std::vector<std::uint64_t> remove(const std::string& client_id);
+  /// Takes out the jobs of a client that no slot has begun.
+  void remove(const std::string& client_id);
 
   /// Jobs without outcome.
   [[nodiscard]] std::size_t in_hand() const;

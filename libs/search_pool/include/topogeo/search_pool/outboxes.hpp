@@ -1,0 +1,164 @@
+// When the answers of a worker leave: several in a message where more are about to come.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace topogeo::search_pool {
+
+struct OutboxRules {
+  std::size_t most_together = 1;  ///< answers in a message
+  std::chrono::nanoseconds longest_wait{};
+};
+
+/// An outbox for each client. Its answers are due when they are as many as its tasks that are still
+/// in hand, as many as go into a message, or when the oldest has waited long. Has no clock: the
+/// caller passes the time. Not safe for several threads.
+template <class Answer>
+class Outboxes {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  explicit Outboxes(const OutboxRules& rules) : rules_(rules) {}
+
+  /// So many tasks of the client have come: an answer to each will be added.
+  void expect(const std::string& client_id, std::size_t tasks) {
+    boxes_[client_id].in_hand += tasks;
+  }
+
+  /// The answer to one of those tasks. Dropped when the client is gone.
+  void add(const std::string& client_id, Answer answer, Time now) {
+    const auto found = boxes_.find(client_id);
+    if (found == boxes_.end()) return;
+    Box& box = found->second;
+    box.waiting.push_back({std::move(answer), now});
+    if (box.in_hand > 0) --box.in_hand;
+  }
+
+  /// The clients whose answers are to leave now.
+  [[nodiscard]] std::vector<std::string> due(Time now) const {
+    std::vector<std::string> clients;
+    for (const auto& [client_id, box] : boxes_) {
+      if (is_due(box, now)) clients.push_back(client_id);
+    }
+    return clients;
+  }
+  [[nodiscard]] bool is_due(const std::string& client_id, Time now) const {
+    const auto found = boxes_.find(client_id);
+    return found != boxes_.end() && is_due(found->second, now);
+  }
+
+  /// The clients that answers wait for.
+  [[nodiscard]] std::vector<std::string> with_answers() const {
+    std::vector<std::string> clients;
+    for (const auto& [client_id, box] : boxes_) {
+      if (!box.waiting.empty()) clients.push_back(client_id);
+    }
+    return clients;
+  }
+
+  /// The oldest answers to a client that has some, as many as go into a message; they are there
+  /// until something changes.
+  [[nodiscard]] std::vector<const Answer*> next_message(const std::string& client_id) const {
+    const std::deque<Waiting>& waiting = boxes_.at(client_id).waiting;
+    const std::size_t count = std::min(waiting.size(), rules_.most_together);
+    std::vector<const Answer*> answers;
+    answers.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) answers.push_back(&waiting[i].answer);
+    return answers;
+  }
+
+  /// That message has left; true when more waits for the client.
+  bool sent(const std::string& client_id) {
+    Box& box = boxes_.at(client_id);
+    const std::size_t count = std::min(box.waiting.size(), rules_.most_together);
+    box.waiting.erase(box.waiting.begin(),
+                      box.waiting.begin() + static_cast<std::ptrdiff_t>(count));
+    return !box.waiting.empty();
+  }
+
+  /// It could not leave: nothing of the client is due for the longest wait.
+  void blocked(const std::string& client_id, Time now) {
+    boxes_.at(client_id).not_before = now + rules_.longest_wait;
+  }
+
+  void drop_older(Time before) {
+    for (auto& [client_id, box] : boxes_) {
+      std::erase_if(box.waiting, [&](const Waiting& waiting) { return waiting.since < before; });
+    }
+  }
+  void forget(const std::string& client_id) { boxes_.erase(client_id); }
+
+  /// When to look again at what is due, whatever comes until then; nothing while no answer waits.
+  [[nodiscard]] std::optional<Time> next_due() const {
+    std::optional<Time> next;
+    for (const auto& [client_id, box] : boxes_) {
+      if (box.waiting.empty()) continue;
+      const Time due =
+          std::max(box.not_before, is_full(box) ? box.waiting.front().since : gets_old(box));
+      if (!next || due < *next) next = due;
+    }
+    return next;
+  }
+
+  /// So many answers, at least 1, can come before what is due or next_due() may change.
+  [[nodiscard]] std::size_t until_due() const {
+    std::size_t least = rules_.most_together;
+    bool any = false;
+    for (const auto& [client_id, box] : boxes_) {
+      if (box.in_hand == 0) continue;
+      any = true;
+      // The first one begins to wait.
+      const std::size_t of_client =
+          box.waiting.empty() ? 1 : std::max<std::size_t>(missing(box), 1);
+      least = std::min(least, of_client);
+    }
+    return any ? least : 1;
+  }
+
+  /// Answers that wait.
+  [[nodiscard]] std::size_t waiting() const {
+    std::size_t sum = 0;
+    for (const auto& [client_id, box] : boxes_) sum += box.waiting.size();
+    return sum;
+  }
+
+ private:
+  struct Waiting {
+    Answer answer;
+    Time since;
+  };
+  struct Box {
+    std::size_t in_hand = 0;  // tasks
+    std::deque<Waiting> waiting;
+    Time not_before{};
+  };
+
+  [[nodiscard]] Time gets_old(const Box& box) const {
+    return box.waiting.front().since + rules_.longest_wait;
+  }
+  [[nodiscard]] bool is_full(const Box& box) const {
+    return box.waiting.size() >= std::min(box.in_hand, rules_.most_together);
+  }
+  [[nodiscard]] bool is_due(const Box& box, Time now) const {
+    return !box.waiting.empty() && now >= box.not_before && (is_full(box) || now >= gets_old(box));
+  }
+  /// So many more and the box is full. Each one more that waits is one less in hand.
+  [[nodiscard]] std::size_t missing(const Box& box) const {
+    if (is_full(box)) return 0;
+    return std::min((box.in_hand - box.waiting.size() + 1) / 2,
+                    rules_.most_together - box.waiting.size());
+  }
+
+  OutboxRules rules_;
+  std::map<std::string, Box> boxes_;  // by client id
+};
+
+}  // namespace topogeo::search_pool
