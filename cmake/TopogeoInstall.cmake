@@ -51,6 +51,7 @@ install(DIRECTORY ${CMAKE_BINARY_DIR}/share/topogeo/web DESTINATION ${data} COMP
 install(PROGRAMS ${deploy}/security/make_keys DESTINATION ${data}/security COMPONENT topogeo)
 install(FILES ${deploy}/security/permissions.txt DESTINATION ${data}/security COMPONENT topogeo)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT topogeo)
+install(FILES ${deploy}/README.md ${deploy}/SCALING.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/deploy COMPONENT topogeo)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT topogeo)
 install(DIRECTORY ${deploy}/kubernetes ${deploy}/monitoring DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT topogeo)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/ros2 DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT topogeo)
