@@ -27,15 +27,19 @@ std::ostream& operator<<(std::ostream& out, const Resolution& resolution) {
 
 class NearestPointGridTest : public testing::TestWithParam<Resolution> {};
 
+std::vector<Eigen::Vector2d> random_points(std::size_t count, support::Random& random) {
+  std::vector<Eigen::Vector2d> points;
+  points.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    points.emplace_back(random.uniform(-4.0, 4.0), random.uniform(-3.0, 5.0));
+  }
+  return points;
+}
+
 TEST_P(NearestPointGridTest, IsNearlyAsGoodAsComparingWithEveryPoint) {
   const auto [cell_m, reach_m] = GetParam();
   support::Random random(3);
-  constexpr std::size_t kPoints = 250;
-  std::vector<Eigen::Vector2d> points;
-  points.reserve(kPoints);
-  for (std::size_t i = 0; i < kPoints; ++i) {
-    points.emplace_back(random.uniform(-4.0, 4.0), random.uniform(-3.0, 5.0));
-  }
+  const std::vector<Eigen::Vector2d> points = random_points(250, random);
   NearestPointGrid grid;
   grid.build(points, cell_m, reach_m);
   int near = 0;
@@ -74,11 +78,7 @@ INSTANTIATE_TEST_SUITE_P(Resolutions, NearestPointGridTest,
 TEST_P(NearestPointGridTest, EachCellHasThePointNearestToItsCentre) {
   const auto [cell_m, reach_m] = GetParam();
   support::Random random(7);
-  std::vector<Eigen::Vector2d> points;
-  points.reserve(150);
-  for (int i = 0; i < 150; ++i) {
-    points.emplace_back(random.uniform(-4.0, 4.0), random.uniform(-3.0, 5.0));
-  }
+  const std::vector<Eigen::Vector2d> points = random_points(150, random);
   NearestPointGrid grid;
   grid.build(points, cell_m, reach_m);
   Eigen::Vector2d low = points.front();
@@ -109,11 +109,7 @@ TEST_P(NearestPointGridTest, EachCellHasThePointNearestToItsCentre) {
 TEST_P(NearestPointGridTest, FourAtOnceAreTheSame) {
   const auto [cell_m, reach_m] = GetParam();
   support::Random random(5);
-  std::vector<Eigen::Vector2d> points;
-  points.reserve(100);
-  for (int i = 0; i < 100; ++i) {
-    points.emplace_back(random.uniform(-4.0, 4.0), random.uniform(-3.0, 5.0));
-  }
+  const std::vector<Eigen::Vector2d> points = random_points(100, random);
   NearestPointGrid grid;
   grid.build(points, cell_m, reach_m);
   int different = 0;

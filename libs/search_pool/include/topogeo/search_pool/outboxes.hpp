@@ -68,20 +68,18 @@ class Outboxes {
   /// until something changes.
   [[nodiscard]] std::vector<const Answer*> next_message(const std::string& client_id) const {
     const std::deque<Waiting>& waiting = boxes_.at(client_id).waiting;
-    const std::size_t count = std::min(waiting.size(), rules_.most_together);
     std::vector<const Answer*> answers;
-    answers.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) answers.push_back(&waiting[i].answer);
+    answers.reserve(together(waiting));
+    for (std::size_t i = 0; i < together(waiting); ++i) answers.push_back(&waiting[i].answer);
     return answers;
   }
 
   /// That message has left; true when more waits for the client.
   bool sent(const std::string& client_id) {
-    Box& box = boxes_.at(client_id);
-    const std::size_t count = std::min(box.waiting.size(), rules_.most_together);
-    box.waiting.erase(box.waiting.begin(),
-                      box.waiting.begin() + static_cast<std::ptrdiff_t>(count));
-    return !box.waiting.empty();
+    std::deque<Waiting>& waiting = boxes_.at(client_id).waiting;
+    waiting.erase(waiting.begin(),
+                  waiting.begin() + static_cast<std::ptrdiff_t>(together(waiting)));
+    return !waiting.empty();
   }
 
   /// It could not leave: nothing of the client is due for the longest wait.
@@ -141,6 +139,10 @@ class Outboxes {
     Time not_before{};
   };
 
+  /// So many of them go into the next message.
+  [[nodiscard]] std::size_t together(const std::deque<Waiting>& waiting) const {
+    return std::min(waiting.size(), rules_.most_together);
+  }
   [[nodiscard]] Time gets_old(const Box& box) const {
     return box.waiting.front().since + rules_.longest_wait;
   }
