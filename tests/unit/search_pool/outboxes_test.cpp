@@ -94,6 +94,15 @@ TEST_F(OutboxesTest, AClientThatIsBlockedIsTriedAgainAndKeepsNoOtherWaiting) {
   EXPECT_THAT(boxes_.with_answers(), ElementsAre("blocked", "other"));
 }
 
+TEST_F(OutboxesTest, AClientThatTakesAgainIsBlockedNoMore) {
+  boxes_.expect("one", 2);
+  boxes_.add("one", 0, at(0));
+  boxes_.blocked("one", at(0));
+  EXPECT_THAT(take("one"), ElementsAre(0)) << "its reader came";
+  boxes_.add("one", 1, at(1));
+  EXPECT_THAT(boxes_.due(at(1)), ElementsAre("one"));
+}
+
 TEST_F(OutboxesTest, NothingChangesUntilSoManyAnswersMoreHaveCome) {
   EXPECT_EQ(boxes_.until_due(), 1U);
   for (const std::size_t tasks : {1U, 2U, 3U, 7U, 16U, 40U}) {

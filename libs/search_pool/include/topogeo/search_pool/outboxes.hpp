@@ -76,13 +76,15 @@ class Outboxes {
 
   /// That message has left; true when more waits for the client.
   bool sent(const std::string& client_id) {
-    std::deque<Waiting>& waiting = boxes_.at(client_id).waiting;
+    Box& box = boxes_.at(client_id);
+    std::deque<Waiting>& waiting = box.waiting;
+    box.not_before = {};
     waiting.erase(waiting.begin(),
                   waiting.begin() + static_cast<std::ptrdiff_t>(together(waiting)));
     return !waiting.empty();
   }
 
-  /// It could not leave: nothing of the client is due for the longest wait.
+  /// It could not leave: nothing of the client is due for the longest wait, or until one has left.
   void blocked(const std::string& client_id, Time now) {
     boxes_.at(client_id).not_before = now + rules_.longest_wait;
   }
