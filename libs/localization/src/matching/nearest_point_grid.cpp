@@ -14,6 +14,10 @@ namespace {
 constexpr std::size_t kMostPoints = std::numeric_limits<std::uint16_t>::max() - 1U;
 constexpr double kMostCells = 4'194'304.0;  // 200 m x 200 m; single precision counts to 2^24
 
+// Cells of a row are worked on so many at once: twice the lanes of a vector, once those of a wide
+// one.
+constexpr int kLanes = 8;
+
 // The cells that a point may be nearest to: a square around it.
 struct Window {
   int first_row;
@@ -23,9 +27,11 @@ struct Window {
 
 // Those of all points, in their order.
 struct Windows {
-  int width;  // of each, in cells
+  int rows;   // of each
+  int width;  // as many columns, and more to a multiple of kLanes
   std::vector<Window> windows;
-  std::vector<float> across_squared;  // from the point to its columns, `width` for each window
+  // From the point to its columns, `width` for each window; beyond its own they are infinite.
+  std::vector<float> across_squared;
 };
 
 // Some rows of the grid.
@@ -33,22 +39,25 @@ struct Band {
   int first_row;
   int end_row;
   std::size_t columns;
-  // As wide as a distance, so that vectors hold as many of both.
+  // As wide as a distance, so that vectors hold as many of both. Both with room for the columns by
+  // which the windows of the last row are too wide.
   std::vector<std::int32_t> nearest;
   std::vector<float> squared;  // distance of the nearest so far
 };
 
-// Of `count` cells of one row: point `i`, in those to which it is nearer than the `nearest` so far.
-// With masks, as the compiler makes vectors of that and not of two choices.
-inline void take_nearer(const float* __restrict across_squared, int count, float dy_squared,
+// Of a row's cells from the window's first on: point `i`, in those to which it is nearer than the
+// `nearest` so far. With masks, as the compiler makes vectors of that and not of two choices.
+inline void take_nearer(const float* __restrict across_squared, int width, float dy_squared,
                         std::int32_t i, float* __restrict squared,
                         std::int32_t* __restrict nearest) {
-  for (int c = 0; c < count; ++c) {
-    const float distance = across_squared[c] + dy_squared;
-    const float before = squared[c];
-    const std::int32_t nearer = -static_cast<std::int32_t>(distance < before);
-    nearest[c] = (i & nearer) | (nearest[c] & ~nearer);
-    squared[c] = distance < before ? distance : before;
+  for (int lanes = 0; lanes < width; lanes += kLanes) {
+    for (int c = lanes; c < lanes + kLanes; ++c) {
+      const float distance = across_squared[c] + dy_squared;
+      const float before = squared[c];
+      const std::int32_t nearer = -static_cast<std::int32_t>(distance < before);
+      nearest[c] = (i & nearer) | (nearest[c] & ~nearer);
+      squared[c] = distance < before ? distance : before;
+    }
   }
 }
 
@@ -61,13 +70,18 @@ inline void take_nearer(const float* __restrict across_squared, int count, float
 #define TOPOGEO_WIDE_VECTORS
 #endif
 
-TOPOGEO_WIDE_VECTORS void fill(const Windows& windows, Band& band) {
+// The nearest point of each cell of the band, row by row, to `found`; `none` where there is none.
+TOPOGEO_WIDE_VECTORS void fill(const Windows& windows, std::uint16_t none, Band& band,
+                               std::uint16_t* found) {
   const int width = windows.width;
+  const std::size_t cells = band.columns * static_cast<std::size_t>(band.end_row - band.first_row);
+  std::fill_n(band.nearest.begin(), cells, none);
+  std::fill_n(band.squared.begin(), cells, std::numeric_limits<float>::max());
   for (std::size_t i = 0; i < windows.windows.size(); ++i) {
     const Window& window = windows.windows[i];
     const float* const across_squared =
         &windows.across_squared[i * static_cast<std::size_t>(width)];
-    const int end = std::min(window.first_row + width, band.end_row);
+    const int end = std::min(window.first_row + windows.rows, band.end_row);
     for (int r = std::max(window.first_row, band.first_row); r < end; ++r) {
       const auto dy = static_cast<float>(r + 0.5 - window.y);
       const std::size_t first = static_cast<std::size_t>(r - band.first_row) * band.columns +
@@ -76,22 +90,29 @@ TOPOGEO_WIDE_VECTORS void fill(const Windows& windows, Band& band) {
                   &band.squared[first], &band.nearest[first]);
     }
   }
+  for (std::size_t k = 0; k < cells; ++k) found[k] = static_cast<std::uint16_t>(band.nearest[k]);
 }
 
 Windows windows_around(const std::vector<Eigen::Vector2d>& points_m,
                        const Eigen::Vector2d& origin_m, double cells_per_m, int reach_cells) {
-  Windows around{2 * reach_cells + 1, {}, {}};
+  const int rows = 2 * reach_cells + 1;
+  const int width = (rows + kLanes - 1) / kLanes * kLanes;
+  Windows around{rows, width, {}, {}};
   around.windows.reserve(points_m.size());
-  around.across_squared.reserve(points_m.size() * static_cast<std::size_t>(around.width));
+  around.across_squared.assign(points_m.size() * static_cast<std::size_t>(width),
+                               std::numeric_limits<float>::infinity());
+  float* across_squared = around.across_squared.data();
   for (const Eigen::Vector2d& p : points_m) {
     const double x = (p.x() - origin_m.x()) * cells_per_m;
     const double y = (p.y() - origin_m.y()) * cells_per_m;
     const int first_column = static_cast<int>(x) - reach_cells;
     around.windows.push_back({static_cast<int>(y) - reach_cells, first_column, y});
-    for (int c = 0; c < around.width; ++c) {
-      const float dx = static_cast<float>(first_column + 0.5 - x) + static_cast<float>(c);
-      around.across_squared.push_back(dx * dx);
+    const auto first_dx = static_cast<float>(first_column + 0.5 - x);
+    for (int c = 0; c < rows; ++c) {
+      const float dx = first_dx + static_cast<float>(c);
+      across_squared[c] = dx * dx;
     }
+    across_squared += width;
   }
   return around;
 }
@@ -103,17 +124,12 @@ void find_nearest(const Windows& windows, int rows, int columns, std::uint16_t n
   constexpr int kBandRows = 32;
   const auto row_cells = static_cast<std::size_t>(columns);
   nearest.resize(static_cast<std::size_t>(rows) * row_cells);
-  const std::size_t most_cells = static_cast<std::size_t>(std::min(kBandRows, rows)) * row_cells;
+  const std::size_t most_cells =
+      static_cast<std::size_t>(std::min(kBandRows, rows)) * row_cells + kLanes;
   Band band{0, 0, row_cells, std::vector<std::int32_t>(most_cells), std::vector<float>(most_cells)};
-  auto found = nearest.begin();
   for (; band.end_row < rows; band.first_row = band.end_row) {
     band.end_row = std::min(band.first_row + kBandRows, rows);
-    std::fill(band.nearest.begin(), band.nearest.end(), none);
-    std::fill(band.squared.begin(), band.squared.end(), std::numeric_limits<float>::max());
-    fill(windows, band);
-    const auto cells = static_cast<std::ptrdiff_t>(band.end_row - band.first_row) * columns;
-    found = std::transform(band.nearest.begin(), band.nearest.begin() + cells, found,
-                           [](std::int32_t i) { return static_cast<std::uint16_t>(i); });
+    fill(windows, none, band, &nearest[static_cast<std::size_t>(band.first_row) * row_cells]);
   }
 }
 
