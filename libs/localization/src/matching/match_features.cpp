@@ -1,9 +1,7 @@
 #include "topogeo/localization/matching/match_features.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -148,107 +146,6 @@ BranchCurve whole_branch(const topomap::LocalBranch& branch) {
 
 double repeatability(const topomap::LocalNode& node) {
   return node.kind == topomap::NodeKind::kReal ? 0.65 : 0.73;
-}
-
-// Looked up by the slope within the quadrant: a direction is asked for a thousand times in a match,
-// and half a degree needs no arc tangent.
-int RangeProfile::bin_of(const Eigen::Vector2d& p) {
-  constexpr int kPerQuadrant = 1024;
-  static const auto kBinOf = [] {
-    std::array<std::int16_t, std::size_t{4} * kPerQuadrant> bins{};
-    for (int i = 0; i < 4 * kPerQuadrant; ++i) {
-      // The inverse of `turn` below, in the middle of the cell.
-      const double in_quadrant = (i % kPerQuadrant + 0.5) / kPerQuadrant;
-      double x = 1.0 - in_quadrant;
-      double y = in_quadrant;
-      for (int quadrant = i / kPerQuadrant; quadrant > 0; --quadrant) {
-        x = std::exchange(y, x);
-        x = -x;
-      }
-      const double turn = geometry::atan2(y, x) / (2.0 * std::numbers::pi);
-      bins.at(static_cast<std::size_t>(i)) =
-          static_cast<std::int16_t>(static_cast<int>((turn + 0.5) * kBins) % kBins);
-    }
-    return bins;
-  }();
-  const double ax = std::fabs(p.x());
-  const double ay = std::fabs(p.y());
-  if (ax + ay == 0.0) return kBins / 2;
-  const double slope = ay / (ax + ay);  // 0 on the x axis, 1 on the y axis
-  double turn = p.x() >= 0.0 ? slope : 2.0 - slope;
-  if (p.y() < 0.0) turn = 4.0 - turn;
-  const int cell = std::min(static_cast<int>(turn * kPerQuadrant), 4 * kPerQuadrant - 1);
-  return kBinOf[static_cast<std::size_t>(cell)];
-}
-
-Eigen::Vector2d RangeProfile::in_laser_frame(const Eigen::Vector2d& p) const {
-  return {T_laser_robot_.x_m + rotation_.cos * p.x() - rotation_.sin * p.y(),
-          T_laser_robot_.y_m + rotation_.sin * p.x() + rotation_.cos * p.y()};
-}
-
-RangeProfile::RangeProfile(std::span<const ScanPoint> points, const Pose2& T_robot_laser)
-    : laser_m_(T_robot_laser.position_m()),
-      T_laser_robot_(geometry::inverse(T_robot_laser)),
-      rotation_(geometry::sincos(T_laser_robot_.theta_rad)),
-      near_m_(kBins, 0.0F),
-      far_m_(kBins, 0.0F) {
-  std::vector<float> range_m(kBins, 0.0F);
-  const auto put = [&](int bin, double range) {
-    float& cell = range_m[static_cast<std::size_t>(bin)];
-    if (cell == 0.0F || range < cell) cell = static_cast<float>(range);
-  };
-  int last_bin = -1;
-  double last_range_m = 0.0;
-  for (const ScanPoint& point : points) {
-    const Eigen::Vector2d p = in_laser_frame({point.x_m, point.y_m});
-    const double range = std::sqrt(p.squaredNorm());
-    const int bin = bin_of(p);
-    put(bin, range);
-    // A coarser laser leaves bins between two beams; up to two degrees they belong to the nearer
-    // reading.
-    if (last_bin >= 0 && bin > last_bin + 1 && bin <= last_bin + 4) {
-      for (int k = last_bin + 1; k < bin; ++k) put(k, std::min(range, last_range_m));
-    }
-    last_bin = bin;
-    last_range_m = range;
-  }
-  for (int k = 0; k < kBins; ++k) {
-    for (int d = -1; d <= 1; ++d) {
-      const float range = range_m[static_cast<std::size_t>((k + d + kBins) % kBins)];
-      if (range == 0.0F) continue;
-      float& near = near_m_[static_cast<std::size_t>(k)];
-      float& far = far_m_[static_cast<std::size_t>(k)];
-      near = near == 0.0F ? range : std::min(near, range);
-      far = std::max(far, range);
-    }
-  }
-}
-
-RangeProfile::View RangeProfile::view(const Eigen::Vector2d& point_robot_m,
-                                      double tolerance_m) const {
-  if (near_m_.empty()) return View::kUnknown;  // made of no scan
-  const Eigen::Vector2d p = in_laser_frame(point_robot_m);
-  const auto bin = static_cast<std::size_t>(bin_of(p));
-  const auto near = static_cast<double>(near_m_[bin]);
-  if (near == 0.0) return View::kUnknown;
-  const double range = std::sqrt(p.squaredNorm());
-  if (range < near - tolerance_m) return View::kFree;
-  return range <= static_cast<double>(far_m_[bin]) + tolerance_m ? View::kSurface : View::kHidden;
-}
-
-bool RangeProfile::turned_away(const Eigen::Vector2d& point_robot_m,
-                               const Eigen::Vector2d& normal) const {
-  constexpr double kGrazing = 0.17364818;  // of 10 degrees: the side of a face is not sure below
-  const Eigen::Vector2d to_laser_m = laser_m_ - point_robot_m;
-  const double along_m = to_laser_m.dot(normal);
-  return along_m < 0.0 && along_m * along_m > kGrazing * kGrazing * to_laser_m.squaredNorm();
-}
-
-RangeProfile::View RangeProfile::view_of_face(const Eigen::Vector2d& point_robot_m,
-                                              const Eigen::Vector2d& normal,
-                                              double tolerance_m) const {
-  const View seen = view(point_robot_m, tolerance_m);
-  return seen == View::kSurface && turned_away(point_robot_m, normal) ? View::kHidden : seen;
 }
 
 MatchFeatures extract_scan_features(std::span<const ScanPoint> points, const Pose2& T_robot_laser) {

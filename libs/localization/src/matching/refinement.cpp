@@ -132,11 +132,12 @@ void compare_views(const Reference& reference, const MatchFeatures& query, const
     const RangeProfile& profile = reference.features->profile;
     if (found != NearestPointGrid::kNone && !profile.turned_away(p, here.normal)) {
       const SurfacePoint& other = reference.features->surface[static_cast<std::size_t>(found)];
-      const Eigen::Vector2d o = p - other.position_m;
-      const double across =
-          other.on_line ? o.x() * other.normal.x() + o.y() * other.normal.y() : 0.0;
-      const double distance2 = other.on_line ? across * across : o.squaredNorm();
-      if (distance2 <= kInlier_m * kInlier_m && o.squaredNorm() <= 4.0 * kInlier_m * kInlier_m) {
+      const double ox = p.x() - other.position_m.x();
+      const double oy = p.y() - other.position_m.y();
+      const double whole2 = ox * ox + oy * oy;
+      const double across = ox * other.normal.x() + oy * other.normal.y();
+      const double distance2 = other.on_line ? across * across : whole2;
+      if (distance2 <= kInlier_m * kInlier_m && whole2 <= 4.0 * kInlier_m * kInlier_m) {
         ++in_view;
         ++inliers;
         squared += distance2;

@@ -12,6 +12,7 @@
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/localization/matching/nearest_point_grid.hpp"
+#include "topogeo/localization/matching/range_profile.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {
@@ -29,11 +30,15 @@ struct SurfacePoint {
 /// The same point in frame a, from frame b; `heading` of T_a_b.
 inline SurfacePoint moved(const SurfacePoint& point, const geometry::Pose2& T_a_b,
                           const geometry::SinCos& heading) {
-  const auto turned = [&](const Eigen::Vector2d& v) {
-    return Eigen::Vector2d(heading.cos * v.x() - heading.sin * v.y(),
-                           heading.sin * v.x() + heading.cos * v.y());
+  const auto turned_x = [&](const Eigen::Vector2d& v) {
+    return heading.cos * v.x() - heading.sin * v.y();
   };
-  return {T_a_b.position_m() + turned(point.position_m), turned(point.normal), point.on_line};
+  const auto turned_y = [&](const Eigen::Vector2d& v) {
+    return heading.sin * v.x() + heading.cos * v.y();
+  };
+  return {{T_a_b.x_m + turned_x(point.position_m), T_a_b.y_m + turned_y(point.position_m)},
+          {turned_x(point.normal), turned_y(point.normal)},
+          point.on_line};
 }
 /// Appends points that are given in frame b, in frame a.
 inline void add_moved(std::span<const SurfacePoint> points, const geometry::Pose2& T_a_b,
@@ -41,44 +46,6 @@ inline void add_moved(std::span<const SurfacePoint> points, const geometry::Pose
   const geometry::SinCos r = geometry::sincos(T_a_b.theta_rad);
   for (const SurfacePoint& point : points) out.push_back(moved(point, T_a_b, r));
 }
-
-/// How far the laser saw in each direction.
-class RangeProfile {
- public:
-  RangeProfile() = default;
-  RangeProfile(std::span<const topomap::ScanPoint> points, const geometry::Pose2& T_robot_laser);
-
-  enum class View : std::uint8_t {
-    kUnknown,  ///< no reading in that direction
-    kFree,     ///< the laser saw past it
-    kSurface,  ///< about where the laser saw something
-    kHidden,   ///< behind what the laser saw
-  };
-  /// How the scan saw a point in the robot frame. `tolerance_m` is the half-thickness of
-  /// kSurface.
-  [[nodiscard]] View view(const Eigen::Vector2d& point_robot_m, double tolerance_m) const;
-
-  /// Whether a surface with this normal (SurfacePoint::normal, robot frame) turns its back on the
-  /// laser, by more than 10 degrees. The laser cannot have seen that face. False for normal 0.
-  [[nodiscard]] bool turned_away(const Eigen::Vector2d& point_robot_m,
-                                 const Eigen::Vector2d& normal) const;
-
-  /// As view(), but a face that is turned away is hidden, unless the laser saw past it.
-  [[nodiscard]] View view_of_face(const Eigen::Vector2d& point_robot_m,
-                                  const Eigen::Vector2d& normal, double tolerance_m) const;
-
- private:
-  static constexpr int kBins = 720;  // half a degree
-  static int bin_of(const Eigen::Vector2d& point_laser_m);
-  [[nodiscard]] Eigen::Vector2d in_laser_frame(const Eigen::Vector2d& point_robot_m) const;
-
-  Eigen::Vector2d laser_m_ = Eigen::Vector2d::Zero();  // robot frame
-  geometry::Pose2 T_laser_robot_;
-  geometry::SinCos rotation_{0.0, 1.0};  // of T_laser_robot_
-  std::vector<float>
-      near_m_;  // smallest and largest range over a bin and its neighbours; 0: no reading
-  std::vector<float> far_m_;
-};
 
 /// A point on a branch, every `kBranchSpacing_m`.
 struct BranchSample {
