@@ -40,8 +40,8 @@ storage::MapDatabase last_database(const fs::path& path, const std::string& robo
     return storage::MapDatabase::open_or_create(path, robot_id, seed);
   } catch (const std::exception& error) {
     throw service::BadInputError(std::string(error.what()) +
-                                 "; begin a new map with --new, or name another file with "
-                                 "--database");
+                                 "; name another file with --database, or start once with --new, "
+                                 "which sets this map aside");
   }
 }
 
@@ -53,10 +53,10 @@ void begin_with(storage::MapDatabase& database, const storage::MapDocument& cont
   }
   const std::uint64_t expected = storage::identified(continued).map_id;
   if (database.map_id() == expected) return;
-  throw service::BadInputError(
-      fmt::format("the map database holds map {:016x} and not {:016x}, which is to be continued; "
-                  "leave out --continue to go on with it, or begin anew with --new",
-                  database.map_id(), expected));
+  throw service::BadInputError(fmt::format(
+      "the map database holds map {:016x} and not {:016x}, which is to be continued; "
+      "leave out --continue to go on with it, or start once with --new, which sets it aside",
+      database.map_id(), expected));
 }
 
 void write_results(const fs::path& directory, const storage::MapDocument& document,

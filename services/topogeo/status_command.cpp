@@ -1,4 +1,5 @@
 // topogeo status: the services that live on a domain, how they are and what they are fed.
+#include <chrono>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -10,13 +11,18 @@
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/support/host.hpp"
 
 #include "commands.hpp"
 #include "domain_view.hpp"
+#include "host_units.hpp"
 #include "status_table.hpp"
 
 namespace topogeo::cli {
 namespace {
+
+/// With --watch, to ask for the units of this host costs another program.
+constexpr std::chrono::seconds kUnitsPeriod{2};
 
 struct StatusOptions {
   DomainView view;
@@ -43,6 +49,14 @@ int show_status(const StatusOptions& options) {
   messaging::EventLoop loop;
   StatusTable table;
   table.expect(options.expected);
+  const bool of_this_host =
+      options.service.empty() && (options.host.empty() || options.host == support::host_name());
+  StatusTable::Clock::time_point units_due{};
+  const auto show_units = [&](StatusTable::Clock::time_point now) {
+    if (!of_this_host || now < units_due) return;
+    table.show_units(idle_units());
+    units_due = now + kUnitsPeriod;
+  };
   loop.add<msg::ServiceStatus>(
       messaging::Reader<msg::ServiceStatus>(participant),
       [&](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
@@ -60,12 +74,14 @@ int show_status(const StatusOptions& options) {
       [&] {
         const StatusTable::Clock::time_point now = StatusTable::Clock::now();
         table.forget(now);
+        show_units(now);
         if (redraw) std::cout << "\x1b[H\x1b[J";  // home, clear to the end
         print(options, table, now);
         if (options.view.watch && !redraw) std::cout << '\n';
       });
   if (found) return table.healthy(StatusTable::Clock::now()) ? service::kOk : service::kFailure;
-  if (!options.expected.empty()) {
+  show_units(StatusTable::Clock::now());
+  if (!options.expected.empty() || table.has_idle_units()) {
     if (!options.view.watch) print(options, table, StatusTable::Clock::now());
     return service::kFailure;
   }
@@ -106,9 +122,10 @@ void add_status_command(command_line::Command& app, int& exit_code) {
       "last 5 s, AGE the time since the last one. A service without status for 1.5 s is silent, "
       "one\n"
       "that ended without an order is lost. What was dead before is not known, unless it is "
-      "expected.\n"
-      "Exit code: 0 all services are well, 1 some are failed, lost, silent or missing, or there "
-      "are none.");
+      "expected\n"
+      "or a unit of systemd on this host, of which those are listed that do not run.\n"
+      "Exit code: 0 all services are well, 1 some are failed, lost, silent, missing or not\n"
+      "running, or there are none.");
   command->callback([options, &exit_code] { exit_code = show_status(*options); });
 }
 

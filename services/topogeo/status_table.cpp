@@ -16,8 +16,7 @@ namespace {
 
 /// Names of services matter more: they keep that much more.
 constexpr std::size_t kMoreOfServices = 6;
-constexpr std::string_view kMissing = "missing";
-constexpr std::string_view kWhyMissing = "expected, and not found";
+constexpr const char* kMissing = "missing";
 /// A fault this long ago is no reason for how a service is now.
 constexpr double kRecentError_s = 60.0;
 
@@ -87,12 +86,24 @@ std::vector<std::string> StatusTable::missing() const {
   return missing;
 }
 
+std::vector<StatusTable::Absent> StatusTable::absent() const {
+  std::vector<Absent> absent;
+  for (const std::string& service : missing()) {
+    absent.push_back({service, kMissing, "expected, and not found"});
+  }
+  for (const IdleUnit& unit : units_) {
+    absent.push_back(
+        {unit.name, unit.restarts ? "restarting" : "failed", "see journalctl -u " + unit.name});
+  }
+  return absent;
+}
+
 bool StatusTable::unwell(const Row& row, Clock::time_point now) {
   return row.lost || row.status.state() == msg::kServiceFailed || now - row.received > kSilent;
 }
 
 bool StatusTable::healthy(Clock::time_point now) const {
-  return missing().empty() &&
+  return absent().empty() &&
          std::ranges::none_of(rows_, [&](const auto& row) { return unwell(row.second, now); });
 }
 
@@ -177,12 +188,12 @@ std::vector<std::string> StatusTable::lines(Clock::time_point now, const Shown& 
     cells.push_back(std::to_string(s.fault_count()));
     grid.add(std::move(cells));
   }
-  for (const std::string& service : missing()) {
-    std::vector<std::string> cells = {shortened(service, longest_name + kMoreOfServices)};
+  for (const Absent& one : absent()) {
+    std::vector<std::string> cells = {shortened(one.name, longest_name + kMoreOfServices)};
     for (const bool column : {shown.pid, shown.robot, shown.host}) {
       if (column) cells.emplace_back("-");
     }
-    cells.emplace_back(kMissing);
+    cells.push_back(one.state);
     cells.insert(cells.end(), 3, "-");  // input, age, faults
     grid.add(std::move(cells));
   }
@@ -198,7 +209,7 @@ std::string StatusTable::text(Clock::time_point now, std::size_t columns) const 
   }
   std::vector<std::string> reasons;
   for (const Row* row : ordered()) reasons.push_back(reason(*row, now));
-  reasons.insert(reasons.end(), missing().size(), std::string(kWhyMissing));
+  for (Absent& one : absent()) reasons.push_back(std::move(one.reason));
   return with_remarks(lines, "REASON", reasons, columns) + sums(now);
 }
 
@@ -210,9 +221,12 @@ std::string StatusTable::sums(Clock::time_point now) const {
     if (unwell(row, now)) ++ill;
   }
   const std::size_t missing = this->missing().size();
-  return fmt::format("{} service{}, {}{} failed, lost or silent, {} fault{}\n", rows_.size(),
+  return fmt::format("{} service{}, {}{}{} failed, lost or silent, {} fault{}\n", rows_.size(),
                      rows_.size() == 1 ? "" : "s",
                      missing == 0 ? "" : fmt::format("{} {}, ", missing, kMissing),
+                     units_.empty() ? ""
+                                    : fmt::format("{} unit{} of this host not running, ",
+                                                  units_.size(), units_.size() == 1 ? "" : "s"),
                      ill == 0 ? "none" : std::to_string(ill), faults, faults == 1 ? "" : "s");
 }
 
@@ -262,9 +276,9 @@ std::string StatusTable::details(Clock::time_point now) const {
       add("counter", fmt::format("{:<34} {:.10g}", counter.name().c_str(), counter.value()));
     }
   }
-  for (const std::string& service : missing()) {
-    text += fmt::format("{}{}  {}\n  {:<10} {}\n", text.empty() ? "" : "\n", service, kMissing,
-                        "reason", kWhyMissing);
+  for (const Absent& one : absent()) {
+    text += fmt::format("{}{}  {}\n  {:<10} {}\n", text.empty() ? "" : "\n", one.name, one.state,
+                        "reason", one.reason);
   }
   return text;
 }
@@ -323,8 +337,8 @@ std::string StatusTable::json(Clock::time_point now) const {
     }
     list.push_back(std::move(service));
   }
-  for (const std::string& service : missing()) {
-    list.push_back({{"service", service}, {"state", kMissing}});
+  for (const Absent& one : absent()) {
+    list.push_back({{"service", one.name}, {"state", one.state}, {"message", one.reason}});
   }
   return list.dump(2) + "\n";
 }

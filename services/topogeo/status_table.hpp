@@ -12,6 +12,7 @@
 #include "topogeo/messaging/events.hpp"
 #include "topogeo/msg/status.h"
 
+#include "host_units.hpp"
 #include "text_grid.hpp"
 
 namespace topogeo::cli {
@@ -35,12 +36,15 @@ class StatusTable {
   void keep_only(std::string_view service);
   /// Services that must be there: one that has no row is shown as "missing", after the others.
   void expect(const std::vector<std::string>& services);
+  /// Units of this host that do not run though they should; in place of those before.
+  void show_units(std::vector<IdleUnit> units) { units_ = std::move(units); }
 
   [[nodiscard]] bool empty() const { return rows_.empty(); }
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
   /// Expected services that have no row.
   [[nodiscard]] std::vector<std::string> missing() const;
-  /// No service is failed, lost, silent or missing.
+  [[nodiscard]] bool has_idle_units() const { return !units_.empty(); }
+  /// No service is failed, lost, silent or missing, and no unit idle.
   [[nodiscard]] bool healthy(Clock::time_point now) const;
 
   /// A line for each service by robot, name and instance, no wider than `columns`: state, rate and
@@ -50,7 +54,7 @@ class StatusTable {
   /// Everything, a block of lines for each service.
   [[nodiscard]] std::string details(Clock::time_point now) const;
   /// An array of objects with the field names of the IDL; "state" as in the table. One that is
-  /// missing has its name and state alone.
+  /// missing and a unit have their name, state and "message" alone.
   [[nodiscard]] std::string json(Clock::time_point now) const;
 
  private:
@@ -60,7 +64,14 @@ class StatusTable {
     bool lost = false;
   };
   using Name = std::pair<std::string, std::string>;  // service, instance
+  // What should be there and has no status of its own.
+  struct Absent {
+    std::string name;
+    std::string state;
+    std::string reason;
+  };
 
+  [[nodiscard]] std::vector<Absent> absent() const;
   [[nodiscard]] static bool unwell(const Row& row, Clock::time_point now);
   [[nodiscard]] static std::string state(const Row& row, Clock::time_point now);
   [[nodiscard]] static std::string reason(const Row& row, Clock::time_point now);
@@ -80,6 +91,7 @@ class StatusTable {
   [[nodiscard]] std::string sums(Clock::time_point now) const;
 
   std::vector<std::string> expected_;
+  std::vector<IdleUnit> units_;
   std::map<Name, Row> rows_;
   std::map<messaging::Handle, Name> names_;
 };

@@ -52,6 +52,8 @@ here sh -c 'topogeo config --devices > /etc/topogeo/devices.yaml'
 here systemctl enable --now topogeo.target topogeo-worker@1 > /dev/null 2>&1
 eventually 30 is_state topogeo-sensor-gateway ActiveState failed || fail "a gateway without ports goes on"
 here journalctl -u topogeo-sensor-gateway --no-pager | grep -q "expected at least one port" || fail "without a reason"
+if here topogeo status > "$work/status" 2>&1; then fail "a unit that has failed is called well"; fi
+grep -q '^topogeo-sensor-gateway *failed' "$work/status" || { cat "$work/status"; fail "it is not listed"; }
 
 step "a laser and a base"
 docker cp "$source_dir/tests/data/room.world.yaml" $machine:/root/ > /dev/null

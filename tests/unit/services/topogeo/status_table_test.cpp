@@ -149,7 +149,8 @@ TEST(StatusTable, ExpectedServiceThatIsNotThereIsMissing) {
   EXPECT_THAT(table.details(kNow), HasSubstr("\n\nmap_store  missing\n  reason     expected"));
   const auto json = nlohmann::json::parse(table.json(kNow));
   ASSERT_EQ(json.size(), 3U);
-  EXPECT_EQ(json[2], nlohmann::json::parse(R"({"service": "map_store", "state": "missing"})"));
+  EXPECT_EQ(json[2], nlohmann::json::parse(R"({"service": "map_store", "state": "missing",
+                                               "message": "expected, and not found"})"));
   EXPECT_FALSE(table.healthy(kNow));
   table.update(status_of("map_store", msg::kServiceWaiting), info_of(3), kNow);
   EXPECT_TRUE(table.healthy(kNow));
@@ -168,6 +169,23 @@ TEST(StatusTable, ExpectedServiceThatEndsIsMissingAndOneThatDiesIsLost) {
   table.update(status_of("planner", msg::kServiceRunning), info_of(2), kNow);
   table.update(status_of("planner", msg::kServiceStopped), info_of(2), kNow);
   EXPECT_THAT(table.missing(), testing::ElementsAre("planner"));
+}
+
+TEST(StatusTable, UnitsOfThisHostThatDoNotRunAreListed) {
+  StatusTable table;
+  table.update(status_of("planner", msg::kServiceRunning), info_of(1), kNow);
+  table.show_units({{"topogeo-map-store", false}, {"topogeo-web", true}});
+  EXPECT_FALSE(table.healthy(kNow));
+  EXPECT_EQ(
+      table.text(kNow, 120),
+      "SERVICE            STATE       INPUT/s  AGE  FAULTS  REASON\n"
+      "planner            running           -    -       0\n"
+      "topogeo-map-store  failed            -    -       -  see journalctl -u topogeo-map-store\n"
+      "topogeo-web        restarting        -    -       -  see journalctl -u topogeo-web\n"
+      "1 service, 2 units of this host not running, none failed, lost or silent, 0 faults\n");
+  EXPECT_EQ(nlohmann::json::parse(table.json(kNow))[1]["state"], "failed");
+  table.show_units({});
+  EXPECT_TRUE(table.healthy(kNow));
 }
 
 TEST(StatusTable, MissingServicesHaveAllColumns) {
