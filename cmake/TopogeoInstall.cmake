@@ -43,7 +43,8 @@ set(data ${CMAKE_INSTALL_DATADIR}/topogeo)
 set(deploy ${PROJECT_SOURCE_DIR}/deploy)
 install(DIRECTORY ${deploy}/systemd/ DESTINATION lib/systemd/system COMPONENT topogeo
         FILES_MATCHING PATTERN "*.service" PATTERN "*.target" PATTERN "topogeo-worker*" EXCLUDE)
-install(FILES ${deploy}/systemd/topogeo-worker@.service DESTINATION lib/systemd/system COMPONENT topogeo-workers)
+install(FILES ${deploy}/systemd/topogeo-worker@.service ${deploy}/systemd/system-topogeoworkers.slice
+        DESTINATION lib/systemd/system COMPONENT topogeo-workers)
 install(FILES ${deploy}/systemd/topogeo.env DESTINATION ${data}/etc COMPONENT topogeo)
 install(FILES ${deploy}/systemd/worker.env DESTINATION ${data}/etc COMPONENT topogeo-workers)
 install(FILES ${deploy}/dds_profiles.xml DESTINATION ${data} COMPONENT topogeo-workers)

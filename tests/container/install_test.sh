@@ -20,8 +20,10 @@ late=$(grep -L '^After=.*time-sync\.target' "$prefix"/lib/systemd/system/*.servi
 if there systemd-analyze "the units are not checked"; then
   cp -r "$prefix/lib/systemd/system" "$work/units"
   # Names of programs are looked up in the folders of the system; here they are somewhere else.
-  sed -Ei "s#^ExecStart=([^ ]+)#ExecStart=$prefix/bin/\\1#" "$work"/units/*.service
-  mv "$work/units/topogeo-worker@.service" "$work/units/topogeo-worker@1.service"
+  sed -Ei "s#^ExecStart=([^/ ][^ ]*)#ExecStart=$prefix/bin/\\1#" "$work"/units/*.service
+  # Of a package that need not be here.
+  sed -i 's#^ExecStart=/usr/bin/fast-discovery-server#ExecStart=/bin/true#' "$work"/units/*.service
+  for unit in "$work"/units/*@.service; do mv "$unit" "${unit/@/@1}"; done
   for unit in "$work"/units/*; do
     # What other units of this machine have wrong is not of interest.
     MANPATH=$prefix/share/man systemd-analyze verify "$unit" 2>&1 | grep -F topogeo > "$work/verify" || true

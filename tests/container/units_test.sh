@@ -11,7 +11,7 @@ machine=topogeo-machine-$$
 
 step "a machine with systemd"
 printf 'FROM %s\nUSER root\nRUN apt-get update -q && apt-get install -q -y --no-install-recommends %s\n' "$image" \
-  "systemd systemd-sysv sudo procps" | docker build -q --network host -t "$image-systemd" - > "$work/build.log" 2>&1 ||
+  "systemd systemd-sysv sudo procps iproute2" | docker build -q --network host -t "$image-systemd" - > "$work/build.log" 2>&1 ||
   { tail -n 5 "$work/build.log"; fail "the image of the machine cannot be made"; }
 cleanups+=("docker rm -f $machine")
 boot() {
@@ -153,13 +153,22 @@ weight() {  # UNIT
 }
 worker_weight=$(weight "$(state busy-worker@1 Slice)")
 [ -n "$worker_weight" ] || fail "the group of workers has no weight"
-for unit in navigator sensor-gateway; do
-  [ "$(weight topogeo-$unit)" -ge $((worker_weight * 10)) ] || fail "the workers weigh more than a tenth of topogeo-$unit"
+for unit in navigator:50 sensor-gateway:50 local-mapper:25 localizer:25 map-store:10 planner:10; do
+  [ "$(weight "topogeo-${unit%:*}")" -ge $((worker_weight * ${unit#*:})) ] ||
+    fail "topogeo-${unit%:*} weighs less than ${unit#*:} times as much as all workers together"
 done
 drive_to 0.4,0.2
 freeze_on_the_way_to 3,0
 is_state busy-worker@8 ActiveState active || fail "the workers were not busy"
 here systemctl stop 'busy-worker@*'
+
+step "a discovery server that dies"
+here systemctl start topogeo-discovery@0
+before=$(state topogeo-discovery@0 MainPID)
+here kill -KILL "$before"
+comes_back() { here ss -Hlun 'sport = :11811' | grep -q . && ! is_state topogeo-discovery@0 MainPID "$before"; }
+eventually 60 comes_back || fail "the discovery server is not started again"
+here systemctl stop topogeo-discovery@0
 
 step "a backup, and the end"
 as_topogeo topogeo store snapshot /var/lib/topogeo/map before-the-fair > /dev/null
