@@ -114,6 +114,22 @@ eventually 90 drives || { show_all; fail "the robot stands with newer services";
 touch "$work/replaced"
 wait $tour || { tail -n 5 "$work/tour.log"; on robot topogeo status; fail "a drive failed"; }
 drive "room A"
+step "the host of localizer, map store and planner is lost on a drive, and comes back"
+on robot topogeo goto "room B" --wait-seconds 60 --patience 120 > "$work/lost.log" 2>&1 &
+lost=$!
+eventually 60 drives || { show_all; fail "the robot does not set out for room B"; }
+lose_host pc1
+stands() { ! drives; }
+eventually 60 stands || fail "the robot drives on without map and pose"
+start_host pc1
+for service in localizer map_store planner; do run_service $service; done
+wait $lost || true  # by the new planner, if it came soon enough for who gave the goal
+for service in localizer map_store planner; do
+  eventually 60 lives $service || { show $service; fail "$service does not come back"; }
+done
+drive "room B"
+drive "room A"
+step "what the services are"
 for service in $services; do
   [ "$(docker inspect -f '{{ index .Config.Labels "release" }}' "$(container_of "$service")")" = newer ] ||
     fail "$service is not of the newer image"

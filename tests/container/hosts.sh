@@ -39,6 +39,15 @@ kill_on() {
     sh "$2" "${3:-9}"
 }
 
+# lose_host NAME: everything on it at once, as without power; only $work is left. start_host makes it again.
+lose_host() {
+  local containers
+  mapfile -t containers < <(docker ps --format '{{ .Names }}' | grep -E "^$network-$1(-|\$)")
+  docker kill "${containers[@]}" > /dev/null
+  docker rm -f "${containers[@]}" > /dev/null 2>&1 || true
+  while docker inspect "$network-$1" > /dev/null 2>&1; do sleep 0.05; done
+}
+
 no_multicast_on() {  # HOST
   local pid
   pid=$(docker inspect -f '{{ .State.Pid }}' "$network-$1")

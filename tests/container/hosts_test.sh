@@ -33,10 +33,16 @@ for victim in sensor_gateway local_mapper localizer map_store planner; do
   rate=5 start_service $victim
   step "$victim"
 done
-kill_on pc1 ga_worker
-[ ! -e "$work/killed/map.pb" ] || fail "the log ended before the worker was killed"
+lose_host pc1
+[ ! -e "$work/killed/map.pb" ] || fail "the log ended before the host of a worker was lost"
+start_host pc1
 start_worker pc1
-step "ga_worker"
+step "the host of a worker"
+lose_host robot
+[ ! -e "$work/killed/map.pb" ] || fail "the log ended before the robot was lost"
+start_host robot
+rate=5 start_mapping killed
+step "the robot"
 wait_for_map 120
 same_results "$work/killed" "$work/alone"
 stop_mapping
