@@ -1,7 +1,7 @@
 // The search pool under load: many worker processes and several robots that want different things.
 //
 //   topogeo_pool_load [--workers W] [--robots R] [--cost-us C] [--seconds S] [--per-process N]
-//                     [--server]
+//                     [--lead-seconds T] [--server]
 //
 // Every worker is a process with a participant of its own (unless N are put into one), whose
 // search is stubbed: a right answer after a fixed time. Every robot is a process, too, with all
@@ -12,7 +12,8 @@
 // participants: 68 that do by multicast leave two cores no time for tasks.
 //
 // Prints a row for each robot and what each worker did. A task that is lost would be sent again
-// ("resent") or searched by the robot ("here"), and every batch is counted.
+// ("resent") or searched by the robot ("here"), and every batch is counted. Exits with 1 when a
+// task had no answer or a worker no task.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -54,8 +55,10 @@ struct LoadOptions {
   std::size_t cost_us = 5000;
   double seconds = 10.0;
   std::size_t per_process = 1;
+  double lead_s = 20.0;
   bool server = false;
-  std::uint32_t domain = 0;  // of a robot: 0 in the program that starts all
+  std::uint32_t domain = 0;  // 0: any
+  bool is_robot = false;
   bool floods = false;
 };
 
@@ -102,7 +105,7 @@ int run_robot(const LoadOptions& options, double start_s) {
               bench::sample_quantile(batch_ms, 0.5), bench::sample_quantile(batch_ms, 0.99),
               1e6 * (support::process_cpu_s() - cpu_s) / static_cast<double>(answered));
   if (!client.fault().empty()) std::printf("fault: %s\n", client.fault().c_str());
-  return 0;
+  return answered == asked && client.fault().empty() ? 0 : 1;
 }
 
 /// What workers report that they have done.
@@ -143,10 +146,11 @@ supervision::ChildProcess start_server() {
           std::vector<std::string>{"-i", "0", "-l", "127.0.0.1", "-p", kPort}, "/dev/null"};
 }
 
-void run_all(const LoadOptions& options) {
+/// True when every robot had all its answers and every worker some tasks.
+bool run_all(const LoadOptions& options) {
   std::optional<supervision::ChildProcess> server;
   if (options.server) server.emplace(start_server());
-  const std::uint32_t domain = bench::random_domain();
+  const std::uint32_t domain = options.domain == 0 ? bench::random_domain() : options.domain;
   DoneByWorker done(domain);
   bench::Workers workers;
   const auto flags = bench::flags_of(domain, messaging::kAnyPartition);
@@ -164,12 +168,12 @@ void run_all(const LoadOptions& options) {
   std::filesystem::create_directories(out);
   // Robots are let go when all of them know all workers, as far as one can foresee.
   const double start_s =
-      std::chrono::duration<double>(Clock::now().time_since_epoch()).count() + 20.0;
+      std::chrono::duration<double>(Clock::now().time_since_epoch()).count() + options.lead_s;
   std::vector<supervision::ChildProcess> robots;
   for (std::size_t i = 0; i < options.robots; ++i) {
     robots.emplace_back(
         "robot", std::filesystem::read_symlink("/proc/self/exe"),
-        std::vector<std::string>{"--robot-of", std::to_string(domain), "--workers",
+        std::vector<std::string>{"--be-robot", "--domain", std::to_string(domain), "--workers",
                                  std::to_string(options.workers), "--seconds",
                                  std::to_string(options.seconds), "--start-s",
                                  std::to_string(start_s), i == 0 ? "--floods" : "--modest"},
@@ -202,9 +206,12 @@ void run_all(const LoadOptions& options) {
     std::ifstream file(out / ("robot" + std::to_string(i)));
     for (std::string line; std::getline(file, line);) std::printf("%s\n", line.c_str());
   }
+  bool all_well = std::ranges::all_of(
+      robots, [](supervision::ChildProcess& robot) { return robot.poll()->clean(); });
   std::vector<double> each;
   double sum = 0.0;
   for (const auto& [id, count] : done.done()) {
+    all_well = all_well && count > 0;
     each.push_back(static_cast<double>(count - before[id]));
     sum += each.back();
   }
@@ -214,6 +221,7 @@ void run_all(const LoadOptions& options) {
               *std::max_element(each.begin(), each.end()), 1e6 * cpu_s / sum);
   std::filesystem::remove_all(out);
   if (server) server->send_signal(SIGTERM);
+  return all_well && each.size() == options.workers;
 }
 
 }  // namespace
@@ -240,21 +248,24 @@ int main(int argc, char** argv) {
   app.add_option("--seconds", options.seconds, "how long robots ask")
       ->capture_default_str()
       ->check(command_line::range(1.0, 3600.0));
+  app.add_option("--lead-seconds", options.lead_s, "until robots ask, for all to know each other")
+      ->capture_default_str()
+      ->check(command_line::range(0.0, 600.0));
   app.add_option("--per-process", options.per_process, "workers in a process")
       ->capture_default_str()
       ->check(command_line::range(1, 64));
   app.add_flag("--server", options.server, "discovery by a server (package fastdds-tools)");
-  app.add_option("--robot-of", options.domain, "be a robot there");
+  app.add_option("--domain", options.domain, "of DDS; 0: any")->check(command_line::range(0, 232));
+  app.add_flag("--be-robot", options.is_robot, "on that domain");
   app.add_option("--start-s", start_s, "of a robot: when to begin, s of the steady clock");
   app.add_flag("--floods", options.floods, "of a robot");
   app.add_flag("--modest", modest, "of a robot");
   if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   try {
-    if (options.domain != 0) return run_robot(options, start_s);
-    run_all(options);
+    if (options.is_robot) return run_robot(options, start_s);
+    return run_all(options) ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "topogeo_pool_load: %s\n", error.what());
     return 1;
   }
-  return 0;
 }
