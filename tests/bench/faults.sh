@@ -13,6 +13,8 @@
 # both, "drive absurd" samples of absurd content on all topics, "drive topics" ever new topics, "drive strangers" does
 # all three at once; the largest memory of a service.
 #
+# "secured ..." is the same with certificates, and the profile for links between sites.
+#
 #   tests/bench/faults.sh [BUILD] [FAULT...]     all faults: about fifteen minutes
 #   tests/bench/faults.sh build "loss 5" "cut pc1" "drive cut"
 [ $# -gt 0 ] || set -- "$(dirname "${BASH_SOURCE[0]}")/../../build"
@@ -29,6 +31,7 @@ most_memory_mb=150
 faults=("$@")
 [ $# -gt 0 ] || faults=(none "loss 1" "loss 5" "loss 20" "delay 100" "reorder 10" "duplicate 20" "cut robot"
   "cut pc1" "cut pc2" "freeze worker" "clock robot" "clock pc1" "clock pc2"
+  "secured none" "secured loss 5" "secured loss 20" "secured cut robot" "secured cut pc1" "secured cut pc2"
   "drive none" "drive frozen" "drive cut" "drive delay 100" "drive reorder 10" "drive duplicate 20" "drive loss 20"
   "drive clock robot" "drive clock pc1"
   "drive flood" "drive absurd" "drive topics" "drive strangers")
@@ -257,10 +260,21 @@ print_head() {  # KIND: where another table begins
   esac
 }
 
+profile=$TOPOGEO_DDS_PARTICIPANT
+secure() {
+  [ -d "$work/keys" ] || "$source_dir/deploy/security/make_keys" "$work/keys" issue robot > "$work/make_keys.out" 2>&1 ||
+    fail "make_keys: $(tail -n 1 "$work/make_keys.out")"
+  export TOPOGEO_SECURITY=$work/keys/robot TOPOGEO_DDS_PARTICIPANT=wan
+}
+
 failed=0
 run_number=0
 kind=""
-for fault in "${faults[@]}"; do
+for name in "${faults[@]}"; do
+  fault=${name#secured }
+  unset TOPOGEO_SECURITY
+  TOPOGEO_DDS_PARTICIPANT=$profile
+  [ "$fault" = "$name" ] || secure
   run_number=$((run_number + 1))
   out=$work/run$run_number
   recovery=-
@@ -272,7 +286,7 @@ for fault in "${faults[@]}"; do
       if [ -z "$stepping" ]; then
         # deploy/packages.txt has it: where CI lacks it, the row must not be left out silently.
         [ "${CI:-}" != true ] || fail "$fault: faketime is not installed"
-        echo "| $fault: left out, faketime is not installed |"
+        echo "| $name: left out, faketime is not installed |"
         continue
       fi
       for host in "${hosts[@]}"; do step_clock "$host" +0; done
@@ -288,7 +302,7 @@ for fault in "${faults[@]}"; do
     }
     drive "${fault#drive }"
     print_head drive
-    printf '| %s | %s | %s | %s | %s | %s |\n' "$fault" "$stood" "$drove_on" "$arrival" "$memory" "$result"
+    printf '| %s | %s | %s | %s | %s | %s |\n' "$name" "$stood" "$drove_on" "$arrival" "$memory" "$result"
     end_run
     continue
   fi
@@ -308,7 +322,7 @@ for fault in "${faults[@]}"; do
     done
   fi
   print_head map
-  printf '| %s | %d.%d | %s | %s |\n' "$fault" $((took / 10)) $((took % 10)) "$recovery" "$result"
+  printf '| %s | %d.%d | %s | %s |\n' "$name" $((took / 10)) $((took % 10)) "$recovery" "$result"
   end_run
 done
 [ $failed = 0 ] || fail "a result differs from that of one process, or the robot does not stand"

@@ -15,10 +15,15 @@
 // 4. A reader allocates what a fragment states as the size of the whole, up to 4 GB for one packet.
 // 5. A fragment may state another size of the whole than those before it: its bytes are read from
 //    beyond the packet.
+// 6. A message holds as many fragments as it has room for. Secured participants have room for 64 kB
+// in each,
+//    because of their certificates, and a message of 64 kB hardly ever arrives where packets are
+//    lost.
 #include "fragments.hpp"
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -27,6 +32,7 @@
 
 #include <fastdds/rtps/common/CacheChange.h>
 #include <fastdds/rtps/history/ReaderHistory.h>
+#include <fastdds/rtps/messages/RTPSMessageGroup.h>
 #include <fastdds/rtps/reader/StatefulReader.h>
 #include <fastdds/rtps/writer/RTPSWriter.h>
 
@@ -39,6 +45,7 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 constexpr const char* kFragmentSize =
     "_ZN8eprosima8fastrtps4rtps10RTPSWriter20calculateMaxDataSizeEj";
+constexpr const char* kSendNow = "_ZN8eprosima8fastrtps4rtps16RTPSMessageGroup15flush_and_resetEv";
 constexpr const char* kTakeFragments =
     "_ZN8eprosima8fastrtps4rtps14StatefulReader18processDataFragMsgEPNS1_13CacheChange_tEjjt";
 constexpr const char* kTakeGap =
@@ -50,6 +57,15 @@ constexpr const char* kTakeGap =
 constexpr std::uint32_t kRoom = 128;
 /// A local map with all bounds used takes 50 MB, and nothing is larger.
 constexpr std::uint32_t kMaxSample = 64U << 20U;
+
+/// What a message with a fragment of a topic of ours may take; 0: what the transport gives.
+std::atomic<std::uint32_t> fragment_message{0};
+
+/// Not of the middleware itself. Object Management Group, DDSI-RTPS 2.3, table 9.1.
+bool is_of_topic(const rtps::GUID_t& writer) {
+  constexpr unsigned kBuiltIn = 0xC0;
+  return (writer.entityId.value[3] & kBuiltIn) != kBuiltIn;
+}
 
 /// From `begin` to the base of `more`, and what is set in `more`.
 struct Gap {
@@ -95,7 +111,10 @@ extern "C" std::uint32_t topogeo_fragment_size(
 extern "C" std::uint32_t topogeo_fragment_size(rtps::RTPSWriter* writer, std::uint32_t packet) {
   using Function = std::uint32_t (*)(rtps::RTPSWriter*, std::uint32_t);
   static const auto original = topogeo::messaging::library_function<Function>(kFragmentSize);
-  return original(writer, packet) - kRoom;
+  const std::uint32_t most = fragment_message;
+  return original(writer,
+                  most > 0 && is_of_topic(writer->getGuid()) ? std::min(packet, most) : packet) -
+         kRoom;
 }
 
 // NOLINTNEXTLINE: the name of a member function of the library
@@ -162,5 +181,16 @@ extern "C" bool topogeo_take_gap(rtps::StatefulReader* reader, const rtps::GUID_
 namespace topogeo::messaging {
 
 void correct_fragments() {}
+
+void send_if_alone(rtps::RTPSMessageGroup& group, const rtps::CacheChange_t& sample) {
+  using Function = void (*)(rtps::RTPSMessageGroup*);
+  static const auto send_now = library_function<Function>(kSendNow);
+  if (fragment_message > 0 && is_of_topic(sample.writerGUID)) send_now(&group);
+}
+
+void send_fragments_within(std::uint32_t message_bytes) {
+  const std::uint32_t before = fragment_message;
+  fragment_message = before == 0 ? message_bytes : std::min(before, message_bytes);
+}
 
 }  // namespace topogeo::messaging

@@ -15,6 +15,7 @@
 #include <fastrtps/config.h>
 
 #include "acknowledgment_pace.hpp"
+#include "fragments.hpp"
 #include "library_function.hpp"
 
 namespace {
@@ -155,7 +156,9 @@ extern "C" bool topogeo_add_fragment(rtps::RTPSMessageGroup* group,
       bool (*)(rtps::RTPSMessageGroup*, const rtps::CacheChange_t&, std::uint32_t, bool);
   static const auto original = messaging::library_function<Function>(kAddFragment);
   add_held_gaps(group);
-  return original(group, change, fragment, inline_qos);
+  const bool added = original(group, change, fragment, inline_qos);
+  if (added) messaging::send_if_alone(*group, change);
+  return added;
 }
 
 namespace topogeo::messaging {
