@@ -1,17 +1,19 @@
 #!/usr/bin/env bash
 # DDS security with the material of make_keys: a whole run is that of one process; strangers get nothing and are
 # counted and named: without certificate, of a foreign authority, expired, revoked; a worker that writes the map or
-# motion commands is denied, even if its own side lets it.
+# motion commands is denied, even if its own side lets it. Packets show what the specification leaves plain, no more.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need openssl
 need faketime
+need python3
 need_programs
 export TOPOGEO_DDS_PARTICIPANT=udp_only
 make_keys=$source_dir/deploy/security/make_keys
 keys=$work/keys
 claim_domain  # the participants of other tests would be strangers, too
 partition=security-$$
+robot=rumpelstiltskin  # in each message, and in the name of each participant
 
 secured() { TOPOGEO_SECURITY=$1 "${@:2}"; }
 status() { secured "$1" "$bin/topogeo" status --partition $partition "${@:2}" 2>&1; }
@@ -66,8 +68,9 @@ diff "$work/topics" "$work/written" || fail "topics (<) and the table of permiss
 
 step "a whole run"
 make_log 80 "$work/log.clf"
-"$bin/topogeo" map --log "$work/log.clf" --out "$work/alone" > /dev/null 2>&1
-secured "$keys/robot" "$bin/topogeo" run --log "$work/log.clf" --out "$work/run" > "$work/run.log" 2>&1 ||
+"$bin/topogeo" map --log "$work/log.clf" --robot $robot --out "$work/alone" > /dev/null 2>&1
+secured "$keys/robot" "$bin/topogeo" run --log "$work/log.clf" --robot $robot --out "$work/run" \
+  > "$work/run.log" 2>&1 ||
   { cat "$work/run.log"; fail "the secured run"; }
 same_results "$work/run" "$work/alone"
 grep -q ' 0 sent to workers' "$work/run.log" && fail "the workers had no work"
@@ -75,14 +78,28 @@ grep -q ' 0 sent to workers' "$work/run.log" && fail "the workers had no work"
 # What the services themselves send must not look like a stranger's.
 drops_unprotected() { status "$keys/robot" planner | grep unprotected_packet; }
 
-step "without multicast"
-# A network of its own: lo has no route for multicast there. Two addresses of hosts, as two hosts would have.
-if unshare --net true 2> /dev/null; then
+step "packets, without multicast"
+# overheard NAME FOLDER: what a listener reads while a log is mapped, in $work/NAME.readable. A network of its own: lo
+# has no route for multicast there. Two addresses of hosts, as two hosts would have.
+overheard() {
   # shellcheck disable=SC2016  # the words of the inner shell
-  TOPOGEO_SECURITY=$keys/robot TOPOGEO_PEERS='127.0.0.1;localhost' unshare --net bash -c \
-    'ip link set lo up && exec "$0" run --log "$1" --out "$2"' "$bin/topogeo" "$work/log.clf" "$work/peers" \
-    > "$work/peers.log" 2>&1 || { cat "$work/peers.log"; fail "the secured run without multicast"; }
-  same_results "$work/peers" "$work/alone"
+  TOPOGEO_SECURITY=$2 TOPOGEO_PEERS='127.0.0.1;localhost' unshare --net bash -c 'ip link set lo up && exec "$@"' - \
+    python3 "$source_dir/tests/container/packets.py" $robot "$work/log.clf" \
+    "$bin/topogeo" run --log "$work/log.clf" --robot $robot --out "$work/$1" > "$work/$1.readable" 2> "$work/$1.log" ||
+    { cat "$work/$1.log"; fail "the $1 run without multicast"; }
+  same_results "$work/$1" "$work/alone"
+}
+if unshare --net true 2> /dev/null; then
+  overheard secured "$keys/robot"
+  echo AES-256-GCM | diff - "$work/secured.readable" || fail "packets of secured services are not as expected (<)"
+  overheard plain ""
+  # A run may be too short for signs of life.
+  grep -vx liveliness "$work/plain.readable" | diff <(printf '%s\n' "discovery of topics" "key of the robot" \
+    match_tasks "messages of topics" "name of a topic" "name of a type" "name of a worker" "name of the robot" \
+    "ranges of a scan" service_status) - || fail "a listener does not read plain packets as expected (<)"
+else
+  [ "${CI:-}" != true ] || fail "no network namespace can be made"
+  echo "no network namespace can be made: packets are not examined"
 fi
 ROS_DISCOVERY_SERVER=127.0.0.1:11811 status "$keys/robot" > "$work/servers" && fail "security with servers"
 grep -q "carry no security" "$work/servers" || { cat "$work/servers"; fail "no clear error with servers"; }

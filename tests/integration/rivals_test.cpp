@@ -1,5 +1,6 @@
 // Two map stores for one map or one robot, two localizers for one robot: of two the younger stops
 // and says why, and one that was killed keeps nobody from taking its place.
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <map>
@@ -63,12 +64,21 @@ class Rivals : public testing::Test {
       return now != nullptr && now->state() != msg::kServiceStarting;
     });
   }
-  /// `second` ends with a failure that names `first`, which goes on.
+  /// `second` ends with a failure that names `first`, which goes on and reports `second` once.
   void expect_refused(Program& second, const Program& first, const std::string& name) {
     EXPECT_EQ(second.wait(), 1) << second.err();
     EXPECT_THAT(second.err(), HasSubstr("another " + name + " works for robot 'robot': "));
     EXPECT_THAT(second.err(), HasSubstr("-" + std::to_string(first.pid()) + "; this one stops"));
+    EXPECT_TRUE(eventually([&] { return reports_second(first, name); }))
+        << "faults: " << status(first)->fault_count() << ", " << status(first)->last_error();
+    EXPECT_THAT(first.err(),
+                HasSubstr("-" + std::to_string(second.pid()) + " was started for the same robot"));
     EXPECT_NE(status(first)->state(), msg::kServiceFailed);
+  }
+  bool reports_second(const Program& program, const std::string& name) const {
+    return std::ranges::any_of(status(program)->faults(), [&](const msg::FaultCount& fault) {
+      return fault.reason().to_string() == "second " + name && fault.count() == 1;
+    });
   }
 
   const bool udp_only_ = (use_udp_only(), true);
