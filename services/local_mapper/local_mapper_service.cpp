@@ -126,6 +126,15 @@ std::optional<scan::Scan> LocalMapperService::accept(const msg::Scan& message) {
   messaging::StatusPublisher& status = service_.status();
   const std::uint64_t sequence = message.sequence_number();
   const std::string name = "scan " + std::to_string(sequence);
+  // The whole message first: neither source nor number of one that is refused count, or a
+  // stranger's would have a log read again for ever (faults_strangers).
+  scan::Scan scan;
+  try {
+    scan = service::from_msg(message);
+  } catch (const std::invalid_argument& error) {
+    status.fault("invalid scan", name + ": " + error.what());
+    return std::nullopt;
+  }
   // A log that is read again brings the scans up to the last stop once more.
   if (replay_ && !odometry_epoch_ && resumed_ && resumed_->first == message.odometry_epoch()) {
     next_sequence_ = resumed_->second + 1;
@@ -151,28 +160,22 @@ std::optional<scan::Scan> LocalMapperService::accept(const msg::Scan& message) {
   }
   next_sequence_ = sequence + 1;
   if (missing_) missing_->found();
-  try {
-    scan::Scan scan = service::from_msg(message);
-    const Geometry geometry{scan.angle_min_rad, scan.angle_step_rad, scan.ranges_m.size()};
-    if (geometry_ && geometry != *geometry_) {
-      status.fault("changed scan geometry",
-                   name + " has " + std::to_string(geometry.beams) + " beams from " +
-                       std::to_string(geometry.angle_min_rad) + " rad, the first had " +
-                       std::to_string(geometry_->beams) + " from " +
-                       std::to_string(geometry_->angle_min_rad) + " rad");
-      return std::nullopt;
-    }
-    if (scan.stamp_ns <= last_stamp_ns_) {
-      status.fault("time not increasing", name);
-      return std::nullopt;
-    }
-    geometry_ = geometry;
-    last_stamp_ns_ = scan.stamp_ns;
-    return scan;
-  } catch (const std::invalid_argument& error) {
-    status.fault("invalid scan", name + ": " + error.what());
+  const Geometry geometry{scan.angle_min_rad, scan.angle_step_rad, scan.ranges_m.size()};
+  if (geometry_ && geometry != *geometry_) {
+    status.fault("changed scan geometry",
+                 name + " has " + std::to_string(geometry.beams) + " beams from " +
+                     std::to_string(geometry.angle_min_rad) + " rad, the first had " +
+                     std::to_string(geometry_->beams) + " from " +
+                     std::to_string(geometry_->angle_min_rad) + " rad");
     return std::nullopt;
   }
+  if (scan.stamp_ns <= last_stamp_ns_) {
+    status.fault("time not increasing", name);
+    return std::nullopt;
+  }
+  geometry_ = geometry;
+  last_stamp_ns_ = scan.stamp_ns;
+  return scan;
 }
 
 void LocalMapperService::publish(const topomap::LocalMap& map) {

@@ -55,6 +55,7 @@ MapInput::Arrival MapInput::add(topomap::LocalMap map) {
 }
 
 void MapInput::add(const msg::TrajectorySegment& message) {
+  static_cast<void>(service::from_msg(message));  // a refused one begins and ends no renewal
   if (message.numbered_since() > trajectory_.numbered_since()) {
     renewal_of(message.numbered_since()).trajectory.add(message);
     renew();
@@ -190,6 +191,7 @@ std::optional<topomap::StopId> MapInput::lost() const {
 
 void MapInput::add(const msg::LoopClosures& message) {
   if (message.numbered_since() < trajectory_.numbered_since()) return;
+  std::vector<topomap::LoopClosure> received = service::from_msg(message);
   auto* closures = &closures_;
   auto* version = &closures_version_;
   if (message.numbered_since() > trajectory_.numbered_since()) {
@@ -198,12 +200,13 @@ void MapInput::add(const msg::LoopClosures& message) {
     version = &renewal.closures_version;
   }
   if (*version && message.version() < **version) return;
-  *closures = service::from_msg(message);
+  *closures = std::move(received);
   *version = message.version();
 }
 
 void MapInput::add(const msg::MapEdges& message) {
   if (message.numbered_since() > trajectory_.numbered_since()) {
+    static_cast<void>(service::from_msg(message));
     renewal_of(message.numbered_since()).edges.add(message);
     return;
   }

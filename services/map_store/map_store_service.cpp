@@ -8,6 +8,7 @@
 #include "topogeo/pipeline/hybrid_map_source.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/service/merge_conversions.hpp"
 #include "topogeo/support/log.hpp"
 
 #include "result_files.hpp"
@@ -85,8 +86,8 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
   listen<msg::MapEdges>([this](const msg::MapEdges& edges) { input_.add(edges); });
   listen<msg::MergeProposal>([this](const msg::MergeProposal& proposal) {
     if (proposal.state() != msg::kMergeRefused) return;
-    input_.add(storage::RefusedMerge{service::from_msg(proposal.stop()),
-                                     service::from_msg(proposal.other_stop())});
+    const localization::MergeProposal refused = service::from_msg(proposal);
+    input_.add(storage::RefusedMerge{refused.place.stop, refused.place.other});
   });
   listen<msg::StreamEnd>([this](const msg::StreamEnd& end) {
     if (end.stage() == msg::kStageLocalizer) input_.set_end(end);

@@ -17,6 +17,8 @@ msg::Route no_route(msg::RouteStatus status, std::string_view why) {
   return route;
 }
 
+}  // namespace
+
 std::optional<service::Goal> goal_from(const msg::Goal& message, msg::Route& refusal) {
   try {
     return service::from_msg(message);
@@ -25,8 +27,6 @@ std::optional<service::Goal> goal_from(const msg::Goal& message, msg::Route& ref
     return std::nullopt;
   }
 }
-
-}  // namespace
 
 msg::Route answer(const msg::Goal& goal, const planning::PlanningMaps& maps,
                   const std::optional<service::LivePose>& pose,

@@ -12,6 +12,9 @@
 
 namespace topogeo::planner {
 
+/// The goal, or nothing and the answer that refuses what the navigator refuses as well.
+std::optional<service::Goal> goal_from(const msg::Goal& message, msg::Route& refusal);
+
 /// The answer to a goal of a position, node or place, without header, goal_id and versions. What
 /// there is none of is empty in `maps`, and `pose`; `blocked_m` are points (map frame) of obstacles
 /// that are not on the map; points outside of the map are ignored. Everything that can be wrong is

@@ -80,6 +80,12 @@ void PlannerService::on_goal(const msg::Goal& message) {
     if (goal_ && (message.goal_id() == 0 || message.goal_id() == goal_->goal_id())) goal_.reset();
     return;
   }
+  // One that the navigator refuses is answered, but the robot is still on its way to another.
+  msg::Route refusal;
+  if (!goal_from(message, refusal)) {
+    send(message, refusal);
+    throw std::invalid_argument(refusal.message().to_string());
+  }
   service_.status().add_to_counter("goals");
   goal_.reset();  // the one before needs no answer on a newer map
   take_maps();
@@ -142,18 +148,24 @@ void PlannerService::plan() {
   const bool found = route.status() == msg::kRouteFound;
   refused_at_.reset();
   if (!found && pose_) refused_at_ = pose_->T_map_robot;
-  messaging::set_header(route, service_.robot_id(), pose_ ? pose_->stamp_ns : goal_->stamp_ns(),
-                        sent_++);
-  route.goal_id(goal_->goal_id());
-  route.map_version(map_ ? map_version_ : 0);
-  route.graph_version(graph_ ? graph_->version : 0);
-  route.blockages_version(blockages_.version);
-  if (!service_.send(routes_, route, "route")) return;
-  service_.status().add_to_counter(found ? "routes_found" : "routes_refused");
+  if (!send(*goal_, route)) return;
   on_branches_ = is_on_branches(route);
   if (on_branches_) service_.status().add_to_counter("routes_on_branches");
   spdlog::debug("goal {}: {}", goal_->goal_id(),
                 found ? std::to_string(route.length_m()) + " m" : route.message().to_string());
+}
+
+bool PlannerService::send(const msg::Goal& goal, msg::Route& route) {
+  messaging::set_header(route, service_.robot_id(), pose_ ? pose_->stamp_ns : goal.stamp_ns(),
+                        sent_++);
+  route.goal_id(goal.goal_id());
+  route.map_version(map_ ? map_version_ : 0);
+  route.graph_version(graph_ ? graph_->version : 0);
+  route.blockages_version(blockages_.version);
+  if (!service_.send(routes_, route, "route")) return false;
+  const bool found = route.status() == msg::kRouteFound;
+  service_.status().add_to_counter(found ? "routes_found" : "routes_refused");
+  return true;
 }
 
 }  // namespace topogeo::planner

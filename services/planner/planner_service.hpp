@@ -34,6 +34,8 @@ class PlannerService {
   void note_what_is_missing();
   /// Plans for the goal at hand, if there is one, and sends the answer.
   void plan();
+  /// Completes the answer to a goal and sends it; false when the program is asked to end before.
+  bool send(const msg::Goal& goal, msg::Route& route);
 
   service::Service& service_;
   std::shared_ptr<const planning::HybridMap> map_;

@@ -3,12 +3,17 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <regex>
+#include <set>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -17,13 +22,16 @@
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 
-#include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/topics.hpp"
-#include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/types.h"
 #include "topogeo/support/random.hpp"
+
+#include "absurd_payload.hpp"
+#include "idl_schema.hpp"
 
 namespace topogeo::test {
 
@@ -64,6 +72,11 @@ class Stranger {
     namespace dds = eprosima::fastdds::dds;
     dds::DomainParticipantQos qos;
     qos.name("stranger");
+    // Services receive no larger packets (deploy/dds_profiles.xml).
+    auto transport = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+    transport->maxMessageSize = 1400;
+    qos.transport().use_builtin_transports = false;
+    qos.transport().user_transports.push_back(std::move(transport));
     participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(domain, qos);
     dds::PublisherQos publisher_qos;
     publisher_qos.partition().push_back("*");
@@ -77,18 +90,27 @@ class Stranger {
         participant_);
   }
 
+  /// Of any bytes.
   eprosima::fastdds::dds::DataWriter& writer(const std::string& topic, const std::string& type) {
+    return writer(topic, eprosima::fastdds::dds::TypeSupport(
+                             new AnyBytes(type)));  // NOLINT: it takes it over
+  }
+
+  eprosima::fastdds::dds::DataWriter& writer(const std::string& topic,
+                                             const eprosima::fastdds::dds::TypeSupport& support) {
     namespace dds = eprosima::fastdds::dds;
-    const dds::TypeSupport support(new AnyBytes(type));  // NOLINT: it takes it over
     support.register_type(participant_);
     dds::DataWriterQos qos;
     qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
     qos.durability().kind = dds::TRANSIENT_LOCAL_DURABILITY_QOS;
     qos.history().depth = 64;
+    // As strict as readers of statuses want it.
+    qos.liveliness().lease_duration = {1, 0};
+    qos.liveliness().announcement_period = {0, 250'000'000};
     qos.endpoint().history_memory_policy =
         eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
     return *publisher_->create_datawriter(
-        participant_->create_topic(topic, type, dds::TOPIC_QOS_DEFAULT), qos);
+        participant_->create_topic(topic, support.get_type_name(), dds::TOPIC_QOS_DEFAULT), qos);
   }
 
  private:
@@ -96,41 +118,122 @@ class Stranger {
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
 };
 
-/// Samples that keep the bounds of the types and mean nothing.
+/// Samples on all topics that keep the bounds of the types and mean nothing.
+///
+/// Without security whoever writes a valid message is obeyed, so none of these is valid for the
+/// robot: no floating-point number in them is finite, or else they are for another robot. Those of
+/// types that have no such number, or whose number is not what matters, are all for another robot,
+/// unless they are refused for something else.
 class AbsurdSamples {
  public:
-  explicit AbsurdSamples(const messaging::Participant& participant)
-      : goals_(participant), segments_(participant), poses_(participant) {}
-
-  /// Whether somebody reads them, within the time.
-  [[nodiscard]] bool wait_for_readers(std::chrono::seconds patience) {
-    return goals_.wait_for_matched(1, patience) && segments_.wait_for_matched(1, patience);
+  AbsurdSamples(const messaging::Participant& participant, std::uint32_t domain)
+      : stranger_(domain),
+        workers_(participant),
+        tasks_(participant),
+        requests_(participant),
+        schema_(TOPOGEO_SOURCE_DIR "/idl") {
+    for (const messaging::TopicInfo* topic : messaging::all_topics()) {
+      const eprosima::fastdds::dds::TypeSupport support(topic->make_type());
+      const std::string& name = support.get_type_name();
+      topics_.push_back({topic, support, name.substr(name.rfind(':') + 1),
+                         &stranger_.writer(std::string(topic->name), support)});
+    }
   }
+  AbsurdSamples(const AbsurdSamples&) = delete;
+  AbsurdSamples& operator=(const AbsurdSamples&) = delete;
+  ~AbsurdSamples() = default;
 
-  /// One of each type.
+  /// One on each topic. Throws std::logic_error when a reader would refuse it as no message.
   void write(std::uint64_t number) {
-    constexpr std::int64_t kYear2250_ns = 8'830'000'000'000'000'000;
-    msg::Goal goal;
-    messaging::set_header(goal, "robot", kYear2250_ns, number);
-    messaging::set_client_id(goal, "stranger");
-    goal.target().x_m(std::nan(""));
-    static_cast<void>(goals_.write(goal));
-    msg::TrajectorySegment segment;
-    messaging::set_header(segment, "robot", -kYear2250_ns, number);
-    segment.segment(0xFFFFFFF0U + static_cast<std::uint32_t>(number % 8));
-    segment.total_stops(0xFFFFFFFF);
-    segment.stops().resize(2);
-    static_cast<void>(segments_.write(segment));
-    msg::LivePose pose;
-    messaging::set_header(pose, "robot", kYear2250_ns, number);
-    pose.confidence(-1e300);
-    static_cast<void>(poses_.write(pose));
+    meet_peers();
+    for (const Topic& topic : topics_) {
+      AbsurdPayload payload(schema_, random_, style(topic.type, number));
+      send(topic, payload.make(topic.type));
+    }
   }
 
  private:
-  messaging::Writer<msg::Goal> goals_;
-  messaging::Writer<msg::TrajectorySegment> segments_;
-  messaging::Writer<msg::LivePose> poses_;
+  struct Topic {
+    const messaging::TopicInfo* info;
+    eprosima::fastdds::dds::TypeSupport support;
+    std::string type;
+    eprosima::fastdds::dds::DataWriter* writer;
+  };
+
+  /// Who is addressed: the names of workers and of their clients are in what they send.
+  void meet_peers() {
+    workers_.take([this](const msg::WorkerStatus& status, const messaging::SampleInfo& info) {
+      if (info.valid && status.slots() < 1000) worker_ = status.worker_id().to_string();
+    });
+    const auto meet = [this](const auto& message, const messaging::SampleInfo& info) {
+      const std::string robot = message.robot_id().to_string();
+      if (info.valid && robot == "robot") clients_.insert(message.client_id().to_string());
+    };
+    tasks_.take(meet);
+    requests_.take(meet);
+  }
+
+  AbsurdStyle style(const std::string& type, std::uint64_t number) {
+    // A base is halted, a goal cancelled, a drive paused by whoever asks for it, and a run ends
+    // when a service of its partition states that it has failed.
+    static const std::map<std::string, std::uint32_t> kRefusable = {
+        {"Goal.kind", msg::kGoalPosition},
+        {"BaseCommand.kind", msg::kBaseSetLimits},
+        {"ServiceStatus.state", msg::kServiceRunning}};
+    // What fails, or ends, is taken for true without a look at any number.
+    static const std::set<std::string> kObeyed = {"RunSummary", "ServiceStatus"};
+    // Cells of no state, pieces that nobody asked for, maps and sessions that nobody has.
+    static const std::set<std::string> kRefused = {"GridTile", "MapRequest", "SnapshotRequest",
+                                                   "SnapshotPiece"};
+    AbsurdStyle style;
+    style.enumerators = kRefusable;
+    style.texts["worker_id"] = worker_;
+    if (!clients_.empty()) {
+      style.texts["client_id"] =
+          *std::next(clients_.begin(), static_cast<std::ptrdiff_t>(random_.below(clients_.size())));
+    }
+    style.full = number % 16 == 0;
+    const bool can_be_refused =
+        kRefused.contains(type) || (has_real(type) && !kObeyed.contains(type));
+    if (!can_be_refused || number % 4 == 1) {
+      style.robot_id = "stranger";
+      style.not_finite = number % 8 == 1;
+    }
+    return style;
+  }
+
+  bool has_real(const std::string& type) const {
+    if (!schema_.is_struct(type)) return false;
+    return std::ranges::any_of(schema_.members(type), [this](const IdlMember& member) {
+      const std::string element =
+          std::regex_replace(member.type, std::regex("sequence<([^,]+),.*"), "$1");
+      return element == "double" || element == "float" || schema_.array_size(element) > 0 ||
+             has_real(element);
+    });
+  }
+
+  void send(const Topic& topic, const std::string& bytes) {
+    eprosima::fastrtps::rtps::SerializedPayload_t payload(static_cast<std::uint32_t>(bytes.size()));
+    std::ranges::copy(bytes, payload.data);
+    payload.length = static_cast<std::uint32_t>(bytes.size());
+    eprosima::fastdds::dds::TypeSupport type = topic.support;
+    void* const message = type.create_data();
+    static_cast<void>(type.deserialize(&payload, message));
+    const auto defect = topic.info->find_defect(message);
+    if (!defect) static_cast<void>(topic.writer->write(message));
+    type.delete_data(message);
+    if (defect) throw std::logic_error(topic.type + ": " + *defect);
+  }
+
+  Stranger stranger_;
+  messaging::Reader<msg::WorkerStatus> workers_;
+  messaging::Reader<msg::MatchTasks> tasks_;
+  messaging::Reader<msg::SnapshotRequest> requests_;
+  IdlSchema schema_;
+  support::Random random_{5};
+  std::vector<Topic> topics_;
+  std::string worker_ = "stranger";
+  std::set<std::string> clients_;
 };
 
 /// Samples on all topics that are no message: cut off, counts of four billion, truth values of 255,

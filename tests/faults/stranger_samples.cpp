@@ -28,7 +28,7 @@ void write_absurd_samples() {
   options.partition = "*";
   options.name = "stranger";
   const messaging::Participant participant(options);
-  AbsurdSamples samples(participant);
+  AbsurdSamples samples(participant, options.domain);
   NoMessages no_messages(options.domain);
   std::uint64_t rounds = 0;
   for (; g_samples_stopped == 0; ++rounds) {

@@ -2,10 +2,12 @@
 // topics that do not exist, packets of garbage at the ports. The map must be that of one process,
 // the memory of all services stays small, and what was refused is in their statuses.
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
+#include <future>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -79,7 +81,7 @@ class StrangersTest : public testing::Test {
       most_memory_mb_ = std::max(most_memory_mb_, memory_mb(pid));
     }
     statuses_.take([this](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
-      if (!info.valid) return;
+      if (!info.valid || status.robot_id() == "stranger") return;  // of AbsurdSamples
       const std::string service = status.service().to_string() + ": ";
       for (const msg::FaultCount& fault : status.faults()) {
         note(faults_[service + fault.reason().to_string()], fault.count());
@@ -140,15 +142,51 @@ TEST_F(StrangersTest, AHundredParticipantsComeAndGo) {
 
 TEST_F(StrangersTest, SamplesOfAbsurdContentAreRefusedAndCounted) {
   start("1");
-  AbsurdSamples samples(participant_);
-  ASSERT_TRUE(samples.wait_for_readers(std::chrono::seconds(20)));
-  write_until_counted(samples, {"planner: invalid pose", "map_store: invalid trajectory"}, 50);
+  AbsurdSamples samples(participant_, domain());
+  write_until_counted(
+      samples,
+      {"local_mapper: invalid scan", "localizer: invalid local map", "localizer: invalid odometry",
+       "localizer: invalid tracked pose", "localizer: invalid localization command",
+       "ga_worker: invalid local map", "ga_worker: task refused", "map_store: invalid local map",
+       "map_store: invalid trajectory", "map_store: invalid loop closures",
+       "map_store: invalid map edges", "map_store: invalid merge proposal", "planner: invalid pose",
+       "planner: invalid goal", "planner: invalid blockages", "planner: invalid grid tile",
+       "planner: invalid hybrid map"},
+      50);
   NoMessages no_messages(domain());
   write_until_counted(no_messages,
                       {"map_store: invalid_sample", "planner: invalid_sample",
                        "localizer: invalid_sample", "ga_worker: invalid_sample"},
                       40);
   finish();
+}
+
+// With the devices, the navigator and a map that stays as it is.
+TEST_F(StrangersTest, ADriveGoesOnAmongSamplesOfAbsurdContent) {
+  run_ = std::make_unique<Program>(
+      scratch_, "topogeo",
+      std::vector<std::string>{"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml",
+                               "--map", scratch_ / "alone/map.pb", "--goto", "3,0", "--out",
+                               scratch_ / "out", "--workers", "1", "--domain", domain_});
+  std::future<int> end = std::async(std::launch::async, [this] { return run_->wait(); });
+  AbsurdSamples samples(participant_, domain());
+  for (std::uint64_t i = 0; end.wait_for(milliseconds(20)) != std::future_status::ready; ++i) {
+    samples.write(i);
+    look();
+  }
+  EXPECT_EQ(end.get(), 0) << run_->err();
+  EXPECT_THAT(run_->out(), testing::HasSubstr("arrived at 3,0"));
+  EXPECT_THAT(run_->out(), testing::HasSubstr(" 0 collisions"));
+  EXPECT_LE(most_memory_mb_, kMostMemoryMb);
+  RecordProperty("most_memory_mb", static_cast<int>(most_memory_mb_));
+  for (const char* reason :
+       {"sensor_gateway: invalid motion command", "sensor_gateway: invalid limits",
+        "simulator: invalid simulator command", "navigator: invalid goal",
+        "navigator: invalid route", "navigator: invalid pose", "navigator: invalid odometry",
+        "navigator: invalid scan", "navigator: invalid sonar", "navigator: invalid grid tile",
+        "navigator: invalid hybrid map"}) {
+    EXPECT_GT(faults_[reason], 0U) << reason << testing::PrintToString(faults_);
+  }
 }
 
 TEST_F(StrangersTest, TopicsThatDoNotExistAreCounted) {

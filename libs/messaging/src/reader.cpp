@@ -99,13 +99,16 @@ void ReaderCore::Impl::deliver(const dds::SampleInfo& dds_info, Endpoint::Shared
     handler(empty, sample);
     return;
   }
-  if (const auto defect = info->find_defect(message)) {
+  const auto refuse = [&](const std::string& why) {
     Event event;
     event.kind = EventKind::kInvalidSample;
     event.peer = sample.writer;
     event.count = 1;
-    event.detail = *defect;
+    event.detail = why;
     shared.push(std::move(event));
+  };
+  if (const auto defect = info->find_defect(message)) {
+    refuse(*defect);
     return;
   }
   ++shared.messages;
@@ -115,7 +118,12 @@ void ReaderCore::Impl::deliver(const dds::SampleInfo& dds_info, Endpoint::Shared
     writers[sample.instance] = sample.writer;
     orphans.erase(sample.instance);
   }
-  handler(message, sample);
+  try {
+    handler(message, sample);
+  } catch (const std::invalid_argument& error) {
+    // No stranger's message ends a program that shows a run, or the run with it (faults_strangers).
+    refuse(error.what());
+  }
 }
 
 ReaderCore::ReaderCore(const Participant& participant, const TopicInfo& topic,

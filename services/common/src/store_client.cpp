@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/service/conversions.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
 
@@ -23,7 +24,12 @@ StoreClient::StoreClient(Service& service, std::function<void(const msg::StoredM
     : service_(service),
       client_id_(fmt::format("{}-{:08x}", support::process_name(), std::random_device{}())),
       requests_(service.advertise<msg::SnapshotRequest>()) {
-  service.subscribe<msg::StoredMap>(std::move(on_stored), {.team = true});
+  service.subscribe<msg::StoredMap>(
+      [on_stored = std::move(on_stored)](const msg::StoredMap& stored) {
+        static_cast<void>(from_msg(stored.T_odom_robot()));  // throws
+        on_stored(stored);
+      },
+      {.team = true});
   service.subscribe<msg::SnapshotPiece>(
       [this](const msg::SnapshotPiece& piece) { on_piece(piece); },
       {.addressee = client_id_, .any_robot = true});

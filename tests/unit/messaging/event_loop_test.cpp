@@ -122,6 +122,28 @@ TEST_F(LoopDelivery, HandlersGetSamplesAndDisposalsOfSeveralReaders) {
   EXPECT_EQ(seen, (std::vector<std::string>{"goal 8", "route", "goal gone"}));
 }
 
+// A stranger may have sent it.
+TEST_F(LoopDelivery, AMessageThatItsHandlerRefusesIsAnEventAndTheNextOneComes) {
+  Writer<msg::MatchTasks> writer(sender_);
+  const Reader<msg::MatchTasks> reader(receiver_);
+  ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
+  EventLoop loop;
+  std::vector<std::string> refused;
+  loop.on_event([&](const Event& event) {
+    if (event.kind != EventKind::kInvalidSample) return;
+    refused.push_back(event.detail);
+    EXPECT_EQ(event.topic, kMatchTasks);
+    EXPECT_TRUE(writer.write(message<msg::MatchTasks>(1)));
+  });
+  loop.add<msg::MatchTasks>(reader, [&](const msg::MatchTasks& task, const SampleInfo&) {
+    if (task.sequence_number() == 0) throw std::invalid_argument("x_m is nan");
+    loop.stop();
+  });
+  ASSERT_TRUE(writer.write(message<msg::MatchTasks>(0)));
+  EXPECT_TRUE(loop.run_for(kPatience));
+  EXPECT_EQ(refused, std::vector<std::string>{"x_m is nan"});
+}
+
 TEST_F(LoopDelivery, NothingIsLostBetweenBatches) {
   constexpr std::uint64_t kTasks = 100;  // several batches
   Writer<msg::MatchTasks> writer(sender_);

@@ -1,5 +1,7 @@
 #include "map_store/map_input.hpp"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "topogeo/messaging/message.hpp"
@@ -201,6 +203,34 @@ TEST_F(RenewedInput, TakesEffectWhenAllOfItHasCome) {
   EXPECT_EQ(input_.numbered_since(), 20U);
   ASSERT_EQ(input_.local_maps().size(), 1U);
   EXPECT_EQ(input_.local_maps()[0].stop, maps_[2].stop);
+}
+
+TEST_F(RenewedInput, NeitherBeginsNorEndsWithAMessageThatIsRefused) {
+  topomap::Trajectory large = any_trajectory(random_, msg::kSegmentStops + 2);
+  large.version = large.numbered_since = 20;
+  for (topomap::StopPose& stop : large.stops) stop.stop = {kOther, stop.local_map_id};
+  large.stops[0].stop = maps_[2].stop;
+  input_.add(service::to_segment(large, 1, "robot", 0));
+
+  const double not_a_number = std::numeric_limits<double>::quiet_NaN();
+  msg::TrajectorySegment segment = service::to_segment(large, 1, "robot", 0);
+  segment.stops().front().T_map_robot().x_m(not_a_number);
+  segment.numbered_since(30);
+  EXPECT_THROW(input_.add(segment), std::invalid_argument);
+  segment.numbered_since(0);
+  segment.version(30);
+  EXPECT_THROW(input_.add(segment), std::invalid_argument);
+  msg::LoopClosures closures =
+      service::to_msg(std::vector<topomap::LoopClosure>{{0, 1, {}}}, 30, "robot", 0, 0, 30);
+  closures.closures().front().T_earlier_later().x_m(not_a_number);
+  EXPECT_THROW(input_.add(closures), std::invalid_argument);
+  msg::MapEdges refused_edges = edges(30);
+  refused_edges.numbered_since(30);
+  refused_edges.edges().front().T_earlier_later().x_m(not_a_number);
+  EXPECT_THROW(input_.add(refused_edges), std::invalid_argument);
+
+  input_.add(service::to_segment(large, 0, "robot", 0));
+  EXPECT_EQ(input_.numbered_since(), 20U);
 }
 
 TEST_F(RenewedInput, NothingLeavesBecauseOfAStopThatIsLate) {

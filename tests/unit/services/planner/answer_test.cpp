@@ -145,6 +145,10 @@ TEST(Answer, NoRouteHasItsReason) {
   nowhere.has_heading(true);
   nowhere.heading_rad(std::numeric_limits<double>::infinity());
   EXPECT_EQ(status(nowhere, "heading_rad"), msg::kRouteInvalidPoint);
+  msg::Route refusal;
+  EXPECT_FALSE(goal_from(nowhere, refusal));
+  EXPECT_EQ(refusal.status(), msg::kRouteInvalidPoint);
+  EXPECT_TRUE(goal_from(goal_at(2.0, 2.0), refusal));
 }
 
 TEST(Answer, ARefusedGoalHasThePlaceNextToIt) {

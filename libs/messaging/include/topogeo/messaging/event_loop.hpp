@@ -22,9 +22,10 @@ struct Traffic {
   std::uint64_t waiting = 0;  ///< received and not handled yet
 };
 
-/// All handlers run in the thread that calls run(); an exception of a handler leaves run(). Readers
-/// and writers that were added live at least as long as the loop. Add them before run() or from a
-/// handler.
+/// All handlers run in the thread that calls run(); an exception of a handler leaves run(), but
+/// std::invalid_argument of a handler of messages, which refuses its message: kInvalidSample.
+/// Readers and writers that were added live at least as long as the loop. Add them before run() or
+/// from a handler.
 class EventLoop {
  public:
   using InstanceHandler = std::function<void(const SampleInfo&)>;

@@ -38,7 +38,7 @@ enum class EventKind : std::uint8_t {
   kDeadlineMissed,
   kSampleLost,      ///< samples that will never arrive
   kSampleRejected,  ///< the reader's history was full; a reliable writer sends again
-  kInvalidSample,   ///< a message of another schema version or over a bound was dropped
+  kInvalidSample,   ///< a message of another schema version, over a bound, or refused by a handler
 };
 
 /// Fixed short name, for example "incompatible_qos".

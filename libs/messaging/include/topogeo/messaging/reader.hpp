@@ -33,6 +33,7 @@ class Reader {
 
   /// Hands over at most `limit` samples, oldest first of each writer, and returns how many. With
   /// info.valid false the message is empty: only info.instance and info.state count.
+  /// std::invalid_argument of the handler refuses a message: an event, kInvalidSample.
   std::size_t take(const Handler& handler,
                    std::size_t limit = std::numeric_limits<std::size_t>::max()) {
     return core_->take(limit, [&](const void* message, const SampleInfo& info) {
