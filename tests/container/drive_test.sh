@@ -87,13 +87,15 @@ step "each service replaced by one of a newer image"
 printf 'FROM %s\nLABEL release=newer\n' "$image" | docker build -q -t "$image-newer" - > /dev/null 2>&1
 cleanups+=("docker rmi $image-newer")
 release=$image-newer
+# Who gave a goal does not wait longer for the navigator than ten seconds, which to replace it may take on a busy machine.
+may_fail() { [ -e "$work/may_fail" ] || tail -n 1 "$work/tour.log" | grep -q "the navigator is gone"; }
 # To and fro, as long as there is something to replace.
 (
   trap 'exit 0' TERM
   while :; do
     for place in "room B" "room A"; do
       docker exec "$network-robot" topogeo goto "$place" --wait-seconds 60 --patience 120 >> "$work/tour.log" 2>&1 &
-      wait $! || exit 1
+      wait $! || may_fail || exit 1
       [ ! -e "$work/replaced" ] || exit 0
     done
   done
@@ -111,23 +113,19 @@ for service in $services; do
   step "$service"
 done
 eventually 90 drives || { show_all; fail "the robot stands with newer services"; }
-touch "$work/replaced"
-wait $tour || { tail -n 5 "$work/tour.log"; on robot topogeo status; fail "a drive failed"; }
-drive "room A"
 step "the host of localizer, map store and planner is lost on a drive, and comes back"
-on robot topogeo goto "room B" --wait-seconds 60 --patience 120 > "$work/lost.log" 2>&1 &
-lost=$!
-eventually 60 drives || { show_all; fail "the robot does not set out for room B"; }
+touch "$work/may_fail"
 lose_host pc1
 stands() { ! drives; }
 eventually 60 stands || fail "the robot drives on without map and pose"
 start_host pc1
 for service in localizer map_store planner; do run_service $service; done
-wait $lost || true  # by the new planner, if it came soon enough for who gave the goal
 for service in localizer map_store planner; do
   eventually 60 lives $service || { show $service; fail "$service does not come back"; }
 done
-drive "room B"
+eventually 90 drives || { show_all; fail "the robot stands after its host came back"; }
+touch "$work/replaced"
+wait $tour || { tail -n 5 "$work/tour.log"; on robot topogeo status; fail "a drive failed"; }
 drive "room A"
 step "what the services are"
 for service in $services; do

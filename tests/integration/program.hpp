@@ -42,6 +42,8 @@ class Program {
   /// times kTimeFactor as all waits here.
   int wait(double timeout_s = 110.0);
 
+  bool ended();
+
   /// Waits until its standard error contains `text`. Throws std::runtime_error when it ends before,
   /// or after `timeout_s`.
   void wait_for_error_text(const std::string& text, double timeout_s = 60.0);
@@ -59,8 +61,6 @@ class Program {
   [[nodiscard]] std::vector<pid_t> services(const std::string& name = {}) const;
 
  private:
-  bool ended();
-
   pid_t pid_ = -1;
   int status_ = 0;
   bool ended_ = false;
