@@ -16,9 +16,8 @@
 // 5. A fragment may state another size of the whole than those before it: its bytes are read from
 //    beyond the packet.
 // 6. A message holds as many fragments as it has room for. Secured participants have room for 64 kB
-// in each,
-//    because of their certificates, and a message of 64 kB hardly ever arrives where packets are
-//    lost.
+//    in each, because of their certificates, and so large a message hardly ever arrives where
+//    packets are lost.
 #include "fragments.hpp"
 
 #include <algorithm>
@@ -27,6 +26,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <mutex>
 #include <vector>
 
@@ -58,13 +58,16 @@ constexpr std::uint32_t kRoom = 128;
 /// A local map with all bounds used takes 50 MB, and nothing is larger.
 constexpr std::uint32_t kMaxSample = 64U << 20U;
 
-/// What a message with a fragment of a topic of ours may take; 0: what the transport gives.
-std::atomic<std::uint32_t> fragment_message{0};
+constexpr std::uint32_t kUnbounded = std::numeric_limits<std::uint32_t>::max();
 
-/// Not of the middleware itself. Object Management Group, DDSI-RTPS 2.3, table 9.1.
-bool is_of_topic(const rtps::GUID_t& writer) {
+/// What a message with a fragment of a topic of ours may take.
+std::atomic<std::uint32_t> fragment_message{kUnbounded};
+
+/// The same for this writer: those of the middleware itself are free. Object Management Group,
+/// DDSI-RTPS 2.3, table 9.1.
+std::uint32_t most_with_fragment(const rtps::GUID_t& writer) {
   constexpr unsigned kBuiltIn = 0xC0;
-  return (writer.entityId.value[3] & kBuiltIn) != kBuiltIn;
+  return (writer.entityId.value[3] & kBuiltIn) == kBuiltIn ? kUnbounded : fragment_message.load();
 }
 
 /// From `begin` to the base of `more`, and what is set in `more`.
@@ -111,10 +114,7 @@ extern "C" std::uint32_t topogeo_fragment_size(
 extern "C" std::uint32_t topogeo_fragment_size(rtps::RTPSWriter* writer, std::uint32_t packet) {
   using Function = std::uint32_t (*)(rtps::RTPSWriter*, std::uint32_t);
   static const auto original = topogeo::messaging::library_function<Function>(kFragmentSize);
-  const std::uint32_t most = fragment_message;
-  return original(writer,
-                  most > 0 && is_of_topic(writer->getGuid()) ? std::min(packet, most) : packet) -
-         kRoom;
+  return original(writer, std::min(packet, most_with_fragment(writer->getGuid()))) - kRoom;
 }
 
 // NOLINTNEXTLINE: the name of a member function of the library
@@ -185,12 +185,11 @@ void correct_fragments() {}
 void send_if_alone(rtps::RTPSMessageGroup& group, const rtps::CacheChange_t& sample) {
   using Function = void (*)(rtps::RTPSMessageGroup*);
   static const auto send_now = library_function<Function>(kSendNow);
-  if (fragment_message > 0 && is_of_topic(sample.writerGUID)) send_now(&group);
+  if (most_with_fragment(sample.writerGUID) != kUnbounded) send_now(&group);
 }
 
 void send_fragments_within(std::uint32_t message_bytes) {
-  const std::uint32_t before = fragment_message;
-  fragment_message = before == 0 ? message_bytes : std::min(before, message_bytes);
+  fragment_message = std::min(fragment_message.load(), message_bytes);
 }
 
 }  // namespace topogeo::messaging

@@ -152,6 +152,17 @@ class RenewedInput : public Input {
     trajectory_.stops[1].stop = {kSession, 2};
     trajectory_.stops[2].stop = joins_.stop;
   }
+
+  /// Numbered anew as well; its first stop is the last stored one, the others are of the other
+  /// drive.
+  topomap::Trajectory of_two_segments() {
+    topomap::Trajectory large = any_trajectory(random_, msg::kSegmentStops + 2);
+    large.version = large.numbered_since = 20;
+    for (topomap::StopPose& stop : large.stops) stop.stop = {kOther, stop.local_map_id};
+    large.stops[0].stop = maps_[2].stop;
+    return large;
+  }
+
   topomap::LocalMap joins_;
 };
 
@@ -192,10 +203,7 @@ TEST_F(RenewedInput, WhatHasTheNumbersOfBeforeIsPassedOver) {
 }
 
 TEST_F(RenewedInput, TakesEffectWhenAllOfItHasCome) {
-  topomap::Trajectory large = any_trajectory(random_, msg::kSegmentStops + 2);
-  large.version = large.numbered_since = 20;
-  for (topomap::StopPose& stop : large.stops) stop.stop = {kOther, stop.local_map_id};
-  large.stops[0].stop = maps_[2].stop;
+  const topomap::Trajectory large = of_two_segments();
   input_.add(service::to_segment(large, 1, "robot", 0));
   EXPECT_EQ(input_.numbered_since(), 0U);
   EXPECT_EQ(input_.local_maps().size(), 3U);
@@ -206,10 +214,7 @@ TEST_F(RenewedInput, TakesEffectWhenAllOfItHasCome) {
 }
 
 TEST_F(RenewedInput, NeitherBeginsNorEndsWithAMessageThatIsRefused) {
-  topomap::Trajectory large = any_trajectory(random_, msg::kSegmentStops + 2);
-  large.version = large.numbered_since = 20;
-  for (topomap::StopPose& stop : large.stops) stop.stop = {kOther, stop.local_map_id};
-  large.stops[0].stop = maps_[2].stop;
+  const topomap::Trajectory large = of_two_segments();
   input_.add(service::to_segment(large, 1, "robot", 0));
 
   const double not_a_number = std::numeric_limits<double>::quiet_NaN();
