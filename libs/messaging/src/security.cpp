@@ -1,6 +1,5 @@
 #include "security.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <memory>
@@ -14,8 +13,10 @@
 #include <fastdds/rtps/common/Token.h>
 
 #include "topogeo/support/log.hpp"
+#include "topogeo/support/printable.hpp"
 
 #include "fast_dds/handshake_certificates.hpp"
+#include "fast_dds/packet_shield.hpp"
 #include "fast_dds/security_keys.hpp"
 
 namespace topogeo::messaging {
@@ -25,7 +26,7 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 namespace {
 
-/// Lines kept until they are taken, and peers: strangers can make any number of them.
+/// Refusals kept until they are taken, and peers: strangers can make any number of them.
 constexpr std::size_t kMaxRefusals = 256;
 constexpr std::size_t kMaxPeers = 1024;
 /// Three messages, sent again each second where one is lost.
@@ -50,18 +51,22 @@ constexpr std::array<SecurityFile, 7> kFiles = {{
 /// A peer's name and subject are as long as it likes.
 constexpr std::size_t kMaxNameLength = 128;
 
-/// What this process denied and its security plug-ins logged. Never destroyed: the threads of the
-/// middleware may outlive static objects.
+/// What this process denied and its security plug-ins logged last. Never destroyed: the threads of
+/// the middleware may outlive static objects.
 struct SecurityErrors {
   std::mutex mutex;
   std::deque<Denial> denials;
-  std::deque<std::string> lines;
   std::string last;
 };
 
 SecurityErrors& security_errors() {
   static auto* const errors = new SecurityErrors;  // NOLINT(cppcoreguidelines-owning-memory)
   return *errors;
+}
+
+/// As a peer sent it, fit for a line of a log.
+std::string line_of(std::string_view text) {
+  return support::printable(text.substr(0, kMaxNameLength));
 }
 
 /// Logged by the functions in which, and by those to which, a peer's endpoint is denied:
@@ -78,19 +83,18 @@ class LogForwarder final : public dds::LogConsumer {
   void Consume(const dds::Log::Entry& entry) override {
     const std::string category = entry.context.category == nullptr ? "" : entry.context.category;
     if (is_of_denial(entry)) return;
-    if (!category.starts_with("SECURITY")) {
-      // Once a second: what a peer that is gone leaves behind is reported for each packet.
-      const auto now = std::chrono::steady_clock::now();
-      if (now - last_ < std::chrono::seconds(1)) return;
-      last_ = now;
-      spdlog::warn("DDS: {}: {}", category, entry.message);
-      return;
+    if (category.starts_with("SECURITY")) {
+      // Without a name: whom it refuses, the RefusalListener reports with the name.
+      count_security_error();
+      SecurityErrors& errors = security_errors();
+      const std::lock_guard lock(errors.mutex);
+      errors.last = entry.message;
     }
-    SecurityErrors& errors = security_errors();
-    const std::lock_guard lock(errors.mutex);
-    errors.last = entry.message;
-    if (errors.lines.size() == kMaxRefusals) errors.lines.pop_front();
-    errors.lines.push_back(entry.message);
+    // Once a second: what a peer that is gone leaves behind is reported for each packet.
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_ < std::chrono::seconds(1)) return;
+    last_ = now;
+    spdlog::warn("DDS: {}: {}", category, entry.message);
   }
 
  private:
@@ -105,14 +109,6 @@ void forward_log() {
     return true;
   }();
   static_cast<void>(done);
-}
-
-/// As a peer sent it, fit for a line of a log.
-std::string line_of(std::string text) {
-  if (text.size() > kMaxNameLength) text.resize(kMaxNameLength);
-  std::ranges::replace_if(
-      text, [](unsigned char letter) { return letter < 0x20 || letter == 0x7F; }, '?');
-  return text;
 }
 
 std::string subject_of(const rtps::ParticipantProxyData& peer) {
@@ -228,22 +224,15 @@ void RefusalListener::report_denials() {
 }
 
 std::vector<std::string> RefusalListener::take() {
-  std::vector<std::string> lines;
-  {
-    const std::lock_guard lock(mutex_);
-    report_denials();
-    for (auto& [prefix, peer] : peers_) {
-      if (peer.settled || Clock::now() - peer.since < kHandshakeTime) continue;
-      report(prefix, "does not finish authentication");
-      peer.settled = true;
-    }
-    lines.assign(refusals_.begin(), refusals_.end());
-    refusals_.clear();
+  const std::lock_guard lock(mutex_);
+  report_denials();
+  for (auto& [prefix, peer] : peers_) {
+    if (peer.settled || Clock::now() - peer.since < kHandshakeTime) continue;
+    report(prefix, "does not finish authentication");
+    peer.settled = true;
   }
-  SecurityErrors& errors = security_errors();
-  const std::lock_guard lock(errors.mutex);
-  lines.insert(lines.end(), errors.lines.begin(), errors.lines.end());
-  errors.lines.clear();
+  std::vector<std::string> lines(refusals_.begin(), refusals_.end());
+  refusals_.clear();
   return lines;
 }
 

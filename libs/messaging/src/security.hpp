@@ -63,7 +63,7 @@ class RefusalListener : public eprosima::fastdds::dds::DomainParticipantListener
       eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
 
   /// A line for each refusal since the last call: those of this participant, and what this process
-  /// denied and its security plug-ins logged. Bounded: of a flood the newest remain.
+  /// denied. Bounded: of a flood the newest remain.
   std::vector<std::string> take();
 
  private:

@@ -220,6 +220,7 @@ void StatusPublisher::fill_counts() {
   const StrangerCounts strangers = stranger_counts();
   set_drops("invalid_packet", strangers.invalid_packets);
   set_drops("unprotected_packet", strangers.unprotected_packets);
+  set_drops("security_error", strangers.security_errors);
   set_drops("unknown_topic", strangers.unknown_topics);
   status_.counters().clear();
   for (const auto& [name, value] : counters_) {

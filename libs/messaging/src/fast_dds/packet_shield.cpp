@@ -50,6 +50,7 @@ constexpr const char* kTakeHandshake =
 
 std::atomic<std::uint64_t> g_invalid = 0;
 std::atomic<std::uint64_t> g_unprotected = 0;
+std::atomic<std::uint64_t> g_security_errors = 0;
 std::atomic<std::uint64_t> g_unknown_topics = 0;
 thread_local bool t_unprotected = false;
 
@@ -168,9 +169,14 @@ void count_unprotected_packet() {
   g_unprotected.fetch_add(1, std::memory_order_relaxed);
 }
 
+void count_security_error() {
+  g_security_errors.fetch_add(1, std::memory_order_relaxed);
+}
+
 StrangerCounts stranger_counts() {
   return {.invalid_packets = g_invalid.load(std::memory_order_relaxed),
           .unprotected_packets = g_unprotected.load(std::memory_order_relaxed),
+          .security_errors = g_security_errors.load(std::memory_order_relaxed),
           .unknown_topics = g_unknown_topics.load(std::memory_order_relaxed)};
 }
 

@@ -12,5 +12,6 @@ void shield_packets();
 
 void count_invalid_packet();
 void count_unprotected_packet();
+void count_security_error();
 
 }  // namespace topogeo::messaging

@@ -12,6 +12,9 @@ struct StrangerCounts {
   /// Messages that came plain where security wants them encrypted: a stranger in the name of a
   /// peer. Kept from their reader or writer.
   std::uint64_t unprotected_packets = 0;
+  /// What the security plug-ins reported: messages that they could not decode, or not encode for a
+  /// peer that is gone, and what they found wrong with certificates.
+  std::uint64_t security_errors = 0;
   /// Announcements of readers and writers of topics that topogeo does not have.
   std::uint64_t unknown_topics = 0;
 };
