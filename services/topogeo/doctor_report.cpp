@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/printable.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -26,7 +27,8 @@ const char* severity_name(Severity severity) {
 }
 
 /// `text` broken between words behind `head`, further lines indented to its width.
-std::string hanging(std::string head, const std::string& text, std::size_t columns) {
+std::string hanging(std::string head, const std::string& raw_text, std::size_t columns) {
+  const std::string text = support::printable(raw_text);
   const std::string indent(head.size(), ' ');
   std::string lines;
   std::string line = std::move(head);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/printable.hpp"
 
 #include "service_table.hpp"
 #include "text_grid.hpp"
@@ -235,10 +236,11 @@ std::string StatusTable::details(Clock::time_point now) const {
   for (const Row* row : ordered()) {
     const msg::ServiceStatus& s = row->status;
     const std::string robot = s.robot_id().to_string();
-    text += fmt::format("{}{}  {}{}\n", text.empty() ? "" : "\n", s.service().c_str(),
-                        state(*row, now), robot.empty() ? "" : ", robot " + robot);
+    const std::string head = fmt::format("{}  {}{}", s.service().c_str(), state(*row, now),
+                                         robot.empty() ? "" : ", robot " + robot);
+    text += fmt::format("{}{}\n", text.empty() ? "" : "\n", support::printable(head));
     const auto add = [&text](std::string_view name, const std::string& value) {
-      text += fmt::format("  {:<10} {}\n", name, value);
+      text += fmt::format("  {:<10} {}\n", name, support::printable(value));
     };
     if (const std::string why = reason(*row, now); !why.empty()) add("reason", why);
     add("process", fmt::format("{} on {}, version {}, instance {}", s.process_id(),

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "topogeo/support/printable.hpp"
+
 namespace topogeo::cli {
 namespace {
 
@@ -32,6 +34,11 @@ std::string trimmed(std::string line) {
 
 }  // namespace
 
+void TextGrid::add(std::vector<std::string> cells) {
+  for (std::string& cell : cells) cell = support::printable(cell);
+  cells_.push_back(std::move(cells));
+}
+
 std::vector<std::string> TextGrid::lines(const std::set<std::string>& right) const {
   std::vector<std::string> lines(cells_.size());
   for (std::size_t c = 0; c < cells_[0].size(); ++c) {
@@ -60,7 +67,7 @@ std::string with_remarks(const std::vector<std::string>& lines, std::string_view
   text += '\n';
   for (std::size_t i = 0; i < remarks.size(); ++i) {
     const std::string& line = lines[i + 1];
-    const std::string& remark = remarks[i];
+    const std::string remark = support::printable(remarks[i]);
     const bool beside = remark.empty() || line.size() + gap.size() + remark.size() <= columns;
     std::string whole = line;
     if (beside) whole.append(gap).append(remark);

@@ -20,8 +20,9 @@ class TextGrid {
  public:
   explicit TextGrid(std::vector<std::string> titles) : cells_{std::move(titles)} {}
 
-  /// As many as there are titles.
-  void add(std::vector<std::string> cells) { cells_.push_back(std::move(cells)); }
+  /// As many as there are titles. Control characters, which a peer may have put into its name, are
+  /// replaced.
+  void add(std::vector<std::string> cells);
 
   /// All of the same width, the titles first; columns of the titles `right` are aligned there.
   [[nodiscard]] std::vector<std::string> lines(const std::set<std::string>& right) const;

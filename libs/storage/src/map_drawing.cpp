@@ -14,6 +14,7 @@
 #include <zlib.h>
 
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/printable.hpp"
 
 #include "map_conversions.hpp"
 
@@ -31,8 +32,7 @@ void require_drawing(bool condition, fmt::format_string<Args...> format, Args&&.
 }
 
 bool is_printable(const std::string& text) {
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-  if (std::ranges::any_of(text, is_control)) return false;
+  if (std::ranges::any_of(text, support::is_control)) return false;
   try {
     static_cast<void>(nlohmann::json(text).dump());  // throws unless it is UTF-8
     return true;

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "topogeo/support/hash.hpp"
+#include "topogeo/support/printable.hpp"
 #include "topogeo/support/yaml_reader.hpp"
 
 namespace topogeo::support {
@@ -20,12 +21,9 @@ namespace {
 constexpr std::size_t kMaxFileSize = 1U << 20U;
 
 /// Fit for a one-line message: short, no control characters.
-std::string printable(std::string text) {
+std::string shown(const std::string& text) {
   constexpr std::size_t kMaxLength = 60;
-  if (text.size() > kMaxLength) text = text.substr(0, kMaxLength) + "...";
-  std::ranges::replace_if(
-      text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
-  return text;
+  return printable(text.size() > kMaxLength ? text.substr(0, kMaxLength) + "..." : text);
 }
 
 class SchemaReader {
@@ -51,7 +49,7 @@ class SchemaReader {
       // The schema is finite, so this also ends a YAML alias that contains itself.
       const ConfigParameter* parameter = schema_.find(key);
       const bool is_section = schema_.is_section(key);
-      const std::string quoted = "key '" + printable(key) + "'";
+      const std::string quoted = "key '" + shown(key) + "'";
       if (parameter == nullptr && !is_section) {
         key_node.fail_with(quoted + ": " + known_keys(path));
       }
@@ -77,7 +75,7 @@ class SchemaReader {
     auto assign = is_quoted && !parameter.is_text ? std::nullopt : parameter.parse(value.text());
     if (!assign) {
       const std::string mark = is_quoted ? "\"" : "'";
-      value.fail_with(quoted + " = " + mark + printable(value.text()) + mark + expected);
+      value.fail_with(quoted + " = " + mark + shown(value.text()) + mark + expected);
     }
     assignments_.push_back(std::move(*assign));
   }
@@ -109,7 +107,7 @@ std::string quoted_yaml(const std::string& text) {
     if (c == '"' || c == '\\') {
       out += '\\';
       out += c;
-    } else if (byte < 0x20 || byte == 0x7f) {
+    } else if (is_control(c)) {
       out += "\\x";
       out += kHex[byte >> 4U];
       out += kHex[byte & 0xfU];

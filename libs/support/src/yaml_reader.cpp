@@ -8,6 +8,8 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "topogeo/support/printable.hpp"
+
 namespace topogeo::support {
 namespace {
 
@@ -20,9 +22,7 @@ std::string shown(const YAML::Node& node) {
   if (node.IsMap()) return "a map";
   std::string text = node.Scalar().substr(0, kMostShown);
   if (text.size() < node.Scalar().size()) text += "...";
-  std::ranges::replace_if(
-      text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
-  return "'" + text + "'";
+  return "'" + printable(text) + "'";
 }
 
 std::string joined(std::initializer_list<std::string_view> keys, std::string_view last_link) {

@@ -38,6 +38,18 @@ TEST(Logging, SetsNameAndLevelOfTheDefaultLogger) {
   EXPECT_EQ(spdlog::default_logger()->level(), spdlog::level::warn);
 }
 
+TEST(Logging, KeepsAStrangersTextInItsLine) {
+  testing::internal::CaptureStderr();
+  set_up_logging("localizer", "info");
+  spdlog::warn("refused '{}'", "\x1B[31m\n12:00:00.000 info localizer: forged");
+  spdlog::default_logger()->flush();
+  const std::string log = testing::internal::GetCapturedStderr();
+  EXPECT_NE(log.find("localizer: refused '?[31m?12:00:00.000 info localizer: forged'\n"),
+            std::string::npos)
+      << log;
+  EXPECT_EQ(std::ranges::count(log, '\n'), 1);
+}
+
 TEST(Version, HasThreeNumbers) {
   EXPECT_EQ(std::count(kVersion.begin(), kVersion.end(), '.'), 2);
   EXPECT_GE(kVersion.size(), 5U);

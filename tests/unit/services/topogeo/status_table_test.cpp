@@ -267,6 +267,25 @@ msg::ServiceStatus eventful() {
   return status;
 }
 
+TEST(StatusTable, AStrangersTextCommandsNoTerminal) {
+  StatusTable table;
+  msg::ServiceStatus status =
+      status_of("plan\x1B[2Jner", msg::kServiceFailed, "a\nforged  running");
+  messaging::set_text(status.version(), "\x1B]0;title\x07", "version");
+  messaging::set_text(status.last_error(),
+                      "\xC2\x9B"
+                      "31m",
+                      "error");
+  table.update(status, info_of(1), kNow);
+  for (const std::string& text : {table.text(kNow), table.details(kNow)}) {
+    EXPECT_THAT(text, HasSubstr("plan?[2Jner"));
+    EXPECT_THAT(text, HasSubstr("a?forged"));
+    for (const char* const command : {"\x1B", "\x07", "\xC2\x9B", "\nforged"}) {
+      EXPECT_THAT(text, Not(HasSubstr(command)));
+    }
+  }
+}
+
 TEST(StatusTable, SaysWhatIsMissingAndTheLastErrorWhileItIsFresh) {
   StatusTable table;
   table.update(eventful(), info_of(1), kNow);
