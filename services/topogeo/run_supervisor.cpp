@@ -137,7 +137,7 @@ void RunSupervisor::end_stream() {
 
 void RunSupervisor::check_states() {
   for (const msg::ServiceStatus* service : result_.services.rows()) {
-    if (service->state() != msg::kServiceFailed) continue;
+    if (service->state() != msg::kServiceFailed || !run_.has_started(*service)) continue;
     const std::string what =
         fmt::format("{} has failed: {}", service->service().c_str(), service->message().c_str());
     if (service->service() != "ga_worker") run_.fail(what);

@@ -11,6 +11,7 @@
 
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/host.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -47,6 +48,7 @@ std::filesystem::path folder_of_this_program() {
 ServiceRun::ServiceRun(const RunOptions& options)
     : partition_(own_partition()),
       source_(scan_source(options)),
+      host_(support::host_name()),
       participant_(join(options, partition_)),
       processes_(folder_of_this_program(), options.job.out / "logs") {}
 
@@ -159,6 +161,10 @@ void ServiceRun::forget_recorder() {
   processes_.set_at_restart(source_, "--readers", std::to_string(other_readers_));
   // One that was started again before waits for the recorder, too.
   if (away_since_s_.contains(source_)) processes_.kill(source_);
+}
+
+bool ServiceRun::has_started(const msg::ServiceStatus& status) const {
+  return status.host() == host_.c_str() && processes_.has(static_cast<pid_t>(status.process_id()));
 }
 
 void ServiceRun::note_state(const msg::ServiceStatus& status) {

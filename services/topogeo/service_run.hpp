@@ -58,6 +58,10 @@ class ServiceRun {
   /// ended. One that does not end in time is killed.
   void begin_again(const RunOptions& options);
 
+  /// Whether a status is of a process of this run that has not been started again since. Anybody
+  /// in the domain can send one.
+  [[nodiscard]] bool has_started(const msg::ServiceStatus& status) const;
+
   /// Logs how long a service was away that was started again and is at work.
   void note_state(const msg::ServiceStatus& status);
 
@@ -96,6 +100,7 @@ class ServiceRun {
 
   const std::string partition_;
   const std::string source_;  // of the scans
+  const std::string host_;
   bool ended_ = false;
   bool recorder_there_ = false;
   int other_readers_ = 0;          // of scans than the recorder

@@ -174,12 +174,9 @@ class AbsurdSamples {
   }
 
   AbsurdStyle style(const std::string& type, std::uint64_t number) {
-    // A base is halted, a goal cancelled, a drive paused by whoever asks for it, and a run ends
-    // when a service of its partition states that it has failed.
+    // A base is halted, a goal cancelled, a drive paused by whoever asks for it.
     static const std::map<std::string, std::uint32_t> kRefusable = {
-        {"Goal.kind", msg::kGoalPosition},
-        {"BaseCommand.kind", msg::kBaseSetLimits},
-        {"ServiceStatus.state", msg::kServiceRunning}};
+        {"Goal.kind", msg::kGoalPosition}, {"BaseCommand.kind", msg::kBaseSetLimits}};
     // What fails, or ends, is taken for true without a look at any number.
     static const std::set<std::string> kObeyed = {"RunSummary", "ServiceStatus"};
     // Cells of no state, pieces that nobody asked for, maps and sessions that nobody has.

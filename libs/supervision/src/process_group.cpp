@@ -85,6 +85,11 @@ pid_t ProcessGroup::pid(const std::string& name) const {
   return -1;
 }
 
+bool ProcessGroup::has(pid_t pid) const {
+  return std::ranges::any_of(members_,
+                             [pid](const Member& member) { return member.process->pid() == pid; });
+}
+
 bool ProcessGroup::has_ended(const std::string& name) {
   return std::ranges::all_of(members_, [&](Member& member) {
     return member.process->name() != name || member.process->poll().has_value();

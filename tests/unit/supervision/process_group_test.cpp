@@ -47,6 +47,15 @@ TEST_F(ProcessGroupTest, ReportsOnceHowANeededProcessEnded) {
   EXPECT_FALSE(group_.next_unexpected_end());
 }
 
+TEST_F(ProcessGroupTest, KnowsItsProcesses) {
+  start("store", "exit 3");
+  const pid_t store = group_.pid("store");
+  EXPECT_TRUE(group_.has(store));
+  EXPECT_FALSE(group_.has(::getpid()));
+  group_.wait();
+  EXPECT_TRUE(group_.has(store));
+}
+
 TEST_F(ProcessGroupTest, TheEndOfAnExpendableProcessIsNotFatal) {
   start("worker", "kill -9 $$", Importance::kExpendable);
   group_.wait();

@@ -61,6 +61,9 @@ class ProcessGroup {
   /// The process of that name; -1 if there is none.
   [[nodiscard]] pid_t pid(const std::string& name) const;
 
+  /// Whether one of them is, or was until it ended, the process `pid`.
+  [[nodiscard]] bool has(pid_t pid) const;
+
   /// Whether the process of that name, if there is one, has ended. Does not wait.
   [[nodiscard]] bool has_ended(const std::string& name);
 
