@@ -99,6 +99,16 @@ start_mapping one_server
 wait_for_map 120
 same_results "$work/one_server" "$work/alone"
 
+step "it comes back, and the other one dies"
+kill_on pc2 ga_worker TERM
+start_on pc1 server fast-discovery-server -i 0 -l 0.0.0.0 -p 11811
+kill_on pc2 server
+# The services that ran all the time, and a worker that they have not met before.
+all_well() { on robot topogeo status --expect sensor_gateway,local_mapper,localizer,map_store,planner > /dev/null; }
+start_worker pc2
+eventually 60 one_worker || fail "no worker is found with the server that came back"
+eventually 30 all_well || { on robot topogeo status; fail "a service is lost"; }
+
 step "health"
 on robot health || fail "a host with all services is not healthy"
 stop_mapping
