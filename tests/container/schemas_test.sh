@@ -1,27 +1,28 @@
 #!/usr/bin/env bash
-# The Kubernetes manifests against the types of its API (those of its OpenAPI description, as TypeScript): a key that it
-# does not know, one that is missing or a value of a wrong type is an error.
+# The Kubernetes manifests against the types of its API (those of its OpenAPI description, as TypeScript) and the dashboard
+# against the types of Grafana: a key that it does not know, one that is missing or a value of a wrong type is an error.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need npm
 need tsc
 need python3
-packages=$build/tests/kubernetes
+packages=$build/tests/schemas
 mkdir -p "$packages"
 exec 4> "$packages/install.lock"
 flock 4
-if ! cmp -s "$source_dir/tests/container/kubernetes/package-lock.json" "$packages/installed.json"; then
+if ! cmp -s "$source_dir/tests/container/schemas/package-lock.json" "$packages/installed.json"; then
   step "fetching the types"
-  cp "$source_dir"/tests/container/kubernetes/package*.json "$packages"
+  cp "$source_dir"/tests/container/schemas/package*.json "$packages"
   (cd "$packages" && npm ci --no-audit --no-fund --ignore-scripts > npm.log 2>&1) ||
-    skip "npm cannot fetch the types of the API, see $packages/npm.log"
+    skip "npm cannot fetch the types, see $packages/npm.log"
   cp "$packages/package-lock.json" "$packages/installed.json"
 fi
 exec 4>&-
 
-step "the manifests, and some with a fault each"
+step "the manifests and the dashboard, and some with a fault each"
 ln -s "$packages/node_modules" "$work/node_modules"
-python3 - "$work" "$source_dir"/deploy/kubernetes/*.yaml <<'PY' || fail "the manifests cannot be read"
+python3 - "$work" "$source_dir/deploy/monitoring/grafana-dashboard.json" \
+  "$source_dir"/deploy/kubernetes/*.yaml <<'PY' || fail "a file cannot be read"
 import json, pathlib, sys, yaml
 
 work = pathlib.Path(sys.argv[1])
@@ -42,13 +43,31 @@ faults = {
     "wrong_place": ("            runAsNonRoot: true", "            hostNetwork: true"),
     "wrong_version": ("apiVersion: apps/v1", "apiVersion: apps/v0"),
 }
-for path in map(pathlib.Path, sys.argv[2:]):
+for path in map(pathlib.Path, sys.argv[3:]):
     text = path.read_text()
     write("good_" + path.stem, yaml.safe_load_all(text))
     if path.stem == "pool":
         for name, (right, wrong) in faults.items():
             assert right in text, right
             write("bad_" + name, yaml.safe_load_all(text.replace(right, wrong, 1)))
+
+# What stands in JSON for a type: an enumeration of texts is its texts.
+dashboard = """import { Dashboard } from "@grafana/schema";
+type Json<T> = T extends string ? `${T}` : T extends number ? number :
+  T extends object ? { [K in keyof T]: Json<T[K]> } : T;
+export const dashboard: Json<Dashboard> = """
+faults = {
+    "panel_misspelt": ('"fieldConfig": ', '"fieldconfig": '),
+    "panel_without_type": ('"type": "stat",', ""),
+    "place_of_wrong_type": ('"h": 4', '"h": "four"'),
+    "variable_of_wrong_type": ('"refresh": 2', '"refresh": "two"'),
+    "dashboard_misspelt": ('"timezone": ', '"timezones": '),
+}
+text = pathlib.Path(sys.argv[2]).read_text()
+(work / "good_dashboard.ts").write_text(dashboard + text)
+for name, (right, wrong) in faults.items():
+    assert right in text, right
+    (work / f"bad_{name}.ts").write_text(dashboard + text.replace(right, wrong, 1))
 PY
 cat > "$work/tsconfig.json" <<'JSON'
 {
@@ -57,7 +76,7 @@ cat > "$work/tsconfig.json" <<'JSON'
 }
 JSON
 (cd "$work" && tsc --project .) > "$work/tsc.log" || true
-! grep '^good_' "$work/tsc.log" || fail "the manifests are not those of the API"
+! grep '^good_' "$work/tsc.log" || fail "a file is not what Kubernetes or Grafana takes"
 for file in "$work"/bad_*.ts; do
   grep -q "^$(basename "$file").*error" "$work/tsc.log" || fail "no fault is found in $(basename "$file")"
 done
