@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kClick_m = 0.5;
 constexpr double kClick_rad = 15.0 * std::numbers::pi / 180.0;
+/// Of a speed that is none but for the rounding.
+constexpr double kNothing = 1e-6;
 
 geometry::Pose2 map_from(const std::string& frame, const Settings::Frames& frames,
                          const std::optional<geometry::Pose2>& T_map_odom,
@@ -33,7 +35,9 @@ service::Goal to_goal(const ros::PoseStamped& message, const Settings::Frames& f
   const geometry::Pose2 T_map_frame =
       map_from(ros::frame_name(message.header_().frame_id_()), frames, T_map_odom, T_map_robot);
   const Eigen::Vector2d at_m(message.pose_().position_().x_(), message.pose_().position_().y_());
-  if (!at_m.allFinite()) throw std::invalid_argument("position: expected finite numbers");
+  if (!(at_m.cwiseAbs().array() <= ros::kFarthest_m).all()) {
+    throw std::invalid_argument("position: expected numbers up to 1e8");
+  }
   service::Goal goal;
   goal.kind = msg::kGoalPosition;
   goal.target = Eigen::Vector2d(T_map_frame * at_m);
@@ -50,7 +54,8 @@ service::LocalizationCommand to_set_pose(const ros::PoseWithCovarianceStamped& m
     throw std::invalid_argument("frame '" + frame + "': expected " + map_frame);
   }
   const auto pose = ros::planar(message.pose_().pose_());
-  if (!pose) throw std::invalid_argument("pose: expected numbers and a quaternion of length 1");
+  if (!pose)
+    throw std::invalid_argument("pose: expected numbers up to 1e8 and a quaternion of length 1");
   service::LocalizationCommand command;
   command.kind = msg::kCommandSetPose;
   command.T_map_robot = *pose;
@@ -63,6 +68,25 @@ service::LocalizationCommand to_set_pose(const ros::PoseWithCovarianceStamped& m
         Eigen::Vector3d(kClick_m * kClick_m, kClick_m * kClick_m, kClick_rad * kClick_rad)
             .asDiagonal();
   }
+  return command;
+}
+
+msg::MotionCommand to_motion(const ros::Twist& twist) {
+  const double linear_mps = twist.linear_().x_();
+  const double angular_radps = twist.angular_().z_();
+  if (!std::isfinite(linear_mps) || !std::isfinite(angular_radps)) {
+    throw std::invalid_argument("expected finite speeds");
+  }
+  for (const double other :
+       {twist.linear_().y_(), twist.linear_().z_(), twist.angular_().x_(), twist.angular_().y_()}) {
+    if (!(std::fabs(other) < kNothing)) {
+      throw std::invalid_argument("expected speeds along x and about z alone");
+    }
+  }
+  msg::MotionCommand command;
+  command.linear_mps(linear_mps);
+  command.angular_radps(angular_radps);
+  command.valid_for_s(kLongestVelocity_s);
   return command;
 }
 

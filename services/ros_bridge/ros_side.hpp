@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "topogeo/messaging/participant.hpp"
+#include "topogeo/ros_conversions/geometry.hpp"
 #include "topogeo/ros_messaging/topic.hpp"
 #include "topogeo/service/service.hpp"
 
@@ -65,7 +66,7 @@ class RosSide {
 
   /// The newest stamp of the sensors, which is the time that ROS has; 0 before the first.
   [[nodiscard]] std::int64_t now_ns() const { return now_ns_; }
-  void set_now(std::int64_t stamp_ns) { now_ns_ = stamp_ns; }
+  void set_now(std::int64_t stamp_ns) { now_ns_ = ros::usable_stamp_ns(stamp_ns); }
 
  private:
   void say_once(const std::string& reason, const std::string& detail);

@@ -125,7 +125,7 @@ bool ScanIntake::find_mounting(const std::string& laser_frame) {
   mounting_ = mounting;
   const Eigen::Vector2d apart_m =
       mounting.T_robot_laser.position_m() - options_.T_robot_laser.position_m();
-  if (apart_m.norm() > kMountingTolerance_m) {
+  if (!(apart_m.norm() <= kMountingTolerance_m)) {
     count(IntakeDrop::kOtherMounting,
           "/tf_static has it at " + text(mounting.T_robot_laser) + ", the configuration at " +
               text(options_.T_robot_laser) +

@@ -13,6 +13,8 @@
 #include "topogeo/support/log.hpp"
 #include "topogeo/support/random.hpp"
 
+#include "odometry_samples.hpp"
+
 namespace topogeo::ros_bridge {
 namespace {
 
@@ -94,18 +96,15 @@ void SensorInput::on_odometry(const ros::Odometry& message, const messaging::Sam
     ros_.complain("odometry of another frame", child + ", expected " + robot_frame_);
     return;
   }
-  const auto T_odom_robot = ros::planar(message.pose_().pose_());
-  const ros::Twist& twist = message.twist_().twist_();
-  if (!T_odom_robot || !std::isfinite(twist.linear_().x_()) ||
-      !std::isfinite(twist.angular_().z_())) {
-    intake_.count(IntakeDrop::kInvalidOdometry, "a pose or a speed that is no number");
+  const auto sample = to_sample(message);
+  if (!sample) {
+    intake_.count(IntakeDrop::kInvalidOdometry, "a pose or a speed that no robot has");
     return;
   }
-  if (std::fabs(twist.linear_().y_()) > kSidewaysMps) {
+  if (std::fabs(message.twist_().twist_().linear_().y_()) > kSidewaysMps) {
     ros_.complain("sideways motion is left out", "the robot moves along its y axis");
   }
-  add({ros::stamp_ns_of(message.header_().stamp_()), *T_odom_robot, twist.linear_().x_(),
-       twist.angular_().z_()});
+  add(*sample);
 }
 
 void SensorInput::on_transforms(const ros::TFMessage& message, const messaging::SampleInfo& info,
@@ -114,6 +113,11 @@ void SensorInput::on_transforms(const ros::TFMessage& message, const messaging::
   for (const ros::TransformStamped& transform : message.transforms_()) {
     const std::string parent = ros::frame_name(transform.header_().frame_id_());
     const std::string child = ros::frame_name(transform.child_frame_id_());
+    if (const std::size_t longest = std::max(parent.size(), child.size());
+        longest > ros::kLongestFrameName) {
+      ros_.complain("frame with a long name", std::to_string(longest) + " bytes");
+      continue;
+    }
     if (!are_static && (child == frames.odom || parent == frames.map)) {
       if (on_foreign_transform) {
         on_foreign_transform(parent, child, ros::stamp_ns_of(transform.header_().stamp_()));
@@ -140,22 +144,13 @@ void SensorInput::on_odometry_transform(const ros::TransformStamped& message,
     ros_.complain("second publisher of odometry", "odom -> " + robot_frame_);
     return;
   }
-  const auto T_odom_robot = ros::planar(message.transform_());
-  if (!T_odom_robot) {
-    intake_.count(IntakeDrop::kInvalidOdometry, "a transform that is no number");
+  const auto sample = to_sample(message, last_transform_);
+  if (!sample) {
+    intake_.count(IntakeDrop::kInvalidOdometry, "a transform that no robot has");
     return;
   }
-  geometry::OdometrySample sample{ros::stamp_ns_of(message.header_().stamp_()), *T_odom_robot, 0.0,
-                                  0.0};
-  if (last_transform_ && sample.stamp_ns > last_transform_->stamp_ns) {
-    const double passed_s = static_cast<double>(sample.stamp_ns - last_transform_->stamp_ns) * 1e-9;
-    const geometry::Pose2 moved =
-        geometry::between(last_transform_->T_odom_robot, sample.T_odom_robot);
-    sample.linear_mps = moved.x_m / passed_s;
-    sample.angular_radps = moved.theta_rad / passed_s;
-  }
   last_transform_ = sample;
-  add(sample);
+  add(*sample);
 }
 
 void SensorInput::add(const geometry::OdometrySample& sample) {
@@ -166,13 +161,7 @@ void SensorInput::add(const geometry::OdometrySample& sample) {
   }
   if (intake_.dropped(IntakeDrop::kOldOdometry) != before) return;
   if (on_reading) on_reading(sample.stamp_ns, epoch(), sample.T_odom_robot);
-  msg::Odometry message;
-  messaging::set_header(message, ros_.service().robot_id(), sample.stamp_ns, odometry_sent_);
-  message.T_odom_robot(service::to_msg(sample.T_odom_robot));
-  message.odometry_epoch(epoch());
-  message.linear_mps(sample.linear_mps);
-  message.angular_radps(sample.angular_radps);
-  if (odometry_.write(message)) {
+  if (odometry_.write(to_msg(sample, ros_.service().robot_id(), epoch(), odometry_sent_))) {
     ++odometry_sent_;
   } else {
     ros_.service().status().fault("send blocked", "odometry");

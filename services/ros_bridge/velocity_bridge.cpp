@@ -9,17 +9,10 @@
 #include "topogeo/ros_conversions/geometry.hpp"
 #include "topogeo/support/log.hpp"
 
+#include "orders.hpp"
 #include "outputs.hpp"
 
 namespace topogeo::ros_bridge {
-namespace {
-
-/// As the gateway: a command never holds for longer.
-constexpr double kLongestVelocity_s = 0.5;
-constexpr double kNothing = 1e-6;
-
-}  // namespace
-
 VelocityBridge::VelocityBridge(RosSide& ros) : ros_(ros) {
   ros.service().status().set_counter("velocities", 0.0);
   if (ros.settings().directions.velocity == Direction::kOut) give();
@@ -95,22 +88,8 @@ void VelocityBridge::send(double linear_mps, double angular_radps) {
 }
 
 void VelocityBridge::on_twist(const ros::Twist& twist) {
-  const double linear_mps = twist.linear_().x_();
-  const double angular_radps = twist.angular_().z_();
-  if (!std::isfinite(linear_mps) || !std::isfinite(angular_radps)) {
-    throw std::invalid_argument("expected finite speeds");
-  }
-  const double others =
-      std::max({std::fabs(twist.linear_().y_()), std::fabs(twist.linear_().z_()),
-                std::fabs(twist.angular_().x_()), std::fabs(twist.angular_().y_())});
-  if (!(others < kNothing)) {
-    throw std::invalid_argument("expected speeds along x and about z alone");
-  }
-  msg::MotionCommand command;
+  msg::MotionCommand command = to_motion(twist);
   messaging::set_header(command, ros_.service().robot_id(), ros_.now_ns(), sent_);
-  command.linear_mps(linear_mps);
-  command.angular_radps(angular_radps);
-  command.valid_for_s(kLongestVelocity_s);
   if (!commands_->write(command)) {
     ros_.service().status().fault("send blocked", "motion command");
     return;

@@ -61,4 +61,15 @@ std::size_t check_message(std::string_view bytes);
 /// An input for check_message() of each topic, which its readers take.
 std::vector<std::string> sample_messages();
 
+/// Takes `bytes` as the type of a message of ROS that the bridge reads ("LaserScan"), a line end
+/// and the payload of a sample, through what a reader of such a topic does and through what the
+/// bridge makes of the message, with scans and odometry before and after it. What it sends on is
+/// what our readers take, and a payload takes no more memory than its length allows. Returns 2 when
+/// the bridge takes the message, 1 when it refuses it, which becomes a drop of its status, 0 when
+/// the reader refuses it. Throws BrokenPromise.
+std::size_t check_ros_message(std::string_view bytes);
+
+/// An input for check_ros_message() of each type, which the bridge takes.
+std::vector<std::string> sample_ros_messages();
+
 }  // namespace topogeo::fuzz

@@ -31,12 +31,11 @@
 #include "checks.hpp"
 #include "map_store/drawing_order.hpp"
 #include "map_store/map_input.hpp"
+#include "payload.hpp"
 #include "planner/answer.hpp"
 
 namespace topogeo::fuzz {
 namespace {
-
-using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
 
 constexpr std::int64_t kNow_ns = 1'000'000'000'000;
 /// A search of more individuals takes longer than all else, and does nothing else.
@@ -362,24 +361,6 @@ void receive(const msg::SnapshotPiece& message) {
         std::string(message.bytes().begin(), message.bytes().end()), "snapshot"));
   } catch (const std::runtime_error&) {  // NOLINT(bugprone-empty-catch): what it promises
   }
-}
-
-/// The bytes of a payload, with the room that the middleware leaves behind them: none.
-struct Arrived {
-  explicit Arrived(std::string_view bytes)
-      : payload(static_cast<std::uint32_t>(std::max<std::size_t>(1, bytes.size()))) {
-    std::ranges::copy(bytes, payload.data);
-    payload.length = static_cast<std::uint32_t>(bytes.size());
-  }
-  Payload payload;
-};
-
-template <class Message>
-std::string written(const Message& message, eprosima::fastdds::dds::TypeSupport& type) {
-  void* const data = const_cast<Message*>(&message);  // NOLINT: their interface; it only reads
-  Payload payload(type.get_serialized_size_provider(data)());
-  require(type.serialize(data, &payload), "a message without a defect can be sent");
-  return {reinterpret_cast<const char*>(payload.data), payload.length};  // NOLINT: bytes
 }
 
 template <class Message>

@@ -68,6 +68,10 @@ TEST(FuzzSeeds, MessagesPass) {
   expect_all_pass("message", [](const std::string& bytes) { check_message(bytes); });
 }
 
+TEST(FuzzSeeds, RosMessagesPass) {
+  expect_all_pass("ros_message", [](const std::string& bytes) { check_ros_message(bytes); });
+}
+
 TEST(FuzzSeeds, PacketsPass) {
   expect_all_pass("packet", [](const std::string& bytes) { check_packet_parser(bytes); });
 }
@@ -126,6 +130,37 @@ TEST(FuzzSeeds, ReachTheReceiversOfEachTopic) {
     const std::string topic = message.substr(0, message.find('\n'));
     EXPECT_EQ(check_message(message), 2U) << topic;
     EXPECT_TRUE(std::filesystem::exists(seeds("message") / topic)) << topic;
+  }
+}
+
+TEST(FuzzSeeds, ReachTheBridgeWithEachTypeOfRos) {
+  for (const std::string& message : sample_ros_messages()) {
+    const std::string type = message.substr(0, message.find('\n'));
+    EXPECT_EQ(check_ros_message(message), 2U) << type;
+    EXPECT_EQ(check_ros_message(content(seeds("ros_message") / type)), 2U) << type;
+  }
+}
+
+TEST(FuzzSeeds, HostileRosMessagesAreRefusedWhereTheyShouldBe) {
+  const auto reach = [](const char* name) {
+    return check_ros_message(content(seeds("ros_message") / name));
+  };
+  for (const char* unreadable :
+       {"scan_huge_count", "scan_count_of_bytes", "scan_other_encapsulation", "scan_truncated",
+        "scan_empty_payload", "tf_huge_count", "tf_count_of_bytes", "twist_truncated"}) {
+    EXPECT_EQ(reach(unreadable), 0U) << unreadable;
+  }
+  for (const char* refused :
+       {"scan_no_numbers", "scan_no_beams", "odometry_far", "odometry_fast", "odometry_fast_turn",
+        "odometry_no_numbers", "odometry_no_rotation", "tf_long_names", "tf_no_numbers", "goal_far",
+        "goal_other_frame", "goal_no_numbers", "pose_far", "twist_sideways", "twist_no_numbers",
+        "twist_no_number_besides"}) {
+    EXPECT_EQ(reach(refused), 1U) << refused;
+  }
+  for (const char* taken :
+       {"scan_clockwise", "scan_finer", "scan_many_beams", "scan_absurd_ranges", "scan_big_endian",
+        "tf_many", "goal_no_rotation", "pose_huge_covariance", "twist_big_endian"}) {
+    EXPECT_EQ(reach(taken), 2U) << taken;
   }
 }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <set>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "topogeo/ros_conversions/geometry.hpp"
@@ -18,11 +20,15 @@ double rounded_to(double value, double steps_per_unit) {
   return std::round(value * steps_per_unit) / steps_per_unit + 0.0;  // no -0
 }
 
+bool short_enough(const std::string& parent, const std::string& child) {
+  return parent.size() <= kLongestFrameName && child.size() <= kLongestFrameName;
+}
+
 }  // namespace
 
 void FrameTree::add(const std::string& parent, const std::string& child,
                     const Eigen::Isometry3d& T_parent_child, bool is_static) {
-  if (parent == child) return;
+  if (parent == child || !short_enough(parent, child)) return;
   const auto known = std::ranges::find_if(
       edges_, [&](const Edge& other) { return other.child == child && other.parent == parent; });
   if (known == edges_.end()) {
@@ -47,6 +53,7 @@ void FrameTree::add(const TFMessage& message, bool is_static) {
 
 bool FrameTree::put(const std::string& parent, const std::string& child,
                     const Eigen::Isometry3d& T_parent_child) {
+  if (!short_enough(parent, child)) return false;
   const auto known = std::ranges::find(edges_, child, &Edge::child);
   if (known != edges_.end() && known->parent != parent) return false;
   add(parent, child, T_parent_child, true);
@@ -61,19 +68,26 @@ std::optional<Eigen::Isometry3d> FrameTree::find(const std::string& from,
 
 std::optional<Eigen::Isometry3d> FrameTree::find(const std::string& from, const std::string& to,
                                                  bool static_only) const {
-  std::deque<std::pair<std::string, Eigen::Isometry3d>> reached = {
+  // By frame, so that the search takes a time in proportion to the edges: it is made for each scan,
+  // and a peer may have stated all the edges that are kept.
+  std::unordered_map<std::string_view, std::vector<const Edge*>> edges_of;
+  for (const Edge& edge : edges_) {
+    if (static_only && !edge.is_static) continue;
+    edges_of[edge.parent].push_back(&edge);
+    edges_of[edge.child].push_back(&edge);
+  }
+  std::deque<std::pair<std::string_view, Eigen::Isometry3d>> reached = {
       {from, Eigen::Isometry3d::Identity()}};
-  std::set<std::string> seen = {from};
+  std::unordered_set<std::string_view> seen = {from};
   while (!reached.empty()) {
     const auto [frame, T_from_frame] = reached.front();
     reached.pop_front();
     if (frame == to) return T_from_frame;
-    for (const Edge& edge : edges_) {
-      if (static_only && !edge.is_static) continue;
-      if (edge.parent == frame && seen.insert(edge.child).second) {
-        reached.emplace_back(edge.child, T_from_frame * edge.T_parent_child);
-      } else if (edge.child == frame && seen.insert(edge.parent).second) {
-        reached.emplace_back(edge.parent, T_from_frame * edge.T_parent_child.inverse());
+    for (const Edge* edge : edges_of[frame]) {
+      if (edge->parent == frame && seen.insert(edge->child).second) {
+        reached.emplace_back(edge->child, T_from_frame * edge->T_parent_child);
+      } else if (edge->child == frame && seen.insert(edge->parent).second) {
+        reached.emplace_back(edge->parent, T_from_frame * edge->T_parent_child.inverse());
       }
     }
   }

@@ -1,5 +1,6 @@
 #include "topogeo/ros_conversions/geometry.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -22,8 +23,8 @@ double& cell(Eigen::Matrix3d& matrix, std::size_t row, std::size_t column) {
 
 std::optional<geometry::Pose2> seen_from_above(double x_m, double y_m, const Quaternion& q) {
   const double norm2 = q.x_() * q.x_() + q.y_() * q.y_() + q.z_() * q.z_() + q.w_() * q.w_();
-  if (!std::isfinite(x_m) || !std::isfinite(y_m) || !std::isfinite(norm2) ||
-      norm2 < kShortestQuaternion * kShortestQuaternion) {
+  if (!(std::fabs(x_m) <= kFarthest_m) || !(std::fabs(y_m) <= kFarthest_m) ||
+      !std::isfinite(norm2) || norm2 < kShortestQuaternion * kShortestQuaternion) {
     return std::nullopt;
   }
   const double sine = 2.0 * (q.w_() * q.z_() + q.x_() * q.y_());
@@ -46,6 +47,12 @@ Time time_of(std::int64_t stamp_ns) {
   time.sec_(static_cast<std::int32_t>(static_cast<std::uint32_t>(stamp_ns / kSecond_ns)));
   time.nanosec_(static_cast<std::uint32_t>(stamp_ns % kSecond_ns));
   return time;
+}
+
+std::int64_t usable_stamp_ns(std::int64_t stamp_ns) {
+  constexpr std::int64_t kFirstTooLate_ns =
+      (std::int64_t{std::numeric_limits<std::uint32_t>::max()} + 1) * kSecond_ns;
+  return std::clamp<std::int64_t>(stamp_ns, 0, kFirstTooLate_ns - 11 * kSecond_ns);
 }
 
 std::string frame_name(const std::string& frame_id) {
@@ -133,7 +140,7 @@ std::optional<Eigen::Isometry3d> isometry_of(const Transform& transform) {
   const Quaternion& q = transform.rotation_();
   const Eigen::Quaterniond rotation(q.w_(), q.x_(), q.y_(), q.z_());
   const Eigen::Vector3d offset_m(t.x_(), t.y_(), t.z_());
-  if (!planar(transform) || !offset_m.allFinite()) return std::nullopt;
+  if (!planar(transform) || !(std::fabs(t.z_()) <= kFarthest_m)) return std::nullopt;
   Eigen::Isometry3d isometry = Eigen::Isometry3d::Identity();
   isometry.linear() = rotation.normalized().toRotationMatrix();
   isometry.translation() = offset_m;

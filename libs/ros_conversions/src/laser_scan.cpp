@@ -236,7 +236,10 @@ std::vector<float> deskewed(
     const double after_s = sweep.first_beam_s + static_cast<double>(i) * sweep.time_step_s;
     const auto T_odom_laser = T_odom_laser_after(after_s);
     Eigen::Vector2d point_m = range_m * direction_of(angle_rad);
-    if (T_odom_laser) point_m = geometry::between(*T_odom_start, *T_odom_laser) * point_m;
+    if (T_odom_laser) {
+      const Eigen::Vector2d seen_m = geometry::between(*T_odom_start, *T_odom_laser) * point_m;
+      if (seen_m.allFinite()) point_m = seen_m;  // an angle that is no number has no place in order
+    }
     // Near the middle of the pattern, so that a full turn has one place for each direction.
     const double seen_rad = geometry::atan2(point_m.y(), point_m.x());
     echoes.push_back({middle_rad + geometry::wrap_angle(seen_rad - middle_rad), point_m});

@@ -18,6 +18,30 @@ namespace {
 constexpr std::uint32_t kFirstPayload = 256;
 constexpr std::size_t kLongestName = 247;
 
+/// Whether the payload is long enough for the elements that it claims. The generated code asks for
+/// one byte for each and makes room for all of them, a hundred times the payload and more, before
+/// it reads the first. It does so with every list, but of the messages that the bridge reads only
+/// TFMessage has one whose elements are much larger than a byte.
+template <class T>
+bool has_room(const eprosima::fastrtps::rtps::SerializedPayload_t& /*payload*/) {
+  return true;
+}
+
+template <>
+bool has_room<TFMessage>(const eprosima::fastrtps::rtps::SerializedPayload_t& payload) {
+  /// Encapsulation and the number of transforms.
+  constexpr std::size_t kStart_bytes = 8;
+  /// A stamp, two texts of no length, seven numbers.
+  constexpr std::uint64_t kLeastTransform_bytes = 8 + 2 * 4 + 7 * 8;
+  if (payload.length < kStart_bytes) return false;
+  const bool little_endian = (payload.data[1] & 1U) != 0U;
+  std::uint64_t transforms = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    transforms = transforms << 8U | payload.data[4 + (little_endian ? 3 - i : i)];
+  }
+  return transforms * kLeastTransform_bytes <= payload.length - kStart_bytes;
+}
+
 /// What a reader hands over: the message, or that there was none in the payload.
 template <class T>
 struct Received final : public T {
@@ -45,7 +69,10 @@ class RosTypeSupport final : public Generated {
     auto& received = *static_cast<Received<Message>*>(data);
     received.readable = true;
     try {
-      if (Generated::deserialize(payload, static_cast<Message*>(&received))) return true;
+      if (has_room<Message>(*payload) &&
+          Generated::deserialize(payload, static_cast<Message*>(&received))) {
+        return true;
+      }
     } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): as the false
     }
     received.readable = false;

@@ -111,5 +111,19 @@ TEST(Deskewing, WithoutPosesLeavesTheRanges) {
   EXPECT_NE(deskewed(sweep, poses_until(0.5)), sweep.ranges_m);
 }
 
+// Odometry of absurd numbers, whose differences are none.
+TEST(Deskewing, LeavesRangesAsMeasuredWherePosesAreNoNumbers) {
+  constexpr std::size_t kBeams = 100;
+  LaserScan message = laser_scan(-1.0, 0.02, std::vector<float>(kBeams, 2.0F));
+  message.time_increment_(0.001F);
+  const Sweep sweep = to_sweep(message, false, kMost, SweepOrder::kForward);
+  const auto pose_after = [](double s) -> std::optional<geometry::Pose2> {
+    if (s == 0.0) return geometry::Pose2{};
+    return geometry::Pose2{NAN, 0.0, 0.0};
+  };
+  EXPECT_EQ(deskewed(sweep, pose_after).size(), kBeams);
+  for (const float range_m : deskewed(sweep, pose_after)) EXPECT_NEAR(range_m, 2.0F, 1e-3F);
+}
+
 }  // namespace
 }  // namespace topogeo::ros

@@ -32,6 +32,18 @@ TEST(FrameTree, JoinsFramesThroughTheirParents) {
   EXPECT_EQ(found(tree, "mast", "laser"), (geometry::Pose2{0.3, 0.0, 0.0}));
 }
 
+TEST(FrameTree, KeepsNoNameThatIsLong) {
+  FrameTree tree;
+  const std::string longest(kLongestFrameName, 'f');
+  EXPECT_TRUE(tree.put("base_link", longest, at(0.0, 0.0, 0.0)));
+  EXPECT_FALSE(tree.put("base_link", longest + "f", at(0.0, 0.0, 0.0)));
+  EXPECT_FALSE(tree.put(longest + "f", "laser", at(0.0, 0.0, 0.0)));
+  TFMessage message;
+  message.transforms_() = {transform_of("base_link", longest + "f", {}, 0)};
+  tree.add(message, true);
+  EXPECT_EQ(tree.edges().size(), 1U);
+}
+
 TEST(FrameTree, ACircleEnds) {
   FrameTree tree;
   tree.put("a", "b", at(0.0, 0.0, 0.0));

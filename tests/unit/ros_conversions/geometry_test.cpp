@@ -18,6 +18,19 @@ TEST(Stamps, ComeBack) {
   EXPECT_THROW((void)time_of(std::numeric_limits<std::int64_t>::max()), std::invalid_argument);
 }
 
+TEST(Stamps, OfPeersLeaveRoomForWhatFollowsThem) {
+  EXPECT_EQ(usable_stamp_ns(1'500'000'001), 1'500'000'001);
+  Time last;
+  last.sec_(-1);
+  last.nanosec_(std::numeric_limits<std::uint32_t>::max());
+  for (const std::int64_t stamp_ns :
+       {stamp_ns_of(last), std::int64_t{-1}, std::numeric_limits<std::int64_t>::max(),
+        std::numeric_limits<std::int64_t>::min()}) {
+    EXPECT_NO_THROW((void)time_of(usable_stamp_ns(stamp_ns))) << stamp_ns;
+    EXPECT_NO_THROW((void)time_of(usable_stamp_ns(stamp_ns) + 10'000'000'000)) << stamp_ns;
+  }
+}
+
 TEST(FrameNames, LoseTheSlashOfRos1) {
   EXPECT_EQ(frame_name("/base_link"), "base_link");
   EXPECT_EQ(frame_name("base_link"), "base_link");
@@ -36,8 +49,10 @@ TEST(PlanarPose, IsSeenFromAbove) {
   pose.orientation_().w_(3.0 * q.w());
   ASSERT_TRUE(planar(pose));
   EXPECT_NEAR(planar(pose)->theta_rad, 2.5, 1e-12);
-  pose.position_().y_(std::numeric_limits<double>::infinity());
-  EXPECT_FALSE(planar(pose));
+  for (const double far_m : {std::numeric_limits<double>::infinity(), -1e308, 1.01 * kFarthest_m}) {
+    pose.position_().y_(far_m);
+    EXPECT_FALSE(planar(pose)) << far_m;
+  }
 }
 
 TEST(PlanarPose, ComesBack) {

@@ -40,6 +40,33 @@ TEST(RosOrders, AQuaternionOfNoLengthIsNoHeading) {
   EXPECT_THROW(to_goal(message, {}, {}, {}), std::invalid_argument);
 }
 
+// What is finite in its frame need not be in that of the map.
+TEST(RosOrders, AGoalIsNotFartherThanAnyRobotGets) {
+  EXPECT_THROW(
+      to_goal(pose_in("odom", {1.7e308, 1.7e308, 0.0}), {}, geometry::Pose2{0.0, 0.0, 0.8}, {}),
+      std::invalid_argument);
+}
+
+TEST(RosOrders, AVelocityIsAlongXAndAboutZ) {
+  ros::Twist twist;
+  twist.linear_().x_(0.4);
+  twist.angular_().z_(-0.2);
+  const msg::MotionCommand command = to_motion(twist);
+  EXPECT_EQ(command.linear_mps(), 0.4);
+  EXPECT_EQ(command.angular_radps(), -0.2);
+  EXPECT_EQ(command.valid_for_s(), kLongestVelocity_s);
+  for (const double other : {0.1, -0.1, static_cast<double>(NAN)}) {
+    ros::Twist bad = twist;
+    bad.linear_().y_(other);
+    EXPECT_THROW(to_motion(bad), std::invalid_argument) << other;
+    bad = twist;
+    bad.angular_().y_(other);
+    EXPECT_THROW(to_motion(bad), std::invalid_argument) << other;
+  }
+  twist.linear_().x_(INFINITY);
+  EXPECT_THROW(to_motion(twist), std::invalid_argument);
+}
+
 TEST(RosOrders, APoseThatIsSetKeepsItsCovarianceWhereItHasOne) {
   ros::PoseWithCovarianceStamped message;
   message.header_(ros::header_of("map", 0));

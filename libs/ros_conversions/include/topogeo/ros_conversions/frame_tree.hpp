@@ -2,6 +2,7 @@
 // is fixed, like the mounting of a laser.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <optional>
@@ -14,6 +15,9 @@
 #include "topogeo/ros_conversions/messages.hpp"
 
 namespace topogeo::ros {
+
+/// Transforms of frames with longer names are left out: they are kept, as many as a peer likes.
+inline constexpr std::size_t kLongestFrameName = 255;
 
 class FrameTree {
  public:
@@ -33,7 +37,7 @@ class FrameTree {
   void add(const TFMessage& message, bool is_static);
 
   /// As a static one of a live robot, on which a child has one parent: false, and nothing is kept,
-  /// where it hangs on another.
+  /// where it hangs on another or a name is too long.
   bool put(const std::string& parent, const std::string& child,
            const Eigen::Isometry3d& T_parent_child);
 

@@ -20,6 +20,8 @@ namespace topogeo::ros {
 std::int64_t stamp_ns_of(const Time& time);
 /// Throws std::invalid_argument for a negative stamp, or one that 32 bits of seconds cannot hold.
 Time time_of(std::int64_t stamp_ns);
+/// The nearest stamp from which time_of takes all of the next ten seconds: a peer may state any.
+std::int64_t usable_stamp_ns(std::int64_t stamp_ns);
 
 /// "base_link" of "/base_link": ROS 1 and tools that grew from it put a slash in front.
 std::string frame_name(const std::string& frame_id);
@@ -41,8 +43,12 @@ PoseWithCovarianceStamped pose_of(const std::string& frame, std::int64_t stamp_n
 /// symmetric, which rounding may have ended.
 Eigen::Matrix3d planar_covariance(const std::array<double, 36>& covariance);
 
+/// Coordinates of a survey have up to 1e7 m. What is far above that is the work of a fault or of a
+/// hostile peer, and sums and products of it are soon no numbers.
+inline constexpr double kFarthest_m = 1e8;
+
 /// Seen from above: x, y and the heading of the x axis. Empty for a quaternion of no length and for
-/// coordinates that are not finite.
+/// coordinates that are no numbers up to kFarthest_m.
 std::optional<geometry::Pose2> planar(const Pose& pose);
 std::optional<geometry::Pose2> planar(const Transform& transform);
 

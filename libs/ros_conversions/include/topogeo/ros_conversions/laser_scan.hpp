@@ -72,9 +72,9 @@ Sweep to_sweep(const LaserScan& message, bool upside_down, std::size_t most_beam
 std::vector<float> on_pattern(const Sweep& sweep, const BeamPattern& pattern);
 
 /// The ranges as if all had been measured at the stamp, on the beams of the sweep.
-/// `T_odom_laser_after` gives the laser's pose so many seconds after the stamp; where it has none
-/// the range stays as it was measured. The ranges stay as they are where the beams do not show the
-/// motion: below 2 mm and 0.001 rad.
+/// `T_odom_laser_after` gives the laser's pose so many seconds after the stamp; where it has none,
+/// or none of finite numbers, the range stays as it was measured. The ranges stay as they are where
+/// the beams do not show the motion: below 2 mm and 0.001 rad.
 std::vector<float> deskewed(
     const Sweep& sweep,
     const std::function<std::optional<geometry::Pose2>(double)>& T_odom_laser_after);

@@ -1,0 +1,173 @@
+#include <algorithm>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fastdds/dds/topic/TypeSupport.hpp>
+
+#include "topogeo/ros_conversions/geometry.hpp"
+#include "topogeo/ros_messaging/topic.hpp"
+
+#include "checks.hpp"
+#include "payload.hpp"
+#include "ros_bridge_check.hpp"
+
+namespace topogeo::fuzz {
+namespace {
+
+// What the middleware does with a payload.
+
+/// A message as a reader makes it, which decodes each over the one before it.
+template <class Message>
+class Slot {
+ public:
+  explicit Slot(const messaging::TopicInfo& topic)
+      : topic_(topic), type_(topic.make_type()), data_(type_.create_data()) {}
+  Slot(const Slot&) = delete;
+  Slot& operator=(const Slot&) = delete;
+  ~Slot() { type_.delete_data(data_); }
+
+  /// Whether the reader hands it over.
+  bool read(std::string_view bytes) {
+    Arrived input(bytes);
+    require(type_.deserialize(&input.payload, data_), "a reader is never left with a sample");
+    return !topic_.find_defect(data_);
+  }
+  [[nodiscard]] const Message& message() const { return *static_cast<const Message*>(data_); }
+  std::string write() { return written(message(), type_); }
+
+ private:
+  const messaging::TopicInfo& topic_;
+  eprosima::fastdds::dds::TypeSupport type_;
+  void* data_;
+};
+
+/// Bytes that the lists of a message take, whether or not it could be read to its end.
+template <class Message>
+std::size_t taken_bytes(const Message& /*message*/) {
+  return 0;
+}
+std::size_t taken_bytes(const ros::LaserScan& message) {
+  return (message.ranges_().capacity() + message.intensities_().capacity()) * sizeof(float);
+}
+std::size_t taken_bytes(const ros::TFMessage& message) {
+  return message.transforms_().capacity() * sizeof(ros::TransformStamped);
+}
+
+template <class Message>
+std::string sample_of();
+
+template <class Message>
+std::size_t check_bytes(std::string_view bytes) {
+  const messaging::TopicInfo& topic = ros::reader_info<Message>("/fuzz");
+  Slot<Message> fresh(topic);
+  const bool readable = fresh.read(bytes);
+  constexpr std::size_t kMostTimesAsMuch = 8;
+  require(taken_bytes(fresh.message()) <= kMostTimesAsMuch * bytes.size(),
+          "a message takes memory by the length of its payload, not by what that claims");
+  Slot<Message> used(topic);
+  require(used.read(sample_of<Message>()), "a sample can be read");
+  require(used.read(bytes) == readable, "what was read before does not matter");
+  if (!readable) return 0;
+  const std::string sent = fresh.write();
+  require(used.write() == sent, "nothing is left of what was read before");
+  Slot<Message> again(topic);
+  require(again.read(sent), "what was sent can be read");
+  require(again.write() == sent, "sending what was read changes nothing");
+  try {
+    return receive(fresh.message()) ? 2 : 1;
+  } catch (const std::invalid_argument&) {
+    return 1;
+  }
+}
+
+// A message of each input, which the bridge takes.
+
+void fill(ros::LaserScan& message) {
+  message = scan_at(kRosNow_ns);
+  message.intensities_(message.ranges_());
+}
+
+void fill(ros::Odometry& message) {
+  message.header_(header_at("odom", kRosNow_ns));
+  message.child_frame_id_("base_link");
+  message.pose_().pose_(ros::pose_of({0.01, 0.02, 0.03}));
+  message.twist_().twist_().linear_().x_(0.4);
+  message.twist_().twist_().angular_().z_(-0.2);
+}
+
+void fill(ros::TFMessage& message) {
+  message.transforms_().push_back(ros::transform_of("base_link", "mast", kRosMounting, kRosNow_ns));
+  message.transforms_().push_back(
+      ros::transform_of("mast", "scanner", {}, kRosNow_ns + 100'000'000));
+}
+
+void fill(ros::PoseStamped& message) {
+  message.header_(header_at("odom", kRosNow_ns));
+  message.pose_(ros::pose_of({1.0, 2.0, 0.3}));
+}
+
+void fill(ros::PoseWithCovarianceStamped& message) {
+  message = ros::pose_of("map", kRosNow_ns, {1.0, 2.0, 0.3}, Eigen::Matrix3d::Identity());
+}
+
+void fill(ros::Twist& message) {
+  message.linear_().x_(0.4);
+  message.angular_().z_(-0.2);
+}
+
+void fill(ros::TwistStamped& message) {
+  message.header_(header_at("base_link", kRosNow_ns));
+  fill(message.twist_());
+}
+
+template <class Message>
+std::string sample_of() {
+  static const std::string sample = [] {
+    Message message;
+    fill(message);
+    eprosima::fastdds::dds::TypeSupport type(ros::writer_info<Message>("/fuzz").make_type());
+    return written(message, type);
+  }();
+  return sample;
+}
+
+struct Checked {
+  std::string_view type;
+  std::size_t (*check)(std::string_view);
+  std::string (*sample)();
+};
+
+template <class Message>
+constexpr Checked checked(std::string_view type) {
+  return {type, check_bytes<Message>, sample_of<Message>};
+}
+
+constexpr Checked kTypes[] = {checked<ros::LaserScan>("LaserScan"),
+                              checked<ros::Odometry>("Odometry"),
+                              checked<ros::TFMessage>("TFMessage"),
+                              checked<ros::PoseStamped>("PoseStamped"),
+                              checked<ros::PoseWithCovarianceStamped>("PoseWithCovarianceStamped"),
+                              checked<ros::Twist>("Twist"),
+                              checked<ros::TwistStamped>("TwistStamped")};
+
+}  // namespace
+
+std::size_t check_ros_message(std::string_view bytes) {
+  const std::size_t end = bytes.find('\n');
+  const auto* const type = std::ranges::find(kTypes, bytes.substr(0, end), &Checked::type);
+  if (end == std::string_view::npos || type == std::end(kTypes)) return 0;
+  return type->check(bytes.substr(end + 1));
+}
+
+std::vector<std::string> sample_ros_messages() {
+  std::vector<std::string> messages;
+  for (const Checked& type : kTypes) {
+    messages.push_back(std::string(type.type) + "\n" + type.sample());
+  }
+  return messages;
+}
+
+}  // namespace topogeo::fuzz
