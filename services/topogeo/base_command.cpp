@@ -126,7 +126,7 @@ int send_base_command(BaseRequest request) {
 }
 
 void add_base_options(command_line::Command& app, BaseRequest& request) {
-  app.add_option("--robot,--robot-id", request.robot_id, "whose base")->capture_default_str();
+  add_robot_option(app, request.robot_id, "whose base");
   add_domain_options(app, request.view);
   app.add_option("--wait-seconds", request.wait_s, "how long to wait for the base")
       ->check(command_line::range(0.1, kLongestWait_s))

@@ -39,6 +39,12 @@ bool collect(const DomainView& view, messaging::EventLoop& loop,
 
 }  // namespace
 
+void add_robot_option(command_line::Command& app, std::string& robot_id, const char* description) {
+  app.add_option("--robot,--robot-id", robot_id, description)
+      ->environment("TOPOGEO_ROBOT")
+      ->capture_default_str();
+}
+
 void add_domain_options(command_line::Command& app, DomainView& view) {
   service::add_domain_option(app, view.domain);
   app.add_option("--partition", view.partition, "only what lives in this partition; *: all")
@@ -82,7 +88,8 @@ bool collect_and_show(const DomainView& view, messaging::EventLoop& loop,
 
 std::string nothing_alive(const DomainView& view, const std::string& what) {
   return "no " + what + " is alive on domain " + std::to_string(view.domain) + ", partition '" +
-         view.partition + "'";
+         view.partition + "'; services with other settings are not seen (TOPOGEO_DOMAIN, " +
+         "TOPOGEO_SECURITY, ROS_DISCOVERY_SERVER, TOPOGEO_PEERS)";
 }
 
 }  // namespace topogeo::cli

@@ -24,6 +24,9 @@ struct DomainView {
   double wait_s = 3.2;  ///< for the first that is found
 };
 
+/// Adds --robot, whose default is TOPOGEO_ROBOT of the environment, else what `robot_id` is.
+void add_robot_option(command_line::Command& app, std::string& robot_id, const char* description);
+
 /// Adds --domain, --partition and --profiles; `view` must outlive the app.
 void add_domain_options(command_line::Command& app, DomainView& view);
 

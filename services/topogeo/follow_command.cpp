@@ -186,7 +186,7 @@ void add_follow_command(command_line::Command& app, int& exit_code) {
       app.add_subcommand("follow", "Show the map of a robot and each change of it");
   auto request = std::make_shared<FollowRequest>();
   request->view.partition = messaging::kDefaultPartition;
-  command->add_option("--robot,--robot-id", request->robot_id, "whose map")->capture_default_str();
+  add_robot_option(*command, request->robot_id, "whose map");
   add_domain_options(*command, request->view);
   command->add_flag("--once", request->once, "show the map that there is and end");
   command->add_flag("--json", request->json, "for programs: one JSON object on each line");

@@ -38,7 +38,7 @@ int send_localizer_command(const LocalizerRequest& request,
 }
 
 void add_request_options(command_line::Command& app, LocalizerRequest& request) {
-  app.add_option("--robot,--robot-id", request.robot_id, "whose localizer")->capture_default_str();
+  add_robot_option(app, request.robot_id, "whose localizer");
   add_domain_options(app, request.view);
   app.add_option("--wait-seconds", request.wait_s, "how long to wait for the answer")
       ->check(command_line::range(0.1, kLongestWait_s))

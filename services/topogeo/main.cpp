@@ -2,6 +2,7 @@
 #include <exception>
 #include <iostream>
 #include <string>
+#include <string_view>
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/service/service_options.hpp"
@@ -9,6 +10,7 @@
 #include "topogeo/support/version.hpp"
 
 #include "commands.hpp"
+#include "installed_settings.hpp"
 
 namespace {
 
@@ -64,6 +66,8 @@ int main(int argc, char** argv) {
   int code = service::kFailure;
   try {
     support::set_up_logging("topogeo", "warning");
+    // A run has services of its own.
+    if (argc > 1 && std::string_view(argv[1]) != "run") cli::take_installed_settings();
     return run(argc, argv);
   } catch (const service::UsageError& error) {
     std::cerr << "topogeo: " << error.what() << '\n';

@@ -6,6 +6,7 @@
 #include "topogeo/service/service_options.hpp"
 
 #include "commands.hpp"
+#include "domain_view.hpp"
 #include "recorder.hpp"
 
 namespace topogeo::cli {
@@ -24,8 +25,7 @@ void add_record_command(command_line::Command& app, int& exit_code) {
           "CARMEN (.gz: gzip)")
       ->required()
       ->type_name("FILE");
-  command->add_option("--robot,--robot-id", request->robot_id, "whose scans")
-      ->capture_default_str();
+  add_robot_option(*command, request->robot_id, "whose scans");
   command
       ->add_option("--laser", request->laser,
                    "mounting of the laser, m and rad, which the log is to state (default: 0,0,0)")

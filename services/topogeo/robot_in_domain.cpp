@@ -11,7 +11,7 @@
 namespace topogeo::cli {
 
 void add_robot_options(command_line::Command& app, RobotInDomain& robot) {
-  app.add_option("--robot,--robot-id", robot.robot_id, "which robot")->capture_default_str();
+  add_robot_option(app, robot.robot_id, "which robot");
   add_domain_options(app, robot.view);
   app.add_option("--wait-seconds", robot.wait_s, "how long to wait for planner and navigator")
       ->check(command_line::range(0.1, kLongestWait_s))
@@ -26,7 +26,8 @@ void wait_for_services(messaging::EventLoop& loop, const RobotInDomain& robot,
   }
   if (messaging::SignalStop::received() != 0) return;
   const std::string missing = client.missing();
-  throw std::runtime_error(nothing_alive(robot.view, missing.empty() ? "navigator" : missing));
+  throw std::runtime_error(nothing_alive(
+      robot.view, (missing.empty() ? "navigator" : missing) + " of robot '" + robot.robot_id + "'"));
 }
 
 void call_off(messaging::EventLoop& loop, GoalClient& client) {

@@ -83,7 +83,7 @@ void add_simulator_options(command_line::Command& app, SimulatorRequest& request
   app.add_option("--angular", request.angular_radps, "rad/s by joystick")
       ->check(command_line::range(-3.0, 3.0))
       ->capture_default_str();
-  app.add_option("--robot,--robot-id", request.robot_id, "whose")->capture_default_str();
+  add_robot_option(app, request.robot_id, "whose");
   add_domain_options(app, request.view);
 }
 

@@ -132,7 +132,7 @@ int answer_merge(const MergeRequest& request, bool accepted) {
 }
 
 void add_merge_options(command_line::Command& app, MergeRequest& request) {
-  app.add_option("--robot,--robot-id", request.robot_id, "whose map it is")->capture_default_str();
+  add_robot_option(app, request.robot_id, "whose map it is");
   add_domain_options(app, request.view);
   app.add_option("--wait-seconds", request.wait_s, "how long to wait for the localizer")
       ->check(command_line::range(0.1, kLongestWait_s))

@@ -16,6 +16,7 @@
 #include "topogeo/support/temporary_folder.hpp"
 
 #include "commands.hpp"
+#include "domain_view.hpp"
 #include "run_log.hpp"
 #include "web_command_options.hpp"
 #include "web_run.hpp"
@@ -85,7 +86,7 @@ void add_web_command(command_line::Command& app, int&) {
   service::add_domain_option(*web, options->domain);
   web->add_option("--partition", options->partition, "of the robot's services")
       ->capture_default_str();
-  web->add_option("--robot,--robot-id", options->robot_id, "whose page")->capture_default_str();
+  add_robot_option(*web, options->robot_id, "whose page");
   service::add_map_option(*web, options->map_of);
   add_config_option(*web, options->config);
   web->footer("Prints the link of the operator and that of spectators, who may only watch.");

@@ -59,7 +59,7 @@ TEST_F(GotoCommand, SaysThatNobodyIsThere) {
       scratch_, "topogeo",
       {"goto", "1,1", "--domain", domain_, "--partition", kPartition, "--wait-seconds", "0.5"});
   EXPECT_EQ(command.wait(), 1);
-  EXPECT_THAT(command.err(), HasSubstr("no planner and no navigator is alive"));
+  EXPECT_THAT(command.err(), HasSubstr("no planner and no navigator of robot 'robot' is alive"));
 }
 
 }  // namespace

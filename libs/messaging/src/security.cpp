@@ -1,6 +1,7 @@
 #include "security.hpp"
 
 #include <array>
+#include <cerrno>
 #include <cstdlib>
 #include <memory>
 #include <sstream>
@@ -11,6 +12,7 @@
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
 #include <fastdds/rtps/common/Token.h>
+#include <unistd.h>
 
 #include "topogeo/support/log.hpp"
 #include "topogeo/support/printable.hpp"
@@ -144,10 +146,13 @@ void add_security(dds::DomainParticipantQos& qos, const std::filesystem::path& f
   use_long_sessions(qos.properties());
   for (const SecurityFile& file : kFiles) {
     const std::filesystem::path path = std::filesystem::absolute(folder / file.name);
-    if (!std::filesystem::exists(path)) {
-      if (!file.required) continue;
-      throw std::runtime_error("DDS security: cannot read '" + path.string() +
-                               "'; deploy/security/make_keys makes it");
+    if (::access(path.c_str(), R_OK) != 0) {
+      const bool missing = errno == ENOENT;
+      if (missing && !file.required) continue;
+      throw std::runtime_error("DDS security: cannot read '" + path.string() + "'" +
+                               (missing ? "; deploy/security/make_keys makes it"
+                                        : ": permission denied; it belongs to the user of the "
+                                          "services"));
     }
     properties.emplace_back(file.property, "file://" + path.string());
   }
