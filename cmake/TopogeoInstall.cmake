@@ -1,6 +1,7 @@
 # What is installed where, and the Debian packages of it. Three components, a package each:
 #   topogeo          the command line, the services of a robot, documents and examples
-#   topogeo-workers  the search worker and what both need; alone on a machine off the robot
+#   topogeo-workers  the search worker, what both need, and the unit of discovery servers; alone on a machine off the
+#                    robot
 #   topogeo-dev      IDL, headers and libraries for programs that read and write our topics
 # The programs are in libexec/topogeo, where `topogeo run` finds them beside itself; bin has links.
 
@@ -42,8 +43,9 @@ add_custom_target(manuals ALL DEPENDS ${manuals})
 set(data ${CMAKE_INSTALL_DATADIR}/topogeo)
 set(deploy ${PROJECT_SOURCE_DIR}/deploy)
 install(DIRECTORY ${deploy}/systemd/ DESTINATION lib/systemd/system COMPONENT topogeo
-        FILES_MATCHING PATTERN "*.service" PATTERN "*.target" PATTERN "topogeo-worker*" EXCLUDE)
+        FILES_MATCHING PATTERN "*.service" PATTERN "*.target" PATTERN "topogeo-*@*" EXCLUDE)
 install(FILES ${deploy}/systemd/topogeo-worker@.service ${deploy}/systemd/system-topogeoworkers.slice
+              ${deploy}/systemd/topogeo-discovery@.service
         DESTINATION lib/systemd/system COMPONENT topogeo-workers)
 install(FILES ${deploy}/systemd/topogeo.env DESTINATION ${data}/etc COMPONENT topogeo)
 install(FILES ${deploy}/systemd/worker.env DESTINATION ${data}/etc COMPONENT topogeo-workers)
@@ -129,13 +131,16 @@ DDS.")
 topogeo_describe_package(topogeo-workers WORKERS science ""
   "search workers of topogeo"
   "Help the robots of a network with the genetic search that matches their
-local maps. Needs no settings.")
+local maps. Needs no settings. Has the unit of discovery servers, too.")
 topogeo_describe_package(topogeo-dev DEV libdevel
   "libfastrtps-dev, libfastcdr-dev, libeigen3-dev, libfmt-dev, libspdlog-dev, libyaml-cpp-dev, libssl-dev, libsystemd-dev"
   "topogeo for programs that join its services"
   "The types of all topics as IDL and as C++, and the library that reads and
 writes them.")
 set(CPACK_DEBIAN_TOPOGEO_PACKAGE_RECOMMENDS "fastdds-tools, openssl")
+set(CPACK_DEBIAN_TOPOGEO-WORKERS_PACKAGE_SUGGESTS "fastdds-tools")
+# The unit of discovery servers was in topogeo.
+set(CPACK_DEBIAN_TOPOGEO-WORKERS_PACKAGE_REPLACES "topogeo (<= 0.1.0)")
 foreach(component TOPOGEO TOPOGEO-WORKERS)
   string(TOLOWER ${component} package)
   set(CPACK_DEBIAN_${component}_PACKAGE_CONTROL_EXTRA

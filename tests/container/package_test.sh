@@ -35,7 +35,26 @@ docker run --rm -i --user root -v "$work:/exchange" $image bash -euo pipefail -c
   _topogeo
   [ "${COMPREPLY[*]}" = status ]
   [ -e /etc/topogeo/topogeo.env ] && [ -e /usr/lib/systemd/system/topogeo.target ]
-  apt-get purge -q -y topogeo topogeo-workers > /dev/null
+  # What docker keeps of a health check says why the command itself fails.
+  if TOPOGEO_SECURITY=/nowhere health > /tmp/health 2>&1; then exit 1; fi
+  grep -q /nowhere /tmp/health || { echo "no reason of a failed health check:"; cat /tmp/health; exit 1; }
+  if TOPOGEO_SECURITY=/nowhere health ga_worker here > /tmp/health 2>&1; then exit 1; fi
+  grep -q /nowhere /tmp/health || { echo "no reason of a failed health check of a worker:"; cat /tmp/health; exit 1; }
+  # As systemctl enable makes them; a unit of somebody else stays enabled.
+  enabled=/etc/systemd/system
+  mkdir -p $enabled/multi-user.target.wants $enabled/topogeo.target.wants
+  touch /lib/systemd/system/topography.service
+  for unit in topogeo.target topogeo-worker@1.service topogeo-discovery@0.service topography.service; do
+    ln -s "/lib/systemd/system/${unit/@*./@.}" "$enabled/multi-user.target.wants/$unit"
+  done
+  ln -s /lib/systemd/system/topogeo-web.service $enabled/topogeo.target.wants/
+  for link in $enabled/*.wants/*; do [ -e "$link" ] || { echo "no unit of $link"; exit 1; }; done
+  apt-get purge -q -y topogeo > /dev/null
+  [ "$(cd $enabled && echo *.wants/topogeo*)" = \
+    "$(echo multi-user.target.wants/topogeo-{discovery@0,worker@1}.service)" ] ||
+    { echo "enabled without topogeo:"; ls $enabled/*.wants; exit 1; }
+  apt-get purge -q -y topogeo-workers > /dev/null
+  [ -e $enabled/multi-user.target.wants/topography.service ] || { echo "another unit is disabled"; exit 1; }
   left=$(find / -xdev -iname "*topogeo*" -not -path "/proc/*" -not -path "/tmp/*" -not -path "/exchange/*" \
     -not -path "/var/log/*" -not -path "/var/lib/apt/*" -not -path "/var/cache/*" -not -path "/home/robot/*")
   [ -z "$left" ] || { echo "left behind:"; echo "$left"; exit 1; }
@@ -61,7 +80,7 @@ docker run --rm --network host -v "$build/packages:/packages:ro" -v "$source_dir
   install /packages/topogeo-workers_*.deb
   dpkg -L topogeo-workers > /tmp/files
   if command -v topogeo; then exit 1; fi
-  [ -e /etc/topogeo/worker.env ]
+  [ -e /etc/topogeo/worker.env ] && [ -e "/lib/systemd/system/topogeo-discovery@.service" ]
   ga_worker --help > /dev/null
   ga_worker &
   install /packages/topogeo-dev_*.deb g++ cmake make

@@ -16,7 +16,7 @@ printf 'FROM %s\nUSER root\nRUN apt-get update -q && apt-get install -q -y --no-
 cleanups+=("docker rm -f $machine")
 boot() {
   docker rm -f $machine > /dev/null 2>&1 || true
-  docker run -d --name $machine --hostname robot -e TOPOGEO_DOMAIN --no-healthcheck --tmpfs /run --tmpfs /run/lock "$@" \
+  docker run -d --name $machine --hostname robot --no-healthcheck --tmpfs /run --tmpfs /run/lock "$@" \
     "$image-systemd" /sbin/init > "$work/boot.log" 2>&1
 }
 here() { docker exec $machine "$@"; }
@@ -47,7 +47,9 @@ state() { here systemctl show -P "$2" "$1"; }
 is_state() { [ "$(state "$1" "$2")" = "$3" ]; }
 
 step "a wrong file of devices"
-here sed -i "s/^TOPOGEO_DOMAIN=.*/TOPOGEO_DOMAIN=$TOPOGEO_DOMAIN/" /etc/topogeo/topogeo.env /etc/topogeo/worker.env
+# Commands take both from there, too: nothing else here says them.
+here sed -i "s/^TOPOGEO_DOMAIN=.*/TOPOGEO_DOMAIN=$TOPOGEO_DOMAIN/; s/^TOPOGEO_ROBOT=.*/TOPOGEO_ROBOT=anna/" \
+  /etc/topogeo/topogeo.env /etc/topogeo/worker.env
 here sh -c 'topogeo config --devices > /etc/topogeo/devices.yaml'
 here systemctl enable --now topogeo.target topogeo-worker@1 > /dev/null 2>&1
 eventually 30 is_state topogeo-sensor-gateway ActiveState failed || fail "a gateway without ports goes on"
@@ -79,7 +81,8 @@ eventually 30 here test -e /var/lib/topogeo/map/map.sqlite || fail "no map"
 [ -x "$build/tests/drive_watch" ] || fail "drive_watch is not built"
 docker cp "$build/tests/drive_watch" $machine:/root/ > /dev/null
 docker exec -d $machine sh -c "exec nice -n -20 /root/drive_watch --domain $truth --log-level off > /root/motion"
-docker exec -d $machine sh -c 'exec nice -n -20 /root/drive_watch --commands --log-level off > /root/commands'
+docker exec -d $machine sh -c "exec nice -n -20 /root/drive_watch --domain $TOPOGEO_DOMAIN --robot anna --commands --log-level off \
+  > /root/commands"
 now_ms() { echo $(($(date +%s%N) / 1000000)); }
 drives() { here tail -n 1 /root/motion | awk '{ exit !($2 > 0.1) }'; }
 is_new() { ! is_state topogeo-navigator MainPID "$1" && ! is_state topogeo-navigator MainPID 0; }
@@ -181,4 +184,20 @@ for unit in navigator sensor-gateway local-mapper localizer map-store planner; d
   eventually 60 is_state topogeo-$unit ActiveState inactive || fail "topogeo-$unit ended with $(state topogeo-$unit Result)"
 done
 here test -s /var/lib/topogeo/map/map.pb || fail "no map at the end"
+
+step "removed, but not the workers"
+here systemctl enable --now topogeo-discovery@0 topogeo-worker@1 topogeo-web > /dev/null 2>&1
+here apt-get purge -q -y topogeo > "$work/purge.log" 2>&1 || { cat "$work/purge.log"; fail "topogeo cannot be purged"; }
+is_state topogeo-web ActiveState inactive || fail "a service goes on without its package"
+for unit in topogeo-discovery@0 topogeo-worker@1; do
+  { is_state $unit ActiveState active && here systemctl -q is-enabled $unit; } ||
+    fail "$unit ends or is disabled with a package that is not its own"
+done
+here apt-get purge -q -y topogeo-workers > "$work/purge.log" 2>&1 ||
+  { cat "$work/purge.log"; fail "topogeo-workers cannot be purged"; }
+for unit in topogeo-discovery@0 topogeo-worker@1; do
+  is_state $unit ActiveState inactive || fail "$unit goes on without its package"
+done
+left=$(here find /etc/systemd/system -lname '*topogeo*')
+[ -z "$left" ] || fail "enabled without a package: $left"
 step "the end"
