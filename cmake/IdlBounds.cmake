@@ -1,5 +1,6 @@
-# cmake -DOUTPUT=bounds.h -DFILES="a.idl;b.idl" -P IdlBounds.cmake: writes a header with the bounds of all
-# structs of the IDL files, which the code of fastddsgen does not check:
+# cmake -DOUTPUT=bounds.h -DFILES="a.idl;b.idl" -DSTAGING=folder -P IdlBounds.cmake: has the code of fastddsgen in
+# that folder, a.cxx and b.cxx, read no more elements of a sequence than its bound (read_bounded.h), and writes a header
+# with the bounds of all structs, for the checks of what was read or is to be sent:
 #
 #   template <class Check> void visit_bounds(const LocalMap& message, Check& check);
 #
@@ -20,12 +21,34 @@ function(fail file struct line)
   message(FATAL_ERROR "${file}: ${struct}: expected a member 'type name' with a known type: '${line}'")
 endfunction()
 
+# Has `source` of the caller, the code of fastddsgen, read at most `bound` elements into member `name` of `struct`.
+function(bound_reading struct name bound)
+  set(read "dcdr >> m_${name};")
+  string(FIND "${source}" "void topogeo::msg::${struct}::deserialize(" begin)
+  if(begin EQUAL -1)
+    message(FATAL_ERROR "no code reads ${struct}")
+  endif()
+  string(SUBSTRING "${source}" 0 ${begin} before)
+  string(SUBSTRING "${source}" ${begin} -1 function)
+  string(FIND "${function}" "${read}" begin)
+  string(FIND "${function}" "\n}" end)
+  if(begin EQUAL -1 OR begin GREATER end)
+    message(FATAL_ERROR "no code reads ${name} of ${struct}")
+  endif()
+  string(LENGTH "${read}" length)
+  math(EXPR end "${begin} + ${length}")
+  string(SUBSTRING "${function}" ${end} -1 after)
+  string(SUBSTRING "${function}" 0 ${begin} function)
+  set(source "${before}${function}topogeo::msg::read_bounded(dcdr, m_${name}, ${bound});${after}" PARENT_SCOPE)
+endfunction()
+
 # Adds the check of one member to `code` of the caller.
 macro(add_member file struct line)
   if("${line}" MATCHES "^sequence<([A-Za-z0-9_ ]+), *([A-Za-z0-9_]+)> ([a-zA-Z0-9_]+)$")
     set(type "${CMAKE_MATCH_1}")
     set(bound "${CMAKE_MATCH_2}")
     set(name "${CMAKE_MATCH_3}")
+    bound_reading(${struct} ${name} topogeo::msg::${bound})
     string(APPEND code "  check.size(\"${name}\", message.${name}().size(), ${bound});\n")
     if(type IN_LIST structs_to_visit)
       string(APPEND code "  check.inside(\"${name}\", [&] {\n"
@@ -60,6 +83,10 @@ macro(add_member file struct line)
 endmacro()
 
 foreach(file IN LISTS FILES)
+  cmake_path(GET file STEM stem)
+  file(READ ${STAGING}/${stem}.cxx source)
+  string(REPLACE "#include <fastcdr/Cdr.h>\n" "#include <fastcdr/Cdr.h>\n\n#include \"read_bounded.h\"\n" source
+         "${source}")
   file(READ ${file} text)
   string(REGEX REPLACE "//[^\n]*" "" text "${text}")
   string(REGEX MATCHALL "typedef [a-z ]+ [A-Za-z0-9]+" found "${text}")
@@ -98,6 +125,7 @@ foreach(file IN LISTS FILES)
                               "Check& check) {\n${code}}\n")
     endif()
   endforeach()
+  file(WRITE ${STAGING}/${stem}.cxx "${source}")
 endforeach()
 
 file(WRITE ${OUTPUT} "// Bounds of the messages, generated from the IDL by cmake/IdlBounds.cmake.\n#pragma once\n\n"

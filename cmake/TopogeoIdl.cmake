@@ -49,12 +49,13 @@ function(topogeo_add_idl)
   file(CONFIGURE OUTPUT ${generated}/type_supports.h CONTENT "#pragma once\n\n${type_supports}")
   set(bounds_output ${staging}/bounds.h)
   list(JOIN ARG_FILES "$<SEMICOLON>" bounded_files)  # one argument, though it goes through a list
-  set(bounds_command COMMAND ${CMAKE_COMMAND} -DOUTPUT=${bounds_output} "-DFILES=${bounded_files}"
+  set(bounds_command COMMAND ${CMAKE_COMMAND} -DOUTPUT=${bounds_output} "-DFILES=${bounded_files}" -DSTAGING=${staging}
                              -P ${PROJECT_SOURCE_DIR}/cmake/IdlBounds.cmake)
   if(ARG_UNBOUNDED)
     set(bounds_command "")
     set(bounds_output "")
   else()
+    configure_file(${PROJECT_SOURCE_DIR}/cmake/read_bounded.h ${generated}/read_bounded.h COPYONLY)
     list(APPEND outputs ${generated}/bounds.h)
   endif()
   set(sources ${outputs})

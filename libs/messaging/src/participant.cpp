@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -20,6 +21,7 @@
 #include "topogeo/messaging/plain_participant.hpp"
 #include "topogeo/messaging/revocations.hpp"
 #include "topogeo/messaging/shared_memory.hpp"
+#include "topogeo/support/log.hpp"
 
 #include "address_filter.hpp"
 #include "fast_dds/filter_info.hpp"
@@ -83,21 +85,28 @@ Entity* require(Entity* entity, const std::string& what) {
   return entity;
 }
 
+constexpr const char* kThisHost = "127.0.0.1";
+
 // Hosts to announce oneself to where there is no multicast: addresses or names, with ';' between.
+// A name without an address is left out, since the services of a robot go on without the others;
+// as it may be that of this host, its own address takes its place.
 void add_peers(dds::DomainParticipantQos& qos, const std::string& hosts) {
   using eprosima::fastrtps::rtps::IPLocator;
+  std::set<std::string> addresses;
   std::istringstream list(hosts);
   for (std::string host; std::getline(list, host, ';');) {
     if (host.empty()) continue;
-    const auto addresses = IPLocator::resolveNameDNS(host);
-    if (addresses.first.empty()) {
-      throw std::runtime_error("TOPOGEO_PEERS: '" + host + "' has no IPv4 address");
+    const std::set<std::string> found = IPLocator::resolveNameDNS(host).first;
+    if (found.empty()) {
+      spdlog::warn("TOPOGEO_PEERS: '{}' has no IPv4 address; it is left out until a restart", host);
+      addresses.insert(kThisHost);
     }
-    for (const std::string& address : addresses.first) {
-      eprosima::fastrtps::rtps::Locator_t locator;  // UDP; without a port: those of the domain
-      IPLocator::setIPv4(locator, address);
-      qos.wire_protocol().builtin.initialPeersList.push_back(locator);
-    }
+    addresses.insert(found.begin(), found.end());
+  }
+  for (const std::string& address : addresses) {
+    eprosima::fastrtps::rtps::Locator_t locator;  // UDP; without a port: those of the domain
+    IPLocator::setIPv4(locator, address);
+    qos.wire_protocol().builtin.initialPeersList.push_back(locator);
   }
   // With any peer given the middleware leaves the multicast address out.
 }
@@ -110,7 +119,7 @@ void add_ros_peers(dds::DomainParticipantQos& qos, std::uint32_t domain) {
   constexpr std::uint32_t kFirstPort = 7400;
   constexpr std::uint32_t kPortsOfDomain = 250;
   eprosima::fastrtps::rtps::Locator_t host;
-  IPLocator::setIPv4(host, "127.0.0.1");
+  IPLocator::setIPv4(host, kThisHost);
   eprosima::fastrtps::rtps::Locator_t network;
   IPLocator::setIPv4(network, "239.255.0.1");
   network.port = kFirstPort + kPortsOfDomain * domain;
