@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <system_error>
 #include <vector>
 
 #include "topogeo/command_line/command_line.hpp"
@@ -16,6 +17,7 @@
 #include "commands.hpp"
 #include "domain_checks.hpp"
 #include "domain_view.hpp"
+#include "host_units.hpp"
 #include "machine_checks.hpp"
 
 namespace topogeo::cli {
@@ -36,11 +38,13 @@ struct DoctorOptions {
 MachineQuestions questions_of(const DoctorOptions& options) {
   MachineQuestions questions;
   questions.domain = options.view.domain;
-  questions.map_folder = options.map.value_or(std::filesystem::exists(kInstalledState)
+  std::error_code unknown;
+  questions.map_folder = options.map.value_or(std::filesystem::exists(kInstalledState, unknown)
                                                   ? std::filesystem::path(kInstalledState) / "map"
-                                                  : std::filesystem::current_path());
+                                                  : std::filesystem::current_path(unknown));
+  if (questions.map_folder.empty()) questions.map_folder = ".";  // that folder was removed
   questions.devices = options.devices;
-  if (!questions.devices && std::filesystem::exists(kInstalledDevices)) {
+  if (!questions.devices && std::filesystem::exists(kInstalledDevices, unknown)) {
     questions.devices = kInstalledDevices;
   }
   return questions;
@@ -49,14 +53,19 @@ MachineQuestions questions_of(const DoctorOptions& options) {
 DomainFacts gather_domain_facts(const DomainView& view) {
   DomainFacts facts;
   facts.version = support::kVersion;
+  facts.domain = view.domain;
+  facts.host = support::host_name();
+  facts.units = host_units().on_domain;
   const messaging::Participant participant =
       join(view, "topogeo doctor", "status", /*observe=*/true);
   messaging::EventLoop loop;
   std::map<messaging::Handle, msg::ServiceStatus> services;
+  std::map<messaging::Handle, std::string> instances;  // by writer
   loop.add<msg::ServiceStatus>(
       messaging::Reader<msg::ServiceStatus>(participant),
       [&](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
         services[info.instance] = status;
+        instances[info.writer] = status.instance().to_string();
         facts.clocks[status.host().to_string()].add(status.stamp_ns(), support::wall_clock_ns());
       },
       [&](const messaging::SampleInfo& info) { services.erase(info.instance); });
@@ -64,6 +73,11 @@ DomainFacts gather_domain_facts(const DomainView& view) {
       view, loop, [&] { return services.size(); }, [] {}));
   for (auto& [instance, status] : services) facts.services.push_back(std::move(status));
   facts.endpoints = participant.discovered();
+  for (const messaging::RemoteEndpoint& endpoint : facts.endpoints) {
+    const auto instance = instances.find(endpoint.id);
+    if (instance == instances.end() || endpoint.partitions.empty()) continue;
+    facts.partitions[instance->second] = endpoint.partitions.front();
+  }
   return facts;
 }
 

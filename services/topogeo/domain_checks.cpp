@@ -1,8 +1,11 @@
 #include "domain_checks.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
+#include <string_view>
+#include <utility>
 
 #include "topogeo/support/format.hpp"
 
@@ -17,10 +20,13 @@ constexpr double kWrongClock_s = 0.5;
 constexpr double kPoorClock_s = 0.1;
 /// The first status of a service may be up to half a second old when it comes.
 constexpr std::size_t kLeastSamples = 2;
+/// A robot has one of each.
+constexpr auto kOnceForEachRobot = std::to_array<std::string_view>(
+    {"sensor_gateway", "local_mapper", "localizer", "map_store", "planner", "navigator"});
 
-std::string joined(const std::set<std::string>& texts) {
+std::string joined(const std::set<std::string>& texts, const char* between = ", ") {
   std::string all;
-  for (const std::string& text : texts) all += (all.empty() ? "" : ", ") + text;
+  for (const std::string& text : texts) all += (all.empty() ? "" : between) + text;
   return all;
 }
 
@@ -30,6 +36,64 @@ std::string name_of(const msg::ServiceStatus& status) {
 
 std::string name_of(const messaging::RemoteEndpoint& endpoint) {
   return endpoint.participant.empty() ? "an unnamed program" : "'" + endpoint.participant + "'";
+}
+
+// --- units
+
+Findings check_units(const DomainFacts& facts) {
+  const bool heard = std::ranges::any_of(facts.services, [&](const msg::ServiceStatus& status) {
+    return status.host() == facts.host.c_str();
+  });
+  if (facts.units == 0 || heard) return {};
+  return {{"", kProblem,
+           fmt::format("{} of this host {} and none is found on domain {}",
+                       facts.units == 1 ? "1 unit" : fmt::format("{} units", facts.units),
+                       facts.units == 1 ? "runs" : "run", facts.domain),
+           "this command looks elsewhere, or the services cannot be heard",
+           "use the environment of the services: TOPOGEO_DOMAIN, TOPOGEO_SECURITY and the others "
+           "of /etc/topogeo/topogeo.env (a PC with workers: worker.env)"}};
+}
+
+std::string good_units(const DomainFacts& facts) {
+  return facts.units == 0 ? "none runs on this host" : "services of this host are found";
+}
+
+// --- robots
+
+// One that is started again may be there twice on its host until the old one is forgotten.
+Findings check_robots(const DomainFacts& facts) {
+  using RobotInPartition = std::pair<std::string, std::string>;
+  std::map<RobotInPartition, std::map<std::string, std::set<std::string>>> hosts_of_services;
+  for (const msg::ServiceStatus& status : facts.services) {
+    const std::string service = status.service().to_string();
+    if (status.robot_id().size() == 0 || status.state() == msg::kServiceStopped ||
+        std::ranges::find(kOnceForEachRobot, service) == kOnceForEachRobot.end()) {
+      continue;
+    }
+    const auto partition = facts.partitions.find(status.instance().to_string());
+    hosts_of_services[{status.robot_id().to_string(),
+                       partition == facts.partitions.end() ? "" : partition->second}][service]
+        .insert(status.host().to_string());
+  }
+  Findings found;
+  for (const auto& [robot, hosts_of] : hosts_of_services) {
+    std::map<std::set<std::string>, std::set<std::string>> services_on;
+    for (const auto& [service, hosts] : hosts_of) {
+      if (hosts.size() > 1) services_on[hosts].insert(service);
+    }
+    for (const auto& [hosts, services] : services_on) {
+      found.push_back({"", kProblem,
+                       fmt::format("robot '{}' has {} on {}", robot.first, joined(services),
+                                   joined(hosts, " and ")),
+                       "scans of two robots mix, and map stores stop each other",
+                       "give each robot a name of its own: TOPOGEO_ROBOT in topogeo.env, --robot"});
+    }
+  }
+  return found;
+}
+
+std::string good_robots(const DomainFacts& /*facts*/) {
+  return "each has its services once";
 }
 
 // --- wire contract
@@ -159,6 +223,8 @@ std::string good_clocks(const DomainFacts& facts) {
 }
 
 constexpr auto kDomainChecks = std::to_array<Check<DomainFacts>>({
+    {"units", check_units, good_units},
+    {"robots", check_robots, good_robots},
     {"wire contract", check_wire, good_wire},
     {"versions", check_versions, good_versions},
     {"configuration", check_configurations, good_configurations},

@@ -34,12 +34,16 @@ class ClockLag {
 struct DomainFacts {
   std::vector<msg::ServiceStatus> services;  ///< the last of each
   std::vector<messaging::RemoteEndpoint> endpoints;
-  std::map<std::string, ClockLag> clocks;  ///< by host
-  std::string version;                     ///< of this program
+  std::map<std::string, std::string> partitions;  ///< by instance; runs have some of their own
+  std::map<std::string, ClockLag> clocks;         ///< by host
+  std::uint32_t domain = 0;
+  std::string host;       ///< that this program runs on
+  std::size_t units = 0;  ///< active ones of it whose services join a domain
+  std::string version;    ///< of this program
   std::uint32_t wire_version = msg::kSchemaVersion;
 };
 
-/// Wire contract, versions, configurations, quality of service, clocks.
+/// Units of this host, robots, wire contract, versions, configurations, quality of service, clocks.
 std::span<const Check<DomainFacts>> domain_checks();
 
 }  // namespace topogeo::cli

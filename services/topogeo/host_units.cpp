@@ -1,8 +1,10 @@
 #include "host_units.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <sstream>
 
@@ -11,41 +13,67 @@ namespace {
 
 /// As sd_booted(3) has it.
 constexpr const char* kSystemdRuns = "/run/systemd/system";
+constexpr std::string_view kOfServices = ".service";
+constexpr std::string_view kDiscoveryServer = "topogeo-discovery@";
+
+using Properties = std::map<std::string, std::string, std::less<>>;
+
+void add(const Properties& unit, HostUnits& units) {
+  const auto value = [&](std::string_view name) {
+    const auto found = unit.find(name);
+    return found == unit.end() ? std::string() : found->second;
+  };
+  std::string name = value("Id");
+  if (!name.ends_with(kOfServices)) return;
+  name.resize(name.size() - kOfServices.size());
+  const std::string state = value("ActiveState");
+  const std::string restarts = value("NRestarts");
+  // Between two starts it waits, and then it is as one that is started for the first time.
+  const bool starts_again = state == "activating" && !restarts.empty() && restarts != "0";
+  if (starts_again || value("SubState").starts_with("auto-restart")) {
+    units.idle.push_back({name, true});
+  } else if (state == "failed") {
+    units.idle.push_back({name, false});
+  } else if (state == "active" && !name.starts_with(kDiscoveryServer)) {
+    ++units.on_domain;
+  }
+}
 
 }  // namespace
 
-std::vector<IdleUnit> idle_units() {
+HostUnits host_units() {
   std::error_code error;
   if (!std::filesystem::is_directory(kSystemdRuns, error)) return {};
   const std::unique_ptr<FILE, int (*)(FILE*)> pipe(
-      ::popen("systemctl list-units --all --plain --no-legend --no-pager 'topogeo-*.service'"
-              " 2> /dev/null",
+      ::popen("systemctl show --no-pager --property=Id,ActiveState,SubState,NRestarts"
+              " 'topogeo-*.service' 2> /dev/null",
               "r"),
       ::pclose);
   if (pipe == nullptr) return {};
-  std::string listing;
+  std::string properties;
   std::array<char, 4096> part{};
   while (const std::size_t read = std::fread(part.data(), 1, part.size(), pipe.get())) {
-    listing.append(part.data(), read);
+    properties.append(part.data(), read);
   }
-  return idle_units(listing);
+  return host_units(properties);
 }
 
-std::vector<IdleUnit> idle_units(std::string_view listing) {
-  std::vector<IdleUnit> idle;
-  std::istringstream lines{std::string(listing)};
+HostUnits host_units(std::string_view properties) {
+  HostUnits units;
+  Properties unit;
+  std::istringstream lines{std::string(properties)};
   for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    std::string name;
-    std::string loaded;
-    std::string active;
-    std::string part;
-    if (!(words >> name >> loaded >> active >> part)) continue;
-    name = name.substr(0, name.rfind(".service"));
-    const bool restarts = part.starts_with("auto-restart");
-    if (restarts || active == "failed") idle.push_back({name, restarts});
+    const std::size_t sign = line.find('=');
+    if (line.empty()) {
+      add(unit, units);
+      unit.clear();
+    } else if (sign != std::string::npos) {
+      unit[line.substr(0, sign)] = line.substr(sign + 1);
+    }
   }
-  return idle;
+  add(unit, units);
+  std::ranges::sort(units.idle, {}, &IdleUnit::name);
+  return units;
 }
 
 }  // namespace topogeo::cli

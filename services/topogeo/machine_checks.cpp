@@ -85,16 +85,23 @@ std::string good_ports(const MachineFacts& facts) {
 // --- multicast
 
 constexpr const char* kFindEachOther = "services find each other by multicast";
-constexpr const char* kUseServer =
-    "or do without it: ROS_DISCOVERY_SERVER (deploy/README.md, \"How services find each other\")";
+
+std::string do_without(const MachineFacts& facts) {
+  return fmt::format("or do without it: {} (deploy/README.md, \"How services find each other\")",
+                     facts.secured ? "TOPOGEO_PEERS" : "ROS_DISCOVERY_SERVER");
+}
+
+std::string not_needed(const MachineFacts& facts) {
+  return fmt::format("not needed: {} is set", facts.found_by);
+}
 
 Findings check_multicast(const MachineFacts& facts) {
-  if (facts.discovery_server) return {};
+  if (!facts.found_by.empty()) return {};
   if (facts.multicast.empty()) {
     return {problem("no network interface is up that can do multicast", kFindEachOther,
                     fmt::format("`ip link set dev IF up multicast on` (lo on a machine by itself), "
                                 "{}",
-                                kUseServer))};
+                                do_without(facts)))};
   }
   Findings found;
   for (const MulticastProbe& probe : facts.multicast) {
@@ -104,20 +111,20 @@ Findings check_multicast(const MachineFacts& facts) {
                     probe.error),
         kFindEachOther,
         fmt::format("let UDP to 239.255.0.0/16 in and out (`nft list ruleset`, `iptables -L`), {}",
-                    kUseServer)));
+                    do_without(facts))));
   }
   return found;
 }
 
 std::string good_multicast(const MachineFacts& facts) {
-  if (facts.discovery_server) return "not needed: ROS_DISCOVERY_SERVER is set";
+  if (!facts.found_by.empty()) return not_needed(facts);
   std::string names;
   for (const MulticastProbe& probe : facts.multicast) names += " " + probe.interface;
   return fmt::format("packets to {} come back on{}", kDiscoveryGroup, names);
 }
 
 Findings check_route(const MachineFacts& facts) {
-  if (facts.discovery_server || facts.multicast_route) return {};
+  if (!facts.found_by.empty() || facts.multicast_route) return {};
   const std::string interface = facts.multicast.empty() ? "lo" : facts.multicast[0].interface;
   return {problem(fmt::format("no route leads to {}", kDiscoveryGroup),
                   "the system may refuse to send what services announce themselves with",
@@ -126,7 +133,7 @@ Findings check_route(const MachineFacts& facts) {
 
 std::string good_route(const MachineFacts& facts) {
   return facts.multicast_route ? fmt::format("there is one to {}", kDiscoveryGroup)
-                               : "not needed: ROS_DISCOVERY_SERVER is set";
+                               : not_needed(facts);
 }
 
 // --- buffers
@@ -236,6 +243,11 @@ std::string good_disk(const MachineFacts& facts) {
 }
 
 Findings check_map_folder(const MachineFacts& facts) {
+  if (!facts.closed_folder.empty()) {
+    return {problem(fmt::format("{} cannot look into {}", facts.user, facts.closed_folder),
+                    "started by this user, the map store would not start",
+                    "run it as the user of the services: `sudo -u topogeo topogeo doctor`")};
+  }
   if (facts.map_folder_error.empty()) return {};
   return {problem(fmt::format("{} cannot write there: {}", facts.user, facts.map_folder_error),
                   "the map store would not start",

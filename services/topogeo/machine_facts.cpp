@@ -72,8 +72,16 @@ void ask_for_ports(const FactSources& sources, MachineFacts& facts) {
   range >> facts.first_ephemeral_port >> facts.last_ephemeral_port;
 }
 
+/// Lists of hosts have ';' between them.
+bool names_hosts(const char* variable) {
+  return environment_text(variable).find_first_not_of(';') != std::string::npos;
+}
+
 void ask_for_network(const FactSources& sources, MachineFacts& facts) {
-  facts.discovery_server = !environment_text("ROS_DISCOVERY_SERVER").empty();
+  for (const char* variable : {"ROS_DISCOVERY_SERVER", "TOPOGEO_PEERS"}) {
+    if (facts.found_by.empty() && names_hosts(variable)) facts.found_by = variable;
+  }
+  facts.secured = !environment_text("TOPOGEO_SECURITY").empty();
   facts.multicast = probe_multicast();
   facts.multicast_route = has_multicast_route(sources.proc / "net/route");
   facts.receive_buffer_bytes = number_in(sources.proc / "sys/net/core/rmem_default");
@@ -99,7 +107,8 @@ std::string why_not_writable(const fs::path& folder) {
 void ask_for_shared_memory(const FactSources& sources, MachineFacts& facts) {
   const std::string profile = environment_text("TOPOGEO_DDS_PARTICIPANT");
   facts.uses_shared_memory = profile == "local";
-  if (!fs::is_directory(sources.shared_memory)) {
+  std::error_code unknown;
+  if (!fs::is_directory(sources.shared_memory, unknown)) {
     facts.shared_memory_error = sources.shared_memory.string() + ": is no folder";
     return;
   }
@@ -146,17 +155,23 @@ void ask_for_devices(const MachineQuestions& questions, MachineFacts& facts) {
   std::ranges::sort(facts.serial_ports, {}, &SerialPortFacts::path);
 }
 
-/// The nearest folder above that exists: a map folder is made when it is needed.
-fs::path existing_part(fs::path folder) {
-  folder = fs::absolute(folder);
-  while (!fs::exists(folder) && folder.has_relative_path()) folder = folder.parent_path();
-  return folder;
-}
-
+/// A map folder is made when it is needed, so the nearest one above that exists counts.
 void ask_for_disk(const fs::path& map_folder, MachineFacts& facts) {
-  const fs::path folder = existing_part(map_folder);
+  std::error_code error;
+  fs::path folder = fs::absolute(map_folder, error);
+  if (error) folder = map_folder;  // the current folder was removed
   facts.map_folder = map_folder.string();
-  facts.map_folder_error = why_not_writable(folder);
+  bool closed = false;
+  while (!fs::exists(folder, error) && folder.has_relative_path()) {
+    closed = error == std::errc::permission_denied;
+    if (error && !closed) facts.map_folder_error = folder.string() + ": " + error.message();
+    folder = folder.parent_path();
+  }
+  if (closed) {
+    facts.closed_folder = folder.string();
+  } else if (facts.map_folder_error.empty()) {
+    facts.map_folder_error = why_not_writable(folder);
+  }
   facts.disk_free_bytes = free_bytes(folder);
 }
 

@@ -36,7 +36,8 @@ struct MachineFacts {
   std::uint32_t last_ephemeral_port = 0;
 
   // network
-  bool discovery_server = false;  ///< multicast is not needed
+  std::string found_by;  ///< variable that makes multicast needless; empty: it is needed
+  bool secured = false;  ///< with TOPOGEO_SECURITY, which discovery servers do not know
   std::vector<MulticastProbe> multicast;
   bool multicast_route = false;
   std::uint64_t receive_buffer_bytes = 0;  ///< of a UDP socket, net.core.rmem_default
@@ -55,6 +56,7 @@ struct MachineFacts {
   // disk
   std::string map_folder;
   std::string map_folder_error;  ///< why it cannot be written; empty: it can
+  std::string closed_folder;     ///< above that of the map, which `user` may not look into
   std::uint64_t disk_free_bytes = 0;
 
   // memory and limits

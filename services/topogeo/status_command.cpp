@@ -54,7 +54,7 @@ int show_status(const StatusOptions& options) {
   StatusTable::Clock::time_point units_due{};
   const auto show_units = [&](StatusTable::Clock::time_point now) {
     if (!of_this_host || now < units_due) return;
-    table.show_units(idle_units());
+    table.show_units(host_units().idle);
     units_due = now + kUnitsPeriod;
   };
   loop.add<msg::ServiceStatus>(

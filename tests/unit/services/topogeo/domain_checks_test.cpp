@@ -40,6 +40,8 @@ messaging::RemoteEndpoint scan_endpoint(const std::string& participant, bool wri
 DomainFacts healthy_domain() {
   DomainFacts facts;
   facts.version = "1.2";
+  facts.host = "robot";
+  facts.units = 2;
   facts.services = {service_on("sensor_gateway", "robot"), service_on("localizer", "pc"),
                     service_on("ga_worker", "pc2")};
   facts.services[2].config_fingerprint(0);
@@ -70,6 +72,22 @@ void set_clock(DomainFacts& facts, std::int64_t lag_ns) {
 
 const std::vector<DomainFault>& domain_faults() {
   static const std::vector<DomainFault> kFaults = {
+      {"OtherDomainThanTheUnits", "units", Severity::kProblem,
+       "6 units of this host run and none is found on domain 3",
+       [](DomainFacts& f) {
+         f.host = "robot2";
+         f.units = 6;
+         f.domain = 3;
+       }},
+      {"OtherDomainThanTheUnit", "units", Severity::kProblem,
+       "1 unit of this host runs and none is found on domain 0",
+       [](DomainFacts& f) {
+         f.services.clear();
+         f.units = 1;
+       }},
+      {"TwoRobotsOfOneName", "robots", Severity::kProblem,
+       "robot 'r1' has sensor_gateway on pc2 and robot",
+       [](DomainFacts& f) { f.services.push_back(service_on("sensor_gateway", "pc2")); }},
       {"OtherWireVersion", "wire contract", Severity::kProblem,
        "'r1/old' speak version 9 of the wire contract",
        [](DomainFacts& f) {
@@ -121,6 +139,46 @@ TEST_P(DomainFaultTest, IsFoundAndNothingElse) {
 
 INSTANTIATE_TEST_SUITE_P(All, DomainFaultTest, testing::ValuesIn(domain_faults()),
                          [](const auto& fault) { return std::string(fault.param.name); });
+
+TEST(DomainChecks, ServicesOfTwoRobotsOfOneNameAreOneFinding) {
+  DomainFacts facts = healthy_domain();
+  for (const char* service : {"sensor_gateway", "planner", "navigator"}) {
+    for (const char* host : {"robot", "robot2"})
+      facts.services.push_back(service_on(service, host));
+  }
+  const std::vector<Finding> found = unwell(facts);
+  ASSERT_EQ(found.size(), 1U) << findings_text(found);
+  EXPECT_EQ(found[0].what, "robot 'r1' has navigator, planner, sensor_gateway on robot and robot2");
+  EXPECT_THAT(found[0].remedy, HasSubstr("TOPOGEO_ROBOT"));
+}
+
+TEST(DomainChecks, WhatMayBeThereTwiceIsNoSecondRobot) {
+  DomainFacts facts = healthy_domain();
+  const auto add = [&](const std::string& service, const std::string& host,
+                       const std::string& instance) -> msg::ServiceStatus& {
+    facts.services.push_back(service_on(service, host));
+    messaging::set_service(facts.services.back(), service, instance);
+    return facts.services.back();
+  };
+  add("sensor_gateway", "robot", "started again");
+  add("ga_worker", "robot", "as many as there are");
+  add("web", "robot", "page 1");
+  add("web", "pc", "page 2");
+  add("localizer", "robot", "moved to the PC").state(msg::kServiceStopped);
+  messaging::set_header(add("sensor_gateway", "robot2", "of another"), "r2", 0, 0);
+  add("sensor_gateway", "pc", "of a run");
+  facts.partitions = {{"robot-1", "topogeo"}, {"of a run", "run-17"}};
+  messaging::set_header(add("map_store", "pc", "of all 1"), "", 0, 0);
+  messaging::set_header(add("map_store", "pc2", "of all 2"), "", 0, 0);
+  EXPECT_THAT(unwell(facts), IsEmpty());
+}
+
+TEST(DomainChecks, HostsWithoutUnitsNeedNotHaveServices) {
+  DomainFacts facts = healthy_domain();
+  facts.host = "desk";
+  facts.units = 0;
+  EXPECT_THAT(unwell(facts), IsEmpty());
+}
 
 TEST(DomainChecks, EachHasAFaultThatIsInjected) {
   std::set<std::string> injected;

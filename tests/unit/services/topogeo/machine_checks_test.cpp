@@ -10,6 +10,7 @@
 namespace topogeo::cli {
 namespace {
 
+using testing::AllOf;
 using testing::Each;
 using testing::Field;
 using testing::HasSubstr;
@@ -71,6 +72,18 @@ const std::vector<MachineFault>& machine_faults() {
       {"MulticastLost", "multicast", Severity::kProblem, "eth0: a packet to 239.255.0.1 is lost",
        "ROS_DISCOVERY_SERVER",
        [](MachineFacts& f) { f.multicast[0].error = "nothing comes back"; }},
+      {"MulticastLostToTheSecured", "multicast", Severity::kProblem, "eth0: a packet",
+       "TOPOGEO_PEERS",
+       [](MachineFacts& f) {
+         f.multicast[0].error = "nothing comes back";
+         f.secured = true;
+       }},
+      {"NoInterfaceForTheSecured", "multicast", Severity::kProblem, "no network interface",
+       "TOPOGEO_PEERS",
+       [](MachineFacts& f) {
+         f.multicast.clear();
+         f.secured = true;
+       }},
       {"NoRoute", "route", Severity::kProblem, "no route leads to 239.255.0.1",
        "ip route add 239.255.0.0/16 dev eth0", [](MachineFacts& f) { f.multicast_route = false; }},
       {"SmallBuffers", "UDP buffers", Severity::kProblem, "65 KB", "sysctl -w net.core.rmem_max",
@@ -108,6 +121,9 @@ const std::vector<MachineFault>& machine_faults() {
       {"MapFolderClosed", "map folder", Severity::kProblem, "robot cannot write there",
        "install -d -o robot /var/lib/topogeo/map",
        [](MachineFacts& f) { f.map_folder_error = "/var/lib/topogeo/map: Permission denied"; }},
+      {"MapFolderOutOfSight", "map folder", Severity::kProblem,
+       "robot cannot look into /var/lib/topogeo", "sudo -u topogeo",
+       [](MachineFacts& f) { f.closed_folder = "/var/lib/topogeo"; }},
       {"MemoryLimit", "memory", Severity::kProblem, "no more than 100 MB", "MemoryMax",
        [](MachineFacts& f) { f.memory_limit_bytes = 100'000'000; }},
       {"MemoryUsedUp", "memory", Severity::kProblem, "100 MB are free", "end other programs",
@@ -154,12 +170,17 @@ TEST(MachineChecks, EachHasAFaultThatIsInjected) {
 
 TEST(MachineChecks, WhatIsNotUsedNeedNotWork) {
   MachineFacts facts = healthy();
-  facts.discovery_server = true;
   facts.multicast.clear();
   facts.multicast_route = false;
   facts.uses_shared_memory = false;
   facts.shared_memory_error = "/dev/shm: is no folder";
-  EXPECT_THAT(found_in(facts), IsEmpty());
+  for (const std::string variable : {"ROS_DISCOVERY_SERVER", "TOPOGEO_PEERS"}) {
+    facts.found_by = variable;
+    EXPECT_THAT(found_in(facts), IsEmpty());
+    EXPECT_THAT(findings_text(run_checks(machine_checks(), facts)),
+                AllOf(HasSubstr("multicast      not needed: " + variable + " is set"),
+                      HasSubstr("route          not needed: " + variable + " is set")));
+  }
 }
 
 TEST(DoctorReport, TextAndJsonHaveEverything) {

@@ -2,6 +2,7 @@
 #include "topogeo/machine_facts.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <string>
 
@@ -155,6 +156,46 @@ TEST_F(MachineFactsTest, FolderOfTheMap) {
   write("file", "");
   questions_.map_folder = folder_ / "file/map";
   EXPECT_THAT(facts().map_folder_error, HasSubstr("file"));
+  fs::create_symlink("loop", folder_ / "loop");
+  questions_.map_folder = folder_ / "loop/map";
+  EXPECT_THAT(facts().map_folder_error, HasSubstr("loop"));
+}
+
+TEST_F(MachineFactsTest, FolderOfTheMapThatOthersMayNotLookInto) {
+  fs::create_directories(folder_ / "state/map/of/one");
+  fs::permissions(folder_ / "state", fs::perms::none);
+  questions_.map_folder = folder_ / "state/map/of/one";
+  // Root looks into any folder.
+  const bool root = ::geteuid() == 0;
+  constexpr uid_t kNobody = 65534;
+  if (root) ASSERT_EQ(::seteuid(kNobody), 0);
+  const MachineFacts found = facts();
+  if (root) ASSERT_EQ(::seteuid(0), 0);
+  EXPECT_EQ(found.closed_folder, (folder_ / "state").string());
+  EXPECT_EQ(found.map_folder_error, "");
+  EXPECT_GT(found.disk_free_bytes, 0U);
+  fs::permissions(folder_ / "state", fs::perms::owner_all);
+  questions_.map_folder = folder_ / "map";
+  EXPECT_EQ(facts().closed_folder, "");
+}
+
+TEST_F(MachineFactsTest, VariablesThatMakeMulticastNeedless) {
+  const auto found_by = [&](const char* servers, const char* peers) {
+    ::setenv("ROS_DISCOVERY_SERVER", servers, 1);
+    ::setenv("TOPOGEO_PEERS", peers, 1);
+    std::string by = facts().found_by;
+    ::unsetenv("ROS_DISCOVERY_SERVER");
+    ::unsetenv("TOPOGEO_PEERS");
+    return by;
+  };
+  EXPECT_EQ(found_by("", ""), "");
+  EXPECT_EQ(found_by("", ";"), "") << "names no host";
+  EXPECT_EQ(found_by("", "10.0.0.1;10.0.0.2"), "TOPOGEO_PEERS");
+  EXPECT_EQ(found_by("10.0.0.1:11811", ""), "ROS_DISCOVERY_SERVER");
+  EXPECT_FALSE(facts().secured);
+  ::setenv("TOPOGEO_SECURITY", "/etc/topogeo/security", 1);
+  EXPECT_TRUE(facts().secured);
+  ::unsetenv("TOPOGEO_SECURITY");
 }
 
 TEST_F(MachineFactsTest, MemoryAndTheLeastOfItsLimits) {
