@@ -3,8 +3,9 @@
 //   topogeo_first_pose [--runs N]
 //
 // Starts `topogeo run --sim` (simulator with emulated laser and base, gateway, local mapper,
-// localizer, map store, planner, a worker) and, without a simulator, `topogeo run --log` of a drive
-// through the same floor, each from the beginning, and listens to the topic of the pose.
+// localizer, map store, planner, a worker), the same with `--explore` (and the navigator) and,
+// without a simulator, `topogeo run --log` of a drive through the same floor, each from the
+// beginning, and listens to the topic of the pose.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -15,6 +16,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <unistd.h>
@@ -77,12 +79,13 @@ void measure(std::size_t runs) {
   const auto domain = static_cast<std::uint32_t>(100 + ::getpid() % 100);
   std::printf(
       "| start | runs | first pose after s, median | least | most |\n|---|---|---|---|---|\n");
-  for (const bool simulated : {false, true}) {
+  const std::vector<std::pair<const char*, std::vector<std::string>>> starts = {
+      {"--log", {"--log", work / "floor.clf", "--rate", "realtime"}},
+      {"--sim, with emulated devices", {"--sim", world}},
+      {"--sim --explore, the navigator, too", {"--sim", world, "--explore"}}};
+  for (const auto& [name, source] : starts) {
     std::vector<double> times_s;
     for (std::size_t i = 0; i < runs; ++i) {
-      const std::vector<std::string> source =
-          simulated ? std::vector<std::string>{"--sim", world}
-                    : std::vector<std::string>{"--log", work / "floor.clf", "--rate", "realtime"};
       std::vector<std::string> arguments{"run", "--out",    work / "out",          "--workers",
                                          "1",   "--domain", std::to_string(domain)};
       arguments.insert(arguments.end(), source.begin(), source.end());
@@ -90,8 +93,7 @@ void measure(std::size_t runs) {
       std::filesystem::remove_all(work / "out");
     }
     std::sort(times_s.begin(), times_s.end());
-    std::printf("| topogeo run %s | %zu | %.2f | %.2f | %.2f |\n",
-                simulated ? "--sim, with emulated devices" : "--log", runs,
+    std::printf("| topogeo run %s | %zu | %.2f | %.2f | %.2f |\n", name, runs,
                 times_s[times_s.size() / 2], times_s.front(), times_s.back());
     std::fflush(stdout);
   }
