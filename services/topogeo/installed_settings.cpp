@@ -44,7 +44,8 @@ std::map<std::string, std::string> environment_in(std::istream& file) {
     line = without_blanks(line);
     const std::size_t sign = line.find('=');
     if (line.empty() || line[0] == '#' || line[0] == ';' || sign == std::string::npos) continue;
-    variables[without_blanks(line.substr(0, sign))] = unquoted(without_blanks(line.substr(sign + 1)));
+    variables[without_blanks(line.substr(0, sign))] =
+        unquoted(without_blanks(line.substr(sign + 1)));
   }
   return variables;
 }

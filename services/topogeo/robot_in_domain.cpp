@@ -26,8 +26,8 @@ void wait_for_services(messaging::EventLoop& loop, const RobotInDomain& robot,
   }
   if (messaging::SignalStop::received() != 0) return;
   const std::string missing = client.missing();
-  throw std::runtime_error(nothing_alive(
-      robot.view, (missing.empty() ? "navigator" : missing) + " of robot '" + robot.robot_id + "'"));
+  throw std::runtime_error(nothing_alive(robot.view, (missing.empty() ? "navigator" : missing) +
+                                                         " of robot '" + robot.robot_id + "'"));
 }
 
 void call_off(messaging::EventLoop& loop, GoalClient& client) {

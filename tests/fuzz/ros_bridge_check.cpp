@@ -30,7 +30,7 @@ namespace {
 using ros_bridge::IntakeDrop;
 using ros_bridge::ScanIntake;
 
-constexpr std::int64_t kNow_ns = kRosNow_ns;
+constexpr std::int64_t kScanTime_ns = kRosNow_ns;
 constexpr std::int64_t kTick_ns = 100'000'000;
 /// The longest `transforms.tolerance_s`.
 constexpr std::int64_t kTolerance_ns = 5'000'000'000;
@@ -112,13 +112,13 @@ struct IntakeRun {
 
   void add(const geometry::OdometrySample& sample) { static_cast<void>(intake.add(sample)); }
   void add(const ros::LaserScan& scan) {
-    intake.add(scan, kNow_ns);
+    intake.add(scan, kScanTime_ns);
     ++scans;
   }
 
   /// The scans that leave; each of the others is counted by its reason.
   std::vector<ScanIntake::Leaving> finish() {
-    std::vector<ScanIntake::Leaving> leaving = intake.take(kNow_ns);
+    std::vector<ScanIntake::Leaving> leaving = intake.take(kScanTime_ns);
     for (const ScanIntake::Leaving& scan : leaving) check_leaving(scan.scan);
     std::uint64_t dropped = 0;
     for (std::size_t i = 0; i < ros_bridge::kIntakeDrops; ++i) {
@@ -182,12 +182,12 @@ bool check_frames(const ros::TFMessage& message) {
         edge.parent.size() <= ros::kLongestFrameName && edge.child.size() <= ros::kLongestFrameName,
         "the names of frames that are kept are short");
   }
-  run.add({kNow_ns, {}, 1.0, 1.0});
-  run.add({kNow_ns + kTick_ns, {0.1, 0.0, 0.1}, 1.0, 1.0});
+  run.add({kScanTime_ns, {}, 1.0, 1.0});
+  run.add({kScanTime_ns + kTick_ns, {0.1, 0.0, 0.1}, 1.0, 1.0});
   if (!message.transforms_().empty()) {
-    run.add(scan_at(kNow_ns, message.transforms_().back().child_frame_id_()));
+    run.add(scan_at(kScanTime_ns, message.transforms_().back().child_frame_id_()));
   }
-  run.add(scan_at(kNow_ns + kTick_ns));
+  run.add(scan_at(kScanTime_ns + kTick_ns));
   static_cast<void>(run.finish());
   return kept > 0;
 }
@@ -228,7 +228,7 @@ ros::LaserScan scan_at(std::int64_t stamp_ns, const std::string& frame) {
   return scan;
 }
 
-bool receive(const ros::LaserScan& message) {
+bool receive_in_bridge(const ros::LaserScan& message) {
   const std::string frame = ros::frame_name(message.header_().frame_id_());
   const std::int64_t stamp_ns = ros::stamp_ns_of(message.header_().stamp_());
   bool taken = false;
@@ -254,34 +254,34 @@ bool receive(const ros::LaserScan& message) {
   return taken;
 }
 
-bool receive(const ros::Odometry& message) {
+bool receive_in_bridge(const ros::Odometry& message) {
   const auto sample = ros_bridge::to_sample(message);
   return sample && check_odometry(*sample);
 }
 
-bool receive(const ros::TFMessage& message) {
+bool receive_in_bridge(const ros::TFMessage& message) {
   const bool moves = check_odometry_transforms(message);
   return check_frames(message) || moves;
 }
 
-bool receive(const ros::PoseStamped& message) {
+bool receive_in_bridge(const ros::PoseStamped& message) {
   const service::Goal goal = ros_bridge::to_goal(message, {}, geometry::Pose2{1.0, 2.0, 0.5},
                                                  geometry::Pose2{-1.0, 0.5, -2.0});
-  check_leaving(service::to_msg(goal, "robot", kNow_ns, 0),
+  check_leaving(service::to_msg(goal, "robot", kScanTime_ns, 0),
                 [](const msg::Goal& sent) { return service::from_msg(sent); });
   return true;
 }
 
-bool receive(const ros::PoseWithCovarianceStamped& message) {
+bool receive_in_bridge(const ros::PoseWithCovarianceStamped& message) {
   const service::LocalizationCommand command = ros_bridge::to_set_pose(message, "map");
-  check_leaving(service::to_msg(command, "robot", kNow_ns, 0),
+  check_leaving(service::to_msg(command, "robot", kScanTime_ns, 0),
                 [](const msg::LocalizationCommand& sent) { return service::from_msg(sent); });
   return true;
 }
 
-bool receive(const ros::Twist& message) {
+bool receive_in_bridge(const ros::Twist& message) {
   msg::MotionCommand command = ros_bridge::to_motion(message);
-  messaging::set_header(command, "robot", kNow_ns, 0);
+  messaging::set_header(command, "robot", kScanTime_ns, 0);
   check_leaving(command, [](const msg::MotionCommand& sent) { return sent.linear_mps(); });
   require(std::isfinite(command.linear_mps()) && std::isfinite(command.angular_radps()),
           "velocities are finite");
@@ -292,8 +292,8 @@ bool receive(const ros::Twist& message) {
   return true;
 }
 
-bool receive(const ros::TwistStamped& message) {
-  return receive(message.twist_());
+bool receive_in_bridge(const ros::TwistStamped& message) {
+  return receive_in_bridge(message.twist_());
 }
 
 }  // namespace topogeo::fuzz

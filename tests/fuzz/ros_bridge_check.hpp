@@ -22,13 +22,13 @@ ros::LaserScan scan_at(std::int64_t stamp_ns, const std::string& frame = "laser"
 // Each returns whether the bridge makes something of the message. Throws std::invalid_argument,
 // which the bridge counts, and BrokenPromise.
 
-bool receive(const ros::LaserScan& message);
-bool receive(const ros::Odometry& message);
+bool receive_in_bridge(const ros::LaserScan& message);
+bool receive_in_bridge(const ros::Odometry& message);
 /// As of /tf_static, and as of /tf with each transform one of odom -> robot.
-bool receive(const ros::TFMessage& message);
-bool receive(const ros::PoseStamped& message);
-bool receive(const ros::PoseWithCovarianceStamped& message);
-bool receive(const ros::Twist& message);
-bool receive(const ros::TwistStamped& message);
+bool receive_in_bridge(const ros::TFMessage& message);
+bool receive_in_bridge(const ros::PoseStamped& message);
+bool receive_in_bridge(const ros::PoseWithCovarianceStamped& message);
+bool receive_in_bridge(const ros::Twist& message);
+bool receive_in_bridge(const ros::TwistStamped& message);
 
 }  // namespace topogeo::fuzz

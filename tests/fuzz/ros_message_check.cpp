@@ -60,7 +60,7 @@ template <class Message>
 std::string sample_of();
 
 template <class Message>
-std::size_t check_bytes(std::string_view bytes) {
+std::size_t check_payload(std::string_view bytes) {
   const messaging::TopicInfo& topic = ros::reader_info<Message>("/fuzz");
   Slot<Message> fresh(topic);
   const bool readable = fresh.read(bytes);
@@ -77,7 +77,7 @@ std::size_t check_bytes(std::string_view bytes) {
   require(again.read(sent), "what was sent can be read");
   require(again.write() == sent, "sending what was read changes nothing");
   try {
-    return receive(fresh.message()) ? 2 : 1;
+    return receive_in_bridge(fresh.message()) ? 2 : 1;
   } catch (const std::invalid_argument&) {
     return 1;
   }
@@ -134,37 +134,37 @@ std::string sample_of() {
   return sample;
 }
 
-struct Checked {
+struct RosType {
   std::string_view type;
   std::size_t (*check)(std::string_view);
   std::string (*sample)();
 };
 
 template <class Message>
-constexpr Checked checked(std::string_view type) {
-  return {type, check_bytes<Message>, sample_of<Message>};
+constexpr RosType ros_type(std::string_view type) {
+  return {type, check_payload<Message>, sample_of<Message>};
 }
 
-constexpr Checked kTypes[] = {checked<ros::LaserScan>("LaserScan"),
-                              checked<ros::Odometry>("Odometry"),
-                              checked<ros::TFMessage>("TFMessage"),
-                              checked<ros::PoseStamped>("PoseStamped"),
-                              checked<ros::PoseWithCovarianceStamped>("PoseWithCovarianceStamped"),
-                              checked<ros::Twist>("Twist"),
-                              checked<ros::TwistStamped>("TwistStamped")};
+constexpr RosType kTypes[] = {ros_type<ros::LaserScan>("LaserScan"),
+                              ros_type<ros::Odometry>("Odometry"),
+                              ros_type<ros::TFMessage>("TFMessage"),
+                              ros_type<ros::PoseStamped>("PoseStamped"),
+                              ros_type<ros::PoseWithCovarianceStamped>("PoseWithCovarianceStamped"),
+                              ros_type<ros::Twist>("Twist"),
+                              ros_type<ros::TwistStamped>("TwistStamped")};
 
 }  // namespace
 
 std::size_t check_ros_message(std::string_view bytes) {
   const std::size_t end = bytes.find('\n');
-  const auto* const type = std::ranges::find(kTypes, bytes.substr(0, end), &Checked::type);
+  const auto* const type = std::ranges::find(kTypes, bytes.substr(0, end), &RosType::type);
   if (end == std::string_view::npos || type == std::end(kTypes)) return 0;
   return type->check(bytes.substr(end + 1));
 }
 
 std::vector<std::string> sample_ros_messages() {
   std::vector<std::string> messages;
-  for (const Checked& type : kTypes) {
+  for (const RosType& type : kTypes) {
     messages.push_back(std::string(type.type) + "\n" + type.sample());
   }
   return messages;

@@ -11,7 +11,8 @@ namespace topogeo::support {
 [[nodiscard]] bool is_control(char byte);
 
 /// The text with a question mark in place of each control character, those of two bytes in UTF-8
-/// (U+0080 to U+009F) included: what a stranger sends neither forges a line nor commands a terminal.
+/// (U+0080 to U+009F) included: what a stranger sends neither forges a line nor commands a
+/// terminal.
 [[nodiscard]] std::string printable(std::string_view text);
 
 }  // namespace topogeo::support
