@@ -374,11 +374,11 @@ std::size_t check_bytes(std::string_view bytes) {
   if (topic.find_defect(&message)) return 0;
   eprosima::fastrtps::rtps::InstanceHandle_t handle;
   if (type->m_isGetKeyDefined) static_cast<void>(type.get_key(&message, &handle, true));
-  const std::string sent = written(message, type);
+  const std::string sent = written_payload(message, type);
   Message again;
   Arrived arrived(sent);
   require(type.deserialize(&arrived.payload, &again), "what was sent can be read");
-  require(written(again, type) == sent, "sending what was read changes nothing");
+  require(written_payload(again, type) == sent, "sending what was read changes nothing");
   try {
     receive(message);
   } catch (const std::invalid_argument&) {
@@ -528,7 +528,7 @@ std::string sample_message() {
   fill(message);
   messaging::set_header(message, "robot", kNow_ns, 0);
   eprosima::fastdds::dds::TypeSupport type(messaging::TopicTraits<Message>::info().make_type());
-  return written(message, type);
+  return written_payload(message, type);
 }
 
 struct Checked {

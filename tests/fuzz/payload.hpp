@@ -26,7 +26,7 @@ struct Arrived {
 };
 
 template <class Message>
-std::string written(const Message& message, eprosima::fastdds::dds::TypeSupport& type) {
+std::string written_payload(const Message& message, eprosima::fastdds::dds::TypeSupport& type) {
   void* const data = const_cast<Message*>(&message);  // NOLINT: their interface; it only reads
   Payload payload(type.get_serialized_size_provider(data)());
   require(type.serialize(data, &payload), "a message without a defect can be sent");

@@ -36,7 +36,7 @@ class Slot {
     return !topic_.find_defect(data_);
   }
   [[nodiscard]] const Message& message() const { return *static_cast<const Message*>(data_); }
-  std::string write() { return written(message(), type_); }
+  std::string write() { return written_payload(message(), type_); }
 
  private:
   const messaging::TopicInfo& topic_;
@@ -129,7 +129,7 @@ std::string sample_of() {
     Message message;
     fill(message);
     eprosima::fastdds::dds::TypeSupport type(ros::writer_info<Message>("/fuzz").make_type());
-    return written(message, type);
+    return written_payload(message, type);
   }();
   return sample;
 }
