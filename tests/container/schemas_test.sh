@@ -36,6 +36,11 @@ def write(name, documents):
         lines.append(f"export const document{number}: Kind{number} = {json.dumps(document, indent=1)};")
     (work / f"{name}.ts").write_text("\n".join(lines))
 
+def with_faults(text, faults):
+    for name, (right, wrong) in faults.items():
+        assert right in text, right
+        yield "bad_" + name, text.replace(right, wrong, 1)
+
 faults = {
     "misspelt": ("timeoutSeconds: ", "timeoutSecond: "),
     "missing": ("serviceName: ", "# "),
@@ -47,9 +52,8 @@ for path in map(pathlib.Path, sys.argv[3:]):
     text = path.read_text()
     write("good_" + path.stem, yaml.safe_load_all(text))
     if path.stem == "pool":
-        for name, (right, wrong) in faults.items():
-            assert right in text, right
-            write("bad_" + name, yaml.safe_load_all(text.replace(right, wrong, 1)))
+        for name, faulty in with_faults(text, faults):
+            write(name, yaml.safe_load_all(faulty))
 
 # What stands in JSON for a type: an enumeration of texts is its texts.
 dashboard = """import { Dashboard } from "@grafana/schema";
@@ -65,9 +69,8 @@ faults = {
 }
 text = pathlib.Path(sys.argv[2]).read_text()
 (work / "good_dashboard.ts").write_text(dashboard + text)
-for name, (right, wrong) in faults.items():
-    assert right in text, right
-    (work / f"bad_{name}.ts").write_text(dashboard + text.replace(right, wrong, 1))
+for name, faulty in with_faults(text, faults):
+    (work / f"{name}.ts").write_text(dashboard + faulty)
 PY
 cat > "$work/tsconfig.json" <<'JSON'
 {

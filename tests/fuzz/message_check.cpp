@@ -531,33 +531,20 @@ std::string sample_message() {
   return written_payload(message, type);
 }
 
-struct Checked {
-  std::string_view topic;
-  std::size_t (*check)(std::string_view);
-  std::string (*sample)();
-};
-
 #define TOPOGEO_TOPIC(Type, name, role, replay_role, addressee) \
   {name, check_bytes<msg::Type>, sample_message<msg::Type>},
-constexpr Checked kTopics[] = {
+constexpr MessageKind kTopics[] = {
 #include "topogeo/messaging/topics.def"
 };
 
 }  // namespace
 
 std::size_t check_message(std::string_view bytes) {
-  const std::size_t end = bytes.find('\n');
-  const auto* const topic = std::ranges::find(kTopics, bytes.substr(0, end), &Checked::topic);
-  if (end == std::string_view::npos || topic == std::end(kTopics)) return 0;
-  return topic->check(bytes.substr(end + 1));
+  return check_named(kTopics, bytes);
 }
 
 std::vector<std::string> sample_messages() {
-  std::vector<std::string> messages;
-  for (const Checked& topic : kTopics) {
-    messages.push_back(std::string(topic.topic) + "\n" + topic.sample());
-  }
-  return messages;
+  return sample_inputs(kTopics);
 }
 
 }  // namespace topogeo::fuzz

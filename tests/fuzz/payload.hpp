@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <fastdds/dds/topic/TypeSupport.hpp>
 
@@ -31,6 +33,30 @@ std::string written_payload(const Message& message, eprosima::fastdds::dds::Type
   Payload payload(type.get_serialized_size_provider(data)());
   require(type.serialize(data, &payload), "a message without a defect can be sent");
   return {reinterpret_cast<const char*>(payload.data), payload.length};  // NOLINT: bytes
+}
+
+/// What an input names in its first line; behind it is a payload.
+struct MessageKind {
+  std::string_view name;
+  std::size_t (*check)(std::string_view payload);
+  std::string (*sample)();  ///< a payload that passes
+};
+
+/// The check of the kind that the input names; 0 when it names none.
+inline std::size_t check_named(std::span<const MessageKind> kinds, std::string_view bytes) {
+  const std::size_t end = bytes.find('\n');
+  const auto kind = std::ranges::find(kinds, bytes.substr(0, end), &MessageKind::name);
+  if (end == std::string_view::npos || kind == kinds.end()) return 0;
+  return kind->check(bytes.substr(end + 1));
+}
+
+/// An input of each kind.
+inline std::vector<std::string> sample_inputs(std::span<const MessageKind> kinds) {
+  std::vector<std::string> inputs;
+  for (const MessageKind& kind : kinds) {
+    inputs.push_back(std::string(kind.name) + "\n" + kind.sample());
+  }
+  return inputs;
 }
 
 }  // namespace topogeo::fuzz

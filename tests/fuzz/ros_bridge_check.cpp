@@ -30,11 +30,9 @@ namespace {
 using ros_bridge::IntakeDrop;
 using ros_bridge::ScanIntake;
 
-constexpr std::int64_t kScanTime_ns = kRosNow_ns;
 constexpr std::int64_t kTick_ns = 100'000'000;
 /// The longest `transforms.tolerance_s`.
 constexpr std::int64_t kTolerance_ns = 5'000'000'000;
-constexpr geometry::Pose2 kMounting = kRosMounting;
 
 // What leaves the bridge.
 
@@ -96,14 +94,14 @@ struct IntakeRun {
       : intake(options_of(sweep)) {
     intake.set_robot_frame("base_link");
     Eigen::Isometry3d T_robot_laser = Eigen::Isometry3d::Identity();
-    T_robot_laser.translation().x() = kMounting.x_m;
+    T_robot_laser.translation().x() = kRosMounting.x_m;
     if (upside_down) T_robot_laser.linear() = Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
     intake.frames().put("base_link", laser_frame, T_robot_laser);
   }
 
   static ros_bridge::IntakeOptions options_of(ros::SweepOrder sweep) {
     ros_bridge::IntakeOptions options;
-    options.T_robot_laser = kMounting;
+    options.T_robot_laser = kRosMounting;
     options.longest_extrapolation_ns = 5 * kTick_ns;
     options.most_beams = msg::kMaxBeams;
     options.sweep = sweep;
@@ -112,13 +110,13 @@ struct IntakeRun {
 
   void add(const geometry::OdometrySample& sample) { static_cast<void>(intake.add(sample)); }
   void add(const ros::LaserScan& scan) {
-    intake.add(scan, kScanTime_ns);
+    intake.add(scan, kRosNow_ns);
     ++scans;
   }
 
   /// The scans that leave; each of the others is counted by its reason.
   std::vector<ScanIntake::Leaving> finish() {
-    std::vector<ScanIntake::Leaving> leaving = intake.take(kScanTime_ns);
+    std::vector<ScanIntake::Leaving> leaving = intake.take(kRosNow_ns);
     for (const ScanIntake::Leaving& scan : leaving) check_leaving(scan.scan);
     std::uint64_t dropped = 0;
     for (std::size_t i = 0; i < ros_bridge::kIntakeDrops; ++i) {
@@ -182,12 +180,12 @@ bool check_frames(const ros::TFMessage& message) {
         edge.parent.size() <= ros::kLongestFrameName && edge.child.size() <= ros::kLongestFrameName,
         "the names of frames that are kept are short");
   }
-  run.add({kScanTime_ns, {}, 1.0, 1.0});
-  run.add({kScanTime_ns + kTick_ns, {0.1, 0.0, 0.1}, 1.0, 1.0});
+  run.add({kRosNow_ns, {}, 1.0, 1.0});
+  run.add({kRosNow_ns + kTick_ns, {0.1, 0.0, 0.1}, 1.0, 1.0});
   if (!message.transforms_().empty()) {
-    run.add(scan_at(kScanTime_ns, message.transforms_().back().child_frame_id_()));
+    run.add(scan_at(kRosNow_ns, message.transforms_().back().child_frame_id_()));
   }
-  run.add(scan_at(kScanTime_ns + kTick_ns));
+  run.add(scan_at(kRosNow_ns + kTick_ns));
   static_cast<void>(run.finish());
   return kept > 0;
 }
@@ -267,21 +265,21 @@ bool receive_in_bridge(const ros::TFMessage& message) {
 bool receive_in_bridge(const ros::PoseStamped& message) {
   const service::Goal goal = ros_bridge::to_goal(message, {}, geometry::Pose2{1.0, 2.0, 0.5},
                                                  geometry::Pose2{-1.0, 0.5, -2.0});
-  check_leaving(service::to_msg(goal, "robot", kScanTime_ns, 0),
+  check_leaving(service::to_msg(goal, "robot", kRosNow_ns, 0),
                 [](const msg::Goal& sent) { return service::from_msg(sent); });
   return true;
 }
 
 bool receive_in_bridge(const ros::PoseWithCovarianceStamped& message) {
   const service::LocalizationCommand command = ros_bridge::to_set_pose(message, "map");
-  check_leaving(service::to_msg(command, "robot", kScanTime_ns, 0),
+  check_leaving(service::to_msg(command, "robot", kRosNow_ns, 0),
                 [](const msg::LocalizationCommand& sent) { return service::from_msg(sent); });
   return true;
 }
 
 bool receive_in_bridge(const ros::Twist& message) {
   msg::MotionCommand command = ros_bridge::to_motion(message);
-  messaging::set_header(command, "robot", kScanTime_ns, 0);
+  messaging::set_header(command, "robot", kRosNow_ns, 0);
   check_leaving(command, [](const msg::MotionCommand& sent) { return sent.linear_mps(); });
   require(std::isfinite(command.linear_mps()) && std::isfinite(command.angular_radps()),
           "velocities are finite");

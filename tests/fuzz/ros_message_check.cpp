@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -134,40 +133,28 @@ std::string sample_of() {
   return sample;
 }
 
-struct RosType {
-  std::string_view type;
-  std::size_t (*check)(std::string_view);
-  std::string (*sample)();
-};
-
 template <class Message>
-constexpr RosType ros_type(std::string_view type) {
-  return {type, check_payload<Message>, sample_of<Message>};
+constexpr MessageKind ros_type(std::string_view name) {
+  return {name, check_payload<Message>, sample_of<Message>};
 }
 
-constexpr RosType kTypes[] = {ros_type<ros::LaserScan>("LaserScan"),
-                              ros_type<ros::Odometry>("Odometry"),
-                              ros_type<ros::TFMessage>("TFMessage"),
-                              ros_type<ros::PoseStamped>("PoseStamped"),
-                              ros_type<ros::PoseWithCovarianceStamped>("PoseWithCovarianceStamped"),
-                              ros_type<ros::Twist>("Twist"),
-                              ros_type<ros::TwistStamped>("TwistStamped")};
+constexpr MessageKind kTypes[] = {
+    ros_type<ros::LaserScan>("LaserScan"),
+    ros_type<ros::Odometry>("Odometry"),
+    ros_type<ros::TFMessage>("TFMessage"),
+    ros_type<ros::PoseStamped>("PoseStamped"),
+    ros_type<ros::PoseWithCovarianceStamped>("PoseWithCovarianceStamped"),
+    ros_type<ros::Twist>("Twist"),
+    ros_type<ros::TwistStamped>("TwistStamped")};
 
 }  // namespace
 
 std::size_t check_ros_message(std::string_view bytes) {
-  const std::size_t end = bytes.find('\n');
-  const auto* const type = std::ranges::find(kTypes, bytes.substr(0, end), &RosType::type);
-  if (end == std::string_view::npos || type == std::end(kTypes)) return 0;
-  return type->check(bytes.substr(end + 1));
+  return check_named(kTypes, bytes);
 }
 
 std::vector<std::string> sample_ros_messages() {
-  std::vector<std::string> messages;
-  for (const RosType& type : kTypes) {
-    messages.push_back(std::string(type.type) + "\n" + type.sample());
-  }
-  return messages;
+  return sample_inputs(kTypes);
 }
 
 }  // namespace topogeo::fuzz
