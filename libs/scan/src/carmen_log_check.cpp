@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "topogeo/scan/scan_check.hpp"
+#include "topogeo/support/printable.hpp"
 
 #include "carmen_line.hpp"
 #include "gz_lines.hpp"
@@ -42,10 +43,7 @@ void Checker::take(const GzLines::Line& line) {
     found(LogFault::kText, "more than 1 MiB without a line end");
     return;
   }
-  const auto is_binary = [](char c) {
-    const auto byte = static_cast<unsigned char>(c);
-    return (byte < 0x20U && byte != '\t') || byte == 0x7fU;
-  };
+  const auto is_binary = [](char c) { return support::is_control(c) && c != '\t'; };
   if (std::any_of(line.text.begin(), line.text.end(), is_binary)) {
     found(LogFault::kText, "binary bytes");
     return;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "topogeo/scan/scan_sequence.hpp"
+#include "topogeo/support/printable.hpp"
 
 #include "carmen_line.hpp"
 #include "gz_lines.hpp"
@@ -14,10 +15,8 @@ namespace topogeo::scan {
 namespace {
 
 bool has_binary_bytes(std::string_view line) {
-  return std::any_of(line.begin(), line.end(), [](char c) {
-    const auto byte = static_cast<unsigned char>(c);
-    return (byte < 0x20U && byte != '\t') || byte == 0x7fU;
-  });
+  return std::any_of(line.begin(), line.end(),
+                     [](char c) { return support::is_control(c) && c != '\t'; });
 }
 
 }  // namespace

@@ -4,10 +4,6 @@
 
 namespace topogeo::support {
 
-bool is_control(char byte) {
-  return static_cast<unsigned char>(byte) < 0x20 || byte == 0x7f;
-}
-
 std::string printable(std::string_view text) {
   std::string out(text);
   std::ranges::replace_if(out, is_control, '?');
