@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <fastdds/dds/log/Log.hpp>
@@ -147,12 +148,13 @@ void add_security(dds::DomainParticipantQos& qos, const std::filesystem::path& f
   for (const SecurityFile& file : kFiles) {
     const std::filesystem::path path = std::filesystem::absolute(folder / file.name);
     if (::access(path.c_str(), R_OK) != 0) {
-      const bool missing = errno == ENOENT;
+      const std::error_code why(errno, std::generic_category());
+      const bool missing = why == std::errc::no_such_file_or_directory;
       if (missing && !file.required) continue;
-      throw std::runtime_error("DDS security: cannot read '" + path.string() + "'" +
-                               (missing ? "; deploy/security/make_keys makes it"
-                                        : ": permission denied; it belongs to the user of the "
-                                          "services"));
+      throw std::runtime_error(
+          "DDS security: cannot read '" + path.string() + "'" +
+          (missing ? "; deploy/security/make_keys makes it"
+                   : ": " + why.message() + "; it belongs to the user of the services"));
     }
     properties.emplace_back(file.property, "file://" + path.string());
   }
