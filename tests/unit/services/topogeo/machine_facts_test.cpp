@@ -168,9 +168,13 @@ TEST_F(MachineFactsTest, FolderOfTheMapThatOthersMayNotLookInto) {
   // Root looks into any folder.
   const bool root = ::geteuid() == 0;
   constexpr uid_t kNobody = 65534;
-  if (root) ASSERT_EQ(::seteuid(kNobody), 0);
+  if (root) {
+    ASSERT_EQ(::seteuid(kNobody), 0);
+  }
   const MachineFacts found = facts();
-  if (root) ASSERT_EQ(::seteuid(0), 0);
+  if (root) {
+    ASSERT_EQ(::seteuid(0), 0);
+  }
   EXPECT_EQ(found.closed_folder, (folder_ / "state").string());
   EXPECT_EQ(found.map_folder_error, "");
   EXPECT_GT(found.disk_free_bytes, 0U);
