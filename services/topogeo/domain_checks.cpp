@@ -60,9 +60,17 @@ std::string good_units(const DomainFacts& facts) {
 
 // --- robots
 
+/// Two partitions may each have a robot of one name, which is not the same robot.
+using RobotInPartition = std::pair<std::string, std::string>;
+
+RobotInPartition robot_of(const msg::ServiceStatus& status, const DomainFacts& facts) {
+  const auto partition = facts.partitions.find(status.instance().to_string());
+  return {status.robot_id().to_string(),
+          partition == facts.partitions.end() ? "" : partition->second};
+}
+
 // One that is started again may be there twice on its host until the old one is forgotten.
 Findings check_robots(const DomainFacts& facts) {
-  using RobotInPartition = std::pair<std::string, std::string>;
   std::map<RobotInPartition, std::map<std::string, std::set<std::string>>> hosts_of_services;
   for (const msg::ServiceStatus& status : facts.services) {
     const std::string service = status.service().to_string();
@@ -70,10 +78,7 @@ Findings check_robots(const DomainFacts& facts) {
         std::ranges::find(kOnceForEachRobot, service) == kOnceForEachRobot.end()) {
       continue;
     }
-    const auto partition = facts.partitions.find(status.instance().to_string());
-    hosts_of_services[{status.robot_id().to_string(),
-                       partition == facts.partitions.end() ? "" : partition->second}][service]
-        .insert(status.host().to_string());
+    hosts_of_services[robot_of(status, facts)][service].insert(status.host().to_string());
   }
   Findings found;
   for (const auto& [robot, hosts_of] : hosts_of_services) {
@@ -146,16 +151,17 @@ std::string good_versions(const DomainFacts& facts) {
 // --- configurations
 
 Findings check_configurations(const DomainFacts& facts) {
-  std::map<std::string, std::map<std::uint64_t, std::set<std::string>>> by_robot;
+  std::map<RobotInPartition, std::map<std::uint64_t, std::set<std::string>>> by_robot;
   for (const msg::ServiceStatus& status : facts.services) {
     if (status.robot_id().size() == 0 || status.config_fingerprint() == 0) continue;
-    by_robot[status.robot_id().to_string()][status.config_fingerprint()].insert(name_of(status));
+    by_robot[robot_of(status, facts)][status.config_fingerprint()].insert(name_of(status));
   }
   Findings found;
   for (const auto& [robot, configurations] : by_robot) {
     if (configurations.size() < 2) continue;
     std::string what =
-        fmt::format("services of robot {} have {} configurations:", robot, configurations.size());
+        fmt::format("services of robot {} have {} configurations:", robot.first,
+                    configurations.size());
     for (const auto& [fingerprint, services] : configurations) {
       what += fmt::format(" {:016x} ({});", fingerprint, joined(services));
     }

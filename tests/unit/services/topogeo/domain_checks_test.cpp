@@ -166,7 +166,7 @@ TEST(DomainChecks, WhatMayBeThereTwiceIsNoSecondRobot) {
   add("web", "pc", "page 2");
   add("localizer", "robot", "moved to the PC").state(msg::kServiceStopped);
   messaging::set_header(add("sensor_gateway", "robot2", "of another"), "r2", 0, 0);
-  add("sensor_gateway", "pc", "of a run");
+  add("sensor_gateway", "pc", "of a run").config_fingerprint(9);
   facts.partitions = {{"robot-1", "topogeo"}, {"of a run", "run-17"}};
   messaging::set_header(add("map_store", "pc", "of all 1"), "", 0, 0);
   messaging::set_header(add("map_store", "pc2", "of all 2"), "", 0, 0);
