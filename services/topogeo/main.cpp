@@ -59,6 +59,11 @@ int run(int argc, const char* const* argv) {
   return exit_code;
 }
 
+/// Not to be mixed with those of the host.
+bool has_services_of_its_own(std::string_view command) {
+  return command == "run" || command == "demo" || command == "view";
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -66,8 +71,7 @@ int main(int argc, char** argv) {
   int code = service::kFailure;
   try {
     support::set_up_logging("topogeo", "warning");
-    // A run has services of its own.
-    if (argc > 1 && std::string_view(argv[1]) != "run") cli::take_installed_settings();
+    if (argc > 1 && !has_services_of_its_own(argv[1])) cli::take_installed_settings();
     return run(argc, argv);
   } catch (const service::UsageError& error) {
     std::cerr << "topogeo: " << error.what() << '\n';
