@@ -79,15 +79,20 @@ export async function open_page(context, address) {
 }
 
 /** Waits until a selector has a text. */
-export function text(page, selector, pattern, seconds) {
-  return eventually(
-    `${selector} with ${pattern}`,
-    async () => {
-      const found = await page.locator(selector).allInnerTexts();
-      return found.some((entry) => pattern.test(entry));
-    },
-    seconds,
-  );
+export async function text(page, selector, pattern, seconds) {
+  let found = [];
+  try {
+    await eventually(
+      `${selector} with ${pattern}`,
+      async () => {
+        found = await page.locator(selector).allInnerTexts();
+        return found.some((entry) => pattern.test(entry));
+      },
+      seconds,
+    );
+  } catch (error) {
+    throw new Error(`${error.message}; there is ${JSON.stringify(found)}`);
+  }
 }
 
 /** Fails when axe-core finds something serious on a page. */

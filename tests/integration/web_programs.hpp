@@ -1,8 +1,13 @@
 // The web service and what it needs as programs.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -36,6 +41,56 @@ inline std::uint32_t wait_for_port(const Program& program,
   }
   throw std::runtime_error("no link: " + program.err());
 }
+
+inline void keep_lines(const std::filesystem::path& file, std::size_t lines) {
+  std::string text = read_file(file);
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < lines && end < text.size(); ++i) {
+    end = std::min(text.find('\n', end), text.size() - 1) + 1;
+  }
+  text.resize(end);
+  std::ofstream(file) << text;
+}
+
+/// A map store that shows the map of a drive through a room, and a web service.
+class WebOnMap : public testing::Test {
+ protected:
+  /// `lines`: of the log of the drive, from its beginning.
+  explicit WebOnMap(std::size_t lines = std::numeric_limits<std::size_t>::max()) {
+    use_udp_only();
+    write_log("room", scratch_ / "room.clf");
+    keep_lines(scratch_ / "room.clf", lines);
+    Program map(
+        scratch_, "topogeo",
+        {"map", "--log", (scratch_ / "room.clf").string(), "--out", (scratch_ / "room").string()});
+    if (map.wait() != 0) throw std::runtime_error(map.err());
+    start_store();
+    start_web();
+  }
+  void start_store() {
+    store_ =
+        std::make_unique<Program>(scratch_, "map_store",
+                                  std::vector<std::string>{"--domain", domain_, "--map",
+                                                           (scratch_ / "room/map.pb").string()});
+  }
+  void start_web() {
+    web_ = std::make_unique<Program>(
+        scratch_, "web",
+        std::vector<std::string>{"--domain", domain_, "--port", "0", "--token", kToken});
+    port_ = wait_for_port(*web_);
+  }
+  /// All of the map.
+  static bool is_whole(PageModel& page) {
+    return page.has("map") && page.has("tiles") && page.has("rooms") &&
+           page.tables["graph"].contains("map");
+  }
+
+  Scratch scratch_;
+  std::string domain_ = own_domain();
+  std::unique_ptr<Program> store_;
+  std::unique_ptr<Program> web_;
+  std::uint32_t port_ = 0;
+};
 
 /// `topogeo demo --web`: all services with a simulated robot, in real time.
 class WebOnRobot : public testing::Test {

@@ -28,44 +28,6 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 using testing::HasSubstr;
 
-/// A map store that shows the map of a drive through a room, and a web service.
-class WebOnMap : public testing::Test {
- protected:
-  WebOnMap() {
-    use_udp_only();
-    write_log("room", scratch_ / "room.clf");
-    Program map(
-        scratch_, "topogeo",
-        {"map", "--log", (scratch_ / "room.clf").string(), "--out", (scratch_ / "room").string()});
-    if (map.wait() != 0) throw std::runtime_error(map.err());
-    start_store();
-    start_web();
-  }
-  void start_store() {
-    store_ =
-        std::make_unique<Program>(scratch_, "map_store",
-                                  std::vector<std::string>{"--domain", domain_, "--map",
-                                                           (scratch_ / "room/map.pb").string()});
-  }
-  void start_web() {
-    web_ = std::make_unique<Program>(
-        scratch_, "web",
-        std::vector<std::string>{"--domain", domain_, "--port", "0", "--token", kToken});
-    port_ = wait_for_port(*web_);
-  }
-  /// All of the map.
-  static bool is_whole(PageModel& page) {
-    return page.has("map") && page.has("tiles") && page.has("rooms") &&
-           page.tables["graph"].contains("map");
-  }
-
-  Scratch scratch_;
-  std::string domain_ = own_domain();
-  std::unique_ptr<Program> store_;
-  std::unique_ptr<Program> web_;
-  std::uint32_t port_ = 0;
-};
-
 TEST(WebOnLog, ThePageStaysWithTheMapUntilCtrlC) {
   use_udp_only();
   const Scratch scratch;

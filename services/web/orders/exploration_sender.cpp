@@ -79,7 +79,10 @@ void ExplorationSender::step() {
   const bool taken = goal_id_ != 0 && navigator.goal_id == goal_id_;
   const auto goal = exploration_.step(newest_, navigator, taken, kExplorationPeriod);
   if (goal) goal_id_ = goals_.send_to(goal->T_map_goal, goal->text);
-  if (exploration_.done()) end();
+  if (!exploration_.done()) return;
+  // The last target may have been given up on the way.
+  if (goals_.under_way()) goals_.cancel();
+  end();
 }
 
 }  // namespace topogeo::web

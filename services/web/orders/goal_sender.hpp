@@ -36,6 +36,8 @@ class GoalSender {
   /// Whether goals come from an exploration.
   void set_exploring(bool exploring);
 
+  /// Whether there is a goal that has not ended.
+  [[nodiscard]] bool under_way() const { return list_.current().has_value(); }
   [[nodiscard]] std::size_t waiting() const { return list_.waiting().size(); }
   /// Where a goal is on the map of now.
   [[nodiscard]] Eigen::Vector2d position_of(const WantedGoal& goal) const;
