@@ -40,14 +40,12 @@ class Robot {
     for (const auto& map : maps_) pool_->add_map(map);
   }
 
-  /// True when the workers gave what this process makes of the tasks.
-  bool match(const std::vector<MatchTask>& tasks) {
-    const std::vector<localization::MatchResult> results = pool_->match(tasks);
+  /// What this process makes of the tasks.
+  [[nodiscard]] std::vector<localization::MatchResult> match_here(
+      const std::vector<MatchTask>& tasks) const {
     localization::InProcessPool in_process;
     for (const auto& map : maps_) in_process.add_map(map);
-    const std::vector<localization::MatchResult> expected = in_process.match(tasks);
-    return std::equal(results.begin(), results.end(), expected.begin(), expected.end(),
-                      [](const auto& a, const auto& b) { return localization::identical(a, b); });
+    return in_process.match(tasks);
   }
   localizer::RemotePool& pool() { return *pool_; }
   [[nodiscard]] const Maps& maps() const { return maps_; }
@@ -85,31 +83,48 @@ class FairnessTest : public ::testing::Test {
   std::mutex making_;
 };
 
-// The flood is work for seconds, a small batch for milliseconds: served in turn, the modest robots
-// are through with twenty of them, one after the other, long before it has ebbed away.
+bool identical(const std::vector<localization::MatchResult>& found,
+               const std::vector<localization::MatchResult>& expected) {
+  return std::equal(found.begin(), found.end(), expected.begin(), expected.end(),
+                    [](const auto& a, const auto& b) { return localization::identical(a, b); });
+}
+
+// One flood after the other, each of work for a second, until the modest robots are through with
+// twenty small batches, one after the other. A batch that waited until the flood before it has
+// ebbed away would see as many floods as there are batches, however fast this machine is; served
+// in turn, all twenty together see a few.
 TEST_F(FairnessTest, ARobotThatFloodsThePoolStarvesNoOther) {
-  constexpr std::size_t kFlood = 600;
+  constexpr std::size_t kFlood = 300;
   constexpr std::size_t kSmall = 3;
   constexpr std::uint64_t kBatches = 20;
+  constexpr std::uint64_t kMostFloods = kBatches / 4;
   const Maps maps = maps_of_room();
   std::atomic<bool> floods{false};
-  std::atomic<bool> ebbed_away{false};
+  std::atomic<std::uint64_t> ebbed_away{0};
+  std::atomic<int> modest_under_way{2};
+  std::atomic<bool> flood_ended{false};
   std::atomic<bool> flood_is_right{false};
   std::atomic<std::uint64_t> flood_searched_here{1};
   std::thread flood([&] {
     const auto robot = make_robot("greedy", maps);
-    if (robot->pool().wait_for_workers(2, kPatience) < 2) return;
+    if (robot->pool().wait_for_workers(2, kPatience) < 2) {
+      flood_ended = true;
+      return;
+    }
     std::vector<MatchTask> tasks = tasks_on(robot->maps(), kFlood);
     for (MatchTask& task : tasks) task.genetic.generations = 400;  // of 10 ms and more
     floods = true;
-    const auto results = robot->pool().match(tasks);
-    ebbed_away = true;
+    bool right = true;
+    while (modest_under_way > 0) {
+      right = robot->pool().match(tasks).size() == kFlood && right;
+      ++ebbed_away;
+    }
     flood_searched_here = robot->pool().counts().in_process;
-    flood_is_right = results.size() == kFlood && robot->faults.empty();
+    flood_is_right = right && robot->faults.empty();
   });
   struct Modest {
     std::uint64_t right = 0;
-    std::uint64_t while_it_flooded = 0;
+    std::uint64_t floods_seen = 0;
     std::vector<std::string> faults;
   };
   std::vector<Modest> modest(2);
@@ -118,21 +133,27 @@ TEST_F(FairnessTest, ARobotThatFloodsThePoolStarvesNoOther) {
     others.emplace_back([&, i] {
       const auto robot =
           make_robot("modest" + std::to_string(i), i == 0 ? maps : seen_by_another(maps));
-      if (robot->pool().wait_for_workers(2, kPatience) < 2) return;
-      while (!floods) std::this_thread::yield();
-      for (std::uint64_t batch = 0; batch < kBatches; ++batch) {
-        const bool right = robot->match(tasks_on(robot->maps(), kSmall, kSmall * batch));
-        modest[i].right += right ? 1 : 0;
-        modest[i].while_it_flooded += ebbed_away ? 0 : 1;
+      std::vector<std::vector<localization::MatchResult>> expected;
+      for (std::uint64_t batch = 0; batch < kBatches; ++batch)
+        expected.push_back(robot->match_here(tasks_on(robot->maps(), kSmall, kSmall * batch)));
+      if (robot->pool().wait_for_workers(2, kPatience) == 2) {
+        while (!floods && !flood_ended) std::this_thread::yield();
+        const std::uint64_t before = ebbed_away;
+        for (std::uint64_t batch = 0; batch < kBatches; ++batch) {
+          const auto found = robot->pool().match(tasks_on(robot->maps(), kSmall, kSmall * batch));
+          modest[i].right += identical(found, expected[batch]) ? 1 : 0;
+        }
+        modest[i].floods_seen = ebbed_away - before;
       }
       modest[i].faults = robot->faults;
+      --modest_under_way;
     });
   }
   for (std::thread& other : others) other.join();
   flood.join();
   for (const Modest& robot : modest) {
     EXPECT_EQ(robot.right, kBatches);
-    EXPECT_EQ(robot.while_it_flooded, kBatches);
+    EXPECT_LE(robot.floods_seen, kMostFloods);
     EXPECT_THAT(robot.faults, ::testing::IsEmpty());
   }
   EXPECT_TRUE(flood_is_right);
