@@ -159,9 +159,8 @@ Findings check_configurations(const DomainFacts& facts) {
   Findings found;
   for (const auto& [robot, configurations] : by_robot) {
     if (configurations.size() < 2) continue;
-    std::string what =
-        fmt::format("services of robot {} have {} configurations:", robot.first,
-                    configurations.size());
+    std::string what = fmt::format("services of robot {} have {} configurations:", robot.first,
+                                   configurations.size());
     for (const auto& [fingerprint, services] : configurations) {
       what += fmt::format(" {:016x} ({});", fingerprint, joined(services));
     }
