@@ -193,18 +193,24 @@ Handle* AESGCMGMAC_KeyFactory::register_local_datawriter(Handle& participant,
                       participant, properties, attributes, error);
 }
 
+// A participant has no secret with itself: the library gives a reference to nothing, and passes it
+// on, which is an address here.
 Handle* AESGCMGMAC_KeyFactory::register_matched_remote_datareader(Handle& writer, Handle& peer,
                                                                   const Handle& secret,
                                                                   bool relay_only, Error& error) {
-  return change_lists(kAddPeersReader, &AESGCMGMAC_KeyFactory::register_matched_remote_datareader,
-                      this, writer, peer, secret, relay_only, error);
+  using Function = Handle* (*)(void*, Handle&, Handle&, const Handle*, bool, Error&);
+  static const auto original = messaging::library_function<Function>(kAddPeersReader);
+  const Turn turn;
+  return original(this, writer, peer, &secret, relay_only, error);
 }
 
 Handle* AESGCMGMAC_KeyFactory::register_matched_remote_datawriter(Handle& reader, Handle& peer,
                                                                   const Handle& secret,
                                                                   Error& error) {
-  return change_lists(kAddPeersWriter, &AESGCMGMAC_KeyFactory::register_matched_remote_datawriter,
-                      this, reader, peer, secret, error);
+  using Function = Handle* (*)(void*, Handle&, Handle&, const Handle*, Error&);
+  static const auto original = messaging::library_function<Function>(kAddPeersWriter);
+  const Turn turn;
+  return original(this, reader, peer, &secret, error);
 }
 
 bool AESGCMGMAC_KeyFactory::unregister_datareader(std::shared_ptr<Handle>& reader, Error& error) {
