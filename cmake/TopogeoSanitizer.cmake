@@ -1,21 +1,22 @@
 # Sanitizers compiled in (presets asan and tsan, ./run test --sanitize), and how much more time tests have then:
-# TOPOGEO_TIME_FACTOR, for ctest and as a macro for the tests' own limits (tests/unit/time_factor.hpp).
+# TOPOGEO_SANITIZER_FACTOR, for TopogeoTimeFactor.cmake and as the macro TOPOGEO_TIME_FACTOR for the tests' own limits
+# (tests/unit/time_factor.hpp).
 
 set(TOPOGEO_SANITIZER "" CACHE STRING "address (with undefined behaviour), thread, or empty for none")
 set_property(CACHE TOPOGEO_SANITIZER PROPERTY STRINGS "" address thread)
 
-set(TOPOGEO_TIME_FACTOR 1)
+set(TOPOGEO_SANITIZER_FACTOR 1)
 if(TOPOGEO_SANITIZER STREQUAL "address")
   set(flags -fsanitize=address,undefined -fno-sanitize-recover=undefined)
-  set(TOPOGEO_TIME_FACTOR 5)
+  set(TOPOGEO_SANITIZER_FACTOR 5)
 elseif(TOPOGEO_SANITIZER STREQUAL "thread")
   set(flags -fsanitize=thread)
-  set(TOPOGEO_TIME_FACTOR 10)
+  set(TOPOGEO_SANITIZER_FACTOR 10)
 elseif(NOT TOPOGEO_SANITIZER STREQUAL "")
   message(FATAL_ERROR "TOPOGEO_SANITIZER is '${TOPOGEO_SANITIZER}', expected address, thread or nothing")
 endif()
 if(TOPOGEO_SANITIZER)
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fno-omit-frame-pointer> "$<$<COMPILE_LANGUAGE:CXX>:${flags}>")
   add_link_options(${flags})
-  add_compile_definitions(TOPOGEO_TIME_FACTOR=${TOPOGEO_TIME_FACTOR})
+  add_compile_definitions(TOPOGEO_TIME_FACTOR=${TOPOGEO_SANITIZER_FACTOR})
 endif()

@@ -94,16 +94,13 @@ function(topogeo_add_service)
   topogeo_build_fast(${ARG_NAME} ${TOPOGEO_PRECOMPILED_COLD})
 endfunction()
 
-# topogeo_add_test(NAME unit_geometry SOURCES ... DEPENDS targets... [TIMEOUT s] [LABELS ...] [PROCESSES]): one
-# test program. Each suite in it is one ctest test; with PROCESSES each case is, for programs that start
-# others or join DDS domains. TOPOGEO_TEST_DATA names tests/data, TOPOGEO_BIN build/bin. Helpers that
-# several programs share are included from tests/unit: "localization/simulated_maps.hpp".
+# topogeo_add_test(NAME unit_geometry SOURCES ... DEPENDS targets... [LABELS ...] [PROCESSES]): one test program.
+# Each suite in it is one ctest test; with PROCESSES each case is, for programs that start others or join DDS
+# domains. TOPOGEO_TEST_DATA names tests/data, TOPOGEO_BIN build/bin. Helpers that several programs share are
+# included from tests/unit: "localization/simulated_maps.hpp".
 function(topogeo_add_test)
-  cmake_parse_arguments(ARG "PROCESSES" "NAME;TIMEOUT" "SOURCES;DEPENDS;LABELS" ${ARGN})
-  if(NOT ARG_TIMEOUT)
-    set(ARG_TIMEOUT 300)
-  endif()
-  math(EXPR ARG_TIMEOUT "${ARG_TIMEOUT} * ${TOPOGEO_TIME_FACTOR}")
+  cmake_parse_arguments(ARG "PROCESSES" "NAME" "SOURCES;DEPENDS;LABELS" ${ARGN})
+  topogeo_refuse_time_limit(${ARG_NAME} ${ARGN})
   add_executable(${ARG_NAME} ${ARG_SOURCES})
   set_target_properties(${ARG_NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   target_include_directories(${ARG_NAME} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests/unit)
@@ -117,36 +114,78 @@ function(topogeo_add_test)
   topogeo_build_fast(${ARG_NAME} topogeo_precompiled_tests)
   if(ARG_PROCESSES)
     gtest_discover_tests(${ARG_NAME} TEST_PREFIX ${ARG_NAME}.
-                         PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}"
-                         DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
+                         PROPERTIES TIMEOUT ${TOPOGEO_TEST_LIMIT_S} LABELS "${ARG_LABELS}"
+                                    ENVIRONMENT TOPOGEO_TIME_FACTOR=${TOPOGEO_MACHINE_FACTOR}
+                         DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT ${TOPOGEO_TEST_LIMIT_S})
   else()
-    topogeo_discover_suites(${ARG_NAME} ${ARG_TIMEOUT} "${ARG_LABELS}")
+    topogeo_discover_suites(${ARG_NAME} "${ARG_LABELS}")
   endif()
 endfunction()
 include(GoogleTest)
 
-# topogeo_add_script_test(container.hosts 600 hosts_test.sh [arguments]): the test of the given name and time limit in
-# seconds is a script of this folder, or with a path, that is given the build folder first. Its label is what stands
-# before the dot. It exits with 77, and a message, where the machine has not what it needs: skipped.
-function(topogeo_add_script_test name timeout script)
+# topogeo_add_script_test(container.hosts hosts_test.sh [arguments]): the test of the given name is a script of this
+# folder, or with a path, that is given the build folder first. Its label is what stands before the dot. It exits
+# with 77, and a message, where the machine has not what it needs: skipped.
+function(topogeo_add_script_test name script)
+  topogeo_refuse_time_limit(${name} ${script})
   cmake_path(ABSOLUTE_PATH script NORMALIZE)
-  math(EXPR timeout "${timeout} * ${TOPOGEO_TIME_FACTOR}")
   string(REGEX REPLACE "[.].*" "" label ${name})
   add_test(NAME ${name} COMMAND bash ${script} ${CMAKE_BINARY_DIR} ${ARGN})
-  set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT ${timeout} SKIP_RETURN_CODE 77
-    ENVIRONMENT TOPOGEO_TIME_FACTOR=${TOPOGEO_TIME_FACTOR})
+  topogeo_set_limit(${name})
+  set_tests_properties(${name} PROPERTIES LABELS ${label} SKIP_RETURN_CODE 77)
 endfunction()
 
-# Registers each test suite of a program under <program>.<suite>, listed anew whenever it was built.
-function(topogeo_discover_suites target timeout labels)
+# topogeo_set_limit(NAME): the time limit of all tests (TopogeoTimeFactor.cmake), for one that add_test() made. Its
+# TOPOGEO_TIME_FACTOR has the sanitizer's factor, which no script has compiled in.
+function(topogeo_set_limit name)
+  math(EXPR factor "${TOPOGEO_MACHINE_FACTOR} * ${TOPOGEO_SANITIZER_FACTOR}")
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${TOPOGEO_TEST_LIMIT_S}
+    ENVIRONMENT "TOPOGEO_TIME_FACTOR=${factor};TOPOGEO_TEST_NAME=${name}")
+endfunction()
+
+# A test with a limit of its own passes on one machine and fails on another.
+function(topogeo_refuse_time_limit name)
+  if("TIMEOUT" IN_LIST ARGN OR "${ARGV1}" MATCHES "^[0-9]+$")
+    message(FATAL_ERROR "${name}: tests have no time limits of their own, see cmake/TopogeoTimeFactor.cmake")
+  endif()
+endfunction()
+
+# Registers each test suite of a program under <program>.<suite>, listed anew whenever it was built. Labels and limits
+# are added when ctest reads the list: in the command that makes it they would link the program again.
+function(topogeo_discover_suites target labels)
   set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake)
   add_custom_command(TARGET ${target} POST_BUILD
     COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:${target}> -D NAME=${target} -D OUTPUT=${list}
-            -D TIMEOUT=${timeout} "-D LABELS=${labels}" -P ${PROJECT_SOURCE_DIR}/cmake/ListTestSuites.cmake
+            -P ${PROJECT_SOURCE_DIR}/cmake/ListTestSuites.cmake
     BYPRODUCTS ${list}
     VERBATIM)
   # Programs that are not built have no tests, rather than none being found at all.
   set(include_file ${CMAKE_CURRENT_BINARY_DIR}/${target}_include.cmake)
-  file(CONFIGURE OUTPUT ${include_file} CONTENT "include([==[${list}]==] OPTIONAL)\n")
+  file(CONFIGURE OUTPUT ${include_file} @ONLY CONTENT
+"set(suites \"\")
+include([==[@list@]==] OPTIONAL)
+foreach(suite IN LISTS suites)
+  set_tests_properties(@target@.\${suite} PROPERTIES TIMEOUT @TOPOGEO_TEST_LIMIT_S@ LABELS [==[@labels@]==]
+    ENVIRONMENT TOPOGEO_TIME_FACTOR=@TOPOGEO_MACHINE_FACTOR@)
+endforeach()
+")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${include_file})
+endfunction()
+
+# topogeo_set_costs(FILE): has ctest start tests in the order of what they take, as FILE says ("seconds name" a line),
+# also where it has not run them before. Call it in the folder that is added last: ctest must know the tests by then.
+# Names of tests that are not there do no harm.
+function(topogeo_set_costs file)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+  file(STRINGS ${file} lines REGEX "^[^#]")
+  set(content "")
+  foreach(line IN LISTS lines)
+    if(NOT line MATCHES "^([0-9]+) (.+)$")
+      message(FATAL_ERROR "${file}: expected a line 'seconds name', got '${line}'")
+    endif()
+    string(APPEND content "set_tests_properties([==[${CMAKE_MATCH_2}]==] PROPERTIES COST ${CMAKE_MATCH_1})\n")
+  endforeach()
+  set(include_file ${CMAKE_CURRENT_BINARY_DIR}/costs.cmake)
+  file(CONFIGURE OUTPUT ${include_file} CONTENT "${content}" @ONLY)
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${include_file})
 endfunction()
