@@ -8,11 +8,26 @@ bin=$build/bin
 work=$(mktemp -d)
 cleanups=()
 
+# Keeps the files of a failed test, logs of services included: below the build folder when ctest runs it, else where
+# they are if KEEP is set. Fails when they must stay there.
+keep_files() {
+  local folder=$build/tests/failed/${TOPOGEO_TEST_NAME:-}
+  if [ -n "${TOPOGEO_TEST_NAME:-}" ]; then
+    mkdir -p "$folder"
+    # Device nodes, sockets and what other programs made there may stay behind.
+    cp -a "$work/." "$folder" 2> /dev/null || true
+    echo "kept: $folder" >&2
+  elif [ -n "${KEEP:-}" ]; then
+    echo "kept: $work" >&2
+    return 1
+  fi
+}
+
 # The last thing that was to be cleaned up goes first.
 clean_up() {
   local status=$? i
   for ((i = ${#cleanups[@]} - 1; i >= 0; --i)); do eval "${cleanups[i]}" > /dev/null 2>&1 || true; done
-  [ $status -eq 0 ] || [ $status -eq 77 ] || [ -z "${KEEP:-}" ] || { echo "kept: $work" >&2; return; }
+  [ $status -eq 0 ] || [ $status -eq 77 ] || keep_files || return 0
   rm -rf "$work"
 }
 trap clean_up EXIT

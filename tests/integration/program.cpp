@@ -1,8 +1,11 @@
 #include "program.hpp"
 
+#include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <fstream>
 #include <functional>
 #include <sstream>
@@ -65,6 +68,33 @@ int claim_domain() {
   throw std::runtime_error("no free DDS domain from 1 to 100 for a test");
 }
 
+/// Copies regular files and folders. Others, such as sockets and links to serial lines, are of no
+/// use later.
+void copy_tree(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::error_code ignored;
+  std::filesystem::create_directories(to, ignored);
+  for (const auto& entry : std::filesystem::directory_iterator(from, ignored)) {
+    const auto target = to / entry.path().filename();
+    if (entry.is_symlink(ignored)) continue;
+    if (entry.is_directory(ignored)) {
+      copy_tree(entry.path(), target);
+    } else if (entry.is_regular_file(ignored)) {
+      std::filesystem::copy_file(entry.path(), target, ignored);
+    }
+  }
+}
+
+/// Keeps the files of a failed test, logs of services included, where `./run test` looks for them.
+void keep_files(const std::filesystem::path& folder) {
+  const auto failed = std::filesystem::path(TOPOGEO_BIN).parent_path() / "tests" / "failed";
+  const std::string name = std::string(::program_invocation_short_name) + "." + test_name();
+  auto kept = failed / name;
+  for (int i = 2; std::filesystem::exists(kept); ++i)
+    kept = failed / (name + "_" + std::to_string(i));
+  copy_tree(folder, kept);
+  std::fprintf(stderr, "kept: %s\n", kept.c_str());
+}
+
 }  // namespace
 
 Scratch::Scratch()
@@ -75,6 +105,8 @@ Scratch::Scratch()
 }
 
 Scratch::~Scratch() {
+  // An exception that ends the test becomes a failure of it only after this.
+  if (testing::Test::HasFailure() || std::uncaught_exceptions() > 0) keep_files(path_);
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
 }
