@@ -45,15 +45,14 @@ class Targets:
                 entries.append(json.load(file))
         return Targets(root, entries)
 
-    def of_folder(self, path):
-        """Targets that the innermost folder around the file defines; the root defines none of interest."""
+    def of_folders(self, path):
+        """Targets that the folders around the file define; the root defines none of interest."""
+        found = set()
         folder = os.path.dirname(path)
         while folder:
-            found = {name for name, home in self._folders.items() if home == folder}
-            if found:
-                return found
+            found |= {name for name, home in self._folders.items() if home == folder}
             folder = os.path.dirname(folder)
-        return set()
+        return found
 
     def in_services(self, names):
         return {name for name in names & self.programs if self._folders[name].startswith("services/")}
@@ -120,7 +119,7 @@ def reached_tests(files, targets, compiled_by, tests, root, readers=frozenset())
         elif path in compiled_by:
             direct |= compiled_by[path]
         else:
-            direct |= targets.of_folder(path) | readers
+            direct |= targets.of_folders(path) | readers
             folders.add(os.path.dirname(path))
     reached = targets.with_users(direct)
     # All scripts share tests/container/common.sh; those of containers take the files of deploy/.
@@ -133,7 +132,9 @@ def reached_tests(files, targets, compiled_by, tests, root, readers=frozenset())
         if home == "tests/runner":
             hit = runner
         elif script:
-            hit = all_scripts or home in folders or (deployed and home == "tests/container")
+            hit = all_scripts or (deployed and home == "tests/container") or any(
+                (folder + "/").startswith(home + "/") or folder == "tests/" + test["name"].split(".")[0]
+                for folder in folders)
         else:
             hit = os.path.basename(test.get("command", [""])[0]) in reached
         if hit:

@@ -24,7 +24,7 @@ import summary
 HERE = os.path.dirname(os.path.realpath(__file__))
 sys.path.append(os.path.join(run_tests.ROOT, "cmake"))
 import time_left  # noqa: E402  # pylint: disable=wrong-import-position
-BUILD = sys.argv.pop(1) if len(sys.argv) > 1 else None
+BUILD = sys.argv.pop(1) if len(sys.argv) > 1 and os.path.isdir(sys.argv[1]) else None
 STAGES = summary.read_packages(os.path.join(run_tests.ROOT, "deploy", "packages.txt"))
 
 
@@ -278,6 +278,7 @@ class ChangedTest(RunnerTest):
          "dependencies": [{"id": "1"}]},
         {"id": "4", "name": "integration_topogeo", "type": "EXECUTABLE", "paths": {"source": "tests/integration"},
          "dependencies": [{"id": "3"}]},
+        {"id": "6", "name": "page", "type": "UTILITY", "paths": {"source": "services/planner/page"}},
         {"id": "5", "name": "unit_scan", "type": "EXECUTABLE", "paths": {"source": "tests/unit/scan"}},
     ]
     TESTS = [
@@ -309,7 +310,12 @@ class ChangedTest(RunnerTest):
 
     def test_a_script_reaches_those_of_its_folder_and_what_they_share_all(self):
         self.assertEqual(self.reached("tests/browser/page_test.mjs") - {"unit_scan.Scan"}, {"browser.page"})
+        self.assertEqual(self.reached("tests/container/schemas/package.json") - {"unit_scan.Scan"}, {"container.drive"})
         self.assertLessEqual({"browser.page", "container.drive"}, self.reached("tests/container/common.sh"))
+
+    def test_a_file_of_a_service_that_no_compiler_reads_reaches_its_tests(self):
+        self.assertEqual(self.reached("services/planner/page/app.ts") - {"unit_scan.Scan"},
+                         {"integration_topogeo.A.b", "container.drive", "browser.page"})
 
     def test_the_build_reaches_all_and_a_page_of_docs_who_reads_it(self):
         everything = {test["name"] for test in self.TESTS}
