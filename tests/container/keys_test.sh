@@ -30,55 +30,73 @@ all_whole() {
 }
 has() { [ "$(cd "$1" && echo ./*/*/certificate.pem)" = "$2" ]; }  # KEYS CERTIFICATES
 
-# Commands that end the process group of the N-th of them, before it does anything.
+# Commands that keep what is in $KEYS as $STATES/N before the N-th of them does anything, and end their process group where N
+# is LAST_STEP: what a kill leaves at that step.
 mkdir "$work/mortal"
 cat > "$work/mortal/openssl" <<'SH'
 #!/bin/bash
 PATH=${PATH#*:}
-echo >> "$STEPS"
-[ "$(wc -l < "$STEPS")" != "$LAST_STEP" ] || kill -KILL 0
+states=("$STATES"/*)
+n=$((10#${states[-1]##*/} + 1))
+printf -v state '%s/%03d' "$STATES" $n
+mkdir "$state"
+[ ! -e "$KEYS" ] || cp -a "$KEYS" "$state/keys"
+[ "$n" != "${LAST_STEP:-}" ] || kill -KILL 0
 exec "${0##*/}" "$@"
 SH
 chmod +x "$work/mortal/openssl"
 for command in mkdir mv cp rm; do cp "$work/mortal/openssl" "$work/mortal/$command"; done
-# killed N COMMAND...: whether it was killed at its N-th step; it succeeds where it has fewer.
-killed() {
-  local code=0
-  rm -f "$work/steps"
-  { STEPS=$work/steps LAST_STEP=$1 PATH=$work/mortal:$PATH setsid --wait "${@:2}"; } > "$work/killed.log" 2>&1 ||
-    code=$?
-  [ $code -eq 0 ] || [ $code -eq 137 ] ||
-    { cat "$work/killed.log"; fail "killed at step $1, it ends with $code: ${*:2}"; }
-  [ $code -eq 137 ]
+# record STATES COMMAND...: the exit code of the command on $work/keys; the states go to the folder of that name in $work.
+record() {
+  mkdir -p "$work/$1/000"
+  { STATES=$work/$1 KEYS=$work/keys PATH=$work/mortal:$PATH setsid --wait "${@:2}"; } > "$work/record.log" 2>&1
+}
+files_of() { (cd "$1" && find . | sort); }
+# What make_keys leaves in DIR/.new it removes first: states that differ in nothing else are one.
+essence() { (cd "$1" && find . -path ./keys/.new -prune -o -type f -exec sha256sum {} + -o -print | sort | sha256sum); }
+
+# killed_at_each_step STATES LEAST COMMAND...: of make_keys with $work/keys as it is. No state looks complete that is not, and
+# the same command goes on from each.
+killed_at_each_step() {
+  local states=$work/$1 least=$2 state last=0 first=$work/before-$1 middle code=0 n=0
+  shift 2
+  [ ! -e "$work/keys" ] || cp -a "$work/keys" "$first"
+  record "${states##*/}" "$make_keys" "$work/keys" "$@" || { cat "$work/record.log"; fail "$* fails"; }
+  rm -r "$states/000"
+  last=$(find "$states" -mindepth 1 -maxdepth 1 | wc -l)
+  [ "$last" -gt "$least" ] || fail "only $last steps of $*"
+  # A kill leaves what was kept, here at half of the steps.
+  middle=$((last / 2))
+  rm -r "$work/keys"
+  [ ! -e "$first" ] || cp -a "$first" "$work/keys"
+  LAST_STEP=$middle record killed "$make_keys" "$work/keys" "$@" || code=$?
+  [ $code -eq 137 ] || { cat "$work/record.log"; fail "killed at step $middle, it ends with $code: $*"; }
+  diff <(files_of "$(printf '%s/%03d/keys' "$states" $middle)") <(files_of "$work/keys") ||
+    fail "a kill at step $middle of $* leaves not what was there (<)"
+  rm -r "$work/killed"
+  local -A newest=()
+  for state in "$states"/*; do newest[$(essence "$state")]=$state; done
+  for state in "${newest[@]}"; do
+    n=$((n + 1))
+    all_whole "$state/keys" || fail "killed at step ${state##*/} it leaves what looks complete: $*"
+    rm -rf "$work/keys"
+    [ ! -e "$state/keys" ] || cp -a "$state/keys" "$work/keys"
+    "$make_keys" "$work/keys" "$@" > "$work/again.log" || fail "killed at step ${state##*/} it does not go on: $*"
+    { has "$work/keys" $one && all_whole "$work/keys"; } || fail "killed at step ${state##*/} it does not make all: $*"
+    [ ! -e "$work/keys/.new" ] || fail "something is left beside the certificates"
+    [ -z "$(find "$work/keys" -type f -perm /077)" ] || fail "others can read keys"
+  done
+  step "$last steps, $n different states"
 }
 
 step "issue, killed at each step"
 export TOPOGEO_PERMISSIONS=$work/permissions.txt
 grep '^ga_worker' "$source_dir/deploy/security/permissions.txt" > "$work/permissions.txt"
 one=./pc1/ga_worker/certificate.pem
-last=0
-while killed $((++last)) "$make_keys" "$work/keys" issue pc1; do
-  all_whole "$work/keys" || fail "killed at step $last it leaves what looks complete"
-  "$make_keys" "$work/keys" issue pc1 > "$work/again.log" || fail "killed at step $last it does not go on"
-  { has "$work/keys" $one && all_whole "$work/keys"; } || fail "killed at step $last it does not make all"
-  [ ! -e "$work/keys/.new" ] || fail "something is left beside the certificates"
-  [ -z "$(find "$work/keys" -type f -perm /077)" ] || fail "others can read keys"
-  rm -r "$work/keys"
-done
-[ $last -gt 20 ] || fail "only $last steps"
+killed_at_each_step issue 20 issue pc1
 
 step "renew, killed at each step"
-mv "$work/keys" "$work/issued"
-last=0
-cp -r "$work/issued" "$work/keys"
-while killed $((++last)) "$make_keys" "$work/keys" renew pc1; do
-  all_whole "$work/keys" || fail "killed at step $last it leaves what looks complete"
-  "$make_keys" "$work/keys" renew pc1 || fail "killed at step $last it does not go on"
-  { has "$work/keys" $one && all_whole "$work/keys"; } || fail "killed at step $last it does not renew all"
-  rm -r "$work/keys"
-  cp -r "$work/issued" "$work/keys"
-done
-[ $last -gt 10 ] || fail "only $last steps"
+killed_at_each_step renew 10 renew pc1
 
 step "authorities that are half there"
 rm "$work/keys/ca/revoked.pem"
