@@ -6,7 +6,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../container/common.sh"
 # Skips where there is no browser, page or playwright-core.
 need_browser() {
   need chromium
-  [ -e "$build/share/topogeo/web/app.js" ] || skip "the page is not built"
+  [ -e "$build/share/topogeo/web/app.js" ] || skip "the page is not built" "./run build"
   need_node_packages
 }
 
@@ -15,7 +15,7 @@ need_robot() {
   need_programs
   local program
   for program in web sensor_gateway local_mapper localizer map_store planner; do
-    [ -x "$bin/$program" ] || skip "the program $program is not built"
+    [ -x "$bin/$program" ] || skip "$program is not built" "./run build"
   done
 }
 
@@ -23,7 +23,7 @@ need_robot() {
 need_node_packages() {
   need node
   need npm
-  [ "$(node -p 'parseInt(process.versions.node)')" -ge 18 ] || skip "Node $(node --version) is older than 18"
+  [ "$(node -p 'parseInt(process.versions.node)')" -ge 18 ] || skip "Node $(node --version) is older than 18" "Node 18"
   local packages=$build/tests/browser
   mkdir -p "$packages"
   exec {lock}> "$packages/install.lock"
@@ -31,7 +31,7 @@ need_node_packages() {
   if ! cmp -s "$source_dir/tests/browser/package-lock.json" "$packages/installed.json"; then
     cp "$source_dir"/tests/browser/package*.json "$packages"
     (cd "$packages" && npm ci --no-audit --no-fund --ignore-scripts > npm.log 2>&1) ||
-      skip "npm cannot fetch what the test needs, see $packages/npm.log"
+      skip "npm cannot fetch what the test needs, see $packages/npm.log" "a registry of npm that can be reached"
     cp "$packages/package-lock.json" "$packages/installed.json"
   fi
   exec {lock}>&-
@@ -48,6 +48,6 @@ run_browser_test() {
     chmod +x "$work/chromium"
     chromium=$work/chromium
   fi
-  TOPOGEO_BUILD=$build TOPOGEO_SOURCE=$source_dir TOPOGEO_WORK=$work TOPOGEO_CHROMIUM=$chromium \
+  TOPOGEO_BUILD=$build TOPOGEO_SOURCE=$source_dir TOPOGEO_WORK=$work TOPOGEO_CHROMIUM=$chromium TOPOGEO_HANG_LIMIT_S=$hang_limit_s \
     node --test "$source_dir/tests/browser/$1_test.mjs" || { tail -n 5 "$work"/*.log; fail "$1"; }
 }

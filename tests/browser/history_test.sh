@@ -4,7 +4,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/browser.sh"
 
 need_browser
 for program in web map_store topogeo; do
-  [ -x "$bin/$program" ] || skip "the program $program is not built"
+  [ -x "$bin/$program" ] || skip "$program is not built" "./run build"
 done
 claim_domain
 run_browser_test history

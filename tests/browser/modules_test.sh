@@ -4,5 +4,5 @@ source "$(dirname "${BASH_SOURCE[0]}")/../container/common.sh"
 
 need node
 need esbuild
-[ "$(node -p 'parseInt(process.versions.node)')" -ge 18 ] || skip "Node $(node --version) is older than 18"
+[ "$(node -p 'parseInt(process.versions.node)')" -ge 18 ] || skip "Node $(node --version) is older than 18" "Node 18"
 TOPOGEO_BUILD=$build TOPOGEO_SOURCE=$source_dir node --test "$source_dir"/tests/browser/{modules,drawing}_test.mjs

@@ -7,6 +7,21 @@ build=$(cd "${1:?"expected the build folder"}" && pwd)
 bin=$build/bin
 work=$(mktemp -d)
 cleanups=()
+keepers=()  # commands that add logs to $work before a test that failed cleans up
+
+# keep_files: copies what explains a failure to $TOPOGEO_TEST_KEEP/NAME, or below the build folder. CMake gives the name;
+# by hand it is that of the script. Maps, logs of scans and programs can be made again.
+keep_files() {
+  local keeper kept=${TOPOGEO_TEST_KEEP:-$build/tests/failed}/${TOPOGEO_TEST_NAME:-$(basename "$0" .sh)}
+  for keeper in "${keepers[@]}"; do eval "$keeper" > /dev/null 2>&1 || true; done
+  rm -rf "$kept"
+  mkdir -p "$kept"
+  tar -C "$work" --exclude='*.clf' --exclude='*.pb' --exclude='*.sqlite*' --exclude='*.key' --exclude='key.pem' \
+    --exclude='./root' --exclude='./nodes' --exclude='node_modules' -cf - . 2> /dev/null |
+    tar -C "$kept" -xf - 2> /dev/null || true
+  find "$kept" \( -type p -o -type s -o -type l -o -empty -o -size +20M \) -delete
+  printf 'logs: %s\n' "$kept" >&2
+}
 
 # Keeps the files of a failed test, logs of services included: below the build folder when ctest runs it, else where
 # they are if KEEP is set. Fails when they must stay there.
@@ -26,6 +41,7 @@ keep_files() {
 # The last thing that was to be cleaned up goes first.
 clean_up() {
   local status=$? i
+  if [ $status -ne 0 ] && [ $status -ne 77 ] && [ -n "${TOPOGEO_TEST_KEEP:-}${TOPOGEO_TEST_NAME:-}" ]; then keep_files || true; fi
   for ((i = ${#cleanups[@]} - 1; i >= 0; --i)); do eval "${cleanups[i]}" > /dev/null 2>&1 || true; done
   [ $status -eq 0 ] || [ $status -eq 77 ] || keep_files || return 0
   rm -rf "$work"
@@ -34,17 +50,31 @@ trap clean_up EXIT
 
 step() { printf '%3d s: %s\n' $SECONDS "$*"; }
 fail() { printf 'FAILED: %s\n' "$*" >&2; exit 1; }
+
+# skip REASON [COMMAND]: ends the test as skipped. COMMAND is what makes it run. Readers of the output rely on the form.
 skip() {
-  [ "${TOPOGEO_NO_SKIPS:-}" != 1 ] || fail "it would be skipped, and TOPOGEO_NO_SKIPS is 1: $*"
-  printf 'skipped: %s\n' "$*"
+  [ "${TOPOGEO_NO_SKIPS:-}" != 1 ] || fail "it would be skipped, and TOPOGEO_NO_SKIPS is 1: $1"
+  printf 'skipped: %s; %s makes it run\n' "$1" "${2:-./run build}"
   exit 77  # SKIP_RETURN_CODE
 }
-need() { command -v "$1" > /dev/null || skip "$1 is not installed"; }
+# installs PROGRAM: the command that does.
+installs() {
+  case $1 in
+    chromium | node | npm) echo ./run packages --install browser ;;
+    tsc | lintian | systemd-analyze | git | shellcheck) echo ./run packages --install check ;;
+    esbuild | dpkg-shlibdeps) echo ./run packages --install build ;;
+    docker | docker-compose | openssl | faketime | fast-discovery-server | ip | iptables | wg | wireguard-go | python3)
+      echo ./run packages --install container ;;
+    setpriv | unshare | nsenter) echo apt-get install util-linux ;;
+    *) echo apt-get install "$1" ;;
+  esac
+}
+need() { command -v "$1" > /dev/null || skip "$1 is not installed" "$(installs "$1")"; }
 # there PROGRAM WITHOUT: for a part of a test; says what is WITHOUT it, and fails where CI is true, which installs all.
 there() {
   ! command -v "$1" > /dev/null || return 0
   [ "${CI:-}" != true ] || fail "$1 is not installed: $2"
-  echo "$1 is not installed: $2"
+  echo "$1 is not installed: $2; $(installs "$1") makes it run"
   return 1
 }
 
@@ -61,15 +91,30 @@ if [ -n "${ASAN_OPTIONS:-}${TSAN_OPTIONS:-}" ]; then
   }
 fi
 
-# eventually SECONDS COMMAND...: until the command succeeds.
-eventually() {
-  local end=$((SECONDS + $1 * ${TOPOGEO_TIME_FACTOR:-1}))
+# A wait that lasts longer is a hang: five minutes, longer on a slow machine. No verdict depends on it.
+hang_limit_s=$(awk -v factor="${TOPOGEO_TIME_FACTOR:-1}" 'BEGIN { print int(300 * (factor > 1 ? factor : 1)) }')
+
+# wait_for WHAT COMMAND...: until the command succeeds. Prints every ten seconds what it waits for; fails after a hang.
+wait_for() {
+  local what=$1 start=$SECONDS report=$((SECONDS + 10))
   shift
   until "$@"; do
-    [ $SECONDS -lt $end ] || return 1
-    sleep 0.2
+    if [ $SECONDS -ge $((start + hang_limit_s)) ]; then
+      printf '%3d s: gave up after %d s: %s\n' $SECONDS $((SECONDS - start)) "$what" >&2
+      return 1
+    fi
+    if [ $SECONDS -ge $report ]; then
+      report=$((SECONDS + 10))
+      printf '%3d s: still waiting for %s\n' $SECONDS "$what"
+    fi
+    sleep 0.2  # between two checks
   done
 }
+# What a program of ours takes as patience in its options: it gives up when wait_for would.
+# shellcheck disable=SC2034  # of the tests
+patient=(--wait-seconds "$hang_limit_s" --patience "$hang_limit_s")
+
+now_ms() { echo $(($(date +%s%N) / 1000000)); }
 
 # A DDS domain that no other test has, in VARIABLE.
 claim_domain_as() {  # VARIABLE
@@ -95,7 +140,7 @@ claim_domain() {
 need_programs() {
   local program
   for program in topogeo navigator simulator ga_worker; do
-    [ -x "$bin/$program" ] || skip "the services are not built"
+    [ -x "$bin/$program" ] || skip "$program is not built"
   done
 }
 
@@ -127,8 +172,8 @@ need_engine() {
   need docker
   # Of GCC 12; elsewhere than in a container ./run starts it with fixed addresses.
   [ -z "${TSAN_OPTIONS:-}${ASAN_OPTIONS:-}" ] || [ "$(cat /proc/sys/vm/mmap_rnd_bits)" -le 28 ] ||
-    skip "the sanitizer does not know the addresses here (sysctl vm.mmap_rnd_bits=28)"
-  docker info > /dev/null 2>&1 || skip "no container engine runs (tests/container/start_engine starts one)"
+    skip "the sanitizer does not know the addresses here" "sysctl vm.mmap_rnd_bits=28"
+  docker info > /dev/null 2>&1 || skip "no container engine runs" tests/container/start_engine
 }
 
 image=topogeo-test
@@ -144,9 +189,10 @@ need_image() {
     sha256sum | cut -c1-16)
   if [ "$(docker image inspect -f '{{ index .Config.Labels "key" }}' $image 2> /dev/null)" != "$key" ]; then
     local base=${BASE:-debian:bookworm}
+    # Where no registry answers, a mirror of packages does: two minutes for the one, then the other.
     docker image inspect "$base" > /dev/null 2>&1 || timeout 120 docker pull -q "$base" > /dev/null 2>&1 ||
       "$source_dir/deploy/base-image.sh" "$base" > "$work/base.log" 2>&1 ||
-      { tail -n 5 "$work/base.log"; skip "no base image can be pulled or made"; }
+      { tail -n 5 "$work/base.log"; skip "no base image can be pulled or made" "docker pull $base"; }
     step "making the image"
     BUILD=$build "$source_dir/deploy/image" $image --label key="$key" > "$work/image.log" 2>&1 ||
       { tail -n 30 "$work/image.log"; fail "the image cannot be made"; }
@@ -155,7 +201,7 @@ need_image() {
   exec 7>&-
 }
 
-# A log of the synthetic floor, its first N scans: log N FILE.
+# make_log N FILE: a log of the synthetic floor, its first N scans.
 make_log() {
   local all=$build/tests/container-floor.clf
   exec 6> "$build/.log.lock"
@@ -169,6 +215,22 @@ make_log() {
   fi
   exec 6>&-
   awk -v most="$1" '/^FLASER/ && ++scans > most { exit } { print }' "$all" > "$2"
+}
+
+# map_alone N DIR: what one process makes of the first N scans, in a log of the name log.clf. Made once for all tests.
+map_alone() {
+  local kept
+  make_log "$1" "$work/log.clf"
+  kept=$build/tests/alone-$(sha256sum "$bin/topogeo" "$work/log.clf" | sha256sum | cut -c1-16)
+  exec 5>> "$build/.alone.lock"
+  flock 5
+  if [ ! -e "$kept" ]; then
+    "$bin/topogeo" map --log "$work/log.clf" --out "$kept.new" > "$work/alone.log" 2>&1 ||
+      { cat "$work/alone.log"; fail "topogeo map"; }
+    mv -T "$kept.new" "$kept"
+  fi
+  exec 5>&-
+  cp -r "$kept" "$2"
 }
 
 same_results() {  # DIR DIR

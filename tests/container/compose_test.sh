@@ -5,7 +5,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need_engine
-there docker-compose "nothing can be composed" || skip "no docker-compose"
+need docker-compose
 need openssl
 need_image
 claim_domain
@@ -22,7 +22,7 @@ chown -R 1000 "$work/keys/robot" "$work/map"
 "$bin/simulator" --domain "$truth" --world "$source_dir/tests/data/room.world.yaml" --laser-port "$work/laser" \
   --base-port "$work/base" > "$work/simulator.log" 2>&1 &
 cleanups+=("kill $!")
-eventually 20 test -L "$work/base" || { tail -n 3 "$work/simulator.log"; fail "the simulator makes no ports"; }
+wait_for "the ports of the simulator" test -L "$work/base" || { tail -n 3 "$work/simulator.log"; fail "the simulator makes no ports"; }
 "$bin/topogeo" config --devices > "$work/devices.yaml"
 for device in laser base; do
   port=$(readlink "$work/$device")
@@ -49,8 +49,10 @@ fi
 compose() { docker-compose -p "topogeo-$$" "${files[@]}" --profile "$profile" "$@"; }
 profile=robot
 cleanups+=("compose down -t 5")
+# shellcheck disable=SC2016  # expanded when it is done
+keepers+=('compose logs --no-color > "$work/compose.log" 2>&1')
 up() { compose up -d "$@" > "$work/up.log" 2>&1 || { tail -n 5 "$work/up.log"; fail "compose up, profile $profile"; }; }
-down() { compose down -t 60 > "$work/down.log" 2>&1 || { tail -n 5 "$work/down.log"; fail "compose down, profile $profile"; }; }
+down() { compose down -t "$hang_limit_s" > "$work/down.log" 2>&1 || { tail -n 5 "$work/down.log"; fail "compose down, profile $profile"; }; }
 health() { docker inspect -f '{{ .State.Health.Status }}' "$@"; }  # CONTAINER...
 is_health() { [ "$(health "$1")" = "$2" ]; }                        # CONTAINER STATUS
 all_healthy() { [ "$(health "$@" | sort | uniq -c | xargs)" = "$# healthy" ]; }
@@ -58,22 +60,22 @@ all_healthy() { [ "$(health "$@" | sort | uniq -c | xargs)" = "$# healthy" ]; }
 signal() { docker exec "$2" sh -c "kill -$1 \$(cat /proc/1/task/1/children)"; }
 # What hangs makes its own container unhealthy and no other one: one_is_unhealthy CONTAINER OTHERS...
 one_is_unhealthy() {
-  eventually 90 all_healthy "$@" || { compose ps; fail "not all containers are healthy"; }
+  wait_for "healthy containers" all_healthy "$@" || { compose ps; fail "not all containers are healthy"; }
   signal STOP "$1"
-  eventually 90 is_health "$1" unhealthy || { compose ps; fail "a container whose service hangs is $(health "$1")"; }
+  wait_for "an unhealthy container" is_health "$1" unhealthy || { compose ps; fail "a container whose service hangs is $(health "$1")"; }
   # A check that a busy machine held up is no sign of it.
-  eventually 90 all_healthy "${@:2}" || { compose ps; fail "a service that hangs makes the containers of others unhealthy"; }
+  wait_for "healthy containers of the others" all_healthy "${@:2}" || { compose ps; fail "a service that hangs makes the containers of others unhealthy"; }
   signal CONT "$1"
   # One that its peers have forgotten meanwhile ends, and is started again.
-  eventually 90 all_healthy "$@" || { compose ps; fail "a container does not get well when its service goes on"; }
+  wait_for "healthy containers" all_healthy "$@" || { compose ps; fail "a container does not get well when its service goes on"; }
 }
 up
 secured() { TOPOGEO_SECURITY=$SECURITY "$bin/topogeo" "$@"; }
 all_run() { secured status > "$work/status" 2>&1 && [ "$(grep -c ' running ' "$work/status")" = 6 ]; }
-eventually 90 all_run || { cat "$work/status"; compose logs --tail 5; fail "not all services are well"; }
+wait_for "all services to be well" all_run || { cat "$work/status"; compose logs --tail 5; fail "not all services are well"; }
 
 step "a drive"
-secured goto 3,0 --wait-seconds 60 --patience 120 > "$work/goto.log" 2>&1 || { tail -n 5 "$work/goto.log"; fail "no drive"; }
+secured goto 3,0 "${patient[@]}" > "$work/goto.log" 2>&1 || { tail -n 5 "$work/goto.log"; fail "no drive"; }
 ! "$bin/topogeo" status > "$work/stranger" 2>&1 || { cat "$work/stranger"; fail "a stranger sees the services"; }
 
 step "a planner that hangs"
@@ -84,13 +86,12 @@ down
 [ -s "$work/map/map.pb" ] || fail "no map at the end"
 
 step "a log with two workers of profile offboard"
-make_log 60 "$LOG"
+map_alone 60 "$work/alone"
 chmod 644 "$LOG"
-"$bin/topogeo" map --log "$LOG" --out "$work/alone" > "$work/alone.log" 2>&1 || { cat "$work/alone.log"; fail "topogeo map"; }
 profile=offboard
 up --scale worker=2
 both_there() { secured workers --json > "$work/workers" && [ "$(grep -c '"worker_id"' "$work/workers")" = 2 ]; }
-eventually 60 both_there || { cat "$work/workers"; fail "not both workers are there"; }
+wait_for "both workers" both_there || { cat "$work/workers"; fail "not both workers are there"; }
 both_worked() { secured workers --json > "$work/workers" && [ "$(grep -c '"tasks_done": [1-9]' "$work/workers")" = 2 ]; }
 # Workers have a small share of the cores: where others want all of them, a robot may well be done before they are.
 mapped_by_both() {
@@ -98,9 +99,9 @@ mapped_by_both() {
   secured run --log "$LOG" --out "$work/helped" --workers 0 --wait-workers 2 > "$work/run.log" 2>&1 ||
     { tail -n 5 "$work/run.log"; fail "topogeo run"; }
   same_results "$work/helped" "$work/alone"
-  eventually 5 both_worked  # they say so once a second
+  both_worked  # they report twice a second; after a report that came too late there is another run
 }
-eventually 120 mapped_by_both || { cat "$work/workers"; fail "not both workers had work"; }
+wait_for "a run with work for both workers" mapped_by_both || { cat "$work/workers"; fail "not both workers had work"; }
 step "a worker that hangs"
 mapfile -t containers < <(compose ps -q)
 one_is_unhealthy "${containers[@]}"
@@ -110,7 +111,7 @@ step "profile demo"
 mkdir "$OUT"
 profile=demo
 up
-eventually 120 test -e "$OUT/map.pb" || { compose logs --tail 5; fail "the demo makes no map"; }
+wait_for "the map of the demo" test -e "$OUT/map.pb" || { compose logs --tail 5; fail "the demo makes no map"; }
 down
 same_results "$OUT" "$work/alone"
 step "the end"

@@ -3,12 +3,12 @@
 # itself, so the machine stays as it is.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-[ -x "$bin/topogeo" ] || skip "topogeo is not built"
+[ -x "$bin/topogeo" ] || skip "topogeo is not built" "./run build"
 need unshare
 need ip
 need setpriv
 need python3
-unshare -m -n true 2> /dev/null || skip "this user may not make namespaces"
+unshare -m -n true 2> /dev/null || skip "this user may not make namespaces" "root, with CAP_SYS_ADMIN in a container,"
 chmod 755 "$work"
 
 # With these a machine is well; each case spoils one.
@@ -79,13 +79,13 @@ fi
 # shellcheck disable=SC2016
 examine port_taken '
   python3 -c "
-import socket, time
+import signal, socket
 s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 s.bind((\"0.0.0.0\", 7400))
 open(\"$work/bound\", \"w\").close()
-time.sleep(60)" &
+signal.pause()" &
   trap "kill $!" EXIT
-  until [ -e "$work/bound" ]; do sleep 0.05; done'
+  until [ -e "$work/bound" ]; do kill -0 $! && sleep 0.05; done'
 expect port_taken ports problem 'python3'
 
 if unshare -n test -e /proc/sys/net/core/rmem_default; then

@@ -64,13 +64,13 @@ run robot simulator --world /exchange/room.world.yaml --laser-port /exchange/las
 "$bin/topogeo" config --devices > "$work/devices.yaml"
 services='sensor_gateway local_mapper localizer map_store planner navigator ga_worker'
 for service in $services; do run_service "$service"; done
-eventually 60 test -L "$work/laser" || { show simulator; fail "the simulator makes no ports"; }
+wait_for "the ports of the simulator" test -L "$work/laser" || { show simulator; fail "the simulator makes no ports"; }
 plans() { is_in_state planner '^running' && ! is_in_state planner 'needs'; }
-eventually 120 plans || { on robot topogeo status; show sensor_gateway; fail "the planner gets no map"; }
+wait_for "a map at the planner" plans || { on robot topogeo status; show sensor_gateway; fail "the planner gets no map"; }
 
 # drive PLACE: to its end, until it is there.
 drive() {
-  on robot topogeo goto "$1" --wait-seconds 60 --patience 120 > "$work/goto.log" 2>&1 ||
+  on robot topogeo goto "$1" "${patient[@]}" > "$work/goto.log" 2>&1 ||
     { tail -n 5 "$work/goto.log"; on robot topogeo status; fail "the robot does not get to $1"; }
 }
 drive "room A"
@@ -87,14 +87,14 @@ step "each service replaced by one of a newer image"
 printf 'FROM %s\nLABEL release=newer\n' "$image" | docker build -q -t "$image-newer" - > /dev/null 2>&1
 cleanups+=("docker rmi $image-newer")
 release=$image-newer
-# Who gave a goal does not wait longer for the navigator than ten seconds, which to replace it may take on a busy machine.
+# Who gave a goal does not wait longer for the navigator than ten seconds; a busy machine may need more to replace it.
 may_fail() { [ -e "$work/may_fail" ] || tail -n 1 "$work/tour.log" | grep -q "the navigator is gone"; }
 # To and fro, as long as there is something to replace.
 (
   trap 'exit 0' TERM
   while :; do
     for place in "room B" "room A"; do
-      docker exec "$network-robot" topogeo goto "$place" --wait-seconds 60 --patience 120 >> "$work/tour.log" 2>&1 &
+      docker exec "$network-robot" topogeo goto "$place" "${patient[@]}" >> "$work/tour.log" 2>&1 &
       wait $! || may_fail || exit 1
       [ ! -e "$work/replaced" ] || exit 0
     done
@@ -104,26 +104,26 @@ tour=$!
 cleanups+=("kill $tour")
 drives() { is_in_state navigator driving; }
 for service in $services; do
-  eventually 90 drives || { show_all; fail "the robot stands before another $service"; }
+  wait_for "the robot to drive" drives || { show_all; fail "the robot stands before another $service"; }
   old=$(container_of "$service")
   docker stop "$old" > /dev/null
   docker rm "$old" > /dev/null
   run_service "$service"
-  eventually 60 lives "$service" || { show "$service"; fail "the newer $service does not come up"; }
+  wait_for "the newer $service" lives "$service" || { show "$service"; fail "the newer $service does not come up"; }
   step "$service"
 done
-eventually 90 drives || { show_all; fail "the robot stands with newer services"; }
+wait_for "the robot to drive" drives || { show_all; fail "the robot stands with newer services"; }
 step "the host of localizer, map store and planner is lost on a drive, and comes back"
 touch "$work/may_fail"
 lose_host pc1
 stands() { ! drives; }
-eventually 60 stands || fail "the robot drives on without map and pose"
+wait_for "the robot to stand" stands || fail "the robot drives on without map and pose"
 start_host pc1
 for service in localizer map_store planner; do run_service $service; done
 for service in localizer map_store planner; do
-  eventually 60 lives $service || { show $service; fail "$service does not come back"; }
+  wait_for "$service on the host that came back" lives $service || { show $service; fail "$service does not come back"; }
 done
-eventually 90 drives || { show_all; fail "the robot stands after its host came back"; }
+wait_for "the robot to drive" drives || { show_all; fail "the robot stands after its host came back"; }
 touch "$work/replaced"
 wait $tour || { tail -n 5 "$work/tour.log"; on robot topogeo status; fail "a drive failed"; }
 drive "room A"
@@ -134,11 +134,11 @@ for service in $services; do
 done
 # On a busy machine one look may find a service late with its status.
 all_are_well() { on robot topogeo status > "$work/status"; }
-eventually 30 all_are_well || { cat "$work/status"; fail "not all services are well"; }
+wait_for "all services to be well" all_are_well || { cat "$work/status"; fail "not all services are well"; }
 count_collisions() {
   collisions=$(on robot topogeo status simulator --json |
     python3 -c 'import json, sys; print(json.load(sys.stdin)[0]["counters"]["collisions"])' 2> /dev/null)
 }
-eventually 30 count_collisions || fail "the simulator does not say its collisions"
+wait_for "the collisions of the simulator" count_collisions || fail "the simulator does not say its collisions"
 [ "${collisions%.*}" = 0 ] || fail "the robot ran into something $collisions times"
 step "the end"

@@ -8,6 +8,9 @@ make_network() {
   claim_domain
   docker network create "$network" > /dev/null
   cleanups+=("docker network rm $network")
+  # shellcheck disable=SC2016  # expanded when it is done
+  keepers+=('for name in $(docker ps -a --filter "name=$network-" --format "{{ .Names }}"); do
+    docker logs "$name" > "$work/${name#"$network"-}.container.log" 2>&1; done')
 }
 
 # start_host NAME [OPTIONS]: a container that waits for `run_on`.
@@ -32,12 +35,17 @@ start_on() {
     exec "$@" >> "$log" 2>&1' sh "${@:2}"
 }
 
+# shellcheck disable=SC2016
+is_gone_on() { on "$1" sh -c '! kill -0 "$(cat "/run/$1.pid")" 2> /dev/null' sh "$2"; }  # HOST NAME
+
 # kill_on HOST NAME [SIGNAL]: and waits until it is gone.
 kill_on() {
   # shellcheck disable=SC2016
-  on "$1" sh -c 'pid=$(cat "/run/$1.pid"); kill -"$2" "$pid"; while kill -0 "$pid" 2> /dev/null; do sleep 0.05; done' \
-    sh "$2" "${3:-9}"
+  on "$1" sh -c 'pid=$(cat "/run/$1.pid"); kill -"$2" "$pid"' sh "$2" "${3:-9}" || return 1
+  wait_for "the end of $2 on $1" is_gone_on "$@" || fail "$2 on $1 does not end"
 }
+
+is_lost() { ! docker inspect "$network-$1" > /dev/null 2>&1; }  # HOST
 
 # lose_host NAME: everything on it at once, as without power; only $work is left. start_host makes it again.
 lose_host() {
@@ -45,7 +53,7 @@ lose_host() {
   mapfile -t containers < <(docker ps --format '{{ .Names }}' | grep -E "^$network-$1(-|\$)")
   docker kill "${containers[@]}" > /dev/null
   docker rm -f "${containers[@]}" > /dev/null 2>&1 || true
-  while docker inspect "$network-$1" > /dev/null 2>&1; do sleep 0.05; done
+  wait_for "the end of the containers of $1" is_lost "$1" || fail "the host $1 stays"
 }
 
 no_multicast_on() {  # HOST
@@ -53,6 +61,22 @@ no_multicast_on() {  # HOST
   pid=$(docker inspect -f '{{ .State.Pid }}' "$network-$1")
   nsenter -t "$pid" -n iptables -A OUTPUT -d 224.0.0.0/4 -j DROP
 }
+
+# has_dropped_on HOST COUNT: so many packets, after no_multicast_on.
+has_dropped_on() {
+  local pid
+  pid=$(docker inspect -f '{{ .State.Pid }}' "$network-$1")
+  nsenter -t "$pid" -n iptables -nvxL OUTPUT | awk -v least="$2" '$3 == "DROP" && $1 >= least { found = 1 } END { exit !found }'
+}
+
+# Stops that the run has stored for good.
+stops_stored() {
+  python3 - "$work/$run/map.sqlite" 2> /dev/null << 'END' || echo 0
+import sqlite3, sys
+print(sqlite3.connect("file:%s?mode=ro" % sys.argv[1], uri=True).execute("SELECT count(*) FROM map_stop").fetchone()[0])
+END
+}
+more_stops_than() { [ "$(stops_stored)" -gt "$1" ] || [ -e "$work/$run/map.pb" ]; }
 
 # count_workers LEAST: of the lines of `topogeo workers`, those of workers that have done so many tasks.
 count_workers() { awk -v least="$1" '$4 == "%" && $5 ~ /^[0-9]+$/ && $5 >= least' | wc -l; }
@@ -66,7 +90,7 @@ start_service() {  # NAME, on the robot
   case $1 in
     map_store) start_on robot map_store map_store --out "/exchange/$run" --title log.clf ;;
     sensor_gateway) start_on robot sensor_gateway sensor_gateway --log /exchange/log.clf --rate "${rate:-lossless}" ;;
-    localizer) start_on robot localizer localizer --replay --wait-workers "${workers:-2}" --wait-seconds 30 ;;
+    localizer) start_on robot localizer localizer --replay --wait-workers "${workers:-2}" --wait-seconds "$hang_limit_s" ;;
     local_mapper) start_on robot local_mapper local_mapper --replay ;;
     *) start_on robot "$1" "$1" ;;
   esac
@@ -79,10 +103,11 @@ start_mapping() {
   for service in map_store localizer local_mapper planner sensor_gateway; do start_service $service; done
 }
 
-# wait_for_map SECONDS
+# wait_for_map: of the run that start_mapping has begun.
 wait_for_map() {
-  eventually "$1" test -e "$work/$run/trajectory.tum" || { tail -n 3 "$work"/log/* >&2; fail "no map in time"; }
-  eventually 20 test -e "$work/$run/map.pb" || fail "no map in time"
+  wait_for "the trajectory of run $run" test -e "$work/$run/trajectory.tum" ||
+    { tail -n 3 "$work"/log/* >&2; fail "no trajectory"; }
+  wait_for "the map of run $run" test -e "$work/$run/map.pb" || fail "no map"
 }
 
 stop_mapping() {

@@ -86,7 +86,7 @@ claim_domain
 partition=install-test-$$
 "$prefix/bin/topogeo-planner" --partition "$partition" --log-level off &
 cleanups+=("kill $!")
-heard=$(timeout 60 "$work/subscriber/subscriber" "$TOPOGEO_DOMAIN" "$partition") || fail "the subscriber heard nothing"
+heard=$(timeout "$hang_limit_s" "$work/subscriber/subscriber" "$TOPOGEO_DOMAIN" "$partition") || fail "the subscriber heard nothing"
 [ "$heard" = planner ] || fail "the subscriber heard '$heard'"
 
 step "the operator's page"
@@ -97,7 +97,7 @@ page_is_whole() {
   local log=$work/$1.page file address
   "$prefix/bin/topogeo" "$@" --port 0 --domain "$TOPOGEO_DOMAIN" > "$log" 2>&1 &
   cleanups+=("kill $!")
-  eventually 60 grep -q 'spectators: ' "$log" || { cat "$log"; fail "topogeo $1 prints no link"; }
+  wait_for "the link of topogeo $1" grep -q 'spectators: ' "$log" || { cat "$log"; fail "topogeo $1 prints no link"; }
   address=$(sed -n 's/^spectators: *//p' "$log")
   for file in "" panel; do
     curl -sf "$address$file" > "$work/page.html" || fail "topogeo $1: /$file"
@@ -113,13 +113,13 @@ page_is_whole web
 
 step "signs of life for systemd"
 # The socket of the service manager, as systemd makes it.
-python3 - "$prefix/libexec/topogeo/planner" "$partition" <<'PY' || fail "sd_notify"
-import os, socket, subprocess, sys, tempfile, time
+python3 - "$prefix/libexec/topogeo/planner" "$partition" "$hang_limit_s" <<'PY' || fail "sd_notify"
+import os, socket, subprocess, sys, tempfile
 
 path = os.path.join(tempfile.mkdtemp(), "notify")
 manager = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
 manager.bind(path)
-manager.settimeout(30)
+manager.settimeout(int(sys.argv[3]))
 planner = subprocess.Popen(
     [sys.argv[1], "--partition", sys.argv[2], "--log-level", "off"],
     env=dict(os.environ, NOTIFY_SOCKET=path, WATCHDOG_USEC="600000"))

@@ -12,10 +12,8 @@ fi
 
 need_image
 step "running what is installed"
-log=$work/log.clf
-make_log 60 "$log"
+map_alone 60 "$work/here"
 chmod 755 "$work"
-"$bin/topogeo" map --log "$log" --out "$work/here" > /dev/null 2>&1
 # shellcheck disable=SC2016
 docker run --rm -i --user root -v "$work:/exchange" $image bash -euo pipefail -c '
   [ "$(topogeo --version)" = "topogeo 0.1.0" ]
@@ -74,7 +72,7 @@ claim_domain
 # The network of the host: that of the engine need not reach a mirror or proxy.
 # shellcheck disable=SC2016
 docker run --rm --network host -v "$build/packages:/packages:ro" -v "$source_dir/tests/container/subscriber:/subscriber:ro" \
-  -e DEBIAN_FRONTEND=noninteractive -e TOPOGEO_DOMAIN "${BASE:-debian:bookworm}" bash -euo pipefail -c '
+  -e DEBIAN_FRONTEND=noninteractive -e TOPOGEO_DOMAIN -e hang_limit_s="$hang_limit_s" "${BASE:-debian:bookworm}" bash -euo pipefail -c '
   apt-get update -q
   install() { apt-get install -q -y --no-install-recommends -o Dpkg::Options::=--force-unsafe-io "$@"; }
   install /packages/topogeo-workers_*.deb
@@ -86,7 +84,7 @@ docker run --rm --network host -v "$build/packages:/packages:ro" -v "$source_dir
   install /packages/topogeo-dev_*.deb g++ cmake make
   cmake -S /subscriber -B /tmp/subscriber
   cmake --build /tmp/subscriber
-  heard=$(timeout 60 /tmp/subscriber/subscriber "$TOPOGEO_DOMAIN" "*") || true
+  heard=$(timeout "$hang_limit_s" /tmp/subscriber/subscriber "$TOPOGEO_DOMAIN" "*") || true
   [ "$heard" = ga_worker ] || { echo "the subscriber heard \"$heard\""; exit 1; }
   kill %1
   wait %1

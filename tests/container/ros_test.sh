@@ -8,7 +8,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/hosts.sh"
 need openssl
 need python3
 need_image
-[ -x "$build/tests/ros_peer" ] || skip "the nodes of ROS are not built (target ros_peer)"
+[ -x "$build/tests/ros_peer" ] || skip "the nodes of ROS are not built" "ninja -C build ros_peer"
 chmod 777 "$work"
 
 step "keys, and the nodes of ROS with what they need"
@@ -40,14 +40,14 @@ start_node robot drive /exchange/nodes/room.world.yaml
 start_node user watch
 printf 'qos: {scan: reliable, odometry: reliable}\nodometry: {wait_s: 0.5}\n' > "$work/ros.yaml"
 start_on robot map_store map_store --out /exchange/map --new
-start_on robot localizer localizer --wait-workers 1 --wait-seconds 30
+start_on robot localizer localizer --wait-workers 1 --wait-seconds "$hang_limit_s"
 for service in local_mapper planner navigator; do start_on robot $service $service; done
 start_on robot ros_bridge ros_bridge --ros /exchange/ros.yaml
 start_worker pc1
 start_on page web web --port 8080
-eventually 60 heard '^pose map ' || { show; fail "the nodes get no pose"; }
-eventually 30 heard '^map map ' || { show; fail "the nodes get no map"; }
-eventually 20 heard '^tf map odom ' || { show; fail "the nodes get no transform"; }
+wait_for "a pose at the nodes of ROS" heard '^pose map ' || { show; fail "the nodes get no pose"; }
+wait_for "a map at the nodes of ROS" heard '^map map ' || { show; fail "the nodes get no map"; }
+wait_for "a transform at the nodes of ROS" heard '^tf map odom ' || { show; fail "the nodes get no transform"; }
 
 step "a goal of a node"
 on nodes /exchange/nodes/ros_peer "$TOPOGEO_DOMAIN" goal 1.5 0 0 > "$work/goal.log" 2>&1 ||
@@ -57,11 +57,11 @@ arrived() {
   awk '/^truth/ { near = ($2 - 1.5) ^ 2 + $3 ^ 2 < 0.16 && $5 == "stands"; collisions = $7 }
     END { exit !(near && collisions == 0) }' "$work/log/nodes.robot"
 }
-eventually 60 arrived || { tail -n 1 "$work/log/nodes.robot"; show; fail "the robot does not arrive"; }
+wait_for "the robot at its goal" arrived || { tail -n 1 "$work/log/nodes.robot"; show; fail "the robot does not arrive"; }
 
 step "worker, page, and a stranger"
 worked() { [ "$(workers_done)" -ge 1 ]; }
-eventually 20 worked || { on robot topogeo workers; fail "the worker had no work"; }
+wait_for "work of the worker" worked || { on robot topogeo workers; fail "the worker had no work"; }
 # shellcheck disable=SC2016  # expanded in the container
 on page bash -c 'exec 3<> /dev/tcp/127.0.0.1/8080
   printf "GET /api/info HTTP/1.0\r\nHost: 127.0.0.1:8080\r\n\r\n" >&3; cat <&3' > "$work/info"
@@ -73,7 +73,7 @@ all_are_seen() {
     grep -q "^$service " "$work/status" || { missing=$service; return 1; }
   done
 }
-eventually 30 all_are_seen || { cat "$work/status"; fail "$missing is not seen"; }
+wait_for "all services in the status" all_are_seen || { cat "$work/status"; fail "$missing is not seen"; }
 on nodes topogeo status > "$work/stranger" 2>&1 || true
 ! grep -q 'map_store\|localizer' "$work/stranger" || { cat "$work/stranger"; fail "a stranger sees our services"; }
 step "the end"

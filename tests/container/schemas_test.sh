@@ -14,7 +14,7 @@ if ! cmp -s "$source_dir/tests/container/schemas/package-lock.json" "$packages/i
   step "fetching the types"
   cp "$source_dir"/tests/container/schemas/package*.json "$packages"
   (cd "$packages" && npm ci --no-audit --no-fund --ignore-scripts > npm.log 2>&1) ||
-    skip "npm cannot fetch the types, see $packages/npm.log"
+    skip "npm cannot fetch the types, see $packages/npm.log" "a registry of npm that can be reached"
   cp "$packages/package-lock.json" "$packages/installed.json"
 fi
 exec 4>&-

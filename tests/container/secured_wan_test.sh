@@ -8,10 +8,9 @@ need_tunnel
 need ip
 need openssl
 need_programs
-unshare --net true 2> /dev/null || skip "this machine allows no network namespaces"
+unshare --net true 2> /dev/null || skip "no network namespace can be made" "root, with CAP_SYS_ADMIN in a container,"
 claim_domain
-make_log 100 "$work/log.clf"
-"$bin/topogeo" map --log "$work/log.clf" --out "$work/alone" > /dev/null 2>&1
+map_alone 100 "$work/alone"
 "$source_dir/deploy/security/make_keys" "$work/keys" issue robot
 "$source_dir/deploy/security/make_keys" "$work/keys" issue pc1 ga_worker
 
@@ -48,14 +47,14 @@ has_worked() { workers | awk '$1 == "pc1" && $5 > 0 { found = 1 } END { exit !fo
 
 step "a log with a worker at the other site"
 start_at pc1 ga_worker --slots 1 --name pc1
-eventually 60 is_there || { workers; fail "the worker at the other site is not found"; }
+wait_for "the worker at the other site" is_there || { workers; fail "the worker at the other site is not found"; }
 start_at robot map_store --out "$work/tunnelled" --title log.clf
-start_at robot localizer --replay --wait-workers 1 --wait-seconds 30
+start_at robot localizer --replay --wait-workers 1 --wait-seconds "$hang_limit_s"
 start_at robot local_mapper --replay
 start_at robot planner
 start_at robot sensor_gateway --log "$work/log.clf" --rate lossless
-eventually 180 test -e "$work/tunnelled/trajectory.tum" || { tail -n 3 "$work"/*.log; fail "no map in time"; }
-eventually 20 test -e "$work/tunnelled/map.pb" || fail "no map in time"
-eventually 20 has_worked || { workers; fail "the worker at the other site had no work"; }
+wait_for "the trajectory" test -e "$work/tunnelled/trajectory.tum" || { tail -n 3 "$work"/*.log; fail "no trajectory"; }
+wait_for "the map" test -e "$work/tunnelled/map.pb" || fail "no map"
+wait_for "work of the worker at the other site" has_worked || { workers; fail "the worker at the other site had no work"; }
 same_results "$work/tunnelled" "$work/alone"
 step "the end"

@@ -23,16 +23,22 @@ start() {  # FOLDER SERVICE OPTIONS...
   pid=$!
   cleanups+=("kill $pid")
 }
+gives_status() { status "$@" > /dev/null; }
+answers() { wait_for "a status of ${*:2}" gives_status "$@"; }  # FOLDER [SERVICE]
 stop() { kill "$pid"; wait "$pid" || fail "a service ended with $?"; }
 
 before=0  # peers that the planner had refused
-# counts NAME: whether the planner has refused more peers than before, and the last one is NAME.
+heard=0   # lines of its log until then
+# counts NAME: whether the planner has refused more peers than before, NAME among them. Its log has the names: as its last
+# error another one may have come since.
 counts() {
   status "$keys/robot" planner > "$work/planner.status" || return 1
   local refused
   refused=$(awk '/^  fault .* peer refused/ { print $2 }' "$work/planner.status")
-  [ "${refused:-0}" -gt "$before" ] && grep -q "last error .* peer refused: $1" "$work/planner.status" || return 1
+  [ "${refused:-0}" -gt "$before" ] || return 1
+  tail -n "+$((heard + 1))" "$work/planner.log" | grep -q "peer refused: $1" || return 1
   before=$refused
+  heard=$(wc -l < "$work/planner.log")
 }
 
 # refuses WHO NAME ENVIRONMENT...: a program that asks for the status with this environment gets nothing, and the
@@ -41,8 +47,8 @@ refuses() {
   env "${@:3}" "$bin/topogeo" status --partition $partition --watch > "$work/$1.log" 2>&1 &
   pid=$!
   cleanups+=("kill $pid")
-  eventually 20 counts "$2" ||
-    { cat "$work/$1.log" "$work/planner.status"; fail "the stranger is not counted and named: $1"; }
+  wait_for "the refusal of $1" counts "$2" ||
+    { cat "$work/$1.log" "$work/planner.status"; tail -n 20 "$work/planner.log"; fail "the stranger is not counted and named: $1"; }
   kill $pid || fail "the stranger ended by itself: $1"
   grep -q '^planner' "$work/$1.log" && fail "a stranger gets a status: $1"
   return 0
@@ -107,7 +113,7 @@ grep -q "carry no security" "$work/servers" || { cat "$work/servers"; fail "no c
 step "strangers"
 start "$keys/robot" planner
 planner=$pid
-eventually 20 status "$keys/robot" > /dev/null || fail "the owner gets no status"
+answers "$keys/robot" || fail "the owner gets no status"
 status "$keys/pc1" > /dev/null || fail "another host of the owner gets no status"
 drops_unprotected && fail "the owner's packets are taken for a stranger's"
 # A heartbeat that is not encrypted, as if a peer had sent it, to each participant that this host may have.
@@ -116,7 +122,7 @@ heartbeat+='\x00\x00\x01\x02\x00\x00\x00\x00\xe8\x03\x00\x00\x00\x00\x00\x00\xe8
 for number in {0..9}; do
   printf '%b' "$heartbeat" > "/dev/udp/127.0.0.1/$((7411 + 250 * TOPOGEO_DOMAIN + 2 * number))" || true
 done
-eventually 10 drops_unprotected || fail "a plain message in the name of a peer is not refused"
+wait_for "the refusal of a plain message" drops_unprotected || fail "a plain message in the name of a peer is not refused"
 refuses "no certificate" "'topogeo status' ([0-9a-f.]*)" TOPOGEO_SECURITY=
 refuses "foreign authority" "'topogeo status' (/O=topogeo/CN=status.abroad;" TOPOGEO_SECURITY="$work/foreign/abroad"
 
@@ -135,13 +141,14 @@ cp -r "$keys/pc1" "$work/stolen"
 "$make_keys" "$keys" list > "$work/list"
 grep -q '^pc1/status .*, revoked$' "$work/list" || fail "the list does not show what is revoked"
 told_of_list() { status "$keys/robot" planner | grep "new revocations" > /dev/null; }
-eventually 10 told_of_list || fail "a running service does not notice a new list"
+wait_for "the notice of a new list" told_of_list || fail "a running service does not notice a new list"
 pid=$planner
 stop
 start "$keys/robot" planner  # reads the list of revoked certificates at its start
 planner=$pid
 before=0
-eventually 20 status "$keys/robot" > /dev/null || fail "the owner gets no status"
+heard=0
+answers "$keys/robot" || fail "the owner gets no status"
 refuses revoked "'topogeo status' (/O=topogeo/CN=status.pc1;" TOPOGEO_SECURITY="$work/stolen"
 pid=$planner
 stop
@@ -157,10 +164,10 @@ has_written() { [ "$(wc -l < "$work/commands")" -ge "$1" ]; }
 ask() { status "$keys/robot" "$1" > "$work/$1.status"; }  # SERVICE
 hears_commands() { ask sensor_gateway && grep -Eq '^  received +motion_command +[1-9]' "$work/sensor_gateway.status"; }
 believes() { grep -q 'waiting: for scans' "$work/local_mapper.log"; }
-# denies SERVICE NAME WHAT: whether the last one that the service refused is the worker under this name.
+# denies SERVICE NAME WHAT: whether the service has refused the worker under this name.
 denies() {
   ask "$1" && grep -q '^  fault .* peer refused' "$work/$1.status" &&
-    grep -q "refused: 'robot/$2' (/O=topogeo/CN=ga_worker.pc1; [0-9a-f.]*) is denied to $3" "$work/$1.status"
+    grep -q "refused: 'robot/$2' (/O=topogeo/CN=ga_worker.pc1; [0-9a-f.]*) is denied to $3" "$work/$1.log"
 }
 
 "$bin/topogeo" config --devices > "$work/devices.yaml"
@@ -169,13 +176,13 @@ start "$keys/robot" sensor_gateway --devices "$work/devices.yaml" \
 gateway=$pid
 start "$keys/robot" local_mapper
 mapper=$pid
-eventually 20 status "$keys/robot" sensor_gateway > /dev/null || fail "the sensor gateway does not start"
-eventually 20 status "$keys/robot" local_mapper > /dev/null || fail "the local mapper does not start"
+answers "$keys/robot" sensor_gateway || fail "the sensor gateway does not start"
+answers "$keys/robot" local_mapper || fail "the local mapper does not start"
 mkdir "$work/thief"
 cp -r "$keys/pc1/ga_worker" "$work/thief/map_store"
 cp -r "$keys/pc1/ga_worker" "$work/thief/navigator"
 denied_by_itself() {  # PROGRAM OPTIONS...
-  secured "$work/thief" timeout 20 "$@" > "$work/thief.log" 2>&1 && fail "a worker may do the work of another"
+  secured "$work/thief" timeout "$hang_limit_s" "$@" > "$work/thief.log" 2>&1 && fail "a worker may do the work of another"
   grep -q "denied by security" "$work/thief.log" || { cat "$work/thief.log"; fail "no clear error of $1"; }
 }
 denied_by_itself "$bin/map_store" --out "$work/thief/out" --partition $partition
@@ -185,16 +192,16 @@ denied_by_itself "$build/tests/command_writer" "$TOPOGEO_DOMAIN" $partition
 steal() {
   write_commands "$work/thief" "${@:2}"
   local commands=$pid
-  eventually 20 denies sensor_gateway navigator "write topogeo/v[0-9]*/motion_command$why" ||
+  wait_for "the refusal of a worker as navigator" denies sensor_gateway navigator "write topogeo/v[0-9]*/motion_command$why" ||
     { cat "$work/sensor_gateway.status"; fail "the worker that writes motion commands is not counted and named: $1"; }
   env TOPOGEO_SECURITY="$work/thief" "${@:2}" "$bin/map_store" --out "$work/thief/out" --partition $partition \
     > "$work/map_store.log" 2>&1 &
   local store=$!
   cleanups+=("kill $store")
-  eventually 20 denies local_mapper map_store "$why" ||
+  wait_for "the refusal of a worker as map store" denies local_mapper map_store "$why" ||
     { cat "$work/local_mapper.status"; fail "the worker that writes the map is not counted and named: $1"; }
-  eventually 60 has_written $(($(wc -l < "$work/commands") + 40)) || fail "the worker ends its motion commands: $1"
-  eventually 20 ask sensor_gateway || fail "the sensor gateway gives no status"
+  wait_for "motion commands of the worker" has_written $(($(wc -l < "$work/commands") + 40)) || fail "the worker ends its motion commands: $1"
+  wait_for "a status of the gateway" ask sensor_gateway || fail "the sensor gateway gives no status"
   grep -Eq '^  received +motion_command +0,' "$work/sensor_gateway.status" ||
     { cat "$work/sensor_gateway.status"; fail "the gateway takes a worker's motion commands: $1"; }
   believes && { cat "$work/local_mapper.log"; fail "the local mapper believes a worker: $1"; }
@@ -217,9 +224,9 @@ steal "changed governance"
 
 write_commands "$keys/robot"
 navigator=$pid
-eventually 20 hears_commands || fail "the gateway does not hear the navigator"
+wait_for "commands of the navigator at the gateway" hears_commands || fail "the gateway does not hear the navigator"
 start "$keys/robot" map_store --out "$work/out"
-eventually 20 believes ||
+wait_for "the map store at the local mapper" believes ||
   { cat "$work/local_mapper.log"; fail "the local mapper does not hear the map store"; }
 stop
 for pid in $navigator $gateway $mapper; do stop; done

@@ -8,13 +8,15 @@ need_tunnel() {
   need wireguard-go
   need wg
   need iptables
-  [ -c /dev/net/tun ] || skip "there is no /dev/net/tun"
+  [ -c /dev/net/tun ] || skip "there is no /dev/net/tun" "mkdir -p /dev/net && mknod /dev/net/tun c 10 200"
 }
 
 make_tunnel_key() {  # SITE
   (umask 077; wg genkey > "$work/$1.key")
   wg pubkey < "$work/$1.key" > "$work/$1.public"
 }
+
+has_interface() { "${inside[@]}" wg show "$1" > /dev/null 2>&1; }
 
 # tunnel SITE ADDRESS PEER ADDRESS_OF_PEER ENDPOINT: afterwards nothing else leaves the site. The name of the interface
 # is also that of a socket of this machine.
@@ -23,7 +25,7 @@ tunnel() {
   enter "$1"
   "${inside[@]}" wireguard-go -f "$interface" > "$work/$1.wireguard" 2>&1 &
   cleanups+=("kill $!")
-  eventually 20 "${inside[@]}" wg show "$interface" > /dev/null 2>&1 ||
+  wait_for "the tunnel of $1" has_interface "$interface" ||
     { cat "$work/$1.wireguard"; fail "no tunnel"; }
   "${inside[@]}" wg set "$interface" listen-port 51820 private-key "$work/$1.key" \
     peer "$(cat "$work/$3.public")" allowed-ips "$4/32" endpoint "$5:51820"

@@ -14,6 +14,8 @@ printf 'FROM %s\nUSER root\nRUN apt-get update -q && apt-get install -q -y --no-
   "systemd systemd-sysv sudo procps iproute2" | docker build -q --network host -t "$image-systemd" - > "$work/build.log" 2>&1 ||
   { tail -n 5 "$work/build.log"; fail "the image of the machine cannot be made"; }
 cleanups+=("docker rm -f $machine")
+# shellcheck disable=SC2016  # expanded when it is done
+keepers+=('docker logs $machine > "$work/machine.log" 2>&1; docker exec $machine journalctl --no-pager > "$work/journal.log"')
 boot() {
   docker rm -f $machine > /dev/null 2>&1 || true
   docker run -d --name $machine --hostname robot --no-healthcheck --tmpfs /run --tmpfs /run/lock "$@" \
@@ -21,11 +23,16 @@ boot() {
 }
 here() { docker exec $machine "$@"; }
 is_up() { here systemctl is-system-running 2> /dev/null | grep -qE 'running|degraded'; }
+has_settled() {
+  is_up || [ "$(docker inspect -f '{{ .State.Running }}' $machine)" != true ] ||
+    docker logs $machine 2>&1 | grep -q 'Freezing execution'
+}
+boots() { boot "$@" && wait_for "systemd" has_settled && is_up; }
 # An engine without all privileges of root cannot give them; a part is enough for control groups of version 1.
-{ boot --privileged && eventually 30 is_up; } ||
-  { boot --cap-add SYS_ADMIN --cap-add SYS_NICE --security-opt seccomp=unconfined --security-opt apparmor=unconfined \
-    --cgroupns host -v /sys/fs/cgroup:/sys/fs/cgroup && eventually 30 is_up; } ||
-  skip "systemd does not start in a container here: $(tail -n 1 "$work/boot.log")"
+boots --privileged ||
+  boots --cap-add SYS_ADMIN --cap-add SYS_NICE --security-opt seccomp=unconfined --security-opt apparmor=unconfined \
+    --cgroupns host -v /sys/fs/cgroup:/sys/fs/cgroup ||
+  skip "systemd does not start in a container here: $(tail -n 1 "$work/boot.log")" "an engine that allows --privileged"
 
 # Units have neither the environment of the container nor a place for reports, and too little memory for a sanitizer.
 if [ ${#sanitized[@]} -gt 0 ]; then
@@ -52,7 +59,7 @@ here sed -i "s/^TOPOGEO_DOMAIN=.*/TOPOGEO_DOMAIN=$TOPOGEO_DOMAIN/; s/^TOPOGEO_RO
   /etc/topogeo/topogeo.env /etc/topogeo/worker.env
 here sh -c 'topogeo config --devices > /etc/topogeo/devices.yaml'
 here systemctl enable --now topogeo.target topogeo-worker@1 > /dev/null 2>&1
-eventually 30 is_state topogeo-sensor-gateway ActiveState failed || fail "a gateway without ports goes on"
+wait_for "the failure of the gateway" is_state topogeo-sensor-gateway ActiveState failed || fail "a gateway without ports goes on"
 here journalctl -u topogeo-sensor-gateway --no-pager | grep -q "expected at least one port" || fail "without a reason"
 if here topogeo status > "$work/status" 2>&1; then fail "a unit that has failed is called well"; fi
 grep -q '^topogeo-sensor-gateway *failed' "$work/status" || { cat "$work/status"; fail "it is not listed"; }
@@ -62,7 +69,7 @@ docker cp "$source_dir/tests/data/room.world.yaml" $machine:/root/ > /dev/null
 # shellcheck disable=SC2154  # claim_domain_as sets it
 docker exec -d $machine /usr/libexec/topogeo/simulator --domain "$truth" --world /root/room.world.yaml \
   --laser-port /root/laser --base-port /root/base
-eventually 20 here test -L /root/base || fail "the simulator makes no ports"
+wait_for "the ports of the simulator" here test -L /root/base || fail "the simulator makes no ports"
 # shellcheck disable=SC2016  # expanded in the container
 here sh -ec 'for device in laser base; do
     port=$(readlink /root/$device)
@@ -73,17 +80,16 @@ here sh -ec 'for device in laser base; do
 here systemctl restart topogeo.target
 # All seven, as root and as the user of the services.
 all_run() { here topogeo status > "$work/status" 2>&1 && [ "$(grep -c ' running ' "$work/status")" = 7 ]; }
-eventually 90 all_run || { cat "$work/status"; fail "not all services are well"; }
+wait_for "all services to be well" all_run || { cat "$work/status"; fail "not all services are well"; }
 all_run_for_their_user() { as_topogeo topogeo status > /dev/null; }
-eventually 30 all_run_for_their_user || fail "not all services are well for their user"
-eventually 30 here test -e /var/lib/topogeo/map/map.sqlite || fail "no map"
+wait_for "the services to be well for their user" all_run_for_their_user || fail "not all services are well for their user"
+wait_for "the map" here test -e /var/lib/topogeo/map/map.sqlite || fail "no map"
 
 [ -x "$build/tests/drive_watch" ] || fail "drive_watch is not built"
 docker cp "$build/tests/drive_watch" $machine:/root/ > /dev/null
 docker exec -d $machine sh -c "exec nice -n -20 /root/drive_watch --domain $truth --log-level off > /root/motion"
 docker exec -d $machine sh -c "exec nice -n -20 /root/drive_watch --domain $TOPOGEO_DOMAIN --robot anna --commands --log-level off \
   > /root/commands"
-now_ms() { echo $(($(date +%s%N) / 1000000)); }
 drives() { here tail -n 1 /root/motion | awk '{ exit !($2 > 0.1) }'; }
 is_new() { ! is_state topogeo-navigator MainPID "$1" && ! is_state topogeo-navigator MainPID 0; }
 
@@ -91,7 +97,7 @@ is_new() { ! is_state topogeo-navigator MainPID "$1" && ! is_state topogeo-navig
 drive_to() {  # X,Y
   local from
   from=$(now_ms)
-  here topogeo goto "$1" --wait-seconds 60 --patience 120 > "$work/goto.log" 2>&1 ||
+  here topogeo goto "$1" "${patient[@]}" > "$work/goto.log" 2>&1 ||
     { tail -n 5 "$work/goto.log"; here topogeo status || true; fail "the robot does not get to $1"; }
   here cat /root/commands | awk -v from="$from" '$1 > from && ($2 > 0 || $3 > 0) {
       if (n++) { sum += $1 - last; if ($1 - last > most) most = $1 - last }
@@ -114,12 +120,12 @@ show_drive() {
 freeze_on_the_way_to() {  # X,Y
   local navigator from until drive
   navigator=$(state topogeo-navigator MainPID)
-  here topogeo goto "$1" --wait-seconds 60 > "$work/goto.log" 2>&1 &
+  here topogeo goto "$1" --wait-seconds "$hang_limit_s" > "$work/goto.log" 2>&1 &
   drive=$!
-  eventually 60 drives || fail "the robot does not set out for $1"
+  wait_for "the robot to drive" drives || fail "the robot does not set out for $1"
   from=$(now_ms)
   here kill -STOP "$navigator"
-  eventually 60 is_new "$navigator" || fail "the navigator that hangs is not started again"
+  wait_for "another navigator" is_new "$navigator" || fail "the navigator that hangs is not started again"
   until=$(here systemctl show --timestamp=unix -P ExecMainStartTimestamp topogeo-navigator)
   # It stands for the last ten lines before, half a second.
   here cat /root/motion | awk -v from="$from" -v until="${until#@}000" '$1 > from && $1 < until {
@@ -127,7 +133,7 @@ freeze_on_the_way_to() {  # X,Y
     }
     END { printf "       stands after %d ms\n", (last ? last - from : 0); exit still < 10 }' ||
     { show_drive "$from"; fail "the robot drives on without its navigator"; }
-  eventually 60 all_run || { cat "$work/status"; fail "not all services are well after the navigator hung"; }
+  wait_for "all services to be well" all_run || { cat "$work/status"; fail "not all services are well after the navigator hung"; }
   wait $drive || true  # with the new navigator, if it came soon enough for who gave the goal
 }
 
@@ -135,8 +141,8 @@ step "what dies or hangs"
 others=$(state topogeo-local-mapper MainPID)
 before=$(state topogeo-navigator MainPID)
 here kill -KILL "$before"
-eventually 60 is_new "$before" || fail "the navigator that died is not started again"
-eventually 60 all_run || { cat "$work/status"; fail "not all services are well after the navigator died"; }
+wait_for "another navigator" is_new "$before" || fail "the navigator that died is not started again"
+wait_for "all services to be well" all_run || { cat "$work/status"; fail "not all services are well after the navigator died"; }
 step "the navigator hangs on a drive"
 freeze_on_the_way_to 3,0
 is_state topogeo-local-mapper MainPID "$others" || fail "another service was started again, too"
@@ -170,7 +176,7 @@ here systemctl start topogeo-discovery@0
 before=$(state topogeo-discovery@0 MainPID)
 here kill -KILL "$before"
 comes_back() { here ss -Hlun 'sport = :11811' | grep -q . && ! is_state topogeo-discovery@0 MainPID "$before"; }
-eventually 60 comes_back || fail "the discovery server is not started again"
+wait_for "another discovery server" comes_back || fail "the discovery server is not started again"
 here systemctl stop topogeo-discovery@0
 
 step "a backup, and the end"
@@ -178,10 +184,10 @@ as_topogeo topogeo store snapshot /var/lib/topogeo/map before-the-fair > /dev/nu
 here systemctl stop topogeo-map-store
 as_topogeo topogeo store restore /var/lib/topogeo/map before-the-fair > /dev/null
 here systemctl start topogeo-map-store
-eventually 60 all_run || { cat "$work/status"; fail "not all services are well after the map was restored"; }
+wait_for "all services to be well" all_run || { cat "$work/status"; fail "not all services are well after the map was restored"; }
 here systemctl stop topogeo.target topogeo-worker@1
 for unit in navigator sensor-gateway local-mapper localizer map-store planner; do
-  eventually 60 is_state topogeo-$unit ActiveState inactive || fail "topogeo-$unit ended with $(state topogeo-$unit Result)"
+  wait_for "the end of topogeo-$unit" is_state topogeo-$unit ActiveState inactive || fail "topogeo-$unit ended with $(state topogeo-$unit Result)"
 done
 here test -s /var/lib/topogeo/map/map.pb || fail "no map at the end"
 

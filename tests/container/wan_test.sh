@@ -7,8 +7,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/tunnel.sh"
 
 need_tunnel
 need_image
-make_log 100 "$work/log.clf"
-"$bin/topogeo" map --log "$work/log.clf" --out "$work/alone" > /dev/null 2>&1
+map_alone 100 "$work/alone"
 chmod 777 "$work"
 make_network
 
@@ -30,11 +29,11 @@ start_on robot server fast-discovery-server -i 0 -l 10.99.0.1 -p 11811
 start_on pc1 server fast-discovery-server -i 1 -l 10.99.0.2 -p 11811
 start_worker pc1
 worker_is_there() { [ "$(workers_there)" = 1 ]; }
-eventually 60 worker_is_there || { on robot topogeo workers; fail "the worker at the other site is not found"; }
+wait_for "the worker at the other site" worker_is_there || { on robot topogeo workers; fail "the worker at the other site is not found"; }
 workers=1 start_mapping tunnelled
-wait_for_map 180
+wait_for_map
 worker_worked() { [ "$(workers_done)" = 1 ]; }
-eventually 20 worker_worked || fail "the worker at the other site had no work"
+wait_for "work of the worker at the other site" worker_worked || fail "the worker at the other site had no work"
 same_results "$work/tunnelled" "$work/alone"
 stop_mapping
 
@@ -42,5 +41,5 @@ step "without the tunnel"
 enter pc1
 "${inside[@]}" ip link set "wg$$pc" down
 cut_off() { ! worker_is_there; }
-eventually 60 cut_off || fail "the worker is heard without the tunnel"
+wait_for "the loss of the worker" cut_off || fail "the worker is heard without the tunnel"
 step "the end"

@@ -7,20 +7,24 @@ hosts=(robot pc1 pc2)
 declare -A pids=()
 export TOPOGEO_DDS_PARTICIPANT=${TOPOGEO_DDS_PARTICIPANT:-udp_only}
 
+# Whether it is ready, or has ended.
+switch_answers() { grep -qs ready "$work/switch.log" || ! kill -0 "$1" 2> /dev/null; }  # PID
+
 # Skips the test where the kernel or the rights of the user do not allow it.
 make_hosts() {
   need ip
   need nsenter
-  [ "$(id -u)" = 0 ] || skip "namespaces need root"
-  [ -c /dev/net/tun ] || skip "there is no /dev/net/tun"
-  [ -x "$build/tests/faulty_switch" ] || skip "faulty_switch is not built"
-  unshare --net true 2> /dev/null || skip "no network namespace can be made"
+  [ "$(id -u)" = 0 ] || skip "namespaces need root" root
+  [ -c /dev/net/tun ] || skip "there is no /dev/net/tun" "mkdir -p /dev/net && mknod /dev/net/tun c 10 200"
+  [ -x "$build/tests/faulty_switch" ] || skip "faulty_switch is not built" "ninja -C build faulty_switch"
+  unshare --net true 2> /dev/null || skip "no network namespace can be made" "root, with CAP_SYS_ADMIN in a container,"
   mkfifo "$work/orders"
   exec {orders}<> "$work/orders"
   unshare --net "$build/tests/faulty_switch" "${hosts[@]}" < "$work/orders" > "$work/switch.log" 2>&1 &
   local middle=$! host number=0
   cleanups+=("kill $middle")
-  eventually 10 grep -qs ready "$work/switch.log" || skip "no TAP device: $(cat "$work/switch.log")"
+  wait_for "the switch" switch_answers "$middle" || fail "the switch does not start"
+  grep -qs ready "$work/switch.log" || skip "no TAP device: $(cat "$work/switch.log")" "root, with CAP_NET_ADMIN in a container,"
   for host in "${hosts[@]}"; do
     number=$((number + 1))
     local space=topogeo-$$-$host
@@ -70,5 +74,3 @@ stop_all() {
   local name
   for name in "${!pids[@]}"; do kill -CONT "${pids[$name]}" 2> /dev/null || true; stop "$name" KILL; done
 }
-
-now_ms() { echo $(($(date +%s%N) / 1000000)); }
