@@ -4,8 +4,8 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { assert_accessible, close, kPictures, kSizes, launch, open_page } from "./page.mjs";
-import { eventually } from "./robot.mjs";
+import { assert_accessible, close, kPictures, kSizes, launch, new_context, open_page } from "./page.mjs";
+import { wait_for } from "./robot.mjs";
 import { kAddress, StandIn } from "./stand_in.mjs";
 
 const { TOPOGEO_BUILD: build } = process.env;
@@ -23,7 +23,7 @@ after(() => close(browser));
 async function open(options = {}, prepare = () => {}) {
   const service = new StandIn(join(build, "share/topogeo/web"));
   prepare(service);
-  const context = await browser.newContext({ viewport: kSizes.desk, colorScheme: "light", bypassCSP: true, ...options });
+  const context = await new_context(browser, { viewport: kSizes.desk, colorScheme: "light", bypassCSP: true, ...options });
   await service.serve(context);
   const page = await open_page(context, `${kAddress}/#token=${"t".repeat(16)}`);
   await page.click("#tab-draw");
@@ -61,7 +61,7 @@ const press = (page, name) => page.getByRole("button", { name, exact: true }).cl
 async function saved({ page, service }) {
   const before_save = service.version;
   await press(page, "Save");
-  await eventually("the drawing is saved", () => service.version > before_save, 20);
+  await wait_for("the drawing is saved", () => service.version > before_save);
   return service.drawing;
 }
 
@@ -102,18 +102,18 @@ test("undo and redo go through every step, and undone to the start nothing is un
   await choose(page, "door");
   await drag(page, [-1, 0], [-2, 0]);
   const list = () => page.locator(".draw-items li").count();
-  await eventually("both are drawn", async () => (await list()) === 2, 20);
+  await wait_for("both are drawn", async () => (await list()) === 2);
   await page.keyboard.press("Control+z");
   await press(page, "Undo");
-  await eventually("all is undone", async () => (await list()) === 0, 20);
+  await wait_for("all is undone", async () => (await list()) === 0);
   assert.equal(await page.getByRole("button", { name: "Save", exact: true }).isDisabled(), true);
   await page.keyboard.press("Control+Shift+z");
   await press(page, "Redo");
-  await eventually("all is back", async () => (await list()) === 2, 20);
+  await wait_for("all is back", async () => (await list()) === 2);
   await press(page, "Discard");
-  await eventually("all is discarded", async () => (await list()) === 0, 20);
+  await wait_for("all is discarded", async () => (await list()) === 0);
   await press(page, "Undo");
-  await eventually("discarding is undone", async () => (await list()) === 2, 20);
+  await wait_for("discarding is undone", async () => (await list()) === 2);
   await end(opened);
 });
 
@@ -124,7 +124,7 @@ test("items are moved by their corners, named, and deleted", async () => {
   });
   const { page } = opened;
   await click(page, [4, 2]);
-  await eventually("the wall is chosen", () => page.getByText("4.00 m long").first().isVisible(), 20);
+  await wait_for("the wall is chosen", () => page.getByText("4.00 m long").first().isVisible());
   await drag(page, [6, 2], [6, 5]);
   await press(page, "Select");
   await click(page, [-2, 1]);
@@ -179,7 +179,7 @@ test("when somebody else has saved, theirs is taken or mine saved over it", asyn
   service.save_elsewhere({ places: [{ name: "again", x_m: 0, y_m: 0 }] });
   await page.getByText("Somebody else has saved").waitFor();
   await press(page, "Save mine over it");
-  await eventually("mine is saved", () => service.drawing.places[0].name === "place 1", 20);
+  await wait_for("mine is saved", () => service.drawing.places[0].name === "place 1");
   // What others save while nothing is edited here comes by itself.
   service.save_elsewhere({ places: [{ name: "later", x_m: 0, y_m: 0 }] });
   await page.locator(".draw-items li").getByText("later").waitFor({ state: "attached" });
@@ -207,13 +207,14 @@ test("leaving with something unsaved is asked about", async () => {
   await page.click("#tab-now");
   await page.getByText("waits in the view Draw").waitFor();
   const asked = page.waitForEvent("dialog");
+  // It never ends, because the page stays.
   const reloaded = page.reload({ timeout: 2000 }).catch(() => null);
   const dialog = await asked;
   assert.equal(dialog.type(), "beforeunload");
   await dialog.dismiss();
   await reloaded;
   await page.click("#tab-draw");
-  await eventually("it is still there", async () => (await page.locator(".draw-items li").count()) === 1, 20);
+  await wait_for("it is still there", async () => (await page.locator(".draw-items li").count()) === 1);
   await opened.context.close();
 });
 
@@ -239,7 +240,7 @@ test("rooms are split, joined and renamed", async () => {
   service.save_elsewhere({});
   await choose(page, "rename");
   await click(page, [2, 0]);
-  await eventually("the name is asked for", () => page.evaluate(() => document.activeElement.id === "draw-name"), 20);
+  await wait_for("the name is asked for", () => page.evaluate(() => document.activeElement.id === "draw-name"));
   await page.keyboard.type("library");
   await page.keyboard.press("Enter");
   await saved(opened);
@@ -255,7 +256,7 @@ test("a new floor is drawn, exported, imported and loaded", async () => {
   const { page, service } = opened;
   await page.getByText("New floor", { exact: true }).click();
   await press(page, "Draw a new floor");
-  await eventually("the plane is there", () => page.locator("#map.plane").isVisible(), 20);
+  await wait_for("the plane is there", () => page.locator("#map.plane").isVisible());
   await page.locator(".tool[data-tool=wall]").click();
   const box = await page.locator("#map").boundingBox();
   const at = (x, y) => [box.x + box.width * x, box.y + box.height * y];
@@ -278,12 +279,12 @@ test("a new floor is drawn, exported, imported and loaded", async () => {
   await page.getByText("The file is read").waitFor();
   await press(page, "Load into the simulator");
   await press(page, "Yes, load it");
-  await eventually("the floor is sent", () => service.floors.length === 1, 20);
+  await wait_for("the floor is sent", () => service.floors.length === 1);
   const [floor] = service.floors;
   assert.equal(floor.target, "simulator");
   assert.deepEqual(floor.walls, content.walls);
   assert.equal(floor.start.x_m, content.places[0].x_m);
-  await eventually("the map is back", async () => !(await page.locator("#map.plane").count()), 20);
+  await wait_for("the map is back", async () => !(await page.locator("#map.plane").count()));
   await end(opened);
 });
 
@@ -311,7 +312,7 @@ test("a picture is measured by two points of known distance", async () => {
       for (let i = 0; i < data.length; i += 4) if (data[i] > 200 && data[i + 1] < 80 && data[i + 3] > 60) ++count;
       return count;
     });
-  const before_measure = await eventually("the picture is shown", red, 20);
+  const before_measure = await wait_for("the picture is shown", red);
   await press(page, "Measure");
   const box = await page.locator("#map").boundingBox();
   await page.mouse.click(box.x + box.width * 0.45, box.y + box.height / 2);
@@ -320,9 +321,9 @@ test("a picture is measured by two points of known distance", async () => {
   await page.fill("#known-distance", String(now / 2));
   await press(page, "Apply");
   // Half as long in both directions.
-  await eventually("the picture is smaller", async () => Math.abs((await red()) / before_measure - 0.25) < 0.02, 20);
+  await wait_for("the picture is smaller", async () => Math.abs((await red()) / before_measure - 0.25) < 0.02);
   await press(page, "Remove picture");
-  await eventually("it is gone", async () => (await red()) === 0, 20);
+  await wait_for("it is gone", async () => (await red()) === 0);
   await end(opened);
 });
 
@@ -345,7 +346,7 @@ test("a finger draws a zone, two fingers zoom", async () => {
   await send("touchStart", [[x - 30, y], [x + 30, y]]);
   for (let i = 1; i <= 6; ++i) await send("touchMove", [[x - 30 - 15 * i, y], [x + 30 + 15 * i, y]]);
   await send("touchEnd", []);
-  await eventually("the map is larger", async () => (await scale()) !== before_pinch, 20);
+  await wait_for("the map is larger", async () => (await scale()) !== before_pinch);
   const { zones } = await saved(opened);
   assert.equal(zones.length, 1);
   const [left, top, right, , , bottom] = zones[0].corners_m;
@@ -359,7 +360,7 @@ test("a tap sends the robot, a finger that is held drives it", async () => {
   await page.locator("#tab-send").tap();
   await page.touchscreen.tap(...(await on_screen(page, [3, 1])));
   await page.locator("#go").tap();
-  await eventually("the robot is sent", () => service.goal, 20);
+  await wait_for("the robot is sent", () => service.goal);
   assert.ok(Math.abs(service.goal.x_m - 3) < 0.2, JSON.stringify(service.goal));
   await page.getByText("Drive by hand", { exact: true }).tap();
   await page.getByRole("button", { name: "Take the controls" }).tap();
@@ -370,14 +371,14 @@ test("a tap sends the robot, a finger that is held drives it", async () => {
   const point = { x: box.x + box.width / 2, y: box.y + box.height / 2 };
   const drives = () => service.ops.filter((op) => op === "drive").length;
   await touch.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: [point] });
-  await eventually("it drives for as long as the finger is there", () => drives() > 5, 20);
+  await wait_for("it drives for as long as the finger is there", () => drives() > 5);
   // A finger that slips is none that lets go.
   await touch.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: [{ ...point, y: point.y + 15 }] });
   const before_slip = drives();
-  await eventually("it goes on", () => drives() > before_slip + 2, 20);
+  await wait_for("it goes on", () => drives() > before_slip + 2);
   assert.equal(service.ops.includes("release"), false);
   await touch.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
-  await eventually("it stops", () => service.ops[service.ops.length - 1] === "release", 20);
+  await wait_for("it stops", () => service.ops[service.ops.length - 1] === "release");
   await end(opened);
 });
 
@@ -389,7 +390,7 @@ test("the route that is shown is planned again when somebody has drawn", async (
   await page.locator("#go:enabled").waitFor();
   const before = service.previews;
   service.save_elsewhere({});
-  await eventually("it is planned again", () => service.previews === before + 1, 20);
+  await wait_for("it is planned again", () => service.previews === before + 1);
   await end(opened);
 });
 
@@ -403,7 +404,7 @@ test("the first name that is found is chosen by the keyboard", async () => {
   await page.getByRole("searchbox").fill("delt");
   await page.keyboard.press("Enter");
   await page.locator("#go:enabled").click();
-  await eventually("the robot is sent", () => service.goal?.place === "delta", 20);
+  await wait_for("the robot is sent", () => service.goal?.place === "delta");
   await end(opened);
 });
 
@@ -414,7 +415,7 @@ test("exploring is started, shown and ended", async () => {
   await press(page, "Explore");
   await page.getByText("The robot explores by itself.").waitFor();
   await press(page, "Cancel");
-  await eventually("it ends", () => !service.exploring, 20);
+  await wait_for("it ends", () => !service.exploring);
   await page.getByText("The robot has no goal.").waitFor();
   await end(opened);
 });

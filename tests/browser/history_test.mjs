@@ -7,8 +7,8 @@ import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { drive_log } from "./drive_log.mjs";
-import { assert_accessible, close, kPictures, launch } from "./page.mjs";
-import { eventually, Robot } from "./robot.mjs";
+import { assert_accessible, close, kPictures, launch, new_context } from "./page.mjs";
+import { wait_for, Robot } from "./robot.mjs";
 import { kAddress, StandIn } from "./stand_in.mjs";
 
 const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source, TOPOGEO_WORK: work } = process.env;
@@ -47,7 +47,7 @@ after(async () => {
 });
 
 async function open(address = robot.address, service = null) {
-  const context = await browser.newContext({
+  const context = await new_context(browser, {
     viewport: { width: 1280, height: 800 },
     colorScheme: "light",
     bypassCSP: true,
@@ -61,11 +61,9 @@ async function open(address = robot.address, service = null) {
 }
 
 /** Waits until a selector has a text; the text then. */
-function text(selector, pattern, seconds, on = page) {
-  return eventually(
-    `${selector} with ${pattern}`,
-    async () => (await on.locator(selector).allInnerTexts()).find((entry) => pattern.test(entry)),
-    seconds,
+function text(selector, pattern, on = page) {
+  return wait_for(`${selector} with ${pattern}`, async () =>
+    (await on.locator(selector).allInnerTexts()).find((entry) => pattern.test(entry)),
   );
 }
 
@@ -183,7 +181,7 @@ test("snapshots are made, compared and restored", async () => {
   await robot.end("web");
   await robot.end("map_store");
   await robot.start_store("--continue", file("half/map.pb"), "--out", file("store_half"), "--new");
-  await eventually("a snapshot of the half", async () => (await robot.post("snapshot", { name: "half" })) === 200);
+  await wait_for("a snapshot of the half", async () => (await robot.post("snapshot", { name: "half" })) === 200);
   await robot.end("web");
   await robot.end("map_store");
   await robot.start_store("--continue", file("round/map.pb"), "--out", file("store"), "--new");
@@ -227,7 +225,7 @@ test("snapshots are made, compared and restored", async () => {
   // It is not asked again, and what differed from the map of before is off the map.
   assert.equal(await page.getByRole("button", { name: "Restore it" }).isVisible(), false);
   assert.equal(await page.getByText("Seen since").first().isVisible(), false);
-  await eventually("the map of half", async () => {
+  await wait_for("the map of half", async () => {
     const { status, bytes } = await get("/api/drive");
     return status === 200 && JSON.parse(bytes).total === half;
   });
@@ -280,7 +278,7 @@ test("another map of the place is merged once the operator has seen and accepted
   assert.ok(joined > total / 2, shown); // the morning is the smaller one
   await page.getByRole("button", { name: "Make it the map" }).click();
   await text(".notice", /becomes that of snapshot merged-/);
-  await eventually("the merged map", async () => {
+  await wait_for("the merged map", async () => {
     const { status, bytes } = await get("/api/drive");
     return status === 200 && JSON.parse(bytes).total === facts("evening").stops + joined;
   });
@@ -311,7 +309,7 @@ test("the search shows while it runs, and why a loop was rejected", async () => 
   const service = new TwoRooms(join(build, "share/topogeo/web"));
   const own = await open(kAddress, service);
   await own.click("#tab-understand");
-  await text(".search-state", /No search was heard/, 20, own);
+  await text(".search-state", /No search was heard/, own);
   const covariance = [0.09, 0, 0, 0, 0.04, 0, 0, 0, 0.01];
   const table = (channel, set) => service.tell({ channel, from: 0, version: 1, set, gone: [] });
   const stops = Array.from({ length: 9 }, (_, i) => [i - 4, 0, 0]);
@@ -322,19 +320,19 @@ test("the search shows while it runs, and why a loop was rejected", async () => 
   table("loops", { 0: { ...loop, correction_m: 0.8, correction_rad: 0.02 } });
   const match = { x_m: 3, y_m: 0, theta_rad: 0, base_theta_rad: 0.1, half_widths: [1, 0.7, 0.3], covariance };
   service.show("search", { stamp_s: 1, tasks: 1, running: true, whole_map: false, matches: [{ ...match, done: false, hypotheses: [] }], hypotheses: [] });
-  await text(".search-state", /1 match is worked on/, 20, own);
+  await text(".search-state", /1 match is worked on/, own);
   const hypotheses = [[2.4, 0.3, 0.1, 0.83], [3.6, -0.2, 3, 0.41]];
   const done = { ...match, done: true, accepted: true, fitness: 0.83, hypotheses };
   service.show("search", { stamp_s: 1, tasks: 1, running: false, whole_map: false, matches: [done], hypotheses: [] });
-  await text(".search-state", /1 match, 1 accepted/, 20, own);
+  await text(".search-state", /1 match, 1 accepted/, own);
   await own.screenshot({ path: join(kPictures, "understand-search.png") });
   service.show("search", { stamp_s: 2, tasks: 72, running: false, whole_map: true, matches: [], hypotheses });
-  await text(".search-state", /2 places fit best/, 20, own);
+  await text(".search-state", /2 places fit best/, own);
 
   await own.locator(".loops .row-title").click();
-  await text(".loop-detail p", /The maps fit elsewhere/, 20, own);
-  await text(".loop-detail dd", /0\.81 m, 1\.1°/, 20, own);
-  await text(".loop-detail dd", /71 %/, 20, own);
+  await text(".loop-detail p", /The maps fit elsewhere/, own);
+  await text(".loop-detail dd", /0\.81 m, 1\.1°/, own);
+  await text(".loop-detail dd", /71 %/, own);
   await picture("understand-rejected", own);
   assert.deepEqual(own.faults, []);
 });

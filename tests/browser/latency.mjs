@@ -10,7 +10,7 @@ import { mkdtempSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { eventually, Robot } from "./robot.mjs";
+import { wait_for, Robot } from "./robot.mjs";
 
 const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source, TOPOGEO_CHROMIUM: chromium = "/usr/bin/chromium" } = process.env;
 const seconds = Number(process.argv[2] ?? 20);
@@ -68,7 +68,7 @@ try {
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
   await page.addInitScript(watch_poses);
   await page.goto(`${robot.address}/#token=${robot.token}`);
-  await eventually("the robot has a pose", () => page.evaluate(() => window.drawn.length > 10), 120);
+  await wait_for("the robot has a pose", () => page.evaluate(() => window.drawn.length > 10));
   await page.click("#tab-send");
   await page.getByText("Drive by hand", { exact: true }).click();
   await page.getByRole("button", { name: "Take the controls" }).click();

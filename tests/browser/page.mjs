@@ -4,7 +4,7 @@ import { spawnSync } from "node:child_process";
 import { mkdirSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
-import { eventually, in_map, within } from "./robot.mjs";
+import { ends, in_map, kHangLimit_ms, wait_for } from "./robot.mjs";
 import { watch } from "./watcher.mjs";
 
 const { TOPOGEO_BUILD: build, TOPOGEO_CHROMIUM: chromium } = process.env;
@@ -26,14 +26,22 @@ export function launch() {
   return playwright.chromium.launch({
     executablePath: chromium,
     args: ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"],
+    timeout: kHangLimit_ms,
   });
+}
+
+/** A context whose pages wait for what a click needs until it counts as a hang. */
+export async function new_context(browser, options) {
+  const context = await browser.newContext(options);
+  context.setDefaultTimeout(kHangLimit_ms);
+  return context;
 }
 
 /** Ends a browser, if there is one; by force when it hangs at its end, which is nothing of ours. */
 export async function close(browser) {
   if (!browser) return;
   const closed = browser.close();
-  if (await within(30, closed)) return;
+  if (await ends(closed)) return;
   console.log("the browser does not end: killed");
   spawnSync("pkill", ["-KILL", "-P", String(process.pid), "chrom"]);
   await closed;
@@ -49,9 +57,9 @@ export class WatchedRobot {
   async start() {
     await this.robot.start();
     this.browser = await launch();
-    this.context = await this.browser.newContext({ viewport: kSizes.desk, colorScheme: "light" });
+    this.context = await new_context(this.browser, { viewport: kSizes.desk, colorScheme: "light" });
     this.channels = await watch(this.context, this.robot.address);
-    await eventually("the robot has a pose", async () => (await this.newest("pose"))?.state === "TRACKING", 120);
+    await wait_for("the robot has a pose", async () => (await this.newest("pose"))?.state === "TRACKING");
   }
 
   async stop() {
@@ -61,6 +69,14 @@ export class WatchedRobot {
 
   newest(channel) {
     return this.channels.newest(channel);
+  }
+
+  /** Until some more poses have come, one for each scan. */
+  async pass_poses(count) {
+    for (let i = 0; i < count; ++i) {
+      const last_s = (await this.newest("pose"))?.sent_s;
+      await wait_for("another pose", async () => (await this.newest("pose"))?.sent_s !== last_s);
+    }
   }
 
   /** Where it really is, in the map. */
@@ -79,17 +95,13 @@ export async function open_page(context, address) {
 }
 
 /** Waits until a selector has a text. */
-export async function text(page, selector, pattern, seconds) {
+export async function text(page, selector, pattern) {
   let found = [];
   try {
-    await eventually(
-      `${selector} with ${pattern}`,
-      async () => {
-        found = await page.locator(selector).allInnerTexts();
-        return found.some((entry) => pattern.test(entry));
-      },
-      seconds,
-    );
+    await wait_for(`${selector} with ${pattern}`, async () => {
+      found = await page.locator(selector).allInnerTexts();
+      return found.some((entry) => pattern.test(entry));
+    });
   } catch (error) {
     throw new Error(`${error.message}; there is ${JSON.stringify(found)}`);
   }

@@ -3,8 +3,8 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { assert_accessible, kPictures, kSizes, open_page, text, WatchedRobot } from "./page.mjs";
-import { eventually, Robot } from "./robot.mjs";
+import { assert_accessible, kPictures, kSizes, new_context, open_page, text, WatchedRobot } from "./page.mjs";
+import { wait_for, Robot } from "./robot.mjs";
 
 const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source } = process.env;
 
@@ -19,7 +19,7 @@ after(() => run.stop());
 
 /** A page of the operator (or of a spectator), with the errors that it had. */
 async function open(view, { token = robot.token, path = "/", options = undefined } = {}) {
-  const own = options ? await run.browser.newContext(options) : run.context;
+  const own = options ? await new_context(run.browser, options) : run.context;
   const page = await open_page(own, `${robot.address}${path}${token ? `#token=${token}` : ""}`);
   if (view) await page.click(`#tab-${view}`);
   page.close_all = () => (options ? own.close() : page.close());
@@ -33,7 +33,7 @@ async function end(page) {
 
 async function stands() {
   const from = await run.true_place();
-  await new Promise((resolve) => setTimeout(resolve, 300));
+  await run.pass_poses(2);
   const to = await run.true_place();
   return Math.hypot(to.x_m - from.x_m, to.y_m - from.y_m) < 0.002;
 }
@@ -42,7 +42,7 @@ test("shows the map", async () => {
   const page = await open("now");
   await text(page, ".state-word", /TRACKING/i);
   const mark = () => performance.getEntriesByName("map-shown")[0]?.startTime;
-  const shown_ms = await eventually("a picture of the map", () => page.evaluate(mark), 30);
+  const shown_ms = await wait_for("a picture of the map", () => page.evaluate(mark));
   console.log(`map on the screen ${Math.round(shown_ms)} ms after opening`);
   assert.equal(await page.locator(".empty-map").isVisible(), false);
   await end(page);
@@ -70,7 +70,7 @@ test("a click on room A brings the robot there", async () => {
   await text(page, ".card [role=status]", /\d m, about/);
   await page.click("#go");
   await text(page, ".section h3", /To room A/);
-  await text(page, ".section [role=status]", /Has arrived/, 120);
+  await text(page, ".section [role=status]", /Has arrived/);
   const at = await run.true_place();
   assert.ok(Math.hypot(at.x_m - 3, at.y_m) < 0.3, JSON.stringify(at));
   await end(page);
@@ -92,17 +92,16 @@ test("a held key drives, letting go stops", async () => {
   await page.getByRole("button", { name: "Take the controls" }).click();
   const from = await run.true_place();
   await page.keyboard.down("s");
-  await eventually(
+  await wait_for(
     "the robot moves",
     async () => {
       const at = await run.true_place();
       return Math.hypot(at.x_m - from.x_m, at.y_m - from.y_m) > 0.1;
     },
-    20,
   );
   await page.keyboard.up("s");
-  await eventually("the robot stands", stands, 10);
-  await eventually("nobody drives by hand", async () => (await run.newest("drive")) === null, 10);
+  await wait_for("the robot stands", stands);
+  await wait_for("nobody drives by hand", async () => (await run.newest("drive")) === null);
   await end(page);
 });
 
@@ -112,16 +111,15 @@ test("a page that goes away while it drives stops the robot", async () => {
   await page.getByRole("button", { name: "Take the controls" }).click();
   const from = (await run.newest("truth")).theta_rad;
   await page.keyboard.down("a");
-  await eventually("the robot turns", async () => Math.abs((await run.newest("truth")).theta_rad - from) > 0.1, 20);
+  await wait_for("the robot turns", async () => Math.abs((await run.newest("truth")).theta_rad - from) > 0.1);
   await page.close_all();
-  await eventually(
+  await wait_for(
     "the robot stands",
     async () => {
       const before = (await run.newest("truth")).theta_rad;
-      await new Promise((resolve) => setTimeout(resolve, 300));
+      await run.pass_poses(2);
       return Math.abs((await run.newest("truth")).theta_rad - before) < 0.002;
     },
-    10,
   );
 });
 
@@ -129,12 +127,12 @@ test("Stop holds the robot until it is released", async () => {
   const page = await open("send");
   await page.getByRole("button", { name: "base", exact: true }).click();
   await page.click("#go");
-  await eventually("the robot drives", async () => !(await stands()), 30);
+  await wait_for("the robot drives", async () => !(await stands()));
   await page.click("#stop");
   await text(page, ".banner", /held/);
-  await eventually("the robot stands", stands, 10);
+  await wait_for("the robot stands", stands);
   await page.getByRole("button", { name: "Release" }).click();
-  await eventually(
+  await wait_for(
     "the banner goes",
     async () =>
       (await page.getByText("The robot is held").count()) === 0 ||
@@ -151,14 +149,13 @@ test("a restored map stays without what the drive under way has mapped since", a
   };
   const go_to = async (place) => {
     // Refused as long as nobody has published a map with this place.
-    const goal = await eventually(`${place} is known`, async () => (await robot.ask("goal", { place })).goal_id);
-    await eventually(
+    const goal = await wait_for(`${place} is known`, async () => (await robot.ask("goal", { place })).goal_id);
+    await wait_for(
       `the robot is at ${place}`,
       async () => {
         const { goal_id, state } = (await run.newest("navigator")) ?? {};
         return goal_id === goal && state === "arrived"; // not that of a goal before
       },
-      120,
     );
   };
   await go_to("base");
@@ -166,11 +163,11 @@ test("a restored map stays without what the drive under way has mapped since", a
   const { snapshots } = await robot.ask("snapshot", { name: "before-the-tour" });
   const before = snapshots.find(({ name }) => name === "before-the-tour").stops;
   await go_to("room A");
-  await eventually("stops of the tour", async () => (await stops_stored()) > before + 1, 120);
+  await wait_for("stops of the tour", async () => (await stops_stored()) > before + 1);
   assert.equal(await robot.post("restore", { name: "before-the-tour" }), 200);
-  await eventually("the localizer begins anew", () => robot.has_logged("localizer", "begins anew with it"), 120);
+  await wait_for("the localizer begins anew", () => robot.has_logged("localizer", "begins anew with it"));
   const begun_s = Date.now() / 1000; // poses that were sent before are those of the localizer of before
-  await eventually(
+  await wait_for(
     "the robot knows where it is",
     async () => {
       const pose = await run.newest("pose");
@@ -178,13 +175,12 @@ test("a restored map stays without what the drive under way has mapped since", a
       const at = await run.true_place();
       return Math.hypot(at.x_m - pose.x_m, at.y_m - pose.y_m) < 0.3;
     },
-    120,
   );
   // The robot goes on in it, from where it stands: one more stop. Those of the tour do not come back.
-  const stops = await eventually("the restored map", stops_stored, 120);
+  const stops = await wait_for("the restored map", stops_stored);
   assert.ok(stops >= before && stops <= before + 1, `${stops} stops, ${before} in the snapshot`);
   await go_to("base");
-  await eventually("the map grows again", async () => (await stops_stored()) > stops, 120);
+  await wait_for("the map grows again", async () => (await stops_stored()) > stops);
 });
 
 test("the page goes on after the web service was replaced", async () => {
@@ -242,11 +238,11 @@ for (const scheme of ["light", "dark"]) {
 // Last: a robot that stands after this has a pose, and knows at its next stop whether it is the right one.
 test("the pose is set by dragging, in a map that stays as it is", async () => {
   const page = await open("correct");
-  await eventually("no pose is chosen while the robot maps", () =>
+  await wait_for("no pose is chosen while the robot maps", () =>
     page.getByRole("button", { name: "Set on the map" }).isDisabled(),
   );
   await page.getByRole("button", { name: "Leave the map as it is" }).click();
-  await text(page, "button", /Map from now on/, 120);
+  await text(page, "button", /Map from now on/);
   await page.getByRole("button", { name: "Set on the map" }).click();
   const at = await run.newest("pose");
   // A drag on the map fills the fields; then the pose is typed, for the robot is to stay where it is.
@@ -266,6 +262,6 @@ test("the pose is set by dragging, in a map that stays as it is", async () => {
   await text(page, ".notice", /goes on from there/i);
   assert.equal(await page.getByRole("button", { name: "Apply" }).isVisible(), false);
   await page.getByRole("button", { name: "Map from now on" }).click();
-  await text(page, "button", /Leave the map as it is/, 120);
+  await text(page, "button", /Leave the map as it is/);
   await end(page);
 });
