@@ -21,8 +21,7 @@ need_robot() {
 
 # Fetched once; npm takes nothing else than what the lock file names by its hash.
 need_node_packages() {
-  need node
-  need npm
+  need node npm
   [ "$(node -p 'parseInt(process.versions.node)')" -ge 18 ] || skip "Node $(node --version) is older than 18" "Node 18"
   local packages=$build/tests/browser
   mkdir -p "$packages"

@@ -2,9 +2,7 @@
 # The web service behind a certificate: HTTPS and a WebSocket over TLS work, plain HTTP and old TLS do not.
 source "$(dirname "${BASH_SOURCE[0]}")/../container/common.sh"
 
-need openssl
-need curl
-need python3
+need openssl curl python3
 [ -x "$bin/web" ] || skip "web is not built" "./run build"
 
 claim_domain

@@ -57,19 +57,27 @@ skip() {
   printf 'skipped: %s; %s makes it run\n' "$1" "${2:-./run build}"
   exit 77  # SKIP_RETURN_CODE
 }
-# installs PROGRAM: the command that does.
+# installs PROGRAM...: the command that does.
 installs() {
-  case $1 in
-    chromium | node | npm) echo ./run packages --install browser ;;
-    tsc | lintian | systemd-analyze | git | shellcheck) echo ./run packages --install check ;;
-    esbuild | dpkg-shlibdeps) echo ./run packages --install build ;;
-    docker | docker-compose | openssl | faketime | fast-discovery-server | ip | iptables | wg | wireguard-go | python3)
-      echo ./run packages --install container ;;
-    setpriv | unshare | nsenter) echo apt-get install util-linux ;;
-    *) echo apt-get install "$1" ;;
-  esac
+  local program stage stages=''
+  for program in "$@"; do
+    case $program in
+      chromium | node | npm) stage=browser ;;
+      tsc | lintian | systemd-analyze | git) stage=check ;;
+      esbuild | dpkg-shlibdeps) stage=build ;;
+      curl | setpriv | unshare | nsenter) echo "apt-get install curl util-linux"; return ;;
+      *) stage=container ;;
+    esac
+    [[ " $stages " == *" $stage "* ]] || stages+=" $stage"
+  done
+  echo "./run packages --install$stages"
 }
-need() { command -v "$1" > /dev/null || skip "$1 is not installed" "$(installs "$1")"; }
+# need PROGRAM...: all of them, or the test is skipped.
+need() {
+  local program absent=()
+  for program in "$@"; do command -v "$program" > /dev/null || absent+=("$program"); done
+  [ ${#absent[@]} -eq 0 ] || skip "without ${absent[*]}" "$(installs "${absent[@]}")"
+}
 # there PROGRAM WITHOUT: for a part of a test; says what is WITHOUT it, and fails where CI is true, which installs all.
 there() {
   ! command -v "$1" > /dev/null || return 0

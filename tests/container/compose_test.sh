@@ -5,8 +5,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need_engine
-need docker-compose
-need openssl
+need docker-compose openssl
 need_image
 claim_domain
 claim_domain_as truth  # of the simulator, which is not of the robot, and has no certificate

@@ -4,10 +4,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 [ -x "$bin/topogeo" ] || skip "topogeo is not built" "./run build"
-need unshare
-need ip
-need setpriv
-need python3
+need unshare ip setpriv python3
 unshare -m -n true 2> /dev/null || skip "this user may not make namespaces" "root, with CAP_SYS_ADMIN in a container,"
 chmod 755 "$work"
 

@@ -5,8 +5,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 source "$(dirname "${BASH_SOURCE[0]}")/hosts.sh"
 
-need openssl
-need python3
+need openssl python3
 need_image
 [ -x "$build/tests/ros_peer" ] || skip "the nodes of ROS are not built" "ninja -C build ros_peer"
 chmod 777 "$work"

@@ -3,9 +3,7 @@
 # against the types of Grafana: a key that it does not know, one that is missing or a value of a wrong type is an error.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-need npm
-need tsc
-need python3
+need npm tsc python3
 packages=$build/tests/schemas
 mkdir -p "$packages"
 exec 4> "$packages/install.lock"

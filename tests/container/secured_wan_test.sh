@@ -5,8 +5,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 source "$(dirname "${BASH_SOURCE[0]}")/tunnel.sh"
 
 need_tunnel
-need ip
-need openssl
+need ip openssl
 need_programs
 unshare --net true 2> /dev/null || skip "no network namespace can be made" "root, with CAP_SYS_ADMIN in a container,"
 claim_domain

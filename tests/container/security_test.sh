@@ -4,9 +4,7 @@
 # motion commands is denied, even if its own side lets it. Packets show what the specification leaves plain, no more.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-need openssl
-need faketime
-need python3
+need openssl faketime python3
 need_programs
 export TOPOGEO_DDS_PARTICIPANT=udp_only
 make_keys=$source_dir/deploy/security/make_keys

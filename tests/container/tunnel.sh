@@ -5,9 +5,7 @@
 
 # need_tunnel: skips the test where a tunnel cannot be made.
 need_tunnel() {
-  need wireguard-go
-  need wg
-  need iptables
+  need wireguard-go wg iptables
   [ -c /dev/net/tun ] || skip "there is no /dev/net/tun" "mkdir -p /dev/net && mknod /dev/net/tun c 10 200"
 }
 

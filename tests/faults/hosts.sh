@@ -12,8 +12,7 @@ switch_answers() { grep -qs ready "$work/switch.log" || ! kill -0 "$1" 2> /dev/n
 
 # Skips the test where the kernel or the rights of the user do not allow it.
 make_hosts() {
-  need ip
-  need nsenter
+  need ip nsenter
   [ "$(id -u)" = 0 ] || skip "namespaces need root" root
   [ -c /dev/net/tun ] || skip "there is no /dev/net/tun" "mkdir -p /dev/net && mknod /dev/net/tun c 10 200"
   [ -x "$build/tests/faulty_switch" ] || skip "faulty_switch is not built" "ninja -C build faulty_switch"
