@@ -122,6 +122,15 @@ wait_for() {
 # shellcheck disable=SC2034  # of the tests
 patient=(--wait-seconds "$hang_limit_s" --patience "$hang_limit_s")
 
+# arrives COMMAND...: whether `topogeo goto` has brought the robot there, $work/goto.log has what it printed. It gives up
+# when it has not heard the navigator for ten seconds, as on a machine that is busy: then the goal is to be given again.
+arrives() {
+  ! "$@" "${patient[@]}" > "$work/goto.log" 2>&1 || return 0
+  tail -n 1 "$work/goto.log" | grep -q 'the navigator is gone\|the navigator does not take the goal' ||
+    { tail -n 5 "$work/goto.log"; fail "the robot does not arrive: $*"; }
+  return 1
+}
+
 now_ms() { echo $(($(date +%s%N) / 1000000)); }
 
 # A DDS domain that no other test has, in VARIABLE.

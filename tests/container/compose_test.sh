@@ -74,7 +74,7 @@ all_run() { secured status > "$work/status" 2>&1 && [ "$(grep -c ' running ' "$w
 wait_for "all services to be well" all_run || { cat "$work/status"; compose logs --tail 5; fail "not all services are well"; }
 
 step "a drive"
-secured goto 3,0 "${patient[@]}" > "$work/goto.log" 2>&1 || { tail -n 5 "$work/goto.log"; fail "no drive"; }
+wait_for "the robot at 3,0" arrives secured goto 3,0 || fail "no drive"
 ! "$bin/topogeo" status > "$work/stranger" 2>&1 || { cat "$work/stranger"; fail "a stranger sees the services"; }
 
 step "a planner that hangs"

@@ -70,8 +70,7 @@ wait_for "a map at the planner" plans || { on robot topogeo status; show sensor_
 
 # drive PLACE: to its end, until it is there.
 drive() {
-  on robot topogeo goto "$1" "${patient[@]}" > "$work/goto.log" 2>&1 ||
-    { tail -n 5 "$work/goto.log"; on robot topogeo status; fail "the robot does not get to $1"; }
+  wait_for "the robot in $1" arrives on robot topogeo goto "$1" || { on robot topogeo status; fail "the robot does not get to $1"; }
 }
 drive "room A"
 step "the robot is in room A"
@@ -106,7 +105,7 @@ drives() { is_in_state navigator driving; }
 for service in $services; do
   wait_for "the robot to drive" drives || { show_all; fail "the robot stands before another $service"; }
   old=$(container_of "$service")
-  docker stop "$old" > /dev/null
+  docker stop -t "$hang_limit_s" "$old" > /dev/null
   docker rm "$old" > /dev/null
   run_service "$service"
   wait_for "the newer $service" lives "$service" || { show "$service"; fail "the newer $service does not come up"; }

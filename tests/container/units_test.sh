@@ -97,8 +97,7 @@ is_new() { ! is_state topogeo-navigator MainPID "$1" && ! is_state topogeo-navig
 drive_to() {  # X,Y
   local from
   from=$(now_ms)
-  here topogeo goto "$1" "${patient[@]}" > "$work/goto.log" 2>&1 ||
-    { tail -n 5 "$work/goto.log"; here topogeo status || true; fail "the robot does not get to $1"; }
+  wait_for "the robot at $1" arrives here topogeo goto "$1" || { here topogeo status || true; fail "the robot does not get to $1"; }
   here cat /root/commands | awk -v from="$from" '$1 > from && ($2 > 0 || $3 > 0) {
       if (n++) { sum += $1 - last; if ($1 - last > most) most = $1 - last }
       last = $1
