@@ -331,7 +331,7 @@ for name in "${faults[@]}"; do
   [ -e "$work/alone" ] || map_alone "$scans" "$work/alone"
   make_log "$scans" "$work/log.clf"
   # What happens once needs a run that lasts longer than it: where it does not, another one is half as fast.
-  case $fault in "cut "* | "freeze "* | "clock "*) rate=8 ;; *) rate=lossless ;; esac
+  case $fault in "cut "*) rate=4 ;; "freeze "* | "clock "*) rate=8 ;; *) rate=lossless ;; esac
   until map_with "$fault"; do
     rate=$(awk -v rate="$rate" 'BEGIN { print rate / 2 }')
     echo "the run ended before '$fault' was over: again, at $rate times the speed of the robot"
