@@ -73,8 +73,24 @@ template <class Condition, class Between>
 /// The same where another thread or process makes the event: checks every few milliseconds.
 template <class Condition>
 [[nodiscard]] bool wait_for(std::string what, const Condition& condition) {
+  return wait_for(std::move(what), condition, [] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));  // between two checks
+  });
+}
+
+/// The same while the handlers of an event loop run in this thread.
+template <class Loop, class Condition>
+[[nodiscard]] bool wait_in_loop(Loop& loop, std::string what, const Condition& condition) {
   return wait_for(std::move(what), condition,
-                  [] { std::this_thread::sleep_for(std::chrono::milliseconds(5)); });
+                  [&] { static_cast<void>(loop.run_for(std::chrono::milliseconds(5))); });
+}
+
+/// The same for a call that itself waits for at most the time that it is given: repeats it until it
+/// returns true.
+template <class Call>
+[[nodiscard]] bool wait_by(std::string what, const Call& call) {
+  return wait_for(
+      std::move(what), [&] { return call(std::chrono::seconds(1)); }, [] {});
 }
 
 }  // namespace topogeo::test

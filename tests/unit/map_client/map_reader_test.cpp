@@ -34,7 +34,7 @@ class Reading : public testing::Test {
   }
   /// Waits until the reader holds a version.
   static bool wait_for(MapReader& reader, std::uint64_t version) {
-    return messaging::eventually([&] {
+    return test::wait_for("version " + std::to_string(version) + " of the map", [&] {
       static_cast<void>(reader.wait(milliseconds(20)));
       return reader.is_current() && reader.map()->version == version;
     });
@@ -75,7 +75,7 @@ TEST_F(Reading, TheMapStandsUntilAnotherStoreHasSentItsOwn) {
   send_first_map();
   ASSERT_TRUE(wait_for(reader, 10));
   writer_.reset();
-  ASSERT_TRUE(messaging::eventually([&] {
+  ASSERT_TRUE(test::wait_for("the store to go", [&] {
     EXPECT_FALSE(reader.take());
     return reader.stores() == 0;
   }));
@@ -91,11 +91,11 @@ TEST_F(Reading, TheMapStandsUntilAnotherStoreHasSentItsOwn) {
 }
 
 TEST_F(Reading, WhatStaysIncompleteIsReadAnew) {
-  options_.patience = milliseconds(50);
+  options_.patience = milliseconds(300);  // longer than a map takes to arrive on a slow machine
   MapReader reader(options_);
   const msg::MapElement kept_back = store_.node(1, 0.0);
   send(store_.summary(10));
-  ASSERT_TRUE(messaging::eventually([&] {
+  ASSERT_TRUE(test::wait_for("the map to be read anew", [&] {
     EXPECT_FALSE(reader.wait(milliseconds(20)));
     return reader.restarts() > 1;
   }));

@@ -1,8 +1,11 @@
 // What reaches whom: late readers, slow readers, disposals, addressees, partitions.
+#include <atomic>
+#include <chrono>
 #include <map>
 #include <memory>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "fixture.hpp"
@@ -31,7 +34,7 @@ TEST_F(Delivery, LateReaderGetsTheLastStateOfEachInstance) {
   }
   Reader<msg::TrajectorySegment> reader(receiver_);
   std::map<std::uint32_t, std::vector<std::uint64_t>> versions;
-  ASSERT_TRUE(eventually([&] {
+  ASSERT_TRUE(test::wait_for("both segments", [&] {
     reader.take([&](const msg::TrajectorySegment& got, const SampleInfo&) {
       versions[got.segment()].push_back(got.version());
     });
@@ -48,7 +51,7 @@ TEST_F(Delivery, ThousandsOfInstancesReachALateReader) {
   Reader<msg::MapElement> reader(receiver_);
   std::set<std::uint32_t> ids;
   std::set<Handle> handles;
-  EXPECT_TRUE(eventually([&] {
+  EXPECT_TRUE(test::wait_for("all instances", [&] {
     reader.take([&](const msg::MapElement& got, const SampleInfo& info) {
       ids.insert(got.id());
       handles.insert(info.instance);
@@ -70,7 +73,7 @@ TEST_F(Delivery, ThousandsOfLocalMapsReachALateReader) {
   }
   Reader<msg::LocalMap> reader(receiver_);
   std::set<std::uint32_t> ids;
-  EXPECT_TRUE(eventually([&] {
+  EXPECT_TRUE(test::wait_for("all local maps", [&] {
     reader.take([&](const msg::LocalMap& got, const SampleInfo&) { ids.insert(got.id()); });
     return ids.size() == kMaps;
   }));
@@ -80,10 +83,10 @@ TEST_F(Delivery, SlowReaderSlowsAReplayAndLosesNothing) {
   constexpr std::uint64_t kScans = 500;
   Writer<msg::Scan> writer(sender_, kReplayRole);
   Reader<msg::Scan> reader(receiver_, {.role = std::string(kReplayRole)});
-  ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
-  ASSERT_TRUE(reader.wait_for_matched(1, kPatience));
+  ASSERT_TRUE(wait_for_peers(writer));
+  ASSERT_TRUE(wait_for_peers(reader));
 
-  std::uint64_t refused = 0;
+  std::atomic<std::uint64_t> refused = 0;
   std::thread replay([&] {
     for (std::uint64_t i = 0; i < kScans; ++i) {
       auto scan = message<msg::Scan>(i);
@@ -91,10 +94,10 @@ TEST_F(Delivery, SlowReaderSlowsAReplayAndLosesNothing) {
       while (!writer.write(scan)) ++refused;
     }
   });
-  // Longer than the writer's max_blocking_time: both histories are full by then.
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  // Both histories are full then.
+  EXPECT_TRUE(test::wait_for("the reader to hold the writer back", [&] { return refused > 0; }));
   std::vector<std::uint64_t> sequence_numbers;
-  EXPECT_TRUE(eventually([&] {
+  EXPECT_TRUE(test::wait_for("all scans", [&] {
     reader.take([&](const msg::Scan& got,
                     const SampleInfo&) { sequence_numbers.push_back(got.sequence_number()); },
                 1);
@@ -102,14 +105,13 @@ TEST_F(Delivery, SlowReaderSlowsAReplayAndLosesNothing) {
   }));
   replay.join();
 
-  EXPECT_GT(refused, 0U);  // the reader did hold the writer back
   for (std::uint64_t i = 0; i < sequence_numbers.size(); ++i) EXPECT_EQ(sequence_numbers[i], i);
 }
 
 TEST_F(Delivery, DisposalNamesTheInstanceByItsHandle) {
   Writer<msg::MapElement> writer(sender_);
   Reader<msg::MapElement> reader(receiver_);
-  ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
+  ASSERT_TRUE(wait_for_peers(writer));
   for (std::uint32_t id = 0; id < 3; ++id) ASSERT_TRUE(writer.write(element(id)));
   std::map<Handle, std::uint32_t> id_of;
   const auto take = [&](auto&& on_gone) {
@@ -121,7 +123,7 @@ TEST_F(Delivery, DisposalNamesTheInstanceByItsHandle) {
       }
     });
   };
-  ASSERT_TRUE(eventually([&] {
+  ASSERT_TRUE(test::wait_for("three elements", [&] {
     take([](const auto&, const auto&) { ADD_FAILURE() << "nothing was disposed yet"; });
     return id_of.size() == 3;
   }));
@@ -129,7 +131,7 @@ TEST_F(Delivery, DisposalNamesTheInstanceByItsHandle) {
   writer.dispose(element(1));
 
   std::vector<std::uint32_t> gone;
-  ASSERT_TRUE(eventually([&] {
+  ASSERT_TRUE(test::wait_for("a disposal", [&] {
     take([&](const msg::MapElement& got, const SampleInfo& info) {
       EXPECT_EQ(info.state, InstanceState::kDisposed);
       EXPECT_EQ(got.schema_version(), 0U);  // no leftovers of an earlier sample
@@ -142,7 +144,7 @@ TEST_F(Delivery, DisposalNamesTheInstanceByItsHandle) {
   Participant late(options_in(partition_));
   Reader<msg::MapElement> late_reader(late);
   std::set<std::uint32_t> ids;
-  EXPECT_TRUE(eventually([&] {
+  EXPECT_TRUE(test::wait_for("the two elements that are left", [&] {
     late_reader.take([&](const msg::MapElement& got, const SampleInfo& info) {
       if (info.valid) ids.insert(got.id());
     });
@@ -151,7 +153,7 @@ TEST_F(Delivery, DisposalNamesTheInstanceByItsHandle) {
   EXPECT_EQ(ids, (std::set<std::uint32_t>{0, 2}));
 
   ASSERT_TRUE(writer.write(element(1)));  // and it may come back
-  EXPECT_TRUE(eventually([&] {
+  EXPECT_TRUE(test::wait_for("the element that came back", [&] {
     bool back = false;
     reader.take([&](const msg::MapElement& got, const SampleInfo& info) {
       back = back || (info.valid && got.id() == 1);
@@ -163,7 +165,7 @@ TEST_F(Delivery, DisposalNamesTheInstanceByItsHandle) {
 TEST_F(Delivery, EverNewInstancesDoNotUseUpTheLimit) {
   Writer<msg::MapElement> writer(sender_);
   Reader<msg::MapElement> reader(receiver_);
-  ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
+  ASSERT_TRUE(wait_for_peers(writer));
   constexpr std::uint32_t kMoreThanTheLimit = 40'000;  // max_instances of role state: 32,768
   std::set<Handle> alive;
   std::uint32_t arrived = 0;
@@ -178,22 +180,24 @@ TEST_F(Delivery, EverNewInstancesDoNotUseUpTheLimit) {
     });
   };
   for (std::uint32_t id = 0; id < kMoreThanTheLimit; ++id) {
-    ASSERT_TRUE(eventually([&] { return writer.write(element(id)); })) << id;
+    ASSERT_TRUE(test::wait_for("room for an element", [&] { return writer.write(element(id)); }))
+        << id;
     if (id > 0) writer.dispose(element(id - 1));
     take();
   }
-  EXPECT_TRUE(eventually([&] {
-    take();
-    return arrived == kMoreThanTheLimit - 1 && alive.size() == 1;
-  })) << arrived
-      << " " << alive.size();
+  EXPECT_TRUE(test::wait_for("the last element, alone",
+                             [&] {
+                               take();
+                               return arrived == kMoreThanTheLimit - 1 && alive.size() == 1;
+                             }))
+      << arrived << " " << alive.size();
 }
 
 TEST_F(Delivery, TasksReachOnlyTheWorkerTheyAreAddressedTo) {
   Writer<msg::MatchTasks> writer(sender_);
   Reader<msg::MatchTasks> one(receiver_, {.addressee = "one"});
   Reader<msg::MatchTasks> two(receiver_, {.addressee = "two"});
-  ASSERT_TRUE(writer.wait_for_matched(2, kPatience));
+  ASSERT_TRUE(wait_for_peers(writer, 2));
   for (std::uint64_t i = 0; i < 30; ++i) {
     auto task = message<msg::MatchTasks>(i);
     set_worker_id(task, i % 3 == 0 ? "one" : "two");
@@ -201,7 +205,7 @@ TEST_F(Delivery, TasksReachOnlyTheWorkerTheyAreAddressedTo) {
   }
   std::vector<std::uint64_t> ids_one;
   std::vector<std::uint64_t> ids_two;
-  EXPECT_TRUE(eventually([&] {
+  EXPECT_TRUE(test::wait_for("ten and twenty tasks", [&] {
     one.take([&](const msg::MatchTasks& t, const SampleInfo&) {
       ids_one.push_back(t.sequence_number());
     });
@@ -212,7 +216,7 @@ TEST_F(Delivery, TasksReachOnlyTheWorkerTheyAreAddressedTo) {
   }));
   EXPECT_EQ(ids_one, (std::vector<std::uint64_t>{0, 3, 6, 9, 12, 15, 18, 21, 24, 27}));
   EXPECT_EQ(ids_two.size(), 20U);
-  EXPECT_TRUE(writer.wait_for_acknowledgments(kPatience));
+  EXPECT_TRUE(wait_for_acknowledgments(writer));
 }
 
 // What the filter of each reader says once stood in every message, which then fitted into no
@@ -225,12 +229,12 @@ TEST_F(Delivery, ATaskReachesOneOfVeryManyWorkers) {
     workers.push_back(std::make_unique<Reader<msg::MatchTasks>>(
         receiver_, ReaderOptions{.addressee = "worker " + std::to_string(i)}));
   }
-  ASSERT_TRUE(writer.wait_for_matched(static_cast<int>(kWorkers), kPatience));
+  ASSERT_TRUE(wait_for_peers(writer, static_cast<int>(kWorkers)));
   auto task = message<msg::MatchTasks>();
   set_worker_id(task, "worker 63");
   ASSERT_TRUE(writer.write(task));
   std::size_t taken = 0;
-  EXPECT_TRUE(eventually([&] {
+  EXPECT_TRUE(test::wait_for("the task", [&] {
     workers.back()->take([&](const msg::MatchTasks&, const SampleInfo&) { ++taken; });
     return taken == 1;
   }));
@@ -245,7 +249,7 @@ void expect_addressed(const Participant& sender, const Participant& receiver,
   Writer<T> writer(sender);
   Reader<T> me(receiver, {.addressee = "me"});
   Reader<T> mee(receiver, {.addressee = "mee"});
-  ASSERT_TRUE(writer.wait_for_matched(2, kPatience));
+  ASSERT_TRUE(wait_for_peers(writer, 2));
   std::vector<std::string> for_me;
   std::vector<std::string> for_mee;
   constexpr std::size_t kLongest = 9;
@@ -261,7 +265,7 @@ void expect_addressed(const Participant& sender, const Participant& receiver,
   for_mee = for_me;
   std::vector<std::string> got_me;
   std::vector<std::string> got_mee;
-  EXPECT_TRUE(eventually([&] {
+  EXPECT_TRUE(test::wait_for("the messages of both addressees", [&] {
     me.take([&](const T& t, const SampleInfo&) { got_me.push_back(t.robot_id().to_string()); });
     mee.take([&](const T& t, const SampleInfo&) { got_mee.push_back(t.robot_id().to_string()); });
     return got_me.size() >= for_me.size() && got_mee.size() >= for_mee.size();
@@ -286,11 +290,11 @@ TEST_F(Delivery, AddresseeMayHaveQuotes) {
   const std::string name = "it's \"me\"";
   Writer<msg::MatchTasks> writer(sender_);
   Reader<msg::MatchTasks> reader(receiver_, {.addressee = name});
-  ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
+  ASSERT_TRUE(wait_for_peers(writer));
   auto task = message<msg::MatchTasks>();
   set_worker_id(task, name);
   ASSERT_TRUE(writer.write(task));
-  EXPECT_TRUE(reader.wait_for_data(kPatience));
+  EXPECT_TRUE(wait_for_data(reader));
 }
 
 TEST_F(Delivery, AddresseeOnATopicWithoutOneIsAnError) {
@@ -304,10 +308,10 @@ TEST_F(Delivery, PartitionsDoNotSeeEachOtherButTheWildcardSeesAll) {
   Reader<msg::Goal> same(receiver_);
   Reader<msg::Goal> other(stranger);
   Reader<msg::Goal> any(observer);
-  ASSERT_TRUE(writer.wait_for_matched(2, kPatience));
+  ASSERT_TRUE(wait_for_peers(writer, 2));
   ASSERT_TRUE(writer.write(message<msg::Goal>()));
-  ASSERT_TRUE(same.wait_for_data(kPatience));
-  ASSERT_TRUE(any.wait_for_data(kPatience));
+  ASSERT_TRUE(wait_for_data(same));
+  ASSERT_TRUE(wait_for_data(any));
   EXPECT_EQ(writer.matched(), 2);
   EXPECT_EQ(other.matched(), 0);
   EXPECT_EQ(other.take([](const msg::Goal&, const SampleInfo&) {}), 0U);
@@ -332,7 +336,7 @@ TEST(DeliveryInPackets, LargeSamplesReachALateReader) {
   for (int late = 0; late < 2; ++late) {
     Reader<msg::LocalMap> reader(receiver);
     std::set<std::uint32_t> ids;
-    EXPECT_TRUE(eventually([&] {
+    EXPECT_TRUE(test::wait_for("all large local maps", [&] {
       reader.take([&](const msg::LocalMap& got, const SampleInfo&) {
         EXPECT_EQ(got.branches().size(), 100U + got.id());
         ids.insert(got.id());
@@ -351,17 +355,18 @@ TEST(DeliveryInPackets, OfLargeSamplesThatAreReplacedTheLastOnesArrive) {
   const Participant receiver(options);
   Writer<msg::TrajectorySegment> writer(sender);
   Reader<msg::TrajectorySegment> reader(receiver);
-  ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
+  ASSERT_TRUE(wait_for_peers(writer));
   for (std::uint64_t i = 0; i < kSamples; ++i) {
     auto segment = message<msg::TrajectorySegment>(i);
     segment.segment(static_cast<std::uint32_t>(i % kInstances));
     segment.segment(0xFFFFFFF0U + segment.segment());
     segment.stops().resize(msg::kSegmentStops);
     ASSERT_TRUE(writer.write(segment));
+    // Pacing: some packets of a sample are sent before the next one replaces it.
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   std::set<std::uint64_t> last;
-  EXPECT_TRUE(eventually([&] {
+  EXPECT_TRUE(test::wait_for("the last sample of each instance", [&] {
     reader.take([&](const msg::TrajectorySegment& got, const SampleInfo&) {
       EXPECT_EQ(got.stops().size(), msg::kSegmentStops);
       if (got.sequence_number() + kInstances >= kSamples) last.insert(got.sequence_number());

@@ -106,7 +106,7 @@ TEST_F(Discovery, EndpointsComeWithTheirQosAndGo) {
     const Participant other(options_in(partition_));
     const Writer<msg::ServiceStatus> writer(other);
     const Reader<msg::Scan> reader(other);
-    ASSERT_TRUE(eventually([&] { return discovered().size() == 2; }));
+    ASSERT_TRUE(test::wait_for("a reader and a writer", [&] { return discovered().size() == 2; }));
     const auto all = discovered();
     const auto status = std::ranges::find(all, true, &RemoteEndpoint::writer);
     ASSERT_NE(status, all.end());
@@ -117,7 +117,7 @@ TEST_F(Discovery, EndpointsComeWithTheirQosAndGo) {
     EXPECT_EQ(status->qos.lease_s, 1.0);
     EXPECT_THAT(find_mismatches(all), IsEmpty());
   }
-  EXPECT_TRUE(eventually([&] { return discovered().empty(); }));
+  EXPECT_TRUE(test::wait_for("both endpoints to go", [&] { return discovered().empty(); }));
 }
 
 TEST_F(Discovery, IncompatiblePairIsFound) {
@@ -125,7 +125,7 @@ TEST_F(Discovery, IncompatiblePairIsFound) {
   const Participant two(options_in(partition_));
   const Writer<msg::Goal> writer(one, "command");  // best effort, a reader of goals is reliable
   const Reader<msg::Goal> reader(two);
-  ASSERT_TRUE(eventually([&] { return discovered().size() == 2; }));
+  ASSERT_TRUE(test::wait_for("a reader and a writer", [&] { return discovered().size() == 2; }));
   const std::vector<Mismatch> found = find_mismatches(discovered());
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found[0].writer.topic, kGoal);
@@ -134,7 +134,7 @@ TEST_F(Discovery, IncompatiblePairIsFound) {
 TEST_F(Discovery, OthersDoNotObserve) {
   const Participant other(options_in(partition_));
   const Writer<msg::Goal> writer(other);
-  ASSERT_TRUE(eventually([&] { return discovered().size() == 1; }));
+  ASSERT_TRUE(test::wait_for("a writer", [&] { return discovered().size() == 1; }));
   EXPECT_THAT(other.discovered(), IsEmpty());
 }
 

@@ -16,7 +16,7 @@ using Events = TwoParticipants;
 
 template <class Endpoint>
 bool eventually_event(Endpoint& endpoint, EventKind kind, std::vector<Event>& all) {
-  return eventually([&] {
+  return test::wait_for("an event of that kind", [&] {
     endpoint.take_events([&](const Event& event) { all.push_back(event); });
     return std::any_of(all.begin(), all.end(), [&](const Event& e) { return e.kind == kind; });
   });
@@ -44,7 +44,7 @@ TEST_F(Events, WriterThatLeavesLeavesItsInstancesWithoutWriters) {
     auto status = message<msg::WorkerStatus>();
     set_worker_id(status, "one");
     ASSERT_TRUE(writer.write(status));
-    ASSERT_TRUE(eventually([&] {
+    ASSERT_TRUE(test::wait_for("the first sample", [&] {
       reader.take([&](const msg::WorkerStatus&, const SampleInfo& info) {
         instance = info.instance;
         peer = info.writer;
@@ -56,7 +56,7 @@ TEST_F(Events, WriterThatLeavesLeavesItsInstancesWithoutWriters) {
   ASSERT_TRUE(eventually_event(reader, EventKind::kUnmatched, events));
   EXPECT_EQ(events.back().peer, peer);
   std::vector<SampleInfo> gone;
-  EXPECT_TRUE(eventually([&] {
+  EXPECT_TRUE(test::wait_for("the instance to be gone", [&] {
     reader.take([&](const msg::WorkerStatus&, const SampleInfo& info) { gone.push_back(info); });
     reader.take_events([](const Event&) {});
     return !gone.empty();
@@ -94,7 +94,8 @@ class WorkerProcess {
 TEST(WorkerProcess, DISABLED_Main) {
   const char* partition = std::getenv("TOPOGEO_TEST_WORKER_PARTITION");
   if (partition == nullptr) GTEST_SKIP() << "started by the test below only";
-  ::alarm(60);  // nobody's orphan for long
+  // Ends by itself if the test that kills it is gone.
+  ::alarm(static_cast<unsigned>(test::hang_limit().count()));
   const Participant participant(options_in(partition));
   Writer<msg::WorkerStatus> writer(participant);
   auto status = message<msg::WorkerStatus>();
@@ -126,7 +127,7 @@ TEST(Liveliness, KilledProcessIsReportedAndItsInstancesAreGone) {
       });
   loop.on_event([&](const Event& event) { kinds.push_back(event.kind); });
 
-  EXPECT_TRUE(loop.run_for(kPatience));
+  EXPECT_TRUE(run_to_stop(loop));
 
   EXPECT_TRUE(instance.has_value());
   EXPECT_EQ(gone, instance);

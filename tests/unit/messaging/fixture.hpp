@@ -1,12 +1,9 @@
 // Two participants in a partition of their own, so that test programs do not see each other.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
-#include <functional>
 #include <random>
 #include <string>
-#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -17,12 +14,9 @@
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/types.h"
 
-#include "time_factor.hpp"
+#include "waiting.hpp"
 
 namespace topogeo::messaging {
-
-/// Long enough for a busy machine; nothing waits so long when it works.
-constexpr std::chrono::seconds kPatience{60 * test::kTimeFactor};
 
 inline std::string random_partition() {
   std::random_device device;
@@ -36,14 +30,25 @@ inline ParticipantOptions options_in(const std::string& partition) {
   return options;
 }
 
-/// Polls until `condition` holds; false when patience ends first.
-inline bool eventually(const std::function<bool()>& condition) {
-  const auto end = std::chrono::steady_clock::now() + kPatience;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return true;
+template <class Endpoint>
+[[nodiscard]] bool wait_for_peers(const Endpoint& endpoint, int count = 1) {
+  return test::wait_by(std::to_string(count) + " peers of a reader or writer",
+                       [&](auto at_most) { return endpoint.wait_for_matched(count, at_most); });
+}
+template <class T>
+[[nodiscard]] bool wait_for_data(Reader<T>& reader) {
+  return test::wait_by("a first sample",
+                       [&](auto at_most) { return reader.wait_for_data(at_most); });
+}
+template <class T>
+[[nodiscard]] bool wait_for_acknowledgments(Writer<T>& writer) {
+  return test::wait_by("all readers to confirm what was sent",
+                       [&](auto at_most) { return writer.wait_for_acknowledgments(at_most); });
+}
+/// Runs a loop until a handler stops it.
+[[nodiscard]] inline bool run_to_stop(EventLoop& loop) {
+  return test::wait_by("an event loop to be stopped",
+                       [&](auto at_most) { return loop.run_for(at_most); });
 }
 
 template <class T>

@@ -51,7 +51,7 @@ class Peers : public testing::Test {
     const Participant receiver(options_in(partition));
     Writer<msg::Goal> writer(sender);
     Reader<msg::Goal> reader(receiver);
-    return writer.write(message<msg::Goal>()) && reader.wait_for_data(kPatience);
+    return writer.write(message<msg::Goal>()) && wait_for_data(reader);
   }
 
   std::ostringstream log_;

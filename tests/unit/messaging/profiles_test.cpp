@@ -29,8 +29,8 @@ TEST(Profiles, WriterAndReaderOfEveryTopicMatch) {
       if (role.empty()) continue;
       const detail::WriterCore writer(sender, *topic, std::string(role));
       const detail::ReaderCore reader(receiver, *topic, std::string(role), {});
-      EXPECT_TRUE(writer.wait_for_matched(1, kPatience)) << topic->name << " " << role;
-      EXPECT_TRUE(reader.wait_for_matched(1, kPatience)) << topic->name << " " << role;
+      EXPECT_TRUE(wait_for_peers(writer)) << topic->name << " " << role;
+      EXPECT_TRUE(wait_for_peers(reader)) << topic->name << " " << role;
     }
   }
 }
@@ -53,7 +53,7 @@ TEST(Profiles, ParticipantsOfAllTransportsHearEachOther) {
       Writer<msg::Goal> writer(sender);
       Reader<msg::Goal> reader(receiver);
       ASSERT_TRUE(writer.write(message<msg::Goal>()));
-      EXPECT_TRUE(reader.wait_for_data(kPatience)) << profile << " " << default_sends;
+      EXPECT_TRUE(wait_for_data(reader)) << profile << " " << default_sends;
     }
   }
 }

@@ -24,6 +24,8 @@
 #include <fastrtps/qos/WriterQos.h>
 #include <gtest/gtest.h>
 
+#include "waiting.hpp"
+
 namespace topogeo::messaging {
 namespace {
 
@@ -107,6 +109,7 @@ class SlowListener : public rtps::ReaderListener {
                              const fastdds::LivelinessChangedStatus& status) override {
     if (status.not_alive_count == 0) return;
     begun.set_value();
+    // Long enough that a removal which does not wait ends before; a slow machine hides it at worst.
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     done = true;
   }
@@ -120,9 +123,8 @@ class SlowListener : public rtps::ReaderListener {
   const Endpoints endpoints = make_endpoints(listener, 0.05);
   rtps::CacheChange_t* const change = endpoints.writer->new_change([] { return 8U; }, rtps::ALIVE);
   if (change == nullptr || !endpoints.sent->add_change(change)) std::_Exit(3);
-  if (listener.begun.get_future().wait_for(std::chrono::seconds(30)) != std::future_status::ready) {
-    std::_Exit(4);
-  }
+  std::future<void> begun = listener.begun.get_future();
+  if (begun.wait_for(test::hang_limit()) != std::future_status::ready) std::_Exit(4);
   rtps::RTPSDomain::removeRTPSReader(endpoints.reader);
   std::_Exit(listener.done ? 0 : 2);
 }

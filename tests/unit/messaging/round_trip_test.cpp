@@ -440,14 +440,14 @@ TYPED_TEST_SUITE(RoundTrip, AllTypes);
 TYPED_TEST(RoundTrip, ArrivesUnchanged) {
   Writer<TypeParam> writer(this->sender_);
   Reader<TypeParam> reader(this->receiver_);
-  ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
-  ASSERT_TRUE(reader.wait_for_matched(1, kPatience));
+  ASSERT_TRUE(wait_for_peers(writer));
+  ASSERT_TRUE(wait_for_peers(reader));
   auto sent = message<TypeParam>(123);
   fill(sent);
 
   ASSERT_TRUE(writer.write(sent));
 
-  ASSERT_TRUE(reader.wait_for_data(kPatience));
+  ASSERT_TRUE(wait_for_data(reader));
   int received = 0;
   reader.take([&](const TypeParam& got, const SampleInfo& info) {
     ++received;

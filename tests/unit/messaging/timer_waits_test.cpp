@@ -52,7 +52,7 @@ class TimerWaitsDeathTest : public TimerWaits {
   TimerWaitsDeathTest() { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
 
   [[noreturn]] void remove_beside_one_at_work() {
-    ::alarm(static_cast<unsigned>(kPatience.count()));
+    ::alarm(static_cast<unsigned>(test::hang_limit().count()));
     std::mutex mutex;
     std::atomic<bool> at_work = false;
     const auto other = start([] { return false; }, 1e6);
@@ -82,11 +82,12 @@ TEST_F(TimerWaits, OneThatIsAtWorkIsRemovedWhenItHasDoneItsWork) {
   std::atomic<bool> done = false;
   auto timer = start([&] {
     begun = true;
+    // Work that takes a while: a removal that does not wait for it is seen.
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     done = true;
     return true;
   });
-  ASSERT_TRUE(eventually([&] { return begun.load(); }));
+  ASSERT_TRUE(test::wait_for("the timer to begin its work", [&] { return begun.load(); }));
   timer.reset();
   EXPECT_TRUE(done);
 }
@@ -116,10 +117,11 @@ TEST_F(TimerWaits, OneThatWasRemovedNeverWorksAgainAndTheOthersGoOn) {
           return true;
         },
         period_ms(random));
+    // Pacing: timers become due between two removals.
     std::this_thread::sleep_for(std::chrono::microseconds(20));
   }
   const int before = ticks;
-  EXPECT_TRUE(eventually([&] { return ticks > before + 10; }));
+  EXPECT_TRUE(test::wait_for("the other timer to go on", [&] { return ticks > before + 10; }));
   timers.clear();
   EXPECT_FALSE(late);
 }

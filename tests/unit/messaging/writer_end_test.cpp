@@ -46,7 +46,7 @@ class SlowPool : public rtps::IPayloadPool {
     return get_payload(data.length, change);
   }
   bool release_payload(rtps::CacheChange_t& change) override {
-    std::this_thread::sleep_for(kGivingBack);
+    std::this_thread::sleep_for(kGivingBack);  // heartbeats come while the writer ends
     change.serializedPayload.empty();
     change.payload_owner(nullptr);
     return true;
@@ -68,7 +68,7 @@ rtps::ReaderProxyData silent_reader() {
 }
 
 [[noreturn]] void end_a_writer_with_messages_under_way() {
-  ::alarm(static_cast<unsigned>(kPatience.count()));
+  ::alarm(static_cast<unsigned>(test::hang_limit().count()));
   let_writers_end_undisturbed();
   rtps::RTPSParticipantAttributes attributes;
   attributes.builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::NONE;

@@ -10,8 +10,6 @@
 namespace topogeo::service {
 namespace {
 
-using messaging::kPatience;
-
 Setup setup_in(const std::string& partition) {
   Setup setup;
   setup.name = "mapper";
@@ -29,8 +27,8 @@ T message_of(const std::string& robot_id, std::uint64_t sequence_number = 0) {
 class ServiceTest : public ::testing::Test {
  protected:
   /// Runs the service until `condition` holds.
-  bool run_until(const std::function<bool()>& condition) {
-    return messaging::eventually([&] {
+  bool run_until(const std::string& what, const std::function<bool()>& condition) {
+    return test::wait_for(what, [&] {
       service_.loop().run_for(std::chrono::milliseconds(5));
       statuses_.take([this](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
         if (info.valid) status_ = status;
@@ -73,8 +71,9 @@ TEST_F(ServiceTest, HandlersGetTheMessagesOfTheRobotAlone) {
   ASSERT_TRUE(goal_writer.write(goal));
   ASSERT_TRUE(closure_writer.write(message_of<msg::LoopClosures>("another")));
 
-  EXPECT_TRUE(run_until(
-      [&] { return goals.size() == 1 && closures.size() == 1 && drops("other robot") == 1; }));
+  EXPECT_TRUE(run_until("the messages of the robot", [&] {
+    return goals.size() == 1 && closures.size() == 1 && drops("other robot") == 1;
+  }));
   EXPECT_EQ(goals, std::vector<std::uint64_t>{2});
   EXPECT_EQ(closures, std::vector<std::string>{"another"});
 }
@@ -84,7 +83,7 @@ TEST_F(ServiceTest, InvalidMessageIsAFaultNamedAfterTheTopic) {
       [](const msg::LocalMap&) { throw std::invalid_argument("points: no finite number"); });
   messaging::Writer<msg::LocalMap> writer(peer_);
   ASSERT_TRUE(writer.write(message_of<msg::LocalMap>("robot", 17)));
-  ASSERT_TRUE(run_until([&] { return status_.fault_count() == 1; }));
+  ASSERT_TRUE(run_until("a fault", [&] { return status_.fault_count() == 1; }));
   EXPECT_EQ(status_.faults()[0].reason().to_string(), "invalid local map");
   EXPECT_EQ(drops("invalid local map"), 1U);
   EXPECT_EQ(status_.last_error().to_string(),
@@ -101,7 +100,8 @@ TEST_F(ServiceTest, MainInputIsCountedInTheStatus) {
   other.session(5);
   ASSERT_TRUE(maps.write(other));
   ASSERT_TRUE(goals.write(message_of<msg::Goal>("robot")));
-  EXPECT_TRUE(run_until([&] { return status_.inputs() == 1 && drops("other robot") == 1; }));
+  EXPECT_TRUE(run_until("the input to be counted",
+                        [&] { return status_.inputs() == 1 && drops("other robot") == 1; }));
   EXPECT_EQ(status_.input().to_string(), "local_map");
 }
 
@@ -123,9 +123,9 @@ TEST_F(ServiceTest, DisposedInstancesAreReported) {
                                     });
   messaging::Writer<msg::GridTile> writer(peer_);
   ASSERT_TRUE(writer.write(message_of<msg::GridTile>("robot")));
-  ASSERT_TRUE(run_until([&] { return tiles == 1; }));
+  ASSERT_TRUE(run_until("the tile", [&] { return tiles == 1; }));
   writer.dispose(message_of<msg::GridTile>("robot"));
-  EXPECT_TRUE(run_until([&] { return gone == 1; }));
+  EXPECT_TRUE(run_until("the disposal", [&] { return gone == 1; }));
 }
 
 TEST_F(ServiceTest, AddresseeAndRoleAreThoseOfTheSubscription) {
@@ -138,8 +138,8 @@ TEST_F(ServiceTest, AddresseeAndRoleAreThoseOfTheSubscription) {
                                 {.role = std::string(messaging::kReplayRole)});
   messaging::Writer<msg::MatchTasks> task_writer(peer_);
   messaging::Writer<msg::Scan> scan_writer(peer_, messaging::kReplayRole);
-  ASSERT_TRUE(task_writer.wait_for_matched(1, kPatience));
-  ASSERT_TRUE(scan_writer.wait_for_matched(1, kPatience));
+  ASSERT_TRUE(messaging::wait_for_peers(task_writer));
+  ASSERT_TRUE(messaging::wait_for_peers(scan_writer));
   for (const auto& [who, id] : {std::pair{"you", 1U}, std::pair{"me", 2U}}) {
     auto task = message_of<msg::MatchTasks>("any");
     messaging::set_worker_id(task, who);
@@ -147,19 +147,20 @@ TEST_F(ServiceTest, AddresseeAndRoleAreThoseOfTheSubscription) {
     ASSERT_TRUE(task_writer.write(task));
   }
   ASSERT_TRUE(scan_writer.write(message_of<msg::Scan>("robot")));
-  EXPECT_TRUE(run_until([&] { return scans == 1 && !tasks.empty(); }));
+  EXPECT_TRUE(run_until("the scan and the task", [&] { return scans == 1 && !tasks.empty(); }));
   EXPECT_EQ(tasks, std::vector<std::uint64_t>{2});
 }
 
 TEST_F(ServiceTest, AdvertisedWriterReachesAPeerAndItsEventsAreWatched) {
   messaging::Writer<msg::Route> writer = service_.advertise<msg::Route>();
   const messaging::Reader<msg::Route> reader(peer_);
-  ASSERT_TRUE(reader.wait_for_matched(1, kPatience));
+  ASSERT_TRUE(messaging::wait_for_peers(reader));
   EXPECT_TRUE(service_.send(writer, message_of<msg::Route>("robot"), "route"));
 
   const messaging::Writer<msg::Goal> odd = service_.advertise<msg::Goal>("command");
   const messaging::Reader<msg::Goal> strict(peer_);  // wants what role command does not offer
-  EXPECT_TRUE(run_until([&] { return status_.fault_count() > 0; }));
+  EXPECT_TRUE(
+      run_until("incompatible settings to be a fault", [&] { return status_.fault_count() > 0; }));
   EXPECT_EQ(status_.faults()[0].reason().to_string(), "incompatible_qos");
 }
 
@@ -193,8 +194,9 @@ TEST_F(ServiceTest, WhoWorksCountsThoseThatStartOnce) {
   for (int i = 0; i < 2; ++i) {
     ASSERT_TRUE(writer.write(rival_of(service_.status().message(), msg::kServiceStarting)));
   }
-  ASSERT_TRUE(
-      run_until([&] { return status_.service() == "mapper" && status_.fault_count() > 0; }));
+  ASSERT_TRUE(run_until("the fault of a second service", [&] {
+    return status_.service() == "mapper" && status_.fault_count() > 0;
+  }));
   EXPECT_EQ(status_.fault_count(), 1U);
   EXPECT_EQ(status_.faults()[0].reason().to_string(), "second mapper");
   EXPECT_EQ(status_.state(), msg::kServiceRunning);
