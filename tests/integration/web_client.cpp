@@ -12,13 +12,14 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "waiting.hpp"
+
 namespace topogeo::test {
 namespace {
 
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr milliseconds kAnswerPatience{20'000};
 constexpr std::size_t kChunk_bytes = 65536;
 
 int connect_to(std::uint32_t port) {
@@ -110,7 +111,7 @@ HttpReply http_request(std::uint32_t port, const std::string& method, const std:
   const Socket socket(port);
   send_all(socket.fd(), request_text(port, method, target, headers, body));
   std::string text;
-  const Clock::time_point end = Clock::now() + kAnswerPatience;
+  const Clock::time_point end = Clock::now() + hang_limit();
   while (receive_some(socket.fd(), text, end)) {
   }
   return parse_reply(text);
@@ -144,7 +145,7 @@ WebSocketClient::WebSocketClient(std::uint32_t port, const Headers& headers)
                          {"Sec-WebSocket-Version", "13"},
                          {"Sec-WebSocket-Key", "dGhlIHNhbXBsZSBub25jZQ=="}});
   send_all(socket_, request_text(port, "GET", "/ws", all, {}));
-  const Clock::time_point end = Clock::now() + kAnswerPatience;
+  const Clock::time_point end = Clock::now() + hang_limit();
   std::size_t head = std::string::npos;
   while ((head = buffer_.find("\r\n\r\n")) == std::string::npos && fill(end)) {
   }

@@ -155,7 +155,7 @@ std::optional<Answer> HttpSession::refusal() {
   };
   const auto& request = parser_->get();
   PeerLimits& limits = state_.peers[peer_];
-  const double now_s = ServerState::now_s();
+  const double now_s = state_.config.clock_s();
   if (!limits.requests.take(now_s)) return refuse(429, "too often", "too many requests");
   const std::string host = header(http::field::host);
   if (!is_own_host(host, state_.config.hosts)) {

@@ -1,9 +1,7 @@
 // What the sessions of a server share. All of it lives in the server's thread.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <set>
@@ -44,11 +42,6 @@ struct ServerState {
   std::set<Watcher*> viewers;
   std::uint64_t last_viewer = 0;
 
-  /// Since any start.
-  [[nodiscard]] static double now_s() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-  }
   void refuse(std::string_view reason) {
     tally.add(std::string("refused: ") + std::string(reason));
   }

@@ -66,7 +66,7 @@ void Watcher::on_read(beast::error_code error) {
   }
   const std::string text = beast::buffers_to_string(buffer_.data());
   buffer_.consume(buffer_.size());
-  if (!messages_.take(ServerState::now_s())) {
+  if (!messages_.take(state_.config.clock_s())) {
     refuse("too often", "too many messages");
   } else if (!socket_.got_text()) {
     refuse("no message", "expected text, not binary");

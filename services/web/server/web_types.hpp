@@ -1,6 +1,7 @@
 // What the server asks of the service behind it: answers to requests, and driving by hand.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -49,6 +50,10 @@ class Backend {
   virtual void release(std::uint64_t viewer) = 0;
 };
 
+inline double steady_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 struct ServerConfig {
   std::string address = "127.0.0.1";
   std::uint32_t port = 0;  ///< 0: any that is free
@@ -60,6 +65,8 @@ struct ServerConfig {
   std::string certificate_file;      ///< PEM, with the chain; empty: no TLS
   std::string key_file;              ///< PEM
   std::uint32_t most_viewers = 64;
+  /// Seconds since any start, never backwards: how often a peer may ask is counted by it.
+  std::function<double()> clock_s = steady_s;
 };
 
 }  // namespace topogeo::web

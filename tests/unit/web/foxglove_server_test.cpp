@@ -13,6 +13,7 @@
 
 #include "foxglove/foxglove_feed.hpp"
 #include "server/server.hpp"
+#include "waiting.hpp"
 #include "web_client.hpp"
 
 namespace topogeo::web {
@@ -24,7 +25,7 @@ using test::WebSocketClient;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr milliseconds kFoxglovePatience{20'000};
+const milliseconds kFoxglovePatience = test::hang_limit();
 
 class NoBackend : public Backend {
  public:
