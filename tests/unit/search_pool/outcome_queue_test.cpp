@@ -11,6 +11,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "waiting.hpp"
+
 namespace topogeo::search_pool {
 namespace {
 
@@ -94,8 +96,7 @@ TEST(OutcomeQueue, WakesForAllThatSeveralSlotsFinish) {
       }
     });
   }
-  constexpr std::chrono::seconds kPatience{20};  // nothing that works takes so long
-  while (taken.size() < kSlots * kTasks && woken.try_acquire_for(kPatience)) {
+  while (taken.size() < kSlots * kTasks && woken.try_acquire_for(test::hang_limit())) {
     for (const TaskRunner::Outcome& outcome : queue.take()) taken.push_back(outcome.ticket);
     if (taken.size() < kSlots * kTasks) wake_at();
   }

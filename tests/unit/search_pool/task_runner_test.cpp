@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 
+#include "waiting.hpp"
 #include "worker_fixture.hpp"
 
 namespace topogeo::search_pool {
@@ -24,8 +25,6 @@ namespace {
 using localization::MatchTask;
 using ::testing::ElementsAre;
 
-/// Nothing that works takes so long.
-constexpr std::chrono::seconds kPatience{20};
 constexpr std::size_t kMemory_bytes = std::size_t{32} << 20U;
 
 class TaskRunnerTest : public ::testing::Test {
@@ -44,7 +43,9 @@ class TaskRunnerTest : public ::testing::Test {
   }
   bool wait_for(std::size_t count) {
     std::unique_lock lock(mutex_);
-    return came_.wait_for(lock, kPatience, [&] { return outcomes_.size() >= count; });
+    return test::wait_by(std::to_string(count) + " outcomes", [&](auto at_most) {
+      return came_.wait_for(lock, at_most, [&] { return outcomes_.size() >= count; });
+    });
   }
   /// Slots that have solved a task stand still until release().
   void hold() {
@@ -108,8 +109,8 @@ TEST_F(TaskRunnerTest, TheTasksOfAClientThatIsGoneAreNotWorkedOn) {
   hold();
   start(1);
   runner_->add(ready_job(maps_[0], maps_[1], 0, "stays"));
-  while (runner_->busy_time().count() == 0) {
-  }
+  ASSERT_TRUE(
+      test::wait_for("the slot to search", [&] { return runner_->busy_time().count() > 0; }));
   for (std::uint64_t i = 1; i < 4; ++i) runner_->add(ready_job(maps_[0], maps_[1], i, "goes"));
   runner_->add(ready_job(maps_[0], maps_[1], 4, "stays"));
   runner_->remove("goes");

@@ -179,6 +179,7 @@ TEST_F(MapSnapshots, RestoringThatIsKilledLeavesOneMapOrTheOther) {
       restore_snapshot(path(), "five");
       ::_exit(0);
     }
+    // Each child is killed at another moment of its work, whichever that is.
     ::usleep(static_cast<useconds_t>(delay_us));
     ::kill(child, SIGKILL);
     int status = 0;

@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include "waiting.hpp"
+
 namespace topogeo::supervision {
 namespace {
 
@@ -25,7 +27,8 @@ class ProcessGroupTest : public testing::Test {
   /// Runs until it is killed; does `on_term` when it is asked to end.
   void start_endless(const std::string& name, const std::string& on_term) {
     start(name, "trap '" + on_term + "' TERM; echo ready; while :; do sleep 0.01; done");
-    while (log_of(name).find("ready") == std::string::npos) std::this_thread::yield();
+    ASSERT_TRUE(test::wait_for(name + " to begin",
+                               [&] { return log_of(name).find("ready") != std::string::npos; }));
   }
   [[nodiscard]] std::string log_of(const std::string& name) const {
     std::ifstream file(logs_ / (name + ".log"));
@@ -91,8 +94,8 @@ TEST_F(ProcessGroupTest, OneThatIsKilledIsStartedAgainWithAnotherValueOfAnOption
   group_.wait();
   EXPECT_TRUE(group_.next_unexpected_end()->can_restart);
   group_.restart("gateway");
-  while (log_of("gateway-2").empty()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  EXPECT_EQ(log_of("gateway-2"), "log --readers 1\n");
+  EXPECT_TRUE(test::wait_for("the second gateway to print its options",
+                             [&] { return log_of("gateway-2") == "log --readers 1\n"; }));
   group_.kill("gateway");
   group_.wait();
 }
@@ -145,13 +148,13 @@ TEST_F(ProcessGroupTest, StopAsksOneFirstAndKillsThoseThatDoNotEnd) {
 TEST_F(ProcessGroupTest, StopWaitsForThoseThatEnd) {
   start_endless("first", "exit 0");
   start_endless("second", "exit 0");
-  constexpr double kPatience_s = 60.0;
+  const auto patience_s = static_cast<double>(test::hang_limit().count());
   int pauses = 0;
   const auto pause = [&pauses](std::chrono::milliseconds duration) {
     ++pauses;
-    std::this_thread::sleep_for(duration);
+    std::this_thread::sleep_for(duration);  // as a program does between two checks
   };
-  EXPECT_THAT(group_.stop(kPatience_s, pause, "second"), IsEmpty());
+  EXPECT_THAT(group_.stop(patience_s, pause, "second"), IsEmpty());
   EXPECT_GT(pauses, 0);
   std::vector<std::string> names;
   for (const support::StageTime& time : group_.wait()) names.push_back(time.stage);
@@ -165,17 +168,20 @@ TEST_F(ProcessGroupTest, ThoseThatRetireAreStartedAnewAndOneGoesOn) {
   const pid_t page = group_.pid("page");
   group_.retire("page");
   EXPECT_FALSE(group_.retired(false)) << "one does not end by itself";
-  while (!group_.retired(true)) std::this_thread::yield();
+  ASSERT_TRUE(test::wait_for("all but one to retire", [&] { return group_.retired(true); }));
   EXPECT_FALSE(group_.next_unexpected_end()) << "they were asked to";
   start("page", "echo other page");
   start("store", "echo other store; exit 3");
   EXPECT_EQ(group_.pid("page"), page);
-  while (log_of("store-2").empty()) std::this_thread::yield();
-  EXPECT_EQ(log_of("store-2"), "other store\n");
+  EXPECT_TRUE(test::wait_for("the second store to print its line",
+                             [&] { return log_of("store-2") == "other store\n"; }));
   std::optional<UnexpectedEnd> end;
-  while (!end) end = group_.next_unexpected_end();
+  ASSERT_TRUE(test::wait_for("the end of the second store", [&] {
+    end = group_.next_unexpected_end();
+    return end.has_value();
+  }));
   EXPECT_EQ(end->name, "store") << "it is watched again";
-  group_.stop(1.0, [](auto duration) { std::this_thread::sleep_for(duration); });
+  group_.stop(0.0, [](auto) {});  // one does not end by itself
   EXPECT_EQ(group_.wait().size(), 3U);
 }
 

@@ -13,6 +13,8 @@
 
 #include "topogeo/support/host.hpp"
 
+#include "waiting.hpp"
+
 namespace topogeo::support {
 namespace {
 
@@ -59,7 +61,7 @@ TEST_F(FileLockTest, ADeadProcessHoldsNothing) {
   ASSERT_EQ(::read(pipe[0], &byte, 1), 1);
   EXPECT_THAT(refusal(), testing::EndsWith("-" + std::to_string(child)));
   ::kill(child, SIGKILL);
-  EXPECT_NO_THROW(FileLock(path_, std::chrono::seconds(60)));
+  EXPECT_NO_THROW(FileLock(path_, test::hang_limit()));
   EXPECT_EQ(::waitpid(child, nullptr, 0), child);
 }
 
