@@ -26,7 +26,7 @@
 #include "topogeo/support/version.hpp"
 
 #include "search_pool/worker_fixture.hpp"
-#include "time_factor.hpp"
+#include "waiting.hpp"
 
 namespace topogeo::test {
 
@@ -43,14 +43,16 @@ class WorkerClient {
         results_(participant_, for_me()),
         requests_(participant_, for_me()),
         statuses_(participant_) {
-    loop_.add<msg::MatchResults>(results_, [this](const msg::MatchResults& message, const auto&) {
-      together.push_back(message.results().size());
-      for (const msg::MatchResult& result : message.results()) {
-        results[result.task_id()] = result;
-        answered_by[result.task_id()] = message.worker_id().to_string();
-      }
-      loop_.stop();
-    });
+    loop_.add<msg::MatchResults>(
+        results_, [this](const msg::MatchResults& message, const messaging::SampleInfo& info) {
+          together.push_back(message.results().size());
+          for (const msg::MatchResult& result : message.results()) {
+            results[result.task_id()] = result;
+            answered_ns[result.task_id()] = info.stamp_ns;
+            answered_by[result.task_id()] = message.worker_id().to_string();
+          }
+          loop_.stop();
+        });
     loop_.add<msg::MapRequest>(requests_, [this](const msg::MapRequest& request, const auto&) {
       requests.push_back(request);
       if (on_request) on_request(request);
@@ -73,12 +75,8 @@ class WorkerClient {
   WorkerClient(const WorkerClient&) = delete;
   WorkerClient& operator=(const WorkerClient&) = delete;
 
-  /// False when `condition` does not come true in the longest time that anything takes.
-  bool wait_until(const std::function<bool()>& condition) {
-    constexpr std::chrono::seconds kPatience{30 * kTimeFactor};
-    const auto end = std::chrono::steady_clock::now() + kPatience;
-    while (!condition() && std::chrono::steady_clock::now() < end) run_loop();
-    return condition();
+  bool wait_until(const std::string& what, const std::function<bool()>& condition) {
+    return wait_for(what, condition, [&] { run_loop(); });
   }
   /// Lets messages come in; ends with the first.
   void run_loop() { loop_.run_for(std::chrono::milliseconds(2)); }
@@ -93,11 +91,12 @@ class WorkerClient {
   }
   /// The id of the only worker of a name, once it can be reached; empty: it did not come.
   std::string find(const std::string& name) {
-    const bool there = wait_until([&] { return named(name).size() == 1; }) && reach(1);
+    const bool there =
+        wait_until("worker " + name, [&] { return named(name).size() == 1; }) && reach(1);
     return there ? named(name).front() : "";
   }
   bool reach(int workers_there) {
-    return wait_until([&] {
+    return wait_until("all topics of the workers", [&] {
       return tasks_.matched() >= workers_there && copies_.matched() >= workers_there &&
              results_.matched() >= workers_there && requests_.matched() >= workers_there;
     });
@@ -135,8 +134,9 @@ class WorkerClient {
 
   service::MatchAddress address;  ///< of the next task
   std::map<std::uint64_t, msg::MatchResult> results;
-  std::map<std::uint64_t, std::string> answered_by;  ///< worker id
-  std::vector<std::size_t> together;                 ///< results in each message
+  std::map<std::uint64_t, std::string> answered_by;   ///< worker id
+  std::map<std::uint64_t, std::int64_t> answered_ns;  ///< when it was sent, by the wall clock
+  std::vector<std::size_t> together;                  ///< results in each message
   std::vector<msg::MapRequest> requests;
   std::map<std::string, msg::WorkerStatus> workers;
   std::function<void(const msg::MapRequest&)> on_request;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "topogeo/pipeline/config.hpp"
+#include "topogeo/support/host.hpp"
 
 #include "program.hpp"
 #include "worker_client.hpp"
@@ -35,7 +36,8 @@ class WorkerTest : public ::testing::Test {
   /// The result is bit for bit what a matcher in this process makes of the task.
   static void expect_right(WorkerClient& client, const MatchTask& task, const MapPointer& reference,
                            const MapPointer& query) {
-    ASSERT_TRUE(client.wait_until([&] { return client.results.contains(task.task_id); }));
+    ASSERT_TRUE(
+        client.wait_until("the result", [&] { return client.results.contains(task.task_id); }));
     localization::Matcher matcher;
     matcher.add_map(*reference);
     matcher.add_map(*query);
@@ -47,7 +49,7 @@ class WorkerTest : public ::testing::Test {
   }
   msg::MatchResult refusal(WorkerClient& client, const std::string& worker, std::uint64_t id) {
     client.send(worker, task(*zero_, *one_, id));
-    EXPECT_TRUE(client.wait_until([&] { return client.results.contains(id); }));
+    EXPECT_TRUE(client.wait_until("the refusal", [&] { return client.results.contains(id); }));
     return client.results[id];
   }
 
@@ -74,7 +76,7 @@ TEST_F(WorkerTest, TwoOfOneNameAreTwo) {
   const auto first = start();
   const auto second = start();
   const auto peer = client();
-  ASSERT_TRUE(peer->wait_until([&] { return peer->named(name_).size() == 2; }));
+  ASSERT_TRUE(peer->wait_until("two workers", [&] { return peer->named(name_).size() == 2; }));
   ASSERT_TRUE(peer->reach(2));
   publish_both(*peer);
   std::uint64_t id = 0;
@@ -95,13 +97,14 @@ TEST_F(WorkerTest, HasTheLocalMapsOfBeforeItsTimeFromEveryPartition) {
     const std::string worker = peer->find(name_);
     const MatchTask wanted = task(*zero_, *one_, 1);
     // The status counts what it holds, so that this is not about who asks whom.
-    ASSERT_TRUE(peer->wait_until([&] { return peer->workers[worker].maps_held() == 2; }));
+    ASSERT_TRUE(peer->wait_until("the worker to hold two maps",
+                                 [&] { return peer->workers[worker].maps_held() == 2; }));
     peer->send(worker, wanted);
     expect_right(*peer, wanted, zero_, one_);
     EXPECT_THAT(peer->requests, IsEmpty());
     process->send_signal(SIGTERM);
     EXPECT_EQ(process->wait(), 0);
-    EXPECT_TRUE(peer->wait_until([&] { return peer->workers.empty(); }));
+    EXPECT_TRUE(peer->wait_until("the worker to be gone", [&] { return peer->workers.empty(); }));
   }
 }
 
@@ -125,7 +128,7 @@ TEST_F(WorkerTest, ServesRunsWhoseRobotsAndMapsHaveTheSameNames) {
     run->send(worker, task(*other_zero, *other_one, id));
   }
   // Both have to answer requests until both have their results.
-  ASSERT_TRUE(live->wait_until([&] {
+  ASSERT_TRUE(live->wait_until("the results of both clients", [&] {
     run->run_loop();
     return live->results.size() == 4 && run->results.size() == 4;
   }));
@@ -133,7 +136,16 @@ TEST_F(WorkerTest, ServesRunsWhoseRobotsAndMapsHaveTheSameNames) {
     expect_right(*live, task(*zero_, *one_, id), zero_, one_);
     expect_right(*run, task(*other_zero, *other_one, id), other_zero, other_one);
   }
-  EXPECT_TRUE(live->wait_until([&] { return live->workers[worker].clients() == 2; }));
+  // It counts the clients of the last seconds, so both keep asking.
+  std::uint64_t asked = 4;
+  EXPECT_TRUE(live->wait_until("a status with both clients", [&] {
+    run->run_loop();
+    if (live->results.size() == asked && run->results.size() == asked) {
+      live->send(worker, task(*zero_, *one_, asked));
+      run->send(worker, task(*other_zero, *other_one, asked++));
+    }
+    return live->workers[worker].clients() == 2;
+  }));
   EXPECT_EQ(live->workers[worker].maps_held(), 4U);
 }
 
@@ -142,8 +154,11 @@ TEST_F(WorkerTest, APartitionRestrictsIt) {
   const auto mine = client("mine");
   const auto other = client("other");
   ASSERT_NE(mine->find(name_), "");
-  for (int i = 0; i < 50; ++i) other->run_loop();
-  EXPECT_THAT(other->workers, IsEmpty());
+  // One that serves every partition is found in the other one as well, and it comes later.
+  name_ = random_name();
+  const auto everywhere = start();
+  ASSERT_NE(other->find(name_), "");
+  EXPECT_THAT(other->workers, ::testing::SizeIs(1));
 }
 
 TEST_F(WorkerTest, AsksForAMapThatItLacksUntilItHasTheRightOne) {
@@ -165,7 +180,7 @@ TEST_F(WorkerTest, AsksForAMapThatItLacksUntilItHasTheRightOne) {
   const MatchTask wanted = task(*zero_, *one_, 1);
   peer->send(worker, wanted);
   expect_right(*peer, wanted, zero_, one_);
-  EXPECT_EQ(damaged, 2);
+  EXPECT_GE(damaged, 2);
   process->wait_for_error_text("invalid map copy");
 }
 
@@ -177,8 +192,9 @@ TEST_F(WorkerTest, SaysThatAMapIsMissingWhenItDoesNotCome) {
   const msg::MatchResult result = refusal(*peer, worker, 1);
   EXPECT_EQ(result.status(), msg::kMatchMapMissing);
   EXPECT_THAT(result.message().to_string(), HasSubstr("local map 1 ("));
-  EXPECT_GE(peer->requests.size(), 3U);
-  EXPECT_TRUE(peer->wait_until([&] { return peer->workers[worker].failures() == 1; }));
+  EXPECT_TRUE(peer->wait_until("the third request", [&] { return peer->requests.size() >= 3; }));
+  EXPECT_TRUE(peer->wait_until("the failure to be counted",
+                               [&] { return peer->workers[worker].failures() == 1; }));
   EXPECT_EQ(peer->workers[worker].tasks_in_hand(), 0U);
 }
 
@@ -196,7 +212,8 @@ TEST_F(WorkerTest, AsksAgainForAMapThatMadeRoomForOthers) {
     maps.push_back(std::make_shared<const topomap::LocalMap>(large));
     peer->publish(maps.back());
   }
-  ASSERT_TRUE(peer->wait_until([&] { return peer->workers[worker].maps_held() > 150; }));
+  ASSERT_TRUE(peer->wait_until("the worker to hold many maps",
+                               [&] { return peer->workers[worker].maps_held() > 150; }));
   peer->publish(one_);
   maps.push_back(one_);
   peer->answer_requests(worker, maps);
@@ -226,16 +243,39 @@ TEST_F(WorkerTest, AClientWithALongQueueDoesNotKeepAnotherWaiting) {
   ASSERT_EQ(modest->find(name_), worker);
   publish_both(*greedy);
   constexpr std::uint64_t kMany = 120;
+  constexpr std::uint64_t kFew = 3;
   MatchTask long_task = task(*zero_, *one_, 0);
   long_task.genetic.generations = 500;  // sending takes less time than the work
-  for (; long_task.task_id < kMany; ++long_task.task_id) greedy->send(worker, long_task);
-  for (std::uint64_t id = 0; id < 3; ++id) modest->send(worker, task(*zero_, *one_, id));
-  ASSERT_TRUE(modest->wait_until([&] {
-    greedy->run_loop();
-    return modest->results.size() == 3;
-  }));
-  EXPECT_LT(greedy->results.size(), kMany / 2);
-  EXPECT_TRUE(greedy->wait_until([&] { return greedy->results.size() == kMany; }));
+  // An attempt counts in which half of the queue is left when the other client has sent its tasks.
+  std::uint64_t sent = 0;
+  std::uint64_t done_before = 0;
+  std::uint64_t done_meanwhile = 0;
+  const auto attempt = [&] {
+    const std::uint64_t first = sent;
+    for (; sent < first + kMany; ++sent) {
+      long_task.task_id = sent;
+      greedy->send(worker, long_task);
+    }
+    for (std::uint64_t i = 0; i < kFew; ++i) {
+      modest->send(worker, task(*zero_, *one_, first + i));
+    }
+    const std::int64_t queued_ns = support::wall_clock_ns();
+    EXPECT_TRUE(modest->wait_until("the results of the second client", [&] {
+      greedy->run_loop();
+      return modest->answered_ns.contains(first + kFew - 1) && greedy->results.size() == sent;
+    }));
+    const auto done_until = [&](std::int64_t end_ns) {
+      return static_cast<std::uint64_t>(
+          std::count_if(greedy->answered_ns.lower_bound(first), greedy->answered_ns.end(),
+                        [&](const auto& answer) { return answer.second < end_ns; }));
+    };
+    done_before = done_until(queued_ns);
+    done_meanwhile = done_until(modest->answered_ns[first + kFew - 1]) - done_before;
+  };
+  attempt();
+  ASSERT_TRUE(wait_for(
+      "an attempt that nothing interrupts", [&] { return done_before <= kMany / 2; }, attempt));
+  EXPECT_LT(done_meanwhile, kMany / 4);
 }
 
 TEST_F(WorkerTest, RefusesAnotherVersionAnotherMatcherAndAnotherConfiguration) {
@@ -314,12 +354,12 @@ TEST_F(WorkerTest, AnswersToTasksOfOneMessageLeaveTogether) {
   peer->address.version = "0.0.1";
   // Until the worker knows the reader of the answers they wait, and leave together.
   peer->send(worker, task(*zero_, *one_, 16));
-  ASSERT_TRUE(peer->wait_until([&] { return peer->results.size() == 1; }));
+  ASSERT_TRUE(peer->wait_until("the first result", [&] { return peer->results.size() == 1; }));
   peer->together.clear();
   std::vector<MatchTask> tasks;
   for (std::uint64_t id = 0; id < 16; ++id) tasks.push_back(task(*zero_, *one_, id));
   peer->send_together(worker, tasks);
-  ASSERT_TRUE(peer->wait_until([&] { return peer->results.size() == 17; }));
+  ASSERT_TRUE(peer->wait_until("all results", [&] { return peer->results.size() == 17; }));
   EXPECT_LT(peer->together.size(), tasks.size()) << "one by one";
   std::size_t owed = tasks.size();
   for (const std::size_t together : peer->together) {
@@ -335,7 +375,7 @@ TEST_F(WorkerTest, AnAnswerDoesNotWaitForASearchThatTakesLong) {
   publish_both(*peer);
   MatchTask short_task = task(*zero_, *one_, 0);
   peer->send(worker, short_task);
-  ASSERT_TRUE(peer->wait_until([&] { return peer->results.size() == 1; }));
+  ASSERT_TRUE(peer->wait_until("the first result", [&] { return peer->results.size() == 1; }));
   peer->together.clear();
   MatchTask long_task = short_task;
   long_task.genetic.individuals = 1000;
@@ -348,7 +388,8 @@ TEST_F(WorkerTest, AnAnswerDoesNotWaitForASearchThatTakesLong) {
   tasks.insert(tasks.end(), 5, long_task);
   for (std::size_t i = 0; i < tasks.size(); ++i) tasks[i].task_id = 1 + i;
   peer->send_together(worker, tasks);
-  ASSERT_TRUE(peer->wait_until([&] { return peer->results.size() >= 4; }));
+  ASSERT_TRUE(
+      peer->wait_until("the result of the long search", [&] { return peer->results.size() >= 4; }));
   std::vector<std::size_t> had_left;
   std::partial_sum(peer->together.begin(), peer->together.end(), std::back_inserter(had_left));
   EXPECT_THAT(had_left, ::testing::Contains(3)) << "the third left with that of a long search";
@@ -369,10 +410,12 @@ TEST_F(WorkerTest, TellsWhatItIsAndDoes) {
   EXPECT_EQ(idle.matcher_fingerprint(), localization::matcher_fingerprint());
   EXPECT_FALSE(idle.host().to_string().empty());
   double most_load = 0.0;
+  double most_tasks_per_s = 0.0;
   std::uint32_t most_in_hand = 0;
   std::uint32_t most_clients = 0;  // those of the last seconds, which the queue may outlast
   peer->on_status = [&](const msg::WorkerStatus& status) {
     most_load = std::max(most_load, status.load());
+    most_tasks_per_s = std::max(most_tasks_per_s, status.tasks_per_s());
     most_in_hand = std::max(most_in_hand, status.tasks_in_hand());
     most_clients = std::max(most_clients, status.clients());
   };
@@ -380,22 +423,22 @@ TEST_F(WorkerTest, TellsWhatItIsAndDoes) {
   MatchTask long_task = task(*zero_, *one_, 0);
   long_task.genetic.generations = 3000;
   constexpr std::uint64_t kQueue = 20;
-  ASSERT_TRUE(peer->wait_until([&] {
+  ASSERT_TRUE(peer->wait_until("a status of a busy worker", [&] {
     for (; long_task.task_id < peer->results.size() + kQueue; ++long_task.task_id) {
       peer->send(worker, long_task);
     }
-    return most_load > 0.5 && most_in_hand > 2;
+    return most_load > 0.5 && most_in_hand > 2 && most_tasks_per_s > 0.0;
   }));
   const std::uint64_t sent = long_task.task_id;
-  ASSERT_TRUE(peer->wait_until([&] { return peer->results.size() == sent; }));
-  ASSERT_TRUE(peer->wait_until([&] {
+  ASSERT_TRUE(peer->wait_until("all results", [&] { return peer->results.size() == sent; }));
+  ASSERT_TRUE(peer->wait_until("a status of an idle worker", [&] {
     const msg::WorkerStatus& status = peer->workers[worker];
     return status.tasks_done() == sent && status.tasks_in_hand() == 0;
   }));
   const msg::WorkerStatus done = peer->workers[worker];
   EXPECT_LE(most_load, 1.0);
   EXPECT_EQ(done.tasks_in_hand(), 0U);
-  EXPECT_GT(done.tasks_per_s(), 0.0);
+  EXPECT_GT(most_tasks_per_s, 0.0);
   EXPECT_EQ(most_clients, 1U);
   EXPECT_EQ(done.failures(), 0U);
   EXPECT_GT(done.uptime_s(), idle.uptime_s());
@@ -406,20 +449,17 @@ TEST_F(WorkerTest, FinishesWhatItHasInHandBeforeItGoes) {
   const auto peer = client();
   const std::string worker = peer->find(name_);
   publish_both(*peer);
-  bool draining = false;
-  peer->on_status = [&](const msg::WorkerStatus& status) {
-    draining = draining || (status.draining() && status.slots() == 0);
-  };
-  for (std::uint64_t id = 0; id < 60; ++id) peer->send(worker, task(*zero_, *one_, id));
-  ASSERT_TRUE(peer->wait_until([&] { return !peer->results.empty(); }));
+  constexpr std::uint64_t kTasks = 30;
+  for (std::uint64_t id = 0; id < kTasks; ++id) peer->send(worker, task(*zero_, *one_, id));
+  ASSERT_TRUE(peer->wait_until("a result", [&] { return !peer->results.empty(); }));
   process->send_signal(SIGTERM);
-  ASSERT_TRUE(peer->wait_until([&] { return peer->workers.empty(); }));
+  ASSERT_TRUE(peer->wait_until("all results, and the worker to be gone", [&] {
+    return peer->results.size() == kTasks && peer->workers.empty();
+  }));
   EXPECT_EQ(process->wait(), 0);
-  EXPECT_TRUE(draining);
-  EXPECT_EQ(peer->results.size(), 60U);
   EXPECT_THAT(process->err(), HasSubstr("joined domain " + domain_));
   EXPECT_THAT(process->err(), HasSubstr("first task of client"));
-  EXPECT_THAT(process->err(), HasSubstr("60 tasks done for 1 clients, 0 failures"));
+  EXPECT_THAT(process->err(), HasSubstr("30 tasks done for 1 clients, 0 failures"));
 }
 
 TEST_F(WorkerTest, ASecondSignalEndsItAtOnce) {
@@ -428,11 +468,18 @@ TEST_F(WorkerTest, ASecondSignalEndsItAtOnce) {
   const std::string worker = peer->find(name_);
   publish_both(*peer);
   MatchTask long_task = task(*zero_, *one_, 0);
-  long_task.genetic.generations = 2000;
-  for (; long_task.task_id < 120; ++long_task.task_id) peer->send(worker, long_task);
-  ASSERT_TRUE(peer->wait_until([&] { return !peer->results.empty(); }));
+  peer->send(worker, long_task);
+  // Together they take minutes on any machine.
+  long_task.genetic.individuals = 1000;
+  long_task.genetic.generations = 500;
+  for (long_task.task_id = 1; long_task.task_id < 120; ++long_task.task_id) {
+    peer->send(worker, long_task);
+  }
+  ASSERT_TRUE(peer->wait_until("a result", [&] { return !peer->results.empty(); }));
   process->send_signal(SIGTERM);
-  ASSERT_TRUE(peer->wait_until([&] { return peer->workers[worker].draining(); }));
+  ASSERT_TRUE(peer->wait_until("the worker to drain", [&] {
+    return peer->workers[worker].draining() && peer->workers[worker].slots() == 0;
+  }));
   process->send_signal(SIGTERM);
   EXPECT_EQ(process->wait(), 0);
   EXPECT_LT(peer->results.size(), 120U);
