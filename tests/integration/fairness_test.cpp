@@ -33,7 +33,7 @@ class Robot {
     options.robot_id = name;
     options.client_id = "client-" + name + "-" + std::to_string(std::random_device{}());
     options.version = support::kVersion;
-    options.board.straggler_floor = kPatience;
+    options.board.straggler_floor = hang_limit();
     options.log = [](const std::string&) {};
     pool_.emplace(participant_, loop_, options,
                   [this](std::string_view why, std::string_view) { faults.emplace_back(why); });
@@ -107,7 +107,7 @@ TEST_F(FairnessTest, ARobotThatFloodsThePoolStarvesNoOther) {
   std::atomic<std::uint64_t> flood_searched_here{1};
   std::thread flood([&] {
     const auto robot = make_robot("greedy", maps);
-    if (robot->pool().wait_for_workers(2, kPatience) < 2) {
+    if (!wait_for_workers(robot->pool(), 2)) {
       flood_ended = true;
       return;
     }
@@ -136,7 +136,7 @@ TEST_F(FairnessTest, ARobotThatFloodsThePoolStarvesNoOther) {
       std::vector<std::vector<localization::MatchResult>> expected;
       for (std::uint64_t batch = 0; batch < kBatches; ++batch)
         expected.push_back(robot->match_here(tasks_on(robot->maps(), kSmall, kSmall * batch)));
-      if (robot->pool().wait_for_workers(2, kPatience) == 2) {
+      if (wait_for_workers(robot->pool(), 2)) {
         while (!floods && !flood_ended) std::this_thread::yield();
         const std::uint64_t before = ebbed_away;
         for (std::uint64_t batch = 0; batch < kBatches; ++batch) {

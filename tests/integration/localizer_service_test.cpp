@@ -16,8 +16,6 @@
 namespace topogeo::test {
 namespace {
 
-using std::chrono::milliseconds;
-
 class LocalizerTest : public ::testing::Test {
  protected:
   LocalizerTest() {
@@ -50,10 +48,8 @@ class LocalizerTest : public ::testing::Test {
     end.count(maps_.size());
     ASSERT_TRUE(ends_out_.write(end));
   }
-  bool wait_until(const std::function<bool()>& condition) {
-    const auto end = std::chrono::steady_clock::now() + kPatience;
-    while (!condition() && std::chrono::steady_clock::now() < end) loop_.run_for(milliseconds(5));
-    return condition();
+  bool wait_until(const std::string& what, const std::function<bool()>& condition) {
+    return wait_in_loop(loop_, what, condition);
   }
   double counter(const std::string& name) const {
     for (const msg::Counter& c : last_status_->counters()) {
@@ -79,7 +75,8 @@ class LocalizerTest : public ::testing::Test {
     const std::vector<topomap::LoopClosure> loops = localizer.loop_closures();
     EXPECT_EQ(last_closures_->version(), expected.version);
     ASSERT_EQ(last_closures_->closures().size(), loops.size());
-    ASSERT_TRUE(wait_until([&] { return last_status_->state() == msg::kServiceFinished; }));
+    ASSERT_TRUE(wait_until("the localizer to be finished",
+                           [&] { return last_status_->state() == msg::kServiceFinished; }));
     EXPECT_EQ(counter("stops"), static_cast<double>(maps_.size()));
     EXPECT_EQ(counter("tasks"), static_cast<double>(localizer.counts().tasks));
     EXPECT_EQ(counter("accepted"), static_cast<double>(localizer.counts().reasons[0]));
@@ -114,7 +111,7 @@ TEST_F(LocalizerTest, MapsInAnyOrderGiveTheTrajectoryOfOneProcess) {
   // The end first, then from the last map to the first: nothing may be lost by a race of topics.
   end_stream();
   for (auto map = maps_.rbegin(); map != maps_.rend(); ++map) publish(**map);
-  ASSERT_TRUE(wait_until([&] { return end_.has_value(); }));
+  ASSERT_TRUE(wait_until("the end of the stream", [&] { return end_.has_value(); }));
   expect_result_of_one_process();
   EXPECT_EQ(counter("tasks_in_process"), counter("tasks"));
   localizer->send_signal(SIGTERM);
@@ -122,12 +119,12 @@ TEST_F(LocalizerTest, MapsInAnyOrderGiveTheTrajectoryOfOneProcess) {
 }
 
 TEST_F(LocalizerTest, WorkersThatItWaitedForDoAllTheMatching) {
-  const auto localizer = start("localizer", {"--wait-workers", "2", "--wait-seconds", "30"});
+  const auto localizer = start("localizer", {"--wait-workers", "2", "--wait-seconds", "600"});
   for (const auto& map : maps_) publish(*map);
   end_stream();
   const auto one = start("ga_worker", {"--name", "one"});
   const auto two = start("ga_worker", {"--name", "two", "--slots", "2"});
-  ASSERT_TRUE(wait_until([&] { return end_.has_value(); }));
+  ASSERT_TRUE(wait_until("the end of the stream", [&] { return end_.has_value(); }));
   expect_result_of_one_process();
   EXPECT_EQ(counter("tasks_in_process"), 0.0);
   EXPECT_GT(counter("tasks_sent"), 0.0);
@@ -137,7 +134,7 @@ TEST_F(LocalizerTest, WithoutTheWorkersItGoesOnAfterAWhile) {
   const auto localizer = start("localizer", {"--wait-workers", "3", "--wait-seconds", "0.2"});
   for (const auto& map : maps_) publish(*map);
   end_stream();
-  ASSERT_TRUE(wait_until([&] { return end_.has_value(); }));
+  ASSERT_TRUE(wait_until("the end of the stream", [&] { return end_.has_value(); }));
   expect_result_of_one_process();
   EXPECT_THAT(localizer->err(), ::testing::HasSubstr("0 of 3 workers came within 0.2 s"));
 }
@@ -145,14 +142,15 @@ TEST_F(LocalizerTest, WithoutTheWorkersItGoesOnAfterAWhile) {
 TEST_F(LocalizerTest, TheLivePoseFollowsTheOdometryBetweenStops) {
   const auto localizer = start("localizer");
   publish(*maps_[0]);
-  ASSERT_TRUE(wait_until([&] { return assembly_.version() == 1; }));
-  ASSERT_TRUE(odometry_writer_.wait_for_matched(1, kPatience));
+  ASSERT_TRUE(wait_until("the first trajectory", [&] { return assembly_.version() == 1; }));
+  ASSERT_TRUE(wait_until("a reader of odometry", [&] { return odometry_writer_.matched() > 0; }));
   const geometry::Pose2 moved{0.4, -0.1, 0.2};
   msg::Odometry odometry;
   messaging::set_header(odometry, "robot", maps_[0]->stamp_ns + 1, 9);
   odometry.T_odom_robot(service::to_msg(maps_[0]->T_odom_robot * moved));
   ASSERT_TRUE(odometry_writer_.write(odometry));
-  ASSERT_TRUE(wait_until([&] { return last_pose_ && last_pose_->sequence_number() == 9; }));
+  ASSERT_TRUE(wait_until("the pose of the odometry",
+                         [&] { return last_pose_ && last_pose_->sequence_number() == 9; }));
   const service::LivePose pose = service::from_msg(*last_pose_);
   EXPECT_EQ(pose.status.state, localization::LocalizationState::kTracking);
   EXPECT_EQ(pose.mode, msg::kModeMapping);
@@ -194,12 +192,15 @@ class LateLocalizer : public LocalizerTest {
 TEST_F(LateLocalizer, GetsTheFirstStopsOfALogFromTheMapStore) {
   const auto store = start("map_store", {"--out", scratch_ / "out"});
   for (const auto& map : maps_) publish(*map);
-  ASSERT_TRUE(wait_until([&] { return stored_ && stored_->session_stops() == maps_.size(); }));
+  ASSERT_TRUE(wait_until("the map store to have all stops",
+                         [&] { return stored_ && stored_->session_stops() == maps_.size(); }));
   const auto localizer = start_late({"--replay"});
   end_stream();
-  ASSERT_TRUE(wait_until([&] { return end_.has_value(); })) << localizer->err();
+  ASSERT_TRUE(wait_until("the end of the stream", [&] { return end_.has_value(); }))
+      << localizer->err();
   EXPECT_EQ(end_->count(), maps_.size());
-  ASSERT_TRUE(wait_until([&] { return last_status_->state() == msg::kServiceFinished; }));
+  ASSERT_TRUE(wait_until("the localizer to be finished",
+                         [&] { return last_status_->state() == msg::kServiceFinished; }));
   EXPECT_EQ(last_status_->fault_count(), 0U);
 }
 
@@ -207,7 +208,8 @@ TEST_F(LateLocalizer, GetsTheFirstStopsOfALogFromTheMapStore) {
 TEST_F(LateLocalizer, SaysNoPoseBeforeItHasAddedTheStopsAgain) {
   const auto store = start("map_store", {"--out", scratch_ / "out"});
   for (const auto& map : maps_) publish(*map);
-  ASSERT_TRUE(wait_until([&] { return stored_ && stored_->session_stops() == maps_.size(); }));
+  ASSERT_TRUE(wait_until("the map store to have all stops",
+                         [&] { return stored_ && stored_->session_stops() == maps_.size(); }));
   localization::InProcessPool pool;
   localization::Localizer expected({}, pool);
   for (const auto& map : maps_) expected.add(map);
@@ -222,10 +224,10 @@ TEST_F(LateLocalizer, SaysNoPoseBeforeItHasAddedTheStopsAgain) {
   });
   const auto worker = start("ga_worker");  // while it answers, odometry is heard
   const Program localizer(scratch_, "localizer",
-                          {"--wait-workers", "1", "--wait-seconds", "60", "--domain", own_domain(),
+                          {"--wait-workers", "1", "--wait-seconds", "600", "--domain", own_domain(),
                            "--partition", partition_});
   std::uint64_t sequence = maps_.back()->sequence;
-  ASSERT_TRUE(wait_until([&] {
+  ASSERT_TRUE(wait_until("all stops to be added again", [&] {
     msg::Odometry odometry;
     messaging::set_header(odometry, "robot", maps_.back()->stamp_ns + 1, ++sequence);
     odometry.T_odom_robot(service::to_msg(maps_.back()->T_odom_robot));
@@ -238,14 +240,16 @@ TEST_F(LateLocalizer, SaysNoPoseBeforeItHasAddedTheStopsAgain) {
 TEST_F(LateLocalizer, GoesOnWithoutThemWhereNothingIsStored) {
   const auto store = start("map_store", {"--map", map_file_});
   for (const auto& map : maps_) publish(*map);
-  ASSERT_TRUE(wait_until([&] { return stored_.has_value(); }));
+  ASSERT_TRUE(wait_until("a stored map", [&] { return stored_.has_value(); }));
   EXPECT_EQ(stored_->session(), msg::kNothingIsStored);
   EXPECT_EQ(stored_->session_stops(), 0U);
   const auto localizer = start_late({"--replay"});
   end_stream();
-  ASSERT_TRUE(wait_until([&] { return end_.has_value(); })) << localizer->err();
+  ASSERT_TRUE(wait_until("the end of the stream", [&] { return end_.has_value(); }))
+      << localizer->err();
   EXPECT_EQ(end_->count(), maps_.size() - maps_.size() / 2);
-  ASSERT_TRUE(wait_until([&] { return last_status_->state() == msg::kServiceFinished; }));
+  ASSERT_TRUE(wait_until("the localizer to be finished",
+                         [&] { return last_status_->state() == msg::kServiceFinished; }));
   ASSERT_EQ(last_status_->faults().size(), 1U);
   EXPECT_EQ(last_status_->faults()[0].reason().to_string(), "local maps missing");
 }
@@ -254,15 +258,17 @@ TEST_F(LateLocalizer, NeedsNoneOfThemWhileTheRobotDrives) {
   for (const auto& map : maps_) publish(*map);
   const auto localizer = start_late({});  // no map store either
   end_stream();
-  ASSERT_TRUE(wait_until([&] { return end_.has_value(); })) << localizer->err();
+  ASSERT_TRUE(wait_until("the end of the stream", [&] { return end_.has_value(); }))
+      << localizer->err();
   EXPECT_EQ(end_->count(), maps_.size() - maps_.size() / 2);
-  ASSERT_TRUE(wait_until([&] { return last_status_->state() == msg::kServiceFinished; }));
+  ASSERT_TRUE(wait_until("the localizer to be finished",
+                         [&] { return last_status_->state() == msg::kServiceFinished; }));
   EXPECT_EQ(last_status_->fault_count(), 0U);
 }
 
 TEST_F(LocalizerTest, AStopWhileItWaitsForWorkersOrMapsEndsItCleanly) {
   const auto waiting = start("localizer", {"--wait-workers", "1", "--wait-seconds", "600"});
-  ASSERT_TRUE(wait_until([&] { return last_status_.has_value(); }));
+  ASSERT_TRUE(wait_until("a status", [&] { return last_status_.has_value(); }));
   waiting->send_signal(SIGINT);
   EXPECT_EQ(waiting->wait(), 0) << waiting->err();
 }
@@ -271,7 +277,7 @@ TEST_F(LocalizerTest, AStopWhileAWorkerHangsEndsItCleanly) {
   FakeWorker hanging(partition_, loop_, "hanging", [](FakeWorker&, const msg::MatchTask&) {});
   const auto localizer = start("localizer", {"--wait-workers", "1", "--wait-seconds", "600"});
   for (const auto& map : maps_) publish(*map);
-  ASSERT_TRUE(wait_until([&] { return hanging.received > 0; }));
+  ASSERT_TRUE(wait_until("a task", [&] { return hanging.received > 0; }));
   localizer->send_signal(SIGTERM);
   EXPECT_EQ(localizer->wait(), 0) << localizer->err();
   EXPECT_FALSE(end_);

@@ -37,9 +37,6 @@
 
 namespace topogeo::test {
 
-/// Longer than anything takes on a busy machine.
-constexpr std::chrono::seconds kPatience{30 * kTimeFactor};
-
 using Maps = std::vector<std::shared_ptr<const topomap::LocalMap>>;
 
 inline Maps maps_of_room() {
@@ -121,14 +118,18 @@ class FakeWorker {
     status_.matcher_fingerprint(localization::matcher_fingerprint());
     status_.slots(1);
     if (dress) dress(status_);
-    timer_ = loop_.add_timer(std::chrono::milliseconds(200), [this] { announce(); });
-    announce();
+    begin_to_announce();
   }
   ~FakeWorker() { loop_.cancel_timer(timer_); }
 
+  void begin_to_announce() {
+    timer_ = loop_.add_timer(std::chrono::milliseconds(200), [this] { announce(); });
+    announce();
+  }
+  void cease_to_announce() { loop_.cancel_timer(timer_); }
   /// Announces that it leaves, as a worker that drains does.
   void leave() {
-    loop_.cancel_timer(timer_);
+    cease_to_announce();
     statuses_.dispose(status_);
   }
   /// Publishes from now on what `dress` makes of its status.
@@ -147,7 +148,8 @@ class FakeWorker {
     msg::MatchResults message = service::results_for(address);
     message.results().push_back(service::to_msg(result));
     message.results().front().status(status);
-    EXPECT_TRUE(results_.wait_for_matched(1, kPatience));
+    EXPECT_TRUE(wait_by("a reader of results",
+                        [&](auto at_most) { return results_.wait_for_matched(1, at_most); }));
     EXPECT_TRUE(results_.write(message));
   }
   void request_map(std::uint32_t map_id, std::uint64_t hash) {
@@ -157,7 +159,8 @@ class FakeWorker {
     messaging::set_worker_id(request, status_.worker_id().c_str());
     request.map_id(map_id);
     request.content_hash(hash);
-    EXPECT_TRUE(requests_.wait_for_matched(1, kPatience));
+    EXPECT_TRUE(wait_by("a reader of map requests",
+                        [&](auto at_most) { return requests_.wait_for_matched(1, at_most); }));
     EXPECT_TRUE(requests_.write(request));
   }
 
@@ -200,6 +203,11 @@ class Solver {
  private:
   localization::Matcher matcher_;
 };
+
+inline bool wait_for_workers(localizer::RemotePool& pool, std::size_t count) {
+  return wait_by(std::to_string(count) + " workers",
+                 [&](auto at_most) { return pool.wait_for_workers(count, at_most) == count; });
+}
 
 /// A pool in the test's process with the local maps of a room.
 class PoolTest : public ::testing::Test {
@@ -247,21 +255,24 @@ class PoolTest : public ::testing::Test {
   }
   /// Does something once so many tasks are sent, while match() runs.
   void when_sent(std::uint64_t count, std::function<void()> action) {
-    timer_ =
-        loop_.add_timer(std::chrono::milliseconds(1), [this, count, action = std::move(action)] {
-          if (pool_->counts().sent < count) return;
-          loop_.cancel_timer(timer_);
-          action();
-        });
+    when([this, count] { return pool_->counts().sent >= count; }, std::move(action));
   }
-  /// Runs the loop outside of match(); false when `condition` does not come true.
-  bool wait_until(const std::function<bool()>& condition) {
-    const auto end = std::chrono::steady_clock::now() + kPatience;
-    while (!condition() && std::chrono::steady_clock::now() < end) {
-      loop_.run_for(std::chrono::milliseconds(5));
-    }
-    return condition();
+  /// Does something once a condition holds, while match() runs.
+  void when(std::function<bool()> condition, std::function<void()> action) {
+    timer_ = loop_.add_timer(std::chrono::milliseconds(1),
+                             [this, condition = std::move(condition), action = std::move(action)] {
+                               if (!condition()) return;
+                               // It goes with its timer, and may set the next one.
+                               const std::function<void()> once = action;
+                               loop_.cancel_timer(timer_);
+                               once();
+                             });
   }
+  /// Runs the loop outside of match().
+  bool wait_until(const std::string& what, const std::function<bool()>& condition) {
+    return wait_in_loop(loop_, what, condition);
+  }
+  bool wait_for_workers(std::size_t count) { return test::wait_for_workers(*pool_, count); }
 
   // A killed program leaves a part of /dev/shm behind that others may still wait at.
   const bool udp_only_ = (use_udp_only(), true);
@@ -283,7 +294,7 @@ class PoolTest : public ::testing::Test {
   /// Nothing is taken from a slow worker on a busy machine, unless a test wants it.
   static search_pool::BoardConfig patient() {
     search_pool::BoardConfig options;
-    options.straggler_floor = kPatience;
+    options.straggler_floor = hang_limit();
     return options;
   }
 };

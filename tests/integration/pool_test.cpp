@@ -23,7 +23,7 @@ TEST_F(PoolTest, TwoWorkersGiveWhatOneProcessGives) {
   publish_maps();
   start_worker("w1");
   start_worker("w2");
-  ASSERT_EQ(pool_->wait_for_workers(2, kPatience), 2U);
+  ASSERT_TRUE(wait_for_workers(2));
   const std::vector<MatchTask> tasks = tasks_on(maps_, 60);
   expect_same(tasks, pool_->match(tasks));
   EXPECT_EQ(pool_->counts().sent, 60U);
@@ -62,7 +62,7 @@ TEST_F(PlacesInPoolTest, WorkersSearchPartsOfTheWholeMap) {
   EXPECT_EQ(pool_->counts().in_process, tasks_.size());
   start_worker("w1");
   start_worker("w2");
-  ASSERT_EQ(pool_->wait_for_workers(2, kPatience), 2U);
+  ASSERT_TRUE(wait_for_workers(2));
   for (MatchTask& task : tasks_) task.task_id += 100;
   expect_right(pool_->match(tasks_));
   EXPECT_EQ(pool_->counts().in_process, tasks_.size());
@@ -77,7 +77,7 @@ TEST_F(PlacesInPoolTest, AWorkerWithAWrongValueIsExcluded) {
     result.solutions.back().fitness += 1e-9;
     self.answer(task, result);
   });
-  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  ASSERT_TRUE(wait_for_workers(1));
   expect_right(pool_->match(tasks_));
   EXPECT_EQ(pool_->counts().workers_excluded, 1U);
   EXPECT_THAT(faults_, Contains("wrong match result"));
@@ -91,7 +91,7 @@ TEST_F(PlacesInPoolTest, AWorkerThatLeavesOutTheBestPlaceIsExcluded) {
     result.solutions.erase(result.solutions.begin());
     self.answer(task, result);
   });
-  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  ASSERT_TRUE(wait_for_workers(1));
   expect_right(pool_->match(tasks_));
   EXPECT_EQ(pool_->counts().workers_excluded, 1U);
   EXPECT_THAT(faults_, Contains("different answers to a task"));
@@ -107,7 +107,7 @@ TEST_F(PoolTest, AKilledWorkerChangesNothing) {
   publish_maps();
   start_worker("w1");
   Program& killed = start_worker("w2");
-  ASSERT_EQ(pool_->wait_for_workers(2, kPatience), 2U);
+  ASSERT_TRUE(wait_for_workers(2));
   const std::vector<MatchTask> tasks = tasks_on(maps_, 400);
   when_sent(100, [&] { killed.send_signal(SIGKILL); });
   expect_same(tasks, pool_->match(tasks));
@@ -122,7 +122,7 @@ TEST_F(PoolTest, AKilledWorkerChangesNothing) {
 TEST_F(PoolTest, WhenTheLastWorkerIsKilledItSearchesItself) {
   publish_maps();
   Program& killed = start_worker("w1");
-  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  ASSERT_TRUE(wait_for_workers(1));
   const std::vector<MatchTask> tasks = tasks_on(maps_, 200);
   when_sent(50, [&] { killed.send_signal(SIGKILL); });
   expect_same(tasks, pool_->match(tasks));
@@ -134,7 +134,7 @@ TEST_F(PoolTest, AStoppedWorkerFinishesWhatItHasInHand) {
   publish_maps();
   Program& stopped = start_worker("w1");
   start_worker("w2");
-  ASSERT_EQ(pool_->wait_for_workers(2, kPatience), 2U);
+  ASSERT_TRUE(wait_for_workers(2));
   const std::vector<MatchTask> tasks = tasks_on(maps_, 400);
   when_sent(100, [&] { stopped.send_signal(SIGTERM); });
   expect_same(tasks, pool_->match(tasks));
@@ -145,7 +145,7 @@ TEST_F(PoolTest, AStoppedWorkerFinishesWhatItHasInHand) {
 TEST_F(PoolTest, ALateWorkerGetsTheTasksThatAnotherHasNoRoomFor) {
   publish_maps();
   FakeWorker hanging(partition_, loop_, "hanging", [](FakeWorker&, const msg::MatchTask&) {});
-  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  ASSERT_TRUE(wait_for_workers(1));
   when_sent(2, [&] {
     start_worker("late");
     when_sent(40, [&] { hanging.leave(); });
@@ -159,7 +159,7 @@ TEST_F(PoolTest, ALateWorkerGetsTheTasksThatAnotherHasNoRoomFor) {
 
 TEST_F(PoolTest, TasksWaitForMapsThatComeLate) {
   start_worker("w1");
-  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  ASSERT_TRUE(wait_for_workers(1));
   when_sent(1, [&] { publish_maps(); });
   const std::vector<MatchTask> tasks = tasks_on(maps_, 30);
   expect_same(tasks, pool_->match(tasks));
@@ -169,7 +169,7 @@ TEST_F(PoolTest, TasksWaitForMapsThatComeLate) {
 
 TEST_F(PoolTest, AWorkerWithoutMapsAsksForThem) {
   start_worker("w1");
-  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  ASSERT_TRUE(wait_for_workers(1));
   const std::vector<MatchTask> tasks = tasks_on(maps_, 60);
   expect_same(tasks, pool_->match(tasks));
   EXPECT_EQ(pool_->counts().map_missing, 0U);
@@ -184,12 +184,12 @@ TEST_F(PoolTest, AMapThatNobodyKnowsIsNotSent) {
     self.request_map(maps_[0]->id, 1);  // of another content
     self.answer(task, {}, msg::kMatchMapMissing);
   });
-  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  ASSERT_TRUE(wait_for_workers(1));
   const std::vector<MatchTask> tasks = tasks_on(maps_, 30);
   expect_same(tasks, pool_->match(tasks));
   EXPECT_GE(pool_->counts().map_missing, 1U);
   EXPECT_EQ(pool_->counts().in_process, 30U);
-  ASSERT_TRUE(wait_until([&] { return faults_.size() >= 2; }));
+  ASSERT_TRUE(wait_until("two faults", [&] { return faults_.size() >= 2; }));
   EXPECT_THAT(faults_, ::testing::Each("unknown map requested"));
   EXPECT_EQ(details_[0], "worker asking: map 9999");
   EXPECT_EQ(pool_->maps_sent(), 0U);
@@ -197,7 +197,7 @@ TEST_F(PoolTest, AMapThatNobodyKnowsIsNotSent) {
 
 TEST_F(PoolWithStragglersTest, AHangingWorkerHoldsNothingUp) {
   FakeWorker hanging(partition_, loop_, "hanging", [](FakeWorker&, const msg::MatchTask&) {});
-  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  ASSERT_TRUE(wait_for_workers(1));
   const std::vector<MatchTask> tasks = tasks_on(maps_, 30);
   expect_same(tasks, pool_->match(tasks));
   EXPECT_EQ(pool_->counts().in_process, 30U);
@@ -212,13 +212,13 @@ TEST_F(PoolTest, ADrainingWorkerGetsNoTasksButIsWaitedFor) {
   std::vector<msg::MatchTask> held;
   FakeWorker draining(partition_, loop_, "draining",
                       [&](FakeWorker&, const msg::MatchTask& task) { held.push_back(task); });
-  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  ASSERT_TRUE(wait_for_workers(1));
   when_sent(2, [&] {
     draining.change([](msg::WorkerStatus& status) { status.draining(true); });
-    loop_.call_after(milliseconds(300), [&] {
-      EXPECT_EQ(pool_->workers(), 0U);
-      for (const msg::MatchTask& task : held) draining.answer(task, solver.solve(task));
-    });
+    when([&] { return pool_->workers() == 0; },
+         [&] {
+           for (const msg::MatchTask& task : held) draining.answer(task, solver.solve(task));
+         });
   });
   const std::vector<MatchTask> tasks = tasks_on(maps_, 10);
   expect_same(tasks, pool_->match(tasks));
@@ -229,35 +229,40 @@ TEST_F(PoolTest, ADrainingWorkerGetsNoTasksButIsWaitedFor) {
 TEST_F(PoolWithStragglersTest, AWorkerThatSleptIsTakenBack) {
   publish_maps();
   Program& sleeper = start_worker("sleeper");
-  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  ASSERT_TRUE(wait_for_workers(1));
   const std::vector<MatchTask> tasks = tasks_on(maps_, 200);
   when_sent(50, [&] { sleeper.send_signal(SIGSTOP); });
   expect_same(tasks, pool_->match(tasks));
   EXPECT_GE(pool_->counts().in_process, 100U);
   EXPECT_THAT(lines_, Contains(HasSubstr("answered elsewhere after")));
-  ASSERT_TRUE(wait_until([&] { return pool_->workers() == 0; }));
+  ASSERT_TRUE(wait_until("the stopped worker to be lost", [&] { return pool_->workers() == 0; }));
   sleeper.send_signal(SIGCONT);
-  ASSERT_TRUE(wait_until([&] { return pool_->workers() == 1; }));
+  ASSERT_TRUE(wait_until("the worker to be back", [&] { return pool_->workers() == 1; }));
   const std::uint64_t here = pool_->counts().in_process;
-  const std::vector<MatchTask> more = tasks_on(maps_, 30, 1000);
-  expect_same(more, pool_->match(more));
-  EXPECT_LT(pool_->counts().in_process, here + 30) << "it works again";
+  // It works again: on a busy machine not before its answers come in time.
+  std::uint64_t matched = 0;
+  ASSERT_TRUE(wait_until("an answer of the worker", [&] {
+    const std::vector<MatchTask> more = tasks_on(maps_, 30, 1000 + matched);
+    expect_same(more, pool_->match(more));
+    matched += 30;
+    return pool_->counts().in_process < here + matched;
+  }));
   EXPECT_EQ(pool_->counts().duplicate_differences, 0U);
   EXPECT_THAT(faults_, IsEmpty());
 }
 
 TEST_F(PoolTest, AStopEndsTheWait) {
   FakeWorker hanging(partition_, loop_, "hanging", [](FakeWorker&, const msg::MatchTask&) {});
-  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  ASSERT_TRUE(wait_for_workers(1));
   when_sent(1, [&] { loop_.stop(); });
   EXPECT_THROW(pool_->match(tasks_on(maps_, 3)), localizer::Stopped);
-  EXPECT_TRUE(loop_.run_for(kPatience)) << "the loop around it is to end as well";
+  EXPECT_TRUE(loop_.run_for(hang_limit())) << "the loop around it is to end as well";
 }
 
 TEST_F(PoolTest, ATaskThatNobodyCanSolveIsAnError) {
   publish_maps();
   start_worker("w1");
-  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  ASSERT_TRUE(wait_for_workers(1));
   std::vector<MatchTask> tasks = tasks_on(maps_, 3);
   tasks[1].half_width.setZero();
   EXPECT_THROW(pool_->match(tasks), std::invalid_argument);

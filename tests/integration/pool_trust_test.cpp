@@ -31,10 +31,14 @@ class PoolTrustTest : public PoolTest {
   void expect_refused(const FakeWorker::Dress& dress, const std::string& reason,
                       const std::string& detail) {
     FakeWorker other(partition_, loop_, "other", honest(), dress);
-    ASSERT_TRUE(wait_until([&] { return !faults_.empty(); }));
+    ASSERT_TRUE(wait_until("a fault", [&] { return !faults_.empty(); }));
     const std::vector<MatchTask> tasks = tasks_on(maps_, 10);
     expect_same(tasks, pool_->match(tasks));
-    loop_.run_for(milliseconds(500));
+    // It announces itself again, and the pool has read that before the loop gets to this one.
+    const std::uint64_t seen = announced_;
+    ASSERT_TRUE(
+        wait_until("further statuses of the worker", [&] { return announced_ >= seen + 3; }));
+    EXPECT_EQ(pool_->counts().sent, 0U);
     EXPECT_EQ(other.received, 0);
     EXPECT_EQ(pool_->workers(), 0U);
     EXPECT_THAT(faults_, ElementsAre(reason)) << "once";
@@ -45,7 +49,7 @@ class PoolTrustTest : public PoolTest {
                        const ::testing::Matcher<std::string>& reason, const std::string& detail) {
     FakeWorker liar(partition_, loop_, "liar", on_task);
     FakeWorker good(partition_, loop_, "good", honest());
-    ASSERT_EQ(pool_->wait_for_workers(2, kPatience), 2U);
+    ASSERT_TRUE(wait_for_workers(2));
     const std::vector<MatchTask> tasks = tasks_on(maps_, 40);
     expect_same(tasks, pool_->match(tasks));
     EXPECT_THAT(faults_, ElementsAre(reason)) << "once";
@@ -65,6 +69,15 @@ class PoolTrustTest : public PoolTest {
   }
 
   Solver solver_{maps_};
+  std::uint64_t announced_ = 0;  // statuses of workers
+
+ private:
+  void SetUp() override {
+    PoolTest::SetUp();
+    loop_.add<msg::WorkerStatus>(statuses_, [this](const auto&, const auto&) { ++announced_; });
+  }
+
+  messaging::Reader<msg::WorkerStatus> statuses_{participant_};
 };
 
 TEST_F(PoolTrustTest, AnotherVersionIsRefusedBeforeAnyTask) {
@@ -90,7 +103,7 @@ TEST_F(PoolTrustTest, AnotherConfigurationIsRefusedBeforeAnyTask) {
 TEST_F(PoolTrustTest, TheSameConfigurationIsNotRefused) {
   FakeWorker same(partition_, loop_, "same", honest(),
                   [](msg::WorkerStatus& s) { s.config_fingerprint(0x12); });
-  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  ASSERT_TRUE(wait_for_workers(1));
   const std::vector<MatchTask> tasks = tasks_on(maps_, 10);
   expect_same(tasks, pool_->match(tasks));
   EXPECT_EQ(same.received, 10);
@@ -107,7 +120,7 @@ TEST_F(PoolTrustTest, AWorkerThatRefusesIsNotAskedAgain) {
                         [status = status](FakeWorker& self, const msg::MatchTask& task) {
                           self.answer(task, {}, status);
                         });
-    ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+    ASSERT_TRUE(wait_for_workers(1));
     const std::vector<MatchTask> tasks = tasks_on(maps_, 30, 1000 * std::uint64_t{status});
     expect_same(tasks, pool_->match(tasks));
     EXPECT_LE(refusing.received, 2);
@@ -153,7 +166,8 @@ TEST_F(PoolTrustTest, AnAnswerOfAnotherSchemaIsRefused) {
   std::optional<messaging::detail::WriterCore> writer;
   FakeWorker::OnTask on_task = [&](FakeWorker& self, const msg::MatchTask& task) {
     if (!writer) writer.emplace(self.participant(), unchecked, "");
-    ASSERT_TRUE(writer->wait_for_matched(1, kPatience));
+    ASSERT_TRUE(wait_by("a reader of results",
+                        [&](auto at_most) { return writer->wait_for_matched(1, at_most); }));
     msg::MatchResults result;
     result.schema_version(1);
     messaging::set_client_id(result, self.client_id());
@@ -164,7 +178,7 @@ TEST_F(PoolTrustTest, AnAnswerOfAnotherSchemaIsRefused) {
   };
   FakeWorker old(partition_, loop_, "old", on_task);
   FakeWorker good(partition_, loop_, "good", honest());
-  ASSERT_EQ(pool_->wait_for_workers(2, kPatience), 2U);
+  ASSERT_TRUE(wait_for_workers(2));
   const std::vector<MatchTask> tasks = tasks_on(maps_, 40);
   expect_same(tasks, pool_->match(tasks));
   EXPECT_THAT(faults_, ElementsAre("wrong match result"));
@@ -218,15 +232,15 @@ TEST_F(PoolDuplicatesTest, LateAnswersAreCompared) {
   std::vector<msg::MatchTask> held;
   FakeWorker hanging(partition_, loop_, "hanging",
                      [&](FakeWorker&, const msg::MatchTask& task) { held.push_back(task); });
-  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  ASSERT_TRUE(wait_for_workers(1));
   const std::vector<MatchTask> tasks = tasks_on(maps_, 30);
   expect_same(tasks, pool_->match(tasks));
   ASSERT_EQ(held.size(), 2U);
   hanging.answer(held[0], solver_.solve(held[0]));
-  ASSERT_TRUE(wait_until([&] { return pool_->counts().duplicates == 1; }));
+  ASSERT_TRUE(wait_until("one late answer", [&] { return pool_->counts().duplicates == 1; }));
   EXPECT_THAT(faults_, IsEmpty());
   hanging.answer(held[1], solver_.solve_poorly(held[1]));
-  ASSERT_TRUE(wait_until([&] { return pool_->counts().duplicates == 2; }));
+  ASSERT_TRUE(wait_until("two late answers", [&] { return pool_->counts().duplicates == 2; }));
   EXPECT_EQ(pool_->counts().duplicate_differences, 1U);
   EXPECT_THAT(faults_, ElementsAre(kWorse));
   EXPECT_EQ(pool_->workers(), 0U) << "it is excluded";
@@ -252,7 +266,7 @@ TEST_F(PoolDuplicatesTest, WhenTwoWorkersDifferTheOneThatErredGoes) {
     held.clear();
     awake = true;
   });
-  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  ASSERT_TRUE(wait_for_workers(1));
   when_sent(4, [&] {
     slow.emplace(partition_, loop_, "slow", [&](FakeWorker& self, const msg::MatchTask& task) {
       if (awake) return self.answer(task, solver_.solve(task));
@@ -270,28 +284,31 @@ TEST_F(PoolDuplicatesTest, WhenTwoWorkersDifferTheOneThatErredGoes) {
 
 TEST_F(PoolTrustTest, OfTwoProcessesWithOneIdOnlyTheFirstCounts) {
   FakeWorker first(partition_, loop_, "twin", honest());
-  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  ASSERT_TRUE(wait_for_workers(1));
   bool lies = true;
   FakeWorker second(partition_, loop_, "twin", [&](FakeWorker& self, const msg::MatchTask& task) {
     MatchResult result = solver_.solve(task);
     if (lies) result.fitness = 1.0;
     self.answer(task, result);
   });
-  ASSERT_TRUE(wait_until([&] { return !faults_.empty(); }));
+  ASSERT_TRUE(wait_until("the second of one id to be reported", [&] { return !faults_.empty(); }));
   // That its status arrives does not mean yet that tasks get to it.
   std::uint64_t sent = 0;
-  ASSERT_TRUE(wait_until([&] {
+  ASSERT_TRUE(wait_until("a task to get to the second", [&] {
     pool_->match(tasks_on(maps_, 1, 2000 + sent++));
     return second.received > 0;
   }));
-  ASSERT_TRUE(wait_until([&] { return pool_->counts().ignored == received_by(second); }));
+  ASSERT_TRUE(wait_until("the answers of the second to be ignored",
+                         [&] { return pool_->counts().ignored == received_by(second); }));
   // One of those before may still be on its way.
   const std::uint64_t received_before = received_by(second);
   const std::vector<MatchTask> tasks = tasks_on(maps_, 30);
   expect_same(tasks, pool_->match(tasks));
   sent += 30;
-  ASSERT_TRUE(wait_until([&] { return pool_->counts().ignored >= received_before + 30; }));
-  loop_.run_for(milliseconds(100));
+  ASSERT_TRUE(wait_until("the answers of the second to be ignored", [&] {
+    return received_by(second) >= received_before + 30 &&
+           pool_->counts().ignored == received_by(second);
+  }));
   const std::uint64_t received = received_by(second);
   EXPECT_THAT(faults_, ElementsAre("two workers of one id"));
   EXPECT_EQ(pool_->workers(), 1U);
@@ -302,15 +319,21 @@ TEST_F(PoolTrustTest, OfTwoProcessesWithOneIdOnlyTheFirstCounts) {
   EXPECT_EQ(pool_->counts().ignored, received);
 
   lies = false;
+  // The second is quiet until the first is gone, and what it has announced has arrived by then.
+  second.cease_to_announce();
+  const std::uint64_t seen = announced_;
+  ASSERT_TRUE(wait_until("statuses of the first", [&] { return announced_ >= seen + 3; }));
   first.leave();
-  ASSERT_TRUE(wait_until([&] { return pool_->workers() == 0; }));
-  ASSERT_TRUE(wait_until([&] { return pool_->workers() == 1; })) << "the other takes over";
+  ASSERT_TRUE(wait_until("the first to be gone", [&] { return pool_->workers() == 0; }));
+  second.begin_to_announce();
+  ASSERT_TRUE(wait_until("the second to take over", [&] { return pool_->workers() == 1; }))
+      << "the other takes over";
   const std::vector<MatchTask> more = tasks_on(maps_, 10, 1000);
   expect_same(more, pool_->match(more));
   EXPECT_EQ(pool_->counts().in_process, 0U);
-  ASSERT_TRUE(wait_until([&] { return pool_->counts().ignored >= received + 10; }))
-      << "those of the first, which still receives";
-  loop_.run_for(milliseconds(100));
+  ASSERT_TRUE(wait_until("the answers of the first to be ignored", [&] {
+    return received_by(first) == sent + 10 && pool_->counts().ignored >= received + 10;
+  })) << "those of the first, which still receives";
   EXPECT_EQ(pool_->counts().ignored, received + 10);
   EXPECT_EQ(faults_.size(), 1U);
 }

@@ -11,8 +11,6 @@
 namespace topogeo::test {
 namespace {
 
-using std::chrono::milliseconds;
-
 /// Gives a localizer its local maps one by one, each after the one before was worked on, so that a
 /// command comes after a stop of the test's choice.
 class SwitchTest : public ::testing::Test {
@@ -33,19 +31,17 @@ class SwitchTest : public ::testing::Test {
     words.insert(words.end(),
                  {"--standalone", "--domain", own_domain(), "--partition", partition_});
     localizer_ = std::make_unique<Program>(scratch_, "localizer", words);
-    ASSERT_TRUE(commands_.wait_for_matched(1, kPatience));
-    ASSERT_TRUE(replies_.wait_for_matched(1, kPatience));
+    ASSERT_TRUE(wait_until("the localizer",
+                           [&] { return commands_.matched() > 0 && replies_.matched() > 0; }));
   }
-  bool wait_until(const std::function<bool()>& condition) {
-    const auto end = std::chrono::steady_clock::now() + kPatience;
-    while (!condition() && std::chrono::steady_clock::now() < end) loop_.run_for(milliseconds(5));
-    return condition();
+  bool wait_until(const std::string& what, const std::function<bool()>& condition) {
+    return wait_in_loop(loop_, what, condition);
   }
   /// The stops [from, to), each worked on before the next.
   void drive(std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
       ASSERT_TRUE(map_writer_.write(service::to_msg(*maps_.at(i))));
-      ASSERT_TRUE(wait_until([&] {
+      ASSERT_TRUE(wait_until("the pose at the stop", [&] {
         return last_pose_ && last_pose_->last_stop().number() == i &&
                last_pose_->stamp_ns() == maps_[i]->stamp_ns;
       })) << i;
@@ -63,7 +59,8 @@ class SwitchTest : public ::testing::Test {
     command.request_id = requests_;
     last_reply_.reset();
     EXPECT_TRUE(commands_.write(service::to_msg(command, "robot", 0, requests_)));
-    EXPECT_TRUE(wait_until([&] { return last_reply_ && last_reply_->request_id() == requests_; }));
+    EXPECT_TRUE(wait_until("a reply",
+                           [&] { return last_reply_ && last_reply_->request_id() == requests_; }));
     if (!last_reply_) return "no reply";
     return (last_reply_->accepted() ? "accepted: " : "refused: ") +
            last_reply_->message().to_string();
@@ -74,8 +71,9 @@ class SwitchTest : public ::testing::Test {
     end.stage(msg::kStageLocalMapper);
     end.count(count);
     ASSERT_TRUE(ends_out_.write(end));
-    ASSERT_TRUE(wait_until([&] { return end_.has_value(); }));
-    ASSERT_TRUE(wait_until([&] { return assembly_.whole(end_->version()).has_value(); }));
+    ASSERT_TRUE(wait_until("the end of the stream", [&] { return end_.has_value(); }));
+    ASSERT_TRUE(wait_until("the whole trajectory",
+                           [&] { return assembly_.whole(end_->version()).has_value(); }));
   }
   [[nodiscard]] std::size_t stops_in_map() const { return assembly_.newest().stops.size(); }
 
@@ -115,7 +113,7 @@ TEST_F(SwitchTest, TheMapStopsGrowingAndGoesOn) {
   EXPECT_EQ(send_again(msg::kCommandSwitchToLocalization),
             "accepted: the map of " + std::to_string(leave) + " stops stays as it is")
       << "carried out once, told as often as it is asked for";
-  ASSERT_TRUE(wait_until([&] { return stops_in_map() == leave; }));
+  ASSERT_TRUE(wait_until("the map to stay as it is", [&] { return stops_in_map() == leave; }));
   const std::uint64_t version = assembly_.version();
   drive(leave, resume);
   EXPECT_EQ(last_pose_->mode(), msg::kModeLocalization);
