@@ -118,12 +118,12 @@ TEST_F(CommandsTest, StatusShowsTheServicesOfARun) {
     words.insert(words.begin(), "status");
     words.insert(words.end(), {"--domain", own_domain()});
     std::string out;
-    for (int i = 0; i < 60; ++i) {
+    EXPECT_TRUE(wait_for("a status in which all are there and well", [&] {
       Program status(scratch_, "topogeo", words);
       const int code = status.wait();
       out = status.out();
-      if (code == 0 && complete(out)) break;
-    }
+      return code == 0 && complete(out);
+    }));
     return out;
   };
   const std::vector<std::string> names = {"sensor_gateway", "local_mapper", "localizer",
