@@ -1,12 +1,12 @@
 // What happens to a run whose services die or that somebody stops.
 #include <csignal>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "topogeo/storage/read_map.hpp"
 
@@ -30,6 +30,21 @@ class InterruptionTest : public testing::Test {
     return {"run", "--log", log_, "--out", out_, "--workers", "1", "--domain", own_domain()};
   }
 
+  /// A program that `interrupt` has ended. One that was through before, as this process did not get
+  /// to run, shows nothing: another one is started.
+  template <class Interrupt>
+  std::unique_ptr<Program> interrupted(const std::vector<std::string>& words,
+                                       const Interrupt& interrupt) {
+    std::unique_ptr<Program> program;
+    EXPECT_TRUE(wait_for("a program that is interrupted before it is through", [&] {
+      std::filesystem::remove_all(out_);
+      program = std::make_unique<Program>(scratch_, "topogeo", words);
+      interrupt(*program);
+      return program->wait() != 0;
+    }));
+    return program;
+  }
+
   Scratch scratch_;
   std::string log_ = scratch_ / "log.clf.gz";
   std::string out_ = scratch_ / "out";
@@ -44,54 +59,59 @@ TEST_F(InterruptionTest, WhatCannotBeStartedAgainIsNamedAndTheRestIsStopped) {
   const std::vector<pid_t> simulator = run.services("simulator");
   ASSERT_THAT(simulator, SizeIs(1));
   ::kill(simulator[0], SIGKILL);
-  EXPECT_EQ(run.wait(30), 1);
+  EXPECT_EQ(run.wait(), 1);
   EXPECT_THAT(run.err(), HasSubstr("simulator was killed by signal 9"));
   EXPECT_THAT(run.services(), IsEmpty());
 }
 
 TEST_F(InterruptionTest, CtrlCStopsEverything) {
-  Program run(scratch_, "topogeo", words());
-  run.wait_for_progress(20);
-  EXPECT_THAT(run.services(), SizeIs(6));
-  run.send_signal(SIGINT);
-  EXPECT_EQ(run.wait(30), 128 + SIGINT);
-  EXPECT_THAT(run.err(), HasSubstr("stopped, what was mapped is in"));
-  EXPECT_THAT(run.services(), IsEmpty());
+  std::vector<pid_t> services;
+  const auto run = interrupted(words(), [&](Program& program) {
+    program.wait_for_progress(20);
+    services = program.services();
+    program.send_signal(SIGINT);
+  });
+  EXPECT_THAT(services, SizeIs(6));
+  EXPECT_EQ(run->wait(), 128 + SIGINT);
+  EXPECT_THAT(run->err(), HasSubstr("stopped, what was mapped is in"));
+  EXPECT_THAT(run->services(), IsEmpty());
   EXPECT_GT(storage::read_map(out_ + "/map.pb").trajectory.stops.size(), 0U);
 }
 
 TEST_F(InterruptionTest, CtrlCWhileServicesStart) {
-  Program run(scratch_, "topogeo", words());
-  while (run.services().empty()) {
-  }
-  run.send_signal(SIGINT);
-  EXPECT_EQ(run.wait(30), 128 + SIGINT);
-  EXPECT_THAT(run.services(), IsEmpty());
+  const auto run = interrupted(words(), [](Program& program) {
+    EXPECT_TRUE(wait_for("a service", [&] { return !program.services().empty(); }));
+    program.send_signal(SIGINT);
+  });
+  EXPECT_EQ(run->wait(), 128 + SIGINT);
+  EXPECT_THAT(run->services(), IsEmpty());
 }
 
 TEST_F(InterruptionTest, ServicesDoNotOutliveAKilledRun) {
-  Program run(scratch_, "topogeo", words());
-  run.wait_for_progress(20);
-  run.send_signal(SIGKILL);
-  EXPECT_EQ(run.wait(30), 128 + SIGKILL);
-  for (int i = 0; i < 500 && !run.services().empty(); ++i) ::usleep(10'000);
-  EXPECT_THAT(run.services(), IsEmpty());
+  const auto run = interrupted(words(), [](Program& program) {
+    program.wait_for_progress(20);
+    program.send_signal(SIGKILL);
+  });
+  EXPECT_EQ(run->wait(), 128 + SIGKILL);
+  EXPECT_TRUE(wait_for("the services to end", [&] { return run->services().empty(); }));
 }
 
 TEST_F(InterruptionTest, CtrlCStopsMapWithoutAnyResult) {
-  Program map(scratch_, "topogeo", {"map", "--log", log_, "--out", out_});
-  map.wait_for_progress(20);
-  map.send_signal(SIGINT);
-  EXPECT_EQ(map.wait(30), 128 + SIGINT);
-  EXPECT_THAT(map.err(), HasSubstr("nothing was written"));
+  const auto map = interrupted({"map", "--log", log_, "--out", out_}, [](Program& program) {
+    program.wait_for_progress(20);
+    program.send_signal(SIGINT);
+  });
+  EXPECT_EQ(map->wait(), 128 + SIGINT);
+  EXPECT_THAT(map->err(), HasSubstr("nothing was written"));
   EXPECT_TRUE(std::filesystem::is_empty(out_));
 }
 
 TEST_F(InterruptionTest, CtrlCStopsMapWhileItMatchesRevisitedPlaces) {
-  Program map(scratch_, "topogeo", {"map", "--log", log_, "--out", out_});
-  map.wait_for_error_text("matching revisited places");
-  map.send_signal(SIGINT);
-  EXPECT_EQ(map.wait(30), 128 + SIGINT);
+  const auto map = interrupted({"map", "--log", log_, "--out", out_}, [](Program& program) {
+    program.wait_for_error_text("matching revisited places");
+    program.send_signal(SIGINT);
+  });
+  EXPECT_EQ(map->wait(), 128 + SIGINT);
   EXPECT_TRUE(std::filesystem::is_empty(out_));
 }
 
