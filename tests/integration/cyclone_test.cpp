@@ -56,13 +56,13 @@ class CycloneTest : public testing::Test {
   /// Whether the reader says `line` when `send` is done again and again: what it reads may be lost.
   template <class Send>
   bool says(const std::string& line, const Send& send) {
-    constexpr int kMost = 1200;
-    for (int i = 0; i < kMost; ++i) {
-      if (('\n' + reader_->out()).find('\n' + line + '\n') != std::string::npos) return true;
+    const auto said = [&] {
+      return ('\n' + reader_->out()).find('\n' + line + '\n') != std::string::npos;
+    };
+    return wait_for("the other implementation to print '" + line + "'", said, [&] {
       send();
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    }
-    return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));  // pacing: it keeps the last ones
+    });
   }
 
   /// Its writer is there from now on; what comes back sends and compares.

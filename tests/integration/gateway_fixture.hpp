@@ -28,8 +28,6 @@ namespace topogeo::test {
 
 class GatewayOnDevices : public testing::Test {
  protected:
-  static constexpr std::chrono::seconds kPatience{60 * kTimeFactor};
-
   GatewayOnDevices();
 
   void start_simulator();
@@ -38,15 +36,10 @@ class GatewayOnDevices : public testing::Test {
   /// Both, and until the laser runs, the base is ready and `scans` have come.
   void start(std::size_t scans = 5);
 
-  /// Hands on what comes until `condition` holds; false when it does not within kPatience.
+  /// Hands on what comes until `condition` holds.
   template <class Condition>
   bool wait_for(const Condition& condition) {
-    const auto end = std::chrono::steady_clock::now() + kPatience;
-    while (!condition()) {
-      if (std::chrono::steady_clock::now() > end) return false;
-      loop_.run_for(std::chrono::milliseconds(5));
-    }
-    return true;
+    return wait_in_loop(loop_, "the gateway and its devices", condition);
   }
   /// The same while motion is commanded ten times a second.
   template <class Condition>
@@ -64,7 +57,7 @@ class GatewayOnDevices : public testing::Test {
   void command(double linear_mps, double angular_radps);
   void tell_base(msg::BaseCommandKind kind);
   void strike(msg::SimulatedFault fault, msg::SimulatedDevice device, double duration_s);
-  /// Waits until all faults have begun; false when they do not within kPatience.
+  /// Waits until all faults have begun.
   bool wait_for_begin();
   /// Lets that time pass in the simulated world, which stands still when the machine is busy.
   bool wait_in_world(double duration_s);

@@ -18,7 +18,8 @@ const Eigen::Vector2d kNorthGoal_m(3.5, 1.0);  // the robot starts at (1, 1) and
 class GotoCommand : public NavigatorOnRobot {
  protected:
   std::vector<std::string> words(const std::string& target) {
-    return {"goto", target, "--domain", domain_, "--partition", kPartition, "--wait-seconds", "30"};
+    return {"goto",        target,     "--domain",       domain_,
+            "--partition", kPartition, "--wait-seconds", "600"};
   }
 };
 
@@ -47,10 +48,11 @@ TEST_F(GotoCommand, CtrlCStopsTheRobot) {
   start();
   pretend_planner();
   Program command(scratch_, "topogeo", words("4.5,1"));
-  ASSERT_TRUE(wait_for([&] { return rolls(); })) << command.err();
+  ASSERT_TRUE(wait_for("the robot to drive", [&] { return rolls(); })) << command.err();
   command.send_signal(SIGINT);
   EXPECT_EQ(wait_for_end(command), 130) << command.err();
-  EXPECT_TRUE(wait_for([&] { return stands() && !is(msg::kNavigatorDriving); }));
+  EXPECT_TRUE(
+      wait_for("the robot to stand", [&] { return stands() && !is(msg::kNavigatorDriving); }));
   EXPECT_LT(robot_.T_world_robot().x_m, 4.4);
 }
 

@@ -182,7 +182,7 @@ TEST(LocalMapperOfALog, AsksOnceWhenAllIsMapped) {
   const auto gateway = start("sensor_gateway", {"--log", (scratch / "log.clf").string()});
   ASSERT_TRUE(wait_for(loop, [&] { return mapped; })) << store->err() << mapper->err();
   mapper->send_signal(SIGKILL);
-  mapper->wait(30);
+  mapper->wait();
   mapper = start("local_mapper", {"--replay"});
   const auto process = static_cast<std::uint32_t>(mapper->pid());
   ASSERT_TRUE(wait_for(loop, [&] { return finished == process; })) << mapper->err();

@@ -106,7 +106,7 @@ class MapFollowers : public testing::Test {
     ASSERT_TRUE(eventually([&] { return subscribers_.front()->has(version); })) << version;
   }
   bool eventually(const std::function<bool()>& done) {
-    return drive_.wait_until([&] {
+    return drive_.wait_until("the followers", [&] {
       for (const auto& subscriber : subscribers_) subscriber->work();
       count_changes();
       return done();

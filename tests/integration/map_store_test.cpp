@@ -34,9 +34,6 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// Longer than anything takes on a busy machine.
-constexpr std::chrono::seconds kStorePatience{60 * kTimeFactor};
-
 /// Two rooms of 4 x 4 m with a door between them, seen from the door, and a name for each.
 storage::MapDocument two_rooms() {
   storage::MapDocument document;
@@ -93,11 +90,7 @@ struct LateReader {
   }
 
   bool wait() {
-    const auto end = std::chrono::steady_clock::now() + kStorePatience;
-    while (!(hybrid.map() && follower.map()) && std::chrono::steady_clock::now() < end) {
-      static_cast<void>(loop.run_for(std::chrono::milliseconds(20)));
-    }
-    return hybrid.map() && follower.map();
+    return wait_in_loop(loop, "both maps", [&] { return hybrid.map() && follower.map(); });
   }
 
   messaging::Participant participant;
@@ -170,7 +163,7 @@ TEST_F(MapStoreShows, AStoredMapToWhoeverComesLate) {
   ASSERT_EQ(global.branches.size(), 2U);
   EXPECT_EQ(global.branches[1].node_b, 3U);
 
-  EXPECT_EQ(places(in_domain({"--wait-seconds", "60"})), 0) << err_;
+  EXPECT_EQ(places(in_domain({"--wait-seconds", "600"})), 0) << err_;
   EXPECT_THAT(out_, HasSubstr("room B"));
   EXPECT_THAT(out_, HasSubstr("6.00     2.00  zone 1"));
   store.send_signal(SIGTERM);
@@ -230,16 +223,13 @@ TEST_F(MapStoreShows, TheMapOfADriveWithItsPlaces) {
   end.version(expected.trajectory.version);
   ASSERT_TRUE(ends.write(end));
   store.wait_for_error_text("local maps, ");  // the final line
-  const auto patience = std::chrono::steady_clock::now() + kStorePatience;
   const planning::HybridMap hybrid = pipeline::make_hybrid_map(pipeline::parts_of(expected), {});
   const auto is_final = [&] {
     const auto map = reader.hybrid.map();
     return map && map->nodes().size() == hybrid.nodes().size() &&
            map->zones().zone_of_cell == hybrid.zones().zone_of_cell;
   };
-  while (!is_final() && std::chrono::steady_clock::now() < patience) {
-    static_cast<void>(reader.loop.run_for(std::chrono::milliseconds(20)));
-  }
+  EXPECT_TRUE(wait_in_loop(reader.loop, "the map of the whole drive", is_final));
   expect_same(*reader.hybrid.map(), hybrid);
   expected.rooms = {};  // with the drawing
   pipeline::remember_rooms(expected, {});

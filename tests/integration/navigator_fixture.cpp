@@ -89,7 +89,7 @@ void NavigatorOnRobot::start() {
   navigator_ = std::make_unique<Program>(
       scratch_, "navigator",
       std::vector<std::string>{"--domain", domain_, "--partition", kPartition});
-  ASSERT_TRUE(wait_for([this] {
+  ASSERT_TRUE(wait_for("the navigator to have map and sensors", [this] {
     return status_ && scans_.matched() > 0 && poses_.matched() > 0 && goals_.matched() > 1 &&
            routes_.matched() > 0 && counter("map_version") == static_cast<double>(kMapVersion);
   })) << navigator_->err();

@@ -33,7 +33,6 @@ namespace topogeo::test {
 
 class NavigatorOnRobot : public testing::Test {
  protected:
-  static constexpr std::chrono::seconds kPatience{60 * kTimeFactor};
   static constexpr const char* kPartition = "navigator-test";
 
   NavigatorOnRobot();
@@ -46,15 +45,10 @@ class NavigatorOnRobot : public testing::Test {
   /// As far as what they publish goes, this process is a planner, too.
   void pretend_planner();
 
-  /// Lets the world go on until `condition` holds; false when it does not within kPatience.
+  /// Lets the world go on until `condition` holds.
   template <class Condition>
-  bool wait_for(const Condition& condition) {
-    const auto end = std::chrono::steady_clock::now() + kPatience;
-    while (!condition()) {
-      if (std::chrono::steady_clock::now() > end) return false;
-      loop_.run_for(std::chrono::milliseconds(5));
-    }
-    return true;
+  bool wait_for(const std::string& what, const Condition& condition) {
+    return wait_in_loop(loop_, what, condition);
   }
   /// The world goes on that long.
   void pass(std::chrono::milliseconds duration) { loop_.run_for(duration); }

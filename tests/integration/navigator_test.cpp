@@ -15,15 +15,18 @@ const Eigen::Vector2d kGoal_m(3.5, 1.0);  // the robot starts at (1, 1) and look
 TEST_F(NavigatorOnRobot, DrivesToTheGoalThenLeavesTheBaseToOthers) {
   start();
   send_goal(7, kGoal_m);
-  ASSERT_TRUE(wait_for([&] { return is(msg::kNavigatorDriving) && rolls(); }));
-  ASSERT_TRUE(wait_for([&] { return is(msg::kNavigatorArrived); })) << status_->message();
+  ASSERT_TRUE(
+      wait_for("the robot to drive", [&] { return is(msg::kNavigatorDriving) && rolls(); }));
+  ASSERT_TRUE(wait_for("the arrival", [&] { return is(msg::kNavigatorArrived); }))
+      << status_->message();
   EXPECT_EQ(status_->goal_id(), 7U);
   EXPECT_LT((robot_.T_world_robot().position_m() - kGoal_m).norm(), 0.1);
   EXPECT_EQ(robot_.collisions(), 0U);
   EXPECT_NEAR(status_->driven_m(), 2.5, 0.3);
-  // Zeros for a moment, then nothing for much longer than between two commands.
+  ASSERT_TRUE(wait_for("the robot to stand", [&] { return told_to_stand() && stands(); }));
+  // The event is that nothing comes any more, for much longer than between two commands.
   std::uint64_t before = 0;
-  ASSERT_TRUE(wait_for([&] {
+  ASSERT_TRUE(wait_for("the commands to end", [&] {
     before = commands_;
     pass(std::chrono::milliseconds(1000));
     return commands_ == before;
@@ -35,47 +38,54 @@ TEST_F(NavigatorOnRobot, DrivesToTheGoalThenLeavesTheBaseToOthers) {
 TEST_F(NavigatorOnRobot, StopsWhileThePoseIsLost) {
   start();
   send_goal(1, {4.5, 1.0});
-  ASSERT_TRUE(wait_for([&] { return rolls(); })) << navigator_->err();
+  ASSERT_TRUE(wait_for("the robot to drive", [&] { return rolls(); })) << navigator_->err();
   pose_state_ = msg::kStateLost;
-  ASSERT_TRUE(wait_for([&] { return halted(msg::kHaltPoseLost) && told_to_stand() && stands(); }))
-      << status_->message();
+  ASSERT_TRUE(wait_for("the robot to halt as its pose is lost", [&] {
+    return halted(msg::kHaltPoseLost) && told_to_stand() && stands();
+  })) << status_->message();
   pose_state_ = msg::kStateTracking;
-  EXPECT_TRUE(wait_for([&] { return rolls() || is(msg::kNavigatorArrived); }))
-      << status_->message();
+  EXPECT_TRUE(wait_for("the robot to drive on", [&] {
+    return rolls() || is(msg::kNavigatorArrived);
+  })) << status_->message();
 }
 
 TEST_F(NavigatorOnRobot, PausesResumesAndCancels) {
   start();
   send_goal(5, {4.5, 1.0});
-  ASSERT_TRUE(wait_for([&] { return rolls(); })) << navigator_->err();
+  ASSERT_TRUE(wait_for("the robot to drive", [&] { return rolls(); })) << navigator_->err();
   send_order(msg::kGoalCancel, 99);  // another goal is meant
   send_order(msg::kGoalPause);
-  ASSERT_TRUE(wait_for([&] { return halted(msg::kHaltPaused) && told_to_stand() && stands(); }));
+  ASSERT_TRUE(wait_for("the robot to pause",
+                       [&] { return halted(msg::kHaltPaused) && told_to_stand() && stands(); }));
   EXPECT_EQ(status_->goal_id(), 5U);
   send_order(msg::kGoalResume, 5);
-  ASSERT_TRUE(wait_for([&] { return rolls(); })) << status_->message();
+  ASSERT_TRUE(wait_for("the robot to drive on", [&] { return rolls(); })) << status_->message();
   send_order(msg::kGoalCancel, 5);
-  ASSERT_TRUE(wait_for([&] { return !is(msg::kNavigatorDriving) && told_to_stand() && stands(); }));
+  ASSERT_TRUE(wait_for("the robot to stand",
+                       [&] { return !is(msg::kNavigatorDriving) && told_to_stand() && stands(); }));
   EXPECT_LT(robot_.T_world_robot().x_m, 4.4);
 }
 
 TEST_F(NavigatorOnRobot, ItsLastCommandIsToStand) {
   start();
   send_goal(1, {4.5, 1.0});
-  ASSERT_TRUE(wait_for([&] { return rolls(); })) << navigator_->err();
+  ASSERT_TRUE(wait_for("the robot to drive", [&] { return rolls(); })) << navigator_->err();
   navigator_->send_signal(SIGTERM);
   EXPECT_EQ(wait_for_end(*navigator_), 0) << navigator_->err();
-  EXPECT_TRUE(wait_for([&] { return told_to_stand(); }));
+  EXPECT_TRUE(wait_for("a command to stand", [&] { return told_to_stand(); }));
 }
 
 TEST_F(NavigatorOnRobot, WhatIsOfAnotherRobotOrUnusableDrivesNothing) {
   start();
   robot_id_ = "other";  // sensors and pose from here on
-  ASSERT_TRUE(wait_for([&] { return drops("other robot") > 0; }));
+  ASSERT_TRUE(wait_for("the sensors of the other robot to be dropped",
+                       [&] { return drops("other robot") > 0; }));
   send_goal(1, kGoal_m);
-  ASSERT_TRUE(wait_for([&] { return status_->goal_id() == 1 && !is(msg::kNavigatorDriving); }));
+  ASSERT_TRUE(wait_for("the goal to be refused or to wait",
+                       [&] { return status_->goal_id() == 1 && !is(msg::kNavigatorDriving); }));
   robot_id_ = "robot";
-  EXPECT_TRUE(wait_for([&] { return is(msg::kNavigatorArrived); })) << status_->message();
+  EXPECT_TRUE(wait_for("the arrival", [&] { return is(msg::kNavigatorArrived); }))
+      << status_->message();
 }
 
 TEST_F(NavigatorOnRobot, APoseFromTheFutureDoesNotMakeAllOthersOld) {
@@ -86,9 +96,10 @@ TEST_F(NavigatorOnRobot, APoseFromTheFutureDoesNotMakeAllOthersOld) {
   pose.T_map_robot = robot_.T_world_robot();
   pose.covariance = 1e-4 * Eigen::Matrix3d::Identity();
   ASSERT_TRUE(poses_.write(service::to_msg(pose, "robot")));
-  ASSERT_TRUE(wait_for([&] { return drops("from the future") > 0; }));
+  ASSERT_TRUE(wait_for("the pose to be dropped", [&] { return drops("from the future") > 0; }));
   send_goal(1, kGoal_m);
-  EXPECT_TRUE(wait_for([&] { return is(msg::kNavigatorArrived); })) << status_->message();
+  EXPECT_TRUE(wait_for("the arrival", [&] { return is(msg::kNavigatorArrived); }))
+      << status_->message();
 }
 
 }  // namespace

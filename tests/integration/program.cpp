@@ -1,7 +1,6 @@
 #include "program.hpp"
 
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -10,7 +9,6 @@
 #include <functional>
 #include <sstream>
 #include <stdexcept>
-#include <thread>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -27,19 +25,7 @@
 namespace topogeo::test {
 namespace {
 
-constexpr std::chrono::milliseconds kPoll{10};
 constexpr int kSignalBase = 128;
-
-/// Asks `done` again and again; false after `timeout_s` times kTimeFactor.
-bool wait_until(double timeout_s, const std::function<bool()>& done) {
-  const std::chrono::duration<double> patience(timeout_s * kTimeFactor);
-  const auto end = std::chrono::steady_clock::now() + patience;
-  while (!done()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(kPoll);
-  }
-  return true;
-}
 
 std::string test_name() {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
@@ -112,7 +98,8 @@ Scratch::~Scratch() {
 }
 
 Program::Program(const Scratch& scratch, const std::string& name,
-                 const std::vector<std::string>& words) {
+                 const std::vector<std::string>& words)
+    : name_(name) {
   static int count = 0;
   const std::string number = std::to_string(++count);
   out_ = scratch / ("stdout" + number);
@@ -146,22 +133,23 @@ bool Program::ended() {
   return ended_;
 }
 
-int Program::wait(double timeout_s) {
-  if (!wait_until(timeout_s, [this] { return ended(); })) {
-    throw std::runtime_error("the program does not end; its stderr: " + err());
+int Program::wait() {
+  if (!wait_for("the end of " + name_, [this] { return ended(); })) {
+    throw std::runtime_error(name_ + " does not end; its stderr: " + err());
   }
   return WIFSIGNALED(status_) ? kSignalBase + WTERMSIG(status_) : WEXITSTATUS(status_);
 }
 
-void Program::wait_for_error_text(const std::string& text, double timeout_s) {
+void Program::wait_for_error_text(const std::string& text) {
+  const auto printed = [&] { return err().find(text) != std::string::npos; };
   const bool there =
-      wait_until(timeout_s, [&] { return err().find(text) != std::string::npos || ended(); });
-  if (!there || err().find(text) == std::string::npos) {
-    throw std::runtime_error("the program never printed '" + text + "', its stderr: " + err());
+      wait_for(name_ + " to print '" + text + "'", [&] { return printed() || ended(); });
+  if (!there || !printed()) {
+    throw std::runtime_error(name_ + " never printed '" + text + "', its stderr: " + err());
   }
 }
 
-void Program::wait_for_progress(int percent, double timeout_s) {
+void Program::wait_for_progress(int percent) {
   // "mapping [###...]  22 % 240/1049 scans, ..."
   const auto reached = [&] {
     const std::string text = err();
@@ -169,10 +157,10 @@ void Program::wait_for_progress(int percent, double timeout_s) {
     return sign != std::string::npos &&
            std::stoi(text.substr(text.rfind(']', sign) + 1)) >= percent;
   };
-  const bool there = wait_until(timeout_s, [&] { return reached() || ended(); });
+  const std::string goal = std::to_string(percent) + " %";
+  const bool there = wait_for(name_ + " to do " + goal, [&] { return reached() || ended(); });
   if (!there || !reached()) {
-    throw std::runtime_error("the program never got to " + std::to_string(percent) +
-                             " % its stderr: " + err());
+    throw std::runtime_error(name_ + " never did " + goal + ", its stderr: " + err());
   }
 }
 

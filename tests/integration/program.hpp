@@ -10,7 +10,7 @@
 
 #include "topogeo/simulation/simulate_log.hpp"
 
-#include "time_factor.hpp"
+#include "waiting.hpp"
 
 namespace topogeo::test {
 
@@ -38,18 +38,17 @@ class Program {
   Program& operator=(const Program&) = delete;
   ~Program();
 
-  /// Exit code, or 128 + signal. Throws std::runtime_error when it does not end within `timeout_s`,
-  /// times kTimeFactor as all waits here.
-  int wait(double timeout_s = 110.0);
+  /// Exit code, or 128 + signal. Throws std::runtime_error when it does not end within
+  /// hang_limit(), as all waits here.
+  int wait();
 
   bool ended();
 
-  /// Waits until its standard error contains `text`. Throws std::runtime_error when it ends before,
-  /// or after `timeout_s`.
-  void wait_for_error_text(const std::string& text, double timeout_s = 60.0);
+  /// Waits until its standard error contains `text`. Throws std::runtime_error when it ends before.
+  void wait_for_error_text(const std::string& text);
 
   /// The same for its progress bar: until that many per cent are done.
-  void wait_for_progress(int percent, double timeout_s = 60.0);
+  void wait_for_progress(int percent);
 
   void send_signal(int signal_number) const;
   [[nodiscard]] pid_t pid() const { return pid_; }
@@ -61,6 +60,7 @@ class Program {
   [[nodiscard]] std::vector<pid_t> services(const std::string& name = {}) const;
 
  private:
+  std::string name_;
   pid_t pid_ = -1;
   int status_ = 0;
   bool ended_ = false;

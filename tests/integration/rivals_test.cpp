@@ -50,16 +50,8 @@ class Rivals : public testing::Test {
     const auto found = newest_.find(static_cast<std::uint32_t>(program.pid()));
     return found == newest_.end() ? nullptr : &found->second;
   }
-  template <class Condition>
-  bool eventually(Condition condition) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60 * kTimeFactor);
-    while (!condition() && std::chrono::steady_clock::now() < end) {
-      static_cast<void>(loop_.run_for(std::chrono::milliseconds(5)));
-    }
-    return condition();
-  }
   bool works(const Program& program) {
-    return eventually([&] {
+    return wait_in_loop(loop_, "a service to work", [&] {
       const msg::ServiceStatus* const now = status(program);
       return now != nullptr && now->state() != msg::kServiceStarting;
     });
@@ -69,7 +61,8 @@ class Rivals : public testing::Test {
     EXPECT_EQ(second.wait(), 1) << second.err();
     EXPECT_THAT(second.err(), HasSubstr("another " + name + " works for robot 'robot': "));
     EXPECT_THAT(second.err(), HasSubstr("-" + std::to_string(first.pid()) + "; this one stops"));
-    EXPECT_TRUE(eventually([&] { return reports_second(first, name); }))
+    EXPECT_TRUE(wait_in_loop(loop_, "the second to be reported",
+                             [&] { return reports_second(first, name); }))
         << "faults: " << status(first)->fault_count() << ", " << status(first)->last_error();
     EXPECT_THAT(first.err(),
                 HasSubstr("-" + std::to_string(second.pid()) + " was started for the same robot"));

@@ -78,21 +78,8 @@ class RosBridge : public testing::Test {
 
   /// Until a program has printed it.
   static bool says(const Program& program, const std::string& text) {
-    constexpr int kMost = 2000 * kTimeFactor;
-    for (int i = 0; i < kMost; ++i) {
-      if (program.out().find(text) != std::string::npos) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    }
-    return false;
-  }
-  template <class Condition>
-  static bool comes_true(const Condition& condition) {
-    constexpr int kMost = 2000 * kTimeFactor;
-    for (int i = 0; i < kMost; ++i) {
-      if (condition()) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    }
-    return false;
+    return wait_for("a peer to print '" + text + "'",
+                    [&] { return program.out().find(text) != std::string::npos; });
   }
 
   /// What a test sends is to arrive.
@@ -139,18 +126,18 @@ TEST_F(RosBridge, MapsARobotOfRosAndShowsItsMapAndPose) {
     return (seen.position_m() - end.position_m()).norm() < 0.1 &&
            std::fabs(geometry::wrap_angle(seen.theta_rad - end.theta_rad)) < 0.05;
   };
-  EXPECT_TRUE(comes_true(is_at_end)) << last_line(user.out(), "pose map ");
+  EXPECT_TRUE(wait_for("the pose of the end", is_at_end)) << last_line(user.out(), "pose map ");
   EXPECT_THAT(last_line(user.out(), "tf map odom "), Not(IsEmpty()));
   EXPECT_TRUE(says(user, "diagnostics topogeo: ros_bridge 0"));
-  EXPECT_TRUE(comes_true([&] { return !last_line(user.out(), "graph ").empty(); }));
+  EXPECT_TRUE(wait_for("the graph", [&] { return !last_line(user.out(), "graph ").empty(); }));
 
   // Who comes late gets the whole map.
   const Program& late = start_peer({"watch"});
   // The room of 6 x 4 m, without the table and what is behind things.
-  EXPECT_TRUE(comes_true([&] { return std::fabs(free_m2(late) - 22.0) < 3.0; }))
+  EXPECT_TRUE(wait_for("the whole map", [&] { return std::fabs(free_m2(late) - 22.0) < 3.0; }))
       << last_line(late.out(), "map map ");
   EXPECT_THAT(late.out(), HasSubstr(" whole\n"));
-  EXPECT_TRUE(comes_true([&] { return !last_line(late.out(), "graph ").empty(); }));
+  EXPECT_TRUE(wait_for("the graph", [&] { return !last_line(late.out(), "graph ").empty(); }));
 }
 
 // What changes within a map that is there comes by itself.
@@ -182,7 +169,7 @@ TEST_F(RosBridge, DrivesARobotOfRosToAGoal) {
   const Program& user = start_peer({"watch"});
   ASSERT_TRUE(says(user, "pose map")) << programs_[5]->err();
   Program& goal = start_peer({"goal", "3", "0", "1.5708"});
-  ASSERT_EQ(goal.wait(280.0), 0) << goal.err();
+  ASSERT_EQ(goal.wait(), 0) << goal.err();
   const auto has_arrived = [&] {
     const std::string truth = last_line(robot.out(), "truth ");
     const geometry::Pose2 at = pose_in(truth);
@@ -190,7 +177,7 @@ TEST_F(RosBridge, DrivesARobotOfRosToAGoal) {
            (at.position_m() - Eigen::Vector2d(3.0, 0.0)).norm() < 0.3 &&
            std::fabs(geometry::wrap_angle(at.theta_rad - 1.5708)) < 0.3;
   };
-  EXPECT_TRUE(comes_true(has_arrived)) << last_line(robot.out(), "truth ");
+  EXPECT_TRUE(wait_for("the arrival", has_arrived)) << last_line(robot.out(), "truth ");
   EXPECT_THAT(last_line(robot.out(), "truth "), HasSubstr("collisions 0"));
   EXPECT_THAT(user.out(), HasSubstr("plan "));
 }
@@ -203,7 +190,7 @@ class FollowsInAFinishedMap : public RosBridge {
     write_log("floor", scratch_ / "floor.clf");
     Program map(scratch_, "topogeo",
                 {"map", "--log", scratch_ / "floor.clf", "--out", scratch_ / "map"});
-    ASSERT_EQ(map.wait(100.0 * kTimeFactor), 0) << map.err();
+    ASSERT_EQ(map.wait(), 0) << map.err();
     const std::string stored = scratch_ / "map/map.pb";
     start("map_store", {"--map", stored});
     start("localizer", {"--map", stored, "--wait-workers", "0"});
@@ -211,7 +198,9 @@ class FollowsInAFinishedMap : public RosBridge {
     start_bridge();
     robot_ = &start_peer({"drive", std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml"});
     user_ = &start_peer({"watch"});
-    ASSERT_TRUE(comes_true([&] { return status().find(kNeeds) != std::string::npos; })) << status();
+    ASSERT_TRUE(wait_for("the localizer to need the robot to drive", [&] {
+      return status().find(kNeeds) != std::string::npos;
+    })) << status();
     ASSERT_EQ(last_line(user_->out(), "pose map "), "");
   }
 
@@ -235,22 +224,27 @@ class FollowsInAFinishedMap : public RosBridge {
 // Rough as a click is; what the laser sees corrects it with the next stop.
 TEST_F(FollowsInAFinishedMap, ARobotThatStandsTakesThePoseOfAUser) {
   Program& told = start_peer({"initialpose", "0.3", "-0.2", "0.15"});
-  EXPECT_EQ(told.wait(100.0 * kTimeFactor), 0) << told.err();
+  EXPECT_EQ(told.wait(), 0) << told.err();
   ASSERT_TRUE(says(*user_, "pose map "));
   const geometry::Pose2 seen = pose_in(last_line(user_->out(), "pose map "));
   EXPECT_NEAR(seen.x_m, 0.3, 0.05);
   EXPECT_NEAR(seen.y_m, -0.2, 0.05);
   EXPECT_NEAR(seen.theta_rad, 0.15, 0.02);
-  EXPECT_TRUE(comes_true([&] { return !last_line(user_->out(), "tf map odom ").empty(); }));
-  EXPECT_TRUE(comes_true([&] { return status().find(kNeeds) == std::string::npos; })) << status();
+  EXPECT_TRUE(wait_for("the transform of the odometry",
+                       [&] { return !last_line(user_->out(), "tf map odom ").empty(); }));
+  EXPECT_TRUE(wait_for("the localizer to need nothing", [&] {
+    return status().find(kNeeds) == std::string::npos;
+  })) << status();
   start_peer({"steer", "0.3", "0"});
-  EXPECT_TRUE(comes_true([&] { return agrees(); })) << last_line(user_->out(), "pose map ");
+  EXPECT_TRUE(wait_for("the pose that is true", [&] { return agrees(); }))
+      << last_line(user_->out(), "pose map ");
 }
 
 TEST_F(FollowsInAFinishedMap, ARobotThatDrivesOnIsFound) {
   start_peer({"steer", "0.3", "0"});
   EXPECT_TRUE(says(*user_, "pose map "));
-  EXPECT_TRUE(comes_true([&] { return agrees(); })) << last_line(user_->out(), "pose map ");
+  EXPECT_TRUE(wait_for("the pose that is true", [&] { return agrees(); }))
+      << last_line(user_->out(), "pose map ");
 }
 
 // `topogeo run --ros` alone: the robot is one of ROS, the laser where its transforms have it.
@@ -284,7 +278,7 @@ TEST_F(RosBridge, ARunGivesTheSensorsOfALogToRos) {
     const std::string scan = last_line(node.out(), "scan laser ");
     return node.out().find("clock " + scan.substr(scan.find(' ') + 1) + "\n") != std::string::npos;
   };
-  EXPECT_TRUE(comes_true(scan_has_its_time));
+  EXPECT_TRUE(wait_for("a scan that has its time", scan_has_its_time));
   run.send_signal(SIGINT);
   (void)run.wait();
 }
@@ -304,7 +298,7 @@ TEST_P(SteeredByRos, TheBaseGetsTheirVelocity) {
   options.partition = "ros-test";
   const messaging::Participant participant(options);
   messaging::Reader<msg::MotionCommand> commands(participant);
-  ASSERT_TRUE(commands.wait_for_data(std::chrono::seconds(100 * kTimeFactor)))
+  ASSERT_TRUE(wait_by("a command", [&](auto at_most) { return commands.wait_for_data(at_most); }))
       << programs_.front()->err();
   std::size_t came = 0;
   commands.take([&](const msg::MotionCommand& command, const messaging::SampleInfo& info) {
@@ -333,7 +327,7 @@ TEST_F(RosBridge, WithSecurityNodesOfRosStayPlainPeers) {
   options.security = material;
   const messaging::Participant participant(options);
   messaging::Reader<msg::Scan> scans(participant);
-  EXPECT_TRUE(scans.wait_for_data(std::chrono::seconds(100 * kTimeFactor)))
+  EXPECT_TRUE(wait_by("a scan", [&](auto at_most) { return scans.wait_for_data(at_most); }))
       << programs_.front()->err();
   programs_.front()->send_signal(SIGTERM);
   EXPECT_EQ(programs_.front()->wait(), 0) << programs_.front()->err();

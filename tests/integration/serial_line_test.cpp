@@ -20,8 +20,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr milliseconds kPatience{20'000 * test::kTimeFactor};
-
 /// Keeps what it receives and sends what the test puts there.
 class NotingDriver final : public devices::SerialDriver {
  public:
@@ -76,19 +74,14 @@ class SerialLineTest : public testing::Test {
   }
 
   template <class Condition>
-  bool wait_for(const Condition& condition) {
-    const auto end = std::chrono::steady_clock::now() + kPatience;
-    while (!condition()) {
-      if (std::chrono::steady_clock::now() > end) return false;
-      loop_.run_for(milliseconds(2));
-    }
-    return true;
+  bool wait_for(const std::string& what, const Condition& condition) {
+    return test::wait_in_loop(loop_, what, condition);
   }
 
   /// What arrives at the far end, until it is as long as expected.
   Bytes arriving(std::size_t size) {
     Bytes bytes;
-    EXPECT_TRUE(wait_for([&] {
+    EXPECT_TRUE(wait_for("bytes at the far end", [&] {
       const Bytes more = terminal_.receive();
       bytes.insert(bytes.end(), more.begin(), more.end());
       return bytes.size() >= size;
@@ -112,7 +105,7 @@ TEST_F(SerialLineTest, BytesGoBothWaysAndSettingsTakeEffect) {
   EXPECT_TRUE(line_->is_open());
   EXPECT_EQ(terminal_.speed(), speed_t{B38400});
   terminal_.send({0x00, 0x0D, 0x0A, 0x11, 0x13, 0x03, 0xFF});  // none of them means anything here
-  EXPECT_TRUE(wait_for([&] { return driver_.received_.size() >= 7; }));
+  EXPECT_TRUE(wait_for("bytes of the far end", [&] { return driver_.received_.size() >= 7; }));
   EXPECT_THAT(driver_.received_, ElementsAre(0x00, 0x0D, 0x0A, 0x11, 0x13, 0x03, 0xFF));
   EXPECT_GE(calls_, 2);
 }
@@ -131,7 +124,7 @@ TEST_F(SerialLineTest, OrdersAreCarriedOutInTheirOrder) {
   }
   line_->carry_out();
   EXPECT_EQ(arriving(expected.size()), expected);
-  EXPECT_TRUE(line_->wait_written(kPatience));
+  EXPECT_TRUE(line_->wait_written(test::hang_limit()));
   EXPECT_EQ(terminal_.speed(), speed_t{B500000});  // of number 198
 }
 
@@ -142,26 +135,27 @@ TEST_F(SerialLineTest, AfterStandingStillReadsBeforeTimeIsUp) {
   ASSERT_EQ(arriving(2).size(), 2U);
   driver_.due_ns_ = steady_now_ns() + 10'000'000;
   line_->carry_out();
-  std::this_thread::sleep_for(milliseconds(100));  // the loop does not run
+  std::this_thread::sleep_for(milliseconds(100));  // the loop stands still, as on a busy machine
   const std::int64_t back_ns = steady_now_ns();
-  ASSERT_TRUE(wait_for([&] { return driver_.ticks_ > 0; }));
+  ASSERT_TRUE(wait_for("the tick", [&] { return driver_.ticks_ > 0; }));
   EXPECT_GE(driver_.last_ns_ - back_ns, 10'000'000);
 }
 
 TEST_F(SerialLineTest, UnpluggedAndPluggedInAgainFiveTimes) {
   start();  // before the port is there
-  ASSERT_TRUE(wait_for([&] { return line_->statistics().not_opened >= 2; }));
+  ASSERT_TRUE(wait_for("two attempts to open the port",
+                       [&] { return line_->statistics().not_opened >= 2; }));
   EXPECT_THAT(line_->why_closed(),
               AllOf(HasSubstr(terminal_.link().string()), HasSubstr("No such file")));
   for (int i = 1; i <= 5; ++i) {
     terminal_.plug();
     ASSERT_EQ(arriving(2).size(), 2U);
     terminal_.send({'x'});
-    ASSERT_TRUE(wait_for([&] { return driver_.received_ == Bytes{'x'}; }));
+    ASSERT_TRUE(wait_for("a byte of the far end", [&] { return driver_.received_ == Bytes{'x'}; }));
     EXPECT_EQ(driver_.opened_, i);
     EXPECT_TRUE(line_->why_closed().empty());
     terminal_.unplug();
-    ASSERT_TRUE(wait_for([&] { return driver_.lost_ == i; }));
+    ASSERT_TRUE(wait_for("the loss of the port", [&] { return driver_.lost_ == i; }));
     EXPECT_FALSE(line_->is_open());
     EXPECT_THAT(line_->why_closed(), HasSubstr(terminal_.link().string()));
   }
@@ -169,19 +163,19 @@ TEST_F(SerialLineTest, UnpluggedAndPluggedInAgainFiveTimes) {
   EXPECT_EQ(line_->statistics().lost, 5U);
   driver_.orders_ = {{{}, {'n', 'o'}}};
   line_->carry_out();  // to a port that is gone: dropped
-  EXPECT_TRUE(line_->wait_written(kPatience));
+  EXPECT_TRUE(line_->wait_written(test::hang_limit()));
 }
 
 TEST_F(SerialLineTest, DriverIsCalledWhenItIsDue) {
   start();
   driver_.due_ns_ = steady_now_ns() + 3'000'000;
   line_->carry_out();
-  EXPECT_TRUE(wait_for([&] { return driver_.ticks_ == 1; }));
+  EXPECT_TRUE(wait_for("the first tick", [&] { return driver_.ticks_ == 1; }));
   driver_.due_ns_ = steady_now_ns() + 3'600'000'000'000;  // an hour, then sooner
   line_->carry_out();
   driver_.due_ns_ = steady_now_ns();
   line_->carry_out();
-  EXPECT_TRUE(wait_for([&] { return driver_.ticks_ == 2; }));
+  EXPECT_TRUE(wait_for("the second tick", [&] { return driver_.ticks_ == 2; }));
 }
 
 TEST_F(SerialLineTest, SecondProgramOnThePortIsTold) {
@@ -191,14 +185,16 @@ TEST_F(SerialLineTest, SecondProgramOnThePortIsTold) {
   NotingDriver other_driver;
   SerialLine other(loop_, other_driver,
                    PortOptions{terminal_.link().string(), milliseconds(5), milliseconds(20)}, {});
-  EXPECT_TRUE(wait_for([&] { return other.statistics().not_opened > 0; }));
+  EXPECT_TRUE(
+      wait_for("an attempt to open the port", [&] { return other.statistics().not_opened > 0; }));
   EXPECT_THAT(other.why_closed(), HasSubstr("busy"));
 }
 
 TEST_F(SerialLineTest, WhatIsNoSerialPortIsNamed) {
   for (const std::string path : {"/dev/null", "/tmp"}) {
     SerialLine line(loop_, driver_, PortOptions{path, milliseconds(5), milliseconds(20)}, {});
-    EXPECT_TRUE(wait_for([&] { return line.statistics().not_opened > 0; }));
+    EXPECT_TRUE(
+        wait_for("an attempt to open the port", [&] { return line.statistics().not_opened > 0; }));
     EXPECT_THAT(line.why_closed(), AllOf(HasSubstr(path), HasSubstr("cannot open")));
   }
   EXPECT_EQ(driver_.opened_, 0);

@@ -112,12 +112,8 @@ class SharedMapServices : public testing::Test {
   }
 
   template <class Condition>
-  bool eventually(Condition condition) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(90 * kTimeFactor);
-    while (!condition() && std::chrono::steady_clock::now() < end) {
-      static_cast<void>(loop_.run_for(std::chrono::milliseconds(10)));
-    }
-    return condition();
+  bool eventually(const std::string& what, const Condition& condition) {
+    return wait_in_loop(loop_, what, condition);
   }
   [[nodiscard]] std::uint32_t stops_in_map() { return newest_["a"].stops(); }
   [[nodiscard]] bool stored(const std::string& robot, std::size_t stops) {
@@ -153,7 +149,9 @@ class SharedMapServices : public testing::Test {
     request.action(action);
     messaging::set_text(request.name(), name, "name");
     EXPECT_TRUE(requests_.write(request));
-    EXPECT_TRUE(eventually([&] { return reply_.request_id() == requests_sent_; })) << name;
+    EXPECT_TRUE(eventually("the answer to a request", [&] {
+      return reply_.request_id() == requests_sent_;
+    })) << name;
     return reply_;
   }
   [[nodiscard]] double error_m(const storage::MapDocument& map) const {
@@ -194,12 +192,14 @@ TEST_F(SharedMapServices, MakeOneMapWhateverIsKilledAndItIsSplitAgain) {
   auto localizer = start_localizer();
   const std::size_t part = 2 * b_.stops.size() / 3;
   send(part);
-  ASSERT_TRUE(eventually([&] { return stops_in_map() >= part + part / 2; }))
+  ASSERT_TRUE(eventually("stops of both robots in the map",
+                         [&] { return stops_in_map() >= part + part / 2; }))
       << stops_in_map() << " of " << 2 * part << "; " << localizer->err();
   localizer->send_signal(SIGKILL);
   EXPECT_EQ(localizer->wait(), 128 + SIGKILL);
   send(part + 3);
-  ASSERT_TRUE(eventually([&] { return stored("a", part + 3) && stored("b", part + 3); }));
+  ASSERT_TRUE(eventually("the stops of both robots to be stored",
+                         [&] { return stored("a", part + 3) && stored("b", part + 3); }));
   store->send_signal(SIGKILL);
   EXPECT_EQ(store->wait(), 128 + SIGKILL);
   localizer = start_localizer();  // waits for the store
@@ -233,8 +233,9 @@ TEST_F(SharedMapServices, MakeOneMapWhateverIsKilledAndItIsSplitAgain) {
 TEST_F(SharedMapServices, MakeTheSameBytesWithAnyNumberOfWorkers) {
   auto store = start_store();
   send_all();
-  ASSERT_TRUE(
-      eventually([&] { return stored("a", a_.stops.size()) && stored("b", b_.stops.size()); }));
+  ASSERT_TRUE(eventually("all stops to be stored", [&] {
+    return stored("a", a_.stops.size()) && stored("b", b_.stops.size());
+  }));
   store->send_signal(SIGTERM);
   EXPECT_EQ(store->wait(), 0) << store->err();
   // All is there before the localizer is, so that no moment of arrival has an effect.
@@ -255,7 +256,7 @@ TEST_F(SharedMapServices, MakeTheSameBytesWithAnyNumberOfWorkers) {
     store->wait_for_error_text("local maps, ");  // the final line
     maps.push_back(read_file(out / "map.pb"));
     if (workers > 0) {
-      EXPECT_TRUE(eventually([&] { return tasks_done_ > 0; }));
+      EXPECT_TRUE(eventually("tasks of the workers", [&] { return tasks_done_ > 0; }));
     }
     store->send_signal(SIGTERM);
     EXPECT_EQ(store->wait(), 0) << store->err();
@@ -269,16 +270,17 @@ TEST_F(SharedMapServices, AskBeforeTheyMakeOneMap) {
   auto localizer = start_localizer("ask");
   send(b_.stops.size());
   const auto shows = [&](const std::string& text) {
-    return eventually([&] {
+    return eventually("a merge in that state", [&] {
       return merge_command({"merges", "--json"}).find(text) != std::string::npos;
     });
   };
   ASSERT_TRUE(shows("\"state\": \"open\""));
-  ASSERT_TRUE(eventually([&] { return stored("b", b_.stops.size()); }));
+  ASSERT_TRUE(eventually("the stops of robot b to be stored",
+                         [&] { return stored("b", b_.stops.size()); }));
   EXPECT_LE(stops_in_map(), a_.stops.size());
   EXPECT_THAT(merge_command({"accept", "7"}, 1), HasSubstr("no merge 7 was proposed"));
   EXPECT_THAT(merge_command({"merges"}), HasSubstr("1  open: stop "));
-  EXPECT_TRUE(eventually([&] {
+  EXPECT_TRUE(eventually("the status to name the command that accepts the merge", [&] {
     Program status(scratch_, "topogeo", {"status", "--domain", own_domain(), "--json"});
     return status.wait() == 0 && status.out().find("topogeo store accept 1") != std::string::npos;
   }));
@@ -288,7 +290,7 @@ TEST_F(SharedMapServices, AskBeforeTheyMakeOneMap) {
   localizer = start_localizer("ask");
   ASSERT_TRUE(shows("\"state\": \"open\""));
   EXPECT_THAT(merge_command({"accept", "1"}), HasSubstr("the maps are one"));
-  EXPECT_TRUE(eventually([&] { return stops_in_map() > a_.stops.size(); }));
+  EXPECT_TRUE(eventually("the maps to be one", [&] { return stops_in_map() > a_.stops.size(); }));
   EXPECT_TRUE(shows("\"state\": \"accepted\""));
   EXPECT_THAT(merge_command({"refuse", "1"}, 1), HasSubstr("not open any more"));
 }
@@ -302,7 +304,7 @@ TEST_F(SharedMapServices, ARefusalIsHeededByALocalizerThatStartsAgain) {
   while (stops < b_.stops.size() && proposals().find("\"state\": \"open\"") == std::string::npos) {
     send(stops += 2);
     // The localizer, too: what is stored may wait for it.
-    ASSERT_TRUE(eventually([&] {
+    ASSERT_TRUE(eventually("the stops to be stored", [&] {
       return stored("b", std::min(stops, b_.stops.size())) &&
              stops_in_map() >= std::min(stops, a_.stops.size());
     }));
@@ -311,17 +313,20 @@ TEST_F(SharedMapServices, ARefusalIsHeededByALocalizerThatStartsAgain) {
   EXPECT_THAT(merge_command({"refuse", "1"}), HasSubstr("the maps stay apart"));
   const std::string refused = proposals();
   const std::string database = (scratch_ / "out" / "map.sqlite").string();
-  ASSERT_TRUE(eventually([&] { return storage::read_map(database).refused_merges.size() == 1; }));
+  ASSERT_TRUE(eventually("the refusal to be stored",
+                         [&] { return storage::read_map(database).refused_merges.size() == 1; }));
   localizer->send_signal(SIGKILL);
   EXPECT_EQ(localizer->wait(), 128 + SIGKILL);
   localizer = start_localizer("ask");
   localizer->wait_for_error_text("adds ");
   send(stops + 2);
-  ASSERT_TRUE(eventually([&] { return stored("b", stops + 2) && stops_in_map() >= stops + 2; }));
+  ASSERT_TRUE(eventually("the stops to be stored",
+                         [&] { return stored("b", stops + 2) && stops_in_map() >= stops + 2; }));
   EXPECT_EQ(proposals(), "[]\n") << refused;
   send_all();  // it comes to places further away
-  EXPECT_TRUE(
-      eventually([&] { return proposals().find("\"state\": \"open\"") != std::string::npos; }));
+  EXPECT_TRUE(eventually("the merge to be proposed again", [&] {
+    return proposals().find("\"state\": \"open\"") != std::string::npos;
+  }));
 }
 
 TEST_F(SharedMapServices, BeginAnewWithASnapshotThatIsRestored) {
@@ -329,18 +334,21 @@ TEST_F(SharedMapServices, BeginAnewWithASnapshotThatIsRestored) {
   const auto localizer = start_localizer();
   const std::size_t part = 2 * b_.stops.size() / 3;
   send(part);
-  ASSERT_TRUE(eventually([&] { return stops_in_map() >= part + part / 2; }))
+  ASSERT_TRUE(eventually("stops of both robots in the map",
+                         [&] { return stops_in_map() >= part + part / 2; }))
       << stops_in_map() << " of " << 2 * part << "; " << localizer->err();
-  ASSERT_TRUE(eventually([&] { return requests_.matched() > 0 && replies_.matched() > 0; }));
+  ASSERT_TRUE(eventually("the map store",
+                         [&] { return requests_.matched() > 0 && replies_.matched() > 0; }));
   const msg::ArchiveReply taken = ask(msg::kArchiveTake, "one");
   ASSERT_TRUE(taken.accepted()) << taken.message().c_str();
   const std::uint32_t stops = taken.snapshots().front().stops();
   ASSERT_GE(stops, part + part / 2) << "of both robots";
   send(part + 6);
-  ASSERT_TRUE(eventually([&] { return stops_in_map() > stops; }));
+  ASSERT_TRUE(eventually("stops after the snapshot", [&] { return stops_in_map() > stops; }));
 
   ASSERT_TRUE(ask(msg::kArchiveRestore, "one").accepted());
-  ASSERT_TRUE(eventually([&] { return withdrawn_ == 2; }))
+  ASSERT_TRUE(
+      eventually("the maps of both robots to be withdrawn", [&] { return withdrawn_ == 2; }))
       << withdrawn_ << ": what makes the mappers of both robots begin anew";
   store->wait_for_error_text("the map is that of snapshot one");
   localizer->wait_for_error_text("begins anew with it");
@@ -365,7 +373,7 @@ TEST_F(SharedMapServices, ASecondLocalizerOfOneOfTheRobotsIsReported) {
   EXPECT_THAT(usage.err(), HasSubstr("expected each robot once, got 'b' again"));
   std::vector<std::string> words{"--robot-id", "b", "--with-robots", "a", "--standalone"};
   for (const std::string& word : domain()) words.push_back(word);
-  ASSERT_TRUE(eventually([&] { return !newest_.empty(); }));
+  ASSERT_TRUE(eventually("a stored map", [&] { return !newest_.empty(); }));
   Program second(scratch_, "localizer", words);
   EXPECT_EQ(second.wait(), 1) << second.err();
   EXPECT_THAT(second.err(), HasSubstr("another localizer works for robot"));

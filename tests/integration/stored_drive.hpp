@@ -25,8 +25,6 @@
 
 namespace topogeo::test {
 
-constexpr std::chrono::seconds kLongestWait{60 * kTimeFactor};
-
 class StoredDrive {
  public:
   StoredDrive(const std::string& domain, const std::string& partition, const std::string& name)
@@ -81,14 +79,13 @@ class StoredDrive {
     EXPECT_TRUE(ends_.write(end));
   }
 
-  bool wait_until(const std::function<bool()>& done) {
-    const auto end = std::chrono::steady_clock::now() + kLongestWait;
-    while (!done() && std::chrono::steady_clock::now() < end) run_for(std::chrono::milliseconds(5));
-    return done();
+  bool wait_until(const std::string& what, const std::function<bool()>& done) {
+    return wait_in_loop(loop_, what, done);
   }
   void run_for(std::chrono::milliseconds duration) { static_cast<void>(loop_.run_for(duration)); }
   bool wait_for_stored(std::size_t stops) {
-    return wait_until([&] { return stored_.session_stops() >= stops && stored_.stops() >= stops; });
+    return wait_until("stored stops",
+                      [&] { return stored_.session_stops() >= stops && stored_.stops() >= stops; });
   }
 
   /// The bytes of an answer; fails without one.
@@ -101,9 +98,9 @@ class StoredDrive {
     request.kind(kind);
     request.session(session);
     request.first(first);
-    EXPECT_TRUE(wait_until([&] { return requests_writer_.matched() > 0; }));
+    EXPECT_TRUE(wait_until("the map store", [&] { return requests_writer_.matched() > 0; }));
     EXPECT_TRUE(requests_writer_.write(request));
-    EXPECT_TRUE(wait_until([&] {
+    EXPECT_TRUE(wait_until("all pieces of the answer", [&] {
       return !pieces_.empty() && pieces_.size() >= pieces_[0].pieces();
     })) << pieces_.size();
     std::string bytes;

@@ -60,10 +60,8 @@ class TwoRobotsTest : public testing::Test {
   }
 
   [[nodiscard]] std::uint32_t wait_for_stops(const std::string& robot, std::uint32_t stops) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60 * kTimeFactor);
-    while (newest_[robot].session_stops() < stops && std::chrono::steady_clock::now() < end) {
-      static_cast<void>(loop_.run_for(std::chrono::milliseconds(10)));
-    }
+    EXPECT_TRUE(wait_in_loop(loop_, "stored stops of robot " + robot,
+                             [&] { return newest_[robot].session_stops() >= stops; }));
     return newest_[robot].session_stops();
   }
   [[nodiscard]] storage::MapDocument stored_map() const {

@@ -133,10 +133,10 @@ int send_goal(std::uint32_t domain, double x_m, double y_m, double yaw_rad) {
   goal.pose_.position_.y_ = y_m;
   goal.pose_.orientation_ = quaternion(yaw_rad);
   // The plan may come before this reader is known: it is asked for again.
-  constexpr int kPatience = 100;
+  constexpr int kLooks = 100;
   for (bool planned = false; !planned;) {
     write(goals, goal);
-    for (int i = 0; i < kPatience && !planned; ++i) {
+    for (int i = 0; i < kLooks && !planned; ++i) {
       pause_ms(50);
       take<nav_msgs_msg_dds__Path_>(plans, [&](const nav_msgs_msg_dds__Path_& path) {
         planned = planned || path.poses_._length > 0;
