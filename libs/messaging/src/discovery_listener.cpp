@@ -66,13 +66,14 @@ void DiscoveryListener::on_publisher_discovery(dds::DomainParticipant* /*partici
   }
 }
 
-void DiscoveryListener::on_subscriber_discovery(dds::DomainParticipant* /*participant*/,
+void DiscoveryListener::on_subscriber_discovery(dds::DomainParticipant* participant,
                                                 rtps::ReaderDiscoveryInfo&& info) {
   if (info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER) {
     remove(info.info.guid());
   } else {
     put(info.info.guid(), to_endpoint(info.info, info.info.m_qos, false));
   }
+  RefusalListener::on_subscriber_discovery(participant, std::move(info));
 }
 
 std::vector<RemoteEndpoint> DiscoveryListener::endpoints() const {

@@ -5,6 +5,8 @@
 
 #include <fastdds/dds/core/policy/QosPolicies.hpp>
 
+#include "topogeo/messaging/same_participant.hpp"
+
 #include "endpoint_shared.hpp"
 
 namespace topogeo::messaging {
@@ -82,14 +84,19 @@ void Endpoint::Shared::push(Event event) {
 
 void Endpoint::Shared::set_matched(int current, int change,
                                    const eprosima::fastrtps::rtps::InstanceHandle_t& peer) {
-  {
-    const std::lock_guard lock(mutex);
-    matched = current;
-  }
-  matched_changed.notify_all();
   Event event;
   event.kind = change >= 0 ? EventKind::kMatched : EventKind::kUnmatched;
   event.peer = to_handle(peer);
+  {
+    const std::lock_guard lock(mutex);
+    matched = current;
+    if (change >= 0) {
+      peers.insert(event.peer);
+    } else {
+      peers.erase(event.peer);
+    }
+  }
+  matched_changed.notify_all();
   event.count = current;
   push(std::move(event));
 }
@@ -109,6 +116,17 @@ Endpoint::~Endpoint() = default;
 int Endpoint::matched() const {
   const std::lock_guard lock(shared_->mutex);
   return shared_->matched;
+}
+
+std::vector<Handle> Endpoint::peers() const {
+  const std::lock_guard lock(shared_->mutex);
+  return {shared_->peers.begin(), shared_->peers.end()};
+}
+
+bool Endpoint::connected_with(const Handle& program) const {
+  const std::lock_guard lock(shared_->mutex);
+  return std::ranges::any_of(shared_->peers,
+                             [&](const Handle& peer) { return same_participant(peer, program); });
 }
 
 std::string_view Endpoint::topic() const {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <deque>
 #include <mutex>
+#include <set>
 
 #include <fastdds/dds/core/status/IncompatibleQosStatus.hpp>
 #include <fastdds/rtps/common/InstanceHandle.h>
@@ -31,6 +32,7 @@ struct Endpoint::Shared {
   mutable std::mutex mutex;
   mutable std::condition_variable matched_changed;
   int matched = 0;
+  std::set<Handle> peers;
   std::deque<Event> events;
   std::function<void()> wake;
 };

@@ -200,9 +200,14 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
   if (options.observe) {
     auto observer = std::make_unique<DiscoveryListener>();
     observer_ = observer.get();
+    refusals_ = secured_ ? observer_ : nullptr;
     listener_ = std::move(observer);
   } else if (secured_) {
-    listener_ = std::make_unique<RefusalListener>();
+    auto refusals = std::make_unique<RefusalListener>();
+    refusals_ = refusals.get();
+    listener_ = std::move(refusals);
+  } else {
+    listener_ = std::make_unique<ReadWithListener>();
   }
   participant_ =
       factory->create_participant(options.domain, qos, listener_.get(), dds::StatusMask::none());
@@ -273,7 +278,7 @@ void ParticipantCore::remove_filtered(dds::ContentFilteredTopic& topic) {
 }
 
 std::vector<std::string> ParticipantCore::take_refusals() {
-  return secured_ ? listener_->take() : std::vector<std::string>{};
+  return refusals_ == nullptr ? std::vector<std::string>{} : refusals_->take();
 }
 
 std::optional<std::chrono::nanoseconds> ParticipantCore::stood_still() const {
@@ -286,6 +291,10 @@ bool ParticipantCore::take_new_revocations() {
 
 std::vector<RemoteEndpoint> ParticipantCore::discovered() const {
   return observer_ == nullptr ? std::vector<RemoteEndpoint>{} : observer_->endpoints();
+}
+
+std::vector<std::string> ParticipantCore::read_with(const Handle& reader) const {
+  return listener_->read_with(reader);
 }
 
 std::string ParticipantCore::reason_of_denial() const {

@@ -50,15 +50,19 @@ class ParticipantCore {
   bool take_new_revocations();
   [[nodiscard]] std::optional<std::chrono::nanoseconds> stood_still() const;
   [[nodiscard]] std::vector<RemoteEndpoint> discovered() const;
+  /// Whole names of the topics that a reader of another participant has announced to be read with
+  /// its own.
+  [[nodiscard]] std::vector<std::string> read_with(const Handle& reader) const;
   /// Why an endpoint was not made: what the plug-ins of security logged, empty without security.
   [[nodiscard]] std::string reason_of_denial() const;
 
  private:
   bool secured_ = false;
   RevocationList revocations_;
-  std::optional<FreezeWatch> freeze_watch_;    // with security
-  std::unique_ptr<RefusalListener> listener_;  // called while participant_ lives
-  DiscoveryListener* observer_ = nullptr;      // the listener of one that observes
+  std::optional<FreezeWatch> freeze_watch_;     // with security
+  std::unique_ptr<ReadWithListener> listener_;  // called while participant_ lives
+  RefusalListener* refusals_ = nullptr;         // the listener of one with security
+  DiscoveryListener* observer_ = nullptr;       // the listener of one that observes
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;

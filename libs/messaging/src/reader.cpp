@@ -5,6 +5,7 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 
+#include "read_with.hpp"
 #include "reader_impl.hpp"
 
 namespace topogeo::messaging::detail {
@@ -127,7 +128,8 @@ void ReaderCore::Impl::deliver(const dds::SampleInfo& dds_info, Endpoint::Shared
 }
 
 ReaderCore::ReaderCore(const Participant& participant, const TopicInfo& topic,
-                       const std::string& role, const std::string& addressee) {
+                       const std::string& role, const std::string& addressee,
+                       const std::vector<std::string_view>& read_with) {
   shared_ = std::make_shared<Shared>(topic.name);
   impl_ = std::make_unique<Impl>(participant.core(), topic, shared_);
   dds::Subscriber& subscriber = impl_->participant->subscriber();
@@ -137,6 +139,7 @@ ReaderCore::ReaderCore(const Participant& participant, const TopicInfo& topic,
     throw std::runtime_error("DDS profile '" + profile + "' of topic " + std::string(topic.name) +
                              " is not in the profiles file");
   }
+  qos.user_data().data_vec(announce_read_with(read_with));
   dds::TopicDescription* description = &impl_->participant->topic(topic);
   if (!addressee.empty()) {
     impl_->filtered = &impl_->participant->make_filtered(topic, addressee);

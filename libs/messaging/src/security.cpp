@@ -180,6 +180,7 @@ std::string last_security_error() {
 
 void RefusalListener::on_participant_discovery(dds::DomainParticipant* /*participant*/,
                                                rtps::ParticipantDiscoveryInfo&& info) {
+  forget_if_gone(info);
   const rtps::GuidPrefix_t& prefix = info.info.m_guid.guidPrefix;
   const std::lock_guard lock(mutex_);
   const auto known = peers_.find(prefix);

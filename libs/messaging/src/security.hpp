@@ -11,8 +11,9 @@
 #include <vector>
 
 #include <fastdds/dds/domain/DomainParticipant.hpp>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
+
+#include "read_with.hpp"
 
 namespace topogeo::messaging {
 
@@ -54,7 +55,7 @@ std::string last_security_error();
 /// have not finished it, because they do not accept us or have nothing to show; and those that were
 /// denied a topic. Names each by its participant's name, which it chooses itself, and the subject
 /// of its certificate, which after authentication is right.
-class RefusalListener : public eprosima::fastdds::dds::DomainParticipantListener {
+class RefusalListener : public ReadWithListener {
  public:
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
                                 eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;

@@ -124,4 +124,8 @@ bool WriterCore::wait_for_acknowledgments(std::chrono::nanoseconds timeout) {
   return impl_->writer->wait_for_acknowledgments(to_duration(timeout)) == ReturnCode_t::RETCODE_OK;
 }
 
+std::vector<std::string> WriterCore::read_with(const Handle& reader) const {
+  return impl_->participant->read_with(reader);
+}
+
 }  // namespace topogeo::messaging::detail

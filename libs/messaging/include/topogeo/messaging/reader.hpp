@@ -7,6 +7,8 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "topogeo/messaging/detail/endpoint.hpp"
 
@@ -17,6 +19,10 @@ struct ReaderOptions {
   /// Only messages to it, which the writer selects; empty: every message. A reader with an
   /// addressee gets no disposals.
   std::string addressee = {};
+  /// Whole names of the other topics of which this program needs what is sent from the same moment
+  /// on: a writer that waits for its readers waits until the program is connected with these, too
+  /// (ConnectedPrograms). The program makes a reader of each.
+  std::vector<std::string_view> read_with = {};
 };
 
 /// T is one of the types of topics.hpp. Include its header topogeo/msg/<file>.h to use it.
@@ -29,7 +35,8 @@ class Reader {
   /// addressee or the middleware refuses.
   explicit Reader(const Participant& participant, const ReaderOptions& options = {})
       : core_(std::make_shared<detail::ReaderCore>(participant, TopicTraits<T>::info(),
-                                                   options.role, options.addressee)) {}
+                                                   options.role, options.addressee,
+                                                   options.read_with)) {}
 
   /// Hands over at most `limit` samples, oldest first of each writer, and returns how many. With
   /// info.valid false the message is empty: only info.instance and info.state count.
@@ -49,6 +56,10 @@ class Reader {
 
   /// Writers that are connected now.
   [[nodiscard]] int matched() const { return core_->matched(); }
+  /// A writer of the program is connected to which that writer or reader belongs.
+  [[nodiscard]] bool connected_with(const Handle& program) const {
+    return core_->connected_with(program);
+  }
   /// True as soon as at least `count` writers are connected, false after `timeout`.
   [[nodiscard]] bool wait_for_matched(int count, std::chrono::nanoseconds timeout) const {
     return core_->wait_for_matched(count, timeout);

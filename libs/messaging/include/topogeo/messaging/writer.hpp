@@ -31,6 +31,11 @@ class Writer {
 
   /// Readers that are connected now.
   [[nodiscard]] int matched() const { return core_->matched(); }
+  /// A reader of the program is connected to which that writer or reader belongs, for example
+  /// SampleInfo::writer of a message of it.
+  [[nodiscard]] bool connected_with(const Handle& program) const {
+    return core_->connected_with(program);
+  }
   /// True as soon as at least `count` readers are connected, false after `timeout`.
   [[nodiscard]] bool wait_for_matched(int count, std::chrono::nanoseconds timeout) const {
     return core_->wait_for_matched(count, timeout);

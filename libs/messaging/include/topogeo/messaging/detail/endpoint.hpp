@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "topogeo/messaging/events.hpp"
 #include "topogeo/messaging/participant.hpp"
@@ -26,6 +27,10 @@ class Endpoint {
   virtual ~Endpoint();
 
   [[nodiscard]] int matched() const;
+  /// The readers or writers that are connected now.
+  [[nodiscard]] std::vector<Handle> peers() const;
+  /// One of them belongs to the program of that reader or writer.
+  [[nodiscard]] bool connected_with(const Handle& program) const;
   /// Whole name.
   [[nodiscard]] std::string_view topic() const;
   /// Written, or handed over to the program, since the endpoint was made.
@@ -50,6 +55,8 @@ class WriterCore final : public Endpoint {
   bool write(const void* message);
   void dispose(const void* message);
   bool wait_for_acknowledgments(std::chrono::nanoseconds timeout);
+  /// Whole names of the topics that a reader has announced to be read with its own.
+  [[nodiscard]] std::vector<std::string> read_with(const Handle& reader) const;
 
  private:
   struct Impl;
@@ -61,7 +68,7 @@ class ReaderCore final : public Endpoint {
   using Handler = std::function<void(const void* message, const SampleInfo&)>;
 
   ReaderCore(const Participant& participant, const TopicInfo& topic, const std::string& role,
-             const std::string& addressee);
+             const std::string& addressee, const std::vector<std::string_view>& read_with = {});
   ~ReaderCore() override;
 
   std::size_t take(std::size_t limit, const Handler& handler);

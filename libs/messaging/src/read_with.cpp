@@ -1,0 +1,89 @@
+#include "read_with.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
+#include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>
+
+#include "topogeo/messaging/same_participant.hpp"
+
+#include "endpoint_shared.hpp"
+
+namespace topogeo::messaging {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+
+namespace {
+
+constexpr std::string_view kReadWithKey = "read_with=";
+constexpr std::size_t kMostUserData_bytes = 1024;
+
+/// The parts between separators, without empty ones.
+std::vector<std::string> parts_of(std::string_view text, char separator) {
+  std::vector<std::string> parts;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(separator), text.size());
+    if (end > 0) parts.emplace_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return parts;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> announce_read_with(std::span<const std::string_view> topics) {
+  if (topics.empty()) return {};
+  std::string text(kReadWithKey);
+  for (const std::string_view topic : topics) text.append(topic).push_back(',');
+  text.back() = ';';
+  return {text.begin(), text.end()};
+}
+
+std::vector<std::string> parse_read_with(std::span<const std::uint8_t> user_data) {
+  if (user_data.size() > kMostUserData_bytes) return {};
+  const std::string text(user_data.begin(), user_data.end());
+  for (const std::string& entry : parts_of(text, ';')) {
+    if (entry.starts_with(kReadWithKey)) return parts_of(entry.substr(kReadWithKey.size()), ',');
+  }
+  return {};
+}
+
+void ReadWithListener::on_participant_discovery(dds::DomainParticipant* /*participant*/,
+                                                rtps::ParticipantDiscoveryInfo&& info) {
+  forget_if_gone(info);
+}
+
+void ReadWithListener::forget_if_gone(const rtps::ParticipantDiscoveryInfo& info) {
+  if (info.status != rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT &&
+      info.status != rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT) {
+    return;
+  }
+  const Handle gone = detail::to_handle(rtps::InstanceHandle_t(info.info.m_guid));
+  const std::lock_guard lock(read_with_mutex_);
+  std::erase_if(read_with_, [&](const auto& entry) { return same_participant(entry.first, gone); });
+}
+
+void ReadWithListener::on_subscriber_discovery(dds::DomainParticipant* /*participant*/,
+                                               rtps::ReaderDiscoveryInfo&& info) {
+  const Handle reader = detail::to_handle(rtps::InstanceHandle_t(info.info.guid()));
+  const bool removed = info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER;
+  const std::vector<std::uint8_t>& user_data = info.info.m_qos.m_userData.data_vec();
+  std::vector<std::string> topics =
+      removed ? std::vector<std::string>{} : parse_read_with(user_data);
+  const std::lock_guard lock(read_with_mutex_);
+  if (topics.empty()) {
+    read_with_.erase(reader);
+  } else if (read_with_.size() < kMostReaders || read_with_.contains(reader)) {
+    read_with_[reader] = std::move(topics);
+  }
+}
+
+std::vector<std::string> ReadWithListener::read_with(const Handle& reader) const {
+  const std::lock_guard lock(read_with_mutex_);
+  const auto found = read_with_.find(reader);
+  return found == read_with_.end() ? std::vector<std::string>{} : found->second;
+}
+
+}  // namespace topogeo::messaging

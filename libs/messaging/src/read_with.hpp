@@ -1,0 +1,48 @@
+// What the announcement of a reader says of the other topics that its program reads.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+
+#include "topogeo/messaging/events.hpp"
+
+namespace topogeo::messaging {
+
+/// User data of a reader (Object Management Group, DDS 1.4, chapter 2.2.3.1):
+/// "read_with=TOPIC,TOPIC;". Other keys may stand beside it.
+std::vector<std::uint8_t> announce_read_with(std::span<const std::string_view> topics);
+/// The topics of such user data; none in other user data, nor in any that is longer than 1 kB.
+std::vector<std::string> parse_read_with(std::span<const std::uint8_t> user_data);
+
+/// Remembers what the readers of other participants announce. Discovery reports a reader to it
+/// before the reader is connected.
+class ReadWithListener : public eprosima::fastdds::dds::DomainParticipantListener {
+ public:
+  void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
+                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
+  void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
+                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+
+  /// Whole names; none when the reader has announced none.
+  std::vector<std::string> read_with(const Handle& reader) const;
+
+ protected:
+  void forget_if_gone(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo& info);
+
+ private:
+  /// Bounds the memory in a flood of strangers; a run has a dozen such readers.
+  static constexpr std::size_t kMostReaders = 4096;
+
+  mutable std::mutex read_with_mutex_;
+  std::map<Handle, std::vector<std::string>> read_with_;  // by reader
+};
+
+}  // namespace topogeo::messaging
