@@ -25,8 +25,9 @@ SensorOutput::SensorOutput(RosSide& ros, bool replay)
   service::Service& service = ros.service();
   service.subscribe<msg::Odometry>([this](const msg::Odometry& odometry) { on_odometry(odometry); },
                                    {.role = role});
-  service.subscribe<msg::Scan>([this](const msg::Scan& scan) { on_scan(scan); },
-                               {.role = role, .main_input = true});
+  service.subscribe<msg::Scan>(
+      [this](const msg::Scan& scan) { on_scan(scan); },
+      {.role = role, .read_with = {messaging::kOdometry}, .main_input = true});
   service.status().wait_for("scans");
 }
 

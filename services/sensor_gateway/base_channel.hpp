@@ -50,6 +50,8 @@ class BaseChannel {
     return driver_.odometer_state();
   }
 
+  [[nodiscard]] messaging::Writer<msg::Odometry>& odometry() { return odometry_; }
+
   /// Halts the base and waits, at most half a second, until it stands. Its own watchdog stops it
   /// if this does not reach it.
   void stop();

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
@@ -17,7 +18,6 @@ using std::chrono::milliseconds;
 
 namespace {
 
-constexpr milliseconds kPoll{20};            // for readers at the start: no scan waits noticeably
 constexpr milliseconds kStatePeriod{250};    // twice for each status, so that it is never older
 constexpr milliseconds kBodyPeriod{100};     // as a ring of sonars that fires in turns
 constexpr milliseconds kLastDelivery{2000};  // for readers to have what was published
@@ -38,7 +38,6 @@ ScanGateOptions gate_options(const service::Service& service, const DeviceConfig
 DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& config, int readers,
                              const std::filesystem::path& memory)
     : service_(service),
-      readers_(readers),
       memory_(memory),
       odometry_epoch_(support::unrepeatable_u64()),
       gate_(gate_options(service, config, odometry_epoch_)),
@@ -74,21 +73,18 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
   }
   timer_ = service_.loop().add_timer(kStatePeriod, [this] { publish_state(); });
   publish_state();
-  wait_for_readers();
+  messaging::ConnectedPrograms connected(scans_);
+  if (base_) connected.include(base_->odometry());
+  reader_wait_.emplace(service_.loop(),
+                       std::vector<ReaderWait::Wanted>{{"scans", readers, connected}});
+  reader_wait_->start([](const std::string& what) { spdlog::info("waits for {}", what); },
+                      [this] { gate_.open(); });
 }
 
 DeviceGateway::~DeviceGateway() {
   service_.loop().cancel_timer(timer_);
   if (body_) service_.loop().cancel_timer(body_timer_);
   service_.loop().cancel_timer(release_timer_);
-}
-
-void DeviceGateway::wait_for_readers() {
-  if (scans_.matched() < readers_) {
-    service_.loop().call_after(kPoll, [this] { wait_for_readers(); });
-    return;
-  }
-  gate_.open();
 }
 
 void DeviceGateway::release(std::int64_t now_ns) {
@@ -163,8 +159,13 @@ void DeviceGateway::publish_state() {
 void DeviceGateway::finish() {
   if (base_) base_->stop();
   publish_state();
+  const auto end_ns = steady_now_ns() + std::chrono::nanoseconds(kLastDelivery).count();
   if (!scans_.wait_for_acknowledgments(kLastDelivery)) {
     service_.status().fault("readers lack scans", "at the end");
+  }
+  const std::chrono::nanoseconds left(std::max<std::int64_t>(0, end_ns - steady_now_ns()));
+  if (base_ && !base_->odometry().wait_for_acknowledgments(left)) {
+    service_.status().fault("readers lack odometry", "at the end");
   }
   msg::StreamEnd end;
   messaging::set_header(end, service_.robot_id(), last_stamp_ns_, 0);

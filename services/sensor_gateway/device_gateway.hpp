@@ -19,6 +19,7 @@
 #include "host_time.hpp"
 #include "laser_channel.hpp"
 #include "odometry_memory.hpp"
+#include "reader_wait.hpp"
 #include "scan_gate.hpp"
 
 namespace topogeo::sensor_gateway {
@@ -26,9 +27,9 @@ namespace topogeo::sensor_gateway {
 /// Lives in the loop of its service.
 class DeviceGateway {
  public:
-  /// Scans are numbered and published from when `readers` of them are there. In the file `memory`
-  /// (empty: none) it keeps where odometry and numbers are, to go on there when it starts again,
-  /// and in MEMORY.laser at which rate the laser sends.
+  /// Scans are numbered and published from when `readers` programs that read them are connected.
+  /// In the file `memory` (empty: none) it keeps where odometry and numbers are, to go on there
+  /// when it starts again, and in MEMORY.laser at which rate the laser sends.
   DeviceGateway(service::Service& service, const DeviceConfig& config, int readers,
                 const std::filesystem::path& memory = {});
   DeviceGateway(const DeviceGateway&) = delete;
@@ -42,7 +43,6 @@ class DeviceGateway {
   void finish();
 
  private:
-  void wait_for_readers();
   void remember();
   /// Publishes what can leave by now.
   void release(std::int64_t now_ns);
@@ -53,7 +53,6 @@ class DeviceGateway {
 
   service::Service& service_;
   HostTime time_;
-  int readers_;
   OdometryMemory memory_;
   std::uint64_t odometry_epoch_;
   ScanGate gate_;
@@ -73,6 +72,7 @@ class DeviceGateway {
   std::optional<service::BodySensorPublisher> body_;
   std::optional<BaseChannel> base_;
   std::optional<LaserChannel> laser_;
+  std::optional<ReaderWait> reader_wait_;
 };
 
 }  // namespace topogeo::sensor_gateway

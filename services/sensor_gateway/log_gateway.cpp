@@ -51,24 +51,23 @@ LogGateway::LogGateway(service::Service& service, const GatewayOptions& options,
                        recording::LogReader reader, std::uint64_t scans_total)
     : service_(service),
       options_(options),
-      readers_(options.readers.value_or(1)),
       reader_(std::move(reader)),
       pace_(options.rate),
       scans_(service.advertise<msg::Scan>(messaging::kReplayRole)),
       odometry_(service.advertise<msg::Odometry>(messaging::kReplayRole)),
-      stream_end_(service.advertise<msg::StreamEnd>()) {
+      stream_end_(service.advertise<msg::StreamEnd>()),
+      readers_(
+          service.loop(),
+          {{"scans", options.readers.value_or(1), messaging::ConnectedPrograms(scans_, odometry_)},
+           {"odometry", options.odometry_readers, messaging::ConnectedPrograms(odometry_)}}) {
   service_.status().set_counter("scans_sent", 0.0);
   service_.status().set_counter("scans_total", static_cast<double>(scans_total));
-  service_.status().wait_for(std::to_string(readers_) + " readers of scans");
   service_.subscribe<msg::ScanRequest>([this](const msg::ScanRequest& r) { on_request(r); });
-  wait_for_readers();
+  readers_.start([this](const std::string& what) { service_.status().wait_for(what); },
+                 [this] { begin(); });
 }
 
-void LogGateway::wait_for_readers() {
-  if (scans_.matched() < readers_) {
-    service_.loop().call_after(kReplayPoll, [this] { wait_for_readers(); });
-    return;
-  }
+void LogGateway::begin() {
   service_.status().set_state(msg::kServiceRunning);
   start_ = Clock::now();
   replay();
@@ -178,6 +177,7 @@ void LogGateway::count() {
 
 void LogGateway::finish() {
   if (!scans_.wait_for_acknowledgments(kReplayPoll) ||
+      !odometry_.wait_for_acknowledgments(kReplayPoll) ||
       (end_sent_ && !stream_end_.wait_for_acknowledgments(kReplayPoll))) {
     go_on_after({});
     return;

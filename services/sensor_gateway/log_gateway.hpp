@@ -13,6 +13,7 @@
 #include "topogeo/recording/log_reader.hpp"
 #include "topogeo/service/service.hpp"
 
+#include "reader_wait.hpp"
 #include "replay_pace.hpp"
 
 namespace topogeo::sensor_gateway {
@@ -22,12 +23,15 @@ struct GatewayOptions {
   recording::TopicChoice topics;  ///< of a log that is a recording of ROS
   service::ReplayRate rate;       ///< empty: lossless
   std::optional<int> readers;     ///< scan readers to wait for before the first scan, >= 0; none: 1
+  int odometry_readers = 0;       ///< the same of odometry
   bool exit_at_end = false;
 };
 
-/// Lives in the loop of its service. Every rate uses the replay QoS, so a slow reader slows the
-/// replay and no scan is lost. A local mapper that was away has the log read again from the scan on
-/// that it lacks; other readers get those scans twice.
+/// Lives in the loop of its service. Begins when the readers that it waits for are connected: these
+/// get every message from the first on, also those on the other topics that they read with it.
+/// Every rate uses the replay QoS, so a slow reader slows the replay and none is lost. A local
+/// mapper that was away has the log read again from the scan on that it lacks; other readers get
+/// those scans twice.
 class LogGateway {
  public:
   /// `scans_total` is for people watching.
@@ -37,7 +41,7 @@ class LogGateway {
  private:
   using Clock = std::chrono::steady_clock;
 
-  void wait_for_readers();
+  void begin();
   /// Reads the log again where that brings scans that are wanted.
   void on_request(const msg::ScanRequest& request);
   /// Makes the scan of that number the next one to be sent, and goes on from it at the pace of the
@@ -55,12 +59,12 @@ class LogGateway {
 
   service::Service& service_;
   GatewayOptions options_;
-  int readers_;
   recording::LogReader reader_;
   ReplayPace pace_;
   messaging::Writer<msg::Scan> scans_;
   messaging::Writer<msg::Odometry> odometry_;
   messaging::Writer<msg::StreamEnd> stream_end_;
+  ReaderWait readers_;
 
   Clock::time_point start_;
   Clock::time_point due_;  // of the pending messages

@@ -77,9 +77,14 @@ void add_options_to(command_line::Command& app, Options& options) {
       ->needs(log)
       ->type_name("TOPIC");
   app.add_option("--readers", options.replay.readers,
-                 "readers of scans to wait for; 0: do not wait")
+                 "programs to wait for that read scans; 0: do not wait")
       ->check(command_line::range(0, 100))
       ->default_str("1 for a log, 0 for devices");
+  app.add_option("--odometry-readers", options.replay.odometry_readers,
+                 "programs to wait for that read odometry")
+      ->check(command_line::range(0, 100))
+      ->needs(log)
+      ->capture_default_str();
   app.add_flag("--exit-at-end", options.replay.exit_at_end, "end when the log has ended")
       ->needs(log);
   app.add_option("--laser-port", options.laser_port, "instead of the one in the file")

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <csignal>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,21 +22,17 @@
 
 #include "join.hpp"
 #include "program.hpp"
+#include "waiting.hpp"
 
 namespace topogeo::test {
 namespace {
 
 constexpr const char* kLogPartition = "log-gateway-test";
-constexpr std::chrono::seconds kPatience{60 * kTimeFactor};
 
 template <class Condition>
 bool wait_for(messaging::EventLoop& loop, const Condition& condition) {
-  const auto end = std::chrono::steady_clock::now() + kPatience;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    loop.run_for(std::chrono::milliseconds(5));
-  }
-  return true;
+  return test::wait_for("messages of the programs", condition,
+                        [&] { loop.run_for(std::chrono::milliseconds(5)); });
 }
 
 /// The test in place of the local mapper.
@@ -90,8 +87,9 @@ class LogReadAgain : public testing::Test {
   Scratch scratch_;
   std::string domain_ = own_domain();
   messaging::Participant participant_ = join(domain_, kLogPartition);
-  messaging::Reader<msg::Scan> scans_reader_{participant_,
-                                             {std::string(messaging::kReplayRole), {}}};
+  messaging::Reader<msg::Scan> scans_reader_{
+      participant_,
+      {.role = std::string(messaging::kReplayRole), .read_with = {messaging::kOdometry}}};
   messaging::Reader<msg::Odometry> odometry_reader_{participant_,
                                                     {std::string(messaging::kReplayRole), {}}};
   messaging::Reader<msg::StreamEnd> ends_reader_{participant_};
@@ -128,6 +126,96 @@ TEST_F(LogReadAgain, TheLastScanForWhoHadAll) {
   read_all();
   const std::vector<msg::Scan> all = scans_;
   EXPECT_EQ(ask(all[0].odometry_epoch(), all.size()), std::vector{all.back()});
+}
+
+/// As a program whose announcements come one after the other, with a time between that a test
+/// decides.
+class LateReader : public testing::Test {
+ protected:
+  LateReader() {
+    use_udp_only();
+    write_log("room", scratch_ / "log.clf");
+    loop_.add<msg::Scan>(scans_reader_,
+                         [this](const msg::Scan& scan, const messaging::SampleInfo&) {
+                           scans_.push_back(scan.sequence_number());
+                         });
+    loop_.add<msg::ServiceStatus>(
+        status_reader_, [this](const msg::ServiceStatus& status, const messaging::SampleInfo&) {
+          waits_for_ = status.waits_for().to_string();
+        });
+    loop_.add<msg::StreamEnd>(ends_reader_,
+                              [this](const msg::StreamEnd& end, const messaging::SampleInfo&) {
+                                scans_in_log_ = end.count();
+                              });
+  }
+
+  void start_gateway(std::vector<std::string> words) {
+    words.insert(words.end(), {"--domain", domain_, "--partition", kLogPartition, "--log",
+                               (scratch_ / "log.clf").string()});
+    gateway_ = std::make_unique<Program>(scratch_, "sensor_gateway", words);
+  }
+  /// Reads scans and odometry from now on until the log has ended, and returns the numbers of the
+  /// odometry.
+  std::vector<std::uint64_t> read_odometry(const messaging::Participant& participant) {
+    std::vector<std::uint64_t> odometry;
+    const messaging::Reader<msg::Odometry> reader(participant,
+                                                  {.role = std::string(messaging::kReplayRole)});
+    messaging::EventLoop loop;
+    loop.add<msg::Odometry>(reader, [&](const msg::Odometry& sample, const messaging::SampleInfo&) {
+      odometry.push_back(sample.sequence_number());
+    });
+    EXPECT_TRUE(test::wait_for(
+        "the whole log",
+        [&] { return scans_in_log_ && odometry.size() >= scans_.size() && has_all_scans(); },
+        [&] {
+          loop.run_for(std::chrono::milliseconds(5));
+          loop_.run_for(std::chrono::milliseconds(5));
+        }))
+        << gateway_->err();
+    return odometry;
+  }
+  [[nodiscard]] bool has_all_scans() const { return scans_.size() == *scans_in_log_; }
+  /// The gateway reports that it waits for it, or has sent scans instead.
+  [[nodiscard]] bool wait_until_missed(const std::string& what) {
+    return test::wait_for(
+        "the gateway to miss " + what,
+        [&] { return waits_for_.find(what) != std::string::npos || !scans_.empty(); },
+        [&] { loop_.run_for(std::chrono::milliseconds(5)); });
+  }
+
+  Scratch scratch_;
+  std::string domain_ = own_domain();
+  messaging::Participant participant_ = join(domain_, kLogPartition);
+  messaging::Reader<msg::Scan> scans_reader_{
+      participant_,
+      {.role = std::string(messaging::kReplayRole), .read_with = {messaging::kOdometry}}};
+  messaging::Reader<msg::ServiceStatus> status_reader_{participant_};
+  messaging::Reader<msg::StreamEnd> ends_reader_{participant_};
+  messaging::EventLoop loop_;
+  std::vector<std::uint64_t> scans_;
+  std::optional<std::uint64_t> scans_in_log_;
+  std::string waits_for_;
+  std::unique_ptr<Program> gateway_;
+};
+
+TEST_F(LateReader, OfOdometryGetsAllOfIt) {
+  start_gateway({});
+  ASSERT_TRUE(wait_until_missed("not connected with odometry"));
+  ASSERT_TRUE(scans_.empty());
+  EXPECT_EQ(read_odometry(participant_), scans_);
+  EXPECT_GT(scans_.size(), 20U);
+}
+
+TEST_F(LateReader, OfOdometryAloneIsWaitedForWhereItIsCounted) {
+  const messaging::Participant other = join(domain_, kLogPartition);
+  const messaging::Reader<msg::Odometry> own(participant_,
+                                             {.role = std::string(messaging::kReplayRole)});
+  loop_.add<msg::Odometry>(own, [](const msg::Odometry&, const messaging::SampleInfo&) {});
+  start_gateway({"--odometry-readers", "2"});
+  ASSERT_TRUE(wait_until_missed("2 readers of odometry"));
+  ASSERT_TRUE(scans_.empty());
+  EXPECT_EQ(read_odometry(other), scans_);
+  EXPECT_GT(scans_.size(), 20U);
 }
 
 // A log file that is gone: there is nothing to go back to, and the gateway lives.

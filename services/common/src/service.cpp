@@ -58,7 +58,21 @@ bool Service::shares_map(const std::string& robot) const {
   return std::ranges::find(setup_.options.other_robots, robot) != setup_.options.other_robots.end();
 }
 
+void Service::note_subscription(std::string_view topic, const Subscription& subscription) {
+  subscribed_.insert(topic);
+  announced_.insert(subscription.read_with.begin(), subscription.read_with.end());
+}
+
+void Service::check_subscriptions() const {
+  for (const std::string_view topic : announced_) {
+    if (subscribed_.contains(topic)) continue;
+    throw std::logic_error("topic " + std::string(topic) +
+                           ": announced to be read with others, but not subscribed to");
+  }
+}
+
 void Service::run() {
+  check_subscriptions();
   try {
     loop_.run();
   } catch (const std::exception& error) {

@@ -51,6 +51,15 @@ class ServiceTest : public ::testing::Test {
   msg::ServiceStatus status_;
 };
 
+// A gateway would wait for ever for a program that announces more than it reads.
+TEST_F(ServiceTest, SubscribesToWhatItAnnouncesToRead) {
+  service_.subscribe<msg::Scan>([](const msg::Scan&) {}, {.read_with = {messaging::kOdometry}});
+  EXPECT_THROW(service_.run(), std::logic_error);
+  service_.subscribe<msg::Odometry>([](const msg::Odometry&) {});
+  service_.loop().stop();
+  EXPECT_NO_THROW(service_.run());
+}
+
 TEST_F(ServiceTest, HandlersGetTheMessagesOfTheRobotAlone) {
   std::vector<std::uint64_t> goals;
   std::vector<std::string> closures;

@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/participant.hpp"
@@ -27,10 +29,12 @@ namespace topogeo::service {
 struct Subscription {
   std::string role = {};       ///< see messaging::ReaderOptions
   std::string addressee = {};  ///< see messaging::ReaderOptions
-  bool any_robot = false;      ///< false: those of other robots are counted and ignored ...
-  bool team = false;           ///< ... but for those of the robots that share the map
-  bool of_map = false;         ///< those of the robot whose map is used, in place of the own ones
-  bool main_input = false;     ///< what the service works on: rate and age are in its status
+  /// See messaging::ReaderOptions; subscribe to these as well.
+  std::vector<std::string_view> read_with = {};
+  bool any_robot = false;   ///< false: those of other robots are counted and ignored ...
+  bool team = false;        ///< ... but for those of the robots that share the map
+  bool of_map = false;      ///< those of the robot whose map is used, in place of the own ones
+  bool main_input = false;  ///< what the service works on: rate and age are in its status
 };
 
 /// One at a time in a process. Readers and writers live as long as the service.
@@ -54,8 +58,9 @@ class Service {
   /// True when a signal has asked the program to end.
   [[nodiscard]] static bool stopping() { return messaging::SignalStop::received() != 0; }
 
-  /// Works until SIGINT, SIGTERM or loop().stop(). An exception of a handler makes the state
-  /// kServiceFailed with its text and comes out here.
+  /// Works until SIGINT, SIGTERM or loop().stop(). Throws std::logic_error when a subscription has
+  /// announced a topic that nothing subscribes to: a gateway would wait for ever. An exception of a
+  /// handler makes the state kServiceFailed with its text and comes out here.
   void run();
 
   /// Calls `handler` in the loop for the messages of T's topic, as handler(message) or
@@ -66,7 +71,9 @@ class Service {
   template <class T, class Handler>
   void subscribe(Handler handler, const Subscription& subscription = {},
                  messaging::EventLoop::InstanceHandler on_gone = {}) {
-    const messaging::Reader<T> reader(participant_, {subscription.role, subscription.addressee});
+    note_subscription(messaging::TopicTraits<T>::info().name, subscription);
+    const messaging::Reader<T> reader(
+        participant_, {subscription.role, subscription.addressee, subscription.read_with});
     loop_.add<T>(
         reader,
         [this, handler = std::move(handler), any_robot = subscription.any_robot,
@@ -122,6 +129,8 @@ class Service {
     return false;
   }
 
+  void note_subscription(std::string_view topic, const Subscription& subscription);
+  void check_subscriptions() const;
   /// Gives the status to Prometheus when the options or the configuration want it.
   void offer_metrics();
   /// What the status and the service manager show besides what services report themselves.
@@ -136,6 +145,8 @@ class Service {
   std::optional<messaging::StatusPublisher> status_;
   std::optional<messaging::SignalStop> signals_;
   messaging::ServiceManager manager_{loop_};
+  std::set<std::string_view> subscribed_;
+  std::set<std::string_view> announced_;      // to be read with others
   std::shared_ptr<MetricsEndpoint> metrics_;  // the status has it, too, up to its end
 };
 
