@@ -71,6 +71,12 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
     live_.set_tracked(service::from_msg(pose.stop()), service::from_msg(pose));
   });
   service.subscribe<msg::StreamEnd>([this](const msg::StreamEnd& end) { on_stream_end(end); });
+  // A reader that comes when no odometry does any more, after a log, gets the last pose, too.
+  service.loop().on_event([this](const messaging::Event& event) {
+    if (event.kind == messaging::EventKind::kMatched && event.topic == messaging::kLivePose) {
+      send_pose();
+    }
+  });
   service.loop().add_timer(kCountPeriod, [this] { set_pool_counters(pool_, service_.status()); });
   if (!options.standalone) {
     missing_.emplace(service, queue_, options.replay || !options.map, [this] { schedule(); });

@@ -62,6 +62,11 @@ SharedLocalizerService::SharedLocalizerService(service::Service& service, bool s
       {.team = true});
   service.subscribe<msg::StreamEnd>([this](const msg::StreamEnd& end) { on_stream_end(end); },
                                     {.team = true});
+  // A reader that comes when no odometry does any more gets the last poses, too.
+  service.loop().on_event([this](const messaging::Event& event) {
+    if (event.kind != messaging::EventKind::kMatched || event.topic != messaging::kLivePose) return;
+    for (const auto& [robot, state] : robots_) send_pose(robot);
+  });
   service.loop().add_timer(kCounterPeriod, [this] { set_pool_counters(pool_, service_.status()); });
   if (standalone) {
     resume({});

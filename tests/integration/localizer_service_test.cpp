@@ -12,6 +12,7 @@
 #include "topogeo/storage/map_file.hpp"
 
 #include "pool_fixture.hpp"
+#include "waiting.hpp"
 
 namespace topogeo::test {
 namespace {
@@ -137,6 +138,26 @@ TEST_F(LocalizerTest, WithoutTheWorkersItGoesOnAfterAWhile) {
   ASSERT_TRUE(wait_until("the end of the stream", [&] { return end_.has_value(); }));
   expect_result_of_one_process();
   EXPECT_THAT(localizer->err(), ::testing::HasSubstr("0 of 3 workers came within 0.2 s"));
+}
+
+// No odometry comes any more.
+TEST_F(LocalizerTest, AReaderThatComesAfterTheLogGetsTheLastPose) {
+  const auto localizer = start("localizer");
+  for (const auto& map : maps_) publish(*map);
+  end_stream();
+  ASSERT_TRUE(test::wait_for(
+      "the end of the localizer", [&] { return end_.has_value(); },
+      [&] { loop_.run_for(milliseconds(5)); }))
+      << localizer->err();
+  const messaging::Reader<msg::LivePose> late(participant_);
+  std::optional<std::int64_t> stamp_ns;
+  loop_.add<msg::LivePose>(
+      late, [&](const auto& message, const auto&) { stamp_ns = message.stamp_ns(); });
+  ASSERT_TRUE(test::wait_for(
+      "a pose for the late reader", [&] { return stamp_ns.has_value(); },
+      [&] { loop_.run_for(milliseconds(5)); }))
+      << localizer->err();
+  EXPECT_EQ(*stamp_ns, maps_.back()->stamp_ns);
 }
 
 TEST_F(LocalizerTest, TheLivePoseFollowsTheOdometryBetweenStops) {
