@@ -20,6 +20,7 @@
 
 #include "commands.hpp"
 #include "domain_view.hpp"
+#include "program_connection.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -103,7 +104,10 @@ int send_base_command(BaseRequest request) {
   messaging::Reader<msg::BaseStatus> reader(participant);
   messaging::Writer<msg::BaseCommand> writer(participant);
   const milliseconds patience(static_cast<std::int64_t>(1000.0 * request.wait_s));
-  if (!writer.wait_for_matched(1, patience) || !reader.wait_for_matched(1, patience)) {
+  const auto of_robot = [&](const msg::BaseStatus& status) {
+    return status.robot_id() == request.robot_id.c_str();
+  };
+  if (!connect_with_program(reader, writer, patience, of_robot)) {
     throw std::runtime_error(nothing_alive(request.view, "base"));
   }
   messaging::set_header(request.command, request.robot_id, 0, 0);

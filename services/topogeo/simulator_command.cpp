@@ -10,13 +10,16 @@
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/simulation.h"
+#include "topogeo/msg/status.h"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/host.hpp"
 
 #include "commands.hpp"
 #include "domain_view.hpp"
+#include "program_connection.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -48,7 +51,11 @@ int send_simulator_command(const SimulatorRequest& request) {
   constexpr std::chrono::seconds kSimulatorPatience{5};
   const messaging::Participant participant = join(request.view, "topogeo/simulator");
   messaging::Writer<msg::SimulatorCommand> commands(participant);
-  if (!commands.wait_for_matched(1, kSimulatorPatience)) {
+  messaging::Reader<msg::ServiceStatus> statuses(participant);
+  const auto of_robot = [&](const msg::ServiceStatus& status) {
+    return status.service() == "simulator" && status.robot_id() == request.robot_id.c_str();
+  };
+  if (!connect_with_program(statuses, commands, kSimulatorPatience, of_robot)) {
     throw std::runtime_error(nothing_alive(request.view, "simulator"));
   }
   msg::SimulatorCommand command;
