@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -15,6 +16,7 @@
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/msg/merge.h"
+#include "topogeo/msg/status.h"
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/service/merge_conversions.hpp"
 #include "topogeo/service/service_options.hpp"
@@ -22,6 +24,7 @@
 
 #include "domain_view.hpp"
 #include "service_request.hpp"
+#include "service_table.hpp"
 #include "store_commands.hpp"
 
 namespace topogeo::cli {
@@ -30,8 +33,7 @@ namespace {
 using localization::MergeProposal;
 using std::chrono::milliseconds;
 
-/// For proposals that are on their way; a late reader gets all of them at once.
-constexpr milliseconds kQuiet{300};
+constexpr milliseconds kProposalPoll{20};
 
 struct MergeRequest {
   DomainView view;
@@ -59,20 +61,33 @@ const char* state_text(MergeProposal::State state) {
   return "?";
 }
 
+/// As many as the status of the localizer counts: those that are sent to a late reader take a
+/// while.
 std::map<std::uint32_t, MergeProposal> receive(const messaging::Participant& participant,
                                                const MergeRequest& request) {
   messaging::Reader<msg::MergeProposal> reader(participant);
-  if (!reader.wait_for_matched(1, request.patience())) {
-    throw std::runtime_error(nothing_alive(request.view, "localizer"));
-  }
+  messaging::Reader<msg::ServiceStatus> statuses(participant);
   std::map<std::uint32_t, MergeProposal> proposals;
-  while (reader.wait_for_data(kQuiet)) {
+  std::optional<double> expected;
+  const auto end = std::chrono::steady_clock::now() + request.patience();
+  while (std::chrono::steady_clock::now() < end) {
+    statuses.take([&](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
+      if (!info.valid || status.robot_id() != request.robot_id.c_str() ||
+          status.service() != "localizer" || !reader.connected_with(info.writer)) {
+        return;
+      }
+      expected = counter(&status, "merge_proposals");
+    });
     reader.take([&](const msg::MergeProposal& message, const messaging::SampleInfo& info) {
       if (!info.valid || message.robot_id() != request.robot_id.c_str()) return;
       proposals[message.number()] = service::from_msg(message);
     });
+    if (expected && static_cast<double>(proposals.size()) >= *expected) return proposals;
+    static_cast<void>(statuses.wait_for_data(kProposalPoll));
   }
-  return proposals;
+  if (!expected) throw std::runtime_error(nothing_alive(request.view, "localizer"));
+  throw std::runtime_error(fmt::format("{} of {} proposals came within {} ms", proposals.size(),
+                                       *expected, request.patience().count()));
 }
 
 nlohmann::ordered_json json_of(const MergeProposal& p) {
