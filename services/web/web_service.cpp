@@ -60,6 +60,7 @@ WebService::WebService(service::Service& service, const ServerConfig& config, Pa
                 foxglove_.take(pose);
               },
               [this](const msg::LaserStatus& laser) { hand_.take(laser); },
+              [this](const messaging::Handle& base) { hand_.note_base(base); },
               [this](const msg::NavigatorStatus& status) {
                 exploration_.take(status, goals_.take(status));
               }}),

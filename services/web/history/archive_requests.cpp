@@ -43,6 +43,12 @@ ArchiveRequests::ArchiveRequests(service::Service& service)
       pending_(service, "no map store has answered", kArchivePatience_s),
       requests_(service.advertise<msg::ArchiveRequest>()),
       pieces_(service.advertise<msg::SnapshotPiece>()) {
+  // Other readers of pieces than that of the map store may be connected before it.
+  service.loop().on_event([this](const messaging::Event& event) {
+    if (event.kind == messaging::EventKind::kMatched && event.topic == messaging::kSnapshotPiece) {
+      next_piece_ = 0;
+    }
+  });
   service.subscribe<msg::ArchiveReply>([this](const msg::ArchiveReply& reply) { on_reply(reply); },
                                        {.any_robot = true});
 }

@@ -112,6 +112,7 @@ void HandSender::release(std::uint64_t viewer) {
 }
 
 void HandSender::tick() {
+  if (stop_unheard_ && base_hears()) stop_unheard_ = !order(msg::kBaseHalt);
   const std::int64_t now_ns = steady_ns();
   const std::int64_t stamp_ns = clock_.now_ns(now_ns);
   const bool held = drive_.held(now_ns);
@@ -137,15 +138,26 @@ void HandSender::command(const geometry::Velocity& velocity, std::int64_t stamp_
   service_.status().add_to_counter("commands");
 }
 
+void HandSender::note_base(const messaging::Handle& base) {
+  base_ = base;
+}
+
+// The base of another robot may be connected already when that of the own one is not.
+bool HandSender::base_hears() const {
+  return base_ && orders_.connected_with(*base_);
+}
+
 bool HandSender::stop() {
   drive_ = ManualDrive(service_.setup().config.config.navigator.follower);
   const bool heard = order(msg::kBaseHalt);
+  stop_unheard_ = !heard;
   events_.add(EventLog::Level::kWarning, "web",
               heard ? "stopped by the operator" : "the operator's stop is heard by no base");
   return heard;
 }
 
 bool HandSender::release_stop() {
+  stop_unheard_ = false;
   const bool heard = order(msg::kBaseReset);
   if (heard) events_.add(EventLog::Level::kInfo, "web", "the operator lets it move again");
   return heard;
@@ -156,8 +168,9 @@ bool HandSender::order(msg::BaseCommandKind kind) {
   messaging::set_header(message, service_.robot_id(), support::wall_clock_ns(), orders_sent_++);
   messaging::set_client_id(message, client_id_);
   message.kind(kind);
+  const bool heard = base_hears();  // before it is sent, or it may be lost after all
   service_.send(orders_, message, "base command");
-  return orders_.matched() > 0;
+  return heard;
 }
 
 void HandSender::show(const navigation::GuardVerdict& verdict, bool held) {

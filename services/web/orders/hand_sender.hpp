@@ -42,10 +42,14 @@ class HandSender {
   void drive(std::uint64_t viewer, const geometry::Velocity& wanted,
              const std::function<void()>& on_first);
   void release(std::uint64_t viewer);
-  /// The base stops at once and holds until release_stop(). False: no base hears it.
+  /// The base stops at once and holds until release_stop(). False: no base hears it; one that comes
+  /// before release_stop() is stopped then.
   [[nodiscard]] bool stop();
   /// False: no base hears it.
   [[nodiscard]] bool release_stop();
+
+  /// The writer of the status of the robot's base: its program is to be connected.
+  void note_base(const messaging::Handle& base);
 
   // Sensors of the guard, and where drawn walls and no-go zones are.
   void take(const msg::LivePose& pose);
@@ -56,7 +60,9 @@ class HandSender {
   void tick();
   void keep_off_drawn();
   void command(const geometry::Velocity& velocity, std::int64_t stamp_ns);
+  /// Whether the base hears it.
   bool order(msg::BaseCommandKind kind);
+  [[nodiscard]] bool base_hears() const;
   void show(const navigation::GuardVerdict& verdict, bool held);
 
   service::Service& service_;
@@ -75,6 +81,8 @@ class HandSender {
   std::uint64_t orders_sent_ = 0;
   messaging::Writer<msg::MotionCommand> commands_;
   messaging::Writer<msg::BaseCommand> orders_;
+  std::optional<messaging::Handle> base_;
+  bool stop_unheard_ = false;
 };
 
 }  // namespace topogeo::web
