@@ -16,7 +16,8 @@ constexpr const char* kPartition = "gateway-test";
 
 GatewayOnDevices::GatewayOnDevices()
     : participant_(join(domain_, kPartition)),
-      scans_reader_(participant_, {std::string(messaging::kReplayRole), {}}),
+      scans_reader_(participant_, {.role = std::string(messaging::kReplayRole),
+                                   .read_with = {messaging::kOdometry}}),
       odometry_reader_(participant_),
       base_reader_(participant_),
       laser_reader_(participant_),
