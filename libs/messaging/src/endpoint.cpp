@@ -82,6 +82,11 @@ void Endpoint::Shared::push(Event event) {
   if (wake) wake();
 }
 
+void Endpoint::Shared::wake_program() {
+  const std::lock_guard lock(mutex);
+  if (wake) wake();
+}
+
 void Endpoint::Shared::set_matched(int current, int change,
                                    const eprosima::fastrtps::rtps::InstanceHandle_t& peer) {
   Event event;

@@ -25,6 +25,8 @@ struct Endpoint::Shared {
   void push(Event event);
   /// Counts peers and appends the event.
   void set_matched(int current, int change, const eprosima::fastrtps::rtps::InstanceHandle_t& peer);
+  /// Wakes the program's loop, if it has one.
+  void wake_program();
   void push_incompatible(const eprosima::fastdds::dds::IncompatibleQosStatus& status);
 
   const std::string topic;

@@ -1,9 +1,8 @@
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <utility>
-
-#include <fastdds/dds/subscriber/SampleInfo.hpp>
-#include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 
 #include "read_with.hpp"
 #include "reader_impl.hpp"
@@ -26,6 +25,27 @@ InstanceState to_state(dds::InstanceStateKind state) {
   return state == dds::NOT_ALIVE_DISPOSED_INSTANCE_STATE ? InstanceState::kDisposed
                                                          : InstanceState::kNoWriters;
 }
+
+std::shared_ptr<void> make_message(const dds::TypeSupport& type) {
+  return {dds::TypeSupport(type).create_data(),
+          [type](void* message) { dds::TypeSupport(type).delete_data(message); }};
+}
+
+Arrival make_arrival(const dds::SampleInfo& dds_info, std::shared_ptr<void> message) {
+  Arrival arrival;
+  SampleInfo& sample = arrival.info;
+  sample.valid = dds_info.valid_data;
+  sample.state = sample.valid ? InstanceState::kAlive : to_state(dds_info.instance_state);
+  sample.instance = to_handle(dds_info.instance_handle);
+  sample.writer = to_handle(dds_info.publication_handle);
+  sample.stamp_ns = dds_info.source_timestamp.to_ns();
+  arrival.number = dds_info.sample_identity.sequence_number().to64long();
+  if (sample.valid) arrival.message = std::move(message);
+  return arrival;
+}
+
+/// Of a resource of the middleware: what its numbers hold.
+constexpr std::int32_t kNoLimit = std::numeric_limits<std::int32_t>::max();
 
 }  // namespace
 
@@ -67,14 +87,49 @@ void ReaderListener::on_sample_lost(dds::DataReader* /*reader*/,
   shared_->push(make_event(EventKind::kSampleLost, static_cast<std::uint32_t>(status.total_count)));
 }
 
+void ReaderListener::on_data_available(dds::DataReader* reader) {
+  if (collector_ && collector_->collect(*reader)) shared_->wake_program();
+}
+
+bool Collector::collect(dds::DataReader& reader) {
+  std::vector<Arrival> batch;
+  dds::SampleInfo info;
+  std::shared_ptr<void> message = spare_message();
+  while (!arrivals.is_full(batch.size() + 1) &&
+         reader.take_next_sample(message.get(), &info) == ReturnCode_t::RETCODE_OK) {
+    batch.push_back(make_arrival(info, message));
+    if (info.valid_data) message = spare_message();
+  }
+  recycle(std::move(message));
+  return arrivals.put(std::move(batch));
+}
+
+std::shared_ptr<void> Collector::spare_message() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!spare_.empty()) {
+      const auto message = std::move(spare_.back());
+      spare_.pop_back();
+      return message;
+    }
+  }
+  return make_message(type_);
+}
+
+void Collector::recycle(std::shared_ptr<void> message) {
+  constexpr std::size_t kMostSpare = 2;  // what a loop that keeps up has in use
+  const std::lock_guard lock(mutex_);
+  if (message && spare_.size() < kMostSpare) spare_.push_back(std::move(message));
+}
+
 ReaderCore::Impl::Impl(std::shared_ptr<ParticipantCore> participant_core, const TopicInfo& topic,
                        std::shared_ptr<Endpoint::Shared> shared)
     : participant(std::move(participant_core)),
       info(&topic),
       listener(std::move(shared)),
       type(topic.make_type()),
-      message(type.create_data()),
-      empty(type.create_data()) {}
+      message(make_message(type)),
+      empty(make_message(type)) {}
 
 ReaderCore::Impl::~Impl() {
   if (reader != nullptr) {
@@ -82,22 +137,45 @@ ReaderCore::Impl::~Impl() {
     participant->subscriber().delete_datareader(reader);
   }
   if (filtered != nullptr) participant->remove_filtered(*filtered);
-  type.delete_data(message);
-  type.delete_data(empty);
 }
 
-void ReaderCore::Impl::deliver(const dds::SampleInfo& dds_info, Endpoint::Shared& shared,
+void ReaderCore::Impl::keep_last_of_each_writer(dds::DataReaderQos& qos) {
+  dds::ResourceLimitsQosPolicy& limits = qos.resource_limits();
+  const auto or_no_limit = [](std::int32_t limit) { return limit > 0 ? limit : kNoLimit; };
+  const int depth = std::max(1, qos.history().depth);
+  collector =
+      std::make_shared<Collector>(type, static_cast<std::size_t>(depth),
+                                  static_cast<std::size_t>(or_no_limit(limits.max_samples)));
+  listener.set_collector(collector);
+  qos.history().kind = dds::KEEP_ALL_HISTORY_QOS;
+  // The middleware refuses a sample while more samples of its writer are missing before it than
+  // fit into an instance, and wants room for all instances full of them.
+  limits.max_samples_per_instance = kNoLimit / or_no_limit(limits.max_instances);
+  limits.max_samples = or_no_limit(limits.max_instances) * limits.max_samples_per_instance;
+}
+
+bool ReaderCore::Impl::next(Arrival& arrival) {
+  if (collector) {
+    const bool taken = collector->arrivals.take(arrival);
+    if (collector->arrivals.was_full()) collector->collect(*reader);
+    return taken;
+  }
+  dds::SampleInfo dds_info;
+  const auto result = reader->take_next_sample(message.get(), &dds_info);
+  if (result == ReturnCode_t::RETCODE_NO_DATA) return false;
+  if (result != ReturnCode_t::RETCODE_OK) {
+    throw std::runtime_error(std::string(info->name) + ": DDS take failed with code " +
+                             std::to_string(result()));
+  }
+  arrival = make_arrival(dds_info, message);
+  return true;
+}
+
+void ReaderCore::Impl::deliver(const Arrival& arrival, Endpoint::Shared& shared,
                                const Handler& handler) {
-  SampleInfo sample;
-  sample.valid = dds_info.valid_data;
-  sample.state = sample.valid ? InstanceState::kAlive : to_state(dds_info.instance_state);
-  sample.instance = to_handle(dds_info.instance_handle);
-  sample.writer = to_handle(dds_info.publication_handle);
-  sample.stamp_ns = dds_info.source_timestamp.to_ns();
+  const SampleInfo& sample = arrival.info;
   if (!sample.valid) {
-    writers.erase(sample.instance);
-    orphans.erase(sample.instance);
-    handler(empty, sample);
+    end_instance(sample, handler);
     return;
   }
   const auto refuse = [&](const std::string& why) {
@@ -108,23 +186,84 @@ void ReaderCore::Impl::deliver(const dds::SampleInfo& dds_info, Endpoint::Shared
     event.detail = why;
     shared.push(std::move(event));
   };
-  if (const auto defect = info->find_defect(message)) {
+  if (const auto defect = info->find_defect(arrival.message.get())) {
     refuse(*defect);
     return;
   }
   ++shared.messages;
-  if (lost.contains(sample.writer)) {
-    orphans.insert(sample.instance);
-  } else {
-    writers[sample.instance] = sample.writer;
-    orphans.erase(sample.instance);
-  }
   try {
-    handler(message, sample);
+    handler(arrival.message.get(), sample);
+    note_writer(sample);
+  } catch (const Refused&) {  // NOLINT(bugprone-empty-catch): the handler has reported why
   } catch (const std::invalid_argument& error) {
     // No stranger's message ends a program that shows a run, or the run with it (faults_strangers).
     refuse(error.what());
   }
+}
+
+void ReaderCore::Impl::note_writer(const SampleInfo& sample) {
+  if (!lost.contains(sample.writer)) {
+    writers[sample.instance].insert(sample.writer);
+    orphans.erase(sample.instance);
+  } else if (!writers.contains(sample.instance)) {
+    orphans.insert(sample.instance);
+  }
+}
+
+void ReaderCore::Impl::end_instance(const SampleInfo& sample, const Handler& handler) {
+  if (sample.state == InstanceState::kAlive) return;  // a message came after the disposal
+  const auto found = writers.find(sample.instance);
+  if (found != writers.end()) {
+    // What a peer has written stays, whatever others say who never had a sample of it accepted.
+    if (found->second.erase(sample.writer) == 0) return;
+    if (found->second.empty()) writers.erase(found);
+  }
+  orphans.erase(sample.instance);
+  handler(empty.get(), sample);
+}
+
+void ReaderCore::Impl::lose(const Handle& writer) {
+  for (auto at = writers.begin(); at != writers.end();) {
+    auto& [instance, of_instance] = *at;
+    if (of_instance.erase(writer) > 0 && of_instance.empty()) {
+      orphans.insert(instance);
+      at = writers.erase(at);
+    } else {
+      ++at;
+    }
+  }
+}
+
+void ReaderCore::Impl::create_reader(const std::string& profile, const std::string& addressee,
+                                     const std::vector<std::string_view>& read_with) {
+  dds::Subscriber& subscriber = participant->subscriber();
+  dds::DataReaderQos qos;
+  if (subscriber.get_datareader_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
+    throw std::runtime_error("DDS profile '" + profile + "' of topic " + std::string(info->name) +
+                             " is not in the profiles file");
+  }
+  qos.user_data().data_vec(announce_read_with(read_with));
+  dds::TopicDescription* description = &participant->topic(*info);
+  if (!addressee.empty()) {
+    filtered = &participant->make_filtered(*info, addressee);
+    description = filtered;
+  }
+  dds::StatusMask mask = dds::StatusMask::all();
+  if (qos.history().kind == dds::KEEP_LAST_HISTORY_QOS) {
+    keep_last_of_each_writer(qos);
+  } else {
+    // What fills up holds the writer back, so data is taken by whoever waits for it.
+    mask >> dds::StatusMask::data_available();
+  }
+  if (participant->secured()) use_long_sessions(qos.properties());
+  reader = subscriber.create_datareader(description, qos, &listener, mask);
+  if (reader == nullptr) {
+    throw std::runtime_error("DDS: cannot create a reader of topic " + std::string(info->name) +
+                             " with profile '" + profile + "'" + participant->reason_of_denial());
+  }
+  // Who collects wakes the program.
+  reader->get_statuscondition().set_enabled_statuses(collector ? dds::StatusMask::none()
+                                                               : dds::StatusMask::data_available());
 }
 
 ReaderCore::ReaderCore(const Participant& participant, const TopicInfo& topic,
@@ -132,62 +271,36 @@ ReaderCore::ReaderCore(const Participant& participant, const TopicInfo& topic,
                        const std::vector<std::string_view>& read_with) {
   shared_ = std::make_shared<Shared>(topic.name);
   impl_ = std::make_unique<Impl>(participant.core(), topic, shared_);
-  dds::Subscriber& subscriber = impl_->participant->subscriber();
-  const std::string profile = profile_name(topic, role, "reader");
-  dds::DataReaderQos qos;
-  if (subscriber.get_datareader_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
-    throw std::runtime_error("DDS profile '" + profile + "' of topic " + std::string(topic.name) +
-                             " is not in the profiles file");
-  }
-  qos.user_data().data_vec(announce_read_with(read_with));
-  dds::TopicDescription* description = &impl_->participant->topic(topic);
-  if (!addressee.empty()) {
-    impl_->filtered = &impl_->participant->make_filtered(topic, addressee);
-    description = impl_->filtered;
-  }
-  // Data is taken by whoever waits for it; only events come through the listener.
-  dds::StatusMask mask = dds::StatusMask::all();
-  mask >> dds::StatusMask::data_available();
-  if (impl_->participant->secured()) use_long_sessions(qos.properties());
-  impl_->reader = subscriber.create_datareader(description, qos, &impl_->listener, mask);
-  if (impl_->reader == nullptr) {
-    throw std::runtime_error("DDS: cannot create a reader of topic " + std::string(topic.name) +
-                             " with profile '" + profile + "'" +
-                             impl_->participant->reason_of_denial());
-  }
-  impl_->reader->get_statuscondition().set_enabled_statuses(dds::StatusMask::data_available());
+  impl_->create_reader(profile_name(topic, role, "reader"), addressee, read_with);
 }
 
 ReaderCore::~ReaderCore() = default;
 
 std::size_t ReaderCore::take(std::size_t limit, const Handler& handler) {
   std::size_t taken = 0;
-  dds::SampleInfo info;
+  Arrival arrival;
   while (taken < limit) {
-    const auto result = impl_->reader->take_next_sample(impl_->message, &info);
-    if (result == ReturnCode_t::RETCODE_NO_DATA) {
+    if (!impl_->next(arrival)) {
       impl_->lost.clear();  // nothing of theirs waits any more
       break;
     }
-    if (result != ReturnCode_t::RETCODE_OK) {
-      throw std::runtime_error(shared_->topic + ": DDS take failed with code " +
-                               std::to_string(result()));
-    }
     ++taken;
-    impl_->deliver(info, *shared_, handler);
+    impl_->deliver(arrival, *shared_, handler);
+    if (impl_->collector) impl_->collector->recycle(std::move(arrival.message));
   }
   while (taken < limit && !impl_->orphans.empty()) {
     SampleInfo orphan;
     orphan.state = InstanceState::kNoWriters;
     orphan.instance = impl_->orphans.extract(impl_->orphans.begin()).value();
     ++taken;
-    handler(impl_->empty, orphan);
+    handler(impl_->empty.get(), orphan);
   }
   return taken;
 }
 
 bool ReaderCore::wait_for_data(std::chrono::nanoseconds timeout) {
   if (!impl_->orphans.empty()) return true;
+  if (impl_->collector) return impl_->collector->arrivals.wait(timeout);
   constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
   return impl_->reader->wait_for_unread_message(
       {static_cast<std::int32_t>(timeout.count() / kNanosecondsPerSecond),
@@ -195,18 +308,15 @@ bool ReaderCore::wait_for_data(std::chrono::nanoseconds timeout) {
 }
 
 std::uint64_t ReaderCore::waiting() const {
-  return impl_->reader->get_unread_count();
+  const std::uint64_t collected = impl_->collector ? impl_->collector->arrivals.size() : 0;
+  return collected + impl_->reader->get_unread_count();
 }
 
 void ReaderCore::take_events(const EventHandler& handler) {
   Endpoint::take_events([&](const Event& event) {
     if (event.kind == EventKind::kUnmatched || event.kind == EventKind::kLivelinessLost) {
       impl_->lost.insert(event.peer);
-      std::erase_if(impl_->writers, [&](const auto& instance_and_writer) {
-        if (instance_and_writer.second != event.peer) return false;
-        impl_->orphans.insert(instance_and_writer.first);
-        return true;
-      });
+      impl_->lose(event.peer);
     } else if (event.kind == EventKind::kMatched || event.kind == EventKind::kLivelinessGained) {
       impl_->lost.erase(event.peer);
     }

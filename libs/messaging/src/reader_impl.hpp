@@ -1,21 +1,55 @@
 // The Fast DDS side of a reader.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <set>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
 
+#include "arrivals.hpp"
 #include "endpoint_shared.hpp"
 #include "participant_core.hpp"
 
 namespace topogeo::messaging::detail {
 
+/// Takes the samples of a reader that keeps the last ones from the middleware as they arrive.
+class Collector {
+ public:
+  Collector(eprosima::fastdds::dds::TypeSupport type, std::size_t depth, std::size_t capacity)
+      : arrivals(depth, capacity), type_(std::move(type)) {}
+
+  /// From any thread. True when the program has to be woken.
+  bool collect(eprosima::fastdds::dds::DataReader& reader);
+  /// Takes a message back, so that its vectors keep their memory for the next one.
+  void recycle(std::shared_ptr<void> message);
+
+  Arrivals arrivals;
+
+ private:
+  std::shared_ptr<void> spare_message();
+
+  eprosima::fastdds::dds::TypeSupport type_;
+  std::mutex mutex_;
+  std::vector<std::shared_ptr<void>> spare_;
+};
+
 class ReaderListener final : public eprosima::fastdds::dds::DataReaderListener {
  public:
   explicit ReaderListener(std::shared_ptr<Endpoint::Shared> shared) : shared_(std::move(shared)) {}
+
+  /// Before the reader is made; null: the program takes samples from the middleware itself.
+  void set_collector(std::shared_ptr<Collector> collector) { collector_ = std::move(collector); }
+
+  void on_data_available(eprosima::fastdds::dds::DataReader* reader) override;
 
   void on_subscription_matched(
       eprosima::fastdds::dds::DataReader* reader,
@@ -36,6 +70,7 @@ class ReaderListener final : public eprosima::fastdds::dds::DataReaderListener {
 
  private:
   std::shared_ptr<Endpoint::Shared> shared_;
+  std::shared_ptr<Collector> collector_;
 };
 
 struct ReaderCore::Impl {
@@ -45,21 +80,34 @@ struct ReaderCore::Impl {
   Impl& operator=(const Impl&) = delete;
   ~Impl();
 
+  /// Of a reader that keeps the last samples: lets the middleware keep all of them for the moment
+  /// until they are collected.
+  void keep_last_of_each_writer(eprosima::fastdds::dds::DataReaderQos& qos);
+  void create_reader(const std::string& profile, const std::string& addressee,
+                     const std::vector<std::string_view>& read_with);
+
+  /// Takes a sample; false: there is none.
+  bool next(Arrival& arrival);
   /// Keeps `writers` in step with a sample and passes it on.
-  void deliver(const eprosima::fastdds::dds::SampleInfo& dds_info, Endpoint::Shared& shared,
-               const Handler& handler);
+  void deliver(const Arrival& arrival, Endpoint::Shared& shared, const Handler& handler);
+  void end_instance(const SampleInfo& sample, const Handler& handler);
+  void note_writer(const SampleInfo& sample);
+  /// Takes a writer out of `writers`; the instances of which it was the last one become orphans.
+  void lose(const Handle& writer);
 
   std::shared_ptr<ParticipantCore> participant;
   const TopicInfo* info;
   ReaderListener listener;
   eprosima::fastdds::dds::TypeSupport type;
-  void* message = nullptr;  // reused, so that its vectors keep their memory
-  void* empty = nullptr;    // handed over with samples that carry no message
+  std::shared_ptr<void> message;         // reused, so that its vectors keep their memory
+  std::shared_ptr<void> empty;           // handed over with samples that carry no message
+  std::shared_ptr<Collector> collector;  // null: samples wait in the middleware
   eprosima::fastdds::dds::ContentFilteredTopic* filtered = nullptr;
   eprosima::fastdds::dds::DataReader* reader = nullptr;
-  // Last writer of each instance that is alive, because the middleware does not report which
-  // instances a lost writer leaves behind.
-  std::map<Handle, Handle> writers;
+  // Writers of each instance that are alive and had a sample of it accepted, because the middleware
+  // does not report which instances a lost writer leaves behind. All of them: a peer still has its
+  // instance when a stranger who wrote the same one leaves.
+  std::map<Handle, std::set<Handle>> writers;
   std::set<Handle> lost;     // writers that went; messages of theirs may still be waiting here
   std::set<Handle> orphans;  // instances without a writer, still to be reported
 };

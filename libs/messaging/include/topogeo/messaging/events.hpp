@@ -4,6 +4,7 @@
 #include <array>
 #include <compare>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <string>
 
@@ -28,6 +29,10 @@ struct SampleInfo {
   Handle writer;              ///< who sent it; all zero for kNoWriters found by this library
   std::int64_t stamp_ns = 0;  ///< wall clock of the writer's host when it wrote
 };
+
+/// Thrown by a handler of messages that refuses one and has reported it: the message does not count
+/// as one of its instance, and there is no event.
+struct Refused final : std::exception {};
 
 enum class EventKind : std::uint8_t {
   kMatched,

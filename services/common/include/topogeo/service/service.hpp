@@ -93,6 +93,7 @@ class Service {
           } catch (const std::invalid_argument& error) {
             report_invalid(messaging::TopicTraits<T>::info(), message.sequence_number(),
                            error.what());
+            throw messaging::Refused();
           }
         },
         std::move(on_gone));
