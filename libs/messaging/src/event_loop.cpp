@@ -55,6 +55,7 @@ struct EventLoop::Impl {
   std::vector<EventHandler> event_handlers;
   std::map<std::pair<Clock::time_point, std::uint64_t>, Timer> timers;  // by due time
   std::uint64_t timers_made = 0;
+  std::chrono::nanoseconds timer_delay{};  // largest since it was taken
   std::mutex mutex;
   std::vector<std::function<void()>> posted;
   std::atomic<bool> stop_requested = false;
@@ -120,6 +121,8 @@ void EventLoop::Impl::dispatch_timers() {
   const Clock::time_point now = Clock::now();
   // One look at the clock, so that timers alone never keep the samples waiting.
   while (!timers.empty() && timers.begin()->first.first <= now && !stop_requested) {
+    timer_delay =
+        std::max<std::chrono::nanoseconds>(timer_delay, now - timers.begin()->first.first);
     auto node = timers.extract(timers.begin());
     const auto handler = node.mapped().handler;
     if (node.mapped().period.count() > 0) {
@@ -201,6 +204,10 @@ std::uint64_t EventLoop::call_after(std::chrono::nanoseconds delay, std::functio
 
 void EventLoop::cancel_timer(std::uint64_t timer) {
   std::erase_if(impl_->timers, [&](const auto& entry) { return entry.first.second == timer; });
+}
+
+std::chrono::nanoseconds EventLoop::take_timer_delay() {
+  return std::exchange(impl_->timer_delay, {});
 }
 
 void EventLoop::post(std::function<void()> handler) {

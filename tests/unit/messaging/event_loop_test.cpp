@@ -74,6 +74,27 @@ TEST(EventLoop, TimersRunInOrderOfTheirTimes) {
   EXPECT_EQ(order, (std::vector<int>{1, 2, 3}));
 }
 
+TEST(EventLoop, ReportsHowLateItsTimersWere) {
+  EventLoop loop;
+  EXPECT_EQ(loop.take_timer_delay(), 0ms);
+  using Clock = std::chrono::steady_clock;
+  const auto before = Clock::now();
+  std::chrono::nanoseconds longest{};
+  loop.call_after(0ms, [&] {
+    longest = Clock::now() - before;
+    loop.stop();
+  });
+  // What was posted comes before the timers.
+  loop.post([start = Clock::now()] {
+    while (Clock::now() < start + 20ms) continue;
+  });
+  EXPECT_TRUE(loop.run_for(kPatience));
+  const auto delay = loop.take_timer_delay();
+  EXPECT_GE(delay, 20ms);
+  EXPECT_LE(delay, longest);
+  EXPECT_EQ(loop.take_timer_delay(), 0ms) << "it was taken";
+}
+
 TEST(EventLoop, PeriodicTimerMayCancelItself) {
   EventLoop loop;
   int ticks = 0;

@@ -66,6 +66,9 @@ class EventLoop {
   /// Calls `handler` once after `delay` (>= 0).
   std::uint64_t call_after(std::chrono::nanoseconds delay, std::function<void()> handler);
   void cancel_timer(std::uint64_t timer);
+  /// The largest delay between the due time of a timer and its call since this was called last: a
+  /// handler took long, or the machine had no time for this thread.
+  [[nodiscard]] std::chrono::nanoseconds take_timer_delay();
 
   /// Calls `handler` in the loop's thread. For other threads; not for signal handlers.
   void post(std::function<void()> handler);
