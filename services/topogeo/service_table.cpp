@@ -1,5 +1,6 @@
 #include "service_table.hpp"
 
+#include "topogeo/service/cpu_watch.hpp"
 #include "topogeo/support/format.hpp"
 
 namespace topogeo::cli {
@@ -7,7 +8,8 @@ namespace {
 
 /// Times and what the system gives a process change while nothing is done.
 bool is_work(std::string_view name) {
-  return !name.ends_with("_s") && name != "resident_bytes" && name != "open_files";
+  return !name.ends_with("_s") && name != "resident_bytes" && name != "open_files" &&
+         !name.starts_with("cpu_");
 }
 
 std::string text(const auto& bounded) {
@@ -65,6 +67,12 @@ double counter(const msg::ServiceStatus* status, std::string_view name) {
   return 0.0;
 }
 
+std::string cpu_shortage(const msg::ServiceStatus& status) {
+  if (counter(&status, service::CpuWatch::kShort) == 0.0) return {};
+  return fmt::format("the CPU is short: timers fire up to {:.1f} s late",
+                     counter(&status, service::CpuWatch::kTimerDelay));
+}
+
 std::string_view to_string(msg::ServiceState state) {
   switch (state) {
     case msg::kServiceStarting:
@@ -91,6 +99,7 @@ std::string describe_states(const ServiceTable& table) {
     if (const std::string message = text(row->message()); !message.empty()) {
       states += ": " + message;
     }
+    if (const std::string cpu = cpu_shortage(*row); !cpu.empty()) states += ", " + cpu;
   }
   return states.empty() ? "no service has published its status" : states;
 }

@@ -41,6 +41,9 @@ class ServiceTable {
 /// The value of a counter, 0 if the service has none of that name.
 double counter(const msg::ServiceStatus* status, std::string_view name);
 
+/// "the CPU is short: timers fire up to 0.4 s late"; empty for a service that has enough.
+std::string cpu_shortage(const msg::ServiceStatus& status);
+
 /// "waiting", "running", ...
 std::string_view to_string(msg::ServiceState state);
 

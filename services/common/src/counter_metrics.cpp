@@ -13,6 +13,11 @@ constexpr double kMilli = 1e-3;
 constexpr auto kCounterMetrics = std::to_array<CounterMetric>({
     // every service
     {"cpu_s", "topogeo_cpu_seconds_total", kTotal, "CPU time of the process"},
+    {"cpu_wait_ratio", "topogeo_cpu_wait_ratio", kGauge,
+     "threads that wait for a CPU, on average over a second"},
+    {"timer_delay_s", "topogeo_timer_delay_seconds", kGauge,
+     "largest delay of a timer in the last second"},
+    {"cpu_short", "topogeo_cpu_short", kGauge, "1 while the service gets too little CPU time"},
     {"resident_bytes", "topogeo_resident_memory_bytes", kGauge, "memory in use"},
     {"open_files", "topogeo_open_fds", kGauge, "open files and sockets"},
     // sensor gateway

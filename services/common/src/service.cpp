@@ -29,6 +29,7 @@ Service::Service(const Setup& setup, bool any_robot)
                   messaging::ServiceIdentity{
                       setup.name, setup.instance, any_robot ? "" : robot_id(),
                       std::string(support::kVersion), setup.config.effective.fingerprint});
+  cpu_.emplace(loop_, *status_);
   loop_.add_timer(kTick, [this] { tick(); });
   offer_metrics();
 }
@@ -86,7 +87,8 @@ void Service::tick() {
   status_->set_counter("cpu_s", support::process_cpu_s());
   status_->set_counter("resident_bytes", static_cast<double>(support::resident_bytes()));
   status_->set_counter("open_files", static_cast<double>(support::open_files()));
-  manager_.show(status_->text());
+  cpu_->tick(support::monotonic_s());
+  manager_.show(status_->text() + (cpu_->lasts() ? "; " + cpu_->text() : ""));
   if (const auto still = participant_.stood_still()) {
     throw std::runtime_error(
         "stood still for " +

@@ -35,5 +35,26 @@ TEST(ServiceTable, FindsTheOneThatStartedLast) {
   EXPECT_EQ(table.find("localizer"), nullptr);
 }
 
+TEST(ServiceTable, WhatTheMachineGivesIsNoProgress) {
+  ServiceTable table;
+  msg::ServiceStatus status = status_of("robot-17", 5);
+  msg::Counter counter;
+  for (const char* name : {"cpu_wait_ratio", "timer_delay_s", "cpu_short", "scans"}) {
+    counter.name(name);
+    status.counters().push_back(counter);
+  }
+  table.update(status, sample(1));
+  const std::string mark = table.progress_mark();
+  EXPECT_EQ(describe_states(table).find("CPU"), std::string::npos);
+  for (std::size_t i = 0; i < 3; ++i) status.counters()[i].value(1.0);
+  table.update(status, sample(1));
+  EXPECT_EQ(table.progress_mark(), mark);
+  EXPECT_NE(describe_states(table).find("the CPU is short: timers fire up to 1.0 s late"),
+            std::string::npos);
+  status.counters()[3].value(1.0);
+  table.update(status, sample(1));
+  EXPECT_NE(table.progress_mark(), mark);
+}
+
 }  // namespace
 }  // namespace topogeo::cli

@@ -20,6 +20,7 @@
 #include "topogeo/messaging/status_publisher.hpp"
 #include "topogeo/messaging/topics.hpp"
 #include "topogeo/messaging/writer.hpp"
+#include "topogeo/service/cpu_watch.hpp"
 #include "topogeo/service/metrics_endpoint.hpp"
 #include "topogeo/service/service_options.hpp"
 
@@ -54,6 +55,8 @@ class Service {
   [[nodiscard]] const messaging::Participant& participant() const { return participant_; }
   [[nodiscard]] messaging::EventLoop& loop() { return loop_; }
   [[nodiscard]] messaging::StatusPublisher& status() { return *status_; }
+  /// Whether this process gets the CPU time that it needs.
+  [[nodiscard]] const CpuWatch& cpu() const { return *cpu_; }
 
   /// True when a signal has asked the program to end.
   [[nodiscard]] static bool stopping() { return messaging::SignalStop::received() != 0; }
@@ -144,6 +147,7 @@ class Service {
   messaging::Participant participant_;
   messaging::EventLoop loop_;
   std::optional<messaging::StatusPublisher> status_;
+  std::optional<CpuWatch> cpu_;
   std::optional<messaging::SignalStop> signals_;
   messaging::ServiceManager manager_{loop_};
   std::set<std::string_view> subscribed_;

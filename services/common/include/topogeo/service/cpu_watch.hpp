@@ -1,0 +1,42 @@
+// Publishes in the status of a service whether it gets the CPU time that it needs.
+#pragma once
+
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/status_publisher.hpp"
+#include "topogeo/support/cpu_shortage.hpp"
+
+namespace topogeo::service {
+
+/// The counters are "cpu_wait_ratio" (threads that waited for a CPU, on average; not where the
+/// kernel does not count), "timer_delay_s" (the largest delay of a timer of the loop), both of the
+/// last second, and "cpu_short" (1 while support::CpuShortage lasts, else 0). It is no fault: the
+/// service does nothing wrong.
+class CpuWatch {
+ public:
+  static constexpr const char* kWaitRatio = "cpu_wait_ratio";
+  static constexpr const char* kTimerDelay = "timer_delay_s";
+  static constexpr const char* kShort = "cpu_short";
+
+  /// Both must outlive it.
+  CpuWatch(messaging::EventLoop& loop, messaging::StatusPublisher& status);
+
+  /// Several times a second, in the thread of the loop; it measures once a second. The caller
+  /// passes the time, in seconds from any start.
+  void tick(double now_s);
+
+  [[nodiscard]] bool lasts() const { return shortage_.lasts(); }
+  /// Of the last second alone: for the reason of what has just gone wrong.
+  [[nodiscard]] bool is_short_now() const { return shortage_.is_short_now(); }
+  [[nodiscard]] double timer_delay_s() const { return shortage_.timer_delay_s(); }
+  /// While it lasts: "the CPU is short: ..."; else empty.
+  [[nodiscard]] std::string text() const { return lasts() ? shortage_.text() : std::string(); }
+
+ private:
+  messaging::EventLoop& loop_;
+  messaging::StatusPublisher& status_;
+  support::CpuMeter meter_;
+  support::CpuShortage shortage_;
+  double due_s_ = 0.0;
+};
+
+}  // namespace topogeo::service
