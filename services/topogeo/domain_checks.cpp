@@ -7,7 +7,10 @@
 #include <string_view>
 #include <utility>
 
+#include "topogeo/service/cpu_watch.hpp"
 #include "topogeo/support/format.hpp"
+
+#include "service_table.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -56,6 +59,34 @@ Findings check_units(const DomainFacts& facts) {
 
 std::string good_units(const DomainFacts& facts) {
   return facts.units == 0 ? "none runs on this host" : "services of this host are found";
+}
+
+// --- CPU
+
+Findings check_cpu(const DomainFacts& facts) {
+  std::map<std::string, std::set<std::string>> services;  // by host
+  std::map<std::string, double> delay_s;
+  for (const msg::ServiceStatus& status : facts.services) {
+    if (cpu_shortage(status).empty()) continue;
+    const std::string host = status.host().to_string();
+    services[host].insert(status.service().to_string());
+    delay_s[host] = std::max(delay_s[host], counter(&status, service::CpuWatch::kTimerDelay));
+  }
+  Findings found;
+  for (const auto& [host, names] : services) {
+    found.push_back(
+        {"", kProblem,
+         fmt::format("the CPU of {} is short: timers fire up to {:.1f} s late ({})", host,
+                     delay_s[host], joined(names)),
+         "scans and poses come late, and a robot that has only late ones stands",
+         "run less there: workers (ga_worker), map store and page on another machine, fewer "
+         "--workers or --slots; give it more: CPUQuota= of the unit, --cpus of the container"});
+  }
+  return found;
+}
+
+std::string good_cpu(const DomainFacts& facts) {
+  return facts.services.empty() ? "no service is found" : "services are in time";
 }
 
 // --- robots
@@ -229,6 +260,7 @@ std::string good_clocks(const DomainFacts& facts) {
 
 constexpr auto kDomainChecks = std::to_array<Check<DomainFacts>>({
     {"units", check_units, good_units},
+    {"CPU of services", check_cpu, good_cpu},
     {"robots", check_robots, good_robots},
     {"wire contract", check_wire, good_wire},
     {"versions", check_versions, good_versions},

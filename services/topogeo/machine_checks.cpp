@@ -30,6 +30,13 @@ constexpr std::uint64_t kGoodDisk_bytes = 2'000 * kMega;
 // A service takes up to 150 MB after a long drive, all of a robot up to a GB.
 constexpr std::uint64_t kLeastMemory_bytes = 256 * kMega;
 constexpr std::uint64_t kGoodMemory_bytes = 1'000 * kMega;
+// A start of all services meets any quota for some seconds of a long run.
+constexpr double kMuchThrottled = 0.25;
+// A search for loops keeps every CPU busy for a while, which is one thread for each. With three a
+// thread that wakes up waits for two others.
+constexpr double kCrowded = 3.0;
+// A load is the mean of a minute and may be over: then hardly a thread waits now.
+constexpr double kMuchPressure = 0.5;
 // Sockets, segments and locks of a service with a pool of a hundred peers.
 constexpr std::uint64_t kLeastOpenFiles = 256;
 
@@ -259,6 +266,38 @@ std::string good_map_folder(const MachineFacts& facts) {
   return fmt::format("{} can write to {}", facts.user, facts.map_folder);
 }
 
+// --- CPU
+
+Findings check_cpu_time(const MachineFacts& facts) {
+  const support::MachineCpu& cpu = facts.cpu;
+  const std::string remedy =
+      "end other programs, run workers (ga_worker), map store and page on another machine, or "
+      "raise the quota: CPUQuota= of the unit, --cpus of the container";
+  Findings found;
+  const auto stopped = static_cast<double>(cpu.throttled_periods);
+  if (cpu.quota && stopped >= kMuchThrottled * static_cast<double>(cpu.quota_periods) &&
+      cpu.throttled_periods > 0) {
+    found.push_back(hint(
+        fmt::format("a quota of {:.2g} CPUs has stopped programs here in {:.0f} % of its periods",
+                    *cpu.quota, 100.0 * stopped / static_cast<double>(cpu.quota_periods)),
+        "what is stopped comes late, though the machine may have CPUs free", remedy));
+  }
+  const double threads = cpu.load / cpu.processors;
+  const bool waits = !cpu.pressure_share || *cpu.pressure_share >= kMuchPressure;
+  if (threads >= kCrowded && waits) {
+    found.push_back(problem(
+        fmt::format("the CPU is short: {:.1f} threads for each CPU ({})", threads, describe(cpu)),
+        "scans and poses come late, and a robot that has only late ones stands", remedy));
+  }
+  return found;
+}
+
+std::string good_cpu_time(const MachineFacts& facts) {
+  return describe(facts.cpu);
+}
+
+// --- memory
+
 Findings check_memory(const MachineFacts& facts) {
   Findings found;
   if (facts.memory_limit_bytes && *facts.memory_limit_bytes < kLeastMemory_bytes) {
@@ -303,6 +342,7 @@ constexpr auto kMachineChecks = std::to_array<Check<MachineFacts>>({
     {"serial ports", check_serial_ports, good_serial_ports},
     {"disk", check_disk, good_disk},
     {"map folder", check_map_folder, good_map_folder},
+    {"CPU", check_cpu_time, good_cpu_time},
     {"memory", check_memory, good_memory},
     {"open files", check_open_files, good_open_files},
 });

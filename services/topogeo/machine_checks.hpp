@@ -8,7 +8,7 @@
 
 namespace topogeo::cli {
 
-/// Ports, multicast, route, buffers, shared memory, serial ports, disk, memory, limits.
+/// Ports, multicast, route, buffers, shared memory, serial ports, disk, CPU, memory, limits.
 std::span<const Check<MachineFacts>> machine_checks();
 
 }  // namespace topogeo::cli

@@ -223,6 +223,7 @@ MachineFacts gather_machine_facts(const MachineQuestions& questions) {
   ask_for_shared_memory(questions.sources, facts);
   ask_for_devices(questions, facts);
   ask_for_disk(questions.map_folder, facts);
+  facts.cpu = support::read_machine_cpu({questions.sources.proc, questions.sources.cgroup});
   ask_for_memory(questions.sources, facts);
   return facts;
 }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "topogeo/support/machine_cpu.hpp"
+
 namespace topogeo::cli {
 
 /// Of a network interface that is up and can do multicast.
@@ -58,6 +60,8 @@ struct MachineFacts {
   std::string map_folder_error;  ///< why it cannot be written; empty: it can
   std::string closed_folder;     ///< above that of the map, which `user` may not look into
   std::uint64_t disk_free_bytes = 0;
+
+  support::MachineCpu cpu;
 
   // memory and limits
   std::uint64_t memory_available_bytes = 0;

@@ -51,6 +51,7 @@ void PoolTable::update(const msg::ServiceStatus& status, const messaging::Sample
   const std::string instance = status.instance().to_string();
   if (status.service() == "ga_worker") {
     faults_[instance] = status.fault_count();  // the instance is the worker id
+    short_of_cpu_[instance] = cpu_shortage(status);
     service_ids_[info.instance] = instance;
   } else if (status.service() == "localizer") {
     const std::string key = status.robot_id().to_string() + '/' + instance;
@@ -74,6 +75,7 @@ void PoolTable::remove_service(const messaging::SampleInfo& info) {
   const auto id = service_ids_.extract(info.instance);
   if (!id) return;
   faults_.erase(id.mapped());
+  short_of_cpu_.erase(id.mapped());
   robots_.erase(id.mapped());
 }
 
@@ -89,7 +91,17 @@ std::uint64_t PoolTable::faults(const std::string& worker_id) const {
 }
 
 std::string PoolTable::state(const Row<msg::WorkerStatus>& row, Clock::time_point now) const {
-  return worker_state(row.status, now - row.received, version_, matcher_fingerprint_);
+  std::string text = worker_state(row.status, now - row.received, version_, matcher_fingerprint_);
+  const auto cpu = short_of_cpu_.find(row.status.worker_id().to_string());
+  if (cpu != short_of_cpu_.end() && !cpu->second.empty()) text += "; " + cpu->second;
+  return text;
+}
+
+std::string PoolTable::state(const RobotRow& row, Clock::time_point now) {
+  if (now - row.received > kWorkerSilent) return "silent";
+  std::string text(to_string(row.status.state()));
+  if (const std::string cpu = cpu_shortage(row.status); !cpu.empty()) text += "; " + cpu;
+  return text;
 }
 
 PoolTable::Total PoolTable::total(Clock::time_point now) const {
@@ -166,8 +178,7 @@ std::string PoolTable::robot_lines(Clock::time_point now, std::size_t columns) c
               fmt::format("{:.1f}", row.sent_per_s), whole(counter(&s, "workers")),
               whole(counter(&s, "workers_lost")), whole(counter(&s, "tasks_resent")),
               whole(counter(&s, "tasks_in_process"))});
-    states.push_back(now - row.received > kWorkerSilent ? "silent"
-                                                        : std::string(to_string(s.state())));
+    states.push_back(state(row, now));
   }
   return with_remarks(grid.lines({"OPEN", "SENT/s", "WORKERS", "LOST", "RESENT", "OWN"}),
                       "LOCALIZER", states, columns);

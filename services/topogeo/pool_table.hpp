@@ -36,7 +36,7 @@ class PoolTable {
   void update(const msg::WorkerStatus& status, const messaging::SampleInfo& info,
               Clock::time_point now);
   void remove_worker(const messaging::SampleInfo& info);
-  /// Workers have their faults in it, localizers their tasks; others are ignored.
+  /// Workers have their faults and their CPU in it, localizers their tasks; others are ignored.
   void update(const msg::ServiceStatus& status, const messaging::SampleInfo& info,
               Clock::time_point now);
   void remove_service(const messaging::SampleInfo& info);
@@ -70,6 +70,7 @@ class PoolTable {
   };
   [[nodiscard]] Total total(Clock::time_point now) const;
   [[nodiscard]] std::string state(const Row<msg::WorkerStatus>& row, Clock::time_point now) const;
+  [[nodiscard]] static std::string state(const RobotRow& row, Clock::time_point now);
   [[nodiscard]] std::uint64_t faults(const std::string& worker_id) const;
   [[nodiscard]] std::string worker_lines(Clock::time_point now, std::size_t columns,
                                          std::size_t rows) const;
@@ -80,6 +81,7 @@ class PoolTable {
   std::uint64_t matcher_fingerprint_;
   std::map<std::string, Row<msg::WorkerStatus>> workers_;  // by worker id
   std::map<std::string, std::uint64_t> faults_;            // by worker id
+  std::map<std::string, std::string> short_of_cpu_;        // worker ids, with the text for people
   std::map<std::string, RobotRow> robots_;                 // localizers, by robot and instance
   std::map<messaging::Handle, std::string> worker_ids_;
   std::map<messaging::Handle, std::string> service_ids_;  // keys of faults_ or robots_

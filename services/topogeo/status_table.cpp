@@ -131,6 +131,7 @@ std::string StatusTable::reason(const Row& row, Clock::time_point now) {
   if (!waits_for.empty() && row.status.state() != msg::kServiceWaiting) {
     add("needs " + waits_for);
   }
+  if (const std::string cpu = cpu_shortage(row.status); !cpu.empty()) add(cpu);
   const double error_age_s = last_error_age_s(row, now);
   if (row.status.last_error().size() > 0 && row.status.state() != msg::kServiceFailed &&
       error_age_s < kRecentError_s) {
@@ -217,18 +218,25 @@ std::string StatusTable::text(Clock::time_point now, std::size_t columns) const 
 std::string StatusTable::sums(Clock::time_point now) const {
   std::uint64_t faults = 0;
   std::size_t ill = 0;
+  std::set<std::string> busy_hosts;
   for (const auto& [name, row] : rows_) {
     faults += row.status.fault_count();
     if (unwell(row, now)) ++ill;
+    if (!cpu_shortage(row.status).empty()) busy_hosts.insert(row.status.host().to_string());
   }
   const std::size_t missing = this->missing().size();
-  return fmt::format("{} service{}, {}{}{} failed, lost or silent, {} fault{}\n", rows_.size(),
+  std::string busy;
+  for (const std::string& host : busy_hosts) {
+    busy += fmt::format("the CPU of {} is short: topogeo doctor has what to do\n",
+                        support::printable(host));
+  }
+  return fmt::format("{} service{}, {}{}{} failed, lost or silent, {} fault{}\n{}", rows_.size(),
                      rows_.size() == 1 ? "" : "s",
                      missing == 0 ? "" : fmt::format("{} {}, ", missing, kMissing),
                      units_.empty() ? ""
                                     : fmt::format("{} unit{} of this host not running, ",
                                                   units_.size(), units_.size() == 1 ? "" : "s"),
-                     ill == 0 ? "none" : std::to_string(ill), faults, faults == 1 ? "" : "s");
+                     ill == 0 ? "none" : std::to_string(ill), faults, faults == 1 ? "" : "s", busy);
 }
 
 std::string StatusTable::details(Clock::time_point now) const {

@@ -64,6 +64,13 @@ struct DomainFault {
   void (*inject)(DomainFacts& facts);
 };
 
+void set_counter(msg::ServiceStatus& status, const std::string& name, double value) {
+  msg::Counter counter;
+  messaging::set_text(counter.name(), name, "counter");
+  counter.value(value);
+  status.counters().push_back(counter);
+}
+
 void set_clock(DomainFacts& facts, std::int64_t lag_ns) {
   ClockLag clock;
   for (int i = 0; i < 3; ++i) clock.add(0, lag_ns + std::int64_t{i} * 1'000'000);
@@ -84,6 +91,13 @@ const std::vector<DomainFault>& domain_faults() {
        [](DomainFacts& f) {
          f.services.clear();
          f.units = 1;
+       }},
+      {"CpuShort", "CPU of services", Severity::kProblem,
+       "the CPU of robot is short: timers fire up to 0.7 s late (sensor_gateway)",
+       [](DomainFacts& f) {
+         set_counter(f.services.at(0), "cpu_short", 1.0);
+         set_counter(f.services.at(0), "timer_delay_s", 0.7);
+         set_counter(f.services.at(2), "cpu_short", 0.0);
        }},
       {"TwoRobotsOfOneName", "robots", Severity::kProblem,
        "robot 'r1' has sensor_gateway on pc2 and robot",

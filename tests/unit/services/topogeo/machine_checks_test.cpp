@@ -32,6 +32,9 @@ MachineFacts healthy() {
   facts.serial_ports = {{"/dev/ttyUSB0", true, true, "dialout", true}};
   facts.map_folder = "/var/lib/topogeo/map";
   facts.disk_free_bytes = 50'000'000'000;
+  facts.cpu.processors = 2;
+  facts.cpu.load = 2.5;
+  facts.cpu.pressure_share = 0.3;
   facts.memory_available_bytes = 4'000'000'000;
   facts.open_files_limit = 1024;
   return facts;
@@ -124,6 +127,19 @@ const std::vector<MachineFault>& machine_faults() {
       {"MapFolderOutOfSight", "map folder", Severity::kProblem,
        "robot cannot look into /var/lib/topogeo", "sudo -u topogeo",
        [](MachineFacts& f) { f.closed_folder = "/var/lib/topogeo"; }},
+      {"ManyThreadsForFewCpus", "CPU", Severity::kProblem,
+       "the CPU is short: 4.0 threads for each CPU (2 processors, load 8.0", "ga_worker",
+       [](MachineFacts& f) {
+         f.cpu.load = 8.0;
+         f.cpu.pressure_share = 0.98;
+       }},
+      {"QuotaThatStopsPrograms", "CPU", Severity::kHint, "a quota of 0.8 CPUs has stopped programs",
+       "CPUQuota=",
+       [](MachineFacts& f) {
+         f.cpu.quota = 0.8;
+         f.cpu.quota_periods = 1000;
+         f.cpu.throttled_periods = 630;
+       }},
       {"MemoryLimit", "memory", Severity::kProblem, "no more than 100 MB", "MemoryMax",
        [](MachineFacts& f) { f.memory_limit_bytes = 100'000'000; }},
       {"MemoryUsedUp", "memory", Severity::kProblem, "100 MB are free", "end other programs",
@@ -166,6 +182,15 @@ TEST(MachineChecks, EachHasAFaultThatIsInjected) {
   for (const Check<MachineFacts>& check : machine_checks()) {
     EXPECT_TRUE(injected.contains(check.name)) << check.name;
   }
+}
+
+TEST(MachineChecks, ALoadThatIsOverAndAQuotaThatSufficesAreNoFault) {
+  MachineFacts facts = healthy();
+  facts.cpu.load = 8.0;  // of the last minute; hardly a thread waits now
+  facts.cpu.quota = 1.5;
+  facts.cpu.quota_periods = 1000;
+  facts.cpu.throttled_periods = 30;  // its start
+  EXPECT_THAT(found_in(facts), IsEmpty());
 }
 
 TEST(MachineChecks, WhatIsNotUsedNeedNotWork) {

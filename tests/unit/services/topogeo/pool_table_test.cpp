@@ -75,6 +75,29 @@ class PoolTableTest : public testing::Test {
   PoolTable table_{"1.2.3", kOwnFingerprint};
 };
 
+msg::ServiceStatus short_of_cpu(msg::ServiceStatus status) {
+  msg::Counter counter;
+  messaging::set_text(counter.name(), "cpu_short", "name");
+  counter.value(1.0);
+  status.counters().push_back(counter);
+  messaging::set_text(counter.name(), "timer_delay_s", "name");
+  counter.value(0.3);
+  status.counters().push_back(counter);
+  return status;
+}
+
+TEST_F(PoolTableTest, NamesWhoIsShortOfCpu) {
+  table_.update(pool_worker("a", "pc1", 0.75), number(1), kMoment);
+  table_.update(pool_worker("b", "pc2", 0.0), number(2), kMoment);
+  table_.update(short_of_cpu(worker_service("a#1", 0)), number(3), kMoment);
+  table_.update(worker_service("b#1", 0), number(5), kMoment);
+  table_.update(short_of_cpu(localizer_of("r1", 4)), number(4), kMoment);
+  const std::string text = table_.text(kMoment, {200, 0});
+  EXPECT_THAT(text, HasSubstr("working; the CPU is short: timers fire up to 0.3 s late\n"));
+  EXPECT_THAT(text, HasSubstr("idle\n"));
+  EXPECT_THAT(text, HasSubstr("running; the CPU is short: timers fire up to 0.3 s late\n"));
+}
+
 TEST_F(PoolTableTest, ShowsWorkersWithTheirFaultsAndRobotsWithTheirTasks) {
   table_.update(pool_worker("a", "pc1", 0.75), number(1), kMoment);
   table_.update(pool_worker("b", "pc2", 0.0), number(2), kMoment);

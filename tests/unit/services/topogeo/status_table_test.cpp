@@ -54,6 +54,28 @@ std::size_t widest_line(const std::string& text) {
   return widest;
 }
 
+void give_counter(msg::ServiceStatus& status, const std::string& name, double value) {
+  msg::Counter counter;
+  messaging::set_text(counter.name(), name, "counter");
+  counter.value(value);
+  status.counters().push_back(counter);
+}
+
+TEST(StatusTable, NamesWhoIsShortOfCpuAndWhere) {
+  StatusTable table;
+  msg::ServiceStatus navigator = status_of("navigator", msg::kServiceRunning, "idle: no goal");
+  give_counter(navigator, "timer_delay_s", 0.42);
+  give_counter(navigator, "cpu_short", 0.0);
+  table.update(navigator, info_of(1), kNow);
+  EXPECT_THAT(table.text(kNow), Not(HasSubstr("short")));
+  navigator.counters()[1].value(1.0);
+  table.update(navigator, info_of(1), kNow);
+  const std::string text = table.text(kNow, 200);
+  EXPECT_THAT(text, HasSubstr("idle: no goal; the CPU is short: timers fire up to 0.4 s late\n"));
+  EXPECT_THAT(text, HasSubstr("the CPU of pc is short: topogeo doctor has what to do\n"));
+  EXPECT_TRUE(table.healthy(kNow)) << "it works, though late";
+}
+
 TEST(StatusTable, ShowsOneLineForEachService) {
   StatusTable table;
   table.update(fed(status_of("sensor_gateway", msg::kServiceRunning), "scan", 12.34, 0.05),
