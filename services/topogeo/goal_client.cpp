@@ -124,7 +124,7 @@ bool GoalClient::delivered(double patience_s) {
       std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * patience_s)));
 }
 
-std::optional<supervision::GoalEnd> GoalClient::end() const {
+std::optional<supervision::GoalEnd> GoalClient::end() {
   return watch_ ? watch_->check(support::monotonic_s()) : std::nullopt;
 }
 

@@ -41,7 +41,7 @@ class GoalClient {
   bool delivered(double patience_s);
 
   /// Of the goal sent: nothing as long as it may still be reached.
-  [[nodiscard]] std::optional<supervision::GoalEnd> end() const;
+  [[nodiscard]] std::optional<supervision::GoalEnd> end();
   /// The newest.
   [[nodiscard]] const std::optional<navigation::NavigatorStatus>& status() const { return status_; }
   /// The first that was found for the goal sent.

@@ -45,7 +45,7 @@ class GoalSession {
   /// Throws std::runtime_error when the picture cannot be written.
   void tick();
   /// Of the goal; nothing while it may still be reached.
-  [[nodiscard]] std::optional<supervision::GoalEnd> end() const { return client_.end(); }
+  [[nodiscard]] std::optional<supervision::GoalEnd> end() { return client_.end(); }
 
  private:
   void draw_route();

@@ -1,5 +1,8 @@
 #include "topogeo/supervision/goal_watch.hpp"
 
+#include <algorithm>
+#include <utility>
+
 namespace topogeo::supervision {
 namespace {
 
@@ -22,30 +25,36 @@ void GoalWatch::add(const RouteAnswer& answer) {
   if (answer.goal_id == goal_id_) answer_ = answer;
 }
 
+void GoalWatch::pass_time(double now_s) {
+  time_s_ += std::min(now_s - std::exchange(last_call_s_, now_s), kLongestSpan_s);
+}
+
 void GoalWatch::add(const NavigatorStatus& status, double now_s) {
-  alive_s_ = now_s;
+  pass_time(now_s);
+  alive_s_ = time_s_;
   if (status.goal_id != goal_id_) {
     if (!taken_) return;
-    if (!without_s_) without_s_ = now_s;
-    replaced_ = status.goal_id != 0 || now_s - *without_s_ > kStartsAgain_s;
+    if (!without_s_) without_s_ = time_s_;
+    replaced_ = status.goal_id != 0 || time_s_ - *without_s_ > kStartsAgain_s;
     return;
   }
   taken_ = true;
   replaced_ = false;
   without_s_.reset();
   if (status.state == NavigatorState::kDriving || status.reason == HaltReason::kPaused) {
-    driven_s_ = now_s;
+    driven_s_ = time_s_;
   }
   status_ = status;
 }
 
-std::optional<GoalEnd> GoalWatch::check(double now_s) const {
+std::optional<GoalEnd> GoalWatch::check(double now_s) {
+  pass_time(now_s);
   if (replaced_) return GoalEnd{false, "another goal replaced it, or another program cancelled it"};
   if (status_) {
     if (std::optional<GoalEnd> end = judge(*status_)) return end;
   }
-  if (now_s - alive_s_ > kSilent_s) return GoalEnd{false, "the navigator is gone"};
-  if (now_s - driven_s_ <= patience_s_) return std::nullopt;
+  if (time_s_ - alive_s_ > kSilent_s) return GoalEnd{false, "the navigator is gone"};
+  if (time_s_ - driven_s_ <= patience_s_) return std::nullopt;
   if (!taken_) return GoalEnd{false, "the navigator does not take the goal"};
   return GoalEnd{false, text_of(*status_)};
 }

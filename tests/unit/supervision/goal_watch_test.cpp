@@ -48,7 +48,7 @@ TEST(GoalWatch, ARefusalThatNothingChangesEndsIt) {
 TEST(GoalWatch, WithoutAPoseThereIsHopeUntilPatienceEnds) {
   GoalWatch watch(7, 60.0, 0.0);
   watch.add(RouteAnswer{7, false, "no pose"});
-  for (double now_s = 1.0; now_s < 60.0; now_s += 1.0) {
+  for (double now_s = 1.0; now_s <= 60.0; now_s += 1.0) {
     watch.add(status(NavigatorState::kStopped, HaltReason::kNoRoute, "no pose"), now_s);
     ASSERT_FALSE(watch.check(now_s)) << now_s;
   }
@@ -68,10 +68,22 @@ TEST(GoalWatch, APauseMayLast) {
 TEST(GoalWatch, SeesThatAnotherGoalCameOrTheNavigatorWent) {
   GoalWatch watch(7, 60.0, 0.0);
   watch.add(status(NavigatorState::kDriving), 1.0);
-  EXPECT_FALSE(watch.check(10.0));
+  for (double now_s = 1.0; now_s <= 11.0; now_s += 0.5) {
+    EXPECT_FALSE(watch.check(now_s)) << now_s;
+  }
   EXPECT_THAT(watch.check(12.0)->reason, HasSubstr("gone"));
-  watch.add(status(NavigatorState::kDriving, HaltReason::kNone, "", 8), 2.0);
-  EXPECT_THAT(watch.check(2.0)->reason, HasSubstr("another goal"));
+  watch.add(status(NavigatorState::kDriving, HaltReason::kNone, "", 8), 13.0);
+  EXPECT_THAT(watch.check(13.0)->reason, HasSubstr("another goal"));
+}
+
+TEST(GoalWatch, ASpanInWhichThisProgramDidNotRunIsNoSilenceOfTheNavigator) {
+  GoalWatch watch(7, 60.0, 0.0);
+  watch.add(status(NavigatorState::kDriving), 1.0);
+  EXPECT_FALSE(watch.check(500.0)) << "the statuses of this time are unread";
+  watch.add(status(NavigatorState::kStopped, HaltReason::kNoOdometry, "no odometry"), 500.1);
+  EXPECT_FALSE(watch.check(900.0));
+  watch.add(status(NavigatorState::kDriving), 900.1);
+  EXPECT_FALSE(watch.check(900.2));
 }
 
 TEST(GoalWatch, ANavigatorThatStartsAgainGetsTheGoalAgain) {
@@ -82,6 +94,9 @@ TEST(GoalWatch, ANavigatorThatStartsAgainGetsTheGoalAgain) {
   watch.add(status(NavigatorState::kDriving), 4.0);
   watch.add(status(NavigatorState::kIdle, HaltReason::kNone, "", 0), 20.0);
   EXPECT_FALSE(watch.check(20.0));
+  for (double now_s = 20.0; now_s < 26.0; now_s += 0.2) {
+    watch.add(status(NavigatorState::kIdle, HaltReason::kNone, "", 0), now_s);
+  }
   watch.add(status(NavigatorState::kIdle, HaltReason::kNone, "", 0), 26.0);
   EXPECT_THAT(watch.check(26.0)->reason, HasSubstr("cancelled"));
 }
