@@ -1,5 +1,8 @@
 #include "goto_run.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "topogeo/localization/mapping/localization_state.hpp"
 #include "topogeo/planning/place_names.hpp"
 #include "topogeo/service/conversions.hpp"
@@ -11,12 +14,15 @@ namespace {
 
 constexpr double kStart_s = 120.0;  // for the services to start and the robot to find its place
 constexpr double kCallOff_s = 5.0;  // for the robot to stop
+/// A tick that comes later shows that this program did not run: it waits for nobody.
+constexpr double kLongestTick_s = 1.0;
 
 }  // namespace
 
 GotoRun::GotoRun(const RunOptions& options)
     : options_(options),
       since_s_(support::monotonic_s()),
+      last_tick_s_(since_s_),
       run_(options),
       truth_(run_.participant(), run_.loop(), options.job.robot_id),
       poses_(run_.participant()),
@@ -72,6 +78,9 @@ void GotoRun::on_pose(const msg::LivePose& pose) {
 }
 
 void GotoRun::tick() {
+  const double now_s = support::monotonic_s();
+  const double passed_s = std::min(now_s - std::exchange(last_tick_s_, now_s), kLongestTick_s);
+  if (run_.too_busy().empty()) waited_s_ += passed_s;
   switch (phase_) {
     case Phase::kWaiting:
       wait_for_start();
@@ -109,7 +118,7 @@ void GotoRun::wait_for_start() {
   }
   if (what != reported_) session_.progress().print("waiting for " + what);
   reported_ = what;
-  if (support::monotonic_s() - since_s_ < kStart_s) return;
+  if (waited_s_ < kStart_s) return;
   run_.fail(fmt::format("{:.0f} s have passed, and it still waits for {}", kStart_s, what));
 }
 

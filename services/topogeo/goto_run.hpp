@@ -57,8 +57,10 @@ class GotoRun {
   RunOptions options_;
   GotoResult result_;
   Phase phase_ = Phase::kWaiting;
-  double since_s_;        // the phase began
-  std::string reported_;  // what it waits for, as the user was informed last
+  double since_s_;  // the phase began
+  double last_tick_s_;
+  double waited_s_ = 0.0;  // for the start, on a machine that has time for it
+  std::string reported_;   // what it waits for, as the user was informed last
   std::optional<msg::LivePose> pose_;
 
   ServiceRun run_;

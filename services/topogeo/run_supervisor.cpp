@@ -17,9 +17,6 @@ using std::chrono::milliseconds;
 
 /// Speeds change more slowly than the base could change them, so that it keeps up.
 constexpr double kShareOfAcceleration = 0.6;
-/// For what the localizer sends at its end on topics of their own: discovery on a busy machine
-/// takes some seconds.
-constexpr double kSummaryPatience_s = 30.0;
 
 }  // namespace
 
@@ -30,16 +27,10 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
       bar_(std::cerr, support::stderr_is_terminal(), "mapping", "scans"),
       stall_(start_s_),
       run_(options),
-      status_reader_(run_.participant()),
       end_reader_(run_.participant()),
       decision_reader_(run_.participant()),
       summary_reader_(run_.participant()) {
   messaging::EventLoop& loop = run_.loop();
-  loop.add<msg::ServiceStatus>(
-      status_reader_, [this](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
-        result_.services.update(status, info);
-        run_.note_state(status);
-      });
   loop.add<msg::StreamEnd>(
       end_reader_, [this](const msg::StreamEnd& end, const messaging::SampleInfo&) {
         if (end.stage() != msg::kStageMapStore || end.robot_id() != options_.job.robot_id.c_str())
@@ -74,6 +65,9 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
   }
   ServiceRun::Hooks hooks;
   hooks.on_tick = [this] { tick(); };
+  hooks.on_status = [this](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
+    result_.services.update(status, info);
+  };
   if (options_.job.log.empty()) hooks.on_first_signal = [this] { end_stream(); };
   hooks.log = [this](const std::string& line) { print(line); };
   run_.start(options_, std::move(hooks));
@@ -198,8 +192,13 @@ void RunSupervisor::wait_for_summary() {
   const auto complete = [this] {
     return summary_came_ && decisions_.all().size() >= result_.summary.loop_decisions();
   };
-  const double end_s = support::monotonic_s() + kSummaryPatience_s;
-  while (!complete() && support::monotonic_s() < end_s) {
+  using Verdict = supervision::StallWatch::Verdict;
+  supervision::StallWatch stall(support::monotonic_s());
+  while (!complete()) {
+    const Verdict verdict = stall.check(
+        fmt::format("{} {}", summary_came_, decisions_.all().size()), support::monotonic_s());
+    if (verdict == Verdict::kGiveUp) break;
+    if (verdict == Verdict::kReport) print("still waits for the summary of the localizer");
     if (run_.loop().run_for(milliseconds(5))) break;  // a signal
   }
   result_.loop_decisions = decisions_.all();
@@ -223,8 +222,8 @@ void RunSupervisor::stay_for_page() {
 
 // What the last services have published is still to be written.
 void RunSupervisor::wait_for_recorder() {
-  if (!run_.wait_for_end(kRecorder, kSummaryPatience_s)) {
-    print("the recording is not complete: its program still waits for what it records");
+  if (!run_.wait_for_end(kRecorder)) {
+    print("the recording is not complete: its program has not ended by itself");
   }
   std::ifstream log(options_.job.out / "logs" / (std::string(kRecorder) + ".log"));
   for (std::string line; std::getline(log, line);) {

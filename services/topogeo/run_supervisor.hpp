@@ -74,7 +74,6 @@ class RunSupervisor {
   bool summary_came_ = false;
 
   ServiceRun run_;
-  messaging::Reader<msg::ServiceStatus> status_reader_;
   messaging::Reader<msg::StreamEnd> end_reader_;
   messaging::Reader<msg::LoopDecisions> decision_reader_;
   messaging::Reader<msg::RunSummary> summary_reader_;

@@ -13,6 +13,8 @@
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
 
+#include "service_table.hpp"
+
 namespace topogeo::cli {
 namespace {
 
@@ -22,7 +24,6 @@ constexpr std::chrono::milliseconds kFirstRestart{100};
 constexpr std::chrono::milliseconds kLongestRestart{5000};
 /// What was at work for so long before it died did not die of its start.
 constexpr double kSettled_s = 5.0;
-constexpr double kStopTime_s = 5.0;  // that services have to end after they are asked to
 
 messaging::Participant join(const RunOptions& options, const std::string& partition) {
   messaging::ParticipantOptions participant;
@@ -50,7 +51,13 @@ ServiceRun::ServiceRun(const RunOptions& options)
       source_(scan_source(options)),
       host_(support::host_name()),
       participant_(join(options, partition_)),
-      processes_(folder_of_this_program(), options.job.out / "logs") {}
+      statuses_(participant_),
+      processes_(folder_of_this_program(), options.job.out / "logs", end_observer()) {
+  loop_.add<msg::ServiceStatus>(
+      statuses_, [this](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
+        on_status(status, info);
+      });
+}
 
 ServiceRun::~ServiceRun() {
   forget_odometry();
@@ -79,6 +86,7 @@ void ServiceRun::start_all(const RunOptions& options) {
 
 // A second signal stops everything.
 void ServiceRun::on_signal(int number) {
+  ++signals_came_;
   if (signal_.exchange(number) == 0 && hooks_.on_first_signal) {
     loop_.post([this] {
       if (!ended_) hooks_.on_first_signal();
@@ -95,7 +103,7 @@ void ServiceRun::run() {
 
 void ServiceRun::tick() {
   if (ended_) return;
-  if (next_ && processes_.retired(support::monotonic_s() > retire_until_s_)) {
+  if (next_ && processes_.retired()) {
     forget_odometry();  // the base of another simulator was switched off
     start_all(*std::exchange(next_, std::nullopt));
   }
@@ -134,7 +142,6 @@ void ServiceRun::begin_again(const RunOptions& options) {
   away_since_s_.clear();
   at_work_since_s_.clear();
   next_ = options;
-  retire_until_s_ = support::monotonic_s() + kStopTime_s;
   processes_.retire("web");
 }
 
@@ -167,6 +174,41 @@ bool ServiceRun::has_started(const msg::ServiceStatus& status) const {
   return status.host() == host_.c_str() && processes_.has(static_cast<pid_t>(status.process_id()));
 }
 
+supervision::EndObserver ServiceRun::end_observer() {
+  supervision::EndObserver observer;
+  observer.progress = [this](pid_t pid) {
+    supervision::Progress progress = supervision::read_progress(pid);
+    progress.reports = reports_[pid];
+    return progress;
+  };
+  observer.log = [this](const std::string& line) { hooks_.log(line); };
+  return observer;
+}
+
+void ServiceRun::on_status(const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
+  if (status.host() == host_.c_str()) ++reports_[static_cast<pid_t>(status.process_id())];
+  note_state(status);
+  note_cpu(status);
+  if (hooks_.on_status) hooks_.on_status(status, info);
+}
+
+void ServiceRun::note_cpu(const msg::ServiceStatus& status) {
+  const std::string service = status.service().to_string();
+  if (!has_started(status)) return;
+  if (cpu_shortage(status).empty()) {
+    short_of_cpu_.erase(service);
+    return;
+  }
+  short_of_cpu_.insert(service);
+  if (!std::exchange(busy_logged_, true)) hooks_.log(too_busy() + "; what it does takes longer");
+}
+
+std::string ServiceRun::too_busy() const {
+  std::string names;
+  for (const std::string& name : short_of_cpu_) names += (names.empty() ? "" : ", ") + name;
+  return names.empty() ? "" : "this machine is too busy: the CPU is short for " + names;
+}
+
 void ServiceRun::note_state(const msg::ServiceStatus& status) {
   if (status.state() != msg::kServiceRunning) return;
   for (const auto& [name, since_s] : away_since_s_) {
@@ -193,9 +235,8 @@ void ServiceRun::stay() {
   while (signal_.load() == 0) static_cast<void>(loop_.run_for(kRunTick));
 }
 
-bool ServiceRun::wait_for_end(const std::string& name, double patience_s) {
-  const double end_s = support::monotonic_s() + patience_s;
-  while (!processes_.has_ended(name) && support::monotonic_s() < end_s) {
+bool ServiceRun::wait_for_end(const std::string& name) {
+  while (!processes_.has_ended(name) && !processes_.hangs(name)) {
     if (loop_.run_for(kRunTick)) break;  // a signal
   }
   return processes_.has_ended(name);
@@ -205,8 +246,11 @@ bool ServiceRun::wait_for_end(const std::string& name, double patience_s) {
 // lock up inside Fast DDS 2.9.1 (matched_reader_remove against the flow controller's thread).
 std::vector<support::StageTime> ServiceRun::stop(bool source_first) {
   const auto pause = [this](std::chrono::milliseconds duration) { loop_.run_for(duration); };
-  for (const std::string& name : processes_.stop(kStopTime_s, pause, source_first ? source_ : "")) {
-    hooks_.log(name + " did not stop in time and is killed");
+  const int came = signals_came_.load();
+  const auto at_once = [this, came] { return signals_came_.load() > came; };
+  const auto killed = processes_.stop(pause, at_once, source_first ? source_ : "");
+  for (const std::string& name : killed) {
+    if (at_once()) hooks_.log(name + " is killed: another signal came before it had ended");
   }
   loop_.run_for(std::chrono::milliseconds(20));
   return by_stage(processes_.wait());

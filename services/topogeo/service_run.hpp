@@ -7,11 +7,13 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/msg/status.h"
 #include "topogeo/supervision/process_group.hpp"
@@ -22,11 +24,13 @@ namespace topogeo::cli {
 
 class ServiceRun {
  public:
-  /// All are called in the loop.
+  /// All are called in the loop, but log from where it is needed.
   struct Hooks {
     std::function<void()> on_tick;                     ///< twenty times a second
     std::function<void()> on_first_signal;             ///< empty: it ends the run like the second
     std::function<void(const std::string& line)> log;  ///< for the user
+    /// Each status that comes, after the run has ended, too; empty: nothing else needs them.
+    std::function<void(const msg::ServiceStatus&, const messaging::SampleInfo&)> on_status = {};
     /// The links of the page, once there are any; empty: they are logged.
     std::function<void(const std::string& lines)> on_links = {};
   };
@@ -55,15 +59,15 @@ class ServiceRun {
   [[nodiscard]] bool ended() const { return ended_; }
 
   /// Ends all services but the page and starts them with other options; at once when they have
-  /// ended. One that does not end in time is killed.
+  /// ended. One that hangs is killed.
   void begin_again(const RunOptions& options);
 
   /// Whether a status is of a process of this run that has not been started again since. Anybody
   /// in the domain can send one.
   [[nodiscard]] bool has_started(const msg::ServiceStatus& status) const;
 
-  /// Logs how long a service was away that was started again and is at work.
-  void note_state(const msg::ServiceStatus& status);
+  /// "this machine is too busy: the CPU is short for localizer, navigator" while it is; else empty.
+  [[nodiscard]] std::string too_busy() const;
 
   /// Asks the source of the scans to end, so that the others finish their work.
   void end_stream() { processes_.finish(source_); }
@@ -80,15 +84,21 @@ class ServiceRun {
   /// again.
   void stay();
 
-  /// Runs the loop until the process of that name has ended; false: it still runs after so long.
-  bool wait_for_end(const std::string& name, double patience_s);
+  /// Runs the loop until the process of that name has ended; false: it hangs, or a signal came.
+  bool wait_for_end(const std::string& name);
 
-  /// Stops all services while the loop goes on: they publish their final counters. Returns their
-  /// times. `source_first`: while scans may be on their way.
+  /// Stops all services while the loop goes on: they publish their final counters. Waits for them
+  /// however slow they are; another signal kills them at once. Returns their times.
+  /// `source_first`: while scans may be on their way.
   std::vector<support::StageTime> stop(bool source_first);
 
  private:
   void on_signal(int number);
+  void on_status(const msg::ServiceStatus& status, const messaging::SampleInfo& info);
+  /// Logs how long a service was away that was started again and is at work.
+  void note_state(const msg::ServiceStatus& status);
+  void note_cpu(const msg::ServiceStatus& status);
+  [[nodiscard]] supervision::EndObserver end_observer();
   void tick();
   /// Passes the links of the page on when the web service has printed them.
   void look_for_links();
@@ -108,8 +118,11 @@ class ServiceRun {
   std::string failure_;
   Hooks hooks_;
   std::optional<RunOptions> next_;  // to begin again with, once the others have ended
-  double retire_until_s_ = 0.0;
   std::atomic<int> signal_ = 0;
+  std::atomic<int> signals_came_ = 0;
+  std::set<std::string> short_of_cpu_;  // services of this run
+  bool busy_logged_ = false;
+  std::map<pid_t, std::uint64_t> reports_;              // statuses that came
   std::map<std::string, std::uint32_t> restarts_;       // by name of the process
   std::map<std::string, std::uint32_t> deaths_in_row_;  // without settled work between
   std::map<std::string, double> away_since_s_;          // those that do not work again yet
@@ -117,6 +130,7 @@ class ServiceRun {
 
   messaging::Participant participant_;
   messaging::EventLoop loop_;
+  messaging::Reader<msg::ServiceStatus> statuses_;
   supervision::ProcessGroup processes_;
   std::optional<messaging::SignalStop> signals_;  // last: its thread uses the others
 };

@@ -6,8 +6,6 @@
 
 #include <unistd.h>
 
-#include "topogeo/messaging/reader.hpp"
-#include "topogeo/msg/status.h"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/format.hpp"
 
@@ -22,11 +20,7 @@ namespace {
 class WebRun {
  public:
   WebRun(const RunOptions& options, bool open_browser)
-      : open_browser_(open_browser), run_(options), statuses_(run_.participant()) {
-    run_.loop().add<msg::ServiceStatus>(
-        statuses_, [this](const msg::ServiceStatus& status, const messaging::SampleInfo&) {
-          run_.note_state(status);
-        });
+      : open_browser_(open_browser), run_(options) {
     ServiceRun::Hooks hooks;
     hooks.on_tick = [] {};
     hooks.log = [](const std::string& line) { std::cerr << "topogeo: " << line << '\n'; };
@@ -55,7 +49,6 @@ class WebRun {
 
   bool open_browser_;
   ServiceRun run_;
-  messaging::Reader<msg::ServiceStatus> statuses_;
   std::optional<FloorLoader> floors_;
 };
 

@@ -10,11 +10,14 @@ namespace {
 
 /// Between two checks of what still runs: short against the time that a service takes to end.
 constexpr std::chrono::milliseconds kCheckPeriod{20};
+/// Between two checks of whether one hangs, which reads files for each of its threads.
+constexpr double kProgressPeriod_s = 0.5;
 
 }  // namespace
 
-ProcessGroup::ProcessGroup(std::filesystem::path programs, std::filesystem::path logs)
-    : programs_(std::move(programs)), logs_(std::move(logs)) {
+ProcessGroup::ProcessGroup(std::filesystem::path programs, std::filesystem::path logs,
+                           EndObserver observer)
+    : programs_(std::move(programs)), logs_(std::move(logs)), observer_(std::move(observer)) {
   std::filesystem::create_directories(logs_);
 }
 
@@ -46,6 +49,8 @@ void ProcessGroup::begin_life(Member& member) {
   ++member.lives;
   member.process = make(member, member.process->name());
   member.reported = false;
+  member.asked = false;
+  member.end.reset();
 }
 
 std::unique_ptr<ChildProcess> ProcessGroup::make(const Member& member, const std::string& name) {
@@ -127,19 +132,51 @@ void ProcessGroup::retire(const std::string& all_but) {
   for (Member& member : members_) {
     if (member.process->name() == all_but) continue;
     member.retires = true;
+    member.asked = true;
     member.reported = true;
     member.process->send_signal(SIGTERM);
   }
 }
 
-bool ProcessGroup::retired(bool kill) {
-  bool all = true;
-  for (Member& member : members_) {
-    if (!member.retires || member.process->poll()) continue;
-    if (kill) member.process->send_signal(SIGKILL);
-    all = false;
+bool ProcessGroup::retired() {
+  kill_hung();
+  return std::ranges::none_of(members_, [](Member& member) {
+    return member.retires && !member.process->poll().has_value();
+  });
+}
+
+bool ProcessGroup::hangs(const std::string& name) {
+  const double now_s = observer_.now_s();
+  if (now_s < check_s_) return false;
+  check_s_ = now_s + kProgressPeriod_s;
+  return std::ranges::any_of(members_, [&](Member& member) {
+    return member.process->name() == name && !member.process->poll() && hangs(member);
+  });
+}
+
+bool ProcessGroup::hangs(Member& member) {
+  const Progress progress = observer_.progress(member.process->pid());
+  if (!member.end) member.end.emplace(progress, observer_.now_s());
+  const EndWatch::Verdict verdict = member.end->check(progress, observer_.now_s());
+  if (verdict == EndWatch::Verdict::kReport) {
+    observer_.log("waits for " + member.process->name() + " to end: " + member.end->text());
   }
-  return all;
+  return verdict == EndWatch::Verdict::kHangs;
+}
+
+std::vector<std::string> ProcessGroup::kill_hung() {
+  const double now_s = observer_.now_s();
+  if (now_s < check_s_) return {};
+  check_s_ = now_s + kProgressPeriod_s;
+  std::vector<std::string> killed;
+  for (Member& member : members_) {
+    if (!member.asked || member.process->poll() || !hangs(member)) continue;
+    observer_.log(member.process->name() + " hangs and is killed: " + member.end->text());
+    member.process->send_signal(SIGKILL);
+    member.asked = false;
+    killed.push_back(member.process->name());
+  }
+  return killed;
 }
 
 void ProcessGroup::send_signal(int signal_number, const std::string& name) {
@@ -155,16 +192,22 @@ bool ProcessGroup::runs(const std::string& name) {
   return false;
 }
 
-std::vector<std::string> ProcessGroup::stop(double patience_s, const Pause& pause,
+std::vector<std::string> ProcessGroup::stop(const Pause& pause,
+                                            const std::function<bool()>& at_once,
                                             const std::string& first) {
-  const double end_s = support::monotonic_s() + patience_s;
+  std::vector<std::string> killed;
   const auto end = [&](const std::string& name) {
+    for (Member& member : members_) {
+      if (name.empty() || member.process->name() == name) member.asked = true;
+    }
     send_signal(SIGTERM, name);
-    while (runs(name) && support::monotonic_s() < end_s) pause(kCheckPeriod);
+    while (runs(name) && !at_once()) {
+      for (std::string& hung : kill_hung()) killed.push_back(std::move(hung));
+      pause(kCheckPeriod);
+    }
   };
   if (!first.empty()) end(first);
   end({});
-  std::vector<std::string> killed;
   for (Member& member : members_) {
     if (!member.process->poll()) killed.push_back(member.process->name());
   }

@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -15,6 +16,11 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+
+const ProcessGroup::Pause kSleep = [](std::chrono::milliseconds duration) {
+  std::this_thread::sleep_for(duration);
+};
+const auto kNever = [] { return false; };
 
 class ProcessGroupTest : public testing::Test {
  protected:
@@ -35,9 +41,21 @@ class ProcessGroupTest : public testing::Test {
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
+  /// Passes time in the group's clock, in which processes of the test do what `progress_` says.
+  [[nodiscard]] EndObserver observer() {
+    EndObserver observer;
+    observer.now_s = [this] { return hour_s_; };
+    observer.progress = [this](pid_t pid) { return progress_[pid]; };
+    observer.log = [this](const std::string& line) { lines_.push_back(line); };
+    return observer;
+  }
+
   std::filesystem::path logs_ =
       std::filesystem::temp_directory_path() / ("process_group_test_" + std::to_string(::getpid()));
-  ProcessGroup group_{"/bin", logs_};
+  double hour_s_ = 3600.0;
+  std::map<pid_t, Progress> progress_;  // of each process; one that is not there hangs
+  std::vector<std::string> lines_;
+  ProcessGroup group_{"/bin", logs_, observer()};
 };
 
 TEST_F(ProcessGroupTest, ReportsOnceHowANeededProcessEnded) {
@@ -135,27 +153,18 @@ TEST_F(ProcessGroupTest, OneThatIsAskedToFinishMayDoSo) {
   EXPECT_FALSE(group_.next_unexpected_end());
 }
 
-TEST_F(ProcessGroupTest, StopAsksOneFirstAndKillsThoseThatDoNotEnd) {
+TEST_F(ProcessGroupTest, StopAsksOneFirstAndKillsAllAtOnceWhenItShall) {
   start_endless("stubborn", "");
   start_endless("gateway", "exit 0");
-  constexpr double kNoPatience_s = 0.0;
-  EXPECT_THAT(group_.stop(
-                  kNoPatience_s, [](auto) {}, "gateway"),
-              testing::Contains("stubborn"));
+  const auto at_once = [&] { return group_.has_ended("gateway"); };
+  EXPECT_THAT(group_.stop(kSleep, at_once, "gateway"), ElementsAre("stubborn"));
   EXPECT_EQ(group_.wait().size(), 2U);
 }
 
 TEST_F(ProcessGroupTest, StopWaitsForThoseThatEnd) {
   start_endless("first", "exit 0");
   start_endless("second", "exit 0");
-  const auto patience_s = static_cast<double>(test::hang_limit().count());
-  int pauses = 0;
-  const auto pause = [&pauses](std::chrono::milliseconds duration) {
-    ++pauses;
-    std::this_thread::sleep_for(duration);  // as a program does between two checks
-  };
-  EXPECT_THAT(group_.stop(patience_s, pause, "second"), IsEmpty());
-  EXPECT_GT(pauses, 0);
+  EXPECT_THAT(group_.stop(kSleep, kNever, "second"), IsEmpty());
   std::vector<std::string> names;
   for (const support::StageTime& time : group_.wait()) names.push_back(time.stage);
   EXPECT_THAT(names, ElementsAre("first", "second")) << "in the order of their start";
@@ -167,8 +176,8 @@ TEST_F(ProcessGroupTest, ThoseThatRetireAreStartedAnewAndOneGoesOn) {
   start_endless("stubborn", "");
   const pid_t page = group_.pid("page");
   group_.retire("page");
-  EXPECT_FALSE(group_.retired(false)) << "one does not end by itself";
-  ASSERT_TRUE(test::wait_for("all but one to retire", [&] { return group_.retired(true); }));
+  EXPECT_FALSE(group_.retired()) << "one does not end by itself";
+  while (!group_.retired()) hour_s_ += EndWatch::kHangs_s;
   EXPECT_FALSE(group_.next_unexpected_end()) << "they were asked to";
   start("page", "echo other page");
   start("store", "echo other store; exit 3");
@@ -181,8 +190,43 @@ TEST_F(ProcessGroupTest, ThoseThatRetireAreStartedAnewAndOneGoesOn) {
     return end.has_value();
   }));
   EXPECT_EQ(end->name, "store") << "it is watched again";
-  group_.stop(0.0, [](auto) {});  // one does not end by itself
+  group_.stop(kSleep, kNever);
   EXPECT_EQ(group_.wait().size(), 3U);
+}
+
+TEST_F(ProcessGroupTest, OneThatIsSlowIsWaitedForAndOneThatHangsIsKilled) {
+  start_endless("slow", "while [ ! -e " + (logs_ / "free").string() + " ]; do :; done; exit 0");
+  start_endless("hung", "");
+  const pid_t slow = group_.pid("slow");
+  const double start_s = hour_s_;
+  // An hour passes, in which the slow one now works, now waits for a CPU.
+  const auto pause = [&](std::chrono::milliseconds) {
+    hour_s_ += 1.0;
+    progress_[slow].ran_s += 0.04;
+    progress_[slow].waited_s += 0.2;
+    if (hour_s_ - start_s == 3600.0) std::ofstream(logs_ / "free") << "now";
+    if (hour_s_ - start_s >= 3600.0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  };
+  EXPECT_THAT(group_.stop(pause, kNever), ElementsAre("hung"));
+  EXPECT_THAT(lines_,
+              testing::Contains(HasSubstr(
+                  "waits for slow to end: it worked for 0.2 s and waited 1.0 s for a CPU")));
+  EXPECT_THAT(lines_, testing::Contains("hung hangs and is killed: no work, no waiting for a CPU "
+                                        "and no status for 20 s"));
+  EXPECT_EQ(group_.wait().size(), 2U);
+}
+
+TEST_F(ProcessGroupTest, OneThatIsToEndByItselfHangsOrDoesNot) {
+  start_endless("recorder", "");
+  const pid_t recorder = group_.pid("recorder");
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_FALSE(group_.hangs("recorder")) << i;
+    hour_s_ += EndWatch::kHangs_s / 2.0;
+    ++progress_[recorder].reports;
+  }
+  while (!group_.hangs("recorder")) hour_s_ += 1.0;
+  EXPECT_FALSE(group_.has_ended("recorder")) << "that is left to the caller";
+  group_.kill("recorder");
 }
 
 TEST_F(ProcessGroupTest, AProgramThatIsNotThereIsAnError) {

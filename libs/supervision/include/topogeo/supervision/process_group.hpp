@@ -14,6 +14,7 @@
 #include <sys/types.h>
 
 #include "topogeo/supervision/child_process.hpp"
+#include "topogeo/supervision/end_watch.hpp"
 #include "topogeo/support/cpu_time.hpp"
 
 namespace topogeo::supervision {
@@ -38,12 +39,20 @@ struct UnexpectedEnd {
   bool can_restart = false;
 };
 
+/// How a group follows the ends of its processes. The defaults are those of this machine.
+struct EndObserver {
+  std::function<double()> now_s = support::monotonic_s;
+  std::function<Progress(pid_t pid)> progress = read_progress;
+  std::function<void(const std::string& line)> log = [](const std::string&) {};  ///< for the user
+};
+
 class ProcessGroup {
  public:
   /// Programs are taken from the folder `programs`; the output of each process goes to
   /// `logs`/<name>.log. Makes the folder `logs`; throws std::filesystem::filesystem_error when that
   /// is not possible.
-  ProcessGroup(std::filesystem::path programs, std::filesystem::path logs);
+  ProcessGroup(std::filesystem::path programs, std::filesystem::path logs,
+               EndObserver observer = {});
 
   /// Starts a program under a name of its own; one of that name that was retired is started anew
   /// with these arguments, one that runs goes on as it is. Throws like ChildProcess.
@@ -82,14 +91,20 @@ class ProcessGroup {
   /// Asks all processes to end (SIGTERM), which is in order, but the one of that name, which goes
   /// on.
   void retire(const std::string& all_but);
-  /// True when those that were asked to retire have ended. `kill`: those that have not are killed.
-  bool retired(bool kill);
+  /// True when those that were asked to retire have ended. Call it many times a second: those
+  /// that hang are killed.
+  bool retired();
+
+  /// Whether the process of that name hangs, which is to end by itself: call it many times a
+  /// second. It reports what is waited for.
+  bool hangs(const std::string& name);
 
   /// Passes so much time, in which the caller's other work goes on.
   using Pause = std::function<void(std::chrono::milliseconds duration)>;
-  /// Asks all processes to end, `first` alone before the others (empty: all at once), and kills
-  /// those that still run after `patience_s`. Returns the names of those.
-  std::vector<std::string> stop(double patience_s, const Pause& pause,
+  /// Asks all processes to end, `first` alone before the others (empty: all at once), and waits
+  /// for them however slow they are. Those that hang (EndWatch) are killed, and all that still run
+  /// as soon as `at_once` returns true. Returns the names of those that were killed.
+  std::vector<std::string> stop(const Pause& pause, const std::function<bool()>& at_once,
                                 const std::string& first = {});
 
   /// Waits until all have ended. Wall and CPU time of each, in the order of their start.
@@ -102,9 +117,11 @@ class ProcessGroup {
     Restart restart = Restart::kNever;
     std::string program;
     std::vector<std::string> arguments;
-    std::string left_out = {};  // of them at a restart
-    bool reported = false;      // its end
-    bool retires = false;       // it was asked to end
+    std::string left_out = {};         // of them at a restart
+    bool reported = false;             // its end
+    bool retires = false;              // it was asked to end, and another may follow
+    bool asked = false;                // to end
+    std::optional<EndWatch> end = {};  // of one that is waited for
     std::uint32_t lives = 1;
     std::uint32_t restarts = 0;
     double earlier_wall_s = 0.0;  // of its lives before
@@ -116,9 +133,14 @@ class ProcessGroup {
 
   void send_signal(int signal_number, const std::string& name);
   [[nodiscard]] bool runs(const std::string& name);
+  bool hangs(Member& member);
+  /// Of those that were asked to end. Returns their names. Does nothing most of the times.
+  std::vector<std::string> kill_hung();
 
   std::filesystem::path programs_;
   std::filesystem::path logs_;
+  EndObserver observer_;
+  double check_s_ = 0.0;  // when ends are looked after next
   std::vector<Member> members_;
 };
 

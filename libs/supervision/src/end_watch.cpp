@@ -1,0 +1,83 @@
+#include "topogeo/supervision/end_watch.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include <unistd.h>
+
+#include "topogeo/support/format.hpp"
+#include "topogeo/support/thread_times.hpp"
+
+namespace topogeo::supervision {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What follows the name in parentheses in a file `stat` of /proc: state, numbers.
+std::istringstream fields_of(const fs::path& stat) {
+  std::ifstream file(stat);
+  std::string line;
+  std::getline(file, line);
+  const std::size_t name_end = line.rfind(')');
+  return std::istringstream(name_end == std::string::npos ? "" : line.substr(name_end + 1));
+}
+
+bool a_thread_waits_for_disk(const fs::path& process) {
+  std::error_code error;
+  for (fs::directory_iterator task(process / "task", error), end; !error && task != end;
+       task.increment(error)) {
+    std::string state;
+    if (fields_of(task->path() / "stat") >> state && state == "D") return true;
+  }
+  return false;
+}
+
+/// User and system, in ticks of the kernel: coarse, but there everywhere.
+double ran_in_ticks_s(const fs::path& process) {
+  std::istringstream fields = fields_of(process / "stat");
+  constexpr int kBeforeTimes = 11;  // fields from the state to the one before utime
+  std::string skipped;
+  for (int i = 0; i < kBeforeTimes; ++i) fields >> skipped;
+  double user = 0.0;
+  double system = 0.0;
+  fields >> user >> system;
+  return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
+}
+
+}  // namespace
+
+Progress read_progress(pid_t pid) {
+  const fs::path process = "/proc/" + std::to_string(pid);
+  const support::ThreadTime time = support::sum_of(support::thread_times(process));
+  Progress progress{time.ran_s, time.waited_s, 0, a_thread_waits_for_disk(process)};
+  if (progress.ran_s == 0.0) progress.ran_s = ran_in_ticks_s(process);
+  return progress;
+}
+
+EndWatch::Verdict EndWatch::check(const Progress& progress, double now_s) {
+  // The times of a thread that ends go, which is progress, too.
+  const double work_s =
+      std::fabs(progress.ran_s - mark_.ran_s) + std::fabs(progress.waited_s - mark_.waited_s);
+  if (work_s >= kLeastWork_s || progress.reports != mark_.reports || progress.waits_for_disk) {
+    mark_ = progress;
+    mark_s_ = now_s;
+  }
+  if (now_s - mark_s_ >= kHangs_s) {
+    text_ = fmt::format("no work, no waiting for a CPU and no status for {:.0f} s", kHangs_s);
+    return Verdict::kHangs;
+  }
+  if (now_s < report_s_) return Verdict::kWaits;
+  text_ = fmt::format("it worked for {:.1f} s and waited {:.1f} s for a CPU in the last {:.0f} s{}",
+                      std::fabs(progress.ran_s - reported_.ran_s),
+                      std::fabs(progress.waited_s - reported_.waited_s),
+                      now_s - report_s_ + kReportEvery_s,
+                      progress.waits_for_disk ? ", and waits for a disk now" : "");
+  reported_ = progress;
+  report_s_ = now_s + kReportEvery_s;
+  return Verdict::kReport;
+}
+
+}  // namespace topogeo::supervision
