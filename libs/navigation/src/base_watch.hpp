@@ -14,10 +14,11 @@ class BaseWatch {
  public:
   explicit BaseWatch(double stuck_s) : stuck_ns_(static_cast<std::int64_t>(stuck_s * 1e9)) {}
 
-  /// What the base was ordered, and where it is by odometry. True: it has not moved for `stuck_s`
-  /// though ordered to all the time.
+  /// What the base is ordered now, and where it is by odometry of `odometry_ns`. True: it has not
+  /// moved for `stuck_s` though ordered to all the time. Odometry that comes late shows nothing of
+  /// the time after its stamp.
   bool stuck(const geometry::Velocity& ordered, const geometry::Pose2& T_odom_robot,
-             std::int64_t now_ns) {
+             std::int64_t odometry_ns, std::int64_t now_ns) {
     constexpr double kLeast_m_per_s = 0.02;    // friction may stop a base that is to go slower
     constexpr double kLeast_rad_per_s = 0.05;  // the same
     constexpr double kMoved_m = 0.01;          // less may be play of the wheels
@@ -31,11 +32,13 @@ class BaseWatch {
     if (T_odom_then_) {
       const geometry::Pose2 step = between(*T_odom_then_, T_odom_robot);
       if (step.position_m().norm() < kMoved_m && std::fabs(step.theta_rad) < kMoved_rad) {
-        return now_ns - since_ns_ >= stuck_ns_;
+        return odometry_ns - since_ns_ >= stuck_ns_;
       }
+      since_ns_ = odometry_ns;
+    } else {
+      since_ns_ = now_ns;  // the order is new
     }
     T_odom_then_ = T_odom_robot;
-    since_ns_ = now_ns;
     return false;
   }
 

@@ -12,6 +12,7 @@ GuardedBase::GuardedBase(const GuardConfig& guard, double stuck_s)
 void GuardedBase::add(const OdometrySample& odometry) {
   guard_.add(odometry);
   near_.add(odometry);
+  odometry_ns_ = odometry.stamp_ns;
 }
 
 void GuardedBase::add(const SonarRound& sonar) {
@@ -48,7 +49,7 @@ GuardedBase::Command GuardedBase::command(const geometry::Velocity& wanted,
   } else if (!command.stopped && wanted != geometry::Velocity{}) {
     stopped_ns_.reset();
   }
-  if (T_odom_robot) stuck_ = watch_.stuck(allowed, *T_odom_robot, now_ns);
+  if (T_odom_robot) stuck_ = watch_.stuck(allowed, *T_odom_robot, odometry_ns_, now_ns);
   return command;
 }
 

@@ -63,6 +63,7 @@ class GuardedBase {
   NearEchoes near_;
   BaseWatch watch_;
   std::optional<BaseCondition> base_;
+  std::int64_t odometry_ns_ = 0;  ///< of the newest
   bool stuck_ = false;
   std::optional<std::int64_t> stopped_ns_;  ///< since when the guard stops the motion ahead
 };

@@ -59,6 +59,7 @@ TEST_F(GuardedBaseTest, ABaseThatDoesNotMoveIsStuckUntilItMayTryAgain) {
   for (int i = 0; i <= 20; ++i) {
     const std::int64_t now_ns = i * kSecond_ns / 10;
     scan_at(5.0, now_ns);
+    base.add(OdometrySample{now_ns, {}});
     base.command({0.3, 0.0}, geometry::Pose2{}, now_ns);
   }
   EXPECT_EQ(base.halted(2 * kSecond_ns, message), HaltReason::kBaseStuck);
