@@ -45,7 +45,8 @@ bool holds_the_base(NavigatorState state) {
 }
 
 bool differs(const navigation::NavigatorStatus& a, const navigation::NavigatorStatus& b) {
-  return a.state != b.state || a.reason != b.reason || a.goal_id != b.goal_id;
+  return a.state != b.state || a.reason != b.reason || a.goal_id != b.goal_id ||
+         a.busy_machine != b.busy_machine;
 }
 
 }  // namespace
@@ -94,17 +95,20 @@ void NavigatorService::listen_to_sensors() {
         if (pose.mode() == msg::kModeMarkov) return;  // its own
         // The whole message first: the stamp of one that is refused must not count.
         const navigation::PoseFix fix = service::to_pose_fix(service::from_msg(pose));
+        note_arrival(navigation::TimedInput::kPose, fix.stamp_ns);
         if (is_newer(Source::kPose, fix.stamp_ns)) navigator_.add(fix);
       },
       {.main_input = true});
   service_.subscribe<msg::Odometry>([this](const msg::Odometry& odometry) {
     const navigation::OdometrySample sample = service::odometry_from_msg(odometry);
     note_stamp(sample.stamp_ns);
+    note_arrival(navigation::TimedInput::kOdometry, sample.stamp_ns);
     if (is_newer(Source::kOdometry, sample.stamp_ns)) navigator_.add(sample);
   });
   service_.subscribe<msg::Scan>([this](const msg::Scan& scan) { on_scan(scan); });
   service_.subscribe<msg::Sonar>([this](const msg::Sonar& sonar) {
     const navigation::SonarRound round = service::sonar_from_msg(sonar);
+    note_arrival(navigation::TimedInput::kSonar, round.stamp_ns);
     if (is_newer(Source::kSonar, round.stamp_ns)) navigator_.add(round);
   });
   service_.subscribe<msg::BaseStatus>([this](const msg::BaseStatus& base) {
@@ -143,10 +147,15 @@ void NavigatorService::note_stamp(std::int64_t stamp_ns) {
   clock_.observe(stamp_ns, steady_now_ns());
 }
 
+void NavigatorService::note_arrival(navigation::TimedInput input, std::int64_t stamp_ns) {
+  navigator_.note_arrival(input, stamp_ns, clock_.now_ns(steady_now_ns()));
+}
+
 void NavigatorService::on_scan(const msg::Scan& message) {
   const navigation::ScanPoints points = service::to_scan_points(
       service::from_msg(message), service_.setup().config.config.local_mapper.T_robot_laser);
   note_stamp(points.stamp_ns);
+  note_arrival(navigation::TimedInput::kScan, points.stamp_ns);
   if (!is_newer(Source::kScan, points.stamp_ns)) return;
   if (is_newer(Source::kOdometry, points.stamp_ns)) {
     navigator_.add(navigation::OdometrySample{points.stamp_ns, points.T_odom_robot});
@@ -216,6 +225,7 @@ void NavigatorService::take_map() {
 void NavigatorService::tick() {
   const std::int64_t now_ns = clock_.now_ns(steady_now_ns());
   if (clock_.take_set_back()) begin_again();
+  navigator_.set_machine({service_.cpu().is_short_now(), service_.cpu().timer_delay_s()});
   const geometry::Velocity velocity = navigator_.step(now_ns);
   command(velocity, now_ns);
   publish_pose();

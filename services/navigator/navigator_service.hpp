@@ -47,6 +47,8 @@ class NavigatorService {
   /// False, and counted, for a message that is not newer than the one before, or that is ahead of
   /// scans and odometry, which set the clock.
   bool is_newer(Source source, std::int64_t stamp_ns);
+  /// For the reason of a halt: how late a message came.
+  void note_arrival(navigation::TimedInput input, std::int64_t stamp_ns);
   /// Sets the clock by a message that has just come.
   void note_stamp(std::int64_t stamp_ns);
 

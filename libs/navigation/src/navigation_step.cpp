@@ -31,6 +31,7 @@ NavigationStep::NavigationStep(const NavigatorConfig& settings)
 
 geometry::Velocity NavigationStep::step(std::int64_t at_ns) {
   now_ns = std::max(now_ns, at_ns);
+  status.busy_machine = false;
   locate();
   surroundings.update(status.T_map_robot ? routes.space() : nullptr, poses.keeper(), now_ns);
   if (goal.arrived()) return stop(NavigatorState::kArrived, HaltReason::kNone, status.message);
@@ -286,7 +287,9 @@ geometry::Velocity NavigationStep::stop(NavigatorState state, HaltReason reason,
                                         std::string message) {
   status.state = state;
   status.reason = reason;
-  status.message = std::move(message);
+  InputDelays::Reason why = delays.explain(reason, std::move(message), now_ns);
+  status.message = std::move(why.message);
+  status.busy_machine = why.busy_machine;
   status.command = {};
   driver.follower().commanded({}, now_ns);
   base.stand();

@@ -14,6 +14,7 @@
 #include "arrival.hpp"
 #include "goal_in_hand.hpp"
 #include "guarded_base.hpp"
+#include "input_delays.hpp"
 #include "obstacle_wait.hpp"
 #include "pose_sources.hpp"
 #include "relocalization.hpp"
@@ -55,6 +56,7 @@ struct NavigationStep {
   GoalInHand goal;
   PoseSources poses;
   GuardedBase base;
+  InputDelays delays;
   Surroundings surroundings;
   RouteKeeper routes;
   RouteDriver driver;

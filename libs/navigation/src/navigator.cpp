@@ -103,6 +103,14 @@ void Navigator::add(const BaseCondition& base) {
   state_->base.add(base);
 }
 
+void Navigator::note_arrival(TimedInput input, std::int64_t stamp_ns, std::int64_t arrival_ns) {
+  state_->delays.add(input, stamp_ns, arrival_ns);
+}
+
+void Navigator::set_machine(const MachineLoad& load) {
+  state_->delays.set(load);
+}
+
 geometry::Velocity Navigator::step(std::int64_t now_ns) {
   return state_->step(now_ns);
 }

@@ -53,6 +53,10 @@ class Navigator {
   void add(const LaserFields& fields);
   void add(const BaseCondition& base);
 
+  /// For the reasons of a halt only; nothing else depends on them. A message came at `arrival_ns`.
+  void note_arrival(TimedInput input, std::int64_t stamp_ns, std::int64_t arrival_ns);
+  void set_machine(const MachineLoad& load);
+
   /// What the base shall do until the next call. `now_ns` never goes back.
   geometry::Velocity step(std::int64_t now_ns);
 

@@ -1,6 +1,7 @@
 // What a navigator gets, and what it reports. All stamps are of one clock, nanoseconds.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -69,6 +70,16 @@ struct BaseCondition {
   std::string reason;  ///< for people, when they are not
 };
 
+/// Inputs whose stamps show how late they come.
+enum class TimedInput : std::uint8_t { kPose = 0, kOdometry = 1, kScan = 2, kSonar = 3 };
+inline constexpr std::size_t kTimedInputs = static_cast<std::size_t>(TimedInput::kSonar) + 1;
+
+/// What the machine lately left the program that owns the navigator.
+struct MachineLoad {
+  bool busy = false;           ///< its threads waited for a CPU and its timers were late
+  double timer_delay_s = 0.0;  ///< the largest
+};
+
 /// A route to a goal by the planner; also again, when something has changed.
 struct RoutePlan {
   std::uint64_t goal_id = 0;
@@ -125,6 +136,7 @@ struct NavigatorStatus {
   NavigatorState state = NavigatorState::kIdle;
   HaltReason reason = HaltReason::kNone;
   std::string message;        ///< one line for people: what it does, or why it does not
+  bool busy_machine = false;  ///< the message names a machine that is too busy as the reason
   std::uint64_t goal_id = 0;  ///< 0: none
   double driven_m = 0.0;      ///< since the goal was given, by odometry
   double rest_m = 0.0;        ///< of the route

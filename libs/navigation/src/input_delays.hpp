@@ -1,0 +1,39 @@
+// Whether an input that is missing has gone, or comes late because a machine is too busy.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "topogeo/navigation/navigator_inputs.hpp"
+
+namespace topogeo::navigation {
+
+class InputDelays {
+ public:
+  /// A message with this stamp has come at `arrival_ns`.
+  void add(TimedInput input, std::int64_t stamp_ns, std::int64_t arrival_ns);
+  void set(const MachineLoad& load) { load_ = load; }
+
+  /// The text of why the robot does not drive, and whether a busy machine is part of it: an input
+  /// that still comes is named with its delay (scans and odometry in place of `message`), and
+  /// a busy machine with any other reason that it can have.
+  struct Reason {
+    std::string message;
+    bool busy_machine = false;
+  };
+  [[nodiscard]] Reason explain(HaltReason reason, std::string message, std::int64_t now_ns) const;
+
+ private:
+  struct Newest {
+    std::int64_t stamp_ns = 0;
+    std::int64_t arrival_ns = 0;
+  };
+  [[nodiscard]] std::optional<double> delay_s(TimedInput input, std::int64_t now_ns) const;
+
+  std::array<std::optional<Newest>, kTimedInputs> newest_;
+  MachineLoad load_;
+};
+
+}  // namespace topogeo::navigation
