@@ -1,5 +1,6 @@
 #include "orders/pending_requests.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <random>
 #include <utility>
@@ -11,6 +12,10 @@ namespace {
 
 constexpr std::chrono::milliseconds kRequestTick{100};
 constexpr double kSendAgain_s = 1.0;
+/// A tick that comes later shows that this service did not run: replies may be unread.
+constexpr double kLongestTick_s = 0.5;
+/// What takes a second on a free machine takes six on one whose CPUs six programs want.
+constexpr double kBusyPatience = 6.0;
 
 }  // namespace
 
@@ -18,6 +23,7 @@ PendingRequests::PendingRequests(service::Service& service, std::string none, do
     : service_(service),
       none_(std::move(none)),
       patience_s_(patience_s),
+      last_tick_s_(support::monotonic_s()),
       last_id_(std::uint64_t{std::random_device{}()} << 16U) {
   timer_ = service_.loop().add_timer(kRequestTick, [this] { tick(); });
 }
@@ -29,7 +35,7 @@ PendingRequests::~PendingRequests() {
 void PendingRequests::begin(Respond respond, std::function<void(std::uint64_t id)> send) {
   const std::uint64_t id = ++last_id_;
   Pending& pending = pending_[id];
-  pending = {std::move(respond), std::move(send), support::monotonic_s(), support::monotonic_s()};
+  pending = {std::move(respond), std::move(send), 0.0, support::monotonic_s()};
   pending.send(id);
 }
 
@@ -43,10 +49,15 @@ std::optional<Respond> PendingRequests::take(std::uint64_t id) {
 
 void PendingRequests::tick() {
   const double now_s = support::monotonic_s();
+  const double passed_s = std::min(now_s - std::exchange(last_tick_s_, now_s), kLongestTick_s);
+  const bool busy = service_.cpu().lasts();
+  const double patience_s = busy ? kBusyPatience * patience_s_ : patience_s_;
   for (auto pending = pending_.begin(); pending != pending_.end();) {
     auto& [id, request] = *pending;
-    if (now_s - request.since_s > patience_s_) {
-      request.respond(error_answer(503, none_));
+    request.waited_s += passed_s;
+    if (request.waited_s > patience_s) {
+      request.respond(error_answer(
+          503, busy ? none_ + "; this machine is too busy: " + service_.cpu().text() : none_));
       pending = pending_.erase(pending);
       continue;
     }

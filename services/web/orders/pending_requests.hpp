@@ -16,8 +16,10 @@ namespace topogeo::web {
 /// Lives in the loop of its service.
 class PendingRequests {
  public:
-  /// `none`: the error, with status 503, where no reply has come after `patience_s`. The other
-  /// service carries out a request once and repeats its reply.
+  /// `none`: the error, with status 503, where no reply has come after `patience_s`, or after six
+  /// times as long while this machine is too busy, which the error then names. A time in which this
+  /// service did not run does not count. The other service carries out a request once and repeats
+  /// its reply.
   PendingRequests(service::Service& service, std::string none, double patience_s);
   PendingRequests(const PendingRequests&) = delete;
   PendingRequests& operator=(const PendingRequests&) = delete;
@@ -32,14 +34,15 @@ class PendingRequests {
   struct Pending {
     Respond respond;
     std::function<void(std::uint64_t id)> send;
-    double since_s = 0.0;  // by the steady clock
-    double sent_s = 0.0;
+    double waited_s = 0.0;
+    double sent_s = 0.0;  // by the steady clock
   };
   void tick();
 
   service::Service& service_;
   std::string none_;
   double patience_s_;
+  double last_tick_s_;
   std::uint64_t last_id_;
   std::uint64_t timer_ = 0;
   std::map<std::uint64_t, Pending> pending_;
