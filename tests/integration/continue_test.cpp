@@ -50,7 +50,7 @@ class ContinueTest : public testing::Test {
     return {code, program.out(), program.err()};
   }
   void make_map(double share) {
-    write_part("floor", scratch_ / "first.clf.gz", 0.0, share);
+    write_part("ring", scratch_ / "first.clf.gz", 0.0, share);
     const Outcome mapped = call({"map", "--log", scratch_ / "first.clf.gz"}, "map");
     ASSERT_EQ(mapped.code, 0) << mapped.err;
   }
@@ -84,7 +84,7 @@ TEST_P(ContinueByWorkersTest, OverDdsItGivesTheBytesOfOneProcess) {
   make_map(0.6);
   const std::string before = read_file(map_);
   const std::string log = scratch_ / "second.clf.gz";
-  write_part("floor", log, 0.6, 1.0);
+  write_part("ring", log, 0.6, 1.0);
   const auto [alone, run] = map_and_run(log, GetParam());
   ASSERT_EQ(alone.code, 0) << alone.err;
   ASSERT_EQ(run.code, 0) << run.err;
@@ -102,7 +102,7 @@ TEST_P(ContinueByWorkersTest, OverDdsItGivesTheBytesOfOneProcess) {
 TEST_F(ContinueTest, ALogThatIsAddedToItsOwnMapIsAnotherSession) {
   make_map(0.4);
   const std::string log = scratch_ / "again.clf.gz";
-  write_part("floor", log, 0.0, 0.4);
+  write_part("ring", log, 0.0, 0.4);
   const auto [alone, run] = map_and_run(log, 0);
   ASSERT_EQ(alone.code, 0) << alone.err;
   ASSERT_EQ(run.code, 0) << run.err;
@@ -148,8 +148,8 @@ TEST_F(ContinueTest, PosesOfStopsThatAreSearchedForAreInNoTrajectory) {
 
 TEST_F(ContinueTest, AContinuedMapIsContinuedAgain) {
   make_map(0.5);
-  write_part("floor", scratch_ / "second.clf.gz", 0.5, 0.75);
-  write_part("floor", scratch_ / "third.clf.gz", 0.75, 1.0);
+  write_part("ring", scratch_ / "second.clf.gz", 0.5, 0.75);
+  write_part("ring", scratch_ / "third.clf.gz", 0.75, 1.0);
   const Outcome second =
       call({"map", "--log", scratch_ / "second.clf.gz", "--continue", map_}, "two");
   ASSERT_EQ(second.code, 0) << second.err;

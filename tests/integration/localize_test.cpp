@@ -19,7 +19,7 @@ using testing::HasSubstr;
 class LocalizeTest : public testing::Test {
  protected:
   void make_map() {
-    write_log("floor", log_);
+    write_log("ring", log_);
     Program program(scratch_, "topogeo", {"map", "--log", log_, "--out", scratch_ / "map"});
     ASSERT_EQ(program.wait(), 0) << program.err();
   }
