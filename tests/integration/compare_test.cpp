@@ -171,7 +171,7 @@ TEST_F(CompareTest, AMapIsComparedByItsLoopsAlone) {
 TEST_F(CompareTest, AgreesWithTheFiguresOfMapWithAReference) {
   const std::string log = scratch_ / "log.clf.gz";
   const std::string truth = scratch_ / "truth.tum";
-  write_log("floor", log, truth);
+  write_log("ring", log, truth);
   Program map(scratch_, "topogeo",
               {"map", "--log", log, "--out", scratch_ / "out", "--reference", truth});
   ASSERT_EQ(map.wait(), 0) << map.err();

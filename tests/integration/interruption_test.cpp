@@ -11,6 +11,7 @@
 #include "topogeo/storage/read_map.hpp"
 
 #include "program.hpp"
+#include "waiting.hpp"
 
 namespace topogeo::test {
 namespace {
@@ -21,13 +22,13 @@ using testing::SizeIs;
 
 class InterruptionTest : public testing::Test {
  protected:
-  InterruptionTest() {
-    use_udp_only();
-    write_log("floor", log_);
-  }
+  InterruptionTest() { use_udp_only(); }
 
+  /// Of a run that lasts 6 s and works little.
   std::vector<std::string> words() {
-    return {"run", "--log", log_, "--out", out_, "--workers", "1", "--domain", own_domain()};
+    write_log("ring", log_);
+    return {"run", "--log",    log_,         "--out",  out_, "--workers",
+            "1",   "--domain", own_domain(), "--rate", "8"};
   }
 
   /// A program that `interrupt` has ended. One that was through before, as this process did not get
@@ -97,6 +98,7 @@ TEST_F(InterruptionTest, ServicesDoNotOutliveAKilledRun) {
 }
 
 TEST_F(InterruptionTest, CtrlCStopsMapWithoutAnyResult) {
+  write_log("floor", log_);
   const auto map = interrupted({"map", "--log", log_, "--out", out_}, [](Program& program) {
     program.wait_for_progress(20);
     program.send_signal(SIGINT);
@@ -107,6 +109,7 @@ TEST_F(InterruptionTest, CtrlCStopsMapWithoutAnyResult) {
 }
 
 TEST_F(InterruptionTest, CtrlCStopsMapWhileItMatchesRevisitedPlaces) {
+  write_log("floor", log_);
   const auto map = interrupted({"map", "--log", log_, "--out", out_}, [](Program& program) {
     program.wait_for_error_text("matching revisited places");
     program.send_signal(SIGINT);
