@@ -66,7 +66,7 @@ struct LoadOptions {
 void wait_for_start(double start_s) {
   const Clock::time_point start{
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(start_s))};
-  std::this_thread::sleep_until(start);
+  std::this_thread::sleep_until(start);  // all processes begin at the same moment
 }
 
 /// A robot; prints its row.

@@ -119,7 +119,8 @@ Workers::~Workers() {
   constexpr std::chrono::milliseconds kLook{5};
   const Clock::time_point end = Clock::now() + kToLeave;
   for (supervision::ChildProcess& child : children_) {
-    while (!child.poll() && Clock::now() < end) std::this_thread::sleep_for(kLook);
+    while (!child.poll() && Clock::now() < end)
+      std::this_thread::sleep_for(kLook);  // between two checks
   }
 }
 

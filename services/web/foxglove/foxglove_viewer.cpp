@@ -154,7 +154,7 @@ bool FoxgloveViewer::is_due(const Subscription& subscription) const {
   const FoxgloveTopic& topic = *subscription.topic;
   if (version_of(topic) == subscription.held) return false;
   return subscription.turn == 0 ||
-         ServerState::now_s() - subscription.sent_s >= topic.shortest_period_s;
+         state().config.clock_s() - subscription.sent_s >= topic.shortest_period_s;
 }
 
 std::optional<Watcher::Frame> FoxgloveViewer::next_frame() {
@@ -176,7 +176,7 @@ void FoxgloveViewer::take_next(std::uint32_t id, Subscription& subscription) {
   const FoxgloveTopic& topic = *subscription.topic;
   frames_of_ = id;
   subscription.turn = ++messages_sent_;
-  subscription.sent_s = ServerState::now_s();
+  subscription.sent_s = state().config.clock_s();
   if (topic.live) {
     const LiveMessage message = state().feed.newest(*topic.live);
     subscription.held = message.version;

@@ -90,6 +90,10 @@ TEST(Architecture, SettingsIncludeNoAlgorithm) {
   EXPECT_THAT(algorithms_in_settings(project_includes()), IsEmpty());
 }
 
+TEST(Architecture, UnitTestsSleepForAReason) {
+  EXPECT_THAT(sleeps_without_reason(TOPOGEO_SOURCE_DIR, "tests/unit"), IsEmpty());
+}
+
 TEST(Architecture, EachFolderThatIsNamedIsUsed) {
   for (const RestrictedLibrary& library : restricted_libraries()) {
     for (const std::string_view place : library.places) {

@@ -158,4 +158,23 @@ std::vector<std::string> algorithms_in_settings(const std::vector<Include>& incl
   return found;
 }
 
+std::vector<std::string> sleeps_without_reason(const std::filesystem::path& root,
+                                               const std::string& folder) {
+  static const std::regex kSleep(R"re((sleep_for|sleep_until|usleep|nanosleep|::sleep)\()re");
+  std::vector<std::string> found;
+  for (const std::filesystem::path& path : sources_below(root / folder)) {
+    std::ifstream file(path);
+    std::string before;
+    std::string text;
+    for (int line = 1; std::getline(file, text); ++line, before = text) {
+      const std::string code = text.substr(0, text.find("//"));
+      if (!std::regex_search(code, kSleep)) continue;
+      if (code != text || before.find("//") != std::string::npos) continue;
+      found.push_back(path.lexically_relative(root).string() + ":" + std::to_string(line) +
+                      ": sleeps, expected an event or a comment with the reason");
+    }
+  }
+  return found;
+}
+
 }  // namespace topogeo::architecture

@@ -131,5 +131,16 @@ TEST_F(SourceRules, FindsSettingsThatIncludeAnAlgorithm) {
                           HasSubstr("reader_config.hpp:6: includes yaml-cpp/yaml.h")));
 }
 
+TEST_F(SourceRules, FindsASleepWithoutItsReason) {
+  write("tests/good.cpp",
+        "// Pacing: one packet each.\nsleep_for(period);\n"
+        "usleep(5);  // the event is that nothing comes\n// sleep_for(1) is no code\n");
+  EXPECT_THAT(sleeps_without_reason(root_, "tests"), IsEmpty());
+  write("tests/unit/bad.hpp",
+        "int x;  // a comment\nint y;\nstd::this_thread::sleep_until(end);\n");
+  EXPECT_THAT(sleeps_without_reason(root_, "tests"),
+              ElementsAre(HasSubstr("tests/unit/bad.hpp:3: sleeps")));
+}
+
 }  // namespace
 }  // namespace topogeo::architecture
