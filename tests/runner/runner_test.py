@@ -111,7 +111,7 @@ class WholeRunTest(RunnerTest):
     def test_skipped_tests_have_a_line_for_each_reason_with_the_cure(self):
         _, output = self.project().run("script", "unit", "good")
         self.assertIn("skipped: script.skips, script.skips_too: docker is not installed; to run them: "
-                      "sudo tests/container/start_engine\n", output)
+                      f"{summary.SUDO}tests/container/start_engine\n", output)
         self.assertIn("skipped: a part of unit.partly: no logs here\n", output)
 
     def test_the_closing_line_of_ctest_is_the_last(self):
@@ -153,7 +153,7 @@ class QuotaTest(RunnerTest):
             self.assertFalse(os.path.exists(group))
         else:
             self.assertRegex(output, r"busy loops leave about 0.8 cores")
-            self.assertRegex(output, r"\n1: +19\n")
+            self.assertRegex(output, r"\n1: +15\n")
 
     def test_without_a_group_tests_run_behind_loops(self):
         project = self.project()
@@ -172,7 +172,7 @@ class QuotaTest(RunnerTest):
         self.assertEqual(status, 0)
         self.assertIn("busy loops leave about 0.8 cores", output.getvalue())
         with open(log, encoding="utf-8") as file:
-            self.assertRegex(file.read(), r"\n1: +19\n")
+            self.assertRegex(file.read(), r"\n1: +15\n")
 
     def test_an_interruption_leaves_no_group_and_no_loop(self):
         for signal_number in (signal.SIGINT, signal.SIGTERM):
@@ -250,7 +250,7 @@ class SummaryTest(unittest.TestCase):
         self.assertEqual(summary.cure("tsc is not installed", STAGES), "./run packages --install check")
         self.assertEqual(summary.cure("faketime is not installed", STAGES), "./run packages --install container")
         self.assertEqual(summary.cure("no container engine runs (tests/container/start_engine starts one)", STAGES),
-                         "sudo tests/container/start_engine")
+                         summary.SUDO + "tests/container/start_engine")
         self.assertEqual(summary.cure("the page is not built", STAGES), "")
 
     def test_all_that_scripts_need_has_a_cure(self):

@@ -69,12 +69,13 @@ PACKAGE_OF = {
     "systemd-analyze": "systemd", "tsc": "node-typescript", "unshare": "util-linux", "wg": "wireguard-tools"}
 # Of no stage: nearly every machine has them.
 ELSEWHERE = {"curl", "prometheus", "util-linux"}
+SUDO = "" if os.geteuid() == 0 else "sudo "
 
 
 def cure(reason, stages):
     """The command that installs what a skipped test needs; empty where none is known."""
     if "container engine" in reason or reason.startswith("docker"):
-        return "sudo tests/container/start_engine"
+        return SUDO + "tests/container/start_engine"
     missing = re.match(r"(\S+) is not installed", reason)
     if not missing:
         return ""
@@ -83,7 +84,7 @@ def cure(reason, stages):
         return "tests/browser/install"
     if package in stages:
         return f"./run packages --install {stages[package]}"
-    return f"sudo apt-get install {package}" if package in ELSEWHERE else ""
+    return f"{SUDO}apt-get install {package}" if package in ELSEWHERE else ""
 
 
 def folder_name(test):
