@@ -71,7 +71,6 @@ disturb() {  # FAULT
   local before end
   recovery=-
   wait_for "the first stops of the map" more_stored_than 5 || { recovery="no stop is stored"; return 0; }
-  before=$(stored)
   case $1 in
     "cut "*)
       network "$1"
@@ -79,8 +78,14 @@ disturb() {  # FAULT
       before=$(stored)
       network "join ${1#cut }"
       ;;
-    "freeze worker") kill -STOP "${pids[worker1]}" ;;
-    "clock "*) step_clock_to_and_fro "${1#clock }" ;;
+    "freeze worker")
+      kill -STOP "${pids[worker1]}"
+      before=$(stored)
+      ;;
+    "clock "*)
+      step_clock_to_and_fro "${1#clock }"
+      before=$(stored)
+      ;;
     *) return 0 ;;
   esac
   ! run_ended || return 1
