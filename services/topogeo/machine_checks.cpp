@@ -32,8 +32,8 @@ constexpr std::uint64_t kLeastMemory_bytes = 256 * kMega;
 constexpr std::uint64_t kGoodMemory_bytes = 1'000 * kMega;
 // A start of all services meets any quota for some seconds of a long run.
 constexpr double kMuchThrottled = 0.25;
-// A search for loops keeps every CPU busy for a while, which is one thread for each. With three a
-// thread that wakes up waits for two others.
+// A search for loops keeps every CPU busy for a while, which is one thread for each. A
+// thread that wakes up among three waits for two others.
 constexpr double kCrowded = 3.0;
 // A load is the mean of a minute and may be over: then hardly a thread waits now.
 constexpr double kMuchPressure = 0.5;

@@ -14,9 +14,9 @@ class BaseWatch {
  public:
   explicit BaseWatch(double stuck_s) : stuck_ns_(static_cast<std::int64_t>(stuck_s * 1e9)) {}
 
-  /// What the base is ordered now, and where it is by odometry of `odometry_ns`. True: it has not
-  /// moved for `stuck_s` though ordered to all the time. Odometry that comes late shows nothing of
-  /// the time after its stamp.
+  /// Takes the order of now and the odometry of `odometry_ns`. True: the base has not moved for
+  /// `stuck_s` though ordered to all the time. Odometry that comes late shows nothing of the time
+  /// after its stamp.
   bool stuck(const geometry::Velocity& ordered, const geometry::Pose2& T_odom_robot,
              std::int64_t odometry_ns, std::int64_t now_ns) {
     constexpr double kLeast_m_per_s = 0.02;    // friction may stop a base that is to go slower

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What follows the name in parentheses in a file `stat` of /proc: state, numbers.
+/// The fields behind the name in a file `stat` of /proc: state, numbers.
 std::istringstream fields_of(const fs::path& stat) {
   std::ifstream file(stat);
   std::string line;

@@ -14,7 +14,7 @@ constexpr std::chrono::milliseconds kRequestTick{100};
 constexpr double kSendAgain_s = 1.0;
 /// A tick that comes later shows that this service did not run: replies may be unread.
 constexpr double kLongestTick_s = 0.5;
-/// What takes a second on a free machine takes six on one whose CPUs six programs want.
+/// Six programs that want one CPU make an answer take six times as long.
 constexpr double kBusyPatience = 6.0;
 
 }  // namespace

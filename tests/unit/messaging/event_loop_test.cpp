@@ -84,7 +84,7 @@ TEST(EventLoop, ReportsHowLateItsTimersWere) {
     longest = Clock::now() - before;
     loop.stop();
   });
-  // What was posted comes before the timers.
+  // Posted handlers come before the timers.
   loop.post([start = Clock::now()] {
     while (Clock::now() < start + 20ms) continue;
   });

@@ -7,7 +7,7 @@
 namespace topogeo::navigation {
 namespace {
 
-/// With odometry of the moment.
+/// The odometry is of the moment.
 bool stuck(BaseWatch& watch, const geometry::Velocity& ordered, const geometry::Pose2& T_odom_robot,
            std::int64_t now_ns) {
   return watch.stuck(ordered, T_odom_robot, now_ns, now_ns);

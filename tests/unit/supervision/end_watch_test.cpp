@@ -18,7 +18,7 @@ namespace {
 
 using Verdict = EndWatch::Verdict;
 
-/// What a watch says of a process at each of so many seconds, one after the other.
+/// The verdicts of a watch at each of so many seconds, one after the other.
 template <class ProgressAt>
 std::vector<Verdict> verdicts(int seconds, const ProgressAt& progress_at) {
   EndWatch watch(progress_at(0), 0.0);
@@ -44,7 +44,7 @@ TEST(EndWatch, OneThatWorksOrWaitsForACpuOrReportsIsWaitedFor) {
 }
 
 TEST(EndWatch, OneThatDoesNothingHangs) {
-  // As the threads of the middleware do that go on.
+  // The threads of the middleware go on.
   const auto hangs = [](int second) { return Progress{0.001 * second, 0.001 * second, 7}; };
   const std::vector<Verdict> all = verdicts(20, hangs);
   EXPECT_EQ(all.back(), Verdict::kHangs);

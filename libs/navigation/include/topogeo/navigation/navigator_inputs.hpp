@@ -74,7 +74,7 @@ struct BaseCondition {
 enum class TimedInput : std::uint8_t { kPose = 0, kOdometry = 1, kScan = 2, kSonar = 3 };
 inline constexpr std::size_t kTimedInputs = static_cast<std::size_t>(TimedInput::kSonar) + 1;
 
-/// What the machine lately left the program that owns the navigator.
+/// The CPU time that the program of the navigator lately got.
 struct MachineLoad {
   bool busy = false;           ///< its threads waited for a CPU and its timers were late
   double timer_delay_s = 0.0;  ///< the largest

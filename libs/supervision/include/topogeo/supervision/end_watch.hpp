@@ -11,7 +11,7 @@
 
 namespace topogeo::supervision {
 
-/// What a process has done so far.
+/// The work that a process has done so far.
 struct Progress {
   double ran_s = 0.0;           ///< CPU time of its threads
   double waited_s = 0.0;        ///< time that they were ready to run and had no CPU
@@ -19,7 +19,7 @@ struct Progress {
   bool waits_for_disk = false;  ///< now: one of its threads cannot be interrupted
 };
 
-/// Of a process of this machine, without reports; all zero for one that is gone.
+/// Reads that of a process of this machine, without reports; all zero for one that is gone.
 Progress read_progress(pid_t pid);
 
 /// The caller passes the time, in seconds from any start.

@@ -134,7 +134,8 @@ class ProcessGroup {
   void send_signal(int signal_number, const std::string& name);
   [[nodiscard]] bool runs(const std::string& name);
   bool hangs(Member& member);
-  /// Of those that were asked to end. Returns their names. Does nothing most of the times.
+  /// Kills those that were asked to end and hang. Returns their names. Checks twice a second,
+  /// however often it is called.
   std::vector<std::string> kill_hung();
 
   std::filesystem::path programs_;

@@ -11,7 +11,7 @@
 
 namespace topogeo::support {
 
-/// What the threads of a process did between two moments, summed up.
+/// The time of the threads of a process between two moments, summed up.
 struct CpuUse {
   double span_s = 0.0;    ///< between the two
   double ran_s = 0.0;     ///< on a CPU
@@ -53,9 +53,9 @@ class CpuShortage {
   /// A shortage is over only well below both: it would come and go near a threshold.
   static constexpr double kInTime_s = 0.05;
   static constexpr double kSmallWaitShare = 0.35;
-  /// As many spans in a row begin a shortage: a program that starts takes one or two.
+  /// So many spans in a row begin a shortage: a program that starts takes one or two.
   static constexpr int kBegins = 3;
-  /// As many end it: longer than between two turns of a load that comes and goes.
+  /// So many end it: longer than between two turns of a load that comes and goes.
   static constexpr int kEnds = 5;
 
   /// `timer_delay_s`: the largest of the span. True when the answer of lasts() has changed.

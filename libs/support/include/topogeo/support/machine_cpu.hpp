@@ -14,7 +14,7 @@ struct MachineCpu {
   std::optional<double> pressure_share;  ///< of the last 10 s, in which a thread waited for a CPU
   /// CPUs that the control groups of this process leave it; nothing: as many as there are.
   std::optional<double> quota;
-  /// Of the group with that quota, since it was made.
+  /// Periods of the group with that quota, since it was made.
   std::uint64_t quota_periods = 0;
   std::uint64_t throttled_periods = 0;  ///< of these, in which it was stopped
 
@@ -28,7 +28,7 @@ struct MachineCpuSources {
   std::filesystem::path cgroup = "/sys/fs/cgroup";
 };
 
-/// What cannot be read is left as it is in a MachineCpu. Control groups of version 1 and 2.
+/// Reads control groups of version 1 and 2. A value that cannot be read is left out.
 MachineCpu read_machine_cpu(const MachineCpuSources& sources = {});
 
 /// "2 processors, a quota of 0.8 CPUs, load 7.3, a thread waits for a CPU 91 % of the time".

@@ -25,7 +25,7 @@ class CpuWatch {
   void tick(double now_s);
 
   [[nodiscard]] bool lasts() const { return shortage_.lasts(); }
-  /// Of the last second alone: for the reason of what has just gone wrong.
+  /// The last second alone: for the reason of a halt at this moment.
   [[nodiscard]] bool is_short_now() const { return shortage_.is_short_now(); }
   [[nodiscard]] double timer_delay_s() const { return shortage_.timer_delay_s(); }
   /// While it lasts: "the CPU is short: ..."; else empty.
