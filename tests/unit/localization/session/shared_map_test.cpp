@@ -13,6 +13,7 @@
 #include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/localization/session/mapping_session.hpp"
 
+#include "localization/session/remembering_pool.hpp"
 #include "localization/session/robot_drives.hpp"
 
 namespace topogeo::localization {
@@ -22,6 +23,7 @@ using geometry::Pose2;
 using test::largest_error_m;
 using test::Maps;
 using test::one_after_the_other;
+using test::RememberingPool;
 using test::robot_drive;
 using test::RobotDrive;
 using test::truth;
@@ -58,8 +60,9 @@ double largest_difference_m(const topomap::Trajectory& one, const topomap::Traje
   return largest_m;
 }
 
+template <class Pool = RememberingPool>
 topomap::Trajectory mapped(const Maps& stops) {
-  InProcessPool pool;
+  Pool pool;
   SharedMap shared({}, pool);
   for (const auto& map : stops) shared.add(map);
   shared.finish();
@@ -79,7 +82,7 @@ LocalizerConfig asking() {
 }
 
 TEST(SharedMap, JoinsTheMapsAsSoonAsARobotComesToWhereTheOtherWas) {
-  InProcessPool pool;
+  RememberingPool pool;
   SharedMap shared({}, pool);
   std::optional<topomap::StopId> joined_at;
   std::size_t apart = 0;
@@ -125,7 +128,7 @@ TEST(SharedMap, JoinsTheMapsAsSoonAsARobotComesToWhereTheOtherWas) {
 }
 
 TEST(SharedMap, IsTheSameMapOnEveryRun) {
-  const topomap::Trajectory again = mapped(in_turn(a().maps, b().maps));
+  const auto again = mapped<InProcessPool>(in_turn(a().maps, b().maps));
   ASSERT_EQ(again.stops.size(), both().stops.size());
   for (std::size_t i = 0; i < again.stops.size(); ++i) {
     EXPECT_EQ(again.stops[i].T_map_robot, both().stops[i].T_map_robot) << i;
@@ -142,7 +145,7 @@ TEST(SharedMap, IsWithinTwoCentimetresOfAnyOtherOrderOfArrival) {
 // At its end `a` sees from behind, 7 m ahead, where `b` began: without that loop the heading of its
 // part is a third of a degree off, and its end 0.2 m.
 TEST(SharedMap, IsWithinFourCentimetresOfTheMapOfOneRobotThatDroveBoth) {
-  InProcessPool pool;
+  RememberingPool pool;
   MappingSession one({}, pool);
   for (const auto& given : one_after_the_other(b().maps, a().maps)) {
     topomap::LocalMap map = *given;
@@ -162,7 +165,7 @@ TEST(SharedMap, IsWithinFourCentimetresOfTheMapOfOneRobotThatDroveBoth) {
 }
 
 TEST(SharedMap, AsksBeforeItJoins) {
-  InProcessPool pool;
+  RememberingPool pool;
   SharedMap shared(asking(), pool);
   for (const auto& map : in_turn(a().maps, b().maps)) shared.add(map);
   EXPECT_FALSE(shared.joined("b"));
@@ -183,7 +186,7 @@ TEST(SharedMap, AsksBeforeItJoins) {
 }
 
 TEST(SharedMap, WhatIsRefusedStaysApartAndIsAskedAgainForOtherPlacesOnly) {
-  InProcessPool pool;
+  RememberingPool pool;
   SharedMap shared(asking(), pool);
   topomap::StopId refused{};
   topomap::StopId again{};
@@ -209,7 +212,7 @@ TEST(SharedMap, RobotsOfOtherBuildingsStayApartAndTakeNoMoreMemoryThanTheyMay) {
   const RobotDrive room = robot_drive(test::drive(test::world("room"), {}), "room", 23);
   ASSERT_GT(room.maps.size(), 10U);
   constexpr std::size_t kMost = 6;
-  InProcessPool pool;
+  RememberingPool pool;
   SharedMap shared({}, pool, nullptr, kMost);
   for (const auto& map : in_turn(a().maps, room.maps)) {
     shared.add(map);
@@ -223,12 +226,12 @@ TEST(SharedMap, RobotsOfOtherBuildingsStayApartAndTakeNoMoreMemoryThanTheyMay) {
 TEST(SharedMap, GoesOnWithAStoredMapAndTheSessionsThatAreOnInIt) {
   const Maps all = in_turn(a().maps, b().maps);
   const std::size_t half = all.size() - 20;
-  InProcessPool pool;
+  RememberingPool pool;
   SharedMap before({}, pool);
   for (std::size_t i = 0; i < half; ++i) before.add(all[i]);
   before.finish();  // all of them have numbers
   ASSERT_TRUE(before.joined("b"));
-  InProcessPool other_pool;
+  RememberingPool other_pool;
   SharedMap after({}, other_pool, std::make_shared<const StoredMap>(before.map()));
   for (std::size_t i = half; i < all.size(); ++i) {
     after.add(all[i]);
@@ -240,7 +243,7 @@ TEST(SharedMap, GoesOnWithAStoredMapAndTheSessionsThatAreOnInIt) {
 }
 
 TEST(SharedMap, AnotherSessionOfARobotIsADriveOfItsOwn) {
-  InProcessPool pool;
+  RememberingPool pool;
   SharedMap shared({}, pool);
   for (const auto& map : a().maps) shared.add(map);
   for (const auto& given : b().maps) {
@@ -261,7 +264,7 @@ TEST(SharedMap, StopsGrowingWhenTheRobotsDriveTheSameWayEachDay) {
   constexpr std::size_t kPatrolStops = 24;
   constexpr std::uint64_t kPatrolDays = 6;
   constexpr std::int64_t kOneDay_ns = 86'400'000'000'000;
-  InProcessPool pool;
+  RememberingPool pool;
   SharedMap shared({}, pool);
   std::size_t largest = 0;
   for (std::uint64_t day = 1; day <= kPatrolDays; ++day) {
@@ -297,7 +300,7 @@ TEST(SharedMap, StopsGrowingWhenTheRobotsDriveTheSameWayEachDay) {
 }
 
 TEST(SharedMap, RefusesStopsOutOfTurnAndTheModeOfTheThesis) {
-  InProcessPool pool;
+  RememberingPool pool;
   SharedMap shared({}, pool);
   shared.add(a().maps[0]);
   EXPECT_THROW(shared.add(a().maps[2]), std::invalid_argument);
@@ -308,7 +311,7 @@ TEST(SharedMap, RefusesStopsOutOfTurnAndTheModeOfTheThesis) {
 
 // Each stop keeps its number until numbered_since says otherwise.
 TEST(SharedMap, NumbersOnlyChangeWithTheVersionThatSaysSo) {
-  InProcessPool pool;
+  RememberingPool pool;
   SharedMap shared({}, pool);
   topomap::Trajectory before;
   std::size_t renumbered = 0;
