@@ -1,20 +1,27 @@
 #include "arrivals.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace topogeo::messaging::detail {
 
-bool Arrivals::put(std::vector<Arrival> batch) {
-  std::list<Arrival> replaced;  // messages are freed without the lock
+void Arrivals::announce() {
   {
     const std::lock_guard lock(mutex_);
-    if (batch.empty()) return false;
-    const bool first = queue_.empty();
-    for (Arrival& arrival : batch) put(std::move(arrival), replaced);
-    if (!first) return false;
+    announced_ = true;
   }
   arrived_.notify_all();
-  return true;
+}
+
+bool Arrivals::take_announced() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(announced_, false);
+}
+
+void Arrivals::put(std::vector<Arrival> batch) {
+  Queue replaced;  // their messages are freed without the lock
+  const std::lock_guard lock(mutex_);
+  for (Arrival& arrival : batch) put(std::move(arrival), replaced);
 }
 
 void Arrivals::put(Arrival arrival, Queue& replaced) {
@@ -42,13 +49,8 @@ bool Arrivals::take(Arrival& oldest) {
 bool Arrivals::is_full(std::size_t more) {
   const std::lock_guard lock(mutex_);
   if (queue_.size() + more <= capacity_) return false;
-  was_full_ = true;
+  announced_ = true;
   return true;
-}
-
-bool Arrivals::was_full() {
-  const std::lock_guard lock(mutex_);
-  return std::exchange(was_full_, false);
 }
 
 std::size_t Arrivals::size() const {
@@ -58,7 +60,7 @@ std::size_t Arrivals::size() const {
 
 bool Arrivals::wait(std::chrono::nanoseconds timeout) {
   std::unique_lock lock(mutex_);
-  return arrived_.wait_for(lock, timeout, [this] { return !queue_.empty(); });
+  return arrived_.wait_for(lock, timeout, [this] { return announced_ || !queue_.empty(); });
 }
 
 }  // namespace topogeo::messaging::detail

@@ -33,21 +33,22 @@ class Arrivals {
   /// `capacity`: samples of all instances and writers, beyond which is_full().
   Arrivals(std::size_t depth, std::size_t capacity) : depth_(depth), capacity_(capacity) {}
 
-  /// Adds samples; those of one writer may come in any order within a batch. True: none waited
-  /// before.
-  bool put(std::vector<Arrival> batch);
+  /// Samples are in the middleware that were not put here.
+  void announce();
+  /// announce() or a true is_full() since the last call.
+  bool take_announced();
+
+  /// Adds samples; those of one writer may come in any order within a batch.
+  void put(std::vector<Arrival> batch);
 
   /// Takes the one that waits the longest; those of a writer come in the order of their numbers.
   bool take(Arrival& oldest);
 
-  /// True when `more` samples do not fit. The caller then leaves them where they are, and
-  /// was_full() reports it to the thread that takes.
+  /// True when `more` samples do not fit. They stay in the middleware until some here are taken.
   [[nodiscard]] bool is_full(std::size_t more);
-  /// is_full() since the last call.
-  [[nodiscard]] bool was_full();
 
   [[nodiscard]] std::size_t size() const;
-  /// True as soon as a sample waits, false after `timeout`.
+  /// True as soon as a sample waits or is announced, false after `timeout`.
   bool wait(std::chrono::nanoseconds timeout);
 
  private:
@@ -62,7 +63,7 @@ class Arrivals {
   std::condition_variable arrived_;
   Queue queue_;                                        // oldest first
   std::map<Key, std::deque<Queue::iterator>> by_key_;  // ascending by number
-  bool was_full_ = false;
+  bool announced_ = true;                              // some may have come before
 };
 
 }  // namespace topogeo::messaging::detail

@@ -88,10 +88,16 @@ void ReaderListener::on_sample_lost(dds::DataReader* /*reader*/,
 }
 
 void ReaderListener::on_data_available(dds::DataReader* reader) {
-  if (collector_ && collector_->collect(*reader)) shared_->wake_program();
+  // Bounds what a program that takes nothing leaves in the middleware. Not one by one: for each the
+  // middleware goes through all that have come before one that was lost and is to be sent again.
+  constexpr std::uint64_t kMostUncollected = 64;
+  if (!collector_) return;
+  if (reader->get_unread_count() >= kMostUncollected) collector_->collect(*reader);
+  collector_->arrivals.announce();
+  shared_->wake_program();
 }
 
-bool Collector::collect(dds::DataReader& reader) {
+void Collector::collect(dds::DataReader& reader) {
   std::vector<Arrival> batch;
   dds::SampleInfo info;
   std::shared_ptr<void> message = spare_message();
@@ -101,7 +107,16 @@ bool Collector::collect(dds::DataReader& reader) {
     if (info.valid_data) message = spare_message();
   }
   recycle(std::move(message));
-  return arrivals.put(std::move(batch));
+  arrivals.put(std::move(batch));
+}
+
+bool Collector::wait(dds::DataReader& reader, std::chrono::nanoseconds timeout) {
+  const auto end = std::chrono::steady_clock::now() + timeout;
+  do {
+    if (arrivals.take_announced()) collect(reader);
+    if (arrivals.size() > 0) return true;
+  } while (arrivals.wait(end - std::chrono::steady_clock::now()));
+  return false;
 }
 
 std::shared_ptr<void> Collector::spare_message() {
@@ -156,9 +171,8 @@ void ReaderCore::Impl::keep_last_of_each_writer(dds::DataReaderQos& qos) {
 
 bool ReaderCore::Impl::next(Arrival& arrival) {
   if (collector) {
-    const bool taken = collector->arrivals.take(arrival);
-    if (collector->arrivals.was_full()) collector->collect(*reader);
-    return taken;
+    if (collector->arrivals.take_announced()) collector->collect(*reader);
+    return collector->arrivals.take(arrival);
   }
   dds::SampleInfo dds_info;
   const auto result = reader->take_next_sample(message.get(), &dds_info);
@@ -300,7 +314,7 @@ std::size_t ReaderCore::take(std::size_t limit, const Handler& handler) {
 
 bool ReaderCore::wait_for_data(std::chrono::nanoseconds timeout) {
   if (!impl_->orphans.empty()) return true;
-  if (impl_->collector) return impl_->collector->arrivals.wait(timeout);
+  if (impl_->collector) return impl_->collector->wait(*impl_->reader, timeout);
   constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
   return impl_->reader->wait_for_unread_message(
       {static_cast<std::int32_t>(timeout.count() / kNanosecondsPerSecond),

@@ -1,9 +1,11 @@
 // The Fast DDS side of a reader.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <set>
 #include <string>
 #include <string_view>
@@ -21,14 +23,17 @@
 
 namespace topogeo::messaging::detail {
 
-/// Takes the samples of a reader that keeps the last ones from the middleware as they arrive.
+/// Takes the samples of a reader that keeps the last ones from the middleware: when the program
+/// takes, and before that when some wait.
 class Collector {
  public:
   Collector(eprosima::fastdds::dds::TypeSupport type, std::size_t depth, std::size_t capacity)
       : arrivals(depth, capacity), type_(std::move(type)) {}
 
-  /// From any thread. True when the program has to be woken.
-  bool collect(eprosima::fastdds::dds::DataReader& reader);
+  /// Those that have come. From any thread.
+  void collect(eprosima::fastdds::dds::DataReader& reader);
+  /// For the program: true as soon as a sample waits, false after `timeout`.
+  bool wait(eprosima::fastdds::dds::DataReader& reader, std::chrono::nanoseconds timeout);
   /// Takes a message back, so that its vectors keep their memory for the next one.
   void recycle(std::shared_ptr<void> message);
 

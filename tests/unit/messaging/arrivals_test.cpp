@@ -56,27 +56,28 @@ TEST(Arrivals, OfOneWriterComeInTheOrderOfTheirNumbers) {
   EXPECT_EQ(take_all(several), (Numbers{1, 2, 3}));
 }
 
-TEST(Arrivals, ReportWhatDidNotFitToTheOneWhoTakes) {
+TEST(Arrivals, WhatDoesNotFitIsAnnouncedAgain) {
   Arrivals arrivals(1, 2);
+  EXPECT_TRUE(arrivals.take_announced()) << "at the start";
   EXPECT_FALSE(arrivals.is_full(2));
-  EXPECT_FALSE(arrivals.was_full());
+  EXPECT_FALSE(arrivals.take_announced());
   arrivals.put({arrival(1, 1, 1), arrival(1, 2, 2)});
   EXPECT_TRUE(arrivals.is_full(1));
-  EXPECT_TRUE(arrivals.was_full());
-  EXPECT_FALSE(arrivals.was_full());
+  EXPECT_TRUE(arrivals.take_announced());
+  EXPECT_FALSE(arrivals.take_announced());
   EXPECT_EQ(take_all(arrivals).size(), 2U);
   EXPECT_FALSE(arrivals.is_full(1));
 }
 
-TEST(Arrivals, WakeForTheFirstOnly) {
+TEST(Arrivals, AreWaitedForHereAndInTheMiddleware) {
   Arrivals arrivals(1, 100);
-  EXPECT_FALSE(arrivals.put({}));
+  EXPECT_TRUE(arrivals.take_announced());
   EXPECT_FALSE(arrivals.wait(std::chrono::nanoseconds(1)));
-  EXPECT_TRUE(arrivals.put({arrival(1, 1, 1)}));
-  EXPECT_FALSE(arrivals.put({arrival(1, 2, 2)}));
+  arrivals.put({arrival(1, 1, 1)});
   EXPECT_TRUE(arrivals.wait(std::chrono::nanoseconds(1)));
-  EXPECT_EQ(take_all(arrivals).size(), 2U);
-  EXPECT_TRUE(arrivals.put({arrival(1, 1, 3)}));
+  EXPECT_EQ(take_all(arrivals).size(), 1U);
+  arrivals.announce();
+  EXPECT_TRUE(arrivals.wait(std::chrono::nanoseconds(1)));
 }
 
 }  // namespace
