@@ -9,6 +9,7 @@
 
 #include "messaging/fixture.hpp"
 #include "simulated_store.hpp"
+#include "waiting.hpp"
 
 namespace topogeo::map_client {
 namespace {
@@ -102,6 +103,37 @@ TEST_F(Reading, WhatStaysIncompleteIsReadAnew) {
   EXPECT_EQ(reader.map(), nullptr);
   send(kept_back);
   EXPECT_TRUE(wait_for(reader, 10));
+}
+
+// The program takes nothing until the other one has written.
+TEST_F(Reading, AnotherWriterOfAnElementTakesNothingFromTheStores) {
+  MapReader reader(options_);
+  messaging::Writer<msg::MapElement> stranger(participant_);
+  ASSERT_TRUE(writer_->wait_for_matched(1, test::hang_limit()));
+  ASSERT_TRUE(stranger.wait_for_matched(1, test::hang_limit()));
+  send_first_map();
+  ASSERT_TRUE(writer_->wait_for_acknowledgments(test::hang_limit()));
+  msg::MapElement element = SimulatedStore().node(1, 100.0);
+  messaging::set_robot_id(element, "robot");
+  ASSERT_TRUE(stranger.write(element));
+  ASSERT_TRUE(stranger.wait_for_acknowledgments(test::hang_limit()));
+  EXPECT_TRUE(reader.take());
+  ASSERT_NE(reader.map(), nullptr);
+  EXPECT_EQ(reader.map()->version, 10U);
+  EXPECT_EQ(reader.restarts(), 0);
+}
+
+TEST_F(Reading, WhatStaysIncompleteIsReadAnewThoughSamplesGoOnComing) {
+  options_.patience = milliseconds(100);
+  MapReader reader(options_);
+  ASSERT_TRUE(writer_->wait_for_matched(1, test::hang_limit()));
+  static_cast<void>(store_.node(1, 0.0));  // never sent
+  EXPECT_TRUE(test::wait_for(
+      "the map to be read anew", [&] { return reader.restarts() > 0; },
+      [&] {
+        send(store_.summary(10));
+        EXPECT_FALSE(reader.wait(milliseconds(1)));
+      }));
 }
 
 TEST_F(Reading, InAParticipantOfTheProgramSeveralReadersGetOn) {

@@ -28,7 +28,9 @@ struct MapReaderOptions {
   std::string partition = "topogeo";  ///< --partition of the services
   /// Of the program that uses this; it outlives the reader. Null: an own one of default settings.
   eprosima::fastdds::dds::DomainParticipant* participant = nullptr;
-  /// A map that stays incomplete for so long, while nothing comes, is read anew from its beginning.
+  /// A map that stays incomplete is read anew from its beginning: after so long in which nothing
+  /// comes, or after ten times as long, whatever comes. Each time in a row takes twice as long as
+  /// the one before, up to 32 times.
   std::chrono::milliseconds patience{2000};
 };
 
@@ -73,7 +75,9 @@ class MapReader {
   eprosima::fastdds::dds::DataReader* reader_ = nullptr;
   msg::MapElement element_;  // reused, so that its points keep their memory
   Clock::time_point last_news_ = Clock::now();
+  Clock::time_point last_whole_ = Clock::now();  // or read anew
   int restarts_ = 0;
+  int restarts_in_a_row_ = 0;  // without a whole map between them
 };
 
 inline MapReader::MapReader(const MapReaderOptions& options)
@@ -120,17 +124,19 @@ inline void MapReader::open() {
 inline void MapReader::make_reader() {
   namespace dds = eprosima::fastdds::dds;
   // As the map store's writer offers it (role `state` in deploy/dds_profiles.xml): the last sample
-  // of each element, for late readers, too.
+  // of each element, for late readers, too. The reader keeps all that wait: with a place for each
+  // element only, an element that somebody else writes takes the place of the store's, which is
+  // never sent again. Where the places of an element are full the store sends again.
   constexpr int kMostElements = 32768;
+  constexpr int kMostOfAnElement = 256;
   constexpr int kAllocatedAtFirst = 16;
   dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
   qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
   qos.durability().kind = dds::TRANSIENT_LOCAL_DURABILITY_QOS;
-  qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
-  qos.history().depth = 1;
-  qos.resource_limits().max_samples = kMostElements;
+  qos.history().kind = dds::KEEP_ALL_HISTORY_QOS;
+  qos.resource_limits().max_samples = kMostElements * kMostOfAnElement;
   qos.resource_limits().max_instances = kMostElements;
-  qos.resource_limits().max_samples_per_instance = 1;
+  qos.resource_limits().max_samples_per_instance = kMostOfAnElement;
   qos.resource_limits().allocated_samples = kAllocatedAtFirst;
   qos.endpoint().history_memory_policy =
       eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
@@ -165,7 +171,8 @@ inline bool MapReader::take() {
     const Handle writer = handle(info.publication_handle);
     if (info.valid_data) {
       changed |= follower_.put(element_, instance, writer);
-    } else if (info.instance_state == dds::NOT_ALIVE_DISPOSED_INSTANCE_STATE) {
+    } else if (info.instance_state != dds::NOT_ALIVE_NO_WRITERS_INSTANCE_STATE) {
+      // Disposed; alive where a sample that waits behind it came after the disposal.
       changed |= follower_.remove(instance, writer);
     }
   }
@@ -186,14 +193,23 @@ inline bool MapReader::wait(std::chrono::nanoseconds timeout) {
 }
 
 inline void MapReader::start_again_if_stuck() {
-  if (follower_.is_current() || stores() == 0) last_news_ = Clock::now();
-  if (Clock::now() - last_news_ < options_.patience) return;
+  constexpr int kMostDoublings = 5;
+  constexpr int kWhateverComes = 10;  // as many times the patience
+  const Clock::time_point now = Clock::now();
+  if (follower_.is_current() || stores() == 0) {
+    last_news_ = last_whole_ = now;
+    restarts_in_a_row_ = 0;
+    return;
+  }
+  const auto patience = options_.patience * (1 << std::min(restarts_in_a_row_, kMostDoublings));
+  if (now - last_news_ < patience && now - last_whole_ < kWhateverComes * patience) return;
   subscriber_->delete_datareader(reader_);
   reader_ = nullptr;
   follower_.begin_again();
   make_reader();
-  last_news_ = Clock::now();
+  last_news_ = last_whole_ = Clock::now();
   ++restarts_;
+  ++restarts_in_a_row_;
 }
 
 inline int MapReader::stores() const {
