@@ -23,11 +23,11 @@
 #include "topogeo/scan/scan.hpp"
 
 #include "program.hpp"
+#include "waiting.hpp"
 
 namespace topogeo::test {
 
-/// Longer than anything takes on a busy machine.
-constexpr std::chrono::seconds kFaultPatience{30 * kTimeFactor};
+inline const std::chrono::seconds kFaultPatience = hang_limit();
 
 /// The first part of a drive through the simulated floor, once past a place that it has seen.
 class Drive {

@@ -34,6 +34,7 @@
 
 #include "program.hpp"
 #include "remote_pool.hpp"
+#include "waiting.hpp"
 
 namespace topogeo::test {
 
