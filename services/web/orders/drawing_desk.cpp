@@ -60,10 +60,13 @@ void DrawingDesk::send(Order order, messaging::Writer<Order>& writer, const std:
                        const Respond& respond) {
   messaging::set_header(order, robot_id, support::wall_clock_ns(), sent_++);
   messaging::set_client_id(order, client_id_);
-  pending_->begin(respond, [&writer, order](std::uint64_t id) mutable {
-    order.request_id(id);
-    static_cast<void>(writer.write(order));
-  });
+  pending_->begin(
+      respond,
+      [&writer, order](std::uint64_t id) mutable {
+        order.request_id(id);
+        static_cast<void>(writer.write(order));
+      },
+      [&writer] { return writer.matched() > 0; });
 }
 
 void DrawingDesk::replace(const std::string& body, const Respond& respond) {

@@ -16,6 +16,9 @@ constexpr double kSendAgain_s = 1.0;
 constexpr double kLongestTick_s = 0.5;
 /// Six programs that want one CPU make an answer take six times as long.
 constexpr double kBusyPatience = 6.0;
+/// A service that is connected answers late, not never: the order would be carried out all the
+/// same.
+constexpr double kConnected_s = 60.0;
 
 }  // namespace
 
@@ -32,10 +35,11 @@ PendingRequests::~PendingRequests() {
   service_.loop().cancel_timer(timer_);
 }
 
-void PendingRequests::begin(Respond respond, std::function<void(std::uint64_t id)> send) {
+void PendingRequests::begin(Respond respond, std::function<void(std::uint64_t id)> send,
+                            std::function<bool()> heard) {
   const std::uint64_t id = ++last_id_;
   Pending& pending = pending_[id];
-  pending = {std::move(respond), std::move(send), 0.0, support::monotonic_s()};
+  pending = {std::move(respond), std::move(send), std::move(heard), 0.0, support::monotonic_s()};
   pending.send(id);
 }
 
@@ -55,7 +59,8 @@ void PendingRequests::tick() {
   for (auto pending = pending_.begin(); pending != pending_.end();) {
     auto& [id, request] = *pending;
     request.waited_s += passed_s;
-    if (request.waited_s > patience_s) {
+    const bool there = request.heard && request.heard();
+    if (request.waited_s > (there ? std::max(patience_s, kConnected_s) : patience_s)) {
       request.respond(error_answer(
           503, busy ? none_ + "; this machine is too busy: " + service_.cpu().text() : none_));
       pending = pending_.erase(pending);

@@ -26,7 +26,11 @@ class PendingRequests {
   ~PendingRequests();
 
   /// Sends a request under a number of its own: `send` is called with it, perhaps several times.
-  void begin(Respond respond, std::function<void(std::uint64_t id)> send);
+  /// While `heard` returns true the other service is there, busy perhaps, and the request waits for
+  /// its reply up to a minute: the operator must not hear that nobody answers and then see the
+  /// order carried out.
+  void begin(Respond respond, std::function<void(std::uint64_t id)> send,
+             std::function<bool()> heard = {});
   /// Who gets the reply to a request; nothing where it was answered.
   std::optional<Respond> take(std::uint64_t id);
 
@@ -34,6 +38,7 @@ class PendingRequests {
   struct Pending {
     Respond respond;
     std::function<void(std::uint64_t id)> send;
+    std::function<bool()> heard;
     double waited_s = 0.0;
     double sent_s = 0.0;  // by the steady clock
   };
