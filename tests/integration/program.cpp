@@ -75,8 +75,9 @@ void keep_files(const std::filesystem::path& folder) {
   const auto failed = std::filesystem::path(TOPOGEO_BIN).parent_path() / "tests" / "failed";
   const std::string name = std::string(::program_invocation_short_name) + "." + test_name();
   auto kept = failed / name;
-  for (int i = 2; std::filesystem::exists(kept); ++i)
+  for (int i = 2; std::filesystem::exists(kept); ++i) {
     kept = failed / (name + "_" + std::to_string(i));
+  }
   copy_tree(folder, kept);
   std::fprintf(stderr, "kept: %s\n", kept.c_str());
 }
@@ -92,7 +93,13 @@ Scratch::Scratch()
 
 Scratch::~Scratch() {
   // An exception that ends the test becomes a failure of it only after this.
-  if (testing::Test::HasFailure() || std::uncaught_exceptions() > 0) keep_files(path_);
+  if (testing::Test::HasFailure() || std::uncaught_exceptions() > 0) {
+    try {
+      keep_files(path_);
+    } catch (const std::filesystem::filesystem_error& error) {
+      std::fprintf(stderr, "cannot keep the files of the test: %s\n", error.what());
+    }
+  }
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
 }

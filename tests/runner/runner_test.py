@@ -411,6 +411,8 @@ class BuildTest(unittest.TestCase):
     def test_every_test_that_was_lost_to_time_is_still_there(self):
         listed = subprocess.run(["ctest", "--test-dir", BUILD, "-N"], capture_output=True, text=True, check=True).stdout
         there = re.findall(r"^ *Test +#\d+: (.+)$", listed, re.MULTILINE)
+        if any(name.endswith("_NOT_BUILT") for name in there):
+            self.skipTest("not all programs are built")
         for pattern in run_tests.time_tests("all"):
             with self.subTest(pattern=pattern):
                 self.assertTrue(any(re.search(pattern, name) for name in there))
