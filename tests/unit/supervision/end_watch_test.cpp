@@ -16,13 +16,13 @@
 namespace topogeo::supervision {
 namespace {
 
-using Verdict = EndWatch::Verdict;
+using EndVerdict = EndWatch::Verdict;
 
 /// The verdicts of a watch at each of so many seconds, one after the other.
 template <class ProgressAt>
-std::vector<Verdict> verdicts(int seconds, const ProgressAt& progress_at) {
+std::vector<EndVerdict> verdicts(int seconds, const ProgressAt& progress_at) {
   EndWatch watch(progress_at(0), 0.0);
-  std::vector<Verdict> all;
+  std::vector<EndVerdict> all;
   for (int second = 1; second <= seconds; ++second) {
     all.push_back(watch.check(progress_at(second), second));
   }
@@ -37,33 +37,33 @@ TEST(EndWatch, OneThatWorksOrWaitsForACpuOrReportsIsWaitedFor) {
     return Progress{0.0, 0.0, static_cast<std::uint64_t>(second / 15)};
   };
   const auto writes = [](int second) { return Progress{0.0, 0.0, 0, second % 10 == 0}; };
-  EXPECT_THAT(verdicts(kHour_s, works), testing::Not(testing::Contains(Verdict::kHangs)));
-  EXPECT_THAT(verdicts(kHour_s, has_no_cpu), testing::Not(testing::Contains(Verdict::kHangs)));
-  EXPECT_THAT(verdicts(kHour_s, reports), testing::Not(testing::Contains(Verdict::kHangs)));
-  EXPECT_THAT(verdicts(kHour_s, writes), testing::Not(testing::Contains(Verdict::kHangs)));
+  EXPECT_THAT(verdicts(kHour_s, works), testing::Not(testing::Contains(EndVerdict::kHangs)));
+  EXPECT_THAT(verdicts(kHour_s, has_no_cpu), testing::Not(testing::Contains(EndVerdict::kHangs)));
+  EXPECT_THAT(verdicts(kHour_s, reports), testing::Not(testing::Contains(EndVerdict::kHangs)));
+  EXPECT_THAT(verdicts(kHour_s, writes), testing::Not(testing::Contains(EndVerdict::kHangs)));
 }
 
 TEST(EndWatch, OneThatDoesNothingHangs) {
   // The threads of the middleware go on.
   const auto hangs = [](int second) { return Progress{0.001 * second, 0.001 * second, 7}; };
-  const std::vector<Verdict> all = verdicts(20, hangs);
-  EXPECT_EQ(all.back(), Verdict::kHangs);
-  EXPECT_EQ(std::count(all.begin(), all.end(), Verdict::kHangs), 1);
-  EXPECT_EQ(std::count(all.begin(), all.end(), Verdict::kReport), 3) << "after 5, 10 and 15 s";
+  const std::vector<EndVerdict> all = verdicts(20, hangs);
+  EXPECT_EQ(all.back(), EndVerdict::kHangs);
+  EXPECT_EQ(std::count(all.begin(), all.end(), EndVerdict::kHangs), 1);
+  EXPECT_EQ(std::count(all.begin(), all.end(), EndVerdict::kReport), 3) << "after 5, 10 and 15 s";
 }
 
 TEST(EndWatch, OneThatStopsWorkingHangsFromThenOn) {
   const auto stops = [](int second) { return Progress{std::min(second, 100) * 0.3, 0.0, 0}; };
-  const std::vector<Verdict> all = verdicts(200, stops);
-  EXPECT_EQ(std::find(all.begin(), all.end(), Verdict::kHangs) - all.begin(), 100 + 20 - 1);
+  const std::vector<EndVerdict> all = verdicts(200, stops);
+  EXPECT_EQ(std::find(all.begin(), all.end(), EndVerdict::kHangs) - all.begin(), 100 + 20 - 1);
 }
 
 TEST(EndWatch, ReportsWhatItDoes) {
   EndWatch watch(Progress{10.0, 5.0, 0}, 100.0);
-  EXPECT_EQ(watch.check(Progress{10.2, 5.5, 0}, 101.0), Verdict::kWaits);
-  EXPECT_EQ(watch.check(Progress{11.2, 8.1, 0}, 105.0), Verdict::kReport);
+  EXPECT_EQ(watch.check(Progress{10.2, 5.5, 0}, 101.0), EndVerdict::kWaits);
+  EXPECT_EQ(watch.check(Progress{11.2, 8.1, 0}, 105.0), EndVerdict::kReport);
   EXPECT_EQ(watch.text(), "it worked for 1.2 s and waited 3.1 s for a CPU in the last 5 s");
-  EXPECT_EQ(watch.check(Progress{11.2, 8.2, 0, true}, 110.0), Verdict::kReport);
+  EXPECT_EQ(watch.check(Progress{11.2, 8.2, 0, true}, 110.0), EndVerdict::kReport);
   EXPECT_EQ(watch.text(),
             "it worked for 0.0 s and waited 0.1 s for a CPU in the last 5 s, and waits for a disk "
             "now");
