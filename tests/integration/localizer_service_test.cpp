@@ -147,7 +147,7 @@ TEST_F(LocalizerTest, AReaderThatComesAfterTheLogGetsTheLastPose) {
   end_stream();
   ASSERT_TRUE(test::wait_for(
       "the end of the localizer", [&] { return end_.has_value(); },
-      [&] { loop_.run_for(milliseconds(5)); }))
+      [&] { loop_.run_for(std::chrono::milliseconds(5)); }))
       << localizer->err();
   const messaging::Reader<msg::LivePose> late(participant_);
   std::optional<std::int64_t> stamp_ns;
@@ -155,7 +155,7 @@ TEST_F(LocalizerTest, AReaderThatComesAfterTheLogGetsTheLastPose) {
       late, [&](const auto& message, const auto&) { stamp_ns = message.stamp_ns(); });
   ASSERT_TRUE(test::wait_for(
       "a pose for the late reader", [&] { return stamp_ns.has_value(); },
-      [&] { loop_.run_for(milliseconds(5)); }))
+      [&] { loop_.run_for(std::chrono::milliseconds(5)); }))
       << localizer->err();
   EXPECT_EQ(*stamp_ns, maps_.back()->stamp_ns);
 }
