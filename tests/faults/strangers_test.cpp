@@ -49,9 +49,6 @@ constexpr std::size_t kMostMemoryMb = kTimeFactor == 1 ? 150 : 600;  // a saniti
 /// machine: nothing is measured by it. stranger_flood is who does not.
 constexpr milliseconds kPeriod{20};
 
-/// For Program::wait, which multiplies it by kTimeFactor once more.
-const double kHang_s = static_cast<double>(hang_limit().count());
-
 std::size_t memory_mb(pid_t pid) {
   std::ifstream file("/proc/" + std::to_string(pid) + "/statm");
   std::size_t all_pages = 0;
@@ -122,7 +119,7 @@ class StrangersTest : public testing::Test {
       }
       if (gate_->holds()) return;
       gate_.reset();  // it came too late
-      ASSERT_EQ(run_->wait(kHang_s), 0) << run_->err();
+      ASSERT_EQ(run_->wait(), 0) << run_->err();
       std::filesystem::remove_all(scratch_ / "out");
     }
   }
@@ -136,7 +133,7 @@ class StrangersTest : public testing::Test {
   /// The highest memory of each service and the faults that any has reported, until it ends.
   void finish() {
     gate_.reset();
-    EXPECT_EQ(run_->wait(kHang_s), 0) << run_->err();
+    EXPECT_EQ(run_->wait(), 0) << run_->err();
     EXPECT_TRUE(read_file(scratch_ / "out/map.pb") == read_file(scratch_ / "alone/map.pb"));
     EXPECT_LE(most_memory_mb_, kMostMemoryMb);
     RecordProperty("most_memory_mb", static_cast<int>(most_memory_mb_));
@@ -243,7 +240,7 @@ TEST_F(StrangersTest, ADriveGoesOnAmongSamplesOfAbsurdContent) {
     std::this_thread::sleep_for(kPeriod);
     look();
   }
-  EXPECT_EQ(run_->wait(kHang_s), 0) << run_->err();
+  EXPECT_EQ(run_->wait(), 0) << run_->err();
   EXPECT_THAT(run_->out(), testing::HasSubstr("arrived at 3,0"));
   EXPECT_THAT(run_->out(), testing::HasSubstr(" 0 collisions"));
   EXPECT_LE(most_memory_mb_, kMostMemoryMb);
@@ -344,7 +341,7 @@ TEST_F(GarbageTest, InTheNameOfPeersKillsNoService) {
   EXPECT_EQ(run_->services(), services) << run_->err();
   EXPECT_LE(most_memory_mb_, kMostMemoryMb);
   run_->send_signal(SIGINT);
-  static_cast<void>(run_->wait(kHang_s));
+  static_cast<void>(run_->wait());
 }
 
 /// A list of parameters of a writer, with one more.
