@@ -9,42 +9,33 @@ work=$(mktemp -d)
 cleanups=()
 keepers=()  # commands that add logs to $work before a test that failed cleans up
 
-# keep_files: copies what explains a failure to $TOPOGEO_TEST_KEEP/NAME, or below the build folder. CMake gives the name;
-# by hand it is that of the script. Maps, logs of scans and programs can be made again.
+# keep_files: copies what explains a failure, logs of services included, to build/tests/failed/NAME when ctest runs the
+# test, else to $TOPOGEO_TEST_KEEP/NAME. With KEEP alone all stays where it is, and this fails. Maps, logs of scans and
+# programs can be made again.
 keep_files() {
-  local keeper kept=${TOPOGEO_TEST_KEEP:-$build/tests/failed}/${TOPOGEO_TEST_NAME:-$(basename "$0" .sh)}
+  local keeper kept
   for keeper in "${keepers[@]}"; do eval "$keeper" > /dev/null 2>&1 || true; done
+  if [ -z "${TOPOGEO_TEST_KEEP:-}${TOPOGEO_TEST_NAME:-}" ]; then
+    [ -n "${KEEP:-}" ] || return 0
+    echo "kept: $work" >&2
+    return 1
+  fi
+  kept=${TOPOGEO_TEST_KEEP:-$build/tests/failed}/${TOPOGEO_TEST_NAME:-$(basename "$0" .sh)}
   rm -rf "$kept"
   mkdir -p "$kept"
   tar -C "$work" --exclude='*.clf' --exclude='*.pb' --exclude='*.sqlite*' --exclude='*.key' --exclude='key.pem' \
     --exclude='./root' --exclude='./nodes' --exclude='node_modules' -cf - . 2> /dev/null |
     tar -C "$kept" -xf - 2> /dev/null || true
   find "$kept" \( -type p -o -type s -o -type l -o -empty -o -size +20M \) -delete
-  printf 'logs: %s\n' "$kept" >&2
+  echo "kept: $kept" >&2
 }
 
-# Keeps the files of a failed test, logs of services included: below the build folder when ctest runs it, else where
-# they are if KEEP is set. Fails when they must stay there.
-keep_files() {
-  local folder=$build/tests/failed/${TOPOGEO_TEST_NAME:-}
-  if [ -n "${TOPOGEO_TEST_NAME:-}" ]; then
-    mkdir -p "$folder"
-    # Device nodes, sockets and what other programs made there may stay behind.
-    cp -a "$work/." "$folder" 2> /dev/null || true
-    echo "kept: $folder" >&2
-  elif [ -n "${KEEP:-}" ]; then
-    echo "kept: $work" >&2
-    return 1
-  fi
-}
-
-# The last thing that was to be cleaned up goes first.
+# The last thing that was to be cleaned up goes first; files are kept before, while containers are still there.
 clean_up() {
-  local status=$? i
-  if [ $status -ne 0 ] && [ $status -ne 77 ] && [ -n "${TOPOGEO_TEST_KEEP:-}${TOPOGEO_TEST_NAME:-}" ]; then keep_files || true; fi
+  local status=$? stays='' i
+  if [ $status -ne 0 ] && [ $status -ne 77 ]; then keep_files || stays=1; fi
   for ((i = ${#cleanups[@]} - 1; i >= 0; --i)); do eval "${cleanups[i]}" > /dev/null 2>&1 || true; done
-  [ $status -eq 0 ] || [ $status -eq 77 ] || keep_files || return 0
-  rm -rf "$work"
+  [ -n "$stays" ] || rm -rf "$work"
 }
 trap clean_up EXIT
 
