@@ -1,11 +1,14 @@
 // Several writers of one instance, as when a stranger writes what a peer writes: none takes from a
 // reader what another has sent.
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "fixture.hpp"
@@ -175,6 +178,29 @@ TEST_F(SeveralWriters, APeersInstanceEndsWithItBesideAStrangerWhoWasRefused) {
   ASSERT_TRUE(wait_for_event(reader, EventKind::kUnmatched));
   take();
   EXPECT_EQ(ends, std::vector<InstanceState>{InstanceState::kNoWriters});
+}
+
+// Samples are collected by threads of the middleware, which may be in the middle of it.
+TEST_F(SeveralWriters, AReaderEndsWhileSamplesArrive) {
+  Writer<msg::GridTile> peer(sender_);
+  Writer<msg::GridTile> stranger(stranger_);
+  std::atomic<bool> stop = false;
+  const auto write_on = [&stop](Writer<msg::GridTile>& writer) {
+    for (std::uint64_t i = 0; !stop; ++i)
+      static_cast<void>(writer.write(message<msg::GridTile>(i)));
+  };
+  std::thread first(write_on, std::ref(peer));
+  std::thread second(write_on, std::ref(stranger));
+  for (int i = 0; i < 50; ++i) {
+    EventLoop loop;
+    Reader<msg::GridTile> reader(receiver_);
+    loop.add<msg::GridTile>(reader,
+                            [&loop](const msg::GridTile&, const SampleInfo&) { loop.stop(); });
+    EXPECT_TRUE(loop.run_for(test::hang_limit())) << i;
+  }
+  stop = true;
+  first.join();
+  second.join();
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 const ProcessGroup::Pause kSleep = [](std::chrono::milliseconds duration) {
-  std::this_thread::sleep_for(duration);
+  std::this_thread::sleep_for(duration);  // as a program does between two checks
 };
 const auto kNever = [] { return false; };
 
@@ -205,7 +205,7 @@ TEST_F(ProcessGroupTest, OneThatIsSlowIsWaitedForAndOneThatHangsIsKilled) {
     progress_[slow].ran_s += 0.04;
     progress_[slow].waited_s += 0.2;
     if (hour_s_ - start_s == 3600.0) std::ofstream(logs_ / "free") << "now";
-    if (hour_s_ - start_s >= 3600.0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (hour_s_ - start_s >= 3600.0) kSleep(std::chrono::milliseconds(1));
   };
   EXPECT_THAT(group_.stop(pause, kNever), ElementsAre("hung"));
   EXPECT_THAT(lines_,
