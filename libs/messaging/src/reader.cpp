@@ -46,6 +46,9 @@ Arrival make_arrival(const dds::SampleInfo& dds_info, std::shared_ptr<void> mess
 
 /// Of a resource of the middleware: what its numbers hold.
 constexpr std::int32_t kNoLimit = std::numeric_limits<std::int32_t>::max();
+/// Readers of one topic share a pool, whose size is the sum of their limits in 32 bits: room for 60
+/// of them.
+constexpr std::int32_t kMostSamples = 1 << 26;
 
 }  // namespace
 
@@ -165,8 +168,11 @@ void ReaderCore::Impl::keep_last_of_each_writer(dds::DataReaderQos& qos) {
   qos.history().kind = dds::KEEP_ALL_HISTORY_QOS;
   // The middleware refuses a sample while more samples of its writer are missing before it than
   // fit into an instance, and wants room for all instances full of them.
-  limits.max_samples_per_instance = kNoLimit / or_no_limit(limits.max_instances);
-  limits.max_samples = or_no_limit(limits.max_instances) * limits.max_samples_per_instance;
+  constexpr std::int32_t kMostInstances = 32'768;  // where a profile has no limit
+  const std::int32_t instances = limits.max_instances > 0 ? limits.max_instances : kMostInstances;
+  limits.max_instances = instances;
+  limits.max_samples_per_instance = kMostSamples / instances;
+  limits.max_samples = instances * limits.max_samples_per_instance;
 }
 
 bool ReaderCore::Impl::next(Arrival& arrival) {

@@ -180,6 +180,24 @@ TEST_F(SeveralWriters, APeersInstanceEndsWithItBesideAStrangerWhoWasRefused) {
   EXPECT_EQ(ends, std::vector<InstanceState>{InstanceState::kNoWriters});
 }
 
+// They share memory of the middleware, whose bound is the sum of theirs.
+TEST_F(SeveralWriters, AProgramMayHaveManyReadersOfATopic) {
+  std::vector<Reader<msg::ServiceStatus>> readers;
+  for (int i = 0; i < 60; ++i) readers.emplace_back(receiver_);
+  Writer<msg::ServiceStatus> writer(sender_);
+  ASSERT_TRUE(writer.wait_for_matched(60, test::hang_limit()));
+  write(writer, 1);
+  for (auto& reader : readers) {
+    std::uint64_t number = 0;
+    EXPECT_TRUE(test::wait_for("a sample at each reader", [&] {
+      reader.take([&](const msg::ServiceStatus& got, const SampleInfo&) {
+        number = got.sequence_number();
+      });
+      return number == 1;
+    }));
+  }
+}
+
 // Samples are collected by threads of the middleware, which may be in the middle of it.
 TEST_F(SeveralWriters, AReaderEndsWhileSamplesArrive) {
   Writer<msg::GridTile> peer(sender_);
