@@ -30,7 +30,7 @@ namespace {
 constexpr const char* kLogPartition = "log-gateway-test";
 
 template <class Condition>
-bool wait_for(messaging::EventLoop& loop, const Condition& condition) {
+bool wait_in(messaging::EventLoop& loop, const Condition& condition) {
   return test::wait_for("messages of the programs", condition,
                         [&] { loop.run_for(std::chrono::milliseconds(5)); });
 }
@@ -59,7 +59,7 @@ class LogReadAgain : public testing::Test {
         scratch_, "sensor_gateway",
         std::vector<std::string>{"--domain", domain_, "--partition", kLogPartition, "--log",
                                  (scratch_ / "log.clf").string()});
-    ASSERT_TRUE(wait_for(loop_, [&] {
+    ASSERT_TRUE(wait_in(loop_, [&] {
       return ends_.size() == 1 && scans_.size() == ends_[0].count() &&
              odometry_.size() == scans_.size() && requests_.matched() > 0;
     })) << gateway_->err();
@@ -76,7 +76,7 @@ class LogReadAgain : public testing::Test {
     request.odometry_epoch(odometry_epoch);
     request.first_scan(first);
     EXPECT_TRUE(requests_.write(request));
-    EXPECT_TRUE(wait_for(loop_, [&] {
+    EXPECT_TRUE(wait_in(loop_, [&] {
       return ends_.size() > ends && !scans_.empty() &&
              scans_.back().sequence_number() + 1 == ends_.back().count() &&
              odometry_.size() == scans_.size();
@@ -130,9 +130,9 @@ TEST_F(LogReadAgain, TheLastScanForWhoHadAll) {
 
 /// As a program whose announcements come one after the other, with a time between that a test
 /// decides.
-class LateReader : public testing::Test {
+class LateLogReader : public testing::Test {
  protected:
-  LateReader() {
+  LateLogReader() {
     use_udp_only();
     write_log("room", scratch_ / "log.clf");
     loop_.add<msg::Scan>(scans_reader_,
@@ -198,7 +198,7 @@ class LateReader : public testing::Test {
   std::unique_ptr<Program> gateway_;
 };
 
-TEST_F(LateReader, OfOdometryGetsAllOfIt) {
+TEST_F(LateLogReader, OfOdometryGetsAllOfIt) {
   start_gateway({});
   ASSERT_TRUE(wait_until_missed("not connected with odometry"));
   ASSERT_TRUE(scans_.empty());
@@ -206,7 +206,7 @@ TEST_F(LateReader, OfOdometryGetsAllOfIt) {
   EXPECT_GT(scans_.size(), 20U);
 }
 
-TEST_F(LateReader, OfOdometryAloneIsWaitedForWhereItIsCounted) {
+TEST_F(LateLogReader, OfOdometryAloneIsWaitedForWhereItIsCounted) {
   const messaging::Participant other = join(domain_, kLogPartition);
   const messaging::Reader<msg::Odometry> own(participant_,
                                              {.role = std::string(messaging::kReplayRole)});
@@ -233,7 +233,7 @@ TEST_F(LogReadAgain, SaysWhyItCannotBeRead) {
   msg::ScanRequest request;
   messaging::set_header(request, "robot", 0, 0);
   ASSERT_TRUE(requests_.write(request));
-  EXPECT_TRUE(wait_for(loop_, [&] { return said; })) << gateway_->err();
+  EXPECT_TRUE(wait_in(loop_, [&] { return said; })) << gateway_->err();
 }
 
 // All programs of a log, whose map is finished. What is killed then has nothing to do any more.
@@ -268,13 +268,13 @@ TEST(LocalMapperOfALog, AsksOnceWhenAllIsMapped) {
   const auto localizer = start("localizer", {"--replay"});
   auto mapper = start("local_mapper", {"--replay"});
   const auto gateway = start("sensor_gateway", {"--log", (scratch / "log.clf").string()});
-  ASSERT_TRUE(wait_for(loop, [&] { return mapped; })) << store->err() << mapper->err();
+  ASSERT_TRUE(wait_in(loop, [&] { return mapped; })) << store->err() << mapper->err();
   mapper->send_signal(SIGKILL);
   mapper->wait();
   mapper = start("local_mapper", {"--replay"});
   const auto process = static_cast<std::uint32_t>(mapper->pid());
-  ASSERT_TRUE(wait_for(loop, [&] { return finished == process; })) << mapper->err();
-  EXPECT_TRUE(wait_for(loop, [&] { return gateway_ends == 2; }))
+  ASSERT_TRUE(wait_in(loop, [&] { return finished == process; })) << mapper->err();
+  EXPECT_TRUE(wait_in(loop, [&] { return gateway_ends == 2; }))
       << "the log was read again up to its last scan";
   // It would ask again after two seconds.
   loop.run_for(std::chrono::milliseconds(2500));
@@ -307,7 +307,7 @@ TEST(LocalMapperOfALog, GoesOnWithoutTheScansThatNobodySendsAgain) {
   const Program mapper(
       scratch, "local_mapper",
       {"--domain", domain, "--partition", kLogPartition, "--replay", "--standalone"});
-  ASSERT_TRUE(wait_for(loop, [&] { return scans.matched() > 0; })) << mapper.err();
+  ASSERT_TRUE(wait_in(loop, [&] { return scans.matched() > 0; })) << mapper.err();
   msg::Scan scan;
   scan.angle_min_rad(-1.5);
   scan.angle_step_rad(0.01);
@@ -317,9 +317,9 @@ TEST(LocalMapperOfALog, GoesOnWithoutTheScansThatNobodySendsAgain) {
     messaging::set_header(scan, "robot", static_cast<std::int64_t>(sent) * 100'000'000, sent);
     if (scans.write(scan)) ++sent;
   });
-  EXPECT_TRUE(wait_for(loop, [&] { return used > 0.0; })) << mapper.err();
+  EXPECT_TRUE(wait_in(loop, [&] { return used > 0.0; })) << mapper.err();
   EXPECT_THAT(waits_for, testing::HasSubstr("scan 0 of the log once more"));
-  EXPECT_TRUE(wait_for(loop, [&] { return !faults.empty(); }));
+  EXPECT_TRUE(wait_in(loop, [&] { return !faults.empty(); }));
   EXPECT_THAT(faults, testing::Each("scans missing"));
 }
 

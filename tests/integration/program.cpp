@@ -1,5 +1,6 @@
 #include "program.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -7,6 +8,7 @@
 #include <exception>
 #include <fstream>
 #include <functional>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 
@@ -157,12 +159,13 @@ void Program::wait_for_error_text(const std::string& text) {
 }
 
 void Program::wait_for_progress(int percent) {
-  // "mapping [###...]  22 % 240/1049 scans, ..."
+  // "mapping [###...]  22 % 240/1049 scans, ...", among other lines
+  static const std::regex bar(R"(\] +(\d+) %)");
   const auto reached = [&] {
     const std::string text = err();
-    const std::size_t sign = text.rfind(" %");
-    return sign != std::string::npos &&
-           std::stoi(text.substr(text.rfind(']', sign) + 1)) >= percent;
+    const std::sregex_iterator bars(text.begin(), text.end(), bar);
+    return std::any_of(bars, std::sregex_iterator(),
+                       [&](const std::smatch& found) { return std::stoi(found[1]) >= percent; });
   };
   const std::string goal = std::to_string(percent) + " %";
   const bool there = wait_for(name_ + " to do " + goal, [&] { return reached() || ended(); });

@@ -183,6 +183,7 @@ TEST_F(SeveralWriters, APeersInstanceEndsWithItBesideAStrangerWhoWasRefused) {
 // They share memory of the middleware, whose bound is the sum of theirs.
 TEST_F(SeveralWriters, AProgramMayHaveManyReadersOfATopic) {
   std::vector<Reader<msg::ServiceStatus>> readers;
+  readers.reserve(60);
   for (int i = 0; i < 60; ++i) readers.emplace_back(receiver_);
   Writer<msg::ServiceStatus> writer(sender_);
   ASSERT_TRUE(writer.wait_for_matched(60, test::hang_limit()));
