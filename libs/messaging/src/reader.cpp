@@ -126,7 +126,7 @@ std::shared_ptr<void> Collector::spare_message() {
   {
     const std::lock_guard lock(mutex_);
     if (!spare_.empty()) {
-      const auto message = std::move(spare_.back());
+      auto message = std::move(spare_.back());
       spare_.pop_back();
       return message;
     }
