@@ -87,6 +87,7 @@ void HealthView::note(Row& row, const msg::ServiceStatus& status) {
   row.state = status.state();
   row.lost = false;
   row.faults = status.fault_count();
+  row.last = status;
 }
 
 void HealthView::on_service_gone(const SampleInfo& info) {
@@ -99,9 +100,10 @@ void HealthView::on_service_gone(const SampleInfo& info) {
   } else if (row != rows_.end()) {
     row->second.lost = true;
     events_.add(Level::kError, row->second.service, "is gone");
-    board_.edit(
-        Channel::kServices,
-        {{key->second, text_of(Json{{"service", row->second.service}, {"state", "lost"}})}});
+    // With all fields, as pages expect them.
+    Json lost = service_json(row->second.last);
+    lost["state"] = "lost";
+    board_.edit(Channel::kServices, {{key->second, text_of(lost)}});
   }
   keys_.erase(key);
 }

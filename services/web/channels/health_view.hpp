@@ -28,6 +28,7 @@ class HealthView {
     msg::ServiceState state = msg::kServiceStarting;
     bool lost = false;
     std::uint64_t faults = 0;
+    msg::ServiceStatus last;  ///< what a lost service reported before
   };
 
   void on_service(const msg::ServiceStatus& status, const messaging::SampleInfo& info);
