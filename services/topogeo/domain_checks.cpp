@@ -75,7 +75,7 @@ Findings check_cpu(const DomainFacts& facts) {
   Findings found;
   for (const auto& [host, names] : services) {
     found.push_back(
-        {"", kProblem,
+        {"", kHint,
          fmt::format("the CPU of {} is short: timers fire up to {:.1f} s late ({})", host,
                      delay_s[host], joined(names)),
          "scans and poses come late, and a robot that has only late ones stands",

@@ -285,7 +285,7 @@ Findings check_cpu_time(const MachineFacts& facts) {
   const double threads = cpu.load / cpu.processors;
   const bool waits = !cpu.pressure_share || *cpu.pressure_share >= kMuchPressure;
   if (threads >= kCrowded && waits) {
-    found.push_back(problem(
+    found.push_back(hint(
         fmt::format("the CPU is short: {:.1f} threads for each CPU ({})", threads, describe(cpu)),
         "scans and poses come late, and a robot that has only late ones stands", remedy));
   }

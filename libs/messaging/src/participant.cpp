@@ -29,6 +29,7 @@
 #include "fast_dds/host_sending.hpp"
 #include "fast_dds/packet_shield.hpp"
 #include "fast_dds/reader_end.hpp"
+#include "fast_dds/reader_removal.hpp"
 #include "fast_dds/timer_waits.hpp"
 #include "fast_dds/writer_end.hpp"
 #include "participant_core.hpp"
@@ -166,6 +167,7 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
   shield_packets();
   let_timers_end_alone();
   let_readers_end_beside_peers();
+  let_readers_leave_beside_sending();
   let_writers_end_undisturbed();
   load_profiles(options.profiles_file);
   std::string profile = options.profile;

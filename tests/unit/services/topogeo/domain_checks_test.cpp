@@ -92,7 +92,7 @@ const std::vector<DomainFault>& domain_faults() {
          f.services.clear();
          f.units = 1;
        }},
-      {"CpuShort", "CPU of services", Severity::kProblem,
+      {"CpuShort", "CPU of services", Severity::kHint,
        "the CPU of robot is short: timers fire up to 0.7 s late (sensor_gateway)",
        [](DomainFacts& f) {
          set_counter(f.services.at(0), "cpu_short", 1.0);

@@ -127,7 +127,7 @@ const std::vector<MachineFault>& machine_faults() {
       {"MapFolderOutOfSight", "map folder", Severity::kProblem,
        "robot cannot look into /var/lib/topogeo", "sudo -u topogeo",
        [](MachineFacts& f) { f.closed_folder = "/var/lib/topogeo"; }},
-      {"ManyThreadsForFewCpus", "CPU", Severity::kProblem,
+      {"ManyThreadsForFewCpus", "CPU", Severity::kHint,
        "the CPU is short: 4.0 threads for each CPU (2 processors, load 8.0", "ga_worker",
        [](MachineFacts& f) {
          f.cpu.load = 8.0;
