@@ -58,13 +58,6 @@ Arguments map_arguments(const RunOptions& options) {
   return arguments;
 }
 
-/// All of them have the odometry of a log from its first scan on: localizer, page and bridge.
-Arguments odometry_readers(const RunOptions& options) {
-  if (options.job.log.empty()) return {};
-  const int readers = 1 + (options.web ? 1 : 0) + (options.ros ? 1 : 0);
-  return {"--odometry-readers", std::to_string(readers)};
-}
-
 /// The devices, the log or the robot of ROS, and a simulator where there are no real devices.
 void start_source(ProcessGroup& processes, const RunOptions& options, const std::string& partition,
                   const Arguments& common) {
@@ -103,10 +96,9 @@ void start_source(ProcessGroup& processes, const RunOptions& options, const std:
   }
   // All of them have the first scan.
   const int readers = readers_of_scans(options, !options.record.empty());
-  processes.start(
-      kGateway, kGateway,
-      common + source + Arguments{"--readers", std::to_string(readers)} + odometry_readers(options),
-      Importance::kNeeded, Restart::kWhenItDies);
+  processes.start(kGateway, kGateway,
+                  common + source + Arguments{"--readers", std::to_string(readers)},
+                  Importance::kNeeded, Restart::kWhenItDies);
 }
 
 /// Beside the source of the scans, whose scans it gives to ROS.
