@@ -18,7 +18,7 @@ class ReaderWait {
     int programs = 0;   ///< that read it
     messaging::ConnectedPrograms connected;
   };
-  /// What it waits for, for people; called when that changes.
+  /// Gets the text of the wait, for people, whenever it changes.
   using Report = std::function<void(const std::string& what)>;
 
   ReaderWait(messaging::EventLoop& loop, std::vector<Wanted> wanted);

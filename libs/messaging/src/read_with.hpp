@@ -1,4 +1,4 @@
-// What the announcement of a reader says of the other topics that its program reads.
+// The other topics that a program reads, as the announcement of its reader lists them.
 #pragma once
 
 #include <cstddef>

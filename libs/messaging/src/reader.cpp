@@ -44,7 +44,7 @@ Arrival make_arrival(const dds::SampleInfo& dds_info, std::shared_ptr<void> mess
   return arrival;
 }
 
-/// Of a resource of the middleware: what its numbers hold.
+/// The largest limit that the middleware can hold.
 constexpr std::int32_t kNoLimit = std::numeric_limits<std::int32_t>::max();
 /// Readers of one topic share a pool, whose size is the sum of their limits in 32 bits: room for 60
 /// of them.
@@ -234,7 +234,7 @@ void ReaderCore::Impl::end_instance(const SampleInfo& sample, const Handler& han
   if (sample.state == InstanceState::kAlive) return;  // a message came after the disposal
   const auto found = writers.find(sample.instance);
   if (found != writers.end()) {
-    // What a peer has written stays, whatever others say who never had a sample of it accepted.
+    // A writer without an accepted sample of the instance cannot end that of a peer.
     if (found->second.erase(sample.writer) == 0) return;
     if (found->second.empty()) writers.erase(found);
   }
@@ -272,7 +272,7 @@ void ReaderCore::Impl::create_reader(const std::string& profile, const std::stri
   if (qos.history().kind == dds::KEEP_LAST_HISTORY_QOS) {
     keep_last_of_each_writer(qos);
   } else {
-    // What fills up holds the writer back, so data is taken by whoever waits for it.
+    // A full history holds the writer back, so the program takes the data itself.
     mask >> dds::StatusMask::data_available();
   }
   if (participant->secured()) use_long_sessions(qos.properties());
@@ -281,7 +281,7 @@ void ReaderCore::Impl::create_reader(const std::string& profile, const std::stri
     throw std::runtime_error("DDS: cannot create a reader of topic " + std::string(info->name) +
                              " with profile '" + profile + "'" + participant->reason_of_denial());
   }
-  // Who collects wakes the program.
+  // The collector wakes the program.
   reader->get_statuscondition().set_enabled_statuses(collector ? dds::StatusMask::none()
                                                                : dds::StatusMask::data_available());
 }

@@ -30,7 +30,7 @@ class Collector {
   Collector(eprosima::fastdds::dds::TypeSupport type, std::size_t depth, std::size_t capacity)
       : arrivals(depth, capacity), type_(std::move(type)) {}
 
-  /// Those that have come. From any thread.
+  /// Takes the samples that have come. From any thread.
   void collect(eprosima::fastdds::dds::DataReader& reader);
   /// For the program: true as soon as a sample waits, false after `timeout`.
   bool wait(eprosima::fastdds::dds::DataReader& reader, std::chrono::nanoseconds timeout);
@@ -85,7 +85,7 @@ struct ReaderCore::Impl {
   Impl& operator=(const Impl&) = delete;
   ~Impl();
 
-  /// Of a reader that keeps the last samples: lets the middleware keep all of them for the moment
+  /// For a reader that keeps the last samples: the middleware keeps all of them for the moment
   /// until they are collected.
   void keep_last_of_each_writer(eprosima::fastdds::dds::DataReaderQos& qos);
   void create_reader(const std::string& profile, const std::string& addressee,
