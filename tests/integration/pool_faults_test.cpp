@@ -45,12 +45,20 @@ class PoolFaultsTest : public testing::Test {
     words.insert(words.end(), {"--fault", fault});
     return std::make_unique<Program>(scratch_, "../tests/faulty_worker", words);
   }
-  /// Kills workers that have tasks in hand: for a moment before, they get tasks and do not work.
-  static void kill_with_tasks_in_hand(ServiceRun& run, const std::vector<Program*>& workers) {
-    for (const Program* worker : workers) worker->send_signal(SIGSTOP);
-    const auto end = std::chrono::steady_clock::now() + milliseconds(40);
-    while (std::chrono::steady_clock::now() < end) run.step();
-    for (const Program* worker : workers) worker->send_signal(SIGKILL);
+  /// Kills workers that have tasks in hand: they get some while they do not work. If they got none
+  /// in that moment, on a busy machine, others take their places and are killed in turn.
+  static void kill_with_tasks_in_hand(ServiceRun& run, std::vector<Program*> workers) {
+    const double all = run.counter("workers");
+    while (true) {
+      for (const Program* worker : workers) worker->send_signal(SIGSTOP);
+      const auto end = std::chrono::steady_clock::now() + milliseconds(40);
+      while (std::chrono::steady_clock::now() < end) run.step();
+      for (const Program* worker : workers) worker->send_signal(SIGKILL);
+      ASSERT_TRUE(run.wait_for_workers(static_cast<std::size_t>(all) - workers.size()));
+      if (run.counter("workers_lost") > 0.0) return;  // gone with tasks in hand
+      for (Program*& worker : workers) worker = &run.start_worker("next");
+      ASSERT_TRUE(run.wait_for_workers(static_cast<std::size_t>(all)));
+    }
   }
   /// Lets a worker with the fault join for some stops and then ends it. `found_out`: whether
   /// the localizer has noticed.
@@ -135,16 +143,13 @@ TEST_F(PoolFaultsTest, AllWorkersAreKilledAndOthersCome) {
       << "the new workers are not used";
 }
 
-TEST_F(PoolFaultsTest, AWorkerStandsStillForFiveSeconds) {
-  constexpr std::chrono::seconds kStill{5};
+TEST_F(PoolFaultsTest, AWorkerStandsStillUntilItIsTakenToBeGone) {
   ServiceRun run(scratch_, drive_, "run");
   const std::vector<Program*> workers = start_workers(run, 2);
   ASSERT_TRUE(run.go_on_until_stop(20));
   workers[0]->send_signal(SIGSTOP);
-  const auto end = std::chrono::steady_clock::now() + kStill;
   ASSERT_TRUE(run.go_on_until_stop(run.stops() + 20));
   ASSERT_TRUE(run.wait_for_workers(1));
-  run.wait_until([&] { return std::chrono::steady_clock::now() >= end; });
   workers[0]->send_signal(SIGCONT);
   ASSERT_TRUE(run.wait_for_workers(2)) << run.log();
   const std::uint64_t done = run.tasks_done(*workers[0]);
@@ -210,11 +215,10 @@ TEST_F(PoolFaultsTest, TwoRobotsOfOneNameShareTheWorkers) {
     first.step();
     second.step();
   };
-  const auto end = std::chrono::steady_clock::now() + kFaultPatience;
   constexpr std::size_t kFar = 70;
-  while (std::max(first.stops(), second.stops()) < kFar && std::chrono::steady_clock::now() < end) {
-    step();
-  }
+  ASSERT_TRUE(wait_for(
+      "stops of two robots", [&] { return std::max(first.stops(), second.stops()) >= kFar; },
+      step));
   // Both have as many tasks for each stop, so stops show who was served how often.
   const auto [slow, fast] = std::minmax({first.stops(), second.stops()});
   EXPECT_LE(fast, 2 * slow);
