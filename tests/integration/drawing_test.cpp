@@ -3,7 +3,6 @@
 #include <cmath>
 #include <csignal>
 #include <string>
-#include <thread>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -15,7 +14,6 @@ namespace {
 
 using nlohmann::json;
 using std::chrono::milliseconds;
-using std::chrono::steady_clock;
 using testing::HasSubstr;
 
 json drawing_at(std::uint32_t port) {
@@ -29,13 +27,10 @@ HttpReply draw(std::uint32_t port, const json& drawing) {
 
 /// Asks again until the drawing has this version; it comes on a topic of its own.
 bool has_version(std::uint32_t port, const std::string& version) {
-  const auto end = steady_clock::now() + kPagePatience * kTimeFactor;
-  while (steady_clock::now() < end) {
+  return test::wait_for("version " + version + " of the drawing", [&] {
     const json drawing = drawing_at(port);
-    if (drawing.is_object() && drawing["version"] == version) return true;
-    std::this_thread::sleep_for(milliseconds(50));
-  }
-  return false;
+    return drawing.is_object() && drawing["version"] == version;
+  });
 }
 
 TEST(DrawingStore, KeepsWhatItHasAnsweredThroughAKill) {
@@ -76,10 +71,10 @@ TEST(DrawingStore, KeepsWhatItHasAnsweredThroughAKill) {
   json changed = drawn;
   changed["version"] = "1";
   changed["walls"] = json::array();
-  const auto end = steady_clock::now() + kPagePatience * kTimeFactor;
-  do {  // until the new one is found
+  ASSERT_TRUE(test::wait_for("the new map store", [&] {
     reply = draw(port, changed);
-  } while (reply.status == 503 && steady_clock::now() < end);
+    return reply.status != 503;
+  }));
   ASSERT_EQ(reply.status, 200) << "it was version 1 before and after: " << reply.body;
   ASSERT_TRUE(has_version(port, "2"));
   json kept = drawing_at(port);
@@ -123,19 +118,15 @@ TEST_F(DrawingOnRobot, IsObeyedAndAFloorIsDrivenIn) {
   // By hand it gets to the zone and no further.
   const double start_m = page_.values["truth"]["x_m"];
   const auto driven_m = [&] { return page_.values["truth"]["x_m"].get<double>() - start_m; };
-  const auto hold_for = [&](double seconds) {
-    const auto end = steady_clock::now() + milliseconds(static_cast<int>(1000.0 * seconds));
-    while (steady_clock::now() < end) {
-      socket_->send({{"op", "drive"}, {"linear_mps", 0.5}, {"angular_radps", 0.0}});
-      wait_for([] { return false; }, milliseconds(50));
-    }
+  const auto holds = [&] {
+    const json& drive = page_.values["drive"];
+    return drive.is_object() && drive["linear_mps"] == 0.0 &&
+           drive["message"].dump().find("drawn wall or no-go") != std::string::npos;
   };
-  bool held = false;
-  for (int i = 0; i < 30 * kTimeFactor && !held; ++i) {
-    hold_for(1.0);
-    held = page_.values["drive"].is_object() && page_.values["drive"]["linear_mps"] == 0.0 &&
-           page_.values["drive"]["message"].dump().find("drawn wall or no-go") != std::string::npos;
-  }
+  const bool held = test::wait_for("the zone to hold a robot that is driven by hand", holds, [&] {
+    socket_->send({{"op", "drive"}, {"linear_mps", 0.5}, {"angular_radps", 0.0}});
+    wait_for([] { return false; }, milliseconds(50));  // between two orders of a hand
+  });
   EXPECT_TRUE(held) << page_.values["drive"];
   EXPECT_GT(driven_m(), 2.0);
   EXPECT_LT(driven_m(), 3.0 - 0.25);

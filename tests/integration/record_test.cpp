@@ -19,6 +19,7 @@
 
 #include "command_test.hpp"
 #include "program.hpp"
+#include "waiting.hpp"
 
 namespace topogeo::test {
 namespace {
@@ -88,11 +89,7 @@ TEST_F(Record, ALogThatIsReadAgainIsRecordedOnce) {
     for (const pid_t pid : run.services(service)) ::kill(pid, signal_number);
   };
   const auto wait_until = [&run](const std::function<bool()>& is_so) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60 * kTimeFactor);
-    while (!is_so() && std::chrono::steady_clock::now() < end) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-    ASSERT_TRUE(is_so()) << run.err();
+    ASSERT_TRUE(wait_for("a service to start or end", is_so)) << run.err();
   };
   // Between its end and its next start there is nothing to kill.
   const auto is_there = [&run](const std::string& service) {

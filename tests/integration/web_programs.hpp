@@ -18,11 +18,12 @@
 #include <gtest/gtest.h>
 
 #include "program.hpp"
+#include "waiting.hpp"
 #include "web_client.hpp"
 
 namespace topogeo::test {
 
-inline constexpr std::chrono::milliseconds kPagePatience{60'000};
+inline const std::chrono::milliseconds kPagePatience = hang_limit();
 inline const std::string kToken = "token-of-this-test";
 
 /// Of the first link that a program prints.
@@ -32,14 +33,12 @@ inline std::uint32_t port_in(const std::string& out) {
   return static_cast<std::uint32_t>(std::stoul(out.substr(begin + 10)));
 }
 
-inline std::uint32_t wait_for_port(const Program& program,
-                                   std::chrono::milliseconds patience = kPagePatience) {
-  const auto end = std::chrono::steady_clock::now() + patience * kTimeFactor;
-  while (std::chrono::steady_clock::now() < end) {
-    if (program.out().find("spectators: ") != std::string::npos) return port_in(program.out());
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+inline std::uint32_t wait_for_port(const Program& program) {
+  if (!test::wait_for("the link to the page",
+                      [&] { return program.out().find("spectators: ") != std::string::npos; })) {
+    throw std::runtime_error("no link: " + program.err());
   }
-  throw std::runtime_error("no link: " + program.err());
+  return port_in(program.out());
 }
 
 inline void keep_lines(const std::filesystem::path& file, std::size_t lines) {
@@ -101,13 +100,13 @@ class WebOnRobot : public testing::Test {
         scratch_, "topogeo",
         std::vector<std::string>{"demo", "--web", "--port", "0", "--token", kToken, "--out",
                                  (scratch_ / "demo").string(), "--domain", own_domain()});
-    port_ = wait_for_port(*demo_, std::chrono::milliseconds(90'000));
+    port_ = wait_for_port(*demo_);
     socket_ = std::make_unique<WebSocketClient>(port_);
     socket_->send({{"op", "hello"}, {"token", kToken}});
   }
   template <class Condition>
   bool wait_for(const Condition& condition, std::chrono::milliseconds patience = kPagePatience) {
-    return page_.wait_for(*socket_, condition, patience * kTimeFactor);
+    return page_.wait_for(*socket_, condition, patience);
   }
   /// In the world.
   std::pair<double, double> truth() {

@@ -25,7 +25,6 @@ namespace {
 
 using nlohmann::json;
 using std::chrono::milliseconds;
-using std::chrono::steady_clock;
 using testing::HasSubstr;
 
 TEST(WebOnLog, ThePageStaysWithTheMapUntilCtrlC) {
@@ -63,9 +62,24 @@ TEST_F(WebOnMap, APageHasTheMapThroughRestartsOfBothSides) {
   EXPECT_GT(summary["nodes"], 3);
   const std::string life = page.others.at(0)["life"];
 
-  // The map store dies: what it has shown stays. It comes again: the same map.
+  // The map store dies: what it has shown stays, and its row says so with what it reported last.
+  const auto store_row = [&]() -> json {
+    for (const auto& [id, row] : page.tables["services"]) {
+      if (row["service"] == "map_store") return row;
+    }
+    return {};
+  };
+  ASSERT_TRUE(page.wait_for(
+      *socket, [&] { return store_row().is_object(); }, kPagePatience));
+  const json row = store_row();
   store_->send_signal(SIGKILL);
   store_->wait();
+  ASSERT_TRUE(page.wait_for(
+      *socket, [&] { return store_row()["state"] == "lost"; }, kPagePatience));
+  EXPECT_EQ(store_row().size(), row.size()) << store_row();
+  EXPECT_EQ(store_row()["version"], row["version"]);
+
+  // It comes again: the same map.
   start_store();
   ASSERT_TRUE(page.wait_for(
       *socket,
@@ -142,9 +156,7 @@ TEST_F(WebOnMap, OneMapIsMergedAtATime) {
   constexpr std::size_t kAtOnce = 6;
   std::size_t worked_on = 0;
   std::size_t busy = 0;
-  // Until two of them meet.
-  const auto end = steady_clock::now() + kPagePatience;
-  while (busy == 0 && steady_clock::now() < end) {
+  const auto offer_at_once = [&] {
     std::vector<std::future<HttpReply>> offers;
     while (offers.size() < kAtOnce) offers.push_back(std::async(std::launch::async, offer));
     for (std::future<HttpReply>& one : offers) {
@@ -153,8 +165,9 @@ TEST_F(WebOnMap, OneMapIsMergedAtATime) {
       if (reply.body.find("another merge is worked on") != std::string::npos) ++busy;
       if (reply.body.find("one of them is the other") != std::string::npos) ++worked_on;
     }
-  }
-  EXPECT_GE(busy, 1U);
+  };
+  ASSERT_TRUE(test::wait_for(
+      "two offers to meet", [&] { return busy > 0; }, offer_at_once));
   EXPECT_GE(worked_on, 1U);
   EXPECT_THAT(offer().body, HasSubstr("one of them is the other")) << "it is free again";
 }
@@ -233,15 +246,14 @@ TEST_F(WebOnRobot, GoesToARoomByNameAndStopsWhenTheHandLetsGo) {
     };
     // The hand is told of while its orders come in time, which a busy machine may miss once.
     bool held = false;
-    const auto end = steady_clock::now() + kPagePatience;
-    while (!(turned() && held) && steady_clock::now() < end) {
-      hand.send({{"op", "drive"}, {"linear_mps", 0.0}, {"angular_radps", 0.5}});
-      wait_for([] { return false; }, milliseconds(50));
-      const json& drive = page_.values["drive"];
-      held = held || (!drive.is_null() && drive["held"] == true);
-    }
-    ASSERT_TRUE(turned());
-    EXPECT_TRUE(held);
+    EXPECT_TRUE(test::wait_for(
+        "the robot to turn by hand", [&] { return turned() && held; },
+        [&] {
+          hand.send({{"op", "drive"}, {"linear_mps", 0.0}, {"angular_radps", 0.5}});
+          wait_for([] { return false; }, milliseconds(50));  // between two orders of a hand
+          const json& drive = page_.values["drive"];
+          held = held || (!drive.is_null() && drive["held"] == true);
+        }));
   }
   ASSERT_TRUE(wait_for([&] { return page_.values["drive"].is_null(); }));
   const double stood_rad = page_.values["truth"]["theta_rad"];
