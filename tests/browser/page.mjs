@@ -107,10 +107,14 @@ export async function text(page, selector, pattern) {
   }
 }
 
-/** Fails when axe-core finds something serious on a page. */
-export async function assert_accessible(page, what) {
-  await page.addScriptTag({ path: axe });
-  const { violations } = await page.evaluate(() => window.axe.run());
+/** The rules of axe-core that look at colours. */
+export const kColorRules = ["color-contrast", "link-in-text-block"];
+
+/** Fails when axe-core finds something serious on a page, by all its rules or by `rules`. */
+export async function assert_accessible(page, what, rules = undefined) {
+  if (!(await page.evaluate(() => "axe" in window))) await page.addScriptTag({ path: axe });
+  const options = { resultTypes: ["violations"], ...(rules && { runOnly: rules }) };
+  const { violations } = await page.evaluate((of_run) => window.axe.run(of_run), options);
   const serious = violations
     .filter((finding) => ["serious", "critical"].includes(finding.impact))
     .map((finding) => `${finding.id}: ${finding.nodes.map((node) => node.target).join(", ")}`);
