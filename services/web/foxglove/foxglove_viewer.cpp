@@ -11,7 +11,7 @@
 
 #include "foxglove/foxglove_feed.hpp"
 #include "foxglove/foxglove_scene.hpp"
-#include "server/json_values.hpp"
+#include "server/bounded_json.hpp"
 
 namespace topogeo::web {
 namespace {
@@ -93,7 +93,7 @@ void FoxgloveViewer::on_open() {
 }
 
 void FoxgloveViewer::on_text(const std::string& text) {
-  const Json message = Json::parse(text, nullptr, false);
+  const Json message = parse_bounded(text);
   try {
     if (!message.is_object()) throw std::invalid_argument("expected a JSON object");
     const Json& op = member(message, "op");

@@ -4,11 +4,15 @@
 
 #include "topogeo/support/format.hpp"
 
+#include "server/bounded_json.hpp"
+
 namespace topogeo::web {
 
 Json object_of(const std::string& body) {
-  Json json = Json::parse(body, nullptr, false);
-  if (!json.is_object()) throw std::invalid_argument("expected a JSON object");
+  Json json = parse_bounded(body);
+  if (!json.is_object()) {
+    throw std::invalid_argument("expected a JSON object of at most 64 keys");
+  }
   return json;
 }
 

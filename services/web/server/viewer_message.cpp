@@ -4,7 +4,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "server/json_values.hpp"
+#include "server/bounded_json.hpp"
 
 namespace topogeo::web {
 namespace {
@@ -66,8 +66,10 @@ void take_held(const Json& json, ViewerMessage& message) {
 }  // namespace
 
 ViewerMessage parse_viewer_message(std::string_view text) {
-  const Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object()) throw std::invalid_argument("expected a JSON object");
+  const Json json = parse_bounded(text);
+  if (!json.is_object()) {
+    throw std::invalid_argument("expected a JSON object of at most 64 keys");
+  }
   ViewerMessage message;
   message.op = op_of(text_at(json, "op"));
   switch (message.op) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "orders/order_text.hpp"
+#include "server/bounded_json.hpp"
 #include "server/viewer_message.hpp"
 
 namespace topogeo::web {
@@ -37,6 +38,26 @@ TEST(ViewerMessage, DriveHasTwoNumbers) {
                std::invalid_argument);
   EXPECT_THROW(parse_viewer_message(R"({"op":"drive","linear_mps":1e999,"angular_radps":0})"),
                std::invalid_argument);
+}
+
+TEST(ViewerMessage, ObjectsOfManyKeysAreRefused) {
+  const auto object = [](std::size_t keys) {
+    std::string text = R"({"op":"ping")";
+    for (std::size_t i = 1; i < keys; ++i) text += ",\"k" + std::to_string(i) + "\":0";
+    return text + "}";
+  };
+  EXPECT_NO_THROW(parse_viewer_message(object(kMostKeys)));
+  EXPECT_THROW(parse_viewer_message(object(kMostKeys + 1)), std::invalid_argument);
+  EXPECT_NO_THROW(parse_bounded("[" + object(kMostKeys) + "," + object(kMostKeys) + "]"));
+  EXPECT_TRUE(parse_bounded(R"({"a":)" + object(kMostKeys + 1) + "}").is_discarded());
+}
+
+TEST(ViewerMessage, DeepTextsAreRefused) {
+  const auto nested = [](std::size_t levels) {
+    return std::string(levels, '[') + std::string(levels, ']');
+  };
+  EXPECT_FALSE(parse_bounded(nested(kMostLevels)).is_discarded());
+  EXPECT_TRUE(parse_bounded(nested(kMostLevels + 1)).is_discarded());
 }
 
 TEST(ViewerMessage, WhatIsNoneIsNamed) {
