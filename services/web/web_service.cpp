@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "topogeo/navigation/drawn_limits.hpp"
 #include "topogeo/planning/zone_outlines.hpp"
 #include "topogeo/support/log.hpp"
 #include "topogeo/support/version.hpp"
@@ -21,6 +22,7 @@ namespace topogeo::web {
 namespace {
 
 constexpr std::chrono::milliseconds kCountsPeriod{500};
+constexpr std::chrono::milliseconds kLimitsPeriod{200};  // while somebody drives by hand
 constexpr int kProtocolVersion = 1;
 /// What POST takes, below /api/.
 constexpr std::array<std::string_view, 18> kOffers = {
@@ -32,10 +34,6 @@ Answer accepted() {
   return {202, "{}"};
 }
 
-Answer no_base(const char* effect) {
-  return error_answer(503, std::string("no base is heard: nothing ") + effect);
-}
-
 }  // namespace
 
 WebService::WebService(service::Service& service, const ServerConfig& config, PageFiles files)
@@ -43,24 +41,14 @@ WebService::WebService(service::Service& service, const ServerConfig& config, Pa
       config_(config),
       files_(std::move(files)),
       foxglove_(feed_, service.setup().config.config.local_mapper.T_robot_laser),
-      hand_(
-          service, board_, events_, [this] { return map_.map(); },
-          [this](const msg::Odometry& odometry) { foxglove_.take(odometry); }),
+      hand_(service, board_, events_, tally_, hand_hooks()),
       map_(service, board_,
            [this](const std::shared_ptr<const MapPicture>& picture) { foxglove_.take(picture); }),
       graph_(service, board_),
       goals_(service, board_, map_, events_),
       robot_(service, board_, events_,
-             {[this](const navigation::ScanPoints& scan) {
-                hand_.take(scan);
-                foxglove_.take(scan);
-              },
-              [this](const msg::LivePose& pose) {
-                hand_.take(pose);
-                foxglove_.take(pose);
-              },
-              [this](const msg::LaserStatus& laser) { hand_.take(laser); },
-              [this](const messaging::Handle& base) { hand_.note_base(base); },
+             {[this](const navigation::ScanPoints& scan) { foxglove_.take(scan); },
+              [this](const msg::LivePose& pose) { foxglove_.take(pose); },
               [this](const msg::NavigatorStatus& status) {
                 exploration_.take(status, goals_.take(status));
               }}),
@@ -71,14 +59,21 @@ WebService::WebService(service::Service& service, const ServerConfig& config, Pa
       server_(std::make_unique<Server>(config_, board_, files_, static_cast<Backend&>(*this),
                                        tally_, feed_)),
       localizer_(service) {
+  service_.subscribe<msg::Odometry>(
+      [this](const msg::Odometry& odometry) { foxglove_.take(odometry); });
   timer_ = service_.loop().add_timer(kCountsPeriod, [this] { report_counts(); });
+  limits_timer_ = service_.loop().add_timer(kLimitsPeriod, [this] {
+    if (hand_.is_held()) show_limits(false);
+  });
   report_counts();
   service_.status().set_state(msg::kServiceRunning);
 }
 
 WebService::~WebService() {
   service_.loop().cancel_timer(timer_);
+  service_.loop().cancel_timer(limits_timer_);
   drawing_.abandon();
+  hand_.end();
 }
 
 template <class Work>
@@ -90,11 +85,7 @@ void WebService::post(Work work) {
 
 void WebService::handle(const Request& request, Respond respond) {
   if (request.post || History::has(request.path)) {
-    {
-      const std::scoped_lock lock(mutex_);
-      requests_.emplace_back(request, std::move(respond));
-    }
-    post([this] { work_off_requests(); });
+    hand_over(request, std::move(respond));
   } else if (request.path.starts_with("/tiles/")) {
     respond(tile_answer(request, map_.shown().get()));
   } else if (request.path == "/api/at") {
@@ -123,14 +114,58 @@ Answer WebService::info(const Request& request) const {
   return answer;
 }
 
+void WebService::hand_over(Request request, Respond respond) {
+  {
+    const std::scoped_lock lock(mutex_);
+    requests_.emplace_back(std::move(request), std::move(respond));
+  }
+  post([this] { work_off_requests(); });
+}
+
+void WebService::stop(Respond respond) {
+  hand_.stop(std::move(respond));
+  post([this] { cancel(); });
+}
+
+// Behind what was ordered before: a robot that is released has no goal of before its stop.
+void WebService::release_stop(Respond respond) {
+  hand_over({true, "/api/release", {}, {}, true}, std::move(respond));
+}
+
 void WebService::drive(std::uint64_t viewer, double linear_mps, double angular_radps) {
-  post([this, viewer, velocity = geometry::Velocity{linear_mps, angular_radps}] {
-    hand_.drive(viewer, velocity, [this] { goals_.pause(); });
-  });
+  hand_.drive(viewer, {linear_mps, angular_radps});
 }
 
 void WebService::release(std::uint64_t viewer) {
-  post([this, viewer] { hand_.release(viewer); });
+  hand_.release(viewer);
+}
+
+HandSender::Hooks WebService::hand_hooks() {
+  return {[this] {
+            post([this] {
+              goals_.pause();
+              show_limits(true);
+            });
+          },
+          [this](const char* message) {
+            post([this, message] { service_.status().fault("send blocked", message); });
+          }};
+}
+
+// `anew`: even those that it has.
+void WebService::show_limits(bool anew) {
+  std::shared_ptr<const planning::HybridMap> map;
+  try {
+    map = map_.map();
+  } catch (const std::invalid_argument& error) {
+    service_.status().fault("invalid hybrid map", error.what());
+  }
+  if (map && map != limits_of_) {
+    limits_ = std::make_shared<const navigation::DrawnLimits>(map->space());
+    limits_of_ = std::move(map);
+    anew = true;
+  }
+  if (anew) hand_.keep_off(limits_);
 }
 
 void WebService::work_off_requests() {
@@ -177,18 +212,7 @@ void WebService::obey(const Request& request, const Respond& respond) {
          check_plain(body);
          respond(exploration_.start());
        }},
-      {"/api/stop",
-       [&](const std::string& body) {
-         check_plain(body);
-         const bool heard = hand_.stop();
-         cancel();
-         respond(heard ? accepted() : no_base("stops"));
-       }},
-      {"/api/release",
-       [&](const std::string& body) {
-         check_plain(body);
-         respond(hand_.release_stop() ? accepted() : no_base("is released"));
-       }},
+      {"/api/release", [&](const std::string&) { hand_.release_stop(respond); }},
       {"/api/return",
        [&](const std::string& body) {
          check_plain(body);

@@ -2,7 +2,8 @@
 // WebSocket on the other.
 //
 // Handlers of topics turn messages into channels of the board, in the loop of the service; the
-// server shows the board in a thread of its own, and hands orders to the loop.
+// server shows the board in threads of its own, and hands orders to the loop. Stop and driving by
+// hand have a thread that nothing else uses.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +29,7 @@
 #include "orders/drawing_desk.hpp"
 #include "orders/exploration_sender.hpp"
 #include "orders/goal_sender.hpp"
-#include "orders/hand_sender.hpp"
+#include "orders/hand_thread.hpp"
 #include "orders/localizer_requests.hpp"
 #include "server/board.hpp"
 #include "server/page_files.hpp"
@@ -50,10 +51,13 @@ class WebService : private Backend {
   [[nodiscard]] std::uint32_t port() const { return server_->port(); }
 
  private:
-  // In the thread of the server.
+  // In the threads of the server.
   void handle(const Request& request, Respond respond) override;
+  void stop(Respond respond) override;
+  void release_stop(Respond respond) override;
   void drive(std::uint64_t viewer, double linear_mps, double angular_radps) override;
   void release(std::uint64_t viewer) override;
+  void hand_over(Request request, Respond respond);
   [[nodiscard]] Answer info(const Request& request) const;
   /// Calls it in the loop, unless this is gone by then.
   template <class Work>
@@ -71,6 +75,8 @@ class WebService : private Backend {
   void load_floor(const std::string& body, const Respond& respond);
   [[nodiscard]] Answer room_shapes(const std::string& body);
   void report_counts();
+  void show_limits(bool anew);
+  [[nodiscard]] HandSender::Hooks hand_hooks();
 
   service::Service& service_;
   ServerConfig config_;
@@ -80,7 +86,8 @@ class WebService : private Backend {
   FoxgloveFeed feed_;
   EventLog events_{board_};
   FoxgloveView foxglove_;
-  HandSender hand_;
+  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // for what is posted
+  HandThread hand_;
   MapView map_;
   GraphView graph_;
   GoalSender goals_;
@@ -90,8 +97,11 @@ class WebService : private Backend {
   ExplorationSender exploration_;
   HealthView health_;
   DrawingDesk drawing_;
-  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // for what is posted
+  std::shared_ptr<const planning::HybridMap> limits_of_;
+  std::shared_ptr<const navigation::DrawnLimits> limits_ =
+      std::make_shared<const navigation::DrawnLimits>();
   std::uint64_t timer_ = 0;
+  std::uint64_t limits_timer_ = 0;
   std::unique_ptr<Server> server_;
   // Below the server: an answer that is still to be given holds on to a connection.
   History history_{service_, drive_};

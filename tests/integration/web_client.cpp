@@ -137,6 +137,43 @@ std::string exchange_bytes(std::uint32_t port, const std::string& bytes, millise
   return text;
 }
 
+RawConnection::RawConnection(std::uint32_t port) : socket_(connect_to(port)) {}
+
+RawConnection::~RawConnection() {
+  ::close(socket_);
+}
+
+void RawConnection::send(const std::string& bytes) const {
+  send_all(socket_, bytes);
+}
+
+std::string RawConnection::receive_head() const {
+  std::string text;
+  const Clock::time_point end = Clock::now() + hang_limit();
+  while (text.find("\r\n\r\n") == std::string::npos && receive_some(socket_, text, end)) {
+  }
+  return text;
+}
+
+bool RawConnection::ends() const {
+  std::string text;
+  bool ended = false;
+  const Clock::time_point end = Clock::now() + hang_limit();
+  while (receive_some(socket_, text, end, &ended)) {
+  }
+  return ended;
+}
+
+Headers token_header(const std::string& token) {
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string shown = "topogeo, token.";
+  for (const char byte : token) {
+    shown += kDigits[static_cast<unsigned char>(byte) >> 4U];
+    shown += kDigits[static_cast<unsigned char>(byte) & 0xfU];
+  }
+  return {{"Sec-WebSocket-Protocol", shown}};
+}
+
 WebSocketClient::WebSocketClient(std::uint32_t port, const Headers& headers)
     : socket_(connect_to(port)) {
   Headers all = headers;

@@ -35,6 +35,27 @@ HttpReply http_post(std::uint32_t port, const std::string& target, const std::st
 std::string exchange_bytes(std::uint32_t port, const std::string& bytes,
                            std::chrono::milliseconds quiet);
 
+/// A connection on which nothing is sent but what the test sends.
+class RawConnection {
+ public:
+  explicit RawConnection(std::uint32_t port);
+  RawConnection(const RawConnection&) = delete;
+  RawConnection& operator=(const RawConnection&) = delete;
+  ~RawConnection();
+
+  void send(const std::string& bytes) const;
+  /// What came up to the end of the headers of an answer, or to the end of the connection.
+  [[nodiscard]] std::string receive_head() const;
+  /// The service has closed it, now or within hang_limit().
+  [[nodiscard]] bool ends() const;
+
+ private:
+  int socket_;
+};
+
+/// The header by which a page shows the token when it opens a WebSocket.
+Headers token_header(const std::string& token);
+
 class WebSocketClient {
  public:
   /// Throws std::runtime_error with the status line when it is refused.

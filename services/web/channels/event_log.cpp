@@ -9,6 +9,7 @@ namespace topogeo::web {
 void EventLog::add(Level level, const std::string& source, const std::string& sentence) {
   const char* const word =
       level == Level::kInfo ? "info" : (level == Level::kWarning ? "warning" : "error");
+  const std::scoped_lock lock(mutex_);
   ++last_;
   std::vector<Edit> edits = {
       {std::to_string(last_), text_of(Json{{"time_s", seconds(support::wall_clock_ns())},

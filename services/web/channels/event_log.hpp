@@ -2,13 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
 #include <string>
 
 #include "server/board.hpp"
 
 namespace topogeo::web {
 
-/// Lives in the loop of the service.
+/// For any thread.
 class EventLog {
  public:
   enum class Level : std::uint8_t { kInfo, kWarning, kError };
@@ -21,6 +22,7 @@ class EventLog {
 
  private:
   Board& board_;
+  std::mutex mutex_;
   std::uint64_t last_ = 0;
 };
 

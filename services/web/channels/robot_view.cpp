@@ -40,11 +40,7 @@ RobotView::RobotView(service::Service& service, Board& board, EventLog& events, 
   service.subscribe<msg::NavigatorStatus>(
       [this](const msg::NavigatorStatus& status) { on_navigator(status); });
   service.subscribe<msg::Route>([this](const msg::Route& route) { on_route(route); });
-  service.subscribe<msg::BaseStatus>(
-      [this](const msg::BaseStatus& base, const messaging::SampleInfo& info) {
-        if (hooks_.on_base) hooks_.on_base(info.writer);
-        on_base(base);
-      });
+  service.subscribe<msg::BaseStatus>([this](const msg::BaseStatus& base) { on_base(base); });
   service.subscribe<msg::LaserStatus>([this](const msg::LaserStatus& laser) { on_laser(laser); });
   service.subscribe<msg::GroundTruth>([this](const msg::GroundTruth& truth) { on_truth(truth); });
 }
@@ -175,7 +171,6 @@ void RobotView::on_base(const msg::BaseStatus& status) {
 }
 
 void RobotView::on_laser(const msg::LaserStatus& status) {
-  if (hooks_.on_laser) hooks_.on_laser(status);
   const std::string reason = text_of_message(status.reason());
   if (laser_state_ != status.state()) {
     const bool runs = status.state() == msg::kLaserRunning;

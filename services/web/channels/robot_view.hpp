@@ -22,8 +22,6 @@ class EventLog;
 struct RobotHooks {
   std::function<void(const navigation::ScanPoints&)> on_scan;
   std::function<void(const msg::LivePose&)> on_pose;
-  std::function<void(const msg::LaserStatus&)> on_laser;
-  std::function<void(const messaging::Handle& writer)> on_base;  ///< of the status of the base
   std::function<void(const msg::NavigatorStatus&)> on_navigator;
 };
 

@@ -11,6 +11,7 @@
 
 #include "foxglove/foxglove_feed.hpp"
 #include "foxglove/foxglove_scene.hpp"
+#include "server/access.hpp"
 #include "server/bounded_json.hpp"
 
 namespace topogeo::web {
@@ -46,6 +47,24 @@ const Json& member(const Json& json, const char* key) {
   return found == json.end() ? kNothing : *found;
 }
 
+Watcher::Frame frame_of(std::string bytes) {
+  return {std::make_shared<const std::string>(std::move(bytes)), true};
+}
+
+Watcher::Made live_frames(std::uint32_t id, const LiveMessage& message) {
+  return {{frame_of(message_data(id, message.time_ns, *message.json))}, message.version};
+}
+
+Watcher::Made board_frames(std::uint32_t id, Channel channel, const Update& update) {
+  const std::int64_t now_ns = support::wall_clock_ns();
+  Watcher::Made made;
+  made.version = update.version;
+  for (const std::string& payload : foxglove_messages(channel, *update.text, now_ns)) {
+    made.frames.push_back(frame_of(message_data(id, now_ns, payload)));
+  }
+  return made;
+}
+
 template <class Number>
 void append_little_endian(std::string& bytes, Number value) {
   constexpr unsigned kByte = 0xffU;
@@ -58,13 +77,7 @@ void append_little_endian(std::string& bytes, Number value) {
 
 std::string foxglove_subprotocol(std::string_view offered) {
   std::string chosen;
-  while (!offered.empty()) {
-    const std::size_t comma = std::min(offered.find(','), offered.size());
-    std::string_view name = offered.substr(0, comma);
-    offered.remove_prefix(std::min(comma + 1, offered.size()));
-    const std::size_t begin = std::min(name.find_first_not_of(" \t"), name.size());
-    name.remove_prefix(begin);
-    name = name.substr(0, name.find_last_not_of(" \t") + 1);
+  for (const std::string_view name : names_in(offered)) {
     if (name == "foxglove.sdk.v1") return std::string(name);
     if (name == "foxglove.websocket.v1") chosen = name;
   }
@@ -138,7 +151,10 @@ void FoxgloveViewer::unsubscribe(const Json& message) {
     if (subscriptions_.erase(id) == 0) {
       control(status(kWarningStatus, "there is no subscription " + std::to_string(id)));
     }
-    if (id == frames_of_) frames_.clear();
+    if (id == frames_of_) {
+      drop_frames();
+      frames_of_.reset();
+    }
   }
 }
 
@@ -157,37 +173,32 @@ bool FoxgloveViewer::is_due(const Subscription& subscription) const {
          state().config.clock_s() - subscription.sent_s >= topic.shortest_period_s;
 }
 
-std::optional<Watcher::Frame> FoxgloveViewer::next_frame() {
-  while (frames_.empty()) {
-    const auto before = [](const auto& a, const auto& b) { return a.second.turn < b.second.turn; };
-    auto next = subscriptions_.end();
-    for (auto it = subscriptions_.begin(); it != subscriptions_.end(); ++it) {
-      if (is_due(it->second) && (next == subscriptions_.end() || before(*it, *next))) next = it;
-    }
-    if (next == subscriptions_.end()) return std::nullopt;
-    take_next(next->first, next->second);
+Watcher::Work FoxgloveViewer::next_work() {
+  const auto before = [](const auto& a, const auto& b) { return a.second.turn < b.second.turn; };
+  auto next = subscriptions_.end();
+  for (auto it = subscriptions_.begin(); it != subscriptions_.end(); ++it) {
+    if (is_due(it->second) && (next == subscriptions_.end() || before(*it, *next))) next = it;
   }
-  auto bytes = std::make_shared<const std::string>(std::move(frames_.front()));
-  frames_.pop_front();
-  return Frame{std::move(bytes), true};
-}
-
-void FoxgloveViewer::take_next(std::uint32_t id, Subscription& subscription) {
-  const FoxgloveTopic& topic = *subscription.topic;
+  if (next == subscriptions_.end()) return {};
+  auto& [id, subscription] = *next;
   frames_of_ = id;
   subscription.turn = ++messages_sent_;
   subscription.sent_s = state().config.clock_s();
-  if (topic.live) {
-    const LiveMessage message = state().feed.newest(*topic.live);
-    subscription.held = message.version;
-    frames_.push_back(message_data(id, message.time_ns, *message.json));
-    return;
+  if (subscription.topic->live) {
+    return [id = id, &feed = state().feed, topic = *subscription.topic->live] {
+      return live_frames(id, feed.newest(topic));
+    };
   }
-  const Update update = state().board.update(*topic.channel, subscription.held);
-  subscription.held = update.version;
-  const std::int64_t now_ns = support::wall_clock_ns();
-  for (const std::string& payload : foxglove_messages(*topic.channel, *update.text, now_ns)) {
-    frames_.push_back(message_data(id, now_ns, payload));
+  return
+      [id = id, &board = state().board, channel = *subscription.topic->channel,
+       held = subscription.held] { return board_frames(id, channel, board.update(channel, held)); };
+}
+
+void FoxgloveViewer::on_made(std::uint64_t version) {
+  if (frames_of_) {
+    subscriptions_.at(*frames_of_).held = version;
+  } else {
+    drop_frames();
   }
 }
 

@@ -39,19 +39,18 @@ class FoxgloveViewer : public Watcher {
 
   void on_open() override;
   void on_text(const std::string& text) override;
-  std::optional<Frame> next_frame() override;
+  Work next_work() override;
+  void on_made(std::uint64_t version) override;
   [[nodiscard]] std::string refusal(const std::string& sentence,
                                     std::string_view what) const override;
   void subscribe(const Json& message);
   void unsubscribe(const Json& message);
   [[nodiscard]] std::uint64_t version_of(const FoxgloveTopic& topic) const;
   [[nodiscard]] bool is_due(const Subscription& subscription) const;
-  void take_next(std::uint32_t id, Subscription& subscription);
 
   std::map<std::uint32_t, Subscription> subscriptions_;
   std::uint64_t messages_sent_ = 0;
-  std::deque<std::string> frames_;  // of one update: a log has several
-  std::uint32_t frames_of_ = 0;     // subscription
+  std::optional<std::uint32_t> frames_of_;  // subscription of what is made or sent
 };
 
 }  // namespace topogeo::web

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/messaging/reader.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/navigation_conversions.hpp"
 #include "topogeo/support/host.hpp"
@@ -21,33 +22,52 @@ constexpr std::chrono::milliseconds kHandPeriod{50};        // as the navigator
 constexpr std::chrono::milliseconds kLastHandCommand{200};  // for the gateway to have the last one
 constexpr double kHandValid_s = 0.3;  // a base runs on that long when this service dies
 
+constexpr std::int64_t kLate_ns = ManualDrive::kPatience_ns;
+
 std::int64_t steady_ns() {
   return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 }  // namespace
 
-HandSender::HandSender(service::Service& service, Board& board, EventLog& events, MapSource map,
-                       std::function<void(const msg::Odometry&)> on_odometry)
-    : service_(service),
+HandSender::HandSender(messaging::EventLoop& loop, const service::Service& service, Board& board,
+                       EventLog& events, Tally& tally, Hooks hooks)
+    : loop_(loop),
+      service_(service),
       board_(board),
       events_(events),
-      map_source_(std::move(map)),
+      tally_(tally),
+      hooks_(std::move(hooks)),
       client_id_(support::process_name()),
       clock_(support::wall_clock_ns() - steady_ns()),
       guard_(service.setup().config.config.navigator.guard),
       drive_(service.setup().config.config.navigator.follower),
-      commands_(service.advertise<msg::MotionCommand>()),
-      orders_(service.advertise<msg::BaseCommand>()) {
-  service.subscribe<msg::Odometry>(
-      [this, on_odometry = std::move(on_odometry)](const msg::Odometry& odometry) {
-        clock_.observe(odometry.stamp_ns(), steady_ns());
-        guard_.add(service::odometry_from_msg(odometry));
-        if (on_odometry) on_odometry(odometry);
-      });
-  service.subscribe<msg::Sonar>(
-      [this](const msg::Sonar& sonar) { guard_.add(service::sonar_from_msg(sonar)); });
-  service.loop().add_timer(kHandPeriod, [this] { tick(); });
+      commands_(service.participant()),
+      orders_(service.participant()) {
+  listen();
+  loop_.add_timer(kHandPeriod, [this] { tick(); });
+}
+
+template <class T, class Handler>
+void HandSender::subscribe(Handler handler) {
+  loop_.add<T>(messaging::Reader<T>(service_.participant()),
+               [this, handler](const T& message, const messaging::SampleInfo& info) {
+                 if (message.robot_id() == service_.robot_id()) handler(message, info);
+               });
+}
+
+void HandSender::listen() {
+  using Info = messaging::SampleInfo;
+  subscribe<msg::Odometry>(
+      [this](const msg::Odometry& odometry, const Info&) { on_odometry(odometry); });
+  subscribe<msg::Sonar>(
+      [this](const msg::Sonar& sonar, const Info&) { guard_.add(service::sonar_from_msg(sonar)); });
+  subscribe<msg::Scan>([this](const msg::Scan& scan, const Info&) { on_scan(scan); });
+  subscribe<msg::LivePose>([this](const msg::LivePose& pose, const Info&) { on_pose(pose); });
+  subscribe<msg::LaserStatus>(
+      [this](const msg::LaserStatus& laser, const Info&) { on_laser(laser); });
+  subscribe<msg::BaseStatus>(
+      [this](const msg::BaseStatus&, const Info& info) { base_ = info.writer; });
 }
 
 HandSender::~HandSender() {
@@ -60,48 +80,57 @@ HandSender::~HandSender() {
   }
 }
 
-void HandSender::take(const msg::LivePose& pose) {
+void HandSender::on_odometry(const msg::Odometry& odometry) {
+  clock_.observe(odometry.stamp_ns(), steady_ns());
+  guard_.add(service::odometry_from_msg(odometry));
+}
+
+void HandSender::on_pose(const msg::LivePose& pose) {
   if (pose.state() != msg::kStateTracking) return;  // the points of before are carried on
   pose_.emplace();
   pose_->stamp_ns = pose.stamp_ns();
   pose_->T_map_robot = service::from_msg(pose.T_map_robot());
 }
 
-void HandSender::keep_off_drawn() {
-  try {
-    if (auto map = map_source_(); map && map != map_) {
-      limits_ = navigation::DrawnLimits(map->space());
-      map_ = std::move(map);
-    }
-  } catch (const std::invalid_argument& error) {
-    service_.status().fault("invalid hybrid map", error.what());
-  }
-  if (!pose_) return;
-  guard_.keep_off(pose_->stamp_ns, limits_.near_m(pose_->T_map_robot));
-  pose_.reset();
-}
-
-void HandSender::take(const navigation::ScanPoints& scan) {
+void HandSender::on_scan(const msg::Scan& message) {
+  const navigation::ScanPoints scan = service::to_scan_points(
+      service::from_msg(message), service_.setup().config.config.local_mapper.T_robot_laser);
   clock_.observe(scan.stamp_ns, steady_ns());
   guard_.add(navigation::OdometrySample{scan.stamp_ns, scan.T_odom_robot});
   guard_.add(scan);
 }
 
-void HandSender::take(const msg::LaserStatus& laser) {
+void HandSender::on_laser(const msg::LaserStatus& laser) {
   guard_.add(
       navigation::LaserFields{laser.stamp_ns(), laser.warning_field(), laser.protective_field()});
 }
 
+void HandSender::keep_off(std::shared_ptr<const navigation::DrawnLimits> limits) {
+  limits_ = std::move(limits);
+}
+
+void HandSender::keep_off_drawn() {
+  if (!pose_ || !limits_) return;
+  guard_.keep_off(pose_->stamp_ns, limits_->near_m(pose_->T_map_robot));
+  pose_.reset();
+}
+
 void HandSender::drive(std::uint64_t viewer, const geometry::Velocity& wanted,
-                       const std::function<void()>& on_first) {
-  const bool first = !drive_.held(steady_ns());
-  if (!drive_.hold(viewer, wanted, steady_ns())) {
-    service_.status().add_drops("refused: another drives");
+                       std::int64_t came_ns) {
+  const std::int64_t now_ns = steady_ns();
+  if (now_ns - came_ns > kLate_ns) {
+    tally_.add("refused: late");
+    return;
+  }
+  const bool first = !drive_.held(now_ns);
+  if (!drive_.hold(viewer, wanted, now_ns)) {
+    tally_.add("refused: another drives");
     return;
   }
   if (first) {
+    limits_.reset();
     events_.add(EventLog::Level::kInfo, "web", "driven by hand");
-    on_first();
+    hooks_.on_first();
   }
   tick();
 }
@@ -115,17 +144,21 @@ void HandSender::tick() {
   if (stop_unheard_ && base_hears()) stop_unheard_ = !order(msg::kBaseHalt);
   const std::int64_t now_ns = steady_ns();
   const std::int64_t stamp_ns = clock_.now_ns(now_ns);
-  const bool held = drive_.held(now_ns);
-  if (held) keep_off_drawn();
-  const auto verdict = drive_.step(guard_, now_ns, stamp_ns);
+  held_ = drive_.held(now_ns);
+  if (held_) keep_off_drawn();
+  auto verdict = drive_.step(guard_, now_ns, stamp_ns);
   if (!verdict) {
     if (commanding_) board_.set(Channel::kDrive, "null");
     commanding_ = false;
     return;
   }
+  if (held_ && !limits_) {
+    verdict->allowed = {};
+    verdict->message = "what is drawn on the map is read first";
+  }
   commanding_ = true;
   command(verdict->allowed, stamp_ns);
-  show(*verdict, held);
+  show(*verdict, held_);
 }
 
 void HandSender::command(const geometry::Velocity& velocity, std::int64_t stamp_ns) {
@@ -134,12 +167,8 @@ void HandSender::command(const geometry::Velocity& velocity, std::int64_t stamp_
   message.linear_mps(velocity.linear_m_per_s);
   message.angular_radps(velocity.angular_rad_per_s);
   message.valid_for_s(kHandValid_s);
-  if (!commands_.write(message)) service_.status().fault("send blocked", "motion command");
-  service_.status().add_to_counter("commands");
-}
-
-void HandSender::note_base(const messaging::Handle& base) {
-  base_ = base;
+  if (!commands_.write(message)) hooks_.on_blocked("motion command");
+  tally_.add("commands");
 }
 
 // The base of another robot may be connected already when that of the own one is not.
@@ -169,8 +198,9 @@ bool HandSender::order(msg::BaseCommandKind kind) {
   messaging::set_client_id(message, client_id_);
   message.kind(kind);
   const bool heard = base_hears();  // before it is sent, or it may be lost after all
-  service_.send(orders_, message, "base command");
-  return heard;
+  if (orders_.write(message)) return heard;
+  hooks_.on_blocked("base command");
+  return false;
 }
 
 void HandSender::show(const navigation::GuardVerdict& verdict, bool held) {

@@ -1,62 +1,68 @@
-// Drives the base by hand, in what the collision guard allows: channel `drive`.
+// Drives the base by hand, in what the collision guard allows, and halts it: channel `drive`.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/motion.h"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/navigation/collision_guard.hpp"
 #include "topogeo/navigation/drawn_limits.hpp"
-#include "topogeo/planning/hybrid_map.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/stamp_clock.hpp"
 
 #include "orders/manual_drive.hpp"
 #include "server/board.hpp"
+#include "server/tally.hpp"
 
 namespace topogeo::web {
 
 class EventLog;
 
-/// Lives in the loop of its service.
+/// Lives in the loop that it is given, which has nothing else to do: what it is ordered is done at
+/// once, whatever the other threads of the service do.
 class HandSender {
  public:
-  /// The map of now, or null; asked for while somebody drives.
-  using MapSource = std::function<std::shared_ptr<const planning::HybridMap>()>;
+  struct Hooks {
+    /// The robot was left alone before and may have a goal. keep_off() follows.
+    std::function<void()> on_first;
+    /// A message was not sent because its readers are slow.
+    std::function<void(const char* message)> on_blocked;
+  };
 
-  /// `on_odometry` gets it, too; may be empty.
-  HandSender(service::Service& service, Board& board, EventLog& events, MapSource map,
-             std::function<void(const msg::Odometry&)> on_odometry = {});
+  HandSender(messaging::EventLoop& loop, const service::Service& service, Board& board,
+             EventLog& events, Tally& tally, Hooks hooks);
   HandSender(const HandSender&) = delete;
   HandSender& operator=(const HandSender&) = delete;
   /// The last command is to stand still.
   ~HandSender();
 
-  /// Calls `on_first` when the robot was left alone before: it may have a goal.
-  void drive(std::uint64_t viewer, const geometry::Velocity& wanted,
-             const std::function<void()>& on_first);
+  /// An order that was received at `came_ns` of the steady clock; one that is old is refused.
+  void drive(std::uint64_t viewer, const geometry::Velocity& wanted, std::int64_t came_ns);
   void release(std::uint64_t viewer);
+  /// Where drawn walls and no-go zones are. Until it is known who takes the controls does not move.
+  void keep_off(std::shared_ptr<const navigation::DrawnLimits> limits);
   /// The base stops at once and holds until release_stop(). False: no base hears it; one that comes
   /// before release_stop() is stopped then.
   [[nodiscard]] bool stop();
   /// False: no base hears it.
   [[nodiscard]] bool release_stop();
-
-  /// The writer of the status of the robot's base: its program is to be connected.
-  void note_base(const messaging::Handle& base);
-
-  // Sensors of the guard, and where drawn walls and no-go zones are.
-  void take(const msg::LivePose& pose);
-  void take(const navigation::ScanPoints& scan);
-  void take(const msg::LaserStatus& laser);
+  /// Somebody drives. For any thread.
+  [[nodiscard]] bool is_held() const { return held_; }
 
  private:
+  void listen();
+  void on_pose(const msg::LivePose& pose);
+  void on_odometry(const msg::Odometry& odometry);
+  void on_scan(const msg::Scan& scan);
+  void on_laser(const msg::LaserStatus& laser);
   void tick();
   void keep_off_drawn();
   void command(const geometry::Velocity& velocity, std::int64_t stamp_ns);
@@ -64,24 +70,29 @@ class HandSender {
   bool order(msg::BaseCommandKind kind);
   [[nodiscard]] bool base_hears() const;
   void show(const navigation::GuardVerdict& verdict, bool held);
+  /// Takes the messages of the own robot.
+  template <class T, class Handler>
+  void subscribe(Handler handler);
 
-  service::Service& service_;
+  messaging::EventLoop& loop_;
+  const service::Service& service_;
   Board& board_;
   EventLog& events_;
-  MapSource map_source_;
+  Tally& tally_;
+  Hooks hooks_;
   std::string client_id_;
   service::StampClock clock_;
   navigation::CollisionGuard guard_;
-  std::shared_ptr<const planning::HybridMap> map_;  // that limits_ are of
-  navigation::DrawnLimits limits_;
+  std::shared_ptr<const navigation::DrawnLimits> limits_;  // null: not known since the first order
   std::optional<navigation::PoseFix> pose_;  // the last one that is sure, unless it was used
   ManualDrive drive_;
+  std::atomic<bool> held_ = false;
   bool commanding_ = false;
   std::uint64_t commands_sent_ = 0;
   std::uint64_t orders_sent_ = 0;
   messaging::Writer<msg::MotionCommand> commands_;
   messaging::Writer<msg::BaseCommand> orders_;
-  std::optional<messaging::Handle> base_;
+  std::optional<messaging::Handle> base_;  // the writer of the status of the robot's base
   bool stop_unheard_ = false;
 };
 

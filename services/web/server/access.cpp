@@ -48,6 +48,26 @@ bool is_authorized(std::string_view authorization, std::string_view token) {
   return equal_in_constant_time(authorization.substr(kScheme.size()), token);
 }
 
+std::vector<std::string_view> names_in(std::string_view list) {
+  std::vector<std::string_view> names;
+  while (!list.empty()) {
+    const std::size_t comma = std::min(list.find(','), list.size());
+    std::string_view name = list.substr(0, comma);
+    list.remove_prefix(std::min(comma + 1, list.size()));
+    name.remove_prefix(std::min(name.find_first_not_of(" \t"), name.size()));
+    names.push_back(name.substr(0, name.find_last_not_of(" \t") + 1));
+  }
+  return names;
+}
+
+bool offers_token(const std::vector<std::string_view>& names, std::string_view token) {
+  if (token.empty()) return false;
+  std::string shown = "token.";
+  for (const char byte : token) shown += fmt::format("{:02x}", static_cast<unsigned char>(byte));
+  return std::ranges::any_of(
+      names, [&](std::string_view name) { return equal_in_constant_time(name, shown); });
+}
+
 std::string_view host_of(std::string_view authority) {
   if (authority.starts_with('[')) {
     const std::size_t end = authority.find(']');

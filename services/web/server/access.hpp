@@ -16,6 +16,13 @@ bool equal_in_constant_time(std::string_view a, std::string_view b);
 /// "Bearer TOKEN" of the header Authorization. False for an empty token: then nobody may write.
 bool is_authorized(std::string_view authorization, std::string_view token);
 
+/// The names of a header that lists them between commas, without spaces.
+std::vector<std::string_view> names_in(std::string_view list);
+
+/// One of `names` is "token." with the token's bytes in hexadecimal digits, which is how a page
+/// shows the token when it opens a WebSocket. False for an empty token.
+bool offers_token(const std::vector<std::string_view>& names, std::string_view token);
+
 /// The name in "name:port", without brackets of IPv6.
 std::string_view host_of(std::string_view authority);
 

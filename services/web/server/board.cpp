@@ -72,6 +72,7 @@ void Board::set(Channel channel, std::string json) {
     now.value = std::move(json);
     ++now.version;
     now.texts.clear();
+    show_version(channel);
   }
   report(channel);
 }
@@ -80,6 +81,7 @@ void Board::edit(Channel channel, std::vector<Edit> edits, bool anew) {
   {
     const std::scoped_lock lock(mutex_);
     if (!apply(state(channel), edits, anew)) return;
+    show_version(channel);
   }
   report(channel);
 }
@@ -119,8 +121,11 @@ bool Board::apply(State& state, std::vector<Edit>& edits, bool anew) {
 }
 
 std::uint64_t Board::version(Channel channel) const {
-  const std::scoped_lock lock(mutex_);
-  return state(channel).version;
+  return versions_.at(static_cast<std::size_t>(channel));
+}
+
+void Board::show_version(Channel channel) {
+  versions_.at(static_cast<std::size_t>(channel)) = state(channel).version;
 }
 
 Update Board::update(Channel channel, std::uint64_t held) const {

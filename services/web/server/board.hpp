@@ -6,6 +6,8 @@
 // same version share one text.
 #pragma once
 
+#include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -86,7 +88,7 @@ class Board {
   /// what the table had before and is not among the edits is gone.
   void edit(Channel channel, std::vector<Edit> edits, bool anew = false);
 
-  /// 0 before the first change.
+  /// 0 before the first change. Never waits for another thread.
   [[nodiscard]] std::uint64_t version(Channel channel) const;
   /// For a viewer who holds `held` (0: nothing), which is not the version of now. What it was never
   /// given, a larger one than that of now, counts as nothing.
@@ -116,9 +118,11 @@ class Board {
   }
   static bool apply(State& state, std::vector<Edit>& edits, bool anew);
   void report(Channel channel);
+  void show_version(Channel channel);
 
   mutable std::mutex mutex_;
   std::vector<State> states_ = std::vector<State>(kChannels);
+  std::array<std::atomic<std::uint64_t>, kChannels> versions_{};  // as in states_
   std::function<void(Channel)> on_change_;
 };
 

@@ -1,9 +1,11 @@
 #include "server/http_session.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
+#include <utility>
+#include <vector>
 
+#include <boost/asio/dispatch.hpp>
 #include <boost/beast/http/error.hpp>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/write.hpp>
@@ -19,21 +21,25 @@ namespace http = beast::http;
 
 namespace {
 
+constexpr std::string_view kPageProtocol = "topogeo";
 constexpr std::chrono::seconds kIdle{30};  // between two requests, and for one to come or go
 constexpr std::chrono::seconds kLinger{2};
-constexpr std::size_t kDrained_bytes = 65536;  // at a time ...
-constexpr int kMostDrained = 64;               // ... and so often
+constexpr std::chrono::milliseconds kPause{250};  // after a request that came too often
+constexpr std::size_t kDrained_bytes = 65536;     // at a time ...
+constexpr int kMostDrained = 64;                  // ... and so often
 constexpr std::uint32_t kMostRequestHeader_bytes = 8192;
 constexpr std::uint64_t kMostBody_bytes = 65536;
 /// A drawing with all that it may have, each number with all of its digits.
 constexpr std::uint64_t kMostDrawing_bytes = std::uint64_t{8} << 20U;
-constexpr std::chrono::seconds kUpload{120};  // for a body that is larger than usual
+constexpr std::chrono::seconds kUpload{120};             // for a body that is larger than usual
+constexpr const char* kShapesPath = "/api/room_shapes";  // computes only, for everybody
 
-/// Of what comes to a path.
-std::uint64_t most_bytes(std::string_view path) {
-  if (path == kMapUploadPath) return kMostMapFile_bytes;
-  if (path == "/api/drawing" || path == "/api/floor") return kMostDrawing_bytes;
-  return kMostBody_bytes;
+std::string_view path_of(std::string_view target) {
+  return target.substr(0, target.find('?'));
+}
+
+bool stops_or_releases(std::string_view path) {
+  return path == "/api/stop" || path == "/api/release";
 }
 
 /// What browsers are told of each answer: the page takes nothing from elsewhere, and is framed by
@@ -44,23 +50,44 @@ constexpr const char* kContentPolicy =
 
 }  // namespace
 
+std::shared_ptr<HttpSession> HttpSession::make(Connection connection, ServerState& state,
+                                               std::string peer) {
+  const auto executor = connection.get_executor();
+  return {new HttpSession(std::move(connection), state, std::move(peer)),
+          [executor](HttpSession* session) {
+            asio::dispatch(executor, [owned = std::unique_ptr<HttpSession>(session)] {});
+          }};
+}
+
 HttpSession::HttpSession(Connection connection, ServerState& state, std::string peer)
-    : connection_(std::move(connection)), state_(state), peer_(std::move(peer)) {
-  ++state_.connections;
-  ++state_.peers[peer_].connections;
+    : Guest(std::move(peer)),
+      connection_(std::move(connection)),
+      state_(state),
+      pause_(connection_.get_executor()) {
+  if (!state_.guests.enter(*this)) state_.refuse("too many connections");
+  ++state_.peers[address()].connections;
 }
 
 HttpSession::~HttpSession() {
-  --state_.connections;
-  --state_.peers[peer_].connections;
+  Places::leave(*this);
+  --state_.peers[address()].connections;
   // Who connects anew for each request has no other limits.
   if (state_.peers.size() <= ServerState::kMostPeers) return;
   std::erase_if(state_.peers, [](const auto& peer) { return peer.second.connections == 0; });
 }
 
 void HttpSession::start() {
-  if (!connection_.has_tls()) {
+  if (connection_.has_tls()) {
+    shake_hands();
+  } else {
     read();
+  }
+}
+
+void HttpSession::shake_hands() {
+  PeerLimits& peer = state_.peers[address()];
+  if (!peer.had_token && !peer.handshakes.take(state_.config.clock_s())) {
+    pause(&HttpSession::shake_hands);
     return;
   }
   connection_.expires_after(kIdle);
@@ -76,7 +103,7 @@ void HttpSession::start() {
 void HttpSession::read() {
   parser_.emplace();
   parser_->header_limit(kMostRequestHeader_bytes);
-  parser_->body_limit(kMostMapFile_bytes);
+  parser_->body_limit(kMostMapFile_bytes);  // that of each request follows from its header
   connection_.expires_after(kIdle);
   http::async_read_header(connection_, buffer_, *parser_,
                           [self = shared_from_this()](beast::error_code error, std::size_t) {
@@ -84,28 +111,47 @@ void HttpSession::read() {
                           });
 }
 
-// What is larger than orders are is only read for those who may send it.
 void HttpSession::on_header(beast::error_code error) {
   if (error) {
     answer_read_error(error);
     return;
   }
-  const std::string target(parser_->get().target());
-  const bool large = parser_->content_length().value_or(0) > kMostBody_bytes;
-  const std::uint64_t most = most_bytes(std::string_view(target).substr(0, target.find('?')));
-  if (large && most > kMostBody_bytes) {
-    if (const auto refused = refusal()) {
-      send(*refused);
-      return;
-    }
-    admitted_ = true;
+  state_.tally.add("requests");
+  note_token(is_authorized(header(http::field::authorization), state_.config.token));
+  if (const auto refused = refusal()) {
+    send(*refused);
+  } else if (parser_->is_done()) {
+    on_read({});
+  } else {
+    read_body(most_body_bytes());
   }
+}
+
+void HttpSession::note_token(bool shown) {
+  if (shown && !authorized_) state_.operators.enter(*this);
+  if (!shown && authorized_) state_.guests.enter(*this);
+  if (shown) state_.peers[address()].had_token = true;
+  authorized_ = shown;
+  too_often_ = false;
+  Places::touch(*this);
+}
+
+std::uint64_t HttpSession::most_body_bytes() const {
+  const auto target = parser_->get().target();
+  const std::string_view path = path_of({target.data(), target.size()});
+  if (parser_->get().method() != http::verb::post) return 0;
+  if (path == kMapUploadPath) return kMostMapFile_bytes;
+  if (path == "/api/drawing" || path == "/api/floor") return kMostDrawing_bytes;
+  return kMostBody_bytes;
+}
+
+void HttpSession::read_body(std::uint64_t most) {
   if (parser_->content_length().value_or(0) > most) {
     answer_read_error(http::error::body_limit);
     return;
   }
-  parser_->body_limit(admitted_ ? most : kMostBody_bytes);
-  connection_.expires_after(admitted_ ? kUpload : kIdle);
+  parser_->body_limit(most);
+  connection_.expires_after(most > kMostBody_bytes ? kUpload : kIdle);
   http::async_read(connection_, buffer_, *parser_,
                    [self = shared_from_this()](beast::error_code failed, std::size_t) {
                      self->on_read(failed);
@@ -115,12 +161,6 @@ void HttpSession::on_header(beast::error_code error) {
 void HttpSession::on_read(beast::error_code error) {
   if (error) {
     answer_read_error(error);
-    return;
-  }
-  state_.tally.add("requests");
-  const bool admitted = std::exchange(admitted_, false);
-  if (const auto refused = admitted ? std::optional<Answer>() : refusal()) {
-    send(*refused);
   } else if (beast::websocket::is_upgrade(parser_->get())) {
     upgrade();
   } else {
@@ -148,15 +188,18 @@ std::string HttpSession::header(http::field field) const {
   return {value.data(), value.size()};
 }
 
+Answer HttpSession::refuse(unsigned status, const char* reason, const std::string& sentence) {
+  state_.refuse(reason);
+  return error_answer(status, sentence);
+}
+
 std::optional<Answer> HttpSession::refusal() {
-  const auto refuse = [this](unsigned status, const char* reason, const std::string& sentence) {
-    state_.refuse(reason);
-    return error_answer(status, sentence);
-  };
+  if (auto refused = refusal_of_sender()) return refused;
+  return refusal_by_rate();
+}
+
+std::optional<Answer> HttpSession::refusal_of_sender() {
   const auto& request = parser_->get();
-  PeerLimits& limits = state_.peers[peer_];
-  const double now_s = state_.config.clock_s();
-  if (!limits.requests.take(now_s)) return refuse(429, "too often", "too many requests");
   const std::string host = header(http::field::host);
   if (!is_own_host(host, state_.config.hosts)) {
     return refuse(403, "foreign host", "this is not the host '" + host + "'; see --host");
@@ -170,34 +213,64 @@ std::optional<Answer> HttpSession::refusal() {
     return refuse(405, "method", "expected GET or POST");
   }
   // The token first: who has none learns nothing else.
-  const bool computes_only = request.target() == "/api/room_shapes";
-  if (!computes_only && !is_authorized(header(http::field::authorization), state_.config.token)) {
+  if (!authorized_ && request.target() != kShapesPath) {
     return refuse(401, "no token", "this needs the operator's token");
   }
-  if (!limits.posts.take(now_s)) return refuse(429, "too often", "too many orders");
+  return {};
+}
+
+// Whoever has the token shares no limit with those who have none, at the same address neither.
+std::optional<Answer> HttpSession::refusal_by_rate() {
+  const auto& request = parser_->get();
+  const double now_s = state_.config.clock_s();
+  const bool post = request.method() == http::verb::post;
+  OperatorLimits& own = state_.operator_limits;
+  const std::string target(request.target());
+  if (authorized_ && post && stops_or_releases(path_of(target))) {
+    if (!own.stops.take(now_s)) return refuse(429, "too often", "too many orders to stop");
+    return {};
+  }
+  PeerLimits& peer = state_.peers[address()];
+  too_often_ = authorized_ ? !own.requests.take(now_s)
+                           : !(requests_.take(now_s) && peer.requests.take(now_s));
+  if (too_often_) return refuse(429, "too often", "too many requests");
+  if (!post) return {};
+  too_often_ = authorized_ ? !own.posts.take(now_s)
+                           : !(peer.posts.take(now_s) && state_.stranger_posts.take(now_s));
+  if (too_often_) return refuse(429, "too often", "too many orders");
   return {};
 }
 
 void HttpSession::upgrade() {
   // Programs that speak Foxglove's protocol ask for "/".
-  const std::string foxglove = foxglove_subprotocol(header(http::field::sec_websocket_protocol));
+  const std::string offered = header(http::field::sec_websocket_protocol);
+  const std::string foxglove = foxglove_subprotocol(offered);
   if (foxglove.empty() && parser_->get().target() != "/ws") {
     send(error_answer(404, "the WebSocket is at /ws"));
     return;
   }
-  if (state_.viewers.size() >= state_.config.most_viewers) {
+  const std::vector<std::string_view> names = names_in(offered);
+  const bool has_token = authorized_ || offers_token(names, state_.config.token);
+  if (has_token) state_.peers[address()].had_token = true;
+  const std::size_t reserved = has_token ? ServerState::kReservedViewers : 0;
+  if (state_.viewers.size() >= state_.config.most_viewers + reserved) {
     state_.refuse("too many viewers");
     send(error_answer(503, "too many viewers"));
     return;
   }
+  Places::leave(*this);
   connection_.expires_never();
   std::shared_ptr<Watcher> watcher;
+  std::string chosen = foxglove;
   if (foxglove.empty()) {
-    watcher = std::make_shared<Viewer>(std::move(connection_), state_, shared_from_this());
+    if (std::ranges::find(names, kPageProtocol) != names.end()) chosen = kPageProtocol;
+    watcher =
+        std::make_shared<Viewer>(std::move(connection_), state_, shared_from_this(), has_token);
   } else {
-    watcher = std::make_shared<FoxgloveViewer>(std::move(connection_), state_, shared_from_this());
+    watcher = std::make_shared<FoxgloveViewer>(std::move(connection_), state_, shared_from_this(),
+                                               has_token);
   }
-  watcher->start(parser_->release(), foxglove);
+  watcher->start(parser_->release(), chosen);
 }
 
 void HttpSession::route() {
@@ -208,19 +281,34 @@ void HttpSession::route() {
   out.post = request.method() == http::verb::post;
   out.path = target.substr(0, question);
   if (question != std::string::npos) out.query = target.substr(question + 1);
-  out.body = request.body();
-  out.authorized = is_authorized(header(http::field::authorization), state_.config.token);
+  out.authorized = authorized_;
   if (!out.post) {
     if (const PageFile* file = state_.files.find(out.path)) {
       send_file(*file);
       return;
     }
   }
+  out.body = std::move(parser_->get().body());
+  answer(std::move(out));
+}
+
+void HttpSession::answer(Request request) {
   connection_.expires_never();  // the answer may take as long as that of another service
-  state_.backend.handle(
-      out, [self = shared_from_this(), executor = connection_.get_executor()](Answer answer) {
-        asio::post(executor, [self, answer = std::move(answer)] { self->send(answer); });
-      });
+  if (request.post && request.path == "/api/stop") {
+    state_.backend.stop(responder());
+  } else if (request.post && request.path == "/api/release") {
+    state_.backend.release_stop(responder());
+  } else {
+    const auto turn = authorized_ ? AnswerThread::Turn::kFirst : AnswerThread::Turn::kLater;
+    state_.answers.post(turn, [&backend = state_.backend, respond = responder(),
+                               request = std::move(request)] { backend.handle(request, respond); });
+  }
+}
+
+Respond HttpSession::responder() {
+  return [self = shared_from_this(), executor = connection_.get_executor()](Answer answer) {
+    asio::post(executor, [self, answer = std::move(answer)] { self->send(answer); });
+  };
 }
 
 void HttpSession::send_file(const PageFile& file) {
@@ -270,11 +358,28 @@ void HttpSession::send(std::shared_ptr<Response> response) {
                         beast::error_code error, std::size_t) {
                       if (error) return;
                       if (keep) {
-                        self->read();
+                        self->read_next();
                       } else {
                         self->linger();
                       }
                     });
+}
+
+// A stranger who asks too often waits, and costs no work meanwhile.
+void HttpSession::read_next() {
+  Places::touch(*this);
+  if (!too_often_ || authorized_) {
+    read();
+    return;
+  }
+  pause(&HttpSession::read);
+}
+
+void HttpSession::pause(void (HttpSession::*then)()) {
+  pause_.expires_after(kPause);
+  pause_.async_wait([self = shared_from_this(), then](beast::error_code error) {
+    if (!error) (self.get()->*then)();
+  });
 }
 
 void HttpSession::linger() {

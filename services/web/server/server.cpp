@@ -37,17 +37,23 @@ Answer error_answer(unsigned status, const std::string& sentence) {
 }
 
 void ServerState::show_viewers() {
-  const auto operators =
+  const auto with_token =
       std::ranges::count_if(viewers, [](const Watcher* viewer) { return viewer->is_operator(); });
   tally.set("viewers", viewers.size());
-  board.set(Channel::kViewers,
-            fmt::format(R"({{"viewers":{},"operators":{}}})", viewers.size(), operators));
+  show(Channel::kViewers,
+       fmt::format(R"({{"viewers":{},"operators":{}}})", viewers.size(), with_token));
+}
+
+void ServerState::show(Channel channel, std::string json) {
+  answers.post(AnswerThread::Turn::kFirst, [this, channel, json = std::move(json)]() mutable {
+    board.set(channel, std::move(json));
+  });
 }
 
 struct Server::Impl {
   Impl(const ServerConfig& config, Board& board, const PageFiles& files, Backend& backend,
        Tally& tally, FoxgloveFeed& feed)
-      : state{config, board, files, backend, tally, feed, 0, {}, {}, 0},
+      : state{config, board, files, backend, tally, feed},
         acceptor(context),
         retry(context),
         timer(context) {}
@@ -119,21 +125,14 @@ void Server::Impl::take(asio::ip::tcp::socket socket) {
   beast::error_code error;
   const auto endpoint = socket.remote_endpoint(error);
   if (error) return;
-  const std::string peer = endpoint.address().to_string();
-  const auto known = state.peers.find(peer);
-  if (state.connections >= ServerState::kMostConnections ||
-      (known != state.peers.end() &&
-       known->second.connections >= ServerState::kMostConnectionsOfPeer)) {
-    state.refuse("too many connections");
-    return;
-  }
-  std::make_shared<HttpSession>(Connection(std::move(socket), tls ? &*tls : nullptr), state, peer)
+  HttpSession::make(Connection(std::move(socket), tls ? &*tls : nullptr), state,
+                    endpoint.address().to_string())
       ->start();
 }
 
 void Server::Impl::tick() {
-  state.board.set(Channel::kTime, fmt::format(R"({{"time_s":{:.3f}}})",
-                                              static_cast<double>(support::wall_clock_ns()) / 1e9));
+  state.show(Channel::kTime, fmt::format(R"({{"time_s":{:.3f}}})",
+                                         static_cast<double>(support::wall_clock_ns()) / 1e9));
   timer.expires_after(kTimePeriod);
   timer.async_wait([this](beast::error_code error) {
     if (!error) tick();
@@ -167,6 +166,7 @@ Server::~Server() {
   impl_->state.feed.on_change({});
   impl_->context.stop();
   impl_->thread.join();
+  impl_->state.answers.stop();
 }
 
 }  // namespace topogeo::web

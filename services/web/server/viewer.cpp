@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/host.hpp"
@@ -19,8 +21,9 @@ constexpr int kProtocol = 1;
 
 }  // namespace
 
-Viewer::Viewer(Connection connection, ServerState& state, std::shared_ptr<void> place)
-    : Watcher(std::move(connection), state, std::move(place)),
+Viewer::Viewer(Connection connection, ServerState& state, std::shared_ptr<void> place,
+               bool has_token)
+    : Watcher(std::move(connection), state, std::move(place), has_token),
       number_(++state.last_viewer),
       hello_timer_(socket().get_executor()) {}
 
@@ -72,6 +75,9 @@ void Viewer::on_message(const ViewerMessage& message) {
     case Op::kRelease:
       state().backend.release(number_);
       break;
+    case Op::kStop:
+      stop();
+      break;
   }
   pump();
 }
@@ -79,13 +85,13 @@ void Viewer::on_message(const ViewerMessage& message) {
 void Viewer::hello(const ViewerMessage& message) {
   hello_timer_.cancel();
   const std::string& token = state().config.token;
-  operator_ = !token.empty() && equal_in_constant_time(message.token, token);
+  if (!token.empty() && equal_in_constant_time(message.token, token)) set_operator();
   Json welcome = {{"op", "welcome"},
                   {"protocol", kProtocol},
                   {"life", state().config.life},
-                  {"may_write", operator_},
+                  {"may_write", is_operator()},
                   {"robot_id", state().config.robot_id}};
-  if (!operator_ && !message.token.empty()) {
+  if (!is_operator() && !message.token.empty()) {
     state().refuse("no token");
     welcome["error"] = "wrong token";
   }
@@ -111,11 +117,31 @@ void Viewer::want(const ViewerMessage& message) {
 }
 
 void Viewer::drive(const ViewerMessage& message) {
-  if (operator_) {
-    state().backend.drive(number_, message.linear_mps, message.angular_radps);
-  } else {
+  if (!is_operator()) {
     refuse("no token", "this needs the operator's token", "drive");
+  } else {
+    state().backend.drive(number_, message.linear_mps, message.angular_radps);
   }
+}
+
+void Viewer::stop() {
+  if (!is_operator()) {
+    refuse("no token", "this needs the operator's token", "stop");
+    return;
+  }
+  // A viewer that has gone meanwhile gets no answer; its last reference ends in this thread.
+  const auto self = std::static_pointer_cast<Viewer>(shared_from_this());
+  state().backend.stop(
+      [weak = std::weak_ptr<Viewer>(self), executor = socket().get_executor()](Answer answer) {
+        asio::post(executor, [weak, answer = std::move(answer)] {
+          if (const auto viewer = weak.lock()) viewer->show_stop(answer);
+        });
+      });
+}
+
+void Viewer::show_stop(const Answer& answer) {
+  control(text_of(Json{{"op", "stopped"}, {"status", answer.status}}));
+  pump();
 }
 
 std::string Viewer::refusal(const std::string& sentence, std::string_view what) const {
@@ -134,15 +160,20 @@ std::size_t Viewer::next_channel() const {
   return next;
 }
 
-std::optional<Watcher::Frame> Viewer::next_frame() {
+Watcher::Work Viewer::next_work() {
   const std::size_t next = next_channel();
-  if (!ready_ || next == kChannels) return std::nullopt;
-  const Update update =
-      state().board.update(static_cast<Channel>(next), anew_.at(next) ? 0 : held_.at(next));
-  anew_.at(next) = false;
-  held_.at(next) = update.version;
+  if (!ready_ || next == kChannels) return {};
+  made_ = next;
   sent_.at(next) = ++messages_sent_;
-  return Frame{update.text, false};
+  const std::uint64_t held = std::exchange(anew_.at(next), false) ? 0 : held_.at(next);
+  return [&board = state().board, channel = static_cast<Channel>(next), held] {
+    const Update update = board.update(channel, held);
+    return Made{{{update.text, false}}, update.version};
+  };
+}
+
+void Viewer::on_made(std::uint64_t version) {
+  held_.at(made_) = version;
 }
 
 }  // namespace topogeo::web

@@ -21,35 +21,36 @@ namespace topogeo::web {
 class Viewer : public Watcher {
  public:
   /// Like Watcher.
-  Viewer(Connection connection, ServerState& state, std::shared_ptr<void> place);
+  Viewer(Connection connection, ServerState& state, std::shared_ptr<void> place, bool has_token);
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
   ~Viewer() override;
-
-  [[nodiscard]] bool is_operator() const override { return operator_; }
 
  private:
   void on_open() override;
   void on_text(const std::string& text) override;
   void on_end() override;
-  std::optional<Frame> next_frame() override;
+  Work next_work() override;
+  void on_made(std::uint64_t version) override;
   [[nodiscard]] std::string refusal(const std::string& sentence,
                                     std::string_view what) const override;
   void on_message(const ViewerMessage& message);
   void hello(const ViewerMessage& message);
   void want(const ViewerMessage& message);
   void drive(const ViewerMessage& message);
+  void stop();
+  void show_stop(const Answer& answer);
   [[nodiscard]] std::size_t next_channel() const;
 
   std::uint64_t number_;
   asio::steady_timer hello_timer_;
-  bool operator_ = false;
   bool ready_ = false;  // the first message has come, or will not
   std::array<bool, kChannels> wanted_{};
   std::array<std::uint64_t, kChannels> held_{};
   std::array<bool, kChannels> anew_{};           // to be sent whole although nothing has changed
   std::array<std::uint64_t, kChannels> sent_{};  // number of the message that was sent last
   std::uint64_t messages_sent_ = 0;
+  std::size_t made_ = 0;  // channel of the message that is made
 };
 
 }  // namespace topogeo::web

@@ -18,8 +18,9 @@ Op op_of(const std::string& name) {
   if (name == "ping") return Op::kPing;
   if (name == "drive") return Op::kDrive;
   if (name == "release") return Op::kRelease;
+  if (name == "stop") return Op::kStop;
   throw std::invalid_argument(
-      "op: expected hello, channels, resync, ping, drive or release, not '" + name + "'");
+      "op: expected hello, channels, resync, ping, drive, release or stop, not '" + name + "'");
 }
 
 std::string text_at(const Json& json, const char* key) {
@@ -95,6 +96,7 @@ ViewerMessage parse_viewer_message(std::string_view text) {
       break;
     case Op::kPing:
     case Op::kRelease:
+    case Op::kStop:
       break;
   }
   return message;

@@ -12,7 +12,7 @@
 namespace topogeo::web {
 
 struct ViewerMessage {
-  enum class Op : std::uint8_t { kHello, kWant, kResync, kPing, kDrive, kRelease };
+  enum class Op : std::uint8_t { kHello, kWant, kResync, kPing, kDrive, kRelease, kStop };
 
   Op op = Op::kPing;
   std::string token;                      ///< kHello

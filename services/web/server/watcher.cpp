@@ -18,8 +18,12 @@ constexpr int kMostRefusals = 20;
 
 }  // namespace
 
-Watcher::Watcher(Connection connection, ServerState& state, std::shared_ptr<void> place)
-    : state_(state), place_(std::move(place)), socket_(std::move(connection)) {
+Watcher::Watcher(Connection connection, ServerState& state, std::shared_ptr<void> place,
+                 bool has_token)
+    : state_(state),
+      place_(std::move(place)),
+      socket_(std::move(connection)),
+      operator_(has_token) {
   state_.viewers.insert(this);
 }
 
@@ -102,9 +106,34 @@ void Watcher::pump() {
     auto text = std::make_shared<const std::string>(std::move(controls_.front()));
     controls_.pop_front();
     write({std::move(text), false});
-  } else if (auto frame = next_frame()) {
-    write(std::move(*frame));
+  } else if (!frames_.empty()) {
+    Frame frame = std::move(frames_.front());
+    frames_.pop_front();
+    write(std::move(frame));
+  } else if (!making_) {
+    make();
   }
+}
+
+// The last reference to a watcher must not end in the thread of the answers.
+void Watcher::make() {
+  Work work = next_work();
+  if (!work) return;
+  making_ = true;
+  state_.answers.post(operator_ ? AnswerThread::Turn::kFirst : AnswerThread::Turn::kLater,
+                      [self = shared_from_this(), executor = socket_.get_executor(),
+                       work = std::move(work)]() mutable {
+                        asio::post(executor, [self = std::move(self), made = work()]() mutable {
+                          self->take(std::move(made));
+                        });
+                      });
+}
+
+void Watcher::take(Made made) {
+  making_ = false;
+  frames_ = std::move(made.frames);
+  on_made(made.version);
+  pump();
 }
 
 void Watcher::write(Frame frame) {

@@ -35,7 +35,7 @@ Answer error_answer(unsigned status, const std::string& sentence);
 /// Called once, in any thread.
 using Respond = std::function<void(Answer)>;
 
-/// All are called in the thread of the server, and must come back soon.
+/// All but handle() are called in the thread of the connections, and come back at once.
 class Backend {
  public:
   Backend() = default;
@@ -43,7 +43,11 @@ class Backend {
   Backend& operator=(const Backend&) = delete;
   virtual ~Backend() = default;
 
+  /// In the thread of the answers.
   virtual void handle(const Request& request, Respond respond) = 0;
+  /// POST /api/stop and /api/release, with the token. Their answers wait for no other request.
+  virtual void stop(Respond respond) = 0;
+  virtual void release_stop(Respond respond) = 0;
   /// An operator holds key or finger. `viewer` is a number that no other has had.
   virtual void drive(std::uint64_t viewer, double linear_mps, double angular_radps) = 0;
   /// Let go, or gone; also for one that has never driven.

@@ -40,6 +40,7 @@ const std::vector<RestrictedLibrary>& restricted_libraries() {
       {"boost/asio",
        {"services/common/src/http_server.cpp", "services/common/src/web_access.cpp",
         "services/sensor_gateway/serial_port.cpp", "services/web/server/connection.hpp",
+        "services/web/server/http_session.cpp", "services/web/server/http_session.hpp",
         "services/web/server/server.cpp", "services/web/server/viewer.hpp"}},
       {"boost/beast/",
        {"services/common/src/http_server.cpp", "services/web/server/connection.hpp",

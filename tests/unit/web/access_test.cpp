@@ -47,6 +47,16 @@ TEST(Access, OnlyOwnPagesMayAsk) {
   EXPECT_TRUE(is_own_origin("https://desk.example", "robot:8080", {"https://desk.example"}));
 }
 
+TEST(Access, ASubprotocolMayShowTheToken) {
+  const auto offered = [](std::string_view list) { return offers_token(names_in(list), "aZ1"); };
+  EXPECT_TRUE(offered("topogeo, token.615a31"));
+  EXPECT_TRUE(offered("token.615a31 ,\ttopogeo"));
+  EXPECT_FALSE(offered("token.615a32"));
+  EXPECT_FALSE(offered("token."));
+  EXPECT_FALSE(offered(""));
+  EXPECT_FALSE(offers_token({"token."}, "")) << "nobody may write";
+}
+
 TEST(RateLimit, HoldsInTheLongRunAndAllowsABurst) {
   RateLimit limit(10.0, 5.0);
   int taken = 0;

@@ -30,6 +30,8 @@ const milliseconds kFoxglovePatience = test::hang_limit();
 class NoBackend : public Backend {
  public:
   void handle(const Request&, Respond respond) override { respond(error_answer(404, "none")); }
+  void stop(Respond respond) override { respond(error_answer(404, "none")); }
+  void release_stop(Respond respond) override { respond(error_answer(404, "none")); }
   void drive(std::uint64_t, double, double) override {}
   void release(std::uint64_t) override {}
 };

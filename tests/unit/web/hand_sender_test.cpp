@@ -1,4 +1,5 @@
-// The operator's stop where the base of another robot is connected before that of the own one.
+// The operator's stop where the base of another robot is connected before that of the own one, and
+// orders to drive by hand.
 #include "orders/hand_sender.hpp"
 
 #include <chrono>
@@ -6,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "topogeo/msg/motion.h"
 #include "topogeo/msg/sensor.h"
@@ -28,11 +29,7 @@ service::Setup page_setup(const std::string& partition) {
 class HandSenderTest : public testing::Test {
  protected:
   HandSenderTest() {
-    service_.subscribe<msg::BaseStatus>(
-        [this](const msg::BaseStatus&, const messaging::SampleInfo& info) {
-          hand_.note_base(info.writer);
-          base_noted_ = true;
-        });
+    service_.subscribe<msg::BaseStatus>([this](const msg::BaseStatus&) { base_noted_ = true; });
   }
   [[nodiscard]] bool run_until(const std::string& what, const std::function<bool()>& condition) {
     return test::wait_for(what, condition,
@@ -43,8 +40,10 @@ class HandSenderTest : public testing::Test {
   service::Service service_{page_setup(partition_)};
   Board board_;
   EventLog events_{board_};
-  HandSender hand_{service_, board_, events_,
-                   [] { return std::shared_ptr<const planning::HybridMap>(); }};
+  Tally tally_;
+  int first_ = 0;
+  HandSender hand_{service_.loop(), service_, board_,
+                   events_,         tally_,   {[this] { ++first_; }, [](const char*) {}}};
   bool base_noted_ = false;
   messaging::Participant base_{messaging::options_in(partition_)};
   messaging::Participant other_{messaging::options_in(partition_)};
@@ -68,6 +67,34 @@ TEST_F(HandSenderTest, AStopReachesABaseThatIsConnectedLate) {
   }));
   EXPECT_EQ(kind, msg::kBaseHalt);
   EXPECT_TRUE(hand_.stop());
+}
+
+std::int64_t now_ns() {
+  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+TEST_F(HandSenderTest, AnOrderThatWaitedIsRefused) {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  hand_.drive(1, {0.3, 0.0}, now_ns() - kSecond_ns);
+  EXPECT_FALSE(hand_.is_held());
+  EXPECT_EQ(first_, 0);
+  EXPECT_EQ(tally_.counts().at("refused: late"), 1U);
+}
+
+TEST_F(HandSenderTest, NothingMovesBeforeItIsKnownWhereItMayNot) {
+  const auto shown = [&] { return *board_.update(Channel::kDrive, 0).text; };
+  // One order after the other: a machine that is slow takes the first ones for late.
+  ASSERT_TRUE(run_until("somebody drives", [&] {
+    hand_.drive(1, {0.3, 0.0}, now_ns());
+    return first_ > 0;
+  }));
+  EXPECT_THAT(shown(), testing::HasSubstr("is read first"));
+  ASSERT_TRUE(run_until("the guard alone decides", [&] {
+    hand_.drive(1, {0.3, 0.0}, now_ns());
+    hand_.keep_off(std::make_shared<const navigation::DrawnLimits>());
+    hand_.drive(1, {0.3, 0.0}, now_ns());
+    return shown().find("is read first") == std::string::npos;
+  }));
 }
 
 }  // namespace

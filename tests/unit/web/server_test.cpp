@@ -6,9 +6,11 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -36,12 +38,19 @@ const std::string kToken = "0123456789abcdef";
 /// Echoes what it is asked, and counts who drives.
 class EchoBackend : public Backend {
  public:
+  ~EchoBackend() override { free(); }
   void handle(const Request& request, Respond respond) override {
+    const std::scoped_lock lock(busy_);
     Answer answer;
     answer.body = (request.post ? "POST " : "GET ") + request.path + "?" + request.query + " " +
                   request.body + (request.authorized ? " authorized" : "");
     respond(answer);
   }
+  void stop(Respond respond) override {
+    ++stops;
+    respond({202, "{}"});
+  }
+  void release_stop(Respond respond) override { respond({202, "{}"}); }
   void drive(std::uint64_t viewer, double linear_mps, double) override {
     driver = viewer;
     speed_mps = linear_mps;
@@ -54,6 +63,17 @@ class EchoBackend : public Backend {
   std::atomic<double> speed_mps = 0.0;
   std::atomic<int> drives = 0;
   std::atomic<int> releases = 0;
+  std::atomic<int> stops = 0;
+
+  /// No request is answered until free().
+  void hold() { held_ = std::unique_lock(busy_); }
+  void free() {
+    if (held_.owns_lock()) held_.unlock();
+  }
+
+ private:
+  std::mutex busy_;
+  std::unique_lock<std::mutex> held_;
 };
 
 class WebServer : public testing::Test {
@@ -152,6 +172,106 @@ TEST_F(WebServer, DrawingsAndMapFilesMayBeLargeForWhoHasTheToken) {
   EXPECT_GT(http_post(port(), "/api/merge_map?x=1", kToken, map).body.size(), map.size());
   EXPECT_EQ(refused("no token"), 1U);
   EXPECT_EQ(refused("too large"), 2U);
+}
+
+TEST_F(WebServer, StopIsAnsweredWhileNothingElseIs) {
+  backend_.hold();
+  auto slow = std::async(std::launch::async, [&] { return http_get(port(), "/api/x").status; });
+  auto goal =
+      std::async(std::launch::async, [&] { return http_post(port(), "/api/goal", kToken).status; });
+  for (int i = 0; i < 40; ++i) {
+    ASSERT_EQ(http_post(port(), "/api/stop", kToken).status, 202);
+    ASSERT_EQ(http_post(port(), "/api/release", kToken).status, 202);
+  }
+  EXPECT_EQ(backend_.stops, 40);
+  EXPECT_EQ(slow.wait_for(milliseconds(0)), std::future_status::timeout);
+  backend_.free();
+  EXPECT_EQ(slow.get(), 200);
+  EXPECT_EQ(goal.get(), 200);
+}
+
+TEST_F(WebServer, AStopByTheWebSocketNeedsTheToken) {
+  const auto answered = [&](WebSocketClient& socket, const char* op) {
+    PageModel page;
+    return page.wait_for(
+        socket,
+        [&] { return std::ranges::any_of(page.others, [&](auto& m) { return m["op"] == op; }); },
+        kPatience);
+  };
+  WebSocketClient watcher(port());
+  watcher.send({{"op", "stop"}});
+  EXPECT_TRUE(answered(watcher, "refused"));
+  EXPECT_EQ(backend_.stops, 0);
+  backend_.hold();
+  WebSocketClient page(port(), test::token_header(kToken));
+  page.send({{"op", "stop"}});
+  EXPECT_TRUE(answered(page, "stopped"));
+  EXPECT_EQ(backend_.stops, 1);
+  backend_.free();
+}
+
+// The clock stands still: what strangers use up does not come back.
+TEST_F(WebServer, StrangersUseUpNothingOfTheOperators) {
+  const std::string request = "GET /api/x HTTP/1.1\r\nHost: 127.0.0.1\r\n";
+  std::string requests;
+  for (int i = 0; i < 1500; ++i) requests += request + "\r\n";
+  std::ignore =
+      test::exchange_bytes(port(), requests + request + "Connection: close\r\n\r\n", kPatience);
+  ASSERT_EQ(http_get(port(), "/api/x").status, 429);
+  for (int i = 0; i < 40; ++i) ASSERT_EQ(http_post(port(), "/api/stop", kToken).status, 202);
+  EXPECT_EQ(http_post(port(), "/api/goal", kToken).status, 200);
+  for (int i = 0; i < 20; ++i) {
+    if (http_post(port(), "/api/room_shapes", "").status == 429) break;
+  }
+  EXPECT_EQ(http_post(port(), "/api/room_shapes", "").status, 429);
+  EXPECT_EQ(http_post(port(), "/api/room_shapes", kToken).status, 200);
+}
+
+TEST_F(WebServer, SpectatorsLeaveRoomForTheOperator) {
+  std::vector<std::unique_ptr<WebSocketClient>> spectators;
+  for (std::uint32_t i = 0; i < config_.most_viewers; ++i) {
+    spectators.push_back(std::make_unique<WebSocketClient>(port()));
+  }
+  EXPECT_THROW(WebSocketClient{port()}, std::runtime_error);
+  EXPECT_THROW(WebSocketClient(port(), test::token_header("another token")), std::runtime_error);
+  WebSocketClient page(port(), test::token_header(kToken));
+  EXPECT_THAT(page.handshake(), HasSubstr("Sec-WebSocket-Protocol: topogeo"));
+  page.send({{"op", "hello"}});
+  PageModel model;
+  ASSERT_TRUE(model.wait_for(
+      page, [&] { return !model.others.empty(); }, kPatience));
+  EXPECT_EQ(model.others.at(0)["may_write"], true);
+  EXPECT_NO_THROW(WebSocketClient(port(), {{"Authorization", "Bearer " + kToken}}));
+}
+
+TEST_F(WebServer, WithoutAPlaceTheStrangerThatIsSilentLongestLeaves) {
+  test::RawConnection with_token(port());
+  with_token.send("GET /api/x HTTP/1.1\r\nHost: 127.0.0.1\r\nAuthorization: Bearer " + kToken +
+                  "\r\n\r\n");
+  EXPECT_THAT(with_token.receive_head(), HasSubstr(" 200 OK"));
+  std::vector<std::unique_ptr<test::RawConnection>> idle;
+  idle.reserve(300);
+  for (int i = 0; i < 300; ++i) idle.push_back(std::make_unique<test::RawConnection>(port()));
+  EXPECT_TRUE(idle.front()->ends());
+  EXPECT_EQ(http_get(port(), "/api/x").status, 200);
+  EXPECT_EQ(http_post(port(), "/api/stop", kToken).status, 202);
+  with_token.send("GET /api/x HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
+  EXPECT_THAT(with_token.receive_head(), HasSubstr(" 200 OK"));
+}
+
+TEST_F(WebServer, BodiesComeOnlyWhereAnOrderTakesOne) {
+  const std::string chunked =
+      "GET /api/merge_map HTTP/1.1\r\nHost: 127.0.0.1\r\nTransfer-Encoding: chunked\r\n\r\n"
+      "2\r\nab\r\n0\r\n\r\n";
+  EXPECT_THAT(test::exchange_bytes(port(), chunked, kPatience), HasSubstr(" 413 "));
+  const std::string counted =
+      "GET /api/merge_map HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 2\r\n\r\nab";
+  EXPECT_THAT(test::exchange_bytes(port(), counted, kPatience), HasSubstr(" 413 "));
+  // An order without the token is refused before its body has come.
+  test::RawConnection waits(port());
+  waits.send("POST /api/goal HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 60000\r\n\r\n");
+  EXPECT_THAT(waits.receive_head(), HasSubstr(" 401 "));
+  EXPECT_EQ(http_post(port(), "/api/room_shapes", "", std::string(70'000, 'x')).status, 413);
 }
 
 TEST_F(WebServer, WhatIsTooMuchOrNoHttpIsRefused) {
@@ -278,7 +398,8 @@ TEST_F(WebServer, OnlyOperatorsDriveAndAConnectionThatDropsLetsGo) {
   {
     WebSocketClient operator_socket(port());
     operator_socket.send({{"op", "hello"}, {"token", kToken}});
-    operator_socket.send({{"op", "drive"}, {"linear_mps", 0.5}, {"angular_radps", 0}});
+    operator_socket.send(
+        {{"op", "drive"}, {"linear_mps", 0.5}, {"angular_radps", 0}});
     ASSERT_TRUE(test::wait_for("a command to drive", [&] { return backend_.drives > 0; }));
     EXPECT_EQ(backend_.speed_mps, 0.5);
     EXPECT_EQ(backend_.releases, 0);

@@ -1,0 +1,90 @@
+#include "orders/hand_thread.hpp"
+
+#include <chrono>
+#include <exception>
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace topogeo::web {
+namespace {
+
+Answer answer_of(bool heard, const char* effect) {
+  if (heard) return {202, "{}"};
+  return error_answer(503, std::string("no base is heard: nothing ") + effect);
+}
+
+}  // namespace
+
+HandThread::HandThread(service::Service& service, Board& board, EventLog& events, Tally& tally,
+                       HandSender::Hooks hooks)
+    : service_(service),
+      hand_(loop_, service, board, events, tally, std::move(hooks)),
+      thread_([this] { run(); }) {}
+
+HandThread::~HandThread() {
+  end();
+}
+
+void HandThread::end() {
+  {
+    const std::scoped_lock lock(mutex_);
+    ended_ = true;
+  }
+  loop_.stop();
+  if (thread_.joinable()) thread_.join();
+  orders_.clear();
+}
+
+void HandThread::run() {
+  try {
+    loop_.run();
+  } catch (...) {
+    service_.loop().post([error = std::current_exception()] { std::rethrow_exception(error); });
+  }
+}
+
+void HandThread::drive(std::uint64_t viewer, const geometry::Velocity& wanted) {
+  const std::int64_t came_ns =
+      std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+  loop_.post([this, viewer, wanted, came_ns] { hand_.drive(viewer, wanted, came_ns); });
+}
+
+void HandThread::release(std::uint64_t viewer) {
+  loop_.post([this, viewer] { hand_.release(viewer); });
+}
+
+void HandThread::keep_off(std::shared_ptr<const navigation::DrawnLimits> limits) {
+  loop_.post([this, limits = std::move(limits)]() mutable { hand_.keep_off(std::move(limits)); });
+}
+
+void HandThread::stop(Respond respond) {
+  take({true, std::move(respond)});
+}
+
+void HandThread::release_stop(Respond respond) {
+  take({false, std::move(respond)});
+}
+
+void HandThread::take(Order order) {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (ended_) return;
+    orders_.push_back(std::move(order));
+  }
+  loop_.post([this] { work_off_orders(); });
+}
+
+void HandThread::work_off_orders() {
+  std::deque<Order> orders;
+  {
+    const std::scoped_lock lock(mutex_);
+    orders.swap(orders_);
+  }
+  for (const Order& order : orders) {
+    order.respond(order.stop ? answer_of(hand_.stop(), "stops")
+                             : answer_of(hand_.release_stop(), "is released"));
+  }
+}
+
+}  // namespace topogeo::web

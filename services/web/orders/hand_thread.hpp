@@ -1,0 +1,58 @@
+// Stop, Release and driving by hand in a thread of their own: neither the topics of a large map nor
+// the requests of any number of pages keep them waiting.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/service/service.hpp"
+
+#include "orders/hand_sender.hpp"
+#include "server/web_types.hpp"
+
+namespace topogeo::web {
+
+class HandThread {
+ public:
+  /// The hooks are called in this thread. An exception of it ends the loop of the service.
+  HandThread(service::Service& service, Board& board, EventLog& events, Tally& tally,
+             HandSender::Hooks hooks);
+  HandThread(const HandThread&) = delete;
+  HandThread& operator=(const HandThread&) = delete;
+  ~HandThread();
+
+  // For any thread; see HandSender.
+  void drive(std::uint64_t viewer, const geometry::Velocity& wanted);
+  void release(std::uint64_t viewer);
+  void stop(Respond respond);
+  void release_stop(Respond respond);
+  void keep_off(std::shared_ptr<const navigation::DrawnLimits> limits);
+  [[nodiscard]] bool is_held() const { return hand_.is_held(); }
+
+  /// Ends the thread; what was not answered never is.
+  void end();
+
+ private:
+  struct Order {
+    bool stop = false;  ///< else release
+    Respond respond;
+  };
+  void run();
+  void take(Order order);
+  void work_off_orders();
+
+  service::Service& service_;
+  messaging::EventLoop loop_;
+  HandSender hand_;
+  std::mutex mutex_;
+  std::deque<Order> orders_;  // here and not in the loop: they hold on to connections
+  bool ended_ = false;
+  std::thread thread_;
+};
+
+}  // namespace topogeo::web

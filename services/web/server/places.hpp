@@ -1,0 +1,56 @@
+// The places of connections. Without a free one that guest leaves who was silent longest, of the
+// address that holds most of them: whoever comes is heard, and one address cannot shut out others.
+#pragma once
+
+#include <cstddef>
+#include <list>
+#include <string>
+#include <utility>
+
+namespace topogeo::web {
+
+class Places {
+ public:
+  /// A connection that may hold a place.
+  class Guest {
+   public:
+    explicit Guest(std::string address) : address_(std::move(address)) {}
+    Guest(const Guest&) = delete;
+    Guest& operator=(const Guest&) = delete;
+
+    [[nodiscard]] const std::string& address() const { return address_; }
+
+   protected:
+    ~Guest() = default;
+
+   private:
+    friend class Places;
+    /// Its place is taken: it ends soon.
+    virtual void give_way() = 0;
+
+    std::string address_;
+    Places* held_ = nullptr;
+    std::list<Guest*>::iterator place_;
+  };
+
+  explicit Places(std::size_t most) : most_(most) {}
+  Places(const Places&) = delete;
+  Places& operator=(const Places&) = delete;
+  ~Places() = default;
+
+  /// Takes a place, and leaves the one that the guest has elsewhere. False: another one had to go.
+  bool enter(Guest& guest);
+  /// The guest was heard; nothing for one without a place.
+  static void touch(Guest& guest);
+  /// Nothing for one without a place.
+  static void leave(Guest& guest);
+  [[nodiscard]] std::size_t size() const { return guests_.size(); }
+
+ private:
+  Guest& dispensable() const;
+
+  std::size_t most_;
+  std::list<Guest*> guests_;  // who was silent longest first
+};
+
+}  // namespace topogeo::web
