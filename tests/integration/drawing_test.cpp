@@ -124,7 +124,8 @@ TEST_F(DrawingOnRobot, IsObeyedAndAFloorIsDrivenIn) {
            drive["message"].dump().find("drawn wall or no-go") != std::string::npos;
   };
   const bool held = test::wait_for("the zone to hold a robot that is driven by hand", holds, [&] {
-    socket_->send({{"op", "drive"}, {"linear_mps", 0.5}, {"angular_radps", 0.0}});
+    socket_->send(
+        {{"op", "drive"}, {"linear_mps", 0.5}, {"angular_radps", 0.0}, {"page_ms", page_ms()}});
     wait_for([] { return false; }, milliseconds(50));  // between two orders of a hand
   });
   EXPECT_TRUE(held) << page_.values["drive"];

@@ -53,6 +53,13 @@ class RawConnection {
   int socket_;
 };
 
+/// The time of a page, for orders to drive.
+inline double page_ms() {
+  return std::chrono::duration<double, std::milli>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
 /// The header by which a page shows the token when it opens a WebSocket.
 Headers token_header(const std::string& token);
 

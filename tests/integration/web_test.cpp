@@ -249,7 +249,10 @@ TEST_F(WebOnRobot, GoesToARoomByNameAndStopsWhenTheHandLetsGo) {
     EXPECT_TRUE(test::wait_for(
         "the robot to turn by hand", [&] { return turned() && held; },
         [&] {
-          hand.send({{"op", "drive"}, {"linear_mps", 0.0}, {"angular_radps", 0.5}});
+          hand.send({{"op", "drive"},
+                     {"linear_mps", 0.0},
+                     {"angular_radps", 0.5},
+                     {"page_ms", page_ms()}});
           wait_for([] { return false; }, milliseconds(50));  // between two orders of a hand
           const json& drive = page_.values["drive"];
           held = held || (!drive.is_null() && drive["held"] == true);

@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kHelloPatience{250};
 constexpr int kProtocol = 1;
+/// As long as a base drives on without an order: what is older was waiting somewhere.
+constexpr double kLatestOrder_s = 0.3;
 
 }  // namespace
 
@@ -54,6 +56,10 @@ void Viewer::on_text(const std::string& text) {
 
 void Viewer::on_message(const ViewerMessage& message) {
   using Op = ViewerMessage::Op;
+  constexpr double kMilli = 1e-3;
+  const double late_s =
+      message.page_ms ? transit_.lateness_s(kMilli * *message.page_ms, state().config.clock_s())
+                      : 0.0;
   if (message.op != Op::kHello && !ready_) hello(ViewerMessage{});
   switch (message.op) {
     case Op::kHello:
@@ -70,7 +76,7 @@ void Viewer::on_message(const ViewerMessage& message) {
                   .dump());
       break;
     case Op::kDrive:
-      drive(message);
+      drive(message, late_s);
       break;
     case Op::kRelease:
       state().backend.release(number_);
@@ -116,9 +122,15 @@ void Viewer::want(const ViewerMessage& message) {
   }
 }
 
-void Viewer::drive(const ViewerMessage& message) {
+void Viewer::drive(const ViewerMessage& message, double late_s) {
   if (!is_operator()) {
     refuse("no token", "this needs the operator's token", "drive");
+  } else if (late_s > kLatestOrder_s) {
+    state().refuse("late");
+    control(text_of(Json{{"op", "refused"},
+                         {"what", "drive"},
+                         {"late_s", rounded(late_s)},
+                         {"error", "the order to drive came too late"}}));
   } else {
     state().backend.drive(number_, message.linear_mps, message.angular_radps);
   }

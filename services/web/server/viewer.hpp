@@ -13,6 +13,7 @@
 
 #include <boost/asio/steady_timer.hpp>
 
+#include "server/transit_clock.hpp"
 #include "server/viewer_message.hpp"
 #include "server/watcher.hpp"
 
@@ -37,7 +38,7 @@ class Viewer : public Watcher {
   void on_message(const ViewerMessage& message);
   void hello(const ViewerMessage& message);
   void want(const ViewerMessage& message);
-  void drive(const ViewerMessage& message);
+  void drive(const ViewerMessage& message, double late_s);
   void stop();
   void show_stop(const Answer& answer);
   [[nodiscard]] std::size_t next_channel() const;
@@ -45,6 +46,7 @@ class Viewer : public Watcher {
   std::uint64_t number_;
   asio::steady_timer hello_timer_;
   bool ready_ = false;  // the first message has come, or will not
+  TransitClock transit_;
   std::array<bool, kChannels> wanted_{};
   std::array<std::uint64_t, kChannels> held_{};
   std::array<bool, kChannels> anew_{};           // to be sent whole although nothing has changed

@@ -73,6 +73,7 @@ ViewerMessage parse_viewer_message(std::string_view text) {
   }
   ViewerMessage message;
   message.op = op_of(text_at(json, "op"));
+  if (json.contains("page_ms")) message.page_ms = number_at(json, "page_ms");
   switch (message.op) {
     case Op::kHello:
       message.token = text_at(json, "token");
@@ -93,6 +94,7 @@ ViewerMessage parse_viewer_message(std::string_view text) {
     case Op::kDrive:
       message.linear_mps = number_at(json, "linear_mps");
       message.angular_radps = number_at(json, "angular_radps");
+      message.page_ms = number_at(json, "page_ms");
       break;
     case Op::kPing:
     case Op::kRelease:

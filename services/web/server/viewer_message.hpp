@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,7 @@ struct ViewerMessage {
   bool all_channels = true;               ///< kHello: it has named none
   std::vector<Channel> channels;          ///< kHello, kWant: what it wants
   Channel channel{};                      ///< kResync
+  std::optional<double> page_ms;          ///< kHello, kPing, kDrive: when it left, by its clock
   double linear_mps = 0.0;                ///< kDrive
   double angular_radps = 0.0;             ///< kDrive
 };

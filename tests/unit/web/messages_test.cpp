@@ -28,16 +28,22 @@ TEST(ViewerMessage, HelloHasAllThatAPageHolds) {
   EXPECT_TRUE(parse_viewer_message(R"({"op":"hello"})").all_channels);
 }
 
-TEST(ViewerMessage, DriveHasTwoNumbers) {
+TEST(ViewerMessage, DriveHasTwoNumbersAndATime) {
   const ViewerMessage message =
-      parse_viewer_message(R"({"op":"drive","linear_mps":0.3,"angular_radps":-1})");
+      parse_viewer_message(R"({"op":"drive","linear_mps":0.3,"angular_radps":-1,"page_ms":12.5})");
   EXPECT_EQ(message.linear_mps, 0.3);
   EXPECT_EQ(message.angular_radps, -1.0);
-  EXPECT_THROW(parse_viewer_message(R"({"op":"drive","linear_mps":0.3})"), std::invalid_argument);
-  EXPECT_THROW(parse_viewer_message(R"({"op":"drive","linear_mps":"a","angular_radps":0})"),
+  EXPECT_EQ(message.page_ms, 12.5);
+  EXPECT_THROW(parse_viewer_message(R"({"op":"drive","linear_mps":0.3,"angular_radps":-1})"),
                std::invalid_argument);
-  EXPECT_THROW(parse_viewer_message(R"({"op":"drive","linear_mps":1e999,"angular_radps":0})"),
+  EXPECT_THROW(parse_viewer_message(R"({"op":"drive","linear_mps":0.3,"page_ms":1})"),
                std::invalid_argument);
+  EXPECT_THROW(
+      parse_viewer_message(R"({"op":"drive","linear_mps":"a","angular_radps":0,"page_ms":1})"),
+      std::invalid_argument);
+  EXPECT_THROW(
+      parse_viewer_message(R"({"op":"drive","linear_mps":1e999,"angular_radps":0,"page_ms":1})"),
+      std::invalid_argument);
 }
 
 TEST(ViewerMessage, ObjectsOfManyKeysAreRefused) {

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "server/transit_clock.hpp"
+
 namespace topogeo::web {
 namespace {
 
@@ -58,6 +60,22 @@ TEST(Places, AGuestHasOnePlace) {
   Places::leave(guest);
   Places::touch(guest);
   EXPECT_EQ(operators.size(), 0U);
+}
+
+TEST(TransitClock, TheQuickestIsNotLateAndTheOthersAreBySoMuch) {
+  TransitClock clock;
+  EXPECT_EQ(clock.lateness_s(100.0, 5.0), 0.0);
+  EXPECT_NEAR(clock.lateness_s(100.1, 5.3), 0.2, 1e-3);
+  EXPECT_EQ(clock.lateness_s(100.5, 5.4), 0.0) << "quicker than the first one";
+  EXPECT_NEAR(clock.lateness_s(101.0, 11.9), 6.0, 2e-3);
+}
+
+TEST(TransitClock, ADriftOfTheClocksIsNoLateness) {
+  TransitClock clock;
+  constexpr double kHour_s = 3600.0;
+  for (double page_s = 0.0; page_s < 8.0 * kHour_s; page_s += 10.0) {
+    ASSERT_LT(clock.lateness_s(page_s, page_s * (1.0 + 1e-4)), 0.01) << page_s;
+  }
 }
 
 }  // namespace

@@ -384,7 +384,7 @@ TEST_F(WebServer, ASlowViewerHoldsNobodyUpAndEndsExact) {
 TEST_F(WebServer, OnlyOperatorsDriveAndAConnectionThatDropsLetsGo) {
   {
     WebSocketClient watcher(port());
-    watcher.send({{"op", "drive"}, {"linear_mps", 0.5}, {"angular_radps", 0}});
+    watcher.send({{"op", "drive"}, {"linear_mps", 0.5}, {"angular_radps", 0}, {"page_ms", 0}});
     PageModel page;
     ASSERT_TRUE(page.wait_for(
         watcher,
@@ -399,12 +399,29 @@ TEST_F(WebServer, OnlyOperatorsDriveAndAConnectionThatDropsLetsGo) {
     WebSocketClient operator_socket(port());
     operator_socket.send({{"op", "hello"}, {"token", kToken}});
     operator_socket.send(
-        {{"op", "drive"}, {"linear_mps", 0.5}, {"angular_radps", 0}});
+        {{"op", "drive"}, {"linear_mps", 0.5}, {"angular_radps", 0}, {"page_ms", 0}});
     ASSERT_TRUE(test::wait_for("a command to drive", [&] { return backend_.drives > 0; }));
     EXPECT_EQ(backend_.speed_mps, 0.5);
     EXPECT_EQ(backend_.releases, 0);
   }
   EXPECT_TRUE(test::wait_for("the release of the robot", [&] { return backend_.releases > 0; }));
+}
+
+TEST_F(WebServer, OrdersThatQueuedUpAreNotObeyed) {
+  WebSocketClient page(port(), test::token_header(kToken));
+  const auto drive = [&](double linear_mps, double page_ms) {
+    page.send(
+        {{"op", "drive"}, {"linear_mps", linear_mps}, {"angular_radps", 0}, {"page_ms", page_ms}});
+  };
+  // The clock of the service stands still: all of it came at once.
+  drive(0.1, 7000.0);
+  drive(0.2, 6800.0);
+  drive(0.3, 1000.0);
+  drive(0.4, 6699.0);
+  drive(0.5, 7100.0);
+  ASSERT_TRUE(test::wait_for("the last order", [&] { return backend_.speed_mps == 0.5; }));
+  EXPECT_EQ(backend_.drives, 3) << "those of 0.1, 0.2 and 0.5 m/s";
+  EXPECT_EQ(refused("late"), 2U);
 }
 
 TEST_F(WebServer, GarbageIsRefusedCountedAndInTheEndNotHeardAnyMore) {

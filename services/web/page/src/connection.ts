@@ -8,6 +8,7 @@ const kPongMs = 1000;
 const kSnapshotsMs = 5000; // until a service that is new has sent all that it has
 const kFirstDelayMs = 500;
 const kLongestDelayMs = 4000;
+const kMostLate = 20; // clocks that have stood still do not agree any more; a new connection does
 
 export interface Listener {
   connected(may_write: boolean, error: string): void;
@@ -21,6 +22,15 @@ interface Control {
   may_write?: boolean;
   what?: string;
   error?: string;
+  late_s?: number;
+}
+
+/** With the token the service keeps a place for this page; its bytes in hexadecimal digits. */
+function protocols(token: string): string[] {
+  if (!token) return ["topogeo"];
+  const bytes = [...new TextEncoder().encode(token)];
+  const digits = bytes.map((byte) => byte.toString(16).padStart(2, "0"));
+  return ["topogeo", `token.${digits.join("")}`];
 }
 
 export class Connection {
@@ -31,6 +41,7 @@ export class Connection {
   private last_message_ms = 0;
   private pong_timer = 0;
   private retry_timer = 0;
+  private late = 0; // orders in this connection
 
   /** names: the channels wanted; empty: all. */
   constructor(
@@ -52,13 +63,19 @@ export class Connection {
     return true;
   }
 
+  /** An order to drive by hand. It has the time of this page: one that waits somewhere is refused. */
+  drive(linear_mps: number, angular_radps: number): void {
+    this.send({ op: "drive", linear_mps, angular_radps, page_ms: performance.now() });
+  }
+
   private connect(): void {
     const scheme = location.protocol === "https:" ? "wss" : "ws";
-    const socket = new WebSocket(`${scheme}://${location.host}/ws`);
+    const socket = new WebSocket(`${scheme}://${location.host}/ws`, protocols(this.token));
     this.socket = socket;
     this.last_message_ms = Date.now();
     socket.onopen = () => {
-      const hello: Record<string, unknown> = { op: "hello" };
+      const hello: Record<string, unknown> = { op: "hello", page_ms: performance.now() };
+      this.late = 0;
       if (this.token) hello.token = this.token;
       if (this.names.length > 0) hello.channels = this.names;
       if (this.life) Object.assign(hello, { life: this.life, have: this.channels.held() });
@@ -85,6 +102,7 @@ export class Connection {
     } else if (message.op === "pong") {
       window.clearTimeout(this.pong_timer);
     } else if (message.op === "refused") {
+      if (message.late_s !== undefined && ++this.late > kMostLate) return this.lose();
       this.listener.refused(message.what ?? "", message.error ?? "");
     }
   }
@@ -125,7 +143,7 @@ export class Connection {
     if (document.hidden) return;
     if (!this.socket) {
       this.reconnect_now();
-    } else if (this.send({ op: "ping" })) {
+    } else if (this.send({ op: "ping", page_ms: performance.now() })) {
       window.clearTimeout(this.pong_timer);
       this.pong_timer = window.setTimeout(() => this.lose(), kPongMs);
     }

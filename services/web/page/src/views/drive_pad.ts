@@ -5,6 +5,7 @@ import { texts } from "../texts";
 import { button, h, icon, IconName, set_text, show } from "../ui/dom";
 
 const kPeriodMs = 100;
+const kLateMs = 300; // an order, or a key that was pressed, so long ago is none any more
 const kTurnRadps = 0.6;
 const kFastestMps = 0.6;
 const kFirstMps = 0.3;
@@ -24,6 +25,10 @@ const kKeys: Record<string, Direction> = {
 
 const words = texts.send;
 
+function is_late(event: Event): boolean {
+  return performance.now() - event.timeStamp > kLateMs;
+}
+
 export class DrivePad {
   readonly element: HTMLElement;
   // Pointers and keys that are held, each with its direction.
@@ -33,6 +38,7 @@ export class DrivePad {
   private readonly toggle: HTMLButtonElement;
   private readonly speed: HTMLInputElement;
   private timer = 0;
+  private due_ms = 0;
   private active = false;
 
   constructor(private readonly app: App) {
@@ -99,6 +105,7 @@ export class DrivePad {
     element.append(icon(picture));
     const name = (event: PointerEvent) => `${direction}:pointer${event.pointerId}`;
     element.addEventListener("pointerdown", (event) => {
+      if (is_late(event)) return;
       element.setPointerCapture(event.pointerId);
       this.hold(name(event));
     });
@@ -108,7 +115,7 @@ export class DrivePad {
     element.addEventListener("contextmenu", (event) => event.preventDefault());
     // With the keyboard the button itself is held.
     element.addEventListener("keydown", (event) => {
-      if (event.key !== "Enter" && event.key !== " ") return;
+      if (event.key !== "Enter") return; // Space stops
       event.preventDefault();
       event.stopPropagation();
       this.hold(`${direction}:button`);
@@ -129,6 +136,7 @@ export class DrivePad {
       if (event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement)
         return;
       event.preventDefault();
+      if (is_late(event)) return;
       this.hold(name);
     });
     document.addEventListener("keyup", (event) => {
@@ -148,12 +156,17 @@ export class DrivePad {
   private hold(name: string): void {
     this.held.add(name);
     if (this.timer !== 0) return;
-    this.timer = window.setInterval(() => this.send(), kPeriodMs);
-    this.send();
+    this.timer = window.setInterval(() => this.go_on(), kPeriodMs);
+    this.go_on();
   }
 
   private let_go(name: string): void {
     if (this.held.delete(name) && this.held.size === 0) this.release();
+  }
+
+  /** The robot stops, whatever is held: it has to be pressed again. */
+  let_go_of_all(): void {
+    this.release();
   }
 
   private release(): void {
@@ -161,7 +174,17 @@ export class DrivePad {
     if (this.timer === 0) return;
     window.clearInterval(this.timer);
     this.timer = 0;
+    this.due_ms = 0;
     this.app.connection.send({ op: "release" });
+  }
+
+  // A page that stood still does not know what was let go meanwhile.
+  private go_on(): void {
+    const now_ms = performance.now();
+    const late = this.due_ms !== 0 && now_ms - this.due_ms > kLateMs;
+    this.due_ms = now_ms + kPeriodMs;
+    if (late) this.release();
+    else this.send();
   }
 
   private send(): void {
@@ -170,7 +193,7 @@ export class DrivePad {
     const speed = Number(this.speed.value) * (wants("forward") - wants("backward"));
     // Backwards a key to the left still turns the robot's front to the left.
     const turn = kTurnRadps * (wants("turn_left") - wants("turn_right"));
-    this.app.connection.send({ op: "drive", linear_mps: speed, angular_radps: turn });
+    this.app.connection.drive(speed, turn);
   }
 
   private show_state(): void {
