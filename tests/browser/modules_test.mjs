@@ -226,7 +226,7 @@ test("what the navigator does is said once", () => {
   const said = (state, reason, message) => {
     const channels = new Channels();
     channels.value = () => ({ state, reason, message });
-    return navigator_text(channels);
+    return navigator_text(channels, { connected: true });
   };
   assert.equal(
     said("stopped", "paused", "paused; drives on after a resume"),
@@ -269,6 +269,32 @@ test("a pose that is old is not said to be known", (t) => {
   assert.equal(robot_state(channels, rights).name, "TRACKING");
   rights.connected = false;
   assert.equal(robot_state(channels, rights).name, "offline");
+});
+
+test("the first value of a connection is as old as the service says, the next one is new", (t) => {
+  const channels = new Channels();
+  const rights = { connected: true };
+  let now_ms = 5000;
+  t.mock.method(performance, "now", () => now_ms);
+  const pose = { state: "TRACKING", reason: "What the laser sees fits the map." };
+  const tell = (channel, value) => channels.apply({ channel, version: 1, value });
+  tell("time", { time_s: 1, ages_s: { pose: 120, base: 4 } });
+  tell("pose", pose);
+  tell("base", { state: "ready" });
+  assert.equal(robot_state(channels, rights).name, "silent");
+  assert.equal(channels.age_ms("base"), 4000);
+  now_ms += 500;
+  tell("pose", pose);
+  assert.equal(channels.age_ms("pose"), 0);
+  assert.equal(robot_state(channels, rights).name, "TRACKING");
+  // A base that reports the same again and again is not sent anew: its age is.
+  tell("time", { time_s: 2, ages_s: { pose: 3, base: 0.2 } });
+  assert.equal(channels.age_ms("base"), 200);
+  assert.match(robot_state(channels, rights).reason, /\(3 s old\)$/);
+  channels.forget_moment();
+  tell("time", { time_s: 3, ages_s: { pose: 60 } });
+  tell("pose", pose);
+  assert.equal(robot_state(channels, rights).name, "silent");
 });
 
 test("a map that is shown alone has no robot, one whose localizer has not spoken yet has", () => {

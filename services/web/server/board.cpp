@@ -16,13 +16,13 @@ struct ChannelInfo {
 };
 
 constexpr std::array<ChannelInfo, kChannels> kInfo = {{
-    {"pose", false},      {"drive", false},   {"navigator", false}, {"base", false},
-    {"goals", false},     {"map", false},     {"tiles", true},      {"rooms", true},
-    {"places", true},     {"rules", true},    {"drawing", false},   {"scan", false},
-    {"route", false},     {"truth", false},   {"laser", false},     {"trail", true},
-    {"graph", true},      {"services", true}, {"workers", true},    {"merges", true},
-    {"local_map", false}, {"search", false},  {"loops", true},      {"events", true},
-    {"viewers", false},   {"time", false},
+    {"time", false},  {"pose", false},      {"drive", false},   {"navigator", false},
+    {"base", false},  {"goals", false},     {"map", false},     {"tiles", true},
+    {"rooms", true},  {"places", true},     {"rules", true},    {"drawing", false},
+    {"scan", false},  {"route", false},     {"truth", false},   {"laser", false},
+    {"trail", true},  {"graph", true},      {"services", true}, {"workers", true},
+    {"merges", true}, {"local_map", false}, {"search", false},  {"loops", true},
+    {"events", true}, {"viewers", false},
 }};
 
 /// A text in quotes.
@@ -68,6 +68,7 @@ void Board::set(Channel channel, std::string json) {
   {
     const std::scoped_lock lock(mutex_);
     State& now = state(channel);
+    now.set_s = clock_s_();
     if (now.version > 0 && now.value == json) return;
     now.value = std::move(json);
     ++now.version;
@@ -75,6 +76,18 @@ void Board::set(Channel channel, std::string json) {
     show_version(channel);
   }
   report(channel);
+}
+
+std::string Board::ages_s() const {
+  const std::scoped_lock lock(mutex_);
+  const double now_s = clock_s_();
+  Json ages = Json::object();
+  for (std::size_t i = 0; i < kChannels; ++i) {
+    const auto channel = static_cast<Channel>(i);
+    if (channel == Channel::kTime || is_table(channel) || states_.at(i).version == 0) continue;
+    ages[std::string(name_of(channel))] = rounded(now_s - states_.at(i).set_s);
+  }
+  return text_of(ages);
 }
 
 void Board::edit(Channel channel, std::vector<Edit> edits, bool anew) {

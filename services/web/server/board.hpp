@@ -21,10 +21,13 @@
 #include <utility>
 #include <vector>
 
+#include "topogeo/support/cpu_time.hpp"
+
 namespace topogeo::web {
 
 /// In the order in which a viewer gets what has changed.
 enum class Channel : std::uint8_t {
+  kTime,
   kPose,
   kDrive,
   kNavigator,
@@ -50,9 +53,8 @@ enum class Channel : std::uint8_t {
   kLoops,
   kEvents,
   kViewers,
-  kTime,
 };
-inline constexpr std::size_t kChannels = static_cast<std::size_t>(Channel::kTime) + 1;
+inline constexpr std::size_t kChannels = static_cast<std::size_t>(Channel::kViewers) + 1;
 
 /// As the protocol names it: "pose", "local_map", ...
 std::string_view name_of(Channel channel);
@@ -79,11 +81,17 @@ class Board {
   /// more gets the whole table.
   static constexpr std::size_t kRemembered = 4096;
 
+  /// `clock_s`: seconds since any start, never backwards, by which values become old.
+  explicit Board(std::function<double()> clock_s = support::monotonic_s)
+      : clock_s_(std::move(clock_s)) {}
+
   /// Calls `on_change` after each change, in the thread that made it, without a lock held.
   void on_change(std::function<void(Channel)> handler);
 
-  /// Replaces a value, JSON. One that is equal to the one before is no change.
+  /// Replaces a value, JSON. One that is equal to the one before is no change, but makes it new.
   void set(Channel channel, std::string json);
+  /// How long ago each value was set, in seconds, as JSON: {"pose":0.1,...}.
+  [[nodiscard]] std::string ages_s() const;
   /// All edits of one call come to viewers together. Objects that are equal are no change. `anew`:
   /// what the table had before and is not among the edits is gone.
   void edit(Channel channel, std::vector<Edit> edits, bool anew = false);
@@ -102,6 +110,7 @@ class Board {
   struct State {
     std::uint64_t version = 0;
     std::string value;
+    double set_s = 0.0;
     std::map<std::string, Object> objects;
     std::deque<std::pair<std::uint64_t, std::string>> gone;  // version and key, ascending
     std::uint64_t forgotten = 0;  // what was gone up to this version is not known any more
@@ -120,6 +129,7 @@ class Board {
   void report(Channel channel);
   void show_version(Channel channel);
 
+  std::function<double()> clock_s_;
   mutable std::mutex mutex_;
   std::vector<State> states_ = std::vector<State>(kChannels);
   std::array<std::atomic<std::uint64_t>, kChannels> versions_{};  // as in states_

@@ -24,7 +24,7 @@ namespace topogeo::web {
 namespace {
 
 /// Less than what the page waits for before it takes the connection for dead.
-constexpr std::chrono::seconds kTimePeriod{2};
+constexpr std::chrono::seconds kTimePeriod{1};
 constexpr std::chrono::milliseconds kAcceptAgain{100};
 
 }  // namespace
@@ -131,8 +131,11 @@ void Server::Impl::take(asio::ip::tcp::socket socket) {
 }
 
 void Server::Impl::tick() {
-  state.show(Channel::kTime, fmt::format(R"({{"time_s":{:.3f}}})",
-                                         static_cast<double>(support::wall_clock_ns()) / 1e9));
+  state.answers.post(AnswerThread::Turn::kFirst, [&board = state.board] {
+    const double time_s = static_cast<double>(support::wall_clock_ns()) / 1e9;
+    board.set(Channel::kTime,
+              fmt::format(R"({{"time_s":{:.3f},"ages_s":{}}})", time_s, board.ages_s()));
+  });
   timer.expires_after(kTimePeriod);
   timer.async_wait([this](beast::error_code error) {
     if (!error) tick();

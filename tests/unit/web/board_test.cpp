@@ -26,6 +26,20 @@ TEST(Board, AValueReplacesTheOneBefore) {
             json::parse(R"({"channel":"pose","version":2,"value":{"x_m":2}})"));
 }
 
+TEST(Board, AValueThatIsSetAgainIsNewThoughItIsEqual) {
+  double now_s = 100.0;
+  Board board([&] { return now_s; });
+  board.set(Channel::kBase, "1");
+  board.set(Channel::kPose, "1");
+  board.set(Channel::kTime, "1");
+  board.edit(Channel::kGraph, {{"n1", "{}"}});
+  now_s += 120.0;
+  board.set(Channel::kBase, "1");
+  now_s += 0.5;
+  EXPECT_EQ(json::parse(board.ages_s()), json::parse(R"({"pose":120.5,"base":0.5})"));
+  EXPECT_EQ(board.version(Channel::kBase), 1U);
+}
+
 TEST(Board, WhatIsEqualIsNoChange) {
   Board board;
   int changes = 0;

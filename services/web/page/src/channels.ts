@@ -20,7 +20,10 @@ type TableListener = (change: Change) => void;
 
 export class Channels {
   private readonly values: { [Name in ValueName]?: Values[Name] | null } = {};
-  private readonly came_ms = new Map<ValueName, number>();
+  // When the service heard a value last, by the clock of this page.
+  private readonly heard_ms = new Map<string, number>();
+  // Of which a first value has come in this connection.
+  private readonly live = new Set<ValueName>();
   private readonly tables = new Map<TableName, Map<string, unknown>>();
   private readonly versions = new Map<TableName, number>();
   private readonly value_listeners = new Map<ValueName, (() => void)[]>();
@@ -36,10 +39,11 @@ export class Channels {
     return (this.values[name] as Values[Name] | undefined) ?? null;
   }
 
-  /** How long ago a value came last, in milliseconds; null where none has come. */
+  /** How long ago the service heard a value last, in milliseconds; null where there is none. */
   age_ms(name: ValueName): number | null {
-    const came_ms = this.came_ms.get(name);
-    return came_ms === undefined ? null : performance.now() - came_ms;
+    const heard_ms = this.heard_ms.get(name);
+    if (heard_ms === undefined || this.value(name) === null) return null;
+    return performance.now() - heard_ms;
   }
 
   table<Name extends TableName>(name: Name): ReadonlyMap<string, Tables[Name]> {
@@ -66,7 +70,7 @@ export class Channels {
     this.unconfirmed.delete(message.channel);
     if ("from" in message) return this.apply_table(message);
     (this.values as Record<string, unknown>)[message.channel] = message.value;
-    this.came_ms.set(message.channel, performance.now());
+    this.note_age(message);
     for (const listener of this.value_listeners.get(message.channel) ?? []) listener();
     return true;
   }
@@ -76,6 +80,23 @@ export class Channels {
     for (const name of Object.keys(this.values) as ValueName[]) {
       if (name !== "map") this.apply({ channel: name, version: 0, value: null });
     }
+    this.heard_ms.clear();
+    this.live.clear();
+  }
+
+  // The first value of a connection may be an old one: `time`, which comes before, says how old.
+  private note_age(message: ValueMessage): void {
+    const now_ms = performance.now();
+    const name = message.channel;
+    if (name === "time") {
+      const ages_s = (message.value as Values["time"] | null)?.ages_s ?? {};
+      for (const [heard, age_s] of Object.entries(ages_s)) {
+        this.heard_ms.set(heard, now_ms - 1000 * age_s);
+      }
+    } else if (this.live.has(name) || !this.heard_ms.has(name)) {
+      this.heard_ms.set(name, now_ms);
+    }
+    this.live.add(name);
   }
 
   /** Another service speaks from now on, which counts versions of its own. */

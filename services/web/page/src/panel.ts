@@ -152,7 +152,7 @@ class Panel {
       : current
         ? `${texts.send.to(current.text)}. `
         : "";
-    set_text(this.line, to + navigator_text(this.channels));
+    set_text(this.line, to + navigator_text(this.channels, this.rights));
     this.go.disabled = !chosen || !this.rights.can("goal");
     set_text(this.pause, this.is_paused() ? words.resume : words.pause);
     this.pause.disabled = !current || !this.rights.can("pause");

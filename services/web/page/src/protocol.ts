@@ -149,7 +149,7 @@ export interface Values {
   drawing: { version: string };
   search: Search;
   viewers: { viewers: number; operators: number };
-  time: { time_s: number };
+  time: { time_s: number; ages_s?: Record<string, number> }; // how long ago each value was heard
 }
 
 export interface Room extends PointM {

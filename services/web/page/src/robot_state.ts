@@ -1,13 +1,16 @@
 // The robot's state in a word and a sentence.
 import { Channels } from "./channels";
 import { Rights } from "./app";
-import { Pose } from "./protocol";
+import { Pose, ValueName } from "./protocol";
 import { texts } from "./texts";
 
 export type StateName = keyof typeof texts.states;
 
 /** Poses come with each scan; without one for so long nobody knows where the robot is now. */
 const kSilence_ms = 10_000;
+
+/** Each of these values comes at least twice a second. */
+const kFresh_ms = 2500;
 
 /** How often it is seen whether poses still come, which no message says. */
 export const kSilenceTick_ms = 1000;
@@ -29,8 +32,19 @@ export function robot_state(channels: Channels, rights: Rights): RobotState {
     const name = robot_is_absent(channels) ? "absent" : "none";
     return named(name, texts.reasons[name]);
   }
-  if ((channels.age_ms("pose") ?? 0) > kSilence_ms) return named("silent", texts.reasons.silent);
-  return named(pose.state, pose.reason);
+  if (is_silent(channels, "pose")) return named("silent", texts.reasons.silent);
+  return named(pose.state, with_age(channels, "pose", pose.reason));
+}
+
+/** A text about a value, and since when the value is not new any more, where it is old. */
+export function with_age(channels: Channels, name: ValueName, text: string): string {
+  const age_ms = channels.age_ms(name) ?? 0;
+  return age_ms < kFresh_ms ? text : texts.aged(text, age_ms / 1000);
+}
+
+/** Whether a value is so old that it says nothing about now. */
+export function is_silent(channels: Channels, name: ValueName): boolean {
+  return (channels.age_ms(name) ?? 0) > kSilence_ms;
 }
 
 /** The pose where it is the robot's of now; null where that is not known. */
@@ -52,8 +66,25 @@ export function held_text(channels: Channels): string | null {
   return null;
 }
 
+/** Where a robot drives as soon as it may move again, as a text; null without a goal. */
+export function pending_goal(channels: Channels): string | null {
+  const goals = channels.value("goals");
+  if (goals?.exploring) return texts.send.to_explore;
+  if (goals?.current) return goals.current.text;
+  return has_foreign_goal(channels) ? texts.send.to_foreign : null;
+}
+
+/** The navigator has a goal that was not sent from here, or before the service began anew. */
+export function has_foreign_goal(channels: Channels): boolean {
+  const navigator = channels.value("navigator");
+  const goals = channels.value("goals");
+  if (!navigator || goals?.current || goals?.exploring) return false;
+  return navigator.state !== "idle" && navigator.state !== "arrived";
+}
+
 /** What the navigator does, as a sentence. */
-export function navigator_text(channels: Channels): string {
+export function navigator_text(channels: Channels, rights: Rights): string {
+  if (!rights.connected) return texts.send.not_heard;
   const navigator = channels.value("navigator");
   if (!navigator) return texts.send.no_navigator;
   const state = texts.navigator[navigator.state] ?? navigator.state;

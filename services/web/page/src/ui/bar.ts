@@ -46,7 +46,8 @@ export class Facts {
   readonly element = h("dl", { class: "facts" });
   private readonly values = new Map<string, HTMLElement>();
 
-  set(name: string, text: string): void {
+  /** level: "bad" marks the value. */
+  set(name: string, text: string, level: Level = "plain"): void {
     let value = this.values.get(name);
     if (!value) {
       value = h("dd");
@@ -54,5 +55,6 @@ export class Facts {
       this.element.append(h("dt", {}, name), value);
     }
     set_text(value, text);
+    set_attribute(value, "data-level", level);
   }
 }

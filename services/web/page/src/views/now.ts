@@ -1,9 +1,10 @@
 // Now: how the robot and its map are.
 import { App, ViewPart } from "../app";
+import { Channels } from "../channels";
 import * as format from "../format";
 import { ellipse_of } from "../map/robot_layer";
-import { Pose } from "../protocol";
-import { kSilenceTick_ms, pose_of_now, sentence } from "../robot_state";
+import { Pose, ValueName } from "../protocol";
+import { is_silent, kSilenceTick_ms, pose_of_now, sentence, with_age } from "../robot_state";
 import { texts } from "../texts";
 import { Bar, Facts, Level } from "../ui/bar";
 import { h, set_text, show } from "../ui/dom";
@@ -15,6 +16,10 @@ const kStaleLoopStops = 60; // a bar of the last loop is empty then
 const kMostSquares = 16384; // that a grid can have
 
 const words = texts.now;
+
+function old(channels: Channels, name: ValueName): Level {
+  return is_silent(channels, name) ? "bad" : "plain";
+}
 
 export class NowView implements ViewPart {
   readonly element: HTMLElement;
@@ -74,16 +79,16 @@ export class NowView implements ViewPart {
     this.show_bars(pose_of_now(channels, this.app.rights));
     const laser = channels.value("laser");
     const because = (reason: string) => (reason ? `. ${sentence(reason)}` : "");
-    this.devices.set(
+    this.show_device(
       words.laser,
-      laser
-        ? `${laser.state}, ${format.rate(laser.scans_per_s)}${because(laser.reason)}`
-        : words.not_heard,
+      "laser",
+      laser && `${laser.state}, ${format.rate(laser.scans_per_s)}${because(laser.reason)}`,
     );
     const base = channels.value("base");
-    this.devices.set(
+    this.show_device(
       words.base,
-      base ? base.state.replace("_", " ") + because(base.reason) : words.not_heard,
+      "base",
+      base && base.state.replace("_", " ") + because(base.reason),
     );
     const truth = channels.value("truth");
     show(this.truth_section, truth !== null);
@@ -103,7 +108,10 @@ export class NowView implements ViewPart {
     this.facts.set(words.mode, pose ? words.modes[pose.mode] : words.unknown);
     this.facts.set(
       words.position,
-      located ? format.point(located.x_m, located.y_m) : words.unknown,
+      located
+        ? with_age(this.app.channels, "pose", format.point(located.x_m, located.y_m))
+        : words.unknown,
+      old(this.app.channels, "pose"),
     );
     this.facts.set(words.heading, located ? format.degrees(located.theta_rad) : words.unknown);
     this.facts.set(
@@ -116,7 +124,15 @@ export class NowView implements ViewPart {
           )
         : words.unknown,
     );
-    this.facts.set(words.speed, format.speed(this.app.channels.value("navigator")?.linear_mps));
+    const { channels } = this.app;
+    const speed = format.speed(channels.value("navigator")?.linear_mps);
+    this.facts.set(words.speed, with_age(channels, "navigator", speed), old(channels, "navigator"));
+  }
+
+  private show_device(name: string, channel: ValueName, text: string | null): void {
+    const { channels } = this.app;
+    const shown = text === null ? words.not_heard : with_age(channels, channel, text);
+    this.devices.set(name, shown, old(channels, channel));
   }
 
   private show_bars(pose: Pose | null): void {
@@ -161,7 +177,7 @@ export class NowView implements ViewPart {
       // The base reports whether it is low; how full it is nobody knows from the voltage alone.
       this.battery.set(
         base.battery_low ? 0.15 : 1,
-        words.battery_value(base.battery_v, base.battery_low),
+        with_age(channels, "base", words.battery_value(base.battery_v, base.battery_low)),
         base.battery_low ? "bad" : "good",
       );
     }

@@ -1,6 +1,6 @@
 // What the robot is sent to, how far it is, what blocks it; pause, resume, cancel.
 import { App } from "../app";
-import { navigator_text } from "../robot_state";
+import { has_foreign_goal, navigator_text } from "../robot_state";
 import { texts } from "../texts";
 import { button, h, set_attribute, set_text, show } from "../ui/dom";
 import { once_a_frame } from "../ui/schedule";
@@ -55,17 +55,27 @@ export class Underway {
     }
   }
 
+  // Without a connection nobody here knows what the robot does.
+  private title(): string {
+    const { channels, rights } = this.app;
+    const goals = channels.value("goals");
+    if (!rights.connected) return words.not_heard;
+    if (goals?.exploring) return words.exploring;
+    if (goals?.current) return words.to(goals.current.text);
+    return has_foreign_goal(channels) ? words.foreign : words.idle;
+  }
+
   private update(): void {
     const { channels, rights } = this.app;
     const navigator = channels.value("navigator");
     const goals = channels.value("goals");
     const goal = goals?.current ?? null;
     const exploring = goals?.exploring ?? false;
-    const to = goal ? words.to(goal.text) : words.idle;
-    set_text(this.goal, exploring ? words.exploring : to);
-    set_text(this.state, navigator_text(channels));
+    set_text(this.goal, this.title());
+    set_text(this.state, navigator_text(channels, rights));
     // The goal says it; that there is no navigator, a note to who may command.
-    show(this.state, navigator ? navigator.state !== "idle" : !rights.may_write);
+    const missing = rights.connected && !rights.may_write;
+    show(this.state, navigator ? navigator.state !== "idle" : missing);
 
     const moving = navigator !== null && (goal !== null || exploring);
     const arrived = navigator?.state === "arrived";
