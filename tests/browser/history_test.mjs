@@ -172,7 +172,7 @@ test("without a robot nothing says that one was stopped or explores", async () =
   assert.equal(await robot.post("release", {}), 503);
   assert.equal(await robot.post("explore", {}), 409);
   await page.click("#stop");
-  await text(".notice", /No base is heard: nothing stops/);
+  await text("#stop-sent", /No base is heard: nothing stops/);
   assert.equal(await page.getByText("is stopped and held").count(), 0);
 });
 

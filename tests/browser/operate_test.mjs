@@ -36,6 +36,16 @@ class SlowLocalizer extends StandIn {
     this.offers = [...this.offers, "pose", "search", "mode"];
   }
 
+  /** A page of it, without waiting for a state. */
+  async serve_with(of, use) {
+    const context = await new_context(of, { viewport: kSizes.desk });
+    await this.serve(context);
+    const page = await open_page(context, `${kAddress}/#token=${"t".repeat(16)}`);
+    await wait_for("the page is connected", () => this.ops.includes("hello"));
+    await use(page);
+    await end({ page, context });
+  }
+
   answer(route) {
     const { pathname } = new URL(route.request().url());
     if (pathname !== "/api/pose" && pathname !== "/api/search") return super.answer(route);
@@ -51,8 +61,7 @@ class SlowLocalizer extends StandIn {
   }
 }
 
-async function open({ path = "/", ...options } = {}) {
-  const service = new SlowLocalizer();
+async function open({ path = "/", service = new SlowLocalizer(), ...options } = {}) {
   const context = await new_context(browser, { viewport: kSizes.desk, colorScheme: "light", bypassCSP: true, ...options });
   await service.serve(context);
   const page = await open_page(context, `${kAddress}${path}#token=${"t".repeat(16)}`);
@@ -142,6 +151,188 @@ test("while it explores, what is left is that to the next point", async () => {
   await text(page, ".section p", /^0\.24 m to the next point, about 2 s$/);
   service.show("goals", { current: { text: "room A" }, waiting: [], exploring: false });
   await text(page, ".section p", /^0\.24 m left, about 2 s$/);
+  await end(opened);
+});
+
+const kBase = { reason: "", battery_v: 12, battery_low: false, commands_taken: true };
+
+/** The banners, which the stand-in hides so that the map keeps its size. */
+const show_banners = (page) => page.addStyleTag({ content: ".banners { display: block !important }" });
+
+test("a stop is not done before the base itself reports it", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await show_banners(page);
+  service.show("base", { ...kBase, state: "halted" });
+  await text(page, ".banner", /The robot is held/);
+  service.show("base", { ...kBase, state: "moving" });
+  await page.click("#stop");
+  await text(page, "#stop-sent", /^Stop sent, the base has not confirmed/);
+  await wait_for("both orders", () => service.orders.includes("stop") && service.ops.includes("stop"));
+  service.show("base", { ...kBase, state: "moving" });
+  service.show("pose", kPose);
+  await after_in_page(page, 100); // two frames, in which it would change
+  assert.equal(await page.locator("#stop-sent").isVisible(), true);
+  assert.equal(await page.getByText("The robot is stopped and held").count(), 0);
+  await assert_accessible(page, "a stop that is not confirmed");
+  service.show("base", { ...kBase, state: "halted" });
+  await text(page, ".notice", /The robot is stopped and held/);
+  await wait_for("the banner goes", async () => !(await page.locator("#stop-sent").isVisible()));
+  await end(opened);
+});
+
+test("a base that was heard last before the stop confirms nothing", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await show_banners(page);
+  service.show("base", { ...kBase, state: "halted" });
+  await text(page, ".banner", /The robot is held/);
+  service.ages_s = { base: 30 };
+  await page.click("#stop");
+  await text(page, "#stop-sent", /has not confirmed/);
+  service.show("time", { time_s: 0, ages_s: { base: 30 } });
+  await after_in_page(page, 100); // as above
+  assert.equal(await page.locator("#stop-sent").isVisible(), true);
+  service.ages_s = { base: 0 };
+  await wait_for("the banner goes", async () => !(await page.locator("#stop-sent").isVisible()));
+  await end(opened);
+});
+
+test("Space stops whatever has the focus, but in a text", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await wait_for("the rights", () => page.locator("#stop").isVisible());
+  const rooms = Array.from({ length: 9 }, (_, i) => [i, { name: `room ${i}`, area_m2: 9, x_m: i, y_m: 0, color: 0 }]);
+  service.table("rooms", Object.fromEntries(rooms));
+  let stops = 0;
+  const stops_by_space = async (what) => {
+    await page.keyboard.press(" ");
+    await wait_for(`a stop by Space on ${what}`, () => service.orders.filter((order) => order === "stop").length === stops + 1);
+    ++stops;
+  };
+  await page.click("#tab-send");
+  await stops_by_space("a tab");
+  await page.getByRole("button", { name: "room 3", exact: true }).click();
+  await text(page, ".card [role=status]", /m, about/);
+  await page.locator("#go").focus();
+  await stops_by_space("Go");
+  assert.equal(service.goal, undefined, "Go was pressed");
+  await page.getByText("Drive by hand", { exact: true }).click();
+  await stops_by_space("a fold");
+  const toggle = page.getByRole("button", { name: "Take the controls" });
+  await toggle.click();
+  await page.keyboard.down("w");
+  await wait_for("orders to drive", () => service.ops.includes("drive"));
+  await stops_by_space("the controls, while a key is held");
+  assert.equal(await page.getByRole("button", { name: "Let go of the controls" }).isVisible(), true);
+  await wait_for("the robot is let go", () => service.ops.at(-1) !== "drive" && service.ops.includes("release"));
+  await page.keyboard.up("w");
+  await page.locator("#drive-speed").focus();
+  await stops_by_space("a slider");
+  const layers = page.getByRole("button", { name: "What the map shows" });
+  await layers.click();
+  const box = page.locator(".layer-menu input").first();
+  const checked = await box.isChecked();
+  await box.focus();
+  await stops_by_space("a box");
+  assert.equal(await box.isChecked(), checked);
+  await page.keyboard.press("Enter");
+  assert.equal(await box.isChecked(), !checked);
+  await page.locator("input[type=search]").fill("room");
+  await page.keyboard.press(" ");
+  await page.keyboard.type("4");
+  assert.equal(await page.inputValue("input[type=search]"), "room 4");
+  assert.equal(service.orders.filter((order) => order === "stop").length, stops);
+  await end(opened);
+});
+
+test("orders to drive have a time, and a page that stood still lets go", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await page.click("#tab-send");
+  await page.getByText("Drive by hand", { exact: true }).click();
+  await page.getByRole("button", { name: "Take the controls" }).click();
+  await page.keyboard.down("w");
+  const drives = () => service.messages.filter(({ op }) => op === "drive");
+  await wait_for("orders to drive", () => drives().length > 2);
+  const times = drives().map(({ page_ms }) => page_ms);
+  assert.deepEqual(times, [...times].sort((a, b) => a - b));
+  assert.ok(times.every((time) => time > 0));
+  await page.evaluate(() => {
+    const now = performance.now.bind(performance);
+    performance.now = () => now() + 6000;
+  });
+  await wait_for("the robot is let go", () => service.ops.at(-1) === "release");
+  await after_in_page(page, 300); // three orders, which would be wrong
+  assert.equal(service.ops.at(-1), "release");
+  await page.keyboard.up("w");
+  await end(opened);
+});
+
+test("a page that is opened on old inputs shows how old they are", async () => {
+  const service = new SlowLocalizer();
+  service.ages_s = { pose: 125, base: 125, laser: 125, navigator: 125 };
+  await service.serve_with(browser, async (page) => {
+    service.show("pose", kPose);
+    service.show("base", { ...kBase, state: "moving" });
+    service.show("laser", { state: "running", reason: "", scans_per_s: 10 });
+    service.show("navigator", { state: "driving", reason: "none", message: "drives", linear_mps: 0.4 });
+    await text(page, ".facts dd", /^0\.40 m\/s \(2 min \d+ s old\)$/);
+    await text(page, ".facts dd", /^running, 10\.0 \/s \(2 min \d+ s old\)$/);
+    await text(page, ".facts dd", /^moving \(2 min \d+ s old\)$/);
+    assert.match(await page.innerText(".state-word"), /No pose/i);
+    service.ages_s = {};
+    service.show("pose", kPose);
+    service.show("laser", { state: "running", reason: "", scans_per_s: 10 });
+    await text(page, ".state-word", /Tracking/i);
+    await text(page, ".facts dd", /^running, 10\.0 \/s$/);
+  });
+});
+
+test("without a connection nothing is said of goals", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await page.click("#tab-send");
+  service.show("goals", { current: { text: "room A" }, waiting: [], exploring: false });
+  service.show("navigator", { state: "driving", reason: "none", message: "drives" });
+  await text(page, ".section h3", /To room A/);
+  service.cut();
+  await text(page, ".state-word", /Offline/i);
+  await text(page, ".section h3", /is not known/);
+  assert.equal(await page.getByText("The robot has no goal").count(), 0);
+  assert.equal(await page.getByText("No navigator is running").filter({ visible: true }).count(), 0);
+  service.reachable = true;
+  await text(page, ".section h3", /The robot has no goal/);
+  // A goal that was sent before the service began anew, or from elsewhere.
+  service.show("navigator", { state: "driving", reason: "none", message: "drives" });
+  await text(page, ".section h3", /has a goal that was not sent from here/);
+  await end(opened);
+});
+
+test("the release of a robot with a goal says what will happen, and asks", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await show_banners(page);
+  service.show("base", { ...kBase, state: "halted" });
+  const releases = () => service.orders.filter((order) => order === "release").length;
+  const release = page.getByRole("button", { name: "Release", exact: true });
+  await release.click();
+  await wait_for("a release without a goal", () => releases() === 1);
+  service.show("goals", { current: { text: "room A" }, waiting: [], exploring: false });
+  await text(page, ".banner", /It has a goal, room A: as soon as it is released it drives there/);
+  await release.click();
+  await text(page, ".banner", /Released, the robot drives at once: room A/);
+  assert.equal(releases(), 1);
+  await assert_accessible(page, "a release that asks");
+  await page.getByRole("button", { name: "Keep it held" }).click();
+  await release.click();
+  await page.getByRole("button", { name: "Cancel the goal, then release" }).click();
+  await wait_for("the release", () => releases() === 2);
+  assert.deepEqual(service.orders.slice(-2), ["cancel", "release"]);
+  service.show("goals", { current: { text: "room A" }, waiting: [], exploring: false });
+  await release.click();
+  await page.getByRole("button", { name: "Release and drive" }).click();
+  await wait_for("the release", () => releases() === 3);
   await end(opened);
 });
 

@@ -129,8 +129,9 @@ test("Stop holds the robot until it is released", async () => {
   await page.click("#go");
   await wait_for("the robot drives", async () => !(await stands()));
   await page.click("#stop");
-  await text(page, ".banner", /held/);
+  await text(page, ".notice", /The robot is stopped and held/);
   await wait_for("the robot stands", stands);
+  await text(page, ".banner", /The robot is held: it does not move/); // its goal is cancelled
   await page.getByRole("button", { name: "Release" }).click();
   await wait_for(
     "the banner goes",

@@ -19,7 +19,11 @@ export class StandIn {
   exploring = false;
   previews = 0; // asked for
   ops = []; // of messages that pages sent
-  offers = ["goal", "preview", "drawing", "room_shapes", "floor", "explore", "cancel", "stop"];
+  messages = []; // the same, whole
+  orders = []; // that pages sent by POST and that it only takes
+  reachable = true; // by WebSocket
+  ages_s = undefined; // how long ago each value was heard
+  offers = ["goal", "preview", "drawing", "room_shapes", "floor", "explore", "cancel", "stop", "release"];
   /** Two rooms of 4 x 4 m that meet at x = 0; zone 0 lies left. */
   rooms = {
     0: { name: "left room", area_m2: 16, x_m: -2, y_m: 0, color: 0 },
@@ -45,21 +49,34 @@ export class StandIn {
     this.tell({ channel: "drawing", version: this.version, value: { version: String(this.version) } });
   }
 
+  /** Ends all connections; none comes again before `reachable` is set. */
+  cut() {
+    this.reachable = false;
+    for (const socket of this.sockets) socket.close();
+    this.sockets.clear();
+  }
+
   tell(message) {
     for (const socket of this.sockets) socket.send(JSON.stringify(message));
   }
 
   connect(socket) {
+    if (!this.reachable) return void socket.close();
     this.sockets.add(socket);
     socket.onClose(() => this.sockets.delete(socket));
     const send = (message) => socket.send(JSON.stringify(message));
     const table = (channel, set) => send({ channel, from: 0, version: 1, set, gone: [] });
     socket.onMessage((text) => {
-      const { op } = JSON.parse(text);
+      const message = JSON.parse(text);
+      const { op } = message;
       this.ops.push(op);
+      this.messages.push(message);
       if (op === "ping") send({ op: "pong", time_s: 0 });
       if (op !== "hello") return;
       send({ op: "welcome", protocol: 1, life: "a", may_write: true, robot_id: kRobot });
+      const time = () =>
+        send({ channel: "time", version: 1, value: { time_s: Date.now() / 1000, ages_s: this.ages_s } });
+      time();
       table("rooms", this.rooms);
       table("places", {});
       table("rules", {});
@@ -67,7 +84,7 @@ export class StandIn {
       send({ channel: "navigator", version: 1, value: { state: "idle", reason: "none", message: "" } });
       const beat = setInterval(() => {
         if (!this.sockets.has(socket)) return clearInterval(beat);
-        send({ channel: "time", version: 1, value: { time_s: Date.now() / 1000 } });
+        time();
       }, 1000);
     });
   }
@@ -114,8 +131,13 @@ export class StandIn {
       case "/api/floor":
         this.floors.push(body);
         return json(202, {});
+      case "/api/stop":
+      case "/api/release":
+        this.orders.push(pathname.slice("/api/".length));
+        return json(202, {});
       case "/api/explore":
       case "/api/cancel":
+        this.orders.push(pathname.slice("/api/".length));
         this.exploring = pathname === "/api/explore";
         this.tell({ channel: "goals", version: 2, value: goals() });
         return json(202, {});

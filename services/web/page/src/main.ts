@@ -175,6 +175,10 @@ function start(): void {
   const map = new MapView(canvas, scale, channels, theme);
   const app: App = { channels, api, notices, rights, connection, map, theme };
   const send = new SendView(app);
+  header.on_stop = () => {
+    connection.send({ op: "stop" });
+    send.let_go();
+  };
   const views = {
     now: new NowView(app),
     send,

@@ -179,7 +179,7 @@ function start(): void {
   document.body.replaceChildren(root);
   document.title = `${words.title} – ${texts.title}`;
   const names = ["pose", "navigator", "goals", "base", "places", "rooms", "time"];
-  new Connection(channels, token, names, {
+  const connection = new Connection(channels, token, names, {
     connected: (may_write, error) => {
       rights.set_connected(true, may_write);
       if (error) header.show_token_error();
@@ -190,6 +190,7 @@ function start(): void {
     },
     refused: (_, error) => notices.show(error, "error"),
   });
+  header.on_stop = () => void connection.send({ op: "stop" });
 }
 
 start();

@@ -2,11 +2,14 @@
 import { Api } from "../api";
 import { Rights } from "../app";
 import { Channels } from "../channels";
-import { held_text, kSilenceTick_ms, robot_state } from "../robot_state";
+import { kSilenceTick_ms, robot_state } from "../robot_state";
+import { Stopping } from "../stopping";
 import { texts } from "../texts";
 import { button, h, set_attribute, set_text, show } from "./dom";
+import { HeldBanner } from "./held_banner";
 import { Notices } from "./notices";
 import { once_a_frame } from "./schedule";
+import { listen_for_stop_key } from "./stop_key";
 
 export class Header {
   readonly element: HTMLElement;
@@ -16,18 +19,27 @@ export class Header {
   private readonly stop: HTMLButtonElement;
   private readonly view_only: HTMLElement;
   private readonly offline = h("div", { class: "banner bad", role: "alert", hidden: true });
-  private readonly held_words = h("span");
-  private readonly held: HTMLElement;
+  private readonly stop_sent = h("div", {
+    class: "banner bad",
+    role: "alert",
+    id: "stop-sent",
+    hidden: true,
+  });
+  private readonly stopping: Stopping;
+  private readonly held: HeldBanner;
   private readonly token = h("div", { class: "banner fair", role: "alert", hidden: true });
+
+  /** What Stop does besides its order. */
+  on_stop: () => void = () => undefined;
 
   constructor(
     private readonly channels: Channels,
     private readonly rights: Rights,
-    private readonly api: Api,
-    private readonly notices: Notices,
+    api: Api,
+    notices: Notices,
     extra: HTMLElement[],
   ) {
-    this.stop = button(texts.stop, () => void this.stop_now(), {
+    this.stop = button(texts.stop, () => this.stop_now(), {
       class: "stop",
       title: texts.stop_title,
       id: "stop",
@@ -43,19 +55,24 @@ export class Header {
       h("div", { class: "state", role: "status", id: "state" }, this.state, this.reason),
       h("div", { class: "header-end" }, ...extra, this.view_only, this.stop),
     );
-    const release = button(texts.release, () => {
-      void notices.report(api.post("release"), texts.done.release);
-    });
-    this.held = h("div", { class: "banner bad", role: "alert", hidden: true });
-    this.held.append(this.held_words, release);
-    this.banners = h("div", { class: "banners" }, this.offline, this.held, this.token);
-    const update = once_a_frame(() => this.update(release));
-    channels.on_value(["pose", "base"], update);
+    const update = once_a_frame(() => this.update());
+    const on_held = () => notices.show(texts.done.stop);
+    this.stopping = new Stopping(channels, rights, api, update, on_held);
+    this.held = new HeldBanner(channels, rights, api, notices, () => this.stopping.forget());
+    this.banners = h(
+      "div",
+      { class: "banners" },
+      this.offline,
+      this.stop_sent,
+      this.held.element,
+      this.token,
+    );
+    channels.on_value(["pose", "base", "goals", "navigator"], update);
     channels.on_table("services", update);
     rights.on_change(update);
     setInterval(update, kSilenceTick_ms);
-    this.listen_for_space();
-    this.update(release);
+    listen_for_stop_key(() => this.stop_now());
+    this.update();
   }
 
   show_token_error(): void {
@@ -63,13 +80,14 @@ export class Header {
     show(this.token, true);
   }
 
-  /** Stops the robot, whatever it does. */
-  async stop_now(): Promise<void> {
-    if (!this.rights.may_write) return;
-    await this.notices.report(this.api.post("stop"), texts.done.stop);
+  /** Stops the robot, whatever it does. False: this page may not. */
+  stop_now(): boolean {
+    if (!this.rights.may_write) return false;
+    void this.stopping.stop(() => this.on_stop());
+    return true;
   }
 
-  private update(release: HTMLButtonElement): void {
+  private update(): void {
     const state = robot_state(this.channels, this.rights);
     set_text(this.state, state.word);
     set_text(this.reason, state.reason);
@@ -78,20 +96,9 @@ export class Header {
     show(this.view_only, !this.rights.may_write && this.rights.connected);
     set_text(this.offline, texts.reconnecting);
     show(this.offline, !this.rights.connected);
-    const held = this.rights.connected ? held_text(this.channels) : null;
-    set_text(this.held_words, held ?? "");
-    show(this.held, held !== null);
-    show(release, this.rights.can("release"));
-  }
-
-  // Space stops, but where it types or presses something.
-  private listen_for_space(): void {
-    document.addEventListener("keydown", (event) => {
-      const target = event.target as HTMLElement;
-      if (event.key !== " " || event.repeat) return;
-      if (target.closest("button, input, select, textarea, summary, a")) return;
-      event.preventDefault();
-      void this.stop_now();
-    });
+    const unconfirmed = this.stopping.text();
+    set_text(this.stop_sent, unconfirmed ?? "");
+    show(this.stop_sent, unconfirmed !== null);
+    this.held.update();
   }
 }

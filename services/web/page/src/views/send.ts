@@ -2,6 +2,7 @@
 import { App, ViewPart } from "../app";
 import { Destination, destinations } from "../destinations";
 import { Goal, Preview } from "../protocol";
+import { held_text } from "../robot_state";
 import { texts } from "../texts";
 import { button, fill, h, set_text, show } from "../ui/dom";
 import { KeyedList } from "../ui/list";
@@ -94,6 +95,11 @@ export class SendView implements ViewPart {
     this.visible = visible;
     if (!visible) this.drive.set_active(false);
     this.show_on_map(visible);
+  }
+
+  /** Stop lets go of the controls, too. */
+  let_go(): void {
+    this.drive.let_go_of_all();
   }
 
   /** A tap on the map. */
@@ -250,8 +256,10 @@ export class SendView implements ViewPart {
 
   private async go(): Promise<void> {
     const goals = this.choices.map((choice) => choice.goal);
-    const done =
+    const on_the_way =
       goals.length === 1 ? texts.done.goal(this.choices[0].text) : texts.done.goals(goals.length);
+    const held = held_text(this.app.channels) !== null;
+    const done = held ? texts.done.goal_held : on_the_way;
     const order = this.app.api.post("goal", goals.length === 1 ? goals[0] : { goals });
     if (await this.app.notices.report(order, done)) this.clear();
   }
@@ -284,7 +292,8 @@ export class SendView implements ViewPart {
   private show_rights(): void {
     const { rights, channels } = this.app;
     const navigator = channels.value("navigator") !== null;
-    const note = !rights.may_write ? words.spectator : navigator ? "" : words.no_navigator;
+    const missing = navigator || !rights.connected ? "" : words.no_navigator;
+    const note = rights.may_write ? missing : words.spectator;
     show(this.note, note !== "");
     set_text(this.note, note);
     show(this.orders, rights.may_write);

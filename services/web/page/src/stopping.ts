@@ -1,0 +1,61 @@
+// A stop that was sent and is not done before the base itself says so.
+import { Api } from "./api";
+import { Rights } from "./app";
+import { Channels } from "./channels";
+import { held_text, sentence } from "./robot_state";
+import { texts } from "./texts";
+
+export class Stopping {
+  private sent_ms: number | null = null; // null: none is under way
+  private refused = "";
+
+  /** on_change: what text() gives may differ; on_held: the base has confirmed a stop. */
+  constructor(
+    private readonly channels: Channels,
+    private readonly rights: Rights,
+    private readonly api: Api,
+    private readonly on_change: () => void,
+    private readonly on_held: () => void,
+  ) {
+    for (const name of ["base", "time"] as const) {
+      channels.on_value([name], () => this.check());
+    }
+  }
+
+  /** Sends the order, and once more by `send`, a connection that stands already. */
+  async stop(send: () => void): Promise<void> {
+    if (!this.rights.may_write) return;
+    this.sent_ms = performance.now();
+    this.refused = "";
+    this.on_change();
+    send();
+    try {
+      await this.api.post("stop");
+    } catch (error) {
+      this.refused = sentence(error instanceof Error ? error.message : String(error));
+    }
+    this.on_change();
+  }
+
+  /** The robot was released: the stop of before is none any more. */
+  forget(): void {
+    this.sent_ms = null;
+    this.on_change();
+  }
+
+  /** What is said as long as the base has not confirmed; null when there is nothing to confirm. */
+  text(): string | null {
+    if (this.sent_ms === null) return null;
+    return this.refused ? texts.stop_failed(this.refused) : texts.stop_sent;
+  }
+
+  // A base that was heard last before the stop was sent says nothing about it.
+  private check(): void {
+    if (this.sent_ms === null) return;
+    const age_ms = this.channels.age_ms("base");
+    const heard_since = age_ms !== null && age_ms < performance.now() - this.sent_ms;
+    if (!heard_since || held_text(this.channels) === null) return;
+    this.forget();
+    this.on_held();
+  }
+}

@@ -1,0 +1,64 @@
+// That the base is held, what its release would do, and the release.
+import { Api } from "../api";
+import { Rights } from "../app";
+import { Channels } from "../channels";
+import { held_text, pending_goal } from "../robot_state";
+import { texts } from "../texts";
+import { button, h, set_text, show } from "./dom";
+import { Notices } from "./notices";
+
+export class HeldBanner {
+  readonly element = h("div", { class: "banner bad", role: "alert", hidden: true });
+  private readonly words = h("span");
+  private readonly release: HTMLButtonElement;
+  private readonly answers: HTMLElement;
+  private asked: string | null = null; // the goal that the question names
+
+  /** on_release: the order to release was taken. */
+  constructor(
+    private readonly channels: Channels,
+    private readonly rights: Rights,
+    private readonly api: Api,
+    private readonly notices: Notices,
+    private readonly on_release: () => void,
+  ) {
+    this.release = button(texts.release, () => this.ask());
+    this.answers = h(
+      "span",
+      { class: "buttons", hidden: true },
+      button(texts.release_and_drive, () => void this.send()),
+      button(texts.release_and_cancel, () => void this.send(true)),
+      button(texts.keep_held, () => this.answer()),
+    );
+    this.element.append(this.words, this.release, this.answers);
+  }
+
+  update(): void {
+    const held = this.rights.connected ? held_text(this.channels) : null;
+    const goal = pending_goal(this.channels);
+    if (held === null || goal !== this.asked) this.asked = null;
+    const text = held !== null && goal !== null ? texts.held_with_goal(goal) : (held ?? "");
+    set_text(this.words, this.asked === null ? text : texts.release_asks(this.asked));
+    show(this.element, held !== null);
+    show(this.release, this.asked === null && this.rights.can("release"));
+    show(this.answers, this.asked !== null && this.rights.can("release"));
+  }
+
+  // A robot with a goal drives as soon as it may: whoever releases it is asked first.
+  private ask(): void {
+    this.asked = pending_goal(this.channels);
+    if (this.asked === null) void this.send();
+    else this.update();
+  }
+
+  private answer(): void {
+    this.asked = null;
+    this.update();
+  }
+
+  private async send(cancel = false): Promise<void> {
+    this.answer();
+    if (cancel && !(await this.notices.report(this.api.post("cancel"), texts.done.cancel))) return;
+    if (await this.notices.report(this.api.post("release"), texts.done.release)) this.on_release();
+  }
+}
