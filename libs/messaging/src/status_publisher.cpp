@@ -163,6 +163,7 @@ void StatusPublisher::fault(std::string_view reason, std::string_view detail) {
   note_error(std::string(reason) + ": " + std::string(detail));
   if (fault.count > 1 && now - fault.last_log < kLogPeriod) {
     ++fault.not_logged;
+    spdlog::debug("{}: {}", reason, detail);  // whoever looks for the cause sees each
     return;
   }
   if (fault.not_logged > 0) {
