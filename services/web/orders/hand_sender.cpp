@@ -22,13 +22,11 @@ constexpr std::chrono::milliseconds kHandPeriod{50};        // as the navigator
 constexpr std::chrono::milliseconds kLastHandCommand{200};  // for the gateway to have the last one
 constexpr double kHandValid_s = 0.3;  // a base runs on that long when this service dies
 
-constexpr std::int64_t kLate_ns = ManualDrive::kPatience_ns;
+}  // namespace
 
 std::int64_t steady_ns() {
   return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
-
-}  // namespace
 
 HandSender::HandSender(messaging::EventLoop& loop, const service::Service& service, Board& board,
                        EventLog& events, Tally& tally, Hooks hooks)
@@ -118,7 +116,7 @@ void HandSender::keep_off_drawn() {
 void HandSender::drive(std::uint64_t viewer, const geometry::Velocity& wanted,
                        std::int64_t came_ns) {
   const std::int64_t now_ns = steady_ns();
-  if (now_ns - came_ns > kLate_ns) {
+  if (now_ns - came_ns > ManualDrive::kPatience_ns) {
     tally_.add("refused: late");
     return;
   }

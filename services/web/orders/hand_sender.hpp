@@ -24,6 +24,9 @@
 
 namespace topogeo::web {
 
+/// Now, by the steady clock.
+std::int64_t steady_ns();
+
 class EventLog;
 
 /// Lives in the loop that it is given, which has nothing else to do: what it is ordered is done at

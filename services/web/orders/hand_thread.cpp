@@ -1,6 +1,5 @@
 #include "orders/hand_thread.hpp"
 
-#include <chrono>
 #include <exception>
 #include <memory>
 #include <string>
@@ -45,9 +44,8 @@ void HandThread::run() {
 }
 
 void HandThread::drive(std::uint64_t viewer, const geometry::Velocity& wanted) {
-  const std::int64_t came_ns =
-      std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-  loop_.post([this, viewer, wanted, came_ns] { hand_.drive(viewer, wanted, came_ns); });
+  loop_.post(
+      [this, viewer, wanted, came_ns = steady_ns()] { hand_.drive(viewer, wanted, came_ns); });
 }
 
 void HandThread::release(std::uint64_t viewer) {

@@ -4,17 +4,7 @@
 
 #include "topogeo/support/format.hpp"
 
-#include "server/bounded_json.hpp"
-
 namespace topogeo::web {
-
-Json object_of(const std::string& body) {
-  Json json = parse_bounded(body);
-  if (!json.is_object()) {
-    throw std::invalid_argument("expected a JSON object of at most 64 keys");
-  }
-  return json;
-}
 
 std::optional<double> number(const Json& json, const char* key, double least, double most) {
   const auto found = json.find(key);

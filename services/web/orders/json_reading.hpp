@@ -2,16 +2,13 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
-#include "server/json_values.hpp"
+#include "server/bounded_json.hpp"
 
 namespace topogeo::web {
 
 // All throw std::invalid_argument naming key and expectation.
 
-/// A body that is an object, within the limits of parse_bounded().
-Json object_of(const std::string& body);
 /// A number from least to most; nothing when the key is missing.
 std::optional<double> number(const Json& json, const char* key, double least, double most);
 /// The same of a key that must be there.

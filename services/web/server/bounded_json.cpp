@@ -1,5 +1,6 @@
 #include "server/bounded_json.hpp"
 
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,14 @@ Json parse_bounded(std::string_view text) {
   Limits limits;
   if (!Json::sax_parse(text, &limits)) return Json(Json::value_t::discarded);
   return Json::parse(text, nullptr, false);
+}
+
+Json object_of(std::string_view text) {
+  Json json = parse_bounded(text);
+  if (!json.is_object()) {
+    throw std::invalid_argument("expected a JSON object of at most 64 keys");
+  }
+  return json;
 }
 
 }  // namespace topogeo::web

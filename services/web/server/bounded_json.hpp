@@ -16,4 +16,7 @@ inline constexpr std::size_t kMostLevels = 16;  ///< of objects and lists inside
 /// its keys.
 Json parse_bounded(std::string_view text);
 
+/// The same of a text that must be an object; throws std::invalid_argument where it is none.
+Json object_of(std::string_view text);
+
 }  // namespace topogeo::web
