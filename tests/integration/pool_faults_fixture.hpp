@@ -99,8 +99,14 @@ class ServiceRun {
 
   /// The results are those of one process, and every task was answered.
   void expect_same_results();
+  /// Workers that the middleware is connected with; a killed one is among them until its lease
+  /// ends.
+  [[nodiscard]] std::size_t connected_workers() const {
+    return static_cast<std::size_t>(workers_in_.matched());
+  }
+
   /// Prints the longest time that the localizer took to recover from the loss of a worker; fails
-  /// if it never had to or nothing but the middleware has noticed.
+  /// if it never had to.
   void report_recovery();
 
  private:

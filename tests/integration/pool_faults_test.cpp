@@ -48,16 +48,18 @@ class PoolFaultsTest : public testing::Test {
   /// Kills workers that have tasks in hand: they get some while they do not work. If they got none
   /// in that moment, on a busy machine, others take their places and are killed in turn.
   static void kill_with_tasks_in_hand(ServiceRun& run, std::vector<Program*> workers) {
-    const double all = run.counter("workers");
+    const auto all = static_cast<std::size_t>(run.counter("workers"));
     while (true) {
+      ASSERT_TRUE(run.wait_until([&] { return run.connected_workers() >= all; }));
       for (const Program* worker : workers) worker->send_signal(SIGSTOP);
       const auto end = std::chrono::steady_clock::now() + milliseconds(40);
       while (std::chrono::steady_clock::now() < end) run.step();
       for (const Program* worker : workers) worker->send_signal(SIGKILL);
-      ASSERT_TRUE(run.wait_for_workers(static_cast<std::size_t>(all) - workers.size()));
+      ASSERT_TRUE(run.wait_for_workers(all - workers.size()));
+      EXPECT_GE(run.connected_workers(), all) << "nothing but the middleware has noticed";
       if (run.counter("workers_lost") > 0.0) return;  // gone with tasks in hand
       for (Program*& worker : workers) worker = &run.start_worker("next");
-      ASSERT_TRUE(run.wait_for_workers(static_cast<std::size_t>(all)));
+      ASSERT_TRUE(run.wait_for_workers(all));
     }
   }
   /// Lets a worker with the fault join for some stops and then ends it. `found_out`: whether
