@@ -1,12 +1,10 @@
 // topogeo record and topogeo check-log.
-#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <fstream>
 #include <functional>
 #include <map>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 

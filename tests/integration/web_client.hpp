@@ -44,7 +44,7 @@ class RawConnection {
   ~RawConnection();
 
   void send(const std::string& bytes) const;
-  /// What came up to the end of the headers of an answer, or to the end of the connection.
+  /// The bytes up to the end of the headers of an answer, or of the connection.
   [[nodiscard]] std::string receive_head() const;
   /// The service has closed it, now or within hang_limit().
   [[nodiscard]] bool ends() const;

@@ -47,7 +47,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession>, private Pl
   std::optional<Answer> refusal_of_sender();
   std::optional<Answer> refusal_by_rate();
   Answer refuse(unsigned status, const char* reason, const std::string& sentence);
-  /// Of the body of this request.
+  /// The largest body that this request may have.
   [[nodiscard]] std::uint64_t most_body_bytes() const;
   /// The header has shown the operator's token, or not.
   void note_token(bool shown);

@@ -1,4 +1,4 @@
-// What the sessions of a server share. All of it lives in the thread of the connections.
+// The sessions of a server share this state. It lives in the thread of the connections.
 #pragma once
 
 #include <cstdint>
@@ -20,14 +20,14 @@ namespace topogeo::web {
 
 class Watcher;
 
-/// What pages with the token may ask for, all together.
+/// The rates of all pages with the token together.
 struct OperatorLimits {
   RateLimit requests{400.0, 1500.0};  ///< a page asks for some hundred tiles at once
   RateLimit posts{20.0, 40.0};
   RateLimit stops{50.0, 200.0};  ///< Stop and Release, which nothing else uses up
 };
 
-/// What pages without the token at one address may ask for, all together.
+/// The rates of all pages without the token at one address together.
 struct PeerLimits {
   RateLimit requests{400.0, 1500.0};
   RateLimit posts{2.0, 10.0};

@@ -55,7 +55,7 @@ class Watcher : public std::enable_shared_from_this<Watcher> {
   virtual void on_text(const std::string& text) = 0;
   /// The connection has ended or is being closed; more than once.
   virtual void on_end() {}
-  /// What goes next behind what control() was given.
+  /// The next work; its messages go behind those of control().
   virtual Work next_work() = 0;
   /// Its messages are made and go next.
   virtual void on_made(std::uint64_t version) = 0;
@@ -66,7 +66,7 @@ class Watcher : public std::enable_shared_from_this<Watcher> {
   void refuse(std::string_view reason, const std::string& sentence, std::string_view what = {});
   /// Goes before all else.
   void control(std::string text);
-  /// Those of next_work() that are not on their way yet.
+  /// Drops the messages of next_work() that are not on their way yet.
   void drop_frames() { frames_.clear(); }
   void set_operator() { operator_ = true; }
   [[nodiscard]] ServerState& state() { return state_; }

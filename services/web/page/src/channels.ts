@@ -22,7 +22,7 @@ export class Channels {
   private readonly values: { [Name in ValueName]?: Values[Name] | null } = {};
   // When the service heard a value last, by the clock of this page.
   private readonly heard_ms = new Map<string, number>();
-  // Of which a first value has come in this connection.
+  // The values that have come in this connection.
   private readonly live = new Set<ValueName>();
   private readonly tables = new Map<TableName, Map<string, unknown>>();
   private readonly versions = new Map<TableName, number>();
