@@ -25,15 +25,34 @@ std::uint64_t file_number(const std::filesystem::path& path) {
   return ::stat(path.c_str(), &status) == 0 ? status.st_ino : 0;
 }
 
+void add(support::Fnv1a& hash, double value) {
+  hash.add(std::bit_cast<std::uint64_t>(value));
+}
+
+void add(support::Fnv1a& hash, const geometry::Pose2& pose) {
+  for (const double value : {pose.x_m, pose.y_m, pose.theta_rad}) add(hash, value);
+}
+
 std::uint64_t hash_of(std::span<const topomap::LoopClosure> closures) {
   support::Fnv1a hash;
   for (const topomap::LoopClosure& closure : closures) {
     hash.add(std::uint64_t{closure.earlier_id});
     hash.add(std::uint64_t{closure.later_id});
-    const geometry::Pose2& pose = closure.T_earlier_later;
-    for (const double value : {pose.x_m, pose.y_m, pose.theta_rad}) {
-      hash.add(std::bit_cast<std::uint64_t>(value));
-    }
+    add(hash, closure.T_earlier_later);
+  }
+  return hash.value();
+}
+
+std::uint64_t hash_of(std::span<const topomap::StopPose> stops) {
+  support::Fnv1a hash;
+  for (const topomap::StopPose& stop : stops) {
+    hash.add(stop.stop.session);
+    hash.add(std::uint64_t{stop.stop.number});
+    add(hash, stop.T_map_robot);
+    for (const double value : stop.covariance.reshaped()) add(hash, value);
+    hash.add(std::uint64_t{stop.located});
+    hash.add(std::uint64_t{stop.views});
+    hash.add(static_cast<std::uint64_t>(stop.last_view_ns));
   }
   return hash.value();
 }
@@ -80,7 +99,7 @@ void MapArchive::put(std::span<const topomap::LocalMap> local_maps,
   for (std::size_t i = database_.local_map_count(); i < local_maps.size(); ++i) {
     joined.push_back({local_maps[i].stop, local_maps[i].starts_drive});
   }
-  const bool same = trajectory.version == version_ && trajectory.stops.size() == poses_ &&
+  const bool same = trajectory.version == version_ && hash_of(trajectory.stops) == poses_ &&
                     hash_of(closures) == closures_;
   if (joined.empty() && same) return;
   check_file();
@@ -91,7 +110,7 @@ void MapArchive::put(std::span<const topomap::LocalMap> local_maps,
 void MapArchive::remember(const topomap::Trajectory& trajectory,
                           std::span<const topomap::LoopClosure> closures) {
   version_ = trajectory.version;
-  poses_ = trajectory.stops.size();
+  poses_ = hash_of(trajectory.stops);
   closures_ = hash_of(closures);
 }
 

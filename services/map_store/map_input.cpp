@@ -94,6 +94,7 @@ void MapInput::take_in(topomap::LocalMap map) {
   const auto id = static_cast<std::uint32_t>(local_maps_.size());
   const bool follows = id == 0 || local_maps_.back().stop.next() == map.stop;
   local_maps_.push_back(topomap::numbered(std::move(map), id, !follows));
+  ++edge_changes_;  // edges that were here before it can be used now
 }
 
 MapInput::Renewal& MapInput::renewal_of(std::uint64_t numbered_since) {

@@ -71,7 +71,7 @@ class MapInput {
   [[nodiscard]] std::vector<topomap::LoopClosure> usable_closures() const;
   /// The newest measurements between stops whose maps are here.
   [[nodiscard]] std::vector<storage::MapEdge> usable_edges() const;
-  /// Grows with each change of them.
+  /// Grows whenever usable_edges() may have changed: with each message, and with each local map.
   [[nodiscard]] std::uint64_t edge_changes() const { return edge_changes_; }
   /// Each once; none leaves them.
   [[nodiscard]] const std::vector<storage::RefusedMerge>& refused_merges() const {

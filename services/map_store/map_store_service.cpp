@@ -238,8 +238,9 @@ void MapStoreService::work_on_live_map() {
     }
   }
   publish_hybrid();
-  const bool changed =
-      live_map_.size() != published_maps_ || trajectory.version != published_version_;
+  const bool changed = live_map_.size() != published_maps_ ||
+                       live_map_.rebuilds() != published_rebuilds_ ||
+                       trajectory.version != published_version_;
   if (more || !changed || Clock::now() < next_publish_) return;
   const auto publish_start = Clock::now();
   hybrid_.take(live_map_.snapshot(trajectory.version));
@@ -247,6 +248,7 @@ void MapStoreService::work_on_live_map() {
   keep(*hybrid_.map());
   if (sent) {
     published_maps_ = live_map_.size();
+    published_rebuilds_ = live_map_.rebuilds();
     published_version_ = trajectory.version;
   }
   const auto now = Clock::now();

@@ -117,6 +117,7 @@ class MapStoreService {
   std::size_t stored_refusals_ = 0;
   bool storing_fails_ = false;
   std::size_t published_maps_ = 0;
+  std::uint64_t published_rebuilds_ = 0;
   std::uint64_t published_version_ = 0;
   Clock::time_point next_publish_;
   Clock::time_point next_attempt_;  // to finish, after a failure

@@ -115,6 +115,20 @@ TEST_F(MapStoreLives, StoppedItWritesTheMapAndGoesOnWithItLater) {
   EXPECT_EQ(storage::read_map(file("map.previous.sqlite")).local_maps.size(), drive_.stops());
 }
 
+TEST_F(MapStoreLives, EdgesThatComeBeforeTheirStopsAreStoredWithThem) {
+  Program store(scratch_, "map_store", words());
+  drive_.send(4);
+  ASSERT_TRUE(drive_.wait_for_stored(4));
+  drive_.send_edges();
+  ASSERT_TRUE(drive_.wait_until("edges in the map file", [&] {
+    return !storage::read_map(file("map.sqlite")).edges.empty();
+  }));
+  drive_.finish();
+  store.wait_for_error_text("local maps, ");
+  EXPECT_TRUE(storage::map_file_bytes(storage::read_map(file("map.sqlite"))) ==
+              read_file(file("map.pb")));
+}
+
 TEST_F(MapStoreLives, ItAcknowledgesAndGivesTheMapToWhoAsks) {
   Program store(scratch_, "map_store", words());
   drive_.send(5);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -64,13 +65,19 @@ class StoredDrive {
       EXPECT_TRUE(segments_.write(segment));
     }
   }
+  /// All edges, once.
+  void send_edges() {
+    if (std::exchange(edges_sent_, true)) return;
+    for (std::uint32_t i = 0; i < service::edge_segment_count(map_.edges.size()); ++i) {
+      EXPECT_TRUE(
+          edges_.write(service::to_segment(map_.edges, i, map_.trajectory.version, "robot", 0, i)));
+    }
+  }
   void finish() {
     send(map_.local_maps.size());
     const std::uint64_t version = map_.trajectory.version;
     EXPECT_TRUE(closures_.write(service::to_msg(map_.loop_closures, version, "robot", 0, 0)));
-    for (std::uint32_t i = 0; i < service::edge_segment_count(map_.edges.size()); ++i) {
-      EXPECT_TRUE(edges_.write(service::to_segment(map_.edges, i, version, "robot", 0, i)));
-    }
+    send_edges();
     msg::StreamEnd end;
     messaging::set_header(end, "robot", map_.local_maps.back().stamp_ns, 0);
     end.stage(msg::kStageLocalizer);
@@ -150,6 +157,7 @@ class StoredDrive {
   msg::StoredMap stored_;
   std::uint32_t most_stored_ = 0;
   std::size_t sent_ = 0;
+  bool edges_sent_ = false;
 };
 
 }  // namespace topogeo::test

@@ -125,6 +125,21 @@ TEST_F(Archive, StoresWhatTheTrajectoryNames) {
               ElementsAre(topomap::StopId{kArchivedSession, 1}));
 }
 
+// Segments of one trajectory come one after the other: each has the version, and brings poses.
+TEST_F(Archive, StoresOtherPosesOfTheSameVersion) {
+  add(0, 1);
+  EXPECT_THAT(archive_->flush(), IsEmpty());
+  const std::vector<topomap::LocalMap> joined{maps_[0]};
+  topomap::Trajectory trajectory;
+  trajectory.version = 4;
+  trajectory.stops.push_back({0, maps_[0].stamp_ns, {}, {}, maps_[0].stop});
+  trajectory.stops.back().covariance.setIdentity();
+  archive_->put(joined, trajectory, {});
+  trajectory.stops.back().T_map_robot.x_m = 1.0;
+  archive_->put(joined, trajectory, {});
+  EXPECT_EQ(storage::read_map(path_).trajectory.stops[0].T_map_robot.x_m, 1.0);
+}
+
 TEST_F(Archive, StopsThatLeaveTheMapLeaveTheFile) {
   add(0, 5);
   EXPECT_THAT(archive_->flush(), IsEmpty());

@@ -264,10 +264,20 @@ TEST_F(Input, TrajectoryReachesAsFarAsTheLocalMaps) {
   input_.add(maps_[1]);
   EXPECT_EQ(input_.newest_trajectory().stops.size(), 2U);
   EXPECT_EQ(input_.usable_closures().size(), 1U);
-  EXPECT_EQ(input_.edge_changes(), 0U);
+}
+
+TEST_F(Input, EdgesChangeWithTheirMessagesAndWithTheLocalMapsTheyWaitFor) {
+  input_.add(service::to_segment(trajectory_, 0, "robot", 0));
+  input_.add(maps_[0]);
+  input_.add(maps_[1]);
+  const std::uint64_t with_two_maps = input_.edge_changes();
   input_.add(edges(8));
   EXPECT_EQ(input_.usable_edges().size(), 1U);
-  EXPECT_EQ(input_.edge_changes(), 1U);
+  const std::uint64_t with_edges = input_.edge_changes();
+  EXPECT_GT(with_edges, with_two_maps);
+  input_.add(maps_[2]);
+  EXPECT_EQ(input_.usable_edges().size(), 2U);
+  EXPECT_GT(input_.edge_changes(), with_edges);
 }
 
 TEST_F(Input, CompleteOnlyWithEveryPartOfTheFinalVersion) {
