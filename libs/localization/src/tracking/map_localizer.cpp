@@ -51,11 +51,12 @@ bool MapLocalizer::add(std::shared_ptr<const topomap::LocalMap> map) {
   const std::uint32_t number = added_++;
   if (last_id_ && last_id_->session == map->stop.session) {
     check_follows(map->stop, *last_id_);
-  } else if (last_id_) {
-    T_odom_last_.reset();
-    search();
+  } else if (last_id_ || last_epoch_) {
+    begin_session(map->odometry_epoch);
   }
   last_id_ = map->stop;
+  last_epoch_ = map->odometry_epoch;
+  pose_is_given_ = false;
   const DriveStop stop = matching_.add(*map, number, T_odom_last_);
   if (stop.follows) continued_.move(stop.step);
   T_odom_last_ = map->T_odom_robot;
@@ -72,6 +73,15 @@ bool MapLocalizer::add(std::shared_ptr<const topomap::LocalMap> map) {
   stops_.push_back({map->stop, map->stamp_ns, pose_.T_a_b, pose_.covariance, status_, accepted});
   ++stops_by_state_.at(static_cast<std::size_t>(status_.state));
   return false;
+}
+
+// A local mapper that was started again begins another session, and the odometry tells how far the
+// robot has come since. Odometry of another epoch says nothing of where the robot is.
+void MapLocalizer::begin_session(std::uint64_t odometry_epoch) {
+  const bool same_odometry = odometry_epoch != 0 && odometry_epoch == last_epoch_;
+  if (same_odometry) return;
+  T_odom_last_.reset();
+  if (!pose_is_given_) search();
 }
 
 // --- tracking
@@ -207,6 +217,7 @@ void MapLocalizer::begin_search() {
 
 void MapLocalizer::search() {
   begin_search();
+  pose_is_given_ = false;
   continued_.forget();
   status_ = {LocalizationState::kSearching, 0.0};
 }
@@ -287,6 +298,7 @@ std::uint32_t MapLocalizer::decide() {
 void MapLocalizer::set_pose(const Pose2& T_map_robot, const Eigen::Matrix3d& covariance) {
   pose_ = {T_map_robot, invertible(covariance)};
   has_pose_ = true;
+  pose_is_given_ = true;
   monitored_ = false;
   search_.begin();
   continued_.forget();
@@ -310,6 +322,13 @@ void MapLocalizer::start_after(const topomap::LocalMap& map, const Pose2& T_map_
            Eigen::Vector3d(kSigma_m * kSigma_m, kSigma_m * kSigma_m, kSigma_rad * kSigma_rad)
                .asDiagonal());
   T_odom_last_ = map.T_odom_robot;
+}
+
+void MapLocalizer::start_after(const LastPlace& place) {
+  set_pose(place.T_map_robot.T_a_b, place.T_map_robot.covariance);
+  pose_is_given_ = false;
+  T_odom_last_ = place.T_odom_robot;
+  last_epoch_ = place.odometry_epoch;
 }
 
 void MapLocalizer::forget_stops(std::size_t most) {

@@ -248,6 +248,57 @@ TEST_F(MapLocalizerTest, AnotherSessionIsSearchedFor) {
       << "numbered as the trajectory is, whatever the sessions";
 }
 
+// A local mapper that is started again: the robot stands still or has driven on meanwhile.
+TEST_F(MapLocalizerTest, AnotherSessionOfTheSameOdometryGoesOn) {
+  for (const std::size_t stop : {7U, 9U}) {
+    MapLocalizer localizer = make();
+    localizer.set_pose(drive_->T_world_robot[0], kKnown);
+    const auto add_to = [&](std::uint64_t session, std::size_t first, std::size_t i) {
+      topomap::LocalMap map = *drive_->maps[i];
+      map.stop = {session, static_cast<std::uint32_t>(i - first)};
+      map.odometry_epoch = 5;
+      if (i == first) map.T_previous_robot = {};
+      localizer.add(std::make_shared<const topomap::LocalMap>(map));
+    };
+    for (std::size_t i = 0; i < 8; ++i) add_to(2, 0, i);
+    add_to(99, stop, stop);
+    EXPECT_EQ(localizer.searches(), 0U) << stop;
+    EXPECT_EQ(localizer.status().state, LocalizationState::kTracking) << stop;
+    EXPECT_TRUE(right(localizer, stop)) << stop;
+    add_to(99, stop, stop + 1);
+    EXPECT_EQ(localizer.status().state, LocalizationState::kTracking) << stop;
+    EXPECT_TRUE(right(localizer, stop + 1)) << stop;
+  }
+}
+
+TEST_F(MapLocalizerTest, APoseThatIsSetBeforeAnotherSessionHolds) {
+  MapLocalizer localizer = make();
+  localizer.set_pose(drive_->T_world_robot[0], kKnown);
+  follow(localizer, 0, 4);
+  localizer.set_pose(drive_->T_world_robot[30], kKnown);
+  topomap::LocalMap elsewhere = *drive_->maps[30];
+  elsewhere.stop = {99, 0};
+  elsewhere.odometry_epoch = 6;
+  localizer.add(std::make_shared<const topomap::LocalMap>(elsewhere));
+  EXPECT_EQ(localizer.searches(), 0U);
+  EXPECT_TRUE(right(localizer, 30));
+}
+
+// A localizer that is started again.
+TEST_F(MapLocalizerTest, GoesOnAfterTheLastPlaceOfAnotherProcess) {
+  constexpr std::uint64_t kEpoch = 5;
+  for (const std::uint64_t epoch : {kEpoch, kEpoch + 1}) {
+    MapLocalizer localizer = make();
+    localizer.start_after(
+        {{drive_->T_world_robot[7], kKnown}, drive_->maps[7]->T_odom_robot, kEpoch});
+    topomap::LocalMap map = *drive_->maps[8];
+    map.odometry_epoch = epoch;
+    localizer.add(std::make_shared<const topomap::LocalMap>(map));
+    EXPECT_EQ(localizer.searches(), epoch == kEpoch ? 0U : 1U);
+    if (epoch == kEpoch) EXPECT_TRUE(right(localizer, 8));
+  }
+}
+
 // Two wings that are copies of each other. The map has the first one; the robot goes through that
 // and on to the second, with every step matched.
 TEST(MapLocalizer, ALookAlikeBeyondTheMapIsNotTaken) {

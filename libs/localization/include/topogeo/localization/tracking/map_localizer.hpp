@@ -54,6 +54,13 @@ struct TrackedStep {
   std::vector<UncertainPose> scans_alone;
 };
 
+/// Where a robot was at the last stop of its drive.
+struct LastPlace {
+  UncertainPose T_map_robot;
+  geometry::Pose2 T_odom_robot;
+  std::uint64_t odometry_epoch = 0;  ///< as in scan::Scan
+};
+
 class MapLocalizer : public Slam {
  public:
   /// Starts without a pose. The pool must outlive the localizer. Throws like GlobalLocalizer.
@@ -61,9 +68,10 @@ class MapLocalizer : public Slam {
                MatchPool& pool);
 
   /// The next stop of the drive: the numbers of a session count on from the first that comes.
-  /// Throws std::invalid_argument otherwise. Another session is another drive: the pose is
-  /// forgotten and searched for. In the pool and in tasks the map has one of the ids that follow
-  /// those of the stored maps. False: no earlier pose moves.
+  /// Throws std::invalid_argument otherwise. Another session goes on where the one before ended if
+  /// its odometry has the same epoch (not 0) or the pose was set since. Otherwise it is another
+  /// drive: the pose is forgotten and searched for. In the pool and in tasks the map has one of the
+  /// ids that follow those of the stored maps. False: no earlier pose moves.
   bool add(std::shared_ptr<const topomap::LocalMap> map) override;
   /// Nothing is left to be done after the last map.
   void finish() override {}
@@ -74,6 +82,9 @@ class MapLocalizer : public Slam {
   /// The robot goes on from a stop of its own that is no stop of this drive: the last one of the
   /// map, when that has just been made. Before the first stop.
   void start_after(const topomap::LocalMap& map, const geometry::Pose2& T_map_robot);
+  /// The same with what is known of a drive before. A first stop whose odometry has another epoch
+  /// is searched for.
+  void start_after(const LastPlace& place);
 
   /// Numbers its tasks on from there; no number may occur twice in one pool.
   void number_tasks_from(std::uint64_t next_task) { matching_.requests().number_from(next_task); }
@@ -113,6 +124,7 @@ class MapLocalizer : public Slam {
   }
 
  private:
+  void begin_session(std::uint64_t odometry_epoch);
   std::uint32_t track(const DriveStop& stop);
   std::vector<MatchTask> tracking_tasks(const DriveStop& stop,
                                         std::span<const MatchCandidate> stored);
@@ -134,7 +146,9 @@ class MapLocalizer : public Slam {
   UncertainPose pose_;        // T_map_robot at the last stop
   bool has_pose_ = false;
   bool monitored_ = false;                      // the last stop was, by what its pose is judged
+  bool pose_is_given_ = false;                  // since the last stop
   std::optional<geometry::Pose2> T_odom_last_;  // nothing before the first stop
+  std::optional<std::uint64_t> last_epoch_;     // of T_odom_last_, if it is known
   std::vector<LocalizedStop> stops_;
   std::uint32_t added_ = 0;           // stops that came
   std::uint64_t numbered_since_ = 0;  // of them, when some were forgotten last
