@@ -5,6 +5,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
@@ -26,22 +27,28 @@ constexpr std::size_t kShownStops = 2048;
 /// Twice for each status, so that none shows figures older than that.
 constexpr std::chrono::milliseconds kCountPeriod{250};
 
+localization::MapToUse map_to_use(const service::Service& service,
+                                  const LocalizerOptions& options) {
+  using localization::MapToUse;
+  if (options.map) {
+    return {pipeline::load_stored_map(*options.map), MapToUse::Use::kLocalize,
+            options.initial_pose};
+  }
+  return {pipeline::stored_map(*pipeline::load_map_to_continue(
+              *options.continued, service.setup().config.config, service.robot_id())),
+          MapToUse::Use::kContinue, options.initial_pose};
+}
+
 localization::SlamSession make_slam(const service::Service& service,
                                     const LocalizerOptions& options, localization::MatchPool& pool,
-                                    localization::GraphOptimizer& optimizer) {
-  using localization::MapToUse;
-  const pipeline::Config& config = service.setup().config.config;
-  if (!options.map && !options.continued) return {config.localizer, pool, &optimizer};
+                                    localization::GraphOptimizer& optimizer,
+                                    std::optional<PoseMemory>& memory) {
+  const localization::LocalizerConfig& config = service.setup().config.config.localizer;
+  if (!options.map && !options.continued) return {config, pool, &optimizer};
   try {
-    MapToUse stored{nullptr, MapToUse::Use::kLocalize, options.initial_pose};
-    if (options.map) {
-      stored.map = pipeline::load_stored_map(*options.map);
-    } else {
-      stored.map = pipeline::stored_map(
-          *pipeline::load_map_to_continue(*options.continued, config, service.robot_id()));
-      stored.use = MapToUse::Use::kContinue;
-    }
-    return {config.localizer, pool, &optimizer, stored};
+    const localization::MapToUse stored = map_to_use(service, options);
+    if (options.map && options.memory) memory.emplace(*options.memory, *stored.map);
+    return {config, pool, &optimizer, stored};
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }
@@ -84,7 +91,8 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
       if (ready_ && !finished_) missing_->check();
     });
   }
-  slam_.emplace(make_slam(service, options, watched_, optimizer_));
+  slam_.emplace(make_slam(service, options, watched_, optimizer_, memory_));
+  recall();
   if (options.map) {
     service.subscribe<msg::StoredMap>([this](const msg::StoredMap& stored) {
       stops_are_stored_ = stored.session() != msg::kNothingIsStored;
@@ -207,6 +215,8 @@ void LocalizerService::step(const StopQueue::MapPointer& map) {
   (*slam_)->add(odometry_.add(map));
   if (queue_.taken() < known_stops_) return;  // no pose is said of the robot until the last one
   live_.set_stop(map);
+  last_map_ = map;
+  remember();
   if (localization::MapLocalizer* follower = slam_->follower()) {
     if (table_) table_->add({follower->stops(), follower->added_stops()});
     if (!options_.replay && !stops_are_stored_) follower->forget_stops(kShownStops);
@@ -214,6 +224,29 @@ void LocalizerService::step(const StopQueue::MapPointer& map) {
   publish(false);
   send_pose();  // a correction shows at once, also when no odometry comes any more
   count();
+}
+
+void LocalizerService::recall() {
+  if (!memory_) return;
+  const std::optional<RememberedPlace> last = memory_->load();
+  if (!last) return;
+  slam_->follower()->start_after(last->place);
+  // That stop is looked at once more, if the local mapper still has it.
+  if (last->stop.number > 0) queue_.start_after({last->stop.session, last->stop.number - 1});
+  spdlog::info("goes on at stop {}, where the robot was last", last->stop.number);
+}
+
+void LocalizerService::remember() const {
+  if (!memory_ || !last_map_) return;
+  const std::vector<localization::LocalizedStop>& stops = slam_->follower()->stops();
+  if (stops.empty() || !localization::located(stops.back().status.state)) {
+    memory_->forget();
+    return;
+  }
+  const localization::LocalizedStop& last = stops.back();
+  memory_->store(
+      {last_map_->stop,
+       {{last.T_map_robot, last.covariance}, last_map_->T_odom_robot, last_map_->odometry_epoch}});
 }
 
 std::size_t LocalizerService::stops_in_map() const {
@@ -267,6 +300,7 @@ void LocalizerService::carry_out_commands() {
   commands_.carry_out(
       [this](const service::LocalizationCommand& command) {
         CommandAnswer answer = carry_out(command);
+        remember();
         send_pose();
         count();
         return answer;

@@ -20,6 +20,7 @@
 #include "live_pose_estimate.hpp"
 #include "missing_stops.hpp"
 #include "odometry_chain.hpp"
+#include "pose_memory.hpp"
 #include "remote_pool.hpp"
 #include "resume.hpp"
 #include "stop_queue.hpp"
@@ -36,6 +37,7 @@ struct LocalizerOptions {
   std::optional<std::filesystem::path> continued;  ///< map to extend; none: one is begun
   std::optional<geometry::Pose2> initial_pose;     ///< in either; none: it is searched for
   std::optional<std::filesystem::path> csv;        ///< where localization.csv is written at the end
+  std::optional<std::filesystem::path> memory;     ///< of the last place in the map (PoseMemory)
   bool standalone = false;  ///< there is no map store: a new map is begun at once
   bool replay = false;      ///< the stops come from a log: whatever dies, the map is the same
 };
@@ -59,6 +61,10 @@ class LocalizerService {
   void carry_out_commands();
   CommandAnswer carry_out(const service::LocalizationCommand& command);
   void step(const StopQueue::MapPointer& map);
+  /// In a stored map: goes on where the localizer before this one was killed, if it was.
+  void recall();
+  /// Keeps where the robot is, if that is known, for the localizer after this one.
+  void remember() const;
   void finish();
   void publish(bool whole);
   void count();
@@ -84,8 +90,10 @@ class LocalizerService {
   std::size_t known_stops_ = 0;  // to be added again: others have their poses already
   LivePoseEstimate live_;
   std::optional<StopTable> table_;
-  bool stops_are_stored_ = false;  // by a map store
-  bool ready_ = false;             // it is known where to go on
+  std::optional<PoseMemory> memory_;
+  StopQueue::MapPointer last_map_;  // of the last stop, as it was sent
+  bool stops_are_stored_ = false;   // by a map store
+  bool ready_ = false;              // it is known where to go on
   bool scheduled_ = false;
   bool waited_ = false;
   bool finished_ = false;

@@ -49,6 +49,12 @@ int main(int argc, char** argv) {
                        "pose and state of each stop; it has that name at the end")
             ->needs(map)
             ->type_name("FILE");
+        app.add_option(
+               "--memory", options.memory,
+               "keeps where the robot is, so that a localizer that is started again goes on "
+               "there; best in /run, as it is written at each stop")
+            ->needs(map)
+            ->type_name("FILE");
       },
       [&](const service::Setup& setup) {
         try {

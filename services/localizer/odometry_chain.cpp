@@ -6,11 +6,12 @@ namespace topogeo::localizer {
 
 OdometryChain::MapPointer OdometryChain::add(MapPointer map) {
   const bool same_session = last_ && last_->stop.session == map->stop.session;
-  if (!same_session) {
-    T_first_odom_ = {};
-  } else if (last_->odometry_epoch != map->odometry_epoch) {
+  const bool same_epoch = last_ && last_->odometry_epoch == map->odometry_epoch;
+  if (same_session && !same_epoch) {
     T_first_odom_ =
         last_->T_odom_robot * map->T_previous_robot * geometry::inverse(map->T_odom_robot);
+  } else if (!same_epoch) {
+    T_first_odom_ = {};
   }
   if (T_first_odom_ != geometry::Pose2{}) {
     auto chained = std::make_shared<topomap::LocalMap>(*map);

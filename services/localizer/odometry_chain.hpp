@@ -1,4 +1,5 @@
-// Makes the odometry of successive stops comparable when its epoch changes within a session.
+// Makes the odometry of successive stops comparable when its epoch changes within a session, or
+// the session within an epoch.
 #pragma once
 
 #include <memory>
@@ -19,7 +20,8 @@ class OdometryChain {
   }
 
   /// The next stop, its odometry in the frame of the first epoch of its session: over a change of
-  /// epoch the step is that of scan tracking.
+  /// epoch the step is that of scan tracking. A session that begins in the epoch in which the one
+  /// before ended has its frame.
   MapPointer add(MapPointer map);
 
  private:
@@ -30,7 +32,7 @@ class OdometryChain {
   };
 
   std::optional<Last> last_;
-  geometry::Pose2 T_first_odom_;  // of the epoch that is on, in the frame of the session's first
+  geometry::Pose2 T_first_odom_;  // of the epoch that is on, in the frame of the first
 };
 
 }  // namespace topogeo::localizer

@@ -58,6 +58,13 @@ Arguments map_arguments(const RunOptions& options) {
   return arguments;
 }
 
+/// Makes a service keep what its next life needs, where there is a place for it.
+Arguments memory_argument(const std::string& partition, const std::string& what) {
+  const std::filesystem::path memory = memory_of_run(partition, what);
+  if (!std::filesystem::is_directory(memory.parent_path())) return {};
+  return {"--memory", memory.string()};
+}
+
 /// The devices, the log or the robot of ROS, and a simulator where there are no real devices.
 void start_source(ProcessGroup& processes, const RunOptions& options, const std::string& partition,
                   const Arguments& common) {
@@ -89,10 +96,7 @@ void start_source(ProcessGroup& processes, const RunOptions& options, const std:
   if (topics.odometry) source.insert(source.end(), {"--odometry-topic", *topics.odometry});
   if (!options.devices.empty()) {
     source = {"--devices", options.devices.string()};
-    const std::filesystem::path memory = odometry_memory(partition);
-    if (std::filesystem::is_directory(memory.parent_path())) {
-      source.insert(source.end(), {"--memory", memory.string()});
-    }
+    source = source + memory_argument(partition, "odometry");
   }
   // All of them have the first scan.
   const int readers = readers_of_scans(options, !options.record.empty());
@@ -163,8 +167,16 @@ std::string source_name(const RunOptions& options) {
   return (options.devices.empty() ? options.job.log : options.devices).filename().string();
 }
 
-std::filesystem::path odometry_memory(const std::string& partition) {
-  return "/dev/shm/topogeo-" + partition + ".odometry";
+std::filesystem::path memory_of_run(const std::string& partition, const std::string& what) {
+  return "/dev/shm/topogeo-" + partition + "." + what;
+}
+
+std::vector<std::filesystem::path> memories_of_run(const std::string& partition) {
+  std::vector<std::filesystem::path> paths;
+  for (const char* what : {"odometry", "odometry.laser", "pose"}) {
+    paths.push_back(memory_of_run(partition, what));
+  }
+  return paths;
 }
 
 std::filesystem::path simulated_port(const RunOptions& options, const std::string& device) {
@@ -196,8 +208,10 @@ void start_services(ProcessGroup& processes, const RunOptions& options,
   }
   const std::uint32_t wait_workers = options.wait_workers.value_or(options.workers);
   const Arguments source = replay ? Arguments{"--replay"} : Arguments{};
+  const Arguments memory =
+      options.job.map && !replay ? memory_argument(partition, "pose") : Arguments{};
   start("localizer", common + source + Arguments{"--wait-workers", std::to_string(wait_workers)} +
-                         map_arguments(options));
+                         map_arguments(options) + memory);
   start("local_mapper", common + source);
   for (std::uint32_t i = 1; i <= options.workers; ++i) {
     const std::string name = std::string(kWorker) + "_" + std::to_string(i);

@@ -22,9 +22,12 @@ inline constexpr double kSimulatedAcceleration = 1.5;  // m/s^2
 /// Where the simulator of a run puts the port of "laser" or "base".
 std::filesystem::path simulated_port(const RunOptions& options, const std::string& device);
 
-/// Where the gateway of a run keeps its odometry: in memory, since a write to a disk may take
-/// seconds. To be removed at the end.
-std::filesystem::path odometry_memory(const std::string& partition);
+/// Where a service of a run keeps what its next life needs: the gateway its "odometry", the
+/// localizer the "pose" of the robot. In memory, since a write to a disk may take seconds. To be
+/// removed at the end.
+std::filesystem::path memory_of_run(const std::string& partition, const std::string& what);
+/// All files of the run that are kept there.
+std::vector<std::filesystem::path> memories_of_run(const std::string& partition);
 
 /// Whether the scans are those of a robot that speaks ROS.
 bool from_ros(const RunOptions& options);

@@ -60,13 +60,13 @@ ServiceRun::ServiceRun(const RunOptions& options)
 }
 
 ServiceRun::~ServiceRun() {
-  forget_odometry();
+  forget_memories();
 }
 
-void ServiceRun::forget_odometry() const {
+void ServiceRun::forget_memories() const {
   std::error_code ignored;
-  for (const char* file : {"", ".laser"}) {
-    std::filesystem::remove(odometry_memory(partition_).string() + file, ignored);
+  for (const std::filesystem::path& path : memories_of_run(partition_)) {
+    std::filesystem::remove(path, ignored);
   }
 }
 
@@ -104,7 +104,7 @@ void ServiceRun::run() {
 void ServiceRun::tick() {
   if (ended_) return;
   if (next_ && processes_.retired()) {
-    forget_odometry();  // the base of another simulator was switched off
+    forget_memories();  // the base of another simulator was switched off
     start_all(*std::exchange(next_, std::nullopt));
   }
   if (recorder_there_ && processes_.has_ended(kRecorder)) forget_recorder();

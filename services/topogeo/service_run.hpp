@@ -106,7 +106,7 @@ class ServiceRun {
   void restart(const std::string& name, const std::string& description);
   /// The recorder has ended: a gateway that is started again is not to wait for it.
   void forget_recorder();
-  void forget_odometry() const;
+  void forget_memories() const;
 
   const std::string partition_;
   const std::string source_;  // of the scans

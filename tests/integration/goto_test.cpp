@@ -1,7 +1,9 @@
 // topogeo run --sim --goto: all services on emulated devices, sent to a place of a stored map.
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -36,6 +38,47 @@ TEST(Goto, ASimulatedRobotIsSentToAPointOfAStoredMap) {
   EXPECT_LT((truth.back().pose.position_m() - Eigen::Vector2d(3.0, 0.0)).norm(), 0.3);
   EXPECT_FALSE(std::filesystem::is_symlink(out + "/base.port"));
 }
+
+/// Services that are killed together while the robot drives in a finished map. One scan of its
+/// floor does not tell where the robot is: searched for in the whole map, it would stand for good.
+class GotoLives : public testing::TestWithParam<std::vector<std::string>> {};
+
+TEST_P(GotoLives, TheRobotIsFoundWhereItIsAndDrivesOn) {
+  use_udp_only();
+  const Scratch scratch;
+  write_log("floor", scratch / "floor.clf");
+  Program map(scratch, "topogeo",
+              {"map", "--log", scratch / "floor.clf", "--out", scratch / "map"});
+  ASSERT_EQ(map.wait(), 0) << map.err();
+  const std::string out = scratch / "out";
+  Program run(scratch, "topogeo",
+              {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml", "--map",
+               scratch / "map/map.pb", "--goto", "2.5,0", "--out", out, "--workers", "0",
+               "--domain", own_domain()});
+  run.wait_for_error_text("driving [");
+  for (const std::string& name : GetParam()) {
+    const std::vector<pid_t> service = run.services(name);
+    ASSERT_EQ(service.size(), 1U) << name;
+    ::kill(service[0], SIGKILL);
+  }
+  ASSERT_EQ(run.wait(), 0) << run.err();
+  EXPECT_THAT(run.out(), HasSubstr("arrived at 2.5,0"));
+  EXPECT_THAT(run.out(), HasSubstr(" 0 collisions"));
+  for (const std::string& name : GetParam()) {
+    EXPECT_THAT(run.err(), HasSubstr(name + " is at work again after"));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Services, GotoLives,
+                         testing::Values(std::vector<std::string>{"local_mapper"},
+                                         std::vector<std::string>{"localizer"},
+                                         std::vector<std::string>{"local_mapper", "localizer"}),
+                         [](const auto& services) {
+                           std::string name;
+                           for (const std::string& service : services.param) name += service;
+                           std::erase(name, '_');
+                           return name;
+                         });
 
 TEST(Goto, AlongBranchesWhereTheConfigurationSaysSo) {
   use_udp_only();

@@ -45,11 +45,16 @@ TEST(OdometryChain, GoesOnAfterAStopOfAStoredMap) {
   expect_at(chain.add(stop(1, 7, 9, {0.0, 0.0, 0.0}, {0.5, 0.0, 0.0})), {5.5, 6.0, 0.0});
 }
 
-TEST(OdometryChain, AnotherSessionHasItsOwn) {
-  OdometryChain chain;
-  static_cast<void>(chain.add(stop(1, 0, 4, {5.0, 6.0, 0.0}, {})));
-  static_cast<void>(chain.add(stop(1, 1, 9, {0.0, 0.0, 0.0}, {0.5, 0.0, 0.0})));
-  expect_at(chain.add(stop(2, 0, 9, {3.0, 0.0, 0.0}, {})), {3.0, 0.0, 0.0});
+// A local mapper that was started again begins another session; the base counts on or begins anew.
+TEST(OdometryChain, AnotherSessionGoesOnInTheSameEpochOnly) {
+  for (const std::uint64_t epoch : {9U, 7U}) {
+    OdometryChain chain;
+    static_cast<void>(chain.add(stop(1, 0, 4, {5.0, 6.0, 0.0}, {})));
+    static_cast<void>(chain.add(stop(1, 1, 9, {0.0, 0.0, 0.0}, {0.5, 0.0, 0.0})));
+    const double x_m = epoch == 9 ? 8.5 : 3.0;
+    const double y_m = epoch == 9 ? 6.0 : 0.0;
+    expect_at(chain.add(stop(2, 0, epoch, {3.0, 0.0, 0.0}, {})), {x_m, y_m, 0.0});
+  }
 }
 
 }  // namespace
