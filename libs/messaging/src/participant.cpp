@@ -24,6 +24,7 @@
 #include "topogeo/support/log.hpp"
 
 #include "address_filter.hpp"
+#include "fast_dds/discovery_shield.hpp"
 #include "fast_dds/filter_info.hpp"
 #include "fast_dds/fragments.hpp"
 #include "fast_dds/host_sending.hpp"
@@ -165,6 +166,7 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
   keep_filter_info_out();
   send_to_each_host_apart();
   shield_packets();
+  shield_discovery();
   let_timers_end_alone();
   let_readers_end_beside_peers();
   let_readers_leave_beside_sending();

@@ -223,6 +223,7 @@ void StatusPublisher::fill_counts() {
   set_drops("unprotected_packet", strangers.unprotected_packets);
   set_drops("security_error", strangers.security_errors);
   set_drops("unknown_topic", strangers.unknown_topics);
+  set_drops("forged_removal", strangers.forged_removals);
   status_.counters().clear();
   for (const auto& [name, value] : counters_) {
     msg::Counter counter;

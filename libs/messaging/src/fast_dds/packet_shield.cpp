@@ -16,6 +16,9 @@
 #include <span>
 #include <string_view>
 
+#include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
+#include <fastdds/rtps/builtin/data/ReaderProxyData.h>
+#include <fastdds/rtps/builtin/data/WriterProxyData.h>
 #include <fastdds/rtps/common/CDRMessage_t.h>
 #include <fastdds/rtps/common/CacheChange.h>
 #include <fastdds/rtps/common/Locator.h>
@@ -23,6 +26,7 @@
 #include "topogeo/messaging/strangers.hpp"
 #include "topogeo/messaging/topics.hpp"
 
+#include "discovery_shield.hpp"
 #include "library_function.hpp"
 #include "packet_check.hpp"
 #include "parameter_check.hpp"
@@ -52,6 +56,7 @@ std::atomic<std::uint64_t> g_invalid = 0;
 std::atomic<std::uint64_t> g_unprotected = 0;
 std::atomic<std::uint64_t> g_security_errors = 0;
 std::atomic<std::uint64_t> g_unknown_topics = 0;
+std::atomic<std::uint64_t> g_forged_removals = 0;
 thread_local bool t_unprotected = false;
 
 /// Marks what this thread works on.
@@ -80,8 +85,15 @@ bool endpoint_valid(const rtps::CDRMessage_t& message) {
   return true;
 }
 
-/// WriterProxyData and ReaderProxyData alike.
-using ReadEndpoint = bool (*)(void*, rtps::CDRMessage_t*, const void*, bool);
+/// Reads what a peer announces about a reader or a writer.
+template <class Data>
+bool read_endpoint(const char* symbol, Data* endpoint, rtps::CDRMessage_t* message,
+                   const void* network, bool shared_memory) {
+  using Function = bool (*)(Data*, rtps::CDRMessage_t*, const void*, bool);
+  static const auto original = messaging::library_function<Function>(symbol);
+  return endpoint_valid(*message) && original(endpoint, message, network, shared_memory) &&
+         !messaging::refuse_plain_announcement(*endpoint);
+}
 
 }  // namespace
 
@@ -91,15 +103,15 @@ topogeo_process_packet(void* receiver, const rtps::Locator_t& source, const rtps
     "_ZN8eprosima8fastrtps4rtps15MessageReceiver13processCDRMsgERKNS1_9Locator_tES5_"
     "PNS1_12CDRMessage_tE");
 extern "C" bool
-topogeo_read_participant(void* data, rtps::CDRMessage_t* message, bool encapsulated, const void* network, bool shared_memory) __asm__(
+topogeo_read_participant(rtps::ParticipantProxyData* data, rtps::CDRMessage_t* message, bool encapsulated, const void* network, bool shared_memory) __asm__(
     "_ZN8eprosima8fastrtps4rtps20ParticipantProxyData18readFromCDRMessageEPNS1_"
     "12CDRMessage_tEbRKNS1_14NetworkFactoryEb");
 extern "C" bool
-topogeo_read_writer(void* data, rtps::CDRMessage_t* message, const void* network, bool shared_memory) __asm__(
+topogeo_read_writer(rtps::WriterProxyData* data, rtps::CDRMessage_t* message, const void* network, bool shared_memory) __asm__(
     "_ZN8eprosima8fastrtps4rtps15WriterProxyData18readFromCDRMessageEPNS1_12CDRMessage_tERKNS1_"
     "14NetworkFactoryEb");
 extern "C" bool
-topogeo_read_reader(void* data, rtps::CDRMessage_t* message, const void* network, bool shared_memory) __asm__(
+topogeo_read_reader(rtps::ReaderProxyData* data, rtps::CDRMessage_t* message, const void* network, bool shared_memory) __asm__(
     "_ZN8eprosima8fastrtps4rtps15ReaderProxyData18readFromCDRMessageEPNS1_12CDRMessage_tERKNS1_"
     "14NetworkFactoryEb");
 extern "C" void topogeo_take_handshake(void* manager, const rtps::CacheChange_t* change) __asm__(
@@ -122,24 +134,28 @@ extern "C" void topogeo_process_packet(void* receiver, const rtps::Locator_t& so
   original(receiver, source, reception, packet);
 }
 
-extern "C" bool topogeo_read_participant(void* data, rtps::CDRMessage_t* message, bool encapsulated,
+extern "C" bool topogeo_read_participant(rtps::ParticipantProxyData* data,
+                                         rtps::CDRMessage_t* message, bool encapsulated,
                                          const void* network, bool shared_memory) {
-  using Function = bool (*)(void*, rtps::CDRMessage_t*, bool, const void*, bool);
+  using Function =
+      bool (*)(rtps::ParticipantProxyData*, rtps::CDRMessage_t*, bool, const void*, bool);
   static const auto original = messaging::library_function<Function>(kReadParticipant);
-  return parameters_valid(*message) &&
-         original(data, message, encapsulated, network, shared_memory);
+  if (!parameters_valid(*message) ||
+      !original(data, message, encapsulated, network, shared_memory)) {
+    return false;
+  }
+  data->m_leaseDuration = messaging::bounded_lease(data->m_leaseDuration);
+  return true;
 }
 
-extern "C" bool topogeo_read_writer(void* data, rtps::CDRMessage_t* message, const void* network,
-                                    bool shared_memory) {
-  static const auto original = messaging::library_function<ReadEndpoint>(kReadWriter);
-  return endpoint_valid(*message) && original(data, message, network, shared_memory);
+extern "C" bool topogeo_read_writer(rtps::WriterProxyData* data, rtps::CDRMessage_t* message,
+                                    const void* network, bool shared_memory) {
+  return read_endpoint(kReadWriter, data, message, network, shared_memory);
 }
 
-extern "C" bool topogeo_read_reader(void* data, rtps::CDRMessage_t* message, const void* network,
-                                    bool shared_memory) {
-  static const auto original = messaging::library_function<ReadEndpoint>(kReadReader);
-  return endpoint_valid(*message) && original(data, message, network, shared_memory);
+extern "C" bool topogeo_read_reader(rtps::ReaderProxyData* data, rtps::CDRMessage_t* message,
+                                    const void* network, bool shared_memory) {
+  return read_endpoint(kReadReader, data, message, network, shared_memory);
 }
 
 extern "C" void topogeo_take_handshake(void* manager, const rtps::CacheChange_t* change) {
@@ -169,6 +185,10 @@ void count_unprotected_packet() {
   g_unprotected.fetch_add(1, std::memory_order_relaxed);
 }
 
+void count_forged_removals(std::uint64_t count) {
+  g_forged_removals.fetch_add(count, std::memory_order_relaxed);
+}
+
 void count_security_error() {
   g_security_errors.fetch_add(1, std::memory_order_relaxed);
 }
@@ -177,7 +197,8 @@ StrangerCounts stranger_counts() {
   return {.invalid_packets = g_invalid.load(std::memory_order_relaxed),
           .unprotected_packets = g_unprotected.load(std::memory_order_relaxed),
           .security_errors = g_security_errors.load(std::memory_order_relaxed),
-          .unknown_topics = g_unknown_topics.load(std::memory_order_relaxed)};
+          .unknown_topics = g_unknown_topics.load(std::memory_order_relaxed),
+          .forged_removals = g_forged_removals.load(std::memory_order_relaxed)};
 }
 
 }  // namespace topogeo::messaging

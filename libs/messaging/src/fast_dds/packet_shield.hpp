@@ -2,6 +2,8 @@
 // packet before it is read, endpoint_shield.cpp what it asks of a reader or a writer.
 #pragma once
 
+#include <cstdint>
+
 namespace topogeo::messaging {
 
 /// Does nothing; whoever calls it gets the shields linked in.
@@ -13,5 +15,6 @@ void shield_packets();
 void count_invalid_packet();
 void count_unprotected_packet();
 void count_security_error();
+void count_forged_removals(std::uint64_t count);
 
 }  // namespace topogeo::messaging

@@ -17,6 +17,9 @@ struct StrangerCounts {
   std::uint64_t security_errors = 0;
   /// Announcements of readers and writers of topics that topogeo does not have.
   std::uint64_t unknown_topics = 0;
+  /// Messages that said that a peer had left, which then went on sending: from a stranger in its
+  /// name. None changed anything.
+  std::uint64_t forged_removals = 0;
 };
 
 /// Of all participants of this process since its start. From any thread.
