@@ -258,6 +258,39 @@ std::string good_clocks(const DomainFacts& facts) {
   return hosts.empty() ? "no service is there to compare with" : "agree with " + joined(hosts);
 }
 
+// --- strangers
+
+/// What was refused of messages in the name of a peer.
+std::uint64_t forged_messages(const msg::ServiceStatus& status) {
+  std::uint64_t sum = 0;
+  for (const msg::FaultCount& drop : status.drops()) {
+    if (drop.reason() == "forged_removal" || drop.reason() == "unprotected_packet") {
+      sum += drop.count();
+    }
+  }
+  return sum;
+}
+
+Findings check_strangers(const DomainFacts& facts) {
+  std::uint64_t sum = 0;
+  std::set<std::string> services;
+  for (const msg::ServiceStatus& status : facts.services) {
+    if (const std::uint64_t forged = forged_messages(status)) {
+      sum += forged;
+      services.insert(name_of(status));
+    }
+  }
+  if (services.empty()) return {};
+  return {{"", kHint, fmt::format("{} forged messages to {} were refused", sum, joined(services)),
+           "somebody on the network takes the name of a service",
+           "find the sender (tcpdump udp portrange 7400-7999) and keep it off the network; without "
+           "TOPOGEO_SECURITY it can speak as any service"}};
+}
+
+std::string good_strangers(const DomainFacts& /*facts*/) {
+  return "no service has refused a forged message";
+}
+
 constexpr auto kDomainChecks = std::to_array<Check<DomainFacts>>({
     {"units", check_units, good_units},
     {"CPU of services", check_cpu, good_cpu},
@@ -267,6 +300,7 @@ constexpr auto kDomainChecks = std::to_array<Check<DomainFacts>>({
     {"configuration", check_configurations, good_configurations},
     {"QoS", check_qos, good_qos},
     {"clocks", check_clocks, good_clocks},
+    {"strangers", check_strangers, good_strangers},
 });
 
 }  // namespace

@@ -26,6 +26,7 @@ constexpr std::chrono::milliseconds kFarewell{200};
 // Stands for the faults of all further reasons, once the status has no room for another one.
 constexpr std::string_view kOtherFaults = "other";
 constexpr std::size_t kMaxNameSize = 48;  // status.idl
+constexpr std::string_view kForgedRemovals = "forged_removal";
 
 /// Topics where only the last sample of an instance counts: one that was lost has been replaced by
 /// a newer one before it could be sent.
@@ -223,7 +224,11 @@ void StatusPublisher::fill_counts() {
   set_drops("unprotected_packet", strangers.unprotected_packets);
   set_drops("security_error", strangers.security_errors);
   set_drops("unknown_topic", strangers.unknown_topics);
-  set_drops("forged_removal", strangers.forged_removals);
+  const auto forged = drops_.find(kForgedRemovals);
+  if (strangers.forged_removals > (forged == drops_.end() ? 0 : forged->second)) {
+    fault("forged removal", "a stranger reported in the name of a peer that it had left");
+  }
+  set_drops(kForgedRemovals, strangers.forged_removals);
   status_.counters().clear();
   for (const auto& [name, value] : counters_) {
     msg::Counter counter;

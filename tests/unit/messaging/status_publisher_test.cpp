@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 
+#include "fast_dds/packet_shield.hpp"
 #include "fixture.hpp"
 
 namespace topogeo::messaging {
@@ -160,6 +161,17 @@ TEST_F(Status, TrafficDropsAndQueuesAreReported) {
   EXPECT_EQ(seen_.queues()[0].depth(), 3U);
   EXPECT_EQ(seen_.queues()[0].capacity(), 64U);
   EXPECT_EQ(seen_.config_fingerprint(), 77U);
+}
+
+TEST_F(Status, ForgedRemovalsAreAFault) {
+  StatusPublisher status(sender_, loop_, identity_);
+  count_forged_removals(2);
+  ASSERT_TRUE(eventually_seen([](const auto& s) { return s.fault_count() > 0; }));
+  EXPECT_EQ(seen_.faults()[0].reason(), "forged removal");
+  EXPECT_EQ(seen_.faults()[0].count(), 1U) << "once for all since the last status";
+  ASSERT_EQ(seen_.drops().size(), 1U);
+  EXPECT_EQ(seen_.drops()[0].reason(), "forged_removal");
+  EXPECT_EQ(seen_.drops()[0].count(), 2U);
 }
 
 TEST_F(Status, BoundsHold) {

@@ -71,6 +71,13 @@ void set_counter(msg::ServiceStatus& status, const std::string& name, double val
   status.counters().push_back(counter);
 }
 
+void add_drops(msg::ServiceStatus& status, const std::string& reason, std::uint64_t count) {
+  msg::FaultCount drop;
+  messaging::set_text(drop.reason(), reason, "reason");
+  drop.count(count);
+  status.drops().push_back(drop);
+}
+
 void set_clock(DomainFacts& facts, std::int64_t lag_ns) {
   ClockLag clock;
   for (int i = 0; i < 3; ++i) clock.add(0, lag_ns + std::int64_t{i} * 1'000'000);
@@ -128,6 +135,13 @@ const std::vector<DomainFault>& domain_faults() {
        [](DomainFacts& f) { set_clock(f, -3 * kSecond_ns); }},
       {"ClockPoor", "clocks", Severity::kHint, "0.20 s behind",
        [](DomainFacts& f) { set_clock(f, kSecond_ns / 5); }},
+      {"ForgedMessages", "strangers", Severity::kHint,
+       "5 forged messages to localizer on pc, sensor_gateway on robot were refused",
+       [](DomainFacts& f) {
+         add_drops(f.services[0], "forged_removal", 4);
+         add_drops(f.services[1], "unprotected_packet", 1);
+         add_drops(f.services[2], "stuck scan", 7);
+       }},
   };
   return kFaults;
 }
