@@ -1,8 +1,10 @@
 // What happens to a run whose services die or that somebody stops.
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -63,6 +65,27 @@ TEST_F(InterruptionTest, WhatCannotBeStartedAgainIsNamedAndTheRestIsStopped) {
   EXPECT_EQ(run.wait(), 1);
   EXPECT_THAT(run.err(), HasSubstr("simulator was killed by signal 9"));
   EXPECT_THAT(run.services(), IsEmpty());
+}
+
+// Its peers may have forgotten it, and neither side would notice.
+TEST_F(InterruptionTest, AServiceThatWasFrozenIsStartedAgain) {
+  set_longest_freeze(1);
+  Program run(scratch_, "topogeo", words());
+  run.wait_for_progress(20);
+  const auto freeze = [&run] {
+    for (const pid_t pid : run.services("local_mapper")) {
+      ::kill(pid, SIGSTOP);
+      std::this_thread::sleep_for(std::chrono::seconds(2));  // it is frozen for so long
+      ::kill(pid, SIGCONT);
+    }
+  };
+  const auto is_started_again = [&run] {
+    return run.err().find("started again (1)") != std::string::npos;
+  };
+  // It may have begun to watch after it was stopped for the first time.
+  ASSERT_TRUE(wait_for("the local mapper to end", is_started_again, freeze)) << run.err();
+  EXPECT_THAT(run.err(), HasSubstr("stood still for "));
+  EXPECT_EQ(run.wait(), 0) << run.err();
 }
 
 TEST_F(InterruptionTest, CtrlCStopsEverything) {

@@ -146,6 +146,7 @@ TEST_F(PoolFaultsTest, AllWorkersAreKilledAndOthersCome) {
 }
 
 TEST_F(PoolFaultsTest, AWorkerStandsStillUntilItIsTakenToBeGone) {
+  set_longest_freeze(0);
   ServiceRun run(scratch_, drive_, "run");
   const std::vector<Program*> workers = start_workers(run, 2);
   ASSERT_TRUE(run.go_on_until_stop(20));

@@ -227,6 +227,7 @@ TEST_F(PoolTest, ADrainingWorkerGetsNoTasksButIsWaitedFor) {
 }
 
 TEST_F(PoolWithStragglersTest, AWorkerThatSleptIsTakenBack) {
+  set_longest_freeze(0);
   publish_maps();
   Program& sleeper = start_worker("sleeper");
   ASSERT_TRUE(wait_for_workers(1));

@@ -216,6 +216,10 @@ void use_udp_only() {
   ::setenv("TOPOGEO_DDS_PARTICIPANT", "udp_only", 1);
 }
 
+void set_longest_freeze(unsigned seconds) {
+  ::setenv("TOPOGEO_LONGEST_FREEZE_S", std::to_string(seconds).c_str(), 1);
+}
+
 void write_log(const std::string& world, const std::filesystem::path& log,
                const std::filesystem::path& truth, const simulation::SimulationOptions& options,
                const geometry::Pose2& stated) {

@@ -78,6 +78,10 @@ std::string own_domain();
 /// leave in /dev/shm would fill that of a container.
 void use_udp_only();
 
+/// Programs started from here on may stand still for so long; 0: for any time. Without this a
+/// service that a test stops for half a lease ends when it goes on.
+void set_longest_freeze(unsigned seconds);
+
 /// Writes the log of a drive through a world of tests/data, and its true poses if `truth` is named.
 /// The log states `stated` as the mounting of its laser, wherever options have the laser.
 void write_log(const std::string& world, const std::filesystem::path& log,

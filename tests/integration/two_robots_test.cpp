@@ -98,6 +98,7 @@ class TwoRobotsTest : public testing::Test {
 };
 
 TEST_F(TwoRobotsTest, GoOnInOneMapWhenALocalMapperIsKilled) {
+  set_longest_freeze(0);
   const auto store =
       start("map_store", "a", {"--with-robots", "b", "--out", (scratch_ / "out").string()});
   const auto localizer = start("localizer", "a", {"--with-robots", "b"});

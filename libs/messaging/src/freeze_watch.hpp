@@ -8,13 +8,30 @@
 #include <cstdint>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 
 namespace topogeo::messaging {
 
-class FreezeWatch {
+/// The longest time between two moments at which a process ran.
+class Standstill {
  public:
   using Duration = std::chrono::nanoseconds;
+
+  /// `now`, here and below: since any moment, by a clock that goes on while the machine sleeps.
+  explicit Standstill(Duration now) : last_(now) {}
+
+  /// The process runs. Returns the longest time so far.
+  Duration awake(Duration now);
+
+ private:
+  Duration last_;
+  Duration longest_{0};
+};
+
+class FreezeWatch {
+ public:
+  using Duration = Standstill::Duration;
 
   /// Starts a thread that wakes up twice a second.
   explicit FreezeWatch(Duration longest);
@@ -35,5 +52,11 @@ class FreezeWatch {
   bool ends_ = false;
   std::thread thread_;  // last: it uses all of the above
 };
+
+/// How long a participant may stand still: half of the `lease` after which its peers forget it.
+/// `text` in its place, where it is not empty: seconds (> 0), or 0 for any time. Throws
+/// std::runtime_error that names TOPOGEO_LONGEST_FREEZE_S when it is no such number.
+[[nodiscard]] std::chrono::nanoseconds longest_freeze(std::chrono::nanoseconds lease,
+                                                      const std::string& text);
 
 }  // namespace topogeo::messaging

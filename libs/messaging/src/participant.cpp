@@ -197,10 +197,10 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
     add_security(qos, security / options.identity);
     send_whole_certificates(qos, profile == kBetweenSites);
     secured_ = true;
-    const auto& discovery = qos.wire_protocol().builtin.discovery_config;
-    freeze_watch_.emplace(std::chrono::nanoseconds(
-        discovery.leaseDuration.to_ns() - discovery.leaseDuration_announcementperiod.to_ns()));
   }
+  const auto& lease = qos.wire_protocol().builtin.discovery_config.leaseDuration;
+  freeze_watch_.emplace(longest_freeze(std::chrono::nanoseconds(lease.to_ns()),
+                                       environment("TOPOGEO_LONGEST_FREEZE_S")));
   if (options.observe) {
     auto observer = std::make_unique<DiscoveryListener>();
     observer_ = observer.get();
@@ -286,7 +286,7 @@ std::vector<std::string> ParticipantCore::take_refusals() {
 }
 
 std::optional<std::chrono::nanoseconds> ParticipantCore::stood_still() const {
-  return freeze_watch_ ? freeze_watch_->stood_still() : std::nullopt;
+  return freeze_watch_->stood_still();
 }
 
 bool ParticipantCore::take_new_revocations() {

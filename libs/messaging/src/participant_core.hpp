@@ -59,7 +59,7 @@ class ParticipantCore {
  private:
   bool secured_ = false;
   RevocationList revocations_;
-  std::optional<FreezeWatch> freeze_watch_;     // with security
+  std::optional<FreezeWatch> freeze_watch_;     // always, once the profile is known
   std::unique_ptr<ReadWithListener> listener_;  // called while participant_ lives
   RefusalListener* refusals_ = nullptr;         // the listener of one with security
   DiscoveryListener* observer_ = nullptr;       // the listener of one that observes

@@ -93,8 +93,8 @@ void Service::tick() {
     throw std::runtime_error(
         "stood still for " +
         std::to_string(std::chrono::floor<std::chrono::seconds>(*still).count()) +
-        " s: with security its peers do not take it back; it meets them again when it is started "
-        "again");
+        " s: peers may have forgotten it, and it would not notice; it meets them again when it is "
+        "started again");
   }
   for (const std::string& refusal : participant_.take_refusals()) {
     status_->fault("peer refused", refusal);

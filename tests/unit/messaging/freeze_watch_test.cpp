@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
@@ -10,9 +11,21 @@
 namespace topogeo::messaging {
 namespace {
 
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+using std::chrono::seconds;
+
+TEST(Standstill, IsTheLongestTimeBetweenTwoWakes) {
+  Standstill standstill(seconds(1000));
+  EXPECT_EQ(standstill.awake(milliseconds(1000'500)), milliseconds(500));
+  EXPECT_EQ(standstill.awake(milliseconds(1001'100)), milliseconds(600));
+  EXPECT_EQ(standstill.awake(milliseconds(1013'100)), seconds(12));
+  EXPECT_EQ(standstill.awake(milliseconds(1013'600)), seconds(12)) << "of all so far";
+}
+
 TEST(FreezeWatch, NoticesThatItsProcessStoodStillForSoLong) {
   const FreezeWatch patient{std::chrono::hours(1)};
-  const FreezeWatch watch{std::chrono::seconds(1)};
+  const FreezeWatch watch{seconds(1)};
   // It may not have begun to watch when the process is stopped for the first time.
   const auto stand_still = [] {
     // NOLINTNEXTLINE(cert-env33-c,concurrency-mt-unsafe)
@@ -20,8 +33,17 @@ TEST(FreezeWatch, NoticesThatItsProcessStoodStillForSoLong) {
   };
   ASSERT_TRUE(test::wait_for(
       "the watch to notice", [&] { return watch.stood_still().has_value(); }, stand_still));
-  EXPECT_GE(*watch.stood_still(), std::chrono::seconds(1));
+  EXPECT_GE(*watch.stood_still(), seconds(1));
   EXPECT_FALSE(patient.stood_still());
+}
+
+TEST(LongestFreeze, IsHalfTheLeaseOrAsTheEnvironmentSays) {
+  EXPECT_EQ(longest_freeze(seconds(10), ""), seconds(5));
+  EXPECT_EQ(longest_freeze(seconds(10), "30"), seconds(30));
+  EXPECT_EQ(longest_freeze(seconds(10), "0"), nanoseconds::max());
+  for (const char* bad : {"-1", "5 s", "half", "1e3", "99999999"}) {
+    EXPECT_THROW(static_cast<void>(longest_freeze(seconds(10), bad)), std::runtime_error) << bad;
+  }
 }
 
 }  // namespace

@@ -47,9 +47,10 @@ class Participant {
   /// that a peer was denied.
   [[nodiscard]] std::vector<std::string> take_refusals() const;
 
-  /// With security: how long this process stood still, once that was so long that its peers have
-  /// forgotten it. It takes them for authenticated and does not answer when they authenticate it
-  /// anew (Fast DDS 2.9.1), so only another participant meets them again.
+  /// How long this process stood still, once that was half the time after which its peers forget
+  /// it, or TOPOGEO_LONGEST_FREEZE_S of the environment. Some may have forgotten it then, while it
+  /// takes itself for connected with them (Fast DDS 2.9.1): links stay dead without a word, and
+  /// only another participant meets all of them again.
   [[nodiscard]] std::optional<std::chrono::nanoseconds> stood_still() const;
 
   /// The readers and writers of other participants that discovery has announced and that are still
