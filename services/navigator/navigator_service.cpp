@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "topogeo/geometry/reaction_times.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/navigation_conversions.hpp"
@@ -20,7 +21,6 @@ namespace {
 constexpr milliseconds kPeriod{50};        // a scan takes 40 to 100 ms: faster finds nothing new
 constexpr milliseconds kMapPeriod{100};    // tiles of an update come one by one
 constexpr milliseconds kLastCommand{200};  // for the gateway to have the last command
-constexpr double kValid_s = 0.3;           // a base runs on that long when this service dies
 constexpr std::int64_t kStopTail_ns = 1'000'000'000;       // zeros go on that long: one may be lost
 constexpr std::int64_t kStatusPeriod_ns = 200'000'000;     // as often as a person reads it
 constexpr std::int64_t kBlockagesPeriod_ns = 200'000'000;  // a plan takes some milliseconds
@@ -273,7 +273,7 @@ void NavigatorService::send_command(const geometry::Velocity& velocity, std::int
   messaging::set_header(message, service_.robot_id(), now_ns, commands_sent_);
   message.linear_mps(velocity.linear_m_per_s);
   message.angular_radps(velocity.angular_rad_per_s);
-  message.valid_for_s(kValid_s);
+  message.valid_for_s(geometry::kCommandValid_s);
   // One that is not sent is made up for by the next; without any the gateway halts the base.
   if (!commands_.write(message)) {
     service_.status().fault("send blocked", "motion command");

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/navigation/arc_sweep.hpp"
 #include "topogeo/scan/scan.hpp"
 #include "topogeo/support/format.hpp"
 
-#include "arc_sweep.hpp"
 #include "scan_smoothing.hpp"
 
 namespace topogeo::navigation {
@@ -184,9 +184,21 @@ geometry::Velocity CollisionGuard::driven() const {
   return {};
 }
 
-double CollisionGuard::speed_for(double free_m) const {
+// Obstacles are where they were seen, carried on to the newest odometry: the robot has moved since.
+double CollisionGuard::reaction_s(std::int64_t now_ns) const {
+  std::int64_t seen_ns = now_ns;
+  if (last_) {
+    seen_ns = last_->stamp_ns;
+  } else if (scan_ || sonar_) {
+    seen_ns = scan_ ? scan_->stamp_ns : sonar_->stamp_ns;
+  }
+  const double age_s = std::max(0.0, static_cast<double>(now_ns - seen_ns) * kNsToSeconds);
+  return age_s + config_.delay_s + config_.runs_on_s;
+}
+
+double CollisionGuard::speed_for(double free_m, double reaction_s) const {
   const double kept_m = std::max(0.0, config_.margin_m - config_.side_margin_m);
-  return stopping_speed(free_m - kept_m, config_.delay_s, config_.deceleration_m_per_s2);
+  return stopping_speed(free_m - kept_m, reaction_s, config_.deceleration_m_per_s2);
 }
 
 GuardVerdict CollisionGuard::judge(const geometry::Velocity& wanted, std::int64_t now_ns) const {
@@ -236,12 +248,13 @@ GuardVerdict CollisionGuard::judge_by_distances(const geometry::Velocity& wanted
     verdict.message = "no sonar looks backwards";
     return verdict;
   }
-  double speed = speed_for(arc.length_m);
+  const double late_s = reaction_s(now_ns);
+  double speed = speed_for(arc.length_m, late_s);
   const geometry::Velocity now = driven();
   constexpr double kRolls_m_per_s = 0.05;  // slower it stops at once
   if (std::fabs(now.linear_m_per_s) > kRolls_m_per_s &&
       (now.linear_m_per_s > 0.0) == (wanted.linear_m_per_s > 0.0)) {
-    speed = std::min(speed, speed_for(sweep(now, points_m, body_m, kFarthest_m).length_m));
+    speed = std::min(speed, speed_for(sweep(now, points_m, body_m, kFarthest_m).length_m, late_s));
   }
   const double asked = std::fabs(wanted.linear_m_per_s);
   if (speed >= asked) return verdict;

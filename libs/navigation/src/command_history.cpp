@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "arc_sweep.hpp"
+#include "topogeo/navigation/arc_sweep.hpp"
 
 namespace topogeo::navigation {
 namespace {

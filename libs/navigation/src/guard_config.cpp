@@ -13,7 +13,10 @@ void describe(GuardConfig& config, support::ConfigSchema& schema) {
   schema.add("guard.deceleration_m_per_s2", &config.deceleration_m_per_s2, 0.05, 10.0, "m/s2",
              "that the base surely can: its speed is such that it can stop before what it sees");
   schema.add("guard.delay_s", &config.delay_s, 0.0, 2.0, "s",
-             "from a measurement until the base obeys what follows from it");
+             "from its judgement until the base obeys; the age of what it judges by comes on top");
+  schema.add("guard.runs_on_s", &config.runs_on_s, 0.0, 10.0, "s",
+             "that the base runs on when the gateway or its host freezes: at least base.watchdog_s "
+             "of the devices");
   schema.add("guard.oldest_scan_s", &config.oldest_scan_s, 0.05, 10.0, "s",
              "an older scan is none; a laser gives two to ten a second");
   schema.add("guard.needs_scan", &config.needs_scan,

@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
-
-#include "arc_sweep.hpp"
+#include "topogeo/navigation/arc_sweep.hpp"
 
 namespace topogeo::navigation {
 namespace {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "topogeo/navigation/arc_sweep.hpp"
 #include "topogeo/support/format.hpp"
 
-#include "arc_sweep.hpp"
 #include "elapsed.hpp"
 #include "path_distance.hpp"
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "topogeo/geometry/reaction_times.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/service/conversions.hpp"
@@ -20,7 +21,6 @@ namespace {
 
 constexpr std::chrono::milliseconds kHandPeriod{50};        // as the navigator
 constexpr std::chrono::milliseconds kLastHandCommand{200};  // for the gateway to have the last one
-constexpr double kHandValid_s = 0.3;  // a base runs on that long when this service dies
 
 }  // namespace
 
@@ -164,7 +164,7 @@ void HandSender::command(const geometry::Velocity& velocity, std::int64_t stamp_
   messaging::set_header(message, service_.robot_id(), stamp_ns, commands_sent_++);
   message.linear_mps(velocity.linear_m_per_s);
   message.angular_radps(velocity.angular_rad_per_s);
-  message.valid_for_s(kHandValid_s);
+  message.valid_for_s(geometry::kCommandValid_s);
   if (!commands_.write(message)) hooks_.on_blocked("motion command");
   tally_.add("commands");
 }

@@ -1,4 +1,4 @@
-#include "arc_sweep.hpp"
+#include "topogeo/navigation/arc_sweep.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -29,6 +29,12 @@ SonarRound round_at(std::int64_t stamp_ns, const geometry::Pose2& T_robot_sonar,
   return {stamp_ns, {{T_robot_sonar, 0.2, range_m}}};
 }
 
+/// Driven at this speed from what the guard has seen until the base has braked.
+double stopping_m(double speed, double age_s, const GuardConfig& config) {
+  return speed * (age_s + config.delay_s + config.runs_on_s) +
+         speed * speed / (2.0 * config.deceleration_m_per_s2);
+}
+
 TEST(CollisionGuard, NothingNearChangesNothing) {
   const auto verdict = guard_seeing({{0.0, 2.0}}).judge({0.5, 0.1}, kNow_ns);
   EXPECT_EQ(verdict.allowed, (geometry::Velocity{0.5, 0.1}));
@@ -43,12 +49,36 @@ TEST(CollisionGuard, StraightAheadItStopsAtTheMargin) {
   const auto verdict = guard_seeing({{1.0, 0.0}}).judge({2.0, 0.0}, kNow_ns);
   EXPECT_NEAR(verdict.free_m, 1.0 - config.radius_m - config.side_margin_m, 1e-9);
   const double distance_m = 1.0 - config.radius_m - config.margin_m;
-  const double speed = verdict.allowed.linear_m_per_s;
-  EXPECT_NEAR(speed * config.delay_s + speed * speed / (2.0 * config.deceleration_m_per_s2),
-              distance_m, 1e-9);
+  EXPECT_NEAR(stopping_m(verdict.allowed.linear_m_per_s, 0.0, config), distance_m, 1e-9);
   EXPECT_TRUE(verdict.limited);
   ASSERT_TRUE(verdict.contact_m);
   EXPECT_NEAR(verdict.contact_m->x(), 1.0, 1e-9);
+}
+
+TEST(CollisionGuard, CountsTheAgeOfTheOdometry) {
+  const GuardConfig config;
+  CollisionGuard guard = guard_seeing({{1.0, 0.0}});
+  guard.add(OdometrySample{kNow_ns + kSecond_ns / 10, {0.1, 0.0, 0.0}});
+  const auto speed_at = [&](std::int64_t after_ns) {
+    return guard.judge({2.0, 0.0}, kNow_ns + after_ns).allowed.linear_m_per_s;
+  };
+  const double distance_m = 0.9 - config.radius_m - config.margin_m;
+  EXPECT_NEAR(stopping_m(speed_at(kSecond_ns / 10), 0.0, config), distance_m, 1e-9);
+  EXPECT_NEAR(stopping_m(speed_at(kSecond_ns / 2), 0.4, config), distance_m, 1e-9);
+  // Stamps that are ahead of the clock are no time in hand.
+  EXPECT_EQ(speed_at(0), speed_at(kSecond_ns / 10));
+}
+
+TEST(CollisionGuard, CountsTheAgeOfTheScanWithoutOdometry) {
+  const GuardConfig config;
+  CollisionGuard guard(config);
+  ScanPoints scan;
+  scan.stamp_ns = kNow_ns;
+  scan.points_m = {{1.0, 0.0}};
+  guard.add(scan);
+  const auto verdict = guard.judge({2.0, 0.0}, kNow_ns + kSecond_ns / 4);
+  EXPECT_NEAR(stopping_m(verdict.allowed.linear_m_per_s, 0.25, config),
+              1.0 - config.radius_m - config.margin_m, 1e-9);
 }
 
 TEST(CollisionGuard, BeforeAWallNothingButATurnIsAllowed) {
@@ -188,13 +218,11 @@ TEST(CollisionGuard, SettingsOutOfRangeAreRefused) {
   EXPECT_THROW(CollisionGuard{config}, std::invalid_argument);
 }
 
-/// Drives on as allowed for the delay, then brakes: the least distance of the points to the middle,
+/// Drives on as allowed until the base brakes: the least distance of the points to the middle,
 /// in steps of a millimetre.
 double nearest_m(const std::vector<Eigen::Vector2d>& points_m, const geometry::Velocity& allowed,
                  const GuardConfig& config) {
-  const double speed = std::fabs(allowed.linear_m_per_s);
-  const double stop_m =
-      speed * config.delay_s + speed * speed / (2.0 * config.deceleration_m_per_s2);
+  const double stop_m = stopping_m(std::fabs(allowed.linear_m_per_s), 0.0, config);
   const double curvature = allowed.angular_rad_per_s / allowed.linear_m_per_s;
   double least_m = HUGE_VAL;
   double x_m = 0.0;
@@ -219,6 +247,7 @@ TEST(CollisionGuard, WhateverItSeesAndIsToldTheBodyTouchesNothing) {
     GuardConfig config;
     config.margin_m = random.uniform(0.02, 0.2);
     config.delay_s = random.uniform(0.0, 0.5);
+    config.runs_on_s = random.uniform(0.0, 1.0);
     config.deceleration_m_per_s2 = random.uniform(0.2, 1.0);
     std::vector<Eigen::Vector2d> points_m;
     const int count = static_cast<int>(random.uniform(0.0, 40.0));

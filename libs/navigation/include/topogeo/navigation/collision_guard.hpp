@@ -6,8 +6,10 @@
 // The points of the last scan, carried on by odometry, and the echoes of the sonars where the laser
 // sees nothing in their cone are what the body's disc must not touch on the arc that is wanted, nor
 // on the one that the robot is on. From the free distance follows the speed from which it still
-// stops in time. Noise of the laser is smoothed over neighbouring beams by no more than the side
-// margin, so a measured point itself is never touched.
+// stops in time, whatever happens: the age of what it sees, its delay and the time that the base
+// runs on without its gateway count (geometry/reaction_times.hpp). Noise of the laser is smoothed
+// over neighbouring beams by no more than the side margin, so a measured point itself is never
+// touched.
 //
 // A second line are the fields that the laser itself watches, which know nothing of odometry, body
 // or mounting (Thesis, appendix B.1).
@@ -68,7 +70,10 @@ class CollisionGuard {
   /// Adds what is to be kept off, in the robot frame of now.
   void add_drawn(std::vector<Eigen::Vector2d>& points_m) const;
   [[nodiscard]] geometry::Velocity driven() const;
-  [[nodiscard]] double speed_for(double free_m) const;
+  /// s; from what it sees until the base surely brakes.
+  [[nodiscard]] double reaction_s(std::int64_t now_ns) const;
+  /// From which it stops within a free distance.
+  [[nodiscard]] double speed_for(double free_m, double reaction_s) const;
   /// Whether the scan has a point in the sonar's cone, at most so far from it.
   [[nodiscard]] bool laser_sees(const SonarReading& reading, double up_to_m) const;
   /// What the fields of the laser leave of a verdict.

@@ -1,6 +1,8 @@
 // Settings of the collision guard.
 #pragma once
 
+#include "topogeo/geometry/reaction_times.hpp"
+
 namespace topogeo::support {
 class ConfigSchema;
 }
@@ -12,7 +14,8 @@ struct GuardConfig {
   double margin_m = 0.05;
   double side_margin_m = 0.02;
   double deceleration_m_per_s2 = 0.5;
-  double delay_s = 0.25;
+  double delay_s = geometry::kCommandDelay_s;
+  double runs_on_s = geometry::kBaseWatchdog_s;
   double oldest_scan_s = 0.6;
   bool needs_scan = true;
   bool needs_sonar = false;
