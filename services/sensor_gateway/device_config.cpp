@@ -167,8 +167,11 @@ void describe_base_motion(ConfigSchema& schema, DeviceFile::Base& base) {
              "the same for rotation");
   schema.add("base.torque", &base.torque, -1, 255, "",
              "torque limit of the motors; 20 is a good one by one source; -1: left as it is");
-  schema.add("base.watchdog_s", &s.watchdog_s, 0.1, 255.0, "s",
-             "the base stops by itself when no command has reached it for so long");
+  schema.add(
+      "base.watchdog_s", &s.watchdog_s, 0.1, 255.0, "s",
+      "the base stops by itself when nothing has refreshed its watchdog for so long: it runs on "
+      "while the gateway is frozen. More needs the same in guard.runs_on_s of the "
+      "configuration");
   schema.add("base.command_timeout_s", &s.command_timeout_s, 0.05, 0.5, "s",
              "a motion command holds no longer than this");
   schema.add("base.joystick_allowed", &s.joystick_allowed,

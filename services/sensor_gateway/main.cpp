@@ -8,6 +8,7 @@
 #include "topogeo/service/replay_rate.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/support/process_priority.hpp"
 
 #include "device_config.hpp"
 #include "device_gateway.hpp"
@@ -109,6 +110,8 @@ void replay(const service::Setup& setup, const sensor_gateway::GatewayOptions& o
 
 void work_with_devices(const service::Setup& setup, const Options& options) {
   const sensor_gateway::DeviceConfig config = load_devices(options);
+  // A base stops by itself when its gateway has to wait for a CPU.
+  static_cast<void>(support::go_first());
   service::Service service(setup);
   sensor_gateway::DeviceGateway gateway(service, config, options.replay.readers.value_or(0),
                                         options.memory);

@@ -1,12 +1,11 @@
 // A simulated robot: a laser and a base on pseudo-terminals with a world behind them.
 #include <string>
 
-#include <sys/resource.h>
-
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/simulation/random_floors.hpp"
+#include "topogeo/support/process_priority.hpp"
 
 #include "simulator_service.hpp"
 
@@ -81,13 +80,6 @@ void add_options(command_line::Command& app, Arguments& arguments) {
       ->capture_default_str();
 }
 
-/// Real devices do not wait for other programs of the machine. Without the right to go first the
-/// simulator goes with the others.
-void go_first() {
-  constexpr int kNiceness = -10;
-  static_cast<void>(::setpriority(PRIO_PROCESS, 0, kNiceness));
-}
-
 world::World load(const std::filesystem::path& path) {
   try {
     return world::load_world(path);
@@ -110,7 +102,8 @@ int main(int argc, char** argv) {
         if (arguments.sonars == 6) robot.sonars = devices::macondo_sonars();
         if (arguments.sonar_noise == "macondo") robot.sonar = simulation::macondo_sonar_noise();
         const world::World world = load(arguments.world);
-        go_first();
+        // Real devices do not wait for other programs of the machine.
+        static_cast<void>(support::go_first());
         service::Service service(setup);
         const simulator::SimulatorService simulator(service, world, arguments.options);
         service.run();

@@ -37,8 +37,12 @@ class SimulatedDevices {
   /// Lets the world and the devices run until `now_ns` and exchanges bytes with the ports.
   void run_until(std::int64_t now_ns);
 
-  /// So much time passes in which the world stands still; the clocks of the devices go on.
-  void stand_still(std::int64_t duration_ns) { now_ns_ += duration_ns; }
+  /// So much time passes in which the world stands still; the clocks of the devices go on. The base
+  /// did not hear what its host has sent meanwhile: its watchdog waits, too.
+  void stand_still(std::int64_t duration_ns) {
+    now_ns_ += duration_ns;
+    base_.stand_still(duration_ns);
+  }
 
   [[nodiscard]] simulation::SimulatedRobot& robot() { return robot_; }
   [[nodiscard]] simulation::PlsEmulator& laser() { return laser_; }

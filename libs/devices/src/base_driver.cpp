@@ -165,7 +165,7 @@ void BaseDriver::take(const McpEvent& event, std::int64_t now_ns) {
       break;
     case McpEventKind::kWatchdogExpired:
       ++status_.watchdog_expirations;
-      interlocks_.watchdog_expired(link_.running());
+      if (link_.running() && motion_.moves()) interlocks_.watchdog_expired(now_ns);
       stand_again(now_ns);
       upkeep_.refresh(now_ns);
       break;

@@ -1,10 +1,13 @@
 #include "topogeo/devices/base_interlocks.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
 namespace topogeo::devices {
 namespace {
+
+constexpr std::int64_t kNever_ns = std::numeric_limits<std::int64_t>::max();
 
 /// Empty for events that are no fault of a motor.
 std::string_view motor_fault_of(McpEventKind kind) {
@@ -35,19 +38,19 @@ BaseInterlocks::BaseInterlocks(const BaseSettings& settings)
 std::optional<BaseState> BaseInterlocks::state() const {
   if (stopped_) return BaseState::kEmergencyStop;
   if (halted_) return BaseState::kHalted;
-  if (watchdog_expired_) return BaseState::kWatchdogExpired;
+  if (watchdog_until_ns_) return BaseState::kWatchdogExpired;
   if (bump_latched_ || pressed_ != 0) return BaseState::kBumped;
   return std::nullopt;
 }
 
 void BaseInterlocks::motion_taken() {
   motor_fault_ = {};
-  watchdog_expired_ = false;
+  watchdog_until_ns_.reset();
 }
 
 void BaseInterlocks::standing_taken() {
   bump_latched_ = false;
-  watchdog_expired_ = false;
+  watchdog_until_ns_.reset();
 }
 
 bool BaseInterlocks::emergency_stop() {
@@ -81,18 +84,22 @@ bool BaseInterlocks::motor_event(McpEventKind kind) {
 }
 
 void BaseInterlocks::offline() {
-  watchdog_expired_ = false;
+  watchdog_until_ns_.reset();
   bump_latched_ = false;
   motor_fault_ = {};
 }
 
 void BaseInterlocks::tick(std::int64_t now_ns) {
-  if (now_ns >= due_ns()) bump_latched_ = false;
+  if (now_ns >= bump_until_ns()) bump_latched_ = false;
+  if (watchdog_until_ns_ && now_ns >= *watchdog_until_ns_) watchdog_until_ns_.reset();
+}
+
+std::int64_t BaseInterlocks::bump_until_ns() const {
+  return bump_latched_ ? last_motion_command_ns_ + command_timeout_ns_ : kNever_ns;
 }
 
 std::int64_t BaseInterlocks::due_ns() const {
-  return bump_latched_ ? last_motion_command_ns_ + command_timeout_ns_
-                       : std::numeric_limits<std::int64_t>::max();
+  return std::min(bump_until_ns(), watchdog_until_ns_.value_or(kNever_ns));
 }
 
 }  // namespace topogeo::devices

@@ -6,7 +6,8 @@
 namespace topogeo::devices {
 
 McpOrder watchdog_order(const BaseSettings& settings) {
-  const double ticks = std::round(settings.watchdog_s * static_cast<double>(kMcpTicksPerSecond));
+  // Never longer than the guards count.
+  const double ticks = std::floor(settings.watchdog_s * static_cast<double>(kMcpTicksPerSecond));
   return {McpCommand::kWatchdog, static_cast<std::uint32_t>(std::max(1.0, ticks))};
 }
 

@@ -9,8 +9,11 @@
 namespace topogeo::devices {
 namespace {
 
-/// Two refreshes may be lost before the base stops.
-constexpr std::int64_t kRefreshesPerWatchdog = 3;
+/// Four refreshes may be lost before the base stops, or the host be busy for as long.
+constexpr std::int64_t kRefreshesPerWatchdog = 5;
+/// Between two of the settings that are repeated: each takes a tenth of it on a slow line, which
+/// motion commands need more.
+constexpr std::int64_t kRepeatPeriod_ns = 300'000'000;
 /// The accelerations of the two axes, which are repeated like the settings of the start sequence.
 constexpr std::size_t kAccelerations = 2;
 
@@ -26,13 +29,14 @@ BaseUpkeep::BaseUpkeep(const BaseSettings& settings)
 std::optional<McpOrder> BaseUpkeep::next_refresh(std::int64_t now_ns) {
   if (now_ns < refresh_ns_) return std::nullopt;
   refresh_ns_ = now_ns + refresh_period_ns_;
-  repeat_ = true;
+  if (now_ns >= repeat_ns_) repeat_ = true;
   return watchdog_;
 }
 
 std::optional<McpOrder> BaseUpkeep::next(BaseMotion& motion, std::int64_t now_ns) {
   if (std::exchange(acknowledge_, false)) return McpOrder{McpCommand::kAcknowledge, 0};
   if (std::exchange(repeat_, false)) {
+    repeat_ns_ = now_ns + kRepeatPeriod_ns;
     const std::size_t index = repeated_++ % (repeatable_.size() + kAccelerations);
     return index < repeatable_.size() ? repeatable_[index] : motion.repeat_acceleration();
   }

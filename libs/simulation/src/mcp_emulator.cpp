@@ -90,6 +90,12 @@ void McpEmulator::tick(std::int64_t now_ns) {
   }
 }
 
+void McpEmulator::stand_still(std::int64_t duration_ns) {
+  if (watchdog_ns_ != kNever) watchdog_ns_ += duration_ns;
+  if (reporting_.due_ns != kNever) reporting_.due_ns += duration_ns;
+  drive_.stand_still(duration_ns);
+}
+
 std::int64_t McpEmulator::due_ns() const {
   std::int64_t due_ns = std::min(reporting_.due_ns, watchdog_ns_);
   if (on_ && !ready_) due_ns = std::min(due_ns, on_ns_ + settings_.start_up_ns);

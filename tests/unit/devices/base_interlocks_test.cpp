@@ -46,6 +46,21 @@ TEST_F(BaseInterlocksTest, ABumpHoldsAsLongAsTheCommandsThatLedToIt) {
   EXPECT_EQ(interlocks_.due_ns(), std::numeric_limits<std::int64_t>::max());
 }
 
+TEST_F(BaseInterlocksTest, AnExpiryOfTheWatchdogHoldsNothingAndPasses) {
+  interlocks_.watchdog_expired(1'000'000'000);
+  EXPECT_FALSE(interlocks_.engaged());
+  EXPECT_EQ(interlocks_.state(), BaseState::kWatchdogExpired);
+  const std::int64_t end_ns = 1'000'000'000 + BaseInterlocks::kWatchdogShown_ns;
+  EXPECT_EQ(interlocks_.due_ns(), end_ns);
+  interlocks_.tick(end_ns - 1);
+  EXPECT_EQ(interlocks_.state(), BaseState::kWatchdogExpired);
+  interlocks_.tick(end_ns);
+  EXPECT_EQ(interlocks_.state(), std::nullopt);
+  interlocks_.watchdog_expired(end_ns);
+  interlocks_.motion_taken();
+  EXPECT_EQ(interlocks_.state(), std::nullopt);
+}
+
 TEST_F(BaseInterlocksTest, ACommandToStandEndsABumpAndMotionEndsAFault) {
   EXPECT_TRUE(interlocks_.bumpers(kFirstBumper, 0));
   interlocks_.standing_taken();

@@ -85,6 +85,56 @@ TEST_P(BaseSafetyOn, SaysThatTheWatchdogExpired) {
   EXPECT_EQ(all.driver.status().watchdog_expirations, 1U);
 }
 
+/// The gateway gets no CPU for a while: the base must not stop for less than its watchdog allows.
+TEST_P(BaseSafetyOn, ABusyHostLetsTheWatchdogExpireNoSoonerThanItMust) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  for (const std::int64_t busy_ns : {50 * kMs, 100 * kMs, 150 * kMs, 200 * kMs}) {
+    for (int i = 0; i < 20; ++i) {
+      all.drive(0.3, 0.1, 300 * kMs);
+      all.line.freeze_host(true);
+      all.pass(busy_ns);
+      all.line.freeze_host(false);
+    }
+    EXPECT_EQ(all.driver.status().watchdog_expirations, 0U) << busy_ns;
+  }
+}
+
+TEST_P(BaseSafetyOn, AFrozenHostIsTheEndOfTheMotionWithinTheWatchdogsTime) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  all.drive(0.4, 0.0, 3 * kSecond);
+  all.line.freeze_host(true);
+  const std::int64_t frozen_ns = all.line.now_ns();
+  ASSERT_TRUE(all.pass_until(
+      kSecond, [&] { return all.base.mcp.commanded_velocity().linear_m_per_s < 0.399; }));
+  EXPECT_LE(all.line.now_ns() - frozen_ns, 310 * kMs);
+  all.pass(5 * kSecond);
+  EXPECT_TRUE(all.base.stands());
+}
+
+TEST_P(BaseSafetyOn, AfterAFrozenHostItDrivesOnWithFreshCommandsAlone) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  for (int i = 0; i < 10; ++i) {
+    all.drive(0.3, 0.0, 2 * kSecond);
+    all.line.freeze_host(true);
+    all.pass((400 + 150 * i) * kMs);
+    all.line.freeze_host(false);
+    all.pass(kSecond);
+    EXPECT_TRUE(all.base.stands()) << "commands of before hold no more";
+    EXPECT_TRUE(all.driver.status().commands_taken) << base_state_name(all.driver.status().state);
+    all.drive(0.3, 0.0, kSecond);
+    EXPECT_EQ(all.driver.status().state, BaseState::kMoving);
+  }
+  // Without any command the state passes by itself, so that nobody waits for ever.
+  all.line.freeze_host(true);
+  all.pass(400 * kMs);
+  all.line.freeze_host(false);
+  EXPECT_TRUE(
+      all.pass_until(10 * kSecond, [&] { return all.driver.status().state == BaseState::kReady; }));
+}
+
 TEST_P(BaseSafetyOn, TheEmergencyStopHaltsAndTheRobotDoesNotJumpWhenPowerReturns) {
   BaseOnLine all(settings());
   ASSERT_TRUE(all.start());

@@ -16,17 +16,23 @@ class BaseUpkeepTest : public ::testing::Test {
     return upkeep_.next(motion_, now_ns);
   }
 
-  BaseSettings settings_;  // watchdog of 1 s, battery every 10 s
+  static BaseSettings settings() {
+    BaseSettings settings;  // battery every 10 s
+    settings.watchdog_s = 1.0;
+    return settings;
+  }
+
+  BaseSettings settings_ = settings();
   BaseMotion motion_{McpUnits(settings_.calibration), settings_.limits};
   BaseUpkeep upkeep_{settings_};
 };
 
-TEST_F(BaseUpkeepTest, RefreshesTheWatchdogThreeTimesInItsTime) {
+TEST_F(BaseUpkeepTest, RefreshesTheWatchdogFiveTimesInItsTime) {
   upkeep_.set_up(0);
   upkeep_.refresh(0);
   EXPECT_EQ(next(0), (McpOrder{McpCommand::kWatchdog, 256}));
-  EXPECT_FALSE(upkeep_.next_refresh(333'333'332));
-  EXPECT_TRUE(upkeep_.next_refresh(333'333'333));
+  EXPECT_FALSE(upkeep_.next_refresh(199'999'999));
+  EXPECT_TRUE(upkeep_.next_refresh(200'000'000));
 }
 
 TEST_F(BaseUpkeepTest, RepeatsEverySettingInTurn) {
@@ -44,6 +50,27 @@ TEST_F(BaseUpkeepTest, RepeatsEverySettingInTurn) {
   }
   EXPECT_EQ(repeated.count(McpCommand::kTranslateAcceleration), 1U);
   EXPECT_EQ(repeated.count(McpCommand::kRotateAcceleration), 1U);
+}
+
+TEST_F(BaseUpkeepTest, LeavesTheLineToMotionWhereTheWatchdogIsShort) {
+  BaseSettings settings;
+  settings.watchdog_s = 0.1;
+  BaseUpkeep upkeep(settings);
+  upkeep.set_up(1'000'000'000'000);
+  unsigned repeated = 0;
+  for (std::int64_t now_ns = 0; now_ns < 3'000'000'000; now_ns += 20'000'000) {
+    EXPECT_TRUE(upkeep.next_refresh(now_ns));
+    if (upkeep.next(motion_, now_ns)) ++repeated;
+  }
+  EXPECT_EQ(repeated, 10U);
+}
+
+TEST(BaseWatchdog, IsNeverLongerThanTheGuardsCount) {
+  BaseSettings settings;
+  settings.watchdog_s = 0.3;  // 76.8 ticks
+  EXPECT_EQ(watchdog_order(settings), (McpOrder{McpCommand::kWatchdog, 76}));
+  settings.watchdog_s = 0.001;
+  EXPECT_EQ(watchdog_order(settings).argument, 1U) << "0 would switch it off";
 }
 
 TEST_F(BaseUpkeepTest, AcknowledgesOnceAndAsksForTheBatteryNowAndThen) {

@@ -62,6 +62,10 @@ class SimulatedLine {
     settle();
   }
 
+  /// The process of the driver is frozen: it gets no time and no bytes. What was written leaves,
+  /// and what comes waits in the port.
+  void freeze_host(bool frozen) { frozen_ = frozen; }
+
   /// Lets `duration_ns` pass.
   void run_for(std::int64_t duration_ns) {
     run_until(duration_ns, [] { return false; });
@@ -83,7 +87,7 @@ class SimulatedLine {
  private:
   void step(std::int64_t end_ns) {
     std::int64_t next_ns = std::min({end_ns, read_due_ns_, device_.due_ns()});
-    if (plugged_) next_ns = std::min(next_ns, driver_.due_ns());
+    if (plugged_ && !frozen_) next_ns = std::min(next_ns, driver_.due_ns());
     if (written_ns_) next_ns = std::min(next_ns, *written_ns_);
     now_ns_ = std::max(next_ns, now_ns_ + 1);
     if (device_.due_ns() <= now_ns_) device_.tick(now_ns_);
@@ -91,22 +95,27 @@ class SimulatedLine {
       read_due_ns_ = now_ns_ + kReadPeriod_ns;
       read();
     }
-    if (plugged_ && driver_.due_ns() <= now_ns_) driver_.tick(now_ns_);
+    if (plugged_ && !frozen_ && driver_.due_ns() <= now_ns_) driver_.tick(now_ns_);
     settle();
   }
 
   void read() {
+    if (frozen_) return;
     std::vector<std::uint8_t> bytes = device_.take_output(host_, now_ns_);
     if (!plugged_) return;
     if (filter_) filter_(bytes);
     if (!bytes.empty()) driver_.receive(bytes, now_ns_);
   }
 
-  /// Takes the driver's orders and carries out what of them is possible by now.
-  void settle() {
+  void take_orders() {
     for (LineOrder& order : driver_.take_orders()) {
       if (plugged_) orders_.push_back(std::move(order));
     }
+  }
+
+  /// Takes the driver's orders and carries out what of them is possible by now.
+  void settle() {
+    if (!frozen_) take_orders();
     while (!orders_.empty()) {
       LineOrder& order = orders_.front();
       if (!written_ns_) {
@@ -135,6 +144,7 @@ class SimulatedLine {
   std::int64_t now_ns_;
   std::int64_t read_due_ns_;
   bool plugged_ = false;
+  bool frozen_ = false;
   LineSettings host_;
   std::deque<LineOrder> orders_;
   std::optional<std::int64_t> written_ns_;  ///< when the bytes of the first order have left

@@ -15,6 +15,7 @@ namespace topogeo::simulator {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
@@ -81,6 +82,19 @@ TEST_F(SimulatedDevicesTest, WhereTheWorldStandsStillTheClockOfTheBaseGoesOn) {
   run_for(0.02);
   EXPECT_THAT(base_.read(), HasSubstr("CL 7"));
   EXPECT_GT(path_m(), driven_m) << "and then it drives on";
+}
+
+TEST_F(SimulatedDevicesTest, WhereTheWorldStandsStillTheWatchdogOfTheBaseWaits) {
+  devices_.run_until(kReady_ns);
+  base_.write("HD\rWD 4c\r");  // 0.3 s
+  base_.write(kDrive);
+  run_for(0.1);
+  devices_.stand_still(2 * kSecond_ns);
+  base_.write("WD 4c\r");  // its host has sent it meanwhile
+  run_for(0.25);
+  EXPECT_THAT(base_.read(), Not(HasSubstr("WDT")));
+  run_for(0.1);
+  EXPECT_THAT(base_.read(), HasSubstr("WDT"));
 }
 
 TEST_F(SimulatedDevicesTest, AtAnotherRateNothingIsUnderstood) {

@@ -35,8 +35,11 @@ class BaseInterlocks {
   /// An operator releases halt and emergency stop.
   void release();
 
-  /// The base stopped by itself; `running`: while it was driven.
-  void watchdog_expired(bool running) { watchdog_expired_ = running; }
+  /// The base stopped by itself while it was driven. That is no emergency stop: the state holds
+  /// until the next command, or for kWatchdogShown_ns where nobody commands.
+  void watchdog_expired(std::int64_t now_ns) { watchdog_until_ns_ = now_ns + kWatchdogShown_ns; }
+  /// Long enough for people to read it.
+  static constexpr std::int64_t kWatchdogShown_ns = 5'000'000'000;
   /// Whether the base moves by joystick; true when that has begun.
   bool joystick(bool moves);
   /// Bumpers of a report or an event, 0 where pressed. True if one more is pressed than before:
@@ -57,10 +60,12 @@ class BaseInterlocks {
   [[nodiscard]] std::int64_t due_ns() const;
 
  private:
+  [[nodiscard]] std::int64_t bump_until_ns() const;
+
   std::int64_t command_timeout_ns_;
   bool stopped_ = false;
   bool halted_ = false;
-  bool watchdog_expired_ = false;
+  std::optional<std::int64_t> watchdog_until_ns_{};
   bool bump_latched_ = false;
   bool joystick_ = false;
   std::uint16_t pressed_ = 0;

@@ -7,6 +7,7 @@
 #include "topogeo/devices/mcp_binary.hpp"
 #include "topogeo/devices/mcp_units.hpp"
 #include "topogeo/devices/serial_driver.hpp"
+#include "topogeo/geometry/reaction_times.hpp"
 
 namespace topogeo::devices {
 
@@ -36,9 +37,10 @@ struct BaseSettings {
   double report_period_s = 0.0;
   McpChecksum checksum = McpChecksum::kLearn;
 
-  /// The base stops by itself when no command has reached it for so long; refreshed three times as
-  /// often. (0, 255]; whether it halts or goes limp then is not confirmed on hardware.
-  double watchdog_s = 1.0;
+  /// The base stops by itself when nothing has refreshed its watchdog for so long; refreshed five
+  /// times as often. (0, 255]; whether it halts or goes limp then is not confirmed on hardware.
+  /// Guards count on it (geometry/reaction_times.hpp).
+  double watchdog_s = geometry::kBaseWatchdog_s;
   /// A motion command holds no longer than this. (0, 0.5]
   double command_timeout_s = 0.5;
   /// A base that gives no usable report for so long is offline; never less than four periods.

@@ -18,7 +18,7 @@ enum class BaseState : std::uint8_t {
   kStarting,         ///< is being set up
   kEmergencyStop,    ///< motion was commanded and the motors have no power; until reset_stop()
   kHalted,           ///< by halt(); until reset_stop()
-  kWatchdogExpired,  ///< the base has stopped by itself; until the next motion command
+  kWatchdogExpired,  ///< the base has stopped by itself; until the next motion command, at most 5 s
   kBumped,           ///< a bumper is pressed, or was and the commands that led to it go on
   kJoystick,         ///< moves without a command
   kMotorsOff         ///< the motors are limp, or one of them has a fault

@@ -25,8 +25,8 @@ class BaseUpkeep {
 
   /// The watchdog if it is due; it goes before motion commands.
   std::optional<McpOrder> next_refresh(std::int64_t now_ns);
-  /// The next of the rest that is due. After each refresh one of the settings is repeated,
-  /// accelerations by `motion`.
+  /// The next of the rest that is due. After a refresh one of the settings is repeated, at most
+  /// three in a second; accelerations by `motion`.
   std::optional<McpOrder> next(BaseMotion& motion, std::int64_t now_ns);
   [[nodiscard]] std::int64_t due_ns() const;
 
@@ -39,6 +39,7 @@ class BaseUpkeep {
   std::int64_t battery_ns_ = 0;  // when the battery is due
   bool acknowledge_ = false;
   bool repeat_ = false;
+  std::int64_t repeat_ns_ = 0;  // when the next setting may be repeated
   unsigned repeated_ = 0;
 };
 

@@ -32,6 +32,8 @@ class McpDrive {
 
   /// Lets time pass until `now_ns`.
   void advance(std::int64_t now_ns);
+  /// So much time has passed without anything happening.
+  void stand_still(std::int64_t duration_ns) { advanced_ns_ += duration_ns; }
   /// What the encoders of the wheels saw in the last `time_s`: forward and counter-clockwise.
   void moved(double forward_m, double turn_rad, double time_s);
 

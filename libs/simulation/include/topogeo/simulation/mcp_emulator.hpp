@@ -58,6 +58,10 @@ class McpEmulator final : public SerialDevice {
   [[nodiscard]] std::vector<std::uint8_t> take_output(const devices::LineSettings& host,
                                                       std::int64_t now_ns) override;
 
+  /// Its clock has gone on by so much while it did nothing and nothing was done to it: its watchdog
+  /// and its reports wait for as long. To be called before the next tick.
+  void stand_still(std::int64_t duration_ns);
+
   // The world's side.
   /// How its motors turn the wheels since the last tick; robot frame.
   [[nodiscard]] geometry::Velocity commanded_velocity() const {
