@@ -68,8 +68,16 @@ BaseChannel::BaseChannel(service::Service& service, const DeviceConfig& config,
       line_(service.loop(), driver_, PortOptions{config.base_port},
             [this](std::int64_t now_ns) { after_driver(now_ns); }) {
   if (remembered_) driver_.resume_odometry(remembered_->state);
+  if (!config.laser_port.empty()) {
+    guard_.emplace(service.setup().config.config.navigator.guard, config.base.watchdog_s);
+    driver_.guard_velocities([this](const devices::BaseVelocity& wanted,
+                                    std::int64_t now_ns) { return guarded(wanted, now_ns); },
+                             navigation::LastGuard::kPeriod_ns);
+  }
   service.subscribe<msg::MotionCommand>(
-      [this](const msg::MotionCommand& command) { on_command(command); });
+      [this](const msg::MotionCommand& command, const messaging::SampleInfo& info) {
+        on_command(command, info);
+      });
   service.subscribe<msg::BaseCommand>(
       [this](const msg::BaseCommand& command) { on_command(command); });
   timer_ = service.loop().add_timer(kStatusPeriod, [this] { publish_status(); });
@@ -113,13 +121,48 @@ void BaseChannel::after_driver(std::int64_t) {
     } else {
       service_.status().fault("send blocked", "odometry");
     }
-    hooks_.on_odometry(
-        {sample.stamp_ns, sample.T_odom_robot, sample.linear_mps, sample.angular_radps});
+    const geometry::OdometrySample odometry{sample.stamp_ns, sample.T_odom_robot, sample.linear_mps,
+                                            sample.angular_radps};
+    if (guard_) guard_->add(odometry);
+    hooks_.on_odometry(odometry);
   }
   if (driver_.status().state != published_state_ || ready() != published_ready_) publish_status();
 }
 
-void BaseChannel::on_command(const msg::MotionCommand& command) {
+void BaseChannel::see(const navigation::ScanPoints& scan) {
+  if (guard_) guard_->add(scan);
+}
+
+devices::BaseVelocity BaseChannel::guarded(const devices::BaseVelocity& wanted,
+                                           std::int64_t now_ns) {
+  using Verdict = navigation::LastGuard::Verdict;
+  const navigation::LastGuard::Judgement judgement = guard_->judge(
+      {wanted.linear_mps, wanted.angular_radps}, driver_.limits().linear_mps2, now_ns);
+  const bool stops =
+      judgement.verdict == Verdict::kObstacle || judgement.verdict == Verdict::kBlind;
+  if (stops && judgement.verdict != verdict_) {
+    ++guard_stops_;
+    spdlog::warn("motion is commanded {}: the base gets none", judgement.verdict == Verdict::kBlind
+                                                                   ? "without a fresh scan"
+                                                                   : "into what the laser sees");
+  }
+  verdict_ = judgement.verdict;
+  return {judgement.allowed.linear_m_per_s, judgement.allowed.angular_rad_per_s};
+}
+
+std::optional<std::int64_t> BaseChannel::age_of(const msg::MotionCommand& command,
+                                                const messaging::SampleInfo& info,
+                                                std::int64_t now_ns) {
+  const std::optional<std::int64_t> age_ns =
+      ages_.age_ns(info.writer, command.stamp_ns(), now_ns, time_.stamp_ns(now_ns));
+  // To stand is never refused.
+  if (command.linear_mps() == 0.0 && command.angular_radps() == 0.0) return 0;
+  if (age_ns && *age_ns <= CommandAges::kOldest_ns) return age_ns;
+  service_.status().add_drops(age_ns ? "old command" : "command of unknown age");
+  return std::nullopt;
+}
+
+void BaseChannel::on_command(const msg::MotionCommand& command, const messaging::SampleInfo& info) {
   const double valid_s = std::min(command.valid_for_s(), kLongestCommand_s);
   if (!std::isfinite(command.linear_mps()) || !std::isfinite(command.angular_radps()) ||
       !(valid_s > 0.0)) {
@@ -128,8 +171,13 @@ void BaseChannel::on_command(const msg::MotionCommand& command) {
                                 std::to_string(command.valid_for_s()) + " s");
   }
   const std::int64_t now_ns = line_.now_ns();
+  const std::optional<std::int64_t> age_ns = age_of(command, info, now_ns);
+  if (!age_ns) {
+    ++refused_;
+    return;
+  }
   const bool taken = driver_.command(command.linear_mps(), command.angular_radps(),
-                                     now_ns + std::llround(valid_s * 1e9), now_ns);
+                                     now_ns - *age_ns + std::llround(valid_s * 1e9), now_ns);
   ++(taken ? commands_ : refused_);
   line_.carry_out();
   after_driver(now_ns);
@@ -199,6 +247,7 @@ void BaseChannel::count() {
   set("odometry_sent", odometry_sent_);
   set("motion_commands", commands_);
   set("motion_commands_refused", refused_);
+  set("last_guard_stops", guard_stops_);
   set("base_port_opened", line_.statistics().opened);
   set("base_starts", base.starts);
   set("base_restarts", base.restarts);

@@ -11,8 +11,10 @@
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/motion.h"
 #include "topogeo/msg/sensor.h"
+#include "topogeo/navigation/last_guard.hpp"
 #include "topogeo/service/service.hpp"
 
+#include "command_ages.hpp"
 #include "device_config.hpp"
 #include "host_time.hpp"
 #include "odometry_memory.hpp"
@@ -39,6 +41,10 @@ class BaseChannel {
   /// Halts the base, unless stop() has done it.
   ~BaseChannel();
 
+  /// What the laser sees, stamped by the steady clock: the base stops before it, whatever is
+  /// commanded.
+  void see(const navigation::ScanPoints& scan);
+
   /// Whether it takes motion commands.
   [[nodiscard]] bool ready() const { return driver_.status().commands_taken; }
   /// For people: "ready", or the state and why.
@@ -60,7 +66,12 @@ class BaseChannel {
   void after_driver(std::int64_t now_ns);
   /// Whether the odometry goes on or begins, once it is known.
   void begin_epoch(std::int64_t stamp_ns);
-  void on_command(const msg::MotionCommand& command);
+  void on_command(const msg::MotionCommand& command, const messaging::SampleInfo& info);
+  /// Nothing, and counted, for one that is old or may be.
+  std::optional<std::int64_t> age_of(const msg::MotionCommand& command,
+                                     const messaging::SampleInfo& info, std::int64_t now_ns);
+  [[nodiscard]] devices::BaseVelocity guarded(const devices::BaseVelocity& wanted,
+                                              std::int64_t now_ns);
   void on_command(const msg::BaseCommand& command);
   void publish_status();
 
@@ -70,6 +81,10 @@ class BaseChannel {
   Hooks hooks_;
   std::optional<std::uint64_t> odometry_epoch_;
   devices::BaseDriver driver_;
+  std::optional<navigation::LastGuard> guard_;  ///< with a laser
+  navigation::LastGuard::Verdict verdict_ = navigation::LastGuard::Verdict::kAsWanted;
+  std::uint64_t guard_stops_ = 0;
+  CommandAges ages_;
   messaging::Writer<msg::Odometry> odometry_;
   messaging::Writer<msg::BaseStatus> statuses_;
   std::uint64_t odometry_sent_ = 0;

@@ -9,6 +9,8 @@
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/service/navigation_conversions.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/support/log.hpp"
 #include "topogeo/support/random.hpp"
 
@@ -59,12 +61,15 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
       remember();
     };
     base_.emplace(service_, config, time_, remembered, std::move(hooks));
+    compare_watchdog(config.base.watchdog_s);
   }
   if (!config.laser_port.empty()) {
     const std::filesystem::path laser_memory =
         memory.empty() ? memory : std::filesystem::path(memory.string() + ".laser");
-    laser_.emplace(service_, config, time_, gate_, laser_memory,
-                   [this](std::int64_t arrival_ns) { release(arrival_ns); });
+    laser_.emplace(
+        service_, config, time_, gate_, laser_memory,
+        [this](const devices::PlsScan& scan) { show_base(scan); },
+        [this](std::int64_t arrival_ns) { release(arrival_ns); });
   }
   if (config.body_sensors) {
     body_sensors_ = std::make_unique<devices::MspBodySensors>();
@@ -87,6 +92,17 @@ DeviceGateway::~DeviceGateway() {
   service_.loop().cancel_timer(release_timer_);
 }
 
+void DeviceGateway::show_base(const devices::PlsScan& scan) {
+  if (!base_) return;
+  scan::Scan seen;
+  seen.stamp_ns = scan.stamp_ns;
+  seen.angle_min_rad = scan.angle_min_rad;
+  seen.angle_step_rad = scan.angle_step_rad;
+  seen.ranges_m = scan.ranges_m;
+  base_->see(
+      service::to_scan_points(seen, service_.setup().config.config.local_mapper.T_robot_laser));
+}
+
 void DeviceGateway::release(std::int64_t now_ns) {
   for (const ScanGate::Leaving& leaving : gate_.take(now_ns)) {
     if (!publish(leaving.scan)) continue;
@@ -100,6 +116,14 @@ void DeviceGateway::release(std::int64_t now_ns) {
   release_timer_ = service_.loop().call_after(
       std::chrono::nanoseconds(std::max<std::int64_t>(0, gate_.due_ns() - now_ns)),
       [this] { release(steady_now_ns()); });
+}
+
+void DeviceGateway::compare_watchdog(double watchdog_s) {
+  const double counted_s = service_.setup().config.config.navigator.guard.runs_on_s;
+  if (watchdog_s <= counted_s) return;
+  service_.status().fault(
+      "watchdog longer than the guards count",
+      fmt::format("base.watchdog_s is {:g} s, guard.runs_on_s {:g} s", watchdog_s, counted_s));
 }
 
 void DeviceGateway::remember() {

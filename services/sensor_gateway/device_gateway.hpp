@@ -44,6 +44,10 @@ class DeviceGateway {
 
  private:
   void remember();
+  /// A base that runs on for longer than guards count is a fault.
+  void compare_watchdog(double watchdog_s);
+  /// What the laser sees, at once: the base stops before it.
+  void show_base(const devices::PlsScan& scan);
   /// Publishes what can leave by now.
   void release(std::int64_t now_ns);
   /// False, and a fault, when it cannot be sent.

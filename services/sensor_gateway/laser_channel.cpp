@@ -58,11 +58,13 @@ std::string_view name(msg::LaserState state) {
 LaserChannel::LaserChannel(service::Service& service, const DeviceConfig& config,
                            const HostTime& time, ScanGate& gate,
                            const std::filesystem::path& memory,
+                           std::function<void(const devices::PlsScan&)> on_scan,
                            std::function<void(std::int64_t)> on_scans)
     : service_(service),
       time_(time),
       gate_(gate),
       memory_(memory),
+      on_scan_(std::move(on_scan)),
       on_scans_(std::move(on_scans)),
       driver_(config.laser),
       statuses_(service.advertise<msg::LaserStatus>()),
@@ -84,6 +86,7 @@ void LaserChannel::after_driver(std::int64_t now_ns) {
     warning_field_ = scan.warning_field;
     protective_field_ = scan.protective_field;
     recent_ns_.push_back(now_ns);
+    on_scan_(scan);
     gate_.add(std::move(scan), now_ns);
   }
   if (!scans.empty()) {

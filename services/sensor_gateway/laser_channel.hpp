@@ -24,10 +24,11 @@ namespace topogeo::sensor_gateway {
 /// Lives in the loop of its service.
 class LaserChannel {
  public:
-  /// `gate` gets the scans; then `on_scans` is called. In the file `memory` (empty: none) it keeps
-  /// at which rate the laser sends.
+  /// `on_scan` gets each scan as soon as it comes, and `gate`; then `on_scans` is called. In the
+  /// file `memory` (empty: none) it keeps at which rate the laser sends.
   LaserChannel(service::Service& service, const DeviceConfig& config, const HostTime& time,
                ScanGate& gate, const std::filesystem::path& memory,
+               std::function<void(const devices::PlsScan&)> on_scan,
                std::function<void(std::int64_t now_ns)> on_scans);
   LaserChannel(const LaserChannel&) = delete;
   LaserChannel& operator=(const LaserChannel&) = delete;
@@ -51,6 +52,7 @@ class LaserChannel {
   const HostTime& time_;
   ScanGate& gate_;
   LaserMemory memory_;
+  std::function<void(const devices::PlsScan&)> on_scan_;
   std::function<void(std::int64_t)> on_scans_;
   devices::PlsDriver driver_;
   messaging::Writer<msg::LaserStatus> statuses_;

@@ -4,6 +4,7 @@
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/topics.hpp"
+#include "topogeo/support/host.hpp"
 
 #include "join.hpp"
 
@@ -82,7 +83,7 @@ void GatewayOnDevices::start(std::size_t scans) {
 
 void GatewayOnDevices::command(double linear_mps, double angular_radps) {
   msg::MotionCommand message;
-  messaging::set_header(message, "robot", 0, commands_++);
+  messaging::set_header(message, "robot", support::wall_clock_ns(), commands_++);
   message.linear_mps(linear_mps);
   message.angular_radps(angular_radps);
   message.valid_for_s(0.5);

@@ -77,6 +77,7 @@ void BaseDriver::tick(std::int64_t now_ns) {
   if (term_.expired(now_ns)) stand(now_ns);
   interlocks_.tick(now_ns);
   follow(link_.tick(now_ns), now_ns);
+  if (guard_ && term_.velocity_holds() && now_ns >= judge_ns_) judge_again(now_ns);
   idle_ = !link_.closed() && now_ns >= writer_.free_ns() && !write_next(now_ns);
   update_status();
 }
@@ -84,6 +85,7 @@ void BaseDriver::tick(std::int64_t now_ns) {
 std::int64_t BaseDriver::due_ns() const {
   if (link_.closed()) return link_.due_ns();
   std::int64_t due_ns = std::min({term_.due_ns(), interlocks_.due_ns(), link_.due_ns()});
+  if (guard_ && term_.velocity_holds()) due_ns = std::min(due_ns, judge_ns_);
   if (!link_.running()) return due_ns;
   // More may have to be written whenever the line is free again: motion has no time of its own.
   const std::int64_t next_ns =
@@ -225,9 +227,27 @@ bool BaseDriver::command(double linear_mps, double angular_radps, std::int64_t v
     interlocks_.standing_taken();
     term_.clear();
   }
-  motion_.want_velocity({linear_mps, angular_radps});
+  wanted_ = {linear_mps, angular_radps};
+  motion_.want_velocity(guarded(now_ns));
   aim_changed(now_ns);
   return true;
+}
+
+void BaseDriver::guard_velocities(VelocityGuard guard, std::int64_t period_ns) {
+  guard_ = std::move(guard);
+  judge_period_ns_ = period_ns;
+}
+
+/// What of the wanted velocity the guard allows now.
+BaseVelocity BaseDriver::guarded(std::int64_t now_ns) {
+  if (!guard_) return wanted_;
+  judge_ns_ = now_ns + judge_period_ns_;
+  return guard_(wanted_, now_ns);
+}
+
+void BaseDriver::judge_again(std::int64_t now_ns) {
+  motion_.want_velocity(guarded(now_ns));
+  monitor_.aim_at(motion_.aim(), motion_.limits(), now_ns);
 }
 
 bool BaseDriver::advance(double distance_m, std::int64_t valid_until_ns, std::int64_t now_ns) {
@@ -287,7 +307,7 @@ void BaseDriver::set_limits(const BaseLimits& limits, std::int64_t now_ns) {
                       limited("angular_radps", limits.angular_radps, most.angular_radps),
                       limited("linear_mps2", limits.linear_mps2, most.linear_mps2),
                       limited("angular_radps2", limits.angular_radps2, most.angular_radps2)});
-  if (term_.velocity_holds()) motion_.want_velocity(motion_.aim());
+  if (term_.velocity_holds()) motion_.want_velocity(guarded(now_ns));
   aim_changed(now_ns);
 }
 

@@ -45,6 +45,8 @@ constexpr auto kCounterMetrics = std::to_array<CounterMetric>({
      "result=taken"},
     {"motion_commands_refused", "topogeo_motion_commands_total", kTotal,
      "motion commands of clients", "result=refused"},
+    {"last_guard_stops", "topogeo_last_guard_stops_total", kTotal,
+     "times the gateway stopped a motion that its programs commanded"},
     {"base_starts", "topogeo_base_starts_total", kTotal, "times the base was started"},
     {"base_restarts", "topogeo_base_restarts_total", kTotal, "times the base restarted by itself"},
     {"base_watchdog_expirations", "topogeo_base_watchdog_expirations_total", kTotal,

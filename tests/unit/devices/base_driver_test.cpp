@@ -9,6 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "topogeo/devices/base_start.hpp"
+
 #include "base_lines.hpp"
 
 namespace topogeo::devices {
@@ -28,7 +30,7 @@ TEST_P(BaseDriverOn, StartsTheBaseUp) {
   ASSERT_TRUE(all.start(4 * kSecond));
   const auto& orders = all.base.mcp.orders();
   EXPECT_THAT(orders, Contains(McpOrder{McpCommand::kJoystickOff, 1}));
-  EXPECT_THAT(orders, Contains(McpOrder{McpCommand::kWatchdog, 256}));
+  EXPECT_THAT(orders, Contains(watchdog_order(settings())));
   EXPECT_EQ(all.base.mcp.binary(), GetParam().dialect == BaseDialect::kBinary);
   EXPECT_TRUE(all.base.mcp.binary() || !all.base.mcp.echoes());
   const auto position = [&](McpCommand command) {

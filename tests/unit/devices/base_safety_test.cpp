@@ -72,7 +72,11 @@ TEST_P(BaseSafetyOn, SaysThatTheWatchdogExpired) {
     const McpPacket packet = binary_packet(order);
     bytes.assign(packet.begin(), packet.end());
   }
-  all.base.mcp.receive(bytes, settings().line, all.line.now_ns());
+  // The driver may just refresh its own.
+  while (all.driver.status().watchdog_expirations == 0) {
+    all.base.mcp.receive(bytes, settings().line, all.line.now_ns());
+    all.pass(50 * kMs);
+  }
   ASSERT_TRUE(all.pass_until(
       kSecond, [&] { return all.driver.status().state == BaseState::kWatchdogExpired; }));
   EXPECT_NE(all.driver.status().reason, "");
@@ -250,6 +254,48 @@ TEST_P(BaseSafetyOn, AHaltIsOverWhenBothAxesStand) {
   EXPECT_TRUE(all.base.stands());
   EXPECT_THAT(all.base.mcp.orders(), Contains(McpOrder{McpCommand::kTranslateHalt, 0}));
   EXPECT_THAT(all.base.mcp.orders(), Contains(McpOrder{McpCommand::kRotateHalt, 0}));
+}
+
+TEST_P(BaseSafetyOn, AGuardHasTheLastWordOnVelocities) {
+  BaseOnLine all(settings());
+  double share = 1.0;
+  const auto guard = [&share](const BaseVelocity& wanted, std::int64_t) {
+    return BaseVelocity{share * wanted.linear_mps, share * wanted.angular_radps};
+  };
+  all.driver.guard_velocities(guard, 50 * kMs);
+  ASSERT_TRUE(all.start());
+  const auto speed = [&] { return all.base.mcp.commanded_velocity().linear_m_per_s; };
+  all.drive(0.4, 0.2, 2 * kSecond);
+  EXPECT_NEAR(speed(), 0.4, 1e-3);
+  share = 0.5;
+  all.drive(0.4, 0.2, 2 * kSecond);
+  EXPECT_NEAR(speed(), 0.2, 1e-3);
+  // While a command holds it is judged again and again.
+  (void)all.driver.command(0.4, 0.0, all.line.now_ns() + kSecond / 2, all.line.now_ns());
+  share = 0.0;
+  all.pass(150 * kMs);
+  EXPECT_LT(speed(), 0.17);
+  EXPECT_TRUE(all.driver.status().commands_taken);
+  share = 1.0;
+  all.pass(300 * kMs);
+  EXPECT_GT(speed(), 0.17) << "it drives on when the guard lets it";
+  all.pass(2 * kSecond);
+  EXPECT_TRUE(all.base.stands()) << "but no longer than the command holds";
+  all.drive(0.4, 0.0, kSecond);
+  EXPECT_EQ(all.driver.status().state, BaseState::kMoving);
+}
+
+TEST_P(BaseSafetyOn, AGuardThatStopsTheBaseLeavesTheBumpToWhoeverCommands) {
+  BaseOnLine all(settings());
+  all.driver.guard_velocities([](const BaseVelocity&, std::int64_t) { return BaseVelocity{}; },
+                              50 * kMs);
+  ASSERT_TRUE(all.start());
+  all.base.mcp.press_bumpers(0x0008, all.line.now_ns());
+  all.drive(0.3, 0.0, 2 * kSecond);
+  EXPECT_EQ(all.driver.status().state, BaseState::kBumped);
+  EXPECT_FALSE(all.driver.status().commands_taken);
+  all.drive(0.0, 0.0, kSecond);
+  EXPECT_TRUE(all.driver.status().commands_taken);
 }
 
 TEST_P(BaseSafetyOn, AMotorFaultIsSaidAndAcknowledged) {

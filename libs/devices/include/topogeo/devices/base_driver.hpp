@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -44,6 +45,11 @@ class BaseDriver final : public SerialDriver {
   /// std::invalid_argument for velocities that are not finite.
   bool command(double linear_mps, double angular_radps, std::int64_t valid_until_ns,
                std::int64_t now_ns);
+  /// The last word on velocities: what of a wanted one the base gets now. Asked for each command,
+  /// and every `period_ns` (> 0) while one holds. Relative moves do not pass it.
+  using VelocityGuard =
+      std::function<BaseVelocity(const BaseVelocity& wanted, std::int64_t now_ns)>;
+  void guard_velocities(VelocityGuard guard, std::int64_t period_ns);
   /// Goes straight on by `distance_m` (backward if negative), with the limits' velocity, halting at
   /// `valid_until_ns` wherever it is then. False if refused; throws as command().
   bool advance(double distance_m, std::int64_t valid_until_ns, std::int64_t now_ns);
@@ -84,6 +90,8 @@ class BaseDriver final : public SerialDriver {
   [[nodiscard]] bool accept_motion(std::int64_t now_ns);
   void start_relative(std::int64_t valid_until_ns, std::int64_t now_ns);
   void aim_changed(std::int64_t now_ns);
+  [[nodiscard]] BaseVelocity guarded(std::int64_t now_ns);
+  void judge_again(std::int64_t now_ns);
   void stand(std::int64_t now_ns);
   void stand_again(std::int64_t now_ns);
 
@@ -104,6 +112,11 @@ class BaseDriver final : public SerialDriver {
   BaseWriter writer_;
   BaseLink link_;
   BaseUpkeep upkeep_;
+
+  VelocityGuard guard_{};
+  std::int64_t judge_period_ns_ = 0;
+  std::int64_t judge_ns_ = 0;  // when the velocity that holds is judged again
+  BaseVelocity wanted_{};      // by the last command, before the guard
 
   bool idle_ = true;  // nothing is to be written until a time or a message comes
   std::optional<std::uint64_t> reports_at_halt_{};  // when both axes had been sent a halt

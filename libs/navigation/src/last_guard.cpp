@@ -1,0 +1,97 @@
+#include "topogeo/navigation/last_guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "topogeo/navigation/arc_sweep.hpp"
+
+#include "scan_smoothing.hpp"
+
+namespace topogeo::navigation {
+namespace {
+
+constexpr double kStandingSpeed = 1e-6;  // m/s; slower is no motion ahead or back
+constexpr double kSecondsPerNs = 1e-9;
+constexpr double kSight_m = 5.0;  // no base that it guards needs more to stop
+/// m; what is left of the noise of a laser after smoothing, less than a collision guard keeps.
+constexpr double kNoise_m = 0.015;
+constexpr double kSlowest = 0.01;  // m/s; bases do not go slower
+constexpr double kRolls = 0.05;    // m/s; slower it stops at once
+/// s; from a judgement to the next, kPeriod_ns, and the orders on the serial line. A collision
+/// guard counts twice as much: its commands are on their way before.
+constexpr double kDelay_s = 0.1;
+/// A scan may be that much newer than the odometry, which is carried on by its speeds.
+constexpr std::int64_t kCarriedOn_ns = 500'000'000;
+
+}  // namespace
+
+LastGuard::LastGuard(const GuardConfig& config, double runs_on_s)
+    : config_(config), runs_on_s_(runs_on_s), track_(kCarriedOn_ns) {
+  check(config);
+}
+
+void LastGuard::add(const geometry::OdometrySample& odometry) {
+  if (track_.add(odometry)) last_ = odometry;
+}
+
+void LastGuard::add(const ScanPoints& scan) {
+  if (scan_ && scan.stamp_ns <= scan_->stamp_ns) return;
+  if (repeats(scan)) return;
+  scan_ = smoothed(scan, config_.side_margin_m);
+}
+
+bool LastGuard::repeats(const ScanPoints& scan) {
+  constexpr double kMoved_m = 0.01;
+  constexpr double kMoved_rad = 0.005;
+  const geometry::Pose2 T_odom_now = last_ ? last_->T_odom_robot : geometry::Pose2{};
+  if (scan.points_m.empty() || scan.points_m != seen_m_) {
+    seen_m_ = scan.points_m;
+    T_odom_seen_ = T_odom_now;
+    return false;
+  }
+  const geometry::Pose2 moved = geometry::between(T_odom_seen_, T_odom_now);
+  return moved.position_m().norm() > kMoved_m || std::fabs(moved.theta_rad) > kMoved_rad;
+}
+
+bool LastGuard::sees(std::int64_t now_ns) const {
+  if (!last_ || !scan_) return false;
+  return static_cast<double>(now_ns - scan_->stamp_ns) * kSecondsPerNs <= config_.oldest_scan_s;
+}
+
+std::vector<Eigen::Vector2d> LastGuard::points_now_m() const {
+  const auto then = track_.at(scan_->stamp_ns);
+  const geometry::Pose2& T_odom_then = then ? then->T_odom_robot : last_->T_odom_robot;
+  const geometry::Pose2 T_now_then = geometry::between(last_->T_odom_robot, T_odom_then);
+  std::vector<Eigen::Vector2d> points_m;
+  points_m.reserve(scan_->points_m.size());
+  for (const Eigen::Vector2d& point_m : scan_->points_m) points_m.push_back(T_now_then * point_m);
+  return points_m;
+}
+
+LastGuard::Judgement LastGuard::judge(const geometry::Velocity& wanted, double brake_m_per_s2,
+                                      std::int64_t now_ns) const {
+  const double asked = std::fabs(wanted.linear_m_per_s);
+  if (asked < kStandingSpeed) return {wanted, Verdict::kAsWanted, kSight_m};
+  if (!sees(now_ns)) {
+    if (!config_.needs_scan) return {wanted, Verdict::kAsWanted, kSight_m};
+    return {{}, Verdict::kBlind, 0.0};
+  }
+  const std::vector<Eigen::Vector2d> points_m = points_now_m();
+  const double body_m = config_.radius_m + std::min(kNoise_m, config_.side_margin_m);
+  double free_m = sweep(wanted, points_m, body_m, kSight_m).length_m;
+  // The arc that it is still on when it shall take another.
+  if (std::fabs(last_->linear_mps) > kRolls && last_->linear_mps * wanted.linear_m_per_s > 0.0) {
+    const geometry::Velocity driven{last_->linear_mps, last_->angular_radps};
+    free_m = std::min(free_m, sweep(driven, points_m, body_m, kSight_m).length_m);
+  }
+  const double age_s = std::max(0.0, static_cast<double>(now_ns - last_->stamp_ns) * kSecondsPerNs);
+  const double speed = stopping_speed(free_m, age_s + kDelay_s + runs_on_s_,
+                                      std::min(config_.deceleration_m_per_s2, brake_m_per_s2));
+  if (speed >= asked || free_m >= kSight_m) return {wanted, Verdict::kAsWanted, free_m};
+  if (speed < kSlowest) return {{}, Verdict::kObstacle, free_m};
+  const double share = speed / asked;
+  return {
+      {wanted.linear_m_per_s * share, wanted.angular_rad_per_s * share}, Verdict::kSlower, free_m};
+}
+
+}  // namespace topogeo::navigation

@@ -1,0 +1,69 @@
+#include "command_ages.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace topogeo::sensor_gateway {
+namespace {
+
+/// Clocks drift apart by a millisecond in it; a queue that stands for longer is noticed before.
+constexpr std::int64_t kAgeWindow_ns = 10'000'000'000;
+
+}  // namespace
+
+std::optional<std::int64_t> CommandAges::age_ns(const messaging::Handle& handle,
+                                                std::int64_t stamp_ns, std::int64_t now_ns,
+                                                std::int64_t own_ns) {
+  const std::int64_t offset_ns = now_ns - stamp_ns;
+  Sender& sender = sender_of(handle, offset_ns, now_ns);
+  note(sender, offset_ns, now_ns);
+  if (now_ns - sender.first_ns < kKnown_ns) {
+    const std::int64_t own_age_ns = own_ns - stamp_ns;
+    if (own_age_ns < -kOldest_ns || own_age_ns > kOldest_ns) return std::nullopt;
+    return std::max<std::int64_t>(0, own_age_ns);
+  }
+  const std::int64_t age_ns = offset_ns - std::min(sender.least_ns, sender.before_ns);
+  if (set_back(sender, age_ns > kOldest_ns, offset_ns, now_ns)) senders_.erase(handle);
+  return age_ns;
+}
+
+CommandAges::Sender& CommandAges::sender_of(const messaging::Handle& handle, std::int64_t offset_ns,
+                                            std::int64_t now_ns) {
+  const auto known = senders_.find(handle);
+  if (known != senders_.end() && now_ns - known->second.last_ns <= kPause_ns) return known->second;
+  if (known == senders_.end() && senders_.size() >= kMostSenders) {
+    senders_.erase(std::min_element(
+        senders_.begin(), senders_.end(),
+        [](const auto& a, const auto& b) { return a.second.last_ns < b.second.last_ns; }));
+  }
+  return senders_[handle] =
+             Sender{now_ns, now_ns, now_ns, offset_ns, offset_ns, std::nullopt, 0, 0};
+}
+
+void CommandAges::note(Sender& sender, std::int64_t offset_ns, std::int64_t now_ns) {
+  sender.last_ns = now_ns;
+  if (now_ns - sender.window_ns > kAgeWindow_ns) {
+    sender.before_ns = std::exchange(sender.least_ns, offset_ns);
+    sender.window_ns = now_ns;
+  }
+  sender.least_ns = std::min(sender.least_ns, offset_ns);
+}
+
+bool CommandAges::set_back(Sender& sender, bool old, std::int64_t offset_ns, std::int64_t now_ns) {
+  if (!old) {
+    sender.old_since_ns.reset();
+    return false;
+  }
+  if (!sender.old_since_ns) {
+    sender.old_since_ns = now_ns;
+    sender.old_least_ns = sender.old_most_ns = offset_ns;
+  }
+  sender.old_least_ns = std::min(sender.old_least_ns, offset_ns);
+  sender.old_most_ns = std::max(sender.old_most_ns, offset_ns);
+  if (now_ns - *sender.old_since_ns < kSetBack_ns) return false;
+  const bool equally = sender.old_most_ns - sender.old_least_ns < kOldest_ns;
+  sender.old_since_ns.reset();
+  return equally;
+}
+
+}  // namespace topogeo::sensor_gateway
