@@ -145,22 +145,20 @@ void BaseDriver::take(const McpReport& report, std::int64_t now_ns) {
     monitor_.restart(now_ns);
   }
   follow(link_.reported(restarted, now_ns), now_ns);
-  monitor_.take(report, motion_, now_ns);
-  if (report.has(McpField::kBumpers) &&
-      interlocks_.bumpers(report.word(McpField::kBumpers), now_ns)) {
-    stand_again(now_ns);
-  }
+  monitor_.take(report, motion_, result.odometry.stamp_ns, now_ns);
+  if (report.has(McpField::kBumpers)) bump(report.word(McpField::kBumpers), now_ns);
   if (link_.running()) check_motion(now_ns);
 }
 
 void BaseDriver::take(const McpEvent& event, std::int64_t now_ns) {
   if (interlocks_.motor_event(event.kind)) {
     upkeep_.acknowledge();
+    if (motion_.moves()) interlocks_.emergency_stop();
     stand(now_ns);
   }
   switch (event.kind) {
     case McpEventKind::kBump:
-      if (interlocks_.bumpers(static_cast<std::uint16_t>(event.value), now_ns)) stand_again(now_ns);
+      bump(static_cast<std::uint16_t>(event.value), now_ns);
       break;
     case McpEventKind::kBatteryLow:
       status_.battery_low = true;
@@ -168,6 +166,7 @@ void BaseDriver::take(const McpEvent& event, std::int64_t now_ns) {
     case McpEventKind::kWatchdogExpired:
       ++status_.watchdog_expirations;
       if (link_.running() && motion_.moves()) interlocks_.watchdog_expired(now_ns);
+      monitor_.forget_power();
       stand_again(now_ns);
       upkeep_.refresh(now_ns);
       break;
@@ -182,6 +181,13 @@ void BaseDriver::take(const McpEvent& event, std::int64_t now_ns) {
     default:
       break;
   }
+}
+
+/// A bumper that is pressed has stopped the base, which lost no power.
+void BaseDriver::bump(std::uint16_t active_low, std::int64_t now_ns) {
+  if (!interlocks_.bumpers(active_low, now_ns)) return;
+  monitor_.forget_power();
+  stand_again(now_ns);
 }
 
 void BaseDriver::take(const McpAnswer& answer, std::int64_t /*now_ns*/) {
@@ -269,6 +275,7 @@ bool BaseDriver::turn(double angle_rad, std::int64_t valid_until_ns, std::int64_
 void BaseDriver::start_relative(std::int64_t valid_until_ns, std::int64_t now_ns) {
   if (motion_.moves()) term_.start_relative(valid_until_ns);
   aim_changed(now_ns);
+  monitor_.leave_power(motion_.limits(), now_ns);
 }
 
 void BaseDriver::aim_changed(std::int64_t now_ns) {
@@ -297,6 +304,7 @@ void BaseDriver::halt(std::int64_t now_ns) {
 
 void BaseDriver::reset_stop(std::int64_t now_ns) {
   interlocks_.release();
+  monitor_.forget_power();
   stand(now_ns);
   tick(now_ns);
 }
@@ -366,7 +374,8 @@ std::string BaseDriver::reason() const {
   const BaseState state = status_.state;
   if (state == BaseState::kOffline) return link_.reason();
   if (state == BaseState::kBumped && status_.bumpers != 0) return "a bumper is pressed";
-  if (state == BaseState::kMotorsOff && !interlocks_.motor_fault().empty()) {
+  const bool motors = state == BaseState::kMotorsOff || state == BaseState::kEmergencyStop;
+  if (motors && !interlocks_.motor_fault().empty()) {
     return std::string(interlocks_.motor_fault());
   }
   return std::string(base_state_reason(state));

@@ -18,7 +18,9 @@ constexpr std::array<StateText, 10> kStateTexts{{
     {"offline", "no line to the base"},
     {"starting", "the base is being set up"},
     {"emergency stop",
-     "motion was commanded and does not come about: emergency stop, or the wheels are held"},
+     "motion was commanded and did not come about: emergency stop, or the wheels are held; the "
+     "base "
+     "reports neither, so a person has to say when it may move"},
     {"halted", "halted on demand"},
     {"watchdog expired", "the base had heard nothing for too long and stopped"},
     {"bumped", "a bumper was pressed"},

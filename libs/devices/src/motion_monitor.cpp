@@ -24,6 +24,13 @@ bool stalls(std::uint16_t status, double commanded, double standstill, bool stan
          phase_of(status) == McpPhase::kAccelerate;
 }
 
+/// m/s and rad/s: a PID keeps the speeds of a base that carries its load within these; not measured
+/// on hardware. Less would be noise, more would hide short stops at low speeds.
+constexpr double kLinearRipple = 0.012;
+constexpr double kLinearRamp = 0.025;
+constexpr double kAngularRipple = 0.035;
+constexpr double kAngularRamp = 0.06;
+
 /// Phases of a motor that has ended what was commanded, or never began.
 bool rests(std::uint16_t status) {
   const McpPhase phase = phase_of(status);
@@ -52,7 +59,38 @@ double SpeedRange::excess(double speed, std::int64_t now_ns) {
 }
 
 MotionMonitor::MotionMonitor(const McpUnits& units, const BaseSettings& settings)
-    : units_(units), settings_(settings), period_ns_(ticks_ns(report_period_ticks(settings))) {}
+    : units_(units),
+      settings_(settings),
+      period_ns_(ticks_ns(report_period_ticks(settings))),
+      linear_power_({settings.standstill_mps, kLinearRipple, kLinearRamp}, period_ns_),
+      angular_power_({settings.standstill_radps, kAngularRipple, kAngularRamp}, period_ns_) {}
+
+void MotionMonitor::forget_power() {
+  linear_power_.forget();
+  angular_power_.forget();
+  lost_power_ = false;
+}
+
+void MotionMonitor::leave_power(const BaseLimits& limits, std::int64_t now_ns) {
+  linear_power_.aim_at(0.0, limits.linear_mps2, now_ns);
+  angular_power_.aim_at(0.0, limits.angular_radps2, now_ns);
+}
+
+void MotionMonitor::watch_power(const McpReport& report, std::int64_t stamp_ns) {
+  const std::int64_t base_ns = clock_.follow(report.wide(McpField::kClock));
+  const auto axis = [&](McpField status, double speed, double sign) {
+    const std::uint16_t word = report.word(status);
+    const bool negative = (word & kMcpCommandedNegative) != 0;
+    return AxisReport{base_ns, stamp_ns, speed, phase_of(word), negative ? -sign : sign};
+  };
+  const double forward = units_.counts(1.0) > 0 ? 1.0 : -1.0;
+  const double counter_clockwise = units_.rotation_counts(1.0) > 0 ? 1.0 : -1.0;
+  const bool linear =
+      linear_power_.take(axis(McpField::kTranslateStatus, units_.linear_mps(report), forward));
+  const bool angular = angular_power_.take(
+      axis(McpField::kRotateStatus, units_.angular_radps(report), counter_clockwise));
+  lost_power_ = linear || angular;
+}
 
 void MotionMonitor::aim_at(const BaseVelocity& velocity, const BaseLimits& limits,
                            std::int64_t now_ns) {
@@ -60,20 +98,29 @@ void MotionMonitor::aim_at(const BaseVelocity& velocity, const BaseLimits& limit
   const std::int64_t lag_ns = kLag_ns + 2 * period_ns_;
   linear_.aim_at(velocity.linear_mps, limits.linear_mps2, lag_ns, now_ns);
   angular_.aim_at(velocity.angular_radps, limits.angular_radps2, lag_ns, now_ns);
+  linear_power_.aim_at(velocity.linear_mps, limits.linear_mps2, now_ns);
+  angular_power_.aim_at(velocity.angular_radps, limits.angular_radps2, now_ns);
 }
 
 void MotionMonitor::restart(std::int64_t now_ns) {
   const BaseLimits& limits = settings_.limits;
+  const std::int64_t lag_ns = kLag_ns + 2 * period_ns_;
   for (const double sign : {1.0, -1.0, 0.0}) {
-    aim_at({sign * limits.linear_mps, sign * limits.angular_radps}, limits, now_ns);
+    linear_.aim_at(sign * limits.linear_mps, limits.linear_mps2, lag_ns, now_ns);
+    angular_.aim_at(sign * limits.angular_radps, limits.angular_radps2, lag_ns, now_ns);
   }
+  leave_power(limits, now_ns);
+  forget_power();
+  clock_.restart();
   stalls_ = 0;
   uncommanded_ = 0;
   disobeys_ = false;
   joystick_ = false;
 }
 
-void MotionMonitor::take(const McpReport& report, const BaseMotion& motion, std::int64_t now_ns) {
+void MotionMonitor::take(const McpReport& report, const BaseMotion& motion, std::int64_t stamp_ns,
+                         std::int64_t now_ns) {
+  watch_power(report, stamp_ns);
   const double linear_mps = units_.linear_mps(report);
   const double angular_radps = units_.angular_radps(report);
   const bool linear_stands = std::abs(linear_mps) <= settings_.standstill_mps;
@@ -100,6 +147,7 @@ void MotionMonitor::take(const McpReport& report, const BaseMotion& motion, std:
   uncommanded_ = uncommanded ? uncommanded_ + 1 : 0;
   if (uncommanded_ >= kUncommandedReports) joystick_ = true;
   if (joystick_ && now_ns - moved_ns_ > kJoystickRest_ns) joystick_ = false;
+  if (joystick_) forget_power();
 
   const bool settled = linear_.settled(now_ns) && angular_.settled(now_ns);
   disobeys_ = settled && ((motion.translates() && linear_stands && rests(translate)) ||

@@ -14,6 +14,7 @@
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/simulation/mcp_emulator.hpp"
 #include "topogeo/simulation/serial_device.hpp"
+#include "topogeo/support/random.hpp"
 
 #include "simulated_line.hpp"
 
@@ -64,6 +65,13 @@ class RollingBase final : public simulation::SerialDevice {
     return velocity.linear_m_per_s == 0.0 && velocity.angular_rad_per_s == 0.0;
   }
 
+  /// What the encoders see beyond the motion, uniformly up to so much; as one that was published:
+  /// 256 counts/s (MIRO).
+  void set_noise(double linear_mps, double angular_radps) {
+    noise_mps_ = linear_mps;
+    noise_radps_ = angular_radps;
+  }
+
   simulation::McpEmulator mcp;
 
  private:
@@ -74,7 +82,10 @@ class RollingBase final : public simulation::SerialDevice {
     const double dt_s = 1e-9 * static_cast<double>(now_ns - rolled_ns_);
     const geometry::Velocity velocity = mcp.commanded_velocity();
     if (dt_s > 0.0) {
-      mcp.moved(velocity.linear_m_per_s * dt_s, velocity.angular_rad_per_s * dt_s, dt_s);
+      const double linear_mps = velocity.linear_m_per_s + noise_mps_ * random_.uniform(-1.0, 1.0);
+      const double angular_radps =
+          velocity.angular_rad_per_s + noise_radps_ * random_.uniform(-1.0, 1.0);
+      mcp.moved(linear_mps * dt_s, angular_radps * dt_s, dt_s);
     }
     rolled_ns_ = now_ns;
     mcp.tick(now_ns);
@@ -83,6 +94,9 @@ class RollingBase final : public simulation::SerialDevice {
 
   std::vector<Place> way_;
   std::int64_t rolled_ns_ = 0;
+  support::Random random_{9};
+  double noise_mps_ = 0.0;
+  double noise_radps_ = 0.0;
 };
 
 /// Both with the same line settings and calibration.

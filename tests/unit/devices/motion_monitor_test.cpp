@@ -19,7 +19,9 @@ class MotionMonitorTest : public ::testing::Test {
     report.fields[static_cast<std::size_t>(McpField::kTranslateStatus)] =
         static_cast<std::uint32_t>(phase) << 13U;
     now_ns_ += 100'000'000;
-    monitor_.take(report, motion_, now_ns_);
+    report.fields[static_cast<std::size_t>(McpField::kClock)] =
+        static_cast<std::uint32_t>(now_ns_ * kMcpTicksPerSecond / 1'000'000'000);
+    monitor_.take(report, motion_, now_ns_, now_ns_);
   }
 
   BaseSettings settings_;

@@ -84,6 +84,7 @@ class BaseDriver final : public SerialDriver {
   void take(const McpReport& report, std::int64_t now_ns);
   void take(const McpEvent& event, std::int64_t now_ns);
   void take(const McpAnswer& answer, std::int64_t now_ns);
+  void bump(std::uint16_t active_low, std::int64_t now_ns);
   void check_motion(std::int64_t now_ns);
 
   [[nodiscard]] bool commands_taken() const;

@@ -1,5 +1,6 @@
 // Whether a base moves as commanded: motion without a command is the joystick, motion that was
-// commanded and does not come about is the emergency stop. The base has no message for either.
+// commanded and does not come about is the emergency stop. The base has no message for either;
+// power_watch.hpp notices the second within two reports.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include "topogeo/devices/base_settings.hpp"
 #include "topogeo/devices/mcp_protocol.hpp"
 #include "topogeo/devices/mcp_units.hpp"
+#include "topogeo/devices/power_watch.hpp"
 
 namespace topogeo::devices {
 
@@ -37,7 +39,13 @@ class MotionMonitor {
   void aim_at(const BaseVelocity& velocity, const BaseLimits& limits, std::int64_t now_ns);
   /// The base started anew: motion for a while after `now_ns` may have been commanded before.
   void restart(std::int64_t now_ns);
-  void take(const McpReport& report, const BaseMotion& motion, std::int64_t now_ns);
+  /// The base has stopped for a reason that is known, or an operator lets it move again.
+  void forget_power();
+  /// A move by an amount, which the base ends by itself, is commanded: its end is no loss of power.
+  void leave_power(const BaseLimits& limits, std::int64_t now_ns);
+  /// A report that the base took at `stamp_ns` of the host's clock and that has come now.
+  void take(const McpReport& report, const BaseMotion& motion, std::int64_t stamp_ns,
+            std::int64_t now_ns);
 
   /// Of the last report.
   [[nodiscard]] bool stands() const { return stands_; }
@@ -47,17 +55,24 @@ class MotionMonitor {
   [[nodiscard]] bool limp() const { return limp_; }
   /// It is driven by joystick; holds until it has stood for a second.
   [[nodiscard]] bool joystick() const { return joystick_; }
-  /// It was commanded to move and did not for settings.stalled_reports reports.
-  [[nodiscard]] bool stalled() const { return stalls_ >= settings_.stalled_reports; }
+  /// It was commanded to move and an axis has lost its power, or does not begin to move for
+  /// settings.stalled_reports reports.
+  [[nodiscard]] bool stalled() const { return lost_power_ || stalls_ >= settings_.stalled_reports; }
   /// It should have begun or ended to move by now: a command was lost.
   [[nodiscard]] bool disobeys() const { return disobeys_; }
   /// Reports since it began to stand.
   [[nodiscard]] unsigned reports_standing() const { return reports_standing_; }
 
  private:
+  void watch_power(const McpReport& report, std::int64_t stamp_ns);
+
   McpUnits units_;
   BaseSettings settings_;
   std::int64_t period_ns_;
+  McpClock clock_;
+  PowerWatch linear_power_;
+  PowerWatch angular_power_;
+  bool lost_power_ = false;
   SpeedRange linear_;
   SpeedRange angular_;
   bool stands_ = true;

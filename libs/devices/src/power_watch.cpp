@@ -1,0 +1,192 @@
+#include "topogeo/devices/power_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace topogeo::devices {
+namespace {
+
+/// From a command to the base that obeys: writing it, a line that is busy, motors that lag. Not
+/// measured on hardware. Slower commands of the last so long may be in force.
+constexpr std::int64_t kObeys_ns = 300'000'000;
+/// Stamps may be so much too early.
+constexpr std::int64_t kEarly_ns = 50'000'000;
+/// Of the commanded acceleration, what a motor surely gives.
+constexpr double kSure = 0.8;
+/// And what it never exceeds.
+constexpr double kMost = 1.1;
+/// Times the acceleration, what no motor with power loses when it slows down.
+constexpr double kDrop = 1.5;
+/// Of the commanded speed, what it may differ besides the ripple.
+constexpr double kShare = 0.03;
+/// Periods between two reports; more is a gap.
+constexpr double kLongestStep = 1.5;
+/// A motion that is to be so many times as fast as standstill cannot be taken for it.
+constexpr double kClearly = 3.0;
+constexpr double kBarely = 1.2;
+/// Rest that nobody has commanded, of an axis that was in motion.
+constexpr std::int64_t kRest_ns = 100'000'000;
+/// The same of one that says it accelerates, to a speed that is hardly more than standstill.
+constexpr std::int64_t kSlowRest_ns = 300'000'000;
+
+double seconds(std::int64_t duration_ns) {
+  return 1e-9 * static_cast<double>(duration_ns);
+}
+
+bool moves(McpPhase phase) {
+  return phase == McpPhase::kAccelerate || phase == McpPhase::kConstant;
+}
+
+}  // namespace
+
+PowerWatch::PowerWatch(const PowerTolerance& tolerance, std::int64_t period_ns)
+    : tolerance_(tolerance),
+      longest_step_ns_(std::llround(kLongestStep * static_cast<double>(period_ns))) {}
+
+void PowerWatch::aim_at(double speed, double acceleration, std::int64_t now_ns) {
+  if (acceleration != acceleration_) changed_ns_ = now_ns;
+  acceleration_ = acceleration;
+  const double direction = speed == 0.0 ? 0.0 : std::copysign(1.0, speed);
+  if (direction != direction_) {
+    obeyed_ = false;
+    rests_since_ns_.reset();
+  }
+  direction_ = direction;
+  if (!aims_.empty() && aims_.back().speed == speed) return;
+  aims_.push_back({now_ns, speed});
+  // What held before the oldest that may be asked for.
+  constexpr std::int64_t kKept_ns = 2'000'000'000;
+  while (aims_.size() > 2 && aims_[1].since_ns < now_ns - kKept_ns) aims_.pop_front();
+}
+
+void PowerWatch::forget() {
+  before_.reset();
+  obeyed_ = false;
+  rests_since_ns_.reset();
+}
+
+std::size_t PowerWatch::oldest_aim(std::int64_t stamp_ns) const {
+  std::size_t oldest = aims_.size();
+  while (oldest > 0 && aims_[oldest - 1].since_ns > stamp_ns - kObeys_ns) --oldest;
+  return oldest == 0 ? 0 : oldest - 1;
+}
+
+/// In the direction of the motion, of all that the base may be obeying at that time. It obeys its
+/// commands in their order: what is older than the one that it obeyed at the report before holds no
+/// more.
+double PowerWatch::least_aim(std::int64_t stamp_ns) const {
+  std::size_t first = oldest_aim(stamp_ns);
+  if (before_ && before_->sound && moves(before_->phase) && before_->commanded_sign == direction_) {
+    const double obeyed = direction_ * before_->speed - tolerance_.standstill;
+    for (std::size_t i = oldest_aim(before_->stamp_ns);
+         i < aims_.size() && aims_[i].since_ns <= before_->stamp_ns + kEarly_ns; ++i) {
+      const double aim = direction_ * aims_[i].speed;
+      if (aim <= 0.0 || aim < obeyed) continue;
+      first = std::max(first, i);
+      break;
+    }
+  }
+  double least = direction_ * aims_[first].speed;
+  for (std::size_t i = first; i < aims_.size(); ++i) {
+    if (aims_[i].since_ns <= stamp_ns + kEarly_ns) {
+      least = std::min(least, direction_ * aims_[i].speed);
+    }
+  }
+  return std::max(0.0, least);
+}
+
+double PowerWatch::step_s(const AxisReport& report) const {
+  return seconds(std::max<std::int64_t>(0, report.base_ns - before_->base_ns));
+}
+
+/// By more than a motor can: this report or the one before is garbled.
+bool PowerWatch::faster(const AxisReport& report) const {
+  const bool may = moves(report.phase) || moves(before_->phase);
+  const double gain = may ? kMost * acceleration_ * step_s(report) : 0.0;
+  const double sign = std::copysign(1.0, report.speed);
+  return std::abs(report.speed) > sign * before_->speed + gain + 2.0 * tolerance_.standstill;
+}
+
+/// By more than a motor that slows down with power, whatever was commanded.
+bool PowerWatch::dropped(const AxisReport& report) const {
+  if (!before_->sound || report.phase == McpPhase::kLimp) return false;
+  const double sign = std::copysign(1.0, before_->speed);
+  const double lost = std::abs(before_->speed) - std::max(0.0, sign * report.speed);
+  return lost > kDrop * acceleration_ * step_s(report) + tolerance_.ramp;
+}
+
+/// The least speed in the direction of the motion, of a motor with power.
+double PowerWatch::due(const AxisReport& report, double least_aim) const {
+  const double speed = direction_ * before_->speed;
+  // A gap in the reports shows nothing of the time in it.
+  const double gained_s = std::min(step_s(report), seconds(longest_step_ns_));
+  double least = speed;
+  if (before_->phase == McpPhase::kAccelerate) {
+    least = std::max(before_->due, speed) + kSure * acceleration_ * gained_s;
+  } else if (before_->phase != McpPhase::kConstant) {
+    least = speed - acceleration_ * step_s(report) / kSure;
+  }
+  return std::clamp(least, 0.0, least_aim);
+}
+
+bool PowerWatch::too_slow(const AxisReport& report, double due, double least_aim) const {
+  if (report.phase == McpPhase::kLimp) return obeyed_;
+  if (report.phase != McpPhase::kAccelerate) return false;
+  const bool ramps = before_ && before_->phase == McpPhase::kAccelerate;
+  const double tolerance = ramps ? tolerance_.ramp : tolerance_.ripple + kShare * least_aim;
+  return due - std::max(0.0, direction_ * report.speed) > tolerance;
+}
+
+/// An axis that had moved as commanded stands, and has not been told to.
+bool PowerWatch::rests(const AxisReport& report, double least_aim) {
+  const bool accelerates = report.phase == McpPhase::kAccelerate;
+  const double share = accelerates ? kBarely : kClearly;
+  const bool stands = std::abs(report.speed) <= tolerance_.standstill &&
+                      least_aim > share * tolerance_.standstill &&
+                      report.phase != McpPhase::kDecelerate && (accelerates || obeyed_);
+  if (!stands) {
+    rests_since_ns_.reset();
+    return false;
+  }
+  if (!rests_since_ns_ || rest_phase_ != report.phase) {
+    rests_since_ns_ = report.base_ns;
+    rest_phase_ = report.phase;
+  }
+  return report.base_ns - *rests_since_ns_ >= (accelerates ? kSlowRest_ns : kRest_ns);
+}
+
+bool PowerWatch::take(const AxisReport& report) {
+  const bool garbled = before_ && faster(report);
+  if (before_ && before_->suspect && !garbled) return true;
+  if (aims_.empty() || report.stamp_ns < changed_ns_ + kObeys_ns) {
+    before_.reset();
+    return false;
+  }
+  const bool others =
+      moves(report.phase) && direction_ != 0.0 && report.commanded_sign != direction_ && obeyed_;
+  if (others) {  // somebody else moves it
+    forget();
+    return false;
+  }
+  // One that follows nothing may be garbled, too.
+  const bool sound = before_ && !garbled;
+  Before now{report.base_ns, report.stamp_ns,       report.speed, 0.0,
+             report.phase,   report.commanded_sign, sound,        false};
+  now.suspect = sound && dropped(report);
+  bool at_rest = false;
+  if (direction_ != 0.0) {
+    const double least = least_aim(report.stamp_ns);
+    const bool obeys = moves(report.phase) && report.commanded_sign == direction_;
+    if (sound && before_->sound) now.due = due(report, least);
+    if (obeys && least > 0.0) obeyed_ = true;
+    if (obeys || report.phase == McpPhase::kLimp) {
+      now.suspect = now.suspect || too_slow(report, now.due, least);
+    }
+    at_rest = (obeys || !moves(report.phase)) && rests(report, least);
+  }
+  before_ = now;
+  return at_rest;
+}
+
+}  // namespace topogeo::devices
