@@ -2,14 +2,11 @@
 #include "topogeo/support/config_schema.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <fstream>
-#include <iterator>
 #include <ostream>
 #include <set>
 #include <stdexcept>
-#include <system_error>
 
+#include "topogeo/support/foreign_file.hpp"
 #include "topogeo/support/hash.hpp"
 #include "topogeo/support/printable.hpp"
 #include "topogeo/support/yaml_reader.hpp"
@@ -171,23 +168,7 @@ void load_yaml_text(std::string_view text, const std::string& name, const Config
 }
 
 void load_yaml_file(const std::filesystem::path& path, const ConfigSchema& schema) {
-  const std::string name = path.string();
-  if (std::filesystem::is_directory(path)) {
-    throw std::runtime_error(name + ": is a directory, expected a YAML file");
-  }
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    throw std::runtime_error(name +
-                             ": cannot be opened: " + std::generic_category().message(errno));
-  }
-  std::string text(kMaxFileSize + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad()) throw std::runtime_error(name + ": cannot be read");
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > kMaxFileSize) {
-    throw std::runtime_error(name + ": larger than 1 MB, expected a configuration file");
-  }
-  load_yaml_text(text, name, schema);
+  load_yaml_text(foreign_content(path, kMaxFileSize), path.string(), schema);
 }
 
 EffectiveConfig effective(const ConfigSchema& schema) {

@@ -6,8 +6,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
+#include "topogeo/support/foreign_file.hpp"
 #include "topogeo/support/printable.hpp"
 
 namespace topogeo::support {
@@ -39,6 +41,91 @@ std::string joined(std::initializer_list<std::string_view> keys, std::string_vie
 // yaml-cpp counts from 0 and gives -1 to what has no place in the file.
 int line_of(int mark_line) {
   return std::max(mark_line + 1, 1);
+}
+
+[[noreturn]] void fail_at(const std::string& source, int line, const std::string& what) {
+  throw std::runtime_error(source + ":" + std::to_string(line) + ": " + what);
+}
+
+[[noreturn]] void fail_levels(const std::string& source, int line) {
+  fail_at(source, line,
+          "more than " + std::to_string(kMostLevels) + " levels of lists and maps in each other");
+}
+
+[[noreturn]] void fail_values(const std::string& source, int line) {
+  fail_at(source, line,
+          "more than " + std::to_string(kMostYamlValues) +
+              " values, where an alias counts as all that it stands for");
+}
+
+/// Builds nothing, and throws where a text has more values or levels than is allowed: a node of
+/// yaml-cpp takes half a kilobyte.
+class YamlLimitCheck final : public YAML::EventHandler {
+ public:
+  explicit YamlLimitCheck(const std::string& source) : source_(source) {}
+
+  void OnDocumentStart(const YAML::Mark& /*mark*/) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t /*anchor*/) override { count(mark); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t /*anchor*/) override { count(mark); }
+  void OnScalar(const YAML::Mark& mark, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                const std::string& /*value*/) override {
+    count(mark);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& /*tag*/,
+                       YAML::anchor_t /*anchor*/, YAML::EmitterStyle::value /*style*/) override {
+    enter(mark);
+  }
+  void OnSequenceEnd() override { --levels_; }
+  void OnMapStart(const YAML::Mark& mark, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                  YAML::EmitterStyle::value /*style*/) override {
+    enter(mark);
+  }
+  void OnMapEnd() override { --levels_; }
+
+ private:
+  void count(const YAML::Mark& mark) {
+    if (++values_ > kMostYamlValues) fail_values(source_, line_of(mark.line));
+  }
+  void enter(const YAML::Mark& mark) {
+    count(mark);
+    if (++levels_ > kMostLevels) fail_levels(source_, line_of(mark.line));
+  }
+
+  const std::string& source_;
+  std::size_t values_ = 0;
+  std::size_t levels_ = 0;
+};
+
+/// Counts the values below a node, those behind aliases each time: readers go through all of them.
+/// An alias inside of what it stands for has no end of levels.
+void count_values(const YAML::Node& node, const std::string& source, std::size_t levels,
+                  std::size_t& values) {
+  if (++values > kMostYamlValues) fail_values(source, line_of(node.Mark().line));
+  if (!node.IsMap() && !node.IsSequence()) return;
+  if (levels == kMostLevels) fail_levels(source, line_of(node.Mark().line));
+  for (const auto& entry : node) {
+    if (node.IsMap()) {
+      count_values(entry.first, source, levels + 1, values);
+      count_values(entry.second, source, levels + 1, values);
+    } else {
+      count_values(entry, source, levels + 1, values);
+    }
+  }
+}
+
+/// Throws where a text is beyond the limits of foreign files.
+void check_extent(const std::string& text, const std::string& source) {
+  if (text.size() > kMostYamlBytes) {
+    fail_at(source, 1,
+            "is " + std::to_string(text.size()) + " bytes, expected at most " +
+                std::to_string(kMostYamlBytes));
+  }
+  std::istringstream in(text);
+  YAML::Parser parser(in);
+  YamlLimitCheck check(source);
+  while (parser.HandleNextDocument(check)) {
+  }
 }
 
 }  // namespace
@@ -185,12 +272,16 @@ bool YamlNode::boolean() const {
 
 YamlNode parse_yaml(const std::string& text, const std::string& source, std::string root_name) {
   try {
+    check_extent(text, source);
     const std::vector<YAML::Node> documents = YAML::LoadAll(text);
     if (documents.size() > 1) {
       throw std::runtime_error(source + ":1: holds " + std::to_string(documents.size()) +
                                " YAML documents, expected one");
     }
     const YAML::Node root = documents.empty() ? YAML::Node() : documents.front();
+    // Without an alias the text itself has all values, which are counted.
+    std::size_t values = 0;
+    if (text.find('*') != std::string::npos) count_values(root, source, 0, values);
     return YamlNode(std::make_shared<const YamlNode::Content>(
         YamlNode::Content{root, std::move(root_name), line_of(root.Mark().line),
                           std::make_shared<const std::string>(source)}));

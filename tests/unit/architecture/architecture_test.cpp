@@ -55,7 +55,7 @@ const std::vector<RestrictedLibrary>& restricted_libraries() {
       {"cairo", {"libs/render/src/"}},
       {"yaml-cpp/", {"libs/recording/src/", "libs/support/src/"}},
       {"nlohmann/",
-       {"libs/exchange/src/", "libs/storage/src/", "services/topogeo/",
+       {"libs/exchange/src/", "libs/storage/src/", "libs/support/src/", "services/topogeo/",
         "services/web/server/json_values.hpp"}},
       {"png.h", {"libs/exchange/src/", "services/web/channels/palette_png.cpp"}},
       {"prometheus/", {"services/common/src/metrics_endpoint.cpp"}},

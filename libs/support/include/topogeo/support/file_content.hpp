@@ -6,7 +6,7 @@
 
 namespace topogeo::support {
 
-/// Throws std::runtime_error naming the path and the cause.
+/// Of a regular file of up to 2 GB. Throws std::runtime_error naming the path and the cause.
 std::string file_content(const std::filesystem::path& path);
 
 }  // namespace topogeo::support

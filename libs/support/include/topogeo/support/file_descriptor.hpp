@@ -23,6 +23,8 @@ class FileDescriptor {
   }
 
   [[nodiscard]] int get() const { return number_; }
+  /// The number, which the caller closes.
+  [[nodiscard]] int release() { return std::exchange(number_, -1); }
   [[nodiscard]] bool is_open() const { return number_ >= 0; }
   /// Closes now; false with errno where the kernel reports a late write error. Only while open.
   bool close() { return ::close(std::exchange(number_, -1)) == 0; }

@@ -81,7 +81,8 @@ struct YamlEntry {
 
 /// The only document of a text; `source` stands for the file in messages, `root_name` for the
 /// document. An empty text is a document without a value. Fails with "FILE:LINE: not valid YAML:
-/// ..." or for more than one document.
+/// ...", for more than one document and beyond the limits of foreign_file.hpp: bytes, levels, and
+/// values, where an alias counts as all that it stands for.
 [[nodiscard]] YamlNode parse_yaml(const std::string& text, const std::string& source,
                                   std::string root_name);
 
