@@ -29,7 +29,7 @@ const std::vector<RestrictedLibrary>& restricted_libraries() {
       {"CLI/",
        {"libs/command_line/src/command_line.cpp", "libs/command_line/src/generated_help.cpp"}},
       {"SQLiteCpp/", {"libs/storage/src/"}},
-      {"sqlite3.h", {"libs/recording/src/", "libs/storage/src/"}},
+      {"sqlite3.h", {"libs/recording/src/", "libs/sqlite_guard/src/", "libs/storage/src/"}},
       {"google/protobuf/", {"libs/storage/src/"}},
       {"proto/map.pb.h", {"libs/storage/src/"}},
       {"ceres/", {"libs/localization/src/"}},

@@ -1,0 +1,55 @@
+// SQLite files that other people made, by the advice of https://www.sqlite.org/security.html: what
+// stands in the file must neither run as a program nor take more time and memory than its size
+// explains.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+struct sqlite3;
+
+namespace topogeo::sqlite_guard {
+
+/// Rows and blobs beyond this size, in bytes, cannot be read.
+inline constexpr int kLargestBlob = 256'000'000;
+
+/// Throws std::runtime_error where the file, or a log that SQLite would read beside it, is a
+/// directory, FIFO or device. What is absent is no fault.
+void refuse_irregular(const std::filesystem::path& path);
+
+/// Size of the file and of its write-ahead log; 0 where it cannot be told.
+[[nodiscard]] std::uint64_t bytes_of(const std::filesystem::path& path);
+
+/// Sets a new connection up: the schema is not trusted, no trigger and no view runs, the file
+/// format cannot be changed, blobs have a limit. Before its first statement.
+void protect(sqlite3* database);
+
+/// What the schema has that no map and no recording has, as "the view 'topics'"; empty: nothing, or
+/// the schema cannot be read, which the next statement reports.
+[[nodiscard]] std::string refused_schema(sqlite3* database);
+
+/// Interrupts the statements of a connection (SQLITE_INTERRUPT) when they have taken more steps
+/// than reading all of a sound file takes: a damaged one can lead from page to page without end.
+/// One at a time for each connection, which must outlive it.
+class WorkLimit {
+ public:
+  /// `file_bytes`: size of the file.
+  WorkLimit(sqlite3* database, std::uint64_t file_bytes);
+  WorkLimit(const WorkLimit&) = delete;
+  WorkLimit& operator=(const WorkLimit&) = delete;
+  ~WorkLimit();
+
+  [[nodiscard]] bool reached() const { return steps_left_ == 0; }
+
+ private:
+  static int step(void* self);
+
+  sqlite3* database_;
+  std::uint64_t steps_left_;  // of kInstructions each
+};
+
+/// "takes more work than a sound file of its size".
+extern const char* const kTooMuchWork;
+
+}  // namespace topogeo::sqlite_guard
