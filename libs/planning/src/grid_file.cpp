@@ -83,9 +83,9 @@ std::string text_of(double value) {
 
 OccupancyGrid read_grid(const std::filesystem::path& yaml_path) {
   const GridDescription description =
-      read_description(support::parse_yaml(read_text_file(yaml_path), yaml_path.string(), "keys"));
+      read_description(support::parse_yaml(read_yaml_file(yaml_path), yaml_path.string(), "keys"));
   const std::filesystem::path image_path = yaml_path.parent_path() / description.image;
-  const PgmImage image = parse_pgm(read_text_file(image_path), image_path.string());
+  const PgmImage image = parse_pgm(read_image_file(image_path), image_path.string());
   GridFrame frame = description.frame;
   frame.columns = image.width;
   frame.rows = image.height;

@@ -3,12 +3,13 @@
 #include <cctype>
 #include <stdexcept>
 
+#include "topogeo/support/foreign_file.hpp"
+
 namespace topogeo::planning {
 namespace {
 
-constexpr int kMostAlong = 20000;                 // as a grid, see occupancy_grid.cpp
-constexpr std::size_t kMostPixels = 100'000'000;  // the same
-constexpr int kMostDepth = 255;                   // of one byte a pixel, as all map files have
+constexpr int kMostAlong = 20000;  // as a grid, see occupancy_grid.cpp
+constexpr int kMostDepth = 255;    // of one byte a pixel, as all map files have
 
 class PgmParser {
  public:
@@ -24,8 +25,9 @@ class PgmParser {
     image.depth = number("value of white", 1, kMostDepth);
     const auto count =
         static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-    if (count > kMostPixels) {
-      fail("has " + std::to_string(count) + " pixels, allowed are " + std::to_string(kMostPixels));
+    if (count > support::kMostPixels) {
+      fail("has " + std::to_string(count) + " pixels, allowed are " +
+           std::to_string(support::kMostPixels));
     }
     if (magic == "P2") {
       read_text(image, count);

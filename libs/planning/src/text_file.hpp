@@ -1,4 +1,4 @@
-// Text files read whole.
+// Files read whole.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,9 @@
 
 namespace topogeo::planning {
 
-/// Throws std::runtime_error naming the file when it cannot be read or is over 1 GB.
-std::string read_text_file(const std::filesystem::path& path);
+/// A regular file of the size that support/foreign_file.hpp allows for its kind. Throws
+/// std::runtime_error naming the file when it is larger or cannot be read.
+std::string read_yaml_file(const std::filesystem::path& path);
+std::string read_image_file(const std::filesystem::path& path);
 
 }  // namespace topogeo::planning

@@ -102,7 +102,7 @@ std::optional<ZoneKind> zone_kind_of(std::string_view name) {
 }
 
 ZoneDrawing read_zone_drawing(const std::filesystem::path& path) {
-  return parse_zone_drawing(read_text_file(path), path.string());
+  return parse_zone_drawing(read_yaml_file(path), path.string());
 }
 
 ZoneDrawing parse_zone_drawing(const std::string& text, const std::string& source) {

@@ -4,28 +4,22 @@
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
-#include <system_error>
+
+#include <sys/stat.h>
+
+#include "topogeo/support/foreign_file.hpp"
 
 namespace topogeo::scan {
 
 GzLines::GzLines(const std::filesystem::path& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) {
-    throw std::runtime_error(path.string() +
-                             ": cannot open: " + (error ? error.message() : std::strerror(ENOENT)));
+  support::FileDescriptor file = support::open_regular_file(path);
+  struct stat status {};
+  if (::fstat(file.get(), &status) == 0) {
+    size_on_disk_ = static_cast<std::uint64_t>(status.st_size);
   }
-  if (std::filesystem::is_directory(status)) {
-    throw std::runtime_error(path.string() + ": expected a log file, got a directory");
-  }
-  errno = 0;
-  file_.reset(gzopen(path.c_str(), "rb"));
-  if (!file_) {
-    const int code = errno != 0 ? errno : ENOMEM;
-    throw std::runtime_error(path.string() + ": cannot open: " + std::strerror(code));
-  }
-  const auto size = std::filesystem::file_size(path, error);
-  size_on_disk_ = error ? 0 : size;
+  file_.reset(gzdopen(file.get(), "rb"));
+  if (!file_) throw std::runtime_error(path.string() + ": cannot be opened: no memory");
+  static_cast<void>(file.release());  // closed with file_
 }
 
 void GzLines::fill() {

@@ -1,15 +1,14 @@
 // The world file: YAML into segments and circles.
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <initializer_list>
 #include <numbers>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
-#include <system_error>
 
+#include "topogeo/support/foreign_file.hpp"
 #include "topogeo/support/yaml_reader.hpp"
 #include "topogeo/world/world.hpp"
 
@@ -32,6 +31,11 @@ constexpr double kWidestPerson_m = 2.0;
 constexpr double kLatestStart_s = 1e6;
 /// A turn shorter than a scan period of a slow laser would be drawn without end.
 constexpr double kShortestTurn_s = 0.1;
+/// Far more than people draw: names, doors and lines are compared with each other, or drawn on a
+/// grid.
+constexpr std::size_t kMostEntries = 20'000;  // of a list
+constexpr std::size_t kMostDoors = 1'000;     // of a wall
+constexpr std::size_t kMostSegments = 100'000;
 
 struct Door {
   double begin_m;
@@ -91,9 +95,19 @@ void add_loop(std::initializer_list<Eigen::Vector2d> corners_m, std::vector<Segm
   }
 }
 
+/// The items of a list that is not too long; none where the map has none.
+std::vector<YamlNode> entries_of(const YamlNode& map, const std::string& key,
+                                 std::size_t most = kMostEntries) {
+  std::vector<YamlNode> items = map.at(key).items();
+  if (items.size() > most) {
+    map.at(key).fail("at most " + std::to_string(most) + " entries", std::to_string(items.size()));
+  }
+  return items;
+}
+
 std::vector<Door> doors_of(const YamlNode& wall, double length_m) {
   std::vector<Door> doors;
-  for (const YamlNode& node : wall.at("doors").items()) {
+  for (const YamlNode& node : entries_of(wall, "doors", kMostDoors)) {
     node.allow_keys({"at", "width", "open", "open_s", "random"});
     const double at_m = node.required("at").number(0.0, length_m, "m");
     const double width_m = node.required("width").number(kSmallest_m, length_m, "m");
@@ -124,14 +138,18 @@ class WorldParser {
                      "people", "places", "rooms"});
     if (const YamlNode name = root.at("name"); name.exists()) world_.name = name.text();
     const double thickness_m = number_or(root.at("wall_thickness"), 0.0, kThickestWall_m, "m", 0.0);
-    for (const YamlNode& node : root.at("walls").items()) add_wall(node, thickness_m);
-    for (const YamlNode& node : root.at("boxes").items()) add_box(node);
-    for (const YamlNode& node : root.at("columns").items()) add_column(node);
-    for (const YamlNode& node : root.at("segments").items()) add_segment(node);
-    for (const YamlNode& node : root.at("tour").items()) world_.tour_m.push_back(point_of(node));
-    for (const YamlNode& node : root.at("people").items()) add_person(node);
-    for (const YamlNode& node : root.at("places").items()) add_place(node);
-    for (const YamlNode& node : root.at("rooms").items()) add_room(node);
+    for (const YamlNode& node : entries_of(root, "walls")) add_wall(node, thickness_m);
+    for (const YamlNode& node : entries_of(root, "boxes")) add_box(node);
+    for (const YamlNode& node : entries_of(root, "columns")) add_column(node);
+    for (const YamlNode& node : entries_of(root, "segments")) add_segment(node);
+    for (const YamlNode& node : entries_of(root, "tour")) world_.tour_m.push_back(point_of(node));
+    for (const YamlNode& node : entries_of(root, "people")) add_person(node);
+    for (const YamlNode& node : entries_of(root, "places")) add_place(node);
+    for (const YamlNode& node : entries_of(root, "rooms")) add_room(node);
+    if (world_.segments.size() > kMostSegments) {
+      root.fail("walls and boxes of at most " + std::to_string(kMostSegments) + " lines",
+                std::to_string(world_.segments.size()));
+    }
     if (world_.segments.empty() && world_.circles.empty() && world_.changing.empty()) {
       root.fail("walls, boxes, columns or segments", "none");
     }
@@ -264,16 +282,7 @@ World parse_world(const std::string& text, const std::string& source) {
 }
 
 World load_world(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    throw std::runtime_error(path.string() + ": expected a world file, got " +
-                             (std::filesystem::exists(path, error) ? "something else" : "nothing"));
-  }
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file) throw std::runtime_error(path.string() + ": cannot read the world file");
-  return parse_world(text.str(), path.string());
+  return parse_world(support::foreign_content(path, support::kMostYamlBytes), path.string());
 }
 
 }  // namespace topogeo::world

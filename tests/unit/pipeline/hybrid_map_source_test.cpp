@@ -247,7 +247,7 @@ TEST_F(FloorFiles, BadOnesAreNamed) {
     return std::string();
   };
   EXPECT_THAT(message([&] { read_floor(directory_ / "none.world.yaml", {}, 0.1); }),
-              HasSubstr("none.world.yaml: expected a world file"));
+              HasSubstr("none.world.yaml: cannot be opened"));
   EXPECT_THAT(message([&] { read_floor(directory_ / "none.pb", {}, 0.1); }),
               HasSubstr("none.pb: cannot be opened"));
   const auto wide = write("wide.world.yaml", "segments: [[0, 0, 90000, 1]]\n");
