@@ -8,6 +8,7 @@
 #include <SQLiteCpp/Statement.h>
 #include <SQLiteCpp/Transaction.h>
 
+#include "topogeo/sqlite_guard/sqlite_guard.hpp"
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/format.hpp"
 
@@ -105,6 +106,7 @@ void MapDatabase::migrate() {
 }
 
 void MapDatabase::read_state() {
+  const sqlite_guard::WorkLimit limit(database_->getHandle(), sqlite_guard::bytes_of(name_));
   // Finds a file that was cut short now instead of at some later read.
   SQLite::Statement check(*database_, "PRAGMA quick_check(1)");
   const std::string verdict = check.executeStep() ? text_at(check, 0) : "no answer";

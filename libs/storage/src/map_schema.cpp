@@ -1,7 +1,6 @@
 #include "map_schema.hpp"
 
 #include <array>
-#include <fstream>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -9,7 +8,9 @@
 #include <SQLiteCpp/Backup.h>
 #include <SQLiteCpp/Statement.h>
 
+#include "topogeo/sqlite_guard/sqlite_guard.hpp"
 #include "topogeo/storage/map_database.hpp"
+#include "topogeo/support/foreign_file.hpp"
 #include "topogeo/support/format.hpp"
 
 #include "map_rows.hpp"
@@ -95,10 +96,7 @@ void check_file_start(const std::filesystem::path& path) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error || size == 0) return;  // opening the file reports the error
-  std::string start(kSqliteStart.size(), '\0');
-  std::ifstream(path, std::ios::binary)
-      .read(start.data(), static_cast<std::streamsize>(start.size()));
-  if (start != kSqliteStart) {
+  if (support::first_bytes(path, kSqliteStart.size()) != kSqliteStart) {
     throw std::runtime_error(path.string() + ": not a map database (no SQLite file)");
   }
   if (size < kSmallestFile) {
@@ -144,8 +142,11 @@ std::unique_ptr<SQLite::Database> open_file(const std::filesystem::path& path, A
 
 std::unique_ptr<SQLite::Database> open_map_database(const std::filesystem::path& path,
                                                     Access access) {
+  sqlite_guard::refuse_irregular(path);
   check_file_start(path);
   auto database = open_file(path, access);
+  sqlite_guard::protect(database->getHandle());
+  const sqlite_guard::WorkLimit limit(database->getHandle(), sqlite_guard::bytes_of(path));
   // The first read finds out whether this is an SQLite file at all.
   const std::int64_t application_id = pragma(*database, "application_id");
   const bool is_new = !has_content(*database);
@@ -159,7 +160,12 @@ std::unique_ptr<SQLite::Database> open_map_database(const std::filesystem::path&
     throw std::runtime_error(fmt::format("{}: map database version {}, this program reads 1 to {}",
                                          path.string(), version, MapDatabase::kSchemaVersion));
   }
-  database->exec("PRAGMA trusted_schema=OFF; PRAGMA cell_size_check=ON; PRAGMA foreign_keys=ON");
+  if (const std::string refused = sqlite_guard::refused_schema(database->getHandle());
+      !refused.empty()) {
+    throw std::runtime_error(path.string() + ": has " + refused +
+                             ", expected the tables of a map alone");
+  }
+  database->exec("PRAGMA cell_size_check=ON; PRAGMA foreign_keys=ON");
   if (access != Access::kReadOnly) {
     database->exec("PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL");
   }

@@ -1,12 +1,13 @@
 #include "topogeo/storage/report.hpp"
 
-#include <fstream>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
 
 #include "topogeo/support/atomic_file.hpp"
+#include "topogeo/support/foreign_file.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/json_limits.hpp"
 #include "topogeo/support/version.hpp"
 
 namespace topogeo::storage {
@@ -104,12 +105,12 @@ Json overlaps(const std::vector<Overlaps>& stops) {
   return json;
 }
 
-geometry::Pose2 pose_of(const Json& json, const std::string& prefix) {
+geometry::Pose2 pose_of(const nlohmann::json& json, const std::string& prefix) {
   return {json.at(prefix + "x_m").get<double>(), json.at(prefix + "y_m").get<double>(),
           json.at(prefix + "theta_rad").get<double>()};
 }
 
-LoopCandidate loop_candidate(const Json& json) {
+LoopCandidate loop_candidate(const nlohmann::json& json) {
   LoopCandidate c;
   json.at("decided_at_stop").get_to(c.step);
   json.at("earlier_stop").get_to(c.earlier_id);
@@ -171,13 +172,17 @@ std::string report_json(const Report& report) {
 }
 
 std::vector<LoopCandidate> read_loop_candidates(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file) throw std::runtime_error(path.string() + ": cannot be opened");
+  const std::string text = support::foreign_content(path, support::kMostMapBytes);
+  // Reports are long, and their settings more than other objects have.
+  const support::JsonLimits limits{.keys = text.size(), .values = text.size()};
+  if (const std::string excess = support::beyond_limits(text, limits); !excess.empty()) {
+    throw std::runtime_error(path.string() + ": " + excess);
+  }
   std::string place = "the report";
   try {
-    const Json report = Json::parse(file);
+    const auto report = nlohmann::json::parse(text);
     std::vector<LoopCandidate> candidates;
-    for (const Json& json : report.at("loop_candidates")) {
+    for (const nlohmann::json& json : report.at("loop_candidates")) {
       place = fmt::format("loop_candidates[{}]", candidates.size());
       candidates.push_back(loop_candidate(json));
     }

@@ -7,6 +7,8 @@
 #include <SQLiteCpp/Database.h>
 #include <SQLiteCpp/Statement.h>
 
+#include "topogeo/sqlite_guard/sqlite_guard.hpp"
+#include "topogeo/support/foreign_file.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/hash.hpp"
 #include "topogeo/support/temporary_folder.hpp"
@@ -22,6 +24,11 @@ namespace fs = std::filesystem;
 class SalvageCopy {
  public:
   explicit SalvageCopy(const fs::path& path) {
+    sqlite_guard::refuse_irregular(path);
+    if (const std::uint64_t bytes = sqlite_guard::bytes_of(path); bytes > support::kMostMapBytes) {
+      throw std::runtime_error(fmt::format("{}: is {} bytes, expected at most {}", path.string(),
+                                           bytes, support::kMostMapBytes));
+    }
     fs::copy_file(path, file());
     const fs::path log = path.string() + "-wal";
     if (fs::exists(log)) fs::copy_file(log, file().string() + "-wal");
@@ -56,17 +63,23 @@ bool is_sound(const SalvagedRow& row) {
 }
 
 /// Rows in one direction up to the first that cannot be read, or up to one of `known`; false where
-/// they end that way.
+/// they end that way. Rows of more than `most_bytes` share pages, which is damage, too.
 bool read_rows(SQLite::Database& database, const std::string& table, const char* order,
-               std::set<std::int64_t>& known, SalvagedTable& out) {
+               std::uint64_t most_bytes, std::set<std::int64_t>& known, SalvagedTable& out) {
   std::vector<SalvagedRow> rows;
   bool complete = true;
+  std::uint64_t bytes = 0;
   try {
     SQLite::Statement statement(
         database,
         fmt::format("SELECT rowid AS row_number, * FROM \"{}\" ORDER BY rowid {}", table, order));
     while (statement.executeStep()) {
       SalvagedRow row = row_of(statement);
+      for (const auto& [column, text] : row.texts) bytes += text.size();
+      if (bytes > most_bytes) {
+        complete = false;
+        break;
+      }
       if (!known.insert(row.numbers["row_number"]).second) break;
       rows.push_back(std::move(row));
     }
@@ -83,11 +96,12 @@ bool read_rows(SQLite::Database& database, const std::string& table, const char*
   return complete;
 }
 
-SalvagedTable read_salvaged_table(SQLite::Database& database, const std::string& table) {
+SalvagedTable read_salvaged_table(SQLite::Database& database, const std::string& table,
+                                  std::uint64_t most_bytes) {
   SalvagedTable out;
   std::set<std::int64_t> known;
-  out.complete = read_rows(database, table, "ASC", known, out);
-  if (!out.complete) read_rows(database, table, "DESC", known, out);
+  out.complete = read_rows(database, table, "ASC", most_bytes, known, out);
+  if (!out.complete) read_rows(database, table, "DESC", most_bytes, known, out);
   return out;
 }
 
@@ -110,12 +124,16 @@ std::map<std::string, SalvagedTable> salvage_tables(const fs::path& path) {
   std::map<std::string, SalvagedTable> tables;
   try {
     SQLite::Database database(copy.file().string(), SQLite::OPEN_READWRITE);
+    sqlite_guard::protect(database.getHandle());
+    const std::uint64_t bytes = sqlite_guard::bytes_of(copy.file());
+    const sqlite_guard::WorkLimit limit(database.getHandle(), bytes);
     std::vector<std::string> names;
-    SQLite::Statement statement(database, "SELECT name FROM sqlite_master WHERE type = 'table'");
+    SQLite::Statement statement(
+        database, "SELECT name FROM sqlite_master WHERE type = 'table' AND rootpage > 0");
     while (statement.executeStep()) names.push_back(statement.getColumn(0).getString());
     for (const std::string& name : names) {
       tables[name] =
-          name == "meta" ? read_meta_rows(database) : read_salvaged_table(database, name);
+          name == "meta" ? read_meta_rows(database) : read_salvaged_table(database, name, bytes);
     }
   } catch (const SQLite::Exception& error) {
     throw std::runtime_error(

@@ -5,6 +5,7 @@
 #include <SQLiteCpp/Column.h>
 #include <sqlite3.h>
 
+#include "topogeo/sqlite_guard/sqlite_guard.hpp"
 #include "topogeo/support/format.hpp"
 
 namespace topogeo::storage {
@@ -47,6 +48,8 @@ void throw_named(const std::string& file, const SQLite::Exception& error) {
       throw std::runtime_error(fmt::format("{}: cut short or damaged ({})", file, error.what()));
     case SQLITE_MISMATCH:
       throw std::runtime_error(fmt::format("{}: damaged ({})", file, error.what()));
+    case SQLITE_INTERRUPT:
+      throw std::runtime_error(fmt::format("{}: {}", file, sqlite_guard::kTooMuchWork));
     case SQLITE_CANTOPEN:
       throw named("cannot be opened");
     default:

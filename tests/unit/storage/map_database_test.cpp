@@ -234,7 +234,7 @@ TEST_F(MapDatabaseFile, RefusesFilesThatAreNone) {
     EXPECT_TRUE(content(path()) == bytes) << "a foreign file was changed";
   }
   EXPECT_THAT(error_of([&] { MapDatabase::open_or_create(directory_, "robot-1", 1); }),
-              HasSubstr("cannot be opened"));
+              HasSubstr("is a directory, expected a regular file"));
 }
 
 TEST_F(MapDatabaseFile, TakesAFileThatWasJustBegunForReplaceable) {
