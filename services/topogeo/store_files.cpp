@@ -1,13 +1,12 @@
 #include "store_files.hpp"
 
-#include <array>
 #include <exception>
-#include <fstream>
 #include <iostream>
 #include <string_view>
 
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/read_map.hpp"
+#include "topogeo/support/foreign_file.hpp"
 
 namespace topogeo::cli {
 
@@ -18,10 +17,8 @@ constexpr std::string_view kDatabaseStart = "SQLite format 3";
 constexpr std::string_view kMapFileStart = "\x0a\x0btopogeo-map";
 
 std::string start_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::array<char, 16> start{};
-  in.read(start.data(), start.size());
-  return {start.data(), static_cast<std::size_t>(in.gcount())};
+  constexpr std::size_t kStart = 16;
+  return support::first_bytes(file, kStart);
 }
 
 }  // namespace

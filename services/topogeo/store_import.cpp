@@ -86,8 +86,16 @@ geometry::Pose2 pose_of_file(const ImportOptions& options) {
 void add_graph(storage::MapDocument& document, const ImportOptions& options,
                const pipeline::Config& config) {
   const planning::FreeSpace space(*document.drawing.grid, config.hybrid_map.inflation);
-  storage::MapDocument made = exchange::map_of_grid(space, config.local_mapper, config.global_map,
-                                                    options.robot_id, options.grid);
+  exchange::GridMapSettings settings = options.grid;
+  settings.fixed_spacing = settings.spacing_m != exchange::GridMapSettings{}.spacing_m;
+  storage::MapDocument made = [&] {
+    try {
+      return exchange::map_of_grid(space, config.local_mapper, config.global_map, options.robot_id,
+                                   settings);
+    } catch (const std::runtime_error& error) {
+      throw service::BadInputError(options.file.string() + ": " + error.what());
+    }
+  }();
   std::cerr << fmt::format("topogeo: {} nodes and {} branches made of the grid\n",
                            made.global_map.nodes.size(), made.global_map.branches.size());
   if (options.with_stops) {
@@ -118,7 +126,7 @@ int store_import(const ImportOptions& options) {
   const bool bare = document.local_maps.empty() && document.global_map.nodes.empty();
   if (bare && document.drawing.grid) add_graph(document, options, config);
   const pipeline::HybridMapParts parts = pipeline::parts_of(document);
-  if (!document.global_map.nodes.empty() && pipeline::has_grid(parts)) {
+  if (exchange::lacks_clearances(document.global_map) && pipeline::has_grid(parts)) {
     exchange::take_clearances(document.global_map,
                               pipeline::make_hybrid_map(parts, config.hybrid_map).space());
   }
@@ -157,8 +165,10 @@ void add_store_import_command(command_line::Command& store, int& exit_code) {
                     "found in the map (topogeo localize --map)");
   constexpr double kMost_m = 100.0;
   command
-      ->add_option("--spacing", options->grid.spacing_m,
-                   "of grids: metres between the places from which the graph is made")
+      ->add_option(
+          "--spacing", options->grid.spacing_m,
+          "of grids: metres between the places from which the graph is made; more, where it is not "
+          "given and there would be more than 3,000 of them")
       ->check(command_line::range(0.2, kMost_m))
       ->capture_default_str()
       ->type_name("M");

@@ -97,7 +97,7 @@ int store_repair(const RepairOptions& options) {
     const exchange::StoredPieces pieces =
         looks_like_database(options.file)
             ? exchange::pieces_of_database(options.file)
-            : exchange::pieces_of_map_file(exchange::read_text(options.file), name);
+            : exchange::pieces_of_map_file(exchange::read_map_bytes(options.file), name);
     repaired = exchange::assemble(pieces, config.global_map, name);
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());

@@ -8,6 +8,7 @@
 #include <pugixml.hpp>
 
 #include "topogeo/exchange/graphml.hpp"
+#include "topogeo/support/foreign_file.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/topomap/node_kind_name.hpp"
 
@@ -25,6 +26,9 @@ class GraphmlReader {
   explicit GraphmlReader(const std::string& name) : name_(name) {}
 
   MapGraph read(std::string_view text) {
+    if (text.size() > support::kMostXmlBytes) {
+      fail(fmt::format("is {} bytes, expected at most {}", text.size(), support::kMostXmlBytes));
+    }
     pugi::xml_document document;
     const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size());
     if (!result) {
@@ -34,6 +38,9 @@ class GraphmlReader {
     const pugi::xml_node top = document.child("graphml");
     if (!top) fail("expected an element graphml at the top");
     for (const pugi::xml_node key : top.children("key")) {
+      if (key_names_.size() == support::kMostKeys) {
+        fail(fmt::format("more than {} keys", support::kMostKeys));
+      }
       const std::string meaning = key.attribute("attr.name").value();
       key_names_[key.attribute("id").value()] = meaning;
       // A default stands for elements without a datum.
@@ -66,6 +73,9 @@ class GraphmlReader {
   [[nodiscard]] std::string here() const { return element_; }
 
   Data data_of(const pugi::xml_node& element, const char* kind) {
+    if (++elements_ > support::kMostXmlElements) {
+      fail(fmt::format("more than {} nodes and edges", support::kMostXmlElements));
+    }
     element_ = fmt::format("{} '{}'", kind, element.attribute("id").value());
     Data data = defaults_[kind];
     data.merge(Data(defaults_["all"]));
@@ -229,6 +239,7 @@ class GraphmlReader {
 
   const std::string& name_;
   std::string element_;  // that is being read, for messages
+  std::size_t elements_ = 0;
   std::map<std::string, std::string> key_names_;
   std::map<std::string, Data> defaults_;
   std::set<std::string> ids_;

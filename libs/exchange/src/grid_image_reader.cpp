@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "topogeo/exchange/grid_image.hpp"
-#include "topogeo/exchange/read_text.hpp"
+#include "topogeo/support/foreign_file.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/yaml_reader.hpp"
 
@@ -112,12 +112,14 @@ void note_thresholds(const ImageYaml& yaml, const RasterImage& image, Notes& not
 }  // namespace
 
 GridImage read_grid_image(const std::filesystem::path& yaml_path) {
-  const YamlNode root = support::parse_yaml(read_text(yaml_path), yaml_path.string(), "keys");
+  const YamlNode root = support::parse_yaml(
+      support::foreign_content(yaml_path, support::kMostYamlBytes), yaml_path.string(), "keys");
   const ImageYaml yaml = read_image_yaml(root);
   GridImage grid;
   note_unknown_keys(root, grid.notes);
   const std::filesystem::path image_path = yaml_path.parent_path() / yaml.image;
-  const RasterImage image = parse_raster_image(read_text(image_path), image_path.string());
+  const RasterImage image = parse_raster_image(
+      support::foreign_content(image_path, support::kMostImageBytes), image_path.string());
   note_thresholds(yaml, image, grid.notes);
   grid.mode = yaml.mode;
   grid.frame = yaml.frame;

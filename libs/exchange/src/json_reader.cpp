@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/json_limits.hpp"
 
 namespace topogeo::exchange {
 namespace {
@@ -115,6 +116,9 @@ std::vector<double> JsonValue::numbers() const {
 }
 
 nlohmann::ordered_json parse_json(std::string_view text, const std::string& name) {
+  if (const std::string excess = support::beyond_limits(text); !excess.empty()) {
+    throw std::runtime_error(name + ": " + excess);
+  }
   try {
     return nlohmann::ordered_json::parse(text);
   } catch (const nlohmann::ordered_json::parse_error& error) {

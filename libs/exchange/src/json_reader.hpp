@@ -46,7 +46,8 @@ class JsonValue {
   std::string where_;
 };
 
-/// Throws std::runtime_error naming the file and the byte at which it is no JSON.
+/// Throws std::runtime_error naming the file and the byte at which it is no JSON, or the limit of
+/// json_limits.hpp that it is beyond.
 nlohmann::ordered_json parse_json(std::string_view text, const std::string& name);
 
 /// The text of a file, with a line for each entry of the lists that `json` has in it on the top

@@ -139,6 +139,9 @@ class LifReader {
     if (nodes.empty()) station.at("interactionNodeIds").fail("at least one node");
     const Eigen::Vector2d at_m =
         position.exists() ? lif_position(position) : node_of(nodes.front()).position_m;
+    if (graph_.drawing.places.size() == storage::kMaxPlaces) {
+      station.fail(fmt::format("at most {} stations", storage::kMaxPlaces));
+    }
     const bool taken = std::ranges::find(graph_.drawing.places, name, &planning::Place::name) !=
                        graph_.drawing.places.end();
     planning::Place& place = graph_.drawing.places.emplace_back();

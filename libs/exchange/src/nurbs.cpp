@@ -18,8 +18,10 @@ std::string Nurbs::fault() const {
 
 Eigen::Vector2d Nurbs::at(double u) const {
   // The span whose knots enclose u; the last one holds its upper end as well.
-  std::size_t span = degree;
-  while (span + 1 < points.size() && u >= knots[span + 1]) ++span;
+  const auto first = knots.begin() + static_cast<std::ptrdiff_t>(degree);
+  const auto last = knots.begin() + static_cast<std::ptrdiff_t>(points.size());
+  const auto above = std::upper_bound(first + 1, last, u);
+  const auto span = static_cast<std::size_t>(above - knots.begin()) - 1;
   std::vector<Eigen::Vector3d> work;
   for (std::size_t i = span - degree; i <= span; ++i) {
     work.emplace_back(weights[i] * points[i].x(), weights[i] * points[i].y(), weights[i]);

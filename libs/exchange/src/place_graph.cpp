@@ -17,6 +17,24 @@ void move(MapGraph& graph, const geometry::Pose2& T_map_graph) {
   pipeline::move(graph.drawing, T_map_graph);
 }
 
+namespace {
+
+bool lacks_clearance(const topomap::MapNode& node) {
+  return node.clearance_m == 0.0;
+}
+
+bool lacks_clearance(const topomap::MapBranch& branch) {
+  return std::ranges::all_of(branch.points,
+                             [](const topomap::BranchPoint& p) { return p.clearance_m == 0.0; });
+}
+
+}  // namespace
+
+bool lacks_clearances(const topomap::GlobalMap& map) {
+  const auto lacks = [](const auto& element) { return lacks_clearance(element); };
+  return std::ranges::any_of(map.nodes, lacks) || std::ranges::any_of(map.branches, lacks);
+}
+
 void take_clearances(topomap::GlobalMap& map, const planning::FreeSpace& space) {
   const auto at = [&](const Eigen::Vector2d& position_m) {
     const auto cell = space.frame().cell_of(position_m);
@@ -24,11 +42,10 @@ void take_clearances(topomap::GlobalMap& map, const planning::FreeSpace& space) 
     return std::isfinite(clearance_m) ? clearance_m : 0.0;
   };
   for (topomap::MapNode& node : map.nodes) {
-    if (node.clearance_m == 0.0) node.clearance_m = at(node.position_m);
+    if (lacks_clearance(node)) node.clearance_m = at(node.position_m);
   }
   for (topomap::MapBranch& branch : map.branches) {
-    const auto known = [](const topomap::BranchPoint& p) { return p.clearance_m != 0.0; };
-    if (std::ranges::any_of(branch.points, known)) continue;
+    if (!lacks_clearance(branch)) continue;
     for (topomap::BranchPoint& p : branch.points) p.clearance_m = at(p.position_m);
   }
 }

@@ -8,13 +8,14 @@
 #include <png.h>
 
 #include "topogeo/planning/pgm_image.hpp"
+#include "topogeo/support/foreign_file.hpp"
 #include "topogeo/support/format.hpp"
 
 namespace topogeo::exchange {
 namespace {
 
 constexpr std::int64_t kMostAlong = 20000;  // as a grid, see occupancy_grid.hpp
-constexpr std::int64_t kMostPixels = 100'000'000;
+constexpr auto kMostPixels = static_cast<std::int64_t>(support::kMostPixels);
 constexpr int kColours = 3;
 constexpr int kOpaque = 255;
 
@@ -22,12 +23,17 @@ constexpr int kOpaque = 255;
   throw std::runtime_error(source + ": " + what);
 }
 
-RasterImage blank_raster(std::int64_t width, std::int64_t height, const std::string& source) {
+/// Throws where a picture is too large, before it takes memory.
+void check_size(std::int64_t width, std::int64_t height, const std::string& source) {
   if (width < 1 || height < 1 || width > kMostAlong || height > kMostAlong ||
       width * height > kMostPixels) {
     fail_raster(source, fmt::format("{} x {} pixels, allowed are 1 to {} along, {} in all", width,
                                     height, kMostAlong, kMostPixels));
   }
+}
+
+RasterImage blank_raster(std::int64_t width, std::int64_t height, const std::string& source) {
+  check_size(width, height, source);
   RasterImage image;
   image.width = static_cast<std::int32_t>(width);
   image.height = static_cast<std::int32_t>(height);
@@ -92,11 +98,13 @@ class BmpParser {
                                        "bits, uncompressed",
                                        bits));
     }
+    check_size(width, std::abs(height), source_);
+    const auto columns = static_cast<std::size_t>(width);
+    const auto rows = static_cast<std::size_t>(std::abs(height));
+    const std::size_t stride = (columns * bits / 8 + 3) / 4 * 4;
+    if (begin + (rows - 1) * stride + columns * bits / 8 > bytes_.size()) fail_short();
     RasterImage image = blank_raster(width, std::abs(height), source_);
     image.white = kColours * 255;
-    const auto columns = static_cast<std::size_t>(width);
-    const auto rows = static_cast<std::size_t>(image.height);
-    const std::size_t stride = (columns * bits / 8 + 3) / 4 * 4;
     const std::size_t palette = 14 + header;
     for (std::size_t row = 0; row < rows; ++row) {
       const std::size_t stored = height > 0 ? rows - 1 - row : row;
@@ -111,8 +119,10 @@ class BmpParser {
   }
 
  private:
+  [[noreturn]] void fail_short() const { fail_raster(source_, "a BMP image that is cut short"); }
+
   [[nodiscard]] std::uint32_t number(std::size_t at, std::size_t size) const {
-    if (at + size > bytes_.size()) fail_raster(source_, "a BMP image that is cut short");
+    if (at + size > bytes_.size()) fail_short();
     std::uint32_t value = 0;
     for (std::size_t i = size; i-- > 0;) {
       value = value << 8U | static_cast<unsigned char>(bytes_[at + i]);

@@ -1,21 +1,15 @@
 #include "topogeo/exchange/read_text.hpp"
 
-#include <cstdint>
-#include <stdexcept>
-
-#include "topogeo/support/file_content.hpp"
+#include "topogeo/support/foreign_file.hpp"
 
 namespace topogeo::exchange {
 
 std::string read_text(const std::filesystem::path& path) {
-  constexpr std::uintmax_t kMostBytes = 2'000'000'000;
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (!error && size > kMostBytes) {
-    throw std::runtime_error(path.string() + ": is " + std::to_string(size) +
-                             " bytes, expected at most 2 GB");
-  }
-  return support::file_content(path);
+  return support::foreign_content(path, support::kMostTextBytes);
+}
+
+std::string read_map_bytes(const std::filesystem::path& path) {
+  return support::foreign_content(path, support::kMostMapBytes);
 }
 
 }  // namespace topogeo::exchange

@@ -8,6 +8,19 @@
 namespace topogeo::exchange {
 namespace {
 
+TEST(PlaceGraph, KnowsWhereClearancesAreMissing) {
+  topomap::GlobalMap map = sample_graph();
+  EXPECT_FALSE(lacks_clearances(map));
+  EXPECT_FALSE(lacks_clearances({}));
+  map.branches[0].points[1].clearance_m = 0.0;
+  EXPECT_FALSE(lacks_clearances(map)) << "it is narrow there";
+  for (topomap::BranchPoint& point : map.branches[0].points) point.clearance_m = 0.0;
+  EXPECT_TRUE(lacks_clearances(map));
+  map = sample_graph();
+  map.nodes[1].clearance_m = 0.0;
+  EXPECT_TRUE(lacks_clearances(map));
+}
+
 MapGraph whole_sample() {
   MapGraph graph{sample_graph(), sample_drawing(), {}};
   graph.drawing.grid = sample_space().grid();

@@ -20,10 +20,19 @@ struct GridMapSettings {
   double range_m = 20.0;   ///< of the laser, [1, 100]
   /// Parts of the free space below are left out: cells behind walls that scans saw by chance, m^2.
   double least_area_m2 = 2.0;
+  /// Where the floor has room for too many stops it is refused; else they are put farther apart.
+  bool fixed_spacing = false;
 };
 
+/// Stops of a map made of a grid, at most: a stop takes about 2 ms.
+inline constexpr std::size_t kMostGridStops = 3000;
+/// Cells along a beam times stops, at most: with the usual range and cells of 5 cm as many as
+/// kMostGridStops need.
+inline constexpr double kMostGridSteps = 1'200'000;
+
 /// The document has the grid as its drawing. Empty but for that when no part of the free space is
-/// large enough. Throws std::invalid_argument for settings out of range.
+/// large enough. Throws std::invalid_argument for settings out of range, and std::runtime_error for
+/// a grid that needs more stops, or more steps of their beams.
 storage::MapDocument map_of_grid(const planning::FreeSpace& space,
                                  const pipeline::LocalMapperConfig& mapper,
                                  const topomap::GlobalMapConfig& global_map,

@@ -11,6 +11,9 @@ namespace topogeo::exchange {
 /// Everything in it from its own frame to that of the map.
 void move(MapGraph& graph, const geometry::Pose2& T_map_graph);
 
+/// Whether a node or a whole branch has none: to know the distances of a large grid takes seconds.
+bool lacks_clearances(const topomap::GlobalMap& map);
+
 /// Clearances that a file did not have (0 at all points of a branch), from the distances of the
 /// grid; 0 stays where the grid does not reach.
 void take_clearances(topomap::GlobalMap& map, const planning::FreeSpace& space);
