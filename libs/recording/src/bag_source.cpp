@@ -73,7 +73,7 @@ bool BagSource::read_record(RawMessage& message) {
     throw FormatError("expected a record of " + std::to_string(end_at - at()) +
                       " bytes, got the end of the file");
   }
-  if (data_length > kLargestBlock) throw FormatError("expected a record of up to 1 GiB");
+  if (data_length > kLargestBlock) throw FormatError("expected a record of up to 256 MiB");
   Cursor record(file().view(at(), static_cast<std::size_t>(end_at - at())));
   move_to(end_at);
   const Fields header = header_fields(record.take(record.number<std::uint32_t>()));
@@ -130,7 +130,7 @@ void BagSource::take_connection(const Fields& header, std::span<const std::byte>
 
 void BagSource::open_chunk(const Fields& header, std::span<const std::byte> data) {
   decompress(data, compression_by_name(text_of_field(header, "compression")),
-             number_of<std::uint32_t>(header, "size"), begin_chunk());
+             number_of<std::uint32_t>(header, "size"), budget(), begin_chunk());
 }
 
 }  // namespace topogeo::recording

@@ -8,7 +8,7 @@ namespace topogeo::recording {
 
 ChunkedSource::ChunkedSource(const std::filesystem::path& path, TopicFilter wanted,
                              std::span<const std::byte> magic, std::string_view expected)
-    : file_(path), wanted_(std::move(wanted)), at_(magic.size()) {
+    : file_(path), budget_(file_.size()), wanted_(std::move(wanted)), at_(magic.size()) {
   if (!std::ranges::equal(file_.view(0, magic.size()), magic)) {
     throw std::runtime_error(file_.name() + ": byte 0: expected " + std::string(expected));
   }

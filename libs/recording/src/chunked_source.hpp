@@ -10,6 +10,7 @@
 
 #include "topogeo/recording/message_source.hpp"
 
+#include "compression.hpp"
 #include "input_file.hpp"
 
 namespace topogeo::recording {
@@ -43,12 +44,14 @@ class ChunkedSource : public MessageSource {
   [[nodiscard]] InputFile& file() { return file_; }
   [[nodiscard]] std::uint64_t at() const { return at_; }
   void move_to(std::uint64_t at) { at_ = at; }
+  [[nodiscard]] UnpackBudget& budget() { return budget_; }
   void end() { ended_ = true; }
   /// An empty one, to be filled, whose records come next.
   std::vector<std::byte>& begin_chunk();
 
  private:
   InputFile file_;
+  UnpackBudget budget_;
   TopicFilter wanted_;
   std::uint64_t at_;          // of the next record in the file
   std::uint64_t record_ = 0;  // of the last one

@@ -115,12 +115,26 @@ Compression compression_by_name(std::string_view name) {
                     std::string(name.substr(0, 20)) + "'");
 }
 
+UnpackBudget::UnpackBudget(std::uint64_t file_bytes) {
+  constexpr std::uint64_t kFree = std::uint64_t{1} << 30U;
+  constexpr std::uint64_t kLargestMeanRatio = 100;
+  left_ = kFree + kLargestMeanRatio * file_bytes;
+}
+
+void UnpackBudget::take(std::uint64_t bytes) {
+  if (bytes > left_) {
+    throw FormatError("expected a file that unpacks to at most 100 times its size, got more");
+  }
+  left_ -= bytes;
+}
+
 void decompress(std::span<const std::byte> block, Compression compression, std::uint64_t size,
-                std::vector<std::byte>& out) {
+                UnpackBudget& budget, std::vector<std::byte>& out) {
   if (size > kLargestBlock || size > (block.size() + 1) * kLargestRatio) {
-    throw FormatError("expected a block of up to 1 GiB, got one of " + std::to_string(size) +
+    throw FormatError("expected a block of up to 256 MiB, got one of " + std::to_string(size) +
                       " bytes from " + std::to_string(block.size()));
   }
+  budget.take(size);
   out.resize(size);
   switch (compression) {
     case Compression::kNone:
@@ -139,12 +153,13 @@ void decompress(std::span<const std::byte> block, Compression compression, std::
   }
 }
 
-void decompress_zstd(std::span<const std::byte> block, std::vector<std::byte>& out) {
+void decompress_zstd(std::span<const std::byte> block, UnpackBudget& budget,
+                     std::vector<std::byte>& out) {
   const unsigned long long size = ZSTD_getFrameContentSize(block.data(), block.size());
   if (size == ZSTD_CONTENTSIZE_UNKNOWN || size == ZSTD_CONTENTSIZE_ERROR) {
     throw FormatError("expected a zstd frame that states its size");
   }
-  decompress(block, Compression::kZstd, size, out);
+  decompress(block, Compression::kZstd, size, budget, out);
 }
 
 std::vector<std::byte> compress(std::span<const std::byte> block, Compression compression) {

@@ -4,7 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include <yaml-cpp/yaml.h>
+#include "topogeo/support/foreign_file.hpp"
+#include "topogeo/support/yaml_reader.hpp"
 
 namespace topogeo::recording {
 namespace {
@@ -15,24 +16,22 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& folder)
     throw std::runtime_error(folder.string() +
                              ": expected a folder of rosbag2, got no metadata.yaml in it");
   }
-  try {
-    const YAML::Node bag = YAML::LoadFile(file.string())["rosbag2_bagfile_information"];
-    const auto names = bag["relative_file_paths"].as<std::vector<std::string>>();
-    if (names.empty())
-      throw std::runtime_error(file.string() + ": expected relative_file_paths, got none");
-    std::vector<std::filesystem::path> files;
+  const support::YamlNode bag =
+      support::parse_yaml(support::foreign_content(file, support::kMostYamlBytes), file.string(),
+                          "the file")
+          .required("rosbag2_bagfile_information");
+  std::vector<std::filesystem::path> files;
+  for (const support::YamlNode& name : bag.required("relative_file_paths").items()) {
     // Bags of early versions name the folder too.
-    for (const std::string& name : names) {
-      const std::filesystem::path path = folder / name;
-      files.push_back(
-          std::filesystem::exists(path) ? path : folder / std::filesystem::path(name).filename());
-    }
-    return files;
-  } catch (const YAML::Exception& error) {
-    throw std::runtime_error(
-        file.string() + ": line " + std::to_string(error.mark.line + 1) +
-        ": expected rosbag2_bagfile_information with relative_file_paths, got: " + error.msg);
+    const std::filesystem::path path = folder / name.text();
+    files.push_back(std::filesystem::exists(path)
+                        ? path
+                        : folder / std::filesystem::path(name.text()).filename());
+    // A folder in it could name itself.
+    if (std::filesystem::is_directory(files.back())) name.fail("a file");
   }
+  if (files.empty()) bag.at("relative_file_paths").fail("a file or more");
+  return files;
 }
 
 }  // namespace

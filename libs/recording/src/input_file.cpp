@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <system_error>
 
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -20,18 +19,12 @@ std::string system_text() {
 }  // namespace
 
 InputFile::InputFile(const std::filesystem::path& path)
-    : name_(path.string()), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
-  if (descriptor_ < 0) throw std::runtime_error(name_ + ": cannot be opened: " + system_text());
+    : name_(path.string()), file_(support::open_regular_file(path)) {
   struct stat facts {};
-  if (::fstat(descriptor_, &facts) != 0 || !S_ISREG(facts.st_mode)) {
-    ::close(descriptor_);
-    throw std::runtime_error(name_ + ": expected a file");
+  if (::fstat(file_.get(), &facts) != 0) {
+    throw std::runtime_error(name_ + ": cannot be read: " + system_text());
   }
   size_ = static_cast<std::uint64_t>(facts.st_size);
-}
-
-InputFile::~InputFile() {
-  ::close(descriptor_);
 }
 
 std::span<const std::byte> InputFile::view(std::uint64_t offset, std::size_t count) {
@@ -44,7 +37,7 @@ std::span<const std::byte> InputFile::view(std::uint64_t offset, std::size_t cou
         std::min<std::uint64_t>(std::max(count, kWindow), size_ - offset)));
     std::size_t filled = 0;
     while (filled < window_.size()) {
-      const ssize_t got = ::pread(descriptor_, window_.data() + filled, window_.size() - filled,
+      const ssize_t got = ::pread(file_.get(), window_.data() + filled, window_.size() - filled,
                                   static_cast<off_t>(offset + filled));
       if (got < 0 && errno == EINTR) continue;
       if (got < 0) {

@@ -12,15 +12,14 @@
 #include <type_traits>
 #include <vector>
 
+#include "topogeo/support/foreign_file.hpp"
+
 namespace topogeo::recording {
 
 class InputFile {
  public:
-  /// Throws std::runtime_error when it cannot be opened or is no file.
+  /// Throws std::runtime_error when it cannot be opened or is no regular file.
   explicit InputFile(const std::filesystem::path& path);
-  ~InputFile();
-  InputFile(const InputFile&) = delete;
-  InputFile& operator=(const InputFile&) = delete;
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::uint64_t size() const { return size_; }
@@ -31,7 +30,7 @@ class InputFile {
 
  private:
   std::string name_;
-  int descriptor_;
+  support::FileDescriptor file_;
   std::uint64_t size_ = 0;
   std::uint64_t window_start_ = 0;
   std::vector<std::byte> window_;

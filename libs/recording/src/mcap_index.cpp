@@ -15,8 +15,8 @@ using Bytes = std::span<const std::byte>;
 
 constexpr std::uint64_t kFooterContent = 8 + 8 + 4;
 constexpr std::uint64_t kFooterSize = mcap::kRecordHead + kFooterContent + mcap::kMagic.size();
-/// That of ten million chunks.
-constexpr std::uint64_t kLargestSummary = std::uint64_t{1} << 30U;
+/// That of two million chunks.
+constexpr std::uint64_t kLargestSummary = std::uint64_t{1} << 28U;
 
 std::vector<std::byte> copy_of(Bytes bytes) {
   return {bytes.begin(), bytes.end()};

@@ -66,7 +66,7 @@ bool McapSource::read_record(RawMessage& message) {
   move_to(start + length);
   const auto content = [&] {
     if (length > kLargestRecord) {
-      throw FormatError("expected a record of up to 1 GiB, got " + std::to_string(length) +
+      throw FormatError("expected a record of up to 256 MiB, got " + std::to_string(length) +
                         " bytes");
     }
     return file().view(start, static_cast<std::size_t>(length));
@@ -151,7 +151,7 @@ void McapSource::open_chunk(std::span<const std::byte> content) {
   const Compression compression = compression_by_name(cursor.counted_text());
   const auto block = cursor.take(cursor.number<std::uint64_t>());
   std::vector<std::byte>& chunk = begin_chunk();
-  decompress(block, compression, size, chunk);
+  decompress(block, compression, size, budget(), chunk);
   const auto sum = static_cast<std::uint32_t>(
       crc32_z(0, reinterpret_cast<const unsigned char*>(chunk.data()), chunk.size()));
   if (crc != 0 && crc != sum) {

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <stdexcept>
 #include <utility>
+
+#include "topogeo/support/foreign_file.hpp"
 
 #include "bag_source.hpp"
 #include "folder_source.hpp"
@@ -21,10 +22,7 @@ constexpr std::size_t kFirstBytes = 16;
 Format format_of(const std::filesystem::path& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) return Format::kFolder;
-  std::array<char, kFirstBytes> bytes{};
-  std::ifstream file(path, std::ios::binary);
-  file.read(bytes.data(), bytes.size());
-  const std::string_view start(bytes.data(), static_cast<std::size_t>(file.gcount()));
+  const std::string start = support::first_bytes(path, kFirstBytes);
   if (start.starts_with("SQLite format 3")) return Format::kSqlite;
   if (start.starts_with("\x89MCAP")) return Format::kMcap;
   if (start.starts_with("#ROSBAG")) return Format::kBag;
@@ -61,6 +59,7 @@ std::unique_ptr<MessageSource> open_messages(const std::filesystem::path& path,
   if (!std::filesystem::exists(path)) {
     throw std::runtime_error(path.string() + ": expected a file, got nothing of that name");
   }
+  support::refuse_irregular(path);
   throw std::runtime_error(
       path.string() + ": byte 0: expected the first bytes of a .db3, .mcap or .bag, got others");
 }

@@ -44,8 +44,11 @@ bool is_zstd_frame(std::span<const std::byte> data) {
 
 SqliteSource::SqliteSource(const std::filesystem::path& path, const TopicFilter& wanted)
     : name_(path.string()),
+      file_bytes_(sqlite_guard::bytes_of(path)),
       database_(nullptr, &sqlite3_close),
-      messages_(nullptr, &sqlite3_finalize) {
+      messages_(nullptr, &sqlite3_finalize),
+      budget_(file_bytes_) {
+  sqlite_guard::refuse_irregular(path);
   open();
   read_topics();
   select_messages(wanted);
@@ -61,11 +64,18 @@ void SqliteSource::open() {
     const std::string uri = "file:" + escaped(name_) + how;
     const int result =
         sqlite3_open_v2(uri.c_str(), &raw, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
+    limit_.reset();  // of the connection before
     database_.reset(raw);
-    if (result == SQLITE_OK && sqlite3_exec(raw, "SELECT 1 FROM sqlite_master LIMIT 1", nullptr,
-                                            nullptr, nullptr) == SQLITE_OK) {
-      return;
+    if (raw == nullptr) continue;
+    sqlite_guard::protect(raw);
+    limit_.emplace(raw, file_bytes_);
+    if (result != SQLITE_OK || sqlite3_exec(raw, "SELECT 1 FROM sqlite_master LIMIT 1", nullptr,
+                                            nullptr, nullptr) != SQLITE_OK) {
+      continue;
     }
+    const std::string refused = sqlite_guard::refused_schema(raw);
+    if (refused.empty()) return;
+    throw std::runtime_error(name_ + ": has " + refused + ", expected the tables of rosbag2 alone");
   }
   fail("cannot be opened");
 }
@@ -79,8 +89,23 @@ SqliteSource::Statement SqliteSource::prepare(const std::string& sql) {
 }
 
 void SqliteSource::fail(const std::string& what) {
-  throw std::runtime_error(name_ + ": " + what + ": " +
-                           (database_ ? sqlite3_errmsg(database_.get()) : "no memory"));
+  throw std::runtime_error(name_ + ": " + what + ": " + cause());
+}
+
+std::string SqliteSource::cause() const {
+  if (!database_) return "no memory";
+  return limit_ && limit_->reached() ? sqlite_guard::kTooMuchWork : sqlite3_errmsg(database_.get());
+}
+
+std::span<const std::byte> SqliteSource::data_of_row() {
+  sqlite3_stmt* row = messages_.get();
+  const auto* data = static_cast<const std::byte*>(sqlite3_column_blob(row, 3));
+  if (data == nullptr) return {};
+  const auto size = static_cast<std::size_t>(sqlite3_column_bytes(row, 3));
+  // Rows of a damaged file can lie on the same pages.
+  data_bytes_ += size;
+  if (data_bytes_ > file_bytes_) throw FormatError("expected messages that the file can hold");
+  return {data, size};
 }
 
 void SqliteSource::read_topics() {
@@ -116,7 +141,7 @@ bool SqliteSource::next(RawMessage& message) {
   if (result != SQLITE_ROW) {
     ended_ = true;
     if (result != SQLITE_DONE) {
-      damage_ = name_ + ": after " + position() + ": " + sqlite3_errmsg(database_.get());
+      damage_ = name_ + ": after " + position() + ": " + cause();
     }
     return false;
   }
@@ -130,20 +155,18 @@ bool SqliteSource::next(RawMessage& message) {
   }
   message.topic = topic->second;
   message.log_time_ns = sqlite3_column_int64(row, 2);
-  const auto* data = static_cast<const std::byte*>(sqlite3_column_blob(row, 3));
-  message.data = {data,
-                  data == nullptr ? 0 : static_cast<std::size_t>(sqlite3_column_bytes(row, 3))};
-  if (is_zstd_frame(message.data)) {
-    try {
-      decompress_zstd(message.data, unpacked_);
+  try {
+    message.data = data_of_row();
+    if (is_zstd_frame(message.data)) {
+      decompress_zstd(message.data, budget_, unpacked_);
       message.data = unpacked_;
-    } catch (const FormatError& error) {
-      damage_ = name_ + ": " + position() + ": " + error.what();
-      ended_ = true;
-      return false;
     }
+    return true;
+  } catch (const FormatError& error) {
+    damage_ = name_ + ": " + position() + ": " + error.what();
+    ended_ = true;
+    return false;
   }
-  return true;
 }
 
 std::string SqliteSource::position() const {

@@ -5,10 +5,15 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "topogeo/recording/message_source.hpp"
+#include "topogeo/sqlite_guard/sqlite_guard.hpp"
+
+#include "compression.hpp"
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -33,17 +38,25 @@ class SqliteSource final : public MessageSource {
   void open();
   Statement prepare(const std::string& sql);
   [[noreturn]] void fail(const std::string& what);
+  /// Why the last call failed.
+  [[nodiscard]] std::string cause() const;
+  /// The blob of the message. Throws FormatError where all so far are more than the file can hold.
+  std::span<const std::byte> data_of_row();
   void read_topics();
   void select_messages(const TopicFilter& wanted);
 
   std::string name_;
+  std::uint64_t file_bytes_;
   std::unique_ptr<sqlite3, int (*)(sqlite3*)> database_;
+  std::optional<sqlite_guard::WorkLimit> limit_;
   Statement messages_;
   std::vector<Topic> topics_;
   std::map<std::int64_t, std::size_t> topic_of_id_;
   std::int64_t message_id_ = 0;
   std::int64_t last_id_ = 0;
   bool ended_ = false;
+  std::uint64_t data_bytes_ = 0;  // of the messages so far
+  UnpackBudget budget_;
   std::vector<std::byte> unpacked_;
   std::string damage_;
 };
