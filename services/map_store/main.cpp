@@ -1,4 +1,5 @@
 // Keeps the map of a robot in a directory and shows it to all readers.
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <exception>
@@ -23,6 +24,7 @@
 #include "topogeo/support/file_lock.hpp"
 #include "topogeo/support/log.hpp"
 
+#include "disk_room.hpp"
 #include "drawing_options.hpp"
 #include "map_server.hpp"
 #include "map_store_service.hpp"
@@ -124,21 +126,53 @@ void serve(const service::Setup& setup, const StoreOptions& options) {
 }
 
 /// Until the program is to end, or a snapshot is to take the place of the map: its name then.
-std::optional<std::string> keep_until_restored(const service::Setup& setup,
-                                               const StoreOptions& options) {
+std::optional<std::string> keep_until_restored(const service::Setup& setup, StoreOptions& options) {
   const map_store::MapStoreOptions& store = options.store;
   service::Service service(service::with_robots(setup, options.robots));
   const service::SoleService sole(service);
   const std::uint64_t seed = setup.config.config.localizer.seed;
+  if (options.anew) map_store::set_aside_database(store.database);
+  options.anew = false;  // once, however often it is tried
   storage::MapDatabase database =
-      options.anew ? map_store::fresh_database(store.database, setup.options.robot_id, seed)
-                   : map_store::last_database(store.database, setup.options.robot_id, seed);
+      map_store::last_database(store.database, setup.options.robot_id, seed);
   if (store.continued) map_store::begin_with(database, *store.continued);
   map_store::MapStoreService running(service, store, std::move(database));
   service.run();
   if (running.wanted_snapshot() && !service::Service::stopping()) return running.wanted_snapshot();
   running.end();
   return std::nullopt;
+}
+
+/// Keeps the map in its directory until the program is to end.
+void keep_in_directory(const service::Setup& setup, StoreOptions& options) {
+  map_store::MapStoreOptions& store = options.store;
+  check_directory(store.directory);
+  const std::vector<support::FileLock> locks = lock(store);
+  while (const auto snapshot = keep_until_restored(setup, options)) {
+    storage::restore_snapshot(store.database, *snapshot);
+    spdlog::info("the map is that of snapshot {}", *snapshot);
+    store.continued.reset();
+  }
+}
+
+/// The same. A full disk is no reason to end: the unit of a program with kBadInput is not started
+/// again.
+void keep_in_spite_of_full_disk(const service::Setup& setup, StoreOptions& options) {
+  const std::array directories = {options.store.directory,
+                                  std::filesystem::absolute(options.store.database).parent_path()};
+  // A file that may not grow any more is a full disk and no reason to die.
+  std::signal(SIGXFSZ, SIG_IGN);
+  for (bool had_room = false;;) {
+    try {
+      return keep_in_directory(setup, options);
+    } catch (const std::exception& error) {
+      const bool room = map_store::have_room(directories);
+      const bool bad_input = dynamic_cast<const service::BadInputError*>(&error) != nullptr;
+      if (service::Service::stopping() || (room && (had_room || !bad_input))) throw;
+      had_room = room;  // once more: it may have come a moment ago
+      if (!room && !map_store::wait_for_room(setup, directories, error.what())) return;
+    }
+  }
 }
 
 /// Keeps the map of a drive.
@@ -151,18 +185,9 @@ void keep(const service::Setup& setup, StoreOptions options) {
       read_drawing(options.drawing, setup.config.config.hybrid_map.grid.resolution_m);
   store.continued = map_to_continue(options.continued, setup);
   store.drawing = std::move(drawing);
-  check_directory(store.directory);
   if (store.database.empty()) store.database = store.directory / "map.sqlite";
   if (store.title.empty()) store.title = setup.options.robot_id;
-  const std::vector<support::FileLock> locks = lock(store);
-  // A file that may not grow any more is a full disk and no reason to die.
-  std::signal(SIGXFSZ, SIG_IGN);
-  while (const auto snapshot = keep_until_restored(setup, options)) {
-    storage::restore_snapshot(store.database, *snapshot);
-    spdlog::info("the map is that of snapshot {}", *snapshot);
-    options.anew = false;
-    store.continued.reset();
-  }
+  keep_in_spite_of_full_disk(setup, options);
 }
 
 /// Memory that is needed for a moment, as when the live map is drawn up or a snapshot is made, goes

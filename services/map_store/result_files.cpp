@@ -11,12 +11,10 @@ namespace topogeo::map_store {
 
 namespace fs = std::filesystem;
 
-storage::MapDatabase fresh_database(const fs::path& path, const std::string& robot_id,
-                                    std::uint64_t seed) {
+void set_aside_database(const fs::path& path) {
+  if (!fs::exists(path)) return;
   try {
-    if (fs::exists(path) && !fs::is_empty(path)) {
-      storage::MapDatabase::check_replaceable(path);
-    }
+    if (!fs::is_empty(path)) storage::MapDatabase::check_replaceable(path);
   } catch (const std::exception& error) {
     throw service::BadInputError(std::string(error.what()) +
                                  "; move it away or name another file with --database");
@@ -26,9 +24,8 @@ storage::MapDatabase fresh_database(const fs::path& path, const std::string& rob
     // not cost it. The write-ahead log is empty here, since opening it above has merged it.
     fs::path previous = path;
     previous.replace_extension(".previous" + path.extension().string());
-    if (fs::exists(path)) fs::rename(path, previous);
+    fs::rename(path, previous);
     for (const char* suffix : {"-wal", "-shm"}) fs::remove(path.string() + suffix);
-    return storage::MapDatabase::open_or_create(path, robot_id, seed);
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }

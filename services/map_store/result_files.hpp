@@ -10,12 +10,10 @@
 
 namespace topogeo::map_store {
 
-/// An empty database in place of the one that an earlier run has left, which is kept under the name
-/// NAME.previous.EXTENSION. Throws
-/// service::BadInputError when the file there is no readable topogeo database (nothing is removed
-/// then) or the new one cannot be made.
-storage::MapDatabase fresh_database(const std::filesystem::path& path, const std::string& robot_id,
-                                    std::uint64_t seed);
+/// Moves the database that an earlier run has left out of the way, to NAME.previous.EXTENSION.
+/// Throws service::BadInputError when the file there is no readable topogeo database; nothing is
+/// moved then.
+void set_aside_database(const std::filesystem::path& path);
 
 /// The database that is there, to go on with it, or a new one. Throws service::BadInputError when
 /// what is there cannot be used; it stays as it is then.

@@ -2,6 +2,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <random>
 #include <thread>
 
@@ -210,6 +211,79 @@ TEST_F(MapStoreLives, OnAFullDiskTheMapGoesOnInMemory) {
   drive_.finish();
   store.wait_for_error_text("local maps, ");
   EXPECT_TRUE(storage::map_file_bytes(drive_.map()) == read_file(file("map.pb")));
+}
+
+/// Programs that are started meanwhile can make no file larger than this: a full disk.
+class FullDiskForPrograms {
+ public:
+  explicit FullDiskForPrograms(rlim_t bytes) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit full = before_;
+    full.rlim_cur = bytes;
+    ::setrlimit(RLIMIT_FSIZE, &full);
+  }
+  FullDiskForPrograms(const FullDiskForPrograms&) = delete;
+  FullDiskForPrograms& operator=(const FullDiskForPrograms&) = delete;
+  ~FullDiskForPrograms() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+
+  [[nodiscard]] const rlimit& before() const { return before_; }
+
+ private:
+  rlimit before_{};
+};
+
+// Too little for the index of the database's log, and enough for what the program logs.
+constexpr rlim_t kTooLittle_bytes = 16'000;
+
+TEST_F(MapStoreLives, StartedOnAFullDiskItWaitsForRoom) {
+  {
+    Program store(scratch_, "map_store", words());
+    drive_.send(4);
+    ASSERT_TRUE(drive_.wait_for_stored(4));
+    store.send_signal(SIGTERM);
+    EXPECT_EQ(store.wait(), 0) << store.err();
+  }
+  rlimit before{};
+  std::optional<Program> store;
+  {
+    const FullDiskForPrograms full(kTooLittle_bytes);
+    before = full.before();
+    store.emplace(scratch_, "map_store", words());
+  }
+  store->wait_for_error_text("disk full: ");
+  {
+    Program status(scratch_, "topogeo",
+                   {"status", "--domain", own_domain(), "--partition", partition_});
+    EXPECT_NE(status.wait(), 0);
+    EXPECT_THAT(status.out(), HasSubstr("waits for room on the disk"));
+  }
+  EXPECT_FALSE(store->ended());
+  ASSERT_EQ(::prlimit(store->pid(), RLIMIT_FSIZE, &before, nullptr), 0);
+  store->wait_for_error_text("there is room on the disk again");
+  drive_.finish();
+  store->wait_for_error_text("local maps, ");
+  EXPECT_TRUE(storage::map_file_bytes(drive_.map()) == read_file(file("map.pb")));
+}
+
+TEST_F(MapStoreLives, OnAFullDiskANewMapLeavesTheLastOneWhole) {
+  {
+    Program store(scratch_, "map_store", words());
+    drive_.send(4);
+    ASSERT_TRUE(drive_.wait_for_stored(4));
+    store.send_signal(SIGTERM);
+    EXPECT_EQ(store.wait(), 0) << store.err();
+  }
+  std::optional<Program> store;
+  {
+    const FullDiskForPrograms full(kTooLittle_bytes);
+    store.emplace(scratch_, "map_store", words({"--new"}));
+  }
+  store->wait_for_error_text("disk full: ");
+  store->send_signal(SIGTERM);
+  EXPECT_EQ(store->wait(), 0) << store->err();
+  const bool moved = std::filesystem::exists(file("map.previous.sqlite"));
+  EXPECT_EQ(storage::read_map(file(moved ? "map.previous.sqlite" : "map.sqlite")).local_maps.size(),
+            4U);
 }
 
 TEST_F(MapStoreLives, ADamagedMapIsRefusedAndLeftAlone) {

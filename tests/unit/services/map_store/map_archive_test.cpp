@@ -1,18 +1,17 @@
 // The faults that a disk and its users have in store, each injected while a map comes in.
 #include "map_store/map_archive.hpp"
 
-#include <csignal>
 #include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
-#include <sys/resource.h>
 
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/storage/read_map.hpp"
 
 #include "services/common/random_values.hpp"
+#include "services/map_store/full_disk.hpp"
 
 namespace topogeo::map_store {
 namespace {
@@ -23,28 +22,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr std::uint64_t kArchivedSession = 3;
-
-/// No file of this process grows beyond so many bytes: a full disk.
-class FullDisk {
- public:
-  explicit FullDisk(std::uintmax_t bytes) {
-    handler_ = std::signal(SIGXFSZ, SIG_IGN);
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    rlimit limit = before_;
-    limit.rlim_cur = bytes;
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-  ~FullDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-
- private:
-  rlimit before_{};
-  void (*handler_)(int) = nullptr;
-};
 
 class Archive : public testing::Test {
  protected:

@@ -38,8 +38,9 @@ topomap::LocalMap first_map() {
 
 TEST_F(Files, DatabaseOfAnEarlierRunIsReplaced) {
   const topomap::LocalMap stop = first_map();
-  EXPECT_TRUE(fresh_database(database_, "robot", 1).put_stops({&stop, 1}).empty());
-  const storage::MapDatabase fresh = fresh_database(database_, "other", 2);
+  EXPECT_TRUE(last_database(database_, "robot", 1).put_stops({&stop, 1}).empty());
+  set_aside_database(database_);
+  const storage::MapDatabase fresh = last_database(database_, "other", 2);
   EXPECT_TRUE(fresh.sessions().empty());
   EXPECT_EQ(fresh.robot_id(), "other");
 }
@@ -70,21 +71,22 @@ TEST_F(Files, DatabaseBeginsWithTheMapThatItExtends) {
 
 TEST_F(Files, EmptyFileIsNoDatabase) {
   std::ofstream(database_).close();
-  EXPECT_EQ(fresh_database(database_, "robot", 1).local_map_count(), 0U);
+  set_aside_database(database_);
+  EXPECT_EQ(last_database(database_, "robot", 1).local_map_count(), 0U);
 }
 
 TEST_F(Files, FileOfSomebodyElseIsLeftAlone) {
   const std::string text =
       "my precious notes, longer than the smallest database" + std::string(1000, '.');
   std::ofstream(database_) << text;
-  EXPECT_THROW(fresh_database(database_, "robot", 1), service::BadInputError);
+  EXPECT_THROW(set_aside_database(database_), service::BadInputError);
   std::ifstream in(database_);
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), text);
 }
 
 TEST_F(Files, DirectoryInItsPlaceIsBadInput) {
   fs::create_directories(database_ / "inside");
-  EXPECT_THROW(fresh_database(database_, "robot", 1), service::BadInputError);
+  EXPECT_THROW(set_aside_database(database_), service::BadInputError);
   EXPECT_TRUE(fs::exists(database_ / "inside"));
 }
 
