@@ -193,7 +193,9 @@ void start_services(ProcessGroup& processes, const RunOptions& options,
   processes.leave_out_at_restart("map_store", "--new");
   if (options.web) {
     export_token(*options.web);
-    start("web", common + web_arguments(*options.web));
+    const std::filesystem::path log = options.job.out / "logs" / "web.log";
+    start("web", common + web_arguments(*options.web) +
+                     Arguments{"--link-file", link_file_beside(log).string()});
   }
   if (options.ros && !from_ros(options)) start_bridge(processes, options, common);
   if (options.job.log.empty() && options.devices.empty() && !options.ros) return;  // a map alone

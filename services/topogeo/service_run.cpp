@@ -124,13 +124,16 @@ void ServiceRun::tick() {
 
 void ServiceRun::look_for_links() {
   if (web_log_.empty()) return;
-  std::string links = links_in(web_log_);
-  if (links.empty()) return;
+  const std::string with_token = links_in(web_log_, true);
+  if (with_token.empty()) return;
+  const std::string without_token = links_in(web_log_, false);
   web_log_.clear();
   if (hooks_.on_links) {
-    hooks_.on_links(links);
+    hooks_.on_links(with_token, without_token);
     return;
   }
+  // A terminal shows the token to who has started this; in its place may be a log.
+  std::string links = ::isatty(STDERR_FILENO) == 1 ? with_token : without_token;
   while (!links.empty()) {
     const std::size_t end = links.find('\n');
     hooks_.log(links.substr(0, end));

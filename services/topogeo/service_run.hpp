@@ -31,8 +31,9 @@ class ServiceRun {
     std::function<void(const std::string& line)> log;  ///< for the user
     /// Each status that comes, after the run has ended, too; empty: nothing else needs them.
     std::function<void(const msg::ServiceStatus&, const messaging::SampleInfo&)> on_status = {};
-    /// The links of the page, once there are any; empty: they are logged.
-    std::function<void(const std::string& lines)> on_links = {};
+    /// The links of the page, once there are any; empty: they are logged, with the token to a
+    /// terminal alone.
+    std::function<void(const std::string& lines, const std::string& without_token)> on_links = {};
   };
 
   /// Joins the domain; no service is started yet. Throws like messaging::Participant and

@@ -3,7 +3,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <random>
-#include <string_view>
 
 #include "topogeo/service/web_access.hpp"
 #include "topogeo/support/format.hpp"
@@ -90,15 +89,26 @@ std::vector<std::string> web_arguments(const WebOptions& options) {
   return arguments;
 }
 
-std::string links_in(const std::filesystem::path& log) {
+std::filesystem::path link_file_beside(const std::filesystem::path& log) {
+  return log.parent_path() / "web.link";
+}
+
+std::string links_in(const std::filesystem::path& log, bool with_token) {
   std::ifstream file(log);
   std::string links;
   std::string line;
   while (std::getline(file, line)) {
-    const std::string_view text = line;
-    if (text.starts_with("operator:") || text.starts_with("spectators:")) links += line + '\n';
+    const bool of_spectators = line.starts_with("spectators:");
+    if (line.starts_with("operator:")) {
+      if (with_token) {
+        std::ifstream link(link_file_beside(log));
+        std::getline(link, line);
+        line.insert(0, "operator:   ");
+      }
+      links += line + '\n';
+    }
     // The second line is whole when its end has come.
-    if (text.starts_with("spectators:") && !file.eof()) return links;
+    if (of_spectators && !file.eof()) return links + line + '\n';
   }
   return {};
 }

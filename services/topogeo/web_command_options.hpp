@@ -39,7 +39,11 @@ void export_token(const WebOptions& options);
 /// As arguments of the program `web`, without the token.
 std::vector<std::string> web_arguments(const WebOptions& options);
 
-/// The lines with the links that a web service has written to its log; empty: it has not yet.
-std::string links_in(const std::filesystem::path& log);
+/// For a web service whose log is this file: where it writes the operator's link (--link-file).
+std::filesystem::path link_file_beside(const std::filesystem::path& log);
+
+/// The lines with the links that a web service has written to its log and beside it; empty: it has
+/// not yet. `with_token`: the operator's link is in them; else the file that has it.
+std::string links_in(const std::filesystem::path& log, bool with_token);
 
 }  // namespace topogeo::cli

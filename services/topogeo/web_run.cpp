@@ -24,7 +24,9 @@ class WebRun {
     ServiceRun::Hooks hooks;
     hooks.on_tick = [] {};
     hooks.log = [](const std::string& line) { std::cerr << "topogeo: " << line << '\n'; };
-    hooks.on_links = [this](const std::string& links) { show(links); };
+    hooks.on_links = [this](const std::string& links, const std::string& without_token) {
+      show(links, without_token);
+    };
     if (options.simulation && !options.simulation->no_laser) {
       floors_.emplace(run_.participant(), run_.loop(), options, [this](const RunOptions& next) {
         std::cerr << "topogeo: the robot is put into " << next.simulation->world.string() << '\n';
@@ -42,8 +44,10 @@ class WebRun {
   }
 
  private:
-  void show(const std::string& links) const {
-    std::cout << links << "Ctrl-C ends it.\n" << std::flush;
+  void show(const std::string& links, const std::string& without_token) const {
+    // In place of a terminal there may be a log, which others read.
+    std::cout << (::isatty(STDOUT_FILENO) == 1 ? links : without_token) << "Ctrl-C ends it.\n"
+              << std::flush;
     if (open_browser_) open_in_browser(operator_link(links));
   }
 

@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
         const web::ServerConfig config = web::server_config(options, setup.options.robot_id);
         service::Service service(service::with_map_of(setup, options.map_robot));
         const web::WebService web(service, config, web::page_files(options));
-        std::cout << web::links(config, web.port()) << std::flush;
+        std::cout << web::links(config, web.port(), options.link_file) << std::flush;
         service.run();
       });
 }

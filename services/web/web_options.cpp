@@ -9,6 +9,7 @@
 #include "topogeo/support/file_content.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
+#include "topogeo/support/secret_file.hpp"
 
 #include "server/access.hpp"
 
@@ -57,6 +58,10 @@ void add_web_options(command_line::Command& app, WebOptions& options) {
       ->type_name("TEXT");
   app.add_option("--token-file", options.token_file,
                  "the same from a file, which `ps` does not show")
+      ->type_name("FILE");
+  app.add_option("--link-file", options.link_file,
+                 "file of mode 0600 for the operator's link, which holds the token and is not "
+                 "printed then: logs and journals are read by others")
       ->type_name("FILE");
   app.add_option("--certificate", options.certificate,
                  "certificate of the server with its chain (PEM)")
@@ -123,13 +128,23 @@ PageFiles page_files(const WebOptions& options) {
   return PageFiles();
 }
 
-std::string links(const ServerConfig& config, std::uint32_t port) {
+std::string links(const ServerConfig& config, std::uint32_t port,
+                  const std::filesystem::path& link_file) {
   std::string host = config.address;
   if (host == "0.0.0.0" || host == "::") host = support::host_name();
   if (host.find(':') != std::string::npos) host = "[" + host + "]";
   const std::string scheme = config.certificate_file.empty() ? "http" : "https";
   const std::string link = fmt::format("{}://{}:{}/", scheme, host, port);
-  return fmt::format("operator:   {}#token={}\nspectators: {}\n", link, config.token, link);
+  std::string of_operator = fmt::format("{}#token={}", link, config.token);
+  if (!link_file.empty()) {
+    try {
+      support::write_secret_file(link_file, of_operator + '\n');
+    } catch (const std::runtime_error& error) {
+      throw service::BadInputError(error.what());
+    }
+    of_operator = fmt::format("in {}, which its owner and root can read", link_file.string());
+  }
+  return fmt::format("operator:   {}\nspectators: {}\n", of_operator, link);
 }
 
 }  // namespace topogeo::web

@@ -19,6 +19,7 @@ struct WebOptions {
   std::string bind = "127.0.0.1";
   std::optional<std::string> token;
   std::optional<std::filesystem::path> token_file;
+  std::filesystem::path link_file;  ///< that gets the operator's link; empty: it is printed
   std::filesystem::path certificate;
   std::filesystem::path key;
   std::vector<std::string> hosts;
@@ -38,7 +39,10 @@ ServerConfig server_config(const WebOptions& options, const std::string& robot_i
 /// Throws std::runtime_error for a folder that was given and cannot be used.
 PageFiles page_files(const WebOptions& options);
 
-/// Two lines: the operator's link and that of spectators.
-std::string links(const ServerConfig& config, std::uint32_t port);
+/// Two lines: the operator's link and that of spectators. With a link file the operator's link,
+/// with the token, goes there alone, and the line names the file. Throws service::BadInputError
+/// where it cannot be written.
+std::string links(const ServerConfig& config, std::uint32_t port,
+                  const std::filesystem::path& link_file);
 
 }  // namespace topogeo::web

@@ -26,6 +26,7 @@ namespace {
 using nlohmann::json;
 using std::chrono::milliseconds;
 using testing::HasSubstr;
+using testing::Not;
 
 TEST(WebOnLog, ThePageStaysWithTheMapUntilCtrlC) {
   use_udp_only();
@@ -47,6 +48,16 @@ TEST(WebOnLog, ThePageStaysWithTheMapUntilCtrlC) {
   EXPECT_EQ(run.wait(), 0) << run.err();
   EXPECT_THAT(run.out(), HasSubstr("results in " + out));
   EXPECT_TRUE(std::filesystem::exists(scratch / "out/report.json"));
+  // The token is in no log, and where it is its owner alone can read it.
+  for (const std::string& text : {run.out(), run.err(), read_file(scratch / "out/logs/web.log")}) {
+    EXPECT_THAT(text, Not(HasSubstr(kToken)));
+  }
+  EXPECT_THAT(read_file(scratch / "out/logs/web.link"), HasSubstr("#token=" + std::string(kToken)));
+  for (const char* file : {"out/logs/web.link", "out/logs/web.log", "out/logs/map_store.log"}) {
+    EXPECT_EQ(std::filesystem::status(scratch / file).permissions(),
+              std::filesystem::perms::owner_read | std::filesystem::perms::owner_write)
+        << file;
+  }
 }
 
 TEST_F(WebOnMap, APageHasTheMapThroughRestartsOfBothSides) {

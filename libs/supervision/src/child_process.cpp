@@ -12,6 +12,7 @@
 #include <linux/close_range.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -29,8 +30,19 @@ std::runtime_error system_error(const std::string& what) {
 }
 
 support::FileDescriptor open(const char* path, int flags) {
-  support::FileDescriptor file(::open(path, flags | O_CLOEXEC, 0644));
+  support::FileDescriptor file(::open(path, flags | O_CLOEXEC, S_IRUSR | S_IWUSR));
   if (!file.is_open()) throw system_error(std::string("cannot open ") + path);
+  return file;
+}
+
+/// For its owner alone: a program may log what it got to know in confidence.
+support::FileDescriptor open_log(const std::filesystem::path& path) {
+  support::FileDescriptor file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND);
+  // One that was there before had perhaps another mode; a device is no file of ours.
+  struct stat status {};
+  if (::fstat(file.get(), &status) == 0 && S_ISREG(status.st_mode)) {
+    static_cast<void>(::fchmod(file.get(), S_IRUSR | S_IWUSR));
+  }
   return file;
 }
 
@@ -68,8 +80,7 @@ ChildProcess::ChildProcess(std::string name, const std::filesystem::path& progra
     : name_(std::move(name)), log_file_(std::move(log_file)), start_s_(support::monotonic_s()) {
   if (::access(program.c_str(), X_OK) != 0) throw system_error("cannot run " + program.string());
   const support::FileDescriptor input = open("/dev/null", O_RDONLY);
-  const support::FileDescriptor output =
-      open(log_file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND);
+  const support::FileDescriptor output = open_log(log_file_);
   std::vector<std::string> words = {program.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;

@@ -7,10 +7,12 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "topogeo/support/file_descriptor.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/secret_file.hpp"
 
 namespace topogeo::support {
 namespace fs = std::filesystem;
@@ -43,12 +45,12 @@ fs::path directory_of(const fs::path& path) {
 
 /// Makes a file that did not exist before, with the permissions that the umask leaves. Returns its
 /// descriptor, or -1 with errno.
-int create_beside(const fs::path& path, fs::path& created) {
+int create_beside(const fs::path& path, fs::path& created, mode_t mode = 0666) {
   constexpr int kAttempts = 100;  // leftovers of killed processes with this process's id
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     created = directory_of(path) /
               fmt::format(".{}.tmp-{}-{}", path.filename().string(), ::getpid(), attempt);
-    const int fd = ::open(created.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    const int fd = ::open(created.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     if (fd >= 0 || errno != EEXIST) return fd;
   }
   return -1;
@@ -65,12 +67,10 @@ int write_all(int fd, std::string_view content) {
   return 0;
 }
 
-}  // namespace
-
-void write_file_atomically(const fs::path& path, std::string_view content) {
+void write_with_mode(const fs::path& path, std::string_view content, mode_t mode) {
   if (!path.has_filename()) fail(path, "cannot be written", EISDIR);
   fs::path temporary_path;
-  FileDescriptor file(create_beside(path, temporary_path));
+  FileDescriptor file(create_beside(path, temporary_path, mode));
   if (file.get() < 0) fail(path, "cannot be created", errno);
   TemporaryFile temporary(temporary_path);
 
@@ -85,6 +85,16 @@ void write_file_atomically(const fs::path& path, std::string_view content) {
   const FileDescriptor directory(
       ::open(directory_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (directory.get() >= 0) static_cast<void>(::fsync(directory.get()));
+}
+
+}  // namespace
+
+void write_file_atomically(const fs::path& path, std::string_view content) {
+  write_with_mode(path, content, 0666);
+}
+
+void write_secret_file(const fs::path& path, std::string_view content) {
+  write_with_mode(path, content, S_IRUSR | S_IWUSR);
 }
 
 void check_writable_directory(const fs::path& directory) {

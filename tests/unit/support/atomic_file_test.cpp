@@ -8,6 +8,8 @@
 
 #include <gmock/gmock.h>
 
+#include "topogeo/support/secret_file.hpp"
+
 namespace topogeo::support {
 namespace {
 
@@ -43,6 +45,15 @@ TEST_F(AtomicFile, WritesAndReplaces) {
   EXPECT_EQ(content(path), binary);
   write_file_atomically(path, "");
   EXPECT_EQ(content(path), "");
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(AtomicFile, SecretsAreTheirOwnersAlone) {
+  const fs::path path = directory_ / "link";
+  write_file_atomically(path, "for all");
+  write_secret_file(path, "token");
+  EXPECT_EQ(content(path), "token");
+  EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_read | fs::perms::owner_write);
   EXPECT_EQ(files(), 1U);
 }
 

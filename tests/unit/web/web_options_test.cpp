@@ -3,12 +3,15 @@
 #include <gmock/gmock.h>
 
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/support/file_content.hpp"
+#include "topogeo/support/temporary_folder.hpp"
 
 namespace topogeo::web {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 ServerConfig config_of(const std::vector<std::string>& origins) {
   WebOptions options;
@@ -27,6 +30,24 @@ TEST(WebOptions, OriginsAreSitesAsBrowsersSendThem) {
       EXPECT_THAT(error.what(), HasSubstr(std::string("--origin ") + wrong));
     }
   }
+}
+
+TEST(WebOptions, LinkFileKeepsTheTokenFromWhatIsPrinted) {
+  const support::TemporaryFolder folder("web_options");
+  ServerConfig config;
+  config.address = "127.0.0.1";
+  config.token = "a-token-of-the-test";
+  EXPECT_THAT(links(config, 8080, {}),
+              HasSubstr("http://127.0.0.1:8080/#token=a-token-of-the-test"));
+  const std::filesystem::path file = folder.path() / "link";
+  const std::string printed = links(config, 8080, file);
+  EXPECT_THAT(printed, Not(HasSubstr("a-token")));
+  EXPECT_THAT(printed, HasSubstr("operator:   in " + file.string()));
+  EXPECT_THAT(printed, HasSubstr("spectators: http://127.0.0.1:8080/\n"));
+  EXPECT_EQ(support::file_content(file), "http://127.0.0.1:8080/#token=a-token-of-the-test\n");
+  EXPECT_EQ(std::filesystem::status(file).permissions(),
+            std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  EXPECT_THROW(links(config, 8080, folder.path() / "none/link"), service::BadInputError);
 }
 
 }  // namespace
