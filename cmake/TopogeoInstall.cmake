@@ -47,11 +47,12 @@ install(DIRECTORY ${deploy}/systemd/ DESTINATION lib/systemd/system COMPONENT to
 install(FILES ${deploy}/systemd/topogeo-worker@.service ${deploy}/systemd/system-topogeoworkers.slice
               ${deploy}/systemd/topogeo-discovery@.service
         DESTINATION lib/systemd/system COMPONENT topogeo-workers)
-install(FILES ${deploy}/systemd/topogeo.env DESTINATION ${data}/etc COMPONENT topogeo)
+install(FILES ${deploy}/systemd/topogeo.env ${deploy}/systemd/web.env DESTINATION ${data}/etc COMPONENT topogeo)
 install(FILES ${deploy}/systemd/worker.env DESTINATION ${data}/etc COMPONENT topogeo-workers)
 install(FILES ${deploy}/dds_profiles.xml DESTINATION ${data} COMPONENT topogeo-workers)
 install(DIRECTORY ${CMAKE_BINARY_DIR}/share/topogeo/web DESTINATION ${data} COMPONENT topogeo)
 install(PROGRAMS ${deploy}/security/make_keys DESTINATION ${data}/security COMPONENT topogeo)
+install(PROGRAMS ${deploy}/security/own_keys DESTINATION ${data}/security COMPONENT topogeo-workers)
 install(FILES ${deploy}/security/permissions.txt DESTINATION ${data}/security COMPONENT topogeo)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT topogeo)
 install(FILES ${deploy}/README.md ${deploy}/SCALING.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/deploy COMPONENT topogeo)

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <system_error>
 
 namespace topogeo::cli {
@@ -53,6 +54,12 @@ std::map<std::string, std::string> environment_in(std::istream& file) {
 void take_installed_settings() {
   if (!is_installed()) return;
   std::ifstream file(kSettings);
+  std::error_code error;
+  if (!file && std::filesystem::exists(kSettings, error)) {
+    std::cerr << "topogeo: " << kSettings
+              << " cannot be read by this user: its domain, robot and security are not taken from "
+                 "there; root and members of the group topogeo can\n";
+  }
   const std::map<std::string, std::string> variables = environment_in(file);
   for (const char* const name : kOfCommands) {
     const auto found = variables.find(name);

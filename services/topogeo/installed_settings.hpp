@@ -13,8 +13,8 @@ std::map<std::string, std::string> environment_in(std::istream& file);
 
 /// Gives this process what /etc/topogeo/topogeo.env says of domain, robot, security and how
 /// services find each other, unless its environment says so itself: an installed command meets the
-/// services of its host. Nothing where the program was not installed, where there is no such file,
-/// or where it cannot be read.
+/// services of its host. Nothing where the program was not installed, or where there is no such
+/// file; one that cannot be read is named on stderr.
 void take_installed_settings();
 
 }  // namespace topogeo::cli

@@ -214,12 +214,12 @@ Findings check_serial_ports(const MachineFacts& facts) {
           problem(fmt::format("{} does not exist", port.path), "the file of devices names it",
                   "plug it in (`dmesg | tail`), or write the right port into the file"));
     } else if (!port.accessible) {
-      found.push_back(
-          {"", port.named ? kProblem : kHint,
-           fmt::format("{} is closed to {}: it belongs to group {}", port.path, facts.user,
-                       port.group),
-           "laser and base cannot be opened",
-           fmt::format("`usermod -aG {} {}` as root, then log in again", port.group, facts.user)});
+      found.push_back({"", port.named ? kProblem : kHint,
+                       fmt::format("{} is closed to {}: it belongs to group {}", port.path,
+                                   port.user.empty() ? facts.user : port.user, port.group),
+                       "laser and base cannot be opened",
+                       fmt::format("`usermod -aG {} {}` as root, then log in again", port.group,
+                                   port.user.empty() ? facts.user : port.user)});
     }
   }
   return found;

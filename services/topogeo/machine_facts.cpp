@@ -33,6 +33,10 @@ constexpr std::uint32_t kFirstPort = 7400;
 constexpr std::uint32_t kFirstOwnPort = 10;
 constexpr std::uint32_t kPortsOfDomain = 250;
 
+// Of the package: who runs the map store and commands, and who runs the gateway.
+constexpr std::string_view kServicesUser = "topogeo";
+constexpr const char* kGatewayUser = "topogeo-sensor-gateway";
+
 std::string first_line(const fs::path& file) {
   std::ifstream input(file);
   std::string line;
@@ -120,6 +124,18 @@ void ask_for_shared_memory(const FactSources& sources, MachineFacts& facts) {
   }
 }
 
+/// Whether a user may read and write a file, by its owner, groups and mode.
+bool can_open(const passwd& user, const struct stat& file) {
+  constexpr mode_t kBoth = 06;
+  if (user.pw_uid == file.st_uid) return (file.st_mode >> 6U & kBoth) == kBoth;
+  std::array<gid_t, 64> groups{};
+  int count = static_cast<int>(groups.size());
+  if (::getgrouplist(user.pw_name, user.pw_gid, groups.data(), &count) < 0) return false;
+  const bool in_group =
+      std::find(groups.begin(), groups.begin() + count, file.st_gid) != groups.begin() + count;
+  return (file.st_mode >> (in_group ? 3U : 0U) & kBoth) == kBoth;
+}
+
 SerialPortFacts serial_port(const fs::path& path, bool named) {
   SerialPortFacts facts;
   facts.path = path.string();
@@ -127,7 +143,14 @@ SerialPortFacts serial_port(const fs::path& path, bool named) {
   struct stat status {};
   facts.exists = ::stat(path.c_str(), &status) == 0;
   if (!facts.exists) return facts;
+  facts.user = user_name();
   facts.accessible = ::access(path.c_str(), R_OK | W_OK) == 0;
+  // The ports are the gateway's alone, and the other services are not to have them.
+  if (const passwd* gateway = ::getpwnam(kGatewayUser);
+      gateway != nullptr && facts.user == kServicesUser) {
+    facts.user = kGatewayUser;
+    facts.accessible = can_open(*gateway, status);
+  }
   const group* owner = ::getgrgid(status.st_gid);
   facts.group = owner == nullptr ? std::to_string(status.st_gid) : owner->gr_name;
   return facts;

@@ -20,9 +20,10 @@ struct MulticastProbe {
 struct SerialPortFacts {
   std::string path;
   bool exists = false;
-  bool accessible = false;  ///< for the user that runs this program
+  bool accessible = false;  ///< for `user`
   std::string group;        ///< that the port belongs to
   bool named = false;       ///< by the file of devices; else it was found in /dev
+  std::string user{};  ///< who opens it: that of the gateway's unit, else who runs this program
 };
 
 struct MachineFacts {

@@ -34,6 +34,27 @@ if there systemd-analyze "the units are not checked"; then
     fail "systemd-analyze verify finds nothing wrong with a unit that is wrong"
 fi
 
+step "users and rights"
+units=("$prefix"/lib/systemd/system/*.service)
+shared=$(grep -h '^User=' "${units[@]}" | sort | uniq -d)
+[ -z "$shared" ] || fail "several services have one user: $shared"
+[ "$(grep -c '^User=' "${units[@]}" | grep -vc ':1$')" = 0 ] || fail "a service has no user"
+[ "$(grep -l dialout "${units[@]}")" = "$prefix/lib/systemd/system/topogeo-sensor-gateway.service" ] ||
+  fail "others than the gateway have the serial ports"
+if there systemd-analyze "the rights of units are not checked"; then
+  for unit in "${units[@]}"; do
+    name=$(basename "$unit")
+    cp "$unit" "$work/${name/@/@1}"
+    # In tenths. What a unit without any of it has is 9 and more.
+    systemd-analyze security --offline=true --threshold=30 "$work/${name/@/@1}" > "$work/exposure" 2>&1 ||
+      { tail -n 1 "$work/exposure"; fail "$name can do too much"; }
+  done
+  sed '/^\(Protect\|Restrict\|Private\|SystemCall\|Capab\)/d' "${units[0]}" > "$work/topogeo-open.service"
+  if systemd-analyze security --offline=true --threshold=30 "$work/topogeo-open.service" > "$work/exposure" 2>&1; then
+    fail "a unit that can do much passes"
+  fi
+fi
+
 step "compose file and manifests"
 if there docker-compose "the compose file is not checked"; then
   for profile in robot ros web offboard demo; do

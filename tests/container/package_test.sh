@@ -33,6 +33,19 @@ docker run --rm -i --user root -v "$work:/exchange" $image bash -euo pipefail -c
   _topogeo
   [ "${COMPREPLY[*]}" = status ]
   [ -e /etc/topogeo/topogeo.env ] && [ -e /usr/lib/systemd/system/topogeo.target ]
+  [ "$(stat -c "%a %U:%G" /etc/topogeo/topogeo.env)" = "640 root:topogeo" ] || { echo "settings are for all"; exit 1; }
+  [ "$(stat -c "%a %U:%G" /etc/topogeo/web.env)" = "600 root:root" ] || { echo "the token is for all"; exit 1; }
+  [ "$(getent group dialout | cut -d: -f4)" = topogeo-sensor-gateway ] || { getent group dialout; exit 1; }
+  # Each service gets its keys, and those alone.
+  mkdir -p /tmp/keys/web /tmp/keys/map_store /tmp/keys/ga_worker
+  for service in web map_store ga_worker; do echo key > /tmp/keys/$service/key.pem; done
+  /usr/share/topogeo/security/own_keys /tmp/keys
+  [ "$(cd /tmp/keys && stat -c "%n %a %U" * */key.pem | LC_ALL=C sort | xargs)" = \
+    "ga_worker 700 topogeo-worker ga_worker/key.pem 600 topogeo-worker map_store 700 topogeo map_store/key.pem 600 topogeo \
+web 700 topogeo-web web/key.pem 600 topogeo-web" ] || { ls -lR /tmp/keys; exit 1; }
+  for user in topogeo topogeo-planner; do
+    if setpriv --reuid $user --regid $user --clear-groups cat /tmp/keys/web/key.pem 2> /dev/null; then exit 1; fi
+  done
   # What docker keeps of a health check says why the command itself fails.
   if TOPOGEO_SECURITY=/nowhere health > /tmp/health 2>&1; then exit 1; fi
   grep -q /nowhere /tmp/health || { echo "no reason of a failed health check:"; cat /tmp/health; exit 1; }

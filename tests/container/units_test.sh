@@ -38,7 +38,7 @@ boots --privileged ||
 if [ ${#sanitized[@]} -gt 0 ]; then
   {
     printf '[Service]\nPrivateTmp=no\nReadWritePaths=%s\nMemoryMax=infinity\n' "$build/reports"
-    printf 'AmbientCapabilities=CAP_SYS_PTRACE\n'
+    printf 'AmbientCapabilities=CAP_SYS_PTRACE\nCapabilityBoundingSet=CAP_SYS_PTRACE\nSystemCallFilter=\n'
     env | sed -nE 's/^((A|L|UB|T)SAN_OPTIONS=.*)/Environment="\1"/p'
   } > "$work/sanitized.conf"
   for unit in $(here ls /usr/lib/systemd/system | grep '^topogeo.*service$'); do

@@ -112,6 +112,12 @@ const std::vector<MachineFault>& machine_faults() {
       {"NotInDialout", "serial ports", Severity::kProblem,
        "/dev/ttyUSB0 is closed to robot: it belongs to group dialout", "usermod -aG dialout robot",
        [](MachineFacts& f) { f.serial_ports[0].accessible = false; }},
+      {"GatewayNotInDialout", "serial ports", Severity::kProblem,
+       "closed to topogeo-sensor-gateway", "usermod -aG dialout topogeo-sensor-gateway",
+       [](MachineFacts& f) {
+         f.serial_ports[0].accessible = false;
+         f.serial_ports[0].user = "topogeo-sensor-gateway";
+       }},
       {"UnnamedPortClosed", "serial ports", Severity::kHint, "closed to robot", "usermod",
        [](MachineFacts& f) {
          f.serial_ports[0].accessible = false;
