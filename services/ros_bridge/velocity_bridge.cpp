@@ -7,6 +7,7 @@
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/ros_conversions/geometry.hpp"
+#include "topogeo/support/host.hpp"
 #include "topogeo/support/log.hpp"
 
 #include "orders.hpp"
@@ -89,7 +90,8 @@ void VelocityBridge::send(double linear_mps, double angular_radps) {
 
 void VelocityBridge::on_twist(const ros::Twist& twist) {
   msg::MotionCommand command = to_motion(twist);
-  messaging::set_header(command, ros_.service().robot_id(), ros_.now_ns(), sent_);
+  // When it was made, not when the sensors were heard last: the gateway refuses old commands.
+  messaging::set_header(command, ros_.service().robot_id(), support::wall_clock_ns(), sent_);
   if (!commands_->write(command)) {
     ros_.service().status().fault("send blocked", "motion command");
     return;
