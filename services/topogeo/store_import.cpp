@@ -48,6 +48,11 @@ exchange::MapGraph read_own_drawing(const fs::path& file, double resolution_m) {
   graph.drawing = file.filename().string().ends_with(".world.yaml")
                       ? pipeline::read_drawing(file, std::nullopt, resolution_m)
                       : pipeline::read_zones_and_places(file);
+  try {
+    if (graph.drawing.grid) exchange::check_grid_size(graph.drawing.grid->frame());
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(file.string() + ": " + error.what());
+  }
   return graph;
 }
 

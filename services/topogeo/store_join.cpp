@@ -51,6 +51,7 @@ storage::MapDocument read_with_stops(const fs::path& file, const pipeline::Confi
       print_notes(image.notes);
       return exchange::occupancy_of(image);
     }();
+    exchange::check_grid_size(grid.frame());
     return exchange::map_of_grid(planning::FreeSpace(std::move(grid), config.hybrid_map.inflation),
                                  config.local_mapper, config.global_map, "drawing");
   } catch (const std::exception& error) {

@@ -12,6 +12,7 @@
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/scan/scan.hpp"
 #include "topogeo/support/check_range.hpp"
+#include "topogeo/support/foreign_file.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/hash.hpp"
 #include "topogeo/topomap/local_map_builder.hpp"
@@ -189,6 +190,12 @@ float cast_beam(const planning::OccupancyGrid& grid, const Eigen::Vector2d& from
     }
   }
   return scan::Scan::kNoReturn;
+}
+
+void check_grid_size(const planning::GridFrame& frame) {
+  if (frame.size() <= support::kMostPixels) return;
+  throw std::runtime_error(fmt::format("a grid of {} x {} cells, allowed are {} in all",
+                                       frame.columns, frame.rows, support::kMostPixels));
 }
 
 storage::MapDocument map_of_grid(const planning::FreeSpace& space,

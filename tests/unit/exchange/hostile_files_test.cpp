@@ -271,6 +271,16 @@ TEST_F(HostileFile, PicturesOfManyPixelsAreRefusedByTheirHeader) {
   EXPECT_THAT(refusal("P5 4000 4000 255 "), HasSubstr("cut short"));
 }
 
+TEST(HostileGrid, LargeDrawnFloorsAreRefused) {
+  planning::GridFrame frame;
+  frame.columns = 4000;
+  frame.rows = 4000;
+  EXPECT_EQ(refusal_of([&] { check_grid_size(frame); }), "");
+  frame.rows = 4001;
+  EXPECT_EQ(refusal_of([&] { check_grid_size(frame); }),
+            "a grid of 4000 x 4001 cells, allowed are 16000000 in all");
+}
+
 // With stops every 0.2 m a floor of 30 m x 30 m would have some 20,000 of them.
 TEST(HostileGrid, FloorsHaveSoManyStopsAlone) {
   planning::GridFrame frame;

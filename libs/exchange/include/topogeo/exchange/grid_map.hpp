@@ -30,6 +30,10 @@ inline constexpr std::size_t kMostGridStops = 3000;
 /// kMostGridStops need.
 inline constexpr double kMostGridSteps = 1'200'000;
 
+/// Throws std::runtime_error for a grid of more cells than a picture may have pixels: a drawn floor
+/// can be of any size, and each cell takes work.
+void check_grid_size(const planning::GridFrame& frame);
+
 /// The document has the grid as its drawing. Empty but for that when no part of the free space is
 /// large enough. Throws std::invalid_argument for settings out of range, and std::runtime_error for
 /// a grid that needs more stops, or more steps of their beams.
