@@ -19,6 +19,11 @@ namespace {
 /// Less than the period of the status, which is to be of now.
 constexpr std::chrono::milliseconds kTick{200};
 
+/// Ends the service, to be started again: it has not failed, which would end all that need it.
+struct StoodStill final : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 }  // namespace
 
 Service::Service(const Setup& setup, bool any_robot)
@@ -76,6 +81,9 @@ void Service::run() {
   check_subscriptions();
   try {
     loop_.run();
+  } catch (const StoodStill& error) {
+    status_->fault("stood still", error.what());
+    throw;
   } catch (const std::exception& error) {
     status_->set_state(msg::kServiceFailed, error.what());
     throw;
@@ -90,7 +98,7 @@ void Service::tick() {
   cpu_->tick(support::monotonic_s());
   manager_.show(status_->text() + (cpu_->lasts() ? "; " + cpu_->text() : ""));
   if (const auto still = participant_.stood_still()) {
-    throw std::runtime_error(
+    throw StoodStill(
         "stood still for " +
         std::to_string(std::chrono::floor<std::chrono::seconds>(*still).count()) +
         " s: peers may have forgotten it, and it would not notice; it meets them again when it is "
