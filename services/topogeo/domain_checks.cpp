@@ -6,10 +6,12 @@
 #include <set>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "topogeo/service/cpu_watch.hpp"
 #include "topogeo/support/format.hpp"
 
+#include "deafness.hpp"
 #include "service_table.hpp"
 
 namespace topogeo::cli {
@@ -258,6 +260,31 @@ std::string good_clocks(const DomainFacts& facts) {
   return hosts.empty() ? "no service is there to compare with" : "agree with " + joined(hosts);
 }
 
+// --- inputs
+
+Findings check_inputs(const DomainFacts& facts) {
+  std::map<std::string, std::vector<const msg::ServiceStatus*>> by_partition;
+  for (const msg::ServiceStatus& status : facts.services) {
+    by_partition[robot_of(status, facts).second].push_back(&status);
+  }
+  Findings found;
+  for (const auto& [partition, services] : by_partition) {
+    for (const msg::ServiceStatus* service : services) {
+      const std::string why = deafness(*service, services);
+      if (why.empty()) continue;
+      found.push_back({"", kProblem, name_of(*service) + " is " + why,
+                       "one of the two has forgotten the other, after an interruption that the "
+                       "other has not noticed",
+                       "restart " + service->service().to_string()});
+    }
+  }
+  return found;
+}
+
+std::string good_inputs(const DomainFacts& /*facts*/) {
+  return "what is sent to the services arrives";
+}
+
 // --- strangers
 
 /// What was refused of messages in the name of a peer.
@@ -300,6 +327,7 @@ constexpr auto kDomainChecks = std::to_array<Check<DomainFacts>>({
     {"configuration", check_configurations, good_configurations},
     {"QoS", check_qos, good_qos},
     {"clocks", check_clocks, good_clocks},
+    {"inputs", check_inputs, good_inputs},
     {"strangers", check_strangers, good_strangers},
 });
 

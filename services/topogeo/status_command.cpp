@@ -121,10 +121,12 @@ void add_status_command(command_line::Command& app, int& exit_code) {
       "INPUT/s is the rate of what a service works on (scans, local maps, tasks, poses) over the\n"
       "last 5 s, AGE the time since the last one. A service without status for 1.5 s is silent, "
       "one\n"
-      "that ended without an order is lost. What was dead before is not known, unless it is "
+      "that ended without an order is lost, one that gets nothing of an input that another one "
+      "sends\n"
+      "is deaf. What was dead before is not known, unless it is "
       "expected\n"
       "or a unit of systemd on this host, of which those are listed that do not run.\n"
-      "Exit code: 0 all services are well, 1 some are failed, lost, silent, missing or not\n"
+      "Exit code: 0 all services are well, 1 some are failed, lost, silent, deaf, missing or not\n"
       "running, or there are none.");
   command->callback([options, &exit_code] { exit_code = show_status(*options); });
 }

@@ -9,6 +9,7 @@
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/printable.hpp"
 
+#include "deafness.hpp"
 #include "service_table.hpp"
 #include "text_grid.hpp"
 
@@ -99,8 +100,22 @@ std::vector<StatusTable::Absent> StatusTable::absent() const {
   return absent;
 }
 
-bool StatusTable::unwell(const Row& row, Clock::time_point now) {
-  return row.lost || row.status.state() == msg::kServiceFailed || now - row.received > kSilent;
+bool StatusTable::is_gone(const Row& row, Clock::time_point now) {
+  return row.lost || now - row.received > kSilent;
+}
+
+std::string StatusTable::deafness(const Row& row, Clock::time_point now) const {
+  if (is_gone(row, now)) return {};
+  std::vector<const msg::ServiceStatus*> all;
+  for (const auto& [name, one] : rows_) {
+    if (!is_gone(one, now)) all.push_back(&one.status);
+  }
+  return cli::deafness(row.status, all);
+}
+
+bool StatusTable::unwell(const Row& row, Clock::time_point now) const {
+  return is_gone(row, now) || row.status.state() == msg::kServiceFailed ||
+         !deafness(row, now).empty();
 }
 
 bool StatusTable::healthy(Clock::time_point now) const {
@@ -108,15 +123,16 @@ bool StatusTable::healthy(Clock::time_point now) const {
          std::ranges::none_of(rows_, [&](const auto& row) { return unwell(row.second, now); });
 }
 
-std::string StatusTable::state(const Row& row, Clock::time_point now) {
+std::string StatusTable::state(const Row& row, Clock::time_point now) const {
   if (row.status.state() != msg::kServiceFailed) {
     if (row.lost) return "lost";
     if (now - row.received > kSilent) return "silent";
+    if (!deafness(row, now).empty()) return "deaf";
   }
   return std::string(to_string(row.status.state()));
 }
 
-std::string StatusTable::reason(const Row& row, Clock::time_point now) {
+std::string StatusTable::reason(const Row& row, Clock::time_point now) const {
   const std::string message = row.status.message().to_string();
   const std::string age = age_text(std::chrono::duration<double>(now - row.received).count());
   std::string why;
@@ -124,6 +140,8 @@ std::string StatusTable::reason(const Row& row, Clock::time_point now) {
     why = "ended without a word " + age + " ago";
   } else if (now - row.received > kSilent) {
     why = "no status for " + age;
+  } else {
+    why = deafness(row, now);
   }
   std::string text = why.empty() || message.empty() ? why + message : why + "; before: " + message;
   const auto add = [&text](const std::string& more) { text += (text.empty() ? "" : "; ") + more; };
@@ -230,8 +248,8 @@ std::string StatusTable::sums(Clock::time_point now) const {
     busy += fmt::format("the CPU of {} is short: topogeo doctor has what to do\n",
                         support::printable(host));
   }
-  return fmt::format("{} service{}, {}{}{} failed, lost or silent, {} fault{}\n{}", rows_.size(),
-                     rows_.size() == 1 ? "" : "s",
+  return fmt::format("{} service{}, {}{}{} failed, lost, silent or deaf, {} fault{}\n{}",
+                     rows_.size(), rows_.size() == 1 ? "" : "s",
                      missing == 0 ? "" : fmt::format("{} {}, ", missing, kMissing),
                      units_.empty() ? ""
                                     : fmt::format("{} unit{} of this host not running, ",

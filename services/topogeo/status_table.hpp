@@ -44,7 +44,7 @@ class StatusTable {
   /// Expected services that have no row.
   [[nodiscard]] std::vector<std::string> missing() const;
   [[nodiscard]] bool has_idle_units() const { return !units_.empty(); }
-  /// No service is failed, lost, silent or missing, and no unit idle.
+  /// No service is failed, lost, silent, deaf or missing, and no unit idle.
   [[nodiscard]] bool healthy(Clock::time_point now) const;
 
   /// A line for each service by robot, name and instance, no wider than `columns`: state, rate and
@@ -72,9 +72,12 @@ class StatusTable {
   };
 
   [[nodiscard]] std::vector<Absent> absent() const;
-  [[nodiscard]] static bool unwell(const Row& row, Clock::time_point now);
-  [[nodiscard]] static std::string state(const Row& row, Clock::time_point now);
-  [[nodiscard]] static std::string reason(const Row& row, Clock::time_point now);
+  [[nodiscard]] static bool is_gone(const Row& row, Clock::time_point now);
+  /// Why it gets nothing of its main input (deafness.hpp); empty: it gets some, or none is sent.
+  [[nodiscard]] std::string deafness(const Row& row, Clock::time_point now) const;
+  [[nodiscard]] bool unwell(const Row& row, Clock::time_point now) const;
+  [[nodiscard]] std::string state(const Row& row, Clock::time_point now) const;
+  [[nodiscard]] std::string reason(const Row& row, Clock::time_point now) const;
   [[nodiscard]] static double last_error_age_s(const Row& row, Clock::time_point now);
   [[nodiscard]] static double input_age_s(const Row& row, Clock::time_point now);
   [[nodiscard]] std::vector<const Row*> ordered() const;

@@ -78,6 +78,15 @@ void add_drops(msg::ServiceStatus& status, const std::string& reason, std::uint6
   status.drops().push_back(drop);
 }
 
+void add_traffic(msg::ServiceStatus& status, const std::string& topic, bool sent,
+                 double rate_per_s) {
+  msg::TopicTraffic traffic;
+  messaging::set_text(traffic.topic(), topic, "topic");
+  traffic.sent(sent);
+  traffic.rate_per_s(rate_per_s);
+  status.traffic().push_back(traffic);
+}
+
 void set_clock(DomainFacts& facts, std::int64_t lag_ns) {
   ClockLag clock;
   for (int i = 0; i < 3; ++i) clock.add(0, lag_ns + std::int64_t{i} * 1'000'000);
@@ -135,6 +144,19 @@ const std::vector<DomainFault>& domain_faults() {
        [](DomainFacts& f) { set_clock(f, -3 * kSecond_ns); }},
       {"ClockPoor", "clocks", Severity::kHint, "0.20 s behind",
        [](DomainFacts& f) { set_clock(f, kSecond_ns / 5); }},
+      {"DeafService", "inputs", Severity::kProblem,
+       "localizer on pc is deaf: none of the 5.0 local_map/s of sensor_gateway arrives",
+       [](DomainFacts& f) {
+         for (msg::ServiceStatus& status : f.services) {
+           status.state(msg::kServiceRunning);
+           status.uptime_s(60.0);
+         }
+         add_traffic(f.services[0], "local_map", true, 5.0);
+         add_traffic(f.services[1], "local_map", false, 0.0);
+         messaging::set_text(f.services[1].input(), "local_map", "input");
+         f.services[1].inputs(9);
+         f.services[1].input_age_s(8.0);
+       }},
       {"ForgedMessages", "strangers", Severity::kHint,
        "5 forged messages to localizer on pc, sensor_gateway on robot were refused",
        [](DomainFacts& f) {

@@ -90,7 +90,7 @@ TEST(StatusTable, ShowsOneLineForEachService) {
             "localizer       waiting      2.0   30 s       3  for local maps\n"
             "planner         running        -      -       0\n"
             "sensor_gateway  running       12  0.6 s       0\n"
-            "3 services, none failed, lost or silent, 3 faults\n");
+            "3 services, none failed, lost, silent or deaf, 3 faults\n");
   EXPECT_TRUE(table.healthy(kNow));
 }
 
@@ -136,7 +136,7 @@ TEST(StatusTable, FailedAndSilentServicesAreUnwell) {
   EXPECT_FALSE(table.healthy(kNow + seconds(3)));
   EXPECT_THAT(table.text(kNow + seconds(3)), HasSubstr("silent"));
   EXPECT_THAT(table.text(kNow + seconds(3)), HasSubstr("no status for 3.0 s; before: at work"));
-  EXPECT_THAT(table.text(kNow + seconds(3)), HasSubstr("1 service, 1 failed, lost or silent"));
+  EXPECT_THAT(table.text(kNow + seconds(3)), HasSubstr("1 service, 1 failed, lost, silent or deaf"));
   table.update(status_of("planner", msg::kServiceFailed, "disk full"), info_of(1), kNow);
   EXPECT_FALSE(table.healthy(kNow));
   EXPECT_THAT(table.text(kNow), HasSubstr("failed"));
@@ -167,7 +167,7 @@ TEST(StatusTable, ExpectedServiceThatIsNotThereIsMissing) {
             "localizer  running        -    -       0\n"
             "planner    running        -    -       0\n"
             "map_store  missing        -    -       -  expected, and not found\n"
-            "2 services, 1 missing, none failed, lost or silent, 0 faults\n");
+            "2 services, 1 missing, none failed, lost, silent or deaf, 0 faults\n");
   EXPECT_THAT(table.details(kNow), HasSubstr("\n\nmap_store  missing\n  reason     expected"));
   const auto json = nlohmann::json::parse(table.json(kNow));
   ASSERT_EQ(json.size(), 3U);
@@ -204,7 +204,7 @@ TEST(StatusTable, UnitsOfThisHostThatDoNotRunAreListed) {
       "planner            running           -    -       0\n"
       "topogeo-map-store  failed            -    -       -  see journalctl -u topogeo-map-store\n"
       "topogeo-web        restarting        -    -       -  see journalctl -u topogeo-web\n"
-      "1 service, 2 units of this host not running, none failed, lost or silent, 0 faults\n");
+      "1 service, 2 units of this host not running, none failed, lost, silent or deaf, 0 faults\n");
   EXPECT_EQ(nlohmann::json::parse(table.json(kNow))[1]["state"], "failed");
   table.show_units({});
   EXPECT_TRUE(table.healthy(kNow));
