@@ -6,7 +6,6 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -34,9 +33,15 @@ inline std::filesystem::path make_fifo(const std::filesystem::path& path) {
   return path;
 }
 
-/// What stands where a file is expected, with the word by which it is refused; `folder` is empty.
-inline std::vector<std::pair<std::filesystem::path, std::string>> no_regular_files(
-    const std::filesystem::path& folder, const std::string& ending) {
+/// What stands where a file is expected.
+struct IrregularFile {
+  std::filesystem::path path;
+  std::string kind;  ///< by which it is refused
+};
+
+/// One of each kind, in an empty folder.
+inline std::vector<IrregularFile> irregular_files(const std::filesystem::path& folder,
+                                                  const std::string& ending) {
   const std::filesystem::path link = folder / ("zero" + ending);
   std::filesystem::remove(link);
   std::filesystem::create_symlink("/dev/zero", link);

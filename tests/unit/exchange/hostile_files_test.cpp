@@ -95,9 +95,9 @@ class HostileFile : public ScratchTest {};
 
 TEST_F(HostileFile, NoKindIsReadFromAFifoOrADevice) {
   for (const Kind& kind : kinds()) {
-    for (const auto& [path, word] : test::no_regular_files(directory_, kind.ending)) {
-      EXPECT_THAT(refusal_of([&] { kind.read(path); }),
-                  AllOf(HasSubstr(path.string()), HasSubstr("is " + word)));
+    for (const test::IrregularFile& file : test::irregular_files(directory_, kind.ending)) {
+      EXPECT_THAT(refusal_of([&] { kind.read(file.path); }),
+                  AllOf(HasSubstr(file.path.string()), HasSubstr("is " + file.kind)));
     }
   }
 }

@@ -67,8 +67,9 @@ TEST_F(HostileRecording, OfViewsOrTriggersIsRefused) {
 TEST_F(HostileRecording, IsARegularFile) {
   for (const char* ending : {".db3", ".mcap", ".bag"}) {
     std::filesystem::create_directories(path("none"));
-    for (const auto& [file, word] : test::no_regular_files(path("none"), ending)) {
-      EXPECT_THAT(refusal(file), AllOf(HasSubstr(file.string()), HasSubstr("is " + word)));
+    for (const test::IrregularFile& file : test::irregular_files(path("none"), ending)) {
+      EXPECT_THAT(refusal(file.path),
+                  AllOf(HasSubstr(file.path.string()), HasSubstr("is " + file.kind)));
     }
   }
 }

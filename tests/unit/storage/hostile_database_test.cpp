@@ -80,11 +80,11 @@ TEST_F(HostileDatabase, GivesItsTablesToWhoSavesThem) {
 }
 
 TEST_F(HostileDatabase, IsARegularFile) {
-  for (const auto& [file, word] : test::no_regular_files(directory_, ".sqlite")) {
-    const auto is_named = AllOf(HasSubstr(file.string()), HasSubstr("is " + word));
-    EXPECT_THAT(refusal_of([&] { static_cast<void>(read_map(file)); }), is_named);
-    EXPECT_THAT(refusal_of([&] { MapDatabase::open_existing(file); }), is_named);
-    EXPECT_THAT(refusal_of([&] { static_cast<void>(salvage_tables(file)); }), is_named);
+  for (const test::IrregularFile& file : test::irregular_files(directory_, ".sqlite")) {
+    const auto is_named = AllOf(HasSubstr(file.path.string()), HasSubstr("is " + file.kind));
+    EXPECT_THAT(refusal_of([&] { static_cast<void>(read_map(file.path)); }), is_named);
+    EXPECT_THAT(refusal_of([&] { MapDatabase::open_existing(file.path); }), is_named);
+    EXPECT_THAT(refusal_of([&] { static_cast<void>(salvage_tables(file.path)); }), is_named);
   }
   make("");
   for (const char* part : {"-wal", "-journal"}) {

@@ -10,6 +10,7 @@
 
 #include "topogeo/support/config_schema.hpp"
 #include "topogeo/support/file_content.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/support/json_limits.hpp"
 #include "topogeo/support/temporary_folder.hpp"
 #include "topogeo/support/yaml_reader.hpp"
@@ -66,15 +67,15 @@ TEST_F(ForeignFile, NothingButRegularFilesAreOpened) {
   path("socket").string().copy(address.sun_path, sizeof(address.sun_path) - 1);
   ASSERT_EQ(::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
   ::close(socket);
-  for (const auto& [name, kind] : {std::pair{path("folder"), "a directory"},
-                                   {path("socket"), "a socket"},
-                                   {test::make_fifo(path("fifo")), "a FIFO"},
-                                   {"/dev/zero", "a device"}}) {
-    const auto is_named =
-        AllOf(HasSubstr(name.string() + ": is " + kind), HasSubstr("expected a regular file"));
-    EXPECT_THAT(refusal_of([&] { static_cast<void>(foreign_content(name, 10)); }), is_named);
-    EXPECT_THAT(refusal_of([&] { refuse_irregular(name); }), is_named);
-    EXPECT_EQ(first_bytes(name, 10), "");
+  for (const test::IrregularFile& file : {test::IrregularFile{path("folder"), "a directory"},
+                                          {path("socket"), "a socket"},
+                                          {test::make_fifo(path("fifo")), "a FIFO"},
+                                          {"/dev/zero", "a device"}}) {
+    const auto is_named = AllOf(HasSubstr(file.path.string() + ": is " + file.kind),
+                                HasSubstr("expected a regular file"));
+    EXPECT_THAT(refusal_of([&] { static_cast<void>(foreign_content(file.path, 10)); }), is_named);
+    EXPECT_THAT(refusal_of([&] { refuse_irregular(file.path); }), is_named);
+    EXPECT_EQ(first_bytes(file.path, 10), "");
   }
   EXPECT_THAT(refusal_of([&] { static_cast<void>(foreign_content(path("none"), 10)); }),
               HasSubstr("none: cannot be opened: No such file or directory"));
@@ -147,9 +148,8 @@ TEST(YamlLimits, BytesAndValues) {
 TEST(YamlLimits, AliasesCountAsWhatTheyStandFor) {
   std::string text = "a0: &a0 [x, x]\n";
   for (int level = 1; level <= 9; ++level) {
-    const std::string alias = "*a" + std::to_string(level - 1);
-    const std::string name = "a" + std::to_string(level);
-    text += name + ": &" + name + " [" + repeated(alias + ", ", 8) + alias + "]\n";
+    const std::string alias = fmt::format("*a{}", level - 1);
+    text += fmt::format("a{0}: &a{0} [{1}{2}]\n", level, repeated(alias + ", ", 8), alias);
   }
   EXPECT_THAT(yaml_refusal(text), HasSubstr("more than 1000000 values, where an alias counts"));
   EXPECT_EQ(yaml_refusal("a: &a [1, 2]\nb: [*a, *a]\n"), "");
