@@ -14,7 +14,6 @@ namespace topogeo::map_store {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::IsEmpty;
 
 class DiskRoom : public testing::Test {
  protected:
