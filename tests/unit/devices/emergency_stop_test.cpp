@@ -13,9 +13,10 @@
 namespace topogeo::devices {
 namespace {
 
-// Encoders of a base at rest, 256 counts/s of a B21 (MIRO), and three counts of the rotation.
-constexpr double kNoise_mps = 0.009;
-constexpr double kNoise_radps = 0.018;
+// m/s and rad/s. Encoders of a base at rest: 256 counts/s of a B21 (MIRO), and three counts of the
+// rotation.
+constexpr double kLinearNoise = 0.009;
+constexpr double kAngularNoise = 0.018;
 
 bool all_of_them() {
   return std::getenv("TOPOGEO_ALL_FAULTS") != nullptr;
@@ -41,7 +42,7 @@ TEST_P(EmergencyStopOn, IsNeverNoticedInOrdinaryDrives) {
   const int drives = all_of_them() ? 200 : 10;
   for (int number = 0; number < drives; ++number) {
     BaseOnLine all(settings());
-    all.base.set_noise(kNoise_mps, kNoise_radps);
+    all.base.set_noise(kLinearNoise, kAngularNoise);
     ASSERT_TRUE(all.start());
     OrdinaryDrive drive(static_cast<std::uint64_t>(number));
     for (int leg = 0; leg < 60; ++leg) {
@@ -55,7 +56,7 @@ TEST_P(EmergencyStopOn, IsNeverNoticedInOrdinaryDrives) {
 /// The gateway has to wait for a CPU, and so has the program that commands.
 TEST_P(EmergencyStopOn, IsNeverNoticedWhereTheHostIsBusy) {
   BaseOnLine all(settings());
-  all.base.set_noise(kNoise_mps, kNoise_radps);
+  all.base.set_noise(kLinearNoise, kAngularNoise);
   ASSERT_TRUE(all.start());
   OrdinaryDrive drive(3);
   support::Random random(4);
@@ -72,7 +73,7 @@ TEST_P(EmergencyStopOn, IsNeverNoticedWhereTheHostIsBusy) {
 struct TwinDrive {
   explicit TwinDrive(const BaseSettings& settings, std::uint64_t seed)
       : all(settings), drive(seed) {
-    all.base.set_noise(kNoise_mps, kNoise_radps);
+    all.base.set_noise(kLinearNoise, kAngularNoise);
   }
   BaseOnLine all;
   OrdinaryDrive drive;
@@ -84,7 +85,7 @@ TEST_P(EmergencyStopOn, HoldsTheRobotUntilResetHoweverShortItWas) {
   int unnoticed = 0;
   support::Random random(11);
   for (int number = 0; number < stops; ++number) {
-    const auto seed = static_cast<std::uint64_t>(1000 + number);
+    const auto seed = std::uint64_t{1000} + static_cast<std::uint64_t>(number);
     TwinDrive stopped(settings(), seed);
     TwinDrive twin(settings(), seed);
     ASSERT_TRUE(stopped.all.start() && twin.all.start());

@@ -101,7 +101,7 @@ TEST(LastGuard, IsBlindWithoutAFreshScan) {
 TEST(LastGuard, TakesNothingFromALaserThatHangs) {
   LastGuard guard = last_guard_seeing({{3.0, 0.0}});
   for (int i = 1; i <= 10; ++i) {
-    const std::int64_t now_ns = kGuarded_ns + i * 100'000'000;
+    const std::int64_t now_ns = kGuarded_ns + std::int64_t{100'000'000} * i;
     guard.add(geometry::OdometrySample{now_ns, {0.02 * i, 0.0, 0.0}, 0.2, 0.0});
     guard.add(scan_at(now_ns, {{3.0, 0.0}}));
   }
@@ -119,8 +119,7 @@ TEST(LastGuard, NoProgramDrivesIntoWhatTheLaserSees) {
     hooks.add_odometry = [&guard](const geometry::OdometrySample& sample) { guard.add(sample); };
     hooks.add_scan = [&guard](const ScanPoints& scan) { guard.add(scan); };
     hooks.judge = [&guard](const geometry::Velocity& wanted, std::int64_t now_ns) {
-      const LastGuard::Judgement judgement =
-          guard.judge(wanted, ObstacleDrive::kBrake_m_per_s2, now_ns);
+      const LastGuard::Judgement judgement = guard.judge(wanted, ObstacleDrive::kBrake, now_ns);
       return DriveGuard::Answer{judgement.allowed, judgement.free_m};
     };
     hooks.sensors = {30, 60};

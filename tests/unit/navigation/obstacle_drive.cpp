@@ -33,7 +33,7 @@ tour: [[1, 1], [8, 6]]
 simulation::RobotOptions base_options(std::uint64_t seed) {
   simulation::RobotOptions options;
   options.seed = seed;
-  options.acceleration_m_per_s2 = ObstacleDrive::kBrake_m_per_s2;
+  options.acceleration_m_per_s2 = ObstacleDrive::kBrake;
   options.angular_acceleration_rad_per_s2 = 1.0;
   options.T_world_start = geometry::Pose2{1.0, 1.0, 0.5};
   return options;

@@ -37,7 +37,8 @@ struct DriveGuard {
 
 class ObstacleDrive {
  public:
-  static constexpr double kBrake_m_per_s2 = 0.5;
+  /// Of the base, m/s^2.
+  static constexpr double kBrake = 0.5;
 
   ObstacleDrive(std::uint64_t seed, DriveGuard guard);
 
