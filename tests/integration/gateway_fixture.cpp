@@ -83,7 +83,8 @@ void GatewayOnDevices::start(std::size_t scans) {
 
 void GatewayOnDevices::command(double linear_mps, double angular_radps) {
   msg::MotionCommand message;
-  messaging::set_header(message, "robot", support::wall_clock_ns(), commands_++);
+  messaging::set_header(message, "robot", command_stamp_ns_.value_or(support::wall_clock_ns()),
+                        commands_++);
   message.linear_mps(linear_mps);
   message.angular_radps(angular_radps);
   message.valid_for_s(0.5);

@@ -97,6 +97,7 @@ class GatewayOnDevices : public testing::Test {
   std::optional<msg::ServiceStatus> gateway_status_;
   std::optional<msg::StreamEnd> end_;
   std::uint64_t commands_ = 0;
+  std::optional<std::int64_t> command_stamp_ns_;  ///< nothing: now
   int strikes_ = 0;
 
   std::unique_ptr<Program> simulator_;

@@ -11,6 +11,7 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/support/host.hpp"
 
 #include "gateway_fixture.hpp"
 
@@ -112,6 +113,43 @@ TEST_F(GatewayOnDevices, EmergencyStopHoldsUntilResetFiveTimes) {
     tell_base(msg::kBaseReset);
     ASSERT_TRUE(drive_until(0.0, 0.5, [&] { return truth_->angular_radps() > 0.3; })) << i;
   }
+}
+
+/// The robot does not stand in it: power is back before its wheels have stopped.
+TEST_F(GatewayOnDevices, AShortEmergencyStopHoldsUntilResetToo) {
+  start();
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(drive_until(0.2, 0.0, [&] { return truth_->linear_mps() > 0.19; })) << i;
+    strike(msg::kSimulatedEmergencyStop, msg::kSimulatedBase, 0.3);
+    ASSERT_TRUE(drive_until(0.2, 0.0, [&] { return base_is(msg::kBaseEmergencyStop); })) << i;
+    ASSERT_TRUE(drive_until(0.2, 0.0, [&] { return truth_->linear_mps() == 0.0; })) << i;
+    const double later_s = truth_->time_s() + 2.0;
+    ASSERT_TRUE(drive_until(0.2, 0.0, [&] { return truth_->time_s() > later_s; }));
+    EXPECT_TRUE(base_is(msg::kBaseEmergencyStop)) << i;
+    EXPECT_EQ(truth_->linear_mps(), 0.0);
+    tell_base(msg::kBaseReset);
+    ASSERT_TRUE(drive_until(0.0, 0.5, [&] { return truth_->angular_radps() > 0.3; })) << i;
+  }
+}
+
+TEST_F(GatewayOnDevices, NoProgramDrivesIntoWhatTheLaserSees) {
+  start();
+  ASSERT_TRUE(drive_until(0.5, 0.0, [&] {
+    return counter("last_guard_stops") > 0.0 && truth_->linear_mps() == 0.0;
+  })) << gateway_->err();
+  EXPECT_EQ(truth_->collisions(), 0U);
+  EXPECT_LT(truth_->free_ahead_m(), 0.3);
+  EXPECT_TRUE(base_status_->commands_taken());
+  EXPECT_TRUE(drive_until(0.0, 0.5, [&] { return truth_->angular_radps() > 0.3; }));
+}
+
+TEST_F(GatewayOnDevices, ACommandThatIsOldByItsStampMovesNothing) {
+  start();
+  command_stamp_ns_ = support::wall_clock_ns() - 10'000'000'000;
+  ASSERT_TRUE(drive_until(0.2, 0.0, [&] { return drops("old command") > 5; })) << gateway_->err();
+  EXPECT_EQ(truth_->linear_mps(), 0.0);
+  command_stamp_ns_.reset();
+  EXPECT_TRUE(drive_until(0.2, 0.0, [&] { return truth_->linear_mps() > 0.15; }));
 }
 
 TEST_F(GatewayOnDevices, JoystickIsSeenAndLetGo) {
