@@ -16,7 +16,7 @@ using Status = msg::ServiceStatus;
 constexpr double kSilence_s = 5.0;
 /// Peers have met by then, and a first rate is over a whole window.
 constexpr double kSettled_s = 10.0;
-constexpr double kLeastRate_per_s = 1.0;
+constexpr double kLeastRate_hz = 1.0;
 
 const msg::TopicTraffic* traffic_of(const Status& status, std::string_view topic, bool sent) {
   const auto found = std::ranges::find_if(status.traffic(), [&](const msg::TopicTraffic& one) {
@@ -70,7 +70,7 @@ std::string deafness(const Status& service, std::span<const Status* const> all) 
   const Status* const sender = only_sender(topic, service, all);
   if (sender == nullptr || !works(*sender)) return {};
   const double rate_per_s = traffic_of(*sender, topic, true)->rate_per_s();
-  if (rate_per_s < kLeastRate_per_s) return {};
+  if (rate_per_s < kLeastRate_hz) return {};
   return fmt::format("deaf: none of the {:.1f} {}/s of {} arrives", rate_per_s, topic,
                      sender->service().c_str());
 }

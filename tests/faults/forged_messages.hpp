@@ -66,9 +66,10 @@ class ForgedMessages {
   /// What the participant announces, with a lease of 1/128 s, and without any.
   std::vector<Packet> short_leases(const Packet& announcement) {
     const Packet lease = {0x02, 0, 8, 0};
-    const auto found = std::ranges::search(announcement, lease);
-    if (found.empty()) return {};
-    const auto at = found.begin() - announcement.begin();
+    const auto found =
+        std::search(announcement.begin(), announcement.end(), lease.begin(), lease.end());
+    if (found == announcement.end()) return {};
+    const auto at = found - announcement.begin();
     Packet brief = announcement;
     std::ranges::copy(Packet{0, 0, 0, 0, 0, 0, 0, 2}, brief.begin() + at + 4);
     Packet none = announcement;
@@ -116,8 +117,9 @@ class ForgedMessages {
 
   void set_number(Packet& announcement) {
     const Packet writer(kOfParticipants.writer.begin(), kOfParticipants.writer.end());
-    const auto found = std::ranges::search(announcement, writer);
-    if (!found.empty()) std::ranges::copy(next_number(kOfParticipants), found.begin() + 4);
+    const auto found =
+        std::search(announcement.begin(), announcement.end(), writer.begin(), writer.end());
+    if (found != announcement.end()) std::ranges::copy(next_number(kOfParticipants), found + 4);
   }
 
   [[nodiscard]] Packet packet(std::uint8_t kind, std::uint8_t flags, const Packet& body) const {

@@ -152,9 +152,12 @@ class ForgedMessagesTest : public testing::Test {
     for (Side* side : {gateway_.get(), mapper_.get()}) {
       for (const Packet& packet : forged_by(*side).removals_of_participant()) send(packet);
     }
-    ASSERT_TRUE(wait("the removals to be counted",
-                     [&] { return messaging::stranger_counts().forged_removals > before; }));
+    ASSERT_TRUE(wait("the removals to be counted", [&] {
+      return messaging::stranger_counts().forged_removals > before || lost_links() > 0;
+    }));
   }
+
+  [[nodiscard]] int lost_links() const { return gateway_->lost_links + mapper_->lost_links; }
 
   /// In the name of the peer of `side`.
   ForgedMessages& forged_by(const Side& side) {
@@ -164,12 +167,11 @@ class ForgedMessagesTest : public testing::Test {
   }
 
   void expect_all_links() {
+    ASSERT_EQ(lost_links(), 0);
     const std::uint64_t sent = gateway_->status.sequence_number();
     EXPECT_TRUE(wait("messages both ways", [&] {
       return mapper_->last[gateway_->name] > sent && gateway_->last[mapper_->name] > sent;
     }));
-    EXPECT_EQ(gateway_->lost_links, 0);
-    EXPECT_EQ(mapper_->lost_links, 0);
   }
 
   Scratch scratch_;
@@ -188,14 +190,14 @@ class ForgedMessagesTest : public testing::Test {
 
 TEST_F(ForgedMessagesTest, PlainPeersStayConnectedWhenSomebodySaysTheyHaveLeft) {
   connect();
-  for (unsigned volley = 0; volley < volleys(); ++volley) forge_removals();
+  for (unsigned volley = 0; volley < volleys() && lost_links() == 0; ++volley) forge_removals();
   expect_all_links();
 }
 
 TEST_F(ForgedMessagesTest, AuthenticatedPeersStayConnectedWhenSomebodySaysTheyHaveLeft) {
   if (!make_keys()) GTEST_SKIP() << "openssl is missing";
   connect();
-  for (unsigned volley = 0; volley < volleys(); ++volley) forge_removals();
+  for (unsigned volley = 0; volley < volleys() && lost_links() == 0; ++volley) forge_removals();
   expect_all_links();
 }
 
@@ -217,7 +219,7 @@ TEST_F(ForgedMessagesTest, NobodyElseShortensTheLeaseOfAPeer) {
 TEST_F(ForgedMessagesTest, PlainMessagesDoNotRemoveAProtectedReaderOrWriter) {
   if (!make_keys()) GTEST_SKIP() << "openssl is missing";
   connect();
-  for (unsigned volley = 0; volley < volleys(); ++volley) {
+  for (unsigned volley = 0; volley < volleys() && lost_links() == 0; ++volley) {
     ForgedMessages& forged = forged_by(*mapper_);
     const std::uint64_t before = messaging::stranger_counts().unprotected_packets;
     const messaging::Handle writer = mapper_->endpoints(true).at(0);
@@ -226,7 +228,8 @@ TEST_F(ForgedMessagesTest, PlainMessagesDoNotRemoveAProtectedReaderOrWriter) {
     send(forged.removal_of_endpoint(mapper_->endpoints(false).at(0), kOfReaders));
     constexpr std::uint64_t kForged = 3;
     ASSERT_TRUE(wait("the messages to be refused", [&] {
-      return messaging::stranger_counts().unprotected_packets >= before + kForged;
+      return messaging::stranger_counts().unprotected_packets >= before + kForged ||
+             lost_links() > 0;
     }));
   }
   expect_all_links();
