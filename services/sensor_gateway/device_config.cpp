@@ -189,6 +189,14 @@ void describe_base_states(ConfigSchema& schema, DeviceFile::Base& base) {
   schema.add("base.standstill_mps", &s.standstill_mps, 0.0, 0.5, "m/s", "slower is standstill");
   schema.add("base.standstill_radps", &s.standstill_radps, 0.0, 1.0, "rad/s",
              "the same for rotation");
+  schema.add(
+      "base.ripple_mps", &s.ripple_mps, 0.001, 2.0, "m/s",
+      "an axis that is slower by more than it was commanded, and reports that it accelerates, "
+      "has lost its power: an emergency stop. More where a base is held without one");
+  schema.add("base.ripple_radps", &s.ripple_radps, 0.001, 6.0, "rad/s", "the same for rotation");
+  schema.add("base.ramp_mps", &s.ramp_mps, 0.001, 2.0, "m/s",
+             "the same of one that lags behind its acceleration");
+  schema.add("base.ramp_radps", &s.ramp_radps, 0.001, 6.0, "rad/s", "the same for rotation");
   schema.add("base.uncommanded_mps", &s.uncommanded_mps, 0.005, 2.0, "m/s",
              "faster by this than commanded is motion by the joystick");
   schema.add("base.uncommanded_radps", &s.uncommanded_radps, 0.01, 6.0, "rad/s",

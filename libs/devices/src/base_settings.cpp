@@ -47,6 +47,10 @@ void check(const BaseSettings& settings) {
   in_range("direct_mode_wait_s", settings.direct_mode_wait_s, 0, 60);
   in_range("report_period_s", settings.report_period_s, -1e-9, 255);
   in_range("stalled_reports", settings.stalled_reports, 1, 1000);
+  in_range("ripple_mps", settings.ripple_mps, 0, kLargest);
+  in_range("ripple_radps", settings.ripple_radps, 0, kLargest);
+  in_range("ramp_mps", settings.ramp_mps, 0, kLargest);
+  in_range("ramp_radps", settings.ramp_radps, 0, kLargest);
   in_range("battery_period_s", settings.battery_period_s, 0, kLargest);
   if ((settings.report_mask & kNeededFields) != kNeededFields) {
     throw std::invalid_argument("base settings: report_mask is " +

@@ -24,13 +24,6 @@ bool stalls(std::uint16_t status, double commanded, double standstill, bool stan
          phase_of(status) == McpPhase::kAccelerate;
 }
 
-/// m/s and rad/s: a PID keeps the speeds of a base that carries its load within these; not measured
-/// on hardware. Less would be noise, more would hide short stops at low speeds.
-constexpr double kLinearRipple = 0.012;
-constexpr double kLinearRamp = 0.025;
-constexpr double kAngularRipple = 0.035;
-constexpr double kAngularRamp = 0.06;
-
 /// Phases of a motor that has ended what was commanded, or never began.
 bool rests(std::uint16_t status) {
   const McpPhase phase = phase_of(status);
@@ -62,8 +55,9 @@ MotionMonitor::MotionMonitor(const McpUnits& units, const BaseSettings& settings
     : units_(units),
       settings_(settings),
       period_ns_(ticks_ns(report_period_ticks(settings))),
-      linear_power_({settings.standstill_mps, kLinearRipple, kLinearRamp}, period_ns_),
-      angular_power_({settings.standstill_radps, kAngularRipple, kAngularRamp}, period_ns_) {}
+      linear_power_({settings.standstill_mps, settings.ripple_mps, settings.ramp_mps}, period_ns_),
+      angular_power_({settings.standstill_radps, settings.ripple_radps, settings.ramp_radps},
+                     period_ns_) {}
 
 void MotionMonitor::forget_power() {
   linear_power_.forget();

@@ -248,6 +248,8 @@ TEST(BaseDriver, RefusesSettingsOutOfRange) {
   refuses([](BaseSettings& s) { s.report_mask = 2; });
   refuses([](BaseSettings& s) { s.calibration.counts_per_m = -1.0; });
   refuses([](BaseSettings& s) { s.stalled_reports = 1; });
+  refuses([](BaseSettings& s) { s.ripple_mps = 0.0; });
+  refuses([](BaseSettings& s) { s.ramp_radps = -1.0; });
 }
 
 TEST(BaseDriver, RefusesCommandsThatAreNoNumbers) {

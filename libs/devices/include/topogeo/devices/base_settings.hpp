@@ -67,6 +67,13 @@ struct BaseSettings {
   /// counts/s.
   double standstill_mps = 0.01;
   double standstill_radps = 0.03;
+  /// A motor with power keeps the commanded speed within the ripple, and lags behind its
+  /// acceleration by no more than the ramp; what is slower has lost its power (power_watch.hpp).
+  /// Less would take noise for it, more would hide short emergency stops.
+  double ripple_mps = 0.012;
+  double ripple_radps = 0.035;
+  double ramp_mps = 0.025;
+  double ramp_radps = 0.06;
   /// Faster by this than anything that was commanded is motion by joystick.
   double uncommanded_mps = 0.05;
   double uncommanded_radps = 0.15;
