@@ -12,10 +12,10 @@ namespace {
 
 using Status = msg::ServiceStatus;
 
-/// As long as rates are means over.
+/// Rates are means over as long.
 constexpr double kSilence_s = 5.0;
 /// Peers have met by then, and a first rate is over a whole window.
-constexpr double kSettled_s = 10.0;
+constexpr double kAcquainted_s = 10.0;
 constexpr double kLeastRate_hz = 1.0;
 
 const msg::TopicTraffic* traffic_of(const Status& status, std::string_view topic, bool sent) {
@@ -28,10 +28,10 @@ const msg::TopicTraffic* traffic_of(const Status& status, std::string_view topic
 bool works(const Status& status) {
   const bool at_work =
       status.state() == msg::kServiceRunning || status.state() == msg::kServiceWaiting;
-  return at_work && status.uptime_s() >= kSettled_s;
+  return at_work && status.uptime_s() >= kAcquainted_s;
 }
 
-/// Of a topic whose messages are for some of its readers alone, one may get none.
+/// A topic whose messages are for some of its readers alone may give one of them none.
 bool is_for_all(std::string_view topic) {
   const auto topics = messaging::all_topics();
   const auto found = std::ranges::find_if(
@@ -39,7 +39,8 @@ bool is_for_all(std::string_view topic) {
   return found != topics.end() && (*found)->addressee.empty();
 }
 
-/// Of the only service that sends the topic for the robot; null where there is none, or several.
+/// The status of the only service that sends the topic for the robot; null where there is none, or
+/// several.
 const Status* only_sender(std::string_view topic, const Status& reader,
                           std::span<const Status* const> all) {
   const Status* sender = nullptr;
