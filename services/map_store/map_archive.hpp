@@ -65,8 +65,8 @@ class MapArchive {
   std::uint64_t file_ = 0;  // number of the open file on its disk
   std::vector<topomap::LocalMap> queue_;
   std::set<topomap::StopId> queued_;
-  // Of what was put last. The version of a trajectory does not identify its poses: while segments
-  // of it are on their way, it has older poses beside newer ones.
+  // These are of the trajectory that was put last. The version of a trajectory does not identify
+  // its poses: while segments of it are on their way, it has older poses beside newer ones.
   std::uint64_t version_ = 0;
   std::uint64_t poses_ = 0;     // their hash
   std::uint64_t closures_ = 0;  // their hash

@@ -155,7 +155,7 @@ std::optional<std::int64_t> BaseChannel::age_of(const msg::MotionCommand& comman
                                                 std::int64_t now_ns) {
   const std::optional<std::int64_t> age_ns =
       ages_.age_ns(info.writer, command.stamp_ns(), now_ns, time_.stamp_ns(now_ns));
-  // To stand is never refused.
+  // A command to stand is never refused.
   if (command.linear_mps() == 0.0 && command.angular_radps() == 0.0) return 0;
   if (age_ns && *age_ns <= CommandAges::kOldest_ns) return age_ns;
   service_.status().add_drops(age_ns ? "old command" : "command of unknown age");

@@ -40,7 +40,7 @@ class CommandAges {
     std::int64_t first_ns = 0;   ///< since when it is heard
     std::int64_t last_ns = 0;    ///< when it was heard last
     std::int64_t window_ns = 0;  ///< since when `least_ns` counts
-    // From stamps to arrivals, the quickest of this window and of the one before.
+    // The quickest way from stamp to arrival in this window and in the one before.
     std::int64_t least_ns = 0;
     std::int64_t before_ns = 0;
     std::optional<std::int64_t> old_since_ns{};  ///< since when all is old

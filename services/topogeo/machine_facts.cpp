@@ -33,7 +33,7 @@ constexpr std::uint32_t kFirstPort = 7400;
 constexpr std::uint32_t kFirstOwnPort = 10;
 constexpr std::uint32_t kPortsOfDomain = 250;
 
-// Of the package: who runs the map store and commands, and who runs the gateway.
+// Users that the package makes: one runs the map store and commands, the other the gateway.
 constexpr std::string_view kServicesUser = "topogeo";
 constexpr const char* kGatewayUser = "topogeo-sensor-gateway";
 

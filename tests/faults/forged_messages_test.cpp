@@ -135,7 +135,7 @@ class ForgedMessagesTest : public testing::Test {
     });
   }
 
-  /// To each port that the participants of a host have for discovery.
+  /// Sends to each port that the participants of a host have for discovery.
   void send(const Packet& packet) {
     constexpr std::uint16_t kParticipants = 16;
     for (std::uint16_t number = 0; number < kParticipants; ++number) {

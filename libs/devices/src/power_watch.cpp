@@ -7,18 +7,18 @@
 namespace topogeo::devices {
 namespace {
 
-/// From a command to the base that obeys: writing it, a line that is busy, motors that lag. Not
-/// measured on hardware. Slower commands of the last so long may be in force.
+/// The time until the base obeys a command: it is written, the line is busy, the motors lag. Not
+/// measured on hardware. A slower command that is younger may be in force still.
 constexpr std::int64_t kObeys_ns = 300'000'000;
 /// Stamps may be so much too early.
 constexpr std::int64_t kEarly_ns = 50'000'000;
-/// Of the commanded acceleration, what a motor surely gives.
+/// The share of the commanded acceleration that a motor surely gives.
 constexpr double kSure = 0.8;
-/// And what it never exceeds.
+/// The share that it never exceeds.
 constexpr double kMost = 1.1;
 /// Times the acceleration, what no motor with power loses when it slows down.
 constexpr double kDrop = 1.5;
-/// Of the commanded speed, what it may differ besides the ripple.
+/// The share of the commanded speed by which it may differ besides the ripple.
 constexpr double kShare = 0.03;
 /// Periods between two reports; more is a gap.
 constexpr double kLongestStep = 1.5;
@@ -72,9 +72,9 @@ std::size_t PowerWatch::oldest_aim(std::int64_t stamp_ns) const {
   return oldest == 0 ? 0 : oldest - 1;
 }
 
-/// In the direction of the motion, of all that the base may be obeying at that time. It obeys its
-/// commands in their order: what is older than the one that it obeyed at the report before holds no
-/// more.
+/// The least speed, in the direction of the motion, of all commands that the base may be obeying at
+/// that time. It obeys its commands in their order: one that is older than the one that it obeyed
+/// at the report before holds no more.
 double PowerWatch::least_aim(std::int64_t stamp_ns) const {
   std::size_t first = oldest_aim(stamp_ns);
   if (before_ && before_->sound && moves(before_->phase) && before_->commanded_sign == direction_) {
@@ -100,7 +100,7 @@ double PowerWatch::step_s(const AxisReport& report) const {
   return seconds(std::max<std::int64_t>(0, report.base_ns - before_->base_ns));
 }
 
-/// By more than a motor can: this report or the one before is garbled.
+/// The speed grew by more than a motor can: this report or the one before is garbled.
 bool PowerWatch::faster(const AxisReport& report) const {
   const bool may = moves(report.phase) || moves(before_->phase);
   const double gain = may ? kMost * acceleration_ * step_s(report) : 0.0;
@@ -108,7 +108,7 @@ bool PowerWatch::faster(const AxisReport& report) const {
   return std::abs(report.speed) > sign * before_->speed + gain + 2.0 * tolerance_.standstill;
 }
 
-/// By more than a motor that slows down with power, whatever was commanded.
+/// The speed fell by more than a motor with power slows down, whatever was commanded.
 bool PowerWatch::dropped(const AxisReport& report) const {
   if (!before_->sound || report.phase == McpPhase::kLimp) return false;
   const double sign = std::copysign(1.0, before_->speed);

@@ -69,8 +69,8 @@ std::vector<std::size_t> cells_by_width(const planning::FreeSpace& space, double
   return cells;
 }
 
-/// Of the cells, each at least `spacing_m` from those before; one more than `most` where there are
-/// as many.
+/// Those of the cells that are, each, at least `spacing_m` from those before; one more than `most`
+/// where there are as many.
 std::vector<Eigen::Vector2d> places_apart(const planning::GridFrame& frame,
                                           const std::vector<std::size_t>& cells, double spacing_m,
                                           std::size_t most) {
@@ -98,7 +98,7 @@ std::vector<Eigen::Vector2d> places_apart(const planning::GridFrame& frame,
   return places;
 }
 
-/// Of the widest places, each far enough from those before.
+/// The widest places, each far enough from those before.
 std::vector<Eigen::Vector2d> places_of_stops(const planning::FreeSpace& space,
                                              const GridMapSettings& settings) {
   const planning::GridFrame& frame = space.frame();

@@ -95,7 +95,7 @@ TEST_P(EmergencyStopOn, HoldsTheRobotUntilResetHoweverShortItWas) {
     const std::int64_t into_ns = static_cast<std::int64_t>(random.below(50)) * kMs;
     stopped.all.pass(into_ns);
     twin.all.pass(into_ns);
-    // From a tenth of a second to ten, short ones as often as long ones.
+    // A tenth of a second to ten, short ones as often as long ones.
     const std::int64_t pressed_ns = std::llround(1e8 * std::pow(100.0, random.uniform(0.0, 1.0)));
     stopped.all.base.mcp.press_emergency_stop();
     double lost = 0.0;  // of what a motor would have given: 1 is what must be noticed

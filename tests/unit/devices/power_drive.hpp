@@ -25,7 +25,7 @@ class OrdinaryDrive {
     } else {
       given_ = aim_;
     }
-    // As a guard does near obstacles, whose distance is measured with noise.
+    // A guard does so near obstacles, whose distance is measured with noise.
     const double share = wavers_ ? random_.uniform(0.85, 1.0) : 1.0;
     return {share * given_.linear_mps, share * given_.angular_radps};
   }

@@ -16,7 +16,7 @@
 
 namespace topogeo::navigation {
 
-/// Of each message one between the two, at random; milliseconds.
+/// Each message has one between the two, at random; milliseconds.
 struct DelayRange {
   std::uint64_t least_ms = 0;
   std::uint64_t most_ms = 0;
@@ -37,7 +37,7 @@ struct DriveGuard {
 
 class ObstacleDrive {
  public:
-  /// Of the base, m/s^2.
+  /// m/s^2; of the base.
   static constexpr double kBrake = 0.5;
 
   ObstacleDrive(std::uint64_t seed, DriveGuard guard);

@@ -59,8 +59,8 @@ constexpr const char* kRemoveWriterData =
 constexpr std::int32_t kShortestLease_s = 10;
 constexpr std::int32_t kLongestLease_s = 120;
 
-/// Of all participants of this process. Never destroyed: the threads of the middleware may outlive
-/// static objects.
+/// The log of all participants of this process. Never destroyed: the threads of the middleware may
+/// outlive static objects.
 messaging::RemovalLog& removals() {
   static auto* const log = new messaging::RemovalLog;  // NOLINT(cppcoreguidelines-owning-memory)
   return *log;

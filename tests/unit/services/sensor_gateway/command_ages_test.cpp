@@ -8,7 +8,7 @@ namespace topogeo::sensor_gateway {
 namespace {
 
 constexpr std::int64_t kMilli_ns = 1'000'000;
-/// From the steady clock to the one of the gateway's stamps.
+/// The time from the steady clock to the one of the gateway's stamps.
 constexpr std::int64_t kOwnClock_ns = 1'700'000'000'000'000'000;
 
 messaging::Handle handle(std::uint8_t number) {

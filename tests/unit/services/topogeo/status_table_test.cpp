@@ -136,7 +136,8 @@ TEST(StatusTable, FailedAndSilentServicesAreUnwell) {
   EXPECT_FALSE(table.healthy(kNow + seconds(3)));
   EXPECT_THAT(table.text(kNow + seconds(3)), HasSubstr("silent"));
   EXPECT_THAT(table.text(kNow + seconds(3)), HasSubstr("no status for 3.0 s; before: at work"));
-  EXPECT_THAT(table.text(kNow + seconds(3)), HasSubstr("1 service, 1 failed, lost, silent or deaf"));
+  EXPECT_THAT(table.text(kNow + seconds(3)),
+              HasSubstr("1 service, 1 failed, lost, silent or deaf"));
   table.update(status_of("planner", msg::kServiceFailed, "disk full"), info_of(1), kNow);
   EXPECT_FALSE(table.healthy(kNow));
   EXPECT_THAT(table.text(kNow), HasSubstr("failed"));

@@ -72,7 +72,7 @@ class CollisionGuard {
   [[nodiscard]] geometry::Velocity driven() const;
   /// s; from what it sees until the base surely brakes.
   [[nodiscard]] double reaction_s(std::int64_t now_ns) const;
-  /// From which it stops within a free distance.
+  /// m/s; the speed from which it stops within a free distance.
   [[nodiscard]] double speed_for(double free_m, double reaction_s) const;
   /// Whether the scan has a point in the sonar's cone, at most so far from it.
   [[nodiscard]] bool laser_sees(const SonarReading& reading, double up_to_m) const;

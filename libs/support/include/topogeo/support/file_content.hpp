@@ -6,7 +6,8 @@
 
 namespace topogeo::support {
 
-/// Of a regular file of up to 2 GB. Throws std::runtime_error naming the path and the cause.
+/// The content of a regular file of up to 2 GB. Throws std::runtime_error naming the path and the
+/// cause.
 std::string file_content(const std::filesystem::path& path);
 
 }  // namespace topogeo::support

@@ -24,7 +24,7 @@ inline constexpr std::uint64_t kMostPixels = 16'000'000;  ///< 200 m x 200 m of 
 
 /// Lists and objects inside each other, of JSON, YAML and XML.
 inline constexpr std::size_t kMostLevels = 100;
-/// Of one JSON object: an ordered one is searched from its beginning for each of its keys.
+/// Keys of one JSON object: an ordered one is searched from its beginning for each of its keys.
 inline constexpr std::size_t kMostKeys = 128;
 /// Values of a JSON text, keys included.
 inline constexpr std::size_t kMostValues = 4'000'000;

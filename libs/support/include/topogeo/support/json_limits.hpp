@@ -1,5 +1,5 @@
-// JSON of peers and files that nobody has to trust: the work that a text makes grows with its length
-// alone.
+// JSON of peers and files that nobody has to trust: the work that a text makes grows with its
+// length alone.
 #pragma once
 
 #include <cstddef>
