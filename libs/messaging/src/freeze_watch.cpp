@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "topogeo/support/thread_times.hpp"
+
 namespace topogeo::messaging {
 
 namespace {
@@ -19,11 +21,18 @@ FreezeWatch::Duration since_boot() {
   return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
 }
 
+Standstill::Moment this_moment() {
+  const std::chrono::duration<double> waited(support::time_of_this_thread().waited_s);
+  return {since_boot(), std::chrono::duration_cast<FreezeWatch::Duration>(waited)};
+}
+
 }  // namespace
 
-Standstill::Duration Standstill::awake(Duration now) {
-  longest_ = std::max(longest_, now - last_);
-  last_ = now;
+Standstill::Duration Standstill::awake(const Moment& moment) {
+  const Duration passed = moment.now - last_.now;
+  const Duration waited = std::clamp(moment.waited - last_.waited, Duration::zero(), passed);
+  longest_ = std::max(longest_, passed - waited / 2);
+  last_ = moment;
   return longest_;
 }
 
@@ -46,10 +55,10 @@ std::optional<FreezeWatch::Duration> FreezeWatch::stood_still() const {
 
 // Half a second too long at most: rather too early than never.
 void FreezeWatch::watch() {
-  Standstill standstill(since_boot());
+  Standstill standstill(this_moment());
   std::unique_lock lock(mutex_);
   while (!ending_.wait_for(lock, kWakePeriod, [this] { return ends_; })) {
-    stood_still_ns_ = standstill.awake(since_boot()).count();
+    stood_still_ns_ = standstill.awake(this_moment()).count();
   }
 }
 

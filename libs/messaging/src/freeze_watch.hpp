@@ -13,19 +13,24 @@
 
 namespace topogeo::messaging {
 
-/// The longest time between two moments at which a process ran.
+/// The longest time between two moments at which a thread of a process ran. Time that the thread
+/// waited for a CPU counts half: a machine that is too busy keeps all of its programs waiting, and
+/// no peer forgets one of them before its lease is over.
 class Standstill {
  public:
   using Duration = std::chrono::nanoseconds;
 
-  /// `now`, here and below: since any moment, by a clock that goes on while the machine sleeps.
-  explicit Standstill(Duration now) : last_(now) {}
+  struct Moment {
+    Duration now;     ///< since any moment, by a clock that goes on while the machine sleeps
+    Duration waited;  ///< for a CPU, by the thread since it began
+  };
+  explicit Standstill(const Moment& moment) : last_(moment) {}
 
-  /// The process runs. Returns the longest time so far.
-  Duration awake(Duration now);
+  /// The thread runs. Returns the longest time so far.
+  Duration awake(const Moment& moment);
 
  private:
-  Duration last_;
+  Moment last_;
   Duration longest_{0};
 };
 
@@ -53,9 +58,10 @@ class FreezeWatch {
   std::thread thread_;  // last: it uses all of the above
 };
 
-/// How long a participant may stand still: half of the `lease` after which its peers forget it.
-/// `text` in its place, where it is not empty: seconds (> 0), or 0 for any time. Throws
-/// std::runtime_error that names TOPOGEO_LONGEST_FREEZE_S when it is no such number.
+/// How long a participant may stand still, or wait twice as long for a CPU: half of the `lease`
+/// after which its peers forget it. `text` in its place, where it is not empty: seconds (> 0), or 0
+/// for any time. Throws std::runtime_error that names TOPOGEO_LONGEST_FREEZE_S when it is no such
+/// number.
 [[nodiscard]] std::chrono::nanoseconds longest_freeze(std::chrono::nanoseconds lease,
                                                       const std::string& text);
 

@@ -16,11 +16,22 @@ using std::chrono::nanoseconds;
 using std::chrono::seconds;
 
 TEST(Standstill, IsTheLongestTimeBetweenTwoWakes) {
-  Standstill standstill(seconds(1000));
-  EXPECT_EQ(standstill.awake(milliseconds(1000'500)), milliseconds(500));
-  EXPECT_EQ(standstill.awake(milliseconds(1001'100)), milliseconds(600));
-  EXPECT_EQ(standstill.awake(milliseconds(1013'100)), seconds(12));
-  EXPECT_EQ(standstill.awake(milliseconds(1013'600)), seconds(12)) << "of all so far";
+  const seconds waited(3);
+  Standstill standstill({seconds(1000), waited});
+  EXPECT_EQ(standstill.awake({milliseconds(1000'500), waited}), milliseconds(500));
+  EXPECT_EQ(standstill.awake({milliseconds(1001'100), waited}), milliseconds(600));
+  EXPECT_EQ(standstill.awake({milliseconds(1013'100), waited}), seconds(12));
+  EXPECT_EQ(standstill.awake({milliseconds(1013'600), waited}), seconds(12)) << "of all so far";
+}
+
+TEST(Standstill, CountsHalfOfTheTimeThatAThreadWaitsForACpu) {
+  Standstill standstill({seconds(1000), seconds(3)});
+  EXPECT_EQ(standstill.awake({seconds(1008), seconds(11)}), seconds(4));
+  EXPECT_EQ(standstill.awake({seconds(1018), seconds(13)}), seconds(9)) << "frozen for 8 s of 10";
+  // A kernel that does not count them, and one that counts more than has passed.
+  Standstill uncounted({seconds(1000), seconds(0)});
+  EXPECT_EQ(uncounted.awake({seconds(1006), seconds(0)}), seconds(6));
+  EXPECT_EQ(uncounted.awake({seconds(1020), seconds(90)}), seconds(7));
 }
 
 TEST(FreezeWatch, NoticesThatItsProcessStoodStillForSoLong) {

@@ -15,6 +15,9 @@ struct ThreadTime {
 /// gone or the kernel does not count these times (schedstat).
 std::map<long, ThreadTime> thread_times(const std::filesystem::path& process);
 
+/// The same of the thread that asks; zeros where the kernel does not count.
+ThreadTime time_of_this_thread();
+
 /// Their sum; that of threads that have ended is not in it.
 ThreadTime sum_of(const std::map<long, ThreadTime>& times);
 
