@@ -79,6 +79,17 @@ class ForgedMessages {
     return {brief, none};
   }
 
+  /// The same packet, in which a prefix without a key says that all is in an envelope. Fast DDS
+  /// passes over a prefix that is not the first submessage.
+  static Packet in_dummy_envelope(Packet packet) {
+    constexpr std::ptrdiff_t kHeader_bytes = 20;
+    const Packet no_timestamp = {0x09, 3, 0, 0};
+    const Packet prefix = joined({{0x33, 1, 20, 0}, Packet(20, 0)});
+    const Packet both = joined({no_timestamp, prefix});
+    packet.insert(packet.begin() + kHeader_bytes, both.begin(), both.end());
+    return packet;
+  }
+
   /// Whether an announcement is the victim's.
   [[nodiscard]] bool sent(const Packet& announcement) const {
     return announcement.size() > 60 &&

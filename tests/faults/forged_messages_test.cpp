@@ -223,10 +223,16 @@ TEST_F(ForgedMessagesTest, PlainMessagesDoNotRemoveAProtectedReaderOrWriter) {
     ForgedMessages& forged = forged_by(*mapper_);
     const std::uint64_t before = messaging::stranger_counts().unprotected_packets;
     const messaging::Handle writer = mapper_->endpoints(true).at(0);
-    send(forged.other_topic_of(writer));
-    send(forged.removal_of_endpoint(writer, kOfWriters));
-    send(forged.removal_of_endpoint(mapper_->endpoints(false).at(0), kOfReaders));
-    constexpr std::uint64_t kForged = 3;
+    const messaging::Handle reader = mapper_->endpoints(false).at(0);
+    for (const bool enveloped : {false, true}) {
+      const auto send_packet = [&](const Packet& packet) {
+        send(enveloped ? ForgedMessages::in_dummy_envelope(packet) : packet);
+      };
+      send_packet(forged.other_topic_of(writer));
+      send_packet(forged.removal_of_endpoint(writer, kOfWriters));
+      send_packet(forged.removal_of_endpoint(reader, kOfReaders));
+    }
+    constexpr std::uint64_t kForged = 6;
     ASSERT_TRUE(wait("the messages to be refused", [&] {
       return messaging::stranger_counts().unprotected_packets >= before + kForged ||
              lost_links() > 0;

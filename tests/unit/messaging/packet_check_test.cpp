@@ -241,6 +241,25 @@ TEST(PacketCheck, EnvelopesAreWholeAndSealed) {
   EXPECT_TRUE(unprotected({data(0x04, kPayload), prefix, body, postfix}));
 }
 
+// No key is needed to write that all is in an envelope, and Fast DDS reads on behind it.
+TEST(PacketCheck, AnEnvelopeAroundTheWholePacketProtectsNothing) {
+  const Bytes timestamp = submessage(0x09, kLittle, Bytes(8, 0));
+  const Bytes prefix = submessage(0x33, kLittle, Bytes(20, 0));
+  const Bytes postfix = submessage(0x34, kLittle, Bytes(20, 0));
+  for (const std::vector<Bytes>& packet :
+       std::vector<std::vector<Bytes>>{{prefix, data(0x04, kPayload)},
+                                       {timestamp, prefix, data(0x04, kPayload)},
+                                       {timestamp, prefix, data(0x04, kPayload), postfix},
+                                       {prefix, submessage(0x30, kLittle, Bytes(40, 9)), postfix},
+                                       {timestamp, postfix, heartbeat(1, 1)}}) {
+    EXPECT_TRUE(valid(packet));
+    EXPECT_TRUE(unprotected(packet));
+  }
+  // What stands in it is checked like the rest.
+  EXPECT_FALSE(valid({prefix, data(0x04, kPayload, 0)}));
+  EXPECT_FALSE(valid({timestamp, prefix, gap(0, 4, 0, 0)}));
+}
+
 TEST(PacketCheck, OnlyDiscoveryAndHandshakesNeedNoProtection) {
   EXPECT_FALSE(unprotected({data(0x04, kPayload, 1, kSpdpWriter)}));
   EXPECT_FALSE(unprotected({data(0x04, kPayload, 1, 0x000201c3)}));

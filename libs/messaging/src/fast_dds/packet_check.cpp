@@ -42,6 +42,7 @@ enum Kind : std::uint8_t {
   kSecurePrefix = 0x31,
   kSecurePostfix = 0x32,
   kSecureMessagePrefix = 0x33,
+  kSecureMessagePostfix = 0x34,
   kStatistics = 0x80,  // of the vendor of Fast DDS
 };
 
@@ -258,6 +259,13 @@ bool about_samples(const Submessage& submessage) {
   }
 }
 
+/// Whether a submessage says that the whole packet is in one envelope. Peers send none: governance
+/// protects submessages, not packets (rtps_protection_kind NONE). Fast DDS passes over such a
+/// prefix where it is not the first, and reads what follows as plain submessages.
+bool whole_envelope(const Submessage& submessage) {
+  return submessage.kind == kSecureMessagePrefix || submessage.kind == kSecureMessagePostfix;
+}
+
 /// The end of an envelope: a prefix, one submessage, a postfix. 0 when there is none.
 std::size_t end_of_envelope(Bytes packet, const Submessage& prefix) {
   const Submessage content = submessage_at(packet, prefix.end);
@@ -275,17 +283,16 @@ PacketCheck check_packet(Bytes packet) {
     return {};
   }
   PacketCheck check{.valid = true};
-  bool sealed = false;  // an envelope around all that follows
   for (std::size_t at = kHeader_bytes; at < packet.size();) {
     const Submessage submessage = submessage_at(packet, at);
-    if (submessage.kind == 0 || (!sealed && !body_valid(submessage))) return {};
+    if (submessage.kind == 0 || !body_valid(submessage)) return {};
     at = submessage.end;
-    if (submessage.kind == kSecurePrefix && !sealed) {
+    if (submessage.kind == kSecurePrefix) {
       at = end_of_envelope(packet, submessage);
       if (at == 0) return {};
     }
-    sealed = sealed || submessage.kind == kSecureMessagePrefix;
-    check.unprotected = check.unprotected || (!sealed && about_samples(submessage));
+    check.unprotected =
+        check.unprotected || about_samples(submessage) || whole_envelope(submessage);
   }
   return check;
 }
