@@ -32,6 +32,19 @@ void check_size(std::int64_t width, std::int64_t height, const std::string& sour
   }
 }
 
+/// Throws where a compressed picture is longer than its pixels can be: it would unpack for minutes
+/// to what nobody looks at.
+void check_packed(std::int64_t width, std::int64_t height, std::size_t bytes,
+                  const std::string& source) {
+  constexpr std::int64_t kPixel_bytes = 8;  // four channels of 16 bits
+  constexpr std::int64_t kRow_bytes = 64;   // a filter, and what packing adds to noise
+  constexpr std::int64_t kBeside_bytes = std::int64_t{1} << 20U;  // colour profile, texts
+  const std::int64_t most = height * (width * kPixel_bytes + kRow_bytes) + kBeside_bytes;
+  if (static_cast<std::int64_t>(bytes) <= most) return;
+  fail_raster(source, fmt::format("{} bytes for {} x {} pixels, expected at most {}", bytes, width,
+                                  height, most));
+}
+
 RasterImage blank_raster(std::int64_t width, std::int64_t height, const std::string& source) {
   check_size(width, height, source);
   RasterImage image;
@@ -60,6 +73,7 @@ RasterImage raster_of_png(std::string_view bytes, const std::string& source) {
   RasterImage image;
   try {
     image = blank_raster(png.width, png.height, source);
+    check_packed(png.width, png.height, bytes.size(), source);
     pixels.resize(4 * image.grey.size());
   } catch (...) {
     png_image_free(&png);

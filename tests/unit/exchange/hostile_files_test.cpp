@@ -271,6 +271,19 @@ TEST_F(HostileFile, PicturesOfManyPixelsAreRefusedByTheirHeader) {
   EXPECT_THAT(refusal("P5 4000 4000 255 "), HasSubstr("cut short"));
 }
 
+TEST_F(HostileFile, APictureThatUnpacksToMoreThanItsPixelsIsRefused) {
+  // 10 x 10 black pixels, and two megabytes that could unpack to two gigabytes.
+  constexpr std::string_view kPng(
+      "\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x0a"
+      "\x00\x00\x00\x0a\x08\x00\x00\x00\x00\xa8\x59\x90\x61\x00\x00\x00\x0c\x49\x44\x41"
+      "\x54\x78\xda\x63\x60\xa0\x27\x00\x00\x00\x6e\x00\x01\x76\xa0\xa9\xcf",
+      57);
+  static_cast<void>(write("a.pgm", std::string(kPng) + std::string(std::size_t{2} << 20U, '\0')));
+  const fs::path yaml = write("floor.yaml", kGridYaml);
+  EXPECT_THAT(refusal_of([&] { read_grid_image(yaml); }),
+              HasSubstr("bytes for 10 x 10 pixels, expected at most 1050"));
+}
+
 TEST(HostileGrid, LargeDrawnFloorsAreRefused) {
   planning::GridFrame frame;
   frame.columns = 4000;
