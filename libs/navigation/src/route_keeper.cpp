@@ -130,7 +130,9 @@ double RouteKeeper::wait_s(std::int64_t now_ns) {
   return waited_s(now_ns);
 }
 
-double RouteKeeper::waited_s(std::int64_t now_ns) const {
+double RouteKeeper::waited_s(std::int64_t now_ns) {
+  // A navigator that was started again has its goal before it knows the time.
+  if (goal_ns_ == 0) goal_ns_ = now_ns;
   return elapsed_s(waits_ns_.value_or(goal_ns_), now_ns);
 }
 

@@ -38,7 +38,8 @@ class RouteKeeper {
   /// Whether the route in hand follows branches.
   [[nodiscard]] bool on_branches() const { return floor_ != nullptr; }
 
-  /// A new goal: forgets all routes and waits for one from now on.
+  /// A new goal: forgets all routes and waits for one from now on, or, where that is not known (0),
+  /// from when it is asked how long.
   void expect(std::int64_t now_ns);
   void cancel();
   void forget();
@@ -71,7 +72,7 @@ class RouteKeeper {
   double wait_s(std::int64_t now_ns);
   void stop_waiting() { waits_ns_.reset(); }
   /// How long a route has been waited for, or since the goal was given.
-  [[nodiscard]] double waited_s(std::int64_t now_ns) const;
+  double waited_s(std::int64_t now_ns);
 
  private:
   [[nodiscard]] bool usable(const RoutePlan& route, std::uint64_t least_blockages_version) const;
@@ -85,7 +86,7 @@ class RouteKeeper {
   RoutePlan route_;
   std::vector<planning::Cell> cells_;                 ///< of the route, neighbours each
   std::shared_ptr<const planning::FreeSpace> floor_;  ///< of a route along branches
-  std::int64_t goal_ns_ = 0;                          ///< when the goal was given
+  std::int64_t goal_ns_ = 0;                          ///< when the goal was given; 0: not known
   std::optional<std::int64_t> waits_ns_;
 };
 

@@ -120,6 +120,13 @@ TEST(RouteKeeper, ARobotThatSettlesAtTheGoalKeepsItsRoute) {
   EXPECT_EQ(routes.take_offer(use), RouteAnswer::kTaken);
 }
 
+TEST(RouteKeeper, AGoalOfAnUnknownTimeIsWaitedForFromTheFirstQuestion) {
+  RouteKeeper routes;
+  routes.expect(0);
+  EXPECT_DOUBLE_EQ(routes.waited_s(1'000'000 * kSecond_ns), 0.0);
+  EXPECT_DOUBLE_EQ(routes.waited_s(1'000'003 * kSecond_ns), 3.0);
+}
+
 TEST(RouteKeeper, CountsTheTimeThatItWaits) {
   RouteKeeper routes;
   routes.expect(10 * kSecond_ns);
