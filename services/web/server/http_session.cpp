@@ -117,7 +117,7 @@ void HttpSession::on_header(beast::error_code error) {
     return;
   }
   state_.tally.add("requests");
-  note_token(is_authorized(header(http::field::authorization), state_.config.token));
+  note_token(shows_token());
   if (const auto refused = refusal()) {
     send(*refused);
   } else if (parser_->is_done()) {
@@ -125,6 +125,14 @@ void HttpSession::on_header(beast::error_code error) {
   } else {
     read_body(most_body_bytes());
   }
+}
+
+// A page that opens a WebSocket can set no header but the subprotocols.
+bool HttpSession::shows_token() const {
+  if (is_authorized(header(http::field::authorization), state_.config.token)) return true;
+  const std::string offered = header(http::field::sec_websocket_protocol);
+  return beast::websocket::is_upgrade(parser_->get()) &&
+         offers_token(names_in(offered), state_.config.token);
 }
 
 void HttpSession::note_token(bool shown) {
@@ -250,9 +258,7 @@ void HttpSession::upgrade() {
     return;
   }
   const std::vector<std::string_view> names = names_in(offered);
-  const bool has_token = authorized_ || offers_token(names, state_.config.token);
-  if (has_token) state_.peers[address()].had_token = true;
-  const std::size_t reserved = has_token ? ServerState::kReservedViewers : 0;
+  const std::size_t reserved = authorized_ ? ServerState::kReservedViewers : 0;
   if (state_.viewers.size() >= state_.config.most_viewers + reserved) {
     state_.refuse("too many viewers");
     send(error_answer(503, "too many viewers"));
@@ -265,10 +271,10 @@ void HttpSession::upgrade() {
   if (foxglove.empty()) {
     if (std::ranges::find(names, kPageProtocol) != names.end()) chosen = kPageProtocol;
     watcher =
-        std::make_shared<Viewer>(std::move(connection_), state_, shared_from_this(), has_token);
+        std::make_shared<Viewer>(std::move(connection_), state_, shared_from_this(), authorized_);
   } else {
     watcher = std::make_shared<FoxgloveViewer>(std::move(connection_), state_, shared_from_this(),
-                                               has_token);
+                                               authorized_);
   }
   watcher->start(parser_->release(), chosen);
 }

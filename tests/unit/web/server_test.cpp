@@ -218,6 +218,8 @@ TEST_F(WebServer, StrangersUseUpNothingOfTheOperators) {
   std::ignore =
       test::exchange_bytes(port(), requests + request + "Connection: close\r\n\r\n", kPatience);
   ASSERT_EQ(http_get(port(), "/api/x").status, 429);
+  EXPECT_THROW(WebSocketClient{port()}, std::runtime_error);
+  EXPECT_NO_THROW(WebSocketClient(port(), test::token_header(kToken)));
   for (int i = 0; i < 40; ++i) ASSERT_EQ(http_post(port(), "/api/stop", kToken).status, 202);
   EXPECT_EQ(http_post(port(), "/api/goal", kToken).status, 200);
   for (int i = 0; i < 20; ++i) {
