@@ -68,6 +68,11 @@ bool offers_token(const std::vector<std::string_view>& names, std::string_view t
       names, [&](std::string_view name) { return equal_in_constant_time(name, shown); });
 }
 
+bool shows_token(std::string_view authorization, std::string_view protocols,
+                 std::string_view token) {
+  return is_authorized(authorization, token) || offers_token(names_in(protocols), token);
+}
+
 std::string_view host_of(std::string_view authority) {
   if (authority.starts_with('[')) {
     const std::size_t end = authority.find(']');

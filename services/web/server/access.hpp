@@ -23,6 +23,11 @@ std::vector<std::string_view> names_in(std::string_view list);
 /// shows the token when it opens a WebSocket. False for an empty token.
 bool offers_token(const std::vector<std::string_view>& names, std::string_view token);
 
+/// Whether a request shows the token in either header: Authorization, or Sec-WebSocket-Protocol,
+/// the only one that a page can set when it opens a WebSocket.
+bool shows_token(std::string_view authorization, std::string_view protocols,
+                 std::string_view token);
+
 /// The name in "name:port", without brackets of IPv6.
 std::string_view host_of(std::string_view authority);
 

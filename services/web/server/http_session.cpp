@@ -117,7 +117,8 @@ void HttpSession::on_header(beast::error_code error) {
     return;
   }
   state_.tally.add("requests");
-  note_token(shows_token());
+  note_token(shows_token(header(http::field::authorization),
+                         header(http::field::sec_websocket_protocol), state_.config.token));
   if (const auto refused = refusal()) {
     send(*refused);
   } else if (parser_->is_done()) {
@@ -125,14 +126,6 @@ void HttpSession::on_header(beast::error_code error) {
   } else {
     read_body(most_body_bytes());
   }
-}
-
-// A page that opens a WebSocket can set no header but the subprotocols.
-bool HttpSession::shows_token() const {
-  if (is_authorized(header(http::field::authorization), state_.config.token)) return true;
-  const std::string offered = header(http::field::sec_websocket_protocol);
-  return beast::websocket::is_upgrade(parser_->get()) &&
-         offers_token(names_in(offered), state_.config.token);
 }
 
 void HttpSession::note_token(bool shown) {

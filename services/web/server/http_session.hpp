@@ -50,7 +50,6 @@ class HttpSession : public std::enable_shared_from_this<HttpSession>, private Pl
   /// The largest body that this request may have.
   [[nodiscard]] std::uint64_t most_body_bytes() const;
   /// The header has shown the operator's token, or not.
-  [[nodiscard]] bool shows_token() const;
   void note_token(bool shown);
   void upgrade();
   void route();
