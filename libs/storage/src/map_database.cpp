@@ -341,13 +341,7 @@ void MapDatabase::copy_to(const std::filesystem::path& path) const try {
 }
 
 std::uintmax_t database_bytes(const std::filesystem::path& path) {
-  std::uintmax_t bytes = 0;
-  for (const char* part : {"", "-wal"}) {
-    std::error_code error;
-    const std::uintmax_t size = std::filesystem::file_size(path.string() + part, error);
-    if (!error) bytes += size;
-  }
-  return bytes;
+  return sqlite_guard::bytes_of(path);
 }
 
 }  // namespace topogeo::storage
