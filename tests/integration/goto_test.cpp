@@ -17,12 +17,18 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
+/// Writes map/map.pb, made by a drive through one of the worlds of the tests.
+void map_world(const Scratch& scratch, const std::string& world) {
+  write_log(world, scratch / "drive.clf");
+  Program map(scratch, "topogeo",
+              {"map", "--log", scratch / "drive.clf", "--out", scratch / "map"});
+  ASSERT_EQ(map.wait(), 0) << map.err();
+}
+
 TEST(Goto, ASimulatedRobotIsSentToAPointOfAStoredMap) {
   use_udp_only();
   const Scratch scratch;
-  write_log("room", scratch / "room.clf");
-  Program map(scratch, "topogeo", {"map", "--log", scratch / "room.clf", "--out", scratch / "map"});
-  ASSERT_EQ(map.wait(), 0) << map.err();
+  ASSERT_NO_FATAL_FAILURE(map_world(scratch, "room"));
   const std::string out = scratch / "out";
   // The origin of the map is where the tour begins, at (1, 1); the robot looks along the wall.
   Program run(scratch, "topogeo",
@@ -46,10 +52,7 @@ class GotoLives : public testing::TestWithParam<std::vector<std::string>> {};
 TEST_P(GotoLives, TheRobotIsFoundWhereItIsAndDrivesOn) {
   use_udp_only();
   const Scratch scratch;
-  write_log("floor", scratch / "floor.clf");
-  Program map(scratch, "topogeo",
-              {"map", "--log", scratch / "floor.clf", "--out", scratch / "map"});
-  ASSERT_EQ(map.wait(), 0) << map.err();
+  ASSERT_NO_FATAL_FAILURE(map_world(scratch, "floor"));
   const std::string out = scratch / "out";
   Program run(scratch, "topogeo",
               {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml", "--map",
@@ -83,10 +86,7 @@ INSTANTIATE_TEST_SUITE_P(Services, GotoLives,
 TEST(Goto, AlongBranchesWhereTheConfigurationSaysSo) {
   use_udp_only();
   const Scratch scratch;
-  write_log("floor", scratch / "floor.clf");
-  Program map(scratch, "topogeo",
-              {"map", "--log", scratch / "floor.clf", "--out", scratch / "map"});
-  ASSERT_EQ(map.wait(), 0) << map.err();
+  ASSERT_NO_FATAL_FAILURE(map_world(scratch, "floor"));
   std::ofstream(scratch / "graph.yaml") << "planner:\n  on: graph\n";
   Program run(scratch, "topogeo",
               {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml", "--map",
