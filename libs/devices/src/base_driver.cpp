@@ -244,7 +244,7 @@ void BaseDriver::guard_velocities(VelocityGuard guard, std::int64_t period_ns) {
   judge_period_ns_ = period_ns;
 }
 
-/// What of the wanted velocity the guard allows now.
+/// The part of the wanted velocity that the guard allows now.
 BaseVelocity BaseDriver::guarded(std::int64_t now_ns) {
   if (!guard_) return wanted_;
   judge_ns_ = now_ns + judge_period_ns_;

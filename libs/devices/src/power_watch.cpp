@@ -55,7 +55,7 @@ void PowerWatch::aim_at(double speed, double acceleration, std::int64_t now_ns) 
   direction_ = direction;
   if (!aims_.empty() && aims_.back().speed == speed) return;
   aims_.push_back({now_ns, speed});
-  // What held before the oldest that may be asked for.
+  // Aims that were over before the oldest time that may be asked for are dropped.
   constexpr std::int64_t kKept_ns = 2'000'000'000;
   while (aims_.size() > 2 && aims_[1].since_ns < now_ns - kKept_ns) aims_.pop_front();
 }

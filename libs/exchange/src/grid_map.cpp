@@ -69,8 +69,8 @@ std::vector<std::size_t> cells_by_width(const planning::FreeSpace& space, double
   return cells;
 }
 
-/// Those of the cells that are, each, at least `spacing_m` from those before; one more than `most`
-/// where there are as many.
+/// Middles of cells, each at least `spacing_m` from those before it; one more than `most` where
+/// there are as many.
 std::vector<Eigen::Vector2d> places_apart(const planning::GridFrame& frame,
                                           const std::vector<std::size_t>& cells, double spacing_m,
                                           std::size_t most) {

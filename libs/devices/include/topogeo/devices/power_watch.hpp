@@ -24,7 +24,7 @@
 
 namespace topogeo::devices {
 
-/// What a report says of one axis, in m/s or rad/s.
+/// The part of a report that is about one axis, in m/s or rad/s.
 struct AxisReport {
   std::int64_t base_ns = 0;   ///< by the clock of the base
   std::int64_t stamp_ns = 0;  ///< the same by the clock of the host, about
@@ -33,7 +33,7 @@ struct AxisReport {
   double commanded_sign = 1.0;  ///< 1 or -1, the direction that the base was told last
 };
 
-/// What is no loss of power yet; in m/s or rad/s, each > 0.
+/// Deviations that are no loss of power yet; in m/s or rad/s, each > 0.
 struct PowerTolerance {
   double standstill = 0.0;  ///< slower is standstill: the noise of the encoders reaches it
   double ripple = 0.0;      ///< that a regulated speed is below the commanded one
@@ -45,16 +45,16 @@ class PowerWatch {
   /// `period_ns`: between two reports.
   PowerWatch(const PowerTolerance& tolerance, std::int64_t period_ns);
 
-  /// What is commanded from now on, 0 to stand, and the acceleration that the base has (> 0).
+  /// The speed that is commanded from now on, 0 to stand, and the acceleration of the base (> 0).
   void aim_at(double speed, double acceleration, std::int64_t now_ns);
-  /// What was reported before does not count: the base has started anew, or has stopped for a
+  /// Earlier reports do not count any more: the base has started anew, or has stopped for a
   /// reason that is known (a bumper, its watchdog, a joystick).
   void forget();
   /// The next report, in the order of their times. True: the axis has lost its power.
   bool take(const AxisReport& report);
 
  private:
-  /// What of a report the next one is compared with.
+  /// The part of a report that the next one is compared with.
   struct Before {
     std::int64_t base_ns = 0;
     std::int64_t stamp_ns = 0;
