@@ -295,7 +295,9 @@ TEST_F(MapLocalizerTest, GoesOnAfterTheLastPlaceOfAnotherProcess) {
     map.odometry_epoch = epoch;
     localizer.add(std::make_shared<const topomap::LocalMap>(map));
     EXPECT_EQ(localizer.searches(), epoch == kEpoch ? 0U : 1U);
-    if (epoch == kEpoch) EXPECT_TRUE(right(localizer, 8));
+    if (epoch == kEpoch) {
+      EXPECT_TRUE(right(localizer, 8));
+    }
   }
 }
 
