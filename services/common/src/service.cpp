@@ -34,7 +34,8 @@ Service::Service(const Setup& setup, bool any_robot)
                   messaging::ServiceIdentity{
                       setup.name, setup.instance, any_robot ? "" : robot_id(),
                       std::string(support::kVersion), setup.config.effective.fingerprint});
-  cpu_.emplace(loop_, *status_);
+  cpu_.emplace([this] { return std::chrono::duration<double>(loop_.take_timer_delay()).count(); },
+               [this](const char* name, double value) { status_->set_counter(name, value); });
   loop_.add_timer(kTick, [this] { tick(); });
   offer_metrics();
 }

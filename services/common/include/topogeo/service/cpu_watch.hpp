@@ -1,8 +1,10 @@
 // Publishes in the status of a service whether it gets the CPU time that it needs.
 #pragma once
 
-#include "topogeo/messaging/event_loop.hpp"
-#include "topogeo/messaging/status_publisher.hpp"
+#include <functional>
+#include <string>
+#include <utility>
+
 #include "topogeo/support/cpu_shortage.hpp"
 
 namespace topogeo::service {
@@ -17,8 +19,13 @@ class CpuWatch {
   static constexpr const char* kTimerDelay = "timer_delay_s";
   static constexpr const char* kShort = "cpu_short";
 
-  /// Both must outlive it.
-  CpuWatch(messaging::EventLoop& loop, messaging::StatusPublisher& status);
+  /// The largest delay of a timer since the last call, seconds.
+  using TimerDelay = std::function<double()>;
+  using SetCounter = std::function<void(const char* name, double value)>;
+
+  /// `meter`: of this process; tests measure others.
+  CpuWatch(TimerDelay timer_delay, SetCounter set_counter,
+           support::CpuMeter meter = support::CpuMeter());
 
   /// Several times a second, in the thread of the loop; it measures once a second. The caller
   /// passes the time, in seconds from any start.
@@ -32,8 +39,8 @@ class CpuWatch {
   [[nodiscard]] std::string text() const { return lasts() ? shortage_.text() : std::string(); }
 
  private:
-  messaging::EventLoop& loop_;
-  messaging::StatusPublisher& status_;
+  TimerDelay timer_delay_;
+  SetCounter set_counter_;
   support::CpuMeter meter_;
   support::CpuShortage shortage_;
   double due_s_ = 0.0;
