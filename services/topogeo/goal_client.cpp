@@ -64,9 +64,13 @@ void GoalClient::listen() {
       [this](const msg::ServiceStatus& status, const SampleInfo& info) {
         if (is_own(status) && status.state() != msg::kServiceStopped) {
           services_.update(status, info);
+          note_busy();
         }
       },
-      [this](const SampleInfo& info) { services_.remove(info); });
+      [this](const SampleInfo& info) {
+        services_.remove(info);
+        note_busy();
+      });
   loop_.add<msg::NavigatorStatus>(statuses_,
                                   [this](const msg::NavigatorStatus& status, const SampleInfo&) {
                                     if (is_own(status)) take_status(status);
@@ -88,6 +92,15 @@ void GoalClient::take_status(const msg::NavigatorStatus& status) {
   if (watch_) watch_->add(*status_, support::monotonic_s());
 }
 
+void GoalClient::note_busy() {
+  if (watch_) watch_->set_busy(!too_busy().empty(), support::monotonic_s());
+}
+
+std::string GoalClient::too_busy() const {
+  const std::string names = services_.short_of_cpu();
+  return names.empty() ? "" : "the robot's machine is too busy: the CPU is short for " + names;
+}
+
 std::string GoalClient::missing() const {
   std::string names;
   for (const char* name : {"planner", "navigator"}) {
@@ -105,6 +118,7 @@ void GoalClient::send(service::Goal goal, double patience_s) {
     goal.goal_id = goal_id_ = new_goal_id();
     route_.reset();
     watch_.emplace(goal_id_, patience_s, support::monotonic_s());
+    note_busy();
   }
   if (!goals_.write(service::to_msg(goal, robot_id_, support::wall_clock_ns(), sent_++))) {
     throw std::runtime_error("the goal could not be sent");
@@ -119,9 +133,12 @@ void GoalClient::cancel() {
   send(order);
 }
 
-bool GoalClient::delivered(double patience_s) {
-  return goals_.wait_for_acknowledgments(
-      std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * patience_s)));
+bool GoalClient::delivered(support::Patience& patience) {
+  constexpr std::chrono::milliseconds kAcknowledgmentPoll{100};
+  while (!goals_.wait_for_acknowledgments(kAcknowledgmentPoll)) {
+    if (patience.is_over(support::monotonic_s())) return false;
+  }
+  return true;
 }
 
 std::optional<supervision::GoalEnd> GoalClient::end() {

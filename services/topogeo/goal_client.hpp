@@ -15,6 +15,7 @@
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/live_hybrid_map.hpp"
 #include "topogeo/supervision/goal_watch.hpp"
+#include "topogeo/support/patience.hpp"
 
 #include "service_table.hpp"
 
@@ -31,14 +32,17 @@ class GoalClient {
   /// What of a planner and a navigator of the robot is not there; empty: both are.
   [[nodiscard]] std::string missing() const;
 
+  /// "the robot's machine is too busy: the CPU is short for navigator" while it is; else empty.
+  [[nodiscard]] std::string too_busy() const;
+
   /// Sends a goal with a number of its own, or an order about the goal that the robot has.
   /// `patience_s`: see supervision::GoalWatch. Throws std::runtime_error when it cannot be sent and
   /// std::invalid_argument for one that does not fit into a message.
   void send(service::Goal goal, double patience_s = 60.0);
   /// Orders the robot to stop and forget the goal sent; nothing when none was.
   void cancel();
-  /// Whether the readers have what was sent, within `patience_s`.
-  bool delivered(double patience_s);
+  /// Waits until the readers have what was sent; false when the patience is over before.
+  bool delivered(support::Patience& patience);
 
   /// Of the goal sent: nothing as long as it may still be reached.
   [[nodiscard]] std::optional<supervision::GoalEnd> end();
@@ -55,6 +59,7 @@ class GoalClient {
 
  private:
   void listen();
+  void note_busy();
   void take_status(const msg::NavigatorStatus& status);
   [[nodiscard]] bool is_own(const auto& message) const {
     return message.robot_id() == robot_id_.c_str();

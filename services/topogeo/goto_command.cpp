@@ -44,9 +44,12 @@ int send_order(const GotoOptions& options) {
   order.kind =
       options.cancel ? msg::kGoalCancel : (options.pause ? msg::kGoalPause : msg::kGoalResume);
   client.send(order);
-  if (!client.delivered(options.robot.wait_s))
-    throw std::runtime_error("the order could not be sent");
-  const bool done = wait_for(loop, options.robot.wait_s, [&] {
+  support::Patience patience(options.robot.wait_s, support::monotonic_s());
+  if (!client.delivered(patience)) {
+    throw std::runtime_error("the order could not be sent" + patience.reason());
+  }
+  patience.begin_again(support::monotonic_s());
+  const bool done = wait_for(loop, patience, [&] {
     const bool paused = client.status()->reason == navigation::HaltReason::kPaused;
     if (options.pause) return paused || client.status()->goal_id == 0;
     if (options.resume) return !paused;
@@ -54,8 +57,9 @@ int send_order(const GotoOptions& options) {
   });
   std::cout << supervision::progress_line(*client.status()) << '\n';
   if (done) return service::kOk;
-  throw std::runtime_error(fmt::format("robot '{}' did not do it within {:.0f} s",
-                                       options.robot.robot_id, options.robot.wait_s));
+  throw std::runtime_error(fmt::format("robot '{}' did not do it within {:.0f} s{}",
+                                       options.robot.robot_id, options.robot.wait_s,
+                                       patience.reason()));
 }
 
 int go_there(const GotoOptions& options) {
@@ -67,15 +71,21 @@ int go_there(const GotoOptions& options) {
   if (messaging::SignalStop::received() != 0) return interrupted();
   session.send();
   if (options.no_wait) {
-    if (!session.client().delivered(options.robot.wait_s) ||
-        !wait_for(loop, options.robot.wait_s, [&] { return session.client().taken(); })) {
-      throw std::runtime_error("the navigator does not take the goal");
+    support::Patience patience(options.robot.wait_s, support::monotonic_s());
+    if (!session.client().delivered(patience) ||
+        !wait_for(loop, patience, [&] { return session.client().taken(); })) {
+      throw std::runtime_error("the navigator does not take the goal" + patience.reason());
     }
     return service::kOk;
   }
+  bool busy_reported = false;
   while (!session.end()) {
     if (loop.run_for(kRobotTick)) break;
     session.tick();
+    if (const std::string busy = session.client().too_busy(); !busy.empty() && !busy_reported) {
+      busy_reported = true;
+      session.progress().print(busy + "; what it does takes longer");
+    }
   }
   session.progress().finish();
   if (messaging::SignalStop::received() != 0) {

@@ -1,6 +1,5 @@
 #include "goto_run.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "topogeo/localization/mapping/localization_state.hpp"
@@ -10,19 +9,10 @@
 #include "topogeo/support/format.hpp"
 
 namespace topogeo::cli {
-namespace {
-
-constexpr double kStart_s = 120.0;  // for the services to start and the robot to find its place
-constexpr double kCallOff_s = 5.0;  // for the robot to stop
-/// A tick that comes later shows that this program did not run: it waits for nobody.
-constexpr double kLongestTick_s = 1.0;
-
-}  // namespace
 
 GotoRun::GotoRun(const RunOptions& options)
     : options_(options),
-      since_s_(support::monotonic_s()),
-      last_tick_s_(since_s_),
+      phases_(support::monotonic_s()),
       run_(options),
       truth_(run_.participant(), run_.loop(), options.job.robot_id),
       poses_(run_.participant()),
@@ -43,6 +33,8 @@ GotoResult GotoRun::run() {
   run_.run();
   session_.progress().finish();
   result_.failure = run_.failure();
+  result_.arrived = phases_.has_arrived();
+  result_.drive_s = phases_.drive_s();
   result_.signal_number = result_.arrived ? 0 : run_.signal_number();
   result_.status = session_.client().status();
   if (const auto& route = session_.client().route()) {
@@ -78,22 +70,32 @@ void GotoRun::on_pose(const msg::LivePose& pose) {
 }
 
 void GotoRun::tick() {
-  const double now_s = support::monotonic_s();
-  const double passed_s = std::min(now_s - std::exchange(last_tick_s_, now_s), kLongestTick_s);
-  if (run_.too_busy().empty()) waited_s_ += passed_s;
-  switch (phase_) {
-    case Phase::kWaiting:
-      wait_for_start();
+  if (phases_.is_driving()) session_.tick();
+  const supervision::GotoView view{phases_.is_waiting() ? waits_for() : "", run_.too_busy(),
+                                   session_.end(), session_.client().stands()};
+  switch (phases_.step(support::monotonic_s(), view)) {
+    case supervision::GotoAction::kNone:
+      report_wait(view.waits_for);
       break;
-    case Phase::kDriving:
-      drive();
+    case supervision::GotoAction::kSendGoal:
+      session_.send();
       break;
-    case Phase::kCallingOff:
-      if (session_.client().stands() || support::monotonic_s() - since_s_ > kCallOff_s) {
-        run_.loop().stop();
-      }
+    case supervision::GotoAction::kCallOff:
+      run_.note_failure(phases_.failure());
+      session_.client().cancel();
+      break;
+    case supervision::GotoAction::kFail:
+      run_.fail(phases_.failure());
+      break;
+    case supervision::GotoAction::kEnd:
+      run_.loop().stop();
       break;
   }
+}
+
+void GotoRun::report_wait(const std::string& what) {
+  if (!what.empty() && what != reported_) session_.progress().print("waiting for " + what);
+  reported_ = what;
 }
 
 std::string GotoRun::waits_for() {
@@ -108,39 +110,8 @@ std::string GotoRun::waits_for() {
       localization::to_string(static_cast<localization::LocalizationState>(pose_->state())));
 }
 
-void GotoRun::wait_for_start() {
-  const std::string what = waits_for();
-  if (what.empty()) {
-    phase_ = Phase::kDriving;
-    since_s_ = support::monotonic_s();
-    session_.send();
-    return;
-  }
-  if (what != reported_) session_.progress().print("waiting for " + what);
-  reported_ = what;
-  if (waited_s_ < kStart_s) return;
-  run_.fail(fmt::format("{:.0f} s have passed, and it still waits for {}", kStart_s, what));
-}
-
-void GotoRun::drive() {
-  session_.tick();
-  const std::optional<supervision::GoalEnd> end = session_.end();
-  if (!end) return;
-  result_.drive_s = support::monotonic_s() - since_s_;
-  result_.arrived = end->arrived;
-  if (end->arrived) {
-    run_.loop().stop();
-    return;
-  }
-  run_.note_failure(end->reason);
-  call_off();
-}
-
 void GotoRun::call_off() {
-  if (phase_ == Phase::kCallingOff) return;
-  phase_ = Phase::kCallingOff;
-  since_s_ = support::monotonic_s();
-  session_.client().cancel();
+  if (phases_.call_off()) session_.client().cancel();
 }
 
 }  // namespace topogeo::cli

@@ -9,6 +9,7 @@
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/navigation/navigator_inputs.hpp"
+#include "topogeo/supervision/goto_phases.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
 #include "goal_session.hpp"
@@ -42,11 +43,8 @@ class GotoRun {
   GotoResult run();
 
  private:
-  enum class Phase : std::uint8_t { kWaiting, kDriving, kCallingOff };
-
   void tick();
-  void wait_for_start();
-  void drive();
+  void report_wait(const std::string& what);
   void call_off();
   void on_pose(const msg::LivePose& pose);
   /// Where the robot stands at first, see run().
@@ -56,11 +54,8 @@ class GotoRun {
 
   RunOptions options_;
   GotoResult result_;
-  Phase phase_ = Phase::kWaiting;
-  double since_s_;  // the phase began
-  double last_tick_s_;
-  double waited_s_ = 0.0;  // for the start, on a machine that has time for it
-  std::string reported_;   // what it waits for, as the user was informed last
+  supervision::GotoPhases phases_;
+  std::string reported_;  // what it waits for, as the user was informed last
   std::optional<msg::LivePose> pose_;
 
   ServiceRun run_;

@@ -20,21 +20,25 @@ void add_robot_options(command_line::Command& app, RobotInDomain& robot) {
 
 void wait_for_services(messaging::EventLoop& loop, const RobotInDomain& robot,
                        const GoalClient& client) {
-  if (wait_for(loop, robot.wait_s,
+  support::Patience patience(robot.wait_s, support::monotonic_s());
+  if (wait_for(loop, patience,
                [&] { return client.missing().empty() && client.status().has_value(); })) {
     return;
   }
   if (messaging::SignalStop::received() != 0) return;
   const std::string missing = client.missing();
   throw std::runtime_error(nothing_alive(robot.view, (missing.empty() ? "navigator" : missing) +
-                                                         " of robot '" + robot.robot_id + "'"));
+                                                         " of robot '" + robot.robot_id + "'") +
+                           patience.reason());
 }
 
 void call_off(messaging::EventLoop& loop, GoalClient& client) {
   constexpr double kLastWord_s = 5.0;  // for the robot to have the order, and to stop
   client.cancel();
-  static_cast<void>(client.delivered(kLastWord_s));
-  static_cast<void>(wait_for(loop, kLastWord_s, [&] { return client.stands(); }));
+  support::Patience patience(kLastWord_s, support::monotonic_s());
+  static_cast<void>(client.delivered(patience));
+  patience.begin_again(support::monotonic_s());
+  static_cast<void>(wait_for(loop, patience, [&] { return client.stands(); }));
 }
 
 int interrupted() {

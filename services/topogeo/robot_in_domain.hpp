@@ -7,6 +7,7 @@
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/patience.hpp"
 
 #include "domain_view.hpp"
 #include "goal_client.hpp"
@@ -25,13 +26,12 @@ void add_robot_options(command_line::Command& app, RobotInDomain& robot);
 /// Between two checks of a condition: people notice no wait of that length.
 inline constexpr std::chrono::milliseconds kRobotTick{50};
 
-/// Runs the loop until `condition` holds; false when it does not within `patience_s` or a signal
+/// Runs the loop until `condition` holds; false when the patience is over before, or a signal
 /// comes.
 template <class Condition>
-bool wait_for(messaging::EventLoop& loop, double patience_s, const Condition& condition) {
-  const double end_s = support::monotonic_s() + patience_s;
+bool wait_for(messaging::EventLoop& loop, support::Patience& patience, const Condition& condition) {
   while (!condition()) {
-    if (support::monotonic_s() > end_s || loop.run_for(kRobotTick)) return condition();
+    if (patience.is_over(support::monotonic_s()) || loop.run_for(kRobotTick)) return condition();
   }
   return true;
 }

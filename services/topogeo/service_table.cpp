@@ -46,6 +46,15 @@ const msg::ServiceStatus* ServiceTable::find(std::string_view service) const {
   return newest;
 }
 
+std::string ServiceTable::short_of_cpu() const {
+  std::string names;
+  for (const msg::ServiceStatus* row : rows()) {
+    if (cpu_shortage(*row).empty()) continue;
+    names += (names.empty() ? "" : ", ") + std::string(row->service().c_str());
+  }
+  return names;
+}
+
 std::string ServiceTable::progress_mark() const {
   std::string mark;
   for (const msg::ServiceStatus* row : rows()) {

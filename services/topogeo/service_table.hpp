@@ -25,6 +25,9 @@ class ServiceTable {
   /// The status of a service, or nullptr; of several that which started last.
   [[nodiscard]] const msg::ServiceStatus* find(std::string_view service) const;
 
+  /// "navigator, planner": those that are short of CPU time; empty when none is.
+  [[nodiscard]] std::string short_of_cpu() const;
+
   /// Counters of all services but search workers, which may serve other runs too, and but those
   /// that grow without work (CPU time): as long as this does not change, nothing moves.
   [[nodiscard]] std::string progress_mark() const;

@@ -1,8 +1,5 @@
 #include "topogeo/supervision/goal_watch.hpp"
 
-#include <algorithm>
-#include <utility>
-
 namespace topogeo::supervision {
 namespace {
 
@@ -25,36 +22,41 @@ void GoalWatch::add(const RouteAnswer& answer) {
   if (answer.goal_id == goal_id_) answer_ = answer;
 }
 
-void GoalWatch::pass_time(double now_s) {
-  time_s_ += std::min(now_s - std::exchange(last_call_s_, now_s), kLongestSpan_s);
+double GoalWatch::pass_time(double now_s) {
+  return clock_.advance(now_s, busy_ ? 0.0 : 1.0);
+}
+
+void GoalWatch::set_busy(bool busy, double now_s) {
+  pass_time(now_s);
+  busy_ = busy;
 }
 
 void GoalWatch::add(const NavigatorStatus& status, double now_s) {
-  pass_time(now_s);
-  alive_s_ = time_s_;
+  const double time_s = pass_time(now_s);
+  alive_s_ = time_s;
   if (status.goal_id != goal_id_) {
     if (!taken_) return;
-    if (!without_s_) without_s_ = time_s_;
-    replaced_ = status.goal_id != 0 || time_s_ - *without_s_ > kStartsAgain_s;
+    if (!without_s_) without_s_ = time_s;
+    replaced_ = status.goal_id != 0 || time_s - *without_s_ > kStartsAgain_s;
     return;
   }
   taken_ = true;
   replaced_ = false;
   without_s_.reset();
   if (status.state == NavigatorState::kDriving || status.reason == HaltReason::kPaused) {
-    driven_s_ = time_s_;
+    driven_s_ = time_s;
   }
   status_ = status;
 }
 
 std::optional<GoalEnd> GoalWatch::check(double now_s) {
-  pass_time(now_s);
+  const double time_s = pass_time(now_s);
   if (replaced_) return GoalEnd{false, "another goal replaced it, or another program cancelled it"};
   if (status_) {
     if (std::optional<GoalEnd> end = judge(*status_)) return end;
   }
-  if (time_s_ - alive_s_ > kSilent_s) return GoalEnd{false, "the navigator is gone"};
-  if (time_s_ - driven_s_ <= patience_s_) return std::nullopt;
+  if (time_s - alive_s_ > kSilent_s) return GoalEnd{false, "the navigator is gone"};
+  if (time_s - driven_s_ <= patience_s_) return std::nullopt;
   if (!taken_) return GoalEnd{false, "the navigator does not take the goal"};
   return GoalEnd{false, text_of(*status_)};
 }

@@ -86,6 +86,27 @@ TEST(GoalWatch, ASpanInWhichThisProgramDidNotRunIsNoSilenceOfTheNavigator) {
   EXPECT_FALSE(watch.check(900.2));
 }
 
+TEST(GoalWatch, ARobotWhoseMachineIsBusyIsNotGivenUp) {
+  GoalWatch watch(7, 60.0, 0.0);
+  watch.add(status(NavigatorState::kDriving), 1.0);
+  watch.set_busy(true, 1.0);
+  for (double now_s = 1.0; now_s <= 1000.0; now_s += 0.5) {
+    watch.add(status(NavigatorState::kStopped, HaltReason::kNoOdometry, "the CPU is short"), now_s);
+    ASSERT_FALSE(watch.check(now_s)) << now_s;
+  }
+  for (double now_s = 1000.0; now_s <= 1100.0; now_s += 0.5) {
+    ASSERT_FALSE(watch.check(now_s)) << "statuses come late, too";
+  }
+  watch.set_busy(false, 1100.0);
+  for (double now_s = 1100.0; now_s <= 1159.0; now_s += 0.5) {
+    watch.add(status(NavigatorState::kStopped, HaltReason::kNoOdometry, "no odometry"), now_s);
+    ASSERT_FALSE(watch.check(now_s)) << now_s;
+  }
+  watch.add(status(NavigatorState::kStopped, HaltReason::kNoOdometry, "no odometry"), 1160.0);
+  ASSERT_TRUE(watch.check(1160.5)) << "the machine has had time for a minute";
+  EXPECT_EQ(watch.check(1160.5)->reason, "no odometry");
+}
+
 TEST(GoalWatch, ANavigatorThatStartsAgainGetsTheGoalAgain) {
   GoalWatch watch(7, 60.0, 0.0);
   watch.add(status(NavigatorState::kDriving), 1.0);

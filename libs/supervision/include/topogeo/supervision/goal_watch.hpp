@@ -6,6 +6,7 @@
 #include <string>
 
 #include "topogeo/navigation/navigator_inputs.hpp"
+#include "topogeo/support/patience.hpp"
 
 namespace topogeo::supervision {
 
@@ -21,30 +22,31 @@ struct RouteAnswer {
   std::string reason;    ///< why there is no route, for people; may be empty
 };
 
-/// The caller passes the time, in seconds from any start. A span in which it did not call counts
-/// for kLongestSpan_s at most: on a busy machine it did not run, and what came meanwhile is unread.
+/// The caller passes the time, in seconds from any start. It counts as by support::PatienceClock,
+/// and not at all while the robot's services are short of CPU time.
 class GoalWatch {
  public:
   /// Given up when the robot has not driven for `patience_s`; a pause does not count.
   GoalWatch(std::uint64_t goal_id, double patience_s, double now_s)
-      : goal_id_(goal_id), patience_s_(patience_s), last_call_s_(now_s) {}
-
-  static constexpr double kLongestSpan_s = 1.0;
+      : goal_id_(goal_id), patience_s_(patience_s), clock_(now_s) {}
 
   /// An answer to another goal does not matter.
   void add(const RouteAnswer& answer);
   void add(const navigation::NavigatorStatus& status, double now_s);
   /// Nothing as long as it may still arrive.
   [[nodiscard]] std::optional<GoalEnd> check(double now_s);
+  /// Whether the services of the robot are short of CPU time, from now on.
+  void set_busy(bool busy, double now_s);
 
  private:
-  void pass_time(double now_s);
+  /// By the patience clock, which the times below are of.
+  double pass_time(double now_s);
   [[nodiscard]] std::optional<GoalEnd> judge(const navigation::NavigatorStatus& status) const;
 
   std::uint64_t goal_id_;
   double patience_s_;
-  double last_call_s_;     // by the caller's clock
-  double time_s_ = 0.0;    // by the watch's own, which the following are of
+  support::PatienceClock clock_;
+  bool busy_ = false;
   double alive_s_ = 0.0;   // the last status of the navigator
   double driven_s_ = 0.0;  // the robot drove, or was paused
   bool taken_ = false;
