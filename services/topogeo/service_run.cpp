@@ -1,6 +1,5 @@
 #include "service_run.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <random>
@@ -20,10 +19,6 @@ namespace {
 
 /// Often enough for a progress line that moves; ends of processes need not be seen sooner.
 constexpr std::chrono::milliseconds kRunTick{50};
-constexpr std::chrono::milliseconds kFirstRestart{100};
-constexpr std::chrono::milliseconds kLongestRestart{5000};
-/// What was at work for so long before it died did not die of its start.
-constexpr double kSettled_s = 5.0;
 
 messaging::Participant join(const RunOptions& options, const std::string& partition) {
   messaging::ParticipantOptions participant;
@@ -142,26 +137,15 @@ void ServiceRun::look_for_links() {
 }
 
 void ServiceRun::begin_again(const RunOptions& options) {
-  away_since_s_.clear();
-  at_work_since_s_.clear();
+  restarts_.clear();
   next_ = options;
   processes_.retire("web");
 }
 
-// One that dies again and again is started less and less often.
 void ServiceRun::restart(const std::string& name, const std::string& description) {
-  const double now_s = support::monotonic_s();
-  const auto worked = at_work_since_s_.find(name);
-  if (worked != at_work_since_s_.end()) {
-    if (now_s - worked->second > kSettled_s) deaths_in_row_[name] = 0;
-    at_work_since_s_.erase(worked);
-  }
-  const std::uint32_t times = ++deaths_in_row_[name];
-  const std::chrono::milliseconds delay =
-      std::min(kFirstRestart * (1U << std::min(times - 1, 10U)), kLongestRestart);
-  hooks_.log(fmt::format("{}; started again ({})", description, ++restarts_[name]));
-  away_since_s_[name] = now_s;
-  loop_.call_after(delay, [this, name] {
+  const RestartLog::Restart restart = restarts_.died(name, support::monotonic_s());
+  hooks_.log(fmt::format("{}; started again ({})", description, restart.number));
+  loop_.call_after(restart.delay, [this, name] {
     if (!ended_ && !next_) processes_.restart(name);
   });
 }
@@ -170,7 +154,7 @@ void ServiceRun::forget_recorder() {
   recorder_there_ = false;
   processes_.set_at_restart(source_, "--readers", std::to_string(other_readers_));
   // One that was started again before waits for the recorder, too.
-  if (away_since_s_.contains(source_)) processes_.kill(source_);
+  if (restarts_.is_away(source_)) processes_.kill(source_);
 }
 
 bool ServiceRun::has_started(const msg::ServiceStatus& status) const {
@@ -214,13 +198,11 @@ std::string ServiceRun::too_busy() const {
 
 void ServiceRun::note_state(const msg::ServiceStatus& status) {
   if (status.state() != msg::kServiceRunning) return;
-  for (const auto& [name, since_s] : away_since_s_) {
+  for (const std::string& name : restarts_.away()) {
     const pid_t pid = processes_.pid(name);
     if (pid < 0 || status.process_id() != static_cast<std::uint32_t>(pid)) continue;
-    hooks_.log(
-        fmt::format("{} is at work again after {:.1f} s", name, support::monotonic_s() - since_s));
-    at_work_since_s_[name] = support::monotonic_s();
-    away_since_s_.erase(name);
+    const auto away_s = restarts_.at_work(name, support::monotonic_s());
+    hooks_.log(fmt::format("{} is at work again after {:.1f} s", name, away_s.value_or(0.0)));
     return;
   }
 }

@@ -18,6 +18,7 @@
 #include "topogeo/msg/status.h"
 #include "topogeo/supervision/process_group.hpp"
 
+#include "restart_log.hpp"
 #include "run_services.hpp"
 
 namespace topogeo::cli {
@@ -123,11 +124,8 @@ class ServiceRun {
   std::atomic<int> signals_came_ = 0;
   std::set<std::string> short_of_cpu_;  // services of this run
   bool busy_logged_ = false;
-  std::map<pid_t, std::uint64_t> reports_;              // statuses that came
-  std::map<std::string, std::uint32_t> restarts_;       // by name of the process
-  std::map<std::string, std::uint32_t> deaths_in_row_;  // without settled work between
-  std::map<std::string, double> away_since_s_;          // those that do not work again yet
-  std::map<std::string, double> at_work_since_s_;       // those that were started again
+  std::map<pid_t, std::uint64_t> reports_;  // statuses that came
+  RestartLog restarts_;
 
   messaging::Participant participant_;
   messaging::EventLoop loop_;
