@@ -1,16 +1,10 @@
 // topogeo store merges, accept and refuse: what a localizer of several robots proposes to join.
 #include <chrono>
-#include <cmath>
 #include <cstdint>
 #include <iostream>
-#include <map>
 #include <memory>
-#include <numbers>
-#include <optional>
 #include <stdexcept>
 #include <string>
-
-#include <nlohmann/json.hpp>
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/message.hpp"
@@ -20,9 +14,12 @@
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/service/merge_conversions.hpp"
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/patience.hpp"
 
 #include "domain_view.hpp"
+#include "merge_table.hpp"
 #include "service_request.hpp"
 #include "service_table.hpp"
 #include "store_commands.hpp"
@@ -30,10 +27,7 @@
 namespace topogeo::cli {
 namespace {
 
-using localization::MergeProposal;
-using std::chrono::milliseconds;
-
-constexpr milliseconds kProposalPoll{20};
+constexpr std::chrono::milliseconds kProposalPoll{20};
 
 struct MergeRequest {
   DomainView view;
@@ -41,96 +35,40 @@ struct MergeRequest {
   std::uint32_t number = 0;
   bool json = false;
   double wait_s = 5.0;
-
-  [[nodiscard]] milliseconds patience() const {
-    return milliseconds(static_cast<std::int64_t>(1000.0 * wait_s));
-  }
 };
 
-const char* state_text(MergeProposal::State state) {
-  switch (state) {
-    case MergeProposal::State::kOpen:
-      return "open";
-    case MergeProposal::State::kAccepted:
-      return "accepted";
-    case MergeProposal::State::kRefused:
-      return "refused";
-    case MergeProposal::State::kWithdrawn:
-      return "withdrawn";
-  }
-  return "?";
-}
-
-/// As many as the status of the localizer counts: those that are sent to a late reader take a
-/// while.
-std::map<std::uint32_t, MergeProposal> receive(const messaging::Participant& participant,
-                                               const MergeRequest& request) {
+MergeTable receive(const messaging::Participant& participant, const MergeRequest& request) {
   messaging::Reader<msg::MergeProposal> reader(participant);
   messaging::Reader<msg::ServiceStatus> statuses(participant);
-  std::map<std::uint32_t, MergeProposal> proposals;
-  std::optional<double> expected;
-  const auto end = std::chrono::steady_clock::now() + request.patience();
-  while (std::chrono::steady_clock::now() < end) {
+  MergeTable table;
+  support::Patience patience(request.wait_s, support::monotonic_s());
+  while (!table.is_complete() && !patience.is_over(support::monotonic_s())) {
+    static_cast<void>(statuses.wait_for_data(kProposalPoll));
     statuses.take([&](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
       if (!info.valid || status.robot_id() != request.robot_id.c_str() ||
           status.service() != "localizer" || !reader.connected_with(info.writer)) {
         return;
       }
-      expected = counter(&status, "merge_proposals");
+      table.expect(counter(&status, "merge_proposals"));
     });
     reader.take([&](const msg::MergeProposal& message, const messaging::SampleInfo& info) {
       if (!info.valid || message.robot_id() != request.robot_id.c_str()) return;
-      proposals[message.number()] = service::from_msg(message);
+      table.put(service::from_msg(message));
     });
-    if (expected && static_cast<double>(proposals.size()) >= *expected) return proposals;
-    static_cast<void>(statuses.wait_for_data(kProposalPoll));
   }
-  if (!expected) throw std::runtime_error(nothing_alive(request.view, "localizer"));
-  throw std::runtime_error(fmt::format("{} of {} proposals came within {} ms", proposals.size(),
-                                       *expected, request.patience().count()));
-}
-
-nlohmann::ordered_json json_of(const MergeProposal& p) {
-  return {{"number", p.number},
-          {"state", state_text(p.state)},
-          {"robot", p.robot},
-          {"other_robot", p.other_robot},
-          {"stop", p.place.stop.number},
-          {"session", fmt::format("{:016x}", p.place.stop.session)},
-          {"other_stop", p.place.other.number},
-          {"other_session", fmt::format("{:016x}", p.place.other.session)},
-          {"x_m", p.T_other_own.x_m},
-          {"y_m", p.T_other_own.y_m},
-          {"theta_rad", p.T_other_own.theta_rad},
-          {"confidence", p.confidence},
-          {"stops", p.stops},
-          {"distance_m", p.distance_m},
-          {"matches", p.matches},
-          {"fitness", p.fitness},
-          {"contradicted", p.contradicted}};
+  if (table.is_complete()) return table;
+  const std::string reason = patience.reason();
+  if (!table.has_localizer()) {
+    throw std::runtime_error(nothing_alive(request.view, "localizer") + reason);
+  }
+  throw std::runtime_error(
+      fmt::format("{} came within {:.1f} s{}", table.progress(), request.wait_s, reason));
 }
 
 int list_merges(const MergeRequest& request) {
   const messaging::Participant participant = join(request.view, "topogeo/merges");
-  const auto proposals = receive(participant, request);
-  if (request.json) {
-    auto out = nlohmann::ordered_json::array();
-    for (const auto& [number, proposal] : proposals) out.push_back(json_of(proposal));
-    std::cout << out.dump(2) << '\n';
-    return service::kOk;
-  }
-  if (proposals.empty()) std::cout << "no merge is proposed\n";
-  for (const auto& [number, p] : proposals) {
-    std::cout << fmt::format(
-        "{}  {}: stop {} of {} is where stop {} of {} was\n"
-        "   its map lies at x {:.2f} m, y {:.2f} m, heading {:.1f} degrees in the other\n"
-        "   confidence {:.2f}: {} stops over {:.1f} m, {} matches of fitness {:.2f}, {:.0f} % of "
-        "what they should show contradicts\n",
-        number, state_text(p.state), p.place.stop.number, p.robot, p.place.other.number,
-        p.other_robot, p.T_other_own.x_m, p.T_other_own.y_m,
-        p.T_other_own.theta_rad * 180.0 / std::numbers::pi, p.confidence, p.stops, p.distance_m,
-        p.matches, p.fitness, 100.0 * p.contradicted);
-  }
+  const MergeTable table = receive(participant, request);
+  std::cout << (request.json ? table.json() : table.text());
   return service::kOk;
 }
 

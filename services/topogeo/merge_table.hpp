@@ -1,0 +1,41 @@
+// The merges that a localizer of several robots proposes, as `topogeo store merges` shows them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "topogeo/localization/session/merge_proposals.hpp"
+
+namespace topogeo::cli {
+
+class MergeTable {
+ public:
+  using Proposal = localization::MergeProposal;
+
+  /// A later one of the same number replaces it.
+  void put(const Proposal& proposal) { proposals_[proposal.number] = proposal; }
+  /// As the status of the localizer counts them: those that are sent to a late reader take a while.
+  void expect(double count) { expected_ = count; }
+
+  [[nodiscard]] bool has_localizer() const { return expected_.has_value(); }
+  /// The localizer has published how many there are, and so many have come.
+  [[nodiscard]] bool is_complete() const {
+    return expected_ && static_cast<double>(proposals_.size()) >= *expected_;
+  }
+  /// "1 of 3 proposals".
+  [[nodiscard]] std::string progress() const;
+
+  /// For people: three lines for each proposal, in the order of their numbers.
+  [[nodiscard]] std::string text() const;
+  /// For programs: an array of objects with the fields of localization::MergeProposal.
+  [[nodiscard]] std::string json() const;
+
+ private:
+  std::map<std::uint32_t, Proposal> proposals_;
+  std::optional<double> expected_;
+};
+
+}  // namespace topogeo::cli
