@@ -1,7 +1,10 @@
 // topogeo record: writes the scans that a gateway publishes as a log that can be replayed.
+#include <atomic>
 #include <memory>
+#include <optional>
 
 #include "topogeo/command_line/command_line.hpp"
+#include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/messaging/topics.hpp"
 #include "topogeo/service/service_options.hpp"
 
@@ -10,6 +13,22 @@
 #include "recorder.hpp"
 
 namespace topogeo::cli {
+namespace {
+
+/// A signal that comes while the recorder is made ends it like a later one.
+void record(const RecordRequest& request) {
+  std::optional<Recorder> recorder;
+  std::atomic<Recorder*> made = nullptr;
+  const messaging::SignalStop signals([&](int) {
+    if (Recorder* const there = made.load()) there->stop();
+  });
+  recorder.emplace(request);
+  made = &*recorder;
+  if (messaging::SignalStop::received() != 0) recorder->stop();
+  recorder->run();
+}
+
+}  // namespace
 
 void add_record_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command =
@@ -36,7 +55,7 @@ void add_record_command(command_line::Command& app, int& exit_code) {
       "so "
       "that\na replay of the log gives the map of the recorded run, byte for byte.");
   command->callback([request, &exit_code] {
-    Recorder(*request).run();
+    record(*request);
     exit_code = service::kOk;
   });
 }

@@ -1,11 +1,11 @@
 #include "recorder.hpp"
 
+#include <chrono>
 #include <iostream>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
-#include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/messaging/topics.hpp"
 #include "topogeo/pipeline/laser_mounting.hpp"
 #include "topogeo/ros_conversions/geometry.hpp"
@@ -13,6 +13,7 @@
 #include "topogeo/ros_conversions/markers.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/support/cpu_time.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -20,7 +21,7 @@ namespace {
 using std::chrono::milliseconds;
 
 /// Without a message for so long after the end of the stream nothing will come any more.
-constexpr std::chrono::seconds kPatience{5};
+constexpr double kPatience_s = 5.0;
 constexpr milliseconds kRecordTick{50};
 /// A grid is large: while the map grows it is recorded so often.
 constexpr std::chrono::seconds kGridPeriod{5};
@@ -70,9 +71,11 @@ Recorder::Recorder(const RecordRequest& request)
       poses_(participant_),
       elements_(participant_),
       follower_(request.robot_id),
-      hybrid_(participant_, loop_, [this](const auto& message, const auto& use) {
-        if (message.robot_id() == request_.robot_id.c_str()) use(message);
-      }) {
+      hybrid_(participant_, loop_,
+              [this](const auto& message, const auto& use) {
+                if (message.robot_id() == request_.robot_id.c_str()) use(message);
+              }),
+      patience_(kPatience_s, support::monotonic_s()) {
   listen();
 }
 
@@ -108,10 +111,7 @@ void Recorder::listen() {
 }
 
 void Recorder::run() {
-  {
-    const messaging::SignalStop signals([this](int) { loop_.stop(); });
-    loop_.run();
-  }
+  loop_.run();
   if (log_.holds_poses()) take_grid();
   log_.close();
   report();
@@ -144,7 +144,7 @@ void Recorder::report() {
 }
 
 void Recorder::take(const msg::Scan& message) {
-  last_news_ = Clock::now();
+  patience_.begin_again(support::monotonic_s());
   const std::uint64_t number = message.sequence_number();
   if (recorded_ > 0 && number < next_) {
     // A log that is read again: its gateway was away, or who maps it was.
@@ -167,7 +167,7 @@ void Recorder::take(const msg::Scan& message) {
 }
 
 void Recorder::take_pose(const msg::LivePose& pose) {
-  last_news_ = Clock::now();
+  patience_.begin_again(support::monotonic_s());
   ++poses_came_;
   next_pose_ = pose.sequence_number() + 1;
   const auto scan = recent_.find(pose.sequence_number());
@@ -181,14 +181,14 @@ void Recorder::take_pose(const msg::LivePose& pose) {
 }
 
 void Recorder::take_end(const msg::StreamEnd& end) {
-  last_news_ = Clock::now();
+  patience_.begin_again(support::monotonic_s());
   if (end.stage() == msg::kStageGateway) expected_ = end.count();
   if (end.stage() == msg::kStageLocalizer) localized_ = true;
   if (end.stage() == msg::kStageMapStore) mapped_ = end;
 }
 
 void Recorder::record_graph() {
-  last_news_ = Clock::now();
+  patience_.begin_again(support::monotonic_s());
   if (!graph_is_new_ || recorded_ == 0) return;
   graph_is_new_ = false;
   (void)follower_.take_changes();  // the whole is drawn
@@ -237,7 +237,7 @@ void Recorder::stop_at_end() {
   // A localizer or map store that is there and has not ended has work to do.
   const bool works = (poses_.matched() > 0 && !localized_) || (elements_.matched() > 0 && !mapped_);
   if (log_.holds_poses() && works && next_ >= *expected_) return;
-  if (Clock::now() - last_news_ > kPatience) loop_.stop();
+  if (patience_.is_over(support::monotonic_s())) loop_.stop();
 }
 
 }  // namespace topogeo::cli

@@ -1,7 +1,6 @@
 // Writes what a robot measures, and where it is in which map, as a log.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -18,6 +17,7 @@
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/recording/log_writer.hpp"
 #include "topogeo/service/live_hybrid_map.hpp"
+#include "topogeo/support/patience.hpp"
 
 #include "domain_view.hpp"
 
@@ -37,13 +37,13 @@ class Recorder {
   /// Throws service::UsageError and service::BadInputError for what is wrong with the request.
   explicit Recorder(const RecordRequest& request);
 
-  /// Until the gateway's stream has ended and with it what localizer and map store make of it, or a
-  /// signal. Throws std::runtime_error when the log cannot be written or scans are missing.
+  /// Until the gateway's stream has ended and with it what localizer and map store make of it, or
+  /// stop(). Throws std::runtime_error when the log cannot be written or scans are missing.
   void run();
+  /// Makes run() end return, also one that has not begun. For any thread.
+  void stop() { loop_.stop(); }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   void listen();
   void take(const msg::Scan& message);
   /// Of a robot that knows where it is; poses come after their scans.
@@ -92,7 +92,7 @@ class Recorder {
   std::optional<std::uint64_t> expected_;  // scans in the whole stream
   bool localized_ = false;                 // the localizer's stream has ended
   std::optional<msg::StreamEnd> mapped_;   // end of the map store's
-  Clock::time_point last_news_;
+  support::Patience patience_;             // since the last message
 };
 
 }  // namespace topogeo::cli

@@ -162,10 +162,10 @@ TEST_F(Record, WhatCannotBeRecordedIsSaid) {
   EXPECT_THAT(nowhere.err(), HasSubstr("/no/such/folder/x.clf"));
   Program silent(scratch_, "topogeo",
                  {"record", "--domain", own_domain(), "--out", (scratch_ / "x.clf").string()});
-  for (int i = 0; i < 1000 && !fs::exists(scratch_ / "x.clf"); ++i) ::usleep(10'000);
-  ::usleep(500'000);  // until it listens to signals; sooner, it ends with another code
-  silent.send_signal(SIGINT);
-  EXPECT_NE(silent.wait(), 0);
+  ASSERT_TRUE(wait_for("the log to be begun", [&] { return fs::exists(scratch_ / "x.clf"); }));
+  silent.send_signal(SIGINT);  // it may not have joined the domain yet
+  EXPECT_EQ(silent.wait(), 1);
+  EXPECT_THAT(silent.err(), HasSubstr("no scan came"));
 }
 
 class CheckLog : public CommandTest {
