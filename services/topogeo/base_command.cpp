@@ -16,7 +16,10 @@
 #include "topogeo/msg/motion.h"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
+#include "topogeo/support/patience.hpp"
 
 #include "commands.hpp"
 #include "domain_view.hpp"
@@ -71,14 +74,12 @@ void print_base(const msg::BaseStatus& status) {
                                         : ", refuses motion commands\n");
 }
 
-/// The next status of the base for which `wanted` holds, within the request's time.
+/// The next status of the base for which `wanted` holds; nothing when the patience is over before.
 std::optional<msg::BaseStatus> next_status(
     messaging::Reader<msg::BaseStatus>& reader, const BaseRequest& request,
-    const std::function<bool(const msg::BaseStatus&)>& wanted) {
-  const auto end = std::chrono::steady_clock::now() +
-                   milliseconds(static_cast<std::int64_t>(1000.0 * request.wait_s));
+    support::Patience& patience, const std::function<bool(const msg::BaseStatus&)>& wanted) {
   std::optional<msg::BaseStatus> found;
-  while (!found && std::chrono::steady_clock::now() < end) {
+  while (!found && !patience.is_over(support::monotonic_s())) {
     if (!reader.wait_for_data(milliseconds(50))) continue;
     reader.take([&](const msg::BaseStatus& status, const messaging::SampleInfo& info) {
       if (info.valid && status.robot_id() == request.robot_id.c_str() && wanted(status)) {
@@ -92,8 +93,10 @@ std::optional<msg::BaseStatus> next_status(
 int show(const BaseRequest& request) {
   const messaging::Participant participant = join(request.view, "topogeo/base");
   messaging::Reader<msg::BaseStatus> reader(participant);
-  const auto status = next_status(reader, request, [](const msg::BaseStatus&) { return true; });
-  if (!status) throw std::runtime_error(nothing_alive(request.view, "base"));
+  support::Patience patience(request.wait_s, support::monotonic_s());
+  const auto status =
+      next_status(reader, request, patience, [](const msg::BaseStatus&) { return true; });
+  if (!status) throw std::runtime_error(nothing_alive(request.view, "base") + patience.reason());
   print_base(*status);
   return service::kOk;
 }
@@ -103,27 +106,27 @@ int send_base_command(BaseRequest request) {
   const messaging::Participant participant = join(request.view, "topogeo/base");
   messaging::Reader<msg::BaseStatus> reader(participant);
   messaging::Writer<msg::BaseCommand> writer(participant);
-  const milliseconds patience(static_cast<std::int64_t>(1000.0 * request.wait_s));
+  support::Patience connecting(request.wait_s, support::monotonic_s());
   const auto of_robot = [&](const msg::BaseStatus& status) {
     return status.robot_id() == request.robot_id.c_str();
   };
-  if (!connect_with_program(reader, writer, patience, of_robot)) {
-    throw std::runtime_error(nothing_alive(request.view, "base"));
+  if (!connect_with_program(reader, writer, connecting, of_robot)) {
+    throw std::runtime_error(nothing_alive(request.view, "base") + connecting.reason());
   }
   messaging::set_header(request.command, request.robot_id, 0, 0);
   messaging::set_client_id(request.command, support::process_name());
-  if (!writer.write(request.command) || !writer.wait_for_acknowledgments(patience)) {
-    throw std::runtime_error("the command could not be sent");
-  }
+  support::Patience patience(request.wait_s, support::monotonic_s());
+  send_with(writer, request.command, patience);
   const msg::BaseCommandKind kind = request.command.kind();
-  const auto status = next_status(reader, request, [&](const msg::BaseStatus& now) {
+  const auto status = next_status(reader, request, patience, [&](const msg::BaseStatus& now) {
     if (kind == msg::kBaseHalt) return !now.commands_taken();
     return kind != msg::kBaseReset ||
            (now.state() != msg::kBaseHalted && now.state() != msg::kBaseEmergencyStop);
   });
   if (!status) {
-    throw std::runtime_error("robot '" + request.robot_id + "' did not do it within " +
-                             std::to_string(patience.count()) + " ms");
+    throw std::runtime_error(fmt::format("robot '{}' did not do it within {:.0f} ms{}",
+                                         request.robot_id, 1000.0 * request.wait_s,
+                                         patience.reason()));
   }
   print_base(*status);
   return service::kOk;

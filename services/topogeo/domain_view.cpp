@@ -6,36 +6,18 @@
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/patience.hpp"
+
+#include "collect_window.hpp"
 
 namespace topogeo::cli {
 namespace {
 
-// Services publish every half second; discovery takes the rest.
-constexpr std::chrono::milliseconds kCollect{1200};
-// On a busy machine some are discovered later: it goes on until no new one has come for longer than
-// a period, for as long as the view says at most.
-constexpr std::chrono::milliseconds kSettled{800};
 constexpr std::chrono::milliseconds kSlice{100};
 // Between two tables of --watch: a service that dies is found out after a second and is to be shown
 // within two.
 constexpr std::chrono::milliseconds kAgain{500};
-
-/// False when the loop was stopped.
-bool collect(const DomainView& view, messaging::EventLoop& loop,
-             const std::function<std::size_t()>& count) {
-  const std::chrono::duration<double> longest(view.wait_s);
-  std::chrono::milliseconds waited{0};
-  std::chrono::milliseconds settled{0};
-  std::size_t before = 0;
-  while (waited < longest && (waited < kCollect || settled < kSettled || before == 0)) {
-    if (loop.run_for(kSlice)) return false;
-    const std::size_t now = count();
-    waited += kSlice;
-    settled = now == before ? settled + kSlice : std::chrono::milliseconds::zero();
-    before = now;
-  }
-  return true;
-}
 
 }  // namespace
 
@@ -74,16 +56,21 @@ messaging::Participant join(const DomainView& view, const std::string& name,
   return messaging::Participant(options);
 }
 
-bool collect_and_show(const DomainView& view, messaging::EventLoop& loop,
-                      const std::function<std::size_t()>& count,
-                      const std::function<void()>& show) {
+Collected collect_and_show(const DomainView& view, messaging::EventLoop& loop,
+                           const std::function<std::size_t()>& count,
+                           const std::function<void()>& show) {
   const messaging::SignalStop signals([&](int) { loop.stop(); });
-  if (!collect(view, loop, count)) return count() > 0;
+  support::Patience patience(view.wait_s, support::monotonic_s());
+  CollectWindow window(view.wait_s);
+  do {
+    if (loop.run_for(kSlice)) return {count() > 0, {}};
+    static_cast<void>(patience.is_over(support::monotonic_s()));
+  } while (window.goes_on(patience.waited_s(), count()));
   do {
     if (count() > 0 || view.watch) show();
     std::cout << std::flush;
   } while (view.watch && !loop.run_for(kAgain));
-  return count() > 0;
+  return {count() > 0, patience.reason()};
 }
 
 std::string nothing_alive(const DomainView& view, const std::string& what) {

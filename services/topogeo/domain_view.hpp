@@ -39,10 +39,16 @@ void add_view_options(command_line::Command& app, DomainView& view);
 messaging::Participant join(const DomainView& view, const std::string& name,
                             const std::string& identity = "topogeo", bool observe = false);
 
+struct Collected {
+  bool found = false;
+  std::string reason;  ///< see support::Patience::reason
+};
+
 /// Receives until all that publish their status have done so, then shows them; again and again with
-/// --watch, until Ctrl-C. `count`: how many there are so far. Returns whether there were any.
-bool collect_and_show(const DomainView& view, messaging::EventLoop& loop,
-                      const std::function<std::size_t()>& count, const std::function<void()>& show);
+/// --watch, until Ctrl-C. `count`: how many there are so far.
+Collected collect_and_show(const DomainView& view, messaging::EventLoop& loop,
+                           const std::function<std::size_t()>& count,
+                           const std::function<void()>& show);
 
 /// "no <what> is alive on domain 3, partition '*'".
 std::string nothing_alive(const DomainView& view, const std::string& what);

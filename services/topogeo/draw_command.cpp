@@ -15,7 +15,9 @@
 #include "topogeo/pipeline/hybrid_map_source.hpp"
 #include "topogeo/service/drawing_conversions.hpp"
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/patience.hpp"
 
 #include "commands.hpp"
 #include "domain_view.hpp"
@@ -35,20 +37,18 @@ struct DrawOptions {
 constexpr const char* kMapStore = "map store";
 
 msg::DrawingState live_drawing(const DrawOptions& options) {
-  using std::chrono::milliseconds;
   const messaging::Participant participant = join(options.view, "topogeo/draw");
   messaging::Reader<msg::DrawingState> reader(participant);
-  const milliseconds patience(static_cast<milliseconds::rep>(1000.0 * options.wait_s));
-  const auto end = std::chrono::steady_clock::now() + patience;
+  support::Patience patience(options.wait_s, support::monotonic_s());
   std::optional<msg::DrawingState> newest;
-  while (!newest && std::chrono::steady_clock::now() < end) {
-    if (!reader.wait_for_data(milliseconds(100))) continue;
+  while (!newest && !patience.is_over(support::monotonic_s())) {
+    if (!reader.wait_for_data(std::chrono::milliseconds(100))) continue;
     reader.take([&](const msg::DrawingState& state, const messaging::SampleInfo& info) {
       if (info.valid && state.robot_id() == options.robot_id.c_str()) newest = state;
     });
   }
   if (newest) return *newest;
-  throw std::runtime_error(nothing_alive(options.view, kMapStore));
+  throw std::runtime_error(nothing_alive(options.view, kMapStore) + patience.reason());
 }
 
 int show(const DrawOptions& options) {

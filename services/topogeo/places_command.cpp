@@ -23,7 +23,9 @@
 #include "topogeo/service/live_hybrid_map.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/map_file.hpp"
+#include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/patience.hpp"
 
 #include "commands.hpp"
 #include "domain_view.hpp"
@@ -33,6 +35,7 @@ namespace topogeo::cli {
 namespace {
 
 constexpr const char* kLive = "live";
+constexpr std::chrono::milliseconds kMapPoll{50};
 
 struct PlacesOptions {
   std::string source = kLive;
@@ -178,12 +181,14 @@ std::shared_ptr<const planning::HybridMap> live_map(const PlacesOptions& options
     if (map) loop.stop();
   });
   const messaging::SignalStop signals([&](int) { loop.stop(); });
-  loop.run_for(std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * options.wait_s)));
+  support::Patience patience(options.wait_s, support::monotonic_s());
+  bool stopped = false;
+  while (!stopped && !patience.is_over(support::monotonic_s())) stopped = loop.run_for(kMapPoll);
   if (map) return map;
   throw std::runtime_error(
-      fmt::format("no hybrid map of robot '{}' on domain {}, partition '{}' within {} s{}",
+      fmt::format("no hybrid map of robot '{}' on domain {}, partition '{}' within {} s{}{}",
                   options.robot_id, options.view.domain, options.view.partition, options.wait_s,
-                  defect.empty() ? "" : " (" + defect + ")"));
+                  defect.empty() ? "" : " (" + defect + ")", patience.reason()));
 }
 
 int places(const PlacesOptions& options) {

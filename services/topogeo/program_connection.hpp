@@ -4,22 +4,24 @@
 #include <algorithm>
 #include <chrono>
 #include <set>
+#include <stdexcept>
 
 #include "topogeo/messaging/events.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
+#include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/patience.hpp"
 
 namespace topogeo::cli {
 
-/// Waits until `commands` is connected with a program whose status `wanted` accepts, at most
-/// `patience`: a command that is sent when only another robot is connected is lost.
+/// Waits until `commands` is connected with a program whose status `wanted` accepts, until the
+/// patience is over: a command that is sent when only another robot is connected is lost.
 template <class Status, class Command, class Wanted>
 bool connect_with_program(messaging::Reader<Status>& statuses,
-                          const messaging::Writer<Command>& commands,
-                          std::chrono::milliseconds patience, const Wanted& wanted) {
+                          const messaging::Writer<Command>& commands, support::Patience& patience,
+                          const Wanted& wanted) {
   constexpr std::chrono::milliseconds kConnectionPoll{20};
   std::set<messaging::Handle> programs;
-  const auto end = std::chrono::steady_clock::now() + patience;
   const auto connected = [&](const messaging::Handle& program) {
     return commands.connected_with(program);
   };
@@ -28,8 +30,21 @@ bool connect_with_program(messaging::Reader<Status>& statuses,
       if (info.valid && wanted(status)) programs.insert(info.writer);
     });
     if (std::ranges::any_of(programs, connected)) return true;
-    if (std::chrono::steady_clock::now() >= end) return false;
+    if (patience.is_over(support::monotonic_s())) return false;
     static_cast<void>(statuses.wait_for_data(kConnectionPoll));
+  }
+}
+
+/// Sends a command and waits until its readers have it. Throws std::runtime_error when it cannot be
+/// sent or the patience is over before.
+template <class Command>
+void send_with(messaging::Writer<Command>& writer, const Command& command,
+               support::Patience& patience) {
+  constexpr std::chrono::milliseconds kAcknowledgmentPoll{100};
+  if (!writer.write(command)) throw std::runtime_error("the command could not be sent");
+  while (!writer.wait_for_acknowledgments(kAcknowledgmentPoll)) {
+    if (!patience.is_over(support::monotonic_s())) continue;
+    throw std::runtime_error("the command was not received" + patience.reason());
   }
 }
 

@@ -10,7 +10,10 @@
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
+#include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
+#include "topogeo/support/patience.hpp"
 
 #include "domain_view.hpp"
 
@@ -28,26 +31,27 @@ struct ServicePeer {
 /// std::runtime_error when nobody replies.
 template <class Reply, class Request>
 Reply ask(const ServicePeer& peer, Request request) {
-  using std::chrono::milliseconds;
-  using std::chrono::steady_clock;
-  constexpr milliseconds kAgain{1000};
+  constexpr double kAgain_s = 1.0;
+  constexpr std::chrono::milliseconds kReplyPoll{100};
   messaging::set_client_id(request, support::process_name());
   request.request_id(std::random_device{}());
   const messaging::Participant participant = join(peer.view, "topogeo/" + peer.what);
   messaging::Writer<Request> requests(participant);
   messaging::Reader<Reply> replies(participant);
-  const milliseconds patience(static_cast<milliseconds::rep>(1000.0 * peer.wait_s));
-  if (!requests.wait_for_matched(1, patience) || !replies.wait_for_matched(1, patience)) {
-    throw std::runtime_error(nothing_alive(peer.view, peer.what));
+  support::Patience connecting(peer.wait_s, support::monotonic_s());
+  while (!requests.wait_for_matched(1, kReplyPoll) || !replies.wait_for_matched(1, kReplyPoll)) {
+    if (!connecting.is_over(support::monotonic_s())) continue;
+    throw std::runtime_error(nothing_alive(peer.view, peer.what) + connecting.reason());
   }
   std::optional<Reply> reply;
-  const steady_clock::time_point end = steady_clock::now() + patience;
-  for (steady_clock::time_point due = {}; !reply && steady_clock::now() < end;) {
-    if (steady_clock::now() >= due) {
+  support::Patience patience(peer.wait_s, support::monotonic_s());
+  double due_s = support::monotonic_s();
+  while (!reply && !patience.is_over(support::monotonic_s())) {
+    if (support::monotonic_s() >= due_s) {
       if (!requests.write(request)) throw std::runtime_error("the request could not be sent");
-      due = steady_clock::now() + kAgain;
+      due_s = support::monotonic_s() + kAgain_s;
     }
-    if (!replies.wait_for_data(milliseconds(100))) continue;
+    if (!replies.wait_for_data(kReplyPoll)) continue;
     replies.take([&](const Reply& message, const messaging::SampleInfo& info) {
       if (info.valid && message.request_id() == request.request_id() &&
           message.client_id() == request.client_id()) {
@@ -56,8 +60,8 @@ Reply ask(const ServicePeer& peer, Request request) {
     });
   }
   if (reply) return *reply;
-  throw std::runtime_error("no " + peer.what + " of robot '" + peer.robot_id +
-                           "' answered within " + std::to_string(patience.count()) + " ms");
+  throw std::runtime_error(fmt::format("no {} of robot '{}' answered within {:.0f} ms{}", peer.what,
+                                       peer.robot_id, 1000.0 * peer.wait_s, patience.reason()));
 }
 
 }  // namespace topogeo::cli

@@ -48,15 +48,16 @@ struct SimulatorRequest {
 };
 
 int send_simulator_command(const SimulatorRequest& request) {
-  constexpr std::chrono::seconds kSimulatorPatience{5};
+  constexpr double kSimulatorPatience_s = 5.0;
   const messaging::Participant participant = join(request.view, "topogeo/simulator");
   messaging::Writer<msg::SimulatorCommand> commands(participant);
   messaging::Reader<msg::ServiceStatus> statuses(participant);
   const auto of_robot = [&](const msg::ServiceStatus& status) {
     return status.service() == "simulator" && status.robot_id() == request.robot_id.c_str();
   };
-  if (!connect_with_program(statuses, commands, kSimulatorPatience, of_robot)) {
-    throw std::runtime_error(nothing_alive(request.view, "simulator"));
+  support::Patience patience(kSimulatorPatience_s, support::monotonic_s());
+  if (!connect_with_program(statuses, commands, patience, of_robot)) {
+    throw std::runtime_error(nothing_alive(request.view, "simulator") + patience.reason());
   }
   msg::SimulatorCommand command;
   messaging::set_header(command, request.robot_id, 0, 0);
@@ -66,9 +67,8 @@ int send_simulator_command(const SimulatorRequest& request) {
   command.duration_s(request.duration_s);
   command.linear_mps(request.linear_mps);
   command.angular_radps(request.angular_radps);
-  if (!commands.write(command) || !commands.wait_for_acknowledgments(kSimulatorPatience)) {
-    throw std::runtime_error("the command could not be sent");
-  }
+  patience.begin_again(support::monotonic_s());
+  send_with(commands, command, patience);
   return service::kOk;
 }
 

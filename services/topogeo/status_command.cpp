@@ -67,7 +67,7 @@ int show_status(const StatusOptions& options) {
       [&](const messaging::SampleInfo& info) { table.remove(info); });
 
   const bool redraw = options.view.watch && !options.json && ::isatty(STDOUT_FILENO) != 0;
-  const bool found = collect_and_show(
+  const Collected collected = collect_and_show(
       options.view, loop,
       // One that is expected is waited for as long as the first one is.
       [&] { return table.missing().empty() ? table.size() : 0; },
@@ -79,7 +79,8 @@ int show_status(const StatusOptions& options) {
         print(options, table, now);
         if (options.view.watch && !redraw) std::cout << '\n';
       });
-  if (found) return table.healthy(StatusTable::Clock::now()) ? service::kOk : service::kFailure;
+  if (collected.found)
+    return table.healthy(StatusTable::Clock::now()) ? service::kOk : service::kFailure;
   show_units(StatusTable::Clock::now());
   if (!options.expected.empty() || table.has_idle_units()) {
     if (!options.view.watch) print(options, table, StatusTable::Clock::now());
@@ -87,7 +88,7 @@ int show_status(const StatusOptions& options) {
   }
   if (options.json && !options.view.watch) std::cout << "[]\n";
   const std::string what = options.service.empty() ? "service" : "'" + options.service + "'";
-  std::cerr << "topogeo: " << nothing_alive(options.view, what) << '\n';
+  std::cerr << "topogeo: " << nothing_alive(options.view, what) << collected.reason << '\n';
   return service::kFailure;
 }
 

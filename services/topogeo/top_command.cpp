@@ -70,12 +70,13 @@ int show_pool(const TopOptions& options) {
   };
   DomainView view = options.view;
   view.watch = !options.once;
-  const bool found = collect_and_show(
+  const Collected collected = collect_and_show(
       view, loop, [&] { return table.workers(); }, show);
-  if (found || !options.once) return service::kOk;
+  if (collected.found || !options.once) return service::kOk;
   if (options.json) show();
   std::cerr << "topogeo: " << nothing_alive(options.view, "search worker")
-            << "; `ga_worker --slots N` on any machine of the network starts one\n";
+            << "; `ga_worker --slots N` on any machine of the network starts one"
+            << collected.reason << '\n';
   return service::kFailure;
 }
 

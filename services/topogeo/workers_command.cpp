@@ -48,12 +48,13 @@ int show_workers(const WorkersOptions& options) {
     }
     if (options.view.watch && !redraw) std::cout << '\n';
   };
-  const bool found = collect_and_show(
+  const Collected collected = collect_and_show(
       options.view, loop, [&] { return table.size(); }, show);
-  if (found || options.view.watch) return service::kOk;
+  if (collected.found || options.view.watch) return service::kOk;
   if (options.json) std::cout << "[]\n";
   std::cerr << "topogeo: " << nothing_alive(options.view, "search worker")
-            << "; `ga_worker --slots N` on any machine of the network starts one\n";
+            << "; `ga_worker --slots N` on any machine of the network starts one"
+            << collected.reason << '\n';
   return service::kFailure;
 }
 

@@ -19,7 +19,8 @@ using messaging::Writer;
 
 class ProgramConnection : public messaging::TwoParticipants {
  protected:
-  [[nodiscard]] bool connect(std::chrono::milliseconds patience) {
+  [[nodiscard]] bool connect(double patience_s) {
+    support::Patience patience(patience_s, support::monotonic_s());
     return connect_with_program(statuses_, commands_, patience, [](const msg::BaseStatus& status) {
       return status.robot_id() == "robot";
     });
@@ -46,10 +47,10 @@ TEST_F(ProgramConnection, IsNotThatWithAnotherRobot) {
   }));
   ASSERT_TRUE(other_statuses.write(status_of("other")));
   ASSERT_TRUE(own_statuses.write(status_of("robot")));
-  EXPECT_FALSE(connect(std::chrono::milliseconds(200))) << "only the other base takes commands";
+  EXPECT_FALSE(connect(0.2)) << "only the other base takes commands";
   const Reader<msg::BaseCommand> own_commands(base_);
   ASSERT_TRUE(own_statuses.write(status_of("robot")));
-  EXPECT_TRUE(connect(test::hang_limit()));
+  EXPECT_TRUE(connect(std::chrono::duration<double>(test::hang_limit()).count()));
 }
 
 }  // namespace
