@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
 #include "topogeo/support/log.hpp"
@@ -20,10 +21,7 @@ constexpr std::chrono::milliseconds kStatusPeriod{500};
 /// The rate of tasks is that of so long: steady, and soon up to date.
 constexpr std::chrono::seconds kRateWindow{5};
 /// A client that has not connected by then, or does not take its results so long, is gone.
-constexpr std::chrono::seconds kClientPatience{10};
-constexpr std::chrono::seconds kDrainPatience{10};
-/// A client whose last status of the worker is older may still send a task.
-constexpr std::chrono::milliseconds kDrainQuiet{30};
+constexpr double kClientPatience_s = 10.0;
 /// For the last status to leave before the writer is deleted.
 constexpr std::chrono::milliseconds kFarewell{200};
 /// A slot with less would make the features of maps again for nearly every task.
@@ -56,7 +54,8 @@ GaWorkerService::GaWorkerService(service::Service& service, const WorkerOptions&
       requests_(service.advertise<msg::MapRequest>()),
       outcomes_([this] { service_.loop().post([this] { take_outcomes(); }); }),
       results_(service, options.worker_id, clients_, outcomes_, [this] { take_outcomes(); }),
-      intake_(intake_options(options)) {
+      intake_(intake_options(options)),
+      client_patience_(kClientPatience_s, 0.0) {
   messaging::EventLoop& loop = service_.loop();
   const std::size_t per_slot = half_of_memory(options_) / std::max(1U, options_.slots);
   runner_.emplace(
@@ -281,11 +280,22 @@ void GaWorkerService::measure_load(Clock::time_point time) {
   status_.tasks_per_s(window_s > 0.0 ? done_in_window / window_s : 0.0);
 }
 
+void GaWorkerService::drop_overdue(Clock::time_point time) {
+  const bool busy = service_.cpu().lasts();
+  const std::optional<double> before_s =
+      client_patience_.over_before(std::chrono::duration<double>(time - start_).count(),
+                                   busy ? support::PatienceClock::kBusyRate : 1.0);
+  if (!before_s) return;
+  const Clock::time_point before = start_ + std::chrono::duration_cast<Clock::duration>(
+                                                std::chrono::duration<double>(*before_s));
+  results_.drop_older(before);
+  forget(clients_.take_silent(before));
+}
+
 void GaWorkerService::publish_status() {
   const Clock::time_point time = Clock::now();
   results_.send_all();
-  results_.drop_older(time - kClientPatience);
-  forget(clients_.take_silent(time - kClientPatience));
+  drop_overdue(time);
   measure_load(time);
   status_.stamp_ns(support::wall_clock_ns());
   status_.uptime_s(std::chrono::duration<double>(time - start_).count());
@@ -319,22 +329,18 @@ void GaWorkerService::drain() {
   publish_status();
   static_cast<void>(statuses_.wait_for_acknowledgments(kFarewell));
   constexpr std::chrono::milliseconds kLook{5};
-  const Clock::time_point start = Clock::now();
-  Clock::time_point busy_until = start;
-  bool stopped_again = false;
-  while (!stopped_again) {
-    stopped_again = service_.loop().run_for(kLook);
-    const Clock::time_point now = Clock::now();
-    if (!asked_.empty() || results_.waiting() > 0) busy_until = now;
-    if (now - busy_until > kDrainQuiet || now - start > kDrainPatience) break;
+  const auto open = [this] { return asked_.size() + results_.waiting(); };
+  search_pool::DrainWatch watch(support::monotonic_s());
+  while (!service_.loop().run_for(kLook)) {  // a second signal ends it at once
+    if (!watch.goes_on(support::monotonic_s(), open(), service_.cpu().lasts())) break;
   }
   results_.wait_for_acknowledgments(kFarewell);
   statuses_.dispose(status_);
-  const std::size_t left = asked_.size() + results_.waiting();
+  const std::string busy = service_.cpu().lasts() ? "; " + service_.cpu().text() : "";
   spdlog::info("worker {} left after {:.1f} s: {} tasks done for {} clients, {} failures{}",
                options_.worker_id, std::chrono::duration<double>(Clock::now() - start_).count(),
                done_, clients_.ever(), failures_,
-               left == 0 ? "" : fmt::format(", {} not finished", left));
+               open() == 0 ? "" : fmt::format(", {} not finished{}", open(), busy));
 }
 
 }  // namespace topogeo::ga_worker

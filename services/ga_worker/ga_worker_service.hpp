@@ -17,12 +17,14 @@
 #include "topogeo/msg/match.h"
 #include "topogeo/msg/status.h"
 #include "topogeo/search_pool/client_registry.hpp"
+#include "topogeo/search_pool/drain_watch.hpp"
 #include "topogeo/search_pool/outcome_queue.hpp"
 #include "topogeo/search_pool/task_intake.hpp"
 #include "topogeo/search_pool/task_runner.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/participant_id.hpp"
 #include "topogeo/service/service.hpp"
+#include "topogeo/support/patience.hpp"
 
 #include "result_sender.hpp"
 
@@ -77,6 +79,8 @@ class GaWorkerService {
   void refuse(const Asked& asked, msg::MatchStatus status, const std::string& why);
   void answer(const Asked& asked, msg::MatchResult result);
   void forget(const std::vector<search_pool::ClientRegistry::Entry>& gone);
+  /// Forgets clients that have not connected, and answers that a client has not taken.
+  void drop_overdue(Clock::time_point time);
   void publish_status();
   void measure_load(Clock::time_point time);
 
@@ -96,6 +100,7 @@ class GaWorkerService {
   std::uint64_t done_ = 0;
   std::uint64_t failures_ = 0;
   Clock::time_point start_ = Clock::now();
+  support::PatienceWindow client_patience_;  // in seconds from the start
   Clock::time_point last_status_ = start_;
   std::chrono::nanoseconds busy_at_last_status_{0};
   std::deque<std::pair<Clock::time_point, std::uint64_t>> done_history_;

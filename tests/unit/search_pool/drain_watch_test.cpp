@@ -1,0 +1,54 @@
+// A worker that was asked to end, by a simulated clock.
+#include "topogeo/search_pool/drain_watch.hpp"
+
+#include <gtest/gtest.h>
+
+namespace topogeo::search_pool {
+namespace {
+
+/// Asks 128 times a second; returns how long the worker stays when so much is open after so long.
+template <class Open>
+double stay_s(const Open& open, bool busy = false) {
+  constexpr double kStep_s = 1.0 / 128.0;
+  constexpr double kLongest_s = 10000.0;
+  DrainWatch watch(0.0);
+  double now_s = 0.0;
+  while (now_s < kLongest_s &&
+         watch.goes_on(now_s += kStep_s, static_cast<std::size_t>(open(now_s)), busy)) {
+  }
+  return now_s;
+}
+
+TEST(DrainWatch, AWorkerWithoutTasksLeavesSoon) {
+  EXPECT_NEAR(stay_s([](double) { return 0; }), DrainWatch::kQuiet_s, 0.01);
+}
+
+TEST(DrainWatch, TasksAreFinishedHoweverLongThatTakes) {
+  // One task in nine seconds.
+  const auto open = [](double now_s) { return now_s < 900.0 ? 100 - int(now_s / 9.0) : 0; };
+  EXPECT_NEAR(stay_s(open), 900.0 + DrainWatch::kQuiet_s, 0.02);
+}
+
+TEST(DrainWatch, ATaskThatComesLateIsDone) {
+  const auto open = [](double now_s) { return now_s > 0.02 && now_s < 2.0 ? 1 : 0; };
+  EXPECT_NEAR(stay_s(open), 2.0 + DrainWatch::kQuiet_s, 0.02);
+}
+
+TEST(DrainWatch, WorkThatDoesNotGetOnIsLeft) {
+  const auto open = [](double now_s) { return now_s < 3.0 ? 5 : 4; };
+  EXPECT_NEAR(stay_s(open), 3.0 + DrainWatch::kStuck_s, 0.02);
+}
+
+TEST(DrainWatch, OnABusyMachineItMayTakeSixTimesAsLong) {
+  const auto one = [](double) { return 1; };
+  EXPECT_NEAR(stay_s(one, true), 6.0 * DrainWatch::kStuck_s, 0.1);
+}
+
+TEST(DrainWatch, ATimeInWhichTheWorkerStoodStillIsOneSecond) {
+  DrainWatch watch(0.0);
+  EXPECT_TRUE(watch.goes_on(0.01, 3, false));
+  EXPECT_TRUE(watch.goes_on(3600.0, 3, false));
+}
+
+}  // namespace
+}  // namespace topogeo::search_pool
