@@ -20,7 +20,7 @@ one() {  # N: in a network of its own
     fast-discovery-server -i 0 -l 127.0.0.1 -p 11811 > /dev/null 2>&1 &
     server=$!
     export ROS_DISCOVERY_SERVER=127.0.0.1:11811
-    sleep 1
+    sleep 1  # the server listens
   fi
   read -ra before < <(counters)
   for ((i = 0; i < $1; ++i)); do
@@ -31,14 +31,14 @@ one() {  # N: in a network of its own
   local last=0 now=0 bytes=0
   for ((i = 0; i < 90; ++i)); do
     bytes=$(counters | cut -d' ' -f1)
-    sleep 2
+    sleep 2  # packets of this time are counted
     now=$(($(counters | cut -d' ' -f1) - bytes))
     if [ "$i" -gt 3 ] && [ $((now - last)) -lt $((last / 10)) ] &&
       [ $((last - now)) -lt $((last / 10)) ]; then break; fi
     last=$now
   done
   read -ra settled < <(counters)
-  sleep 10
+  sleep 10  # as above
   read -ra later < <(counters)
   kill "${pids[@]}" $server 2> /dev/null || true
   wait

@@ -74,7 +74,7 @@ disturb() {  # FAULT
   case $1 in
     "cut "*)
       network "$1"
-      sleep "$cut_s"
+      sleep "$cut_s"  # the link is cut for so long
       before=$(stored)
       network "join ${1#cut }"
       ;;
@@ -99,9 +99,9 @@ more_stored_or_ended() { more_stored_than "$1" || run_ended; }
 # meets the second.
 step_clock_to_and_fro() {  # HOST
   step_clock "$1" +3600
-  sleep 2
+  sleep 2  # services work with the wrong time
   step_clock "$1" -3600
-  sleep 2
+  sleep 2  # they meet the second step before anything else
 }
 
 # map_with FAULT: the run of the log, until it ends; sets recovery and took.

@@ -61,7 +61,7 @@ row undisturbed 0
 for service in "${services[@]}"; do
   drive "$service"
   done=0
-  until grep -q 'mapping' "$out/$service.err" || [ "$service" = navigator ]; do sleep 0.2; done
+  until grep -q 'mapping' "$out/$service.err" || [ "$service" = navigator ]; do sleep 0.2; done  # between two checks
   for ((i = 0; i < kills; ++i)); do
     # A drive takes 200 s on a machine of its own: the moments are spread over the first 150.
     sleep "$((150 / kills / 2 + RANDOM % (150 / kills))).$((RANDOM % 1000))"

@@ -22,7 +22,7 @@ other_machine() {  # before any service starts: they look for interfaces once
   [ "$(id -u)" = 0 ] || return 1
   unshare --net sleep infinity &
   machine=$!
-  sleep 0.2
+  until [ "$(readlink "/proc/$machine/ns/net")" != "$(readlink /proc/self/ns/net)" ]; do sleep 0.05; done  # between two checks
   ip link add "lv$$" type veth peer name "lw$$" netns "$machine" || return 1
   ip addr add 10.213.7.1/24 dev "lv$$" && ip link set "lv$$" up
   nsenter -t "$machine" -n sh -c \
@@ -47,9 +47,9 @@ again() {  # SERVICE WHERE [WORDS]: kills it and starts it again
   local from
   from=$(date +%s%N)
   start "$1" "${@:3}"
-  until running "$1"; do sleep 0.05; done
+  until running "$1"; do sleep 0.05; done  # between two checks
   echo "$1 killed, and there again$2 after $((($(date +%s%N) - from) / 1000000)) ms"
-  sleep 1
+  sleep 1  # nothing of this life goes on in the next one
 }
 running() {  # SERVICE: its process says that it works
   "$bin/topogeo" status "$1" --partition "$partition" --json 2> /dev/null |
@@ -59,7 +59,7 @@ running() {  # SERVICE: its process says that it works
 other_machine 2> /dev/null || echo "no other machine: that needs root"
 "$bin/topogeo" map --log "$log" --out "$work/alone" > /dev/null 2>&1
 for service in map_store ga_worker localizer local_mapper sensor_gateway; do start $service; done
-sleep 3
+sleep 3  # the map has begun
 if [ -n "$machine" ]; then again localizer " on another machine" nsenter -t "$machine" -n; fi
 for ((round = 1; round <= rounds; ++round)); do
   for service in localizer map_store ga_worker; do
@@ -67,7 +67,7 @@ for ((round = 1; round <= rounds; ++round)); do
     again $service ""
   done
 done
-until [ -e "$work/out/map.pb" ]; do sleep 0.2; done
+until [ -e "$work/out/map.pb" ]; do sleep 0.2; done  # between two checks
 "$bin/topogeo" store check "$work/out/map.sqlite"
 for file in map.pb trajectory.tum; do
   cmp "$work/alone/$file" "$work/out/$file" && echo "$file: the same bytes as undisturbed"

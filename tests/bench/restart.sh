@@ -22,7 +22,7 @@ kill_now() {  # NAME
   wait "${pids[$1]}" 2> /dev/null || true
 }
 maps() { grep -c '"event":"map"' "$work/living" || true; }  # that the living subscriber has shown
-wait_for_maps() { until [ "$(maps)" -ge "$1" ]; do sleep 0.02; done; }
+wait_for_maps() { until [ "$(maps)" -ge "$1" ]; do sleep 0.02; done; }  # between two checks
 ms_since() { echo $((($(date +%s%N) - $1) / 1000000)); }
 
 start store map_store --out "$work/out"
@@ -30,19 +30,19 @@ start living topogeo follow --json
 start killed topogeo follow --json
 start worker ga_worker --slots 1
 wait_for_maps 1
-sleep 2
+sleep 2  # discovery is over, which would be measured
 for ((round = 1; round <= rounds; ++round)); do
   kill_now killed
   from=$(date +%s%N)
   "$bin/topogeo" follow --once --partition "$partition" > /dev/null 2>&1
   subscriber=$(ms_since "$from")
   start killed topogeo follow --json
-  sleep 1
+  sleep 1  # it is connected with all
   before=$(maps)
   kill_now store
   from=$(date +%s%N)
   start store map_store --out "$work/out"
   wait_for_maps $((before + 1))
   echo "$round: restarted subscriber $subscriber ms, restarted map store $(ms_since "$from") ms"
-  sleep 1
+  sleep 1  # nothing of this round goes on in the next one
 done

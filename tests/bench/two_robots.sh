@@ -30,12 +30,12 @@ start map_store --out "$out" --new --title "two robots" --robot-id a --with-robo
 start localizer --robot-id a --with-robots b
 [ "${4:-}" = "" ] || start ga_worker
 for robot in a b; do start local_mapper --robot-id "$robot"; done
-sleep 2
+sleep 2  # discovery is over, which would be measured
 for robot in a b; do
   start sensor_gateway --log "$work/$robot.clf" --robot-id "$robot" --rate "$rate"
 done
 until grep -q "local maps, " "$work/map_store.err"; do
-  sleep 0.5
+  sleep 0.5  # between two checks
   kill -0 "${pids[@]}" || { cat "$work"/*.err; exit 1; }
 done
 "$bin/topogeo" store merges --robot-id a --partition "two-$$"

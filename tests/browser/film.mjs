@@ -60,7 +60,7 @@ try {
   await page.locator("#film-slider").waitFor({ timeout: 120000 });
   await page.selectOption("#film-speed", "64");
   await page.click("#film-play");
-  await new Promise((resolve) => setTimeout(resolve, 8000));
+  await new Promise((resolve) => setTimeout(resolve, 8000)); // the frames of this time are measured
   await page.screenshot({ path: join(build, "tests/browser/screenshots/film.png") });
   const measured = (name) =>
     page.evaluate((of) => performance.getEntriesByName(of).map((entry) => entry.duration), name);

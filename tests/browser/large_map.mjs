@@ -157,7 +157,7 @@ try {
   ]) {
     for (let i = 0; i < zooms; ++i) {
       await page.getByRole("button", { name: "Zoom in" }).click();
-      await page.waitForTimeout(400);
+      await page.waitForTimeout(400); // the zoom is animated, and is not measured
     }
     const { script_ms, layout_ms, median_ms, p95_ms } = await drag(page);
     console.log(

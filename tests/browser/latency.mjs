@@ -82,7 +82,7 @@ try {
     await crowd.evaluate(open_viewers, others);
     await page.evaluate(() => (window.drawn.length = 0));
     const before = { localizer: robot.cpu_s("localizer"), web: robot.cpu_s("web") };
-    await new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
+    await new Promise((resolve) => setTimeout(resolve, 1000 * seconds)); // poses of this time are measured
     const cpu = (name) => ((1000 * (robot.cpu_s(name) - before[name])) / seconds).toFixed(1);
     const drawn = await page.evaluate(() => window.drawn);
     const quantiles = (part) => {

@@ -347,8 +347,9 @@ test("without a navigator the robot cannot be sent, which is said once", async (
   await end(opened);
 });
 
-/** Passes time of the page itself, which is late with all it does where the machine is. */
+/** Passes time of the page itself: where nothing must happen, a slow machine can only hide a fault. */
 function after_in_page(page, ms) {
+  // The page is late with all that it does where the machine is, with this timer too.
   return page.evaluate((time_ms) => new Promise((resolve) => setTimeout(resolve, time_ms)), ms);
 }
 

@@ -30,7 +30,7 @@ export async function wait_for(what, check) {
 export function ends(promise) {
   let timer;
   const late = new Promise((resolve) => {
-    timer = setTimeout(() => resolve(false), kHangLimit_ms);
+    timer = setTimeout(() => resolve(false), kHangLimit_ms); // of hangs alone
   });
   return Promise.race([promise.then(() => true), late]).finally(() => clearTimeout(timer));
 }

@@ -15,7 +15,7 @@ export async function watch(context, address) {
         const message = JSON.parse(data);
         if (message.channel) window.newest[message.channel] = message.value;
       };
-      socket.onclose = () => setTimeout(connect, 300);
+      socket.onclose = () => setTimeout(connect, 300); // the service starts again meanwhile
     };
     connect();
   });

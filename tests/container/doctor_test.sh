@@ -82,7 +82,7 @@ s.bind((\"0.0.0.0\", 7400))
 open(\"$work/bound\", \"w\").close()
 signal.pause()" &
   trap "kill $!" EXIT
-  until [ -e "$work/bound" ]; do kill -0 $! && sleep 0.05; done'
+  until [ -e "$work/bound" ]; do kill -0 $! && sleep 0.05; done  # between two checks'
 expect port_taken ports problem 'python3'
 
 if unshare -n test -e /proc/sys/net/core/rmem_default; then

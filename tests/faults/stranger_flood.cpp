@@ -49,7 +49,7 @@ int flood(const std::vector<const char*>& addresses) {
       ::sendto(socket, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&to),
                sizeof to);  // NOLINT: their interface
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));  // pacing, see kAtOnce
   }
   ::close(socket);
   std::cout << sent << " packets\n";

@@ -34,7 +34,7 @@ void write_absurd_samples() {
   for (; g_samples_stopped == 0; ++rounds) {
     samples.write(rounds);
     no_messages.write(rounds);
-    std::this_thread::sleep_for(kPeriod);
+    std::this_thread::sleep_for(kPeriod);  // pacing: services have to get at their own work
   }
   std::cout << rounds << " samples on each topic" << std::endl;
 }
@@ -45,7 +45,7 @@ void write_unknown_topics() {
   for (; g_samples_stopped == 0; ++written) {
     if (!topics || topics->size() == kTopicsAtOnce) topics.emplace(0);
     topics->add();
-    std::this_thread::sleep_for(kPeriod);
+    std::this_thread::sleep_for(kPeriod);  // pacing, as above
   }
   std::cout << written << " topics" << std::endl;
 }

@@ -31,6 +31,7 @@
 #include "garbage.hpp"
 #include "program.hpp"
 #include "stranger.hpp"
+#include "waiting.hpp"
 
 namespace topogeo::test {
 namespace {
@@ -104,12 +105,21 @@ class StrangersTest : public testing::Test {
   void write_until_counted(Samples& samples, const std::vector<std::string>& reasons,
                            std::uint64_t least) {
     const auto counted = [this](const std::string& reason) { return faults_[reason] > 0; };
-    for (std::uint64_t i = 0; i < least || !std::ranges::all_of(reasons, counted); ++i) {
-      keep_running();
-      samples.write(i);
-      std::this_thread::sleep_for(milliseconds(20));
-      look();
-    }
+    std::uint64_t written = 0;
+    EXPECT_TRUE(wait_for(
+        "services to count what is absurd",
+        [&] { return written >= least && std::ranges::all_of(reasons, counted); },
+        [&] {
+          keep_running();
+          samples.write(written++);
+          pace();
+        }));
+  }
+
+  /// Between two turns of a stranger: the services have to get at their own work, too.
+  void pace() {
+    std::this_thread::sleep_for(milliseconds(20));  // pacing
+    look();
   }
 
   std::uint32_t domain() const { return static_cast<std::uint32_t>(std::stoul(domain_)); }
@@ -177,8 +187,7 @@ TEST_F(StrangersTest, ADriveGoesOnAmongSamplesOfAbsurdContent) {
   AbsurdSamples samples(participant_, domain());
   for (std::uint64_t i = 0; !run_->ended(); ++i) {
     samples.write(i);
-    std::this_thread::sleep_for(milliseconds(20));
-    look();
+    pace();
   }
   EXPECT_EQ(run_->wait(), 0) << run_->err();
   EXPECT_THAT(run_->out(), testing::HasSubstr("arrived at 3,0"));
@@ -198,11 +207,14 @@ TEST_F(StrangersTest, ADriveGoesOnAmongSamplesOfAbsurdContent) {
 TEST_F(StrangersTest, TopicsThatDoNotExistAreCounted) {
   start("1");
   UnknownTopics topics(domain());
-  while (topics.size() < 300 || drops_["planner: unknown_topic"] == 0) {
-    keep_running();
-    topics.add();
-    look();
-  }
+  EXPECT_TRUE(wait_for(
+      "the planner to count unknown topics",
+      [&] { return topics.size() >= 300 && drops_["planner: unknown_topic"] > 0; },
+      [&] {
+        keep_running();
+        topics.add();
+        look();
+      }));
   finish();
 }
 
@@ -241,7 +253,7 @@ class GarbageTest : public StrangersTest {
   void send_much(Garbage garbage) {
     for (std::size_t i = 0; i < 20'000; ++i) {
       send(garbage.next(), i);
-      if (i % 20 == 0) std::this_thread::sleep_for(milliseconds(2));
+      if (i % 20 == 0) std::this_thread::sleep_for(milliseconds(2));  // pacing: sockets overflow
       if (i % 500 == 0) look();
     }
     look();
@@ -256,11 +268,13 @@ class GarbageTest : public StrangersTest {
 
 TEST_F(GarbageTest, OfUnknownPeersIsDropped) {
   send_much(Garbage(start_and_listen(), true));
-  while (drops_["localizer: invalid_packet"] == 0) {  // in its next status
-    keep_running();
-    std::this_thread::sleep_for(milliseconds(20));
-    look();
-  }
+  EXPECT_TRUE(wait_for(
+      "the localizer to count what is dropped, in its next status",
+      [&] { return drops_["localizer: invalid_packet"] > 0; },
+      [&] {
+        keep_running();
+        pace();
+      }));
   finish();
 }
 
@@ -324,15 +338,19 @@ TEST_F(GarbageTest, WhatKilledAParserIsRefused) {
   packets.push_back(
       packet_of(prefix, 0x07, 1, {0, 0, 3,    0xc7, 0, 0, 3, 0xc2, 0x80, 0, 0, 0, 0, 0,
                                   0, 0, 0x80, 0,    0, 0, 0, 0,    0,    0, 1, 0, 0, 0}));
-  for (std::size_t round = 0; round < 10 || drops_["map_store: invalid_packet"] == 0; ++round) {
-    keep_running();
-    for (std::size_t port = 0; port < 16; ++port) {
-      send(stranger, port);
-      for (const Packet& packet : packets) send(packet, port);
-    }
-    std::this_thread::sleep_for(milliseconds(50));
-    look();
-  }
+  std::size_t rounds = 0;
+  EXPECT_TRUE(wait_for(
+      "the map store to count what is dropped",
+      [&] { return rounds >= 10 && drops_["map_store: invalid_packet"] > 0; },
+      [&] {
+        keep_running();
+        for (std::size_t port = 0; port < 16; ++port) {
+          send(stranger, port);
+          for (const Packet& packet : packets) send(packet, port);
+        }
+        ++rounds;
+        pace();
+      }));
   finish();
 }
 

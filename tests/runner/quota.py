@@ -105,7 +105,7 @@ class Group:
     def __exit__(self, *_):
         end = time.monotonic() + 10
         while self.processes() and time.monotonic() < end:
-            time.sleep(0.1)
+            time.sleep(0.1)  # between two checks
         # Whoever outlives the tests must not be slow for ever.
         for process in self.processes():
             self._move(process, self._parent)
@@ -152,6 +152,7 @@ def _loop(busy_share, core, niceness):
         while time.monotonic() < start + busy_share * period:
             pass
         if busy_share < 1.0:
+            # The rest of the period is left to others.
             time.sleep(max(0.0, start + period - time.monotonic()))
 
 

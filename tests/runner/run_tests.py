@@ -250,7 +250,7 @@ def end_all(leader):
         while time.monotonic() < end:
             leader.poll()
             os.killpg(leader.pid, 0)
-            time.sleep(0.05)
+            time.sleep(0.05)  # between two checks
         os.killpg(leader.pid, signal.SIGKILL)
     leader.wait()
 

@@ -183,7 +183,7 @@ class QuotaTest(RunnerTest):
                     os.remove(started)
                 runner = project.start("--cpus", "0.8", "--beside", "2", "slow", start_new_session=True)
                 while not os.path.exists(started) and runner.poll() is None:
-                    time.sleep(0.05)
+                    time.sleep(0.05)  # between two checks
                 # As the terminal does by Ctrl-C; SIGTERM to the runner alone.
                 if signal_number == signal.SIGINT:
                     os.killpg(runner.pid, signal_number)

@@ -91,8 +91,8 @@ TEST(Architecture, SettingsIncludeNoAlgorithm) {
   EXPECT_THAT(algorithms_in_settings(project_includes()), IsEmpty());
 }
 
-TEST(Architecture, UnitTestsSleepForAReason) {
-  EXPECT_THAT(sleeps_without_reason(TOPOGEO_SOURCE_DIR, "tests/unit"), IsEmpty());
+TEST(Architecture, TestsSleepForAReason) {
+  EXPECT_THAT(sleeps_without_reason(TOPOGEO_SOURCE_DIR, "tests"), IsEmpty());
 }
 
 TEST(Architecture, EachFolderThatIsNamedIsUsed) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <regex>
 #include <sstream>
 #include <stdexcept>
@@ -33,17 +34,49 @@ bool is_allowed(std::string_view file, const std::vector<std::string_view>& plac
   });
 }
 
-std::vector<std::filesystem::path> sources_below(const std::filesystem::path& folder) {
+std::vector<std::filesystem::path> files_below(const std::filesystem::path& folder) {
   if (!std::filesystem::is_directory(folder)) {
     throw std::runtime_error(folder.string() + ": expected a directory");
   }
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-    const std::filesystem::path extension = entry.path().extension();
-    if (extension == ".hpp" || extension == ".cpp") files.push_back(entry.path());
+    if (entry.is_regular_file()) files.push_back(entry.path());
   }
   std::ranges::sort(files);
   return files;
+}
+
+std::vector<std::filesystem::path> sources_below(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files = files_below(folder);
+  std::erase_if(files, [](const std::filesystem::path& file) {
+    return file.extension() != ".hpp" && file.extension() != ".cpp";
+  });
+  return files;
+}
+
+/// How a language sleeps and comments.
+struct Language {
+  std::regex sleep;
+  std::string comment;
+};
+
+/// Null for a file that is no source. A program without an extension is taken for a shell script.
+const Language* language_of(const std::filesystem::path& file) {
+  static const Language kCpp = {
+      std::regex(R"re((sleep_for|sleep_until|usleep|nanosleep|::sleep)\()re"), "//"};
+  static const Language kPython = {std::regex(R"re(time\.sleep\()re"), "#"};
+  static const Language kScript = {std::regex(R"re((setTimeout|waitForTimeout)\()re"), "//"};
+  static const Language kShell = {std::regex(R"re((^|[\s;])sleep ["$.0-9])re"), "# "};
+  static const std::map<std::string, const Language*> kLanguages = {
+      {".cpp", &kCpp},    {".hpp", &kCpp},   {".py", &kPython},
+      {".mjs", &kScript}, {".ts", &kScript}, {".sh", &kShell}};
+  if (file.has_extension()) {
+    const auto found = kLanguages.find(file.extension().string());
+    return found == kLanguages.end() ? nullptr : found->second;
+  }
+  std::string start(2, ' ');
+  std::ifstream(file).read(start.data(), 2);
+  return start == "#!" ? &kShell : nullptr;
 }
 
 }  // namespace
@@ -160,16 +193,20 @@ std::vector<std::string> algorithms_in_settings(const std::vector<Include>& incl
 
 std::vector<std::string> sleeps_without_reason(const std::filesystem::path& root,
                                                const std::string& folder) {
-  static const std::regex kSleep(R"re((sleep_for|sleep_until|usleep|nanosleep|::sleep)\()re");
   std::vector<std::string> found;
-  for (const std::filesystem::path& path : sources_below(root / folder)) {
+  for (const std::filesystem::path& path : files_below(root / folder)) {
+    const Language* const language = language_of(path);
+    if (language == nullptr) continue;
     std::ifstream file(path);
     std::string before;
     std::string text;
     for (int line = 1; std::getline(file, text); ++line, before = text) {
-      const std::string code = text.substr(0, text.find("//"));
-      if (!std::regex_search(code, kSleep)) continue;
-      if (code != text || before.find("//") != std::string::npos) continue;
+      if (text.find("leep") == std::string::npos && text.find("Timeout") == std::string::npos) {
+        continue;  // soon, most lines
+      }
+      const std::string code = text.substr(0, text.find(language->comment));
+      if (!std::regex_search(code, language->sleep)) continue;
+      if (code != text || before.find(language->comment) != std::string::npos) continue;
       found.push_back(path.lexically_relative(root).string() + ":" + std::to_string(line) +
                       ": sleeps, expected an event or a comment with the reason");
     }

@@ -49,8 +49,8 @@ std::vector<std::string> between_services(const std::filesystem::path& root,
 /// declaration of settings alone.
 std::vector<std::string> algorithms_in_settings(const std::vector<Include>& includes);
 
-/// Lines of .hpp and .cpp files below a folder that sleep for a time without a comment that gives
-/// the reason, beside it or in the line before: tests wait for events.
+/// Lines of C++, Python, browser and shell sources below a folder that sleep for a time without a
+/// comment that gives the reason, beside it or in the line before: tests wait for events.
 std::vector<std::string> sleeps_without_reason(const std::filesystem::path& root,
                                                const std::string& folder);
 

@@ -142,5 +142,21 @@ TEST_F(SourceRules, FindsASleepWithoutItsReason) {
               ElementsAre(HasSubstr("tests/unit/bad.hpp:3: sleeps")));
 }
 
+TEST_F(SourceRules, FindsASleepOfEveryLanguageOfTheTests) {
+  write("tests/good.py", "time.sleep(0.1)  # between two checks\nrun('exec sleep 1000')\n");
+  write("tests/good.mjs", "// Pacing of the page.\nsetTimeout(again, 100);\n");
+  write("tests/good.sh",
+        "until ready; do sleep 0.2; done  # between two checks\nunshare sleep infinity\n");
+  write("tests/good", "no program: sleep 1\n");
+  EXPECT_THAT(sleeps_without_reason(root_, "tests"), IsEmpty());
+  write("tests/bad.py", "import time\ntime.sleep(5)\n");
+  write("tests/bad.mjs", "await page.waitForTimeout(500);\n");
+  write("tests/bad.sh", "start\nsleep \"$seconds\"\n");
+  write("tests/bad", "#!/usr/bin/env bash\nstart\nuntil ready; do sleep 1; done\n");
+  EXPECT_THAT(sleeps_without_reason(root_, "tests"),
+              ElementsAre(HasSubstr("tests/bad:3:"), HasSubstr("tests/bad.mjs:1:"),
+                          HasSubstr("tests/bad.py:2:"), HasSubstr("tests/bad.sh:2:")));
+}
+
 }  // namespace
 }  // namespace topogeo::architecture
