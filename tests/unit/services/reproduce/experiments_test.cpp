@@ -2,12 +2,18 @@
 // published, and the page and its JSON have its row.
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <set>
+#include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+
+#include "topogeo/support/temporary_folder.hpp"
 
 #include "reproduce/experiment.hpp"
 #include "reproduce/index_page.hpp"
@@ -23,23 +29,33 @@ const Experiment& experiment_named(const std::string& name) {
   return *at;
 }
 
+/// Each experiment runs once for all tests: it depends on nothing but its name.
 class ExperimentRuns : public testing::Test {
  protected:
-  ExperimentRuns() {
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  ~ExperimentRuns() override { std::filesystem::remove_all(folder_); }
+  static void SetUpTestSuite() { done_ = std::make_unique<Done>(); }
+  static void TearDownTestSuite() { done_.reset(); }
 
-  Outcome run(const std::string& name) {
-    return run_experiment(experiment_named(name), folder_, runs_);
+  static const Outcome& run(const std::string& name) {
+    auto found = done_->outcomes.find(name);
+    if (found == done_->outcomes.end()) {
+      Outcome outcome = run_experiment(experiment_named(name), done_->folder.path(), done_->runs);
+      found = done_->outcomes.emplace(name, std::move(outcome)).first;
+    }
+    return found->second;
   }
+  static const std::filesystem::path& folder() { return done_->folder.path(); }
+  static SharedRuns& runs() { return done_->runs; }
 
-  std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) /
-      (std::string("reproduce_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-  SharedRuns runs_;
+ private:
+  struct Done {
+    support::TemporaryFolder folder{"reproduce"};
+    SharedRuns runs;
+    std::map<std::string, Outcome> outcomes;
+  };
+  static std::unique_ptr<Done> done_;
 };
+
+std::unique_ptr<ExperimentRuns::Done> ExperimentRuns::done_;
 
 TEST(Experiments, HaveNamesOfTheirOwnAndSayWhatTheyShow) {
   std::set<std::string> names;
@@ -74,13 +90,13 @@ void expect_compares(const Outcome& outcome, const std::filesystem::path& folder
 
 TEST_F(ExperimentRuns, LightOnesCompareAndDraw) {
   for (const Experiment& experiment : experiments()) {
-    if (!experiment.drives) expect_compares(run(experiment.name), folder_);
+    if (!experiment.drives) expect_compares(run(experiment.name), folder());
   }
 }
 
 TEST_F(ExperimentRuns, DrivesCompareAndDraw) {
   for (const Experiment& experiment : experiments()) {
-    if (experiment.drives) expect_compares(run(experiment.name), folder_);
+    if (experiment.drives) expect_compares(run(experiment.name), folder());
   }
 }
 
@@ -89,7 +105,7 @@ TEST_F(ExperimentRuns, TablesAndMatricesAgree) {
   for (const std::string name :
        {"table-4.1", "table-6.1", "table-6.2", "table-6.4", "macondo-figure-4", "macondo-figure-6",
         "macondo-figure-7", "macondo-figure-8"}) {
-    const Outcome outcome = run(name);
+    const Outcome& outcome = run(name);
     EXPECT_EQ(outcome.verdict(), Verdict::kEqual) << name << ": " << outcome.verdict_text();
   }
 }
@@ -100,7 +116,7 @@ TEST_F(ExperimentRuns, FiguresOfScenesAgree) {
     const bool scene = experiment.number.find(" 4.") != std::string::npos ||
                        experiment.number.find(" 5.") != std::string::npos;
     if (!scene || experiment.name == "figure-4.18") continue;
-    const Outcome outcome = run(experiment.name);
+    const Outcome& outcome = run(experiment.name);
     EXPECT_NE(outcome.verdict(), Verdict::kDiffers)
         << experiment.name << ": " << outcome.verdict_text();
   }
@@ -128,7 +144,7 @@ TEST_F(ExperimentRuns, AFailureIsARowOfItsOwn) {
                            .number = "Figure 0",
                            .caption = "nothing",
                            .run = [](Report&) { throw std::runtime_error("<no laser>"); }};
-  const Outcome outcome = run_experiment(failing, folder_, runs_);
+  const Outcome outcome = run_experiment(failing, folder(), runs());
   EXPECT_EQ(outcome.verdict(), Verdict::kDiffers);
   EXPECT_EQ(outcome.verdict_text(), "differs because it failed: <no laser>");
   EXPECT_THAT(index_page({outcome}), testing::HasSubstr("&lt;no laser&gt;"));
