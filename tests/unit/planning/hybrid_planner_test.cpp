@@ -239,28 +239,56 @@ TEST(HybridPlanner, AvoidsWhatIsClosedNow) {
   EXPECT_THROW((void)planner.plan(from_m, to_m, {{}, {99}}), std::invalid_argument);
 }
 
-// The shares by which routes are longer than the shortest paths, over floors and pairs of points.
-std::vector<double> detours(bool drawn, const HybridPlannerConfig& config) {
+// A floor, pairs of points on it and the shortest paths between them.
+struct PlannedFloor {
+  struct Trip {
+    Eigen::Vector2d from_m;
+    Eigen::Vector2d to_m;
+    HybridRoute shortest;
+  };
+  std::vector<DrawnZone> rooms;
+  FreeSpace space;
+  std::vector<Trip> trips;
+};
+
+PlannedFloor planned_floor(std::uint64_t seed) {
   BlockPlan plan;
   plan.columns = 6;
   plan.rows = 5;
+  BlockFloor floor = block_floor(plan, 100 + seed);
+  PlannedFloor planned{std::move(floor.rooms), FreeSpace(std::move(floor.grid)), {}};
+  support::Random random(seed);
+  for (int k = 0; k < 30; ++k) {
+    const Eigen::Vector2d from_m = random_free_point_m(planned.space, random);
+    const Eigen::Vector2d to_m = random_free_point_m(planned.space, random);
+    planned.trips.push_back({from_m, to_m, plan_on_grid(planned.space, from_m, to_m)});
+  }
+  return planned;
+}
+
+// The shortest paths over a whole grid take longest: they are the same for every planner.
+const std::vector<PlannedFloor>& planned_floors() {
+  static const std::vector<PlannedFloor> floors = [] {
+    std::vector<PlannedFloor> made;
+    for (std::uint64_t seed = 0; seed < 12; ++seed) made.push_back(planned_floor(seed));
+    return made;
+  }();
+  return floors;
+}
+
+// The shares by which routes are longer than the shortest paths, over floors and pairs of points.
+std::vector<double> detours(bool drawn, const HybridPlannerConfig& config) {
   std::vector<double> longer;
-  for (std::uint64_t seed = 0; seed < 12; ++seed) {
-    const BlockFloor floor = block_floor(plan, 100 + seed);
-    const FreeSpace space(floor.grid);
-    const HybridMap map(space, drawn ? drawn_zones(space, floor.rooms) : zones_by_width(space));
+  for (const auto& [rooms, space, trips] : planned_floors()) {
+    const HybridMap map(space, drawn ? drawn_zones(space, rooms) : zones_by_width(space));
     const HybridPlanner planner(map, config);
-    support::Random random(seed);
-    for (int k = 0; k < 30; ++k) {
-      const Eigen::Vector2d from_m = random_free_point_m(space, random);
-      const Eigen::Vector2d to_m = random_free_point_m(space, random);
+    for (const auto& [from_m, to_m, shortest] : trips) {
       const HybridRoute route = planner.plan(from_m, to_m);
-      const HybridRoute best = plan_on_grid(space, from_m, to_m);
-      EXPECT_EQ(route.found(), best.found());
+      EXPECT_EQ(route.found(), shortest.found());
       if (!route.found()) continue;
       expect_drivable(space, route);
-      EXPECT_GE(route.cost_m, best.cost_m - 1e-9);
-      if (best.cost_m > 0.0) longer.push_back(route.cost_m / best.cost_m - 1.0);
+      EXPECT_GE(route.cost_m, shortest.cost_m - 1e-9);
+      if (shortest.cost_m > 0.0) longer.push_back(route.cost_m / shortest.cost_m - 1.0);
     }
   }
   std::sort(longer.begin(), longer.end());
