@@ -3,12 +3,10 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { assert_accessible, kColorRules, kPictures, kSizes, new_context, open_page, text, WatchedRobot } from "./page.mjs";
+import { kSizes, new_context, open_page, text, WatchedRobot } from "./page.mjs";
 import { wait_for, Robot } from "./robot.mjs";
 
 const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source } = process.env;
-
-const kViews = ["now", "send", "correct", "understand", "draw", "time"];
 
 const robot = new Robot(join(build, "bin"), source, process.env.TOPOGEO_WORK);
 const run = new WatchedRobot(robot);
@@ -211,31 +209,6 @@ test("the panel sends by number", async () => {
   await page.getByRole("button", { name: "Cancel", exact: true }).click();
   await end(page);
 });
-
-// Both schemes have the same elements, in other colours.
-for (const [scheme, rules] of [["light", undefined], ["dark", kColorRules]]) {
-  test(`every view is accessible, ${scheme}`, async () => {
-    for (const [size, viewport] of Object.entries(kSizes)) {
-      const options = { viewport, colorScheme: scheme, bypassCSP: true };
-      const page = await open(null, { options });
-      await text(page, ".state-word", /TRACKING/i);
-      for (const view of kViews) {
-        await page.click(`#tab-${view}`);
-        if (view === "send") {
-          await page.getByRole("button", { name: "room A", exact: true }).click();
-          await text(page, ".card [role=status]", /m, about|no /i);
-        }
-        await page.screenshot({ path: join(kPictures, `${view}-${size}-${scheme}.png`) });
-        if (size !== "tablet") await assert_accessible(page, `${view}, ${size}`, rules);
-      }
-      await page.goto(`${robot.address}/panel`);
-      await text(page, ".panel-names", /room A/);
-      await page.screenshot({ path: join(kPictures, `panel-${size}-${scheme}.png`) });
-      if (size !== "tablet") await assert_accessible(page, `panel, ${size}`, rules);
-      await end(page);
-    }
-  });
-}
 
 // Last: a robot that stands after this has a pose, and knows at its next stop whether it is the right one.
 test("the pose is set by dragging, in a map that stays as it is", async () => {
