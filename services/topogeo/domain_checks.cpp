@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "topogeo/messaging/deafness.hpp"
 #include "topogeo/service/cpu_watch.hpp"
 #include "topogeo/support/format.hpp"
 
-#include "deafness.hpp"
 #include "service_table.hpp"
 
 namespace topogeo::cli {
@@ -263,14 +263,15 @@ std::string good_clocks(const DomainFacts& facts) {
 // --- inputs
 
 Findings check_inputs(const DomainFacts& facts) {
-  std::map<std::string, std::vector<const msg::ServiceStatus*>> by_partition;
+  std::map<std::string, std::vector<messaging::HeardStatus>> by_partition;
   for (const msg::ServiceStatus& status : facts.services) {
-    by_partition[robot_of(status, facts).second].push_back(&status);
+    by_partition[robot_of(status, facts).second].push_back({&status});
   }
   Findings found;
   for (const auto& [partition, services] : by_partition) {
-    for (const msg::ServiceStatus* service : services) {
-      const std::string why = deafness(*service, services);
+    for (const messaging::HeardStatus& heard : services) {
+      const msg::ServiceStatus* const service = heard.status;
+      const std::string why = messaging::deafness(heard, services);
       if (why.empty()) continue;
       found.push_back({"", kProblem, name_of(*service) + " is " + why,
                        "one of the two has forgotten the other, after an interruption that the "

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <system_error>
 
 #include "topogeo/pipeline/laser_mounting.hpp"
 
@@ -172,9 +173,13 @@ std::filesystem::path memory_of_run(const std::string& partition, const std::str
 }
 
 std::vector<std::filesystem::path> memories_of_run(const std::string& partition) {
+  const std::filesystem::path prefix = memory_of_run(partition, "");
   std::vector<std::filesystem::path> paths;
-  for (const char* what : {"odometry", "odometry.laser", "pose"}) {
-    paths.push_back(memory_of_run(partition, what));
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(prefix.parent_path(), ignored)) {
+    if (entry.path().filename().string().starts_with(prefix.filename().string())) {
+      paths.push_back(entry.path());
+    }
   }
   return paths;
 }

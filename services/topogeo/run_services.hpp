@@ -26,7 +26,7 @@ std::filesystem::path simulated_port(const RunOptions& options, const std::strin
 /// localizer the "pose" of the robot. In memory, since a write to a disk may take seconds. To be
 /// removed at the end.
 std::filesystem::path memory_of_run(const std::string& partition, const std::string& what);
-/// All files of the run that are kept there.
+/// All files of the run that are there, those that services choose themselves included.
 std::vector<std::filesystem::path> memories_of_run(const std::string& partition);
 
 /// Whether the scans are those of a robot that speaks ROS.

@@ -6,10 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "topogeo/messaging/deafness.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/printable.hpp"
 
-#include "deafness.hpp"
 #include "service_table.hpp"
 #include "text_grid.hpp"
 
@@ -106,11 +106,15 @@ bool StatusTable::is_gone(const Row& row, Clock::time_point now) {
 
 std::string StatusTable::deafness(const Row& row, Clock::time_point now) const {
   if (is_gone(row, now)) return {};
-  std::vector<const msg::ServiceStatus*> all;
+  const auto heard = [now](const Row& one) {
+    return messaging::HeardStatus{&one.status,
+                                  std::chrono::duration<double>(now - one.received).count()};
+  };
+  std::vector<messaging::HeardStatus> all;
   for (const auto& [name, one] : rows_) {
-    if (!is_gone(one, now)) all.push_back(&one.status);
+    if (!is_gone(one, now)) all.push_back(heard(one));
   }
-  return cli::deafness(row.status, all);
+  return messaging::deafness(heard(row), all);
 }
 
 bool StatusTable::unwell(const Row& row, Clock::time_point now) const {

@@ -101,8 +101,12 @@ std::string StatusPublisher::text() const {
   return kNames.at(status_.state()) + (message.empty() ? "" : ": " + message);
 }
 
+void StatusPublisher::set_input(std::string_view name) {
+  set_text_cut(status_.input(), name);
+}
+
 void StatusPublisher::count_input(std::string_view name) {
-  if (input_.total() == 0) set_text_cut(status_.input(), name);
+  if (input_.total() == 0) set_input(name);
   input_.count(std::chrono::steady_clock::now());
 }
 

@@ -18,6 +18,7 @@ constexpr auto kCounterMetrics = std::to_array<CounterMetric>({
     {"timer_delay_s", "topogeo_timer_delay_seconds", kGauge,
      "largest delay of a timer in the last second"},
     {"cpu_short", "topogeo_cpu_short", kGauge, "1 while the service gets too little CPU time"},
+    {"deaf", "topogeo_deaf", kGauge, "1 while nothing of the main input arrives that is sent"},
     {"resident_bytes", "topogeo_resident_memory_bytes", kGauge, "memory in use"},
     {"open_files", "topogeo_open_fds", kGauge, "open files and sockets"},
     // sensor gateway

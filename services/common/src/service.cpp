@@ -12,6 +12,8 @@
 #include "topogeo/support/process_resources.hpp"
 #include "topogeo/support/version.hpp"
 
+#include "deafness_guard.hpp"
+
 namespace topogeo::service {
 
 namespace {
@@ -36,6 +38,7 @@ Service::Service(const Setup& setup, bool any_robot)
                       std::string(support::kVersion), setup.config.effective.fingerprint});
   cpu_.emplace([this] { return std::chrono::duration<double>(loop_.take_timer_delay()).count(); },
                [this](const char* name, double value) { status_->set_counter(name, value); });
+  deafness_ = std::make_unique<DeafnessGuard>(setup_, participant_, loop_, *status_);
   loop_.add_timer(kTick, [this] { tick(); });
   offer_metrics();
 }
@@ -65,8 +68,10 @@ bool Service::shares_map(const std::string& robot) const {
   return std::ranges::find(setup_.options.other_robots, robot) != setup_.options.other_robots.end();
 }
 
-void Service::note_subscription(std::string_view topic, const Subscription& subscription) {
-  subscribed_.insert(topic);
+void Service::note_subscription(const messaging::TopicInfo& topic,
+                                const Subscription& subscription) {
+  subscribed_.insert(topic.name);
+  if (subscription.main_input) status_->set_input(messaging::short_name(topic));
   announced_.insert(subscription.read_with.begin(), subscription.read_with.end());
 }
 
@@ -84,6 +89,8 @@ void Service::run() {
     loop_.run();
   } catch (const StoodStill& error) {
     status_->fault("stood still", error.what());
+    throw;
+  } catch (const Deaf&) {  // it has reported why
     throw;
   } catch (const std::exception& error) {
     status_->set_state(msg::kServiceFailed, error.what());
@@ -105,6 +112,7 @@ void Service::tick() {
         " s: peers may have forgotten it, and it would not notice; it meets them again when it is "
         "started again");
   }
+  deafness_->tick();
   for (const std::string& refusal : participant_.take_refusals()) {
     status_->fault("peer refused", refusal);
   }

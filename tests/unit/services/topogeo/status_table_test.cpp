@@ -357,5 +357,30 @@ TEST(StatusTable, JsonHasTheFieldsOfTheMessage) {
   EXPECT_EQ(StatusTable().json(kNow), "[]\n");
 }
 
+// The judgement itself: deafness_test.cpp of messaging.
+TEST(StatusTable, OneThatIsDeafIsUnwell) {
+  const auto with_traffic = [](msg::ServiceStatus status, bool sent, double rate_per_s) {
+    msg::TopicTraffic traffic;
+    messaging::set_text(traffic.topic(), "pose", "topic");
+    traffic.sent(sent);
+    traffic.rate_per_s(rate_per_s);
+    status.traffic().push_back(traffic);
+    status.uptime_s(60.0);
+    return status;
+  };
+  StatusTable table;
+  table.update(with_traffic(status_of("localizer", msg::kServiceRunning), true, 10.0), info_of(1),
+               kNow);
+  const auto navigator =
+      with_traffic(status_of("navigator", msg::kServiceRunning), false, 0.0);
+  table.update(fed(navigator, "pose", 0.0, 5.7), info_of(2), kNow);
+  EXPECT_FALSE(table.healthy(kNow));
+  EXPECT_THAT(table.text(kNow), HasSubstr("deaf: none of the 10.0 pose/s of localizer arrives"));
+  EXPECT_THAT(table.text(kNow), HasSubstr("1 failed, lost, silent or deaf"));
+  EXPECT_THAT(table.json(kNow), HasSubstr("\"deaf\""));
+  table.update(fed(navigator, "pose", 0.0, 0.1), info_of(2), kNow);
+  EXPECT_TRUE(table.healthy(kNow));
+}
+
 }  // namespace
 }  // namespace topogeo::cli

@@ -52,6 +52,8 @@ class StatusPublisher {
   /// As it was sent last, but for its state, which is that of now.
   [[nodiscard]] const msg::ServiceStatus& message() const { return status_; }
 
+  /// Names what the service works on, before the first of it has come.
+  void set_input(std::string_view name);
   /// Counts one of what the service works on, for example "scan". A service has one such input.
   void count_input(std::string_view name);
 

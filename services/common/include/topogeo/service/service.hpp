@@ -26,6 +26,8 @@
 
 namespace topogeo::service {
 
+class DeafnessGuard;
+
 /// Which messages of a topic Service::subscribe takes.
 struct Subscription {
   std::string role = {};       ///< see messaging::ReaderOptions
@@ -74,7 +76,7 @@ class Service {
   template <class T, class Handler>
   void subscribe(Handler handler, const Subscription& subscription = {},
                  messaging::EventLoop::InstanceHandler on_gone = {}) {
-    note_subscription(messaging::TopicTraits<T>::info().name, subscription);
+    note_subscription(messaging::TopicTraits<T>::info(), subscription);
     const messaging::Reader<T> reader(
         participant_, {subscription.role, subscription.addressee, subscription.read_with});
     loop_.add<T>(
@@ -133,7 +135,7 @@ class Service {
     return false;
   }
 
-  void note_subscription(std::string_view topic, const Subscription& subscription);
+  void note_subscription(const messaging::TopicInfo& topic, const Subscription& subscription);
   void check_subscriptions() const;
   /// Gives the status to Prometheus when the options or the configuration want it.
   void offer_metrics();
@@ -148,6 +150,7 @@ class Service {
   messaging::EventLoop loop_;
   std::optional<messaging::StatusPublisher> status_;
   std::optional<CpuWatch> cpu_;
+  std::unique_ptr<DeafnessGuard> deafness_;
   std::optional<messaging::SignalStop> signals_;
   messaging::ServiceManager manager_{loop_};
   std::set<std::string_view> subscribed_;
