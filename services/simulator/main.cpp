@@ -5,6 +5,7 @@
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/simulation/random_floors.hpp"
+#include "topogeo/support/log.hpp"
 #include "topogeo/support/process_priority.hpp"
 
 #include "simulator_service.hpp"
@@ -88,6 +89,19 @@ world::World load(const std::filesystem::path& path) {
   }
 }
 
+/// False: the process stood still, and its peers may have forgotten it.
+bool run(const service::Setup& setup, simulator::SimulatedWorld& world) {
+  service::Service service(setup);
+  const simulator::SimulatorService simulator(service, world);
+  try {
+    service.run();
+  } catch (const service::StoodStill& error) {
+    spdlog::warn("{}: it meets its peers anew", error.what());
+    return service::Service::stopping();
+  }
+  return true;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -101,11 +115,11 @@ int main(int argc, char** argv) {
         robot.odometry = drift(arguments.odometry, robot.seed);
         if (arguments.sonars == 6) robot.sonars = devices::macondo_sonars();
         if (arguments.sonar_noise == "macondo") robot.sonar = simulation::macondo_sonar_noise();
-        const world::World world = load(arguments.world);
+        simulator::SimulatedWorld world(load(arguments.world), arguments.options);
         // Real devices do not wait for other programs of the machine.
         static_cast<void>(support::go_first());
-        service::Service service(setup);
-        const simulator::SimulatorService simulator(service, world, arguments.options);
-        service.run();
+        // The robot is where it is in this process alone, so the process goes on.
+        while (!run(setup, world)) {
+        }
       });
 }

@@ -30,42 +30,47 @@ std::int64_t nanoseconds(std::chrono::nanoseconds duration) {
 
 }  // namespace
 
-SimulatorService::SimulatorService(service::Service& service, world::World world,
-                                   const SimulatorOptions& options)
+SimulatedWorld::SimulatedWorld(world::World world, const SimulatorOptions& simulator)
+    : options(simulator),
+      devices(std::move(world), options.devices),
+      start(Clock::now()),
+      start_stamp_ns(nanoseconds(std::chrono::system_clock::now().time_since_epoch())) {}
+
+SimulatorService::SimulatorService(service::Service& service, SimulatedWorld& world)
     : service_(service),
-      time_factor_(options.time_factor),
-      devices_(std::move(world), options.devices),
-      faults_(devices_),
+      world_(world),
+      devices_(world.devices),
       truth_(service.advertise<msg::GroundTruth>()),
       body_sensors_([this](std::int64_t) { return devices_.robot().scene(); },
                     [this](std::int64_t) { return devices_.robot().T_world_robot(); },
                     [this] { return devices_.robot().sonar(); }),
-      body_(service, body_sensors_, options.devices.robot.sonars),
-      start_(Clock::now()),
-      start_stamp_ns_(nanoseconds(std::chrono::system_clock::now().time_since_epoch())) {
+      body_(service, body_sensors_, world.options.devices.robot.sonars) {
   service.subscribe<msg::SimulatorCommand>(
       [this](const msg::SimulatorCommand& command) { on_command(command); });
   service_.loop().add_timer(kTick, [this] { tick(); });
-  service_.status().set_state(msg::kServiceRunning,
-                              "laser at " + options.devices.laser_port.string() + ", base at " +
-                                  options.devices.base_port.string());
+  const DeviceOptions& devices = world.options.devices;
+  service_.status().set_state(
+      msg::kServiceRunning,
+      "laser at " + devices.laser_port.string() + ", base at " + devices.base_port.string());
 }
 
 std::int64_t SimulatorService::stamp_ns() const {
-  return start_stamp_ns_ + std::llround(static_cast<double>(devices_.now_ns()) / time_factor_);
+  return world_.start_stamp_ns +
+         std::llround(static_cast<double>(devices_.now_ns()) / world_.options.time_factor);
 }
 
 void SimulatorService::tick() {
-  const auto passed = Clock::now() - start_;
+  const double time_factor = world_.options.time_factor;
+  const auto passed = SimulatedWorld::Clock::now() - world_.start;
   const auto done =
-      std::chrono::nanoseconds(std::llround(static_cast<double>(devices_.now_ns()) / time_factor_));
+      std::chrono::nanoseconds(std::llround(static_cast<double>(devices_.now_ns()) / time_factor));
   if (const auto late = passed - done - kLatest; late.count() > 0) {
     service_.status().add_to_counter("stood_still_s", std::chrono::duration<double>(late).count());
     // No host sees the clock of a real base stop.
-    devices_.stand_still(std::llround(static_cast<double>(nanoseconds(late)) * time_factor_));
+    devices_.stand_still(std::llround(static_cast<double>(nanoseconds(late)) * time_factor));
   }
-  devices_.run_until(std::llround(static_cast<double>(nanoseconds(passed)) * time_factor_));
-  faults_.tick();
+  devices_.run_until(std::llround(static_cast<double>(nanoseconds(passed)) * time_factor));
+  world_.faults.tick();
   const std::int64_t now_ns = devices_.now_ns();
   if (now_ns >= truth_due_ns_) {
     truth_due_ns_ = now_ns - now_ns % kTruthPeriod_ns + kTruthPeriod_ns;
@@ -112,7 +117,7 @@ void SimulatorService::publish_state() {
 void SimulatorService::on_command(const msg::SimulatorCommand& command) {
   const Fault fault = fault_from_msg(command);
   spdlog::info("{}, as {} wants it", describe(fault), command.client_id().c_str());
-  faults_.begin(fault);
+  world_.faults.begin(fault);
   service_.status().add_to_counter("faults_made");
 }
 

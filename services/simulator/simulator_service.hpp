@@ -21,16 +21,31 @@ struct SimulatorOptions {
   double time_factor = 1.0;  ///< world time over real time, > 0
 };
 
+/// The world and the devices in it, on the world's clock. They outlive a service that joins its
+/// peers anew: the robot stays where it is, and its ports stay open.
+struct SimulatedWorld {
+  using Clock = std::chrono::steady_clock;
+
+  /// Throws like SimulatedDevices.
+  SimulatedWorld(world::World world, const SimulatorOptions& options);
+  SimulatedWorld(const SimulatedWorld&) = delete;
+  SimulatedWorld& operator=(const SimulatedWorld&) = delete;
+
+  SimulatorOptions options;
+  SimulatedDevices devices;
+  FaultInjector faults{devices};
+  Clock::time_point start;       ///< when the world's clock was 0
+  std::int64_t start_stamp_ns;   ///< of that, since the epoch
+};
+
 /// Lives in the loop of its service. The sonars, infrared and tactile sensors of a B21 are on a bus
 /// of their own, not on the line of the base: their readings go out directly.
 class SimulatorService {
  public:
-  /// Throws like SimulatedDevices.
-  SimulatorService(service::Service& service, world::World world, const SimulatorOptions& options);
+  /// Both must outlive it.
+  SimulatorService(service::Service& service, SimulatedWorld& world);
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   void tick();
   void publish_truth();
   void publish_state();
@@ -39,14 +54,11 @@ class SimulatorService {
   [[nodiscard]] std::int64_t stamp_ns() const;
 
   service::Service& service_;
-  double time_factor_;
-  SimulatedDevices devices_;
-  FaultInjector faults_;
+  SimulatedWorld& world_;
+  SimulatedDevices& devices_;
   messaging::Writer<msg::GroundTruth> truth_;
   simulation::SimulatedBodySensors body_sensors_;
   service::BodySensorPublisher body_;
-  Clock::time_point start_;        // when the world's clock was 0
-  std::int64_t start_stamp_ns_;    // of that, since the epoch
   std::int64_t truth_due_ns_ = 0;  // in the world, and the next two
   std::int64_t body_due_ns_ = 0;
   std::int64_t state_due_ns_ = 0;

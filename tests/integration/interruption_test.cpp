@@ -20,6 +20,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::SizeIs;
 
 class InterruptionTest : public testing::Test {
@@ -86,6 +87,30 @@ TEST_F(InterruptionTest, AServiceThatWasFrozenIsStartedAgain) {
   ASSERT_TRUE(wait_for("the local mapper to end", is_started_again, freeze)) << run.err();
   EXPECT_THAT(run.err(), HasSubstr("stood still for "));
   EXPECT_EQ(run.wait(), 0) << run.err();
+}
+
+// The robot is where it is in that process alone: it meets its peers anew without ending.
+TEST_F(InterruptionTest, ASimulatorThatWasFrozenGoesOn) {
+  set_longest_freeze(1);
+  Program run(scratch_, "topogeo",
+              {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/short.world.yaml", "--out", out_,
+               "--workers", "0", "--domain", own_domain()});
+  run.wait_for_progress(10);
+  const std::vector<pid_t> simulator = run.services("simulator");
+  ASSERT_THAT(simulator, SizeIs(1));
+  const auto freeze = [&] {
+    ::kill(simulator[0], SIGSTOP);
+    std::this_thread::sleep_for(std::chrono::seconds(2));  // it is frozen for so long
+    ::kill(simulator[0], SIGCONT);
+  };
+  const auto met_anew = [&] {
+    return run.ended() ||
+           read_file(out_ + "/logs/simulator.log").find("meets its peers anew") !=
+               std::string::npos;
+  };
+  ASSERT_TRUE(wait_for("the simulator to meet its peers anew", met_anew, freeze));
+  EXPECT_EQ(run.wait(), 0) << run.err();
+  EXPECT_THAT(run.err(), Not(HasSubstr("simulator ended")));
 }
 
 TEST_F(InterruptionTest, CtrlCStopsEverything) {

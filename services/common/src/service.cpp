@@ -21,11 +21,6 @@ namespace {
 /// Less than the period of the status, which is to be of now.
 constexpr std::chrono::milliseconds kTick{200};
 
-/// Ends the service, to be started again: it has not failed, which would end all that need it.
-struct StoodStill final : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 }  // namespace
 
 Service::Service(const Setup& setup, bool any_robot)

@@ -40,6 +40,13 @@ struct Subscription {
   bool main_input = false;  ///< what the service works on: rate and age are in its status
 };
 
+/// Comes out of Service::run when the process stood still for so long that peers may have forgotten
+/// it (messaging::Participant::stood_still). A program that ends with it is started again; one that
+/// has more to lose than its peers makes another Service.
+struct StoodStill final : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// One at a time in a process. Readers and writers live as long as the service.
 class Service {
  public:
@@ -64,7 +71,8 @@ class Service {
   [[nodiscard]] static bool stopping() { return messaging::SignalStop::received() != 0; }
 
   /// Works until SIGINT, SIGTERM or loop().stop(). Throws std::logic_error when a subscription has
-  /// announced a topic that nothing subscribes to: a gateway would wait for ever. An exception of a
+  /// announced a topic that nothing subscribes to: a gateway would wait for ever; StoodStill; Deaf
+  /// (a std::runtime_error) when nothing of the main input arrives that is sent. An exception of a
   /// handler makes the state kServiceFailed with its text and comes out here.
   void run();
 
