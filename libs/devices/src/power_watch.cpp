@@ -100,6 +100,10 @@ double PowerWatch::step_s(const AxisReport& report) const {
   return seconds(std::max<std::int64_t>(0, report.base_ns - before_->base_ns));
 }
 
+bool PowerWatch::follows_gap(const AxisReport& report) const {
+  return before_ && report.base_ns - before_->base_ns > longest_step_ns_;
+}
+
 /// The speed grew by more than a motor can: this report or the one before is garbled.
 bool PowerWatch::faster(const AxisReport& report) const {
   const bool may = moves(report.phase) || moves(before_->phase);
@@ -119,8 +123,9 @@ bool PowerWatch::dropped(const AxisReport& report) const {
 /// The least speed in the direction of the motion, of a motor with power.
 double PowerWatch::due(const AxisReport& report, double least_aim) const {
   const double speed = direction_ * before_->speed;
-  // A gap in the reports shows nothing of the time in it.
-  const double gained_s = std::min(step_s(report), seconds(longest_step_ns_));
+  // A gap in the reports shows nothing of the time in it, in which commands may have been lost and
+  // an emulated base may have stood still with its machine.
+  const double gained_s = follows_gap(report) ? 0.0 : step_s(report);
   double least = speed;
   if (before_->phase == McpPhase::kAccelerate) {
     least = std::max(before_->due, speed) + kSure * acceleration_ * gained_s;
@@ -149,7 +154,7 @@ bool PowerWatch::rests(const AxisReport& report, double least_aim) {
     rests_since_ns_.reset();
     return false;
   }
-  if (!rests_since_ns_ || rest_phase_ != report.phase) {
+  if (!rests_since_ns_ || rest_phase_ != report.phase || follows_gap(report)) {
     rests_since_ns_ = report.base_ns;
     rest_phase_ = report.phase;
   }

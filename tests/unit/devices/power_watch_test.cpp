@@ -120,5 +120,32 @@ TEST_F(PowerWatchTest, AGapInTheReportsShowsNothingOfTheTimeInIt) {
   EXPECT_FALSE(report(0.2, McpPhase::kAccelerate));
 }
 
+// An emulated base stands still while its machine has no time for it, and its clock goes on.
+TEST_F(PowerWatchTest, AClockThatGoesOnWhileTheAxisStandsStillIsNoLossOfPower) {
+  constexpr double kFast = 1.5;
+  watch_.aim_at(0.9, kFast, now_ns_);
+  now_ns_ += 5 * kReportPeriod_ns;
+  EXPECT_FALSE(report(0.0, McpPhase::kStop));
+  EXPECT_FALSE(report(0.15, McpPhase::kAccelerate));
+  EXPECT_FALSE(report(0.30, McpPhase::kAccelerate));
+  now_ns_ += 8 * kReportPeriod_ns;
+  EXPECT_FALSE(report(0.45, McpPhase::kAccelerate));
+  EXPECT_FALSE(report(0.60, McpPhase::kAccelerate));
+  EXPECT_FALSE(report(0.75, McpPhase::kAccelerate));
+  EXPECT_FALSE(report(0.75, McpPhase::kAccelerate)) << "it may be garbled";
+  EXPECT_TRUE(report(0.75, McpPhase::kAccelerate)) << "it is held";
+}
+
+TEST_F(PowerWatchTest, ASlowStartThatAGapInterruptsIsNoRest) {
+  command(0.03);
+  now_ns_ += 4 * kReportPeriod_ns;
+  EXPECT_FALSE(report(0.0, McpPhase::kStop));
+  EXPECT_FALSE(report(0.0, McpPhase::kAccelerate));
+  now_ns_ += 8 * kReportPeriod_ns;
+  EXPECT_FALSE(report(0.005, McpPhase::kAccelerate)) << "it has just begun";
+  EXPECT_FALSE(report(0.015, McpPhase::kAccelerate));
+  EXPECT_FALSE(report(0.03, McpPhase::kConstant));
+}
+
 }  // namespace
 }  // namespace topogeo::devices

@@ -74,6 +74,8 @@ class PowerWatch {
   [[nodiscard]] std::size_t oldest_aim(std::int64_t stamp_ns) const;
   [[nodiscard]] double least_aim(std::int64_t stamp_ns) const;
   [[nodiscard]] double step_s(const AxisReport& report) const;
+  /// Reports are missing between this one and the one before.
+  [[nodiscard]] bool follows_gap(const AxisReport& report) const;
   [[nodiscard]] bool faster(const AxisReport& report) const;
   [[nodiscard]] bool dropped(const AxisReport& report) const;
   [[nodiscard]] double due(const AxisReport& report, double least_aim) const;
