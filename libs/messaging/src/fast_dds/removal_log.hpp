@@ -20,13 +20,18 @@ class RemovalLog {
   using Peer = eprosima::fastrtps::rtps::GuidPrefix_t;
 
   static constexpr std::size_t kMostPeers = 1024;
-  /// A packet may be overtaken by the removal that its peer sent after it, on another socket.
-  static constexpr std::chrono::milliseconds kUnderWay{500};
+  /// Packets that a peer sent before it left may come after its removal: on another socket, from
+  /// the queue of a process that stood still, or while a machine that is busy takes its time to end
+  /// the peer.
+  static constexpr std::chrono::milliseconds kUnderWay{2000};
+  /// One that has not left goes on: it announces itself once a second. Packets of so many seconds
+  /// after that prove it.
+  static constexpr unsigned kSeconds = 3;
 
   /// A message says that the peer has left.
   void removed(const Peer& peer, Time now);
 
-  /// A packet of the peer has come. Returns how many removals were forged, by that.
+  /// A packet of the peer has come. Returns how many removals are proven to be forged by now.
   std::uint64_t heard(const Peer& peer, Time now);
 
   /// The peer has left: its lease is over.
@@ -36,6 +41,8 @@ class RemovalLog {
   struct Removals {
     Time first;
     std::uint64_t count = 0;
+    Time heard;             // when the last second began in which a packet came
+    unsigned seconds = 0;   // with a packet, after kUnderWay
   };
 
   std::mutex mutex_;
