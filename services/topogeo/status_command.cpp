@@ -15,8 +15,10 @@
 
 #include "commands.hpp"
 #include "domain_view.hpp"
+#include "host_processes.hpp"
 #include "host_units.hpp"
 #include "status_table.hpp"
+#include "unheard_services.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -45,21 +47,33 @@ void print(const StatusOptions& options, const StatusTable& table,
 }
 
 int show_status(const StatusOptions& options) {
-  const messaging::Participant participant = join(options.view, "topogeo status", "status");
+  const messaging::Participant participant =
+      join(options.view, "topogeo status", "status", true);
   messaging::EventLoop loop;
   StatusTable table;
   table.expect(options.expected);
-  const bool of_this_host =
-      options.service.empty() && (options.host.empty() || options.host == support::host_name());
+  const bool asks_this_host = options.host.empty() || options.host == support::host_name();
+  const bool of_this_host = options.service.empty() && asks_this_host;
+  UnheardServices unheard(options.view.domain, options.view.partition);
   StatusTable::Clock::time_point units_due{};
   const auto show_units = [&](StatusTable::Clock::time_point now) {
     if (!of_this_host || now < units_due) return;
     table.show_units(host_units().idle);
     units_due = now + kUnitsPeriod;
   };
+  const auto show_unheard = [&](StatusTable::Clock::time_point now) {
+    if (options.host.empty()) unheard.discovered(participant.discovered(), now);
+    if (asks_this_host) unheard.running(host_processes(), support::host_name());
+    std::vector<UnheardService> silent = unheard.list(now);
+    std::erase_if(silent, [&](const UnheardService& one) {
+      return !options.service.empty() && one.name != options.service;
+    });
+    table.show_unheard(std::move(silent));
+  };
   loop.add<msg::ServiceStatus>(
       messaging::Reader<msg::ServiceStatus>(participant),
       [&](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
+        unheard.heard(status, info);
         if (!options.service.empty() && status.service() != options.service.c_str()) return;
         if (!options.host.empty() && status.host() != options.host.c_str()) return;
         table.update(status, info, StatusTable::Clock::now());
@@ -69,11 +83,16 @@ int show_status(const StatusOptions& options) {
   const bool redraw = options.view.watch && !options.json && ::isatty(STDOUT_FILENO) != 0;
   const Collected collected = collect_and_show(
       options.view, loop,
-      // One that is expected is waited for as long as the first one is.
-      [&] { return table.missing().empty() ? table.size() : 0; },
+      // One that is expected, or was discovered just now, is waited for as long as the first one is.
+      [&] {
+        const StatusTable::Clock::time_point now = StatusTable::Clock::now();
+        if (options.host.empty()) unheard.discovered(participant.discovered(), now);
+        return table.missing().empty() && !unheard.may_come(now) ? table.size() : 0;
+      },
       [&] {
         const StatusTable::Clock::time_point now = StatusTable::Clock::now();
         table.forget(now);
+        show_unheard(now);
         show_units(now);
         if (redraw) std::cout << "\x1b[H\x1b[J";  // home, clear to the end
         print(options, table, now);
@@ -81,8 +100,9 @@ int show_status(const StatusOptions& options) {
       });
   if (collected.found)
     return table.healthy(StatusTable::Clock::now()) ? service::kOk : service::kFailure;
+  show_unheard(StatusTable::Clock::now());
   show_units(StatusTable::Clock::now());
-  if (!options.expected.empty() || table.has_idle_units()) {
+  if (!options.expected.empty() || table.has_idle_units() || table.has_unheard()) {
     if (!options.view.watch) print(options, table, StatusTable::Clock::now());
     return service::kFailure;
   }
@@ -124,9 +144,9 @@ void add_status_command(command_line::Command& app, int& exit_code) {
       "one\n"
       "that ended without an order is lost, one that gets nothing of an input that another one "
       "sends\n"
-      "is deaf. What was dead before is not known, unless it is "
-      "expected\n"
-      "or a unit of systemd on this host, of which those are listed that do not run.\n"
+      "is deaf. One that is discovered, or runs on this host, and is not heard is silent, too. What\n"
+      "was dead before is not known, unless it is expected or a unit of systemd on this host, of\n"
+      "which those are listed that do not run.\n"
       "Exit code: 0 all services are well, 1 some are failed, lost, silent, deaf, missing or not\n"
       "running, or there are none.");
   command->callback([options, &exit_code] { exit_code = show_status(*options); });

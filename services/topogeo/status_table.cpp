@@ -19,6 +19,7 @@ namespace {
 /// Names of services matter more: they keep that much more.
 constexpr std::size_t kMoreOfServices = 6;
 constexpr const char* kMissing = "missing";
+constexpr const char* kSilentState = "silent";
 /// A fault this long ago is no reason for how a service is now.
 constexpr double kRecentError_s = 60.0;
 
@@ -85,6 +86,7 @@ void StatusTable::expect(const std::vector<std::string>& services) {
 std::vector<std::string> StatusTable::missing() const {
   std::vector<std::string> missing = expected_;
   for (const auto& [name, row] : rows_) std::erase(missing, name.first);
+  for (const UnheardService& one : unheard_) std::erase(missing, one.name);
   return missing;
 }
 
@@ -93,6 +95,7 @@ std::vector<StatusTable::Absent> StatusTable::absent() const {
   for (const std::string& service : missing()) {
     absent.push_back({service, kMissing, "expected, and not found"});
   }
+  for (const UnheardService& one : unheard_) absent.push_back({one.name, kSilentState, one.reason});
   for (const IdleUnit& unit : units_) {
     absent.push_back(
         {unit.name, unit.restarts ? "restarting" : "failed", "see journalctl -u " + unit.name});
@@ -130,7 +133,7 @@ bool StatusTable::healthy(Clock::time_point now) const {
 std::string StatusTable::state(const Row& row, Clock::time_point now) const {
   if (row.status.state() != msg::kServiceFailed) {
     if (row.lost) return "lost";
-    if (now - row.received > kSilent) return "silent";
+    if (now - row.received > kSilent) return kSilentState;
     if (!deafness(row, now).empty()) return "deaf";
   }
   return std::string(to_string(row.status.state()));
@@ -239,7 +242,7 @@ std::string StatusTable::text(Clock::time_point now, std::size_t columns) const 
 
 std::string StatusTable::sums(Clock::time_point now) const {
   std::uint64_t faults = 0;
-  std::size_t ill = 0;
+  std::size_t ill = unheard_.size();
   std::set<std::string> busy_hosts;
   for (const auto& [name, row] : rows_) {
     faults += row.status.fault_count();
@@ -253,7 +256,7 @@ std::string StatusTable::sums(Clock::time_point now) const {
                         support::printable(host));
   }
   return fmt::format("{} service{}, {}{}{} failed, lost, silent or deaf, {} fault{}\n{}",
-                     rows_.size(), rows_.size() == 1 ? "" : "s",
+                     rows_.size() + unheard_.size(), rows_.size() + unheard_.size() == 1 ? "" : "s",
                      missing == 0 ? "" : fmt::format("{} {}, ", missing, kMissing),
                      units_.empty() ? ""
                                     : fmt::format("{} unit{} of this host not running, ",

@@ -14,6 +14,7 @@
 
 #include "host_units.hpp"
 #include "text_grid.hpp"
+#include "unheard_services.hpp"
 
 namespace topogeo::cli {
 
@@ -39,11 +40,15 @@ class StatusTable {
   /// Units of this host that do not run though they should; in place of those before.
   void show_units(std::vector<IdleUnit> units) { units_ = std::move(units); }
 
+  /// Services that are there and were never heard, shown as "silent"; in place of those before.
+  void show_unheard(std::vector<UnheardService> unheard) { unheard_ = std::move(unheard); }
+
   [[nodiscard]] bool empty() const { return rows_.empty(); }
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
-  /// Expected services that have no row.
+  /// Expected services that have no row and are not unheard.
   [[nodiscard]] std::vector<std::string> missing() const;
   [[nodiscard]] bool has_idle_units() const { return !units_.empty(); }
+  [[nodiscard]] bool has_unheard() const { return !unheard_.empty(); }
   /// No service is failed, lost, silent, deaf or missing, and no unit idle.
   [[nodiscard]] bool healthy(Clock::time_point now) const;
 
@@ -95,6 +100,7 @@ class StatusTable {
 
   std::vector<std::string> expected_;
   std::vector<IdleUnit> units_;
+  std::vector<UnheardService> unheard_;
   std::map<Name, Row> rows_;
   std::map<messaging::Handle, Name> names_;
 };

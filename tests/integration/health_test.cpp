@@ -114,6 +114,18 @@ TEST_F(HealthTest, AKilledServiceIsLostToItsReaders) {
   ASSERT_TRUE(eventually("the planner to be lost", [&] { return gone_.contains("planner"); }));
 }
 
+// A status asked for later has never heard of it, nor does discovery know it.
+TEST_F(HealthTest, AServiceThatIsFrozenIsNamedByAStatusThatIsAskedForLater) {
+  set_longest_freeze(0);
+  const auto planner = start("planner");
+  ASSERT_TRUE(eventually_in_state("planner", msg::kServiceRunning));
+  planner->send_signal(SIGSTOP);
+  EXPECT_THAT(run_until({"status"}, 1, "is stopped, and no status of it comes"),
+              AllOf(HasSubstr("planner  silent"), HasSubstr("1 failed, lost, silent or deaf")));
+  planner->send_signal(SIGCONT);
+  EXPECT_THAT(run_until({"status"}, 0, "planner"), testing::Not(HasSubstr("silent ")));
+}
+
 // A status asked for later has never heard of it.
 TEST_F(HealthTest, AServiceThatDiedBeforeIsMissingWhereItIsExpected) {
   const auto planner = start("planner");

@@ -1,0 +1,126 @@
+#include "host_processes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+
+#include <unistd.h>
+
+#include "topogeo/messaging/participant.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+constexpr std::string_view kPackagePrefix = "topogeo-";
+constexpr auto kServices = std::to_array<std::string_view>(
+    {"ga_worker", "local_mapper", "localizer", "map_store", "navigator", "planner", "ros_bridge",
+     "sensor_gateway", "simulator", "web"});
+
+std::string content(const std::filesystem::path& file) {
+  std::ifstream input(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(input), {}};
+}
+
+/// Strings with a zero byte behind each.
+std::vector<std::string> strings(const std::string& bytes) {
+  std::vector<std::string> strings;
+  std::istringstream input(bytes);
+  for (std::string one; std::getline(input, one, '\0');) strings.push_back(one);
+  return strings;
+}
+
+/// The service that a program is; packages call it "topogeo-local-mapper". Empty: none.
+std::string service_of(const std::string& program) {
+  std::string name = std::filesystem::path(program).filename().string();
+  if (name.starts_with(kPackagePrefix)) {
+    name.erase(0, kPackagePrefix.size());
+    std::ranges::replace(name, '-', '_');
+  }
+  return std::ranges::find(kServices, name) == kServices.end() ? "" : name;
+}
+
+/// Of "--name VALUE" and "--name=VALUE"; the last one counts.
+std::optional<std::string> option(const std::vector<std::string>& words, const std::string& name) {
+  std::optional<std::string> value;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (words[i] == name && i + 1 < words.size()) value = words[i + 1];
+    if (words[i].starts_with(name + "=")) value = words[i].substr(name.size() + 1);
+  }
+  return value;
+}
+
+std::uint32_t domain_of(const std::vector<std::string>& words,
+                        const std::filesystem::path& process) {
+  constexpr std::string_view kVariable = "TOPOGEO_DOMAIN=";
+  std::string text = option(words, "--domain").value_or("");
+  if (text.empty()) {
+    for (const std::string& variable : strings(content(process / "environ"))) {
+      if (variable.starts_with(kVariable)) text = variable.substr(kVariable.size());
+    }
+  }
+  std::uint32_t domain = 0;
+  std::from_chars(text.data(), text.data() + text.size(), domain);
+  return domain;
+}
+
+/// Reads state and age of proc(5), /proc/PID/stat. False: it has ended.
+bool read_stat(HostProcess& process, const std::filesystem::path& folder, double up_s) {
+  const std::string stat = content(folder / "stat");
+  const std::size_t name_end = stat.rfind(')');
+  if (name_end == std::string::npos) return false;
+  std::istringstream fields(stat.substr(name_end + 1));
+  std::string state;
+  fields >> state;
+  constexpr int kBeforeStart = 18;  // fields 4 to 21; 22 is the start in clock ticks since boot
+  std::string skipped;
+  for (int i = 0; i < kBeforeStart; ++i) fields >> skipped;
+  double start_ticks = 0.0;
+  fields >> start_ticks;
+  if (!fields || state == "Z" || state == "X") return false;
+  process.stopped = state == "T" || state == "t";
+  process.age_s = up_s - start_ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
+  return true;
+}
+
+bool in_this_network(const std::filesystem::path& proc, const std::filesystem::path& process) {
+  std::error_code error;
+  const auto own = std::filesystem::read_symlink(proc / "self/ns/net", error);
+  if (error) return true;
+  const auto other = std::filesystem::read_symlink(process / "ns/net", error);
+  return error || own == other;
+}
+
+}  // namespace
+
+std::vector<HostProcess> host_processes(const std::filesystem::path& proc) {
+  std::vector<HostProcess> found;
+  double up_s = 0.0;
+  std::istringstream(content(proc / "uptime")) >> up_s;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(proc, error)) {
+    const std::string name = entry.path().filename().string();
+    HostProcess process;
+    const auto [end, number] = std::from_chars(name.data(), name.data() + name.size(), process.pid);
+    if (number != std::errc() || end != name.data() + name.size()) continue;
+    const std::vector<std::string> words = strings(content(entry.path() / "cmdline"));
+    if (words.empty()) continue;
+    process.service = service_of(words[0]);
+    if (process.service.empty() || !read_stat(process, entry.path(), up_s) ||
+        !in_this_network(proc, entry.path())) {
+      continue;
+    }
+    process.domain = domain_of(words, entry.path());
+    process.partition = option(words, "--partition").value_or(messaging::kDefaultPartition);
+    found.push_back(std::move(process));
+  }
+  std::ranges::sort(found, {}, &HostProcess::pid);
+  return found;
+}
+
+}  // namespace topogeo::cli

@@ -1,0 +1,71 @@
+// Services that are there and do not publish their status: discovery or the list of processes of
+// this host knows them.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <sys/types.h>
+
+#include "topogeo/messaging/discovery.hpp"
+#include "topogeo/messaging/events.hpp"
+#include "topogeo/msg/status.h"
+
+#include "host_processes.hpp"
+
+namespace topogeo::cli {
+
+/// One of them, for the table of `topogeo status`.
+struct UnheardService {
+  std::string name;    ///< "localizer"
+  std::string reason;  ///< "discovery finds robot/localizer, and it publishes no status"
+};
+
+/// The caller passes the time, which never goes back.
+class UnheardServices {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  /// A service has that long for its first status, from its discovery on.
+  static constexpr std::chrono::milliseconds kFirstStatus{1500};
+  /// A process that was started less than so long ago may not have joined its domain yet.
+  static constexpr double kStarting_s = 10.0;
+
+  /// Services of that domain and partition ("*": of all).
+  UnheardServices(std::uint32_t domain, std::string partition)
+      : domain_(domain), partition_(std::move(partition)) {}
+
+  /// A status has come.
+  void heard(const msg::ServiceStatus& status, const messaging::SampleInfo& info);
+  /// What discovery knows now, in place of what it knew before.
+  void discovered(std::span<const messaging::RemoteEndpoint> endpoints, Time now);
+  /// The same of the services of the host with that name.
+  void running(std::vector<HostProcess> processes, const std::string& host);
+
+  /// Whether one that is discovered may still publish its first status.
+  [[nodiscard]] bool may_come(Time now) const;
+  /// Those that should have been heard by now, each once, by name.
+  [[nodiscard]] std::vector<UnheardService> list(Time now) const;
+
+ private:
+  struct Writer {
+    std::string participant;
+    Time since;
+  };
+
+  std::uint32_t domain_;
+  std::string partition_;
+  std::set<messaging::Handle> heard_;                         // writers of statuses
+  std::set<std::pair<std::string, std::uint32_t>> processes_heard_;  // host, process
+  std::map<messaging::Handle, Writer> writers_;               // that are discovered
+  std::vector<HostProcess> running_;
+  std::string host_;
+};
+
+}  // namespace topogeo::cli

@@ -1,0 +1,109 @@
+// A frozen planner, and what is heard beside it. The tests pass the time.
+#include "topogeo/unheard_services.hpp"
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/messaging/topics.hpp"
+#include "topogeo/status_table.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+messaging::RemoteEndpoint status_writer(std::uint8_t number, const std::string& participant) {
+  messaging::RemoteEndpoint endpoint;
+  endpoint.id.bytes[0] = number;
+  endpoint.participant = participant;
+  endpoint.topic = std::string(messaging::kServiceStatus);
+  endpoint.writer = true;
+  endpoint.partitions = {"topogeo"};
+  return endpoint;
+}
+
+class UnheardServicesTest : public testing::Test {
+ protected:
+  void hear(std::uint8_t writer, std::uint32_t pid) {
+    msg::ServiceStatus status;
+    messaging::set_text(status.host(), "robot", "host");
+    status.process_id(pid);
+    messaging::SampleInfo info;
+    info.writer.bytes[0] = writer;
+    unheard_.heard(status, info);
+  }
+  static HostProcess process(pid_t pid, const std::string& service) {
+    return {pid, service, 3, "topogeo", false, 60.0};
+  }
+
+  UnheardServices::Time now_{};
+  UnheardServices unheard_{3, "*"};
+};
+
+TEST_F(UnheardServicesTest, AreThoseThatDiscoveryFindsAndNoStatusComesOf) {
+  const std::vector<messaging::RemoteEndpoint> endpoints = {status_writer(1, "r1/planner"),
+                                                            status_writer(2, "r1/localizer")};
+  unheard_.discovered(endpoints, now_);
+  hear(2, 20);
+  EXPECT_TRUE(unheard_.may_come(now_ + milliseconds(1000)));
+  EXPECT_THAT(unheard_.list(now_ + milliseconds(1000)), IsEmpty()) << "it may still come";
+  now_ += milliseconds(1600);
+  unheard_.discovered(endpoints, now_);
+  EXPECT_FALSE(unheard_.may_come(now_));
+  ASSERT_THAT(unheard_.list(now_), SizeIs(1));
+  EXPECT_EQ(unheard_.list(now_)[0].name, "planner");
+  EXPECT_THAT(unheard_.list(now_)[0].reason, HasSubstr("'r1/planner'"));
+  hear(1, 10);
+  EXPECT_THAT(unheard_.list(now_), IsEmpty());
+}
+
+TEST_F(UnheardServicesTest, AreThoseThatRunOnThisHost) {
+  HostProcess frozen = process(10, "planner");
+  frozen.stopped = true;
+  unheard_.running({frozen, process(20, "localizer")}, "robot");
+  hear(2, 20);
+  ASSERT_THAT(unheard_.list(now_), SizeIs(1));
+  EXPECT_EQ(unheard_.list(now_)[0].name, "planner");
+  EXPECT_THAT(unheard_.list(now_)[0].reason, HasSubstr("process 10 of this host is stopped"));
+}
+
+TEST_F(UnheardServicesTest, AreNamedOnce) {
+  const std::vector<messaging::RemoteEndpoint> endpoints = {status_writer(1, "r1/planner")};
+  unheard_.discovered(endpoints, now_);
+  unheard_.running({process(10, "planner")}, "robot");
+  EXPECT_THAT(unheard_.list(now_ + milliseconds(1600)), SizeIs(1));
+}
+
+TEST_F(UnheardServicesTest, AreOfTheDomainAndPartitionThatIsShown) {
+  HostProcess other = process(10, "planner");
+  other.domain = 4;
+  HostProcess young = process(11, "planner");
+  young.age_s = 2.0;
+  unheard_.running({other, young}, "robot");
+  EXPECT_THAT(unheard_.list(now_), IsEmpty());
+  UnheardServices of_partition(3, "run-1");
+  of_partition.running({process(12, "planner")}, "robot");
+  const std::vector<messaging::RemoteEndpoint> endpoints = {status_writer(1, "r1/planner")};
+  of_partition.discovered(endpoints, now_);
+  EXPECT_THAT(of_partition.list(now_ + milliseconds(9000)), IsEmpty());
+}
+
+TEST_F(UnheardServicesTest, AreInTheTable) {
+  StatusTable table;
+  table.expect({"planner"});
+  table.show_unheard({{"planner", "process 10 of this host is stopped, and no status of it comes"}});
+  EXPECT_FALSE(table.healthy(now_));
+  EXPECT_THAT(table.missing(), IsEmpty());
+  EXPECT_THAT(table.text(now_), HasSubstr("silent"));
+  EXPECT_THAT(table.text(now_), HasSubstr("1 service, 1 failed, lost, silent or deaf"));
+  EXPECT_THAT(table.json(now_), HasSubstr("process 10 of this host is stopped"));
+}
+
+}  // namespace
+}  // namespace topogeo::cli
