@@ -1,4 +1,7 @@
 // Drives the robot along the routes of the planner.
+#include <filesystem>
+#include <string>
+
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
 
@@ -7,12 +10,19 @@
 int main(int argc, char** argv) {
   using namespace topogeo;  // NOLINT(google-build-using-namespace)
   std::string map_robot;
+  std::filesystem::path memory;
   return service::run_service(
       argc, argv, "navigator", "Drives to goals along the planner's routes.",
-      [&](command_line::Command& app) { service::add_map_option(app, map_robot); },
+      [&](command_line::Command& app) {
+        service::add_map_option(app, map_robot);
+        app.add_option("--memory", memory,
+                       "keeps the goal, so that a navigator that is started again drives on to it "
+                       "though its client is gone; best in /run")
+            ->type_name("FILE");
+      },
       [&](const service::Setup& setup) {
         service::Service service(service::with_map_of(setup, map_robot));
-        const navigator::NavigatorService navigator(service);
+        const navigator::NavigatorService navigator(service, memory);
         service.run();
       });
 }

@@ -51,10 +51,11 @@ bool differs(const navigation::NavigatorStatus& a, const navigation::NavigatorSt
 
 }  // namespace
 
-NavigatorService::NavigatorService(service::Service& service)
+NavigatorService::NavigatorService(service::Service& service, const std::filesystem::path& memory)
     : service_(service),
       clock_(host_offset_ns()),
       navigator_(service.setup().config.config.navigator),
+      memory_(memory),
       live_map_(service),
       commands_(service.advertise<msg::MotionCommand>()),
       statuses_(service.advertise<msg::NavigatorStatus>()),
@@ -63,6 +64,7 @@ NavigatorService::NavigatorService(service::Service& service)
   if (config.pose_source == navigation::PoseSource::kMarkov) {
     poses_.emplace(service.advertise<msg::LivePose>());
   }
+  resume();
   listen_to_orders();
   listen_to_sensors();
   messaging::EventLoop& loop = service_.loop();
@@ -82,6 +84,16 @@ NavigatorService::~NavigatorService() {
   } catch (const std::exception& error) {
     spdlog::error("the last command was not sent: {}", error.what());
   }
+}
+
+void NavigatorService::resume() {
+  const std::optional<RememberedGoal> goal = memory_.load();
+  if (!goal) return;
+  spdlog::info("goes on with goal {}{}", goal->order.goal_id, goal->paused ? ", paused" : "");
+  goal_ = goal->order;
+  paused_ = goal->paused;
+  navigator_.set_goal(*goal_);
+  if (paused_) navigator_.pause();
 }
 
 void NavigatorService::listen_to_orders() {
@@ -231,6 +243,7 @@ void NavigatorService::tick() {
   publish_pose();
   publish_status(now_ns);
   publish_blockages(now_ns);
+  memory_.store(goal_ ? std::optional(RememberedGoal{*goal_, paused_}) : std::nullopt);
 }
 
 void NavigatorService::publish_pose() {

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -22,13 +23,17 @@
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/stamp_clock.hpp"
 
+#include "goal_memory.hpp"
+
 namespace topogeo::navigator {
 
 /// Lives in the loop of its service.
 class NavigatorService {
  public:
-  /// Throws std::invalid_argument for a configuration out of range.
-  explicit NavigatorService(service::Service& service);
+  /// In the file `memory` (empty: none) it keeps its goal, to go on with it in its next life.
+  /// Throws std::invalid_argument for a configuration out of range, std::runtime_error when the
+  /// file cannot be made.
+  explicit NavigatorService(service::Service& service, const std::filesystem::path& memory = {});
   NavigatorService(const NavigatorService&) = delete;
   NavigatorService& operator=(const NavigatorService&) = delete;
   /// The last command is to stand still.
@@ -52,6 +57,8 @@ class NavigatorService {
   /// Sets the clock by a message that has just come.
   void note_stamp(std::int64_t stamp_ns);
 
+  /// The goal of the life before, which its client may not send again.
+  void resume();
   void tick();
   /// The time of the sensors has gone back: begins again with the goal at hand.
   void begin_again();
@@ -69,6 +76,7 @@ class NavigatorService {
 
   std::optional<navigation::GoalOrder> goal_;
   bool paused_ = false;
+  GoalMemory memory_;
   std::optional<msg::Route> route_;  // the last one
   std::array<std::optional<std::int64_t>, kSources> last_ns_;
 

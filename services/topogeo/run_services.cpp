@@ -207,7 +207,9 @@ void start_services(ProcessGroup& processes, const RunOptions& options,
   start("planner", common);
   // The robot of a log cannot be sent.
   const bool replay = !options.job.log.empty();
-  if (options.goal || options.explore || (options.web && !replay)) start("navigator", common);
+  if (options.goal || options.explore || (options.web && !replay)) {
+    start("navigator", common + memory_argument(partition, "goal"));
+  }
   // Without a laser there is nothing to match, and the navigator finds the robot.
   if (options.simulation && options.simulation->no_laser) {
     start_source(processes, options, partition, common);

@@ -1,0 +1,42 @@
+// The goal that the robot is on its way to, in a small file that outlives a navigator that is
+// killed. The client that gave it may be gone: its order is nowhere else.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "topogeo/navigation/navigator_inputs.hpp"
+#include "topogeo/support/record_file.hpp"
+
+namespace topogeo::navigator {
+
+struct RememberedGoal {
+  navigation::GoalOrder order;
+  bool paused = false;
+};
+
+class GoalMemory {
+ public:
+  /// An empty path: nothing is kept. Throws std::runtime_error naming the file when it cannot be
+  /// opened or made.
+  explicit GoalMemory(const std::filesystem::path& path);
+
+  /// The goal that was stored last; empty when there is none.
+  [[nodiscard]] std::optional<RememberedGoal> load() const;
+  /// Writes only what has changed. Empty: the robot has no goal.
+  void store(const std::optional<RememberedGoal>& goal);
+
+ private:
+  struct Record {
+    std::uint64_t goal_id = 0;  // 0: none
+    std::uint32_t look_around = 0;
+    std::uint32_t paused = 0;
+    bool operator==(const Record&) const = default;
+  };
+
+  support::RecordFile<Record> file_;
+  std::optional<Record> stored_;  // by this process
+};
+
+}  // namespace topogeo::navigator
