@@ -86,11 +86,13 @@ void NavigatorOnRobot::start() {
       service::to_messages(map_, "robot", stamp_ns(), kMapVersion);
   for (const msg::GridTile& tile : messages.tiles) ASSERT_TRUE(tiles_.write(tile));
   ASSERT_TRUE(maps_.write(messages.summary));
-  navigator_ = std::make_unique<Program>(
-      scratch_, "navigator",
-      std::vector<std::string>{"--domain", domain_, "--partition", kPartition});
+  status_.reset();
+  service_status_.reset();
+  std::vector<std::string> words = {"--domain", domain_, "--partition", kPartition};
+  if (!memory_.empty()) words.insert(words.end(), {"--memory", memory_.string()});
+  navigator_ = std::make_unique<Program>(scratch_, "navigator", words);
   ASSERT_TRUE(wait_for("the navigator to have map and sensors", [this] {
-    return status_ && scans_.matched() > 0 && poses_.matched() > 0 && goals_.matched() > 1 &&
+    return status_ && scans_.matched() > 0 && poses_.matched() > 0 && (!goals_ || goals_->matched() > 1) &&
            routes_.matched() > 0 && counter("map_version") == static_cast<double>(kMapVersion);
   })) << navigator_->err();
 }
@@ -174,7 +176,7 @@ void NavigatorOnRobot::send_goal(std::uint64_t id, const Eigen::Vector2d& target
   goal.client_id = "test";
   goal.kind = msg::kGoalPosition;
   goal.target = target_m;
-  ASSERT_TRUE(goals_.write(service::to_msg(goal, "robot", stamp_ns(), sent_++)));
+  ASSERT_TRUE(goals_->write(service::to_msg(goal, "robot", stamp_ns(), sent_++)));
 }
 
 void NavigatorOnRobot::send_order(msg::GoalKind kind, std::uint64_t id) {
@@ -182,7 +184,7 @@ void NavigatorOnRobot::send_order(msg::GoalKind kind, std::uint64_t id) {
   order.goal_id = id;
   order.client_id = "test";
   order.kind = kind;
-  ASSERT_TRUE(goals_.write(service::to_msg(order, "robot", stamp_ns(), sent_++)));
+  ASSERT_TRUE(goals_->write(service::to_msg(order, "robot", stamp_ns(), sent_++)));
 }
 
 int NavigatorOnRobot::wait_for_end(Program& program) {

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -42,6 +43,8 @@ class NavigatorOnRobot : public testing::Test {
   /// A goal at a point of the map frame, which is that of the world.
   void send_goal(std::uint64_t id, const Eigen::Vector2d& target_m);
   void send_order(msg::GoalKind kind, std::uint64_t id = 0);
+  /// The client that has given the goal ends.
+  void lose_client() { goals_.reset(); }
   /// As far as what they publish goes, this process is a planner, too.
   void pretend_planner();
 
@@ -84,6 +87,7 @@ class NavigatorOnRobot : public testing::Test {
   std::optional<msg::NavigatorStatus> status_;
   std::optional<msg::ServiceStatus> service_status_;
   std::unique_ptr<Program> navigator_;
+  std::filesystem::path memory_;  // of the navigator; empty: none
 
  private:
   void move();
@@ -98,7 +102,7 @@ class NavigatorOnRobot : public testing::Test {
   messaging::Writer<msg::LivePose> poses_;
 
  private:
-  messaging::Writer<msg::Goal> goals_;
+  std::optional<messaging::Writer<msg::Goal>> goals_;  // none: the client is gone
   messaging::Writer<msg::Route> routes_;
   messaging::Writer<msg::GridTile> tiles_;
   messaging::Writer<msg::HybridMap> maps_;

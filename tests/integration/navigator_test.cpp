@@ -66,6 +66,25 @@ TEST_F(NavigatorOnRobot, PausesResumesAndCancels) {
   EXPECT_LT(robot_.T_world_robot().x_m, 4.4);
 }
 
+// As when the page that gave the goal dies with the navigator.
+TEST_F(NavigatorOnRobot, DrivesOnToAGoalWhoseClientIsGoneInItsNextLife) {
+  memory_ = scratch_ / "goal";
+  start();
+  send_goal(7, kGoal_m);
+  ASSERT_TRUE(wait_for("the robot to drive", [&] { return rolls(); }));
+  navigator_->send_signal(SIGKILL);
+  ASSERT_EQ(wait_for_end(*navigator_), 128 + SIGKILL);
+  lose_client();
+  start();
+  EXPECT_TRUE(wait_for("the arrival", [&] { return is(msg::kNavigatorArrived); }))
+      << navigator_->err();
+  EXPECT_EQ(status_->goal_id(), 7U);
+  navigator_->send_signal(SIGKILL);
+  ASSERT_EQ(wait_for_end(*navigator_), 128 + SIGKILL);
+  start();
+  EXPECT_TRUE(is(msg::kNavigatorIdle)) << "the goal has been reached";
+}
+
 TEST_F(NavigatorOnRobot, ItsLastCommandIsToStand) {
   start();
   send_goal(1, {4.5, 1.0});
