@@ -243,6 +243,10 @@ void NavigatorService::tick() {
   publish_pose();
   publish_status(now_ns);
   publish_blockages(now_ns);
+  remember();
+}
+
+void NavigatorService::remember() {
   memory_.store(goal_ ? std::optional(RememberedGoal{*goal_, paused_}) : std::nullopt);
 }
 
@@ -308,6 +312,7 @@ void NavigatorService::publish_status(std::int64_t now_ns) {
       service_.status().add_to_counter("arrivals");
       goal_.reset();
     }
+    remember();  // before others can know
     service_.status().set_state(msg::kServiceRunning,
                                 std::string(navigation::describe(status.state)) +
                                     (status.message.empty() ? "" : ": " + status.message));

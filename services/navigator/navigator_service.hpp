@@ -59,6 +59,7 @@ class NavigatorService {
 
   /// The goal of the life before, which its client may not send again.
   void resume();
+  void remember();
   void tick();
   /// The time of the sensors has gone back: begins again with the goal at hand.
   void begin_again();
