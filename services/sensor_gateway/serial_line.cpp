@@ -49,6 +49,7 @@ void SerialLine::on_event(const PortEvent& event) {
       open_ = true;
       why_closed_.clear();
       epoch_opened_ = event.epoch;
+      given_ = 0;
       ++statistics_.opened;
       driver_.opened(last_ns_);
       break;
@@ -70,6 +71,9 @@ void SerialLine::on_event(const PortEvent& event) {
       }
       driver_.receive(event.bytes, last_ns_);
       break;
+    case PortEvent::Kind::kWritten:
+      if (event.orders == given_) driver_.written(last_ns_);
+      break;
   }
   after(last_ns_);
 }
@@ -81,7 +85,10 @@ void SerialLine::after(std::int64_t now_ns) {
 
 void SerialLine::carry_out() {
   std::vector<devices::LineOrder> orders = driver_.take_orders();
-  if (!orders.empty() && open_) port_->write(std::move(orders), epoch_opened_);
+  if (!orders.empty() && open_) {
+    given_ += orders.size();
+    port_->write(std::move(orders), epoch_opened_);
+  }
   arm();
 }
 

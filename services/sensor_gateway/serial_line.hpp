@@ -66,6 +66,7 @@ class SerialLine {
   bool open_ = false;
   std::string why_closed_;
   std::uint64_t epoch_opened_ = 0;
+  std::uint64_t given_ = 0;  // orders, since the port was opened
   std::int64_t last_ns_ = 0;
   LineStatistics statistics_;
   std::uint64_t timer_ = 0;

@@ -116,6 +116,7 @@ class SerialPort::Impl {
   void read();
   /// Takes what is due from the queue, unless a write is under way.
   void carry_out();
+  void finish_order();
   void change(const devices::LineSettings& settings);
   [[nodiscard]] bool drain();
   void lose(const std::string& why);
@@ -133,6 +134,7 @@ class SerialPort::Impl {
   std::uint64_t epoch_opened_ = 0;
   std::array<std::uint8_t, 4096> buffer_{};
   std::deque<LineOrder> queue_;
+  std::uint64_t finished_ = 0;  // orders, since the port was opened
   bool writing_ = false;
   std::vector<std::shared_ptr<std::promise<void>>> waiters_;
   std::thread thread_;
@@ -153,6 +155,7 @@ void SerialPort::Impl::open() {
     return;
   }
   epoch_opened_ = ++epoch_;
+  finished_ = 0;
   notify(PortEvent::Kind::kOpened);
   read();
 }
@@ -200,7 +203,7 @@ void SerialPort::Impl::carry_out() {
       continue;  // the queue is empty when that failed
     }
     if (queue_.front().bytes.empty()) {
-      queue_.pop_front();
+      finish_order();
       continue;
     }
     writing_ = true;
@@ -212,13 +215,19 @@ void SerialPort::Impl::carry_out() {
                           lose(error.message());
                           return;
                         }
-                        queue_.pop_front();
+                        finish_order();
                         carry_out();
                       });
   }
   if (writing_ || waiters_.empty()) return;
   if (port_.is_open() && !drain()) lose("takes no bytes");
   for (const auto& waiter : std::exchange(waiters_, {})) waiter->set_value();
+}
+
+void SerialPort::Impl::finish_order() {
+  queue_.pop_front();
+  ++finished_;
+  if (queue_.empty()) notify(PortEvent::Kind::kWritten);
 }
 
 void SerialPort::Impl::change(const devices::LineSettings& settings) {
@@ -275,7 +284,7 @@ void SerialPort::Impl::try_later() {
 
 void SerialPort::Impl::notify(PortEvent::Kind kind, std::string why,
                               std::vector<std::uint8_t> bytes) {
-  notify_({kind, steady_now_ns(), epoch_, std::move(why), std::move(bytes)});
+  notify_({kind, steady_now_ns(), epoch_, std::move(why), std::move(bytes), finished_});
 }
 
 SerialPort::SerialPort(const PortOptions& options, std::function<void(PortEvent)> notify) {

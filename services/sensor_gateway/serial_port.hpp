@@ -31,12 +31,13 @@ struct PortOptions {
 
 /// What happened to a port.
 struct PortEvent {
-  enum class Kind { kOpened, kNotOpened, kLost, kBytes };
+  enum class Kind { kOpened, kNotOpened, kLost, kBytes, kWritten };
   Kind kind{};
   std::int64_t stamp_ns = 0;
   std::uint64_t epoch = 0;  ///< see SerialPort::epoch
   std::string why;          ///< kNotOpened, kLost: one line naming the port
   std::vector<std::uint8_t> bytes;
+  std::uint64_t orders = 0;  ///< kWritten: how many are carried out since the port was opened
 };
 
 class SerialPort {

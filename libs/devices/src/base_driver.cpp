@@ -60,6 +60,7 @@ void BaseDriver::opened(std::int64_t now_ns) {
 
 void BaseDriver::lost(std::int64_t now_ns) {
   link_.close();
+  orders_written_ = true;  // they are lost with the port
   follow(BaseLink::Change::kOffline, now_ns);
   update_status();
 }
@@ -79,6 +80,7 @@ void BaseDriver::tick(std::int64_t now_ns) {
   follow(link_.tick(now_ns), now_ns);
   if (guard_ && term_.velocity_holds() && now_ns >= judge_ns_) judge_again(now_ns);
   idle_ = !link_.closed() && now_ns >= writer_.free_ns() && !write_next(now_ns);
+  confirm_aim(now_ns);
   update_status();
 }
 
@@ -94,7 +96,18 @@ std::int64_t BaseDriver::due_ns() const {
 }
 
 std::vector<LineOrder> BaseDriver::take_orders() {
-  return writer_.take_orders();
+  std::vector<LineOrder> orders = writer_.take_orders();
+  if (!orders.empty()) orders_written_ = false;
+  return orders;
+}
+
+void BaseDriver::confirm_aim(std::int64_t now_ns) {
+  if (aim_ordered_ && orders_written_ && !writer_.has_orders()) monitor_.written(now_ns);
+}
+
+void BaseDriver::aim_at(const BaseVelocity& velocity, std::int64_t now_ns) {
+  aim_ordered_ = false;
+  monitor_.aim_at(velocity, motion_.limits(), now_ns);
 }
 
 std::vector<BaseOdometry> BaseDriver::take_odometry() {
@@ -253,7 +266,7 @@ BaseVelocity BaseDriver::guarded(std::int64_t now_ns) {
 
 void BaseDriver::judge_again(std::int64_t now_ns) {
   motion_.want_velocity(guarded(now_ns));
-  monitor_.aim_at(motion_.aim(), motion_.limits(), now_ns);
+  aim_at(motion_.aim(), now_ns);
 }
 
 bool BaseDriver::advance(double distance_m, std::int64_t valid_until_ns, std::int64_t now_ns) {
@@ -279,7 +292,7 @@ void BaseDriver::start_relative(std::int64_t valid_until_ns, std::int64_t now_ns
 }
 
 void BaseDriver::aim_changed(std::int64_t now_ns) {
-  monitor_.aim_at(motion_.aim(), motion_.limits(), now_ns);
+  aim_at(motion_.aim(), now_ns);
   tick(now_ns);
 }
 
@@ -287,7 +300,7 @@ void BaseDriver::aim_changed(std::int64_t now_ns) {
 void BaseDriver::stand(std::int64_t now_ns) {
   term_.clear();
   motion_.want_halt();
-  monitor_.aim_at({}, motion_.limits(), now_ns);
+  aim_at({}, now_ns);
 }
 
 /// The same, whatever was sent before.
@@ -336,6 +349,7 @@ std::optional<McpOrder> BaseDriver::next_order(std::int64_t now_ns) {
     if (motion_.relative_sent()) term_.relative_sent(now_ns);
     return order;
   }
+  aim_ordered_ = true;
   return upkeep_.next(motion_, now_ns);
 }
 

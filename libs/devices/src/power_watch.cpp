@@ -45,7 +45,10 @@ PowerWatch::PowerWatch(const PowerTolerance& tolerance, std::int64_t period_ns)
       longest_step_ns_(std::llround(kLongestStep * static_cast<double>(period_ns))) {}
 
 void PowerWatch::aim_at(double speed, double acceleration, std::int64_t now_ns) {
-  if (acceleration != acceleration_) changed_ns_ = now_ns;
+  if (acceleration != acceleration_) {
+    changed_ns_ = now_ns;
+    change_written_ = false;
+  }
   acceleration_ = acceleration;
   const double direction = speed == 0.0 ? 0.0 : std::copysign(1.0, speed);
   if (direction != direction_) {
@@ -54,10 +57,24 @@ void PowerWatch::aim_at(double speed, double acceleration, std::int64_t now_ns) 
   }
   direction_ = direction;
   if (!aims_.empty() && aims_.back().speed == speed) return;
-  aims_.push_back({now_ns, speed});
+  aims_.push_back({now_ns, speed, std::nullopt});
   // Aims that were over before the oldest time that may be asked for are dropped.
   constexpr std::int64_t kKept_ns = 2'000'000'000;
-  while (aims_.size() > 2 && aims_[1].since_ns < now_ns - kKept_ns) aims_.pop_front();
+  while (aims_.size() > 2 && is_obeyed(aims_[1], now_ns - kKept_ns)) aims_.pop_front();
+  // Of a port that takes nothing for long the lowest and the latest count.
+  constexpr std::size_t kMostAims = 1000;
+  if (aims_.size() > kMostAims) aims_.erase(aims_.begin() + 1);
+}
+
+void PowerWatch::written(std::int64_t now_ns) {
+  for (auto aim = aims_.rbegin(); aim != aims_.rend() && !aim->written_ns; ++aim) {
+    aim->written_ns = now_ns;
+  }
+  if (!std::exchange(change_written_, true)) changed_ns_ = now_ns;
+}
+
+bool PowerWatch::is_obeyed(const Aim& aim, std::int64_t stamp_ns) {
+  return aim.written_ns && *aim.written_ns <= stamp_ns - kObeys_ns;
 }
 
 void PowerWatch::forget() {
@@ -68,7 +85,7 @@ void PowerWatch::forget() {
 
 std::size_t PowerWatch::oldest_aim(std::int64_t stamp_ns) const {
   std::size_t oldest = aims_.size();
-  while (oldest > 0 && aims_[oldest - 1].since_ns > stamp_ns - kObeys_ns) --oldest;
+  while (oldest > 0 && !is_obeyed(aims_[oldest - 1], stamp_ns)) --oldest;
   return oldest == 0 ? 0 : oldest - 1;
 }
 
@@ -164,7 +181,7 @@ bool PowerWatch::rests(const AxisReport& report, double least_aim) {
 bool PowerWatch::take(const AxisReport& report) {
   const bool garbled = before_ && faster(report);
   if (before_ && before_->suspect && !garbled) return true;
-  if (aims_.empty() || report.stamp_ns < changed_ns_ + kObeys_ns) {
+  if (aims_.empty() || !change_written_ || report.stamp_ns < changed_ns_ + kObeys_ns) {
     before_.reset();
     return false;
   }

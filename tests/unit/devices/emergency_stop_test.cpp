@@ -69,6 +69,22 @@ TEST_P(EmergencyStopOn, IsNeverNoticedWhereTheHostIsBusy) {
   }
 }
 
+/// The gateway has time, and the thread that writes to its port has to wait for a CPU.
+TEST_P(EmergencyStopOn, IsNeverNoticedWhereWhatIsCommandedIsWrittenLate) {
+  BaseOnLine all(settings());
+  all.base.set_noise(kLinearNoise, kAngularNoise);
+  ASSERT_TRUE(all.start());
+  OrdinaryDrive drive(5);
+  support::Random random(6);
+  for (int i = 0; i < (all_of_them() ? 5000 : 500); ++i) {
+    follow(all, drive, 400 * kMs);
+    all.line.hold_orders(true);
+    follow(all, drive, static_cast<std::int64_t>(random.below(900)) * kMs);
+    all.line.hold_orders(false);
+    ASSERT_NE(all.driver.status().state, BaseState::kEmergencyStop) << i;
+  }
+}
+
 /// How the wheels turn with and without the emergency stop.
 struct TwinDrive {
   explicit TwinDrive(const BaseSettings& settings, std::uint64_t seed)

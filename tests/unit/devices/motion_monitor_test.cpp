@@ -10,6 +10,7 @@ class MotionMonitorTest : public ::testing::Test {
   void command(double linear_mps) {
     motion_.want_velocity({linear_mps, 0.0});
     monitor_.aim_at(motion_.aim(), motion_.limits(), now_ns_);
+    monitor_.written(now_ns_);
   }
   /// A report a tenth of a second after the one before.
   void report(double linear_mps, McpPhase phase) {

@@ -13,9 +13,13 @@ class PowerWatchTest : public ::testing::Test {
  protected:
   void SetUp() override {
     watch_.aim_at(0.0, kAcceleration, 0);
+    watch_.written(0);
     now_ns_ = 1'000'000'000;
   }
-  void command(double speed) { watch_.aim_at(speed, kAcceleration, now_ns_); }
+  void command(double speed) {
+    watch_.aim_at(speed, kAcceleration, now_ns_);
+    watch_.written(now_ns_);
+  }
   /// The next report, a tenth of a second after the one before. True: power is lost.
   bool report(double speed, McpPhase phase, double sign = 1.0) {
     now_ns_ += kReportPeriod_ns;
@@ -76,6 +80,22 @@ TEST_F(PowerWatchTest, ASlowerCommandMayBeInForceForAWhile) {
   EXPECT_FALSE(report(0.3, McpPhase::kConstant));
 }
 
+// The thread that writes to the port has to wait for a CPU, while this one has time.
+TEST_F(PowerWatchTest, ACommandCountsOnceItIsWritten) {
+  reach(0.3);
+  command(0.0);
+  watch_.aim_at(0.3, kAcceleration, now_ns_);
+  EXPECT_FALSE(report(0.3, McpPhase::kConstant)) << "the halt is on its way";
+  for (const double speed : {0.25, 0.2, 0.15, 0.1, 0.05}) {
+    EXPECT_FALSE(report(speed, McpPhase::kDecelerate));
+  }
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(report(0.0, McpPhase::kHalt)) << i;
+  watch_.written(now_ns_);
+  EXPECT_FALSE(report(0.0, McpPhase::kHalt));
+  EXPECT_FALSE(report(0.0, McpPhase::kHalt)) << "it may take so long to obey";
+  EXPECT_FALSE(report(0.05, McpPhase::kAccelerate));
+}
+
 TEST_F(PowerWatchTest, BrakesWithoutPowerAreHarderThanAMotor) {
   reach(0.4);
   command(0.0);
@@ -124,6 +144,7 @@ TEST_F(PowerWatchTest, AGapInTheReportsShowsNothingOfTheTimeInIt) {
 TEST_F(PowerWatchTest, AClockThatGoesOnWhileTheAxisStandsStillIsNoLossOfPower) {
   constexpr double kFast = 1.5;
   watch_.aim_at(0.9, kFast, now_ns_);
+  watch_.written(now_ns_);
   now_ns_ += 5 * kReportPeriod_ns;
   EXPECT_FALSE(report(0.0, McpPhase::kStop));
   EXPECT_FALSE(report(0.15, McpPhase::kAccelerate));

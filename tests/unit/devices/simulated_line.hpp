@@ -66,6 +66,10 @@ class SimulatedLine {
   /// and what comes waits in the port.
   void freeze_host(bool frozen) { frozen_ = frozen; }
 
+  /// Nothing is written, though the driver has time and what comes is read: the thread of the port
+  /// waits for a CPU.
+  void hold_orders(bool held) { held_ = held; }
+
   /// Lets `duration_ns` pass.
   void run_for(std::int64_t duration_ns) {
     run_until(duration_ns, [] { return false; });
@@ -88,7 +92,7 @@ class SimulatedLine {
   void step(std::int64_t end_ns) {
     std::int64_t next_ns = std::min({end_ns, read_due_ns_, device_.due_ns()});
     if (plugged_ && !frozen_) next_ns = std::min(next_ns, driver_.due_ns());
-    if (written_ns_) next_ns = std::min(next_ns, *written_ns_);
+    if (written_ns_ && !held_) next_ns = std::min(next_ns, *written_ns_);
     now_ns_ = std::max(next_ns, now_ns_ + 1);
     if (device_.due_ns() <= now_ns_) device_.tick(now_ns_);
     if (now_ns_ >= read_due_ns_) {
@@ -116,7 +120,7 @@ class SimulatedLine {
   /// Takes the driver's orders and carries out what of them is possible by now.
   void settle() {
     if (!frozen_) take_orders();
-    while (!orders_.empty()) {
+    while (!orders_.empty() && !held_) {
       LineOrder& order = orders_.front();
       if (!written_ns_) {
         if (order.settings && *order.settings != host_) {
@@ -129,11 +133,15 @@ class SimulatedLine {
       written_ns_.reset();
       std::vector<std::uint8_t> bytes = std::move(order.bytes);
       orders_.pop_front();
-      if (bytes.empty()) continue;
-      if (echo_) driver_.receive(bytes, now_ns_);
-      if (host_filter_) host_filter_(bytes);
-      device_.receive(bytes, host_, now_ns_);
+      if (!bytes.empty()) {
+        if (echo_) driver_.receive(bytes, now_ns_);
+        if (host_filter_) host_filter_(bytes);
+        device_.receive(bytes, host_, now_ns_);
+      }
+      if (orders_.empty()) unconfirmed_ = true;
     }
+    // A driver that is frozen hears of it later.
+    if (!frozen_ && orders_.empty() && std::exchange(unconfirmed_, false)) driver_.written(now_ns_);
   }
 
   SerialDriver& driver_;
@@ -145,6 +153,8 @@ class SimulatedLine {
   std::int64_t read_due_ns_;
   bool plugged_ = false;
   bool frozen_ = false;
+  bool held_ = false;
+  bool unconfirmed_ = false;  ///< the driver has not heard that all its orders were written
   LineSettings host_;
   std::deque<LineOrder> orders_;
   std::optional<std::int64_t> written_ns_;  ///< when the bytes of the first order have left

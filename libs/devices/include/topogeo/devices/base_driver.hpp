@@ -38,6 +38,10 @@ class BaseDriver final : public SerialDriver {
   void tick(std::int64_t now_ns) override;
   [[nodiscard]] std::int64_t due_ns() const override;
   [[nodiscard]] std::vector<LineOrder> take_orders() override;
+  void written(std::int64_t now_ns) override {
+    orders_written_ = true;
+    confirm_aim(now_ns);
+  }
 
   /// Drives with these velocities (cut down to the limits) until `valid_until_ns` or for
   /// settings.command_timeout_s, whichever ends first, then halts. False if the command is refused,
@@ -96,6 +100,10 @@ class BaseDriver final : public SerialDriver {
   void stand(std::int64_t now_ns);
   void stand_again(std::int64_t now_ns);
 
+  /// What is commanded from now on is that, for the monitor.
+  void aim_at(const BaseVelocity& velocity, std::int64_t now_ns);
+  /// The monitor may expect the base to obey once all orders for its aim have been written.
+  void confirm_aim(std::int64_t now_ns);
   [[nodiscard]] bool write_next(std::int64_t now_ns);
   [[nodiscard]] std::optional<McpOrder> next_order(std::int64_t now_ns);
 
@@ -120,6 +128,8 @@ class BaseDriver final : public SerialDriver {
   BaseVelocity wanted_{};      // by the last command, before the guard
 
   bool idle_ = true;  // nothing is to be written until a time or a message comes
+  bool aim_ordered_ = false;     // all orders for what is commanded now have been given
+  bool orders_written_ = true;   // all that were taken
   std::optional<std::uint64_t> reports_at_halt_{};  // when both axes had been sent a halt
   std::uint64_t implausible_ = 0;                   // reports that were dropped
   std::vector<BaseOdometry> odometry_{};

@@ -39,6 +39,8 @@ class BaseWriter {
   /// Writes the first of the queue; false if there is none.
   bool write_queued(std::int64_t now_ns);
 
+  /// take_orders() would return some.
+  [[nodiscard]] bool has_orders() const { return !orders_.empty(); }
   /// What was written since the last call, in order.
   [[nodiscard]] std::vector<LineOrder> take_orders();
 

@@ -37,6 +37,11 @@ class MotionMonitor {
 
   /// The motion that is commanded from now on.
   void aim_at(const BaseVelocity& velocity, const BaseLimits& limits, std::int64_t now_ns);
+  /// The last of these motions has been written to the base by now: it obeys within its lag.
+  void written(std::int64_t now_ns) {
+    linear_power_.written(now_ns);
+    angular_power_.written(now_ns);
+  }
   /// The base started anew: motion for a while after `now_ns` may have been commanded before.
   void restart(std::int64_t now_ns);
   /// The base has stopped for a reason that is known, or an operator lets it move again.

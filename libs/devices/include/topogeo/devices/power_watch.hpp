@@ -1,7 +1,8 @@
 // Whether an axis of a base moves as it was commanded, or something holds it against its motor: the
 // emergency stop, which takes the power of the motors and for which an RWI base has no message, or
 // hands on the wheels. Judged by the base's own reports and their own times alone, so that a host
-// that is busy, a slow line or a lost command is never taken for it (own).
+// that is busy, a slow line or a lost command is never taken for it (own). What is commanded counts
+// from the moment on at which it has been written to the line.
 //
 // The base says what it does: its phase (accelerates, runs at the commanded speed, slows down,
 // halts) and the commanded direction. From one report to the next a motor with power
@@ -46,7 +47,10 @@ class PowerWatch {
   PowerWatch(const PowerTolerance& tolerance, std::int64_t period_ns);
 
   /// The speed that is commanded from now on, 0 to stand, and the acceleration of the base (> 0).
+  /// Until it is written the base may obey it or an earlier one.
   void aim_at(double speed, double acceleration, std::int64_t now_ns);
+  /// All that was commanded so far has been written to the line by now.
+  void written(std::int64_t now_ns);
   /// Earlier reports do not count any more: the base has started anew, or has stopped for a
   /// reason that is known (a bumper, its watchdog, a joystick).
   void forget();
@@ -68,8 +72,10 @@ class PowerWatch {
   struct Aim {
     std::int64_t since_ns = 0;
     double speed = 0.0;
+    std::optional<std::int64_t> written_ns{};
   };
 
+  [[nodiscard]] static bool is_obeyed(const Aim& aim, std::int64_t stamp_ns);
   /// Index of the oldest aim that the base may be obeying at that time.
   [[nodiscard]] std::size_t oldest_aim(std::int64_t stamp_ns) const;
   [[nodiscard]] double least_aim(std::int64_t stamp_ns) const;
@@ -87,7 +93,8 @@ class PowerWatch {
   std::deque<Aim> aims_;
   double acceleration_ = 1.0;
   double direction_ = 0.0;       ///< of the motion that is commanded; 0: to stand
-  std::int64_t changed_ns_ = 0;  ///< when the acceleration has changed
+  std::int64_t changed_ns_ = 0;  ///< when the acceleration has changed, or was written
+  bool change_written_ = true;
   std::optional<Before> before_{};
   bool obeyed_ = false;  ///< the commanded motion was reported
   McpPhase rest_phase_ = McpPhase::kStop;

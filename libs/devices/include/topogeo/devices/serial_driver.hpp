@@ -49,6 +49,8 @@ class SerialDriver {
   [[nodiscard]] virtual std::int64_t due_ns() const = 0;
   /// What is to be done with the line, in order; each order is given once.
   [[nodiscard]] virtual std::vector<LineOrder> take_orders() = 0;
+  /// All orders that were taken so far have been written to the line.
+  virtual void written(std::int64_t now_ns) { static_cast<void>(now_ns); }
 };
 
 }  // namespace topogeo::devices
