@@ -70,7 +70,7 @@ bool is_alone(const Status& service, std::span<const HeardStatus> all) {
          }) == 1;
 }
 
-double seconds(std::chrono::steady_clock::duration duration) {
+double in_seconds(std::chrono::steady_clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
 }
 
@@ -121,7 +121,7 @@ std::vector<HeardStatus> DeafnessWatch::all(const Status& own, Time now) const {
     const bool itself = peer.status.service() == own.service() &&
                         peer.status.instance() == own.instance() &&
                         peer.status.started_ns() == own.started_ns();
-    const double age_s = seconds(now - peer.received);
+    const double age_s = in_seconds(now - peer.received);
     if (!itself && age_s <= kFresh_s) all.push_back({&peer.status, age_s});
   }
   return all;
@@ -136,7 +136,7 @@ bool DeafnessWatch::hears_sender(const Status& own, Time now) const {
 
 std::string DeafnessWatch::check(const Status& own, Time now) {
   std::erase_if(peers_, [&](const auto& entry) {
-    return seconds(now - entry.second.received) > kFresh_s;
+    return in_seconds(now - entry.second.received) > kFresh_s;
   });
   const std::vector<HeardStatus> heard = all(own, now);
   const std::string topic = own.input().to_string();

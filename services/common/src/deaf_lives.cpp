@@ -10,10 +10,10 @@ namespace topogeo::service {
 namespace {
 
 /// Waits do not grow any more after so many.
-constexpr std::uint32_t kMost = 9;
+constexpr std::uint32_t kMostLives = 9;
 
 /// The name of a file: no folders in it.
-std::string plain(std::string text) {
+std::string without_slashes(std::string text) {
   std::ranges::replace(text, '/', '_');
   return text;
 }
@@ -27,14 +27,14 @@ std::filesystem::path DeafLives::place_of(const Setup& setup) {
   if (folder.empty()) folder = "/dev/shm";
   const ServiceOptions& options = setup.options;
   return std::filesystem::path(folder) /
-         ("topogeo-" + plain(options.partition) + "." + std::to_string(options.domain) + "-" +
-          plain(options.robot_id) + "-" + setup.name + ".deaf");
+         ("topogeo-" + without_slashes(options.partition) + "." + std::to_string(options.domain) + "-" +
+          without_slashes(options.robot_id) + "-" + setup.name + ".deaf");
 }
 
 std::uint32_t DeafLives::load() const {
   std::ifstream file(file_, std::ios::binary);
   std::uint32_t lives = 0;
-  return file >> lives && lives <= kMost ? lives : 0;
+  return file >> lives && lives <= kMostLives ? lives : 0;
 }
 
 void DeafLives::store(std::uint32_t lives) const {
@@ -43,7 +43,7 @@ void DeafLives::store(std::uint32_t lives) const {
     std::filesystem::remove(file_, ignored);
     return;
   }
-  std::ofstream(file_, std::ios::binary) << std::min(lives, kMost) << '\n';
+  std::ofstream(file_, std::ios::binary) << std::min(lives, kMostLives) << '\n';
 }
 
 }  // namespace topogeo::service

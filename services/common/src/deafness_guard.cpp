@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kFault = "deaf";
 
-double seconds(messaging::DeafnessWatch::Time time) {
+double in_seconds(messaging::DeafnessWatch::Time time) {
   return std::chrono::duration<double>(time.time_since_epoch()).count();
 }
 
@@ -35,7 +35,7 @@ void DeafnessGuard::tick() {
                          .ever_came = own.inputs() > 0,
                          .hears_sender = watch_.hears_sender(own, now),
                          .deaf = !why.empty()};
-  const RejoinStep step = schedule_.step(input, seconds(now));
+  const RejoinStep step = schedule_.step(input, in_seconds(now));
   if (std::exchange(deaf_, input.deaf) != input.deaf) {
     status_.set_counter(messaging::kDeafCounter, input.deaf ? 1.0 : 0.0);
   }
