@@ -302,7 +302,7 @@ print_head() {  # KIND: where another table begins
 
 profile=$TOPOGEO_DDS_PARTICIPANT
 secure() {
-  [ -d "$work/keys" ] || "$source_dir/deploy/security/make_keys" "$work/keys" issue robot > "$work/make_keys.out" 2>&1 ||
+  [ -d "$work/keys" ] || "$source_dir/deploy/security/make_keys" "$work/keys" issue --robot robot robot > "$work/make_keys.out" 2>&1 ||
     fail "make_keys: $(tail -n 1 "$work/make_keys.out")"
   export TOPOGEO_SECURITY=$work/keys/robot TOPOGEO_DDS_PARTICIPANT=wan
 }

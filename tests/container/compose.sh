@@ -8,7 +8,7 @@ profile=robot  # which is up
 
 # make_certificates FOLDER
 make_certificates() {
-  "$source_dir/deploy/security/make_keys" "$1" issue robot > "$1.log" 2>&1 ||
+  "$source_dir/deploy/security/make_keys" "$1" issue --robot robot robot > "$1.log" 2>&1 ||
     { tail -n 3 "$1.log"; fail "no certificates"; }
   chown -R 1000 "$1/robot"
 }

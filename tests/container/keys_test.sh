@@ -6,6 +6,19 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 need openssl
 make_keys=$source_dir/deploy/security/make_keys
 
+# The robots of a folder's certificate, of its permissions and of its file, each as one line.
+robots_of_certificate() { openssl x509 -in "$1/certificate.pem" -noout -subject -nameopt multiline |
+  sed -n 's/^ *organizationalUnitName *= //p' | xargs; }
+robots_of_permissions() {  # each stands there twice, once for what is written and once for what is read
+  sed -n 's#^ *<partition>\(.*\)</partition>.*#\1#p' "$1/permissions.p7s" | sed 's#^[*]/##; s#^[*]$#all#' | awk '!seen[$0]++' | xargs
+}
+robots_of_file() { xargs < "$1/robots"; }
+is_for() {  # FOLDER ROBOTS
+  local in_certificate=$2
+  [ "$2" != all ] || in_certificate=
+  [ "$(robots_of_certificate "$1")" = "$in_certificate" ] && [ "$(robots_of_permissions "$1")" = "$2" ] && [ "$(robots_of_file "$1")" = "$2" ]
+}
+
 # whole FOLDER SERVICE: the files in the folder belong together and to the authorities.
 whole() {
   local ca=${1%/*/*}/ca file
@@ -15,7 +28,8 @@ whole() {
   openssl verify -CAfile "$1/identity_ca.pem" "$1/certificate.pem" > /dev/null || return 1
   [ "$(openssl x509 -in "$1/certificate.pem" -noout -pubkey)" = "$(openssl pkey -in "$1/key.pem" -pubout)" ] || return 1
   openssl smime -verify -text -purpose any -in "$1/permissions.p7s" -CAfile "$1/permissions_ca.pem" \
-    2> "$work/smime.log" | grep -q "<grant name=\"$2\">"
+    2> "$work/smime.log" | grep -q "<grant name=\"$2\">" || return 1
+  is_for "$1" "$(robots_of_file "$1")"
 }
 # all_whole KEYS: what has a certificate is whole, and so are the authorities, where they are.
 all_whole() {
@@ -93,14 +107,14 @@ step "issue, killed at each step"
 export TOPOGEO_PERMISSIONS=$work/permissions.txt
 grep '^ga_worker' "$source_dir/deploy/security/permissions.txt" > "$work/permissions.txt"
 one=./pc1/ga_worker/certificate.pem
-killed_at_each_step issue 20 issue pc1
+killed_at_each_step issue 20 issue --robot anna --robot bert pc1
 
 step "renew, killed at each step"
 killed_at_each_step renew 10 renew pc1
 
 step "authorities that are half there"
 rm "$work/keys/ca/revoked.pem"
-if "$make_keys" "$work/keys" issue pc1 2> "$work/error"; then fail "half of the authorities are enough"; fi
+if "$make_keys" "$work/keys" issue --robot all pc1 2> "$work/error"; then fail "half of the authorities are enough"; fi
 grep -q "'.*/ca' is not complete" "$work/error" || { cat "$work/error"; fail "no clear error"; }
 rm -r "$work/keys"
 
@@ -118,23 +132,41 @@ refuses() {  # TEXT ARGUMENTS...
 }
 refuses "'$keys' has no certificates" renew pc1
 [ ! -e "$keys" ] || fail "a renewal makes folders"
-expect "" issue pc1
+expect "" issue --robot all pc1
 grep '^status' "$source_dir/deploy/security/permissions.txt" >> "$work/permissions.txt"
 both="$one ./pc1/status/certificate.pem"
 cp -r "$keys/pc1/ga_worker" "$work/first"
-expect "1 certificate is there already" issue pc1
+expect "1 certificate is there already" issue --robot all pc1
 diff -r "$work/first" "$keys/pc1/ga_worker" || fail "a certificate that is there is made again"
 has "$keys" "$both" || fail "not all is issued"
-expect "2 certificates are there already" issue pc1
-refuses "'pc1' has a certificate for 'status'; renew it" issue pc1 status
+expect "2 certificates are there already" issue --robot all pc1
+refuses "'pc1' has a certificate for 'status'; renew it" issue --robot all pc1 status
 echo "planner reads: *" >> "$work/permissions.txt"
 expect "" renew pc1
 has "$keys" "$both" || fail "a renewal issues more than there was"
 if cmp -s "$work/first/certificate.pem" "$keys/pc1/ga_worker/certificate.pem"; then fail "nothing is renewed"; fi
-expect "2 certificates are there already" issue pc1
+expect "2 certificates are there already" issue --robot all pc1
 [ -e "$keys/pc1/planner/certificate.pem" ] || fail "what is new in the table is not issued"
-expect "" issue robot planner
+expect "" issue --robot anna robot planner
 all_whole "$keys" || fail "something is not whole"
+
+step "robots"
+names=$keys/robot/planner
+is_for "$names" anna || fail "the keys are not for the robot that is named"
+is_for "$keys/pc1/status" all || fail "the keys are not for all robots"
+expect "" renew robot
+is_for "$names" anna || fail "a renewal changes the robots"
+expect "" renew --robot bert --robot anna robot
+is_for "$names" "bert anna" || fail "a renewal does not take other robots"
+expect "" renew --robot all robot
+is_for "$names" all || fail "a renewal for all robots is for some"
+rm "$names/robots"  # as keys have none that were made before robots were named
+expect "" renew robot planner
+is_for "$names" all || fail "a renewal of older keys is not for all robots"
+expect "" renew --robot anna robot
+expect_line() { "$make_keys" "$keys" list | grep "$1" > /dev/null || fail "not in the list: $1"; }
+expect_line '^robot/planner .*, robots anna$'
+expect_line '^pc1/status .*, robots all$'
 
 step "what is not there"
 find "$keys" -type f -exec sha256sum {} + | sort > "$work/before"
@@ -143,8 +175,16 @@ for command in renew revoke; do
   refuses "'pc7' has no certificates; hosts: pc1 robot" $command pc7 status
   refuses "'robot' has no certificate for 'status'" $command robot status
 done
-refuses "'painter' is not in $work/permissions.txt, expected one of: ga_worker planner status" issue pc2 status painter
-TOPOGEO_PERMISSIONS=$work/nowhere refuses "the table of permissions cannot be read: $work/nowhere" issue pc2
+refuses "'painter' is not in $work/permissions.txt, expected one of: ga_worker planner status" issue --robot all pc2 status painter
+refuses "issue: expected --robot ROBOT for each robot that the services work for, or --robot all" issue pc2
+refuses "robot 'a/b': expected 1 to 32 letters, digits, -, _ and ., or 'all'" issue --robot a/b pc2
+refuses "robot '*': expected 1 to 32 letters, digits, -, _ and ., or 'all'" renew --robot '*' robot
+refuses "--robot: expected the name of a robot, or 'all'" issue pc2 --robot
+refuses "--robot all: expected no other robot beside it" issue --robot all --robot anna pc2
+mapfile -t many < <(printf -- '--robot\nr%d\n' {1..25})
+refuses "25 robots: expected 24 at most, or --robot all" issue "${many[@]}" pc2
+refuses "revoke: expected no --robot; it is for all robots of the keys" revoke --robot anna robot
+TOPOGEO_PERMISSIONS=$work/nowhere refuses "the table of permissions cannot be read: $work/nowhere" issue --robot all pc2
 TOPOGEO_PERMISSIONS=/dev/null refuses "no service is in /dev/null" renew pc1
 find "$keys" -type f -exec sha256sum {} + | sort | diff "$work/before" - || fail "a call that fails changes something"
 

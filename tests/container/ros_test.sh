@@ -12,9 +12,9 @@ chmod 777 "$work"
 
 step "keys, and the nodes of ROS with what they need"
 make_keys=$source_dir/deploy/security/make_keys
-"$make_keys" "$work/keys" issue robot
-"$make_keys" "$work/keys" issue pc1 ga_worker status
-"$make_keys" "$work/keys" issue page web status
+"$make_keys" "$work/keys" issue --robot robot robot
+"$make_keys" "$work/keys" issue --robot all pc1 ga_worker status
+"$make_keys" "$work/keys" issue --robot robot page web status
 chmod -R a+rX "$work/keys"
 mkdir "$work/nodes"
 cp "$build/tests/ros_peer" "$source_dir/tests/data/room.world.yaml" "$work/nodes"

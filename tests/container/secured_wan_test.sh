@@ -10,8 +10,8 @@ need_programs
 unshare --net true 2> /dev/null || skip "no network namespace can be made" "root, with CAP_SYS_ADMIN in a container,"
 claim_domain
 map_alone 100 "$work/alone"
-"$source_dir/deploy/security/make_keys" "$work/keys" issue robot
-"$source_dir/deploy/security/make_keys" "$work/keys" issue pc1 ga_worker
+"$source_dir/deploy/security/make_keys" "$work/keys" issue --robot robot robot
+"$source_dir/deploy/security/make_keys" "$work/keys" issue --robot robot pc1 ga_worker
 
 name_of() { echo "topogeo-$$-$1"; }
 at() { ip netns exec "$(name_of "$1")" "${@:2}"; }  # SITE COMMAND...

@@ -58,10 +58,10 @@ past=(LD_PRELOAD="$(find /usr/lib -name libfaketimeMT.so.1 | head -n 1)" FAKETIM
 
 step "keys"
 # What is valid today and was valid then, and what was valid for a month.
-env "${past[@]}" "$make_keys" "$keys" issue robot
-env "${past[@]}" DAYS=30 "$make_keys" "$keys" issue old status
-"$make_keys" "$keys" issue pc1 ga_worker status
-"$make_keys" "$work/foreign" issue abroad status
+env "${past[@]}" "$make_keys" "$keys" issue --robot all robot
+env "${past[@]}" DAYS=30 "$make_keys" "$keys" issue --robot all old status
+"$make_keys" "$keys" issue --robot all pc1 ga_worker status
+"$make_keys" "$work/foreign" issue --robot all abroad status
 [ -z "$(find "$keys" -name '*.key' -not -path '*/ca/*')" ] || fail "a key of an authority leaves ca"
 [ -z "$(find "$keys" -type f -perm /077)" ] || fail "others can read keys"
 sed -nE 's/^TOPOGEO_TOPIC\(\w+, *"(\w+)".*/\1/p' "$source_dir/libs/messaging/include/topogeo/messaging/topics.def" |

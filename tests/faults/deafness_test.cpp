@@ -70,10 +70,11 @@ class DeafnessTest : public testing::Test {
 
   /// False where there is no openssl.
   bool make_keys() {
-    const std::string make = "command -v openssl >/dev/null || exit 77; '" TOPOGEO_SOURCE_DIR
-                             "/deploy/security/make_keys' '" +
-                             (scratch_ / "keys").string() +
-                             "' issue robot sensor_gateway local_mapper >/dev/null 2>&1";
+    const std::string make =
+        "command -v openssl >/dev/null || exit 77; '" TOPOGEO_SOURCE_DIR
+        "/deploy/security/make_keys' '" +
+        (scratch_ / "keys").string() +
+        "' issue --robot robot robot sensor_gateway local_mapper >/dev/null 2>&1";
     const int status = std::system(make.c_str());  // NOLINT(*-env33-c,concurrency-mt-unsafe)
     EXPECT_TRUE(status == 0 || WEXITSTATUS(status) == 77) << "make_keys";
     ::setenv("TOPOGEO_SECURITY", (scratch_ / "keys/robot").c_str(), 1);  // NOLINT: one thread
@@ -97,8 +98,8 @@ class DeafnessTest : public testing::Test {
 
   void start_mapper() {
     mapper_status_.reset();
-    mapper_ = std::make_unique<Program>(
-        scratch_, "local_mapper", std::vector<std::string>{"--domain", domain_});
+    mapper_ = std::make_unique<Program>(scratch_, "local_mapper",
+                                        std::vector<std::string>{"--domain", domain_});
   }
 
   /// The gateway sends scans until `condition` holds.
@@ -148,9 +149,7 @@ class DeafnessTest : public testing::Test {
     messaging::Writer<msg::Scan> scans;
     messaging::Reader<msg::ServiceStatus> statuses;
     messaging::StatusPublisher status{
-        participant,
-        loop,
-        {"sensor_gateway", "", "robot", std::string(support::kVersion)}};
+        participant, loop, {"sensor_gateway", "", "robot", std::string(support::kVersion)}};
     msg::Scan scan;
     std::uint64_t sent = 0;
   };

@@ -314,7 +314,7 @@ TEST_P(SteeredByRos, TheBaseGetsTheirVelocity) {
 // Our side is encrypted, that of ROS is not, and its scans come through.
 TEST_F(RosBridge, WithSecurityNodesOfRosStayPlainPeers) {
   Program keys(scratch_, "../../deploy/security/make_keys",
-               {scratch_ / "keys", "issue", "robot", "ros_bridge", "topogeo"});
+               {scratch_ / "keys", "issue", "--robot", "robot", "robot", "ros_bridge", "topogeo"});
   ASSERT_EQ(keys.wait(), 0) << keys.err();
   const std::string material = scratch_ / "keys/robot";
   ::setenv("TOPOGEO_SECURITY", material.c_str(), 1);  // NOLINT(concurrency-mt-unsafe): one thread
