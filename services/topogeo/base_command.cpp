@@ -91,7 +91,8 @@ std::optional<msg::BaseStatus> next_status(
 }
 
 int show(const BaseRequest& request) {
-  const messaging::Participant participant = join(request.view, "topogeo/base");
+  const messaging::Participant participant =
+      join_for(request.view, "topogeo/base", request.robot_id);
   messaging::Reader<msg::BaseStatus> reader(participant);
   support::Patience patience(request.wait_s, support::monotonic_s());
   const auto status =
@@ -103,7 +104,8 @@ int show(const BaseRequest& request) {
 
 /// Sends the command and shows what the base is like afterwards.
 int send_base_command(BaseRequest request) {
-  const messaging::Participant participant = join(request.view, "topogeo/base");
+  const messaging::Participant participant =
+      join_for(request.view, "topogeo/base", request.robot_id);
   messaging::Reader<msg::BaseStatus> reader(participant);
   messaging::Writer<msg::BaseCommand> writer(participant);
   support::Patience connecting(request.wait_s, support::monotonic_s());

@@ -19,6 +19,15 @@ constexpr std::chrono::milliseconds kSlice{100};
 // within two.
 constexpr std::chrono::milliseconds kAgain{500};
 
+messaging::ParticipantOptions options_of(const DomainView& view, const std::string& name) {
+  messaging::ParticipantOptions options;
+  options.domain = view.domain;
+  options.partition = view.partition;
+  options.name = name;
+  options.profiles_file = view.profiles_file;
+  return options;
+}
+
 }  // namespace
 
 void add_robot_option(command_line::Command& app, std::string& robot_id, const char* description) {
@@ -46,13 +55,16 @@ void add_view_options(command_line::Command& app, DomainView& view) {
 
 messaging::Participant join(const DomainView& view, const std::string& name,
                             const std::string& identity, bool observe) {
-  messaging::ParticipantOptions options;
+  messaging::ParticipantOptions options = options_of(view, name);
   options.identity = identity;
   options.observe = observe;
-  options.domain = view.domain;
-  options.partition = view.partition;
-  options.name = name;
-  options.profiles_file = view.profiles_file;
+  return messaging::Participant(options);
+}
+
+messaging::Participant join_for(const DomainView& view, const std::string& name,
+                                const std::string& robot_id) {
+  messaging::ParticipantOptions options = options_of(view, name);
+  options.robots = {robot_id};
   return messaging::Participant(options);
 }
 

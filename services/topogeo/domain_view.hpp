@@ -34,10 +34,12 @@ void add_domain_options(command_line::Command& app, DomainView& view);
 void add_view_options(command_line::Command& app, DomainView& view);
 
 /// Joins the domain under a name that DDS tools show. `identity`, `observe`: see
-/// ParticipantOptions. Throws
-/// like messaging::Participant.
+/// ParticipantOptions. Throws like messaging::Participant.
 messaging::Participant join(const DomainView& view, const std::string& name,
                             const std::string& identity = "topogeo", bool observe = false);
+/// The same for a command about one robot, which with security its keys must name.
+messaging::Participant join_for(const DomainView& view, const std::string& name,
+                                const std::string& robot_id);
 
 struct Collected {
   bool found = false;

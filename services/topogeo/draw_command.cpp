@@ -37,7 +37,8 @@ struct DrawOptions {
 constexpr const char* kMapStore = "map store";
 
 msg::DrawingState live_drawing(const DrawOptions& options) {
-  const messaging::Participant participant = join(options.view, "topogeo/draw");
+  const messaging::Participant participant =
+      join_for(options.view, "topogeo/draw", options.robot_id);
   messaging::Reader<msg::DrawingState> reader(participant);
   support::Patience patience(options.wait_s, support::monotonic_s());
   std::optional<msg::DrawingState> newest;

@@ -38,7 +38,8 @@ int explore(const ExploreOptions& options) {
   const navigation::TourConfig config = tour_config(options.config);
   messaging::EventLoop loop;
   const messaging::SignalStop signals([&](int) { loop.stop(); });
-  const messaging::Participant participant = join(options.robot.view, "topogeo/explore");
+  const messaging::Participant participant =
+      join_for(options.robot.view, "topogeo/explore", options.robot.robot_id);
   ExploreSession session(participant, loop, options.robot.robot_id, config);
   wait_for_services(loop, options.robot, session.client());
   if (messaging::SignalStop::received() != 0) return interrupted();

@@ -120,7 +120,7 @@ class Follower {
  public:
   explicit Follower(const FollowRequest& request)
       : request_(request),
-        participant_(join(request.view, "topogeo/follow")),
+        participant_(join_for(request.view, "topogeo/follow", request.robot_id)),
         elements_(participant_),
         follower_(request.robot_id) {
     using messaging::SampleInfo;

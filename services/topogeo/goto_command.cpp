@@ -36,7 +36,8 @@ struct GotoOptions {
 int send_order(const GotoOptions& options) {
   messaging::EventLoop loop;
   const messaging::SignalStop signals([&](int) { loop.stop(); });
-  const messaging::Participant participant = join(options.robot.view, "topogeo/goto");
+  const messaging::Participant participant =
+      join_for(options.robot.view, "topogeo/goto", options.robot.robot_id);
   GoalClient client(participant, loop, options.robot.robot_id);
   wait_for_services(loop, options.robot, client);
   if (messaging::SignalStop::received() != 0) return interrupted();
@@ -65,7 +66,8 @@ int send_order(const GotoOptions& options) {
 int go_there(const GotoOptions& options) {
   messaging::EventLoop loop;
   const messaging::SignalStop signals([&](int) { loop.stop(); });
-  const messaging::Participant participant = join(options.robot.view, "topogeo/goto");
+  const messaging::Participant participant =
+      join_for(options.robot.view, "topogeo/goto", options.robot.robot_id);
   GoalSession session(participant, loop, options.robot.robot_id, options.goal);
   wait_for_services(loop, options.robot, session.client());
   if (messaging::SignalStop::received() != 0) return interrupted();

@@ -165,7 +165,8 @@ void print_file(const PlacesOptions& options) {
 
 /// The live map of the robot. Throws std::runtime_error when there is none in time.
 std::shared_ptr<const planning::HybridMap> live_map(const PlacesOptions& options) {
-  const messaging::Participant participant = join(options.view, "topogeo/places");
+  const messaging::Participant participant =
+      join_for(options.view, "topogeo/places", options.robot_id);
   messaging::EventLoop loop;
   std::shared_ptr<const planning::HybridMap> map;
   std::string defect;

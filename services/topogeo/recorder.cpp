@@ -64,7 +64,7 @@ ros::GraphDrawing drawing_of(const map_client::Map& map) {
 Recorder::Recorder(const RecordRequest& request)
     : request_(request),
       log_(open_log(request)),
-      participant_(join(request.view, "topogeo/record")),
+      participant_(join_for(request.view, "topogeo/record", request.robot_id)),
       // Slows a replay down rather than lose scans.
       scans_(participant_, {std::string(messaging::kReplayRole), {}}),
       ends_(participant_),

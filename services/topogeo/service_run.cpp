@@ -26,6 +26,7 @@ messaging::Participant join(const RunOptions& options, const std::string& partit
   participant.partition = partition;
   participant.name = options.job.robot_id + "/topogeo";
   participant.profiles_file = options.profiles_file;
+  participant.robots = {options.job.robot_id};
   return messaging::Participant(participant);
 }
 

@@ -49,7 +49,8 @@ struct SimulatorRequest {
 
 int send_simulator_command(const SimulatorRequest& request) {
   constexpr double kSimulatorPatience_s = 5.0;
-  const messaging::Participant participant = join(request.view, "topogeo/simulator");
+  const messaging::Participant participant =
+      join_for(request.view, "topogeo/simulator", request.robot_id);
   messaging::Writer<msg::SimulatorCommand> commands(participant);
   messaging::Reader<msg::ServiceStatus> statuses(participant);
   const auto of_robot = [&](const msg::ServiceStatus& status) {

@@ -66,7 +66,8 @@ MergeTable receive(const messaging::Participant& participant, const MergeRequest
 }
 
 int list_merges(const MergeRequest& request) {
-  const messaging::Participant participant = join(request.view, "topogeo/merges");
+  const messaging::Participant participant =
+      join_for(request.view, "topogeo/merges", request.robot_id);
   const MergeTable table = receive(participant, request);
   std::cout << (request.json ? table.json() : table.text());
   return service::kOk;

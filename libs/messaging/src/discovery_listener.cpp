@@ -1,11 +1,15 @@
 #include "discovery_listener.hpp"
 
+#include <algorithm>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>
 #include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
 
 #include "endpoint_shared.hpp"
+#include "robot_partitions.hpp"
 
 namespace topogeo::messaging {
 
@@ -36,6 +40,13 @@ RemoteEndpoint to_endpoint(const Data& data, const Qos& qos, bool writer) {
   endpoint.qos.lease_s = seconds_of(qos.m_liveliness.lease_duration);
   endpoint.qos.exclusive = qos.m_ownership.kind == dds::EXCLUSIVE_OWNERSHIP_QOS;
   return endpoint;
+}
+
+void leave_robots_out(std::vector<std::string>& partitions) {
+  for (std::string& name : partitions) name = partition_without_robot(name);
+  std::ranges::sort(partitions);
+  const auto [first, last] = std::ranges::unique(partitions);
+  partitions.erase(first, last);
 }
 
 }  // namespace
@@ -88,6 +99,7 @@ std::vector<RemoteEndpoint> DiscoveryListener::endpoints() const {
 }
 
 void DiscoveryListener::put(const rtps::GUID_t& guid, RemoteEndpoint endpoint) {
+  if (by_robot_) leave_robots_out(endpoint.partitions);
   const std::lock_guard lock(endpoints_mutex_);
   if (endpoints_.size() >= kMostEndpoints && !endpoints_.contains(guid)) return;
   endpoints_[guid] = std::move(endpoint);

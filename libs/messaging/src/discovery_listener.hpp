@@ -15,6 +15,9 @@ namespace topogeo::messaging {
 /// Refusals as its base class; used for every participant that observes.
 class DiscoveryListener final : public RefusalListener {
  public:
+  /// `by_robot`: the partitions of peers have their robots behind them, which are left out.
+  explicit DiscoveryListener(bool by_robot = false) : by_robot_(by_robot) {}
+
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
                                 eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
   void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
@@ -32,6 +35,7 @@ class DiscoveryListener final : public RefusalListener {
   void put(const eprosima::fastrtps::rtps::GUID_t& guid, RemoteEndpoint endpoint);
   void remove(const eprosima::fastrtps::rtps::GUID_t& guid);
 
+  bool by_robot_;
   mutable std::mutex endpoints_mutex_;
   std::map<eprosima::fastrtps::rtps::GUID_t, RemoteEndpoint> endpoints_;
   std::map<eprosima::fastrtps::rtps::GuidPrefix_t, std::string> names_;  // of participants

@@ -20,10 +20,12 @@
 
 #include "topogeo/messaging/plain_participant.hpp"
 #include "topogeo/messaging/revocations.hpp"
+#include "topogeo/messaging/same_participant.hpp"
 #include "topogeo/messaging/shared_memory.hpp"
 #include "topogeo/support/log.hpp"
 
 #include "address_filter.hpp"
+#include "endpoint_shared.hpp"
 #include "fast_dds/discovery_shield.hpp"
 #include "fast_dds/filter_info.hpp"
 #include "fast_dds/fragments.hpp"
@@ -34,6 +36,8 @@
 #include "fast_dds/timer_waits.hpp"
 #include "fast_dds/writer_end.hpp"
 #include "participant_core.hpp"
+#include "robot_partitions.hpp"
+#include "writer_robots.hpp"
 
 namespace topogeo::messaging {
 
@@ -155,6 +159,15 @@ void send_whole_certificates(dds::DomainParticipantQos& qos, bool rest_in_packet
   }
 }
 
+std::vector<std::string> secured_partitions(const ParticipantOptions& options,
+                                            const std::filesystem::path& keys) {
+  try {
+    return partitions_by_robot(options.partition, robots_of_keys(keys), options.robots);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error("DDS security: '" + keys.string() + "': " + error.what());
+  }
+}
+
 }  // namespace
 
 ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
@@ -190,11 +203,14 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
   } else {
     add_peers(qos, environment("TOPOGEO_PEERS"));
   }
+  std::vector<std::string> partitions;
+  if (!ros) partitions.push_back(options.partition);
   std::filesystem::path security = options.security;
   if (security.empty() && !ros) security = environment("TOPOGEO_SECURITY");
   if (!security.empty()) {
     revocations_ = RevocationList(security / options.identity);  // before the middleware reads it
     add_security(qos, security / options.identity);
+    partitions = secured_partitions(options, security / options.identity);
     send_whole_certificates(qos, profile == kBetweenSites);
     secured_ = true;
   }
@@ -202,7 +218,7 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
   freeze_watch_.emplace(longest_freeze(std::chrono::nanoseconds(lease.to_ns()),
                                        environment("TOPOGEO_LONGEST_FREEZE_S")));
   if (options.observe) {
-    auto observer = std::make_unique<DiscoveryListener>();
+    auto observer = std::make_unique<DiscoveryListener>(secured_);
     observer_ = observer.get();
     refusals_ = secured_ ? observer_ : nullptr;
     listener_ = std::move(observer);
@@ -229,10 +245,10 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
                                std::string(kAddressFilterClass));
     }
     dds::PublisherQos publisher_qos = dds::PUBLISHER_QOS_DEFAULT;
-    if (!ros) publisher_qos.partition().push_back(options.partition.c_str());
+    for (const std::string& name : partitions) publisher_qos.partition().push_back(name.c_str());
     publisher_ = require(participant_->create_publisher(publisher_qos), "a publisher");
     dds::SubscriberQos subscriber_qos = dds::SUBSCRIBER_QOS_DEFAULT;
-    if (!ros) subscriber_qos.partition().push_back(options.partition.c_str());
+    for (const std::string& name : partitions) subscriber_qos.partition().push_back(name.c_str());
     subscriber_ = require(participant_->create_subscriber(subscriber_qos), "a subscriber");
   } catch (...) {
     participant_->delete_contained_entities();
@@ -279,6 +295,12 @@ dds::ContentFilteredTopic& ParticipantCore::make_filtered(const TopicInfo& info,
 
 void ParticipantCore::remove_filtered(dds::ContentFilteredTopic& topic) {
   participant_->delete_contentfilteredtopic(&topic);
+}
+
+bool ParticipantCore::may_write_for(const Handle& writer, std::string_view robot) const {
+  if (!secured_ || robot.empty()) return true;
+  const Handle own = detail::to_handle(participant_->get_instance_handle());
+  return same_participant(writer, own) || writer_robots().allows(writer, robot);
 }
 
 std::vector<std::string> ParticipantCore::take_refusals() {

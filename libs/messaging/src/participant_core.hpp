@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -46,6 +47,9 @@ class ParticipantCore {
   void remove_filtered(eprosima::fastdds::dds::ContentFilteredTopic& topic);
 
   [[nodiscard]] bool secured() const { return secured_; }
+  /// With security: whether the permissions of a peer's writer name the robot. A message for no
+  /// robot may come from any, and one of this participant for any robot.
+  [[nodiscard]] bool may_write_for(const Handle& writer, std::string_view robot) const;
   std::vector<std::string> take_refusals();
   bool take_new_revocations();
   [[nodiscard]] std::optional<std::chrono::nanoseconds> stood_still() const;

@@ -4,8 +4,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "topogeo/messaging/same_participant.hpp"
+
+#include "fast_dds/packet_shield.hpp"
 #include "read_with.hpp"
 #include "reader_impl.hpp"
+#include "security.hpp"
 
 namespace topogeo::messaging::detail {
 
@@ -210,6 +214,11 @@ void ReaderCore::Impl::deliver(const Arrival& arrival, Endpoint::Shared& shared,
     refuse(*defect);
     return;
   }
+  const std::string_view robot = info->robot_of(arrival.message.get());
+  if (!participant->may_write_for(sample.writer, robot)) {
+    deny(sample.writer, robot);
+    return;
+  }
   ++shared.messages;
   try {
     handler(arrival.message.get(), sample);
@@ -219,6 +228,17 @@ void ReaderCore::Impl::deliver(const Arrival& arrival, Endpoint::Shared& shared,
     // No stranger's message ends a program that shows a run, or the run with it (faults_strangers).
     refuse(error.what());
   }
+}
+
+void ReaderCore::Impl::deny(const Handle& writer, std::string_view robot) const {
+  Denial denial;
+  const ParticipantPrefix peer = prefix_of(writer);
+  std::ranges::copy(peer, denial.peer.value);
+  denial.topic = info->name;
+  denial.writer = true;
+  denial.robot = robot;
+  note_denial(std::move(denial));
+  count_denied_sample();
 }
 
 void ReaderCore::Impl::note_writer(const SampleInfo& sample) {

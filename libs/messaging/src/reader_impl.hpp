@@ -95,6 +95,8 @@ struct ReaderCore::Impl {
   bool next(Arrival& arrival);
   /// Keeps `writers` in step with a sample and passes it on.
   void deliver(const Arrival& arrival, Endpoint::Shared& shared, const Handler& handler);
+  /// Counts and reports a message of a peer that may not write for the robot.
+  void deny(const Handle& writer, std::string_view robot) const;
   void end_instance(const SampleInfo& sample, const Handler& handler);
   void note_writer(const SampleInfo& sample);
   /// Takes a writer out of `writers`; the instances of which it was the last one become orphans.

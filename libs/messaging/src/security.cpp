@@ -12,15 +12,19 @@
 
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
+#include <fastdds/rtps/common/InstanceHandle.h>
 #include <fastdds/rtps/common/Token.h>
 #include <unistd.h>
 
 #include "topogeo/support/log.hpp"
 #include "topogeo/support/printable.hpp"
 
+#include "endpoint_shared.hpp"
 #include "fast_dds/handshake_certificates.hpp"
 #include "fast_dds/packet_shield.hpp"
 #include "fast_dds/security_keys.hpp"
+#include "fast_dds/writer_permissions.hpp"
+#include "writer_robots.hpp"
 
 namespace topogeo::messaging {
 
@@ -54,11 +58,12 @@ constexpr std::array<SecurityFile, 7> kFiles = {{
 /// A peer's name and subject are as long as it likes.
 constexpr std::size_t kMaxNameLength = 128;
 
-/// What this process denied and its security plug-ins logged last. Never destroyed: the threads of
-/// the middleware may outlive static objects.
+/// What this process denied, who its peers are and what its security plug-ins logged last. Never
+/// destroyed: the threads of the middleware may outlive static objects.
 struct SecurityErrors {
   std::mutex mutex;
   std::deque<Denial> denials;
+  std::map<rtps::GuidPrefix_t, std::string> subjects;  // of authenticated peers
   std::string last;
 };
 
@@ -120,6 +125,20 @@ std::string subject_of(const rtps::ParticipantProxyData& peer) {
   return subject == nullptr ? std::string() : line_of(*subject);
 }
 
+/// Empty for one that has not shown its certificate.
+std::string shown_subject(const rtps::GuidPrefix_t& peer) {
+  SecurityErrors& errors = security_errors();
+  const std::lock_guard lock(errors.mutex);
+  const auto found = errors.subjects.find(peer);
+  return found == errors.subjects.end() ? std::string() : line_of(found->second);
+}
+
+void forget_subject(const rtps::GuidPrefix_t& peer) {
+  SecurityErrors& errors = security_errors();
+  const std::lock_guard lock(errors.mutex);
+  errors.subjects.erase(peer);
+}
+
 std::string text_of(const rtps::GuidPrefix_t& prefix) {
   std::ostringstream text;
   text << prefix;
@@ -139,6 +158,7 @@ void add_security(dds::DomainParticipantQos& qos, const std::filesystem::path& f
   keep_one_certificate_of_a_peer();
   keep_security_keys();
   note_denials();
+  note_writer_permissions();
   forward_log();
   auto& properties = qos.properties().properties();
   properties.emplace_back("dds.sec.auth.plugin", "builtin.PKI-DH");
@@ -171,6 +191,12 @@ void note_denial(Denial denial) {
   errors.denials.push_back(std::move(denial));
 }
 
+void note_subject(const rtps::GuidPrefix_t& peer, std::string subject) {
+  SecurityErrors& errors = security_errors();
+  const std::lock_guard lock(errors.mutex);
+  errors.subjects[peer] = std::move(subject);
+}
+
 std::string last_security_error() {
   dds::Log::Flush();
   SecurityErrors& errors = security_errors();
@@ -186,10 +212,12 @@ void RefusalListener::on_participant_discovery(dds::DomainParticipant* /*partici
   const auto known = peers_.find(prefix);
   if (info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
       info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT) {
+    writer_robots().depart(detail::to_handle(rtps::InstanceHandle_t(info.info.m_guid)));
     if (known == peers_.end()) return;
     report_denials();  // as long as the name is known
     if (!known->second.settled) report(prefix, "left before it had shown who it is");
     peers_.erase(known);
+    forget_subject(prefix);
   } else if (known == peers_.end() && peers_.size() < kMaxPeers) {
     peers_[prefix] = {line_of(info.info.m_participantName.to_string()), subject_of(info.info),
                       Clock::now()};
@@ -211,7 +239,9 @@ void RefusalListener::report(const rtps::GuidPrefix_t& prefix, const std::string
   if (refusals_.size() == kMaxRefusals) refusals_.pop_front();
   const Peer peer = known == peers_.end() ? Peer{"unnamed", "", {}} : known->second;
   std::string line = "'" + peer.name + "' (";
-  if (!peer.subject.empty()) line.append(peer.subject).append("; ");
+  const std::string shown = shown_subject(prefix);
+  const std::string& subject = shown.empty() ? peer.subject : shown;
+  if (!subject.empty()) line.append(subject).append("; ");
   line.append(text_of(prefix)).append(") ").append(what);
   refusals_.push_back(std::move(line));
 }
@@ -226,6 +256,8 @@ void RefusalListener::report_denials() {
   for (const Denial& denial : denials) {
     std::string what = denial.writer ? "is denied to write " : "is denied to read ";
     what.append(line_of(denial.topic));
+    if (!denial.robot.empty())
+      what.append(" for robot '").append(line_of(denial.robot)).append("'");
     if (denial.other_governance) what.append(": its governance is another one");
     report(denial.peer, what);
   }

@@ -33,12 +33,13 @@ void use_long_sessions(eprosima::fastrtps::rtps::PropertyPolicy& properties);
 /// Does nothing; whoever calls it gets what security_races.cpp puts right linked in.
 void keep_security_races_away();
 
-/// A writer or reader of a peer that security keeps from ours.
+/// A writer or reader of a peer that security keeps from ours, or a sample of such a writer.
 struct Denial {
   eprosima::fastrtps::rtps::GuidPrefix_t peer;
   std::string topic;
   bool writer = false;
   bool other_governance = false;  // its endpoint is protected otherwise than the topic is here
+  std::string robot = {};         // of the sample; empty: the whole writer or reader is kept away
 };
 
 /// Adds one to what the RefusalListener of this process reports next. From any thread.
@@ -47,6 +48,9 @@ void note_denial(Denial denial);
 /// Does nothing; whoever calls it gets what security_denials.cpp notes linked in.
 void note_denials();
 
+/// A peer has shown that the certificate with this subject is its own. From any thread.
+void note_subject(const eprosima::fastrtps::rtps::GuidPrefix_t& peer, std::string subject);
+
 /// What the security plug-ins last logged, to explain a participant or endpoint that could not be
 /// made; empty when they logged nothing.
 std::string last_security_error();
@@ -54,7 +58,7 @@ std::string last_security_error();
 /// Remembers the peers that did not pass authentication: those that were refused, and those that
 /// have not finished it, because they do not accept us or have nothing to show; and those that were
 /// denied a topic. Names each by its participant's name, which it chooses itself, and the subject
-/// of its certificate, which after authentication is right.
+/// of its certificate: the announced one until note_subject() has the right one.
 class RefusalListener : public ReadWithListener {
  public:
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
@@ -71,7 +75,7 @@ class RefusalListener : public ReadWithListener {
   using Clock = std::chrono::steady_clock;
   struct Peer {
     std::string name;
-    std::string subject;  // of the certificate, empty without one
+    std::string subject;  // as announced, empty without a certificate
     Clock::time_point since;
     bool settled = false;  // accepted, or reported already
   };

@@ -227,6 +227,7 @@ void StatusPublisher::fill_counts() {
   set_drops("invalid_packet", strangers.invalid_packets);
   set_drops("unprotected_packet", strangers.unprotected_packets);
   set_drops("security_error", strangers.security_errors);
+  set_drops("denied_sample", strangers.denied_samples);
   set_drops("unknown_topic", strangers.unknown_topics);
   const auto forged = drops_.find(kForgedRemovals);
   if (strangers.forged_removals > (forged == drops_.end() ? 0 : forged->second)) {

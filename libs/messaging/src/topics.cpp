@@ -52,10 +52,17 @@ std::optional<std::string> find_defect_of(const void* message) {
   return find_defect(*static_cast<const T*>(message));
 }
 
+template <class T>
+std::string_view robot_of(const void* message) {
+  const auto& robot = static_cast<const T*>(message)->robot_id();
+  return {robot.c_str(), robot.size()};
+}
+
 template <class T, class TypeSupport>
 TopicInfo make_info(std::string_view name, std::string_view role, std::string_view replay_role,
                     std::string_view addressee) {
-  return {name, role, replay_role, addressee, make_type<TypeSupport>, find_defect_of<T>};
+  return {name,       role, replay_role, addressee, make_type<TypeSupport>, find_defect_of<T>,
+          robot_of<T>};
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ constexpr std::chrono::milliseconds kTick{200};
 }  // namespace
 
 Service::Service(const Setup& setup, bool any_robot)
-    : setup_(setup), participant_(make_participant(setup.options, setup.name)) {
+    : setup_(setup), participant_(make_participant(setup.options, setup.name, any_robot)) {
   // Signals first: one that comes while the rest starts must end the program cleanly, too.
   signals_.emplace([this](int) { loop_.stop(); });
   status_.emplace(participant_, loop_,

@@ -127,13 +127,19 @@ Setup with_robots(Setup setup, std::vector<std::string> robots) {
   return setup;
 }
 
-messaging::Participant make_participant(const ServiceOptions& options, const std::string& service) {
+messaging::Participant make_participant(const ServiceOptions& options, const std::string& service,
+                                        bool any_robot) {
   messaging::ParticipantOptions participant;
   participant.domain = options.domain;
   participant.partition = options.partition;
   participant.name = options.robot_id + "/" + service;
   participant.profiles_file = options.profiles_file;
   participant.identity = service;
+  if (!any_robot) {
+    participant.robots = options.other_robots;
+    participant.robots.push_back(options.robot_id);
+    if (!options.map_robot.empty()) participant.robots.push_back(options.map_robot);
+  }
   return messaging::Participant(participant);
 }
 

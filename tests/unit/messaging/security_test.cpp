@@ -81,6 +81,32 @@ TEST_F(Refusals, NameThePeerThatIsDeniedATopic) {
   EXPECT_THAT(listener_.take(), IsEmpty()) << "each once";
 }
 
+// A peer may announce any subject.
+TEST_F(Refusals, NameTheCertificateThatThePeerHasShown) {
+  peer("robot/map_store", "/O=topogeo/CN=map_store.robot");
+  note_subject(prefix_of_peer(), "/O=topogeo/CN=ga_worker.pc1");
+  authenticate(rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
+  note_denial({prefix_of_peer(), "topogeo/v16/map", true, false});
+  EXPECT_THAT(listener_.take(),
+              ElementsAre("'robot/map_store' (/O=topogeo/CN=ga_worker.pc1; " + std::string(kGuid) +
+                          ") is denied to write topogeo/v16/map"));
+  peer("", "", Info::REMOVED_PARTICIPANT);
+  peer("robot/map_store", "/O=topogeo/CN=map_store.robot");
+  authenticate(rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT);
+  EXPECT_THAT(listener_.take(), ElementsAre(testing::HasSubstr("CN=map_store.robot")))
+      << "who comes with the same id has to show it again";
+}
+
+TEST_F(Refusals, NameTheRobotOfASampleThatIsDenied) {
+  peer("anna/sensor_gateway", "/O=topogeo/OU=anna/CN=sensor_gateway.anna");
+  authenticate(rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
+  note_denial({prefix_of_peer(), "topogeo/v16/scan", true, false, "bert\n"});
+  EXPECT_THAT(
+      listener_.take(),
+      ElementsAre("'anna/sensor_gateway' (/O=topogeo/OU=anna/CN=sensor_gateway.anna; " +
+                  std::string(kGuid) + ") is denied to write topogeo/v16/scan for robot 'bert?'"));
+}
+
 TEST_F(Refusals, NameAPeerThatHasLeft) {
   peer("robot/map_store", "CN=ga_worker.pc1,O=topogeo");
   authenticate(rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);

@@ -3,7 +3,9 @@
 // (PKIDH::begin_handshake_reply, process_handshake_request). A peer that is refused tries once a
 // second, so that a stranger could take all memory.
 //
-// Here the one before is given back. The functions take the places of the library's, which calls
+// Here the one before is given back, and the subject of the certificate is noted once a peer has
+// shown that the key is its own: the one that a peer announces (dds.cert.sn of its identity token)
+// is compared with nothing. The functions take the places of the library's, which calls
 // them through its symbols. Should a library have no such functions, nothing calls these.
 #include "handshake_certificates.hpp"
 
@@ -13,12 +15,16 @@
 #include <utility>
 
 #include <fastdds/rtps/common/CDRMessage_t.h>
+#include <fastdds/rtps/common/Guid.h>
 #include <fastdds/rtps/common/Token.h>
 #include <fastdds/rtps/security/authentication/Authentication.h>
 #include <fastdds/rtps/security/common/Handle.h>
 #include <fastdds/rtps/security/exceptions/SecurityException.h>
+#include <openssl/crypto.h>
+#include <openssl/evp.h>
 #include <openssl/x509.h>
 
+#include "../security.hpp"
 #include "library_function.hpp"
 
 namespace {
@@ -31,6 +37,8 @@ struct Identity {
   static constexpr const char* kHandle = "PKIIdentityHandle";
   X509_STORE* store;
   X509* certificate;
+  EVP_PKEY* key;
+  rtps::GUID_t participant;
 };
 
 /// The same of a handshake (PKIHandshake).
@@ -67,6 +75,16 @@ class LastCertificate {
   Identity* identity_;
   X509* first_;
 };
+
+void note_subject(const security::Handle* peer) {
+  const Identity* identity = peer == nullptr ? nullptr : content_of<Identity>(*peer);
+  if (identity == nullptr || identity->certificate == nullptr) return;
+  char* const subject = X509_NAME_oneline(X509_get_subject_name(identity->certificate), nullptr, 0);
+  if (subject != nullptr) {
+    topogeo::messaging::note_subject(identity->participant.guidPrefix, subject);
+  }
+  OPENSSL_free(subject);
+}
 
 constexpr const char* kBeginReply =
     "_ZN8eprosima8fastrtps4rtps8security5PKIDH21begin_handshake_replyEPPNS2_6HandleEPPNS1_"
@@ -105,7 +123,12 @@ extern "C" security::ValidationResult_t topogeo_process_handshake(
       topogeo::messaging::library_function<decltype(&topogeo_process_handshake)>(kProcess);
   const Handshake* content = content_of<Handshake>(handshake);
   const LastCertificate last(content == nullptr ? nullptr : content->peer);
-  return original(plugin, answer, std::move(message), handshake, error);
+  const auto result = original(plugin, answer, std::move(message), handshake, error);
+  if (content != nullptr &&
+      (result == security::VALIDATION_OK || result == security::VALIDATION_OK_WITH_FINAL_MESSAGE)) {
+    note_subject(content->peer);
+  }
+  return result;
 }
 
 namespace topogeo::messaging {

@@ -55,6 +55,7 @@ constexpr const char* kTakeHandshake =
 std::atomic<std::uint64_t> g_invalid = 0;
 std::atomic<std::uint64_t> g_unprotected = 0;
 std::atomic<std::uint64_t> g_security_errors = 0;
+std::atomic<std::uint64_t> g_denied_samples = 0;
 std::atomic<std::uint64_t> g_unknown_topics = 0;
 std::atomic<std::uint64_t> g_forged_removals = 0;
 thread_local bool t_unprotected = false;
@@ -193,10 +194,15 @@ void count_security_error() {
   g_security_errors.fetch_add(1, std::memory_order_relaxed);
 }
 
+void count_denied_sample() {
+  g_denied_samples.fetch_add(1, std::memory_order_relaxed);
+}
+
 StrangerCounts stranger_counts() {
   return {.invalid_packets = g_invalid.load(std::memory_order_relaxed),
           .unprotected_packets = g_unprotected.load(std::memory_order_relaxed),
           .security_errors = g_security_errors.load(std::memory_order_relaxed),
+          .denied_samples = g_denied_samples.load(std::memory_order_relaxed),
           .unknown_topics = g_unknown_topics.load(std::memory_order_relaxed),
           .forged_removals = g_forged_removals.load(std::memory_order_relaxed)};
 }

@@ -15,6 +15,7 @@ void shield_packets();
 void count_invalid_packet();
 void count_unprotected_packet();
 void count_security_error();
+void count_denied_sample();
 void count_forged_removals(std::uint64_t count);
 
 }  // namespace topogeo::messaging

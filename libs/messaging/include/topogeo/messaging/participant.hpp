@@ -31,7 +31,9 @@ struct ParticipantOptions {
   /// permissions, encryption. Empty: TOPOGEO_SECURITY of the environment; empty, too: no security.
   std::filesystem::path security;
   std::string identity = "topogeo";  ///< its folder there: name of the service or command
-  bool observe = false;              ///< remembers the endpoints of others for discovered()
+  /// Robots that it works for; with security its keys must name them. Empty: those of its keys.
+  std::vector<std::string> robots;
+  bool observe = false;  ///< remembers the endpoints of others for discovered()
 };
 
 class ParticipantCore;
@@ -39,7 +41,8 @@ class ParticipantCore;
 class Participant {
  public:
   /// Joins the domain. Throws std::runtime_error when the profiles cannot be loaded, the profile is
-  /// unknown, the transport cannot be opened or the security material is refused;
+  /// unknown, the transport cannot be opened, the security material is refused or its keys do not
+  /// name one of the robots;
   /// std::invalid_argument for a domain over 232.
   explicit Participant(const ParticipantOptions& options = {});
 

@@ -15,6 +15,9 @@ struct StrangerCounts {
   /// What the security plug-ins reported: messages that they could not decode, or not encode for a
   /// peer that is gone, and what they found wrong with certificates.
   std::uint64_t security_errors = 0;
+  /// Messages of authenticated peers for robots that their permissions do not name. Not handed
+  /// over.
+  std::uint64_t denied_samples = 0;
   /// Announcements of readers and writers of topics that topogeo does not have.
   std::uint64_t unknown_topics = 0;
   /// Messages that said that a peer had left, which then went on sending: from a stranger in its

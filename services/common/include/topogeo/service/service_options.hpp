@@ -52,8 +52,11 @@ void add_domain_option(command_line::Command& app, std::uint32_t& domain);
 /// Adds the flags of `options` to `app`; `options` must outlive it.
 void add_service_options(command_line::Command& app, ServiceOptions& options);
 
-/// Joins the domain under the name "<robot>/<service>". Throws like messaging::Participant.
-messaging::Participant make_participant(const ServiceOptions& options, const std::string& service);
+/// Joins the domain under the name "<robot>/<service>". With security its keys must name the robots
+/// of the options; `any_robot`: it works for all that its keys name. Throws like
+/// messaging::Participant.
+messaging::Participant make_participant(const ServiceOptions& options, const std::string& service,
+                                        bool any_robot);
 
 /// What a service starts with.
 struct Setup {

@@ -1,0 +1,44 @@
+// The robots for which the writers of peers may write, as their signed permissions allow it.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <map>
+#include <shared_mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "topogeo/messaging/same_participant.hpp"
+
+namespace topogeo::messaging {
+
+/// For several threads.
+class WriterRobots {
+ public:
+  /// Peers that have left and of which messages may still wait here to be handled.
+  static constexpr std::size_t kMostDeparted = 4096;
+
+  /// The permissions of its participant allow the writer these partitions
+  /// (partitions_by_robot()), in place of those before.
+  void allow(const Handle& writer, const std::vector<std::string>& partitions);
+
+  /// Whether the writer may write for the robot. False for one that nothing has allowed.
+  [[nodiscard]] bool allows(const Handle& writer, std::string_view robot) const;
+
+  /// The participant to which this id belongs has left: after kMostDeparted others its writers are
+  /// forgotten, unless it has come back.
+  void depart(const Handle& participant);
+
+ private:
+  using Robots = std::vector<std::string>;
+
+  mutable std::shared_mutex mutex_;
+  std::map<ParticipantPrefix, std::map<Handle, Robots>> writers_;  // by participant
+  std::deque<ParticipantPrefix> departed_;
+};
+
+/// That of this process. fast_dds/writer_permissions.cpp fills it.
+WriterRobots& writer_robots();
+
+}  // namespace topogeo::messaging
