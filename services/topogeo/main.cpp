@@ -5,7 +5,9 @@
 #include <string_view>
 
 #include "topogeo/command_line/command_line.hpp"
+#include "topogeo/command_line/secret_arguments.hpp"
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/service/web_access.hpp"
 #include "topogeo/support/logging.hpp"
 #include "topogeo/support/version.hpp"
 
@@ -72,7 +74,8 @@ int main(int argc, char** argv) {
   try {
     support::set_up_logging("topogeo", "warning");
     if (argc > 1 && !has_services_of_its_own(argv[1])) cli::take_installed_settings();
-    return run(argc, argv);
+    const command_line::SecretArguments arguments(argc, argv, {service::kTokenOption});
+    return run(arguments.count(), arguments.values());
   } catch (const service::UsageError& error) {
     std::cerr << "topogeo: " << error.what() << '\n';
     code = service::kUsage;

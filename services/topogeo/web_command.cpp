@@ -51,7 +51,7 @@ struct ViewCommand {
   if (!command.map_of.empty()) words.insert(words.end(), {"--map-of", command.map_of});
   if (command.config) words.insert(words.end(), {"--config", command.config->string()});
   for (const std::string& argument : web_arguments(command.web)) words.push_back(argument);
-  if (command.web.token) export_token(command.web);
+  if (command.web.token || command.web.token_file) export_token(command.web);
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());

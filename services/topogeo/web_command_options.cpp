@@ -4,6 +4,7 @@
 #include <fstream>
 #include <random>
 
+#include "topogeo/service/service_options.hpp"
 #include "topogeo/service/web_access.hpp"
 #include "topogeo/support/format.hpp"
 
@@ -19,6 +20,24 @@ std::string token_of_environment() {
   return given != nullptr ? given : "";
 }
 
+/// That of the command line, of its file or of the environment.
+std::optional<std::string> given_token(const WebOptions& options) {
+  if (options.token && options.token_file) {
+    throw service::UsageError("expected --token or --token-file, not both");
+  }
+  if (options.token) return options.token;
+  if (options.token_file) return service::read_web_token(*options.token_file);
+  const std::string token = token_of_environment();
+  return token.empty() ? std::nullopt : std::optional(token);
+}
+
+std::string new_token() {
+  std::random_device random;
+  std::string token;
+  for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", random());
+  return token;
+}
+
 }  // namespace
 
 void add_web_options(command_line::Command& app, WebOptions& options,
@@ -32,8 +51,13 @@ void add_web_options(command_line::Command& app, WebOptions& options,
                      "address of the page (default: 127.0.0.1); others than those of this machine "
                      "alone need --certificate")
           ->type_name("ADDRESS"),
-      app.add_option("--token", options.token,
-                     "who has it may send the robot; without one it is made and printed"),
+      app.add_option(service::kTokenOption, options.token,
+                     "who has it may send the robot; without one it is made and printed. `ps` "
+                     "shows it: better --token-file")
+          ->type_name("TEXT"),
+      app.add_option("--token-file", options.token_file,
+                     "file with the token, which `ps` does not show")
+          ->type_name("FILE"),
       app.add_option("--certificate", options.certificate, "certificate of the page (PEM)")
           ->type_name("FILE"),
       app.add_option("--key", options.key, "its key (PEM)")->type_name("FILE"),
@@ -54,8 +78,7 @@ void add_web_options(command_line::Command& app, WebOptions& options,
 }
 
 void check_web_options(const WebOptions& options) {
-  const std::string token = options.token.value_or(token_of_environment());
-  if (options.token || !token.empty()) service::check_web_token(token);
+  if (const auto token = given_token(options)) service::check_web_token(*token);
   const std::string address = options.bind.value_or("127.0.0.1");
   service::check_web_address(address, options.certificate.has_value(), options.key.has_value(),
                              options.without_tls);
@@ -64,11 +87,10 @@ void check_web_options(const WebOptions& options) {
 }
 
 void export_token(const WebOptions& options) {
-  std::string token = options.token.value_or("");
-  const std::string given = token_of_environment();
-  if (!given.empty() && (!options.token || *options.token == given)) return;
-  std::random_device random;
-  for (int i = 0; i < 4 && !options.token; ++i) token += fmt::format("{:08x}", random());
+  if (options.token) service::warn_of_shown_token();
+  const auto given = given_token(options);
+  const std::string token = given ? *given : new_token();
+  if (token == token_of_environment()) return;
   // NOLINTNEXTLINE(concurrency-mt-unsafe): the same
   ::setenv(kTokenVariable, token.c_str(), 1);
 }

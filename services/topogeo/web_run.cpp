@@ -20,7 +20,7 @@ namespace {
 class WebRun {
  public:
   WebRun(const RunOptions& options, bool open_browser)
-      : open_browser_(open_browser), run_(options) {
+      : open_browser_(open_browser), page_(options.job.out / "logs/web.html"), run_(options) {
     ServiceRun::Hooks hooks;
     hooks.on_tick = [] {};
     hooks.log = [](const std::string& line) { std::cerr << "topogeo: " << line << '\n'; };
@@ -48,10 +48,11 @@ class WebRun {
     // In place of a terminal there may be a log, which others read.
     std::cout << (::isatty(STDOUT_FILENO) == 1 ? links : without_token) << "Ctrl-C ends it.\n"
               << std::flush;
-    if (open_browser_) open_in_browser(operator_link(links));
+    if (open_browser_) open_in_browser(operator_link(links), page_);
   }
 
   bool open_browser_;
+  std::filesystem::path page_;  // that leads the browser to the operator's
   ServiceRun run_;
   std::optional<FloorLoader> floors_;
 };

@@ -6,7 +6,6 @@
 
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/service/web_access.hpp"
-#include "topogeo/support/file_content.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
 #include "topogeo/support/secret_file.hpp"
@@ -15,18 +14,6 @@
 
 namespace topogeo::web {
 namespace {
-
-std::string read_token(const std::filesystem::path& file) {
-  try {
-    std::string token = support::file_content(file);
-    token.erase(std::remove_if(token.begin(), token.end(),
-                               [](unsigned char c) { return std::isspace(c) != 0; }),
-                token.end());
-    return token;
-  } catch (const std::runtime_error& error) {
-    throw service::BadInputError(error.what());
-  }
-}
 
 /// As browsers send them; "file://" is that of programs whose page is a file.
 void check_origins(const std::vector<std::string>& origins) {
@@ -52,12 +39,13 @@ void add_web_options(command_line::Command& app, WebOptions& options) {
                  "address to listen at; others than those of this machine alone need --certificate")
       ->type_name("ADDRESS")
       ->capture_default_str();
-  app.add_option("--token", options.token,
-                 "who has it may send the robot; without one it is made and printed")
+  app.add_option(service::kTokenOption, options.token,
+                 "who has it may send the robot; without one it is made and printed. `ps` shows "
+                 "it: better --token-file")
       ->environment("TOPOGEO_WEB_TOKEN")
       ->type_name("TEXT");
   app.add_option("--token-file", options.token_file,
-                 "the same from a file, which `ps` does not show")
+                 "file with the token, which `ps` does not show")
       ->type_name("FILE");
   app.add_option("--link-file", options.link_file,
                  "file of mode 0600 for the operator's link, which holds the token and is not "
@@ -99,7 +87,7 @@ ServerConfig server_config(const WebOptions& options, const std::string& robot_i
   if (options.token) {
     config.token = *options.token;
   } else {
-    config.token = options.token_file ? read_token(*options.token_file) : new_token();
+    config.token = options.token_file ? service::read_web_token(*options.token_file) : new_token();
   }
   service::check_web_token(config.token);
   config.life = new_token().substr(0, 16);

@@ -3,7 +3,9 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <future>
 #include <memory>
 #include <numbers>
@@ -201,6 +203,78 @@ TEST(WebCommand, ViewsAStoredMap) {
       kPagePatience));
   view.send_signal(SIGINT);
   EXPECT_EQ(view.wait(), 0) << view.err();
+}
+
+/// What `ps` shows of a process: its arguments, with a zero byte behind each.
+std::string command_line_of(pid_t process) {
+  return read_file("/proc/" + std::to_string(process) + "/cmdline");
+}
+
+TEST(WebCommand, HidesATokenOfTheCommandLine) {
+  use_udp_only();
+  const Scratch scratch;
+  const std::string domain = own_domain();
+  Program web(scratch, "web", {"--domain", domain, "--port", "0", "--token", kToken});
+  wait_for_port(web);
+  EXPECT_THAT(web.out(), HasSubstr(kToken));
+  EXPECT_THAT(command_line_of(web.pid()),
+              testing::AllOf(HasSubstr("--token"), Not(HasSubstr(kToken))));
+  EXPECT_THAT(web.err(), HasSubstr("give it by --token-file or TOPOGEO_WEB_TOKEN"));
+  Program command(scratch, "topogeo",
+                  {"web", "--domain", domain, "--port", "0", "--token", kToken});
+  wait_for_port(command);
+  EXPECT_THAT(command_line_of(command.pid()), Not(HasSubstr(kToken)));
+  EXPECT_THAT(command.err(), HasSubstr("give it by --token-file or TOPOGEO_WEB_TOKEN"));
+}
+
+TEST(WebCommand, TakesTheTokenOfAFile) {
+  use_udp_only();
+  const Scratch scratch;
+  std::ofstream(scratch / "token") << kToken << '\n';
+  const std::string token = (scratch / "token").string();
+  Program web(scratch, "topogeo",
+              {"web", "--domain", own_domain(), "--port", "0", "--token-file", token});
+  wait_for_port(web);
+  EXPECT_THAT(web.out(), HasSubstr("#token=" + std::string(kToken)));
+  EXPECT_THAT(command_line_of(web.pid()), Not(HasSubstr(kToken)));
+  EXPECT_THAT(web.err(), Not(HasSubstr("--token-file")));
+  for (const char* command : {"web", "run"}) {
+    std::vector<std::string> words = {command, "--token-file", (scratch / "none").string()};
+    if (words.front() == "run") words.insert(words.end(), {"--log", "l", "--out", "o", "--web"});
+    Program missing(scratch, "topogeo", words);
+    EXPECT_EQ(missing.wait(), 3) << command;
+    EXPECT_THAT(missing.err(), HasSubstr("none")) << command;
+  }
+}
+
+// A browser that a command starts shows its arguments, too.
+TEST(WebCommand, OpensABrowserWithoutTheTokenInItsArguments) {
+  use_udp_only();
+  const Scratch scratch;
+  write_log("room", scratch / "room.clf");
+  Program map(
+      scratch, "topogeo",
+      {"map", "--log", (scratch / "room.clf").string(), "--out", (scratch / "room").string()});
+  ASSERT_EQ(map.wait(), 0) << map.err();
+  const std::filesystem::path opened = scratch / "opened";
+  std::ofstream(scratch / "xdg-open") << "#!/bin/sh\n{ printf '%s\\n' \"$1\"; stat -c %a "
+                                         "\"${1#file://}\"; cat \"${1#file://}\"; } > '"
+                                      << opened.string() << ".new'\nmv '" << opened.string()
+                                      << ".new' '" << opened.string() << "'\n";
+  std::filesystem::permissions(scratch / "xdg-open", std::filesystem::perms::owner_all);
+  const std::string path = std::getenv("PATH");  // NOLINT(concurrency-mt-unsafe): one thread
+  ::setenv("PATH", (scratch / "").string().append(":").append(path).c_str(), 1);  // NOLINT
+  ::setenv("DISPLAY", ":7", 1);  // NOLINT(concurrency-mt-unsafe): as above
+  Program view(
+      scratch, "topogeo",
+      {"view", (scratch / "room/map.pb").string(), "--port", "0", "--domain", own_domain()});
+  ::setenv("PATH", path.c_str(), 1);  // NOLINT(concurrency-mt-unsafe): as above
+  ::unsetenv("DISPLAY");              // NOLINT(concurrency-mt-unsafe): as above
+  ASSERT_TRUE(test::wait_for("a browser", [&] { return std::filesystem::exists(opened); }));
+  const std::string all = read_file(opened);
+  const std::string argument = all.substr(0, all.find('\n'));
+  EXPECT_THAT(argument, testing::AllOf(testing::StartsWith("file:///"), Not(HasSubstr("token"))));
+  EXPECT_THAT(all, testing::AllOf(HasSubstr("\n600\n"), HasSubstr("#token=")));
 }
 
 TEST(WebCommand, NamesWhatDoesNotGoTogether) {

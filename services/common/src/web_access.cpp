@@ -9,7 +9,10 @@
 #include <boost/asio/ip/tcp.hpp>
 
 #include "topogeo/command_line/command_line.hpp"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/support/file_content.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/log.hpp"
 
 namespace topogeo::service {
 namespace {
@@ -21,6 +24,22 @@ bool is_loopback(const std::string& address) {
 }
 
 }  // namespace
+
+void warn_of_shown_token() {
+  spdlog::warn(
+      "--token: `ps` has shown the token to all users of this machine; give it by --token-file "
+      "or TOPOGEO_WEB_TOKEN");
+}
+
+std::string read_web_token(const std::filesystem::path& file) {
+  try {
+    std::string token = support::file_content(file);
+    std::erase_if(token, [](unsigned char c) { return std::isspace(c) != 0; });
+    return token;
+  } catch (const std::runtime_error& error) {
+    throw BadInputError(error.what());
+  }
+}
 
 void check_web_token(const std::string& token) {
   const bool plain = std::ranges::all_of(token, [](unsigned char c) {

@@ -3,9 +3,19 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 namespace topogeo::service {
+
+/// Option with the operator's token: programs hide its value (command_line::SecretArguments).
+inline constexpr const char* kTokenOption = "--token";
+
+/// Logs that the token was on the command line, and where it belongs.
+void warn_of_shown_token();
+
+/// The token in a file, without white space. Throws BadInputError when it cannot be read.
+std::string read_web_token(const std::filesystem::path& file);
 
 /// Throws command_line::UsageError unless it has 16 letters, digits, '-', '_' or '.' or more.
 void check_web_token(const std::string& token);
