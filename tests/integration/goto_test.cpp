@@ -69,11 +69,16 @@ TEST_P(GotoLives, TheRobotIsFoundWhereItIsAndDrivesOn) {
   EXPECT_THAT(run.out(), HasSubstr(" 0 collisions"));
   for (const std::string& name : GetParam()) {
     EXPECT_THAT(run.err(), HasSubstr(name + " is at work again after"));
+    print_lines_with(name + " is at work again after", run.err());
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Services, GotoLives,
-                         testing::Values(std::vector<std::string>{"local_mapper"},
+                         testing::Values(std::vector<std::string>{"sensor_gateway"},
+                                         std::vector<std::string>{"navigator"},
+                                         std::vector<std::string>{"planner"},
+                                         std::vector<std::string>{"map_store"},
+                                         std::vector<std::string>{"local_mapper"},
                                          std::vector<std::string>{"localizer"},
                                          std::vector<std::string>{"local_mapper", "localizer"}),
                          [](const auto& services) {

@@ -207,6 +207,13 @@ std::string read_file(const std::filesystem::path& path) {
   return text.str();
 }
 
+void print_lines_with(const std::string& part, const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find(part) != std::string::npos) std::printf("%s\n", line.c_str());
+  }
+}
+
 std::string own_domain() {
   static const int domain = claim_domain();
   return std::to_string(domain);

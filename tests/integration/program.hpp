@@ -70,6 +70,9 @@ class Program {
 
 std::string read_file(const std::filesystem::path& path);
 
+/// Prints the lines of a text that have `part` in them: figures of a test.
+void print_lines_with(const std::string& part, const std::string& text);
+
 /// A DDS domain for the running test, so that tests that run at the same time do not see each
 /// other.
 std::string own_domain();

@@ -65,6 +65,7 @@ TEST_P(SimulationLivesTest, TheMapEndsCompleteAndRight) {
   EXPECT_THAT(run.err(), HasSubstr(std::string(GetParam()) + " was killed by signal 9"));
   EXPECT_THAT(run.err(), HasSubstr("started again"));
   EXPECT_THAT(run.err(), HasSubstr(std::string(GetParam()) + " is at work again after"));
+  print_lines_with(" is at work again after", run.err());
   if (std::string(GetParam()) == "sensor_gateway") {
     EXPECT_THAT(read_file(out_ + "/logs/sensor_gateway-2.log"), HasSubstr("the odometry goes on"));
   }
