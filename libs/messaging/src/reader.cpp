@@ -214,7 +214,8 @@ void ReaderCore::Impl::deliver(const Arrival& arrival, Endpoint::Shared& shared,
     refuse(*defect);
     return;
   }
-  const std::string_view robot = info->robot_of(arrival.message.get());
+  const std::string_view robot =
+      info->robot_of == nullptr ? std::string_view() : info->robot_of(arrival.message.get());
   if (!participant->may_write_for(sample.writer, robot)) {
     deny(sample.writer, robot);
     return;

@@ -147,7 +147,8 @@ const messaging::TopicInfo& keep(const std::string& key, const std::string& name
   const auto [entry, added] = topics.try_emplace(key + name);
   if (added) {
     entry->second.name = "rt" + name;
-    entry->second.info = {entry->second.name, "ros_reliable", "", "", make_type, find_defect};
+    entry->second.info = {entry->second.name, "ros_reliable", "",     "",
+                          make_type,          find_defect,    nullptr};
   }
   return entry->second.info;
 }

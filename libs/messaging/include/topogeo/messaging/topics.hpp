@@ -41,8 +41,8 @@ struct TopicInfo {
   /// Why a message of this type must not travel: another schema version or a sequence over its
   /// bound. The generated code checks neither.
   std::optional<std::string> (*find_defect)(const void* message);
-  /// The robot_id of a message of this type, until the message changes.
-  std::string_view (*robot_of)(const void* message);
+  /// The robot_id of a message of this type, until the message changes. Null: the type has none.
+  std::string_view (*robot_of)(const void* message) = nullptr;
 };
 
 /// TopicTraits<T>::info() for each message type that has a topic.
