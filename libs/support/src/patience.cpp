@@ -61,7 +61,7 @@ void Patience::begin_again(double now_s) {
 
 std::string Patience::reason() const {
   const double took_s = now_s_ - start_s_;
-  if (took_s < kProlonged * clock_.time_s()) return {};
+  if (took_s <= kProlonged * clock_.time_s()) return {};
   return fmt::format(
       "; this machine is too busy: the wait of {:.1f} s took {:.1f} s, and this program waited for "
       "a CPU {:.0f} % of its working time",
