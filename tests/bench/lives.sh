@@ -22,7 +22,10 @@ other_machine() {  # before any service starts: they look for interfaces once
   [ "$(id -u)" = 0 ] || return 1
   unshare --net sleep infinity &
   machine=$!
-  until [ "$(readlink "/proc/$machine/ns/net")" != "$(readlink /proc/self/ns/net)" ]; do sleep 0.05; done  # between two checks
+  # Until it has a network of its own.
+  until [ "$(readlink "/proc/$machine/ns/net")" != "$(readlink /proc/self/ns/net)" ]; do
+    sleep 0.05  # between two checks
+  done
   ip link add "lv$$" type veth peer name "lw$$" netns "$machine" || return 1
   ip addr add 10.213.7.1/24 dev "lv$$" && ip link set "lv$$" up
   nsenter -t "$machine" -n sh -c \
