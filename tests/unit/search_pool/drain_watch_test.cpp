@@ -13,9 +13,9 @@ double stay_s(const Open& open, bool busy = false) {
   constexpr double kLongest_s = 10000.0;
   DrainWatch watch(0.0);
   double now_s = 0.0;
-  while (now_s < kLongest_s &&
-         watch.goes_on(now_s += kStep_s, static_cast<std::size_t>(open(now_s)), busy)) {
-  }
+  do {
+    now_s += kStep_s;
+  } while (now_s < kLongest_s && watch.goes_on(now_s, static_cast<std::size_t>(open(now_s)), busy));
   return now_s;
 }
 
