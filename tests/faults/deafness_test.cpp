@@ -1,19 +1,25 @@
-// A gateway that has forgotten a local mapper, after an interruption that the mapper has not
-// noticed: the mapper gets no scans any more, nor anything else of it. It has to find that out, end
-// with the exit code that its supervisors start it again for, and be at work in its next life.
+// A gateway whose scans do not reach a local mapper, while each of the two takes itself for connected
+// with the other. The mapper has to find that out, end with the exit code that its supervisors start
+// it again for, and be at work in its next life.
 //
-// This test is the gateway. What comes to its sockets is lost while `deaf_gateway` is true.
+// This test is the gateway: what it sends passes the function below, which may lose it.
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <dlfcn.h>
 #include <gmock/gmock.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 
 #include "topogeo/messaging/event_loop.hpp"
@@ -30,19 +36,53 @@
 
 namespace {
 
-std::atomic<bool> deaf_gateway = false;
+/// What is lost of all that this process sends. For several threads.
+class Losses {
+ public:
+  void lose_scans(bool lost) { scans_ = lost; }
+  /// All that goes to the ports that were sent to so far, but for the groups of multicast.
+  void lose_known_ports(bool lost) { ports_ = lost; }
+
+  bool take(std::span<const std::uint8_t> packet, const sockaddr* address) {
+    if (scans_ && has_scan(packet)) return true;
+    if (address == nullptr || address->sa_family != AF_INET) return false;
+    const auto& to = *reinterpret_cast<const sockaddr_in*>(address);  // NOLINT: its interface
+    if (IN_MULTICAST(ntohl(to.sin_addr.s_addr))) return false;
+    const std::lock_guard lock(mutex_);
+    if (ports_) return known_.contains(to.sin_port);
+    known_.insert(to.sin_port);
+    return false;
+  }
+
+ private:
+  /// Ranges of 2 m, each like the next.
+  static bool has_scan(std::span<const std::uint8_t> packet) {
+    constexpr std::array<std::uint8_t, 16> kRanges = {0, 0, 0, 0x40, 0, 0, 0, 0x40,
+                                                      0, 0, 0, 0x40, 0, 0, 0, 0x40};
+    return !std::ranges::search(packet, kRanges).empty();
+  }
+
+  std::atomic<bool> scans_ = false;
+  std::atomic<bool> ports_ = false;
+  std::mutex mutex_;
+  std::set<in_port_t> known_;
+};
+
+Losses& losses() {
+  static auto* const losses = new Losses;  // NOLINT: threads of the middleware outlive statics
+  return *losses;
+}
 
 }  // namespace
 
 // Takes the place of the function of the C library for the middleware, too.
-extern "C" ssize_t recvfrom(int socket, void* buffer, std::size_t size, int flags,
-                            sockaddr* address, socklen_t* address_size) {
-  using Function = ssize_t (*)(int, void*, std::size_t, int, sockaddr*, socklen_t*);
-  static const auto original = reinterpret_cast<Function>(::dlsym(RTLD_NEXT, "recvfrom"));
-  while (true) {
-    const ssize_t received = original(socket, buffer, size, flags, address, address_size);
-    if (received < 0 || !deaf_gateway) return received;
-  }
+extern "C" ssize_t sendto(int socket, const void* packet, std::size_t size, int flags,
+                          const sockaddr* address, socklen_t address_size) {
+  using Function = ssize_t (*)(int, const void*, std::size_t, int, const sockaddr*, socklen_t);
+  static const auto original = reinterpret_cast<Function>(::dlsym(RTLD_NEXT, "sendto"));
+  const std::span bytes(static_cast<const std::uint8_t*>(packet), size);
+  if (losses().take(bytes, address)) return static_cast<ssize_t>(size);
+  return original(socket, packet, size, flags, address, address_size);
 }
 
 namespace topogeo::test {
@@ -64,7 +104,8 @@ class DeafnessTest : public testing::Test {
  protected:
   DeafnessTest() { use_udp_only(); }
   ~DeafnessTest() override {
-    deaf_gateway = false;
+    losses().lose_scans(false);
+    losses().lose_known_ports(false);
     ::unsetenv("TOPOGEO_SECURITY");  // NOLINT(concurrency-mt-unsafe): one thread
   }
 
@@ -89,7 +130,9 @@ class DeafnessTest : public testing::Test {
     gateway_ = std::make_unique<Gateway>(options);
     gateway_->loop.add<msg::ServiceStatus>(
         gateway_->statuses, [this](const msg::ServiceStatus& status, const messaging::SampleInfo&) {
-          if (status.service() == "local_mapper") mapper_status_ = status;
+          const bool of_this_life =
+              mapper_ && status.process_id() == static_cast<std::uint32_t>(mapper_->pid());
+          if (of_this_life) mapper_status_ = status;
         });
     gateway_->loop.add(gateway_->scans);
     gateway_->loop.add_timer(kScanPeriod, [this] { gateway_->send_scan(); });
@@ -109,25 +152,20 @@ class DeafnessTest : public testing::Test {
   }
   [[nodiscard]] bool mapper_works() const { return mapper_status_ && mapper_status_->inputs() > 5; }
 
-  /// The gateway forgets the mapper, whose lease is over, and hears it again.
-  void forget_mapper() {
-    deaf_gateway = true;
-    EXPECT_TRUE(wait("the gateway to forget the mapper",
-                     [this] { return gateway_->scans.matched() == 0; }));
-    deaf_gateway = false;
-  }
-
-  void expect_return() {
+  void start_both() {
     start_gateway();
     start_mapper();
     ASSERT_TRUE(wait("the local mapper to get scans", [this] { return mapper_works(); }))
         << mapper_->err();
-    forget_mapper();
+  }
+  void expect_end() {
     ASSERT_TRUE(wait("the local mapper to end", [this] { return mapper_->ended(); }))
         << mapper_->err();
     EXPECT_EQ(mapper_->wait(), 1) << "what supervisors start again";
     EXPECT_THAT(mapper_->err(), HasSubstr("deaf: none of the "));
-    EXPECT_THAT(mapper_->err(), HasSubstr("that sensor_gateway has sent in "));
+    EXPECT_THAT(mapper_->err(), HasSubstr(" scan that sensor_gateway has sent in "));
+  }
+  void expect_next_life() {
     start_mapper();
     EXPECT_TRUE(wait("the next local mapper to get scans", [this] { return mapper_works(); }))
         << mapper_->err();
@@ -161,13 +199,30 @@ class DeafnessTest : public testing::Test {
   std::optional<msg::ServiceStatus> mapper_status_;
 };
 
-TEST_F(DeafnessTest, AServiceThatItsSenderHasForgottenIsAtWorkAgainInItsNextLife) {
-  expect_return();
+TEST_F(DeafnessTest, AServiceWhoseInputAloneIsLostIsAtWorkAgainInItsNextLife) {
+  start_both();
+  losses().lose_scans(true);
+  expect_end();
+  losses().lose_scans(false);
+  expect_next_life();
 }
 
-TEST_F(DeafnessTest, SoIsOneWithSecurity) {
+// Nor does the status of the sender come: only another participant hears it.
+TEST_F(DeafnessTest, SoIsOneThatHearsNothingOfItsSender) {
+  start_both();
+  losses().lose_known_ports(true);
+  expect_end();
+  losses().lose_known_ports(false);
+  expect_next_life();
+}
+
+TEST_F(DeafnessTest, SoIsOneThatHearsNothingOfItsSenderWithSecurity) {
   if (!make_keys()) GTEST_SKIP() << "openssl is missing";
-  expect_return();
+  start_both();
+  losses().lose_known_ports(true);
+  expect_end();
+  losses().lose_known_ports(false);
+  expect_next_life();
 }
 
 }  // namespace
