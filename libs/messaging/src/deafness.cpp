@@ -155,7 +155,7 @@ std::string DeafnessWatch::check(const Status& own, Time now) {
   }
   const double passed_s = status.uptime_s() - mark_->uptime_s;
   if (passed_s < kProof_s || sent < mark_->sent + kProofMessages) return {};
-  return fmt::format("deaf: none of the {} {} that {} has sent in {:.1f} s has arrived",
+  return fmt::format("none of the {} {} that {} has sent in {:.1f} s has arrived",
                      sent - mark_->sent, topic, status.service().c_str(), passed_s);
 }
 

@@ -169,7 +169,7 @@ class DeafnessProof : public Deafness {
 
 TEST_F(DeafnessProof, IsWhatWasSentWithinTheSilence) {
   EXPECT_EQ(after(6, 5), "") << "3 s are not over";
-  EXPECT_EQ(half_a_second(5), "deaf: none of the 30 pose that localizer has sent in 3.0 s has arrived");
+  EXPECT_EQ(half_a_second(5), "none of the 30 pose that localizer has sent in 3.0 s has arrived");
 }
 
 TEST_F(DeafnessProof, IsThatOfAnInputThatComesSeldom) {

@@ -55,8 +55,8 @@ class DeafnessWatch {
   /// A status of any service of the domain and partition has come.
   void hear(const msg::ServiceStatus& status, Time now);
 
-  /// The service with that status is at work. Returns why it is deaf: "deaf: none of the 31 scan
-  /// that sensor_gateway has sent in 3.1 s has arrived"; empty while there is no proof.
+  /// The service with that status is at work. Returns why it is deaf: "none of the 31 scan that
+  /// sensor_gateway has sent in 3.1 s has arrived"; empty while there is no proof.
   [[nodiscard]] std::string check(const msg::ServiceStatus& own, Time now);
 
   /// Whether the status of a sender of the main input comes in. Without it nothing is known: the
