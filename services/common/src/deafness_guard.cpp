@@ -16,9 +16,11 @@ double in_seconds(messaging::DeafnessWatch::Time time) {
 
 }  // namespace
 
-DeafnessGuard::DeafnessGuard(const Setup& setup, const messaging::Participant& participant,
-                             messaging::EventLoop& loop, messaging::StatusPublisher& status)
+DeafnessGuard::DeafnessGuard(const Setup& setup, bool any_robot,
+                             const messaging::Participant& participant, messaging::EventLoop& loop,
+                             messaging::StatusPublisher& status)
     : setup_(setup),
+      any_robot_(any_robot),
       participant_(participant),
       loop_(loop),
       status_(status),
@@ -48,7 +50,8 @@ void DeafnessGuard::tick() {
   if (step.report) status_.fault(kFault, why);
   if (!step.end) return;
   memory_.store(schedule_.deaf_lives());
-  throw Deaf(std::string(kFault) + ": " + why + "; it meets the sender anew when it is started again");
+  throw Deaf(std::string(kFault) + ": " + why +
+             "; it meets the sender anew when it is started again");
 }
 
 void DeafnessGuard::listen() {
@@ -74,7 +77,8 @@ void DeafnessGuard::probe(bool wanted) {
   }
   if (probe_ || probe_failed_) return;
   try {
-    const messaging::Participant participant = make_participant(setup_.options, setup_.name);
+    const messaging::Participant participant =
+        make_participant(setup_.options, setup_.name, any_robot_);
     probe_.emplace(Probe{participant, messaging::Reader<msg::ServiceStatus>(participant)});
   } catch (const std::exception& error) {
     probe_failed_ = true;

@@ -28,8 +28,8 @@ struct Deaf final : std::runtime_error {
 /// another one, a probe. Lives in the thread of the loop.
 class DeafnessGuard {
  public:
-  /// All must outlive it.
-  DeafnessGuard(const Setup& setup, const messaging::Participant& participant,
+  /// All must outlive it. `any_robot`: as for the participant of the service.
+  DeafnessGuard(const Setup& setup, bool any_robot, const messaging::Participant& participant,
                 messaging::EventLoop& loop, messaging::StatusPublisher& status);
 
   /// Several times a second. The counter "deaf" and the fault of that name show what it finds.
@@ -44,6 +44,7 @@ class DeafnessGuard {
   void probe(bool wanted);
 
   const Setup& setup_;
+  const bool any_robot_;
   const messaging::Participant& participant_;
   messaging::EventLoop& loop_;
   messaging::StatusPublisher& status_;

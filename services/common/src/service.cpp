@@ -33,7 +33,7 @@ Service::Service(const Setup& setup, bool any_robot)
                       std::string(support::kVersion), setup.config.effective.fingerprint});
   cpu_.emplace([this] { return std::chrono::duration<double>(loop_.take_timer_delay()).count(); },
                [this](const char* name, double value) { status_->set_counter(name, value); });
-  deafness_ = std::make_unique<DeafnessGuard>(setup_, participant_, loop_, *status_);
+  deafness_ = std::make_unique<DeafnessGuard>(setup_, any_robot, participant_, loop_, *status_);
   loop_.add_timer(kTick, [this] { tick(); });
   offer_metrics();
 }

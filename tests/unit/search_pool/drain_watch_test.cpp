@@ -13,9 +13,12 @@ double stay_s(const Open& open, bool busy = false) {
   constexpr double kLongest_s = 10000.0;
   DrainWatch watch(0.0);
   double now_s = 0.0;
-  do {
+  bool goes_on = true;
+  while (goes_on && now_s < kLongest_s) {
     now_s += kStep_s;
-  } while (now_s < kLongest_s && watch.goes_on(now_s, static_cast<std::size_t>(open(now_s)), busy));
+    const auto tasks = static_cast<std::size_t>(open(now_s));
+    goes_on = watch.goes_on(now_s, tasks, busy);
+  }
   return now_s;
 }
 

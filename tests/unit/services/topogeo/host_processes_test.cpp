@@ -30,7 +30,8 @@ class HostProcesses : public testing::Test {
     std::string line;
     for (const std::string& word : words) line += word + '\0';
     write(folder / "cmdline", line);
-    const auto start = static_cast<long>((1000.0 - age_s) * static_cast<double>(::sysconf(_SC_CLK_TCK)));
+    const auto start =
+        static_cast<long>((1000.0 - age_s) * static_cast<double>(::sysconf(_SC_CLK_TCK)));
     std::string stat = std::to_string(pid) + " (a (b) c) " + state;
     for (int field = 4; field < 22; ++field) stat += " 7";
     write(folder / "stat", stat + " " + std::to_string(start) + " 0 0\n");
