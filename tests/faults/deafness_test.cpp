@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -146,8 +147,7 @@ class DeafnessTest : public testing::Test {
   }
 
   /// The gateway sends scans until `condition` holds.
-  template <class Condition>
-  bool wait(const std::string& what, const Condition& condition) {
+  bool wait(const std::string& what, const std::function<bool()>& condition) {
     return wait_in_loop(gateway_->loop, what, condition);
   }
   [[nodiscard]] bool mapper_works() const { return mapper_status_ && mapper_status_->inputs() > 5; }
