@@ -49,9 +49,8 @@ SimulatorService::SimulatorService(service::Service& service, SimulatedWorld& wo
       [this](const msg::SimulatorCommand& command) { on_command(command); });
   service_.loop().add_timer(kTick, [this] { tick(); });
   const DeviceOptions& devices = world.options.devices;
-  service_.status().set_state(
-      msg::kServiceRunning,
-      "laser at " + devices.laser_port.string() + ", base at " + devices.base_port.string());
+  service_.status().set_state(msg::kServiceRunning, "laser at " + devices.laser_port.string() +
+                                                        ", base at " + devices.base_port.string());
 }
 
 std::int64_t SimulatorService::stamp_ns() const {

@@ -34,8 +34,8 @@ struct SimulatedWorld {
   SimulatorOptions options;
   SimulatedDevices devices;
   FaultInjector faults{devices};
-  Clock::time_point start;       ///< when the world's clock was 0
-  std::int64_t start_stamp_ns;   ///< of that, since the epoch
+  Clock::time_point start;      ///< when the world's clock was 0
+  std::int64_t start_stamp_ns;  ///< of that, since the epoch
 };
 
 /// Lives in the loop of its service. The sonars, infrared and tactile sensors of a B21 are on a bus

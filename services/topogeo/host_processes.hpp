@@ -13,11 +13,11 @@ namespace topogeo::cli {
 
 struct HostProcess {
   pid_t pid = 0;
-  std::string service;        ///< "localizer"
-  std::uint32_t domain = 0;   ///< of its command line, else of its environment if it can be read
-  std::string partition;      ///< of its command line, else the default
-  bool stopped = false;       ///< by a signal or a debugger
-  double age_s = 0.0;         ///< since it was started
+  std::string service;       ///< "localizer"
+  std::uint32_t domain = 0;  ///< of its command line, else of its environment if it can be read
+  std::string partition;     ///< of its command line, else the default
+  bool stopped = false;      ///< by a signal or a debugger
+  double age_s = 0.0;        ///< since it was started
 };
 
 /// Those in the network of this process, by pid; none where there is no `proc`. A process of

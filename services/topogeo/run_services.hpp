@@ -23,8 +23,8 @@ inline constexpr double kSimulatedAcceleration = 1.5;  // m/s^2
 std::filesystem::path simulated_port(const RunOptions& options, const std::string& device);
 
 /// Where a service of a run keeps what its next life needs: the gateway its "odometry", the
-/// localizer the "pose" of the robot, the navigator its "goal". In memory, since a write to a disk may take seconds. To be
-/// removed at the end.
+/// localizer the "pose" of the robot, the navigator its "goal". In memory, since a write to a disk
+/// may take seconds. To be removed at the end.
 std::filesystem::path memory_of_run(const std::string& partition, const std::string& what);
 /// All files of the run that are there, those that services choose themselves included.
 std::vector<std::filesystem::path> memories_of_run(const std::string& partition);

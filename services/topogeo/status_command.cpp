@@ -47,8 +47,7 @@ void print(const StatusOptions& options, const StatusTable& table,
 }
 
 int show_status(const StatusOptions& options) {
-  const messaging::Participant participant =
-      join(options.view, "topogeo status", "status", true);
+  const messaging::Participant participant = join(options.view, "topogeo status", "status", true);
   messaging::EventLoop loop;
   StatusTable table;
   table.expect(options.expected);
@@ -83,7 +82,8 @@ int show_status(const StatusOptions& options) {
   const bool redraw = options.view.watch && !options.json && ::isatty(STDOUT_FILENO) != 0;
   const Collected collected = collect_and_show(
       options.view, loop,
-      // One that is expected, or was discovered just now, is waited for as long as the first one is.
+      // One that is expected, or was discovered just now, is waited for as long as the first one
+      // is.
       [&] {
         const StatusTable::Clock::time_point now = StatusTable::Clock::now();
         if (options.host.empty()) unheard.discovered(participant.discovered(), now);
@@ -144,7 +144,8 @@ void add_status_command(command_line::Command& app, int& exit_code) {
       "one\n"
       "that ended without an order is lost, one that gets nothing of an input that another one "
       "sends\n"
-      "is deaf. One that is discovered, or runs on this host, and is not heard is silent, too. What\n"
+      "is deaf. One that is discovered, or runs on this host, and is not heard is silent, too. "
+      "What\n"
       "was dead before is not known, unless it is expected or a unit of systemd on this host, of\n"
       "which those are listed that do not run.\n"
       "Exit code: 0 all services are well, 1 some are failed, lost, silent, deaf, missing or not\n"

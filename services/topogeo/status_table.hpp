@@ -78,7 +78,8 @@ class StatusTable {
 
   [[nodiscard]] std::vector<Absent> absent() const;
   [[nodiscard]] static bool is_gone(const Row& row, Clock::time_point now);
-  /// Why it gets nothing of its main input (messaging::deafness); empty: it gets some, or none is sent.
+  /// Why it gets nothing of its main input (messaging::deafness); empty: it gets some, or none is
+  /// sent.
   [[nodiscard]] std::string deafness(const Row& row, Clock::time_point now) const;
   [[nodiscard]] bool unwell(const Row& row, Clock::time_point now) const;
   [[nodiscard]] std::string state(const Row& row, Clock::time_point now) const;

@@ -41,15 +41,15 @@ std::vector<UnheardService> UnheardServices::list(Time now) const {
   std::vector<UnheardService> unheard;
   std::set<std::string> named;
   for (const HostProcess& process : running_) {
-    const bool wanted = process.domain == domain_ && (partition_ == messaging::kAnyPartition ||
-                                                      partition_ == process.partition);
+    const bool wanted = process.domain == domain_ &&
+                        (partition_ == messaging::kAnyPartition || partition_ == process.partition);
     const auto id = static_cast<std::uint32_t>(process.pid);
     if (!wanted || processes_heard_.contains({host_, id})) continue;
     if (!process.stopped && process.age_s < kStarting_s) continue;
     named.insert(process.service);
-    unheard.push_back({process.service,
-                       fmt::format("process {} of this host {}, and no status of it comes", id,
-                                   process.stopped ? "is stopped" : "runs")});
+    unheard.push_back(
+        {process.service, fmt::format("process {} of this host {}, and no status of it comes", id,
+                                      process.stopped ? "is stopped" : "runs")});
   }
   for (const auto& [id, writer] : writers_) {
     if (heard_.contains(id) || now - writer.since < kFirstStatus) continue;

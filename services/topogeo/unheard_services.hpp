@@ -61,9 +61,9 @@ class UnheardServices {
 
   std::uint32_t domain_;
   std::string partition_;
-  std::set<messaging::Handle> heard_;                         // writers of statuses
+  std::set<messaging::Handle> heard_;                                // writers of statuses
   std::set<std::pair<std::string, std::uint32_t>> processes_heard_;  // host, process
-  std::map<messaging::Handle, Writer> writers_;               // that are discovered
+  std::map<messaging::Handle, Writer> writers_;                      // that are discovered
   std::vector<HostProcess> running_;
   std::string host_;
 };

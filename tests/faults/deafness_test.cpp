@@ -1,6 +1,6 @@
-// A gateway whose scans do not reach a local mapper, while each of the two takes itself for connected
-// with the other. The mapper has to find that out, end with the exit code that its supervisors start
-// it again for, and be at work in its next life.
+// A gateway whose scans do not reach a local mapper, while each of the two takes itself for
+// connected with the other. The mapper has to find that out, end with the exit code that its
+// supervisors start it again for, and be at work in its next life.
 //
 // This test is the gateway: what it sends passes the function below, which may lose it.
 #include <algorithm>

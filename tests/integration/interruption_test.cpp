@@ -104,9 +104,8 @@ TEST_F(InterruptionTest, ASimulatorThatWasFrozenGoesOn) {
     ::kill(simulator[0], SIGCONT);
   };
   const auto met_anew = [&] {
-    return run.ended() ||
-           read_file(out_ + "/logs/simulator.log").find("meets its peers anew") !=
-               std::string::npos;
+    return run.ended() || read_file(out_ + "/logs/simulator.log").find("meets its peers anew") !=
+                              std::string::npos;
   };
   ASSERT_TRUE(wait_for("the simulator to meet its peers anew", met_anew, freeze));
   EXPECT_EQ(run.wait(), 0) << run.err();

@@ -92,8 +92,9 @@ void NavigatorOnRobot::start() {
   if (!memory_.empty()) words.insert(words.end(), {"--memory", memory_.string()});
   navigator_ = std::make_unique<Program>(scratch_, "navigator", words);
   ASSERT_TRUE(wait_for("the navigator to have map and sensors", [this] {
-    return status_ && scans_.matched() > 0 && poses_.matched() > 0 && (!goals_ || goals_->matched() > 1) &&
-           routes_.matched() > 0 && counter("map_version") == static_cast<double>(kMapVersion);
+    return status_ && scans_.matched() > 0 && poses_.matched() > 0 &&
+           (!goals_ || goals_->matched() > 1) && routes_.matched() > 0 &&
+           counter("map_version") == static_cast<double>(kMapVersion);
   })) << navigator_->err();
 }
 

@@ -27,8 +27,8 @@ std::filesystem::path DeafLives::place_of(const Setup& setup) {
   if (folder.empty()) folder = "/dev/shm";
   const ServiceOptions& options = setup.options;
   return std::filesystem::path(folder) /
-         ("topogeo-" + without_slashes(options.partition) + "." + std::to_string(options.domain) + "-" +
-          without_slashes(options.robot_id) + "-" + setup.name + ".deaf");
+         ("topogeo-" + without_slashes(options.partition) + "." + std::to_string(options.domain) +
+          "-" + without_slashes(options.robot_id) + "-" + setup.name + ".deaf");
 }
 
 std::uint32_t DeafLives::load() const {

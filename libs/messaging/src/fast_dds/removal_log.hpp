@@ -41,8 +41,8 @@ class RemovalLog {
   struct Removals {
     Time first;
     std::uint64_t count = 0;
-    Time heard;             // when the last second began in which a packet came
-    unsigned seconds = 0;   // with a packet, after kUnderWay
+    Time heard;            // when the last second began in which a packet came
+    unsigned seconds = 0;  // with a packet, after kUnderWay
   };
 
   std::mutex mutex_;

@@ -371,8 +371,7 @@ TEST(StatusTable, OneThatIsDeafIsUnwell) {
   StatusTable table;
   table.update(with_traffic(status_of("localizer", msg::kServiceRunning), true, 10.0), info_of(1),
                kNow);
-  const auto navigator =
-      with_traffic(status_of("navigator", msg::kServiceRunning), false, 0.0);
+  const auto navigator = with_traffic(status_of("navigator", msg::kServiceRunning), false, 0.0);
   table.update(fed(navigator, "pose", 0.0, 5.7), info_of(2), kNow);
   EXPECT_FALSE(table.healthy(kNow));
   EXPECT_THAT(table.text(kNow), HasSubstr("deaf: none of the 10.0 pose/s of localizer arrives"));

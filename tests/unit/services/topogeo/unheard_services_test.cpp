@@ -97,7 +97,8 @@ TEST_F(UnheardServicesTest, AreOfTheDomainAndPartitionThatIsShown) {
 TEST_F(UnheardServicesTest, AreInTheTable) {
   StatusTable table;
   table.expect({"planner"});
-  table.show_unheard({{"planner", "process 10 of this host is stopped, and no status of it comes"}});
+  table.show_unheard(
+      {{"planner", "process 10 of this host is stopped, and no status of it comes"}});
   EXPECT_FALSE(table.healthy(now_));
   EXPECT_THAT(table.missing(), IsEmpty());
   EXPECT_THAT(table.text(now_), HasSubstr("silent"));

@@ -127,9 +127,9 @@ class BaseDriver final : public SerialDriver {
   std::int64_t judge_ns_ = 0;  // when the velocity that holds is judged again
   BaseVelocity wanted_{};      // by the last command, before the guard
 
-  bool idle_ = true;  // nothing is to be written until a time or a message comes
-  bool aim_ordered_ = false;     // all orders for what is commanded now have been given
-  bool orders_written_ = true;   // all that were taken
+  bool idle_ = true;            // nothing is to be written until a time or a message comes
+  bool aim_ordered_ = false;    // all orders for what is commanded now have been given
+  bool orders_written_ = true;  // all that were taken
   std::optional<std::uint64_t> reports_at_halt_{};  // when both axes had been sent a halt
   std::uint64_t implausible_ = 0;                   // reports that were dropped
   std::vector<BaseOdometry> odometry_{};
