@@ -60,7 +60,8 @@ class Losses {
   static bool has_scan(std::span<const std::uint8_t> packet) {
     constexpr std::array<std::uint8_t, 16> kRanges = {0, 0, 0, 0x40, 0, 0, 0, 0x40,
                                                       0, 0, 0, 0x40, 0, 0, 0, 0x40};
-    return !std::ranges::search(packet, kRanges).empty();
+    const auto found = std::search(packet.begin(), packet.end(), kRanges.begin(), kRanges.end());
+    return found != packet.end();
   }
 
   std::atomic<bool> scans_ = false;
