@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { assert_accessible, close, kPictures, kSizes, launch, new_context, open_page, text } from "./page.mjs";
-import { wait_for } from "./robot.mjs";
+import { hold_key, wait_for } from "./robot.mjs";
 import { kAddress, StandIn } from "./stand_in.mjs";
 
 const { TOPOGEO_BUILD: build } = process.env;
@@ -221,8 +221,7 @@ test("Space stops whatever has the focus, but in a text", async () => {
   await stops_by_space("a fold");
   const toggle = page.getByRole("button", { name: "Take the controls" });
   await toggle.click();
-  await page.keyboard.down("w");
-  await wait_for("orders to drive", () => service.ops.includes("drive"));
+  await hold_key(page, "w", "orders to drive", () => service.ops.includes("drive"));
   await stops_by_space("the controls, while a key is held");
   assert.equal(await page.getByRole("button", { name: "Let go of the controls" }).isVisible(), true);
   await wait_for("the robot is let go", () => service.ops.at(-1) !== "drive" && service.ops.includes("release"));
@@ -252,9 +251,8 @@ test("orders to drive have a time, and a page that stood still lets go", async (
   await page.click("#tab-send");
   await page.getByText("Drive by hand", { exact: true }).click();
   await page.getByRole("button", { name: "Take the controls" }).click();
-  await page.keyboard.down("w");
   const drives = () => service.messages.filter(({ op }) => op === "drive");
-  await wait_for("orders to drive", () => drives().length > 2);
+  await hold_key(page, "w", "orders to drive", () => drives().length > 2);
   const times = drives().map(({ page_ms }) => page_ms);
   assert.deepEqual(times, [...times].sort((a, b) => a - b));
   assert.ok(times.every((time) => time > 0));

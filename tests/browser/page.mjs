@@ -120,3 +120,25 @@ export async function assert_accessible(page, what, rules = undefined) {
     .map((finding) => `${finding.id}: ${finding.nodes.map((node) => node.target).join(", ")}`);
   assert.deepEqual(serious, [], what);
 }
+
+/**
+ * Watches whether the page stands still for a quarter of a second, or gets a press so late: with 0.3 s it lets go of the
+ * robot. Returns a function that tells whether it did, since it was told to "forget" last.
+ */
+export async function watch_standstill(page) {
+  await page.evaluate(() => {
+    let before = performance.now();
+    const note = (since) => (window.stood_still ||= performance.now() - since > 250);
+    setInterval(() => {
+      note(before);
+      before = performance.now();
+    }, 50);
+    document.addEventListener("pointerdown", (event) => note(event.timeStamp), true);
+  });
+  return (forget) =>
+    page.evaluate((begins_anew) => {
+      const stood_still = Boolean(window.stood_still);
+      if (begins_anew) window.stood_still = false;
+      return stood_still;
+    }, forget === "forget");
+}

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { kSizes, new_context, open_page, text, WatchedRobot } from "./page.mjs";
-import { wait_for, Robot } from "./robot.mjs";
+import { hold_key, wait_for, Robot } from "./robot.mjs";
 
 const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source } = process.env;
 
@@ -89,8 +89,9 @@ test("a held key drives, letting go stops", async () => {
   await page.getByText("Drive by hand", { exact: true }).click();
   await page.getByRole("button", { name: "Take the controls" }).click();
   const from = await run.true_place();
-  await page.keyboard.down("s");
-  await wait_for(
+  await hold_key(
+    page,
+    "s",
     "the robot moves",
     async () => {
       const at = await run.true_place();
@@ -108,8 +109,7 @@ test("a page that goes away while it drives stops the robot", async () => {
   await page.getByText("Drive by hand", { exact: true }).click();
   await page.getByRole("button", { name: "Take the controls" }).click();
   const from = (await run.newest("truth")).theta_rad;
-  await page.keyboard.down("a");
-  await wait_for("the robot turns", async () => Math.abs((await run.newest("truth")).theta_rad - from) > 0.1);
+  await hold_key(page, "a", "the robot turns", async () => Math.abs((await run.newest("truth")).theta_rad - from) > 0.1);
   await page.close_all();
   await wait_for(
     "the robot stands",

@@ -26,6 +26,17 @@ export async function wait_for(what, check) {
   }
 }
 
+/**
+ * Holds a key until `check` gives something true, as wait_for does. It repeats the key, as keyboards do: a page that stood
+ * still lets go of the robot and has to be told again.
+ */
+export function hold_key(page, key, what, check) {
+  return wait_for(what, async () => {
+    await page.keyboard.down(key);
+    return check();
+  });
+}
+
 /** Whether a promise is fulfilled before it counts as a hang. */
 export function ends(promise) {
   let timer;
