@@ -12,6 +12,8 @@ namespace {
 
 using Status = msg::ServiceStatus;
 
+/// Of a service that is judged by two statuses.
+constexpr double kLeastSilence_s = 5.0;
 /// The sender's rate is that of so long before its status: the window of TotalRate, and half a
 /// second by which samples of the total may miss its start.
 constexpr double kRateWindow_s = 5.5;
@@ -70,6 +72,15 @@ bool is_alone(const Status& service, std::span<const HeardStatus> all) {
          }) == 1;
 }
 
+/// The only sender of the topic, while it is at work and the reader is the only one of its kind;
+/// otherwise null.
+const Status* working_sender(std::string_view topic, const Status& reader,
+                             std::span<const HeardStatus> all) {
+  const HeardStatus* const sender = only_sender(topic, reader, all);
+  const bool known = sender != nullptr && is_alone(reader, all) && works(*sender->status);
+  return known ? sender->status : nullptr;
+}
+
 double in_seconds(std::chrono::steady_clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
 }
@@ -92,7 +103,7 @@ std::string deafness(const HeardStatus& service, std::span<const HeardStatus> al
     return fmt::format("deaf: by its own report none of the {} that are sent arrives", topic);
   }
   const double silence_s = input_silence_s(status);
-  if (silence_s < DeafnessWatch::kSilence_s || !is_alone(status, all) ||
+  if (silence_s < kLeastSilence_s || !is_alone(status, all) ||
       traffic_of(status, topic, false)->rate_per_s() > 0.0) {
     return {};
   }
@@ -115,9 +126,9 @@ void DeafnessWatch::hear(const Status& status, Time now) {
   }
 }
 
-std::vector<HeardStatus> DeafnessWatch::all(const Status& own, Time now) const {
+std::vector<HeardStatus> DeafnessWatch::all(const Status& own, const Peers& peers, Time now) {
   std::vector<HeardStatus> all = {{&own, 0.0}};
-  for (const auto& [name, peer] : peers_) {
+  for (const auto& [name, peer] : peers) {
     const bool itself = peer.status.service() == own.service() &&
                         peer.status.instance() == own.instance() &&
                         peer.status.started_ns() == own.started_ns();
@@ -128,35 +139,50 @@ std::vector<HeardStatus> DeafnessWatch::all(const Status& own, Time now) const {
 }
 
 bool DeafnessWatch::hears_sender(const Status& own, Time now) const {
-  return std::ranges::any_of(all(own, now), [&](const HeardStatus& one) {
+  return std::ranges::any_of(all(own, peers_, now), [&](const HeardStatus& one) {
     return one.status != &own && one.status->robot_id() == own.robot_id() &&
            traffic_of(*one.status, own.input().to_string(), true) != nullptr;
   });
 }
 
+// A service that has handled a hundred messages at a stretch may hear of them from the sender
+// before its own status counts them. So each of its own statuses is judged by what the others had
+// sent when the one before was made.
 std::string DeafnessWatch::check(const Status& own, Time now) {
+  if (own.uptime_s() == own_uptime_s_) return verdict_;
+  own_uptime_s_ = own.uptime_s();
   std::erase_if(peers_, [&](const auto& entry) {
     return in_seconds(now - entry.second.received) > kFresh_s;
   });
-  const std::vector<HeardStatus> heard = all(own, now);
+  // What came while the service stood still is not missed.
+  if (in_seconds(now - known_since_) > kFresh_s) mark_.reset();
+  verdict_ = judge(own, all(own, known_, known_since_), all(own, peers_, now));
+  known_ = peers_;
+  known_since_ = now;
+  return verdict_;
+}
+
+std::string DeafnessWatch::judge(const Status& own, std::span<const HeardStatus> before,
+                                 std::span<const HeardStatus> now) {
   const std::string topic = own.input().to_string();
-  const HeardStatus* const sender = only_sender(topic, own, heard);
-  if (input_silence_s(own) < kSilence_s || !is_alone(own, heard) || sender == nullptr ||
-      !works(*sender->status)) {
+  const Status* const sent_before = working_sender(topic, own, before);
+  const Status* const sends = working_sender(topic, own, now);
+  if (input_silence_s(own) < kSilence_s || sends == nullptr) {
     mark_.reset();
     return {};
   }
-  const Status& status = *sender->status;
-  const std::uint64_t sent = traffic_of(status, topic, true)->messages();
   const std::uint64_t received = traffic_of(own, topic, false)->messages();
-  if (!mark_ || mark_->sender != status.instance().c_str() ||
-      mark_->started_ns != status.started_ns() || mark_->received != received) {
-    mark_ = {status.instance().to_string(), status.started_ns(), status.uptime_s(), sent, received};
+  if (!mark_ || sent_before == nullptr || mark_->sender != sends->instance().c_str() ||
+      mark_->started_ns != sends->started_ns() || mark_->received != received) {
+    mark_ = {sends->instance().to_string(), sends->started_ns(), sends->uptime_s(),
+             traffic_of(*sends, topic, true)->messages(), received};
+    return {};
   }
-  const double passed_s = status.uptime_s() - mark_->uptime_s;
+  const std::uint64_t sent = traffic_of(*sent_before, topic, true)->messages();
+  const double passed_s = sent_before->uptime_s() - mark_->uptime_s;
   if (passed_s < kProof_s || sent < mark_->sent + kProofMessages) return {};
   return fmt::format("none of the {} {} that {} has sent in {:.1f} s has arrived",
-                     sent - mark_->sent, topic, status.service().c_str(), passed_s);
+                     sent - mark_->sent, topic, sent_before->service().c_str(), passed_s);
 }
 
 }  // namespace topogeo::messaging

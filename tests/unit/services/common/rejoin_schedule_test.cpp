@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "topogeo/messaging/deafness.hpp"
+
 namespace topogeo::service {
 namespace {
 
@@ -34,7 +36,7 @@ class RejoinScheduleTest : public ::testing::Test {
 
 TEST_F(RejoinScheduleTest, AsksOthersWhenTheInputIsSilentForFiveSeconds) {
   const double silence_s = silence_until([](const RejoinStep& step) { return step.listen; });
-  EXPECT_NEAR(silence_s, 5.0, 2 * kTick_s);
+  EXPECT_NEAR(silence_s, messaging::DeafnessWatch::kSilence_s, 2 * kTick_s);
   for (int i = 0; i < 1000; ++i) {
     const RejoinStep step = tick();
     EXPECT_FALSE(step.probe || step.report || step.end) << "its sender is silent, too";
@@ -106,7 +108,7 @@ TEST_F(RejoinScheduleTest, ProbesLessOftenTheLongerTheSenderIsNotHeard) {
       },
       4000.0);
   ASSERT_GE(starts_s.size(), 5U);
-  EXPECT_NEAR(starts_s[0], 5.0, 2 * kTick_s);
+  EXPECT_NEAR(starts_s[0], messaging::DeafnessWatch::kSilence_s, 2 * kTick_s);
   for (std::size_t i = 1; i < starts_s.size(); ++i) {
     EXPECT_LE(starts_s[i], 2 * starts_s[i - 1] + RejoinSchedule::kProbe_s + 1.0) << i;
     EXPECT_GT(starts_s[i], starts_s[i - 1] + RejoinSchedule::kProbe_s) << i;

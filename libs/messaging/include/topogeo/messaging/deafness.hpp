@@ -41,22 +41,23 @@ struct HeardStatus {
 /// readers get.
 [[nodiscard]] double input_silence_s(const msg::ServiceStatus& service);
 
-/// Gathers the proof that a service is deaf: within a silence of its main input of 5 s or more the
-/// only sender, by its own count and its own clock, has sent three messages or more in 3 s, and
-/// none of them has arrived. The caller passes the time, which never goes back.
+/// Gathers the proof that a service is deaf: within a silence of its main input the only sender, by
+/// its own count and its own clock, has sent three messages or more in 5 s, and a later status of
+/// the service counts none of them. The proof begins when the input has been silent for 3 s, so
+/// that nobody is deaf in less than 8 s. The caller passes the time, which never goes back.
 class DeafnessWatch {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  static constexpr double kSilence_s = 5.0;
-  static constexpr double kProof_s = 3.0;
+  static constexpr double kSilence_s = 3.0;
+  static constexpr double kProof_s = 5.0;
   static constexpr std::uint64_t kProofMessages = 3;
 
   /// A status of any service of the domain and partition has come.
   void hear(const msg::ServiceStatus& status, Time now);
 
-  /// The service with that status is at work. Returns why it is deaf: "none of the 31 scan that
-  /// sensor_gateway has sent in 3.1 s has arrived"; empty while there is no proof.
+  /// The service with that status is at work. Returns why it is deaf: "none of the 51 scan that
+  /// sensor_gateway has sent in 5.1 s has arrived"; empty while there is no proof.
   [[nodiscard]] std::string check(const msg::ServiceStatus& own, Time now);
 
   /// Whether the status of a sender of the main input comes in. Without it nothing is known: the
@@ -69,6 +70,7 @@ class DeafnessWatch {
     msg::ServiceStatus status;
     Time received;
   };
+  using Peers = std::map<Name, Peer>;
   struct Mark {
     std::string sender;  // its instance
     std::int64_t started_ns = 0;
@@ -77,10 +79,19 @@ class DeafnessWatch {
     std::uint64_t received = 0;  // by the service itself
   };
 
-  /// Those that were heard lately, with the service itself as it knows itself.
-  [[nodiscard]] std::vector<HeardStatus> all(const msg::ServiceStatus& own, Time now) const;
+  /// Those of `peers` that were heard lately, with the service itself as it knows itself.
+  [[nodiscard]] static std::vector<HeardStatus> all(const msg::ServiceStatus& own,
+                                                    const Peers& peers, Time now);
+  /// The statuses of all when the one before of the service was made, and now.
+  [[nodiscard]] std::string judge(const msg::ServiceStatus& own,
+                                  std::span<const HeardStatus> before,
+                                  std::span<const HeardStatus> now);
 
-  std::map<Name, Peer> peers_;
+  Peers peers_;
+  double own_uptime_s_ = -1.0;  // of the status of the service that was judged last
+  Peers known_;                 // the others, when it was
+  Time known_since_;
+  std::string verdict_;
   std::optional<Mark> mark_;  // where the proof begins
 };
 
