@@ -103,9 +103,15 @@ TEST_F(CalibrateLaserTest, FindsALaserAtTheFrontAndMapsWithIt) {
   EXPECT_LT(rms_m({"--config", out}), 0.1);
 }
 
-// A laser in a corner that looks aside: it would not be found from the middle of the robot.
+TEST_F(CalibrateLaserTest, FindsALaserInACornerThatLooksAside) {
+  const Pose2 mounting{-0.1, 0.25, -0.2};
+  write_simulated("floor", mounting, 4);
+  ASSERT_EQ(run({log_}), 0) << err_;
+  expect_mounting(mounting);
+}
+
 TEST_F(CalibrateLaserTest, StartsFromTheConfigurationAndKeepsTheRestOfIt) {
-  const Pose2 mounting{-0.1, 0.25, 1.6};
+  const Pose2 mounting{0.1, 0.05, 1.6};
   const std::filesystem::path config = scratch_ / "mine.yaml";
   const std::filesystem::path out = scratch_ / "robot.yaml";
   write_simulated("floor", mounting, 5);
