@@ -42,6 +42,11 @@ TEST(DrainWatch, WorkThatDoesNotGetOnIsLeft) {
   EXPECT_NEAR(stay_s(open), 3.0 + DrainWatch::kStuck_s, 0.02);
 }
 
+TEST(DrainWatch, TasksWithoutEndAreLeft) {
+  const auto open = [](double now_s) { return 3 + int(100.0 * now_s) % 50; };
+  EXPECT_NEAR(stay_s(open), DrainWatch::kStuck_s, 0.1);
+}
+
 TEST(DrainWatch, OnABusyMachineItMayTakeSixTimesAsLong) {
   const auto one = [](double) { return 1; };
   EXPECT_NEAR(stay_s(one, true), 6.0 * DrainWatch::kStuck_s, 0.1);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 
 #include "topogeo/support/patience.hpp"
 
@@ -13,8 +14,9 @@ class DrainWatch {
  public:
   /// It stays for so long without work: a client whose last status of it is older may send a task.
   static constexpr double kQuiet_s = 0.03;
-  /// It leaves its work undone where none of it has got on for so long on a machine that is free:
-  /// a client that does not take its answers, a search that hangs.
+  /// It leaves its work undone where that has not become less for so long on a machine that is free:
+  /// a client that does not take its answers, a search that hangs, somebody who sends tasks without
+  /// end.
   static constexpr double kStuck_s = 10.0;
 
   explicit DrainWatch(double now_s) : clock_(now_s), quiet_since_s_(now_s) {}
@@ -27,7 +29,7 @@ class DrainWatch {
   support::PatienceClock clock_;
   double quiet_since_s_;   // by the caller's clock
   double got_on_s_ = 0.0;  // by the patience clock
-  std::size_t open_ = 0;
+  std::size_t fewest_ = std::numeric_limits<std::size_t>::max();
 };
 
 }  // namespace topogeo::search_pool
