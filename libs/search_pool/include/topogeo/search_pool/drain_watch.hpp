@@ -14,9 +14,9 @@ class DrainWatch {
  public:
   /// It stays for so long without work: a client whose last status of it is older may send a task.
   static constexpr double kQuiet_s = 0.03;
-  /// It leaves its work undone where that has not become less for so long on a machine that is free:
-  /// a client that does not take its answers, a search that hangs, somebody who sends tasks without
-  /// end.
+  /// It leaves its work undone where that has not become less for so long on a machine that is
+  /// free: a client that does not take its answers, a search that hangs, somebody who sends tasks
+  /// without end.
   static constexpr double kStuck_s = 10.0;
 
   explicit DrainWatch(double now_s) : clock_(now_s), quiet_since_s_(now_s) {}
