@@ -143,8 +143,8 @@ class DeafnessTest : public testing::Test {
 
   void start_mapper() {
     mapper_status_.reset();
-    mapper_ = std::make_unique<Program>(scratch_, "local_mapper",
-                                        std::vector<std::string>{"--domain", domain_});
+    mapper_ = std::make_unique<Program>(
+        scratch_, "local_mapper", std::vector<std::string>{"--domain", domain_, "--standalone"});
   }
 
   /// The gateway sends scans until `condition` holds.

@@ -45,8 +45,7 @@ RemoteEndpoint to_endpoint(const Data& data, const Qos& qos, bool writer) {
 void leave_robots_out(std::vector<std::string>& partitions) {
   for (std::string& name : partitions) name = partition_without_robot(name);
   std::ranges::sort(partitions);
-  const auto [first, last] = std::ranges::unique(partitions);
-  partitions.erase(first, last);
+  partitions.erase(std::unique(partitions.begin(), partitions.end()), partitions.end());
 }
 
 }  // namespace
