@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "topogeo/messaging/deafness.hpp"
-
 namespace topogeo::service {
 
 using messaging::DeafnessWatch;
@@ -36,7 +34,7 @@ RejoinStep RejoinSchedule::step(const InputState& input, double now_s) {
   if (input.silence_s < DeafnessWatch::kSilence_s) {
     if (input.ever_came) deaf_lives_ = 0;
     probes_ = false;
-    probe_due_s_ = 0.0;
+    probe_due_s_ = kFirstProbe_s;
     deaf_ = false;
     return {};
   }

@@ -5,6 +5,8 @@
 
 #include <cstdint>
 
+#include "topogeo/messaging/deafness.hpp"
+
 namespace topogeo::service {
 
 /// What is known of the main input now.
@@ -30,6 +32,8 @@ class RejoinSchedule {
   /// The same of all further ones.
   static constexpr double kNextWait_s = 600.0;
   static constexpr double kReportEvery_s = 60.0;
+  /// So long after the service has begun to listen, without a word of the sender, it probes.
+  static constexpr double kListen_s = 2.0;
   /// A probe that has heard nothing for so long ends. Meeting takes a second, with security two.
   static constexpr double kProbe_s = 10.0;
   static constexpr double kLongestPause_s = 600.0;
@@ -43,14 +47,16 @@ class RejoinSchedule {
   [[nodiscard]] std::uint32_t deaf_lives() const { return deaf_lives_; }
 
  private:
+  static constexpr double kFirstProbe_s = messaging::DeafnessWatch::kSilence_s + kListen_s;
+
   [[nodiscard]] std::uint32_t lives_before(const InputState& input) const;
   [[nodiscard]] double wait_s(const InputState& input) const;
   void decide_probe(const InputState& input);
 
   std::uint32_t deaf_lives_;
   bool probes_ = false;
-  double probe_since_s_ = 0.0;  // silence when the probe began
-  double probe_due_s_ = 0.0;    // silence when the next one begins
+  double probe_since_s_ = 0.0;          // silence when the probe began
+  double probe_due_s_ = kFirstProbe_s;  // silence when the next one begins
   bool deaf_ = false;
   double deaf_since_s_ = 0.0;
   double report_due_s_ = 0.0;
