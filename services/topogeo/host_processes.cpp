@@ -1,7 +1,6 @@
 #include "host_processes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <fstream>
 #include <iterator>
@@ -13,14 +12,13 @@
 #include <unistd.h>
 
 #include "topogeo/messaging/participant.hpp"
+#include "topogeo/service/service_names.hpp"
+#include "topogeo/support/process_stat.hpp"
 
 namespace topogeo::cli {
 namespace {
 
 constexpr std::string_view kPackagePrefix = "topogeo-";
-constexpr auto kServices = std::to_array<std::string_view>(
-    {"ga_worker", "local_mapper", "localizer", "map_store", "navigator", "planner", "ros_bridge",
-     "sensor_gateway", "simulator", "web"});
 
 std::string content(const std::filesystem::path& file) {
   std::ifstream input(file, std::ios::binary);
@@ -42,10 +40,11 @@ std::string service_of(const std::string& program) {
     name.erase(0, kPackagePrefix.size());
     std::ranges::replace(name, '-', '_');
   }
-  return std::ranges::find(kServices, name) == kServices.end() ? "" : name;
+  return std::ranges::find(service::kServiceNames, name) == service::kServiceNames.end() ? ""
+                                                                                         : name;
 }
 
-/// Of "--name VALUE" and "--name=VALUE"; the last one counts.
+/// The value of "--name VALUE" or "--name=VALUE"; the last one counts.
 std::optional<std::string> option(const std::vector<std::string>& words, const std::string& name) {
   std::optional<std::string> value;
   for (std::size_t i = 1; i < words.size(); ++i) {
@@ -71,10 +70,7 @@ std::uint32_t domain_of(const std::vector<std::string>& words,
 
 /// Reads state and age of proc(5), /proc/PID/stat. False: it has ended.
 bool read_stat(HostProcess& process, const std::filesystem::path& folder, double up_s) {
-  const std::string stat = content(folder / "stat");
-  const std::size_t name_end = stat.rfind(')');
-  if (name_end == std::string::npos) return false;
-  std::istringstream fields(stat.substr(name_end + 1));
+  std::istringstream fields = support::process_stat(folder);
   std::string state;
   fields >> state;
   constexpr int kBeforeStart = 18;  // fields 4 to 21; 22 is the start in clock ticks since boot

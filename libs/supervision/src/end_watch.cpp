@@ -2,13 +2,13 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <system_error>
 
 #include <unistd.h>
 
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/process_stat.hpp"
 #include "topogeo/support/thread_times.hpp"
 
 namespace topogeo::supervision {
@@ -16,28 +16,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The fields behind the name in a file `stat` of /proc: state, numbers.
-std::istringstream fields_of(const fs::path& stat) {
-  std::ifstream file(stat);
-  std::string line;
-  std::getline(file, line);
-  const std::size_t name_end = line.rfind(')');
-  return std::istringstream(name_end == std::string::npos ? "" : line.substr(name_end + 1));
-}
-
 bool a_thread_waits_for_disk(const fs::path& process) {
   std::error_code error;
   for (fs::directory_iterator task(process / "task", error), end; !error && task != end;
        task.increment(error)) {
     std::string state;
-    if (fields_of(task->path() / "stat") >> state && state == "D") return true;
+    if (support::process_stat(task->path()) >> state && state == "D") return true;
   }
   return false;
 }
 
 /// User and system, in ticks of the kernel: coarse, but there everywhere.
 double ran_in_ticks_s(const fs::path& process) {
-  std::istringstream fields = fields_of(process / "stat");
+  std::istringstream fields = support::process_stat(process);
   constexpr int kBeforeTimes = 11;  // fields from the state to the one before utime
   std::string skipped;
   for (int i = 0; i < kBeforeTimes; ++i) fields >> skipped;

@@ -12,6 +12,7 @@
 #include <prometheus/metric_family.h>
 #include <prometheus/text_serializer.h>
 
+#include "topogeo/service/service_names.hpp"
 #include "topogeo/service/status_metrics.hpp"
 
 #include "http_server.hpp"
@@ -19,10 +20,6 @@
 namespace topogeo::service {
 namespace {
 
-/// In the order of their ports; search workers have several.
-constexpr auto kServices = std::to_array<std::string_view>(
-    {"sensor_gateway", "local_mapper", "localizer", "map_store", "planner", "navigator",
-     "simulator", "ga_worker", "ros_bridge", "web"});
 /// Search workers of one host that find a port.
 constexpr std::uint32_t kWorkerPorts = 64;
 
@@ -96,9 +93,9 @@ void MetricsEndpoint::update(const msg::ServiceStatus& status) {
 
 MetricsAddress metrics_address(const std::string& address, std::uint32_t first_port,
                                const std::string& service) {
-  const auto found = std::ranges::find(kServices, service);
-  const auto place = static_cast<std::uint32_t>(found - kServices.begin());
-  const bool after_workers = place > kServices.size() - 2;
+  const auto found = std::ranges::find(kServiceNames, service);
+  const auto place = static_cast<std::uint32_t>(found - kServiceNames.begin());
+  const bool after_workers = place > kServiceNames.size() - 2;
   const std::uint32_t port = first_port + place + (after_workers ? kWorkerPorts - 1 : 0);
   return {address, port, service == "ga_worker" ? kWorkerPorts : 1};
 }
