@@ -11,6 +11,8 @@
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
 
+#include "program_connection.hpp"
+
 namespace topogeo::cli {
 namespace {
 
@@ -134,11 +136,7 @@ void GoalClient::cancel() {
 }
 
 bool GoalClient::delivered(support::Patience& patience) {
-  constexpr std::chrono::milliseconds kAcknowledgmentPoll{100};
-  while (!goals_.wait_for_acknowledgments(kAcknowledgmentPoll)) {
-    if (patience.is_over(support::monotonic_s())) return false;
-  }
-  return true;
+  return is_delivered(goals_, patience);
 }
 
 std::optional<supervision::GoalEnd> GoalClient::end() {

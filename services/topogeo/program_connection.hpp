@@ -35,15 +35,23 @@ bool connect_with_program(messaging::Reader<Status>& statuses,
   }
 }
 
+/// Waits until the readers have all that was written; false when the patience is over before.
+template <class Command>
+bool is_delivered(messaging::Writer<Command>& writer, support::Patience& patience) {
+  constexpr std::chrono::milliseconds kAcknowledgmentPoll{100};
+  while (!writer.wait_for_acknowledgments(kAcknowledgmentPoll)) {
+    if (patience.is_over(support::monotonic_s())) return false;
+  }
+  return true;
+}
+
 /// Sends a command and waits until its readers have it. Throws std::runtime_error when it cannot be
 /// sent or the patience is over before.
 template <class Command>
 void send_with(messaging::Writer<Command>& writer, const Command& command,
                support::Patience& patience) {
-  constexpr std::chrono::milliseconds kAcknowledgmentPoll{100};
   if (!writer.write(command)) throw std::runtime_error("the command could not be sent");
-  while (!writer.wait_for_acknowledgments(kAcknowledgmentPoll)) {
-    if (!patience.is_over(support::monotonic_s())) continue;
+  if (!is_delivered(writer, patience)) {
     throw std::runtime_error("the command was not received" + patience.reason());
   }
 }
