@@ -12,7 +12,7 @@ namespace {
 
 using Status = msg::ServiceStatus;
 
-/// Of a service that is judged by two statuses.
+/// A shorter silence is none for a judgement by two statuses.
 constexpr double kLeastSilence_s = 5.0;
 /// The sender's rate is that of so long before its status: the window of TotalRate, and half a
 /// second by which samples of the total may miss its start.
@@ -109,7 +109,7 @@ std::string deafness(const HeardStatus& service, std::span<const HeardStatus> al
   }
   const HeardStatus* const sender = only_sender(topic, status, all);
   if (sender == nullptr || !works(*sender->status)) return {};
-  // What the sender counts must have been sent within the silence.
+  // The messages that the sender counts must have been sent within the silence.
   if (silence_s + service.age_s - sender->age_s < kRateWindow_s) return {};
   const double rate_per_s = traffic_of(*sender->status, topic, true)->rate_per_s();
   if (rate_per_s < kLeastRate_hz) return {};
@@ -154,8 +154,12 @@ std::string DeafnessWatch::check(const Status& own, Time now) {
   std::erase_if(peers_, [&](const auto& entry) {
     return in_seconds(now - entry.second.received) > kFresh_s;
   });
-  // What came while the service stood still is not missed.
+  // A service that stood still has not missed the messages of that time: they wait for it.
   if (in_seconds(now - known_since_) > kFresh_s) mark_.reset();
+  if (input_silence_s(own) < kSilence_s) {
+    mark_.reset();
+    return verdict_ = {};
+  }
   verdict_ = judge(own, all(own, known_, known_since_), all(own, peers_, now));
   known_ = peers_;
   known_since_ = now;
@@ -167,7 +171,7 @@ std::string DeafnessWatch::judge(const Status& own, std::span<const HeardStatus>
   const std::string topic = own.input().to_string();
   const Status* const sent_before = working_sender(topic, own, before);
   const Status* const sends = working_sender(topic, own, now);
-  if (input_silence_s(own) < kSilence_s || sends == nullptr) {
+  if (sends == nullptr) {
     mark_.reset();
     return {};
   }

@@ -79,10 +79,10 @@ class DeafnessWatch {
     std::uint64_t received = 0;  // by the service itself
   };
 
-  /// Those of `peers` that were heard lately, with the service itself as it knows itself.
+  /// The service itself, as it knows itself, and the peers that were heard lately.
   [[nodiscard]] static std::vector<HeardStatus> all(const msg::ServiceStatus& own,
                                                     const Peers& peers, Time now);
-  /// The statuses of all when the one before of the service was made, and now.
+  /// `before`: the statuses of all at the time of the previous status of the service.
   [[nodiscard]] std::string judge(const msg::ServiceStatus& own,
                                   std::span<const HeardStatus> before,
                                   std::span<const HeardStatus> now);
