@@ -37,7 +37,7 @@
 
 namespace {
 
-/// What is lost of all that this process sends. For several threads.
+/// The packets of this process that are lost. For several threads.
 class Losses {
  public:
   void lose_scans(bool lost) { scans_ = lost; }
@@ -113,15 +113,8 @@ class DeafnessTest : public testing::Test {
 
   /// False where there is no openssl.
   bool make_keys() {
-    const std::string make =
-        "command -v openssl >/dev/null || exit 77; '" TOPOGEO_SOURCE_DIR
-        "/deploy/security/make_keys' '" +
-        (scratch_ / "keys").string() +
-        "' issue --robot robot robot sensor_gateway local_mapper >/dev/null 2>&1";
-    const int status = std::system(make.c_str());  // NOLINT(*-env33-c,concurrency-mt-unsafe)
-    EXPECT_TRUE(status == 0 || WEXITSTATUS(status) == 77) << "make_keys";
     ::setenv("TOPOGEO_SECURITY", (scratch_ / "keys/robot").c_str(), 1);  // NOLINT: one thread
-    return status == 0;
+    return issue_keys(scratch_ / "keys", "--robot robot robot sensor_gateway local_mapper");
   }
 
   void start_gateway() {
@@ -208,7 +201,7 @@ TEST_F(DeafnessTest, AServiceWhoseInputAloneIsLostIsAtWorkAgainInItsNextLife) {
   expect_next_life();
 }
 
-// Nor does the status of the sender come: only another participant hears it.
+// The status of the sender does not come either: only another participant hears it.
 TEST_F(DeafnessTest, SoIsOneThatHearsNothingOfItsSender) {
   start_both();
   losses().lose_known_ports(true);

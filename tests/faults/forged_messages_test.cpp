@@ -52,15 +52,8 @@ class ForgedMessagesTest : public testing::Test {
 
   /// Makes keys for both. False where there is no openssl.
   bool make_keys() {
-    const std::string make =
-        "command -v openssl >/dev/null || exit 77; '" TOPOGEO_SOURCE_DIR
-        "/deploy/security/make_keys' '" +
-        (scratch_ / "keys").string() +
-        "' issue --robot robot robot sensor_gateway local_mapper >/dev/null 2>&1";
-    const int status = std::system(make.c_str());  // NOLINT(*-env33-c,concurrency-mt-unsafe)
-    EXPECT_TRUE(status == 0 || WEXITSTATUS(status) == 77) << "make_keys";
     keys_ = scratch_ / "keys/robot";
-    return status == 0;
+    return issue_keys(scratch_ / "keys", "--robot robot robot sensor_gateway local_mapper");
   }
 
   /// Starts both, with the keys that have been made, and waits until they are connected.

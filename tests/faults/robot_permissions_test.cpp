@@ -13,7 +13,6 @@
 #include <dlfcn.h>
 #include <fastdds/rtps/common/Token.h>
 #include <gmock/gmock.h>
-#include <sys/wait.h>
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/participant.hpp"
@@ -30,7 +29,7 @@ namespace {
 /// reader.
 bool g_obedient = true;
 
-/// What they announce as the subject of their certificates; empty: what it is.
+/// The subject that they announce for their certificates; empty: the true one.
 std::string g_announced_subject;  // NOLINT(cert-err58-cpp)
 
 constexpr const char* kGetIdentity =
@@ -112,24 +111,17 @@ constexpr const char* kThief = "(/O=topogeo/OU=anna/CN=sensor_gateway.anna; ";
 class RobotPermissionsTest : public testing::Test {
  protected:
   void SetUp() override {
-    if (std::system("command -v openssl >/dev/null") != 0) {  // NOLINT(*-env33-c,concurrency-*)
-      GTEST_SKIP() << "openssl is missing";
+    for (const char* robots_and_host :
+         {"--robot anna anna", "--robot bert bert", "--robot all pool"}) {
+      if (!issue_keys(scratch_ / "keys",
+                      std::string(robots_and_host) + " sensor_gateway local_mapper map_store")) {
+        GTEST_SKIP() << "openssl is missing";
+      }
     }
-    make_keys("--robot anna anna");
-    make_keys("--robot bert bert");
-    make_keys("--robot all pool");
   }
   void TearDown() override {
     g_obedient = true;
     g_announced_subject.clear();
-  }
-
-  /// What stands behind `issue`.
-  void make_keys(const std::string& robots_and_host) {
-    const std::string make = "'" TOPOGEO_SOURCE_DIR "/deploy/security/make_keys' '" +
-                             (scratch_ / "keys").string() + "' issue " + robots_and_host +
-                             " sensor_gateway local_mapper map_store >/dev/null 2>&1";
-    ASSERT_EQ(std::system(make.c_str()), 0) << make;  // NOLINT(*-env33-c,concurrency-mt-unsafe)
   }
 
   [[nodiscard]] std::filesystem::path keys_of(const std::string& host) const {

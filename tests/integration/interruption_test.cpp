@@ -48,6 +48,17 @@ class InterruptionTest : public testing::Test {
     }));
     return program;
   }
+  /// The words of a run with a simulated robot.
+  [[nodiscard]] std::vector<std::string> simulated() const {
+    return {"run",   "--sim",    std::string(TOPOGEO_TEST_DATA) + "/short.world.yaml",
+            "--out", out_,       "--workers",
+            "0",     "--domain", own_domain()};
+  }
+  static void freeze_for_2_s(pid_t process) {
+    ::kill(process, SIGSTOP);
+    std::this_thread::sleep_for(std::chrono::seconds(2));  // it is frozen for so long
+    ::kill(process, SIGCONT);
+  }
 
   Scratch scratch_;
   std::string log_ = scratch_ / "log.clf.gz";
@@ -56,9 +67,7 @@ class InterruptionTest : public testing::Test {
 
 // Services are started again (EqualityTest); the simulated robot is where it was nowhere else.
 TEST_F(InterruptionTest, WhatCannotBeStartedAgainIsNamedAndTheRestIsStopped) {
-  Program run(scratch_, "topogeo",
-              {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/short.world.yaml", "--out", out_,
-               "--workers", "0", "--domain", own_domain()});
+  Program run(scratch_, "topogeo", simulated());
   run.wait_for_progress(10);
   const std::vector<pid_t> simulator = run.services("simulator");
   ASSERT_THAT(simulator, SizeIs(1));
@@ -74,11 +83,7 @@ TEST_F(InterruptionTest, AServiceThatWasFrozenIsStartedAgain) {
   Program run(scratch_, "topogeo", words());
   run.wait_for_progress(20);
   const auto freeze = [&run] {
-    for (const pid_t pid : run.services("local_mapper")) {
-      ::kill(pid, SIGSTOP);
-      std::this_thread::sleep_for(std::chrono::seconds(2));  // it is frozen for so long
-      ::kill(pid, SIGCONT);
-    }
+    for (const pid_t pid : run.services("local_mapper")) freeze_for_2_s(pid);
   };
   const auto is_started_again = [&run] {
     return run.err().find("started again (1)") != std::string::npos;
@@ -92,17 +97,11 @@ TEST_F(InterruptionTest, AServiceThatWasFrozenIsStartedAgain) {
 // The robot is where it is in that process alone: it meets its peers anew without ending.
 TEST_F(InterruptionTest, ASimulatorThatWasFrozenGoesOn) {
   set_longest_freeze(1);
-  Program run(scratch_, "topogeo",
-              {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/short.world.yaml", "--out", out_,
-               "--workers", "0", "--domain", own_domain()});
+  Program run(scratch_, "topogeo", simulated());
   run.wait_for_progress(10);
   const std::vector<pid_t> simulator = run.services("simulator");
   ASSERT_THAT(simulator, SizeIs(1));
-  const auto freeze = [&] {
-    ::kill(simulator[0], SIGSTOP);
-    std::this_thread::sleep_for(std::chrono::seconds(2));  // it is frozen for so long
-    ::kill(simulator[0], SIGCONT);
-  };
+  const auto freeze = [&] { freeze_for_2_s(simulator[0]); };
   const auto met_anew = [&] {
     return run.ended() || read_file(out_ + "/logs/simulator.log").find("meets its peers anew") !=
                               std::string::npos;

@@ -227,6 +227,17 @@ void set_longest_freeze(unsigned seconds) {
   ::setenv("TOPOGEO_LONGEST_FREEZE_S", std::to_string(seconds).c_str(), 1);
 }
 
+bool issue_keys(const std::filesystem::path& directory, const std::string& what) {
+  constexpr int kNoOpenssl = 77;
+  const std::string make = "command -v openssl >/dev/null || exit " + std::to_string(kNoOpenssl) +
+                           "; '" TOPOGEO_SOURCE_DIR "/deploy/security/make_keys' '" +
+                           directory.string() + "' issue " + what + " >/dev/null 2>&1";
+  const int status = std::system(make.c_str());  // NOLINT(*-env33-c,concurrency-mt-unsafe)
+  if (status == 0) return true;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kNoOpenssl) return false;
+  throw std::runtime_error("failed: " + make);
+}
+
 void write_log(const std::string& world, const std::filesystem::path& log,
                const std::filesystem::path& truth, const simulation::SimulationOptions& options,
                const geometry::Pose2& stated) {

@@ -85,6 +85,10 @@ void use_udp_only();
 /// service that a test stops for half a lease ends when it goes on.
 void set_longest_freeze(unsigned seconds);
 
+/// Makes keys with deploy/security/make_keys; `what` follows `make_keys DIR issue`. False where
+/// there is no openssl. Throws std::runtime_error when it fails.
+bool issue_keys(const std::filesystem::path& directory, const std::string& what);
+
 /// Writes the log of a drive through a world of tests/data, and its true poses if `truth` is named.
 /// The log states `stated` as the mounting of its laser, wherever options have the laser.
 void write_log(const std::string& world, const std::filesystem::path& log,

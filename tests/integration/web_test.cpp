@@ -185,14 +185,19 @@ TEST_F(WebOnMap, OneMapIsMergedAtATime) {
   EXPECT_THAT(offer().body, HasSubstr("one of them is the other")) << "it is free again";
 }
 
-TEST(WebCommand, ViewsAStoredMap) {
-  use_udp_only();
-  const Scratch scratch;
+/// Makes room/map.pb.
+void map_room(const Scratch& scratch) {
   write_log("room", scratch / "room.clf");
   Program map(
       scratch, "topogeo",
       {"map", "--log", (scratch / "room.clf").string(), "--out", (scratch / "room").string()});
   ASSERT_EQ(map.wait(), 0) << map.err();
+}
+
+TEST(WebCommand, ViewsAStoredMap) {
+  use_udp_only();
+  const Scratch scratch;
+  ASSERT_NO_FATAL_FAILURE(map_room(scratch));
   Program view(scratch, "topogeo",
                {"view", (scratch / "room/map.pb").string(), "--port", "0", "--no-browser",
                 "--domain", own_domain()});
@@ -251,11 +256,7 @@ TEST(WebCommand, TakesTheTokenOfAFile) {
 TEST(WebCommand, OpensABrowserWithoutTheTokenInItsArguments) {
   use_udp_only();
   const Scratch scratch;
-  write_log("room", scratch / "room.clf");
-  Program map(
-      scratch, "topogeo",
-      {"map", "--log", (scratch / "room.clf").string(), "--out", (scratch / "room").string()});
-  ASSERT_EQ(map.wait(), 0) << map.err();
+  ASSERT_NO_FATAL_FAILURE(map_room(scratch));
   const std::filesystem::path opened = scratch / "opened";
   std::ofstream(scratch / "xdg-open") << "#!/bin/sh\n{ printf '%s\\n' \"$1\"; stat -c %a "
                                          "\"${1#file://}\"; cat \"${1#file://}\"; } > '"
