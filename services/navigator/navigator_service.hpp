@@ -30,7 +30,7 @@ namespace topogeo::navigator {
 /// Lives in the loop of its service.
 class NavigatorService {
  public:
-  /// In the file `memory` (empty: none) it keeps its goal, to go on with it in its next life.
+  /// It keeps its goal in the file `memory` (empty: none), to go on with it in its next life.
   /// Throws std::invalid_argument for a configuration out of range, std::runtime_error when the
   /// file cannot be made.
   explicit NavigatorService(service::Service& service, const std::filesystem::path& memory = {});

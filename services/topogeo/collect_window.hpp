@@ -10,8 +10,7 @@ namespace topogeo::cli {
 class CollectWindow {
  public:
   static constexpr double kCollect_s = 1.2;  ///< at least: two periods, discovery takes the rest
-  /// On a busy machine some are discovered later: it goes on until none has come for longer than a
-  /// period.
+  /// It goes on until none has come for longer than a period: a busy machine discovers some later.
   static constexpr double kSettled_s = 0.8;
 
   /// It ends after `longest_s`, however many there are.

@@ -20,8 +20,8 @@ struct HostProcess {
   double age_s = 0.0;        ///< since it was started
 };
 
-/// Those in the network of this process, by pid; none where there is no `proc`. A process of
-/// another user counts as one of this network.
+/// The services in the network of this process, by pid; none where there is no `proc`. A process
+/// of another user counts as one of this network.
 std::vector<HostProcess> host_processes(const std::filesystem::path& proc = "/proc");
 
 }  // namespace topogeo::cli

@@ -17,7 +17,7 @@ class MergeTable {
 
   /// A later one of the same number replaces it.
   void put(const Proposal& proposal) { proposals_[proposal.number] = proposal; }
-  /// As the status of the localizer counts them: those that are sent to a late reader take a while.
+  /// The number in the status of the localizer: proposals for a late reader take a while.
   void expect(double count) { expected_ = count; }
 
   [[nodiscard]] bool has_localizer() const { return expected_.has_value(); }

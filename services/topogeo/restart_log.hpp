@@ -10,7 +10,8 @@
 
 namespace topogeo::cli {
 
-/// By the name of the process. Has no clock: the caller passes the time, in seconds from any start.
+/// Services have the names of their processes. Has no clock: the caller passes the time, in seconds
+/// from any start.
 class RestartLog {
  public:
   static constexpr std::chrono::milliseconds kFirstDelay{100};

@@ -43,14 +43,14 @@ class UnheardServices {
 
   /// A status has come.
   void heard(const msg::ServiceStatus& status, const messaging::SampleInfo& info);
-  /// What discovery knows now, in place of what it knew before.
+  /// The endpoints that discovery knows now, in place of those before.
   void discovered(std::span<const messaging::RemoteEndpoint> endpoints, Time now);
   /// The same of the services of the host with that name.
   void running(std::vector<HostProcess> processes, const std::string& host);
 
   /// Whether one that is discovered may still publish its first status.
   [[nodiscard]] bool may_come(Time now) const;
-  /// Those that should have been heard by now, each once, by name.
+  /// The services that should have been heard by now, each once, by name.
   [[nodiscard]] std::vector<UnheardService> list(Time now) const;
 
  private:

@@ -20,7 +20,7 @@ std::string token_of_environment() {
   return given != nullptr ? given : "";
 }
 
-/// That of the command line, of its file or of the environment.
+/// The token of the command line, of its file or of the environment.
 std::optional<std::string> given_token(const WebOptions& options) {
   if (options.token && options.token_file) {
     throw service::UsageError("expected --token or --token-file, not both");

@@ -10,7 +10,7 @@ namespace {
 
 TEST(Patrol, TheMapStopsGrowingAndFollowsWhatIsMoved) {
   PatrolOptions options;
-  // Without dropping views the map had those of eight drives, and the cupboard both of its places.
+  // A map that drops no views would have those of eight drives, and the cupboard in both places.
   options.drives = 8;
   options.drives_per_move = 4;
   options.directory = std::filesystem::path(testing::TempDir()) / "topogeo_patrol_test";

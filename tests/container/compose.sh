@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What the tests of compose.yaml have in common. Sourced after common.sh, with IMAGE, DOMAIN, SECURITY, LOG and OUT of
+# Functions that the tests of compose.yaml share. Sourced after common.sh, with IMAGE, DOMAIN, SECURITY, LOG and OUT of
 # compose.yaml set.
 # shellcheck disable=SC2154  # common.sh sets what is not set here
 
@@ -36,9 +36,9 @@ down() { compose down -t "$hang_limit_s" > "$work/down.log" 2>&1 || { tail -n 5 
 health() { docker inspect -f '{{ .State.Health.Status }}' "$@"; }  # CONTAINER...
 is_health() { [ "$(health "$1")" = "$2" ]; }                        # CONTAINER STATUS
 all_healthy() { [ "$(health "$@" | sort | uniq -c | xargs)" = "$# healthy" ]; }
-# To what runs in a container, below its init.
+# Sends a signal to the program of a container, below its init: signal NAME CONTAINER
 signal() { docker exec "$2" sh -c "kill -$1 \$(cat /proc/1/task/1/children)"; }
-# What hangs makes its own container unhealthy and no other one: one_is_unhealthy CONTAINER OTHERS...
+# A service that hangs makes its own container unhealthy and no other one: one_is_unhealthy CONTAINER OTHERS...
 one_is_unhealthy() {
   wait_for "healthy containers" all_healthy "$@" || { compose ps; fail "not all containers are healthy"; }
   signal STOP "$1"

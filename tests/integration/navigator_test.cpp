@@ -66,7 +66,7 @@ TEST_F(NavigatorOnRobot, PausesResumesAndCancels) {
   EXPECT_LT(robot_.T_world_robot().x_m, 4.4);
 }
 
-// As when the page that gave the goal dies with the navigator.
+// The page that gave the goal dies with the navigator.
 TEST_F(NavigatorOnRobot, DrivesOnToAGoalWhoseClientIsGoneInItsNextLife) {
   memory_ = scratch_ / "goal";
   start();

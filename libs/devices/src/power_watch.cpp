@@ -61,7 +61,7 @@ void PowerWatch::aim_at(double speed, double acceleration, std::int64_t now_ns) 
   // Aims that were over before the oldest time that may be asked for are dropped.
   constexpr std::int64_t kKept_ns = 2'000'000'000;
   while (aims_.size() > 2 && is_obeyed(aims_[1], now_ns - kKept_ns)) aims_.pop_front();
-  // Of a port that takes nothing for long the lowest and the latest count.
+  // A port that takes nothing for long must not fill the memory: the first and the latest stay.
   constexpr std::size_t kMostAims = 1000;
   if (aims_.size() > kMostAims) aims_.erase(aims_.begin() + 1);
 }

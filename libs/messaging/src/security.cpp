@@ -58,8 +58,8 @@ constexpr std::array<SecurityFile, 7> kFiles = {{
 /// A peer's name and subject are as long as it likes.
 constexpr std::size_t kMaxNameLength = 128;
 
-/// What this process denied, who its peers are and what its security plug-ins logged last. Never
-/// destroyed: the threads of the middleware may outlive static objects.
+/// Denials of this process, the subjects of its peers and the last error of its security plug-ins.
+/// Never destroyed: the threads of the middleware may outlive static objects.
 struct SecurityErrors {
   std::mutex mutex;
   std::deque<Denial> denials;

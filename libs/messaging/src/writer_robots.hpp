@@ -38,7 +38,7 @@ class WriterRobots {
   std::deque<ParticipantPrefix> departed_;
 };
 
-/// That of this process. fast_dds/writer_permissions.cpp fills it.
+/// The table of this process. fast_dds/writer_permissions.cpp fills it.
 WriterRobots& writer_robots();
 
 }  // namespace topogeo::messaging

@@ -6,7 +6,8 @@ namespace topogeo::service {
 
 using messaging::DeafnessWatch;
 
-// Where nothing outlives a service, one that is deaf from its start on takes itself for the second.
+// A service that is deaf from its start on counts as the second deaf life, also where no file tells
+// it of the first.
 std::uint32_t RejoinSchedule::lives_before(const InputState& input) const {
   return std::max(deaf_lives_, input.ever_came ? 0U : 1U);
 }

@@ -25,7 +25,7 @@ class PendingRequests {
   /// `heard`: see RequestTable.
   void begin(Respond respond, std::function<void(std::uint64_t id)> send,
              std::function<bool()> heard = {});
-  /// Who gets the reply to a request; nothing where it was answered.
+  /// The handler of the reply to a request; nothing where it was answered.
   std::optional<Respond> take(std::uint64_t id) { return table_.take(id); }
 
  private:

@@ -34,7 +34,7 @@ class RequestTable {
   /// other service is there, busy perhaps; empty: it is not known.
   void begin(Respond respond, std::function<void(std::uint64_t id)> send,
              std::function<bool()> heard, double now_s);
-  /// Who gets the reply to a request; nothing where it was answered or given up.
+  /// The handler of the reply to a request; nothing where it was answered or given up.
   std::optional<Respond> take(std::uint64_t id);
   /// Several times in kLongestTick_s. `busy`: why this machine is too busy; empty when it is not.
   void tick(double now_s, const std::string& busy);

@@ -10,7 +10,7 @@ namespace {
 
 using testing::ElementsAre;
 
-/// What the kernel has of a program's arguments.
+/// The kernel's view of a program's arguments.
 class Kernel {
  public:
   explicit Kernel(std::vector<std::string> words) : words_(std::move(words)) {

@@ -17,7 +17,8 @@ RemovalLog::Peer peer(std::uint32_t number) {
   return peer;
 }
 
-/// What the log finds when packets of the peer go on, five a second, from one time to another.
+/// The forged removals that the log finds when packets of the peer go on, five a second, from one
+/// time to another.
 std::uint64_t forged_between(RemovalLog& log, const RemovalLog::Peer& peer, RemovalLog::Time from,
                              RemovalLog::Time to) {
   std::uint64_t forged = 0;

@@ -19,7 +19,7 @@ using testing::ThrowsMessage;
 
 using Names = std::vector<std::string>;
 
-/// As the middleware compares the partitions of a writer and a reader.
+/// The comparison of the middleware between the partitions of a writer and a reader.
 bool meet(const Names& a, const Names& b) {
   for (const std::string& one : a) {
     for (const std::string& other : b) {

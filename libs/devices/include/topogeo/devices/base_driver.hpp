@@ -100,7 +100,7 @@ class BaseDriver final : public SerialDriver {
   void stand(std::int64_t now_ns);
   void stand_again(std::int64_t now_ns);
 
-  /// What is commanded from now on is that, for the monitor.
+  /// Tells the monitor the velocity that is commanded from now on.
   void aim_at(const BaseVelocity& velocity, std::int64_t now_ns);
   /// The monitor may expect the base to obey once all orders for its aim have been written.
   void confirm_aim(std::int64_t now_ns);

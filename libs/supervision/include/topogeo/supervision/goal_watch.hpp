@@ -39,7 +39,7 @@ class GoalWatch {
   void set_busy(bool busy, double now_s);
 
  private:
-  /// By the patience clock, which the times below are of.
+  /// Returns the time now by the patience clock, by which all times below are.
   double pass_time(double now_s);
   [[nodiscard]] std::optional<GoalEnd> judge(const navigation::NavigatorStatus& status) const;
 

@@ -10,7 +10,7 @@
 
 namespace topogeo::supervision {
 
-/// What a run sees at a moment.
+/// The view of a run at a moment.
 struct GotoView {
   std::string waits_for;       ///< before the robot may set out; empty: for nothing
   std::string busy;            ///< why the machine is too busy; empty when it is not
@@ -18,7 +18,7 @@ struct GotoView {
   bool stands = false;         ///< the robot does not drive and is not commanded to move
 };
 
-/// What the run has to do now.
+/// The next step of the run.
 enum class GotoAction : std::uint8_t {
   kNone,
   kSendGoal,

@@ -25,7 +25,7 @@ class PatienceClock {
   /// Several times within the longest span. `rate`: the share, 0 to 1, of the time since the last
   /// call that counts. Returns time_s().
   double advance(double now_s, double rate = 1.0);
-  /// That has counted so far, from 0.
+  /// The time that has counted so far, from 0.
   [[nodiscard]] double time_s() const { return time_s_; }
 
  private:
@@ -65,7 +65,7 @@ class Patience {
   [[nodiscard]] bool is_over(double now_s);
   /// The wait that counts begins again: something has come.
   void begin_again(double now_s);
-  /// Of the wait, what has counted so far.
+  /// The part of the wait that has counted so far.
   [[nodiscard]] double waited_s() const { return clock_.time_s(); }
   /// For the end of an error message: "; this machine is too busy: the wait of 5.0 s took 23.1 s,
   /// and this program waited for a CPU 81 % of its working time". Empty where the wait has taken

@@ -9,7 +9,7 @@
 
 namespace topogeo::service {
 
-/// What is known of the main input now.
+/// The state of the main input now.
 struct InputState {
   double silence_s = 0.0;     ///< messaging::input_silence_s
   bool ever_came = false;     ///< in this life
@@ -27,7 +27,7 @@ struct RejoinStep {
 /// The caller passes the time, in seconds from any start, several times a second.
 class RejoinSchedule {
  public:
-  /// From the proof to the end, of the second life in a row that is deaf.
+  /// The wait from the proof to the end in the second life in a row that is deaf.
   static constexpr double kFirstWait_s = 60.0;
   /// The same of all further ones.
   static constexpr double kNextWait_s = 600.0;
