@@ -21,12 +21,12 @@ constexpr double kRolls = 0.05;    // m/s; slower it stops at once
 /// guard counts twice as much: its commands are on their way before.
 constexpr double kDelay_s = 0.1;
 /// A scan may be that much newer than the odometry, which is carried on by its speeds.
-constexpr std::int64_t kCarriedOn_ns = 500'000'000;
+constexpr std::int64_t kScanAhead_ns = 500'000'000;
 
 }  // namespace
 
 LastGuard::LastGuard(const GuardConfig& config, double runs_on_s)
-    : config_(config), runs_on_s_(runs_on_s), track_(kCarriedOn_ns) {
+    : config_(config), runs_on_s_(runs_on_s), track_(kScanAhead_ns) {
   check(config);
 }
 
