@@ -16,7 +16,8 @@ class BaseWatch {
 
   /// Takes the order of now and the odometry of `odometry_ns`. True: the base has not moved for
   /// `stuck_s` though ordered to all the time. Odometry that comes late shows nothing of the time
-  /// after its stamp.
+  /// after its stamp. The time begins anew after a gap in the orders, because a base stops by
+  /// itself when none comes.
   bool stuck(const geometry::Velocity& ordered, const geometry::Pose2& T_odom_robot,
              std::int64_t odometry_ns, std::int64_t now_ns) {
     constexpr double kLeast_m_per_s = 0.02;    // friction may stop a base that is to go slower
@@ -29,6 +30,8 @@ class BaseWatch {
       reset();
       return false;
     }
+    if (now_ns - ordered_ns_ > kLongestGap_ns) T_odom_then_.reset();
+    ordered_ns_ = now_ns;
     if (T_odom_then_) {
       const geometry::Pose2 step = between(*T_odom_then_, T_odom_robot);
       if (step.position_m().norm() < kMoved_m && std::fabs(step.theta_rad) < kMoved_rad) {
@@ -45,7 +48,10 @@ class BaseWatch {
   void reset() { T_odom_then_.reset(); }
 
  private:
+  static constexpr std::int64_t kLongestGap_ns = 300'000'000;  // an order is valid for as long
+
   std::int64_t stuck_ns_;
+  std::int64_t ordered_ns_ = 0;  ///< when the last order was given
   std::int64_t since_ns_ = 0;
   std::optional<geometry::Pose2> T_odom_then_;
 };

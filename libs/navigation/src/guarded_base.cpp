@@ -20,6 +20,16 @@ void GuardedBase::add(const SonarRound& sonar) {
   near_.add(sonar);
 }
 
+void GuardedBase::set(const MachineLoad& load, std::int64_t now_ns) {
+  if (load.busy) {
+    busy_ns_ = now_ns;
+    if (stuck_) judge_try(now_ns);
+  } else if (tries_again_) {
+    ++tries_;
+    retry_now();
+  }
+}
+
 HaltReason GuardedBase::halted(std::int64_t now_ns, std::string& message) const {
   if (base_ && !base_->commands_taken) {
     message = "the base takes no commands: " + base_->reason;
@@ -27,7 +37,8 @@ HaltReason GuardedBase::halted(std::int64_t now_ns, std::string& message) const 
   }
   if (stuck_) {
     message = fmt::format(
-        "ordered to move for {:.1f} s, the base did not; drives on after a resume", stuck_s_);
+        "ordered to move for {:.1f} s, the base did not; {}", stuck_s_,
+        tries_again_ ? "tries again when this machine has time" : "drives on after a resume");
     return HaltReason::kBaseStuck;
   }
   return guard_.health(now_ns, &message);
@@ -49,8 +60,25 @@ GuardedBase::Command GuardedBase::command(const geometry::Velocity& wanted,
   } else if (!command.stopped && wanted != geometry::Velocity{}) {
     stopped_ns_.reset();
   }
-  if (T_odom_robot) stuck_ = watch_.stuck(allowed, *T_odom_robot, odometry_ns_, now_ns);
+  if (T_odom_robot) watch_motion(allowed, *T_odom_robot, now_ns);
   return command;
+}
+
+void GuardedBase::watch_motion(const geometry::Velocity& ordered,
+                               const geometry::Pose2& T_odom_robot, std::int64_t now_ns) {
+  constexpr double kMoved_m = 0.05;  // more than the play of the wheels
+  if (tries_ > 0 && between(T_odom_stuck_, T_odom_robot).position_m().norm() > kMoved_m) tries_ = 0;
+  stuck_ = watch_.stuck(ordered, T_odom_robot, odometry_ns_, now_ns);
+  if (!stuck_) return;
+  T_odom_stuck_ = T_odom_robot;
+  stuck_ns_ = now_ns;
+  judge_try(now_ns);
+}
+
+// The load is known for whole spans only: a busy one may become known after the base is stuck.
+void GuardedBase::judge_try(std::int64_t now_ns) {
+  if (elapsed_s(stuck_ns_, now_ns) > stuck_s_ || tries_ >= kTries || !busy_ns_) return;
+  tries_again_ = tries_again_ || elapsed_s(*busy_ns_, now_ns) <= stuck_s_;
 }
 
 bool GuardedBase::held(std::int64_t now_ns) const {
@@ -59,7 +87,13 @@ bool GuardedBase::held(std::int64_t now_ns) const {
 }
 
 void GuardedBase::retry() {
+  tries_ = 0;
+  retry_now();
+}
+
+void GuardedBase::retry_now() {
   stuck_ = false;
+  tries_again_ = false;
   watch_.reset();
 }
 

@@ -29,6 +29,10 @@ class GuardedBase {
   void add(const SonarRound& sonar);
   void add(const LaserFields& fields) { guard_.add(fields); }
   void add(const BaseCondition& base) { base_ = base; }
+  /// The load of this machine at `now_ns`. A base that seems stuck while the machine is busy may
+  /// get its orders too late to obey them: it is tried again once the machine has time, kTries
+  /// times at most until it moves.
+  void set(const MachineLoad& load, std::int64_t now_ns);
   void keep_off(std::int64_t stamp_ns, std::vector<Eigen::Vector2d> points_m) {
     guard_.keep_off(stamp_ns, std::move(points_m));
   }
@@ -58,6 +62,13 @@ class GuardedBase {
   [[nodiscard]] const CollisionGuard& guard() const { return guard_; }
 
  private:
+  static constexpr int kTries = 3;
+
+  void watch_motion(const geometry::Velocity& ordered, const geometry::Pose2& T_odom_robot,
+                    std::int64_t now_ns);
+  void judge_try(std::int64_t now_ns);
+  void retry_now();
+
   double stuck_s_;
   CollisionGuard guard_;
   NearEchoes near_;
@@ -65,6 +76,11 @@ class GuardedBase {
   std::optional<BaseCondition> base_;
   std::int64_t odometry_ns_ = 0;  ///< of the newest
   bool stuck_ = false;
+  std::int64_t stuck_ns_ = 0;               ///< when it was judged so last
+  std::optional<std::int64_t> busy_ns_;     ///< when the machine was last busy
+  bool tries_again_ = false;                ///< stuck, but perhaps because the machine was busy
+  int tries_ = 0;                           ///< since it last moved
+  geometry::Pose2 T_odom_stuck_;            ///< where it last was stuck
   std::optional<std::int64_t> stopped_ns_;  ///< since when the guard stops the motion ahead
 };
 

@@ -109,6 +109,7 @@ void Navigator::note_arrival(TimedInput input, std::int64_t stamp_ns, std::int64
 
 void Navigator::set_machine(const MachineLoad& load) {
   state_->delays.set(load);
+  state_->base.set(load, state_->now_ns);
 }
 
 geometry::Velocity Navigator::step(std::int64_t now_ns) {

@@ -1,5 +1,8 @@
 #include "base_watch.hpp"
 
+#include <cmath>
+#include <cstdint>
+
 #include <gtest/gtest.h>
 
 #include "post_scan.hpp"
@@ -7,35 +10,52 @@
 namespace topogeo::navigation {
 namespace {
 
-/// The odometry is of the moment.
-bool stuck(BaseWatch& watch, const geometry::Velocity& ordered, const geometry::Pose2& T_odom_robot,
-           std::int64_t now_ns) {
-  return watch.stuck(ordered, T_odom_robot, now_ns, now_ns);
+class BaseWatchTest : public testing::Test {
+ protected:
+  /// Orders ten times a second, from one time to just before another; the odometry is of the
+  /// moment. The last answer of the watch.
+  bool ordered(const geometry::Velocity& order, const geometry::Pose2& T_odom_robot, double from_s,
+               double to_s) {
+    bool stuck = false;
+    for (int i = static_cast<int>(std::lround(from_s * 10)); i < std::lround(to_s * 10); ++i) {
+      const std::int64_t now_ns = i * kSecond_ns / 10;
+      stuck = watch.stuck(order, T_odom_robot, now_ns, now_ns);
+    }
+    return stuck;
+  }
+
+  BaseWatch watch{2.0};
+  geometry::Velocity ahead{0.3, 0.0};
+};
+
+TEST_F(BaseWatchTest, NoticesABaseThatDoesNotMove) {
+  EXPECT_FALSE(ordered(ahead, {}, 0.0, 0.1));
+  EXPECT_FALSE(ordered(ahead, {0.005, 0.0, 0.0}, 0.1, 2.0));
+  EXPECT_TRUE(ordered(ahead, {0.005, 0.0, 0.0}, 2.0, 2.1));
+  EXPECT_FALSE(ordered(ahead, {0.1, 0.0, 0.0}, 2.1, 4.0));
+  EXPECT_FALSE(ordered({}, {0.1, 0.0, 0.0}, 4.0, 9.0));
+  EXPECT_FALSE(ordered({0.0, 0.5}, {0.1, 0.0, 0.0}, 9.0, 11.0));
+  EXPECT_TRUE(ordered({0.0, 0.5}, {0.1, 0.0, 0.0}, 11.0, 11.1));
 }
 
-TEST(BaseWatch, NoticesABaseThatDoesNotMove) {
-  BaseWatch watch(2.0);
-  const geometry::Velocity ordered{0.3, 0.0};
-  EXPECT_FALSE(stuck(watch, ordered, {}, 0));
-  EXPECT_FALSE(stuck(watch, ordered, {0.005, 0.0, 0.0}, 1 * kSecond_ns));
-  EXPECT_TRUE(stuck(watch, ordered, {0.005, 0.0, 0.0}, 2 * kSecond_ns));
-  EXPECT_FALSE(stuck(watch, ordered, {0.1, 0.0, 0.0}, 3 * kSecond_ns));
-  EXPECT_FALSE(stuck(watch, {}, {0.1, 0.0, 0.0}, 9 * kSecond_ns));
-  EXPECT_FALSE(stuck(watch, {0.0, 0.5}, {0.1, 0.0, 0.0}, 10 * kSecond_ns));
-  EXPECT_TRUE(stuck(watch, {0.0, 0.5}, {0.1, 0.0, 0.0}, 12 * kSecond_ns));
+// The base stops by itself when no order comes: no orders for 9 s are no orders that it disobeyed.
+TEST_F(BaseWatchTest, CountsAnewAfterAGapInTheOrders) {
+  EXPECT_FALSE(ordered(ahead, {}, 0.0, 1.0));
+  EXPECT_FALSE(ordered(ahead, {}, 10.0, 12.0));
+  EXPECT_TRUE(ordered(ahead, {}, 12.0, 12.1));
 }
 
-TEST(BaseWatch, OdometryThatComesLateIsWaitedFor) {
-  BaseWatch watch(2.0);
-  const geometry::Velocity ordered{0.3, 0.0};
+TEST_F(BaseWatchTest, OdometryThatComesLateIsWaitedFor) {
   // It comes 0.9 s late, and so does the order to the base: the robot is seen to move after 2.4 s.
   constexpr std::int64_t kLate_ns = 9 * kSecond_ns / 10;
   for (std::int64_t now_ns = 0; now_ns < 24 * kSecond_ns / 10; now_ns += kSecond_ns / 10) {
-    EXPECT_FALSE(watch.stuck(ordered, {}, now_ns - kLate_ns, now_ns)) << now_ns;
+    EXPECT_FALSE(watch.stuck(ahead, {}, now_ns - kLate_ns, now_ns)) << now_ns;
   }
-  EXPECT_FALSE(watch.stuck(ordered, {0.1, 0.0, 0.0}, 15 * kSecond_ns / 10, 24 * kSecond_ns / 10));
-  EXPECT_FALSE(watch.stuck(ordered, {0.1, 0.0, 0.0}, 34 * kSecond_ns / 10, 43 * kSecond_ns / 10));
-  EXPECT_TRUE(watch.stuck(ordered, {0.1, 0.0, 0.0}, 35 * kSecond_ns / 10, 44 * kSecond_ns / 10));
+  for (std::int64_t now_ns = 24 * kSecond_ns / 10; now_ns <= 43 * kSecond_ns / 10;
+       now_ns += kSecond_ns / 10) {
+    EXPECT_FALSE(watch.stuck(ahead, {0.1, 0.0, 0.0}, now_ns - kLate_ns, now_ns)) << now_ns;
+  }
+  EXPECT_TRUE(watch.stuck(ahead, {0.1, 0.0, 0.0}, 35 * kSecond_ns / 10, 44 * kSecond_ns / 10));
 }
 
 }  // namespace

@@ -17,6 +17,15 @@ class GuardedBaseTest : public testing::Test {
     base.add(scan_of_post(post_m, stamp_ns));
   }
 
+  /// Ten orders a second from `from_ns` on that the base does not obey.
+  void order_for_2_s(std::int64_t from_ns) {
+    for (int i = 0; i <= 20; ++i) {
+      const std::int64_t now_ns = from_ns + i * kSecond_ns / 10;
+      scan_at(5.0, now_ns);
+      base.command({0.3, 0.0}, geometry::Pose2{}, now_ns);
+    }
+  }
+
   GuardedBase base{GuardConfig{}, 2.0};
   std::string message;
 };
@@ -56,16 +65,49 @@ TEST_F(GuardedBaseTest, IsHeldBeforeAnObstacleUntilItIsReleased) {
 }
 
 TEST_F(GuardedBaseTest, ABaseThatDoesNotMoveIsStuckUntilItMayTryAgain) {
-  for (int i = 0; i <= 20; ++i) {
-    const std::int64_t now_ns = i * kSecond_ns / 10;
-    scan_at(5.0, now_ns);
-    base.add(OdometrySample{now_ns, {}});
-    base.command({0.3, 0.0}, geometry::Pose2{}, now_ns);
-  }
+  order_for_2_s(0);
   EXPECT_EQ(base.halted(2 * kSecond_ns, message), HaltReason::kBaseStuck);
-  EXPECT_NE(message.find("2.0 s"), std::string::npos);
+  EXPECT_NE(message.find("2.0 s, the base did not; drives on after a resume"), std::string::npos);
+  base.set({}, 2 * kSecond_ns);
+  EXPECT_EQ(base.halted(2 * kSecond_ns, message), HaltReason::kBaseStuck);
   base.retry();
   EXPECT_EQ(base.halted(2 * kSecond_ns, message), HaltReason::kNone);
+}
+
+TEST_F(GuardedBaseTest, ABaseThatGetsItsOrdersLateIsTriedAgainWhenThereIsTime) {
+  const MachineLoad busy{true, 0.4};
+  std::int64_t now_ns = 0;
+  for (int tries = 0; tries < 3; ++tries, now_ns += 3 * kSecond_ns) {
+    base.set(busy, now_ns);
+    order_for_2_s(now_ns);
+    EXPECT_EQ(base.halted(now_ns + 2 * kSecond_ns, message), HaltReason::kBaseStuck);
+    EXPECT_NE(message.find("tries again when this machine has time"), std::string::npos) << message;
+    base.set(busy, now_ns + 2 * kSecond_ns);
+    EXPECT_EQ(base.halted(now_ns + 2 * kSecond_ns, message), HaltReason::kBaseStuck);
+    base.set({}, now_ns + 2 * kSecond_ns);
+    EXPECT_EQ(base.halted(now_ns + 2 * kSecond_ns, message), HaltReason::kNone);
+  }
+  // Three times in vain: it waits for people.
+  base.set(busy, now_ns);
+  order_for_2_s(now_ns);
+  EXPECT_EQ(base.halted(now_ns + 2 * kSecond_ns, message), HaltReason::kBaseStuck);
+  EXPECT_NE(message.find("drives on after a resume"), std::string::npos) << message;
+  base.set({}, now_ns + 2 * kSecond_ns);
+  EXPECT_EQ(base.halted(now_ns + 2 * kSecond_ns, message), HaltReason::kBaseStuck);
+}
+
+TEST_F(GuardedBaseTest, ALoadThatBecomesKnownLaterCounts) {
+  order_for_2_s(0);
+  EXPECT_EQ(base.halted(2 * kSecond_ns, message), HaltReason::kBaseStuck);
+  base.set({true, 0.4}, 3 * kSecond_ns);
+  base.set({}, 4 * kSecond_ns);
+  scan_at(5.0, 4 * kSecond_ns);
+  EXPECT_EQ(base.halted(4 * kSecond_ns, message), HaltReason::kNone);
+  order_for_2_s(20 * kSecond_ns);
+  base.set({true, 0.4}, 30 * kSecond_ns);  // long after
+  base.set({}, 31 * kSecond_ns);
+  scan_at(5.0, 31 * kSecond_ns);
+  EXPECT_EQ(base.halted(31 * kSecond_ns, message), HaltReason::kBaseStuck);
 }
 
 }  // namespace
