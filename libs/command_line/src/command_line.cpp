@@ -222,7 +222,7 @@ std::optional<int> Command::parse_or_report(int argc, const char* const* argv) {
   return kWrongUsage;
 }
 
-// The types of OptionValue that programs use.
+// Instantiates the types of OptionValue that programs use.
 template Option* Command::add_option(const std::string&, std::string&, const std::string&);
 template Option* Command::add_option(const std::string&, std::filesystem::path&,
                                      const std::string&);

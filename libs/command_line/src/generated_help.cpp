@@ -28,7 +28,7 @@ std::vector<const CLI::App*> subcommands_of(const CLI::App& app) {
   return commands;
 }
 
-/// Text that man(7) prints as it is: hyphens that can be copied, no requests.
+/// Text that man(7) prints unchanged: hyphens that can be copied, no requests.
 std::string escaped(std::string_view text) {
   std::string result;
   bool line_begins = true;

@@ -1,4 +1,4 @@
-// Manual page and shell completion of a program, made of the options that it declares.
+// Manual page and shell completion of a program, generated from its declared options.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@ class App;
 
 namespace topogeo::command_line {
 
-/// In the language of man(7): section 1, with a subsection for each subcommand.
+/// Written in man(7): section 1, with a subsection for each subcommand.
 std::string manual_page(const CLI::App& app);
 
 /// Functions for bash (4.0) that complete subcommands, options and values from a fixed set; other

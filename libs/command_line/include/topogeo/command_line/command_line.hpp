@@ -1,5 +1,5 @@
 // Command lines of programs: options, flags, subcommands, their checks and help. CLI11 does the
-// work; it is compiled in this library alone, since each file that includes it takes seconds.
+// work; only this library includes it, because each file that does takes seconds to compile.
 #pragma once
 
 #include <concepts>
@@ -22,7 +22,7 @@ class Validator;
 
 namespace topogeo::command_line {
 
-/// The command line is wrong; what() names the option, the value and what is expected.
+/// The command line is wrong; what() names the option, the value and the expected input.
 class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -34,8 +34,8 @@ template <class T>
 concept SingleValue =
     OneOf<T, std::string, std::filesystem::path, int, std::uint32_t, std::uint64_t, double>;
 
-/// What an option can be stored in. An optional stays empty without the option, a vector takes all
-/// that follow it.
+/// Types that an option can be stored in. An optional stays empty if the option is not given; a
+/// vector takes all values that follow the option.
 template <class T>
 concept OptionValue = SingleValue<T> ||
     OneOf<T, std::vector<std::string>, std::vector<std::filesystem::path>> ||
@@ -70,26 +70,26 @@ class Option {
 
   Option* required(bool value = true);
   Option* check(const Check& check);
-  /// `test` returns what is wrong with a value, an empty text for a good one.
+  /// `test` returns the fault of a value, or an empty text for a good one.
   Option* check(const std::function<std::string(const std::string&)>& test);
-  /// The value is one of the numbers, given by name. Help does not list them.
+  /// The value is a number, given by name. Help does not list the names.
   Option* named_values(const std::vector<std::pair<std::string, std::uint32_t>>& values);
   Option* needs(const Option* other);
   Option* excludes(const Option* other);
-  /// How help names the value: FILE, X,Y.
+  /// Sets the name of the value in help: FILE, X,Y.
   Option* type_name(const std::string& name);
-  /// Help shows the value that the variable has now as the default.
+  /// Help shows the current value of the variable as the default.
   Option* capture_default_str();
   Option* default_str(const std::string& text);
-  /// Where the option is not given, its value is that of this variable of the environment, if set.
+  /// If the option is not given, this environment variable supplies the value.
   Option* environment(const std::string& variable);
-  /// One value contains several, with this between them.
+  /// One value contains several parts, separated by this character.
   Option* delimiter(char separator);
-  /// Of an option stored in a vector: whether it takes all values up to the next option, or one
-  /// each time that it is given.
+  /// For an option stored in a vector: whether it takes all values up to the next option, or one
+  /// value each time it is given.
   Option* allow_extra_args(bool value);
 
-  /// How many values were given.
+  /// Number of values that were given.
   [[nodiscard]] std::size_t count() const;
 
  private:
@@ -109,33 +109,34 @@ class Command {
   /// `names` are "--name", "-n,--name", or "name" for an argument in that position.
   template <OptionValue T>
   Option* add_option(const std::string& names, T& value, const std::string& description = "");
-  /// Calls `take` with the value; what it throws as std::invalid_argument is wrong with the value.
+  /// Calls `take` with the value; a std::invalid_argument that it throws is reported as the fault
+  /// of the value.
   Option* add_option_function(const std::string& names,
                               std::function<void(const std::string&)> take,
                               const std::string& description = "");
-  /// `names` may end in ",!--no-name", which sets it to false.
+  /// `names` may end in ",!--no-name", which sets the flag to false.
   Option* add_flag(const std::string& names, bool& value, const std::string& description = "");
   /// Throws std::invalid_argument when the command has no such option.
   [[nodiscard]] Option* get_option(const std::string& name) const;
 
   Command* add_subcommand(const std::string& name, const std::string& description);
-  /// Options that help shows together; require_option counts them.
+  /// Groups options that help shows together; require_option counts them.
   Command* add_option_group(const std::string& name, const std::string& description);
   void require_subcommand(int count);
   void require_option(int count);
-  /// Called when the command line was parsed and had this command in it.
+  /// Calls `call` after parsing, if the command line contains this command.
   void callback(std::function<void()> call);
-  /// What help prints below the options.
+  /// Text that help prints below the options.
   void footer(const std::string& text);
   void set_version_flag(const std::string& names, const std::string& version);
 
-  /// Fills the variables and calls what was given to callback(). Returns the exit code when the
-  /// program has nothing left to do, since help or the version was printed. Throws UsageError.
-  /// The only words --print-manual and --print-completion, which help does not list, print the
-  /// manual page and the completion for bash.
+  /// Fills the variables and runs the callbacks. Returns an exit code if the program has nothing
+  /// left to do, because help or the version was printed. Throws UsageError. The hidden options
+  /// --print-manual and --print-completion, each as the only argument, print the manual page and
+  /// the completion for bash.
   [[nodiscard]] std::optional<int> parse(int argc, const char* const* argv);
-  /// The same for programs that have no exit codes of their own: prints what is wrong to stderr and
-  /// returns 2.
+  /// Like parse(), for programs that have no exit codes of their own: prints the fault to stderr
+  /// and returns 2.
   [[nodiscard]] std::optional<int> parse_or_report(int argc, const char* const* argv);
 
  private:
@@ -144,7 +145,7 @@ class Command {
   Command* keep(CLI::App* app);
   [[nodiscard]] Option* find(const CLI::Option* option) const;
 
-  std::unique_ptr<CLI::App> program_;  // of the whole program only
+  std::unique_ptr<CLI::App> program_;  // root command only
   CLI::App* app_;
   std::vector<std::unique_ptr<Option>> options_;
   std::vector<std::unique_ptr<Command>> parts_;  // subcommands and groups

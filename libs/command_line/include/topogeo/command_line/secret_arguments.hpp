@@ -1,4 +1,4 @@
-// Arguments that other users must not read: `ps` shows those of every program.
+// Hides arguments that other users must not read: `ps` shows those of every program.
 #pragma once
 
 #include <initializer_list>
@@ -8,18 +8,18 @@
 
 namespace topogeo::command_line {
 
-/// The arguments of a program, copied, with the values of secret options overwritten where `ps`
-/// reads them. They were there until then, so that a file or the environment is still the better
-/// place.
+/// A copy of a program's arguments; the values of secret options are overwritten where `ps` reads
+/// them. They are visible until then, so a file or the environment is still the better place.
 class SecretArguments {
  public:
-  /// For main(): `secret` are options with a value, as "--token"; also "--token=VALUE" is found.
+  /// For main(): `secret` are options with a value, such as "--token"; "--token=VALUE" is also
+  /// found.
   SecretArguments(int count, char** arguments, std::initializer_list<std::string_view> secret);
 
   [[nodiscard]] int count() const { return static_cast<int>(texts_.size()); }
-  /// With the secrets; valid as long as this object.
+  /// Includes the secrets; valid as long as this object.
   [[nodiscard]] const char* const* values() const { return values_.data(); }
-  /// Whether a secret was among them.
+  /// Whether the arguments contained a secret.
   [[nodiscard]] bool had_secret() const { return had_secret_; }
 
  private:
