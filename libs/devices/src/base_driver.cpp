@@ -8,7 +8,7 @@
 namespace topogeo::devices {
 namespace {
 
-/// Voltages outside of these are errors of the line, as in BeeSoft, MIRO and CMU's B21 driver.
+/// Voltages outside of these are line errors, as in BeeSoft, MIRO and CMU's B21 driver.
 constexpr double kLeastVolts = 1.0;
 constexpr double kMostVolts = 100.0;
 /// The MCP reports the voltage in tenths.
@@ -30,7 +30,7 @@ double limited(const char* name, double wanted, double largest) {
                               std::to_string(wanted) + ", not a positive number");
 }
 
-/// The first bit stands for the mask itself, which only binary reports hold.
+/// The first bit requests the mask itself, which only binary reports contain.
 bool same_fields(std::uint32_t mask, std::uint32_t wanted) {
   return ((mask ^ wanted) & ~mask_bit(McpField::kMask)) == 0;
 }
@@ -89,7 +89,8 @@ std::int64_t BaseDriver::due_ns() const {
   std::int64_t due_ns = std::min({term_.due_ns(), interlocks_.due_ns(), link_.due_ns()});
   if (guard_ && term_.velocity_holds()) due_ns = std::min(due_ns, judge_ns_);
   if (!link_.running()) return due_ns;
-  // More may have to be written whenever the line is free again: motion has no time of its own.
+  // Another write may be due as soon as the line is free, because motion has no schedule of its
+  // own.
   const std::int64_t next_ns =
       idle_ ? std::max(upkeep_.due_ns(), writer_.free_ns()) : writer_.free_ns();
   return std::min(due_ns, next_ns);
@@ -184,7 +185,7 @@ void BaseDriver::take(const McpEvent& event, std::int64_t now_ns) {
       upkeep_.refresh(now_ns);
       break;
     case McpEventKind::kLostSync:
-      // What was written last was not understood, whatever it was.
+      // The base did not understand the last write.
       link_.answered();
       if (!link_.running()) break;
       writer_.queue_sync();
@@ -196,7 +197,7 @@ void BaseDriver::take(const McpEvent& event, std::int64_t now_ns) {
   }
 }
 
-/// A bumper that is pressed has stopped the base, which lost no power.
+/// A pressed bumper has stopped the base, which has not lost its power.
 void BaseDriver::bump(std::uint16_t active_low, std::int64_t now_ns) {
   if (!interlocks_.bumpers(active_low, now_ns)) return;
   monitor_.forget_power();
@@ -212,7 +213,7 @@ void BaseDriver::take(const McpAnswer& answer, std::int64_t /*now_ns*/) {
   status_.battery_low = battery_v < settings_.battery_low_v;
 }
 
-/// Compares what the base does with what it was sent.
+/// Compares the motion of the base with its commands.
 void BaseDriver::check_motion(std::int64_t now_ns) {
   if (monitor_.stalled() && interlocks_.emergency_stop()) stand_again(now_ns);
   if (interlocks_.joystick(monitor_.joystick())) stand_again(now_ns);
@@ -296,14 +297,14 @@ void BaseDriver::aim_changed(std::int64_t now_ns) {
   tick(now_ns);
 }
 
-/// Nothing is wanted any more; the halts are written next.
+/// Ends all motion; the halts are written next.
 void BaseDriver::stand(std::int64_t now_ns) {
   term_.clear();
   motion_.want_halt();
   aim_at({}, now_ns);
 }
 
-/// The same, whatever was sent before.
+/// Like stand(), but sends the halts even if they were sent before.
 void BaseDriver::stand_again(std::int64_t now_ns) {
   stand(now_ns);
   motion_.forget();
@@ -332,7 +333,7 @@ void BaseDriver::set_limits(const BaseLimits& limits, std::int64_t now_ns) {
   aim_changed(now_ns);
 }
 
-/// Writes the next thing that is due; false if there is none.
+/// Writes the next command that is due; false if there is none.
 bool BaseDriver::write_next(std::int64_t now_ns) {
   if (writer_.write_queued(now_ns)) return true;
   if (!link_.running()) return false;
@@ -341,7 +342,7 @@ bool BaseDriver::write_next(std::int64_t now_ns) {
   return order.has_value();
 }
 
-/// Halts first, then the watchdog, which is what halts the base when this program does not.
+/// Halts first, then the watchdog, which halts the base if this program fails.
 std::optional<McpOrder> BaseDriver::next_order(std::int64_t now_ns) {
   if (const auto halt = motion_.next_halt()) return halt;
   if (const auto watchdog = upkeep_.next_refresh(now_ns)) return watchdog;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int64_t kNever_ns = std::numeric_limits<std::int64_t>::max();
 
-/// Empty for events that are no fault of a motor.
+/// Empty for events that are no motor fault.
 std::string_view motor_fault_of(McpEventKind kind) {
   switch (kind) {
     case McpEventKind::kTranslateError:

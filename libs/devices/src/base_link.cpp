@@ -11,17 +11,17 @@
 namespace topogeo::devices {
 namespace {
 
-/// What a base takes at most from the end of the start sequence to its first report, beyond two
-/// periods and the report's own time on the line. A margin for adapters, not measured on hardware.
+/// Longest time between the end of the start sequence and the first report, beyond two periods and
+/// the report's transmission. A margin for adapters, not measured on hardware.
 constexpr std::int64_t kFirstReportLag_ns = 100'000'000;
-/// Between two questions to a silent base: a twentieth of how long it has been silent, so that one
-/// that was gone for a moment is found at once; within a fifth of a second, which its answer needs,
-/// and five seconds, which a person waits.
+/// Limits of the time between two questions to a silent base, which is a twentieth of its silence
+/// so that a short absence ends soon: its answer needs a fifth of a second, and a person waits five
+/// seconds.
 constexpr std::int64_t kShortestProbe_ns = 200'000'000;
 constexpr std::int64_t kLongestProbe_ns = 5'000'000'000;
 constexpr std::int64_t kProbesPerSilence = 20;
-/// A base that has not answered for so long is set up all the same: it may not understand the
-/// question. Not sooner, because that makes the reports of one that has just come back start anew.
+/// A base without an answer for this long is set up anyway, because it may not understand the
+/// question. Not sooner, because a setup restarts the reports of a base that has just come back.
 constexpr std::int64_t kBlindStart_ns = 15'000'000'000;
 /// A base that has left out three reports in succession has stopped.
 constexpr std::int64_t kSilentPeriods = 4;
@@ -50,7 +50,7 @@ void BaseLink::close() {
   writer_.close();
 }
 
-/// Writes everything that the base has to know, from the settings of the line on.
+/// Writes everything that the base needs, starting with the line settings.
 void BaseLink::start(std::int64_t now_ns) {
   reconnects_ = phase_ == Phase::kProbing;
   phase_ = Phase::kStarting;
@@ -66,7 +66,7 @@ void BaseLink::probe(std::int64_t now_ns) {
   phase_until_ns_ = now_ns + std::clamp((now_ns - heard_ns_) / kProbesPerSilence, kShortestProbe_ns,
                                         kLongestProbe_ns);
   probe_answer_.clear();
-  // Any base that has just been switched on speaks ASCII.
+  // Every base speaks ASCII after power-on.
   writer_.write_text("\rBV\r", now_ns);
 }
 
@@ -74,7 +74,7 @@ BaseLink::Change BaseLink::reported(bool restarted, std::int64_t now_ns) {
   heard_ns_ = now_ns;
   const bool again = phase_ == Phase::kProbing || (phase_ == Phase::kStarting && reconnects_);
   if (again && !restarted) {
-    // It was silent and goes on as before: no need to set it up again. It may be in the middle of
+    // After a silence the base goes on as before, so no setup is needed. It may be in the middle of
     // our question.
     writer_.clear_queue();
     if (settings_.dialect == BaseDialect::kBinary) writer_.queue_sync();
@@ -92,8 +92,8 @@ BaseLink::Change BaseLink::received(std::span<const std::uint8_t> bytes, std::in
   return Change::kSetUp;
 }
 
-/// A base that echoes, or speaks ASCII though it should not, was switched on anew. Anything else
-/// may begin a report, after which nothing has to be done.
+/// A base that echoes, or unexpectedly speaks ASCII, was switched on anew. Other bytes may begin a
+/// report, which needs no action.
 bool BaseLink::restarted(std::span<const std::uint8_t> bytes) {
   const std::string_view sign = settings_.dialect == BaseDialect::kAscii ? "BV\r" : "BV";
   probe_answer_.append(bytes.begin(), bytes.end());

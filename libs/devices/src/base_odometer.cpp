@@ -6,36 +6,36 @@
 namespace topogeo::devices {
 namespace {
 
-/// Long enough to hold a report with little delay, short enough for the clocks' drift not to count.
+/// Long enough to contain a report with little delay, short enough to ignore the clocks' drift.
 constexpr std::int64_t kWindow_ns = 5'000'000'000;
-/// 2 %: more than any two clocks drift apart, too little to be seen in a speed.
+/// 2 %: more than any two clocks drift apart, too little to show in a speed.
 constexpr std::int64_t kSlewDivisor = 50;
 
-/// No message comes earlier than the least delayed one but for ticks and the clocks' drift.
+/// Ticks and clock drift let a message come this much earlier than the least delayed one.
 constexpr std::int64_t kEarliest_ns = 25'000'000;
-/// A host that was busy for longer than this takes the base for restarted.
+/// After a longer pause of the host, the base counts as restarted.
 constexpr std::int64_t kLatest_ns = 3'000'000'000;
 constexpr std::int64_t kPause_ns = 1'000'000'000;
-/// m/s: what 16 bits of encoder counts can hold (2.33 m/s for a B21), and a little.
+/// m/s: the range of 16 bits of encoder counts (2.33 m/s for a B21), and a margin.
 constexpr double kFastestSpeed = 2.5;
 /// A device's clock is not more wrong than one part in this.
 constexpr std::int64_t kDriftDivisor = 1000;
-/// The first message may be a late one: after so long the least delay is known.
+/// The first message may be a late one; after this time the least delay is known.
 constexpr std::int64_t kSettled_ns = 2'000'000'000;
-/// What the pose may move beyond the speeds of two reports: their registers are coarse.
+/// Motion of the pose beyond the speeds of two reports: their registers are coarse.
 constexpr double kMargin_m = 0.03;
 constexpr double kMargin_rad = 0.03;
 constexpr std::int64_t kFreshMargin_ns = 1'000'000'000;
 /// The same bit may be wrong twice.
 constexpr unsigned kFewDoubts = 2;
-/// After so many reports in succession whose distances do not fit their speeds or whose clocks do
+/// After this many successive reports whose distances do not fit their speeds or whose clocks do
 /// not fit the host's, the next one that agrees with them is accepted.
 constexpr unsigned kManyDoubts = 4;
-/// Reports' speeds may be so wrong, as a share,
+/// Relative error of reported speeds.
 constexpr double kSpeedDoubt = 0.5;
-/// and change so many times as fast as the commanded accelerations.
+/// Largest change of speed, as a multiple of the commanded acceleration.
 constexpr double kHaste = 2.0;
-/// Messages before and after a pause may have been late by different times, no more than this.
+/// Messages before and after a pause may differ in delay by this much.
 constexpr std::int64_t kSameClock_ns = 500'000'000;
 
 }  // namespace
@@ -50,7 +50,7 @@ std::int64_t DeviceClock::lateness_ns(std::int64_t device_ns, std::int64_t arriv
 
 void DeviceClock::settle(std::int64_t device_ns, std::int64_t offset_ns) {
   if (device_ns - window_ns_ > kWindow_ns) {
-    // Offsets from before a long pause do not hold for the clocks now.
+    // Offsets from before a long pause do not fit the clocks now.
     before_ns_ = device_ns - window_ns_ > 2 * kWindow_ns ? offset_ns : least_ns_;
     least_ns_ = offset_ns;
     window_ns_ = device_ns;
@@ -83,8 +83,8 @@ BaseOdometer::BaseOdometer(const BaseSettings& settings)
       tracker_(units_),
       host_clock_(report_line_time_ns(settings)) {}
 
-/// Without a checksum one wrong digit would move the robot. Its distance has to fit the speeds of
-/// the two reports, or in any case `loosely` what a base can do.
+/// Without a checksum one wrong digit would move the robot. The distance has to fit the speeds of
+/// the two reports or, if `loosely`, the range of a base.
 bool BaseOdometer::moved_plausibly(const McpReport& from, const McpReport& to,
                                    std::int64_t elapsed_ns, bool loosely) const {
   McpPoseTracker tracker(units_);
@@ -111,7 +111,7 @@ bool BaseOdometer::moved_plausibly(const McpReport& from, const McpReport& to,
               kHaste * limits_.angular_radps2, kMargin_rad);
 }
 
-/// The base's clock has gone on since the last report as ours did.
+/// The base's clock has advanced since the last report as the host's did.
 bool BaseOdometer::clock_follows(const McpReport& report, std::int64_t arrival_ns) const {
   const std::int64_t elapsed_ns = base_clock_.since_last_ns(report.wide(McpField::kClock));
   if (elapsed_ns <= 0) return false;
@@ -129,7 +129,7 @@ bool BaseOdometer::follows_doubted(const McpReport& report, std::int64_t arrival
          moved_plausibly(doubted_->report, report, elapsed_ns, doubts_ >= kManyDoubts);
 }
 
-/// The base's registers begin anew; the robot stands where it was.
+/// The base's registers begin anew; the robot remains at its pose.
 void BaseOdometer::start_from(const McpReport& report) {
   tracker_.restart();
   base_clock_.restart();
@@ -155,7 +155,7 @@ BaseOdometer::Result BaseOdometer::begin(const McpReport& report, std::int64_t a
     base_clock_.follow(resumed_->report.wide(McpField::kClock));
     has_resumed_ = true;
   } else if (resumed_ && ++doubts_ < kFewDoubts) {
-    return {Verdict::kImplausible, {}};  // a wrong digit must not cost the odometry
+    return {Verdict::kImplausible, {}};  // a wrong digit must not end the odometry
   } else {
     start_from(report);
   }
@@ -186,8 +186,8 @@ BaseOdometer::Result BaseOdometer::take(const McpReport& report, std::int64_t ar
     return {Verdict::kGood, accept(report, arrival_ns)};
   }
   if (follows_doubted(report, arrival_ns)) {
-    // While its clock goes on the registers are the same ones: it was the last report that erred,
-    // or all of them had come late for long.
+    // If the clock goes on, the registers are the same ones: the last report was wrong, or all
+    // reports had been late for long.
     const std::int64_t arrived_ns = arrival_ns - last_->arrival_ns;
     const bool same_clock =
         clock_goes_on || (elapsed_ns > 0 && std::abs(elapsed_ns - arrived_ns) < kLatest_ns);

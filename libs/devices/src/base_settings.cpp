@@ -18,9 +18,9 @@ constexpr std::uint32_t kNeededFields =
     mask_bit(McpField::kHeading) | mask_bit(McpField::kTranslateSpeed) |
     mask_bit(McpField::kTranslateStatus) | mask_bit(McpField::kRotateSpeed) |
     mask_bit(McpField::kRotateStatus);
-/// A tenth of a second: more reports leave no room for commands at 9600 baud.
+/// A tenth of a second: more frequent reports leave no room for commands at 9600 baud.
 constexpr double kLeastPeriodTicks = 26.0;
-/// Of the line's time, that commands' answers and echoes find room between the reports.
+/// Multiple of the line's time, so that answers and echoes find room between the reports.
 constexpr double kRoom = 1.2;
 
 void in_range(const char* name, double value, double above, double largest) {

@@ -6,7 +6,7 @@
 namespace topogeo::devices {
 
 McpOrder watchdog_order(const BaseSettings& settings) {
-  // Never longer than the guards count.
+  // Never longer than the guards assume.
   const double ticks = std::floor(settings.watchdog_s * static_cast<double>(kMcpTicksPerSecond));
   return {McpCommand::kWatchdog, static_cast<std::uint32_t>(std::max(1.0, ticks))};
 }

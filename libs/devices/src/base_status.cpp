@@ -11,7 +11,7 @@ struct StateText {
   std::string_view reason;
 };
 
-// In the order of BaseState.
+// Same order as BaseState.
 constexpr std::array<StateText, 10> kStateTexts{{
     {"ready", ""},
     {"moving", ""},

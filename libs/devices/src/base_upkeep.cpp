@@ -9,12 +9,12 @@
 namespace topogeo::devices {
 namespace {
 
-/// Four refreshes may be lost before the base stops, or the host be busy for as long.
+/// The base stops only after four lost refreshes, or when the host is busy for that long.
 constexpr std::int64_t kRefreshesPerWatchdog = 5;
-/// Between two of the settings that are repeated: each takes a tenth of it on a slow line, which
-/// motion commands need more.
+/// Between two repeated settings: on a slow line each takes a tenth of this time, which motion
+/// commands need more.
 constexpr std::int64_t kRepeatPeriod_ns = 300'000'000;
-/// The accelerations of the two axes, which are repeated like the settings of the start sequence.
+/// The accelerations of the two axes, repeated like the settings of the start sequence.
 constexpr std::size_t kAccelerations = 2;
 
 }  // namespace

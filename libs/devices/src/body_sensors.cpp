@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kHalfOpening_rad = 7.5 * std::numbers::pi / 180.0;
 
-/// As b21_sonars: the first one left of ahead.
+/// Like b21_sonars: the first one left of ahead.
 RangeRing ring_of(std::size_t count, double range_min_m, double range_max_m) {
   RangeRing ring{{}, range_min_m, range_max_m};
   for (std::size_t i = 0; i < count; ++i) {

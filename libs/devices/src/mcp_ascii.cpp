@@ -44,10 +44,10 @@ std::size_t field_from(std::uint32_t mask, std::size_t field) {
 
 struct EventName {
   std::string_view name;
-  bool whole;  // the line is nothing but the name
+  bool whole;  // the line is the name only
   McpEventKind kind;
 };
-// In this order: TCLR would otherwise be taken for one of the TC.
+// The order matters: TCLR would otherwise match TC.
 constexpr std::array kEventNames{
     EventName{"%BHI", true, McpEventKind::kBatteryHigh},
     EventName{"%BLO", true, McpEventKind::kBatteryLow},
@@ -136,7 +136,7 @@ void McpAsciiDecoder::decode(std::span<const std::uint8_t> bytes,
   }
 }
 
-/// Garbage may stand right before a line, so that a % late in a line starts one of the base's.
+/// Garbage may precede a line directly, so a late % may start a line of the base.
 void McpAsciiDecoder::shorten_line() {
   if (!too_long_) ++count_of(drops_, McpDrop::kLongLine);
   too_long_ = true;
@@ -174,7 +174,7 @@ void McpAsciiDecoder::take_spontaneous(std::string_view line, std::vector<McpMes
 
 bool McpAsciiDecoder::take_command(std::string_view line, std::vector<McpMessage>& messages) {
   const auto command = command_of(line.substr(0, 2));
-  // Within a report it is a CLK that lost its last letter.
+  // Within a report this is a CLK without its last letter.
   if (!command || (in_report_ && *command == McpCommand::kClock)) return false;
   const std::string_view rest = line.substr(2);
   const auto value = hexadecimal(without_leading(rest, " "));

@@ -9,7 +9,7 @@
 namespace topogeo::devices {
 namespace {
 
-// Each twice around a frame.
+// Each occurs twice around a frame.
 constexpr std::uint8_t kStart = 0x02;
 constexpr std::uint8_t kEnd = 0x03;
 constexpr std::size_t kMaxPayload = 255;  // its length is one byte
@@ -133,8 +133,8 @@ void McpBinaryDecoder::search(std::uint8_t byte) {
   in_garbage_ = true;
 }
 
-/// Noise may end with marks of a start, so that more than two stand before the length. A 00 after
-/// them means that the last of them is the length itself.
+/// Noise may end with start marks, so that more than two precede the length. A 00 after them means
+/// that the last of them is the length itself.
 void McpBinaryDecoder::take_length(std::uint8_t byte) {
   if (byte == kStart) {
     ++marks_;
@@ -178,7 +178,7 @@ McpBinaryDecoder::State McpBinaryDecoder::after_byte() const {
   return body_.size() == length_ + 1 ? State::kEnd : State::kBody;
 }
 
-/// What follows is passed over up to the next start, which this byte may be part of.
+/// Skips to the next start, which this byte may be part of.
 void McpBinaryDecoder::lost_end(std::uint8_t byte) {
   ++count_of(drops_, McpDrop::kLostEnd);
   in_garbage_ = true;
@@ -211,7 +211,7 @@ void McpBinaryDecoder::interpret(std::span<const std::uint8_t> payload,
     return interpret_report(data, messages);
   }
   const bool fits = data.size() <= sizeof(std::uint32_t);
-  if (fits && code == opcode(McpCommand::kVersion)) {  // as a reply: errors
+  if (fits && code == opcode(McpCommand::kVersion)) {  // a reply to kVersion reports errors
     const std::uint32_t bits = big_endian(data);
     for (std::size_t i = 0; i < kErrorBits.size(); ++i) {
       if ((bits >> i & 1U) != 0) messages.emplace_back(McpEvent{kErrorBits.at(i), 0});

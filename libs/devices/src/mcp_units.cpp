@@ -19,7 +19,7 @@ double positive(const char* name, double value) {
   return value;
 }
 
-/// The change of a register of 16 bits, in the direction in which it is shorter.
+/// The shorter signed change of a 16-bit register.
 std::int64_t moved(std::int64_t from, std::uint16_t to) {
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(to - from));
 }
@@ -83,8 +83,8 @@ McpPoseTracker::Registers McpPoseTracker::next(const McpReport& report) const {
 }
 
 geometry::Pose2 McpPoseTracker::pose_of(const Registers& registers) const {
-  // Heading 0 is the base's +y and +x is to its right; a base that turns in the other direction has
-  // its +x to the left.
+  // Heading 0 is the base's +y and +x is to its right; a base that counts counter-clockwise has its
+  // +x to the left.
   return {units_.position_m(registers.y), -units_.clockwise_sign() * units_.position_m(registers.x),
           geometry::wrap_angle(units_.radians(registers.heading))};
 }

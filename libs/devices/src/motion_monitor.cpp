@@ -6,17 +6,17 @@
 namespace topogeo::devices {
 namespace {
 
-/// From a command to its effect in a report, apart from the acceleration: writing it, motors that
-/// lag, a report on the line. Not measured on hardware; too long a time only delays that the
-/// joystick is noticed.
+/// Delay between a command and its effect in a report, apart from the acceleration: writing it,
+/// motor lag, transmission of the report. Not measured on hardware; too long a time only delays the
+/// detection of the joystick.
 constexpr std::int64_t kLag_ns = 300'000'000;
-/// A person who drives by joystick stops for shorter times.
+/// A joystick driver pauses for less than this.
 constexpr std::int64_t kJoystickRest_ns = 1'000'000'000;
-/// A single report may have a speed that was garbled on the line.
+/// A single report may contain a speed that was garbled on the line.
 constexpr unsigned kUncommandedReports = 2;
 
-/// A motion is slow up to so many times what counts as standstill: a base that follows slow
-/// commands, each a little faster, accelerates and stands in one report after the other.
+/// Motion up to this multiple of the standstill speed is slow: a base that follows slow commands,
+/// each a little faster, reports acceleration and standstill in turn.
 constexpr double kSlow = 3.0;
 
 bool stalls(std::uint16_t status, double commanded, double standstill, bool stands) {
@@ -24,7 +24,7 @@ bool stalls(std::uint16_t status, double commanded, double standstill, bool stan
          phase_of(status) == McpPhase::kAccelerate;
 }
 
-/// Phases of a motor that has ended what was commanded, or never began.
+/// Phases of a motor that has finished its command, or never started.
 bool rests(std::uint16_t status) {
   const McpPhase phase = phase_of(status);
   return phase == McpPhase::kStop || phase == McpPhase::kHalt || phase == McpPhase::kLimp;

@@ -8,12 +8,11 @@
 namespace topogeo::devices {
 namespace {
 
-/// A relative move has ended when so many reports in succession show a base that stands, none of
-/// which can have been taken before it began. More than one, because a move that counts as ended
-/// too soon is cut short.
+/// A relative move has ended when this many successive reports show standstill, all taken after its
+/// start. One is not enough, because a move that ends too soon is cut short.
 constexpr unsigned kReportsAtRest = 3;
-/// Writing the commands and motors that lag; not measured on hardware. Too long a time only delays
-/// the end of moves that are shorter.
+/// Writing the commands and motor lag; not measured on hardware. Too long a time only delays the
+/// end of shorter moves.
 constexpr std::int64_t kBegun_ns = 300'000'000;
 
 }  // namespace

@@ -29,7 +29,7 @@ PlsDriver::PlsDriver(PlsSettings settings)
 
 void PlsDriver::resume(const LineSettings& line) {
   line_.expect(line);
-  // At another rate than wanted the sensor is set up anew, in case it follows now.
+  // If the sensor has another rate than wanted, it is set up anew, because it may follow now.
   configured_ = line.baud == settings_.baud;
 }
 
@@ -152,7 +152,7 @@ void PlsDriver::take(const SickTelegram& telegram, std::int64_t now_ns) {
   }
 }
 
-/// Keeps what the telegram reports of the sensor.
+/// Stores the sensor's data from the telegram.
 void PlsDriver::note(const SickTelegram& telegram) {
   status_.health = pls_health(telegram.status);
   if (const auto text = pls_power_on_text(telegram)) status_.power_on_text = *text;
@@ -192,7 +192,7 @@ void PlsDriver::take_reply(const SickTelegram& telegram, std::int64_t now_ns) {
   if (!exchange_.open()) exchange_ended(now_ns);
 }
 
-/// What was asked for is answered, or was in vain.
+/// The exchange ended with or without an answer.
 void PlsDriver::exchange_ended(std::int64_t now_ns) {
   if (phase_ == Phase::kRun) return supervisor_.request_ended(now_ns);
   if (phase_ != Phase::kSetUp) return;
@@ -208,7 +208,7 @@ void PlsDriver::exchange_ended(std::int64_t now_ns) {
       search(setup_.reason(), false, now_ns);
       break;
     case PlsSetup::Result::kFailed:
-      // The first time it may have been a disturbance; after that the sensor gets a rest.
+      // The first failure may be a disturbance; after further ones the sensor gets a rest.
       if (setup_.failures() == 1) {
         search(setup_.reason(), false, now_ns);
       } else {
@@ -218,7 +218,7 @@ void PlsDriver::exchange_ended(std::int64_t now_ns) {
   }
 }
 
-/// `listen_first`: where the sensor was heard last, before anything is asked.
+/// `listen_first`: listens where the sensor was heard last before asking.
 void PlsDriver::search(const std::string& reason, bool listen_first, std::int64_t now_ns) {
   exchange_.stop();
   enter_search(Phase::kSearch, std::max(search_.failures(), setup_.failures()), reason);
@@ -244,7 +244,7 @@ void PlsDriver::follow_garbage(std::int64_t now_ns) {
 void PlsDriver::found(const SickTelegram& telegram, std::int64_t now_ns) {
   const std::optional<LineSettings> known = line_.known();
   const bool asked = phase_ == Phase::kSearch && search_.asked();
-  // A question stops the stream, whatever comes before its answer.
+  // A question stops the stream, even if scans arrive before its answer.
   const bool streams = !asked && configured_ && known == line_.settings() &&
                        settings_.output == PlsOutput::kContinuous;
   if (known && known->parity != line_.settings().parity) maker_.forget();
@@ -274,7 +274,7 @@ void PlsDriver::run(std::int64_t now_ns) {
 void PlsDriver::supervise(std::int64_t now_ns) {
   if (!supervisor_.silent(now_ns)) return supervisor_.tick(now_ns);
   ++status_.counters.silences;
-  // It may have restarted without being heard, and may follow to another rate now.
+  // A restart may have gone unnoticed, so the sensor may follow to another rate now.
   setup_.retry_rate();
   search("no scan for " + std::to_string(supervisor_.silence_ns(now_ns) / kNsPerMs) + " ms", false,
          now_ns);

@@ -23,10 +23,10 @@ constexpr std::array<double, 4> kUnits_m{0.01, 0.001, 0.1, 0.01};
 
 constexpr std::size_t kSoftware_bytes = 7;
 
-/// Parameters of the command for the mode.
+/// Parameters of the mode command.
 constexpr std::array<std::pair<std::uint32_t, std::uint8_t>, 4> kBaudParameters{
     {{38400, 0x40}, {19200, 0x41}, {9600, 0x42}, {500'000, 0x48}}};
-/// What a status report calls the rates.
+/// Codes of the rates in a status report.
 constexpr std::array<std::pair<std::uint32_t, std::uint16_t>, 3> kBaudCodes{
     {{38400, 0x8019}, {19200, 0x8033}, {9600, 0x8067}}};
 

@@ -16,7 +16,7 @@ struct Geometry {
   double min_deg;
   double step_deg;
 };
-/// 180 beams are the 181 of 1 deg without the last.
+/// 180 beams are the 181 of 1 deg without the last one.
 constexpr std::array<Geometry, 6> kGeometries{{{361, -90.0, 0.5},
                                                {181, -90.0, 1.0},
                                                {180, -90.0, 1.0},
@@ -24,7 +24,7 @@ constexpr std::array<Geometry, 6> kGeometries{{{361, -90.0, 0.5},
                                                {201, -50.0, 0.5},
                                                {101, -50.0, 1.0}}};
 
-/// Fills in the ranges and the flags of the readings; returns how many are returns.
+/// Fills in the ranges and the flags of the readings; returns the number of returns.
 std::size_t read(const PlsMeasuredValues& values, double unit_m, const PlsSettings& settings,
                  PlsScan& scan) {
   std::size_t returns = 0;
@@ -71,7 +71,7 @@ std::optional<PlsScan> PlsScanMaker::make(const PlsMeasuredValues& values,
     return std::nullopt;
   }
   scan.stamp_ns = stamp(telegram, line);
-  // Bytes that waited in a buffer can seem to have come at once.
+  // Buffered bytes may seem to have arrived at once.
   if (last_stamp_ns_) scan.stamp_ns = std::max(scan.stamp_ns, *last_stamp_ns_ + 1);
   last_stamp_ns_ = scan.stamp_ns;
   scan.angle_min_rad = geometry->min_deg * kDegree_rad;

@@ -8,10 +8,9 @@
 namespace topogeo::devices {
 namespace {
 
-/// So much garbage, and not a single stray byte, is a sender at another rate.
+/// This much garbage, more than a stray byte, shows a sender at another rate.
 constexpr std::uint64_t kGarbage = 8;
-/// Pauses are doubled so often at most, which keeps their length within its type; the settings cut
-/// them long before.
+/// Most doublings of a pause, so that it fits its type; the settings limit it long before.
 constexpr int kMostDoublings = 20;
 
 void add_once(std::vector<LineSettings>& lines, const LineSettings& line) {
@@ -35,9 +34,9 @@ void PlsSearch::start(bool listen_first, std::int64_t now_ns) {
   try_line(candidates_.front(), listen, now_ns);
 }
 
-/// A sensor that was heard before is most likely where it was, or at the rate after power-on if it
-/// restarted; it announces that only once, so that rate is listened at between all others. The
-/// other parity, another kind of sensor, is tried when the first search was in vain.
+/// A sensor that was heard before is most likely still there, or at the power-on rate if it
+/// restarted; it announces that only once, so that rate is tried between all others. The other
+/// parity, another kind of sensor, is tried after the first search has failed.
 std::vector<LineSettings> PlsSearch::planned() const {
   std::vector<LineSettings> all;
   for (const Parity parity : settings_.parities) {
@@ -58,8 +57,8 @@ std::vector<LineSettings> PlsSearch::planned() const {
   return lines;
 }
 
-/// Listens with these settings, and asks the sensor to stop its stream, which it answers in any
-/// state, unless the stream is what is hoped for.
+/// Listens with these settings and, unless the stream itself is expected, asks the sensor to stop
+/// its stream, which it answers in any state.
 void PlsSearch::try_line(const LineSettings& line, bool listen_only, std::int64_t now_ns) {
   line_.set(line);
   line_.listen(now_ns);
@@ -88,7 +87,7 @@ std::int64_t PlsSearch::due_ns() const {
       since_ns_ + line_time_ns(pls_mode_command(PlsMode::kOnRequest).size(), line_.settings());
   const std::int64_t quiet_ns =
       std::max(asked_ns, line_.last_byte_ns()) + settings_.detection_quiet_ns;
-  // A sensor that streams here is heard whole by then, and has answered.
+  // A streaming sensor has sent a whole scan by then, and has answered.
   const std::int64_t whole_ns = asked_ns + 2 * line_.scan_time_ns() + settings_.detection_quiet_ns;
   return std::min(quiet_ns, whole_ns);
 }

@@ -56,10 +56,10 @@ std::vector<std::uint8_t> PlsSetup::command(Step step) const {
 SickExchange::Limits PlsSetup::limits(Step step) const {
   SickExchange::Limits limits{settings_.ack_timeout_ns, settings_.reply_timeout_ns,
                               settings_.repeat_gap_ns, settings_.tries};
-  // The scan that is being sent, and the next that is ready, may come before the answer.
+  // The present scan and the next one, which is ready, may come before the answer.
   if (step == Step::kStop) limits.ack_timeout_ns += 2 * line_.scan_time_ns();
   if (step == Step::kRate) {
-    // After a first command that may have been heard, a second one at the old rate may be garbage.
+    // If the sensor heard the first command, a second one at the old rate would be garbage.
     limits.repeat_unanswered = false;
     limits.reply_timeout_ns = settings_.baud_reply_timeout_ns;
   }
@@ -128,7 +128,8 @@ PlsSetup::Result PlsSetup::after_rate(std::int64_t now_ns) {
   if (refused) {
     return fall_back("the sensor refuses " + std::to_string(settings_.baud) + " baud", now_ns);
   }
-  // Some answer at the old rate, some perhaps at the new one: without an answer only a try shows.
+  // Some sensors answer at the old rate, some perhaps at the new one: without an answer only a try
+  // shows the rate.
   line_.set({settings_.baud, line_.settings().parity});
   step_ = Step::kSettle;
   reason_ = name(step_);
@@ -153,7 +154,7 @@ PlsSetup::Result PlsSetup::after_monitor() {
   return fail("the sensor does not send scans");
 }
 
-/// The sensor is used at the rate that it has.
+/// Uses the sensor at its present rate.
 PlsSetup::Result PlsSetup::fall_back(const std::string& why, std::int64_t now_ns) {
   fallback_ = "runs at " + std::to_string(line_.settings().baud) + " baud: " + why;
   begin(Step::kStatus, now_ns);

@@ -7,8 +7,8 @@
 namespace topogeo::devices {
 namespace {
 
-/// A sensor whose scans come damaged is heard all the same, and is waited for so many times as
-/// long: a disturbance of the line is likelier than a change of its rate.
+/// Waits this many times longer for a sensor whose scans arrive damaged, because a disturbance of
+/// the line is likelier than a change of its rate.
 constexpr std::int64_t kDamagedPatience = 3;
 
 }  // namespace

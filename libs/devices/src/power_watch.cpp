@@ -7,27 +7,27 @@
 namespace topogeo::devices {
 namespace {
 
-/// The time until the base obeys a command: it is written, the line is busy, the motors lag. Not
-/// measured on hardware. A slower command that is younger may be in force still.
+/// Time until the base obeys a command: writing, a busy line, motor lag. Not measured on hardware.
+/// A slower command that is younger may already be in force.
 constexpr std::int64_t kObeys_ns = 300'000'000;
-/// Stamps may be so much too early.
+/// Stamps may be too early by this much.
 constexpr std::int64_t kEarly_ns = 50'000'000;
-/// The share of the commanded acceleration that a motor surely gives.
+/// Guaranteed share of the commanded acceleration.
 constexpr double kSure = 0.8;
-/// The share that it never exceeds.
+/// Largest share of the commanded acceleration.
 constexpr double kMost = 1.1;
-/// Times the acceleration, what no motor with power loses when it slows down.
+/// Multiple of the acceleration; a motor with power never slows down faster.
 constexpr double kDrop = 1.5;
-/// The share of the commanded speed by which it may differ besides the ripple.
+/// Relative tolerance of the commanded speed, besides the ripple.
 constexpr double kShare = 0.03;
 /// Periods between two reports; more is a gap.
 constexpr double kLongestStep = 1.5;
-/// A motion that is to be so many times as fast as standstill cannot be taken for it.
+/// Multiple of the standstill speed above which a commanded motion cannot be taken for standstill.
 constexpr double kClearly = 3.0;
 constexpr double kBarely = 1.2;
-/// Rest that nobody has commanded, of an axis that was in motion.
+/// Uncommanded rest of an axis that was in motion.
 constexpr std::int64_t kRest_ns = 100'000'000;
-/// The same of one that says it accelerates, to a speed that is hardly more than standstill.
+/// The same if it reports acceleration, to a speed hardly above standstill.
 constexpr std::int64_t kSlowRest_ns = 300'000'000;
 
 double seconds(std::int64_t duration_ns) {
@@ -58,10 +58,10 @@ void PowerWatch::aim_at(double speed, double acceleration, std::int64_t now_ns) 
   direction_ = direction;
   if (!aims_.empty() && aims_.back().speed == speed) return;
   aims_.push_back({now_ns, speed, std::nullopt});
-  // Aims that were over before the oldest time that may be asked for are dropped.
+  // Drops aims that ended before the oldest time that may be queried.
   constexpr std::int64_t kKept_ns = 2'000'000'000;
   while (aims_.size() > 2 && is_obeyed(aims_[1], now_ns - kKept_ns)) aims_.pop_front();
-  // A port that takes nothing for long must not fill the memory: the first and the latest stay.
+  // A blocked port must not fill the memory: keeps the first and the latest.
   constexpr std::size_t kMostAims = 1000;
   if (aims_.size() > kMostAims) aims_.erase(aims_.begin() + 1);
 }
@@ -90,8 +90,8 @@ std::size_t PowerWatch::oldest_aim(std::int64_t stamp_ns) const {
 }
 
 /// The least speed, in the direction of the motion, of all commands that the base may be obeying at
-/// that time. It obeys its commands in their order: one that is older than the one that it obeyed
-/// at the report before holds no more.
+/// that time. It obeys its commands in order, so commands older than the one obeyed at the previous
+/// report no longer count.
 double PowerWatch::least_aim(std::int64_t stamp_ns) const {
   std::size_t first = oldest_aim(stamp_ns);
   if (before_ && before_->sound && moves(before_->phase) && before_->commanded_sign == direction_) {
@@ -121,7 +121,7 @@ bool PowerWatch::follows_gap(const AxisReport& report) const {
   return before_ && report.base_ns - before_->base_ns > longest_step_ns_;
 }
 
-/// The speed grew by more than a motor can: this report or the one before is garbled.
+/// The speed grew by more than a motor can: this report or the previous one is garbled.
 bool PowerWatch::faster(const AxisReport& report) const {
   const bool may = moves(report.phase) || moves(before_->phase);
   const double gain = may ? kMost * acceleration_ * step_s(report) : 0.0;
@@ -129,7 +129,7 @@ bool PowerWatch::faster(const AxisReport& report) const {
   return std::abs(report.speed) > sign * before_->speed + gain + 2.0 * tolerance_.standstill;
 }
 
-/// The speed fell by more than a motor with power slows down, whatever was commanded.
+/// The speed fell by more than a motor with power can slow down, whatever the command.
 bool PowerWatch::dropped(const AxisReport& report) const {
   if (!before_->sound || report.phase == McpPhase::kLimp) return false;
   const double sign = std::copysign(1.0, before_->speed);
@@ -137,11 +137,11 @@ bool PowerWatch::dropped(const AxisReport& report) const {
   return lost > kDrop * acceleration_ * step_s(report) + tolerance_.ramp;
 }
 
-/// The least speed in the direction of the motion, of a motor with power.
+/// The least speed, in the direction of the motion, that a motor with power has.
 double PowerWatch::due(const AxisReport& report, double least_aim) const {
   const double speed = direction_ * before_->speed;
-  // A gap in the reports shows nothing of the time in it, in which commands may have been lost and
-  // an emulated base may have stood still with its machine.
+  // During a gap in the reports commands may have been lost, and an emulated base may have stood
+  // still with its machine.
   const double gained_s = follows_gap(report) ? 0.0 : step_s(report);
   double least = speed;
   if (before_->phase == McpPhase::kAccelerate) {
@@ -160,7 +160,7 @@ bool PowerWatch::too_slow(const AxisReport& report, double due, double least_aim
   return due - std::max(0.0, direction_ * report.speed) > tolerance;
 }
 
-/// An axis that had moved as commanded stands, and has not been told to.
+/// An axis that moved as commanded rests without a command to.
 bool PowerWatch::rests(const AxisReport& report, double least_aim) {
   const bool accelerates = report.phase == McpPhase::kAccelerate;
   const double share = accelerates ? kBarely : kClearly;
@@ -187,11 +187,11 @@ bool PowerWatch::take(const AxisReport& report) {
   }
   const bool others =
       moves(report.phase) && direction_ != 0.0 && report.commanded_sign != direction_ && obeyed_;
-  if (others) {  // somebody else moves it
+  if (others) {  // another controller moves it
     forget();
     return false;
   }
-  // One that follows nothing may be garbled, too.
+  // A report without a predecessor may be garbled, too.
   const bool sound = before_ && !garbled;
   Before now{report.base_ns, report.stamp_ns,       report.speed, 0.0,
              report.phase,   report.commanded_sign, sound,        false};

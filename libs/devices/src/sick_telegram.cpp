@@ -17,7 +17,7 @@ constexpr std::uint8_t kFromSensor = 0x80;
 constexpr std::uint8_t kMeasuredValues = 0xB0;
 /// Bits 10 to 15 of the number of readings are flags.
 constexpr std::size_t kCountMask = 0x3FF;
-/// Dealt with bytes are moved out of the buffer when they are this many.
+/// Number of handled bytes at which they are removed from the buffer.
 constexpr std::size_t kCompactAt_bytes = 4096;
 
 std::size_t word(std::span<const std::uint8_t> bytes, std::size_t at) {
@@ -140,7 +140,7 @@ SickDecoder::Judgement SickDecoder::judge(std::span<const std::uint8_t> bytes) c
   if (before > 0) return {Verdict::kNoise, before};
   if (bytes.size() < 2) return {Verdict::kWait, 1};
   const bool from_sensor = (bytes[1] & kFromSensor) != 0;
-  // A host that calls a single sensor uses the address 0; anything else below 80 is noise to it.
+  // A host that calls a single sensor uses the address 0; other addresses below 80 count as noise.
   const bool possible =
       listener_ == Listener::kSensor ? !from_sensor : from_sensor || bytes[1] == 0;
   if (!possible) return {Verdict::kNoise, 1};
@@ -170,7 +170,7 @@ SickDecoder::Judgement SickDecoder::judge_contents(std::span<const std::uint8_t>
   return {echo ? Verdict::kEcho : Verdict::kTelegram, size};
 }
 
-/// Inside a telegram, and so also in the remains of a broken one, 06 and 15 are ordinary bytes.
+/// Inside a telegram, and also in the remains of a broken one, 06 and 15 are ordinary bytes.
 std::optional<SickEvent::Kind> SickDecoder::single_byte() const {
   const bool in_step = position() == in_step_at_ || position() == silent_at_;
   if (listener_ != Listener::kHost || !in_step) return std::nullopt;
@@ -205,14 +205,14 @@ void SickDecoder::skip_noise(std::size_t size) {
   if (position() > first) counters_.noise_bytes += position() - first;
 }
 
-/// A lone STX, or the start of an echo, is too little to count as a telegram cut short.
+/// A lone STX, or the start of an echo, is too little for a truncated telegram.
 bool SickDecoder::starts_reply() const {
   if (silent_at_ - position() < 2) return false;
   return listener_ == Listener::kSensor || (buffer_[head_ + 1] & kFromSensor) != 0;
 }
 
-/// Counts what stands here as one thing dropped, unless it is part of what was counted already, and
-/// goes on with the next byte.
+/// Counts the apparent telegram here as one dropped item, unless it is part of one already counted,
+/// and goes on with the next byte.
 void SickDecoder::drop(Verdict verdict, std::size_t size) {
   std::uint64_t until = position() + size;
   if (position() >= counted_until_ && (verdict != Verdict::kWait || starts_reply())) {
@@ -227,7 +227,7 @@ void SickDecoder::drop(Verdict verdict, std::size_t size) {
   skip_noise(1);
 }
 
-/// A telegram with a bad check word was one cut short if another, good one begins inside it.
+/// A telegram with a bad check word was truncated if another, good one begins inside it.
 void SickDecoder::settle_failure(bool by_telegram) {
   const bool inside = by_telegram && position() < failed_until_;
   ++(inside ? counters_.truncated : counters_.bad_crc);

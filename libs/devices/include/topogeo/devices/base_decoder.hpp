@@ -1,4 +1,4 @@
-// The messages of a base in either dialect.
+// Decodes the messages of a base in either dialect.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +16,15 @@ class BaseDecoder {
  public:
   explicit BaseDecoder(const BaseSettings& settings);
 
-  /// The messages that `bytes` complete, which may be cut anywhere.
+  /// The messages that `bytes` complete; `bytes` may be cut anywhere.
   [[nodiscard]] std::vector<McpMessage> decode(std::span<const std::uint8_t> bytes);
-  /// Forgets what is not complete.
+  /// Forgets the incomplete message.
   void reset();
 
   [[nodiscard]] const McpDrops& drops() const;
   /// Lines that repeated a command; 0 in the binary dialect.
   [[nodiscard]] std::uint64_t echoes() const;
-  /// Frames with a wrong checksum that were taken; 0 in the ASCII dialect.
+  /// Frames accepted with a wrong checksum; 0 in the ASCII dialect.
   [[nodiscard]] std::uint64_t checksum_warnings() const;
 
  private:

@@ -31,7 +31,7 @@ class BaseDriver final : public SerialDriver {
   /// Throws std::invalid_argument for settings out of range.
   explicit BaseDriver(const BaseSettings& settings);
 
-  // SerialDriver.
+  // Interface of SerialDriver.
   void opened(std::int64_t now_ns) override;
   void lost(std::int64_t now_ns) override;
   void receive(std::span<const std::uint8_t> bytes, std::int64_t now_ns) override;
@@ -49,29 +49,29 @@ class BaseDriver final : public SerialDriver {
   /// std::invalid_argument for velocities that are not finite.
   bool command(double linear_mps, double angular_radps, std::int64_t valid_until_ns,
                std::int64_t now_ns);
-  /// The last word on velocities: what of a wanted one the base gets now. Asked for each command,
-  /// and every `period_ns` (> 0) while one holds. Relative moves do not pass it.
+  /// Last check of velocities: returns the part of a wanted velocity that the base gets now. Called
+  /// for each command, and every `period_ns` (> 0) while one holds. Relative moves bypass it.
   using VelocityGuard =
       std::function<BaseVelocity(const BaseVelocity& wanted, std::int64_t now_ns)>;
   void guard_velocities(VelocityGuard guard, std::int64_t period_ns);
-  /// Goes straight on by `distance_m` (backward if negative), with the limits' velocity, halting at
-  /// `valid_until_ns` wherever it is then. False if refused; throws as command().
+  /// Drives straight by `distance_m` (backward if negative), with the limits' velocity, halting at
+  /// `valid_until_ns` at the latest. False if refused; throws like command().
   bool advance(double distance_m, std::int64_t valid_until_ns, std::int64_t now_ns);
   /// Turns on the spot by `angle_rad`, counter-clockwise.
   bool turn(double angle_rad, std::int64_t valid_until_ns, std::int64_t now_ns);
-  /// Whether the last advance() or turn() has come to its end, wherever that is. False while it
-  /// runs; true while none was ordered.
+  /// Whether the last advance() or turn() has ended, for any reason. False while it runs; true if
+  /// none was ordered.
   [[nodiscard]] bool primitive_done() const { return !term_.relative_holds(); }
 
   /// Stops now and refuses motion commands until reset_stop().
   void halt(std::int64_t now_ns);
-  /// Both axes were sent a halt, and the base has reported since that it stands.
+  /// Both axes were sent a halt, and the base has since reported standstill.
   [[nodiscard]] bool stands() const;
-  /// An operator lets it move again after halt() or an emergency stop. It does not move before the
-  /// next command.
+  /// An operator permits motion again after halt() or an emergency stop. The base does not move
+  /// before the next command.
   void reset_stop(std::int64_t now_ns);
-  /// Each > 0 and never over those of the settings; holds at once. Throws std::invalid_argument for
-  /// limits that are not finite and positive.
+  /// Each > 0 and never above those of the settings; effective at once. Throws
+  /// std::invalid_argument for limits that are not finite and positive.
   void set_limits(const BaseLimits& limits, std::int64_t now_ns);
   [[nodiscard]] const BaseLimits& limits() const { return motion_.limits(); }
 
@@ -100,9 +100,9 @@ class BaseDriver final : public SerialDriver {
   void stand(std::int64_t now_ns);
   void stand_again(std::int64_t now_ns);
 
-  /// Tells the monitor the velocity that is commanded from now on.
+  /// Gives the monitor the velocity that is commanded from now on.
   void aim_at(const BaseVelocity& velocity, std::int64_t now_ns);
-  /// The monitor may expect the base to obey once all orders for its aim have been written.
+  /// Once all orders for its aim have been written, the monitor may expect the base to obey.
   void confirm_aim(std::int64_t now_ns);
   [[nodiscard]] bool write_next(std::int64_t now_ns);
   [[nodiscard]] std::optional<McpOrder> next_order(std::int64_t now_ns);
@@ -124,14 +124,14 @@ class BaseDriver final : public SerialDriver {
 
   VelocityGuard guard_{};
   std::int64_t judge_period_ns_ = 0;
-  std::int64_t judge_ns_ = 0;  // when the velocity that holds is judged again
-  BaseVelocity wanted_{};      // by the last command, before the guard
+  std::int64_t judge_ns_ = 0;  // time of the guard's next check
+  BaseVelocity wanted_{};      // of the last command, before the guard
 
-  bool idle_ = true;            // nothing is to be written until a time or a message comes
-  bool aim_ordered_ = false;    // all orders for what is commanded now have been given
-  bool orders_written_ = true;  // all that were taken
-  std::optional<std::uint64_t> reports_at_halt_{};  // when both axes had been sent a halt
-  std::uint64_t implausible_ = 0;                   // reports that were dropped
+  bool idle_ = true;            // no write is due until a time or a message comes
+  bool aim_ordered_ = false;    // all orders for the current aim have been given
+  bool orders_written_ = true;  // all orders that were taken
+  std::optional<std::uint64_t> reports_at_halt_{};  // number of reports when both halts were sent
+  std::uint64_t implausible_ = 0;                   // dropped reports
   std::vector<BaseOdometry> odometry_{};
   BaseStatus status_{};
 };

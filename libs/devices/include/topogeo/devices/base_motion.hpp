@@ -1,5 +1,5 @@
-// The motion that is wanted of a base and the commands of the MCP that are still to be sent for it:
-// velocities and relative moves, each command only when it changes something.
+// The wanted motion of a base and the MCP commands still to be sent for it: velocities and relative
+// moves, each command only when it changes something.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct BaseVelocity {
   bool operator==(const BaseVelocity&) const = default;
 };
 
-/// The commands by which the two axes differ.
+/// The commands that differ between the two axes.
 struct BaseAxisCommands {
   McpCommand velocity, acceleration, halt, plus, minus, relative_plus, relative_minus;
 };
@@ -33,21 +33,21 @@ class BaseAxis {
   /// A move by `counts` with at most `counts_per_s`; it is sent once.
   void want_distance(std::int64_t counts, std::int64_t counts_per_s);
   void want_acceleration(std::int64_t counts_per_s2);
-  /// The base may have forgotten what was sent.
+  /// Call when the base may have forgotten earlier commands.
   void forget();
-  /// The base may have missed the last run or halt.
+  /// Call when the base may have missed the last run or halt.
   void forget_run() { sent_ = Run::kUnknown; }
-  /// The relative move that is wanted was sent.
+  /// The wanted relative move was sent.
   [[nodiscard]] bool distance_sent() const { return sent_ == Run::kRelative; }
   [[nodiscard]] bool moves() const { return wanted_ != Run::kHalt; }
   /// A halt is wanted and was sent.
   [[nodiscard]] bool halt_sent() const { return wanted_ == Run::kHalt && sent_ == Run::kHalt; }
 
-  /// The command that halts, if it has to be sent.
+  /// The halt command, if it has to be sent.
   std::optional<McpOrder> next_halt();
-  /// The next command to send, if any; it counts as sent.
+  /// The next command to send, if any; counts as sent.
   std::optional<McpOrder> next();
-  /// The acceleration, whether or not it was sent before.
+  /// The acceleration, even if it was sent before.
   [[nodiscard]] McpOrder acceleration() const;
 
  private:
@@ -67,25 +67,24 @@ class BaseMotion {
  public:
   BaseMotion(const McpUnits& units, const BaseLimits& limits);
 
-  /// Speeds beyond the limits are cut down to them, both by the same factor: the robot keeps to the
+  /// Reduces speeds beyond the limits, both by the same factor, so that the robot keeps to the
   /// curve.
   void want_velocity(const BaseVelocity& velocity);
   void want_distance(double distance_m);
   void want_turn(double angle_rad);
   void want_halt() { want_velocity({}); }
-  /// Holds for what is wanted from now on, accelerations at once.
+  /// Applies to all later motion, accelerations at once.
   void set_limits(const BaseLimits& limits);
   [[nodiscard]] const BaseLimits& limits() const { return limits_; }
-  /// The base may have forgotten what was sent: all of it is sent again.
+  /// The base may have forgotten earlier commands: all are sent again.
   void forget();
-  /// The base does not do what was sent last: that is sent again, without speeds and
-  /// accelerations.
+  /// The base does not obey the last command: it is sent again, without speeds and accelerations.
   void forget_run();
 
-  /// Halts first, then settings before what they are for.
+  /// Halts first, then settings before the motion that needs them.
   std::optional<McpOrder> next();
   std::optional<McpOrder> next_halt();
-  /// Accelerations again, first of one axis, then of the other: the base may have missed them.
+  /// Accelerations again, alternating between the axes: the base may have missed them.
   McpOrder repeat_acceleration();
 
   [[nodiscard]] bool moves() const { return translation_.moves() || rotation_.moves(); }

@@ -1,4 +1,4 @@
-// What differs between bases and what is not confirmed on hardware, in one place.
+// Values that differ between bases or are not confirmed on hardware.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace topogeo::devices {
 
 enum class BaseDialect : std::uint8_t { kAscii, kBinary };
 
-/// Largest speeds and the accelerations with which they are reached and left; each > 0.
+/// Largest speeds, and accelerations in both directions; each > 0.
 struct BaseLimits {
   double linear_mps = 0.5;
   double angular_radps = 1.0;
@@ -23,7 +23,7 @@ struct BaseLimits {
 
 struct BaseSettings {
   BaseDialect dialect = BaseDialect::kAscii;
-  /// 9600 in most sources; one B21 speaks at 38400.
+  /// 9600 in most sources; one B21 uses 38400.
   LineSettings line{};
   McpCalibration calibration{};
   /// BaseDriver::set_limits cannot exceed them.
@@ -37,44 +37,43 @@ struct BaseSettings {
   double report_period_s = 0.0;
   McpChecksum checksum = McpChecksum::kLearn;
 
-  /// The base stops by itself when nothing has refreshed its watchdog for so long; refreshed five
-  /// times as often. (0, 255]; whether it halts or goes limp then is not confirmed on hardware.
-  /// Guards count on it (geometry/reaction_times.hpp).
+  /// The base stops by itself if its watchdog is not refreshed for this long; the driver refreshes
+  /// it five times as often. (0, 255]. It is not confirmed on hardware whether the base then halts
+  /// or goes limp. Guards rely on this time (geometry/reaction_times.hpp).
   double watchdog_s = geometry::kBaseWatchdog_s;
   /// A motion command holds no longer than this. (0, 0.5]
   double command_timeout_s = 0.5;
-  /// A base that gives no usable report for so long is offline; never less than four periods.
+  /// A base without a usable report for this long is offline; at least four periods.
   double silence_s = 0.5;
-  /// Between two commands; a base loses those that follow sooner (MIRO's driver).
+  /// Between two commands; a base loses commands that follow sooner (MIRO's driver).
   double write_gap_s = 0.01;
-  /// From asking for the binary dialect to the first packet.
+  /// Between the request for the binary dialect and the first packet.
   double direct_mode_wait_s = 0.25;
 
-  /// The joystick stays in use while the driver runs. Off, an operator has to push the robot.
+  /// The joystick stays usable while the driver runs. Without it an operator has to push the robot.
   bool joystick_allowed = true;
   /// The base stops by itself when it bumps (BE 0; the argument is not confirmed on hardware).
   bool stop_on_bump = true;
-  /// Motor torque limits (TT); nothing: left as they are.
+  /// Motor torque limits (TT); empty: unchanged.
   std::optional<std::uint8_t> torque{};
-  /// From an error of the motors to their shutdown (ED), 1/256 s.
+  /// Delay between an error of the motors and their shutdown (ED), 1/256 s.
   std::uint16_t error_delay_ticks = 0x80;
 
-  /// As many reports in succession of acceleration and standstill, though motion was
-  /// commanded at more than three times standstill, are an emergency stop: no message for it is
-  /// known. >= 2
+  /// Number of successive reports of acceleration at standstill, though more than three times the
+  /// standstill speed was commanded, that count as an emergency stop: the base has no known message
+  /// for it. >= 2
   unsigned stalled_reports = 3;
-  /// Slower than this counts as standstill; encoder noise of a base at rest reaches 256
-  /// counts/s.
+  /// Lower speeds count as standstill; encoder noise of a base at rest reaches 256 counts/s.
   double standstill_mps = 0.01;
   double standstill_radps = 0.03;
   /// A motor with power keeps the commanded speed within the ripple, and lags behind its
-  /// acceleration by no more than the ramp; what is slower has lost its power (power_watch.hpp).
-  /// Less would take noise for it, more would hide short emergency stops.
+  /// acceleration by the ramp at most; a slower motor has lost its power (power_watch.hpp). Smaller
+  /// values would react to noise, larger ones would hide short emergency stops.
   double ripple_mps = 0.012;
   double ripple_radps = 0.035;
   double ramp_mps = 0.025;
   double ramp_radps = 0.06;
-  /// Faster by this than anything that was commanded is motion by joystick.
+  /// Motion that exceeds all commands by this much is motion by joystick.
   double uncommanded_mps = 0.05;
   double uncommanded_radps = 0.15;
 
@@ -82,12 +81,12 @@ struct BaseSettings {
   double battery_low_v = 44.0;
 };
 
-/// Throws std::invalid_argument with the name and range of the setting that is out of it.
+/// Throws std::invalid_argument with the name and range of the first invalid setting.
 void check(const BaseSettings& settings);
 
-/// Between two reports, in 1/256 s, by `report_period_s` or what the line allows.
+/// Time between two reports, in 1/256 s, from `report_period_s` or the capacity of the line.
 std::uint16_t report_period_ticks(const BaseSettings& settings);
-/// On the line from the first byte of a report to its last.
+/// Transmission time of a report.
 std::int64_t report_line_time_ns(const BaseSettings& settings);
 
 }  // namespace topogeo::devices

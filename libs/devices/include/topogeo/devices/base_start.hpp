@@ -8,11 +8,11 @@
 
 namespace topogeo::devices {
 
-/// To a base that understands commands: the joystick out of the way, echo off, errors and bumpers,
-/// torques, what the reports hold, their period, the watchdog. The fields come before the period.
+/// Commands for a base that already understands them: joystick, echo off, errors and bumpers,
+/// torques, contents of the reports, their period, the watchdog. The fields come before the period.
 std::vector<McpOrder> set_up_orders(const BaseSettings& settings);
 
-/// Those of them that the base may have missed without a sign of it.
+/// The commands among them that the base may miss without a sign of it.
 std::vector<McpOrder> silent_orders(const BaseSettings& settings);
 
 /// The watchdog's time in 1/256 s.

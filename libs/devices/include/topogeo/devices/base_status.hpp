@@ -1,5 +1,4 @@
-// What an RWI base is doing and what it has reported, for people and for the programs that drive
-// it.
+// Status of an RWI base, for people and for the programs that drive it.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +9,13 @@
 
 namespace topogeo::devices {
 
-/// Where more than one holds, the first of the list from kOffline to kMotorsOff.
+/// If several states apply, the first one from kOffline to kMotorsOff counts.
 enum class BaseState : std::uint8_t {
-  kReady,            ///< takes motion commands and stands still
-  kMoving,           ///< is in motion as commanded
-  kOffline,          ///< no line to the base, or it does not answer
+  kReady,            ///< accepts motion commands and stands still
+  kMoving,           ///< moves as commanded
+  kOffline,          ///< the line is closed, or the base does not answer
   kStarting,         ///< is being set up
-  kEmergencyStop,    ///< motion was commanded and the motors have no power; until reset_stop()
+  kEmergencyStop,    ///< the motors have no power to follow a motion command; until reset_stop()
   kHalted,           ///< by halt(); until reset_stop()
   kWatchdogExpired,  ///< the base has stopped by itself; until the next motion command, at most 5 s
   kBumped,           ///< a bumper is pressed, or was and the commands that led to it go on
@@ -24,22 +23,22 @@ enum class BaseState : std::uint8_t {
   kMotorsOff         ///< the motors are limp, or one of them has a fault
 };
 std::string_view base_state_name(BaseState state);
-/// What the state means, where nothing more is known; empty for kReady and kMoving.
+/// A general text for the state, used without a specific reason; empty for kReady and kMoving.
 std::string_view base_state_reason(BaseState state);
 
 struct BaseStatus {
   BaseState state = BaseState::kOffline;
   std::string reason;           ///< for people; empty when ready or moving
   bool commands_taken = false;  ///< false: motion commands are refused, see state
-  double battery_v = 0.0;       ///< 0 until the base has reported it
+  double battery_v = 0.0;       ///< 0 until the base reports it
   bool battery_low = false;
   std::uint16_t bumpers = 0;  ///< a bit for each switch that is pressed
-  // Since the driver was made:
-  std::uint64_t reports = 0;            ///< that were used
+  // Counts since the driver was made:
+  std::uint64_t reports = 0;            ///< accepted ones
   std::uint64_t echoes = 0;             ///< lines that repeated one of our commands
-  std::uint64_t checksum_warnings = 0;  ///< frames that were taken in spite of their checksum
-  std::uint64_t restarts = 0;           ///< of the base, seen by its clock or registers
-  std::uint64_t starts = 0;             ///< times that the driver set the base up
+  std::uint64_t checksum_warnings = 0;  ///< frames accepted in spite of their checksum
+  std::uint64_t restarts = 0;           ///< of the base, detected by its clock or registers
+  std::uint64_t starts = 0;             ///< number of setups of the base
   std::uint64_t watchdog_expirations = 0;
   McpDrops drops{};  ///< see drop_name()
 };

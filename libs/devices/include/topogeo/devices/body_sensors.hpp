@@ -1,10 +1,10 @@
 // The ultrasonic, infrared and tactile sensors in the panels of a B21's body and base (Thesis, A.3,
 // A.5.3, table A.1), behind one interface.
 //
-// Documented are counts, places (all around, body or base), ranges and opening angles. Seven sensor
-// processors (MSP) read them and share a fast asynchronous bus with the computer of the robot. No
-// source has the telegrams of that bus, nor the order in which sensors are numbered, so that
-// MspBodySensors reads nothing and says so; simulation::SimulatedBodySensors measures in a world.
+// Counts, places (all around, body or base), ranges and opening angles are documented. Seven sensor
+// processors (MSP) read the sensors and share a fast asynchronous bus with the robot's computer. No
+// source documents that bus's telegrams or the numbering of the sensors, so MspBodySensors reads
+// nothing and reports that; simulation::SimulatedBodySensors measures in a world.
 #pragma once
 
 #include <bitset>
@@ -27,8 +27,8 @@ struct RangeRing {
 
 /// 24 in the body: 0.1 to 8 m, 15 degrees from edge to edge (A.5.3.1).
 RangeRing b21_sonar_ring();
-/// 24 in the body: 0.04 to 0.5 m, 15 degrees (A.5.3.2). The 32 of the base look at the same height
-/// and farther down, and have the same values.
+/// 24 in the body: 0.04 to 0.5 m, 15 degrees (A.5.3.2). The 32 of the base have the same values;
+/// they look at the same height and farther down.
 RangeRing b21_body_infrared();
 RangeRing b21_base_infrared();
 
@@ -37,12 +37,12 @@ inline constexpr std::size_t kB21BasePanels = 32;
 
 struct BodyReadings {
   std::int64_t stamp_ns = 0;
-  std::vector<float> sonar_m;  ///< by mount; scan::Scan::kNoReturn without an echo
-  /// The same. What comes back depends on colour and texture, so a range is rough, and nothing is
-  /// no proof that nothing is there.
+  std::vector<float> sonar_m;  ///< by mount; scan::Scan::kNoReturn if no echo
+  /// By mount as well. Reflections depend on colour and texture, so a range is rough, and a missing
+  /// one does not prove free space.
   std::vector<float> body_infrared_m;
   std::vector<float> base_infrared_m;
-  std::bitset<kB21BodyPanels> body_pressed;  ///< tactile panels, counter-clockwise from ahead
+  std::bitset<kB21BodyPanels> body_pressed;  ///< tactile panels, counter-clockwise, first ahead
   std::bitset<kB21BasePanels> base_pressed;
 };
 
@@ -53,13 +53,13 @@ class BodySensors {
   BodySensors& operator=(const BodySensors&) = delete;
   virtual ~BodySensors() = default;
 
-  /// The readings of now, nanoseconds of any steady clock; nothing when there are none: see fault.
+  /// The current readings, nanoseconds of any steady clock; nothing if there are none: see fault.
   virtual std::optional<BodyReadings> read(std::int64_t now_ns) = 0;
-  /// For people, why there are no readings; empty when there are.
+  /// The reason for missing readings, as readable text; empty if there are readings.
   [[nodiscard]] virtual std::string fault() const = 0;
 };
 
-/// The place of the sensors on a real B21. It reads nothing: see above.
+/// Placeholder for the sensors of a real B21. It reads nothing: see above.
 class MspBodySensors final : public BodySensors {
  public:
   std::optional<BodyReadings> read(std::int64_t now_ns) override;

@@ -1,4 +1,4 @@
-// How long bytes take over a serial line.
+// Transmission times on a serial line.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@ namespace topogeo::devices {
   return line.parity == Parity::kNone ? 10 : 11;
 }
 
-/// From the start of the first of `bytes` to the end of the last when they follow each other
-/// without a gap, rounded up. `line.baud` must not be 0.
+/// Time between the start of the first of `bytes` and the end of the last, without gaps, rounded
+/// up. `line.baud` must not be 0.
 [[nodiscard]] constexpr std::int64_t line_time_ns(std::size_t bytes, const LineSettings& line) {
   const std::int64_t bits = static_cast<std::int64_t>(bytes) * bits_per_byte(line);
   return (bits * 1'000'000'000 + line.baud - 1) / line.baud;

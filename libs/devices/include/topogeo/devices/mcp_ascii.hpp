@@ -1,6 +1,6 @@
-// The ASCII dialect of the MCP: lines of two-letter commands with hexadecimal arguments, reports of
-// a line per field. It has no checksum: the value of a line is taken only if its name, its place
-// and its length are right.
+// The ASCII dialect of the MCP: lines of two-letter commands with hexadecimal arguments, reports
+// with one line per field. It has no checksum: a value is accepted only if the line's name, place
+// and length are right.
 #pragma once
 
 #include <cstddef>
@@ -18,25 +18,25 @@ namespace topogeo::devices {
 /// a command without mnemonic and for an argument that is too large.
 void append_ascii(const McpOrder& order, std::vector<std::uint8_t>& bytes);
 
-/// How a base ends its lines and writes its numbers, neither of which is known for sure.
+/// A base's line endings and number format, neither of which is known for sure.
 struct McpAsciiForm {
   std::string_view line_end = "\r\n";
   bool upper_case = false;
 };
-/// Appends a report as a base sends it, `%PSR` first.
+/// Appends a report in a base's format, `%PSR` first.
 void append_ascii(const McpReport& report, const McpAsciiForm& form,
                   std::vector<std::uint8_t>& bytes);
 
-/// Messages from the bytes of a base, cut anywhere. Commands that the base echoes are passed over:
-/// an answer is the name of a query with a number behind it.
+/// Decodes messages from the bytes of a base, cut anywhere. Skips commands that the base echoes: an
+/// answer has the name of a query and a number.
 class McpAsciiDecoder {
  public:
-  /// `report_mask` names the fields (McpField) of the reports, as they were asked for.
+  /// `report_mask`: the requested fields (McpField) of the reports.
   explicit McpAsciiDecoder(std::uint32_t report_mask);
 
-  /// Appends what `bytes` complete.
+  /// Appends the messages that `bytes` complete.
   void decode(std::span<const std::uint8_t> bytes, std::vector<McpMessage>& messages);
-  /// Forgets the line and the report that are not complete.
+  /// Forgets the incomplete line and report.
   void reset();
 
   [[nodiscard]] const McpDrops& drops() const { return drops_; }
@@ -48,7 +48,7 @@ class McpAsciiDecoder {
   void shorten_line();
   /// A line that starts with %.
   void take_spontaneous(std::string_view line, std::vector<McpMessage>& messages);
-  /// The name of a command with or without a number. False if the line is none.
+  /// A command name with or without a number. False if the line has none.
   bool take_command(std::string_view line, std::vector<McpMessage>& messages);
   void take_field(std::string_view line, std::vector<McpMessage>& messages);
   void start_report();
@@ -59,7 +59,7 @@ class McpAsciiDecoder {
   bool too_long_ = false;
   McpReport report_;
   bool in_report_ = false;
-  bool passing_over_ = false;  // the rest of a report that was dropped
+  bool passing_over_ = false;  // skips the rest of a dropped report
   std::size_t next_field_ = 0;
   McpDrops drops_{};
   std::uint64_t echoes_ = 0;

@@ -1,6 +1,6 @@
-// The binary dialect of the MCP ("direct mode"). Host to base: packets of six bytes without any
-// mark of their start, so that a base that lost one needs zeros to find the next. Base to host:
-// frames 02 02 length payload checksum 03 03, with a 00 after every 02 and 03 between the marks.
+// The binary dialect of the MCP ("direct mode"). Host to base: packets of six bytes without a start
+// mark, so that a base that lost one needs zeros to find the next. Base to host: frames 02 02
+// length payload checksum 03 03, with a 00 after every 02 and 03 between the marks.
 #pragma once
 
 #include <array>
@@ -14,9 +14,9 @@
 namespace topogeo::devices {
 
 using McpPacket = std::array<std::uint8_t, 6>;
-/// The opcode, the argument with the most significant byte first, the exclusive or of the five.
+/// Contents: the opcode, the argument with the most significant byte first, the XOR of these five.
 McpPacket binary_packet(const McpOrder& order);
-/// As many zeros in succession make a base search for the start of a packet again.
+/// This many zeros in succession make a base search for the start of a packet again.
 inline constexpr std::size_t kMcpSyncZeros = 7;
 
 /// Appends the frame of a payload (opcode and data). Throws std::invalid_argument unless it has
@@ -25,26 +25,26 @@ void append_binary_frame(std::span<const std::uint8_t> payload, std::vector<std:
 /// The payload of a report; `opcode` is kReportMask for a periodic one, kReportOnce for a single.
 std::vector<std::uint8_t> binary_payload(const McpReport& report, McpCommand opcode);
 
-/// What becomes of a frame whose checksum is not what it should be. The rule of the checksum is
-/// known from a simulator only.
+/// Treatment of frames with a wrong checksum. The rule of the checksum is known from a simulator
+/// only.
 enum class McpChecksum : std::uint8_t {
-  kWarn,   ///< the frame is taken
-  kDrop,   ///< the frame is dropped
-  kLearn,  ///< the frame is dropped once three frames of this base had the right one
+  kWarn,   ///< accept the frame
+  kDrop,   ///< drop the frame
+  kLearn,  ///< drop the frame once three frames of this base had the right one
 };
 
-/// Messages from the bytes of a base, cut anywhere.
+/// Decodes messages from the bytes of a base, cut anywhere.
 class McpBinaryDecoder {
  public:
   explicit McpBinaryDecoder(McpChecksum checksum = McpChecksum::kLearn) : checksum_(checksum) {}
 
-  /// Appends what `bytes` complete.
+  /// Appends the messages that `bytes` complete.
   void decode(std::span<const std::uint8_t> bytes, std::vector<McpMessage>& messages);
-  /// Forgets the frame that is not complete.
+  /// Forgets the incomplete frame.
   void reset();
 
   [[nodiscard]] const McpDrops& drops() const { return drops_; }
-  /// Frames with a wrong checksum that were taken all the same.
+  /// Frames accepted with a wrong checksum.
   [[nodiscard]] std::uint64_t checksum_warnings() const { return warnings_; }
 
  private:
@@ -65,7 +65,7 @@ class McpBinaryDecoder {
   McpChecksum checksum_;
   State state_ = State::kSearch;
   bool in_garbage_ = false;
-  unsigned marks_ = 0;  // 02 or 03 in succession: of the start while in kSearch, kLength, else end
+  unsigned marks_ = 0;  // successive 02 in kSearch and kLength, else successive 03
   std::size_t length_ = 0;
   std::uint8_t stuffed_ = 0;          // the byte that a 00 must follow
   std::vector<std::uint8_t> body_{};  // payload and checksum

@@ -1,8 +1,8 @@
-// The messages between an RWI base and its host, apart from how the two dialects of its
-// controller (MCP) write it down: mcp_ascii.hpp and mcp_binary.hpp.
+// The messages between an RWI base and its host, independent of the two dialects of its controller
+// (MCP): mcp_ascii.hpp and mcp_binary.hpp.
 //
-// Put together from public drivers of the B21, since no manual is public; nothing of it was
-// confirmed on hardware by this project.
+// Compiled from public drivers of the B21, because no manual is public; this project has confirmed
+// none of it on hardware.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ enum class McpCommand : std::uint8_t {
   kDirectMode = 0x09,    ///< ASCII: enter the binary dialect; binary: leave it
   kErrorDelay = 0x0A,    ///< 16 bits, 1/256 s
   kAcknowledge = 0x0B,   ///< 16 bits
-  kFullDuplex = 0x0C,    ///< no mnemonic is known
+  kFullDuplex = 0x0C,    ///< no known mnemonic
   kHalfDuplex = 0x0D,    ///< no echo
   kJoystickOff = 0x0E,   ///< 8 bits: 1 switches the joystick off, 0 on
   kReportOnce = 0x10,    ///< 32 bits: a mask of McpField
@@ -52,7 +52,7 @@ enum class McpCommand : std::uint8_t {
   kRotateNegative = 0x45,
   kRotatePlus = 0x46,  ///< run clockwise until the next command
   kRotateMinus = 0x47,
-  kRotateTo = 0x5B,  ///< 32 bits, absolute; 0x80000000 is where the base was switched on
+  kRotateTo = 0x5B,  ///< 32 bits, absolute; 0x80000000 is the heading at power-on
   kRotateWhere = 0x5C,
   kBatteryVoltage = 0x60,  ///< answer in 0.1 V
   kBatteryCurrent = 0x61,  ///< answer in 0.1 A
@@ -63,27 +63,27 @@ enum class McpCommand : std::uint8_t {
 
 /// The two letters of the ASCII dialect; empty for a command that has none.
 std::string_view mnemonic(McpCommand command);
-/// The command of two letters; empty for letters that are no command's.
+/// The command for two letters; empty for unknown letters.
 std::optional<McpCommand> command_of(std::string_view mnemonic);
-/// The largest argument of a command; empty for one without argument.
+/// The largest argument of a command; empty if it has no argument.
 std::optional<std::uint32_t> largest_argument(McpCommand command);
 /// Whether the base answers the command with a value.
 bool is_query(McpCommand command);
 
-/// A command with its argument, if it has one.
+/// A command with its argument, if any.
 struct McpOrder {
   McpCommand command = McpCommand::kSync;
   std::uint32_t argument = 0;
   bool operator==(const McpOrder&) const = default;
 };
 
-/// Fields of a status report; the value is the bit of the mask that asks for the field, and their
-/// order in the report.
+/// Fields of a status report; the value is the bit of the request mask, and their order in the
+/// report.
 enum class McpField : std::uint8_t {
   kMask = 0,   ///< SRD, 32 bits: the mask itself
   kClock = 1,  ///< CLK, 32 bits, 1/256 s
   kGeneral = 2,
-  kBumpers = 3,  ///< BBS: active low, FFFF while none is pressed
+  kBumpers = 3,  ///< BBS: active low, FFFF if none is pressed
   kX = 4,        ///< BPX, BPY: position units from 0x8000; heading 0 is +y
   kY = 5,
   kHeading = 6,  ///< TPH: of the top plate, clockwise
@@ -142,7 +142,7 @@ struct McpReport {
 };
 
 enum class McpEventKind : std::uint8_t {
-  kBump,  ///< value: the word of the bumpers
+  kBump,  ///< value: the bumper word
   kBatteryHigh,
   kBatteryLow,
   kTranslateError,
@@ -173,22 +173,22 @@ struct McpAnswer {
 
 using McpMessage = std::variant<McpReport, McpEvent, McpAnswer>;
 
-/// Why something that was received was dropped.
+/// Reasons to drop received data.
 enum class McpDrop : std::uint8_t {
-  kUnknownLine,    ///< ASCII: a line that is none of the protocol's
-  kLongLine,       ///< ASCII: more characters than any line has
+  kUnknownLine,    ///< ASCII: a line outside the protocol
+  kLongLine,       ///< ASCII: longer than any line of the protocol
   kBadReport,      ///< a report with a field that is wrong, missing or of the wrong length
-  kGarbage,        ///< binary: bytes between frames, counted once for each run of them
+  kGarbage,        ///< binary: bytes between frames, counted once for each run
   kLostEnd,        ///< binary: a frame that ends too early, too late or not at all
   kChecksum,       ///< binary
   kUnknownOpcode,  ///< binary
-  kImplausible     ///< a report that no base can have sent after the one before it
+  kImplausible     ///< no base can have sent the report after the previous one
 };
 inline constexpr std::size_t kMcpDropKinds = 8;
 using McpDrops = std::array<std::uint64_t, kMcpDropKinds>;
 std::string_view drop_name(McpDrop drop);
 
-/// How often that was the reason.
+/// The count for that reason.
 constexpr std::uint64_t& count_of(McpDrops& drops, McpDrop drop) {
   return drops[static_cast<std::size_t>(drop)];
 }

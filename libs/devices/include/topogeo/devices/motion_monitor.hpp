@@ -1,6 +1,6 @@
-// Whether a base moves as commanded: motion without a command is the joystick, motion that was
-// commanded and does not come about is the emergency stop. The base has no message for either;
-// power_watch.hpp notices the second within two reports.
+// Detects whether a base moves as commanded: motion without a command is the joystick, commanded
+// motion that does not happen is the emergency stop. The base has no message for either;
+// power_watch.hpp detects the second within two reports.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,13 @@
 
 namespace topogeo::devices {
 
-/// The speeds of one axis that commands account for: from the least to the largest of those that
-/// hold and, while the base gets from one to the other, of those before. A base may always be
-/// slower.
+/// The speeds of one axis that commands explain: between the least and the largest command that
+/// holds or, during a change, held before. A base may always be slower.
 class SpeedRange {
  public:
-  /// Reached with `acceleration` (> 0), which begins after `lag_ns` at the latest.
+  /// The base reaches it with `acceleration` (> 0), starting after `lag_ns` at the latest.
   void aim_at(double speed, double acceleration, std::int64_t lag_ns, std::int64_t now_ns);
-  /// How far beyond the range a speed is; 0 within.
+  /// Amount by which a speed exceeds the range; 0 within.
   double excess(double speed, std::int64_t now_ns);
   [[nodiscard]] bool settled(std::int64_t now_ns) const { return now_ns >= settled_ns_; }
 
@@ -37,35 +36,35 @@ class MotionMonitor {
 
   /// The motion that is commanded from now on.
   void aim_at(const BaseVelocity& velocity, const BaseLimits& limits, std::int64_t now_ns);
-  /// The last of these motions has been written to the base by now: it obeys within its lag.
+  /// The last of these motions has been written to the base: it obeys within its lag.
   void written(std::int64_t now_ns) {
     linear_power_.written(now_ns);
     angular_power_.written(now_ns);
   }
-  /// The base started anew: motion for a while after `now_ns` may have been commanded before.
+  /// The base restarted: motion soon after `now_ns` may come from an earlier command.
   void restart(std::int64_t now_ns);
-  /// The base has stopped for a reason that is known, or an operator lets it move again.
+  /// The base has stopped for a known reason, or an operator permits motion again.
   void forget_power();
-  /// A move by an amount, which the base ends by itself, is commanded: its end is no loss of power.
+  /// A relative move, which the base ends by itself, is commanded: its end is no loss of power.
   void leave_power(const BaseLimits& limits, std::int64_t now_ns);
-  /// A report that the base took at `stamp_ns` of the host's clock and that has come now.
+  /// A report that the base took at `stamp_ns` of the host's clock and that arrived now.
   void take(const McpReport& report, const BaseMotion& motion, std::int64_t stamp_ns,
             std::int64_t now_ns);
 
-  /// Of the last report.
+  /// Whether the base stood in the last report.
   [[nodiscard]] bool stands() const { return stands_; }
   /// A motor brakes.
   [[nodiscard]] bool slows_down() const { return slows_down_; }
   /// A motor is without power, by a command or because of an error.
   [[nodiscard]] bool limp() const { return limp_; }
-  /// It is driven by joystick; holds until it has stood for a second.
+  /// Driven by joystick; holds until the base has stood for a second.
   [[nodiscard]] bool joystick() const { return joystick_; }
-  /// It was commanded to move and an axis has lost its power, or does not begin to move for
+  /// The base was commanded to move, and an axis has lost its power or does not start for
   /// settings.stalled_reports reports.
   [[nodiscard]] bool stalled() const { return lost_power_ || stalls_ >= settings_.stalled_reports; }
-  /// It should have begun or ended to move by now: a command was lost.
+  /// The base should have started or stopped by now: a command was lost.
   [[nodiscard]] bool disobeys() const { return disobeys_; }
-  /// Reports since it began to stand.
+  /// Number of reports since it stands.
   [[nodiscard]] unsigned reports_standing() const { return reports_standing_; }
 
  private:
@@ -88,7 +87,7 @@ class MotionMonitor {
   unsigned stalls_ = 0;
   unsigned uncommanded_ = 0;
   unsigned reports_standing_ = 0;
-  std::int64_t moved_ns_ = 0;  // when motion was last seen
+  std::int64_t moved_ns_ = 0;  // last time in motion
 };
 
 }  // namespace topogeo::devices

@@ -1,10 +1,9 @@
-// Starts a SICK PLS, or an LMS-2xx at its defaults, keeps it running and hands out its scans.
+// Starts a SICK PLS, or an LMS-2xx at its defaults, keeps it running and returns its scans.
 //
-// The driver searches for the rate at which the sensor sends, stops its stream, changes the rate in
-// installation mode, returning to the old one when the sensor does not follow, and has it send
-// scans. After a silence, a power-on message or a port that was gone it begins again, where it can
-// with what it knew before. It never gives up; a search without success only makes the next one
-// come later.
+// The driver searches for the sensor's rate, stops its stream, changes the rate in installation
+// mode (returning to the old one if the sensor does not follow) and starts the scans. After a
+// silence, a power-on message or the loss of the port it begins again, if possible with the line
+// settings that it knew. It never gives up; a failed search only delays the next one.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +29,8 @@ class PlsDriver final : public SerialDriver {
   /// Throws std::invalid_argument when a setting is out of range.
   explicit PlsDriver(PlsSettings settings);
 
-  /// Another driver had the sensor send scans over this line, and ended: the sensor may still do
-  /// so. To be called before the port is opened. A line that is wrong costs one try more.
+  /// An earlier driver made the sensor send scans over this line, and ended: the sensor may still
+  /// do so. Call before the port is opened. A wrong line costs one more attempt.
   void resume(const LineSettings& line);
 
   void opened(std::int64_t now_ns) override;
@@ -82,7 +81,7 @@ class PlsDriver final : public SerialDriver {
   PlsSupervisor supervisor_;
 
   Phase phase_ = Phase::kOffline;
-  bool configured_ = false;  ///< it was made to send scans and did not restart since
+  bool configured_ = false;  ///< it was made to send scans and has not restarted since
   std::vector<PlsScan> scans_;
   PlsStatus status_;
 };

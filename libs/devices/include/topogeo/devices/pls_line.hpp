@@ -1,5 +1,5 @@
-// The serial line to a SICK laser: its settings, the telegrams that come over it, what is written
-// to it, and where the sensor was heard.
+// The serial line to a SICK laser: its settings, received telegrams, written commands, and the
+// settings at which the sensor was last heard.
 #pragma once
 
 #include <cstdint>
@@ -19,37 +19,37 @@ class PlsLine {
   /// Keeps a reference to `settings`.
   explicit PlsLine(const PlsSettings& settings);
 
-  /// A port was opened, whose settings are not known: at those where the sensor was heard last, or
-  /// after power-on.
+  /// A port with unknown settings was opened: starts with those where the sensor was heard last, or
+  /// those after power-on.
   void open();
   void close();
 
-  /// Changes the settings of the port where they differ; garbage counts from here on.
+  /// Changes the settings of the port if they differ; counts garbage from here on.
   void set(const LineSettings& line);
   [[nodiscard]] const LineSettings& settings() const { return line_; }
   /// A PLS has even parity, an LMS none.
   [[nodiscard]] bool lms() const { return line_.parity == Parity::kNone; }
-  /// The line of a sensor that was switched on, of the kind that was heard last.
+  /// The line settings of a sensor after power-on, for the kind that was heard last.
   [[nodiscard]] LineSettings power_on() const;
 
-  /// A telegram came: it proves the settings.
+  /// A telegram arrived: it proves the settings.
   void heard() {
     known_ = line_;
     expected_ = false;
   }
-  /// It was heard there before this began: that counts until it is heard elsewhere or doubted.
+  /// The sensor was heard there earlier: used until it is heard elsewhere or doubted.
   void expect(const LineSettings& line) {
     known_ = line;
     expected_ = true;
   }
-  /// It is known by expect() alone.
+  /// The settings are known from expect() only.
   [[nodiscard]] bool expected() const { return expected_; }
-  /// It is not where it was expected.
+  /// The sensor is not where it was expected.
   void doubt() {
     known_.reset();
     expected_ = false;
   }
-  /// Where the sensor was heard last.
+  /// The settings where the sensor was heard last.
   [[nodiscard]] const std::optional<LineSettings>& known() const { return known_; }
 
   void receive(std::span<const std::uint8_t> bytes, std::int64_t now_ns);
@@ -68,10 +68,10 @@ class PlsLine {
   /// Starts an exchange and writes its command.
   void ask(SickExchange& exchange, std::vector<std::uint8_t> command,
            const SickExchange::Limits& limits, std::int64_t now_ns);
-  /// What was written since the last call, in order.
+  /// The orders written since the last call, in order.
   [[nodiscard]] std::vector<LineOrder> take_orders();
 
-  /// A whole scan of 361 beams on the line.
+  /// Transmission time of a whole scan of 361 beams.
   [[nodiscard]] std::int64_t scan_time_ns() const;
 
  private:

@@ -13,7 +13,7 @@
 
 namespace topogeo::devices {
 
-/// Commands of the host; the reply's code is the command's with bit 7 set, but for that of a reset.
+/// Commands of the host; the reply's code is the command's with bit 7 set, except for a reset.
 namespace pls_command {
 inline constexpr std::uint8_t kReset = 0x10;
 inline constexpr std::uint8_t kMode = 0x20;
@@ -36,23 +36,23 @@ inline constexpr std::uint8_t kErrors = 0xB2;
 enum class PlsMode : std::uint8_t {
   kInstallation = 0x00,  ///< followed by the password
   kStream = 0x24,        ///< all measured values, one scan after the other
-  kOnRequest = 0x25,     ///< measured values only when asked for
+  kOnRequest = 0x25,     ///< measured values on request only
 };
 
-/// The command that puts the sensor into `mode`; `password` belongs to kInstallation alone.
+/// The command that puts the sensor into `mode`; only kInstallation uses `password`.
 [[nodiscard]] std::vector<std::uint8_t> pls_mode_command(PlsMode mode,
                                                          std::string_view password = {});
-/// The command that changes the sensor's rate; empty when sensors have no such rate.
+/// The command that changes the sensor's rate; empty for an unsupported rate.
 [[nodiscard]] std::optional<std::vector<std::uint8_t>> pls_baud_command(std::uint32_t baud);
-/// The rate that a parameter of kMode stands for.
+/// The rate for a parameter of kMode.
 [[nodiscard]] std::optional<std::uint32_t> pls_baud_of(std::uint8_t parameter);
 /// Asks for one whole scan.
 [[nodiscard]] std::vector<std::uint8_t> pls_scan_request();
 
 enum class PlsSeverity : std::uint8_t { kNone, kInfo, kWarning, kError, kFatal };
 
-/// The byte at the end of every telegram of the sensor. Its bits are described for the LMS; that
-/// the PLS means the same by them is not confirmed on hardware.
+/// The byte at the end of every telegram of the sensor. Its bits are documented for the LMS; the
+/// same meaning for the PLS is not confirmed on hardware.
 struct PlsHealth {
   PlsSeverity severity = PlsSeverity::kNone;
   bool restarting = false;   ///< bit 5
@@ -66,30 +66,30 @@ struct PlsHealth {
 struct PlsReading {
   std::uint16_t distance = 0;     ///< 0 ... 8191, in the unit of the telegram
   bool dazzled = false;           ///< the beam met glaring light
-  bool warning_field = false;     ///< something is in the warning field
-  bool protective_field = false;  ///< something is in the protective field
+  bool warning_field = false;     ///< an object is in the warning field
+  bool protective_field = false;  ///< an object is in the protective field
   bool operator==(const PlsReading&) const = default;
 };
 [[nodiscard]] PlsReading pls_reading(std::uint16_t word);
 [[nodiscard]] std::uint16_t pls_word(const PlsReading& reading);
 
-/// The measured values of a telegram; valid as long as the telegram is. Value 0 is the rightmost.
+/// The measured values of a telegram; valid as long as the telegram. Value 0 is the rightmost.
 struct PlsMeasuredValues {
-  std::span<const std::uint8_t> bytes{};  ///< two for each value, low first
-  double unit_m = 0.01;  ///< by the bits of an LMS: 1 cm, 1 mm or 10 cm; always 1 cm in a PLS
-  unsigned part = 0;     ///< which part of an interlaced scan, of an LMS; 0 in a PLS
+  std::span<const std::uint8_t> bytes{};  ///< two for each value, low byte first
+  double unit_m = 0.01;  ///< from the bits of an LMS: 1 cm, 1 mm or 10 cm; always 1 cm for a PLS
+  unsigned part = 0;     ///< part of an LMS's interlaced scan; 0 for a PLS
   PlsHealth health{};
   [[nodiscard]] std::size_t size() const { return bytes.size() / 2; }
   [[nodiscard]] std::uint16_t word(std::size_t i) const {
     return static_cast<std::uint16_t>(bytes[2 * i] | bytes[2 * i + 1] << 8);
   }
 };
-/// Empty when the telegram holds something else.
+/// Empty if the telegram has other contents.
 [[nodiscard]] std::optional<PlsMeasuredValues> pls_measured_values(const SickTelegram& telegram);
 
-/// What the sensor made of a change of mode.
+/// The sensor's reply to a change of mode.
 enum class PlsModeReply : std::uint8_t { kDone = 0, kRefused = 1, kFault = 2 };
-/// Empty when the telegram is no reply to a change of mode; any code above 1 is a fault.
+/// Empty if the telegram is no reply to a change of mode; any code above 1 is a fault.
 [[nodiscard]] std::optional<PlsModeReply> pls_mode_reply(const SickTelegram& telegram);
 
 struct PlsStatusReport {
@@ -107,11 +107,10 @@ struct PlsError {
 /// The errors in the sensor's memory, without empty places.
 [[nodiscard]] std::optional<std::vector<PlsError>> pls_errors(const SickTelegram& telegram);
 
-/// What the sensor calls itself after it was switched on; other than printable characters are left
-/// out.
+/// The sensor's name for itself after power-on; unprintable characters are left out.
 [[nodiscard]] std::optional<std::string> pls_power_on_text(const SickTelegram& telegram);
 
-/// Where a status report of the PLS holds its rate, and how (BeeSoft's laser server is the only
+/// Place and codes of the rate in a status report of the PLS (BeeSoft's laser server is the only
 /// source; not confirmed on hardware).
 inline constexpr std::size_t kPlsStatusBaudAt = 115;
 [[nodiscard]] std::optional<std::uint16_t> pls_status_baud_code(std::uint32_t baud);

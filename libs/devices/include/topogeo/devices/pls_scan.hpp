@@ -1,4 +1,4 @@
-// Scans from the measured values of a SICK PLS or LMS, and the reasons to drop one.
+// Makes scans from the measured values of a SICK PLS or LMS, or drops them for a reason.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 namespace topogeo::devices {
 
 struct PlsScan {
-  /// The middle of the mirror's sweep, on the clock of the driver; strictly increasing.
+  /// The middle of the mirror's sweep, on the driver's clock; strictly increasing.
   std::int64_t stamp_ns = 0;
   double angle_min_rad = 0.0;   ///< of the first beam, the rightmost, in the laser frame
   double angle_step_rad = 0.0;  ///< counter-clockwise, > 0
@@ -25,13 +25,13 @@ struct PlsScan {
   bool protective_field = false;
 };
 
-/// Scans that were received whole and are not handed on.
+/// Counts of scans that were received whole but dropped.
 struct PlsScanDrops {
   std::uint64_t beam_count = 0;  ///< not one of 361, 181, 180 (180 deg) and 401, 201, 101 (100 deg)
   std::uint64_t interlaced = 0;  ///< part of a scan of an LMS at 0.25 deg
-  std::uint64_t implausible = 0;   ///< by the sensor's own word
+  std::uint64_t implausible = 0;   ///< the sensor calls it implausible
   std::uint64_t sensor_error = 0;  ///< the sensor reports an error or a fatal error
-  std::uint64_t stuck = 0;         ///< the same bytes again and again
+  std::uint64_t stuck = 0;         ///< repeats the same bytes
   bool operator==(const PlsScanDrops&) const = default;
 };
 
@@ -40,12 +40,12 @@ class PlsScanMaker {
   /// Keeps a reference to `settings`.
   explicit PlsScanMaker(const PlsSettings& settings) : settings_(settings) {}
 
-  /// The scan of a telegram with measured values that came over `line`, or nothing if it is to be
+  /// The scan of a telegram with measured values that came over `line`, or nothing if it is
   /// dropped.
   [[nodiscard]] std::optional<PlsScan> make(const PlsMeasuredValues& values,
                                             const SickTelegram& telegram, const LineSettings& line);
 
-  /// The next scan is not compared with the last one: another sensor may have sent that.
+  /// Does not compare the next scan with the last one, which another sensor may have sent.
   void forget() { last_.clear(); }
 
   [[nodiscard]] const PlsScanDrops& drops() const { return drops_; }

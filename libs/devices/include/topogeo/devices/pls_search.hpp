@@ -1,6 +1,5 @@
-// Searches for a SICK laser: at which rate and parity does it send? Each candidate gets a question
-// that the sensor answers in any state; between two searches the line rests at the rate of a sensor
-// that is switched on.
+// Searches for the rate and parity of a SICK laser. Each candidate gets a question that the sensor
+// answers in any state; between two searches the line rests at the rate of a sensor after power-on.
 #pragma once
 
 #include <cstddef>
@@ -18,29 +17,30 @@ class PlsSearch {
   /// Keeps references to both.
   PlsSearch(const PlsSettings& settings, PlsLine& line) : settings_(settings), line_(line) {}
 
-  /// Tries the first candidate. `listen_first`: where the sensor was heard last, without a
-  /// question, which would stop its scans; always where it is only expected.
+  /// Tries the first candidate. `listen_first`: first listens where the sensor was heard last,
+  /// without a question, which would stop its scans; an expected line is always only listened to
+  /// first.
   void start(bool listen_first, std::int64_t now_ns);
-  /// Tries the next candidate when the present one has been silent for long enough. False when it
-  /// was the last: the search was without success.
+  /// Tries the next candidate if the present one has been silent for long enough. False after the
+  /// last: the search has failed.
   bool tick(std::int64_t now_ns);
-  /// When the present candidate is given up.
+  /// Time at which the present candidate is given up.
   [[nodiscard]] std::int64_t due_ns() const;
-  /// Garbage at one rate is a sensor that sends at another: one that was running may have come
-  /// back. Listens where it was heard last.
+  /// Garbage at one rate shows a sensor that sends at another, perhaps one that has come back.
+  /// Listens where it was heard last.
   void follow_garbage(std::int64_t now_ns);
-  /// Enough garbage for another sender than a disturbance of the line.
+  /// Enough garbage to show a sender rather than a disturbance of the line.
   [[nodiscard]] bool hears_garbage() const;
   /// The present candidate was asked, which stops the sensor's scans.
   [[nodiscard]] bool asked() const { return !listen_only_; }
 
   /// The sensor was found, or the port was opened.
   void reset() { failures_ = 0; }
-  /// Searches without success since then.
+  /// Failed searches since then.
   [[nodiscard]] int failures() const { return failures_; }
 
-  /// Rests after so many failures, the longer the more there are, and listens meanwhile where a
-  /// sensor that is switched on announces itself.
+  /// Rests after that many failures, longer after more of them, and listens meanwhile at the rate
+  /// at which a sensor announces its power-on.
   void rest(int failures, std::int64_t now_ns);
   [[nodiscard]] std::int64_t rested_ns() const { return rested_ns_; }
 
@@ -53,7 +53,7 @@ class PlsSearch {
   std::vector<LineSettings> candidates_;
   std::size_t candidate_ = 0;
   bool listen_only_ = false;
-  std::int64_t since_ns_ = 0;  // the present candidate was tried
+  std::int64_t since_ns_ = 0;  // start of the present candidate
   std::int64_t rested_ns_ = 0;
   int failures_ = 0;
 };

@@ -1,6 +1,6 @@
-// Sets up a SICK laser that was found: its stream is stopped, its rate changed in installation
-// mode, with a return to the old one where it does not follow, its status and errors are asked for,
-// and it is made to send scans.
+// Sets up a SICK laser that was found: stops its stream, changes its rate in installation mode and
+// returns to the old one if the sensor does not follow, reads its status and errors, and starts its
+// scans.
 #pragma once
 
 #include <cstdint>
@@ -18,32 +18,32 @@ class PlsSetup {
  public:
   enum class Result : std::uint8_t {
     kGoesOn,
-    kDone,         ///< the sensor sends scans, or waits to be asked for them
-    kNotFollowed,  ///< it is not heard at the new rate and has to be searched for
-    kFailed        ///< it did not do what was asked, see reason()
+    kDone,         ///< the sensor sends scans, or waits for requests
+    kNotFollowed,  ///< it is not heard at the new rate; a search is needed
+    kFailed        ///< it did not obey, see reason()
   };
 
-  /// Keeps references to all.
+  /// Keeps references to all arguments.
   PlsSetup(const PlsSettings& settings, PlsLine& line, SickExchange& exchange)
       : settings_(settings), line_(line), exchange_(exchange) {}
 
   /// Begins with a sensor that may be sending scans.
   void start(std::int64_t now_ns) { begin(Step::kStop, now_ns); }
-  /// Begins with one whose stream was stopped.
+  /// Begins with a sensor whose stream was stopped.
   void start_stopped(std::int64_t now_ns);
   /// The exchange has ended.
   Result go_on(std::int64_t now_ns);
   void tick(std::int64_t now_ns);
-  /// The end of a rest; the largest number while none is held.
+  /// The end of a rest; the largest number outside of one.
   [[nodiscard]] std::int64_t due_ns() const;
 
-  /// What is going on, or why it failed.
+  /// The present step, or the reason of a failure.
   [[nodiscard]] const std::string& reason() const { return reason_; }
-  /// Why the sensor runs at another rate than wanted; empty if it does not.
+  /// The reason why the sensor runs at another rate than wanted; empty if it does not.
   [[nodiscard]] const std::string& fallback() const { return fallback_; }
-  /// The sensor restarted or was silent: it may follow to the wanted rate now.
+  /// The sensor restarted or was silent, so it may now follow to the wanted rate.
   void retry_rate();
-  /// How often it failed since reset().
+  /// Number of failures since reset().
   [[nodiscard]] int failures() const { return failures_; }
   /// Scans come, or the port was opened.
   void reset() { failures_ = 0; }

@@ -1,5 +1,5 @@
-// Supervises a SICK laser that sends scans: asks for them where they come on request, and notices
-// when they stay away.
+// Supervises a SICK laser that sends scans: requests them in on-request mode, and notices when they
+// are missing.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,23 @@ namespace topogeo::devices {
 
 class PlsSupervisor {
  public:
-  /// Keeps references to all.
+  /// Keeps references to all arguments.
   PlsSupervisor(const PlsSettings& settings, PlsLine& line, SickExchange& exchange)
       : settings_(settings), line_(line), exchange_(exchange) {}
 
   /// The sensor was set up; the first scan is due.
   void start(std::int64_t now_ns);
   void scan_came(std::int64_t now_ns) { last_scan_ns_ = now_ns; }
-  /// The request for a scan has ended, with or without it.
+  /// The request for a scan has ended, with or without a scan.
   void request_ended(std::int64_t now_ns);
 
-  /// Scans have stayed away for too long.
+  /// Scans have been missing for too long.
   [[nodiscard]] bool silent(std::int64_t now_ns) const { return now_ns >= silent_at_ns(); }
-  /// Since the last scan.
+  /// Time since the last scan.
   [[nodiscard]] std::int64_t silence_ns(std::int64_t now_ns) const {
     return now_ns - last_scan_ns_;
   }
-  /// Asks for the next scan if it is time to.
+  /// Requests the next scan if it is due.
   void tick(std::int64_t now_ns);
   [[nodiscard]] std::int64_t due_ns() const;
 

@@ -7,8 +7,8 @@
 
 namespace topogeo::devices {
 
-/// The check word of `bytes`, which are a telegram from its STX up to the last byte before the
-/// check word. It is sent low byte first.
+/// The check word of `bytes`, a telegram without its check word, starting with the STX. It is sent
+/// low byte first.
 [[nodiscard]] std::uint16_t sick_crc(std::span<const std::uint8_t> bytes);
 
 }  // namespace topogeo::devices

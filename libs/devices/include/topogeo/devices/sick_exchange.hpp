@@ -1,5 +1,5 @@
-// One command to a SICK sensor and what becomes of it: ACK and a reply, or NAK, a refusal or
-// nothing, with a limited number of repetitions.
+// One command to a SICK sensor and its outcome: ACK and a reply, or NAK, a refusal or nothing, with
+// a limited number of repetitions.
 #pragma once
 
 #include <cstddef>
@@ -15,14 +15,14 @@ namespace topogeo::devices {
 class SickExchange {
  public:
   struct Limits {
-    std::int64_t ack_timeout_ns = 0;    ///< from the end of the command to ACK, NAK or the reply
-    std::int64_t reply_timeout_ns = 0;  ///< from ACK to the reply
-    std::int64_t repeat_gap_ns = 0;     ///< before the command is sent again
-    int tries = 1;                      ///< how often it is sent at most
-    bool repeat_unanswered = true;      ///< or only what was refused
+    std::int64_t ack_timeout_ns = 0;    ///< between its end and ACK, NAK or the reply
+    std::int64_t reply_timeout_ns = 0;  ///< between ACK and the reply
+    std::int64_t repeat_gap_ns = 0;     ///< before the command is repeated
+    int tries = 1;                      ///< most attempts
+    bool repeat_unanswered = true;      ///< else only refused commands
   };
   enum class Result {
-    kNone,     ///< nothing was asked
+    kNone,     ///< no command was sent
     kOpen,     ///< the answer is awaited
     kReplied,  ///< see `mode_reply` if the command changed the mode
     kRefused,  ///< NAK or a telegram "not acknowledged", every time
@@ -30,21 +30,21 @@ class SickExchange {
     kNoReply,  ///< ACK but no reply in time
   };
 
-  /// Sends `command` over `line`; what was open is forgotten.
+  /// Sends `command` over `line`; drops an open command.
   void start(std::vector<std::uint8_t> command, const Limits& limits, const LineSettings& line,
              std::int64_t now_ns);
   void stop() { result_ = Result::kNone; }
 
   void acknowledged(std::int64_t now_ns);
   void refused(std::int64_t now_ns);
-  /// The reply to the command came; `reply` is that to a change of mode.
+  /// The reply to the command arrived; `reply` if it answers a change of mode.
   void replied(std::optional<PlsModeReply> reply);
-  /// Ends what took too long, or sends the command again.
+  /// Ends an overdue command, or repeats it.
   void tick(std::int64_t now_ns);
-  /// When `tick` has something to do; the largest number while nothing is open.
+  /// Time of the next useful `tick`; the largest number if no command is open.
   [[nodiscard]] std::int64_t due_ns() const;
 
-  /// The command when it is to be written now, once each time.
+  /// The command if it has to be written now, once each time.
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> take_command();
 
   [[nodiscard]] Result result() const { return result_; }
@@ -65,7 +65,7 @@ class SickExchange {
   Result result_ = Result::kNone;
   PlsModeReply mode_reply_ = PlsModeReply::kDone;
   bool to_write_ = false;
-  bool repeating_ = false;  ///< until due_ns_, when the command is sent again
+  bool repeating_ = false;  ///< until due_ns_, when the command is repeated
   bool acknowledged_ = false;
   int sent_ = 0;
   std::int64_t due_ns_ = 0;

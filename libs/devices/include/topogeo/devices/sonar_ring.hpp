@@ -1,4 +1,4 @@
-// Where the sonars of a robot sit and where they look.
+// Places and directions of the sonars of a robot.
 #pragma once
 
 #include <numbers>
@@ -15,7 +15,7 @@ struct SonarMount {
 };
 
 /// MACONDO's six: two to the front, two to the left, two to the right. MACONDO gives only their
-/// directions; the mounting is that of a round body of 26 cm, the pairs 20 cm apart.
+/// directions; the mounting assumes a round body of 26 cm with the pairs 20 cm apart.
 std::vector<SonarMount> macondo_sonars();
 
 inline constexpr double kB21Radius_m = 0.267;
