@@ -18,18 +18,18 @@ namespace {
 
 using geometry::Pose2;
 
-// Two poses of a stop agree within what global localization errs by at most (same_global_place),
-// and the final ones within what aligned scans do.
+// Two poses of a stop agree within the largest error of global localization (same_global_place),
+// and the final ones within that of aligned scans.
 constexpr double kCoarse_m = 0.6;
 constexpr double kCoarse_rad = 0.12;
 constexpr double kFine_m = 0.3;
 constexpr double kFine_rad = 0.06;
-// A stop is one that our map shows when this much of its scan is within sight of a stop of ours,
-// and it fits when so much of it lies on something.
+// Our map should show a stop if this much of its scan is within sight of a stop of ours, and the
+// stop fits if this much of it lies on obstacles.
 constexpr double kSeen = 0.6;
 constexpr double kFits = 0.45;
 
-/// The located stops that saw something.
+/// The located stops with scan points.
 storage::MapDocument usable_part(const storage::MapDocument& document, const char* what) {
   storage::MapDocument part;
   const auto& stops = document.trajectory.stops;
@@ -110,7 +110,7 @@ class Aligner {
     }
   }
 
-  /// Fitness of the answers that agree with a pose of the whole, the best of each stop.
+  /// Sum of fitness of the answers that agree with a pose of the whole, the best of each stop.
   [[nodiscard]] double support_of(const Pose2& T_map_foreign) const {
     double sum = 0.0;
     for (const SearchedStop& stop : stops_) {
@@ -129,7 +129,7 @@ class Aligner {
     return nullptr;
   }
 
-  /// Whether all stops come to lie at the same places.
+  /// Whether both poses put all stops at the same places.
   [[nodiscard]] bool same_for_stops(const Pose2& a, const Pose2& b) const {
     return std::ranges::all_of(stops_, [&](const SearchedStop& stop) {
       return agree(a * stop.T_foreign_robot, b * stop.T_foreign_robot, 2.0 * kCoarse_m,
@@ -137,8 +137,8 @@ class Aligner {
     });
   }
 
-  /// The pose on which the agreeing stops lie best: least squares over their positions and
-  /// headings, a heading weighed as a position this far from the middle.
+  /// The pose that fits the agreeing stops best: least squares over their positions and headings,
+  /// where a heading is weighted like a position at the lever below.
   Pose2 refined(Pose2 T, Alignment& out) const {
     constexpr double kLever_m = 2.0;
     constexpr int kRounds = 4;
@@ -192,14 +192,13 @@ class Aligner {
       const double turn = geometry::wrap_angle(at.theta_rad - ours.theta_rad);
       sum_rad2 += turn * turn;
     }
-    // What aligned scans have in common, a centimetre and a fifth of a degree, does not average
-    // out.
+    // Aligned scans share errors of a centimetre and a fifth of a degree, which do not average out.
     const double n = static_cast<double>(pairs.size());
     out.sigma_m = std::sqrt(1e-4 + sum_m2 / (n * n));
     out.sigma_rad = std::sqrt(1.2e-5 + sum_rad2 / (n * n));
   }
 
-  /// What our map shows at the places of the foreign stops.
+  /// Counts the foreign stops that our map should show, and those that fit.
   void verify(Alignment& out) const {
     for (const SearchedStop& stop : stops_) {
       const Pose2 T_map_robot = out.T_map_foreign * stop.T_foreign_robot;

@@ -34,8 +34,8 @@ struct Beams {
   std::size_t count = 0;
 };
 
-/// The step of most lasers is a turn over a whole number; what was measured in points of 32 bits is
-/// rounded to it when it is near.
+/// Most lasers divide a turn by a whole number; a step measured from 32-bit points is rounded to
+/// that when it is near.
 double rounded_step(double step_rad) {
   constexpr double kTurn_rad = 2.0 * std::numbers::pi;
   const double steps = kTurn_rad / step_rad;
@@ -68,7 +68,7 @@ Beams beams_of(const std::vector<std::vector<Reading>>& stops) {
     beams.count = most;
     beams.step_rad = (high_rad - low_rad) / static_cast<double>(most - 1);
   }
-  // Half a turn from -90 degrees on is the field of view of a FLASER line.
+  // Half a turn, starting at -90 degrees, is the field of view of a FLASER line.
   const std::size_t half_turn =
       static_cast<std::size_t>(std::lround(std::numbers::pi / beams.step_rad));
   const double to_first = (beams.first_rad + std::numbers::pi / 2.0) / beams.step_rad;

@@ -1,4 +1,4 @@
-// The elements of a map database, of schema 1 to 3, as far as its rows can be read.
+// Reads the elements of a map database, of schema 1 to 3, as far as its rows can be read.
 #include <array>
 #include <map>
 #include <sstream>
@@ -66,7 +66,7 @@ class DatabaseReader {
   }
 
   std::vector<std::string> blobs(const std::string& table) {
-    // By id: rows that were read from the end back come in another order.
+    // The ids restore the order of rows that were read back from the end.
     std::map<std::int64_t, std::string> ordered;
     for (const SalvagedRow& row : tables_[table].rows) {
       ordered[number_of_row(row, "row_number")] = text_of(row, "blob");
@@ -126,7 +126,7 @@ class DatabaseReader {
 
   static void add_stop(std::map<std::uint32_t, StoredPieces::StoredStop>& stops, std::int64_t id,
                        std::string blob, std::optional<bool> starts_drive) {
-    constexpr std::int64_t kMostStops = 10'000'000;  // beyond it the number is damaged
+    constexpr std::int64_t kMostStops = 10'000'000;  // a larger number is damaged
     if (id < 0 || id >= kMostStops) return;
     const auto number = static_cast<std::uint32_t>(id);
     stops[number] = {number, std::move(blob), starts_drive};

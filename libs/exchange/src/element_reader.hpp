@@ -1,4 +1,4 @@
-// Elements of a damaged map, one by one: each is read as if it were alone in a map file.
+// Reads elements of a damaged map one by one, each as the only one of a map file.
 #pragma once
 
 #include <exception>
@@ -11,12 +11,11 @@
 
 namespace topogeo::exchange {
 
-/// A map file of these fields; the reader of map files then checks what is in them. A number that
-/// comes twice in a message counts as it comes last, so that what follows it corrects it. Throws
-/// std::runtime_error like that reader.
+/// Makes a map file of these fields, so that its reader checks them. The last value of a repeated
+/// number counts, so an appended one corrects it. Throws std::runtime_error like that reader.
 storage::MapDocument read_alone(const std::string& robot_id, const std::string& fields);
 
-/// What `take` makes of the elements that it can read; notes how many it cannot.
+/// Calls `take` for each element; notes how many it cannot read.
 template <typename Take>
 void take_each(const std::vector<std::string>& elements, const char* what, Notes& lost,
                const Take& take) {

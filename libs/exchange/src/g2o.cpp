@@ -26,7 +26,7 @@ std::string edge_line(std::uint32_t from, std::uint32_t to, const geometry::Pose
   return line + '\n';
 }
 
-/// Of a map that does not keep its measurements: what its stops and loops state.
+/// Edges for a map that does not keep its measurements, from its stops and loops.
 std::vector<storage::MapEdge> usual_edges(const storage::MapDocument& document) {
   const Eigen::Matrix3d usual = localization::usual_match_covariance();
   std::vector<storage::MapEdge> edges;

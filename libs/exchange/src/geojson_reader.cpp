@@ -74,7 +74,7 @@ class GeojsonReader {
     if (metadata.is_object()) {
       const JsonValue kind = metadata.at("kind");
       const auto known = kind.is_text() ? topomap::node_kind_of(kind.text()) : std::nullopt;
-      // Bends and places are nodes of the file alone.
+      // Bends and places are nodes of the file only.
       if (own_ && !known) return;
       if (known) node.kind = *known;
       if (own_) {
@@ -90,7 +90,7 @@ class GeojsonReader {
     graph_.map.nodes.push_back(node);
   }
 
-  /// Files of before do not have it.
+  /// Older files do not have it.
   static std::int64_t last_seen(const JsonValue& properties) {
     const JsonValue text = properties.at("last_seen");
     if (!text.is_text()) return 0;
@@ -128,7 +128,7 @@ class GeojsonReader {
     planning::DrawnZone zone;
     zone.name =
         properties.at("name").text_or(fmt::format("zone {}", graph_.drawing.zones.size() + 1));
-    // A kind of others is one of theirs.
+    // Unknown kinds of foreign files become rooms.
     const JsonValue kind = properties.at("kind");
     if (kind.is_text()) {
       zone.kind = planning::zone_kind_of(kind.text()).value_or(planning::ZoneKind::kRoom);
@@ -177,9 +177,9 @@ class GeojsonReader {
     }
   }
 
-  bool own_ = false;  // written by geojson_text
+  bool own_ = false;  // geojson_text wrote the file
   MapGraph graph_;
-  std::set<std::pair<std::uint32_t, std::uint32_t>> edges_;  // ids of nodes, ascending
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges_;  // ascending pairs of node ids
 };
 
 }  // namespace

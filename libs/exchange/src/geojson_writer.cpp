@@ -9,8 +9,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Nodes of the map from here on get other ids: Nav2 takes 2147483647 for a deleted node, and above
-// all of them bends and edges need ids.
+// Nodes of the map with larger ids get new ones: Nav2 takes 2147483647 for a deleted node, and
+// bends and edges need ids above all nodes.
 constexpr std::uint32_t kFirstReplaced = 1'000'000'000;
 
 Json coordinates(const Eigen::Vector2d& position_m) {
@@ -28,7 +28,7 @@ Json collection_of(Json geometry) {
   return {{"type", "GeometryCollection"}, {"geometries", Json::array({std::move(geometry)})}};
 }
 
-/// Round numbers, so that people see at once what an id is of.
+/// Round numbers, so that people recognize the kind of an id at once.
 std::uint64_t next_range(std::uint64_t used) {
   constexpr std::uint64_t kRange = 100'000;
   return (used / kRange + 1) * kRange;
@@ -106,7 +106,7 @@ class GeojsonWriter {
     const std::uint32_t to = forward ? piece.to : piece.from;
     Json metadata = {{"clearance", piece.clearance_m}};
     if (piece.branch) metadata["branch"] = *piece.branch;
-    // Of TimeScorer, which takes edges without it for as fast as the robot.
+    // Read by TimeScorer, which otherwise assumes the robot's full speed.
     if (piece.rule.speed_mps) metadata["abs_speed_limit"] = *piece.rule.speed_mps;
     return geojson_feature({{"id", id},
                             {"startid", ids_[from]},
@@ -139,7 +139,7 @@ class GeojsonWriter {
   }
 
   static Json zone_feature(const planning::DrawnZone& zone) {
-    // The first corner once more closes the ring, as GeoJSON (RFC 7946, 3.1.6) wants it.
+    // The first corner is repeated to close the ring (GeoJSON, RFC 7946, 3.1.6).
     Json ring = Json::array();
     for (const Eigen::Vector2d& corner : zone.polygon_m) ring.push_back(coordinates(corner));
     ring.push_back(ring.front());
@@ -153,7 +153,7 @@ class GeojsonWriter {
   const topomap::GlobalMap& map_;
   const storage::MapDrawing& drawing_;
   const RouteNetwork& network_;
-  std::vector<std::uint64_t> ids_;  // in the file, of each node of the network
+  std::vector<std::uint64_t> ids_;  // in the file, for each node of the network
   std::uint64_t first_edge_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// What every graph that was read must hold before it becomes a map.
+// Checks of an imported graph before it becomes a map.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace topogeo::exchange {
 
-/// Sorts nodes and branches by id. Throws std::runtime_error "NAME: ..." for repeated ids, a branch
-/// that ends at no node, and a drawing as storage::check.
+/// Sorts nodes and branches by id. Throws std::runtime_error "NAME: ..." for repeated ids, for a
+/// branch whose end is no node, and for a drawing like storage::check.
 void settle(MapGraph& graph, const std::string& name);
 
 }  // namespace topogeo::exchange

@@ -18,7 +18,7 @@
 namespace topogeo::exchange {
 namespace {
 
-// As of drawings: beyond it a number is damage.
+// A larger number is damaged, as in drawings.
 constexpr double kMostCoordinate = 1e6;
 
 class GraphmlReader {
@@ -43,7 +43,7 @@ class GraphmlReader {
       }
       const std::string meaning = key.attribute("attr.name").value();
       key_names_[key.attribute("id").value()] = meaning;
-      // A default stands for elements without a datum.
+      // A default applies to elements without a datum.
       if (key.child("default")) {
         defaults_[key.attribute("for").value()][meaning] = key.child("default").text().get();
       }
@@ -164,7 +164,7 @@ class GraphmlReader {
     nodes_.push_back(std::move(node));
   }
 
-  /// Our nodes are called n and their id; others are counted.
+  /// Our nodes are called n and their id; foreign ones are numbered.
   static std::optional<std::uint32_t> own_id(std::string_view id, char letter) {
     if (id.size() < 2 || id.front() != letter) return std::nullopt;
     const auto number = whole_number_of(id.substr(1));
@@ -209,7 +209,7 @@ class GraphmlReader {
     if (const auto points = data.find("points"); points != data.end()) {
       branch.points = points_of(points->second);
     } else {
-      // A way back beside the way there is the same branch.
+      // A second edge in the opposite direction is the same branch.
       if (&a == &b || !straight_.insert(std::minmax(a.node.id, b.node.id)).second) return;
       branch.points = {{a.node.position_m, a.node.clearance_m},
                        {b.node.position_m, b.node.clearance_m}};
@@ -238,7 +238,7 @@ class GraphmlReader {
   }
 
   const std::string& name_;
-  std::string element_;  // that is being read, for messages
+  std::string element_;  // current element, for messages
   std::size_t elements_ = 0;
   std::map<std::string, std::string> key_names_;
   std::map<std::string, Data> defaults_;
@@ -246,7 +246,7 @@ class GraphmlReader {
   std::vector<FileNode> nodes_;
   std::map<std::string, std::size_t> places_of_;  // index in nodes_ by id in the file
   std::set<std::pair<std::uint32_t, std::uint32_t>> straight_;
-  bool own_ = false;  // ids are ours
+  bool own_ = false;  // the file has our ids
   MapGraph graph_;
 };
 

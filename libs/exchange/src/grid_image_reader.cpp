@@ -61,7 +61,7 @@ void note_unknown_keys(const YamlNode& root, Notes& notes) {
 }
 
 ImageYaml read_image_yaml(const YamlNode& root) {
-  constexpr double kFarthest_m = 1e6;  // 1,000 km: beyond it a number is a slip
+  constexpr double kFarthest_m = 1e6;  // 1,000 km: a larger number is a mistake
   constexpr double kMostTurn_rad = 7.0;
   ImageYaml yaml;
   yaml.image = root.required("image").text();
@@ -79,7 +79,7 @@ ImageYaml read_image_yaml(const YamlNode& root) {
   return yaml;
 }
 
-/// `see_through`: map_server since Jazzy knows nothing there, but where the pixel is the value.
+/// `see_through`: unknown for map_server since Jazzy, except in mode raw.
 std::int8_t value_of(std::uint16_t pixel, int depth, const ImageYaml& yaml,
                      bool see_through = false) {
   if (yaml.mode == ImageMode::kRaw) {
@@ -89,7 +89,7 @@ std::int8_t value_of(std::uint16_t pixel, int depth, const ImageYaml& yaml,
   if (see_through) return -1;
   const float light = static_cast<float>(pixel) / static_cast<float>(depth);
   const float occupied = yaml.negate ? light : 1.0F - light;
-  // Where both hold, free wins.
+  // If both thresholds apply, free wins.
   if (occupied <= yaml.free) return 0;
   if (occupied >= yaml.occupied) return 100;
   if (yaml.mode == ImageMode::kTrinary) return -1;

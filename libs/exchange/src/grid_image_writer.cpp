@@ -10,7 +10,7 @@
 namespace topogeo::exchange {
 namespace {
 
-// What map_saver writes: 205 stays unknown under 0.196, whichever way a threshold counts.
+// Thresholds of map_saver: under 0.196, the pixel 205 is unknown for every reader.
 constexpr const char* kOccupiedThreshold = "0.65";
 constexpr const char* kFreeThreshold = "0.196";
 

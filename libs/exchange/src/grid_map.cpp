@@ -24,9 +24,9 @@ namespace {
 using planning::Cell;
 using planning::CellState;
 
-constexpr int kBeams = 720;  // all around in steps of half a degree, as of most logs
+constexpr int kBeams = 720;  // all around in steps of half a degree, like most logs
 constexpr std::int64_t kBetweenStops_ns = 1'000'000'000;
-// Of the poses, which are those of the grid: a tenth of a usual cell.
+// Standard deviation of the poses, which are exact in the grid: a tenth of a usual cell.
 constexpr double kSigma_m = 0.01;
 constexpr double kSigma_rad = 0.002;
 
@@ -57,7 +57,8 @@ std::vector<std::size_t> cells_by_width(const planning::FreeSpace& space, double
       cells.insert(cells.end(), part.begin(), part.end());
     }
   }
-  // Width and number of a cell as one number: to sort large grids by two takes seconds.
+  // Width and number of a cell as one number, because sorting large grids by two keys takes
+  // seconds.
   constexpr unsigned kNumberBits = 32;
   constexpr auto kWidest = std::uint64_t{std::numeric_limits<std::int32_t>::max()};
   for (std::size_t& cell : cells) {
@@ -69,8 +70,8 @@ std::vector<std::size_t> cells_by_width(const planning::FreeSpace& space, double
   return cells;
 }
 
-/// Middles of cells, each at least `spacing_m` from those before it; one more than `most` where
-/// there are as many.
+/// Middles of cells, each at least `spacing_m` from the earlier ones; stops at one more than
+/// `most`.
 std::vector<Eigen::Vector2d> places_apart(const planning::GridFrame& frame,
                                           const std::vector<std::size_t>& cells, double spacing_m,
                                           std::size_t most) {
@@ -98,7 +99,7 @@ std::vector<Eigen::Vector2d> places_apart(const planning::GridFrame& frame,
   return places;
 }
 
-/// The widest places, each far enough from those before.
+/// The widest places, each far enough from the earlier ones.
 std::vector<Eigen::Vector2d> places_of_stops(const planning::FreeSpace& space,
                                              const GridMapSettings& settings) {
   const planning::GridFrame& frame = space.frame();
@@ -143,8 +144,8 @@ struct CellBorders {
 
   std::int32_t first;  // cell
   std::int32_t step;
-  double next = std::numeric_limits<double>::infinity();  // where along the beam the next border is
-  double width = std::numeric_limits<double>::infinity();  // between two of them
+  double next = std::numeric_limits<double>::infinity();   // along the beam, to the next border
+  double width = std::numeric_limits<double>::infinity();  // distance between two borders
 };
 
 std::uint64_t session_of_grid(const planning::OccupancyGrid& grid, const std::string& robot_id) {
@@ -158,13 +159,13 @@ std::uint64_t session_of_grid(const planning::OccupancyGrid& grid, const std::st
 
 float cast_beam(const planning::OccupancyGrid& grid, const Eigen::Vector2d& from_m,
                 double heading_rad, double range_m) {
-  // From cell to cell along the beam (Amanatides and Woo, "A fast voxel traversal algorithm for ray
-  // tracing", 1987), all in cells.
+  // Steps from cell to cell along the beam (Amanatides and Woo, "A fast voxel traversal algorithm
+  // for ray tracing", 1987), all in cells.
   const planning::GridFrame& frame = grid.frame();
   const Eigen::Vector2d from = frame.in_cells(from_m);
   const auto [sin, cos] = geometry::sincos(heading_rad - frame.T_map_grid.theta_rad);
-  // Borders of one direction. Apart, not in arrays: most of an import goes by here, and the
-  // compiler keeps them in registers then, which is five times as fast.
+  // Borders of one direction each. Separate variables stay in registers, which is five times as
+  // fast as arrays, and most of an import's time is spent here.
   CellBorders columns(from.x(), cos);
   CellBorders rows(from.y(), sin);
   Cell here{columns.first, rows.first};

@@ -44,8 +44,7 @@ double length_of(const MapBranch& branch) {
   return length_m;
 }
 
-/// Distance along the poses of all scans, drive by drive: from the last of one to the first of the
-/// next nothing was driven.
+/// Distance along the poses of all scans, drive by drive, without the jumps between drives.
 double driven_distance(const storage::MapDocument& document) {
   const std::span<const topomap::LocalMap> maps(document.local_maps);
   const std::vector<topomap::StopPose>& stops = document.trajectory.stops;
@@ -70,7 +69,7 @@ void add_stops(MapSummary& summary, const storage::MapDocument& document) {
   summary.stops = document.local_maps.size();
   std::set<std::uint64_t> sessions;
   for (const topomap::LocalMap& map : document.local_maps) {
-    // Files of before do not name the session: each drive is one.
+    // Older files do not name the session: each drive is one.
     if (map.stop.session != 0) {
       sessions.insert(map.stop.session);
     } else if (map.id == 0 || map.starts_drive) {
@@ -114,7 +113,7 @@ void add_drawing(MapSummary& summary, const storage::MapDrawing& drawing) {
   }
 }
 
-/// Collects lines up to a number.
+/// Collects lines up to a limit.
 class Findings {
  public:
   explicit Findings(std::size_t most) : most_(most) {}
@@ -129,14 +128,14 @@ class Findings {
   std::vector<std::string> lines_;
 };
 
-// 1,000 km, as of drawings: beyond it a number is damage.
+// 1,000 km, as in drawings: a larger number is damaged.
 constexpr double kFarthest_m = 1e6;
 
 bool is_near(const Eigen::Vector2d& position_m) {
   return std::fabs(position_m.x()) <= kFarthest_m && std::fabs(position_m.y()) <= kFarthest_m;
 }
 
-/// Symmetric, and no direction in which it is below zero by more than rounding.
+/// Symmetric, and not negative in any direction by more than rounding.
 bool is_covariance(const Eigen::Matrix3d& m) {
   const double scale = m.cwiseAbs().maxCoeff();
   if (!(scale < 1e12)) return false;

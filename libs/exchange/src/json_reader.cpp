@@ -10,7 +10,7 @@
 namespace topogeo::exchange {
 namespace {
 
-// As of drawings: beyond it a number is damage.
+// A larger number is damaged, as in drawings.
 constexpr double kMost = 1e6;
 
 std::string shown(const nlohmann::ordered_json* json) {

@@ -1,5 +1,5 @@
-// JSON documents, read by the one who knows what they should hold: an answer that differs is an
-// error "FILE: features[3].properties.id: expected ..., got ...".
+// Access to JSON documents with known contents: a deviation is an error "FILE:
+// features[3].properties.id: expected ..., got ...".
 #pragma once
 
 #include <cstdint>
@@ -20,15 +20,15 @@ class JsonValue {
 
   [[noreturn]] void fail(const std::string& expected) const;
   [[nodiscard]] bool exists() const { return json_ != nullptr && !json_->is_null(); }
-  /// Absent where the key is; fails where the value is no object.
+  /// The value of a key, which may be absent; fails if this value is no object.
   [[nodiscard]] JsonValue at(const std::string& key) const;
-  /// Fails where the key is absent.
+  /// Fails if the key is absent.
   [[nodiscard]] JsonValue required(const std::string& key) const;
   /// The items of an array.
   [[nodiscard]] std::vector<JsonValue> items() const;
 
   [[nodiscard]] std::string text() const;
-  /// The text, or `otherwise` where there is no value.
+  /// The text, or `otherwise` if there is no value.
   [[nodiscard]] std::string text_or(const std::string& otherwise) const;
   [[nodiscard]] bool boolean_or(bool otherwise) const;
   /// Finite and within 1,000 km: no coordinate or speed is larger.
@@ -46,12 +46,12 @@ class JsonValue {
   std::string where_;
 };
 
-/// Throws std::runtime_error naming the file and the byte at which it is no JSON, or the limit of
-/// json_limits.hpp that it is beyond.
+/// Throws std::runtime_error naming the file and the byte at which it is not JSON, or the exceeded
+/// limit of json_limits.hpp.
 nlohmann::ordered_json parse_json(std::string_view text, const std::string& name);
 
-/// The text of a file, with a line for each entry of the lists that `json` has in it on the top
-/// two levels, so that people and `diff` can read it.
+/// The text of a file, with a line for each entry of the lists on the top two levels of `json`, so
+/// that people and `diff` can read it.
 std::string json_text(const nlohmann::ordered_json& json);
 
 }  // namespace topogeo::exchange

@@ -20,7 +20,7 @@ Eigen::Vector2d lif_position(const JsonValue& value) {
   return {value.required("x").number(), value.required("y").number()};
 }
 
-/// "n17" of files that we wrote.
+/// The number of "n17" in our own files.
 std::optional<std::uint32_t> lif_number(std::string_view id, char letter) {
   if (id.size() < 2 || id.front() != letter) return std::nullopt;
   const auto number = whole_number_of(id.substr(1));
@@ -45,7 +45,7 @@ class LifReader {
   }
 
  private:
-  /// 2.0 has its layouts in origins.
+  /// In 2.0 the layouts are inside origins.
   JsonValue first_layout(const JsonValue& top) {
     const JsonValue holder =
         top.at("layouts").exists() ? top : first_of(top.required("origins"), "origins");
@@ -92,7 +92,7 @@ class LifReader {
     const bool backward = id.ends_with('-');
     const bool signed_id = backward || id.ends_with('+');
     const auto own = signed_id ? lif_number(id.substr(0, id.size() - 1), 'b') : std::nullopt;
-    // The way back of a branch that is there already.
+    // The opposite direction of an existing branch.
     std::pair<std::uint32_t, std::uint32_t> ends{end.id, start.id};
     if (own ? !branch_ids_.insert(*own).second : !own && straight_.contains(ends)) return;
     straight_.insert({start.id, end.id});
@@ -108,7 +108,7 @@ class LifReader {
     graph_.map.branches.push_back(std::move(branch));
   }
 
-  /// Of the first vehicle type that has one.
+  /// The trajectory of the first vehicle type that has one.
   std::vector<Eigen::Vector2d> trajectory(const JsonValue& properties) {
     for (const JsonValue& of_type : properties.items()) {
       const JsonValue curve = of_type.at("trajectory");
@@ -147,7 +147,7 @@ class LifReader {
     planning::Place& place = graph_.drawing.places.emplace_back();
     place.name = taken ? id : name;
     place.position_m = at_m;
-    // Stations of others have a direction as well, that of the work there.
+    // Foreign stations also have a direction, that of the work there.
     if (station.at("stationDescription").text_or("") == kBaseStation) {
       place.station_heading_rad = position.required("theta").number();
     }

@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The map and what is made of it when a form needs it.
+/// The map, and its derived data, made when a format needs them.
 class MapExport {
  public:
   MapExport(const storage::MapDocument& map, const fs::path& path, const ExportSettings& settings)
@@ -89,7 +89,7 @@ class MapExport {
   ExportedMap out_;
 };
 
-// Logs are written by their writer alone, which compresses them, into a file.
+// Only the log writer can write and compress logs, and only into a file.
 void MapExport::carmen() {
   const StopScans log = stop_scans(map_);
   const support::TemporaryFolder folder("export");

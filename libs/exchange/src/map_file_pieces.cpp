@@ -1,4 +1,4 @@
-// A map file followed from field to field, also where it is damaged.
+// Follows a map file from field to field, even if it is damaged.
 #include <stdexcept>
 #include <utility>
 
@@ -14,7 +14,7 @@ namespace {
 
 using Type = WireField::Type;
 
-/// Of the top level of a map file. Fields to come are messages.
+/// Type of a top-level field of a map file. Unknown fields are messages.
 Type type_of(std::uint32_t number) {
   if (number == MapFields::kVersion || number == MapFields::kSeed) return Type::kVarint;
   if (number == MapFields::kMapId || number == MapFields::kChecksum) return Type::kFixed64;
@@ -49,7 +49,7 @@ class MapFileReader {
   }
 
  private:
-  /// A field as it may follow one of number `last`: files have them in ascending order.
+  /// A field that may follow one of number `last`: files have them in ascending order.
   [[nodiscard]] std::optional<WireField> next_field(std::size_t& at, std::uint32_t last) const {
     std::size_t next = at;
     auto field = read_field(bytes_, next);
@@ -59,8 +59,8 @@ class MapFileReader {
     return field;
   }
 
-  /// Where reading can go on: at the next local map of this robot, or from where all fits together
-  /// up to the checksum at the end.
+  /// Where reading can continue: at the next local map of this robot, or where the rest up to the
+  /// checksum is consistent.
   [[nodiscard]] std::size_t resume_after(std::size_t damaged) const {
     const std::string robot =
         pieces_.robot_id.empty() ? "" : bytes_field(MapFields::kRobotOfLocalMap, pieces_.robot_id);
@@ -128,7 +128,7 @@ class MapFileReader {
 
   void take_local_map(const std::string& payload) {
     const auto id = number_in(payload, MapFields::kIdOfLocalMap);
-    // They follow each other; where bytes were lost, the number says how many maps went with them.
+    // Numbers are consecutive; after lost bytes the number shows how many maps were lost with them.
     const std::uint32_t next = pieces_.stops.empty() ? 0 : pieces_.stops.back().id + 1;
     constexpr std::uint32_t kLongestGap = 10'000;  // a larger one is a damaged number
     const bool plausible =
@@ -136,8 +136,8 @@ class MapFileReader {
     pieces_.stops.push_back({plausible ? static_cast<std::uint32_t>(*id) : next, payload, {}});
   }
 
-  /// The parts of a message, by their field numbers; field 1 is its version where none is for it.
-  /// False where the message ends early.
+  /// The parts of a message, by their field numbers; field 1 is its version if no list is for it.
+  /// False if the message ends early.
   bool take_parts(std::string_view message, std::uint64_t& version,
                   const std::vector<std::vector<std::string>*>& lists) {
     for (std::size_t at = 0; at < message.size();) {
@@ -163,7 +163,7 @@ class MapFileReader {
   std::vector<std::string> grids_;
 };
 
-/// Of all bytes but the last field, which is the checksum.
+/// Checks all bytes except the last field, which is the checksum.
 bool has_right_checksum(std::string_view bytes) {
   constexpr std::size_t kFieldBytes = 9;
   if (bytes.size() < kFieldBytes) return false;

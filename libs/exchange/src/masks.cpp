@@ -23,7 +23,7 @@ bool zone_touches(const DrawnZone& zone, const GridFrame& frame, const Cell& cel
   const auto corner = [&](double x, double y) -> Eigen::Vector2d {
     return middle + half_m * Eigen::Vector2d(x, y);
   };
-  // A zone within the cell, or one that an edge of the cell or its diagonal meets.
+  // True for a zone within the cell, or one that meets an edge or a diagonal of the cell.
   return segment_touches(zone.polygon_m, corner(-1, -1), corner(1, 1)) ||
          segment_touches(zone.polygon_m, corner(-1, 1), corner(1, -1)) ||
          segment_touches(zone.polygon_m, corner(-1, -1), corner(1, -1)) ||
@@ -93,7 +93,7 @@ MaskFiles mask_files(const std::filesystem::path& path, const GridFrame& turned,
       for_cells_of(zone, frame, [&](std::size_t i) { keepout[i] = 100; });
     }
     if (zone.kind != ZoneKind::kSlow) continue;
-    // Rounded down, and 0 would be no limit. The margin is for 0.29 / 0.01.
+    // Rounded down, but 0 would mean no limit. The margin is for 0.29 / 0.01.
     const double steps = std::clamp(std::floor(zone.value / step_mps + 1e-9), 1.0, 100.0);
     const auto value = static_cast<std::uint8_t>(steps);
     for_cells_of(zone, frame, [&](std::size_t i) {

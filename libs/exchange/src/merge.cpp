@@ -30,7 +30,7 @@ std::uint64_t hash_of_stops(const storage::MapDocument& document) {
   return hash.value();
 }
 
-/// Whether `a` is the one that is continued.
+/// Whether `a` is the map that is continued.
 bool comes_first(const storage::MapDocument& a, const storage::MapDocument& b) {
   if (a.local_maps.size() != b.local_maps.size()) {
     return a.local_maps.size() > b.local_maps.size();
@@ -41,7 +41,7 @@ bool comes_first(const storage::MapDocument& a, const storage::MapDocument& b) {
 void check_sessions(const storage::MapDocument& a, const storage::MapDocument& b) {
   std::set<std::uint64_t> sessions;
   for (const LocalMap& map : a.local_maps) sessions.insert(map.stop.session);
-  sessions.erase(0);  // files of before do not say
+  sessions.erase(0);  // older files do not name sessions
   for (const LocalMap& map : b.local_maps) {
     if (!sessions.contains(map.stop.session)) continue;
     throw std::invalid_argument(
@@ -51,7 +51,7 @@ void check_sessions(const storage::MapDocument& a, const storage::MapDocument& b
   }
 }
 
-/// Its stops as far as they have poses, as the map that is continued.
+/// The stops with poses, as the map that is continued.
 localization::StoredMap stored_part(const storage::MapDocument& document) {
   localization::StoredMap stored;
   std::vector<std::int64_t> new_ids(document.local_maps.size(), -1);
@@ -83,10 +83,10 @@ localization::StoredMap stored_part(const storage::MapDocument& document) {
   return stored;
 }
 
-/// A stretch of stops with poses that follow each other.
+/// A series of successive stops with poses.
 struct Drive {
   std::vector<std::size_t> stops;  ///< indices in the map
-  Pose2 T_map_start;               ///< of the first, in its own map
+  Pose2 T_map_start;               ///< of the first stop, in its own map
 };
 
 std::vector<Drive> drives_of(const storage::MapDocument& document) {
@@ -107,7 +107,7 @@ class Merger {
   Merger(const storage::MapDocument& base, const storage::MapDocument& other,
          const pipeline::Config& config)
       : base_(base), other_(other), config_(config), map_(stored_part(base)) {
-    // Sessions are told apart by the order of the drives; their own names come back at the end.
+    // The order of the drives replaces the session names, which return at the end.
     for (const LocalMap& map : map_.maps) names_.push_back(map.stop);
   }
 
@@ -133,12 +133,12 @@ class Merger {
   /// The result, in the frame of the map that was continued.
   [[nodiscard]] const localization::StoredMap& map() const { return map_; }
   [[nodiscard]] const std::vector<topomap::StopId>& names() const { return names_; }
-  /// Index in the map that was added of its first stop that joined.
+  /// Index, within the added map, of its first stop that joined.
   [[nodiscard]] std::size_t first_joined() const { return first_joined_; }
 
  private:
   void add(const Drive& drive, MergedMap& out) {
-    // As well as a person would say it, at least: both maps are bent.
+    // At least the accuracy of a pose that a person gives, because both maps deform.
     constexpr double kLeast_m = 0.1;
     constexpr double kLeast_rad = 0.03;
     const double sigma_m = std::max(kLeast_m, out.alignment.sigma_m);
@@ -149,7 +149,7 @@ class Merger {
     localization::InProcessPool pool;
     const auto stored = std::make_shared<const localization::StoredMap>(map_);
     localization::MappingSession session(config_.localizer, pool, nullptr, stored, start);
-    session.keep_all_views();  // their names here count the stops
+    session.keep_all_views();  // their names here are the stops' indices
     ++drives_;
     for (std::size_t i = 0; i < drive.stops.size(); ++i) {
       auto map = std::make_shared<LocalMap>(other_.local_maps[drive.stops[i]]);
@@ -225,8 +225,8 @@ MergedMap merge(const storage::MapDocument& a, const storage::MapDocument& b,
     document.trajectory.stops[i].stop = merger.names()[i];
     document.trajectory.stops[i].stamp_ns = document.local_maps[i].stamp_ns;
   }
-  // The first stop of `a` stays where it is in `a`; that of the map that was added is the first
-  // behind those that were there.
+  // The first stop of `a` keeps its pose in `a`; the first joined stop of the added map comes
+  // directly after the earlier ones.
   const std::size_t first_added = document.local_maps.size() - out.joined;
   const Pose2 T_base_other =
       document.trajectory.stops[first_added].T_map_robot *

@@ -17,7 +17,7 @@ std::string Nurbs::fault() const {
 }
 
 Eigen::Vector2d Nurbs::at(double u) const {
-  // The span whose knots enclose u; the last one holds its upper end as well.
+  // The span whose knots enclose u; the last one includes its upper end.
   const auto first = knots.begin() + static_cast<std::ptrdiff_t>(degree);
   const auto last = knots.begin() + static_cast<std::ptrdiff_t>(points.size());
   const auto above = std::upper_bound(first + 1, last, u);

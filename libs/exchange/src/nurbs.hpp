@@ -16,13 +16,13 @@ struct Nurbs {
   std::vector<Eigen::Vector2d> points;
   std::vector<double> weights;  ///< as many as points
 
-  /// What was expected of the parts; "" for a curve.
+  /// The fault of the parts, as an expectation; "" for a valid curve.
   [[nodiscard]] std::string fault() const;
 
-  /// At u within the knots, by de Boor's algorithm with weights (algorithm A4.1).
+  /// The point at u within the knots, by de Boor's algorithm with weights (algorithm A4.1).
   [[nodiscard]] Eigen::Vector2d at(double u) const;
 
-  /// The control points of a curve of degree 1; of others, eight points for each span of knots.
+  /// The control points of a curve of degree 1; otherwise eight points for each span of knots.
   [[nodiscard]] std::vector<Eigen::Vector2d> polyline() const;
 };
 

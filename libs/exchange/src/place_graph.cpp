@@ -54,7 +54,7 @@ void lay_over(storage::MapDocument& document, MapGraph graph, Notes& notes) {
   pipeline::lay_over(document.drawing, std::move(graph.drawing));
   if (graph.map.nodes.empty()) return;
   if (document.global_map.nodes.empty()) {
-    // A map is not newer than the trajectory that it was made with.
+    // A map must not be newer than the trajectory that it was made from.
     document.trajectory.version = std::max(document.trajectory.version, graph.map.version);
     document.global_map = std::move(graph.map);
     return;

@@ -11,7 +11,7 @@
 namespace topogeo::exchange {
 namespace {
 
-/// Those that never joined the map and are old enough.
+/// Sessions that never joined the map and are old enough.
 std::vector<PrunedSession> unjoined_sessions(const storage::MapDatabase& database,
                                              std::int64_t older_ns) {
   const std::vector<storage::SessionState> states = database.sessions();
@@ -42,7 +42,7 @@ storage::MapDocument with_fewer_views(const storage::MapDocument& document, std:
                                       const topomap::GlobalMapConfig& config) {
   const std::size_t located = document.trajectory.stops.size();
   const bool all = std::ranges::all_of(document.trajectory.stops, &topomap::StopPose::located);
-  if (!all) return document;  // a drive that was localized in a map, and is none
+  if (!all) return document;  // a drive that was localized in a map is no map itself
   storage::MapDocument with_poses = document;
   with_poses.local_maps.resize(located);
   const auto stored = pipeline::stored_map(with_poses);

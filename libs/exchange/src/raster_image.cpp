@@ -23,7 +23,7 @@ constexpr int kOpaque = 255;
   throw std::runtime_error(source + ": " + what);
 }
 
-/// Throws where a picture is too large, before it takes memory.
+/// Throws for a picture that is too large, before it takes memory.
 void check_size(std::int64_t width, std::int64_t height, const std::string& source) {
   if (width < 1 || height < 1 || width > kMostAlong || height > kMostAlong ||
       width * height > kMostPixels) {
@@ -32,12 +32,12 @@ void check_size(std::int64_t width, std::int64_t height, const std::string& sour
   }
 }
 
-/// Throws where a compressed picture is longer than its pixels can be: it would unpack for minutes
-/// to what nobody looks at.
+/// Throws if a compressed picture is longer than its pixels can be, because it would unpack for
+/// minutes to useless data.
 void check_packed(std::int64_t width, std::int64_t height, std::size_t bytes,
                   const std::string& source) {
   constexpr std::int64_t kPixel_bytes = 8;  // four channels of 16 bits
-  constexpr std::int64_t kRow_bytes = 64;   // a filter, and what packing adds to noise
+  constexpr std::int64_t kRow_bytes = 64;   // a filter byte, and the growth of packed noise
   constexpr std::int64_t kBeside_bytes = std::int64_t{1} << 20U;  // colour profile, texts
   const std::int64_t most = height * (width * kPixel_bytes + kRow_bytes) + kBeside_bytes;
   if (static_cast<std::int64_t>(bytes) <= most) return;

@@ -12,11 +12,11 @@ struct RasterImage {
   std::int32_t width = 0;
   std::int32_t height = 0;
   int white = 255;                        ///< value of white
-  std::vector<std::uint16_t> grey;        ///< row by row from the top; of colours their sum
-  std::vector<std::uint8_t> see_through;  ///< 1: not opaque; empty: all are
+  std::vector<std::uint16_t> grey;        ///< row by row from the top; sum of colours
+  std::vector<std::uint8_t> see_through;  ///< 1: not opaque; empty: all are opaque
 };
 
-/// By the content. Throws std::runtime_error naming `source` and what is wrong.
+/// Detects the format from the content. Throws std::runtime_error naming `source` and the fault.
 RasterImage parse_raster_image(std::string_view bytes, const std::string& source);
 
 }  // namespace topogeo::exchange

@@ -23,7 +23,7 @@ std::string with_id(std::string message, std::uint32_t field, std::uint64_t id) 
   return std::move(message) + varint_field(field, id);
 }
 
-/// Local maps without content, for what refers to stops.
+/// Local maps without content, which other elements can refer to.
 std::string empty_stops(const std::string& robot_id, std::uint32_t count) {
   std::string fields;
   for (std::uint32_t id = 0; id < count; ++id) {
@@ -33,7 +33,8 @@ std::string empty_stops(const std::string& robot_id, std::uint32_t count) {
   return fields;
 }
 
-// A number whose exponent is damaged. The global map takes no more (global_map_builder.hpp).
+// Limits that only a damaged exponent exceeds. The global map has the same
+// (global_map_builder.hpp).
 constexpr double kFarthestPoint_m = 500.0;
 constexpr double kFarthestPose_m = 5000.0;
 
@@ -41,7 +42,7 @@ void require_within(const Eigen::Vector2d& position_m, double most_m) {
   if (!(position_m.cwiseAbs().maxCoeff() <= most_m)) throw std::runtime_error("far away");
 }
 
-/// Throws std::runtime_error for coordinates that no laser measures.
+/// Throws std::runtime_error for coordinates beyond the range of any laser.
 void check_plausible(const topomap::LocalMap& map) {
   for (const topomap::ScanPoint& p : map.points) require_within({p.x_m, p.y_m}, kFarthestPoint_m);
   for (const topomap::LocalNode& node : map.nodes) {
@@ -83,7 +84,7 @@ class Assembler {
  private:
   static std::string robot_of(const StoredPieces& pieces) {
     if (!pieces.robot_id.empty()) return pieces.robot_id;
-    // The first field of each local map, should the one of the file be damaged.
+    // If the file's own field is damaged, each local map begins with the same one.
     for (const StoredPieces::StoredStop& stop : pieces.stops) {
       std::size_t at = 0;
       const auto field = read_field(stop.local_map, at);
@@ -141,8 +142,9 @@ class Assembler {
     }
   }
 
-  /// A missing stop is taken for the next of the session before it, or the one before the session
-  /// behind. Where such a number is taken, or some stops have no session, none keeps its name.
+  /// A missing stop becomes the next one of the session before it, or the previous one of the
+  /// session behind it. If such a number is already used, or some stops have no session, all names
+  /// are dropped.
   void name_stops() {
     std::vector<topomap::LocalMap>& maps = out_.document.local_maps;
     for (const std::uint32_t id : missing_) {
@@ -200,7 +202,7 @@ class Assembler {
       document.trajectory.stops.push_back(stop);
     }
     for (const std::uint32_t id : missing_) {
-      // Its stamp is that of its pose, where there is one.
+      // Its stamp comes from its pose, if there is one.
       if (found.contains(id)) document.local_maps[id].stamp_ns = found[id].stamp_ns;
       document.trajectory.stops[id].stamp_ns = document.local_maps[id].stamp_ns;
       if (id == 0) continue;
@@ -214,7 +216,7 @@ class Assembler {
         {pieces_.trajectory_version, pieces_.map_version, document.local_maps.empty() ? 0U : 1U});
   }
 
-  /// The pose of a stop that has none, from the stop before.
+  /// The pose of a stop without one, derived from the previous stop.
   topomap::StopPose pose_after(const topomap::LocalMap& map, std::size_t& followed,
                                std::size_t& unknown) const {
     topomap::StopPose stop;
@@ -227,7 +229,7 @@ class Assembler {
     ++(stop.located ? followed : unknown);
     if (!stop.located) return stop;
     stop.T_map_robot = before.back().T_map_robot * map.T_previous_robot;
-    // A twentieth of the way, and three degrees, a step: what tracking does at worst.
+    // A twentieth of the distance and three degrees per step, the worst case of tracking.
     const double step_m = map.T_previous_robot.position_m().norm();
     stop.covariance = before.back().covariance;
     stop.covariance.diagonal() +=
@@ -237,7 +239,7 @@ class Assembler {
 
   void take_pairs() {
     storage::MapDocument& document = out_.document;
-    // A pair with its ids, 0 and 1 while it is read.
+    // Reads a pair with the ids 0 and 1, then restores its own ids.
     const auto alone = [&](const std::string& element, std::uint32_t field, auto use) {
       const auto first = number_in(element, F::kFirstOfPair);
       const auto second = number_in(element, F::kSecondOfPair);
@@ -296,7 +298,7 @@ class Assembler {
               [&](const std::string& element) { drawing.grid = alone(F::kGrid, element).grid; });
   }
 
-  /// A name that is taken, for instance.
+  /// Drops an invalid entry, for instance one with a used name.
   template <typename Entry>
   static void drop_if_bad(const storage::MapDrawing& drawing, std::vector<Entry>& entries) {
     try {
@@ -339,7 +341,7 @@ class Assembler {
     remove_repeated(map.branches);
     const bool damaged = out_.lost.size() > before || pieces_.graph_incomplete;
     if (!damaged && !map.nodes.empty()) return;
-    if (pieces_.map_version == 0 && !damaged) return;  // it had none
+    if (pieces_.map_version == 0 && !damaged) return;  // the map had no graph
     make_graph();
   }
 
@@ -349,7 +351,7 @@ class Assembler {
     elements.erase(std::unique(elements.begin(), elements.end(), same), elements.end());
   }
 
-  /// From the stops, when those have seen something.
+  /// Makes the graph from the stops, if any is located.
   void make_graph() {
     const storage::MapDocument& document = out_.document;
     const auto located = [](const topomap::StopPose& stop) { return stop.located; };

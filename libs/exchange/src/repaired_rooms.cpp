@@ -11,7 +11,7 @@
 namespace topogeo::exchange {
 namespace {
 
-constexpr std::uint32_t kMostRooms = 1'000'000;  // a larger number is a damaged one
+constexpr std::uint32_t kMostRooms = 1'000'000;  // a larger number is damaged
 
 }  // namespace
 

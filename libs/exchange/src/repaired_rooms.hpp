@@ -1,4 +1,4 @@
-// The numbers of rooms of a damaged map.
+// Room numbers of a damaged map.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace topogeo::exchange {
 
-/// Rooms and the places in them that can be read; notes those that cannot in `lost`. Where the
-/// number that was given last is lost it is the largest one, so that no room gets another's.
+/// Readable rooms and the places in them; notes unreadable ones in `lost`. If the last assigned
+/// number is lost, the largest one replaces it, so that no room gets another's number.
 planning::RoomMemory repaired_rooms(const StoredPieces& pieces, const std::string& robot_id,
                                     Notes& lost);
 

@@ -9,7 +9,7 @@
 namespace topogeo::exchange {
 namespace {
 
-/// In double quotes, with the escapes of JSON, which are those of YAML.
+/// In double quotes, with the escapes of JSON, which YAML shares.
 std::string quoted(const std::string& text) {
   return nlohmann::json(text).dump();
 }

@@ -22,9 +22,9 @@ double least_clearance(std::span<const BranchPoint> points) {
   return least_m;
 }
 
-/// Whether the robot's middle may pass along the line.
+/// Whether the robot's centre may move along the line.
 bool is_free(const planning::FreeSpace& space, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  // Four samples a cell: a line that cuts off less of a forbidden cell's corner passes it.
+  // Four samples per cell: a line may cut off less of a forbidden cell's corner.
   const int steps =
       static_cast<int>(std::ceil(4.0 * distance(a, b) / space.frame().resolution_m)) + 1;
   for (int i = 0; i <= steps; ++i) {
@@ -64,7 +64,7 @@ class Builder {
   }
 
  private:
-  /// Stretches of a branch that are wide enough become pieces; narrow ones are left out.
+  /// Parts of a branch that are wide enough become pieces; narrow ones are left out.
   void add_branch(const topomap::MapBranch& branch) {
     const std::vector<BranchPoint>& points = branch.points;
     const auto passable = [&](std::size_t i) {
@@ -84,7 +84,7 @@ class Builder {
         const std::uint32_t to = node_at(branch, bend);
         const std::span<const BranchPoint> piece(&points[begin], bend - begin + 1);
         const double clearance_m = least_clearance(piece) - deviation(piece).second;
-        // A branch that comes back to its node within the tolerance leads nowhere.
+        // A branch that returns to its node within the tolerance leads nowhere.
         if (from != to) network_.pieces.push_back({from, to, clearance_m, branch.id, {}});
         from = to;
         begin = bend;
@@ -104,7 +104,7 @@ class Builder {
     return static_cast<std::uint32_t>(network_.nodes.size() - 1);
   }
 
-  /// The point farthest from the line between the ends, and how far it is.
+  /// The point farthest from the line between the ends, and its distance.
   static std::pair<std::size_t, double> deviation(std::span<const BranchPoint> points) {
     std::pair<std::size_t, double> farthest{0, 0.0};
     for (std::size_t i = 1; i + 1 < points.size(); ++i) {
@@ -117,11 +117,11 @@ class Builder {
     return farthest;
   }
 
-  /// Ends of the pieces of points[begin..end], `end` last.
+  /// Ends of the pieces of points[begin..end], including `end`.
   [[nodiscard]] std::vector<std::size_t> bends(const std::vector<BranchPoint>& points,
                                                std::size_t begin, std::size_t end) const {
     std::vector<std::size_t> ends;
-    std::vector<std::size_t> open = {end};  // ends of stretches yet to be settled, nearest last
+    std::vector<std::size_t> open = {end};  // ends of unfinished parts, nearest last
     while (!open.empty()) {
       const std::span<const BranchPoint> piece(&points[begin], open.back() - begin + 1);
       const auto [farthest, away_m] = deviation(piece);
@@ -167,7 +167,7 @@ class Builder {
 
   void join(const planning::Place& place, std::uint32_t index, std::size_t piece, double t,
             const Eigen::Vector2d& at_m) {
-    // A centimetre is below what any of the formats' readers drives.
+    // A centimetre is below the precision of any reader of these formats.
     constexpr double kSame_m = 0.01;
     const double length_m = distance(end_of(piece, true), end_of(piece, false));
     std::uint32_t access = 0;
@@ -233,7 +233,8 @@ class Builder {
     }
   }
 
-  /// Scans of moving people and cells that no beam has met make some of these.
+  /// Reports pieces that the grid forbids, and removes them if only free ones are wanted. Moving
+  /// people in scans and unseen cells cause some of them.
   void check_on_grid() {
     if (space_ == nullptr) return;
     const std::size_t all = network_.pieces.size();
@@ -263,7 +264,7 @@ class Builder {
 
 RouteNetwork route_network(const topomap::GlobalMap& map, const storage::MapDrawing& drawing,
                            const planning::FreeSpace* space, const NetworkSettings& settings) {
-  constexpr double kWidest_m = 100.0;  // beyond it nothing passes anywhere
+  constexpr double kWidest_m = 100.0;  // no robot is wider
   support::check_range("radius of the robot", settings.robot_radius_m, 0.0, kWidest_m, "m");
   support::check_range("tolerance of edges", settings.tolerance_m, 0.0, 1.0, "m");
   return Builder(map, space, settings).build(drawing);

@@ -11,7 +11,7 @@ int side(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector
   return (turn > 0.0) - (turn < 0.0);
 }
 
-/// Of a point on the line through a and b: whether it lies between them.
+/// Whether a point on the line through a and b lies between them.
 bool between_ends(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& p) {
   return (p.array() >= a.cwiseMin(b).array()).all() && (p.array() <= a.cwiseMax(b).array()).all();
 }
@@ -85,7 +85,7 @@ bool is_simple(std::span<const Eigen::Vector2d> corners) {
       if (!follows && !precedes) {
         if (segments_meet(a, b, c, d)) return false;
       } else if (n > 2) {
-        // Neighbours share a corner; they must not lie on each other.
+        // Neighbours share a corner; they must not overlap.
         const Eigen::Vector2d& shared = follows ? b : a;
         const Eigen::Vector2d& mine = follows ? a : b;
         const Eigen::Vector2d& other = follows ? d : c;
@@ -104,8 +104,8 @@ bool polygons_overlap(std::span<const Eigen::Vector2d> a, std::span<const Eigen:
       if (cross_inside(a[i], a[(i + 1) % a.size()], b[j], b[(j + 1) % b.size()])) return true;
     }
   }
-  // Without crossing edges one lies in the other, or they lie apart or side by side: the middle of
-  // each, weighted towards no corner, tells.
+  // Without crossing edges, one polygon contains the other, or they are apart or touch. The mean of
+  // each one's corners decides.
   const auto any_inside = [](std::span<const Eigen::Vector2d> of,
                              std::span<const Eigen::Vector2d> in) {
     Eigen::Vector2d middle = Eigen::Vector2d::Zero();

@@ -15,7 +15,7 @@ inline double distance(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return std::sqrt((a - b).squaredNorm());
 }
 
-/// Of the segment, the point nearest to `p`; `t` in [0, 1] is where along it.
+/// The point of the segment nearest to `p`; `t` in [0, 1] is its position along the segment.
 Eigen::Vector2d nearest_on_segment(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                                    const Eigen::Vector2d& p, double& t);
 
@@ -23,7 +23,7 @@ Eigen::Vector2d nearest_on_segment(const Eigen::Vector2d& a, const Eigen::Vector
 bool segments_meet(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
                    const Eigen::Vector2d& d);
 
-/// Twice the area; positive for corners that go round counter-clockwise.
+/// Twice the area; positive for counter-clockwise corners.
 double signed_area2(std::span<const Eigen::Vector2d> corners);
 
 /// Whether a point lies inside, by counting the edges to its right.
@@ -33,10 +33,10 @@ bool inside(std::span<const Eigen::Vector2d> corners, const Eigen::Vector2d& p);
 bool segment_touches(std::span<const Eigen::Vector2d> corners, const Eigen::Vector2d& a,
                      const Eigen::Vector2d& b);
 
-/// Whether no two edges have a point in common but the corner between neighbours.
+/// Whether no two edges share a point except the corner between neighbours.
 bool is_simple(std::span<const Eigen::Vector2d> corners);
 
-/// Whether two polygons have an inner point in common, by their edges and corners.
+/// Whether two polygons share an inner point, by their edges and corners.
 bool polygons_overlap(std::span<const Eigen::Vector2d> a, std::span<const Eigen::Vector2d> b);
 
 }  // namespace topogeo::exchange

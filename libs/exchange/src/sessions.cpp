@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t kRemoved = -1;
 
-/// What is between two stops that both stay, with their new ids.
+/// The pairs of stops that both remain, with their new ids.
 template <typename Pair>
 std::vector<Pair> kept_pairs(const std::vector<Pair>& pairs,
                              const std::vector<std::int64_t>& new_ids) {
@@ -31,7 +31,7 @@ std::vector<Pair> kept_pairs(const std::vector<Pair>& pairs,
   return kept;
 }
 
-/// The poses that the measurements alone want.
+/// Sets the poses that the measurements alone give.
 void optimize_poses(storage::MapDocument& document) {
   localization::PoseGraph graph;
   for (const topomap::StopPose& stop : document.trajectory.stops) graph.add_pose(stop.T_map_robot);

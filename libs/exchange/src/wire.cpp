@@ -38,7 +38,7 @@ void append_varint(std::string& bytes, std::uint64_t value) {
 std::optional<WireField> read_field(std::string_view bytes, std::size_t& at) {
   std::size_t next = at;
   const auto tag = read_varint(bytes, next);
-  constexpr std::uint64_t kMostFields = 536'870'911;  // of Protobuf
+  constexpr std::uint64_t kMostFields = 536'870'911;  // the limit of Protobuf
   if (!tag || (*tag >> 3U) == 0 || (*tag >> 3U) > kMostFields) return std::nullopt;
   WireField field;
   field.number = static_cast<std::uint32_t>(*tag >> 3U);

@@ -1,4 +1,4 @@
-// The fields of a Protobuf message, without knowing what they mean (Protobuf, "Encoding").
+// The fields of a Protobuf message, without their meaning (Protobuf, "Encoding").
 #pragma once
 
 #include <cstddef>
@@ -17,12 +17,12 @@ struct WireField {
   std::string_view payload{};  ///< of kBytes
 };
 
-/// The field that begins at `at`, which then stands behind it; nothing, with `at` as before, where
-/// none begins or the bytes end within it.
+/// The field that begins at `at`, which is moved behind it. Returns nothing and keeps `at` if no
+/// field begins there or the bytes end within it.
 std::optional<WireField> read_field(std::string_view bytes, std::size_t& at);
 
-/// The last value of a number in a message, as Protobuf takes it; nothing without one or when the
-/// message cannot be followed to its end.
+/// The last value of a number in a message, which counts for Protobuf; nothing if there is none or
+/// the message cannot be followed to its end.
 std::optional<std::uint64_t> number_in(std::string_view message, std::uint32_t field);
 
 /// A field as bytes.

@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using planning::ZoneKind;
 
-/// The same polygon from the same corner on, counter-clockwise.
+/// The same polygon from the same first corner, counter-clockwise.
 std::vector<Eigen::Vector2d> counter_clockwise(std::vector<Eigen::Vector2d> corners) {
   if (signed_area2(corners) < 0.0) std::reverse(corners.begin() + 1, corners.end());
   return corners;
@@ -35,7 +35,7 @@ void add_fields(const planning::DrawnZone& zone, Json& out) {
     case ZoneKind::kOneWay:
       out["zoneType"] = "DIRECTED";
       out["direction"] = zone.value;
-      // The text has the first name, the schema of 3.0.0 the second.
+      // The text of VDA 5050 has the first name, the schema of 3.0.0 the second.
       out["directedLimitation"] = "RESTRICTED";
       out["limitation"] = "RESTRICTED";
       break;
@@ -70,7 +70,7 @@ void check_zones(std::span<const planning::DrawnZone> zones) {
 class ZoneSetReader {
  public:
   ZoneSet read(const JsonValue& top) {
-    // The message, or what is in it.
+    // The message, or its content.
     const JsonValue set = top.at("zoneSet").exists() ? top.at("zoneSet") : top;
     for (const JsonValue& zone : set.required("zones").items()) add(zone);
     return std::move(set_);

@@ -7,10 +7,10 @@
 
 namespace topogeo::exchange {
 
-/// A vertex for each stop that has a pose, with the id of its local map, the first of them fixed;
-/// an edge for each measurement that the map keeps, with its information. Of a map without them
-/// (files of before) edges are those between stops one after another as scan tracking measured
-/// them, and the loops, with the information of a usual match, which a comment of the file states.
+/// A vertex for each stop with a pose, with the id of its local map, the first one fixed; an edge
+/// with its information for each measurement that the map keeps. Older maps keep none: their edges
+/// are the scan tracking between successive stops and the loops, with the information of a usual
+/// match, which a comment of the file states.
 std::string g2o_text(const storage::MapDocument& document);
 
 }  // namespace topogeo::exchange

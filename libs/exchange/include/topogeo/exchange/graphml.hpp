@@ -15,9 +15,9 @@ namespace topogeo::exchange {
 
 std::string graphml_text(const topomap::GlobalMap& map, std::span<const planning::Place> places);
 
-/// Reads what graphml_text wrote without loss. Files of others need `x` and `y` at each node; their
-/// edges without `points` become straight branches. Throws std::runtime_error naming the file, the
-/// element and what was expected.
+/// Reads the output of graphml_text without loss. Foreign files need `x` and `y` at each node;
+/// their edges without `points` become straight branches. Throws std::runtime_error naming the
+/// file, the element and the expectation.
 MapGraph parse_graphml(std::string_view text, const std::string& name);
 
 }  // namespace topogeo::exchange

@@ -1,8 +1,7 @@
-// Grids as an image and a YAML file beside it, as map_server of ROS reads and writes them
-// (docs/exchange.md, "Grid").
+// Grids as an image and a YAML file, in the format of map_server of ROS (docs/exchange.md, "Grid").
 //
-// planning/grid_file.hpp reads the drawings of this project and is strict. This reads what others
-// write: all three modes, keys that it does not know, `negate` as a number or a word.
+// planning/grid_file.hpp reads the drawings of this project strictly. This reader also accepts
+// foreign files: all three modes, unknown keys, `negate` as a number or a word.
 #pragma once
 
 #include <cstdint>
@@ -16,19 +15,19 @@
 namespace topogeo::exchange {
 
 /// FLOOR.yaml and FLOOR.pgm, the image first, for a path FLOOR, FLOOR.yaml or FLOOR.pgm. Free 254,
-/// unknown 205, occupied 0, thresholds 0.65 and 0.196: readers with either rule for a pixel on a
-/// threshold get the same cells. A grid that is turned in the map frame is sampled anew without a
-/// turn, since Nav2 ignores it.
+/// unknown 205, occupied 0, thresholds 0.65 and 0.196: readers get the same cells, however they
+/// treat a pixel on a threshold. A grid that is rotated in the map frame is resampled without
+/// rotation, because Nav2 ignores it.
 std::vector<OutputFile> grid_files(const std::filesystem::path& path,
                                    const planning::OccupancyGrid& grid);
 
-/// The same cells on axes parallel to those of the map, each as at its middle; the grid itself when
-/// it is not turned. Throws std::invalid_argument when it grows too large (see check(GridFrame)).
+/// The grid resampled at the cells' middles on the axes of the map; unchanged if it is not rotated.
+/// Throws std::invalid_argument if it grows too large (see check(GridFrame)).
 planning::OccupancyGrid without_turn(const planning::OccupancyGrid& grid);
 
 enum class ImageMode : std::uint8_t { kTrinary, kScale, kRaw };
 
-/// An image as map_server publishes it.
+/// An image in the values that map_server publishes.
 struct GridImage {
   planning::GridFrame frame;
   std::vector<std::int8_t> values;  ///< 0 free to 100 occupied, -1 unknown; row by row from below
@@ -37,13 +36,13 @@ struct GridImage {
 };
 
 /// Reads by the rules of map_server since ROS 2 Jazzy. Throws std::runtime_error naming the file,
-/// and the line or field with what was expected; images that are not PGM are refused.
+/// the line or field and the expectation; accepts PGM images only.
 GridImage read_grid_image(const std::filesystem::path& yaml_path);
 
-/// Free up to 19, occupied from 65 on, as the thresholds that map_saver writes; else unknown.
+/// Free up to 19, occupied from 65 on, like the thresholds of map_saver; else unknown.
 planning::OccupancyGrid occupancy_of(const GridImage& image);
 
-/// An image whose pixels are the values themselves (mode raw), beside a YAML file that begins with
+/// An image whose pixels are the values themselves (mode raw), and a YAML file that begins with
 /// `comment`; `values` are 0 to 100, row by row from below.
 std::vector<OutputFile> raw_files(const std::filesystem::path& path,
                                   const planning::GridFrame& frame,

@@ -1,9 +1,8 @@
-// A map made of a grid alone: what a robot would have seen of it (docs/exchange.md, "Grid").
+// Makes a map from a grid alone, by simulating a robot in it (docs/exchange.md, "Grid").
 //
-// Stops are put where the free space is widest, no two nearer than `spacing_m`, so they follow the
-// middle of corridors. The scans, all around, are cast in the grid and go through the same steps as
-// those of a robot, so that the map has nodes and branches, can be localized in and can be aligned
-// with others.
+// Places stops where the free space is widest, at least `spacing_m` apart, so they follow the
+// middle of corridors. All-round scans are cast in the grid and processed like a robot's, so that
+// the map has nodes and branches, allows localization and can be aligned with others.
 #pragma once
 
 #include <string>
@@ -18,33 +17,34 @@ namespace topogeo::exchange {
 struct GridMapSettings {
   double spacing_m = 1.5;  ///< between stops, [0.2, 100]
   double range_m = 20.0;   ///< of the laser, [1, 100]
-  /// Parts of the free space below are left out: cells behind walls that scans saw by chance, m^2.
+  /// Smaller parts of the free space are left out: cells behind walls that scans saw by chance,
+  /// m^2.
   double least_area_m2 = 2.0;
-  /// Where the floor has room for too many stops it is refused; else they are put farther apart.
+  /// If the floor has room for too many stops: true refuses it, false places them farther apart.
   bool fixed_spacing = false;
 };
 
-/// Stops of a map made of a grid, at most: a stop takes about 2 ms.
+/// Most stops of a map made of a grid: a stop takes about 2 ms.
 inline constexpr std::size_t kMostGridStops = 3000;
-/// Cells along a beam times stops, at most: with the usual range and cells of 5 cm as many as
-/// kMostGridStops need.
+/// Most cells along a beam times stops: enough for kMostGridStops with the usual range and cells of
+/// 5 cm.
 inline constexpr double kMostGridSteps = 1'200'000;
 
-/// Throws std::runtime_error for a grid of more cells than a picture may have pixels: a drawn floor
-/// can be of any size, and each cell takes work.
+/// Throws std::runtime_error if the grid has more cells than a picture may have pixels: a drawn
+/// floor can have any size, and each cell takes work.
 void check_grid_size(const planning::GridFrame& frame);
 
-/// The document has the grid as its drawing. Empty but for that when no part of the free space is
-/// large enough. Throws std::invalid_argument for settings out of range, and std::runtime_error for
-/// a grid that needs more stops, or more steps of their beams.
+/// Makes a map with the grid as its drawing, otherwise empty if no part of the free space is large
+/// enough. Throws std::invalid_argument for settings out of range, and std::runtime_error for a
+/// grid that needs too many stops or beam steps.
 storage::MapDocument map_of_grid(const planning::FreeSpace& space,
                                  const pipeline::LocalMapperConfig& mapper,
                                  const topomap::GlobalMapConfig& global_map,
                                  const std::string& robot_id, const GridMapSettings& settings = {});
 
-/// Range of a beam from a point of the map frame: to the middle of the first occupied cell, as far
-/// along the beam; scan::Scan::kNoReturn where there is none within `range_m` or before what is
-/// unknown.
+/// Range of a beam from a point of the map frame to the middle of the first occupied cell,
+/// projected onto the beam; scan::Scan::kNoReturn if there is none within `range_m` or an unknown
+/// cell comes first.
 float cast_beam(const planning::OccupancyGrid& grid, const Eigen::Vector2d& from_m,
                 double heading_rad, double range_m);
 

@@ -18,15 +18,15 @@ struct LifText {
 };
 
 /// Nodes n<id>, edges b<id>+ and b<id>- with the polyline as trajectory of degree 1, places as
-/// stations at the nearest node that has an edge. Branches that are somewhere narrower than
-/// `settings.robot_radius_m`, that lead back to their own node, or that zones forbid, are left out.
-/// The tolerance has no part in it.
+/// stations at the nearest node that has an edge. Leaves out branches that are narrower than
+/// `settings.robot_radius_m` at any point, that lead back to their own node or that zones forbid.
+/// The tolerance is not used.
 LifText lif_text(const topomap::GlobalMap& map, const storage::MapDrawing& drawing,
                  const NetworkSettings& settings, const ExportHeader& header);
 
 /// Reads the first layout of a file of version 1.0.0, or of the draft of 2.0. Trajectories of other
-/// degrees become polylines. Throws std::runtime_error naming the file, the field and what was
-/// expected.
+/// degrees become polylines. Throws std::runtime_error naming the file, the field and the
+/// expectation.
 MapGraph parse_lif(std::string_view text, const std::string& name);
 
 }  // namespace topogeo::exchange

@@ -1,5 +1,5 @@
-// A map in the form of another program, by the name of the form: what `topogeo store export` and
-// the page write (docs/exchange.md).
+// Exports a map to the format of another program, selected by name, for `topogeo store export` and
+// the page (docs/exchange.md).
 #pragma once
 
 #include <filesystem>
@@ -19,30 +19,30 @@ namespace topogeo::exchange {
 
 struct ExportSettings {
   pipeline::HybridMapConfig hybrid_map;  ///< of the grid
-  std::optional<double> robot_radius_m;  ///< of graphs; none: what `hybrid_map` forbids around
-                                         ///< obstacles
-  NetworkSettings network;               ///< its robot_radius_m is not read
-  ExportHeader header;                   ///< its robot_id is that of the map
+  std::optional<double> robot_radius_m;  ///< of graphs; none: the distance that `hybrid_map` keeps
+                                         ///< from obstacles
+  NetworkSettings network;               ///< without its robot_radius_m
+  ExportHeader header;                   ///< with the robot_id of the map
   std::string title;                     ///< of the picture
 };
 
 struct ExportedMap {
-  std::vector<OutputFile> files;  ///< one that names others comes last
+  std::vector<OutputFile> files;  ///< a file that names others comes last
   Notes notes;
 };
 
 struct ExportFormat {
   std::string_view name;
-  /// What comes behind the name that is chosen for the files. That of a form of one file is only
-  /// usual, others are fixed.
+  /// Endings of the files, appended to the chosen name. For a single file the ending is only usual,
+  /// for several it is fixed.
   std::vector<std::string_view> endings;
 };
 
-/// All forms, as docs/exchange.md has them.
+/// All formats of docs/exchange.md.
 std::span<const ExportFormat> export_formats();
 
-/// `path`: the file, or what several begin with. Throws std::invalid_argument for a form that there
-/// is not and where the map has not what it takes, std::runtime_error where a file cannot be made.
+/// `path`: the file, or the common start of several. Throws std::invalid_argument for an unknown
+/// format or a map that lacks what it needs, std::runtime_error if a file cannot be made.
 ExportedMap export_map(const storage::MapDocument& map, std::string_view format,
                        const std::filesystem::path& path, const ExportSettings& settings);
 

@@ -1,4 +1,4 @@
-// What graph formats bring: nodes, branches, places and zones.
+// Contents of graph formats: nodes, branches, places and zones.
 #pragma once
 
 #include "topogeo/exchange/output_file.hpp"

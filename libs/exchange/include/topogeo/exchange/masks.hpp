@@ -17,9 +17,9 @@ struct MaskFiles {
 };
 
 /// PATH_keepout and PATH_speed, each an image and a YAML file, in mode raw, on the cells of `frame`
-/// or, where that is turned, on straight cells around it. A cell that a zone touches is in it:
+/// or, if that is rotated, on unrotated cells around it. A cell that a zone touches belongs to it:
 /// keepout 100 in no-go zones, speed the allowed speed of the slowest zone; 0 elsewhere. A comment
-/// of the YAML file has the values that CostmapFilterInfo needs.
+/// of the YAML file has the values for CostmapFilterInfo.
 MaskFiles mask_files(const std::filesystem::path& path, const planning::GridFrame& frame,
                      std::span<const planning::DrawnZone> zones);
 

@@ -13,10 +13,10 @@ struct OutputFile {
   std::string bytes;
 };
 
-/// What a person should know of an export or import: what was left out, ignored or assumed.
+/// Remarks on an export or import for people: parts left out, ignored or assumed.
 using Notes = std::vector<std::string>;
 
-/// Writes each file whole or not at all, in their order: one that names others comes last. Throws
+/// Writes each file whole or not at all, in order: a file that names others comes last. Throws
 /// std::runtime_error naming the file and the cause.
 void write_files(std::span<const OutputFile> files);
 

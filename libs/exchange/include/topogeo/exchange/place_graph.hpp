@@ -1,4 +1,4 @@
-// Puts what was imported where it lies in a map.
+// Places an imported graph in a map.
 #pragma once
 
 #include "topogeo/exchange/map_graph.hpp"
@@ -8,18 +8,18 @@
 
 namespace topogeo::exchange {
 
-/// Everything in it from its own frame to that of the map.
+/// Moves everything from its own frame to the frame of the map.
 void move(MapGraph& graph, const geometry::Pose2& T_map_graph);
 
-/// Whether a node or a whole branch has none: to know the distances of a large grid takes seconds.
+/// Whether a node or a whole branch lacks clearances: the distances of a large grid take seconds.
 bool lacks_clearances(const topomap::GlobalMap& map);
 
-/// Clearances that a file did not have (0 at all points of a branch), from the distances of the
-/// grid; 0 stays where the grid does not reach.
+/// Fills missing clearances (0 at all points of a branch) from the distances of the grid; 0 remains
+/// outside of the grid.
 void take_clearances(topomap::GlobalMap& map, const planning::FreeSpace& space);
 
-/// Places and zones take the place of those of the same name, others come behind; nodes and
-/// branches are taken when the map has none, else there is a note.
+/// Places and zones replace those of the same name, others are appended. Nodes and branches are
+/// used if the map has none, otherwise a note reports them.
 void lay_over(storage::MapDocument& document, MapGraph graph, Notes& notes);
 
 }  // namespace topogeo::exchange

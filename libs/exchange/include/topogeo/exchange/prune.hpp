@@ -1,5 +1,5 @@
-// What a map can do without: stops of sessions that never joined it, and views of places that
-// others show as well.
+// Removes dispensable stops from a map: those of sessions that never joined it, and views of places
+// that others show as well.
 #pragma once
 
 #include <cstddef>
@@ -15,12 +15,12 @@
 namespace topogeo::exchange {
 
 struct PruneSettings {
-  /// Sessions whose last stop is so much older than the newest stop of all. The newest session,
-  /// which may go on, stays.
+  /// Removes sessions whose last stop is this much older than the newest stop of all. The newest
+  /// session stays, because it may go on.
   std::int64_t older_ns = 0;
-  /// Times that are kept of each place, see localization::KeptViews; none: all views stay.
+  /// Views kept of each place, see localization::KeptViews; none: all views stay.
   std::optional<std::size_t> times;
-  bool dry_run = false;  ///< the file stays as it is
+  bool dry_run = false;  ///< the file is not changed
 };
 
 struct PrunedSession {
@@ -30,18 +30,18 @@ struct PrunedSession {
 };
 
 struct Pruned {
-  std::vector<PrunedSession> sessions;  ///< whose stops go
+  std::vector<PrunedSession> sessions;  ///< with removed stops
   std::size_t views_before = 0;         ///< in the map
   std::size_t views = 0;
   std::uintmax_t bytes_before = 0;  ///< of the file
   std::uintmax_t bytes = 0;
 };
 
-/// Prunes a map database, which no map store has open, in its place. Throws like MapDatabase.
+/// Prunes a map database in place; no map store may have it open. Throws like MapDatabase.
 Pruned prune(const std::filesystem::path& database, const PruneSettings& settings,
              const topomap::GlobalMapConfig& config);
 
-/// The map with so many times of each place; nodes and branches are made anew where it changes.
+/// Keeps that many views of each place; nodes and branches are made anew if the map changes.
 storage::MapDocument with_fewer_views(const storage::MapDocument& document, std::size_t times,
                                       const topomap::GlobalMapConfig& config);
 

@@ -1,9 +1,9 @@
-// What can be saved of a damaged map (docs/exchange.md, "Damaged maps").
+// Saves the readable parts of a damaged map (docs/exchange.md, "Damaged maps").
 //
-// Elements are read one by one: a local map, a pose, a loop that cannot be read costs itself alone.
-// Where lengths are damaged too, reading goes on at the next place from which the rest fits
-// together. What is missing then follows from what is there: poses from scan tracking, nodes and
-// branches from the stops. A changed digit within an element that can be read is not noticed.
+// Elements are read one by one, so an unreadable local map, pose or loop costs only itself. After
+// damaged lengths, reading continues at the next place from which the rest is consistent. Missing
+// parts are derived from the others: poses from scan tracking, nodes and branches from the stops. A
+// changed digit within a readable element is not detected.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +19,12 @@
 
 namespace topogeo::exchange {
 
-/// Elements of a map as they were stored: Protobuf messages of proto/map.proto, perhaps damaged.
+/// Elements of a map as stored: Protobuf messages of proto/map.proto, possibly damaged.
 struct StoredPieces {
   struct StoredStop {
     std::uint32_t id = 0;                ///< in the map
     std::string local_map;               ///< LocalMap
-    std::optional<bool> starts_drive{};  ///< where it is stored beside
+    std::optional<bool> starts_drive{};  ///< if stored separately
   };
   std::string robot_id;
   std::uint64_t seed = 0;
@@ -45,25 +45,25 @@ struct StoredPieces {
   std::vector<std::string> rooms;           ///< Room
   std::vector<std::string> room_places;     ///< PlaceInRoom
   std::uint64_t last_room = 0;
-  bool graph_incomplete = false;  ///< nodes or branches are among what was lost
-  Notes damage;                   ///< what was lost already
+  bool graph_incomplete = false;  ///< nodes or branches were lost
+  Notes damage;                   ///< parts that are already lost
 };
 
 /// The elements of a map file, as far as their lengths can be followed. Throws std::runtime_error
-/// naming `name` when nothing in it is like a map file.
+/// naming `name` if nothing in it resembles a map file.
 StoredPieces pieces_of_map_file(std::string_view bytes, const std::string& name);
 
-/// The elements of a map database. Throws std::runtime_error naming the file when not even its
-/// tables are known.
+/// The elements of a map database. Throws std::runtime_error naming the file if not even its tables
+/// can be read.
 StoredPieces pieces_of_database(const std::filesystem::path& path);
 
 struct RepairedMap {
   storage::MapDocument document;
-  Notes lost;  ///< empty: nothing
+  Notes lost;  ///< empty: nothing is lost
 };
 
-/// A document that can be written. Throws std::runtime_error naming `name` when no local map and
-/// nothing that was drawn is left.
+/// Makes a document that can be written. Throws std::runtime_error naming `name` if neither a local
+/// map nor a part of the drawing is left.
 RepairedMap assemble(const StoredPieces& pieces, const topomap::GlobalMapConfig& config,
                      const std::string& name);
 

@@ -9,7 +9,7 @@
 
 namespace topogeo::exchange {
 
-/// One level; a vertex for each node of the network, named where it is a place, a lane for each
+/// One level; a vertex for each node of the network, named if it is a place, a lane for each
 /// direction of a piece.
 std::string rmf_text(const RouteNetwork& network, std::span<const planning::Place> places,
                      const std::string& building, const std::string& level);

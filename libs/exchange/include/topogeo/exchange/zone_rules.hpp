@@ -1,4 +1,4 @@
-// What drawn zones demand of those who drive from one point straight to another.
+// Driving rules of drawn zones for a straight segment.
 #pragma once
 
 #include <optional>
@@ -11,17 +11,18 @@
 namespace topogeo::exchange {
 
 struct DrivingRule {
-  bool forward = true;  ///< may be driven from the first point to the second
+  bool forward = true;  ///< the segment may be driven from its first point to its second
   bool backward = true;
   std::optional<double> speed_mps;  ///< at most
 
   [[nodiscard]] bool forbidden() const { return !forward && !backward; }
-  /// Both hold: the strictest of each.
+  /// Combines both rules: the stricter part of each applies.
   void add(const DrivingRule& other);
 };
 
-/// Of the zones that the segment touches. No way leads through a no-go zone; through a one-way zone
-/// none that turns more than 120 degrees from its heading, so that it can be crossed.
+/// Combines the rules of the zones that the segment touches. A no-go zone forbids both directions.
+/// A one-way zone forbids directions that deviate more than 120 degrees from its heading, so that
+/// it can be crossed.
 DrivingRule rule_between(std::span<const planning::DrawnZone> zones, const Eigen::Vector2d& from_m,
                          const Eigen::Vector2d& to_m);
 

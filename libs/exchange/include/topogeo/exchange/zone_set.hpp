@@ -1,4 +1,5 @@
-// Drawn zones in the words of VDA 5050 3.0: the message `zoneSet` (docs/exchange.md, "Zone sets").
+// Converts drawn zones to and from the message `zoneSet` of VDA 5050 3.0 (docs/exchange.md, "Zone
+// sets").
 #pragma once
 
 #include <span>
@@ -13,9 +14,9 @@
 namespace topogeo::exchange {
 
 /// no_go becomes BLOCKED, slow SPEED_LIMIT, one_way DIRECTED, a room an ACTION zone without
-/// actions. Corners go round counter-clockwise. The id of the set follows from its content. Throws
-/// std::invalid_argument naming the zone: corners that cross themselves, one-way zones that
-/// overlap, which VDA 5050 forbids.
+/// actions. Corners go round counter-clockwise. The id of the set is derived from its content.
+/// Throws std::invalid_argument naming the zone: edges that cross each other, or overlapping
+/// one-way zones, which VDA 5050 forbids.
 std::string zone_set_text(std::span<const planning::DrawnZone> zones, const ExportHeader& header);
 
 struct ZoneSet {
@@ -23,8 +24,8 @@ struct ZoneSet {
   Notes notes;
 };
 
-/// Zones of other types have no equal here and are left out with a note. Throws std::runtime_error
-/// naming the file, the field and what was expected.
+/// Zones of other types have no equivalent here and are left out with a note. Throws
+/// std::runtime_error naming the file, the field and the expectation.
 ZoneSet parse_zone_set(std::string_view text, const std::string& name);
 
 }  // namespace topogeo::exchange
