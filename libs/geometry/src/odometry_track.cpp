@@ -7,7 +7,7 @@ namespace topogeo::geometry {
 
 namespace {
 
-/// The chord of the arc, which for the small turns between two reports is the arc.
+/// The chord of the arc, which equals the arc for the small turns between two reports.
 Pose2 extrapolate(const OdometrySample& last, std::int64_t stamp_ns) {
   const double time_s = static_cast<double>(stamp_ns - last.stamp_ns) * 1e-9;
   const double distance_m = last.linear_mps * time_s;

@@ -9,8 +9,8 @@
 namespace topogeo::geometry {
 namespace {
 
-// pi/2 and ln 2, each split into a part with trailing zeros, whose small multiples are exact, and
-// the rest.
+// pi/2 and ln 2, each split into a part with trailing zeros, whose small multiples are exact, and a
+// remainder.
 constexpr double kHalfPiHigh = 0x1.921fb544p+0;
 constexpr double kHalfPiLow = 0x1.0b4611a626331p-34;
 constexpr double kLn2High = 0x1.62e42feep-1;
@@ -42,7 +42,7 @@ constexpr std::array<double, 9> kCosine = {1.0,
                                            -1.0 / 87178291200.0,
                                            1.0 / 20922789888000.0};
 
-// From here on the steps below leave the range of their numbers; no robot turns so often.
+// The reduction below overflows its numbers beyond this angle; no robot turns so often.
 constexpr double kManyTurns_rad = 1e9;
 
 // Arc tangent of t in [0, 1]: two halvings of the angle bring t below 0.2, where the series is

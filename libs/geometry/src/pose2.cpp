@@ -14,7 +14,7 @@ double wrap_angle(double angle_rad) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   if (angle_rad > -std::numbers::pi && angle_rad <= std::numbers::pi) return angle_rad;
   const double wrapped = angle_rad - kTurn * std::nearbyint(angle_rad / kTurn);
-  // After many turns the rounding of the product can leave either border by its last place.
+  // After many turns the rounding of the product can exceed either border by its last place.
   return wrapped <= -std::numbers::pi ? std::min(wrapped + kTurn, std::numbers::pi)
                                       : std::min(wrapped, std::numbers::pi);
 }

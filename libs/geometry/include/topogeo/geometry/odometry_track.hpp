@@ -1,4 +1,4 @@
-// The odometry of the last seconds, and the pose at a time between or shortly after its samples.
+// The odometry of the last seconds, with poses between its samples or shortly after the last one.
 #pragma once
 
 #include <cstdint>
@@ -16,32 +16,32 @@ struct OdometrySample {
   double angular_radps = 0.0;  ///< counter-clockwise
 };
 
-/// The pose at a time from that of `a` to that of `b`, which is later: x and y on the straight
-/// line, the heading by the shorter turn.
+/// The pose at a time between `a` and the later `b`: x and y on the straight line, the heading by
+/// the shorter turn.
 Pose2 interpolate(const OdometrySample& a, const OdometrySample& b, std::int64_t stamp_ns);
 
 class OdometryTrack {
  public:
-  /// Older samples than this are forgotten.
+  /// Older samples are dropped.
   static constexpr std::int64_t kKept_ns = 5'000'000'000;
 
-  /// `longest_extrapolation_ns` >= 0: how far after the last sample a pose is still given.
+  /// `longest_extrapolation_ns` >= 0: limit for poses after the last sample.
   explicit OdometryTrack(std::int64_t longest_extrapolation_ns)
       : longest_extrapolation_ns_(longest_extrapolation_ns) {}
 
-  /// Samples come in time order; one that does not is left out and gives false.
+  /// Adds a sample. One that is not in time order is ignored, and the result is false.
   bool add(const OdometrySample& sample);
-  /// The samples so far do not belong to those that follow.
+  /// Drops all samples, because they are unrelated to the following ones.
   void clear() { samples_.clear(); }
 
-  /// Stamp of the last sample; nothing without one.
+  /// Stamp of the last sample; empty without one.
   [[nodiscard]] std::optional<std::int64_t> last_ns() const;
 
   struct Answer {
     Pose2 T_odom_robot;
     bool extrapolated = false;
   };
-  /// Between two samples: see interpolate(). After the last one: on the arc of its speeds. Nothing
+  /// Between two samples: see interpolate(). After the last one: on the arc of its speeds. Empty
   /// before the first sample or too long after the last.
   [[nodiscard]] std::optional<Answer> at(std::int64_t stamp_ns) const;
 

@@ -1,10 +1,10 @@
 // Transcendental functions that give the same bits on every machine.
 //
-// libm picks variants by CPU, so two workers could answer one match task differently. These use
-// only IEEE additions, multiplications, divisions and square roots in a fixed order (compile with
-// -ffp-contract=off). Accuracy: within 4 ulp of libm over the ranges named below (unit tests
-// compare). The trade-off is speed: about twice the time of libm, which no profile of the matcher
-// shows.
+// libm selects variants by CPU, so two workers could answer one match task differently. These
+// functions use only IEEE additions, multiplications, divisions and square roots in a fixed order
+// (compile with -ffp-contract=off). Accuracy: within 4 ulp of libm over the ranges named below
+// (compared by unit tests). The trade-off is speed: about twice the time of libm, which no profile
+// of the matcher shows.
 #pragma once
 
 namespace topogeo::geometry {
