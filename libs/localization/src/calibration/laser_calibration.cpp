@@ -53,7 +53,7 @@ LaserCalibration calibrate_laser(
   constexpr double kSmallStep = 1e-9;  // m and rad
   OdometryCalibrationConfig quick = config;
   quick.resamples = 2;
-  Pose2 T_robot_measured;  // where the laser is, seen from where it was taken to be
+  Pose2 T_robot_measured;  // position of the laser relative to its assumed one
   for (int round = 0; round < kMostRounds; ++round) {
     const Pose2 step =
         found_shift(calibrate_odometry(stretches, seen_from(motions, T_robot_measured), quick));
@@ -67,11 +67,11 @@ LaserCalibration calibrate_laser(
   LaserCalibration result;
   result.yaw_rad = part(T.theta_rad, T_robot_laser.theta_rad, found.mounting_covariance(2, 2),
                         found.mounting_likelihood_covariance(2, 2), kLargestMountingSpread_rad);
-  // What turns show is where the point of the odometry lies, seen from the laser. With another yaw
-  // than the one found here that is another place on the robot.
+  // Turns show the reference point of the odometry as seen from the laser. Its place on the robot
+  // depends on the yaw, so it is recomputed if the yaw keeps its previous value.
   const Eigen::Vector2d position_m =
       Pose2{0.0, 0.0, result.yaw_rad.value - T.theta_rad} * T.position_m();
-  // To first order the laser at p moves by (ahead, left) + yaw * (-p.y, p.x).
+  // First-order motion of a laser at p: (ahead, left) + yaw * (-p.y, p.x).
   Eigen::Matrix3d by_shift = Eigen::Matrix3d::Identity();
   if (result.yaw_rad.known) {
     by_shift(0, 2) = -T.y_m;

@@ -24,7 +24,7 @@ const std::array<NoiseParameter, kNoiseParameters> kOdometryParameters{{
 
 namespace {
 
-// Fixed: a stretch with less shows nothing but the noise of the measurement.
+// Fixed: a shorter stretch shows only the noise of the measurement.
 constexpr double kLeastPath_m = 0.2;
 constexpr double kLeastTurn_rad = 0.2;
 constexpr double kLargestNoise = kLargestOdometryNoise;
@@ -49,7 +49,7 @@ void check_measurements(std::span<const OdometryStretch> stretches,
   }
 }
 
-/// How many of the stretches that a motion covers have enough distance, or turn.
+/// Number of stretches covered by motions, and how many of them have enough distance or turn.
 struct Coverage {
   std::size_t stretches = 0;
   std::size_t with_path = 0;
@@ -113,7 +113,7 @@ class Bootstrap {
     Estimate found = estimate(fits, [parameter](const NoiseFit& fit) {
       return std::min(fit.noise[parameter], kLargestNoise);
     });
-    // At the border all resamples agree, which is no certainty.
+    // At the lower limit all resamples agree, but that is no certainty.
     const bool at_border = found.value <= 2.0 * kSmallestNoise;
     if (at_border) {
       found.spread = std::max(found.spread, upper_width(model, fits.terms, fits.weights, fits.best,
@@ -130,7 +130,7 @@ class Bootstrap {
       start.noise[p] = std::max(config_.fallback.*kOdometryParameters[p].field, 1e-4);
     }
     Fits fits;
-    constexpr int kLinearizations = 3;  // errors of some percent need no more
+    constexpr int kLinearizations = 3;  // enough for errors of some percent
     for (int i = 0; i < kLinearizations; ++i) {
       const NoiseFit about = i == 0 ? NoiseFit{} : fits.best;
       fits.terms.clear();
@@ -169,7 +169,7 @@ SystematicErrors systematic_errors(const Fits& fits) {
   return {of(0), of(1), of(2), of(3), of(4), of(5)};
 }
 
-/// Of (ahead, left, yaw), over the resamples.
+/// Covariance of (ahead, left, yaw) over the resamples.
 Eigen::Matrix3d mounting_covariance(const Fits& fits) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const NoiseFit& fit : fits.resampled) mean += fit.systematic.tail<3>();

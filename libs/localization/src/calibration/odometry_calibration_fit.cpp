@@ -31,7 +31,8 @@ Eigen::Vector3d residual(const MotionTerms& motion, const NoiseFit& fit) {
 }
 
 // Negative logarithm of the likelihood per motion. The variables are logarithms, because variances
-// are positive and of unknown size: first that of the measurements, then those that the model has.
+// are positive and of unknown magnitude: first the factor of the measurements, then the parameters
+// of the model.
 class NegativeLogLikelihood : public ceres::FirstOrderFunction {
  public:
   NegativeLogLikelihood(const FitModel& model, std::span<const MotionTerms> motions,
@@ -65,8 +66,8 @@ class NegativeLogLikelihood : public ceres::FirstOrderFunction {
 
   bool Evaluate(const double* x, double* cost, double* gradient) const override {
     const NoiseFit fit = at(x);
-    // Where all motions are of one length nothing separates the measurements' part from the
-    // odometry's: then what they state counts, give or take a factor e.
+    // If all motions have one length, nothing separates the noise of the measurements from that of
+    // the odometry. This prior then keeps the stated covariances, give or take a factor e.
     *cost = 0.5 * x[0] * x[0] / total_;
     Eigen::VectorXd slope = Eigen::VectorXd::Zero(NumParameters());
     slope[0] = x[0] / total_;
@@ -84,7 +85,7 @@ class NegativeLogLikelihood : public ceres::FirstOrderFunction {
   }
 
  private:
-  // Adds a motion; slopes of the noise are by the parameters themselves.
+  // Adds a motion; the gradient is with respect to the noise parameters themselves.
   void add(const MotionTerms& motion, const NoiseFit& fit, double weight, double& cost,
            Eigen::VectorXd& slope) const {
     const Eigen::Matrix3d sum = covariance(motion, fit);
@@ -134,10 +135,9 @@ NoiseFit maximize(const FitModel& model, std::span<const MotionTerms> motions,
   return likelihood->at(x.data());
 }
 
-// Normal equations of the systematic errors, the noise being known: generalised least squares.
+// Normal equations of the systematic errors for known noise: generalised least squares.
 struct SystematicEquations {
-  // Starts at 1, so that what no motion bears on stays at 0; with a real error of 1 there is no
-  // odometry.
+  // Starts at 1, so that errors without data stay at 0. An error of 1 would mean no odometry.
   Eigen::Matrix<double, kSystematicErrors, kSystematicErrors> information =
       Eigen::Matrix<double, kSystematicErrors, kSystematicErrors>::Identity();
   SystematicVector sum = SystematicVector::Zero();
@@ -224,7 +224,7 @@ MotionTerms make_terms(std::span<const OdometryStretch> stretches, const Measure
     for (const Pose2& step : steps.steps) sum = advance(sum, step, one);
     terms.growth[p] = sum.covariance;
   }
-  // A longer path moves the end along; a turn swings what lies beyond it, and the laser too.
+  // A longer path moves the end along; a turn swings everything beyond it, and the laser too.
   const geometry::SinCos r = geometry::sincos(steps.T_first_last.theta_rad);
   terms.systematic.setZero();
   terms.systematic.col(0) << end.x(), end.y(), 0.0;
@@ -250,7 +250,8 @@ MotionTerms make_terms(std::span<const OdometryStretch> stretches, const Measure
   }
   terms.residual = geometry::difference(steps.T_first_last, motion.T_first_last);
   terms.residual.head<2>() -= shortening;
-  // `steps` has the distance, heading and turn of `about` taken out, not the mounting of the laser.
+  // `steps` already excludes the distance, heading and turn errors of `about`, but not its
+  // mounting.
   SystematicVector taken_out = about.systematic;
   taken_out.tail<3>().setZero();
   terms.residual += terms.systematic * taken_out;
@@ -267,8 +268,8 @@ NoiseFit fit_robustly(const FitModel& model, std::span<const MotionTerms> motion
                       std::vector<double>& weights) {
   weights.assign(motions.size(), 1.0);
   NoiseFit fit = fit_both(model, motions, weights, start, kStudent);
-  // From the core outwards: every round takes in what the noise found so far explains.
-  constexpr int kMostRounds = 20;  // a bound, should two sets of motions alternate
+  // Grows from the core: every round adds the motions that the noise estimated so far explains.
+  constexpr int kMostRounds = 20;  // a bound, in case two sets of motions alternate
   for (int round = 0; round < kMostRounds; ++round) {
     bool changed = round == 0;
     for (std::size_t n = 0; n < motions.size(); ++n) {

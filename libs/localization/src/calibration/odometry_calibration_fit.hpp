@@ -17,17 +17,17 @@ inline constexpr double kSmallestNoise = kSmallestOdometryNoise;
 inline constexpr int kSystematicErrors = 6;
 using SystematicVector = Eigen::Matrix<double, kSystematicErrors, 1>;
 
-/// A motion in the form that the likelihood wants.
+/// A motion as the likelihood uses it.
 struct MotionTerms {
-  Eigen::Vector3d residual;  ///< odometry less measurement
+  Eigen::Vector3d residual;  ///< odometry minus measurement
   Eigen::Matrix<double, 3, kSystematicErrors>
       systematic;  ///< derivative of the residual by distance, heading per metre, turn, ahead,
                    ///< left, yaw
-  std::array<Eigen::Matrix3d, kNoiseParameters> growth;  ///< covariance for each parameter at 1
+  std::array<Eigen::Matrix3d, kNoiseParameters> growth;  ///< covariance per unit of each parameter
   Eigen::Matrix3d measurement;                           ///< covariance
 };
 
-/// What of the model is estimated; the rest is zero.
+/// Parameters of the model that are estimated; the others are zero.
 struct FitModel {
   std::array<bool, kNoiseParameters> noise{};
   std::array<bool, kSystematicErrors> systematic{};
@@ -39,8 +39,8 @@ struct NoiseFit {
   SystematicVector systematic = SystematicVector::Zero();
 };
 
-/// Linear in the parameters about those of `about`: headings that are wrong by some degrees bend
-/// the path, which shortens it on average.
+/// Linearised about the parameters of `about`. Headings that are wrong by some degrees bend the
+/// path, which shortens it on average.
 MotionTerms make_terms(std::span<const OdometryStretch> stretches, const MeasuredMotion& motion,
                        const NoiseFit& about);
 
@@ -48,19 +48,19 @@ MotionTerms make_terms(std::span<const OdometryStretch> stretches, const Measure
 NoiseFit fit_noise(const FitModel& model, std::span<const MotionTerms> motions,
                    std::span<const double> weights, const NoiseFit& start);
 
-/// The same against outlying motions: sets the weights of those beyond the limit to 0.
+/// Like fit_noise, but robust: sets the weights of motions beyond the limit to 0.
 NoiseFit fit_robustly(const FitModel& model, std::span<const MotionTerms> motions,
                       double largest_mahalanobis2, const NoiseFit& start,
                       std::vector<double>& weights);
 
-/// Covariance of the systematic errors of a fit, the noise being known. What the model has not or
-/// no motion bears on has the variance 1.
+/// Covariance of the systematic errors of a fit for known noise. Errors that are not in the model,
+/// or to which no motion contributes, have the variance 1.
 Eigen::Matrix<double, kSystematicErrors, kSystematicErrors> systematic_covariance(
     const FitModel& model, std::span<const MotionTerms> motions, std::span<const double> weights,
     const NoiseFit& fit);
 
-/// How much larger than in `fit` a parameter may be before the data, counted as
-/// `independent_motions`, speak against it as they do against one standard deviation.
+/// How much a parameter may exceed its value in `fit` until the data, counted as
+/// `independent_motions`, contradict it as much as one standard deviation does.
 double upper_width(const FitModel& model, std::span<const MotionTerms> motions,
                    std::span<const double> weights, const NoiseFit& fit, std::size_t parameter,
                    double independent_motions);

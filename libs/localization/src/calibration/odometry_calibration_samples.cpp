@@ -19,11 +19,11 @@ namespace {
 using geometry::Pose2;
 using topomap::StampedPose;
 
-// Fixed: they follow from refinement and gate, not from a robot.
-constexpr double kWeakPrior = 0.25;     // information, 1/m^2 and 1/rad^2: that of match_covariance
-constexpr double kLargestMove_m = 0.3;  // of the refinement without prior: beyond it, another place
+// Fixed: these follow from refinement and gate, not from a robot.
+constexpr double kWeakPrior = 0.25;      // information, 1/m^2 and 1/rad^2, as in match_covariance
+constexpr double kLargestMove_m = 0.3;   // by refinement without prior; beyond it: another place
 constexpr double kContradiction = 25.0;  // squared Mahalanobis distance from the trajectory
-constexpr std::int64_t kLongestGap_ns = 500'000'000;  // of a yardstick, to interpolate over
+constexpr std::int64_t kLongestGap_ns = 500'000'000;  // between reference poses to interpolate
 
 }  // namespace
 
@@ -116,7 +116,7 @@ std::vector<MeasuredMotion> motions_from_reference(const LocalMaps& maps,
       }
       if (last > first + 1 && path_m > longest_path_m) break;
       if (last < wanted) continue;
-      // Long motions that begin together show nearly the same: 1, 2, 3, 4, 6, 9, 13 ... stops.
+      // Long motions from the same start show nearly the same: 1, 2, 3, 4, 6, 9, 13 ... stops.
       wanted = last + std::max(1U, (last - first) / 2);
       if (poses[last]) {
         motions.push_back(

@@ -6,7 +6,7 @@ namespace topogeo::localization {
 
 namespace {
 
-// Of a scan: no match is made of less.
+// Share of a scan that a match needs at least.
 constexpr double kLeastCommon = 0.15;
 
 std::vector<MatchCandidate> by_overlap(std::vector<MatchCandidate> candidates) {

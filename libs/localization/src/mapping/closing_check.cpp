@@ -8,7 +8,7 @@ namespace topogeo::localization {
 
 namespace {
 
-// The best solution, and a covariance that covers the others as far as they are as fit.
+// The best solution, with a covariance that covers the others in proportion to their fitness.
 UncertainPose mixture(const LoopStep& step) {
   const RelativeSolution& best = step.front();
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();

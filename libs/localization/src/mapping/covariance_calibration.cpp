@@ -8,14 +8,14 @@ namespace topogeo::localization {
 
 namespace {
 
-// Of the variances beyond the floor: fitted to the triangles of recorded logs, each log left out
-// once (tests/bench/RESULTS.md, "Covariances").
+// Share of the variances beyond the floor, fitted to the triangles of recorded logs with each log
+// left out once (tests/bench/RESULTS.md, "Covariances").
 constexpr double kUsualShare = 0.06;
-// Of the variance: errors along a path have a part in common, which no triangle shows.
+// Factor on the variance for the common part of errors along a path, which no triangle shows.
 constexpr double kCommonErrors = 1.5;
 constexpr double kFloor_m = 0.002;
 constexpr double kFloor_rad = 0.0005;
-// A triangle further off has a wrong match, which says nothing of the others.
+// A larger triangle contains a wrong match, which carries no information about the others.
 constexpr double kLargestSquare = 30.0;
 constexpr double kLeastOfTriangles = 0.3;
 constexpr double kMostOfTriangles = 6.0;

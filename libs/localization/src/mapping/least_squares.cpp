@@ -14,13 +14,13 @@ namespace {
 
 using geometry::Pose2;
 
-// A factorization fills up where places were passed many times: of 20 km in one building it takes
-// gigabytes. So large a problem was solved in parts before and is near its solution, where
-// conjugate gradients reach the same cost in the memory of the edges.
+// A factorization fills up where places were passed many times: it takes gigabytes for 20 km in one
+// building. So large a problem was already solved in parts and is near its solution, where
+// conjugate gradients reach the same cost with memory proportional to the edges.
 constexpr std::size_t kMostFactored = 6000;
 constexpr int kMostGradients = 1000;
 
-// Whitened difference between the relative pose of two stops and what an edge measured.
+// Whitened difference between the relative pose of two stops and the measurement of an edge.
 class RelativePoseCost : public ceres::SizedCostFunction<3, 3, 3> {
  public:
   explicit RelativePoseCost(const PoseGraphEdge& edge)
@@ -84,8 +84,7 @@ OptimizationSummary least_squares(std::span<Pose2> poses, std::span<const std::u
 
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  // Eigen's Cholesky and not SuiteSparse's: the latter calls a BLAS whose kernels depend on the
-  // CPU.
+  // Eigen's Cholesky instead of SuiteSparse's, whose BLAS kernels depend on the CPU.
   options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   if (poses.size() > kMostFactored) {
     options.linear_solver_type = ceres::CGNR;

@@ -1,4 +1,4 @@
-// Robust least squares over relative poses, apart from the rest because Ceres is slow to compile.
+// Robust least squares over relative poses, in its own file because Ceres is slow to compile.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 
 namespace topogeo::localization {
 
-/// Moves the poses that are not held to where the edges, whose stops are indices of `poses`, agree
-/// best. Matches have a Cauchy loss, so that a wrong one bends the map a little instead of folding
-/// it. Single-threaded, so that results repeat.
+/// Moves the poses that are not held to the best agreement of the edges, whose stops are indices of
+/// `poses`. Matches have a Cauchy loss, so that a wrong one bends the map a little instead of
+/// folding it. Single-threaded, so that results repeat.
 OptimizationSummary least_squares(std::span<geometry::Pose2> poses,
                                   std::span<const std::uint8_t> held,
                                   std::span<const PoseGraphEdge> edges);

@@ -1,4 +1,4 @@
-// How well the pose of a stop is known by its links to earlier ones.
+// Uncertainty of a stop's pose, by its links to earlier ones.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace topogeo::localization {
 
-/// Of all links between a stop and earlier ones, the covariance by which it is known best: relative
-/// to the earlier stop. The stop has at least one.
+/// The smallest covariance among all links from earlier stops to a stop, relative to the earlier
+/// stop. The stop must have such a link.
 Eigen::Matrix3d best_link_to(const PoseGraph& graph, std::uint32_t stop);
 
 /// The same in the map frame, through the covariances of the earlier stops.

@@ -19,18 +19,17 @@ using topomap::LocalMap;
 
 namespace {
 
-// By an optimisation after the end of a log: a stop that moved less sees the same places.
+// A stop that an optimisation after the end of a log moved less than this sees the same places.
 constexpr double kMovedAtEnd_m = 0.1;
 constexpr double kMovedAtEnd_rad = 0.02;
 
-// Squared Mahalanobis distance from odometry as it is configured. Doubtful matches that are right
-// are within two deviations of it, look-alikes mostly are not (tests/bench/RESULTS.md, "Steps in
-// doubt").
+// Squared Mahalanobis distance from odometry as configured. Right doubtful matches are within two
+// deviations, most look-alikes are not (tests/bench/RESULTS.md, "Steps in doubt").
 constexpr double kNear2 = 4.0;
-// Of one by which half of what is seen contradicts the other view nothing is known.
+// A match that half of the visible points contradict carries no information.
 constexpr double kLeastContradicted = 0.5;
 
-// Only these can have come near to others.
+// Only these can have come near other stops.
 std::vector<std::uint32_t> moved_stops(std::span<const Pose2> before,
                                        std::span<const Pose2> after) {
   std::vector<std::uint32_t> moved;
@@ -75,7 +74,7 @@ std::uint32_t Localizer::last() const {
   return static_cast<std::uint32_t>(matching_.size() - 1);
 }
 
-// Nothing when its session is another than that of the first stop: that may be of another robot.
+// Null if the first stop belongs to another session, which may be of another robot.
 const LocalMap* Localizer::first_of_session(const LocalMap& map) const {
   const LocalMap& first = matching_.map(0);
   return first.stop.session == map.stop.session ? &first : nullptr;
@@ -118,8 +117,8 @@ std::vector<StepMatch> Localizer::match_recent() {
   std::vector<StopMatch> matches = matching_.match_recent(graph_);
   refuse_look_alikes(matches, steps_);
   const std::vector<StopMatch> further = match_further(matches);
-  // Odometry alone can be tens of degrees off in one step. Where no match is beyond doubt,
-  // uncertain ones, with their wide covariance, still know more than it does.
+  // Odometry alone can be tens of degrees off in one step. If no match is accepted, uncertain ones,
+  // with their wide covariance, are still better.
   const bool any = any_accepted(matches);
   if (!any) {
     ++steps_in_doubt_;
@@ -143,8 +142,8 @@ std::vector<StepMatch> Localizer::match_recent() {
   return evidence;
 }
 
-// Where odometry says too little of recent stops, also with earlier ones. What a widened search
-// found instead does not count beside them.
+// If no regular search succeeded, compares with stops that odometry is too uncertain to search. A
+// match found there replaces those of the widened search.
 std::vector<StopMatch> Localizer::match_further(std::vector<StopMatch>& matches) {
   if (std::any_of(matches.begin(), matches.end(),
                   [](const StopMatch& match) { return match.accepted() && !match.widened; })) {
@@ -159,7 +158,7 @@ std::vector<StopMatch> Localizer::match_further(std::vector<StopMatch>& matches)
   return further;
 }
 
-// Closes the loops of stops with earlier places.
+// Closes loops between these stops and earlier places.
 std::vector<StepMatch> Localizer::match_revisited(std::span<const std::uint32_t> stops) {
   const std::vector<StopMatch> matches = matching_.match_revisited(graph_, stops);
   std::vector<StepMatch> evidence;
@@ -207,7 +206,7 @@ void Localizer::judge_state(std::vector<StepMatch> matches) {
 
 // --- optimisation
 
-// True when there is a result, which may have moved earlier poses.
+// True if there is a result, which may have moved earlier poses.
 bool Localizer::apply(const std::optional<OptimizationSchedule::Finished>& finished) {
   if (!finished) return false;
   for (const PoseGraphEdge& loop : loops_.release(finished->loops)) graph_.add_edge(loop);
@@ -221,8 +220,8 @@ bool Localizer::apply(const std::optional<OptimizationSchedule::Finished>& finis
   return true;
 }
 
-// All of them by an optimisation of all stops; else those of its stops and of all after them, from
-// the earlier ones that they were matched with.
+// An optimisation of all stops updates all covariances. Otherwise only its stops and all later ones
+// are updated, from the earlier stops that they were matched with.
 void Localizer::update_covariances(const GraphSolution& solution) {
   if (solution.whole) {
     const std::vector<UncertainPose> T_map_stop = graph_.relative_to(0);
@@ -258,13 +257,13 @@ void Localizer::compare_stored(std::uint32_t first) {
 void Localizer::finish() {
   if (matching_.size() < 2) return;
   optimize_now();
-  // Stops of a stored map were compared with each other when it was made.
+  // The stops of a stored map were compared with each other when it was made.
   const std::size_t first = std::max<std::size_t>(1, stored_stops_);
   if (first >= matching_.size()) return;
   close_all_loops(static_cast<std::uint32_t>(first));
 }
 
-// Of the stops from this one on, and of all that are moved by it.
+// Compares the stops from `first` on, and again all stops that this moves.
 void Localizer::close_all_loops(std::uint32_t first) {
   std::vector<std::uint32_t> again(matching_.size() - first);
   std::iota(again.begin(), again.end(), first);
@@ -305,7 +304,7 @@ Localizer::Localizer(const LocalizerConfig& config, MatchPool& pool, GraphOptimi
 void Localizer::restore(MapPointer map, const topomap::StopPose& pose) {
   const bool first = matching_.size() == 0;
   check_next(*map, matching_.size(), first ? nullptr : first_of_session(*map));
-  StepEvidence known;  // what is in the map is right by definition
+  StepEvidence known;  // the map is right by definition
   known.points = map->points.size();
   double distance_m = 0.0;
   if (!first) {
@@ -328,13 +327,14 @@ void Localizer::join(std::span<const MapPointer> drive,
   matching_.forget_solutions();
   monitor_.restart(confidence);
   const auto first = static_cast<std::uint32_t>(matching_.size());
-  // As if it were alone: where odometry has its first stops, far from the last one, others may be.
+  // The drive is first placed alone: its odometry may put its first stops, far from the last one,
+  // on top of other stops.
   for (const MapPointer& map : drive) {
     append(map);
     ++version_;
     judge_state(place_last());
   }
-  // The matches by which the drive was found, as far as it was not matched there again.
+  // The matches that located the drive, unless it was matched there again.
   for (const StoredMatch& match : matches_of_last) {
     const PoseGraphEdge loop = loop_of(match, last());
     if (contains_like(graph_.edges(), loop) || contains_like(loops_.waiting(), loop)) continue;
@@ -343,7 +343,7 @@ void Localizer::join(std::span<const MapPointer> drive,
     known.verdict = Verdict::kAccepted;
     known.reason = Reason::kNone;
     known.fitness = match.fitness;
-    known.agreement = AgreementWeights::kWanted;  // with the stops that were tracked before
+    known.agreement = AgreementWeights::kWanted;  // with the previously tracked stops
     loops_.accept(graph_, known);
     matching_.skip(loop);
   }

@@ -18,37 +18,38 @@ using geometry::Pose2;
 
 namespace {
 
-// Over a longer path odometry says too little to call two loops contradictory.
+// Over a longer path odometry is too uncertain for a contradiction between two loops.
 constexpr double kFarthest_m = 25.0;
-constexpr double kFarOff_m = 5.0;  // ways round two loops that agree end nearer to each other
+constexpr double kFarOff_m = 5.0;  // round trips over two agreeing loops end nearer to their start
 constexpr double kAgree = 7.8;     // 95 % of right pairs (chi-square, three degrees of freedom)
-// Of path between two stops that count once each: nearer ones see much the same, of sparse ones
-// each sees more that is new.
+// Path between two stops that count once each: nearer stops see much the same, and each of more
+// distant ones sees more that is new.
 constexpr double kCountedApart_m = 0.75;
 constexpr double kLeastShare = 0.6;
 constexpr double kMostShare = 1.5;
-// Of a window, for each metre of path that it alone holds: all of it counts as the most that a stop
-// does.
+// Weight of a window for each metre of path that only it contains: a full window weighs as much as
+// the most that a stop does.
 constexpr double kShareOfWindow = kMostShare / PlaceRecognition::kQuery_m;
-// Less than of a robot that may be anywhere in a map (AgreementWeights::kWanted): here a prediction
-// speaks, too. More is wanted of a set that this one speaks against: per logarithm of the squared
-// Mahalanobis distance, because it is wrong by far more often than a Gaussian says.
+// Less than for a robot that may be anywhere in a map (AgreementWeights::kWanted), because the
+// prediction is evidence too. A set that contradicts the prediction needs more, per logarithm of
+// the squared Mahalanobis distance, because predictions are far off more often than a Gaussian
+// allows.
 constexpr double kWanted = 3.0;
 constexpr double kPerSurprise = 0.75;
-constexpr double kOverRival = 2.0;  // how much heavier than its rivals an accepted set is
-// Of a match in a set that the prediction agrees with: less probable ones measure worse than the
-// rest of their set, and one in fifty of them is more than half a metre off.
+constexpr double kOverRival = 2.0;  // required weight of an accepted set over its rivals
+// Required of each match in a set that agrees with the prediction: less probable ones are less
+// accurate than the rest of their set, and one in fifty of them is more than half a metre off.
 constexpr double kLeastProbability = 0.98;
 constexpr std::size_t kRivalSeeds = 8;
-// Older ones have had their chance: bounds the work of a step.
+// Older hypotheses had their chance: this bounds the work of a step.
 constexpr double kForgotten_m = 60.0;
 
-/// Over a longer path than odometry says much of.
+/// Whether the path between two stops is too long for odometry.
 bool far_apart(std::span<const double> path_m, std::uint32_t a, std::uint32_t b) {
   return std::fabs(path_m[a] - path_m[b]) > kFarthest_m;
 }
 
-/// How far the way round two loops leads from where it began, metres.
+/// Distance by which the round trip over two loops misses its start, metres.
 double off_by_way_of(const PoseGraph& graph, const PoseGraphEdge& a, const PoseGraphEdge& b) {
   const std::vector<Pose2>& poses = graph.poses();
   const Pose2 T_around = geometry::between(poses[b.from], poses[a.from]) * a.T_from_to *
@@ -64,14 +65,14 @@ double disagreement(const PoseGraph& graph, const PoseGraphEdge& a, const PoseGr
       std::fabs(path_m[a.from] - path_m[b.from]) > farthest_m) {
     return std::numeric_limits<double>::infinity();
   }
-  // Most pairs are far from agreeing: seen without covariances.
+  // Most pairs are far from agreement, which is visible without covariances.
   if (off_by_way_of(graph, a, b) > kFarOff_m) return std::numeric_limits<double>::infinity();
   return disagreement(graph, a, b, graph.along_path(b.from, a.from));
 }
 
 double disagreement(const PoseGraph& graph, const PoseGraphEdge& a, const PoseGraphEdge& b,
                     const UncertainPose& T_from_b_from_a) {
-  // b by way of a: b.from -> a.from -> a.to -> b.to.
+  // b through a: b.from -> a.from -> a.to -> b.to.
   const UncertainPose by_a = compose(compose(T_from_b_from_a, {a.T_from_to, a.for_predictions()}),
                                      graph.along_path(a.to, b.to));
   return geometry::squared_mahalanobis(geometry::difference(by_a.T_a_b, b.T_from_to),
@@ -113,8 +114,8 @@ double LoopAgreement::disagreement(std::size_t a, std::size_t b, const Ways& way
   return localization::disagreement(ways.graph, first, second, T_second_first);
 }
 
-// Earlier ends of the loops that may agree with this one; none where all are of its visit, or could
-// not weigh enough together.
+// Earlier ends of the loops that may agree with this one; empty if all are of its visit, or
+// together could not weigh enough.
 std::vector<std::uint32_t> LoopAgreement::other_visits(std::size_t seed, const Ways& ways) const {
   const PoseGraphEdge& seed_edge = edge_of(seed);
   Set near;
@@ -164,9 +165,9 @@ LoopAgreement::Set LoopAgreement::set_around(std::size_t seed, std::span<const s
   return set;
 }
 
-// The best of each later stop, by how far it is from the one before: what one stop sees is one
-// piece of evidence. Windows of successive stops hold nearly the same views: one counts by the path
-// that none before it had.
+// Sums the best match of each later stop, weighted by the distance from the previous one, because
+// the view of one stop is one piece of evidence. Windows of successive stops contain nearly the
+// same views, so each counts by the path that no window before it contains.
 double LoopAgreement::weight_of(const Set& set, std::span<const double> path_m) const {
   struct Evidence {
     double stop = 0.0;
@@ -202,7 +203,7 @@ double LoopAgreement::weight_of(const Set& set, std::span<const double> path_m) 
   return sum;
 }
 
-// That of the match which the prediction speaks against least: all of a set say the same.
+// Surprise of the match that contradicts the prediction least: all of a set state the same.
 double LoopAgreement::surprise_of(const Set& set) const {
   double least = std::numeric_limits<double>::infinity();
   for (const std::size_t i : set) least = std::min(least, hypotheses_[i].match.surprise());
@@ -224,10 +225,10 @@ bool LoopAgreement::is_heavy(const Set& set, std::span<const double> path_m) con
   return weight_of(set, path_m) >= wanted && spread(set, path_m);
 }
 
-// Those of the same later stretch that put the robot elsewhere. Loops with another earlier visit of
-// the same place do not: where that lies is what the graph predicts, and as far as the set
-// surprises the graph they must contradict each other. That was charged for once, by what is
-// wanted.
+// Hypotheses for the same later stretch that put the robot elsewhere. A loop with another earlier
+// visit of the place is not automatically one: the graph predicts the pose of that visit, so it
+// must contradict the set by more than the set surprises the graph. That surprise is charged
+// already, in the required weight.
 LoopAgreement::Set LoopAgreement::rivals_of(std::size_t seed, const Set& set,
                                             const Ways& ways) const {
   const std::span<const double> path_m = ways.path_m;
@@ -308,8 +309,9 @@ std::vector<StopMatch> LoopAgreement::accepted(const PoseGraph& graph,
       if (weight < kOverRival * rival) continue;
       const bool as_predicted = surprise_of(set) <= geometry::kMahalanobis2Of99Percent;
       for (const std::size_t i : set) {
-        // What slid along a corridor agrees with the others, but not with the prediction that they
-        // agree with. Windows slide most easily: where they move nothing, stops measure better.
+        // Matches that slid along a corridor agree with the others, but not with the prediction
+        // that the others agree with. Windows slide most easily: if they move nothing, stops are
+        // more accurate.
         StopMatch match = hypotheses_[i].match;
         match.agreement = weight;
         match.rival_agreement = rival;

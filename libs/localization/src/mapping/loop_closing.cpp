@@ -13,7 +13,7 @@ namespace {
 
 // Two cells of a 5 cm grid: a smaller correction needs no optimisation of its own.
 constexpr double kNoticeable_m = 0.1;
-// Stops until a pending loop is dropped: by then odometry has drifted too far for two to agree.
+// Stops until a pending loop is dropped: by then odometry has drifted too far for agreement.
 constexpr std::uint32_t kLongestWait = 12;
 
 // Whether the steps between the two stops of a loop can be bent to meet it.
@@ -59,7 +59,7 @@ bool LoopClosing::far(const Correction& correction) const {
 
 LoopClosing::Verdict LoopClosing::consider(const PoseGraph& graph, const StopMatch& loop) {
   const Correction correction = correction_of(graph, loop.edge);
-  // Against its prediction a match is accepted only with many that agree.
+  // A match that contradicts its prediction is accepted only if many others agree with it.
   if (loop.surprise() > geometry::kMahalanobis2Of99Percent) {
     decide(graph, loop, LoopOutcome::kUnconfirmed, Reason::kNone);
     ++unconfirmed_;
@@ -87,8 +87,8 @@ LoopClosing::Verdict LoopClosing::consider(const PoseGraph& graph, const StopMat
   return Verdict::kAgrees;
 }
 
-// True when a loop of another stop moves the robot to the same place; pending ones that do are
-// accepted with it.
+// True if a loop of another stop moves the robot to the same place. Accepts the pending loops that
+// do.
 bool LoopClosing::confirm(const PoseGraph& graph, const StopMatch& loop,
                           const Correction& correction) {
   const auto same_place = [&](const Pose2& T_map_corrected) {

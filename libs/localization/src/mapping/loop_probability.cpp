@@ -11,14 +11,14 @@ namespace {
 using Kind = LoopEvidence::Kind;
 
 // Fitted to 37,000 decisions of nine logs and five synthetic floors, each with the same weight:
-// `topogeo_loops --floors 12 --reliability` prints them, and what the probabilities are worth on
-// logs that they were not fitted to (tests/bench/RESULTS.md). They are what the number means, so
-// none is a setting. The last one is of an earlier fit: none of these decisions is contradicted any
+// `topogeo_loops --floors 12 --reliability` prints them, and the reliability of the probabilities
+// on logs outside the fit (tests/bench/RESULTS.md). They define the meaning of the number, so none
+// is a setting. The last one is from an earlier fit: none of these decisions is contradicted any
 // more.
 constexpr LoopTerms kFitted{4.13, 4.34,  4.41, 1.09,  3.80, -1.53,
                             3.66, -1.42, 0.92, -1.55, 1.05, -0.90};
 
-// A position that the scans do not know at all is not less known than this.
+// Upper limit for a position that the scans do not determine at all.
 constexpr double kUnknown_m = 1.0;
 
 }  // namespace
@@ -27,13 +27,13 @@ LoopTerms loop_terms(const LoopEvidence& e) {
   const auto of = [&](Kind kind) { return e.kind == kind ? 1.0 : 0.0; };
   const double window = of(Kind::kWindow);
   const double stop = 1.0 - window;
-  // What passes its gate is right wherever it was predicted: of 22,000 one was wrong.
+  // A match that passed its gate is right wherever it was predicted: one of 22,000 was wrong.
   const double unproved = 1.0 - of(Kind::kPassed);
   const double surprise = unproved * geometry::log(1.0 + e.surprise);
   const double unknown_m = std::min(kUnknown_m, e.weakest_sigma_m);
   return {of(Kind::kPassed), of(Kind::kDoubtful), of(Kind::kRefused), window, stop * e.inliers,
           stop * e.rivalry, window * e.fitness, surprise, unproved * unknown_m,
-          // Where the scans allow any place along a corridor the prediction decides.
+          // Where the scans allow any place along a corridor, the prediction decides.
           unknown_m * surprise, e.agreement > 0.0 ? 1.0 : 0.0, e.contradicted ? 1.0 : 0.0};
 }
 

@@ -18,13 +18,12 @@ using geometry::Pose2;
 
 namespace {
 
-// With no match at all along the loop the distance from the expected pose still has to rank paths.
+// Without any match along the loop, the distance from the expected pose still has to rank paths.
 constexpr double kLeastMeanFitness = 0.1;
-// Squared deviations: a step is drawn by 3 of them at most, which nearly all right ones need less
-// of.
+// Squared deviations: limits a draw to 3, which is enough for nearly all right steps.
 constexpr double kLargestDraw2 = 9.0;
-// Of paths that are nearer to each other than this only the best is kept when there are too many;
-// the errors of a refined match are of this size, so that they are one path.
+// Paths nearer to each other than this count as one, because the errors of a refined match are of
+// this size: if there are too many paths, only the best of them is kept.
 constexpr double kSamePlace_m = 0.03;
 constexpr double kSamePlace_rad = 0.01;
 
@@ -63,7 +62,7 @@ void check_loop(std::span<const LoopPose> poses, std::span<const LoopCandidate> 
   }
 }
 
-// Covariance of the frame of a pose, seen in the frame that the pose is given in.
+// Turns a covariance in the frame of a pose into the frame that the pose is given in.
 Eigen::Matrix3d turned(const Eigen::Matrix3d& covariance, const Pose2& T_first_pose) {
   return geometry::compose_covariance(Pose2{0.0, 0.0, T_first_pose.theta_rad},
                                       Eigen::Matrix3d::Zero(), Pose2{}, covariance);
@@ -78,7 +77,7 @@ class LoopSearch {
   LoopSearchResult run();
 
  private:
-  // From a pose back to the one before.
+  // A step from a pose back to the previous one.
   struct Step {
     Pose2 T_this_previous;
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  // in the frame of this pose
@@ -95,10 +94,10 @@ class LoopSearch {
     std::vector<LoopNode> waiting;  // best first
     std::size_t next_waiting = 0;
   };
-  // A pose drawn towards where it is expected.
+  // A pose drawn towards its expected place.
   struct Draw {
     Pose2 T_first_pose;
-    double distance2 = 0.0;  // squared deviations from where it was
+    double distance2 = 0.0;  // squared deviations from the original pose
   };
 
   void describe_level(std::uint32_t k);
@@ -107,7 +106,7 @@ class LoopSearch {
   void offer(Level& level, const Pose2& T_first_pose, double fitness, const LoopNode* next,
              std::uint32_t candidate) const;
   static void sort_by_rank(Level& level);
-  // Takes paths out of those that wait at pose k; false when none is left.
+  // Activates waiting paths at pose k; false if there are none.
   bool take(std::uint32_t k);
   [[nodiscard]] static Draw draw(const Level& level, const Pose2& T_first_pose,
                                  const Eigen::Matrix3d& covariance);
@@ -119,7 +118,7 @@ class LoopSearch {
   const LoopConstraint* constraint_;
   std::uint32_t last_;
   std::vector<Level> levels_;  // index as in the loop; 0 is not searched
-  double mean_fitness_ = 0.0;  // of the best solution of a step
+  double mean_fitness_ = 0.0;  // of the best solution of each step
   std::uint64_t expanded_ = 0;
   std::uint64_t work_ = 0;
 };
@@ -154,7 +153,7 @@ void LoopSearch::describe_level(std::uint32_t k) {
   mean_fitness_ += poses_[k].steps.front().fitness / last_;
 }
 
-// K = S (S + C)^-1 takes the pose (covariance S) to the mean of it and of the expected one (C).
+// K = S (S + C)^-1 moves the pose (covariance S) to the mean of it and the expected one (C).
 LoopSearch::Draw LoopSearch::draw(const Level& level, const Pose2& T_first_pose,
                                   const Eigen::Matrix3d& covariance) {
   const Eigen::Vector3d gap = geometry::difference(level.T_first_expected, T_first_pose);
@@ -194,7 +193,7 @@ void LoopSearch::seed() {
   sort_by_rank(level);
 }
 
-// Step 1 of the thesis for all paths that have come to pose k.
+// Step 1 of the thesis for all paths that have reached pose k.
 void LoopSearch::expand(std::uint32_t k) {
   const Level& from = levels_[k];
   Level& level = levels_[k - 1];
@@ -253,7 +252,7 @@ LoopSearchResult LoopSearch::run() {
   std::uint32_t nearest = last_ + 1;
   bool found = take(k);
   for (;;) {
-    if (!found) {  // step 3.2 of the thesis: up to the nearest pose at which paths wait
+    if (!found) {  // step 3.2 of the thesis: up to the nearest pose with waiting paths
       while (k <= last_ && levels_[k].next_waiting >= levels_[k].waiting.size()) ++k;
       if (k > last_) break;
       ++result.backtracks;
@@ -280,8 +279,8 @@ LoopSearchResult LoopSearch::run() {
   return result;
 }
 
-// The paths that have reached the pose next to the first one, the winner by summed fitness first.
-// The step on to the first pose, which keeps its place, counts too: else a path could leave its
+// Collects the paths that have reached the pose next to the first one, largest summed fitness
+// first. The step to the first pose, which is fixed, counts too: otherwise a path could leave its
 // whole gap there.
 void LoopSearch::collect(LoopSearchResult& result) const {
   struct End {

@@ -7,13 +7,13 @@ namespace topogeo::localization {
 
 namespace {
 
-// A step further off than this many times its variance is a blow or a wrong match, not noise: it
-// counts, but cannot widen the next twenty steps on its own.
+// A step with a larger ratio to its variance is a blow or a wrong match, not noise: it counts, but
+// cannot widen the next twenty steps on its own.
 constexpr double kLargestRatio = 100.0;
-// Six times the configured deviation: a worse odometry is none to build on.
+// Six times the configured deviation: worse odometry is of no use.
 constexpr double kLargestFactor = 36.0;
-// Of expected(): no odometry is better than a fifth of the configured deviation for long, and three
-// times the variance of the last steps covers what they have in common.
+// Limits of expected(): no odometry is better than a fifth of the configured deviation for long,
+// and three times the variance of the last steps covers their common errors.
 constexpr double kLeastExpected = 0.04;
 constexpr double kMargin = 3.0;
 
@@ -30,7 +30,7 @@ void OdometryMonitor::Ratio::add(double squared, double odometry_variance, doubl
   if (!(odometry_variance > 0.0)) return;  // a standing robot
   const double noise = std::max(0.0, squared - match_variance);
   const double ratio = std::min(noise / odometry_variance, kLargestRatio);
-  // A match that is itself uncertain measures little of odometry.
+  // An uncertain match tells little about odometry.
   const double certainty = odometry_variance / (odometry_variance + match_variance);
   constexpr double kFading = 1.0 - 1.0 / kMemory;
   weighted_ = kFading * weighted_ + certainty * ratio;

@@ -8,11 +8,11 @@ using geometry::Pose2;
 
 namespace {
 
-constexpr double kShortest_m = 0.2;     // less is mostly noise
-constexpr double kMostTurn_rad = 0.2;   // in a turn wheels slip
-constexpr double kLeastKnown_m = 0.04;  // matches that know less lean towards odometry
-constexpr double kLargestError = 0.25;  // of the way: more is a blow, not a scale
-constexpr double kNoise_m = 0.06;       // of odometry after a metre, growing with the root of it
+constexpr double kShortest_m = 0.2;     // smaller steps are mostly noise
+constexpr double kMostTurn_rad = 0.2;   // wheels slip in turns
+constexpr double kLeastKnown_m = 0.04;  // more uncertain matches lean towards odometry
+constexpr double kLargestError = 0.25;  // share of the distance: more is a blow, not a scale
+constexpr double kNoise_m = 0.06;       // of odometry after a metre; grows with the square root
 
 }  // namespace
 
@@ -25,8 +25,8 @@ void OdometryScale::add(const Pose2& T_by_odometry, const UncertainPose& T_by_ma
   const double variance_m2 = along.dot(covariance_m2 * along);
   if (variance_m2 > kLeastKnown_m * kLeastKnown_m) return;
   const double matched_m = along.dot(T_by_match.T_a_b.position_m());
-  // By the mean of both: judged by one of them, noise that makes it longer would count otherwise
-  // than noise that makes it shorter.
+  // Relative to the mean of both: relative to one of them, noise that makes it longer would count
+  // differently from noise that makes it shorter.
   const double mean_m = 0.5 * (matched_m + way_m);
   if (std::fabs(matched_m - way_m) > kLargestError * mean_m) return;
   const double weight = 1.0 / (variance_m2 + kNoise_m * kNoise_m * mean_m);

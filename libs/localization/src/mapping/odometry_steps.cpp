@@ -37,7 +37,7 @@ PoseGraphEdge OdometrySteps::edge() const {
 }
 
 PoseGraphEdge OdometrySteps::edge_without_match() const {
-  // Of systematic errors the last steps show little.
+  // The last steps show little of systematic errors.
   constexpr double kLessWeight = 3.0;
   const Eigen::Matrix3d expected = kLessWeight * invertible(monitor_.expected(last().covariance));
   return edge_with(expected, expected);

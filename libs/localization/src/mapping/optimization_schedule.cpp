@@ -7,7 +7,7 @@ namespace topogeo::localization {
 
 namespace {
 
-// So many small corrections can add up to one that is worth an optimisation.
+// This many small corrections can add up to one that is worth an optimisation.
 constexpr std::size_t kLoopsBetweenOptimizations = 10;
 
 }  // namespace

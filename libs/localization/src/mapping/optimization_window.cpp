@@ -10,7 +10,7 @@ namespace topogeo::localization {
 
 namespace {
 
-// Beyond the cost at which the rounds are closed: what hangs on them gives way too.
+// Factor beyond the cost at which the rounds are closed, because connected stops yield too.
 constexpr double kBeyond = 1.5;
 
 constexpr std::uint32_t kOutside = std::numeric_limits<std::uint32_t>::max();

@@ -16,8 +16,7 @@ namespace {
 
 using geometry::Pose2;
 
-// What a robot matches by is seen about this far away: so much a standard deviation of heading
-// moves it.
+// Typical distance of the features that a robot matches: a heading error moves them by this lever.
 constexpr double kLeverArm_m = 5.0;
 
 }  // namespace
@@ -165,7 +164,7 @@ std::vector<std::pair<std::uint32_t, Eigen::Matrix3d>> PoseGraph::links_to(
 std::vector<std::uint32_t> PoseGraph::stops_near(const Eigen::Vector2d& place_m, double radius_m,
                                                  std::size_t most, std::uint32_t end) const {
   std::vector<std::pair<double, std::uint32_t>> near;
-  // A nanosecond for each stop: no index is worth its upkeep while poses move.
+  // A linear scan takes a nanosecond per stop: no index is worth its upkeep while poses move.
   for (std::uint32_t stop = 0; stop < end; ++stop) {
     const double square_m2 = (poses_[stop].position_m() - place_m).squaredNorm();
     if (square_m2 <= radius_m * radius_m) near.emplace_back(square_m2, stop);

@@ -12,7 +12,7 @@ using geometry::Pose2;
 
 namespace {
 
-// Ends a search when all that was asked for has been reached.
+// Ends a search when all wanted stops have been reached.
 struct Enough {};
 
 constexpr double kFarAway = std::numeric_limits<double>::max();
@@ -70,7 +70,7 @@ void PoseLinks::remove(std::uint32_t from, std::uint32_t to) {
   const auto found = link_of_.find({from, to});
   if (found == link_of_.end()) return;
   boost::remove_edge(from, to, network_);
-  link_of_.erase(found);  // the link itself stays behind unused: removals are rare
+  link_of_.erase(found);  // the link itself stays unused: removals are rare
 }
 
 std::vector<std::pair<std::uint32_t, Eigen::Matrix3d>> PoseLinks::links_to(
@@ -112,7 +112,7 @@ RelativePoses PoseLinks::relative_to(std::span<const Pose2> poses, std::uint32_t
                                      std::size_t most) const {
   if (wanted.empty()) return {};
   for (const std::uint32_t stop : wanted) marks_.wanted[stop] = 1;
-  std::vector<std::uint32_t> reached;  // nearest first, so that each follows the one before it
+  std::vector<std::uint32_t> reached;  // nearest first, so that each follows its predecessor
   std::size_t left = wanted.size();
   visit_nearest({&origin, 1}, [&](std::uint32_t stop, double cost) {
     if (cost > largest_cost || reached.size() >= most) return false;
@@ -126,7 +126,7 @@ RelativePoses PoseLinks::relative_to(std::span<const Pose2> poses, std::uint32_t
     const Link& link = links_[marks_.link_to[stop]];
     return link.from == stop ? link.to : link.from;
   };
-  std::vector<std::uint8_t> needed(reached.size(), 0);  // on the path to a wanted one
+  std::vector<std::uint8_t> needed(reached.size(), 0);  // on the path to a wanted stop
   const auto is_reached = [&](std::uint32_t stop) {
     const std::uint32_t position = marks_.position[stop];
     return position < reached.size() && reached[position] == stop;

@@ -1,6 +1,6 @@
-// The network of stops and the edges between them: all edges of one pair of stops count together,
-// and searches follow the paths on which the variance grows least. A search costs what it reaches,
-// not what the network has.
+// Network of stops and edges. All edges of one pair of stops are combined, and searches follow the
+// paths of least variance. The cost of a search follows the stops it reaches, not the size of the
+// network.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ class PoseLinks {
   /// Forgets all edges between two stops.
   void remove(std::uint32_t from, std::uint32_t to);
 
-  /// Of the link between two stops, which must be there.
+  /// Covariance of the link between two stops, which must exist.
   [[nodiscard]] const Eigen::Matrix3d& covariance(std::uint32_t from, std::uint32_t to) const {
     return links_[link_of_.at({from, to})].covariance;
   }
@@ -57,12 +57,12 @@ class PoseLinks {
   using Network = boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS,
                                         boost::no_property, LinkIndex>;
   class Visitor;
-  /// What a search writes on each stop, as between two searches: none reached.
+  /// Scratch data of a search for each stop. Between two searches no stop is marked.
   struct Marks {
     std::vector<double> cost;
     std::vector<boost::default_color_type> colour;
-    std::vector<std::uint32_t> link_to;   // by which it was reached
-    std::vector<std::uint32_t> position;  // in the order of those reached
+    std::vector<std::uint32_t> link_to;   // by which the stop was reached
+    std::vector<std::uint32_t> position;  // index in the order of reaching
     std::vector<std::uint8_t> wanted;
     std::vector<std::uint32_t> touched;
   };

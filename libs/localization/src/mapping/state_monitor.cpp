@@ -12,8 +12,9 @@ namespace topogeo::localization {
 
 namespace {
 
-// The figures below were fitted to simulated drives by tests/bench/kidnapped.cpp --fit and depend
-// on each other: other ones would be another confidence for all users, so none is a setting.
+// The constants below were fitted to simulated drives by tests/bench/kidnapped.cpp --fit and depend
+// on each other. Other values would change the meaning of the confidence for all users, so none is
+// a setting.
 struct Logistic {
   double constant;
   double first;
@@ -22,30 +23,30 @@ struct Logistic {
 constexpr Logistic kMatchRight{7.1, -2.2, 0.0};     // doubt, rivalry
 constexpr Logistic kOdometryRight{5.7, -8.5, 0.0};  // contradiction, distance in m
 
-constexpr double kForeseen = 0.35;  // overlap from which on a match should show something in common
-constexpr std::size_t kFewPoints = 12;  // of a blinded laser: what it sees refutes nothing
-// What LocalizationStatus::confidence promises: a pose that is right to 0.3 m and 5 degrees leads
-// through doors.
+constexpr double kForeseen = 0.35;  // from this overlap on, a match should show something in common
+constexpr std::size_t kFewPoints = 12;  // of a blinded laser: such a scan refutes nothing
+// Limits of LocalizationStatus::confidence: a pose right to 0.3 m and 5 degrees leads through
+// doors.
 constexpr double kRight_m = 0.3;
 constexpr double kRight_rad = 0.087266463;
 // A carried robot is lost within three stops (map_localizer_test), a doubted one seldom
 // (tests/bench/kidnapped.cpp).
 constexpr double kLostBelow = 0.25;
-constexpr double kTrackingFrom = 0.5;   // right more probably than not
-constexpr double kFirmer = 0.05;        // the few matches between two stops cost no more than this
-constexpr double kDoubtfulShare = 0.3;  // matches that are not accepted err together
-// Of what contradicts a pose by odometry, against one by a match with a stop just before: the map
-// may have changed there, but not for long.
+constexpr double kTrackingFrom = 0.5;   // more probably right than wrong
+constexpr double kFirmer = 0.05;        // more than a few matches between two stops cost
+constexpr double kDoubtfulShare = 0.3;  // matches that are not accepted have common errors
+// Share of a contradiction by the map that counts against a match with a recent own stop: the map
+// may have changed there, but only locally.
 constexpr double kAgainstOwnStep = 0.25;
-constexpr double kElsewhere = 30.0;  // weight of a place that fits better, for each 1 of fitness
-constexpr double kMostConfident = 0.996;    // matches err together, however many agree
-constexpr std::uint32_t kOftenDoubted = 2;  // one stop may be doubted for what stands in view
+constexpr double kElsewhere = 30.0;         // weight of a better place elsewhere, per 1 of fitness
+constexpr double kMostConfident = 0.996;    // of any number of matches: they have common errors
+constexpr std::uint32_t kOftenDoubted = 2;  // one stop may be doubted because of an obstacle
 
 double value(const Logistic& l, double first, double second) {
   return 1.0 / (1.0 + geometry::exp(-(l.constant + l.first * first + l.second * second)));
 }
 
-/// Not accepted, but not refuted either.
+/// Not accepted, but not refuted.
 bool is_doubtful(const StepMatch& match) {
   return match.reason == Reason::kDoubtful || match.reason == Reason::kSecondSolution;
 }
@@ -58,7 +59,7 @@ double contradiction_of(const StepMatch& match) {
     case Reason::kNothingInCommon:
     case Reason::kFewInliers:
       return 1.0;
-    case Reason::kLittleOverlap:  // what little is in view may fit well
+    case Reason::kLittleOverlap:  // a small common view may fit well
     case Reason::kDoubtful:
     case Reason::kImplausible:
       return std::min(1.0, std::max(match.violations / 0.12, (1.0 - match.inliers) / 0.5));
@@ -66,7 +67,7 @@ double contradiction_of(const StepMatch& match) {
   return 0.0;
 }
 
-/// Over those of the matches that should have shown something in common and that count.
+/// Mean over the matches that should have shown something in common and that `counts` selects.
 template <typename Counts>
 double mean_contradiction(const std::vector<StepMatch>& matches, const Counts& counts) {
   double sum = 0.0;
@@ -79,7 +80,7 @@ double mean_contradiction(const std::vector<StepMatch>& matches, const Counts& c
   return weight > 0.0 ? sum / weight : 0.0;
 }
 
-/// A probability after evidence against it.
+/// A probability lowered by contradicting evidence.
 double lowered(double probability, double contradiction) {
   const double for_it = probability * geometry::exp(kOdometryRight.first * contradiction);
   return for_it / (for_it + 1.0 - probability);
@@ -128,13 +129,13 @@ double covariance_confidence(const Eigen::Matrix3d& covariance) {
 
 LocalizationStatus StateMonitor::add(const StepEvidence& evidence) {
   struct Support {
-    double before;  // confidence of what it comes from
-    double right;   // that it is right itself
+    double before;  // confidence of its source
+    double right;   // probability that it is right itself
   };
   const auto before_of = [this](const StepMatch& match) {
     return match.matched_step ? confidence_[*match.matched_step] : 1.0;
   };
-  // In a finished map, where the robot can be followed by its own stops out of what is mapped.
+  // Only in a finished map, where the robot can be tracked by its own stops out of the mapped area.
   const double against_map = mean_contradiction(
       evidence.matches, [](const StepMatch& match) { return !match.matched_step; });
   std::vector<Support> supports;
@@ -157,8 +158,8 @@ LocalizationStatus StateMonitor::add(const StepEvidence& evidence) {
   } else {
     supports.push_back({confidence_.back(), odometry_confidence(evidence)});
   }
-  // Those that stand on firmer ground first: others can confirm them, but not lift them. What
-  // contradicts a stop on firmer ground speaks against those that do not stand on it.
+  // Firmest supports first: others can confirm them, but not raise them. A contradiction with a
+  // stop on firmer ground counts against supports that do not share that ground.
   std::stable_sort(supports.begin(), supports.end(),
                    [](const Support& a, const Support& b) { return a.before > b.before; });
   double confidence = 0.0;

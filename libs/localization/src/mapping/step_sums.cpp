@@ -29,8 +29,8 @@ Eigen::Matrix3d StepSums::sum_to(std::span<const Pose2> T_map_stop, const StepCo
     if (at > 0) {
       const Pose2& before = T_map_stop[at - 1];
       const Pose2& here = T_map_stop[at];
-      // The error of the step, in the frame of the stop before, turned into the map and moved to
-      // its origin: whatever turns at the stop shifts the origin.
+      // The error of the step, turned from the frame of the previous stop into the map and moved to
+      // the map origin: a rotation at the stop shifts the origin.
       const geometry::SinCos r = geometry::sincos(before.theta_rad);
       Eigen::Matrix3d to_origin;
       to_origin << r.cos, -r.sin, here.y_m, r.sin, r.cos, -here.x_m, 0.0, 0.0, 1.0;

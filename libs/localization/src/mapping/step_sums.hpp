@@ -1,5 +1,5 @@
 // Covariances of stretches of the path by the steps along them, in constant time: sums over blocks
-// of stops, each made again when it is asked for after something in it has changed.
+// of stops, recomputed on demand after a change.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ class StepSums {
   void changed(std::uint32_t stop);
   void all_changed() { blocks_.clear(); }
 
-  /// Of the step to a stop from the one before it, in the frame of that one.
+  /// Covariance of the step from the previous stop to this one, in the frame of the previous one.
   using StepCovariance = std::function<const Eigen::Matrix3d&(std::uint32_t stop)>;
   /// T_from_to, from <= to; the covariance to first order.
   [[nodiscard]] UncertainPose along(std::span<const geometry::Pose2> T_map_stop,
@@ -29,8 +29,8 @@ class StepSums {
 
  private:
   static constexpr std::uint32_t kBlock = 32;
-  /// Of the steps to the first stops of a block, as a small motion of the whole map about its
-  /// origin; `sums[k]` is that up to the stop k of the block.
+  /// Summed covariances of the steps in a block, as a small motion of the whole map about its
+  /// origin; `sums[k]` covers the steps up to stop k of the block.
   struct Block {
     std::vector<Eigen::Matrix3d> sums;
   };

@@ -6,7 +6,7 @@ namespace topogeo::localization {
 
 namespace {
 
-// A prediction that moved less searches nearly the same space again.
+// A smaller change of the prediction leaves the search space nearly the same.
 constexpr double kPredictionMoved_m = 0.3;
 constexpr double kPredictionMoved_rad = 0.05;
 

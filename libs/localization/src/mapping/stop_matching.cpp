@@ -23,29 +23,28 @@ using topomap::LocalMap;
 
 namespace {
 
-// Further apart, two stops hardly see anything in common. Checked first, because most stops of a
-// long log are far away.
+// Stops further apart have hardly anything in common. Checked first, because most stops of a long
+// log are far away.
 constexpr double kFarthestCompared_m = 20.0;
-// The nearest ones show a place well enough, however often it was passed.
+// The nearest stops show a place well enough, however often it was passed.
 constexpr std::size_t kMostConsidered = 100;
-// No drift between two closed loops is larger: places further off are not looked for.
+// Drift between two closed loops is never larger, so places further away are not searched.
 constexpr double kFarthestPlace_m = 100.0;
-constexpr double kWidening =
-    3.0;  // of the deviations, when nothing was found where odometry predicts
+constexpr double kWidening = 3.0;  // of the deviations, if no match was found within the prediction
 
-// Of path between two queries for places.
+// Path between two queries for places.
 constexpr double kBetweenQueries_m = 1.0;
-// Of path after a match by prediction: there the predictions are right.
+// Path along which predictions stay right after a match by prediction.
 constexpr double kRevisitHolds_m = 3.0;
-// As well as the coarse search finds one.
+// Accuracy of the coarse search.
 constexpr double kPlaceSigma_m = 0.25;
 constexpr double kPlaceSigma_rad = 0.06;
 constexpr double kLeastPlaceValue = 0.6;
-// Tasks of a query: a place that is right is among the best ones or found by the next queries.
+// Tasks of a query: a right place is among the best ones, or the next queries find it.
 constexpr std::size_t kPlacesCompared = 3;
 constexpr std::size_t kStopsOfPlace = 2;
-// Where predictions are better than this no place is looked for, unless so many stops in succession
-// did not look as predicted.
+// With better predictions no place is searched, unless this many successive stops contradicted
+// theirs.
 constexpr double kWellKnown_m = 0.25;
 constexpr std::uint32_t kMisfits = 2;
 constexpr std::size_t kStopsOfQuery = 3;
@@ -70,7 +69,7 @@ void StopMatching::skip(const PoseGraphEdge& known) {
   comparisons_.record(known.from, known.to, geometry::inverse(known.T_from_to), true);
 }
 
-// Stops from this one on are recent.
+// The first stop that is recent for `stop`.
 std::uint32_t StopMatching::first_recent(std::uint32_t stop) const {
   std::uint32_t first = stop;
   while (first > 0 && path_m(stop) - path_m(first - 1) <= config_.recent_way_m) --first;
@@ -102,7 +101,7 @@ std::vector<MatchCandidate> StopMatching::recent_candidates(const PoseGraph& gra
   for (std::uint32_t i = first; i + 1 < stop; ++i) {
     consider(choice, graph, i, stop, relative.at(i), false);
   }
-  // The stop just before is worth a task in any case, however bad odometry is by now.
+  // The previous stop is worth a task in any case, however bad odometry is by now.
   if (first < stop) choice.take(stop - 1);
   return choice.best(config_.recent_matches);
 }
@@ -140,7 +139,7 @@ std::vector<StopMatch> StopMatching::match_recent(const PoseGraph& graph) {
   const RelativePoses relative = graph.relative_to(last_stop(), recent_stops());
   std::map<std::uint32_t, std::vector<MatchSolution>> solutions;
   const auto matches_within = [&](double widening) {
-    // Anew each time: what was just compared without success is not worth it again.
+    // Chosen again each time: a pair just compared without success is not worth a second try.
     const std::vector<MatchCandidate> candidates = recent_candidates(graph, relative);
     std::vector<StopMatch> found =
         run(recent_tasks(graph, relative, candidates, widening), EdgeKind::kSequential);
@@ -165,7 +164,7 @@ std::vector<StopMatch> StopMatching::match_unsearchable(const PoseGraph& graph) 
   std::vector<std::uint32_t> near = recent_stops();
   if (near.empty()) near.push_back(stop - 1);
   RelativePoses relative = graph.relative_to(stop, near);
-  near.pop_back();  // the stop before is compared in any case
+  near.pop_back();  // the previous stop is compared in any case
   const auto found_by_odometry = [&](std::uint32_t earlier) {
     return searchable(config_, relative.at(earlier));
   };
@@ -173,7 +172,7 @@ std::vector<StopMatch> StopMatching::match_unsearchable(const PoseGraph& graph) 
   std::vector<MatchCandidate> candidates =
       shown_if_right(near, relative).best(config_.recent_matches);
   if (candidates.empty() && !searchable(config_, relative.at(stop - 1))) {
-    // Perhaps the robot comes back to where it was before.
+    // The robot may be returning to an earlier place.
     near = graph.stops_near(graph.poses()[stop].position_m(), kFarthestCompared_m, kMostConsidered,
                             first_recent(stop));
     relative = graph.predict_from(stop, near, PoseGraph::kUnlimited, PoseGraph::kMostVisited);
@@ -186,7 +185,7 @@ std::vector<StopMatch> StopMatching::match_unsearchable(const PoseGraph& graph) 
   return matches;
 }
 
-// By the triangles of the last stop with two recent ones that were matched with each other.
+// Uses triangles of the last stop with two recent ones that were matched with each other.
 void StopMatching::calibrate(std::span<const StopMatch> matches) {
   const std::uint32_t last = last_stop();
   for (const StopMatch& match : matches) {
@@ -209,7 +208,7 @@ std::vector<MatchTask> StopMatching::recent_tasks(const PoseGraph& graph,
                                                   std::span<const MatchCandidate> candidates,
                                                   double widening) {
   const std::uint32_t stop = last_stop();
-  // By scan tracking; where no scan point is to count, by odometry.
+  // Scan tracking, or odometry if scan points must not count.
   const Pose2 T_previous_robot =
       config_.evidence == MatchEvidence::kScan
           ? stops_[stop].map->T_previous_robot
@@ -231,8 +230,8 @@ std::vector<MatchTask> StopMatching::recent_tasks(const PoseGraph& graph,
   return tasks;
 }
 
-// Where the last stops were matched as predicted, the predictions are right; elsewhere the places
-// around are asked now and then.
+// Near stops that were matched at their prediction, predictions are right; elsewhere the
+// surrounding places are queried now and then.
 bool StopMatching::wants_places(std::uint32_t stop) const {
   if (config_.revisit_matches == 0) return false;
   const auto near = [&](const std::set<std::uint32_t>& stops, double distance_m) {
@@ -294,8 +293,8 @@ std::vector<StopMatch> StopMatching::match_revisited(const PoseGraph& graph,
   return matches;
 }
 
-// Of the stop, and of some before it by the same places, with those stops of the places that should
-// see most of the same.
+// Compares the stop, and some before it along the same places, with the stops of those places that
+// should have most of their view in common.
 std::vector<StopMatching::Comparison> StopMatching::comparisons_with_places(
     const PoseGraph& graph, std::uint32_t stop, std::span<const UncertainPose> relative) {
   std::vector<std::uint32_t> later{stop};
@@ -340,7 +339,7 @@ std::vector<StopMatching::Comparison> StopMatching::comparisons_with_places(
            choice.best_apart(query == stop ? kStopsOfPlace : std::size_t{1})) {
         any = true;
         chosen.insert({candidate.id, query});
-        // What the graph predicts, for a stop a little before the one that it was asked for.
+        // The prediction of the graph for a stop a little before the queried one.
         const UncertainPose T_query_earlier{geometry::between(poses[query], poses[candidate.id]),
                                             relative[candidate.id].covariance};
         found.push_back({requests_.make(query, candidate.id, predicted(candidate.id)),

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kMatchSigma_m = 0.02;
 constexpr double kMatchSigma_rad = 0.008;
-// Of the variance of the step from one drive to the next: drives hang together by their loops.
+// Factor on the variance of the step between two drives, because loops connect drives.
 constexpr double kWeakerBetweenDrives = 100.0;
 
 }  // namespace
@@ -38,12 +38,12 @@ std::vector<PoseGraphEdge> edges_of(const StoredMap& map) {
   const bool known = !edges.empty();
   const std::vector<topomap::StopPose>& stops = map.trajectory.stops;
   std::vector<bool> held(stops.size(), false);
-  // The steps along the stops are what paths are added up of.
+  // Paths are composed of the steps between successive stops.
   for (const PoseGraphEdge& edge : edges) {
     if (edge.from + 1 == edge.to) held[edge.to] = true;
   }
   for (std::uint32_t i = 1; i < stops.size(); ++i) {
-    if (held[i]) continue;  // also where it was stored after the poses and lacks the last ones
+    if (held[i]) continue;  // also if its edges are older than its poses and lack the last ones
     const double weaker = map.maps[i].starts_drive ? kWeakerBetweenDrives : 1.0;
     edges.push_back({i - 1, i, EdgeKind::kSequential,
                      geometry::between(stops[i - 1].T_map_robot, stops[i].T_map_robot),

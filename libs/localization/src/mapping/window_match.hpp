@@ -1,4 +1,4 @@
-// Where all that was seen over the last metres lies in a place that was recognized.
+// Pose of the view of the last metres within a recognized place.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace topogeo::localization {
 
-/// Of an aligned proposal, as a doubtful match of the stop with the anchor of the place: only with
-/// others that agree does it close a loop.
+/// An aligned proposal as a doubtful match of the stop with the anchor of the place: it closes a
+/// loop only together with others that agree.
 StopMatch window_match(const PoseGraph& graph, std::uint32_t stop, const PlaceProposal& place,
                        const CovarianceCalibration& calibration);
 

@@ -17,16 +17,16 @@ using topomap::ScanPoint;
 
 // Fixed: matches depend on them, and tasks do not carry them.
 constexpr double kSlopeReach_m = 0.20;  // to each side; a step of clearance is 1 to 2 cm
-constexpr double kSteepest = 0.97;      // nearly 1: the circles touch at one place ahead
-constexpr double kInside_m = 0.04;      // of a circle that is free: noise
+constexpr double kSteepest = 0.97;      // the circles nearly touch at one place ahead
+constexpr double kInside_m = 0.04;      // depth in a free circle that is noise
 
 struct Touch {
   Eigen::Vector2d position_m;
   double bearing_rad;  // from the laser
 };
 
-// The distance to the nearest object changes along a branch by the cosine of the angle between the
-// branch and the direction away from that object; both objects lie at that angle, to either side.
+// Along a branch the distance to the nearest object changes by the cosine of the angle between the
+// branch and the direction away from that object. Both objects lie at that angle, one on each side.
 void add_touches(const std::vector<BranchPoint>& points, const geometry::Pose2& T_laser_robot,
                  std::vector<Touch>& out) {
   const auto apart_m = [&](std::size_t a, std::size_t b) {
@@ -53,8 +53,8 @@ void add_touches(const std::vector<BranchPoint>& points, const geometry::Pose2& 
   }
 }
 
-// Whether a touch lies in the free space of another circle: where the clearance is uneven its
-// change does not show the direction.
+// Whether a touch lies in the free space of another circle: if the clearance is uneven, its change
+// does not show the direction.
 bool inside_a_circle(const Touch& touch, const std::vector<BranchPoint>& circles) {
   return std::any_of(circles.begin(), circles.end(), [&](const BranchPoint& circle) {
     const double free_m = circle.clearance_m - kInside_m;
@@ -87,7 +87,7 @@ BranchWalls walls_of_branches(const topomap::LocalMap& map) {
 
 MatchFeatures with_walls(const MatchFeatures& features, const BranchWalls& walls) {
   MatchFeatures changed = extract_scan_features(walls.points, walls.T_robot_laser);
-  changed.edges.clear();  // steps of a few centimetres are lost in the noise of these places
+  changed.edges.clear();  // small steps are lost in the noise of these points
   changed.nodes = features.nodes;
   changed.branches = features.branches;
   changed.curves = features.curves;

@@ -40,7 +40,7 @@ ErrorEllipse error_ellipse(const Eigen::Matrix2d& covariance_m2, double k2) {
   const double xy = covariance_m2(0, 1);
   const double difference = xx - yy;
   const double major = 0.5 * (xx + yy + std::sqrt(difference * difference + 4.0 * xy * xy));
-  // The determinant over the larger eigenvalue: the difference of 6.19 cancels in a long ellipse.
+  // Determinant over the larger eigenvalue: the difference of 6.19 cancels in a long ellipse.
   const double minor = major > 0.0 ? std::max(0.0, (xx * yy - xy * xy) / major) : 0.0;
   // With A = yy/det, B = -xy/det, C = xx/det this is 1/2 atan2(-2B, C - A).
   return {std::sqrt(k2 * major), std::sqrt(k2 * minor),

@@ -13,7 +13,7 @@ using geometry::SinCos;
 
 // Fixed: fitness depends on them, and tasks do not carry them.
 constexpr double kTopologicalShare = 0.3;
-constexpr double kPriorSoftness = 12.0;  // squared deviations at which the prior is a half
+constexpr double kPriorSoftness = 12.0;  // squared deviations at which the prior is one half
 constexpr float kOtherFace = -0.5F;      // cosine between the normals of the two faces of a wall
 constexpr float kScanKernel_m = 0.30F;   // about twice the resolution of the genetic search
 
@@ -43,8 +43,7 @@ double ScanFitness::at(const Pose2& T_reference_query, const SinCos& heading) co
   Lanes sums = Lanes::Zero();
   for (std::size_t first = 0; first < x_m_.size(); first += kBlock) {
     const std::size_t end = std::min(first + kBlock, x_m_.size());
-    // Differences to the nearest points and the normals there; first all look-ups, then the
-    // arithmetic on them.
+    // Differences to the nearest points and their normals: first all look-ups, then the arithmetic.
     alignas(16) std::array<float, kBlock> dx_m, dy_m, normal_x, normal_y;
     for (std::size_t i = first; i < end; i += 4) {
       const Lanes x = x_m + cosine * x_m_.lanes(i) - sine * y_m_.lanes(i);

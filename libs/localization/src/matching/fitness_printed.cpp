@@ -12,14 +12,14 @@ namespace {
 using geometry::Pose2;
 using geometry::SinCos;
 
-// Chosen where the thesis is silent (fitness_printed.hpp); fixed, as the form is for comparison
-// only.
+// Chosen where the thesis leaves it open (fitness_printed.hpp); fixed, because the form is only for
+// comparison.
 constexpr double kEquivalent_m = 0.60;
 constexpr double kPrintedClearance_m = 0.30;
 constexpr double kEquivalentInclination_rad = std::numbers::pi / 6.0;
 constexpr double kNone_m = std::numeric_limits<double>::infinity();
 
-// An angle of an undirected line, from any angle above -3 pi.
+// The angle of an undirected line, from any angle above -3 pi.
 double undirected(double angle_rad) {
   while (angle_rad < 0.0) angle_rad += std::numbers::pi;
   while (angle_rad >= std::numbers::pi) angle_rad -= std::numbers::pi;
@@ -34,7 +34,7 @@ void chord_angles(const std::vector<BranchCurve>& curves, std::vector<double>& a
   }
 }
 
-// 6.34; infinite when the point does not project between the ends of the branch (def. 6.2.8).
+// 6.34; infinite if the point does not project between the ends of the branch (def. 6.2.8).
 double projected_distance_m(const Eigen::Vector2d& point, const BranchCurve& branch) {
   const Eigen::Vector2d& a = branch.points_m.front();
   const Eigen::Vector2d& b = branch.points_m.back();
@@ -131,8 +131,8 @@ void PrintedFitness::add_branches(const Pose& pose, Mean& mean) const {
   }
 }
 
-// 6.35 of the two projecting points; infinite when fewer than two ends project. Of two ends that
-// lie beside each other and both project the nearer one counts (Thesis, 6.2.5, proposition 6.2.3).
+// 6.35 for the two projecting points; infinite if fewer than two ends project. If two ends beside
+// each other both project, the nearer one counts (Thesis, 6.2.5, proposition 6.2.3).
 double PrintedFitness::branch_distance_m(const Pose& pose, const BranchCurve& query,
                                          const BranchCurve& reference) const {
   const Eigen::Vector2d query_a = pose.to_reference(query.points_m.front());

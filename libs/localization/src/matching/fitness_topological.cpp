@@ -7,9 +7,9 @@ namespace topogeo::localization {
 namespace {
 
 // Fixed: fitness depends on them, and tasks do not carry them. Widths are about twice the
-// resolution of the genetic search, so that it meets every peak.
+// resolution of the genetic search, so that it hits every peak.
 constexpr auto kReach = static_cast<float>(kReach_m);
-constexpr float kNodeWeight = 3.0F;  // a node pins both coordinates, a branch sample only one
+constexpr float kNodeWeight = 3.0F;  // a node fixes both coordinates, a branch sample only one
 constexpr float kClearanceKernel_m = 0.30F;
 constexpr float kNodeClearanceKernel_m = 2.0F * kClearanceKernel_m;
 
@@ -55,7 +55,7 @@ double TopologicalFitness::at(const geometry::Pose2& T_reference_query,
   return std::min(1.0, sum * per_weight_);
 }
 
-// First all look-ups of a block, then the arithmetic on what was found: mixed, the one waits for
+// First all look-ups of a block, then the arithmetic on the results: interleaved, each waits for
 // the other.
 double TopologicalFitness::branch_scores(std::size_t first, std::size_t count,
                                          const FloatPose& T) const {
@@ -86,7 +86,7 @@ double TopologicalFitness::branch_scores(std::size_t first, std::size_t count,
     const Lanes dy = found(dy_m);
     const Lanes other_x = found(direction_x);
     const Lanes other_y = found(direction_y);
-    // Distance to the branch, not to its sample: the part across it, and along it the part beyond
+    // Distance to the branch, not to its sample: the part across it, and the part along it beyond
     // the middle between two samples.
     const Lanes across = dx * other_y - dy * other_x;
     const Lanes beyond2 = (dx * dx + dy * dy - across * across - kHalf2).max(0.0F);

@@ -9,15 +9,15 @@ namespace {
 // Fixed: fitness depends on them, and tasks do not carry them.
 constexpr double kWeightedReach_m = 0.40;  // above twice the resolution of the search
 constexpr double kWeightedClearance_m = 0.25;
-constexpr double kElementsShare = 0.3;  // beside the walls, as in the combined form
-constexpr double kWeightedNode = 3.0;   // a node pins both coordinates, a branch sample only one
+constexpr double kElementsShare = 0.3;  // besides the walls, as in the combined form
+constexpr double kWeightedNode = 3.0;   // a node fixes both coordinates, a branch sample only one
 
 double soft(double squared, double width) {
   const double u = 1.0 - std::min(squared, width * width) / (width * width);
   return u * u;
 }
 
-// Of a sample that comes to lie at (x, y) beside another one.
+// Score of a sample placed at (x, y) near another one.
 double score(const BranchSample& sample, const BranchSample& other, double x, double y,
              const geometry::SinCos& r) {
   constexpr double kHalf_m = 0.5 * MatchFeatures::kBranchSpacing_m;

@@ -52,7 +52,7 @@ void GeneticSearch::evaluate(const Fitness& fitness, Individual& individual) {
   });
 }
 
-// The best individuals, best first, become the first of the next generation.
+// Copies the best individuals, best first, to the start of the next generation.
 void GeneticSearch::keep_elite(std::size_t count) {
   std::iota(order_.begin(), order_.end(), 0U);
   const auto end = order_.begin() + static_cast<std::ptrdiff_t>(count);
@@ -82,7 +82,7 @@ std::uint32_t GeneticSearch::run(const MatchTask& task, const Fitness& fitness,
   std::uint32_t evaluations = genetic.individuals;
   for (std::uint32_t generation = 1; generation < genetic.generations; ++generation) {
     roulette_.fill(population_);
-    if (roulette_.empty()) break;  // nothing in common anywhere: there is nothing to select by
+    if (roulette_.empty()) break;  // nothing in common anywhere, so there is no basis for selection
     keep_elite(genetic.elite);
     for (std::size_t i = genetic.elite; i < next_.size(); i += 2) {
       Chromosome a = population_[roulette_.spin(random)].genes;

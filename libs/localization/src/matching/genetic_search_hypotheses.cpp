@@ -17,7 +17,7 @@ using geometry::SinCos;
 constexpr double kEquivalentClearance_m = 0.20;
 constexpr double kCell_m = 0.30;          // two of the default position resolution
 constexpr double kCell_rad = 0.12;        // directions of branches are uncertain by about 5 degrees
-constexpr double kNodeVotes = 3.0;        // a node pins both coordinates, a branch sample only one
+constexpr double kNodeVotes = 3.0;        // a node fixes both coordinates, a branch sample only one
 constexpr std::size_t kMostPairs = 4096;  // bounds the time of a task between rich maps
 constexpr std::size_t kMostCandidates = 4096;
 
@@ -26,7 +26,7 @@ double likeness(double clearance_a_m, double clearance_b_m) {
   return 1.0 - u * u;
 }
 
-// So many are left out between two that are looked at.
+// Stride through the elements of both maps that keeps the number of pairs below kMostPairs.
 std::size_t stride(std::size_t query, std::size_t reference) {
   const std::size_t pairs = query * reference;
   std::size_t step = 1;
@@ -36,7 +36,7 @@ std::size_t stride(std::size_t query, std::size_t reference) {
 
 }  // namespace
 
-// The search space, and which cell of it a pose is in.
+// The search space and its cells.
 class BranchHypotheses::Space {
  public:
   explicit Space(const MatchTask& task)
@@ -52,7 +52,7 @@ class BranchHypotheses::Space {
   [[nodiscard]] bool has_heading(const SinCos& r) const {
     return r.cos * heading_.cos + r.sin * heading_.sin >= smallest_cos_;
   }
-  /// Where `from` lies on `to` with the heading `r`; the heading itself is not worked out.
+  /// Position that lays `from` on `to` with the heading `r`; the heading itself is not set.
   [[nodiscard]] Pose2 lay(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                           const SinCos& r) const {
     return {to.x() - r.cos * from.x() + r.sin * from.y(),
@@ -136,9 +136,9 @@ void BranchHypotheses::add_branches(const Space& space, const MatchFeatures& ref
   }
 }
 
-// Every cell with a candidate, the heaviest first.
+// Collects every cell with a candidate, heaviest first.
 void BranchHypotheses::count_cells() {
-  // The candidates' order among equals is that of the maps' elements; a stable sort allocates.
+  // Equal candidates keep the order of the maps' elements; a stable sort would allocate.
   const auto before = [](const Candidate& a, const Candidate& b) {
     if (a.cell != b.cell) return a.cell < b.cell;
     if (a.weight != b.weight) return a.weight > b.weight;

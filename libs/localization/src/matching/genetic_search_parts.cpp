@@ -8,7 +8,7 @@ namespace {
 
 using geometry::Pose2;
 
-constexpr std::uint32_t kTabledBits = 10;    // longer headings are worked out one by one
+constexpr std::uint32_t kTabledBits = 10;    // longer headings are computed one by one
 constexpr std::uint32_t kLargestTable = 17;  // as a power of two: 2 MB
 
 // 0 to n - 1, n < 2^32: faster than Random::below, and uneven by 2^-32 at most.
@@ -105,8 +105,8 @@ void cross(Chromosome& a, Chromosome& b, std::uint32_t bits, support::Random& ra
   }
 }
 
-// How many bits flip is drawn first, from the binomial distribution, and then which: hardly any
-// flip, so this takes far fewer random numbers than one for each bit.
+// Draws the number of flipped bits first, from the binomial distribution, and then the bits: hardly
+// any flip, so this takes far fewer random numbers than one per bit.
 void Mutation::bind(std::uint32_t bits, double rate) {
   bits_ = bits;
   const std::uint32_t all = 3 * bits;

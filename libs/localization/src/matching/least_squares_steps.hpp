@@ -1,5 +1,4 @@
-// Gauss-Newton for one pose, shared by what a match can be refined with: scan points, or nodes and
-// branches.
+// Gauss-Newton for one pose, shared by all kinds of refinement.
 #pragma once
 
 #include <cmath>
@@ -18,7 +17,7 @@ struct NormalEquations {
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   std::size_t points = 0;
 
-  // Written out, because the order of the sums must be the same on every machine.
+  // Written out, because the sums must have the same order on every machine.
   void add(const double jacobian[3], double residual, double weight) {
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) hessian(i, j) += weight * jacobian[i] * jacobian[j];
@@ -27,7 +26,7 @@ struct NormalEquations {
     ++points;
   }
 
-  // Adds the prior; both its error and the update are (x, y, theta) in the reference frame.
+  // Adds the prior; its error and the update are (x, y, theta) in the reference frame.
   void add(const PosePrior& prior, const geometry::Pose2& T) {
     const Eigen::Vector3d error = geometry::difference(T, prior.T_reference_query);
     for (int i = 0; i < 3; ++i) {
@@ -39,16 +38,15 @@ struct NormalEquations {
   }
 };
 
-/// How far a residual may be to count: from `first_m`, `step_m` less at each iteration, down to
-/// `last_m`.
+/// Largest residual that counts: `first_m`, then `step_m` less at each iteration, down to `last_m`.
 struct ShrinkingGate {
   double first_m;
   double last_m;
   double step_m;
 };
 
-/// From the first guess on, with the equations of linearize(T, gate_m). With fewer than `fewest`
-/// points the first guess comes back, not converged.
+/// Iterates from the first guess with the equations of linearize(T, gate_m). With fewer than
+/// `fewest` points it returns the first guess, not converged.
 template <typename Linearize>
 Alignment align_with(const geometry::Pose2& T_first_guess, const PosePrior& prior,
                      const ShrinkingGate& gate, std::size_t fewest, const Linearize& linearize) {
@@ -60,7 +58,7 @@ Alignment align_with(const geometry::Pose2& T_first_guess, const PosePrior& prio
     NormalEquations equations = linearize(T, gate_m);
     if (equations.points < fewest) return {T_first_guess, k, false};
     equations.add(prior, T);
-    // A little damping keeps a direction that nothing fixes (along a bare corridor) where it was.
+    // A little damping keeps a direction that nothing determines (along a bare corridor) unchanged.
     for (int i = 0; i < 3; ++i) equations.hessian(i, i) += 1e-3;
     const Eigen::Vector3d step = equations.hessian.inverse() * equations.gradient;
     T = {T.x_m - step.x(), T.y_m - step.y(), geometry::wrap_angle(T.theta_rad - step.z())};

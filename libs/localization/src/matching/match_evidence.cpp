@@ -18,7 +18,7 @@ namespace {
 
 using geometry::Pose2;
 
-// Bounds on what a task from another machine may ask for, not settings: they protect the worker.
+// Limits on tasks from other machines, not settings: they protect the worker.
 constexpr std::uint32_t kFewestIndividuals = 4;
 constexpr std::uint32_t kMostIndividuals = 10'000;
 constexpr std::uint64_t kMostEvaluations = 1'000'000;  // a second of one core, 32 MB
@@ -32,7 +32,7 @@ class Checker {
  public:
   explicit Checker(const MatchTask& task) : task_(task) {}
 
-  // Not a number is outside of every range.
+  // A NaN is outside every range.
   void range(const char* name, double value, double low, double high) const {
     if (value >= low && value <= high) return;
     char text[160];
@@ -84,13 +84,13 @@ void check_gate(const Checker& checker, const GateConfig& gate) {
 }
 
 // Normals of walls that branches imply are off by some degrees, so walls along a corridor seem to
-// show the place along it: each point as much as the square of the error. Taken off the information
-// of the position in its weakest direction, at most all of it.
+// contain information about the position along it: each point as much as the square of the error.
+// This information is subtracted in the weakest direction of the position, at most all of it.
 Eigen::Matrix3d less_normal_errors(const Eigen::Matrix3d& information) {
   constexpr double kNormalSigma_rad = 0.1;  // 2 cm over the 20 cm that a normal is fitted to
   Eigen::Matrix3d known = information;
   if (!(information(2, 2) > 0.0)) return known;
-  // Of the position once the heading is free to follow it.
+  // Information of the position when the heading is free.
   const Eigen::Vector2d with_heading = information.topRightCorner<2, 1>();
   const Eigen::Matrix2d position = information.topLeftCorner<2, 2>() -
                                    with_heading * with_heading.transpose() / information(2, 2);
@@ -141,7 +141,7 @@ bool same_place(const Pose2& a, const Pose2& b) {
 void add_evidence(const MatchContext& context, MatchResult& result) {
   const auto& [task, reference, query, forms] = context;
   const Fitness& fitness = forms.chosen();
-  MatchResult stated;  // starts from nothing, so that no field can be forgotten
+  MatchResult stated;  // starts empty, so that no field can be forgotten
   stated.task_id = task.task_id;
   stated.seed = task.seed;
   stated.evaluations = result.evaluations;

@@ -1,4 +1,4 @@
-// All that a match result states of its poses, computed in one place for solve() and verify().
+// All statements of a match result about its poses, computed in one place for solve() and verify().
 #pragma once
 
 #include "topogeo/localization/matching/fitness_forms.hpp"
@@ -8,12 +8,11 @@
 
 namespace topogeo::localization {
 
-/// Throws std::invalid_argument, naming the task and the number, when a number of the task is not
-/// finite or outside of what is allowed. A task may come from another machine, so nothing of it is
-/// taken on trust.
+/// Throws std::invalid_argument, naming the task and the number, if a number of the task is not
+/// finite or outside its limits. A task may come from another machine, so nothing in it is trusted.
 void check(const MatchTask& task);
 
-/// What a result is computed from; the features are those that MatchTask::evidence reads.
+/// Input of a result; the features are those that MatchTask::evidence selects.
 struct MatchContext {
   const MatchTask& task;
   const Reference& reference;
@@ -21,17 +20,16 @@ struct MatchContext {
   const FitnessForms& forms;
 };
 
-/// Places that are refined before the winner is chosen. Fixed: tasks do not carry it.
+/// Number of places refined before the winner is chosen. Fixed: tasks do not carry it.
 inline constexpr std::size_t kRefined = 3;
 
-/// Whether two poses are so near each other that refinement takes both to one: within 0.3 m and
-/// 0.15 rad.
+/// Whether two poses are so close that refinement merges them: within 0.3 m and 0.15 rad.
 bool same_place(const geometry::Pose2& a, const geometry::Pose2& b);
 
-/// Sets every field of `result` that follows from the task and the poses in it: those of the
-/// solutions, the refined one and that of `second`, which counts when its fitness is above 0. Only
-/// the poses themselves and `evaluations` stay as they are. Without a solution of a fitness above 0
-/// nothing else is left either. The poses must be finite, their headings in [-pi, pi].
+/// Sets every field of `result` that follows from the task and the poses in it: the solutions, the
+/// refined pose and, if its fitness is above 0, `second`. The poses and `evaluations` do not
+/// change. Without a solution of fitness above 0, all other fields are cleared. The poses must be
+/// finite, their headings in [-pi, pi].
 void add_evidence(const MatchContext& context, MatchResult& result);
 
 }  // namespace topogeo::localization

@@ -19,7 +19,7 @@ using topomap::ScanPoint;
 
 // Fixed: features depend on them, and tasks do not carry them.
 constexpr double kNeighbourhood_m =
-    0.30;  // wide enough for a normal in spite of centimetres of range noise
+    0.30;  // wide enough for a normal despite centimetres of range noise
 constexpr std::size_t kFewestNeighbours = 4;
 constexpr double kLargestThickness_m = 0.05;
 
@@ -31,9 +31,9 @@ std::vector<Eigen::Vector2d> to_vectors(std::span<const ScanPoint> points) {
 }
 
 // Gap between two beams on one surface, as a share of the range: beams one degree apart on a wall
-// that is seen at 75 degrees from its normal. Where that gives too few neighbours, along corridors
-// seen by coarse lasers, at 82 degrees; not at once, because wider neighbourhoods round off
-// corners, and not more, because a wall of a few points far apart is a poor line.
+// seen at 75 degrees from its normal. If that gives too few neighbours, along corridors seen by
+// coarse lasers, at 82 degrees. Not at once, because wider neighbourhoods round off corners, and
+// not more, because a few points far apart make a poor line.
 constexpr double kUsualGap = 0.07;
 constexpr double kFlatGap = 0.14;
 
@@ -43,8 +43,8 @@ struct Neighbourhood {
   [[nodiscard]] bool few() const { return last - first + 1 < kFewestNeighbours; }
 };
 
-// Successive points around point i with gaps of at most this share of its range, as far as two of
-// these gaps.
+// Successive points around point i with gaps of at most this share of its range, up to a distance
+// of two such gaps.
 Neighbourhood neighbourhood(const std::vector<Eigen::Vector2d>& points, std::size_t i,
                             double range_m, double gap_share) {
   const double gap_m = std::max(0.15, gap_share * range_m);
@@ -94,7 +94,7 @@ SurfacePoint fit_surface(const std::vector<Eigen::Vector2d>& points, std::size_t
   return {centre, normal / (seen_from_behind ? -length : length), true};
 }
 
-// Finer where that costs little: a grid over a hall would take longer to fill than the match.
+// A finer grid where it costs little: in a hall it would take longer to fill than the match.
 double grid_cell_m(const std::vector<SurfacePoint>& points) {
   constexpr double kFine_m = 0.10;
   constexpr double kLargestFineExtent_m = 50.0;
@@ -104,8 +104,8 @@ double grid_cell_m(const std::vector<SurfacePoint>& points) {
   return box.sizes().maxCoeff() <= kLargestFineExtent_m ? kFine_m : 2.0 * kFine_m;
 }
 
-// Share of the points of confirmed branches that are found again half a metre on: freiburg-079 and
-// intel together (tests/bench/RESULTS.md, "What of a local map is found again").
+// Share of the points of confirmed branches that are found again half a metre away: freiburg-079
+// and intel together (tests/bench/RESULTS.md, "What of a local map is found again").
 constexpr double kFoundAgain = 0.84;
 
 void add_branch_samples(const topomap::LocalBranch& branch, std::vector<BranchSample>& out) {

@@ -12,7 +12,7 @@ namespace topogeo::localization {
 namespace {
 
 // Fixed: verdicts depend on it, and tasks do not carry it.
-constexpr double kOutweighed = 0.12;  // violations at which no match is accepted, whatever fits
+constexpr double kOutweighed = 0.12;  // violations at which every match is rejected
 
 }  // namespace
 
@@ -77,9 +77,8 @@ Judgement judge(const MatchTask& task, const MatchResult& result) {
   if (doubt(result) > gate.largest_doubt - gate.doubt_per_search_m * search_m) {
     return rejected(Reason::kDoubtful);
   }
-  // Each of the two is seen at right matches too, both together hardly ever: where another pose
-  // fits nearly as well, little of what speaks against this one is enough
-  // (tests/bench/matching.sh).
+  // Right matches show either of the two, but hardly ever both: if another pose fits nearly as
+  // well, little evidence against this one is enough (tests/bench/matching.sh).
   const double rival = rivalry(task, result);
   if (rival <= gate.largest_ambiguity && result.violations / kOutweighed + rival > 1.0) {
     return rejected(Reason::kDoubtful);

@@ -12,12 +12,12 @@ namespace {
 using geometry::Pose2;
 
 // Fixed: verdicts depend on them, and tasks do not carry them.
-constexpr double kNearest_m = 0.4;  // nearer ones are the same place, or refine to it
-constexpr double kStep_m = 0.2;     // of a fitness that sees 0.3 m far
-constexpr int kMostSteps = 60;      // 12 m, farther than any scan is worth comparing
-constexpr int kRays = 8;            // the weakest direction, its opposite and what lies between
+constexpr double kNearest_m = 0.4;  // nearer ones are the same place or refine to it
+constexpr double kStep_m = 0.2;     // the fitness has a reach of 0.3 m
+constexpr int kMostSteps = 60;      // 12 m, beyond any scan worth comparing
+constexpr int kRays = 8;            // the weakest direction, its opposite and six between
 
-// Direction in which the position is known least once the heading is free to follow it.
+// Direction of the least certain position when the heading is free.
 double weakest_direction_rad(const Eigen::Matrix3d& information) {
   constexpr double kLeastInformation = 0.25;
   const double per_heading = 1.0 / (information(2, 2) + kLeastInformation);

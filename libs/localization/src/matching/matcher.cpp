@@ -22,7 +22,7 @@ namespace {
 
 using geometry::Pose2;
 
-// Rivals are rated by what refines a match; where nothing does, by the requested form.
+// Rates rivals by the evidence that refines a match; without refinement, by the requested form.
 double rating(const MatchContext& context, const Pose2& T) {
   const geometry::SinCos heading = geometry::sincos(T.theta_rad);
   return context.task.evidence == MatchEvidence::kFitness
@@ -35,9 +35,8 @@ Alignment align_by_evidence(const MatchContext& context, const Pose2& T, const P
   return align(context.reference, context.query, T, prior);
 }
 
-// Refines the `starts`, takes the one with the largest fitness and gives it as free of the prior as
-// weak_prior() leaves it as the result's pose. Its second is the pose elsewhere that the maps allow
-// best, whatever odometry predicts.
+// Refines the `starts` and takes the one with the largest fitness, aligned again with weak_prior(),
+// as the result's pose. Its second is the best other pose by the maps alone, without odometry.
 void choose(const MatchContext& context, const std::vector<MatchSolution>& starts,
             MatchResult& result) {
   const PosePrior prior{context.task.T_reference_query, context.task.covariance.inverse()};
@@ -64,12 +63,13 @@ void choose(const MatchContext& context, const std::vector<MatchSolution>& start
     if (fitness > result.second.fitness) result.second = {T, fitness};
   }
   if (result.second.fitness <= 0.0) return;
-  // It is rated like every other solution, by the requested form, which may find nothing.
+  // It is rated like every other solution, by the requested form, which may give 0.
   result.second.fitness = context.forms.chosen()(result.second.T_reference_query);
   if (result.second.fitness <= 0.0) result.second = {};
 }
 
-// The second search (Thesis, 7.3.1.2): around a solution, one cell of the first one to each side.
+// The second search (Thesis, 7.3.1.2): around a solution, one cell of the first search to each
+// side.
 MatchTask finer_task(const MatchTask& task, const Pose2& T_solution) {
   MatchTask finer = task;
   finer.T_reference_query = T_solution;
@@ -131,7 +131,7 @@ const Reference& Matcher::reference(const MatchTask& task) {
   if (found != references_.end()) {
     references_.splice(references_.begin(), references_, found);
   } else {
-    // In the memory of the one that was used longest ago; gone if it cannot be made.
+    // Reuses the memory of the least recently used one, which is lost if this throws.
     std::list<CachedReference> made;
     if (references_.size() < kKeptReferences) {
       made.emplace_back();

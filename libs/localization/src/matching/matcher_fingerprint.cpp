@@ -1,4 +1,4 @@
-// matcher_fingerprint: do two programs make the same of the same task?
+// matcher_fingerprint: hash that tells whether two programs give the same answers.
 #include <bit>
 #include <cstdint>
 
@@ -10,8 +10,8 @@ namespace {
 
 using geometry::Pose2;
 
-// The contour of a room with a recess, from the corner in the direction -pi on, as a laser inside
-// sees it. In the frame that `T_robot_room` gives.
+// The contour of a room with a recess, starting at the corner in the direction -pi, as a laser
+// inside sees it. In the frame given by `T_robot_room`.
 constexpr double kCorners_m[][2] = {{-2.0, -2.0}, {2.0, -2.0}, {2.0, 0.5},  {3.5, 0.5},
                                     {3.5, 2.5},   {-2.0, 2.5}, {-2.0, -2.0}};
 

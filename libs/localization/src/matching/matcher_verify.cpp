@@ -1,4 +1,4 @@
-// Matcher::verify: is what a result states of its poses true?
+// Matcher::verify: checks the statements of a result about its poses.
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -17,7 +17,7 @@ namespace {
 using geometry::Pose2;
 
 bool sane(const Pose2& T) {
-  constexpr double kFarthest_m = 2e6;  // twice what a task may ask for
+  constexpr double kFarthest_m = 2e6;  // twice the largest in a task
   return std::fabs(T.x_m) <= kFarthest_m && std::fabs(T.y_m) <= kFarthest_m &&
          std::fabs(T.theta_rad) <= std::numbers::pi;
 }
@@ -32,7 +32,7 @@ std::string nth(std::size_t i) {
   return "solution " + std::to_string(i + 1);
 }
 
-// What can be wrong with a result before anything is computed from its poses.
+// Faults that show before anything is computed from the poses.
 std::string faults_of_form(const MatchTask& task, const MatchResult& result) {
   if (result.task_id != task.task_id) return "the task_id is that of another task";
   if (result.seed != task.seed) return "the seed is not that of the task";
@@ -62,7 +62,7 @@ std::string faults_of_form(const MatchTask& task, const MatchResult& result) {
   return {};
 }
 
-// The first difference between what is stated and what is right.
+// The first difference between the stated and the recomputed result.
 std::string difference(const MatchResult& stated, const MatchResult& right) {
   for (std::size_t i = 0; i < right.solutions.size(); ++i) {
     if (!identical(stated.solutions[i].fitness, right.solutions[i].fitness)) {
@@ -105,14 +105,14 @@ std::string difference(const MatchResult& stated, const MatchResult& right) {
   return {};
 }
 
-// What holds for right numbers of poses that solve() would choose.
+// Faults in the choice of poses: solve() would not choose these, even if the numbers are right.
 std::string faults_of_choice(const MatchResult& right) {
   for (std::size_t i = 1; i < right.solutions.size(); ++i) {
     if (right.solutions[i].fitness > right.solutions[i - 1].fitness) {
       return nth(i) + " is better than " + nth(i - 1);
     }
   }
-  // The second is the one that the maps allow best, so with odometry it may be the better one.
+  // The second is the best other pose by the maps, so with odometry it may be the better one.
   if (right.second.fitness == 0.0) return {};
   if (same_place(right.second.T_reference_query, right.T_reference_query)) {
     return "the second is the best one again";

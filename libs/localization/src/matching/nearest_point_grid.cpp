@@ -14,23 +14,22 @@ namespace {
 constexpr std::size_t kMostPoints = std::numeric_limits<std::uint16_t>::max() - 1U;
 constexpr double kMostCells = 4'194'304.0;  // 200 m x 200 m; single precision counts to 2^24
 
-// Cells of a row are worked on so many at once: twice the lanes of a vector, once those of a wide
-// one.
+// Cells of a row processed at once: twice the lanes of a vector, or once those of a wide one.
 constexpr int kLanes = 8;
 
-// The cells that a point may be nearest to: a square around it.
+// The cells within reach of a point: a square around it.
 struct Window {
   int first_row;
   int first_column;
   double y;  // of the point, in cells
 };
 
-// Those of all points, in their order.
+// The windows of all points, in their order.
 struct Windows {
-  int rows;   // of each
-  int width;  // as many columns, and more to a multiple of kLanes
+  int rows;   // of each window
+  int width;  // the same number of columns, rounded up to a multiple of kLanes
   std::vector<Window> windows;
-  // From the point to its columns, `width` for each window; beyond its own they are infinite.
+  // Squared distance from the point to its columns, `width` per window; the padding is infinite.
   std::vector<float> across_squared;
 };
 
@@ -39,14 +38,15 @@ struct Band {
   int first_row;
   int end_row;
   std::size_t columns;
-  // As wide as a distance, so that vectors hold as many of both. Both with room for the columns by
-  // which the windows of the last row are too wide.
+  // Elements are as wide as a distance, so that vectors hold equally many of both. Both have extra
+  // room for the padding columns of the windows in the last row.
   std::vector<std::int32_t> nearest;
   std::vector<float> squared;  // distance of the nearest so far
 };
 
-// Of a row's cells from the window's first on: point `i`, in those to which it is nearer than the
-// `nearest` so far. With masks, as the compiler makes vectors of that and not of two choices.
+// Enters point `i` into those of a row's cells, from its window's first on, to which it is nearer
+// than the `nearest` so far. Uses masks, because the compiler vectorises those but not two
+// selections.
 inline void take_nearer(const float* __restrict across_squared, int width, float dy_squared,
                         std::int32_t i, float* __restrict squared,
                         std::int32_t* __restrict nearest) {
@@ -61,8 +61,8 @@ inline void take_nearer(const float* __restrict across_squared, int width, float
   }
 }
 
-// Twice the vectors where the processor has them: their arithmetic is the same. What checks memory
-// cannot be asked that early which processor it is.
+// Twice the vector width where the processor has it, with the same arithmetic. Not with sanitizers,
+// because the choice runs before they are initialised.
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define TOPOGEO_WIDE_VECTORS __attribute__((target_clones("avx2", "default")))
@@ -70,7 +70,7 @@ inline void take_nearer(const float* __restrict across_squared, int width, float
 #define TOPOGEO_WIDE_VECTORS
 #endif
 
-// The nearest point of each cell of the band, row by row, to `found`; `none` where there is none.
+// Writes the nearest point of each cell of the band, row by row, to `found`; `none` without one.
 TOPOGEO_WIDE_VECTORS void fill(const Windows& windows, std::uint16_t none, Band& band,
                                std::uint16_t* found) {
   const int width = windows.width;
@@ -117,8 +117,8 @@ Windows windows_around(const std::vector<Eigen::Vector2d>& points_m,
   return around;
 }
 
-// The nearest point of each cell, row by row; `none` where there is none. A band at a time, so that
-// what is worked on stays in the fast memory of the processor.
+// The nearest point of each cell, row by row; `none` without one. Works band by band, so that the
+// data stay in the cache.
 void find_nearest(const Windows& windows, int rows, int columns, std::uint16_t none,
                   std::vector<std::uint16_t>& nearest) {
   constexpr int kBandRows = 32;
@@ -152,7 +152,7 @@ void NearestPointGrid::build(const std::vector<Eigen::Vector2d>& points_m, doubl
   }
   NearestPointGrid made;
   made.cells_per_m_ = 1.0 / cell_m;
-  // Rounded up: a place just within reach must not fall into a cell that was left out.
+  // Rounded up: a place just within reach must not fall into a cell that is left out.
   const int reach_cells = static_cast<int>(std::ceil(reach_m * made.cells_per_m_));
   const double margin_m = (reach_cells + 2) * cell_m;  // the outermost cells stay empty
   const Eigen::Vector2d origin_m(low.x() - margin_m, low.y() - margin_m);

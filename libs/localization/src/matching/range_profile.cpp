@@ -44,7 +44,7 @@ RangeProfile::RangeProfile(std::span<const topomap::ScanPoint> points,
     const double range = std::sqrt(p.squaredNorm());
     const int bin = bin_of(p);
     put(bin, range);
-    // A coarser laser leaves bins between two beams; up to two degrees they belong to the nearer
+    // A coarser laser leaves bins between two beams; gaps of up to two degrees get the nearer
     // reading.
     if (last_bin >= 0 && bin > last_bin + 1 && bin <= last_bin + 4) {
       for (int k = last_bin + 1; k < bin; ++k) put(k, std::min(range, last_range_m));

@@ -15,19 +15,19 @@ namespace {
 using geometry::Pose2;
 
 // Fixed: matches depend on them, tasks do not carry them, and workers must give the answers of the
-// localizer (matcher_fingerprint.hpp). They fit lasers with centimetres of noise.
-constexpr std::size_t kFewestPoints = 12;  // fewer do not fix three unknowns
+// localizer (matcher_fingerprint.hpp). They suit lasers with centimetres of noise.
+constexpr std::size_t kFewestPoints = 12;  // fewer do not determine three unknowns
 constexpr ShrinkingGate kGate{0.50, 0.20, 0.06};
-constexpr double kCauchy_m = 0.05;  // a reading's error: twice as far weighs a fifth
-// Deviation taken for one residual. More than the laser's noise, because the residuals of
-// neighbouring beams are not independent.
+constexpr double kCauchy_m = 0.05;  // error of a reading: one twice as large weighs a fifth
+// Deviation of one residual. Larger than the laser's noise, because the residuals of neighbouring
+// beams are not independent.
 constexpr double kResidualSigma_m = 0.08;
 constexpr double kInlier_m = 0.15;         // on a surface, with noise and the thickness of walls
-constexpr double kViewTolerance_m = 0.30;  // half-thickness of what the laser saw
+constexpr double kViewTolerance_m = 0.30;  // half-thickness of surfaces in view
 constexpr double kSameFace = 0.70710678;   // cosine between two normals of one surface
 
-// The edge of the reference that the query's `edge` is, moved to the reference frame by T; none
-// within the gate: nullptr. Its distance along the wall goes to `along_m`.
+// The reference edge that corresponds to the query's `edge`, moved to the reference frame by T;
+// null without one within the gate. `along_m` gets its distance along the wall.
 const WallEdge* same_edge(const Reference& reference, const WallEdge& edge, double gate_m,
                           double& along_m) {
   constexpr double kSameDirection = 0.95;  // cosine
@@ -48,8 +48,8 @@ const WallEdge* same_edge(const Reference& reference, const WallEdge& edge, doub
   return nearest;
 }
 
-// Of the points of a wall only the distance from it counts, so they do not tell that it goes on
-// 8 cm further back; its edges do, and along a corridor of shut doors nothing else does.
+// Points of a wall constrain only the distance from it, not where along the wall it steps back by 8
+// cm; its edges do. Along a corridor of shut doors nothing else does.
 void add_edges(const Reference& reference, const MatchFeatures& query, const Pose2& T,
                const geometry::SinCos& r, double gate_m, NormalEquations& equations) {
   for (const WallEdge& edge : query.edges) {
@@ -63,7 +63,7 @@ void add_edges(const Reference& reference, const MatchFeatures& query, const Pos
     const double variance_m2 = 2.0 * kResidualSigma_m * kResidualSigma_m +
                                here.sigma_m * here.sigma_m + other->sigma_m * other->sigma_m;
     equations.add(jacobian, along_m, 1.0 / (variance_m2 + along_m * along_m));
-    --equations.points;  // they fix no pose without the walls
+    --equations.points;  // edges alone determine no pose
   }
 }
 
@@ -81,8 +81,7 @@ NormalEquations linearize(const Reference& reference, const MatchFeatures& query
     const double ox = T.x_m + dx - other.position_m.x();
     const double oy = T.y_m + dy - other.position_m.y();
     if (ox * ox + oy * oy > gate_m * gate_m || !other.on_line) continue;
-    if (point
-            .on_line) {  // neither two walls across each other nor the faces of one are one surface
+    if (point.on_line) {  // neither two crossing walls nor both faces of one are a surface
       const double nx = r.cos * point.normal.x() - r.sin * point.normal.y();
       const double ny = r.sin * point.normal.x() + r.cos * point.normal.y();
       if (nx * other.normal.x() + ny * other.normal.y() < kSameFace) continue;
@@ -97,7 +96,7 @@ NormalEquations linearize(const Reference& reference, const MatchFeatures& query
   return equations;
 }
 
-// Counts the reference's points that fall into what the query saw.
+// Counts of the reference's points that are in view of the query.
 struct ReverseView {
   std::size_t in_view = 0;
   std::size_t violations = 0;
@@ -161,7 +160,7 @@ void compare_views(const Reference& reference, const MatchFeatures& query, const
   if (inliers > 0) result.residual_rms_m = std::sqrt(squared / static_cast<double>(inliers));
 }
 
-// Without the part along the direction in which the position is hardly known. There a pull of
+// Removes the part along a direction in which the position is hardly determined. There a pull of
 // centimetres would become metres, and the pose weighs nothing anyway.
 Eigen::Vector2d known_part(const Eigen::Vector2d& step_m, const Eigen::Matrix2d& covariance_m2) {
   constexpr double kKnown_m2 = 0.25;
@@ -202,15 +201,15 @@ Alignment align(const Reference& reference, const MatchFeatures& query, const Po
 }
 
 PosePrior weak_prior(const PosePrior& prior) {
-  // Fixed, as above. A tenth still holds what the scans do not know: along a bare corridor the
-  // position.
+  // Fixed, as above. A tenth still holds what the scans do not determine: the position along a bare
+  // corridor.
   constexpr double kShare = 0.1;
   return {prior.T_reference_query, kShare * prior.information};
 }
 
 Pose2 without_prior(const Pose2& T_aligned, const Eigen::Matrix3d& covariance,
                     const PosePrior& prior) {
-  // Fixed: a linear step is right for no more.
+  // Fixed: a larger step is not linear.
   constexpr double kFarthest_m = 0.3;
   constexpr double kFarthest_rad = 0.05;
   const Eigen::Vector3d pull =
@@ -225,7 +224,7 @@ Pose2 without_prior(const Pose2& T_aligned, const Eigen::Matrix3d& covariance,
           geometry::wrap_angle(T_aligned.theta_rad + step.z())};
 }
 
-// H (T - z) + w P (T - p) = 0 at T, H (T' - z) + P (T' - p) = 0 at T'; their difference without z.
+// H (T - z) + w P (T - p) = 0 at T, H (T' - z) + P (T' - p) = 0 at T'; their difference has no z.
 Pose2 with_prior(const Pose2& T_aligned, const Eigen::Matrix3d& covariance,
                  const PosePrior& prior) {
   const Eigen::Vector3d rest = (prior.information - weak_prior(prior).information) *

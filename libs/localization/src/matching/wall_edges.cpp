@@ -14,16 +14,16 @@ namespace {
 using Eigen::Vector2d;
 
 // Fixed: features depend on them, and tasks do not carry them.
-constexpr double kSide_m = 0.45;  // of wall on each side of an edge: half a door
+constexpr double kSide_m = 0.45;  // wall used on each side of an edge: half a door
 constexpr double kShortestSide_m = 0.12;
 constexpr std::size_t kFewestOfSide = 4;
 constexpr std::size_t kMostOnFace = 2;  // points between the two sides, on the face of the step
 constexpr double kSmallestStep_m = 0.045;
 constexpr double kLargestStep_m = 0.50;
-constexpr double kClearStep = 4.0;         // deviations of what the noise makes of a plain wall
+constexpr double kClearStep = 4.0;         // deviations above the noise of a plain wall
 constexpr double kRoughest_m = 0.03;       // deviation of the points from the two lines
-constexpr double kLeastNoise_m = 0.01;     // a few points can lie on a line by chance
-constexpr double kWidestBetween_m = 0.25;  // of the beams on both sides of an edge, along the wall
+constexpr double kLeastNoise_m = 0.01;     // a few points can be collinear by chance
+constexpr double kWidestBetween_m = 0.25;  // between the beams beside an edge, along the wall
 
 // Successive points of one surface.
 struct Side {
@@ -40,10 +40,10 @@ struct Side {
 // Two parallel lines, one further back.
 struct Step {
   Vector2d normal = Vector2d::Zero();  // towards the laser
-  Vector2d along = Vector2d::Zero();   // from the side in front to the one that lies back
+  Vector2d along = Vector2d::Zero();   // from the front side to the back side
   double front_m = 0.0;                // of the lines, along the normal
   double back_m = 0.0;
-  double clarity = 0.0;  // how many deviations high
+  double clarity = 0.0;  // height in deviations
   std::size_t last_in_front = 0;
   std::size_t first_behind = 0;
 };
@@ -71,7 +71,7 @@ class EdgeFinder {
   }
 
  private:
-  // The step whose first side ends with point i.
+  // The clearest step whose first side ends with point i.
   [[nodiscard]] std::optional<Step> clearest_after(std::size_t i) const {
     std::optional<Step> clearest;
     const std::optional<Side> before = side(i, -1);
@@ -87,7 +87,7 @@ class EdgeFinder {
     return clearest;
   }
 
-  // From point `start` on, backwards (-1) or forwards (+1), as far as kSide_m of one surface.
+  // Points of one surface from `start` on, backwards (-1) or forwards (+1), up to kSide_m.
   [[nodiscard]] std::optional<Side> side(std::size_t start, int direction) const {
     const double gap_m =
         std::max(0.15, 0.07 * std::sqrt((points_m_[start] - laser_m_).squaredNorm()));
@@ -114,7 +114,7 @@ class EdgeFinder {
     return side;
   }
 
-  // By principal components of both sides about their own means.
+  // Fits both sides by principal components about their own means.
   [[nodiscard]] std::optional<Step> step_between(const Side& before, const Side& after) const {
     auto [smallest, largest, normal] =
         principal_axes(before.xx + after.xx, before.xy + after.xy, before.yy + after.yy);
@@ -131,7 +131,7 @@ class EdgeFinder {
     const bool first_in_front = rise_m < 0.0;
     Vector2d along(-normal.y(), normal.x());
     if ((along.dot(between_m) > 0.0) != first_in_front) along = -along;
-    // A line turned by its noise makes a step of a plain wall as well.
+    // A line turned by noise makes a step of a plain wall as well.
     const double apart_m = along.dot(between_m);
     const double sigma_m = noise_m * std::sqrt(1.0 / before.count() + 1.0 / after.count() +
                                                apart_m * apart_m / largest);
@@ -150,8 +150,8 @@ class EdgeFinder {
                 first_in_front ? after.first : before.last};
   }
 
-  // Moves the border between the sides to where the heights of the points, not the noise of a few,
-  // put it: the points before it fit the front, those behind it the back or the face in between.
+  // Moves the border between the sides by the heights of the points, not the noise of a few: the
+  // points before it fit the front, those behind it the back or the face in between.
   [[nodiscard]] bool settle_border(Step& step) const {
     constexpr std::ptrdiff_t kAround = 3;
     const std::ptrdiff_t onwards = step.first_behind > step.last_in_front ? 1 : -1;
@@ -163,7 +163,7 @@ class EdgeFinder {
     };
     const auto begin = static_cast<std::ptrdiff_t>(step.last_in_front) - onwards * kAround;
     const auto end = static_cast<std::ptrdiff_t>(step.first_behind) + onwards * kAround;
-    double cost = 0.0;  // of all on the back; then of one more in front at a time
+    double cost = 0.0;  // of all on the back; then with one more in front at a time
     double least = 0.0;
     std::ptrdiff_t border = -1;
     for (std::ptrdiff_t i = begin; i != end; i += onwards) {
@@ -182,7 +182,7 @@ class EdgeFinder {
     return true;
   }
 
-  // Where the beam to point i meets the line in front, along the wall.
+  // Position along the wall where the beam to point i meets the front line.
   [[nodiscard]] std::optional<double> meets_front_m(const Step& step, std::size_t i) const {
     const Vector2d beam_m = points_m_[i] - laser_m_;
     const double down_m = step.normal.dot(beam_m);
@@ -191,8 +191,8 @@ class EdgeFinder {
                           beam_m * ((step.front_m - step.normal.dot(laser_m_)) / down_m));
   }
 
-  // The edge lies between the last beam on the front and the next one. Where the laser looks at the
-  // face of the step the beams end there; else what lies behind is seen past the edge.
+  // The edge lies between the last beam on the front and the next one. If the laser sees the face
+  // of the step, the beams end there; otherwise they pass the edge.
   [[nodiscard]] std::optional<WallEdge> edge_of(Step step) const {
     if (!settle_border(step)) return {};
     const Vector2d& front = points_m_[step.last_in_front];
@@ -227,7 +227,7 @@ std::vector<WallEdge> find_wall_edges(const std::vector<Vector2d>& points_m,
   };
   std::vector<WallEdge> edges;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    bool clearest = true;  // of those that a side's points are part of
+    bool clearest = true;  // of the edges that share points with it
     for (std::size_t k = 0; k < found.size() && clearest; ++k) {
       clearest = k == i || !told_better(i, k);
     }

@@ -15,16 +15,16 @@ using geometry::Pose2;
 
 namespace {
 
-// Fixed: they depend on each other. The kernel spans a cell and the move of a point some metres
-// away between two headings.
+// Fixed: these depend on each other. The kernel spans a cell and the displacement of a point some
+// metres away between two headings.
 constexpr double kKernel_m = 0.60;
 constexpr double kHeadingStep_rad = 0.05;
 constexpr double kWidestMap_m = 250.0;
-// A place with a lower share of the best one's score is no rival of it.
+// A place with a lower share of the best score is no rival.
 constexpr double kOfBest = 0.85;
 constexpr double kApart_m = 0.75;
 constexpr double kApart_rad = 0.3;
-// So many of the best leaves are kept while searching; neighbours of one place among them.
+// Limit of leaves during the search, including neighbours of one place.
 constexpr std::size_t kLeaves = 400;
 
 struct Cell {
@@ -131,7 +131,7 @@ class Search {
   int headings_ = 0;
   int reach_x_ = 0;
   int reach_y_ = 0;
-  std::vector<std::vector<Cell>> cells_;  // of the points at each heading, without an offset
+  std::vector<std::vector<Cell>> cells_;  // of the points at each heading, without offset
   std::vector<Node> leaves_;
 };
 

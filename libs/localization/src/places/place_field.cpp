@@ -22,20 +22,20 @@ using geometry::Pose2;
 
 namespace {
 
-// These depend on each other and on the time that a search may take (benchmark relocalize/csail),
-// so none is a setting.
-constexpr double kSeedCell_m = 0.25;   // a scan may be off by half of it and still score
+// These depend on each other and on the time limit of a search (benchmark relocalize/csail), so
+// none is a setting.
+constexpr double kSeedCell_m = 0.25;   // a scan may be off by half a cell and still score
 constexpr double kSeedWidth_m = 0.60;  // of the kernel: spans the 5 degrees between headings
-constexpr double kFineCell_m = 0.05;   // as the cells of the global map
+constexpr double kFineCell_m = 0.05;   // like the cells of the global map
 constexpr double kFineWidth_m = PlaceField::kFineWidth_m;
 constexpr double kFineMargin_m = 1.0;
-constexpr std::size_t kPiecePoints = 2048;  // as many as a local map has on the wire
-// Of each task. The last ones are small, so that workers end together.
+constexpr std::size_t kPiecePoints = 2048;  // limit of a local map on the wire
+// Headings per task. The last ones are small, so that workers finish together.
 constexpr std::array<std::uint32_t, 12> kTaskHeadings{9, 9, 9, 9, 9, 9, 6, 4, 3, 2, 2, 1};
 constexpr std::uint32_t kMostHeadings = 9;
 static_assert(std::accumulate(kTaskHeadings.begin(), kTaskHeadings.end(), 0U) ==
               PlaceField::kHeadings);
-// What the steps of a climb come to at most.
+// Limits of the total movement in a climb.
 constexpr double kClimbed_m = 2.0;
 constexpr double kClimbed_rad = 0.6;
 
@@ -59,11 +59,11 @@ std::vector<topomap::ScanPoint> points_of_pieces(
   return points;
 }
 
-/// Of pieces that came from elsewhere.
+/// Walls from received pieces, which are not trusted.
 std::vector<topomap::ScanPoint> walls_of(
     std::span<const std::shared_ptr<const topomap::LocalMap>> pieces,
     const PlaceQuestion& question) {
-  constexpr float kFarthest_m = 1e5F;  // a grid over more has no whole numbers for its cells
+  constexpr float kFarthest_m = 1e5F;  // cells of a larger grid have no integer index
   std::vector<topomap::ScanPoint> walls =
       points_of_pieces(pieces.first(std::min<std::size_t>(question.wall_pieces, pieces.size())));
   const bool near = std::ranges::all_of(walls, [](const topomap::ScanPoint& p) {
@@ -128,7 +128,7 @@ void PlaceField::add_run(int row, int first_column, int cells) {
   cells_ += static_cast<std::size_t>(cells);
 }
 
-// First the walls, then the centres of the first and the last cell of each run.
+// Pieces of the walls first, then of the centres of the first and the last cell of each run.
 void PlaceField::make_pieces() {
   support::Fnv1a hash;
   hash.add(static_cast<std::uint64_t>(std::llround(margin_m_ * 1e6)));
@@ -274,7 +274,7 @@ bool PlaceField::comes_before(const Seed& a, const Seed& b) {
 
 std::vector<Pose2> PlaceField::starts(const PlaceQuestion& question) const {
   const std::size_t wanted = kTaskPoses * question.headings / kMostHeadings;
-  // Each that is taken excludes the eight around it at most.
+  // Each start excludes its up to eight neighbours.
   constexpr std::size_t kTouching = 9;
   std::vector<Seed> seeds = scored(question);
   const auto best =

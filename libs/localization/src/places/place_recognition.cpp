@@ -19,23 +19,23 @@ using geometry::Pose2;
 
 namespace {
 
-constexpr double kSubmap_m = 8.0;  // of path; each begins half of it after the one before
+constexpr double kSubmap_m = 8.0;  // of path; each begins half its length after the previous one
 constexpr double kQueryLeast_m = 2.5;
 constexpr std::size_t kQueryPoints = 120;
 constexpr double kQuerySpacing_m = 0.20;
-constexpr double kSigmas = 3.0;  // of the prediction, searched
-// Wider than the prediction says, because it is asked where matches by the prediction have failed:
-// a step before may have been wrong.
+constexpr double kSigmas = 3.0;  // of the prediction, to search
+// Wider than the prediction, because queries follow failed matches by prediction: an earlier step
+// may have been wrong.
 constexpr double kWider = 1.5;
 const Eigen::Matrix3d kSurprise = Eigen::Vector3d(0.09, 0.09, 0.01).asDiagonal();
-constexpr double kWidestWindow_m = 12.0;  // searched to each side at most, however wide that is
-constexpr double kFootprint_m = 10.0;     // from the anchor of a submap to where a robot can see it
-// Bounds the time of a step, however large the map is: the most likely submaps are searched.
+constexpr double kWidestWindow_m = 12.0;  // limit of the search to each side
+constexpr double kFootprint_m = 10.0;     // from a submap's anchor to positions that see it
+// Bounds the time of a step in any map: only the most likely submaps are searched.
 constexpr std::size_t kMostSubmaps = 40;
 constexpr double kLeastScore = 0.30;
-constexpr std::size_t kPlacesOfSubmap = 3;  // compared
-// Of the comparison as a whole: points this far apart; one is there when the submap has one this
-// near, and contradicts it where a stop of the submap saw past it.
+constexpr std::size_t kPlacesOfSubmap = 3;  // to compare
+// For the comparison as a whole: spacing of the points, and limits. A point is there if the submap
+// has one within kThere_m, and contradicts it if a stop of the submap saw past it.
 constexpr double kAlignedSpacing_m = 0.10;
 constexpr std::size_t kAlignedPoints = 400;
 constexpr double kSubmapSpacing_m = 0.05;
@@ -43,11 +43,11 @@ constexpr std::size_t kSubmapPoints = 6000;
 constexpr double kThere_m = 0.20;
 constexpr double kPlaceTolerance_m = 0.35;
 constexpr double kUsualDoubt = 1.0;
-// Holds the pose where nothing else does, along a bare corridor: half a metre, 6 degrees.
+// Weak prior for directions without information, as along a bare corridor: half a metre, 6 degrees.
 const Eigen::Matrix3d kWeak = Eigen::Vector3d(4.0, 4.0, 100.0).asDiagonal();
 constexpr double kLeastSeen = 0.35;
 
-// One point for each square, in order of the squares; at most about `count` of them.
+// One point per square, in the order of the squares; at most about `count` of them.
 std::vector<SurfacePoint> thinned(std::vector<SurfacePoint> points, double spacing_m,
                                   std::size_t count) {
   const auto cell = [&](const SurfacePoint& p) {
@@ -134,8 +134,8 @@ std::vector<SurfacePoint> PlaceRecognition::points_of(const Submap& submap) cons
   return thinned(std::move(points), kSubmapSpacing_m, kSubmapPoints);
 }
 
-// What was seen over the last metres up to a stop, in its frame. Behind a step that is hardly known
-// nothing is taken: it would be found where it was, and say nothing of the stop.
+// View of the last metres up to a stop, in its frame. Ends at an uncertain step, because the view
+// before it would be found without any information about the stop.
 PlaceRecognition::Query PlaceRecognition::query(const PoseGraph& graph, std::uint32_t stop) const {
   Query query;
   for (std::uint32_t i = stop + 1; i-- > 0;) {
@@ -160,7 +160,7 @@ const Reference& PlaceRecognition::reference_of(std::size_t submap) {
   });
 }
 
-// Aligns all that was seen over the last metres with the submap.
+// Aligns the whole view of the last metres with the submap.
 void PlaceRecognition::align_with(std::size_t submap, const MatchFeatures& query,
                                   PlaceProposal& proposal) {
   const Reference& reference = reference_of(submap);
@@ -173,7 +173,7 @@ void PlaceRecognition::align_with(std::size_t submap, const MatchFeatures& query
   if (!information.isZero(0.0)) proposal.aligned = {T, match_covariance(information, kUsualDoubt)};
 }
 
-// Counts how many of the points the submap has, of those that its stops could see.
+// Counts the query points that the submap contains, among those that its stops could see.
 void PlaceRecognition::count_seen(const Submap& submap, const Reference& reference,
                                   const MatchFeatures& query, PlaceProposal& proposal) const {
   std::vector<geometry::SinCos> turns;
@@ -212,10 +212,10 @@ struct PlaceRecognition::Target {
   std::size_t submap = 0;
   CoarseWindow window;
   UncertainPose predicted;
-  double distance = 0.0;  // in deviations, beyond the footprint
+  double distance = 0.0;  // squared deviations beyond the footprint
 };
 
-// The most likely submaps first.
+// Sorted, most likely submaps first.
 std::vector<PlaceRecognition::Target> PlaceRecognition::targets(
     std::uint32_t first_recent, std::span<const UncertainPose> relative,
     double least_sigma_m) const {
@@ -234,7 +234,8 @@ std::vector<PlaceRecognition::Target> PlaceRecognition::targets(
     const double beyond_y = std::max(0.0, std::fabs(centre.y()) - kFootprint_m);
     if (beyond_x > half.x() || beyond_y > half.y()) continue;
     const double distance = beyond_x * beyond_x / c(0, 0) + beyond_y * beyond_y / c(1, 1);
-    // What lies beyond the footprint is not searched: nothing of the submap is in view from there.
+    // Positions beyond the footprint are not searched, because the submap is not in view from
+    // there.
     CoarseWindow window{T_anchor_robot.T_a_b, half};
     for (const int axis : {0, 1}) {
       const double low = std::max(centre[axis] - half[axis], -kFootprint_m);
@@ -251,8 +252,8 @@ std::vector<PlaceRecognition::Target> PlaceRecognition::targets(
   return targets;
 }
 
-// Those of a submap that differ after they were aligned, best first. All of them: the one that has
-// most in view is often one along the corridor, where less of it lies beyond the submap.
+// Places in a submap that still differ after alignment, best first. All are returned: the one with
+// most in view is often a place along the corridor, where less of the query lies beyond the submap.
 std::vector<PlaceProposal> PlaceRecognition::places_in(const Target& target,
                                                        const PlaceQuery& query) {
   std::vector<PlaceProposal> found;

@@ -14,18 +14,18 @@ using geometry::Pose2;
 
 namespace {
 
-// As far as stops of one path lie apart: along another drive there is one that is nearer.
+// Distance between stops of one path: another drive along it has a nearer stop.
 constexpr double kNear_m = 1.0;
-// Of what a view saw, for another one to stand for it. An open door shows more than the rest.
+// Share of a view that another must show to replace it. An open door shows more than the rest.
 constexpr double kSeen = 0.8;
-// Thinned points, 0.2 m apart, where others see nothing any more: a cupboard. A person has fewer.
+// Vanished points, 0.2 m apart, that make a view outdated: a cupboard has as many, a person fewer.
 constexpr std::uint32_t kGonePoints = 4;
 constexpr double kGoneTolerance_m = 0.3;
 constexpr std::int64_t kOneTime_ns = 3'600'000'000'000;
-// Measurements that hold a stop, as many as it has in a single drive.
+// Enough measurements to hold a stop, as in a single drive.
 constexpr std::uint32_t kEnoughEdges = 6;
 
-/// What is compared of a stop.
+/// Data of a stop for the comparison.
 struct View {
   Pose2 T_map_robot;
   std::vector<SurfacePoint> points;
@@ -34,7 +34,7 @@ struct View {
   std::uint32_t drive = 0;
   std::uint32_t time = 0;
 
-  /// Whether this view shows what the other one did, whatever is there now.
+  /// Whether this view includes the area of the other one, whatever is there now.
   [[nodiscard]] bool covers(const View& other) const {
     const Pose2 T_this_other = geometry::between(T_map_robot, other.T_map_robot);
     if (T_this_other.position_m().squaredNorm() > kNear_m * kNear_m) return false;
@@ -42,7 +42,7 @@ struct View {
                             kSeen) >= kSeen;
   }
 
-  /// The second condition is for walls that are seen at a flat angle.
+  /// The second condition is for walls seen at a flat angle.
   [[nodiscard]] bool shows_nothing_at(const Eigen::Vector2d& point_m) const {
     constexpr double kSquared_m2 = kGoneTolerance_m * kGoneTolerance_m;
     return profile.view(point_m, kGoneTolerance_m) == RangeProfile::View::kFree &&
@@ -68,7 +68,7 @@ bool one_drive(std::span<const topomap::LocalMap> maps, std::uint32_t stops_of_d
   return true;
 }
 
-/// Which drive and which time each stop is of.
+/// Assigns a drive and a time to each stop.
 void count_drives(std::span<const topomap::LocalMap> maps, std::uint32_t stops_of_drive,
                   std::vector<View>& views) {
   std::uint32_t drive = 0;
@@ -102,14 +102,14 @@ std::vector<View> views_of(std::span<const topomap::LocalMap> maps,
   return views;
 }
 
-/// Decides stop by stop, from the oldest on.
+/// Decides stop by stop, starting with the oldest.
 class Choice {
  public:
   Choice(std::vector<View> views, std::size_t times)
       : views_(std::move(views)), times_(times), oldest_(views_.size(), false) {}
 
   struct Verdict {
-    std::optional<std::uint32_t> by;  ///< none: it is kept
+    std::optional<std::uint32_t> by;  ///< the stop that replaces it; empty: kept
     bool outdated = false;
   };
   Verdict judge(std::uint32_t stop) {
@@ -128,7 +128,7 @@ class Choice {
   }
 
  private:
-  /// A view of an earlier drive at that time.
+  /// A view of an earlier drive at the same time.
   [[nodiscard]] std::optional<std::uint32_t> of_this_time(std::uint32_t stop) const {
     const View& view = views_[stop];
     for (std::uint32_t other = stop; other-- > 0 && views_[other].time == view.time;) {
@@ -137,7 +137,7 @@ class Choice {
     return std::nullopt;
   }
 
-  /// Of later times, ascending.
+  /// Views of later times that cover the stop, ascending.
   [[nodiscard]] std::vector<std::uint32_t> later_views(std::uint32_t stop) const {
     std::vector<std::uint32_t> later;
     for (std::uint32_t other = stop + 1; other < views_.size(); ++other) {
@@ -156,7 +156,7 @@ class Choice {
     return count;
   }
 
-  /// Those of them that are of the last times, as many as are kept.
+  /// The last of these, as many times as are kept.
   [[nodiscard]] std::vector<std::uint32_t> last_times(std::vector<std::uint32_t> stops) const {
     std::size_t first = stops.size();
     for (std::size_t count = 0; first > 0; --first) {
@@ -168,11 +168,11 @@ class Choice {
     return stops;
   }
 
-  /// Whether none of the last times shows what the stop saw: a person goes, a door opens and
-  /// shuts.
+  /// Whether several points of the stop's view are gone in each of the last times: a person leaves,
+  /// a door opens and shuts.
   [[nodiscard]] bool gone(std::uint32_t stop, std::span<const std::uint32_t> later) const {
     const View& view = views_[stop];
-    std::vector<std::set<std::uint32_t>> missed(view.points.size());  // at which times
+    std::vector<std::set<std::uint32_t>> missed(view.points.size());  // times without the point
     for (const std::uint32_t other : later) {
       const Pose2 T_other_stop = geometry::between(views_[other].T_map_robot, view.T_map_robot);
       const geometry::SinCos heading = geometry::sincos(T_other_stop.theta_rad);
@@ -188,7 +188,7 @@ class Choice {
 
   std::vector<View> views_;
   std::size_t times_;
-  std::vector<bool> oldest_;  // kept though there are enough later views
+  std::vector<bool> oldest_;  // kept despite enough later views
 };
 
 }  // namespace
@@ -197,7 +197,7 @@ KeptViews::KeptViews(std::span<const topomap::LocalMap> maps,
                      std::span<const topomap::StopPose> stops, std::size_t times,
                      std::size_t untouched, std::uint32_t stops_of_drive)
     : stops_(maps.size()), new_ids_(maps.size()) {
-  // Nothing can be dropped of a single drive.
+  // A single drive loses no view.
   const std::size_t last = maps.empty() || one_drive(maps, stops_of_drive)
                                ? 0
                                : maps.size() - std::min(untouched, maps.size());
@@ -209,7 +209,7 @@ KeptViews::KeptViews(std::span<const topomap::LocalMap> maps,
     new_ids_[i] = static_cast<std::uint32_t>(kept_.size());
     kept_.push_back(i);
   }
-  // What stands for a stop may have been dropped for another one, of a later time or of the same.
+  // A replacement may itself have been replaced by a view of a later time or of its own.
   for (Stop& stop : stops_) {
     while (stops_[stop.by].by != stop.by) stop.by = stops_[stop.by].by;
   }
@@ -262,7 +262,8 @@ std::vector<PoseGraphEdge> kept_edges(std::span<const PoseGraphEdge> edges,
     edge.to = kept.new_id(edge.to);
     add(edge);
   }
-  // As far apart as the poses are. Matches led to the dropped stop and from there on.
+  // Edges for dropped stops, by the current poses: matches led to the dropped stop and on from
+  // there.
   const Eigen::Matrix3d more = 2.0 * usual_match_covariance();
   for (const PoseGraphEdge& edge : edges) {
     if (edge.kind == EdgeKind::kOdometry) continue;
@@ -287,7 +288,7 @@ StoredMap with_kept_views(const StoredMap& map, const KeptViews& kept) {
     if (edge.kind != EdgeKind::kRevisit) continue;
     out.loop_closures.push_back({edge.from, edge.to, edge.T_from_to});
   }
-  if (map.edges.empty()) out.edges.clear();  // what was measured stays unknown
+  if (map.edges.empty()) out.edges.clear();  // measurements stay unknown
   return out;
 }
 

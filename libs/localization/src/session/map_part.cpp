@@ -50,7 +50,7 @@ void MapPart::end() {
   pool_.reset();
 }
 
-// Stops that were here stay where they are; a new one lies to the one before as the part has it.
+// Known stops keep their place; a new one is placed relative to its predecessor, as in the part.
 void MapPart::read_session() {
   own_ = session_->trajectory();
   maps_ = session_->maps();

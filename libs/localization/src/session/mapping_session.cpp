@@ -158,7 +158,7 @@ std::vector<StoredMatch> MappingSession::renewed(std::vector<StoredMatch> matche
   return matches;
 }
 
-// The robot is followed from its last stop on, and with the next one that is matched it maps again.
+// The robot is followed from its last stop; at the next matched stop mapping continues.
 void MappingSession::renew_long_drive() {
   const auto by = renew(long_drive_.untouched);
   renew_at_ = std::max(long_drive_.stops, maps_.size() + long_drive_.stops / 2);
@@ -167,7 +167,7 @@ void MappingSession::renew_long_drive() {
   follower_->start_after(*maps_.back(), mapper_->trajectory().stops.back().T_map_robot);
 }
 
-// As the map numbers it: after its last stop.
+// A copy numbered after the last stop of the map.
 MappingSession::MapPointer MappingSession::numbered(const MapPointer& map,
                                                     bool starts_drive) const {
   const auto id = static_cast<std::uint32_t>(maps_.size());
@@ -180,7 +180,7 @@ void MappingSession::finish() {
   if (!follower_ && added_ > 0) mapper_->finish();
 }
 
-// --- the turns
+// --- switching between mapping and localizing
 
 void MappingSession::stop_mapping() {
   if (!mapping_) throw std::logic_error("the map stays as it is already");
@@ -216,7 +216,7 @@ void MappingSession::end_following() {
   follower_.reset();
 }
 
-// --- what is known
+// --- state
 
 topomap::Trajectory MappingSession::trajectory() const {
   topomap::Trajectory trajectory = mapper_->trajectory();
@@ -234,7 +234,7 @@ std::optional<topomap::StopPose> MappingSession::last_stop() const {
   if (stops_ == 0) return std::nullopt;
   if (follower_ && !follower_->stops().empty()) return follower_->last_stop();
   std::optional<topomap::StopPose> stop = mapper_->last_stop();
-  stop->stop = maps_.back()->stop;  // mapped, or right after stop_mapping()
+  stop->stop = maps_.back()->stop;  // mapped, or just after stop_mapping()
   return stop;
 }
 

@@ -9,11 +9,11 @@ namespace topogeo::localization {
 
 namespace {
 
-// Another copy of a map costs as much as looking through all of it: a sixteenth more stops are
-// worth that, and of a small map a few stops.
+// A new copy of a map costs as much as a search of all of it. It is worth a sixteenth more stops,
+// and in a small map a few stops.
 constexpr std::size_t kFewStops = 8;
 constexpr std::size_t kShare = 16;
-// What is kept of a robot that is followed while nobody has agreed to join the maps.
+// Limit while a robot is followed and no operator agrees to join the maps.
 constexpr std::size_t kMostSightings = 3072;
 
 bool followed(const MapLocalizer& follower) {
@@ -33,7 +33,7 @@ void Meeting::set_map(std::shared_ptr<const StoredMap> map,
                       std::span<const MapPointer> last_stops) {
   std::optional<geometry::Pose2> T_map_last;
   if (follower_ && followed(*follower_)) {
-    // Where it is relative to a stop that it was matched with, which may have moved since.
+    // Pose relative to a stop that it was matched with, which may have moved since.
     const geometry::Pose2 before = follower_->last_stop()->T_map_robot;
     T_map_last = before;
     for (const Sighting& sighting : newest()) {

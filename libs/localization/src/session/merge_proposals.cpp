@@ -13,9 +13,9 @@ namespace {
 
 using State = MergeProposal::State;
 
-// As far apart, two places of a floor show different walls.
+// At this distance two places of a floor show different walls.
 constexpr double kOtherPlace_m = 10.0;
-// Answered ones are kept to be shown and, when they were refused, to be heeded.
+// Limit of listed proposals. Refused ones are also needed to respect the refusal.
 constexpr std::size_t kMostKept = 64;
 
 bool between_maps(const MergeProposals::Placed& a, const MergeProposals::Placed& b,
@@ -23,8 +23,8 @@ bool between_maps(const MergeProposals::Placed& a, const MergeProposals::Placed&
   return a.map == c.map && b.map == d.map;
 }
 
-/// Where the stop is; where the last one before it is when it has left the map, or is still to come
-/// to a localizer that started again.
+/// Pose of the stop, or of its last known predecessor: the stop may have left the map, or not have
+/// arrived yet at a restarted localizer.
 std::optional<MergeProposals::Placed> find_near(const MergeProposals::Find& find,
                                                 topomap::StopId stop) {
   for (;; --stop.number) {

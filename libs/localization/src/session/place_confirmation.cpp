@@ -6,12 +6,11 @@ namespace topogeo::localization {
 
 namespace {
 
-// In succession, after a search, before a drive joins the map. A room that is taken for another one
-// is tracked while the robot turns in it, but not much further (continue_test).
+// Required successive tracking after a search, before a drive joins the map. In the wrong room a
+// robot is tracked while it turns, but not much further (continue_test).
 constexpr std::uint32_t kTrackedStops = 3;
 constexpr double kTrackedDistance_m = 4.0;
-// Of what should look alike (contradiction()), where doors have changed and people are about; a
-// corridor that is taken for another one differs more.
+// Limits of contradiction() with changed doors and people about; a wrong corridor differs more.
 constexpr double kContradicted = 0.3;      // in the mean over that distance
 constexpr double kContradictedOnce = 0.5;  // by one stop
 

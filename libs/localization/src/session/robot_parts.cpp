@@ -8,8 +8,8 @@ using topomap::StopId;
 
 namespace {
 
-// Squared Mahalanobis distance that a right match has once in a million (chi-square, three degrees
-// of freedom), as for the loops of one robot.
+// A right match exceeds this squared Mahalanobis distance once in a million (chi-square, three
+// degrees of freedom), as for the loops of one robot.
 constexpr double kLinkOutvoted = 30.0;
 
 }  // namespace
@@ -129,7 +129,7 @@ void RobotParts::replace_over(std::uint32_t number, const StoredMap& map, const 
   std::map<StopId, std::uint32_t> ids;
   for (const topomap::LocalMap& stop : map.maps) ids[stop.stop] = stop.id;
   const auto is_over = [&](const StopId& stop) { return ids.contains(stop); };
-  // What was measured between them is part of the map.
+  // The measurements between them are part of the map.
   std::erase_if(links_,
                 [&](const PartLink& link) { return is_over(link.from) && is_over(link.to); });
   const std::vector<topomap::StopPose>& stops = map.trajectory.stops;

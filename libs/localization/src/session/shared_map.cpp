@@ -16,9 +16,9 @@ using topomap::StopId;
 
 namespace {
 
-// Looked for again in a map that has grown: enough to find a place by.
+// Stops searched again in a map that has grown: enough to find a place.
 constexpr std::size_t kLastStops = 12;
-// The poses of all follow from all that was measured; that is worked out when so much is new, and
+// All poses follow from all measurements. They are computed after this many new links and stops,
 // not at every stop of a large map.
 constexpr std::size_t kNewLinks = 6;
 constexpr std::size_t kStopsBetween = 4;
@@ -55,7 +55,7 @@ bool SharedMap::add(MapPointer map) {
   if (part.map.find(map->stop)) {
     meet(part, map);
   } else {
-    part.meetings.clear();  // its own map does not know where it is
+    part.meetings.clear();  // no pose in its own map
   }
   part.last.push_back(map);
   if (part.last.size() > kLastStops) part.last.erase(part.last.begin());
@@ -76,7 +76,7 @@ RobotPart& SharedMap::part_for(const topomap::LocalMap& map) {
   return parts_.add(MapPart(parts_.next(), config_, pool_.view()), map.robot_id);
 }
 
-// A session that is on in the stored map goes on from its last stop there.
+// A session whose last stop is in the stored map continues from there.
 void SharedMap::follow_on(RobotPart& part, const topomap::LocalMap& map) {
   if (part.map.size() != 1 || map.stop.number == 0 || !part.last.empty()) return;
   const StopId before{map.stop.session, map.stop.number - 1};
@@ -118,7 +118,7 @@ void SharedMap::meet(RobotPart& part, const MapPointer& map) {
   }
 }
 
-// In one map it is known where the robot should be, so it is never searched for.
+// Within one map the robot's pose is known, so it is never searched.
 void SharedMap::meet_own(Meeting& meeting, const MapPointer& map) {
   if (map->stop.number == 0) return;
   const StopId before{map->stop.session, map->stop.number - 1};
@@ -169,7 +169,7 @@ void SharedMap::refuse(std::uint32_t number) {
   }
 }
 
-// The map that began first keeps its frame.
+// The older map keeps its frame.
 void SharedMap::join(const MergeProposal& proposal) {
   std::uint32_t moved = parts_.part_of(proposal.place.stop)->group;
   std::uint32_t kept = parts_.part_of(proposal.place.other)->group;
@@ -191,8 +191,8 @@ void SharedMap::join(const MergeProposal& proposal) {
   if (kept == parts_.root()) prune();
 }
 
-// Of drives that are over, in the map: what others show as well leaves it, as when one robot drives
-// again (KeptViews). They become one part.
+// Reduces the ended drives of the map to the views that no other shows (KeptViews), as when one
+// robot drives again. They become one part.
 void SharedMap::prune() {
   const std::vector<MapPart*> over = parts_.over(parts_.root());
   const PartOrder order = whole_parts(over);
@@ -203,8 +203,8 @@ void SharedMap::prune() {
   parts_.replace_over(parts_.root(), before, kept);
 }
 
-// The stops of a part with what the others of its map have seen there, early or late. Takes the
-// place of how they were matched before, in maps that were smaller and lay otherwise.
+// Matches the stops of a part with the views of all others in its map. Replaces earlier matches,
+// which were made in smaller maps with other poses.
 void SharedMap::compare_again(RobotPart& part) {
   std::vector<MapPart*> others;
   for (RobotPart* other : parts_.by_first_stop(part.group)) {
@@ -224,8 +224,9 @@ void SharedMap::compare_again(RobotPart& part) {
   parts_.count(meeting.counts());
 }
 
-// Each part as the last drive of a map of all: what none of them saw alone is a loop. In turn, as
-// a stop that looks along a corridor finds one ahead and is hardly found by it.
+// Treats each part as the last drive of the joint map and adds the loops that no part saw alone.
+// Each part takes a turn, because a stop that looks along a corridor finds one ahead, but that one
+// hardly finds it.
 void SharedMap::close_loops(std::uint32_t group) {
   const std::vector<RobotPart*> parts = parts_.by_first_stop(group);
   for (const RobotPart* last : parts) {
@@ -278,8 +279,8 @@ void SharedMap::place_if_due(std::uint32_t group) {
   if (parts.size() == 1 || (is_worth_it && due.stops >= wait)) place(group);
 }
 
-// All matches between robots anew, each part with the others in an order that does not depend on
-// which came first.
+// Repeats all matches between robots, each part with the others, in an order independent of the
+// arrival.
 void SharedMap::finish() {
   if (parts_.empty()) return;
   for (const std::unique_ptr<RobotPart>& part : parts_.all()) part->map.finish();

@@ -6,7 +6,7 @@
 namespace topogeo::localization {
 
 Eigen::Matrix3d given_pose_covariance() {
-  constexpr double kSigma_m = 0.3;  // as well as a person points at a place on a plan
+  constexpr double kSigma_m = 0.3;  // accuracy of a person who points at a plan
   constexpr double kSigma_rad = 10.0 * std::numbers::pi / 180.0;
   return Eigen::Vector3d(kSigma_m * kSigma_m, kSigma_m * kSigma_m, kSigma_rad * kSigma_rad)
       .asDiagonal();

@@ -6,7 +6,7 @@ namespace topogeo::localization {
 
 namespace {
 
-/// What has numbers keeps them: only the end has grown.
+/// Whether all existing numbers stay valid: only the end has grown.
 bool continues(const PartOrder& before, const PartOrder& now) {
   if (before.size() > now.size()) return false;
   for (std::size_t i = 0; i < before.size(); ++i) {

@@ -100,7 +100,7 @@ class OverlapConstraint : public LoopConstraint {
   const BackwardProblem& problem_;
   std::uint32_t last_;
   std::vector<std::vector<std::uint32_t>> seen_by_;  // later poses whose maps overlap, ascending
-  std::vector<bool> is_via_;                         // of a candidate
+  std::vector<bool> is_via_;                         // by pose: a candidate names it
 };
 
 }  // namespace

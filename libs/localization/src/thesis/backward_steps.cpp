@@ -12,7 +12,7 @@ namespace {
 
 // Thesis, 7.3.1.2, eqs. 7.23 and 7.24 (docs/algorithms.md, "Backward correction"), with X_{i-1} =
 // X_n (+) X_L^(n,i-1): the pose of `this` relative to the previous one through a map n that both
-// were matched with, as far back as need be.
+// were matched with, however old.
 std::vector<StepOption> intermediate_options(const SolutionStore& solutions, std::uint32_t id,
                                              std::size_t most) {
   std::vector<StepOption> options;

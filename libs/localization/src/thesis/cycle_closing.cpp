@@ -14,7 +14,7 @@ std::uint32_t last_of(const ThesisMap& map) {
   return static_cast<std::uint32_t>(map.size() - 1);
 }
 
-// Proposition 7.3.2: what the last stop sees and the one before did not.
+// Proposition 7.3.2: maps that the last stop overlaps with and the previous stop did not.
 std::vector<std::uint32_t> fresh_overlaps(const ThesisMap& map) {
   const std::uint32_t stop = last_of(map);
   return newly_seen(map.stop(stop).overlaps, map.stop(stop - 1).overlaps, stop - 1);
@@ -41,7 +41,7 @@ std::vector<BackwardCandidate> candidates_of(const ThesisMap& map,
   return found;
 }
 
-// The loop from a stop to the last one as the forward correction has it.
+// The loop from a stop to the last one by the forward correction.
 BackwardProblem backward_problem(const ThesisMap& map, std::uint32_t first) {
   BackwardProblem problem;
   problem.first_id = first;
@@ -59,8 +59,8 @@ BackwardProblem backward_problem(const ThesisMap& map, std::uint32_t first) {
   return problem;
 }
 
-// The corrected poses, and the step that each was given as the first of the stored solutions, so
-// that the next correction starts from what this one found.
+// Applies the corrected poses. The step to each becomes the first of the stored solutions, so that
+// the next correction starts from this result.
 void apply_path(ThesisMap& map, std::uint32_t first, const LoopPath& path) {
   std::vector<Pose2> poses = map.poses();
   for (std::uint32_t k = 1; k < path.T_first_pose.size(); ++k) {
@@ -91,8 +91,8 @@ bool CycleClosing::close(ThesisMap& map, ThesisMatching& matching) {
     if (!close_with(map, matching, seen)) break;
     moved = true;
   }
-  // What did not close stays new to the next stop. Else its matches there would pass for forward
-  // ones and move the robot away from the poses that it came by.
+  // Maps that did not close a cycle stay new for the next stop. Otherwise its matches with them
+  // would pass for forward ones and move the robot away from its path.
   const std::vector<std::uint32_t> fresh = fresh_overlaps(map);
   std::vector<std::uint32_t> overlaps = map.stop(stop).overlaps;
   std::erase_if(overlaps, [&](std::uint32_t id) {
@@ -103,8 +103,8 @@ bool CycleClosing::close(ThesisMap& map, ThesisMatching& matching) {
   return moved;
 }
 
-// The maps that the last stop overlaps with at its present pose and that close a cycle, best first;
-// renews its overlaps.
+// The maps that the last stop overlaps with at its current pose and that close a cycle, best first;
+// updates its overlaps.
 std::vector<ThesisNeighbour> CycleClosing::seen_again(ThesisMap& map,
                                                       std::span<const std::uint32_t> tried) const {
   const std::uint32_t stop = last_of(map);
@@ -183,7 +183,7 @@ void CycleClosing::accept(ThesisMap& map, std::span<const ThesisMatch> matches,
     closures_.push_back({match.earlier, stop, match.T_earlier_new.T_a_b});
     map.add_closure(stop, match);
   }
-  map.move(std::vector<Pose2>(map.poses()));  // the new edges make the old poses surer
+  map.move(std::vector<Pose2>(map.poses()));  // the new edges reduce covariances
 }
 
 void CycleClosing::decide(const ThesisMap& map, const ThesisMatch& match, LoopOutcome outcome,

@@ -60,8 +60,8 @@ void ThesisLocalizer::correct_forward() {
              sure ? fitness : 0.5 * fitness};
 }
 
-// Steps 1 to 6: the maps that overlap where odometry has the stop, those to match first; keeps the
-// overlaps. Maps that are neither recent nor seen just before are left to the closing of cycles.
+// Steps 1 to 6: the overlapping maps at the pose by odometry, best first; stores the overlaps. Maps
+// that are neither recent nor seen by the previous stop are left to the closing of cycles.
 std::vector<ThesisNeighbour> ThesisLocalizer::forward_neighbours() {
   const auto stop = static_cast<std::uint32_t>(map_.size() - 1);
   const UncertainPose& odometry = map_.stop(stop).T_previous_this;
@@ -95,8 +95,8 @@ std::vector<ThesisNeighbour> ThesisLocalizer::forward_neighbours() {
   return with;
 }
 
-// Stores the solutions of all matches that may be right; the fittest accepted one of them, or the
-// fittest at all when none is accepted.
+// Stores the solutions of all matches that may be right and returns the fittest accepted one, or
+// the fittest of all if none is accepted.
 const ThesisMatch* ThesisLocalizer::best_of(const std::vector<ThesisMatch>& matches) {
   const auto stop = static_cast<std::uint32_t>(map_.size() - 1);
   const ThesisMatch* best = nullptr;

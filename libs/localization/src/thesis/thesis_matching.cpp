@@ -39,7 +39,7 @@ std::vector<ThesisMatch> ThesisMatching::match(const ThesisMap& map,
     found.earlier = tasks[i].query_map_id;
     found.result = std::move(results[i]);
     if (found.result.status == MatchStatus::kSolved) {
-      // The map of the thesis knows odometry by its matches alone.
+      // ThesisMap has no odometry edges besides its matches, so the match includes the prior.
       if (tasks[i].evidence != MatchEvidence::kFitness && !found.result.covariance.isZero(0.0)) {
         found.result.T_reference_query =
             with_prior(found.result.T_reference_query, data_covariance(found.result),

@@ -23,7 +23,7 @@ void include(VisibleRectangle& view, const Eigen::Vector2d& point_m) {
 }  // namespace
 
 VisibleRectangle visible_rectangle(const topomap::LocalMap& map, bool with_points) {
-  VisibleRectangle view;  // the robot stands at the origin
+  VisibleRectangle view;  // starts with the robot at the origin
   for (const topomap::LocalNode& node : map.nodes) {
     if (node.kind != topomap::NodeKind::kVirtual) include(view, node.position_m);
   }
@@ -65,7 +65,7 @@ VisibleRectangle seen_from(const VisibleRectangle& view, const Pose2& T_frame_ro
     const double direction_rad = T_frame_robot.theta_rad + geometry::atan2(corner.y(), corner.x());
     for (std::size_t k = 0; k < kAxes.size(); ++k) {
       const double axis_rad = 0.5 * std::numbers::pi * static_cast<double>(k);
-      // The arc of the corner passes the axis: that is as far out as it comes.
+      // The arc of the corner crosses the axis, where it is farthest out.
       if (std::fabs(geometry::wrap_angle(axis_rad - direction_rad)) <= turn_rad) {
         include(seen, corner.norm() * kAxes[k]);
       }

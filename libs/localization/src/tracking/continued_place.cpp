@@ -8,27 +8,27 @@ namespace topogeo::localization {
 
 namespace {
 
-// Steps in succession err together, by far more than their covariances state.
+// Errors of successive steps are correlated, far beyond their covariances.
 constexpr double kWidening2 = 9.0;
 constexpr double kMargin_m = 0.3;
 constexpr double kMargin_rad = 0.05;
-// As of loops (LoopAgreement): twice as heavy as what it contradicts. Look-alikes were tracked over
-// 10 m where a robot had hardly begun to be; nothing but a copy of a building is longer than the
-// largest, after which a robot that was carried unnoticed is found again.
+// Twice the contradicted path, as for loops (LoopAgreement). Look-alikes were tracked over 10 m
+// even when the robot had hardly started. Only a copy of a building is longer than the largest
+// value, after which a robot that was carried unnoticed is found again.
 constexpr double kOverContradicted = 2.0;
 constexpr double kLeast_m = 15.0;
 constexpr double kMost_m = 40.0;
-// Whole scans that the map must know, together, and how much of them it contradicts where the robot
-// is not: of right places it is 0 to 15 %, with changed doors and people, of wrong ones 20 % or
-// more (tests/bench/RESULTS.md, "Kidnapped robots").
+// Number of whole scans that must be known to the map, in total, and the share of them that it
+// contradicts if the robot is not there: 0 to 15 % at right places, with changed doors and people,
+// 20 % or more at wrong ones (tests/bench/RESULTS.md, "Kidnapped robots").
 constexpr double kLeastKnown = 1.0;
 constexpr double kMostContradicted = 0.2;
-constexpr double kBetweenViews_m = 0.5;  // of path between two views that count
+constexpr double kBetweenViews_m = 0.5;  // path between two views that count
 
 }  // namespace
 
 void ContinuedPlace::move(const DriveStep& step) {
-  // Two scans that may well show the same place were not taken in two places.
+  // Two scans that may show the same place count as taken at one place.
   const bool followed =
       step.matched || (step.match && plausible(step.match->first, step.match->second));
   if (!followed) {

@@ -6,7 +6,7 @@ namespace topogeo::localization {
 
 namespace {
 
-// Stops from before this path are no longer known well enough relative to the last one.
+// Beyond this path, earlier stops are too uncertain relative to the last one.
 constexpr double kRemembered_m = 8.0;
 
 }  // namespace

@@ -12,9 +12,9 @@ using geometry::Pose2;
 
 namespace {
 
-// The one before and another that shows whether it was right: more hardly ever change the step.
+// The previous stop, and another to check it: more hardly ever change the step.
 constexpr std::size_t kStepMatches = 2;
-constexpr double kStepWidening = 3.0;  // of the deviations, when nothing was found as predicted
+constexpr double kStepWidening = 3.0;  // of the deviations, if no match was found as predicted
 
 }  // namespace
 
@@ -27,7 +27,7 @@ DriveStep DriveWindow::add(std::shared_ptr<const topomap::LocalMap> map,
   step.T_before_now.covariance = invertible(step.T_before_now.covariance);
   if (!odometry) stops_.clear();
   if (stops_.empty()) {
-    if (odometry) {  // since a stop that is none of this drive
+    if (odometry) {  // from a stop outside this drive
       step.T_before_now = {odometry->T_a_b, invertible(odometry->covariance)};
       step.distance_m = std::sqrt(odometry->T_a_b.position_m().squaredNorm());
     }
@@ -47,8 +47,8 @@ DriveStep DriveWindow::add(std::shared_ptr<const topomap::LocalMap> map,
   }
   step.distance_m = std::sqrt(step.T_before_now.T_a_b.position_m().squaredNorm());
   const Stop before = stops_.back();
-  // By odometry alone it is not certain that the robot was not carried away: what was seen before
-  // is of no use.
+  // Odometry alone cannot exclude that the robot was carried away, so the earlier view is of no
+  // use.
   if (!matched) stops_.clear();
   stops_.push_back({std::move(map), std::move(view),
                     before.T_window_robot * step.T_before_now.T_a_b,
@@ -57,7 +57,7 @@ DriveStep DriveWindow::add(std::shared_ptr<const topomap::LocalMap> map,
   return step;
 }
 
-// T_before_now by the accepted matches with the last stops.
+// T_before_now by accepted matches with the last stops.
 std::optional<UncertainPose> DriveWindow::match(const topomap::LocalMap& map,
                                                 const UncertainPose& odometry, double widening,
                                                 DriveStep& step) {

@@ -17,15 +17,15 @@ using geometry::Pose2;
 
 namespace {
 
-// These depend on each other and on the time that a search may take (benchmark relocalize/csail),
-// so none is a setting.
+// These depend on each other and on the time limit of a search (benchmark relocalize/csail), so
+// none is a setting.
 constexpr double kThinned_m = 0.05;      // of the map's points
-constexpr double kRobotRadius_m = 0.20;  // a scan comes from no place nearer to a wall
-constexpr double kSeenFree_m = 8.0;      // how far from a stop a scan may come from
-constexpr std::size_t kAligned = 8;      // best climbed places that are aligned point to line
-constexpr double kNearStop_m = 6.0;      // a stored stop this near sees most of what a scan does
-// Of a point of a scan, as of windows of places (PlaceRecognition): on what the map has, and where
-// a stop saw past it.
+constexpr double kRobotRadius_m = 0.20;  // no scan comes from nearer to a wall
+constexpr double kSeenFree_m = 8.0;      // a scan comes from at most this far from a stop
+constexpr std::size_t kAligned = 8;      // best climbed places to align point to line
+constexpr double kNearStop_m = 6.0;      // a stored stop this near has most of the same view
+// Limits for a point of a scan, as for windows of places (PlaceRecognition): distance from a
+// surface of the map, and distance by which a stop saw past it.
 constexpr double kKnownWithin_m = 0.20;
 constexpr double kSeenPast_m = 0.35;
 
@@ -39,14 +39,14 @@ constexpr double kLargestRivalry =
     0.85;  // fitness of the best pose elsewhere over that of the best
 constexpr std::size_t kFewestQueryPoints = 25;  // of the scan, thinned; fewer prove nothing
 
-/// Of the fine field at this distance from a point, which is less than its width.
+/// Value of the fine field at this distance from a point, which must be less than its width.
 int occupied_within(double distance_m) {
   const double u =
       1.0 - distance_m * distance_m / (PlaceField::kFineWidth_m * PlaceField::kFineWidth_m);
   return static_cast<int>(255.0 * u * u);
 }
 
-/// At most about `count`, spread over the scan.
+/// About `count` points at most, spread over the scan.
 std::vector<SurfacePoint> spread(const std::vector<SurfacePoint>& points, std::size_t count) {
   const std::size_t stride = std::max<std::size_t>(1, (points.size() + count - 1) / count);
   std::vector<SurfacePoint> out;
@@ -61,7 +61,7 @@ std::vector<Eigen::Vector2d> positions_of(const std::vector<SurfacePoint>& point
   return out;
 }
 
-/// One point for each square of kThinned_m, in order.
+/// One point per square of kThinned_m, in order.
 std::vector<Eigen::Vector2d> thinned(std::vector<Eigen::Vector2d> points_m) {
   struct Entry {
     std::int64_t column;
@@ -88,7 +88,7 @@ std::vector<Eigen::Vector2d> thinned(std::vector<Eigen::Vector2d> points_m) {
   return out;
 }
 
-/// As they are sent, so that the field is the same everywhere.
+/// Points rounded as for transmission, so that the field is the same everywhere.
 std::vector<topomap::ScanPoint> as_sent(const std::vector<Eigen::Vector2d>& points_m) {
   std::vector<topomap::ScanPoint> out;
   out.reserve(points_m.size());
@@ -113,8 +113,7 @@ std::vector<Eigen::Vector2d> map_points(std::span<const topomap::LocalMap> maps,
   return points_m;
 }
 
-/// How many of the points of a robot at that pose a stop sees; 0 when they are not more than
-/// `most`.
+/// Number of points of a robot at that pose in view of a stop; 0 unless more than `most`.
 std::size_t points_seen(const StoredStop& stop, std::span<const SurfacePoint> points,
                         const Pose2& T_map_robot, std::size_t most) {
   const Pose2 T = geometry::between(stop.T_map_robot, T_map_robot);
@@ -154,7 +153,7 @@ GlobalLocalizer::GlobalLocalizer(std::span<const topomap::LocalMap> maps,
   if (points_m.empty()) {
     throw std::invalid_argument("global localization: no stop of the map saw anything");
   }
-  // No scan reaches farther than the stops' scans did.
+  // The margin is the longest range in the map.
   double longest_m = 0.0;
   for (const topomap::LocalMap& map : maps) {
     for (const topomap::ScanPoint& p : map.points) {
@@ -171,7 +170,7 @@ std::vector<std::uint8_t> GlobalLocalizer::free_cells(const PlaceField& field) c
   const KernelGrid& grid = field.grid();
   const auto columns = static_cast<std::size_t>(grid.columns());
   std::vector<std::uint8_t> free(columns * static_cast<std::size_t>(grid.rows()), 0);
-  const int occupied = occupied_within(kRobotRadius_m);  // the robot's circle touches nothing
+  const int occupied = occupied_within(kRobotRadius_m);  // for the circle of the robot
   for (const StoredStop& stop : stops_) {
     const int reach = static_cast<int>(kSeenFree_m / grid.cell_m());
     const int c = grid.column(stop.T_map_robot.x_m);
@@ -216,8 +215,7 @@ std::vector<Climbed> GlobalLocalizer::distinct(std::vector<MatchSolution> places
   return best;
 }
 
-// Nearer stops come first: of equal ones the nearest is meant, and it mostly leaves the others
-// nothing.
+// Nearest stops first: among equals the nearest wins, and mostly no other stop needs a full count.
 std::size_t GlobalLocalizer::best_stop(const MatchFeatures& query, const Pose2& T_map_robot,
                                        double& share) const {
   const std::vector<SurfacePoint> outline = spread(query.coarse, 40);
@@ -273,7 +271,7 @@ double GlobalLocalizer::fitness(const MatchFeatures& query, const Pose2& T_map_r
   return mean_kernel(field_->fine(), positions_of(query.coarse), T_map_robot);
 }
 
-// Aligns a place with the stop that sees it best, and measures what is seen there.
+// Aligns a place with the stop that sees it best, and measures the evidence there.
 GlobalPose GlobalLocalizer::aligned(const MatchFeatures& query, const Climbed& place) const {
   double share = 0.0;
   const std::size_t stop = best_stop(query, place.T_map_robot, share);
@@ -290,7 +288,7 @@ GlobalPose GlobalLocalizer::aligned(const MatchFeatures& query, const Climbed& p
   GlobalPose pose;
   pose.T_map_robot = stops_[stop].T_map_robot * refined.T_reference_query;
   pose.fitness = fitness(query, pose.T_map_robot);
-  // Where the two scans share little the field of all stops knows better.
+  // If the two scans have little in common, the field of all stops is more reliable.
   if (pose.fitness < place.value) {
     const double climbed = fitness(query, place.T_map_robot);
     if (climbed > pose.fitness + 0.02) {

@@ -3,7 +3,7 @@
 namespace topogeo::localization {
 namespace {
 
-// Of a scan that was matched with that of its stop.
+// Deviations of a scan that was matched with that of its stop.
 constexpr double kTracked_m = 0.01;
 constexpr double kTracked_rad = 0.005;
 

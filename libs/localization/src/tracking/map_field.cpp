@@ -10,7 +10,7 @@ namespace topogeo::localization {
 
 namespace {
 
-constexpr double kMostFieldCells = 16777216.0;  // 16 MB, of the 150 MB that a service may take
+constexpr double kMostFieldCells = 16777216.0;  // 16 MB of the 150 MB limit of a service
 constexpr double kFullValue = 255.0;            // of a byte
 
 }  // namespace

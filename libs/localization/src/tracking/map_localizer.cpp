@@ -18,20 +18,20 @@ using geometry::Pose2;
 namespace {
 
 constexpr std::size_t kTrackingMatches = 3;  // more of them hardly ever change the pose
-constexpr double kGivenPoseRight = 0.9;      // people err, too
-constexpr double kHardlyDoubtful = 1.0;      // right matches mostly are below, wrong ones above
+constexpr double kGivenPoseRight = 0.9;      // operators err, too
+constexpr double kHardlyDoubtful = 1.0;      // most right matches are below, most wrong ones above
 constexpr std::size_t kPlaces = 8;           // compared at one stop; each costs a match
 constexpr std::size_t kFewestSearched = 25;  // thinned points of a scan; fewer prove nothing
-constexpr double kLeastConformity = 0.3;  // a share of points through walls is no proof of a place
+constexpr double kLeastConformity = 0.3;     // some points through walls do not refute a place
 
-// Whether a match lies where it was expected.
+// Whether a match lies at its predicted pose.
 bool agree(const UncertainPose& predicted, const UncertainPose& measured) {
   return geometry::squared_mahalanobis(geometry::difference(measured.T_a_b, predicted.T_a_b),
                                        predicted.covariance + measured.covariance) <=
          geometry::kMahalanobis2Of99Percent;
 }
 
-/// `index`: of the stop in the trajectory, which may have several sessions.
+/// `index` of the stop in the trajectory, which may have several sessions.
 topomap::StopPose pose_of(const LocalizedStop& stop, std::size_t index) {
   return {static_cast<std::uint32_t>(index),
           stop.stamp_ns,
@@ -75,8 +75,8 @@ bool MapLocalizer::add(std::shared_ptr<const topomap::LocalMap> map) {
   return false;
 }
 
-// A local mapper that was started again begins another session, and the odometry tells how far the
-// robot has come since. Odometry of another epoch says nothing of where the robot is.
+// A restarted local mapper begins another session. Odometry of the same epoch measures the movement
+// since; odometry of another epoch carries no information about the pose.
 void MapLocalizer::begin_session(std::uint64_t odometry_epoch) {
   const bool same_odometry = odometry_epoch != 0 && odometry_epoch == last_epoch_;
   if (same_odometry) return;
@@ -86,8 +86,8 @@ void MapLocalizer::begin_session(std::uint64_t odometry_epoch) {
 
 // --- tracking
 
-// Where the robot should be, what it should see there, and where that puts it. Returns how many
-// matches were accepted.
+// Predicts the pose and the view, and corrects the pose by matches. Returns the number of accepted
+// matches.
 std::uint32_t MapLocalizer::track(const DriveStop& stop) {
   if (stop.follows) {
     pose_ = compose(pose_, stop.step.T_before_now);
@@ -103,7 +103,7 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
   step.evidence.distance_m = stop.step.distance_m;
   if (stop.step.match && monitored_) {
     const auto& [task, result] = *stop.step.match;
-    // What the two have in common is foreseen, because they follow each other.
+    // Expected overlap 0: a failed match with the previous stop counts as no contradiction.
     step.evidence.matches.push_back(step_match(task, result, 0.0, monitor_.steps() - 1));
   }
   const std::vector<bool> right = agreeing(tasks, results, stored);
@@ -149,15 +149,15 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
   return static_cast<std::uint32_t>(step.accepted.size());
 }
 
-// Which of the matches with stored stops are accepted: by their gate, or because this and the stops
-// before lie in the map as they lie to each other.
+// Selects the accepted matches with stored stops: accepted by their gate, or because the poses of
+// this stop and the previous ones in the map agree with each other.
 std::vector<bool> MapLocalizer::agreeing(std::span<const MatchTask> tasks,
                                          std::span<const MatchResult> results,
                                          std::span<const MatchCandidate> stored) {
   std::vector<bool> right(results.size());
   std::vector<bool> agreed(results.size());
   bool any_accepted = false;
-  double agreeing = 0.0;  // the most confident one
+  double agreeing = 0.0;  // confidence of the most confident one
   for (std::size_t i = 0; i < results.size(); ++i) {
     right[i] = results[i].verdict == Verdict::kAccepted;
     agreed[i] = plausible(tasks[i], results[i]) &&
@@ -186,8 +186,8 @@ std::vector<MatchTask> MapLocalizer::tracking_tasks(const DriveStop& stop,
   return tasks;
 }
 
-// How much better the scan fits another place of the map, if that is a place to be accepted. A
-// corridor looks like another one when nothing but the surroundings of a wrong pose is compared.
+// How much better the scan fits another acceptable place of the map. Comparing only the
+// surroundings of a wrong pose would not show it, because one corridor looks like another.
 double MapLocalizer::better_elsewhere(const DriveStop& stop) const {
   const GlobalLocalizer& places = matching_.places();
   const GlobalAnswer answer = places.find(stop.map->points, stop.map->T_robot_laser);
@@ -199,7 +199,7 @@ double MapLocalizer::better_elsewhere(const DriveStop& stop) const {
   return std::max(0.0, answer.poses.front().fitness - here);
 }
 
-// The view of a stop that is not tracked from where the drive leads to.
+// Compares the view of a stop that is not tracked with the place that the drive leads to.
 void MapLocalizer::compare_continued(const DriveStop& stop) {
   if (!continued_.pose()) return;
   continued_.compare(matching_.places().known_view(stop.features, continued_.pose()->T_a_b),
@@ -222,7 +222,7 @@ void MapLocalizer::search() {
   status_ = {LocalizationState::kSearching, 0.0};
 }
 
-// Adds the places of the whole map that fit the last metres, and weighs all by this stop.
+// Adds the places of the whole map that fit the last metres, and weights all by this stop.
 void MapLocalizer::look_around(const DriveStop& stop) {
   if (stop.features.coarse.size() >= kFewestSearched) {
     if (continued_.pose()) search_.expect(continued_.pose()->T_a_b);
@@ -236,7 +236,7 @@ void MapLocalizer::look_around(const DriveStop& stop) {
   search_.end_stop();
 }
 
-// Matches the stop at each place with the stored stop that sees it best.
+// Matches the stop at each hypothesis with the stored stop that sees it best.
 void MapLocalizer::match_hypotheses(const DriveStop& stop) {
   const GlobalLocalizer& places = matching_.places();
   std::vector<MatchTask> tasks;
@@ -266,8 +266,8 @@ void MapLocalizer::match_hypotheses(const DriveStop& stop) {
   search_.weigh(fitness);
 }
 
-// Takes the pose of the one place that is left, or the state of the search. Returns whether the
-// best place was seen at this stop.
+// Takes the pose of the one place that is left, or the state of the search. Returns 1 if the best
+// place was seen at this stop.
 std::uint32_t MapLocalizer::decide() {
   status_ = {LocalizationState::kSearching, 0.0};
   const std::optional<PlaceHypothesis> best = search_.best();
@@ -332,7 +332,7 @@ void MapLocalizer::start_after(const LastPlace& place) {
 }
 
 void MapLocalizer::forget_stops(std::size_t most) {
-  if (stops_.size() < 2 * most) return;  // not at every stop
+  if (stops_.size() < 2 * most) return;  // in batches, not at every stop
   stops_.erase(stops_.begin(), stops_.end() - static_cast<std::ptrdiff_t>(most));
   numbered_since_ = added_;
 }

@@ -15,29 +15,29 @@ using geometry::Pose2;
 
 namespace {
 
-// These depend on each other, so none is a setting; tests/bench/kidnapped.cpp measures what they do
-// together.
+// These depend on each other, so none is a setting; tests/bench/kidnapped.cpp measures their
+// combined effect.
 constexpr std::size_t kMostHypotheses = 16;
 constexpr double kProposed_m = 0.25;  // deviation of a proposed place: the cells of the search
 constexpr double kProposed_rad = 0.08;
-constexpr double kSharpness = 25.0;         // of the weights in the fitness: e^2.5 for each 0.1
-constexpr double kIndependent_m = 1.0;      // between two stops that see the world anew
-constexpr double kElsewhereFitness = 0.60;  // of the best place if the robot is somewhere else
-constexpr double kElsewhereWeight = 0.5;    // weight of that before anything was seen
-constexpr double kNewWeight = 0.05;         // of a place that nothing before spoke for
+constexpr double kSharpness = 25.0;         // of the weights by fitness: e^2.5 per 0.1
+constexpr double kIndependent_m = 1.0;      // path between two stops with independent views
+constexpr double kElsewhereFitness = 0.60;  // best fitness if the robot is somewhere else
+constexpr double kElsewhereWeight = 0.5;    // weight of elsewhere at the start
+constexpr double kNewWeight = 0.05;         // of a place without earlier evidence
 constexpr double kForgotten = 1e-4;
 constexpr double kSure = 0.95;
-constexpr double kSurer = 0.99;  // of a place that only the agreement of its stops proves
-// Mean fitness of that: where another building or a piece of corridor looks like the place, about
-// 0.6 of what is seen is there.
+constexpr double kSurer = 0.99;  // for a place proved only by the agreement of its stops
+// Required mean fitness: if another building or a piece of corridor looks like the place, about 0.6
+// of the view is there.
 constexpr double kSurelyThere = 0.70;
-constexpr std::uint32_t kSeenOften = 2;  // accepted stops before a place is taken
-// More of them for a place that the stops of this search before did not speak for.
+constexpr std::uint32_t kSeenOften = 2;  // accepted matches before a place is taken
+// Required if earlier stops of this search did not support the place.
 constexpr std::uint32_t kSeenMoreOften = 4;
 constexpr double kLeastDistance_m = 0.3;  // between the first and the last of them
 constexpr std::uint32_t kMissedOften = 3;
-constexpr std::uint32_t kCarriedAccepted = 10;  // of a place to which the drive does not lead
-// Nearer to each other, two poses are one hypothesis.
+constexpr std::uint32_t kCarriedAccepted = 10;  // for a place to which the drive does not lead
+// Two nearer poses are one hypothesis.
 constexpr double kHypothesesApart_m = 0.6;
 constexpr double kHypothesesApart_rad = 0.3;
 
@@ -133,7 +133,7 @@ void PlaceSearch::weigh(std::span<const double> fitness) {
   merge();
 }
 
-// Two that have come to the same place are one.
+// Merges hypotheses that have reached the same place.
 void PlaceSearch::merge() {
   std::vector<PlaceHypothesis> kept;
   for (const PlaceHypothesis& hypothesis : hypotheses_) {

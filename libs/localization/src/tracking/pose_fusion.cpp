@@ -7,7 +7,7 @@ namespace topogeo::localization {
 UncertainPose fused(const std::vector<UncertainPose>& measurements) {
   UncertainPose best = measurements.front();
   if (measurements.size() == 1) return best;
-  constexpr int kIterations = 3;  // only the headings are not linear
+  constexpr int kIterations = 3;  // only the headings are nonlinear
   for (int i = 0; i < kIterations; ++i) {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero();

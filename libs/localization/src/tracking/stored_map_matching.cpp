@@ -9,10 +9,9 @@ using geometry::Pose2;
 
 namespace {
 
-// Stored stops further away are not compared: a robot in a finished map has nearer ones that see
-// the same.
+// Stored stops further away are not compared: in a finished map nearer ones see the same.
 constexpr double kFarthestStored_m = 12.0;
-// Ids of the stops of a drive, which come round: the pool keeps no more of them.
+// Number of ids for the stops of a drive, reused in turn: the pool keeps no more of them.
 constexpr std::uint32_t kDriveIds = 1024;
 
 }  // namespace

@@ -1,26 +1,25 @@
-// Finds the parameters of OdometryNoise of a robot from a log (docs/algorithms.md,
-// "Calibration of odometry and laser"): from motions of which both the odometry and the true motion
-// are known.
+// Estimates the OdometryNoise parameters of a robot from a log (docs/algorithms.md, "Calibration of
+// odometry and laser"), using motions whose odometry and true motion are both known.
 //
-// The residual of a motion is its odometry less its measurement, in the frame of its first pose.
+// The residual of a motion is its odometry minus its measurement, in the frame of its first pose.
 // Its covariance is linear in the parameters (the sum that `advance` makes of all steps) plus the
-// covariance of the measurement, so the parameters are those of largest likelihood of normally
-// distributed residuals. Motions of different length separate what grows with distance or turn
-// from what every measurement adds: the stated covariances of the measurements are scaled by one
-// factor that is estimated too, as neither matches nor reference trajectories know theirs exactly.
-// The search starts from a fit with Student's t distribution, so that outlying measurements do not
-// lead it, and leaves out motions beyond `largest_mahalanobis2` of what it finds.
+// covariance of the measurement, so the parameters maximise the likelihood of normally distributed
+// residuals. Motions of different length separate noise that grows with distance or turn from the
+// noise of every measurement. One factor, estimated too, scales the stated covariances of the
+// measurements, because neither matches nor reference trajectories know theirs exactly. The search
+// starts from a fit with Student's t distribution, so that outlying measurements do not lead it,
+// and leaves out motions beyond `largest_mahalanobis2`.
 //
-// Every parameter comes twice. `as_is` counts systematic errors (a wrong wheel diameter, a drift to
-// one side) as noise: what a localizer has to expect of this odometry today, and what the
-// configuration wants. `corrected` is what would be left if the systematic errors, which are
-// estimated as well, were taken out of the odometry.
+// Every parameter is estimated twice. `as_is` counts systematic errors (a wrong wheel diameter, a
+// drift to one side) as noise: a localizer has to expect this noise from the odometry today, and it
+// belongs in the configuration. `corrected` is the noise left after the systematic errors, which
+// are estimated as well, have been taken out of the odometry.
 //
 // A value that cannot be distinguished from zero is given as its upper end: too little noise makes
 // a localizer search in the wrong place, too much only costs it time.
 //
-// Motions overlap and errors of successive matches are related, so the spread is not that of the
-// likelihood but of refits to random choices of blocks of the log (block bootstrap).
+// Motions overlap and errors of successive matches are correlated, so the spread comes from refits
+// to random choices of blocks of the log (block bootstrap) and not from the likelihood.
 #pragma once
 
 #include <array>
@@ -41,9 +40,9 @@ namespace topogeo::localization {
 /// Steps of odometry (T_before_after) from one stop to the next.
 using OdometryStretch = std::vector<geometry::Pose2>;
 
-/// The relative pose of two stops by something other than odometry.
+/// The relative pose of two stops, measured by something other than odometry.
 struct MeasuredMotion {
-  std::uint32_t first = 0;  ///< stops; stretch i leads from stop i to stop i + 1
+  std::uint32_t first = 0;  ///< stop; stretch i leads from stop i to stop i + 1
   std::uint32_t last = 0;   ///< > first
   geometry::Pose2 T_first_last;
   Eigen::Matrix3d covariance =
@@ -55,7 +54,7 @@ struct NoiseParameter {
   const char* key;  ///< below "odometry." in the configuration
   const char* unit;
   double OdometryNoise::*field;
-  bool per_turn;  ///< grows with the turn; else with the distance
+  bool per_turn;  ///< grows with the turn; otherwise with the distance
 };
 
 inline constexpr std::size_t kNoiseParameters = 5;
@@ -67,23 +66,23 @@ struct Estimate {
   double value = 0.0;
   double spread = 0.0;  ///< one standard deviation
   bool at_most =
-      false;  ///< not distinguishable from 0; `value` is then one spread above what was found
+      false;  ///< not distinguishable from 0; `value` then is one spread above the estimate
 };
 
 struct NoiseEstimate {
   bool known = false;         ///< false: the log does not show it, both values are `fallback`
   std::size_t stretches = 0;  ///< with enough distance (0.2 m) or turn (0.2 rad) to count
-  Estimate as_is;             ///< with systematic errors taken for noise
+  Estimate as_is;             ///< with systematic errors counted as noise
   Estimate corrected;         ///< without them
 };
 
-/// Errors of odometry that repeat; positive: the odometry measures too much.
+/// Errors of odometry that repeat. Positive: the odometry measures too much.
 struct SystematicErrors {
   Estimate distance;           ///< per metre driven: 0.02 where 1 m is measured as 1.02 m
   Estimate heading_rad_per_m;  ///< counter-clockwise turn measured on a straight path
   Estimate turn;               ///< per radian of turn, as `distance`; 0 +- 0 in a log without turns
-  // Where the laser (what is measured) sits, seen from where it should on the robot. The first two
-  // are 0 +- 0 without turns, the last without driving.
+  // Position of the laser (the sensor of the measurements) relative to its assumed position on the
+  // robot. The first two are 0 +- 0 without turns, the last is without driving.
   Estimate ahead_m;
   Estimate left_m;
   Estimate yaw_rad;  ///< counter-clockwise
@@ -93,9 +92,9 @@ struct OdometryCalibration {
   OdometryNoise noise;  ///< the `as_is` values
   std::array<NoiseEstimate, kNoiseParameters> parameters;
   SystematicErrors systematic;
-  /// Covariance of `systematic`'s (ahead, left, yaw), m and rad: by the bootstrap, and by the
-  /// likelihood alone. The second is close to 1 where the log shows nothing, which the first cannot
-  /// show: without anything to go by all resamples agree on 0.
+  /// Covariance of (ahead, left, yaw) in `systematic`, m and rad: by the bootstrap, and by the
+  /// likelihood alone. The second is close to 1 where the log shows nothing. The first cannot show
+  /// that, because without data all resamples agree on 0.
   Eigen::Matrix3d mounting_covariance = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d mounting_likelihood_covariance = Eigen::Matrix3d::Identity();
   std::size_t motions = 0;         ///< used
@@ -103,13 +102,13 @@ struct OdometryCalibration {
   double measurement_scale = 1.0;  ///< estimated over stated deviations of the measurements
 };
 
-/// Stretches that bear on a parameter, at least, for it to be estimated. Fixed: with fewer the
+/// Fewest contributing stretches from which a parameter is estimated. Fixed: with fewer the
 /// bootstrap has no blocks to choose from.
 inline constexpr std::size_t kFewestStretches = 20;
 
-/// `progress`, if any, is called with how many of the refits are done. Throws std::invalid_argument
-/// when a setting is out of range, a motion names no stretch or its pose or covariance is none,
-/// std::runtime_error when the motions cover fewer than `kFewestStretches` stretches or nothing
+/// `progress`, if set, is called with the number of finished refits. Throws std::invalid_argument
+/// if a setting is out of range, a motion names no stretch, or its pose or covariance is invalid;
+/// std::runtime_error if the motions cover fewer than `kFewestStretches` stretches or nothing
 /// moves.
 OdometryCalibration calibrate_odometry(
     std::span<const OdometryStretch> stretches, std::span<const MeasuredMotion> motions,

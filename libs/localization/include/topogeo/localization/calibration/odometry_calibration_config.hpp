@@ -12,11 +12,11 @@ class ConfigSchema;
 namespace topogeo::localization {
 
 struct OdometryCalibrationConfig {
-  OdometryNoise fallback;  ///< for what the log does not show: that of the localizer
+  OdometryNoise fallback;  ///< for parameters that the log does not show: the localizer's
   double largest_mahalanobis2 = 25.0;
   std::uint32_t blocks = 20;
   std::uint32_t resamples = 100;
-  std::uint64_t seed = 1;  ///< of the bootstrap: that of the localizer
+  std::uint64_t seed = 1;  ///< of the bootstrap: the seed of the localizer
 };
 
 /// Declares the section `calibration`, without the odometry and the seed.

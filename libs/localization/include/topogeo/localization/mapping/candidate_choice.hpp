@@ -1,4 +1,4 @@
-// Chooses the maps that a new one is matched with: those that should see most of each other.
+// Chooses the maps to match a new one with: those that should have most of their view in common.
 #pragma once
 
 #include <cstddef>
@@ -14,28 +14,28 @@ namespace topogeo::localization {
 
 struct MatchCandidate {
   std::uint32_t id = 0;
-  double overlap = 0.0;  ///< expected_overlap(), or more for one that is taken in any case
+  double overlap = 0.0;  ///< expected_overlap(), or more for a map taken in any case
 };
 
 class CandidateChoice {
  public:
-  /// `least_overlap`: of a candidate.
+  /// `least_overlap`: below it a map is no candidate.
   explicit CandidateChoice(double least_overlap) : least_overlap_(least_overlap) {}
 
-  /// Considers a map by the overlap that is to be expected; see expected_overlap().
+  /// Considers a map by its expected overlap; see expected_overlap().
   void consider(std::uint32_t id, const RangeProfile& viewer, std::span<const SurfacePoint> outline,
                 const UncertainPose& T_viewer_outline);
-  /// The same, ordered by expected_common(), of which it wants some.
+  /// Like consider(), but ordered by expected_common(), which must reach a minimum.
   void consider_common(std::uint32_t id, const RangeProfile& viewer,
                        std::span<const SurfacePoint> outline,
                        const UncertainPose& T_viewer_outline);
-  /// Takes a map before all that are considered.
+  /// Takes a map ahead of all considered ones.
   void take(std::uint32_t id) { found_.push_back({id, kTaken}); }
 
-  /// The candidates of largest overlap, at most so many; of equal ones the earlier considered.
+  /// At most `count` candidates of largest overlap; equal ones in the order of consideration.
   [[nodiscard]] std::vector<MatchCandidate> best(std::size_t count) const;
-  /// The same without any whose id is next to that of a better one: what two stops in succession
-  /// see of another drive is nearly the same.
+  /// Like best(), but without neighbours (by id) of a better candidate, because two successive
+  /// stops see nearly the same of another drive.
   [[nodiscard]] std::vector<MatchCandidate> best_apart(std::size_t count) const;
 
  private:

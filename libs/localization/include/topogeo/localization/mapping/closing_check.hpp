@@ -1,5 +1,5 @@
-// Whether a closed loop fits the steps along it, by the search of loop_search.hpp with the match
-// that closes the loop as its one candidate.
+// Checks whether a closed loop fits the steps along it: the search of loop_search.hpp with the
+// match that closes the loop as its only candidate.
 #pragma once
 
 #include <span>
@@ -16,17 +16,17 @@ using LoopStep = std::vector<RelativeSolution>;
 
 struct ClosingCheck {
   bool consistent = false;      ///< poses along the loop exist that fit the match
-  double summed_fitness = 0.0;  ///< of the best of them, match and steps; 0 without one
-  double best_fitness = 0.0;    ///< what the sum would be if every best solution held as it is
+  double summed_fitness = 0.0;  ///< of the best poses, match and steps; 0 without any
+  double best_fitness = 0.0;    ///< the sum if every best solution held unchanged
   LoopSearchOutcome outcome = LoopSearchOutcome::kNoCandidates;
-  std::vector<geometry::Pose2> T_first_pose;  ///< of the best, from the identity on
+  std::vector<geometry::Pose2> T_first_pose;  ///< of the best poses, from the identity on
 };
 
 /// Whether a match of the last pose of a chain with its first one (`closing`, T_first_last) fits
-/// the steps between. The chain need not follow time: any path through a pose graph will do. The
-/// uncertainty of a pose is that of the best solutions before it, wide enough for the others where
-/// there are several. Throws std::invalid_argument like search_loop(), and for a step without a
-/// solution or with a fitness outside of [0, 1].
+/// the steps between them. The chain need not follow time: any path through a pose graph will do.
+/// The uncertainty of a pose is that of the best solutions before it, widened to cover the others
+/// where a step has several. Throws std::invalid_argument like search_loop(), and for a step
+/// without a solution or with a fitness outside [0, 1].
 ClosingCheck check_closing(std::span<const LoopStep> steps, const RelativeSolution& closing,
                            const LoopSearchConfig& config = {});
 

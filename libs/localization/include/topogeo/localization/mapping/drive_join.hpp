@@ -1,5 +1,5 @@
-// How a drive that has found itself in a map becomes part of it: where its first stop lies, and by
-// which loops it hangs together with the map.
+// How a drive that was localized in a map becomes part of it: the pose of its first stop and the
+// loops that connect it to the map.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,16 @@
 
 namespace topogeo::localization {
 
-/// The first stop of a drive seen from the last one of the map: through the best match of the
-/// drive's last stop, backwards along the drive's odometry. `map` holds the poses of the map.
-/// Throws std::invalid_argument without stops or matches, or for a match with a stop that is not in
-/// the map.
+/// The first stop of a drive relative to the last one of the map: through the best match of the
+/// drive's last stop, then backwards along the drive's odometry. `map` holds the poses of the map.
+/// Throws std::invalid_argument without stops or matches, or for a match with a stop outside the
+/// map.
 UncertainPose first_stop_of_drive(const PoseGraph& map,
                                   std::span<const std::shared_ptr<const topomap::LocalMap>> drive,
                                   std::span<const StoredMatch> matches_of_last,
                                   const OdometryNoise& noise);
 
-/// The match as a loop of the drive's last stop, which has this id in the map.
+/// The match as a loop of the drive's last stop, whose id in the map is `last_id`.
 PoseGraphEdge loop_of(const StoredMatch& match, std::uint32_t last_id);
 
 /// Whether one of the edges is of the same kind between the same stops.

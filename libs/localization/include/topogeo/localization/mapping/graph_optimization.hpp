@@ -1,4 +1,4 @@
-// Least squares over a pose graph, or a part of it, as a job apart, so that it need not hold up the
+// Least squares over a pose graph, or a part of it, as a separate job that need not hold up the
 // robot.
 #pragma once
 
@@ -11,11 +11,11 @@
 
 namespace topogeo::localization {
 
-/// What a job needs; a copy, so that the graph can grow meanwhile.
+/// Input of a job: a copy, so that the graph can grow meanwhile.
 struct GraphProblem {
   std::vector<std::uint32_t> stops;          ///< of the graph, ascending
-  std::vector<geometry::Pose2> T_map_robot;  ///< of these
-  std::vector<std::uint8_t> held;            ///< which of these keep their pose
+  std::vector<geometry::Pose2> T_map_robot;  ///< of these stops
+  std::vector<std::uint8_t> held;            ///< nonzero: this stop keeps its pose
   std::vector<PoseGraphEdge> edges;          ///< `from` and `to` are indices of `stops`
   bool whole = false;                        ///< all stops of the graph
 };
@@ -24,24 +24,24 @@ struct GraphSolution {
   OptimizationSummary summary;       ///< of the last optimisation
   std::vector<std::uint32_t> stops;  ///< of the problem, with their poses
   std::vector<geometry::Pose2> T_map_robot;
-  std::vector<PoseGraphEdge> outvoted;  ///< loops that the rest contradicts: left out
+  std::vector<PoseGraphEdge> outvoted;  ///< loops left out because the rest contradicts them
   bool whole = false;
-  /// A stop next to one that was held has moved noticeably: more stops should have been free.
+  /// A stop next to a held one has moved noticeably, so more stops should have been free.
   bool strained = false;
 };
 
-/// Optimises, leaves out the loops that are outvoted by then and optimises again without them. The
-/// same problem has the same solution. An unusable result gives the poses as they were.
+/// Optimises, leaves out outvoted loops and optimises again without them. The same problem has the
+/// same solution. If the result is unusable, the poses are returned unchanged.
 GraphSolution solve(const GraphProblem& problem);
 
-/// Where the jobs are done. One at a time.
+/// Runs the jobs, one at a time.
 class GraphOptimizer {
  public:
   virtual ~GraphOptimizer() = default;
 
-  /// Throws std::logic_error when the job before was not fetched.
+  /// Throws std::logic_error if the previous job was not fetched.
   virtual void start(GraphProblem problem) = 0;
-  /// Waits for the result. Throws std::logic_error when nothing was started.
+  /// Waits for the result. Throws std::logic_error if nothing was started.
   virtual GraphSolution fetch() = 0;
 
  protected:
@@ -50,7 +50,7 @@ class GraphOptimizer {
   GraphOptimizer& operator=(const GraphOptimizer&) = default;
 };
 
-/// Does the job when its result is asked for, in the same thread.
+/// Does the job in the calling thread when its result is fetched.
 class InPlaceOptimizer : public GraphOptimizer {
  public:
   void start(GraphProblem problem) override;

@@ -2,11 +2,11 @@
 // closed loops over the stops between by least squares (docs/algorithms.md, "Pose graph").
 //
 // The thesis (7.3.1.1, eq. 7.18) takes the single match with the largest fitness; here all matches
-// that pass the gates become edges of a pose graph, which real logs showed to be 3-10 times more
-// accurate at no more cost.
+// that pass the gates become edges of a pose graph, which was 3-10 times more accurate on real logs
+// at no more cost.
 //
-// A step moves the newest pose alone. What a closed loop does to earlier poses is worked out beside
-// the steps and takes effect a fixed number of steps later (OptimizationSchedule).
+// A step moves only the newest pose. The effect of a closed loop on earlier poses is computed
+// beside the steps and applied a fixed number of steps later (OptimizationSchedule).
 #pragma once
 
 #include <cstdint>
@@ -38,28 +38,28 @@ class Localizer : public Slam {
  public:
   using MapPointer = std::shared_ptr<const topomap::LocalMap>;
 
-  /// The pool and the optimizer must outlive the localizer; without an optimizer the work is done
+  /// The pool and the optimizer must outlive the localizer. Without an optimizer the work is done
   /// within the step at which it takes effect.
   Localizer(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer = nullptr);
 
-  /// Goes on with a stored map: its stops are the first, in its frame. A drive becomes part of it
-  /// through join(). Throws std::invalid_argument when the map has no stops or the ids of its local
-  /// maps are not their indices.
+  /// Continues a stored map: its stops come first, and its frame is kept. A drive becomes part of
+  /// it through join(). Throws std::invalid_argument if the map has no stops or the ids of its
+  /// local maps are not their indices.
   Localizer(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer,
             const std::shared_ptr<const StoredMap>& stored);
 
-  /// A drive to which no odometry leads from the last stop has found itself in the map: its stops
-  /// so far, numbered on from those of the map, and matches of the last of them, at least one,
-  /// which are right with this probability. The stops are matched with each other, placed by the
-  /// matches, backwards from the last, and then compared with the map. Throws
-  /// std::invalid_argument without stops or matches and like add().
+  /// Adds a drive that was localized in the map but is not connected to the last stop by odometry.
+  /// `drive` holds its stops so far, numbered on from those of the map; `matches_of_last` are one
+  /// or more matches of its last stop that are right with the probability `confidence`. The stops
+  /// are matched with each other, placed backwards from the last one by these matches, and then
+  /// compared with the map. Throws std::invalid_argument without stops or matches and like add().
   void join(std::span<const MapPointer> drive, std::span<const StoredMatch> matches_of_last,
             double confidence);
 
-  /// Takes in what is still being worked out about earlier poses.
+  /// Applies the optimisation that is still running, if any.
   void settle() { apply(schedule_.fetch_now()); }
 
-  /// Numbers its tasks on from there; no number may occur twice in one pool.
+  /// Continues the numbering of tasks there; no number may occur twice in one pool.
   void number_tasks_from(std::uint64_t next_task) { matching_.requests().number_from(next_task); }
   [[nodiscard]] std::uint64_t next_task() const { return matching_.requests().next_task(); }
 
@@ -67,12 +67,12 @@ class Localizer : public Slam {
   /// std::invalid_argument otherwise. True when earlier poses were moved too.
   bool add(MapPointer map) override;
 
-  /// After the last map: matches all places that lie near each other by now and were not compared
-  /// yet, and optimises, until nothing changes. Maps may follow all the same.
+  /// After the last map: matches all stops that lie near each other by now and were not compared
+  /// yet, and optimises, until nothing changes. More maps may still follow.
   void finish() override;
 
-  /// The same with the stops of a stored map from this one on, which finish() leaves alone: for a
-  /// map whose parts were made apart.
+  /// Like finish(), but with the stops of a stored map from `first` on, which finish() leaves
+  /// alone: for a map whose parts were made separately.
   void compare_stored(std::uint32_t first);
 
   [[nodiscard]] topomap::Trajectory trajectory() const override;
@@ -81,13 +81,13 @@ class Localizer : public Slam {
   [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override {
     return loops_.decisions();
   }
-  /// None where it goes on with a stored map that does not keep its own.
+  /// Empty if it continues a stored map without edges.
   [[nodiscard]] const std::vector<PoseGraphEdge>& edges() const override {
     return edges_known_ ? graph_.edges() : no_edges();
   }
   [[nodiscard]] LocalizationStatus status() const override { return monitor_.status(); }
   [[nodiscard]] SlamCounts counts() const override;
-  /// The stops and all that was measured between them.
+  /// The stops and all measurements between them.
   [[nodiscard]] const PoseGraph& graph() const { return graph_; }
 
  private:
@@ -118,8 +118,8 @@ class Localizer : public Slam {
   OptimizationSchedule schedule_;
   OdometrySteps steps_;
   StateMonitor monitor_;
-  std::size_t stored_stops_ = 0;      // that were there before the first own one
-  std::optional<UncertainPose> gap_;  // to the next stop, where no odometry leads to it
+  std::size_t stored_stops_ = 0;      // number of stops in the stored map
+  std::optional<UncertainPose> gap_;  // T_last_next, when no odometry leads to the next stop
   bool edges_known_ = true;
   std::uint64_t version_ = 0;
   std::uint64_t steps_in_doubt_ = 0;

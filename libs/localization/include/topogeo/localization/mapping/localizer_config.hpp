@@ -14,18 +14,18 @@ class ConfigSchema;
 namespace topogeo::localization {
 
 enum class LocalizerMode : std::uint8_t {
-  kGraph = 0,   ///< Localizer: a pose graph over all accepted matches
-  kThesis = 1,  ///< ThesisLocalizer: the forward and backward correction of the thesis alone
+  kGraph = 0,   ///< Localizer: pose graph over all accepted matches
+  kThesis = 1,  ///< ThesisLocalizer: only the forward and backward correction of the thesis
 };
 
-/// What becomes of the maps of two robots that have seen the same place (SharedMap).
+/// Whether the maps of two robots that have seen the same place are merged (SharedMap).
 enum class MergePolicy : std::uint8_t {
-  kAuto = 0,  ///< they become one
-  kAsk = 1,   ///< the same when somebody agrees
+  kAuto = 0,  ///< always
+  kAsk = 1,   ///< after an operator agrees
 };
 
 struct LocalizerConfig {
-  LocalizerMode mode = LocalizerMode::kGraph;  ///< which make_slam() makes
+  LocalizerMode mode = LocalizerMode::kGraph;  ///< algorithm that make_slam() creates
   std::uint64_t seed = 1;
   OdometryNoise odometry;
   GeneticParameters genetic;

@@ -1,5 +1,4 @@
-// Matches of a search wider than odometry asks for: such a search finds the place, and others that
-// look like it.
+// Handling of matches from a widened search: it finds the place, and others that look like it.
 #pragma once
 
 #include <vector>
@@ -9,8 +8,8 @@
 
 namespace topogeo::localization {
 
-/// Refuses the accepted matches of a widened search, unless one at least is where odometry may have
-/// brought the robot, within 99 %.
+/// Rejects the accepted matches of a widened search unless odometry allows at least one of them (99
+/// %).
 void refuse_look_alikes(std::vector<StopMatch>& matches, const OdometrySteps& steps);
 
 }  // namespace topogeo::localization

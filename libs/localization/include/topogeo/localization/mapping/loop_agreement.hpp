@@ -1,11 +1,11 @@
-// Which of many doubtful loops are right, by how they agree: matches of several stops with an
-// earlier stretch of path that all say the same are right together where none is beyond doubt
+// Finds the right ones among many doubtful loops by their agreement: matches of several stops with
+// an earlier stretch of path that agree are right together, even if none of them is beyond doubt
 // alone (docs/algorithms.md, "Loops").
 //
-// Two loops agree when going round both of them, over the path between their ends, leads back to
-// where it began, within the covariances. A set in which all agree with all is accepted as a whole
-// when it is spread over some metres, heavy enough and much heavier than any other set for the
-// same stretch. Hypotheses outlive optimisations: what they say is relative.
+// Two loops agree when the round trip over both, along the path between their ends, returns to its
+// start within the covariances. A set in which every pair agrees is accepted as a whole when it is
+// spread over some metres, heavy enough and much heavier than any other set for the same stretch.
+// Hypotheses stay valid after optimisations, because they are relative.
 #pragma once
 
 #include <cstddef>
@@ -21,15 +21,15 @@ namespace topogeo::localization {
 
 class LoopAgreement {
  public:
-  /// Keeps a match as a hypothesis. `path_m`: from the first stop to each, all stops of the match
-  /// included.
+  /// Keeps a match as a hypothesis. `path_m`: path length from the first stop to each stop, up to
+  /// those of the match.
   void add(const StopMatch& match, std::span<const double> path_m);
-  /// The same of a match that is accepted already: it speaks for those that agree with it, and
-  /// against others.
+  /// Like add() for an accepted match: it supports hypotheses that agree with it and opposes
+  /// others.
   void add_accepted(const StopMatch& match, std::span<const double> path_m);
 
-  /// The matches of sets that are accepted with those added since the last call, each once; they
-  /// are hypotheses no longer, nor is what contradicts them.
+  /// Returns the matches of the sets that the hypotheses added since the last call complete, each
+  /// match once, and drops the hypotheses that contradict them.
   std::vector<StopMatch> accepted(const PoseGraph& graph, std::span<const double> path_m);
 
   [[nodiscard]] std::size_t waiting() const { return hypotheses_.size(); }
@@ -42,10 +42,10 @@ class LoopAgreement {
     bool accepted = false;
   };
   void keep(Hypothesis hypothesis, std::span<const double> path_m);
-  using Set = std::vector<std::size_t>;  // of indices, ascending
+  using Set = std::vector<std::size_t>;  // indices, ascending
 
-  /// What pairs are judged by: the paths between their ends, and between the earlier ends of
-  /// loops with different visits of a place what the graph knows, where that was asked for.
+  /// Data to judge pairs by: the paths between their ends and, on demand, the relative poses in the
+  /// graph between earlier ends at different visits of a place.
   struct Ways {
     const PoseGraph& graph;
     std::span<const double> path_m;
@@ -67,11 +67,11 @@ class LoopAgreement {
   std::vector<Hypothesis> hypotheses_;
 };
 
-/// Squared Mahalanobis distance of the way round two loops from the identity; their later and
-/// earlier ends are each at most `farthest_m` of path apart, otherwise infinite.
+/// Squared Mahalanobis distance of the round trip over two loops from the identity. Infinite if
+/// their later or their earlier ends are more than `farthest_m` of path apart.
 double disagreement(const PoseGraph& graph, const PoseGraphEdge& a, const PoseGraphEdge& b,
                     std::span<const double> path_m, double farthest_m);
-/// The same for any two, whose earlier ends lie like that: T_b.from_a.from.
+/// The same for two loops whose earlier ends have this relative pose (T_b.from_a.from).
 double disagreement(const PoseGraph& graph, const PoseGraphEdge& a, const PoseGraphEdge& b,
                     const UncertainPose& T_from_b_from_a);
 

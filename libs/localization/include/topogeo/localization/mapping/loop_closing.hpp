@@ -1,8 +1,8 @@
 // Decides which matches with earlier places close a loop, and records every decision.
 //
 // A loop that moves the robot little is accepted at once. One that moves it far must fit the steps
-// along the loop (closing_check.hpp), and a loop of another stop must move the robot to the same
-// place; until then it is pending.
+// along the loop (closing_check.hpp) and stays pending until a loop of another stop moves the robot
+// to the same place.
 #pragma once
 
 #include <cstddef>
@@ -21,27 +21,28 @@ namespace topogeo::localization {
 
 class LoopClosing {
  public:
-  /// Of `config` it reads unaided_correction_*.
+  /// Reads only unaided_correction_* of `config`.
   explicit LoopClosing(const LocalizerConfig& config);
 
   enum class Verdict : std::uint8_t {
     kRefused = 0,  ///< no poses along the loop fit it
-    kPending,      ///< moves the robot far and nothing agrees with it so far
-    kAgrees,       ///< accepted, and the poses need not move: the caller adds it to the graph
-    kMoves,        ///< accepted, and waiting for an optimisation
+    kPending,      ///< moves the robot far, and no other loop agrees yet
+    kAgrees,       ///< accepted without moving poses: the caller adds it to the graph
+    kMoves,        ///< accepted, waits for an optimisation
   };
-  /// Decides on a match of the last stop, or of any after the end of a log, that passed its gate.
+  /// Decides on a match of the last stop, or of any stop after the end of a log, that passed its
+  /// gate.
   Verdict consider(const PoseGraph& graph, const StopMatch& loop);
 
-  /// Keeps a match, of whatever verdict, that may be right together with others.
+  /// Keeps a match, whatever its verdict, as a hypothesis that may be right together with others.
   void suppose(const StopMatch& loop, std::span<const double> path_m) {
     agreement_.add(loop, path_m);
   }
-  /// Tells those supposed of a loop that was accepted alone.
+  /// Passes a loop that was accepted on its own to the pending hypotheses.
   void support(const StopMatch& loop, std::span<const double> path_m) {
     agreement_.add_accepted(loop, path_m);
   }
-  /// Accepts those supposed loops that agree, to wait for an optimisation; returns how many.
+  /// Accepts hypotheses that agree, to wait for an optimisation; returns their number.
   std::size_t accept_agreed(const PoseGraph& graph, std::span<const double> path_m);
 
   /// Records a match that its gate refused.
@@ -53,9 +54,9 @@ class LoopClosing {
 
   /// Accepted loops that wait for an optimisation, in the order of acceptance.
   [[nodiscard]] const std::vector<PoseGraphEdge>& waiting() const { return waiting_; }
-  /// Gives away the first of them, at most all.
+  /// Removes and returns the first `count` of them, at most all.
   std::vector<PoseGraphEdge> release(std::size_t count);
-  /// Pending loops are not confirmed any more.
+  /// Forgets pending loops: they are not confirmed any more.
   void drop_pending() { pending_.clear(); }
 
   [[nodiscard]] const std::vector<LoopDecision>& decisions() const { return decisions_; }
@@ -63,7 +64,7 @@ class LoopClosing {
   [[nodiscard]] std::uint64_t outvoted() const { return outvoted_; }
 
  private:
-  /// What a loop does to the pose of its later stop.
+  /// The effect of a loop on the pose of its later stop.
   struct Correction {
     geometry::Pose2 T_map_now;
     geometry::Pose2 T_map_corrected;
@@ -74,7 +75,7 @@ class LoopClosing {
   };
   struct PendingLoop {
     StopMatch match;
-    geometry::Pose2 motion;  // see Correction, at that time
+    geometry::Pose2 motion;  // Correction::motion() when it became pending
   };
 
   [[nodiscard]] static Correction correction_of(const PoseGraph& graph, const PoseGraphEdge& loop);

@@ -1,4 +1,4 @@
-// What was decided of a place that the robot may have come back to, and why.
+// Decisions about places that the robot may have returned to, with reasons.
 #pragma once
 
 #include <cstddef>
@@ -15,18 +15,18 @@ namespace topogeo::localization {
 enum class LoopOutcome : std::uint8_t {
   kAccepted = 0,
   kGate = 1,         ///< the gate refused the match: see LoopDecision::reason
-  kUnconfirmed = 2,  ///< moves the robot far and nothing agrees with it so far
-  kNoClosing = 3,    ///< no poses along the loop fit what was seen on it
-  kOutvoted = 4,     ///< was accepted; the rest contradicted it after the optimisation
+  kUnconfirmed = 2,  ///< moves the robot far, and no other loop agrees yet
+  kNoClosing = 3,    ///< no poses along the loop fit its steps
+  kOutvoted = 4,     ///< accepted at first; contradicted by the rest after the optimisation
 };
 
 inline constexpr std::size_t kLoopOutcomes = 5;
 
 /// Why two stops were compared.
 enum class ProposalSource : std::uint8_t {
-  kPrediction = 0,  ///< the poses say that they see the same
-  kPlace = 1,       ///< what was seen over the last metres looks like an earlier place
-  kWindow = 2,      ///< the same, matched as a whole and not stop by stop
+  kPrediction = 0,  ///< their poses predict a common view
+  kPlace = 1,       ///< the view over the last metres resembles an earlier place
+  kWindow = 2,      ///< like kPlace, matched as a whole and not stop by stop
 };
 
 /// "prediction", "place".
@@ -36,8 +36,8 @@ const char* to_string(ProposalSource source);
 const char* to_string(LoopOutcome outcome);
 
 struct LoopDecision {
-  std::uint32_t step = 0;  ///< local map id of the stop at which it was decided; the last one: also
-                           ///< after the end of the log
+  std::uint32_t step = 0;  ///< local map id of the stop at which it was decided; the last one also
+                           ///< for decisions after the end of the log
   std::uint32_t earlier_id = 0;  ///< local map ids
   std::uint32_t later_id = 0;
   LoopOutcome outcome = LoopOutcome::kGate;
@@ -48,11 +48,11 @@ struct LoopDecision {
   double correction_rad = 0.0;
   double fitness = 0.0;  ///< of the match, [0, 1]
   ProposalSource source = ProposalSource::kPrediction;
-  double probability = 0.0;  ///< that the match is right, by all that was known; see LoopEvidence
-  LoopEvidence evidence;     ///< what that was computed from; stays in this process
+  double probability = 0.0;  ///< that the match is right, from all evidence; see LoopEvidence
+  LoopEvidence evidence;     ///< input of `probability`; stays in this process
 };
 
-/// Outcome and reason in words, as in reports: "accepted", "match not accepted: few inliers", ...
+/// Outcome and reason as in reports: "accepted", "match not accepted: few inliers", ...
 std::string explanation(const LoopDecision& decision);
 
 }  // namespace topogeo::localization

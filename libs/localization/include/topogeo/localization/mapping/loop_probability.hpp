@@ -1,5 +1,5 @@
-// How probable it is that two stops lie to each other as a match states
-// (docs/algorithms.md, "Loops").
+// Probability that a match states the relative pose of two stops correctly (docs/algorithms.md,
+// "Loops").
 #pragma once
 
 #include <array>
@@ -9,31 +9,31 @@
 
 namespace topogeo::localization {
 
-/// What is known of a match when it is decided whether it closes a loop.
+/// State of a match when it is decided whether it closes a loop.
 struct LoopEvidence {
   enum class Kind : std::uint8_t {
     kNone = 0,  ///< nothing in common: there is no match
     kPassed,    ///< its gate let it pass
-    kDoubtful,  ///< its gate doubted it, or another pose fits nearly as well
+    kDoubtful,  ///< its gate was in doubt, or another pose fits nearly as well
     kRefused,   ///< its gate refused it
-    kWindow,    ///< of several stops as a whole
+    kWindow,    ///< several stops matched as a whole
   };
   Kind kind = Kind::kNone;
   double fitness = 0.0;  ///< [0, 1]
   double doubt = 0.0;    ///< see doubt()
-  double overlap = 0.0;  ///< [0, 1], as the next
+  double overlap = 0.0;  ///< [0, 1], as `inliers`
   double inliers = 0.0;
   double rivalry = 0.0;          ///< see rivalry()
-  double weakest_sigma_m = 0.0;  ///< along the direction in which the scans know it least
+  double weakest_sigma_m = 0.0;  ///< along the direction that the scans determine worst
   double surprise = 0.0;         ///< squared Mahalanobis distance from the prediction
-  double agreement = 0.0;        ///< weight of the set it was accepted with; 0: alone
-  double rival_agreement = 0.0;  ///< of the heaviest set that contradicts that one
+  double agreement = 0.0;        ///< weight of the set it was accepted with; 0: accepted alone
+  double rival_agreement = 0.0;  ///< of the heaviest set that contradicts that set
   bool contradicted = false;     ///< by the steps along the loop or by an optimisation
 };
 
-/// What the log odds are linear in: four kinds, inliers and rivalry of a match of two stops,
-/// fitness of a window, logarithm of the surprise, deviation in metres along the weakest direction,
-/// their product, agreement, contradiction.
+/// Terms of the log odds: four kinds, inliers and rivalry of a match of two stops, fitness of a
+/// window, logarithm of the surprise, deviation in metres along the weakest direction, their
+/// product, agreement, contradiction.
 inline constexpr std::size_t kLoopTerms = 12;
 using LoopTerms = std::array<double, kLoopTerms>;
 LoopTerms loop_terms(const LoopEvidence& evidence);
@@ -41,7 +41,7 @@ LoopTerms loop_terms(const LoopEvidence& evidence);
 /// Probability that the match is within 0.5 m and 10 degrees of the truth, (0, 1); 0 where nothing
 /// is in common.
 double loop_probability(const LoopEvidence& evidence);
-/// The same with other coefficients than those that were fitted (tests/bench/loops.cpp).
+/// The same with coefficients other than the fitted ones (tests/bench/loops.cpp).
 double loop_probability(const LoopEvidence& evidence, const LoopTerms& coefficients);
 
 }  // namespace topogeo::localization

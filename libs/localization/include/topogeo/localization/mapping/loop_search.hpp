@@ -1,18 +1,18 @@
-// Searches consistent poses along a loop: from candidates of its last pose back to its first one,
-// which keeps its place. The search of Thesis, 7.3.1.2 (docs/algorithms.md, "Backward correction").
+// Searches consistent poses along a loop, from candidates of its last pose back to its fixed first
+// one. The search of Thesis, 7.3.1.2 (docs/algorithms.md, "Backward correction").
 //
-// Each pose is replaced from the known steps of its successor; the path whose summed fitness is
-// largest wins. The thesis searches depth first, which took hours for 60 poses: a path that drifts
-// is refused only near its end, after every combination of the poses between was tried. Here all
-// paths advance pose by pose together, the best `beam_width` of them (a beam search); the rest
-// waits and is taken up where all others have come to a dead end (backtracking). Paths are ranked
-// by the fitness summed up so far, less what it will cost to meet the first pose: with f the mean
-// fitness of a step and d the Mahalanobis distance from the expected pose, about f d^2 / 2.
+// Each pose follows from a known step back from its successor; the path with the largest summed
+// fitness wins. The thesis searches depth first, which took hours for 60 poses: a drifting path is
+// refused only near its end, after every combination of the poses in between. Here all paths
+// advance pose by pose together, the best `beam_width` of them (a beam search); the others wait and
+// are resumed when all paths in the beam have reached a dead end (backtracking). Paths are ranked
+// by the fitness summed up so far minus the expected cost of meeting the first pose: with f the
+// mean fitness of a step and d the Mahalanobis distance from the expected pose, about f d^2 / 2.
 //
 // A few known steps, 15 cm apart, cannot spread a gap of centimetres over a loop. So each step is
-// tried a second time, drawn towards the expected pose as far as its own covariance and that of
-// the pose suggest (one step of a smoother), with fitness f exp(-d^2 / 2) for a draw of d
-// deviations. `draw = false` leaves that out, as in the thesis.
+// tried a second time, drawn towards the expected pose as far as its own covariance and that of the
+// pose suggest (one step of a smoother), with fitness f exp(-d^2 / 2) for a draw of d deviations.
+// `draw = false` leaves that out, as in the thesis.
 #pragma once
 
 #include <cstddef>
@@ -30,8 +30,8 @@ namespace topogeo::localization {
 /// One pose of the loop as it is known before the search.
 struct LoopPose {
   UncertainPose T_first_this;  ///< relative to the first pose of the loop; centre and extent of the
-                               ///< uncertainty that the pose must lie in
-  std::vector<RelativeSolution> steps;  ///< from the pose before, best first; at least one
+                               ///< region that the pose must lie in
+  std::vector<RelativeSolution> steps;  ///< from the previous pose, best first; at least one
 };
 
 /// A pose that the last stop of the loop may have.
@@ -40,20 +40,20 @@ struct LoopCandidate {
   double fitness = 0.0;  ///< [0, 1]
 };
 
-/// A pose on a path that is searched, with the path behind it up to the last pose of the loop.
+/// A pose on a searched path, linked to the path behind it up to the last pose of the loop.
 struct LoopNode {
   geometry::Pose2 T_first_pose;
   double fitness = 0.0;            ///< summed so far
-  double rank = 0.0;               ///< what the sum may come to at the first pose
-  const LoopNode* next = nullptr;  ///< of the pose after it; null at the last pose
-  std::uint32_t candidate = 0;     ///< index of the candidate that the path starts from
+  double rank = 0.0;               ///< the sum expected at the first pose
+  const LoopNode* next = nullptr;  ///< node of the following pose; null at the last pose
+  std::uint32_t candidate = 0;     ///< index of the candidate at which the path starts
 };
 
-/// What else a path must meet.
+/// Further condition on a path.
 class LoopConstraint {
  public:
   virtual ~LoopConstraint() = default;
-  /// Whether a path may come to this pose; `pose` is its index in the loop.
+  /// Whether a path may contain this pose; `pose` is its index in the loop.
   [[nodiscard]] virtual bool allows(std::uint32_t pose, const LoopNode& node) const = 0;
 
  protected:
@@ -65,8 +65,8 @@ class LoopConstraint {
 enum class LoopSearchOutcome : std::uint8_t {
   kClosed = 0,
   kNoCandidates,       ///< of the last pose
-  kCandidatesOutside,  ///< each lies outside of its uncertainty or breaks the constraint
-  kDeadEnd,            ///< no step back was left at some pose
+  kCandidatesOutside,  ///< each lies outside its uncertainty or breaks the constraint
+  kDeadEnd,            ///< some pose has no step back
   kTooMuchWork,        ///< largest_work was reached before a path was found
 };
 
@@ -83,8 +83,8 @@ struct LoopPath {
 struct LoopSearchResult {
   LoopSearchOutcome outcome = LoopSearchOutcome::kNoCandidates;
   std::vector<LoopPath> paths;  ///< largest summed fitness first; empty unless closed
-  std::uint32_t nearest = 0;    ///< index of the pose nearest to the first one that was reached
-  std::uint64_t expanded = 0;   ///< paths that were continued by one pose
+  std::uint32_t nearest = 0;    ///< index of the reached pose that is nearest to the first one
+  std::uint64_t expanded = 0;   ///< number of extensions of a path by one pose
   std::uint64_t work = 0;       ///< steps tried
   std::uint32_t backtracks = 0;
 };
@@ -92,7 +92,7 @@ struct LoopSearchResult {
 /// Searches poses[1], poses[2], ... from the last one back; poses[0] is the identity and not read.
 /// The same input gives the same bits. Throws std::invalid_argument for fewer than two poses, a
 /// pose without a step, a covariance of a pose or candidate that is not positive definite, a
-/// candidate whose fitness is outside of [0, 1], or a configuration that allows nothing.
+/// candidate with a fitness outside [0, 1], or a configuration that allows nothing.
 LoopSearchResult search_loop(std::span<const LoopPose> poses,
                              std::span<const LoopCandidate> candidates,
                              const LoopSearchConfig& config = {},

@@ -1,4 +1,4 @@
-// How many matches were asked for, and what became of them.
+// Number of match requests and their results.
 #pragma once
 
 #include <array>

@@ -22,28 +22,28 @@ class MatchRequests {
   /// The pool must outlive the requests.
   MatchRequests(const LocalizerConfig& config, MatchPool& pool);
 
-  /// Makes a local map known to the pool, under its id.
+  /// Registers a local map with the pool, under its id.
   void add_map(std::shared_ptr<const topomap::LocalMap> map);
 
-  /// Makes a whole map known to the pool.
+  /// Registers a whole map with the pool.
   void add_field(std::shared_ptr<const PlaceField> field) { pool_.add_field(std::move(field)); }
 
-  /// The next task: match_task() for two maps that have been added. Its seed follows from the seed
-  /// of the run, the robot of the reference map, both ids and the number of the match. Throws
-  /// std::out_of_range for a map that was not added.
+  /// The next task: match_task() for two registered maps. Its seed follows from the seed of the
+  /// run, the robot of the reference map, both ids and the number of the match. Throws
+  /// std::out_of_range for a map that was not registered.
   MatchTask make(std::uint32_t reference_id, std::uint32_t query_id,
                  const UncertainPose& T_reference_query);
 
-  /// The answers to all parts of a search of the whole map by a stop that has been added, in the
-  /// order of the parts; they do not count as matches. Throws like MatchPool::match and make().
+  /// The answers to all parts of a search of the whole map by a registered stop, in the order of
+  /// the parts; they do not count as matches. Throws like MatchPool::match and make().
   std::vector<MatchSolution> ask(std::span<const std::shared_ptr<const PlaceQuestion>> questions,
                                  std::uint32_t query_id);
 
-  /// The results in the order of the tasks; none asks nothing of the pool. Throws like
+  /// The results in the order of the tasks. Without tasks the pool is not called. Throws like
   /// MatchPool::match.
   std::vector<MatchResult> run(std::span<const MatchTask> tasks);
 
-  /// Numbers the tasks on from there. No number may occur twice in one pool.
+  /// Continues the numbering of tasks there. No number may occur twice in one pool.
   void number_from(std::uint64_t next_task) { next_task_ = next_match_ = next_task; }
   [[nodiscard]] std::uint64_t next_task() const { return next_task_; }
 
@@ -62,7 +62,7 @@ class MatchRequests {
   MatchPool& pool_;
   std::map<std::uint32_t, KnownMap> maps_;  // by id
   std::uint64_t next_task_ = 0;
-  std::uint64_t next_match_ = 0;  // the same without those of ask(): seeds do not depend on them
+  std::uint64_t next_match_ = 0;  // without tasks of ask(), so that seeds do not depend on them
   MatchCounts counts_;
 };
 

@@ -1,4 +1,4 @@
-// Watches how far odometry is off while the robot drives, so that one that is worse than configured
+// Measures the error of odometry while the robot drives, so that odometry worse than configured
 // gets a wider covariance instead of breaking the map.
 #pragma once
 
@@ -9,31 +9,30 @@
 
 namespace topogeo::localization {
 
-/// Factors of the configured variances, from the squared differences between odometry and accepted
-/// matches over the last steps. For weighing and searching they are never below 1: the
-/// configuration is a floor, because there a covariance that is too small costs more than one that
-/// is too large.
+/// Factors on the configured variances, from the squared differences between odometry and accepted
+/// matches over the last steps. For weighing and searching they are never below 1, because there a
+/// covariance that is too small costs more than one that is too large.
 class OdometryMonitor {
  public:
-  /// One step by odometry, with its configured covariance, and by an accepted match, with its own:
-  /// both of the same two poses, covariances in the frame of the first.
+  /// One step by odometry, with its configured covariance, and by an accepted match, with its own
+  /// covariance: both between the same two poses, covariances in the frame of the first.
   void add(const UncertainPose& odometry, const UncertainPose& match);
 
-  /// The covariance as the last steps have it.
+  /// The covariance widened to the errors of the last steps.
   [[nodiscard]] Eigen::Matrix3d widened(const Eigen::Matrix3d& configured) const;
 
-  /// The covariance as the last steps have it, narrower too where odometry is better than
-  /// configured: what is to be expected of a step without a match.
+  /// The covariance expected for a step without a match, by the errors of the last steps: smaller
+  /// too if odometry is better than configured.
   [[nodiscard]] Eigen::Matrix3d expected(const Eigen::Matrix3d& configured) const;
 
   [[nodiscard]] double translation_factor() const { return translation_.factor(); }
   [[nodiscard]] double heading_factor() const { return heading_.factor(); }
 
  private:
-  /// A mean over about kMemory steps, the older ones fading.
+  /// A mean over about kMemory steps; older ones fade.
   class Ratio {
    public:
-    /// `squared`: of the difference; the variances that odometry and the match state of it.
+    /// `squared`: the squared difference; then its variances as odometry and match state them.
     void add(double squared, double odometry_variance, double match_variance);
     /// At least 1.
     [[nodiscard]] double factor() const;
@@ -42,7 +41,7 @@ class OdometryMonitor {
 
    private:
     static constexpr double kMemory = 20.0;
-    double weighted_ = kMemory;  // starts as if so many steps had been as configured
+    double weighted_ = kMemory;  // starts as if kMemory steps had been as configured
     double weight_ = kMemory;
   };
   Ratio translation_;

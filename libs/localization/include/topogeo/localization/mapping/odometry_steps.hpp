@@ -1,5 +1,5 @@
-// The steps by odometry from stop to stop, and what the drive taught about them: their scale, and
-// how far they are off (docs/algorithms.md, "Pose graph").
+// Odometry steps from stop to stop and their learned scale and error (docs/algorithms.md, "Pose
+// graph").
 #pragma once
 
 #include <cstdint>
@@ -16,46 +16,44 @@
 
 namespace topogeo::localization {
 
-/// Steps are known by the number of the stop that they lead to.
+/// Steps are numbered by the stop that they lead to.
 class OdometrySteps {
  public:
-  /// To a stop to which nothing leads: the first of all, those of a stored map.
+  /// Adds a stop without a step: the first one of all, or one of a stored map.
   void add_none();
 
-  /// As odometry recorded it, with the configured covariance in the frame of the stop before.
+  /// Adds a step as recorded, with the configured covariance in the frame of the previous stop.
   void add(const UncertainPose& recorded);
 
-  /// To a stop to which no odometry leads, but which was placed relative to the one before: nothing
-  /// of what is learned applies.
+  /// Adds a step without odometry to a stop that was placed relative to the previous one: nothing
+  /// learned applies to it.
   void add_gap(const UncertainPose& placed);
 
-  /// The last step in its learned scale; its covariance is the configured one.
+  /// The last step in the learned scale; its covariance is the configured one.
   [[nodiscard]] const UncertainPose& last() const { return steps_.back().T_before_stop; }
 
-  /// The last step for the pose graph, no more certain than configured.
+  /// The last step for the pose graph, at most as certain as configured.
   [[nodiscard]] PoseGraphEdge edge() const;
 
-  /// The same where no match is beyond doubt: it counts as much as odometry was right over the last
-  /// steps.
+  /// Like edge() for a stop without an accepted match: weighted by the errors of the last steps.
   [[nodiscard]] PoseGraphEdge edge_without_match() const;
 
-  /// The last step by an accepted match of the same two stops.
+  /// Learns from an accepted match of the same two stops as the last step.
   void learn(const UncertainPose& matched);
 
-  /// Whether a match lies where odometry may have brought the robot: within 99 % as good as it was
-  /// over the last steps, and within this squared Mahalanobis distance as good as it is configured.
-  /// One elsewhere is a look-alike.
+  /// Whether odometry allows a match: within 99 % of its errors over the last steps, and within
+  /// this squared Mahalanobis distance by its configured errors. A match elsewhere is a look-alike.
   [[nodiscard]] bool allow(const PoseGraphEdge& match, double largest2_configured) const;
 
-  /// The step in the scale that was learned while it and the steps after it were driven: when it
-  /// was, the first ones had none of it. Nothing where odometry recorded none.
+  /// The step in the scale learned during and after it, because the first steps were driven before
+  /// a scale was known. Empty if odometry recorded no step.
   [[nodiscard]] std::optional<geometry::Pose2> rescaled(std::uint32_t stop) const;
 
  private:
   struct Step {
-    UncertainPose T_before_stop{};  // in the scale that was known then
+    UncertainPose T_before_stop{};  // in the scale known at that time
     std::optional<geometry::Pose2> T_recorded{};
-    double scale = 1.0;  // as known then
+    double scale = 1.0;  // as known at that time
   };
   [[nodiscard]] std::uint32_t last_stop() const {
     return static_cast<std::uint32_t>(steps_.size() - 1);

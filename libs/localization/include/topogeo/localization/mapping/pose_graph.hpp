@@ -1,4 +1,4 @@
-// Poses of all stops and the relative poses measured between them; least squares spreads a closed
+// Poses of all stops and the relative poses measured between them. Least squares spreads a closed
 // loop over them, which a discrete search cannot.
 #pragma once
 
@@ -20,7 +20,7 @@ namespace topogeo::localization {
 
 enum class EdgeKind : std::uint8_t {
   kOdometry = 0,
-  kSequential = 1,  ///< match with a stop shortly before
+  kSequential = 1,  ///< match with a recent stop
   kRevisit = 2,     ///< match with a stop of an earlier visit: closes a loop
 };
 
@@ -30,11 +30,10 @@ struct PoseGraphEdge {
   EdgeKind kind = EdgeKind::kOdometry;
   geometry::Pose2 T_from_to;
   Eigen::Matrix3d covariance =
-      Eigen::Matrix3d::Identity();  ///< of T_from_to, in the frame of `from`; the weight in the
-                                    ///< least squares, with a margin for what matches of one place
-                                    ///< have in common
-  /// The same as errors were measured to be (CovarianceCalibration), for predictions; zero: as
-  /// `covariance`.
+      Eigen::Matrix3d::Identity();  ///< of T_from_to, in the frame of `from`; weight in the least
+                                    ///< squares, with a margin for correlated errors of matches of
+                                    ///< one place
+  /// Covariance by measured errors (CovarianceCalibration), for predictions; zero: as `covariance`.
   Eigen::Matrix3d calibrated = Eigen::Matrix3d::Zero();
 
   [[nodiscard]] const Eigen::Matrix3d& for_predictions() const {
@@ -43,7 +42,7 @@ struct PoseGraphEdge {
 };
 
 struct OptimizationSummary {
-  bool usable = false;  ///< false: the poses are as they were
+  bool usable = false;  ///< false: the poses are unchanged
   bool converged = false;
   double initial_cost = 0.0;
   double final_cost = 0.0;
@@ -57,13 +56,13 @@ class PoseGraph {
  public:
   PoseGraph();
   PoseGraph(const PoseGraph& other);
-  /// A graph that was moved from can only be assigned to or destroyed.
+  /// A moved-from graph can only be assigned to or destroyed.
   PoseGraph(PoseGraph&&) noexcept;
   PoseGraph& operator=(const PoseGraph& other);
   PoseGraph& operator=(PoseGraph&&) noexcept;
   ~PoseGraph();
 
-  /// Appends a stop; the first one stays where it is for ever.
+  /// Appends a stop; the first one never moves.
   std::uint32_t add_pose(const geometry::Pose2& T_map_robot);
   void add_edge(const PoseGraphEdge& edge);
 
@@ -75,77 +74,78 @@ class PoseGraph {
     return edges_at_[stop];
   }
 
-  /// Puts these stops (ascending) where an optimisation wants them, and moves those after the last
-  /// of them rigidly with it. Throws std::invalid_argument without any, for an unknown one or when
-  /// the numbers differ.
+  /// Moves these stops (ascending) to optimised poses, and those after the last of them rigidly
+  /// with it. Throws std::invalid_argument without stops, for an unknown stop or if the sizes
+  /// differ.
   void move(std::span<const std::uint32_t> stops, std::span<const geometry::Pose2> T_map_robot);
 
-  /// Squared Mahalanobis distance between an edge and the poses as they are.
+  /// Squared Mahalanobis distance between an edge and the current poses.
   [[nodiscard]] double disagreement(const PoseGraphEdge& edge) const;
 
-  /// Earlier stops with an edge to `stop`, each with the covariance of all edges between the two
-  /// together, in the frame of the earlier one.
+  /// Earlier stops with an edge to `stop`, each with the combined covariance of all edges between
+  /// the two, in the frame of the earlier one.
   [[nodiscard]] std::vector<std::pair<std::uint32_t, Eigen::Matrix3d>> links_to(
       std::uint32_t stop) const;
 
-  /// Places the last pose alone by the edges that end at it, the others held.
+  /// Places only the last pose, by the edges that end at it; the others are held.
   void place_last_pose();
 
-  /// Least squares over all poses. Matches have a Cauchy loss, so that a wrong one that came
-  /// through the gates bends the map a little instead of folding it. Single-threaded, so that
-  /// results repeat.
+  /// Least squares over all poses. Matches have a Cauchy loss, so that a wrong match that passed
+  /// the gates bends the map a little instead of folding it. Single-threaded, so that results
+  /// repeat.
   OptimizationSummary optimize();
 
-  /// Replaces what odometry measured of the step to a stop, which must have one before; the
+  /// Replaces the measurement of the odometry step to a stop, which must have a predecessor; the
   /// covariances stay.
   void correct_step(std::uint32_t stop, const geometry::Pose2& T_before_stop);
 
-  /// Removes all edges that are of the same kind between the same stops as one of these.
+  /// Removes all edges of the same kind between the same stops as one of these.
   void remove_edges(std::span<const PoseGraphEdge> like);
 
-  /// Of the stops before `end` the nearest to a place, within a radius, at most so many; ascending.
+  /// The `most` stops before `end` that are nearest to a place, within a radius; ascending.
   [[nodiscard]] std::vector<std::uint32_t> stops_near(const Eigen::Vector2d& place_m,
                                                       double radius_m, std::size_t most,
                                                       std::uint32_t end) const;
 
   static constexpr std::size_t kAllStops = std::numeric_limits<std::size_t>::max();
-  /// For the predictions of a stop: all of a log of 4 km. Of a longer one these are the nearest by
-  /// what is known of them, and with them the stops that show the place.
+  /// Visited stops in a prediction: all in a log of 4 km. In a longer one these are the nearest by
+  /// path_cost(), and include the stops that see the place.
   static constexpr std::size_t kMostVisited = 4000;
   static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
   /// Relative poses of the wanted stops (ascending) seen from `origin` with their covariances, each
-  /// along the path on which the variance grows least. All edges between two stops count together:
-  /// along a bare corridor a match knows only the position across, odometry the one along. A stop
-  /// is missing where it is not connected or its path_cost() is larger than `largest_cost`. The
-  /// work is that of the stops that are no further away, by cost, than those wanted.
+  /// along the path of least variance. All edges between two stops are combined: along a bare
+  /// corridor a match measures only the position across it, odometry the position along it. A stop
+  /// is missing if it is not connected or its path_cost() exceeds `largest_cost`. The work is
+  /// proportional to the stops that are no further away, by cost, than the wanted ones.
   [[nodiscard]] RelativePoses relative_to(std::uint32_t origin,
                                           std::span<const std::uint32_t> wanted,
                                           double largest_cost = kUnlimited) const;
-  /// The same of all stops, by their ids. One that is not connected has a covariance of
+  /// The same for all stops, by their ids. A stop that is not connected has a covariance of
   /// kUnreached_m2.
   [[nodiscard]] std::vector<UncertainPose> relative_to(std::uint32_t origin) const;
   static constexpr double kUnreached_m2 = 1e6;
 
-  /// The same by the calibrated covariances of the edges: where a stop is to be expected. Matches
-  /// of one place share errors that do not grow along a path, so this is too sure for weighing
+  /// The same with the calibrated covariances of the edges: where to expect a stop. Matches of one
+  /// place share errors that do not grow along a path, so these covariances are too small to weigh
   /// measurements against each other. At most `most` stops are visited, the nearest by cost, which
-  /// bounds the work where all of a large graph is nearly as near; those wanted beyond are missing.
+  /// bounds the work in a large graph whose stops are almost equally near; wanted stops beyond are
+  /// missing.
   [[nodiscard]] RelativePoses predict_from(std::uint32_t origin,
                                            std::span<const std::uint32_t> wanted,
                                            double largest_cost = kUnlimited,
                                            std::size_t most = kAllStops) const;
 
-  /// Visits stops in the order of the path_cost() from the nearest of the origins, which are
-  /// different stops, until `visit` (stop, cost) returns false.
+  /// Visits stops in ascending order of path_cost() from the nearest of the origins, which must be
+  /// distinct, until `visit` (stop, cost) returns false.
   void visit_nearest(std::span<const std::uint32_t> origins,
                      const std::function<bool(std::uint32_t, double)>& visit) const;
 
-  /// From one stop to another by the steps between them alone, whatever else is known; calibrated
-  /// covariances, to first order. Constant time for each 32 stops.
+  /// Relative pose of two stops by the steps between them alone, ignoring all other edges;
+  /// calibrated covariances, to first order. Constant time per 32 stops.
   [[nodiscard]] UncertainPose along_path(std::uint32_t from, std::uint32_t to) const;
 
-  /// Length of a path with this covariance at its end, m^2: the variance of where things are that
-  /// are seen from there.
+  /// Length of a path with this covariance at its end, m^2: the position variance of things seen
+  /// from there.
   static double path_cost(const Eigen::Matrix3d& covariance);
 
  private:
@@ -156,7 +156,7 @@ class PoseGraph {
   std::vector<std::vector<std::uint32_t>> edges_at_;
   std::unique_ptr<PoseLinks> links_;
   std::unique_ptr<PoseLinks> calibrated_links_;
-  std::unique_ptr<StepSums> step_sums_;  // filled as far as it was asked for
+  std::unique_ptr<StepSums> step_sums_;  // filled on demand
 };
 
 }  // namespace topogeo::localization

@@ -1,4 +1,4 @@
-// Where some of the stops lie, seen from one of them: as many as a search along the graph reached.
+// Poses of some stops relative to one of them: as many as a search along the graph reached.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,7 @@ class RelativePoses {
   /// Throws std::out_of_range for a stop that was not reached.
   [[nodiscard]] const UncertainPose& at(std::uint32_t id) const;
 
-  /// Of so many stops, by their ids; one that was not reached is a thousand kilometres away.
+  /// Poses of the stops 0 to count - 1; one that was not reached is a thousand kilometres away.
   [[nodiscard]] std::vector<UncertainPose> by_id(std::size_t count) const;
 
   /// Adds to every covariance.

@@ -1,4 +1,4 @@
-// One relative pose of two local maps that a match found.
+// One relative pose of two local maps, found by a match.
 #pragma once
 
 #include <Eigen/Core>

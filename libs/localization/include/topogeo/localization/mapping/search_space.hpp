@@ -1,5 +1,5 @@
-// How far around its prediction a match is searched, and which pairs are too uncertain to be worth
-// it.
+// Search space of a match around its prediction, and the limit beyond which a pair is too uncertain
+// to be matched.
 #pragma once
 
 #include "topogeo/localization/mapping/localizer_config.hpp"
@@ -8,12 +8,12 @@
 
 namespace topogeo::localization {
 
-/// The task of this configuration for two maps of which a relative pose is predicted: the search
-/// space, cut to the largest one, and all settings. The caller adds ids, hashes and seed.
+/// The task for two maps with a predicted relative pose: the search space, cut to the largest one,
+/// and all settings. The caller adds ids, hashes and seed.
 MatchTask match_task(const LocalizerConfig& config, const UncertainPose& T_reference_query);
 
-/// Whether a prediction is good enough for a match: its search space, not cut, is no larger than
-/// the largest one. A search wider than that finds look-alikes.
+/// Whether a prediction is good enough for a match: its search space, before cutting, is no larger
+/// than the largest one. A wider search finds look-alikes.
 bool searchable(const LocalizerConfig& config, const UncertainPose& T_reference_query);
 
 /// PoseGraph::path_cost() beyond which no prediction is searchable().

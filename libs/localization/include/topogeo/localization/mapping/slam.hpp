@@ -1,6 +1,6 @@
-// What maps and follows a robot from stop to stop, whichever algorithm does it: the pose graph over
-// all accepted matches (localizer.hpp), the thesis alone (thesis_localizer.hpp), the localization
-// in a finished map (map_localizer.hpp) or a session of them (slam_session.hpp).
+// Interface of all algorithms that map and follow a robot from stop to stop: the pose graph over
+// all accepted matches (localizer.hpp), the thesis alone (thesis_localizer.hpp), localization in a
+// finished map (map_localizer.hpp), or a session of them (slam_session.hpp).
 #pragma once
 
 #include <cstddef>
@@ -20,11 +20,11 @@ namespace topogeo::localization {
 
 struct SlamCounts : MatchCounts {
   std::uint64_t steps_in_doubt =
-      0;  ///< no recent match was accepted; an uncertain one or odometry stood in
-  std::uint64_t unconfirmed_loops = 0;  ///< large corrections that nothing else agreed with
+      0;  ///< no recent match was accepted; an uncertain one or odometry was used instead
+  std::uint64_t unconfirmed_loops = 0;  ///< large corrections without an agreeing loop
   std::uint64_t optimizations = 0;
-  std::uint64_t failed_optimizations = 0;  ///< of those, without a usable result: poses kept
-  std::uint64_t removed_loops = 0;         ///< outvoted by the rest after optimisation
+  std::uint64_t failed_optimizations = 0;  ///< without a usable result: poses kept
+  std::uint64_t removed_loops = 0;         ///< contradicted by the rest after optimisation
 };
 
 class Slam {
@@ -35,17 +35,17 @@ class Slam {
   /// std::invalid_argument otherwise. True when earlier poses were moved too.
   virtual bool add(std::shared_ptr<const topomap::LocalMap> map) = 0;
 
-  /// After the last map: works off what can only be done, or done better, with all of them. Maps
-  /// may follow all the same.
+  /// After the last map: does the work that needs all maps, or is better with them. More maps may
+  /// still follow.
   virtual void finish() = 0;
 
   [[nodiscard]] virtual topomap::Trajectory trajectory() const = 0;
-  /// Where the robot was at its last stop; nothing before the first.
+  /// Pose of the robot at its last stop; empty before the first.
   [[nodiscard]] virtual std::optional<topomap::StopPose> last_stop() const = 0;
   [[nodiscard]] virtual std::vector<topomap::LoopClosure> loop_closures() const = 0;
   /// Every loop that was considered so far, in the order of the decisions.
   [[nodiscard]] virtual const std::vector<LoopDecision>& loop_decisions() const = 0;
-  /// All measurements that hold the poses together, if they are known; else none.
+  /// All measurements between the poses, if known; otherwise empty.
   [[nodiscard]] virtual const std::vector<PoseGraphEdge>& edges() const { return no_edges(); }
   /// How well the pose of the last stop is known.
   [[nodiscard]] virtual LocalizationStatus status() const = 0;
@@ -61,8 +61,8 @@ class Slam {
   Slam& operator=(const Slam&) = default;
 };
 
-/// That `map` is the next one of the robot: throws std::invalid_argument unless its id is `next_id`
-/// and its robot that of `first`, if there is one before it.
+/// Checks that `map` is the robot's next one: throws std::invalid_argument unless its id is
+/// `next_id` and its robot is that of `first`, if set.
 void check_next(const topomap::LocalMap& map, std::size_t next_id, const topomap::LocalMap* first);
 /// Throws std::invalid_argument unless both are of one robot.
 void check_robot(const topomap::LocalMap& map, const topomap::LocalMap& first);

@@ -1,4 +1,4 @@
-// What a match of two stops gave, as far as the map is concerned.
+// Result of a match of two stops, as far as it concerns the map.
 #pragma once
 
 #include <cstdint>
@@ -13,41 +13,40 @@
 
 namespace topogeo::localization {
 
-/// The result of a match of two stops.
 struct StopMatch {
   PoseGraphEdge edge;             ///< as measured; as predicted when nothing was in common
   UncertainPose T_later_earlier;  ///< the same, with the covariance of the match itself
   UncertainPose predicted;        ///< of edge.T_from_to, before the match
   ProposalSource source = ProposalSource::kPrediction;
-  std::uint32_t first_of_window = 0;  ///< of a window: the first stop whose view it holds
+  std::uint32_t first_of_window = 0;  ///< in a window: its first stop
   Verdict verdict = Verdict::kRejected;
   Reason reason = Reason::kNothingInCommon;
   double fitness = 0.0;  ///< [0, 1]
-  double doubt = 0.0;    ///< see doubt(); this and the next as in MatchResult
+  double doubt = 0.0;    ///< see doubt(); this and the next three as in MatchResult
   double overlap = 0.0;
   double inliers = 0.0;
   double violations = 0.0;
   double rivalry = 0.0;  ///< see rivalry()
-  /// Deviation of the position along the direction in which the scans alone know it least, metres.
+  /// Position deviation along the direction that the scans alone determine worst, metres.
   double weakest_sigma_m = 0.0;
-  /// Weight of the set with which it was accepted and of the heaviest one that contradicts that
+  /// Weight of the set it was accepted with, and of the heaviest set that contradicts it
   /// (LoopAgreement); 0: it was not accepted with others.
   double agreement = 0.0;
   double rival_agreement = 0.0;
-  bool widened = false;  ///< of a search wider than odometry asks for: nothing was found there
-  StepMatch evidence;    ///< of the pose of the later stop
+  bool widened = false;  ///< from a wider search, after the one that odometry asks for failed
+  StepMatch evidence;    ///< for the pose of the later stop
   std::vector<MatchSolution> solutions;
 
   [[nodiscard]] bool accepted() const { return verdict == Verdict::kAccepted; }
-  /// Not accepted, but not refuted either.
+  /// Not accepted, but not refuted.
   [[nodiscard]] bool uncertain() const {
     return reason == Reason::kDoubtful || reason == Reason::kSecondSolution;
   }
   /// Squared Mahalanobis distance of the match from its prediction; 0 without one.
   [[nodiscard]] double surprise() const;
-  /// Whether it may be right together with others that agree with it (LoopAgreement).
+  /// Whether it may be right together with matches that agree with it (LoopAgreement).
   [[nodiscard]] bool plausible() const;
-  /// What the probability that it is right follows from.
+  /// Evidence for the probability that it is right.
   [[nodiscard]] LoopEvidence loop_evidence() const;
 };
 

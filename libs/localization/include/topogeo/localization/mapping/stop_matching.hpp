@@ -1,7 +1,7 @@
-// Matches stops of one map with earlier ones: chooses the pairs, makes the tasks and returns the
-// relative pose that each measured.
+// Matches the stops of a map with earlier ones: chooses the pairs, makes the tasks and returns the
+// measured relative poses.
 //
-// All answers of one round are awaited before any is used, so the result does not depend on who
+// A round waits for all its answers before any is used, so the result does not depend on who
 // answered or when.
 #pragma once
 
@@ -33,36 +33,37 @@ class StopMatching {
   /// The pool must outlive this.
   StopMatching(const LocalizerConfig& config, MatchPool& pool);
 
-  /// Appends a stop, whose id is its index; `distance_m` from the one before, along the odometry.
+  /// Appends a stop, whose id is its index; `distance_m` from the previous one, along the odometry.
   void add(std::shared_ptr<const topomap::LocalMap> map, double distance_m);
 
   [[nodiscard]] std::size_t size() const { return stops_.size(); }
   [[nodiscard]] const topomap::LocalMap& map(std::size_t stop) const { return *stops_[stop].map; }
-  /// Along the odometry from the first stop to this one.
+  /// Path length along the odometry from the first stop to this one.
   [[nodiscard]] double path_m(std::size_t stop) const { return path_m_[stop]; }
   [[nodiscard]] std::span<const double> path_m() const { return path_m_; }
 
-  /// Matches of the last stop with recent ones; once more in a wider space when none is accepted,
-  /// because odometry may be worse than configured. The pose of the last stop in the graph is the
-  /// predicted one.
+  /// Matches of the last stop with recent ones. If none is accepted, they are repeated in a wider
+  /// space, because odometry may be worse than configured. The prediction is the pose of the last
+  /// stop in the graph.
   std::vector<StopMatch> match_recent(const PoseGraph& graph);
-  /// Matches of the last stop where odometry knows too little of all recent ones but the stop just
-  /// before for match_recent(): after a long step that nobody mapped that one may show nothing, and
-  /// others much. Recent ones, or those of an earlier visit where no recent one would show much.
-  /// Each is widened, as no search is as wide as odometry is uncertain.
+  /// Matches of the last stop when odometry is too uncertain for match_recent() to search any
+  /// recent stop but the previous one: after a long unmapped step that stop may have no view in
+  /// common, and others much. Compares with recent stops, or with those of an earlier visit if no
+  /// recent one would have much in common. All are marked as widened, because the search space is
+  /// smaller than the uncertainty.
   std::vector<StopMatch> match_unsearchable(const PoseGraph& graph);
-  /// Matches of stops with such that are not recent to them. The tasks of all make one round.
+  /// Matches of stops with stops that are not recent for them, all tasks in one round.
   std::vector<StopMatch> match_revisited(const PoseGraph& graph,
                                          std::span<const std::uint32_t> stops);
 
-  /// The two stops need no match: how they lie is known.
+  /// Marks two stops as matched: their relative pose is known.
   void skip(const PoseGraphEdge& known);
-  /// The two stops may be matched again.
+  /// Allows two stops to be matched again.
   void reopen(const PoseGraphEdge& edge) { comparisons_.forget(edge.from, edge.to); }
-  /// The next stop does not follow the last one: its search starts from nothing.
+  /// The next stop does not follow the last one, so its search starts without earlier solutions.
   void forget_solutions() { last_solutions_.clear(); }
 
-  /// What the triangles of matches say of their covariances.
+  /// Calibration of match covariances by triangles of matches.
   [[nodiscard]] const CovarianceCalibration& calibration() const { return calibration_; }
 
   [[nodiscard]] MatchRequests& requests() { return requests_; }
@@ -73,7 +74,7 @@ class StopMatching {
     std::shared_ptr<const topomap::LocalMap> map;
     std::shared_ptr<const StopView> view;
   };
-  /// A task and what it is for.
+  /// A task and its origin.
   struct Comparison {
     MatchTask task;
     UncertainPose T_later_earlier;  // as predicted
@@ -86,7 +87,7 @@ class StopMatching {
   [[nodiscard]] std::uint32_t first_recent(std::uint32_t stop) const;
   [[nodiscard]] std::vector<MatchCandidate> recent_candidates(const PoseGraph& graph,
                                                               const RelativePoses& relative) const;
-  /// For the last stop, by what they would show if odometry were right.
+  /// Candidates for the last stop by the overlap they would have if odometry were right.
   [[nodiscard]] CandidateChoice shown_if_right(std::span<const std::uint32_t> candidates,
                                                const RelativePoses& relative) const;
   [[nodiscard]] std::vector<MatchCandidate> revisited_candidates(
@@ -94,7 +95,7 @@ class StopMatching {
       const RelativePoses& relative) const;
   void consider(CandidateChoice& choice, const PoseGraph& graph, std::uint32_t earlier,
                 std::uint32_t stop, const UncertainPose& T_stop_earlier, bool common) const;
-  /// Those before the last one, ascending.
+  /// Recent stops before the last one, ascending.
   [[nodiscard]] std::vector<std::uint32_t> recent_stops() const;
   std::vector<MatchTask> recent_tasks(const PoseGraph& graph, const RelativePoses& relative,
                                       std::span<const MatchCandidate> candidates, double widening);
@@ -111,17 +112,17 @@ class StopMatching {
   std::vector<Stop> stops_;
   std::vector<double> path_m_;  // along the odometry, of each stop
   PlaceRecognition places_;
-  std::set<std::uint32_t> recognized_;  // stops that places were asked for, in this round
+  std::set<std::uint32_t> recognized_;  // stops queried for places in this round
   std::optional<std::uint32_t> recognized_last_;
-  std::vector<StopMatch> windows_;  // of the places of this round
-  std::uint32_t misfits_ = 0;       // stops in succession at which no match fitted its prediction
-  std::set<std::uint32_t> revisited_;  // stops that were matched where they were predicted
+  std::vector<StopMatch> windows_;     // of the places of this round
+  std::uint32_t misfits_ = 0;          // successive stops without a match near its prediction
+  std::set<std::uint32_t> revisited_;  // stops matched at their prediction
   StopComparisons comparisons_;
   CovarianceCalibration calibration_;
   /// T_later_earlier of accepted matches with recent stops, by (earlier, later).
   std::map<std::pair<std::uint32_t, std::uint32_t>, UncertainPose> recent_;
-  /// Of the last stop's matches with recent ones, by the id of the older map: where the search for
-  /// the next stop against the same map starts.
+  /// Solutions of the last stop's matches with recent ones, by the id of the older map: the search
+  /// for the next stop against the same map starts there.
   std::map<std::uint32_t, std::vector<MatchSolution>> last_solutions_;
 };
 

@@ -4,8 +4,8 @@
 //
 // The thesis inverts the covariance and writes the ellipse as A x^2 + 2 B x y + C y^2 = k^2 (eq.
 // 6.16, with the 2 that its print lacks). Here the same axes come from the covariance itself, which
-// also works where one variance is zero. Of the two directions that eq. 6.18 allows, this is always
-// that of the major axis: 1/2 atan2(-2B, C - A).
+// also works if one variance is zero. Eq. 6.18 allows two directions; this is always that of the
+// major axis: 1/2 atan2(-2B, C - A).
 #pragma once
 
 #include <Eigen/Core>
@@ -23,8 +23,8 @@ struct ErrorEllipse {
 /// probability P. Throws std::invalid_argument unless 0 < probability < 1.
 double ellipse_k2(double probability);
 
-/// The ellipse of squared Mahalanobis radius `k2` of a covariance of (x, y) in m^2 (eq. 6.14
-/// to 6.20). Throws std::invalid_argument when the covariance is not symmetric, finite and positive
+/// The ellipse of squared Mahalanobis radius `k2` of a covariance of (x, y) in m^2 (eq. 6.14 to
+/// 6.20). Throws std::invalid_argument if the covariance is not symmetric, finite and positive
 /// semidefinite, or k2 is negative or not finite.
 ErrorEllipse error_ellipse(const Eigen::Matrix2d& covariance_m2, double k2);
 

@@ -1,6 +1,6 @@
 // How well two local maps agree at a relative pose (Thesis, 6.2.5; docs/algorithms.md, "Fitness"):
-// what the genetic search makes as large as it can. Three forms share this interface; see their
-// headers for what they are.
+// the quantity that the genetic search maximises. The forms share this interface; their headers
+// describe them.
 #pragma once
 
 #include "topogeo/geometry/portable_math.hpp"

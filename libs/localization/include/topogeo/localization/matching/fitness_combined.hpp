@@ -1,8 +1,8 @@
-// The fitness that localization uses: the topological form and the agreement of the scan points,
-// times the likelihood of the pose by odometry.
+// The fitness for localization: a mean of the topological form and the agreement of the scan
+// points, times the likelihood of the pose by odometry.
 //
-// Nodes and branches show which places are alike, scan points how well one lies on the other;
-// without the odometry both lead to look-alikes.
+// Nodes and branches show which places are alike, scan points how well one lies on the other.
+// Without the odometry both lead to look-alikes.
 #pragma once
 
 #include <cstddef>
@@ -16,14 +16,14 @@
 namespace topogeo::localization {
 
 /// Mean over the query's thinned scan points of a soft kernel of the distance to the nearest point
-/// of the reference; 0 where that was seen from the other side.
+/// of the reference; a point seen from the other side counts 0.
 class ScanFitness : public Fitness {
  public:
   /// bind() before use.
   ScanFitness() = default;
   ScanFitness(const Reference& reference, const MatchFeatures& query) { bind(reference, query); }
 
-  /// Both must live as long as they are used. Allocates only for more points than ever before.
+  /// Both must outlive their use. Allocates only for more points than ever before.
   void bind(const Reference& reference, const MatchFeatures& query);
 
   [[nodiscard]] double at(const geometry::Pose2& T_reference_query,
@@ -38,8 +38,8 @@ class ScanFitness : public Fitness {
   double per_point_ = 0.0;
 };
 
-/// 1 at the predicted pose, falling with the Mahalanobis distance from it but never to 0: an
-/// optimistic odometry covariance must not veto the scans.
+/// 1 at the predicted pose, falling with the Mahalanobis distance from it but never to 0, so that
+/// an optimistic odometry covariance cannot veto the scans.
 class OdometryPrior {
  public:
   /// bind() before use.
@@ -63,13 +63,13 @@ class CombinedFitness : public Fitness {
     bind(reference, query, task);
   }
 
-  /// The maps must live as long as they are used. Allocates only for a larger map than ever before.
+  /// The maps must outlive their use. Allocates only for a larger map than ever before.
   void bind(const Reference& reference, const MatchFeatures& query, const MatchTask& task);
 
   [[nodiscard]] double at(const geometry::Pose2& T_reference_query,
                           const geometry::SinCos& heading) const override;
 
-  /// The fitness of a pose by the maps alone; odometry does not count.
+  /// The fitness of a pose by the maps alone, without the odometry.
   [[nodiscard]] double of_maps(const geometry::Pose2& T_reference_query,
                                const geometry::SinCos& heading) const;
 

@@ -1,4 +1,4 @@
-// All forms of the fitness for one pair of maps, kept from match to match for their memory.
+// All forms of the fitness for one pair of maps, reused from match to match to save allocations.
 #pragma once
 
 #include "topogeo/localization/matching/fitness_combined.hpp"
@@ -15,7 +15,7 @@ class FitnessForms {
     bind(reference, query, task);
   }
 
-  /// The maps must live as long as they are used. Allocates only for a larger map than ever before.
+  /// The maps must outlive their use. Allocates only for a larger map than ever before.
   void bind(const Reference& reference, const MatchFeatures& query, const MatchTask& task) {
     form_ = task.fitness_form;
     combined_.bind(reference, query, task);
@@ -23,14 +23,14 @@ class FitnessForms {
     if (form_ == FitnessForm::kTopologicalWeighted) weighted_.bind(reference, query, task);
   }
 
-  /// The one that the task names.
+  /// The form that the task names.
   [[nodiscard]] const Fitness& chosen() const {
     if (form_ == FitnessForm::kPrinted) return printed_;
     if (form_ == FitnessForm::kTopological) return combined_.topological();
     if (form_ == FitnessForm::kTopologicalWeighted) return weighted_;
     return combined_;
   }
-  /// The same without the odometry prior, which two of the forms have.
+  /// Fitness by the maps alone: without the odometry prior that two of the forms have.
   [[nodiscard]] double of_maps(const geometry::Pose2& T_reference_query,
                                const geometry::SinCos& heading) const {
     if (form_ == FitnessForm::kTopologicalWeighted) {

@@ -1,4 +1,4 @@
-// What the forms of the fitness work on: four points at once, in single precision, on every CPU.
+// Vector arithmetic of the fitness forms: four points at once, in single precision, on every CPU.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,12 @@ using Lanes = Eigen::Array4f;
 /// Points of one block of work; its intermediate results stay in the nearest cache.
 inline constexpr std::size_t kBlock = 64;
 
-/// One number of each point, as long as a multiple of four.
+/// One number per point, padded to a multiple of four.
 class LaneArray {
  public:
   void clear() { values_.clear(); }
   void add(double value) { values_.push_back(static_cast<float>(value)); }
-  /// Fills the last four up.
+  /// Pads to a multiple of four.
   void pad(double value) {
     while (values_.size() % 4 != 0) add(value);
   }
@@ -31,7 +31,7 @@ class LaneArray {
   std::vector<float> values_;
 };
 
-/// For points that only fill up: so far away that nothing is near.
+/// Coordinate of padding points: so far away that nothing is near.
 inline constexpr double kPadding_m = 1e8;
 
 /// A pose in single precision.

@@ -1,22 +1,20 @@
-// The fitness as the thesis prints it (Thesis, eq. 6.30-6.37), for comparison with what is used.
+// The fitness as the thesis prints it (Thesis, eq. 6.30-6.37), for comparison with the one in use.
 //
 // 1 / (mean distance of the equivalent nodes and branches + 1). The distance of two branches is
 // taken between the ends of one and the points of the other (eq. 6.34), combined by eq. 6.35 and
 // multiplied by a factor of their orientation (eq. 6.36). A branch may be equivalent to several:
 // the mean over them counts.
 //
-// What is wrong with it (docs/algorithms.md, "Fitness", errata), so that it is not what a robot
-// should use:
-// - Eq. 6.35 divides by 2 outside of the root; a quadratic mean divides by 2 inside.
-// - Eq. 6.36 is 0 for parallel branches, so one that lies beside another scores as if it lay on it,
-// and
-//   it divides by 0 when both lie along x; here 0 / 0 is 0. It is near 1 for two nearly parallel
+// Its errors (docs/algorithms.md, "Fitness", errata) make it unfit for a robot:
+// - Eq. 6.35 divides by 2 outside the root; a quadratic mean divides by 2 inside.
+// - Eq. 6.36 is 0 for parallel branches, so one beside another scores as if it lay on it. It
+//   divides by 0 if both lie along x; here 0 / 0 is 0. It is near 1 for two nearly parallel
 //   branches on both sides of the x axis, whose angles are near 0 and near pi.
-// - The mean is over equivalent elements alone: a pose at which little is equivalent is rewarded.
+// - The mean is over equivalent elements only, so a pose with few equivalents is rewarded.
 //
-// What the thesis leaves open is chosen here: equivalent nodes are nearer than 0.6 m and differ by
-// no more than 0.3 m in clearance, the nearest one counts; equivalent branches are no further apart
-// than 0.6 m by eq. 6.35, differ by no more than 30 degrees in inclination and 0.3 m in mean
+// The thesis leaves these choices open: equivalent nodes are nearer than 0.6 m and differ by no
+// more than 0.3 m in clearance, and the nearest one counts; equivalent branches are no further
+// apart than 0.6 m by eq. 6.35, differ by no more than 30 degrees in inclination and 0.3 m in mean
 // clearance, and project on each other at two ends. The angle of a branch is that of the chord
 // between its ends, in [0, pi).
 #pragma once
@@ -33,7 +31,7 @@ class PrintedFitness : public Fitness {
   PrintedFitness() = default;
   PrintedFitness(const Reference& reference, const MatchFeatures& query) { bind(reference, query); }
 
-  /// Both must live as long as they are used. Allocates only for more branches than ever before.
+  /// Both must outlive their use. Allocates only for more branches than ever before.
   void bind(const Reference& reference, const MatchFeatures& query);
 
   [[nodiscard]] double at(const geometry::Pose2& T_reference_query,

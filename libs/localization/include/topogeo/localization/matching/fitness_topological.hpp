@@ -24,7 +24,7 @@ class TopologicalFitness : public Fitness {
     bind(reference, query);
   }
 
-  /// Both must live as long as they are used. Allocates only for a larger map than ever before.
+  /// Both must outlive their use. Allocates only for a larger map than ever before.
   void bind(const Reference& reference, const MatchFeatures& query);
 
   /// The query has neither nodes nor branches: the fitness is 0 everywhere.

@@ -1,10 +1,10 @@
-// The topological fitness with what makes it enough to map by (own; docs/algorithms.md, "Fitness"):
-// nodes and branches count by how surely they are found again, and the odometry prior decides where
-// they are alike at several places.
+// The topological fitness made good enough for mapping (own; docs/algorithms.md, "Fitness"): nodes
+// and branches are weighted by their repeatability, and the odometry prior decides between
+// look-alikes.
 //
-// Where branches are the evidence of a match (MatchEvidence::kBranches) the walls that they imply
-// count as well, as scan points do in the combined form: those of branches that are not confirmed
-// are right though the branches are not.
+// If branches are the evidence of a match (MatchEvidence::kBranches), the walls that they imply
+// count as well, like scan points in the combined form: the walls of an unconfirmed branch are
+// right even if the branch is not.
 //
 // Kernels are half as wide as those of the topological form: a branch is found again within
 // centimetres, so a pose 0.3 m aside is not half right.
@@ -25,13 +25,13 @@ class WeightedFitness : public Fitness {
     bind(reference, query, task);
   }
 
-  /// The maps must live as long as they are used.
+  /// The maps must outlive their use.
   void bind(const Reference& reference, const MatchFeatures& query, const MatchTask& task);
 
   [[nodiscard]] double at(const geometry::Pose2& T_reference_query,
                           const geometry::SinCos& heading) const override;
 
-  /// The same by the maps alone; odometry does not count.
+  /// Like at(), but by the maps alone, without the odometry.
   [[nodiscard]] double of_maps(const geometry::Pose2& T_reference_query,
                                const geometry::SinCos& heading) const;
 

@@ -16,7 +16,7 @@
 
 namespace topogeo::localization {
 
-/// Whether a pose lies in the search space of the task, but for rounding.
+/// Whether a pose lies in the search space of the task, within rounding.
 bool in_search_space(const MatchTask& task, const geometry::Pose2& T_reference_query);
 
 /// Two poses are one solution when they are nearer than 1.5 times the resolution in position and
@@ -25,15 +25,15 @@ bool same_solution(const MatchTask& task, const geometry::Pose2& a, const geomet
 
 class GeneticSearch {
  public:
-  /// Searches. The first population is the predicted pose, the task's initial individuals, the
-  /// `hypotheses` and, as far as there is room, poses spread over the space. Ends early when no
-  /// individual of a generation has a fitness above 0. No allocation once there was a search as
-  /// large. Returns how many individuals were scored.
+  /// Runs the search. The first population is the predicted pose, the task's initial individuals,
+  /// the `hypotheses` and, as far as there is room, poses spread over the space. Ends early if no
+  /// individual of a generation has a fitness above 0. Does not allocate after a search of the same
+  /// size. Returns the number of scored individuals.
   std::uint32_t run(const MatchTask& task, const Fitness& fitness,
                     std::span<const geometry::Pose2> hypotheses);
 
-  /// Of all poses that the last run met: the best one, then the best that is distinct from it, and
-  /// so on, `count` at most. `same(a, b)` is true for poses that are not distinct.
+  /// The best pose of the last run, then the best one distinct from it, and so on, at most `count`.
+  /// `same(a, b)` is true for poses that are not distinct.
   template <typename Same>
   void best_distinct(std::size_t count, const Same& same, std::vector<MatchSolution>& out);
 
@@ -50,7 +50,7 @@ class GeneticSearch {
   std::vector<Individual> population_;
   std::vector<Individual> next_;
   std::vector<std::uint32_t> order_;
-  std::vector<MatchSolution> met_;  // every pose that was scored, once or twice
+  std::vector<MatchSolution> met_;  // all scored poses, each once or twice
   std::vector<std::uint8_t> taken_;
 };
 

@@ -1,11 +1,11 @@
-// Poses that a genetic search may start from: they lay a branch or a node of the query map on an
-// equivalent one of the reference map.
+// Start poses for a genetic search: each lays a branch or a node of the query map on an equivalent
+// one of the reference map.
 //
-// Two branch samples of like clearance and their directions give a pose (and the one turned by half
-// a turn), two nodes of like clearance give one with the predicted heading. Poses of many pairs
-// fall together where the maps agree; each cell of the search space counts its pairs, and the
-// cells with the most are the hypotheses. A whole-map search from a random start converges to the
-// wrong place far more often than one that is seeded so.
+// Two branch samples of like clearance and their directions give a pose (and a second one turned by
+// half a turn); two nodes of like clearance give one with the predicted heading. Where the maps
+// agree, the poses of many pairs coincide: each cell of the search space counts its pairs, and the
+// fullest cells are the hypotheses. A whole-map search from a random start converges to the wrong
+// place far more often than one from these poses.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,9 @@ namespace topogeo::localization {
 
 class BranchHypotheses {
  public:
-  /// At most task.genetic.branch_hypotheses poses inside the search space, the most likely first,
-  /// no two of which are one solution. Valid until the next call. No allocation once there was a
-  /// task as large.
+  /// At most task.genetic.branch_hypotheses poses inside the search space, most likely first, no
+  /// two of them the same solution. Valid until the next call. Does not allocate after a task of
+  /// the same size.
   std::span<const geometry::Pose2> find(const MatchTask& task, const MatchFeatures& reference,
                                         const MatchFeatures& query);
 

@@ -1,4 +1,4 @@
-// The parts of the genetic search, each to be reused from search to search without allocation.
+// The parts of the genetic search, each reusable without allocation.
 #pragma once
 
 #include <array>
@@ -24,8 +24,8 @@ struct Individual {
 /// Bits per gene (6.25-6.28): enough for the finest of the three intervals, 1 to 24.
 std::uint32_t gene_bits(const MatchTask& task);
 
-/// Between genes and poses: a gene of all zeros is the lower end of its interval, all ones the
-/// upper one.
+/// Converts between genes and poses: a gene of all zeros is the lower end of its interval, all ones
+/// the upper end.
 class GeneCoding {
  public:
   void bind(const MatchTask& task);
@@ -40,7 +40,7 @@ class GeneCoding {
   };
   [[nodiscard]] Place decode(const Chromosome& genes) const;
 
-  /// The genes nearest to a pose; those of the nearest border for one outside of the space.
+  /// The genes nearest to a pose; for a pose outside the space those of the nearest border.
   [[nodiscard]] Chromosome encode(const geometry::Pose2& T_reference_query) const;
 
  private:
@@ -62,20 +62,20 @@ class GeneCoding {
   std::vector<Heading> headings_;  // of every gene, unless there are too many
 };
 
-/// Fitness of the chromosomes met so far. A population that converges breeds the same ones again
-/// and again, and their fitness is what a search spends its time on.
+/// Fitness of the chromosomes met so far. A converging population breeds the same ones again and
+/// again, and their fitness takes most of the time of a search.
 class FitnessTable {
  public:
-  /// Forgets everything. `bits` per gene; about as many chromosomes as `evaluations` will come.
+  /// Clears the table. `bits` per gene; `evaluations` is about the number of chromosomes to come.
   void start(std::uint32_t bits, std::uint64_t evaluations);
 
-  /// The fitness of the chromosome, from `evaluate()` when it was not met lately.
+  /// The fitness of the chromosome; calls `evaluate()` unless it was met lately.
   template <typename Evaluate>
   double operator()(const Chromosome& genes, const Evaluate& evaluate) {
     if (3 * bits_ > kKeyBits) return evaluate();
     const std::uint64_t key = std::uint64_t{genes[0]} | std::uint64_t{genes[1]} << bits_ |
                               std::uint64_t{genes[2]} << (2 * bits_) | stamp_ << kKeyBits;
-    // Each chromosome has one slot, in which a later one of the same slot replaces it.
+    // Each chromosome has one slot; a later chromosome with the same slot replaces it.
     Slot& slot = slots_[(key * 0x9e3779b97f4a7c15ULL) >> shift_];
     if (slot.key != key) slot = {key, evaluate()};
     return slot.fitness;
@@ -90,7 +90,7 @@ class FitnessTable {
   };
   std::uint32_t bits_ = 1;
   std::uint32_t shift_ = 63;
-  std::uint64_t stamp_ = 0;  // of this search; slots of another one are empty
+  std::uint64_t stamp_ = 0;  // of this search; slots with another stamp are empty
   std::vector<Slot> slots_;
 };
 
@@ -102,15 +102,15 @@ class Roulette {
   /// No individual has a fitness above 0.
   [[nodiscard]] bool empty() const { return !(cumulative_.back() > 0.0); }
 
-  /// Index of an individual; not for an empty one.
+  /// Index of an individual; the wheel must not be empty.
   std::size_t spin(support::Random& random) const;
 
  private:
   std::vector<double> cumulative_;
-  std::vector<std::uint32_t> first_;  // where the k-th of as many equal parts of the wheel begins
+  std::vector<std::uint32_t> first_;  // start of the k-th of as many equal parts of the wheel
 };
 
-/// Exchanges the low bits of each gene below one random place (one-point crossover).
+/// Exchanges the low bits of each gene below a random place (one-point crossover).
 void cross(Chromosome& a, Chromosome& b, std::uint32_t bits, support::Random& random);
 
 /// Flips each bit with the same probability.

@@ -1,5 +1,5 @@
-// Equality to the last bit, for what must not differ between machines: unlike for ==, 0 and -0
-// differ, and a value that is not a number equals itself.
+// Equality to the last bit, for values that must not differ between machines. Unlike with ==, 0 and
+// -0 differ, and a NaN equals itself.
 #pragma once
 
 #include "topogeo/geometry/pose2.hpp"
@@ -9,7 +9,7 @@ namespace topogeo::localization {
 
 bool identical(double a, double b);
 bool identical(const geometry::Pose2& a, const geometry::Pose2& b);
-/// Every field.
+/// Compares every field.
 bool identical(const MatchResult& a, const MatchResult& b);
 
 }  // namespace topogeo::localization

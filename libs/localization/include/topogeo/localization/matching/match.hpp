@@ -1,9 +1,9 @@
-// What a search for the relative pose of two local maps needs and gives (docs/algorithms.md,
-// "Search pool").
+// Input and output of a search for the relative pose of two local maps (docs/algorithms.md, "Search
+// pool").
 //
-// A task holds everything that its answer depends on, so the answer is the same wherever it is
-// worked on. Poses are T_reference_query: the robot at the query map's stop, in the frame of the
-// reference map's stop.
+// A task contains everything that its answer depends on, so any worker gives the same answer. Poses
+// are T_reference_query: the robot at the query map's stop, in the frame of the reference map's
+// stop.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@
 
 namespace topogeo::localization {
 
-/// Where in a whole map points may lie that were seen from one place; a part of that search (see
+/// Asks where in a whole map the points seen from one place may lie; one part of that search (see
 /// PlaceField).
 struct PlaceQuestion {
   struct Piece {
@@ -28,19 +28,19 @@ struct PlaceQuestion {
     std::uint64_t content_hash = 0;
   };
   std::uint64_t field_hash = 0;            ///< of the whole map
-  std::vector<Piece> pieces;               ///< of it, as they are sent
-  std::uint32_t wall_pieces = 0;           ///< so many of them, the first ones, are walls
+  std::vector<Piece> pieces;               ///< pieces of the map, as sent
+  std::uint32_t wall_pieces = 0;           ///< the first of the pieces, which are walls
   double margin_m = 0.0;                   ///< around the walls
   std::vector<topomap::ScanPoint> points;  ///< in the robot frame
-  std::uint32_t first_heading = 0;         ///< from which on the part searches ...
-  std::uint32_t headings = 0;              ///< ... so many
+  std::uint32_t first_heading = 0;         ///< first heading that the part searches
+  std::uint32_t headings = 0;              ///< number of headings
 };
 
 struct MatchTask {
   std::uint64_t task_id = 0;  ///< unique within one run of one robot
   std::uint32_t reference_map_id = 0;
   std::uint32_t query_map_id = 0;
-  std::uint64_t reference_hash = 0;  ///< content_hash of the maps that are meant
+  std::uint64_t reference_hash = 0;  ///< content_hash of the reference map
   std::uint64_t query_hash = 0;
   geometry::Pose2 T_reference_query;  ///< predicted; centre of the search space
   Eigen::Matrix3d covariance =
@@ -50,13 +50,12 @@ struct MatchTask {
   FitnessForm fitness_form = FitnessForm::kCombined;
   MatchEvidence evidence = MatchEvidence::kScan;
   std::vector<geometry::Pose2>
-      initial_individuals;             ///< T_reference_query candidates beside the prediction
+      initial_individuals;             ///< T_reference_query candidates besides the prediction
   std::uint32_t solutions_wanted = 3;  ///< n best distinct solutions, 1 to 40
   GateConfig gate;
   std::uint64_t seed = 0;
-  /// Not null: a part of a search of the whole map instead of a match; nothing above counts but the
-  /// task_id, as the stop that asks the query, and initial_individuals as the poses that climb,
-  /// T_map_robot.
+  /// Not null: a part of a search of the whole map instead of a match. Then only task_id and the
+  /// querying stop (query_map_id, query_hash) count among the fields above.
   std::shared_ptr<const PlaceQuestion> places;
 };
 
@@ -68,7 +67,7 @@ struct MatchSolution {
 
 enum class MatchStatus : std::uint8_t {
   kSolved = 0,
-  kNothingInCommon = 1,  ///< no point of the query map falls into the view of the reference map
+  kNothingInCommon = 1,  ///< no point of the query map is in view of the reference map
 };
 
 /// Whether a match is accepted.
@@ -80,23 +79,23 @@ enum class Verdict : std::uint8_t {
 
 /// Why a match is not accepted.
 enum class Reason : std::uint8_t {
-  kNone = 0,  ///< it is
+  kNone = 0,  ///< accepted
   kNothingInCommon,
   kLittleOverlap,
   kFewInliers,
   kDoubtful,
   kImplausible,     ///< far from the prediction
-  kSecondSolution,  ///< the maps allow it as well; the reason of kAmbiguous
+  kSecondSolution,  ///< the maps allow another pose as well; with kAmbiguous
 };
 
 inline constexpr std::size_t kReasons = 7;
 
 /// A pose with all the evidence for it. Everything but `second`, `solutions` (as a selection) and
-/// `evaluations` can be computed again from the task and the poses: see Matcher::verify.
+/// `evaluations` can be recomputed from the task and the poses: see Matcher::verify.
 struct MatchResult {
   std::uint64_t task_id = 0;
   MatchStatus status = MatchStatus::kNothingInCommon;
-  /// Best first, distinct, before refinement; the answer to MatchTask::places, and all of it.
+  /// Best first, distinct, before refinement. The only answer to MatchTask::places.
   std::vector<MatchSolution> solutions;
   geometry::Pose2
       T_reference_query;  ///< best solution after refinement by MatchTask::evidence with the prior
@@ -108,12 +107,12 @@ struct MatchResult {
   double inliers = 0.0;  ///< of those, share within the inlier distance of a reference line, [0, 1]
   double violations = 0.0;  ///< of those, share where the reference saw free space instead, [0, 1]
   double residual_rms_m = 0.0;
-  double scan_fitness = 0.0;  ///< of the refined pose, without the prior, [0, 1]; where no scan
-                              ///< point counts, what the task's form gives there
+  double scan_fitness = 0.0;  ///< of the refined pose, without the prior, [0, 1]; the task's form
+                              ///< if no scan point counts
   double topological_fitness = 0.0;  ///< of the refined pose, without the prior, [0, 1]
   double fitness = 0.0;              ///< of the refined pose, [0, 1]
-  MatchSolution second;  ///< the pose elsewhere in the search space that the maps allow best,
-                         ///< whatever odometry predicts; fitness 0: none
+  MatchSolution second;  ///< best other pose in the search space by the maps alone, without
+                         ///< odometry; fitness 0: none
   std::uint32_t evaluations = 0;
   std::uint64_t seed = 0;  ///< of the task
   Verdict verdict = Verdict::kRejected;
@@ -122,7 +121,7 @@ struct MatchResult {
 
 class PlaceField;
 
-/// Works on match tasks: in this process or on as many machines as there are.
+/// Works on match tasks: in this process or on any number of machines.
 class MatchPool {
  public:
   MatchPool() = default;
@@ -130,17 +129,16 @@ class MatchPool {
   MatchPool& operator=(const MatchPool&) = delete;
   virtual ~MatchPool() = default;
 
-  /// Makes a local map known, to be named in tasks from now on.
+  /// Registers a local map, so that tasks can name it.
   virtual void add_map(std::shared_ptr<const topomap::LocalMap> map) = 0;
 
-  /// Makes a whole map known, to be named in PlaceQuestion::field_hash from now on, instead of the
-  /// one before. Pools that get no such tasks need none.
+  /// Registers a whole map for PlaceQuestion::field_hash in place of the previous one. Pools
+  /// without such tasks need none.
   // NOLINTNEXTLINE(performance-unnecessary-value-param): pools that need one keep it
   virtual void add_field(std::shared_ptr<const PlaceField> /*field*/) {}
 
-  /// Results in the order of the tasks, whatever the order in which they were worked on. Every map
-  /// that a task names must have been added before. Throws std::runtime_error when it cannot
-  /// answer.
+  /// Results in the order of the tasks, whatever the order of the work. Every map that a task names
+  /// must have been added before. Throws std::runtime_error if it cannot answer.
   virtual std::vector<MatchResult> match(std::span<const MatchTask> tasks) = 0;
 };
 

@@ -11,19 +11,18 @@ namespace topogeo::localization {
 
 /// How an individual is scored (docs/algorithms.md, "Fitness").
 enum class FitnessForm : std::uint8_t {
-  kPrinted = 0,      ///< the equations as the thesis prints them, for comparison
+  kPrinted = 0,      ///< the equations as printed in the thesis, for comparison
   kTopological = 1,  ///< equivalent nodes and branches, clearance, orientation, coverage
   kCombined =
       2,  ///< topological and scan points against a distance field, times the odometry prior
-  kTopologicalWeighted = 3,  ///< nodes and branches by how surely they are found again, times the
-                             ///< odometry prior
+  kTopologicalWeighted = 3,  ///< nodes and branches by repeatability, times the odometry prior
 };
 
-/// What refines the solutions of a search and decides whether the match is accepted.
+/// Evidence that refines the solutions of a search and decides whether the match is accepted.
 enum class MatchEvidence : std::uint8_t {
   kScan = 0,      ///< least squares of scan points, and the gate
-  kBranches = 1,  ///< the same of nodes and branches; no scan point counts
-  kFitness = 2,   ///< the fitness alone, as in the thesis: whatever has one is accepted
+  kBranches = 1,  ///< the same with walls implied by branches; no scan point counts
+  kFitness = 2,   ///< only the fitness, as in the thesis: any above 0 is accepted
 };
 
 /// Parameters of the genetic algorithm (docs/algorithms.md, "Genetic search").
@@ -41,7 +40,7 @@ struct GeneticParameters {
   friend bool operator==(const GeneticParameters&, const GeneticParameters&) = default;
 };
 
-/// When the result of a match is accepted (match_gate.hpp).
+/// Conditions for accepting the result of a match (match_gate.hpp).
 struct GateConfig {
   double smallest_overlap = 0.20;
   double smallest_inliers = 0.50;
@@ -52,7 +51,7 @@ struct GateConfig {
   friend bool operator==(const GateConfig&, const GateConfig&) = default;
 };
 
-// They declare the genetic search in the section `match`, and the section `gate`.
+// Declare the genetic search in the section `match`, and the section `gate`.
 void describe(GeneticParameters& parameters, support::ConfigSchema& schema);
 void describe(GateConfig& config, support::ConfigSchema& schema);
 

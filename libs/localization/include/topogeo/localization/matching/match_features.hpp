@@ -1,5 +1,5 @@
-// What matching reads of a local map, made once per map: thinned scan points with the direction of
-// the wall under them, what was seen from the stop, and the nodes and branches.
+// Features of a local map for matching, extracted once per map: thinned scan points with the
+// direction of the wall under them, the view from the stop, and the nodes and branches.
 #pragma once
 
 #include <cstdint>
@@ -17,17 +17,17 @@
 
 namespace topogeo::localization {
 
-/// A point of the scan. Two that lie together are of one surface only if they were seen from the
-/// same side: a wall has two faces, and so has a rack.
+/// A point of the scan. Two points that lie together belong to one surface only if they were seen
+/// from the same side: a wall has two faces, and so has a rack.
 struct SurfacePoint {
   Eigen::Vector2d position_m;
-  /// Unit normal of the line through its neighbours, on the side that the laser saw; 0 where they
-  /// do not lie on a line.
+  /// Unit normal of the line through its neighbours, on the side that the laser saw; 0 if they do
+  /// not lie on a line.
   Eigen::Vector2d normal = Eigen::Vector2d::Zero();
   bool on_line = false;  ///< the neighbours lie on a line
 };
 
-/// The same point in frame a, from frame b; `heading` of T_a_b.
+/// The same point, converted from frame b to frame a; `heading` of T_a_b.
 inline SurfacePoint moved(const SurfacePoint& point, const geometry::Pose2& T_a_b,
                           const geometry::SinCos& heading) {
   const auto turned_x = [&](const Eigen::Vector2d& v) {
@@ -40,7 +40,7 @@ inline SurfacePoint moved(const SurfacePoint& point, const geometry::Pose2& T_a_
           {turned_x(point.normal), turned_y(point.normal)},
           point.on_line};
 }
-/// Appends points that are given in frame b, in frame a.
+/// Converts points from frame b to frame a and appends them.
 inline void add_moved(std::span<const SurfacePoint> points, const geometry::Pose2& T_a_b,
                       std::vector<SurfacePoint>& out) {
   const geometry::SinCos r = geometry::sincos(T_a_b.theta_rad);
@@ -50,33 +50,33 @@ inline void add_moved(std::span<const SurfacePoint> points, const geometry::Pose
 /// A point on a branch, every `kBranchSpacing_m`.
 struct BranchSample {
   Eigen::Vector2d position_m;
-  Eigen::Vector2d direction;  ///< unit vector; its sign means nothing
+  Eigen::Vector2d direction;  ///< unit vector; its sign is arbitrary
   double clearance_m = 0.0;
   double slope = 0.0;   ///< of the clearance along the direction, m/m
-  double weight = 1.0;  ///< how surely it is found again, (0, 1]
+  double weight = 1.0;  ///< repeatability, (0, 1]
 };
 
-/// How surely a node is found again from half a metre away, by its kind, (0, 1]
-/// (tests/bench/repeatability.sh).
+/// Repeatability of a node: how surely it is found again from half a metre away, by its kind, (0,
+/// 1] (tests/bench/repeatability.sh).
 double repeatability(const topomap::LocalNode& node);
 
-/// A branch from end to end, as the equations of the thesis need it.
+/// A branch from end to end, for the equations of the thesis.
 struct BranchCurve {
   std::vector<Eigen::Vector2d>
       points_m;              ///< about kCurveSpacing_m apart, both ends included; at least two
   double clearance_m = 0.0;  ///< mean
 };
 
-/// Where a wall goes on further back: a jamb of a shut door, a pillar, a cupboard. In the frame of
-/// its points.
+/// A step where a wall continues further back: a jamb of a shut door, a pillar, a cupboard. In the
+/// frame of its points.
 struct WallEdge {
-  Eigen::Vector2d position_m;  ///< on the side in front
-  Eigen::Vector2d direction;   ///< unit vector along the wall, to the side that lies back
+  Eigen::Vector2d position_m;  ///< on the front side
+  Eigen::Vector2d direction;   ///< unit vector along the wall, towards the back side
   double step_m = 0.0;         ///< from the front to the back, > 0
   double sigma_m = 0.0;        ///< of the position along the wall, by the distance of two beams
 };
 
-/// The same edge in frame a, from frame b; `heading` of T_a_b.
+/// The same edge, converted from frame b to frame a; `heading` of T_a_b.
 inline WallEdge moved(const WallEdge& edge, const geometry::Pose2& T_a_b,
                       const geometry::SinCos& heading) {
   const SurfacePoint at = moved(SurfacePoint{edge.position_m, edge.direction}, T_a_b, heading);
@@ -94,9 +94,9 @@ struct MatchFeatures {
   std::vector<WallEdge> edges;        ///< at least 0.45 m apart
   RangeProfile profile;
   std::vector<topomap::LocalNode>
-      nodes;  ///< real nodes and states of a branch; none fictitious or virtual
+      nodes;  ///< real nodes and states of a branch, not fictitious or virtual
   std::vector<BranchSample> branches;  ///< of all confirmed branches that are not virtual
-  std::vector<BranchCurve> curves;     ///< the same branches whole
+  std::vector<BranchCurve> curves;     ///< the same branches as whole curves
 };
 
 MatchFeatures extract_features(const topomap::LocalMap& map);
@@ -105,9 +105,8 @@ MatchFeatures extract_features(const topomap::LocalMap& map);
 MatchFeatures extract_scan_features(std::span<const topomap::ScanPoint> points,
                                     const geometry::Pose2& T_robot_laser);
 
-/// Features of the reference map of a match together with the look-up grids on them. The arrays in
-/// single precision are what the genetic search reads; each ends with one element more, far away,
-/// for places that have no neighbour.
+/// Features of the reference map of a match with look-up grids. The genetic search reads the arrays
+/// in single precision; each ends with an extra element, far away, for places without a neighbour.
 struct Reference {
   struct Branch {
     float x_m, y_m;
@@ -126,15 +125,15 @@ struct Reference {
   std::vector<Branch> branches;
 };
 
-/// Further apart than this, in metres, nothing is looked up in a reference. Fixed: the widest
+/// Points further apart than this, in metres, are not looked up in a reference. Fixed: the widest
 /// kernel.
 inline constexpr double kReach_m = 0.60;
 
-/// Throws std::invalid_argument when the points lie too far apart (see NearestPointGrid::build).
+/// Throws std::invalid_argument if the points lie too far apart (see NearestPointGrid::build).
 Reference make_reference(MatchFeatures features);
 
-/// Makes another reference in the memory of this one; `features` not null. Throws like
-/// make_reference(), then the reference is to be made again.
+/// Makes another reference in the memory of this one; `features` not null. If it throws, like
+/// make_reference(), the reference must be made again.
 void remake_reference(std::shared_ptr<const MatchFeatures> features, Reference& reference);
 
 }  // namespace topogeo::localization

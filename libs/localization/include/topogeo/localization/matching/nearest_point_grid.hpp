@@ -1,8 +1,8 @@
-// Which of a set of points is nearest to a place, in constant time: the look-up under both the
-// fitness and the refinement.
+// Nearest of a set of points to a place, in constant time: the look-up of both the fitness and the
+// refinement.
 //
 // Each cell holds the index of the point nearest to its centre, up to `reach_m`. Distances are then
-// taken to that point exactly, so the only error is the choice of a second-nearest point near a
+// computed exactly for that point, so the only error is the choice of a second-nearest point near a
 // cell border.
 #pragma once
 
@@ -23,7 +23,7 @@ class NearestPointGrid {
   NearestPointGrid() : nearest_(1, 0) {}
 
   /// Points in any one frame, metres. `cell_m` > 0, `reach_m` >= `cell_m`. Throws
-  /// std::invalid_argument for more than 65,534 points or when they lie so far apart that the grid
+  /// std::invalid_argument for more than 65,534 points, or if they lie so far apart that the grid
   /// would have more than 2^22 cells.
   void build(const std::vector<Eigen::Vector2d>& points_m, double cell_m, double reach_m);
 
@@ -39,11 +39,11 @@ class NearestPointGrid {
   }
 
   /// For each of four finite places the index of the point nearest to its cell; the number of
-  /// points if none lies within reach. Its single precision can put a place within some micrometres
-  /// of a border into the cell beside.
+  /// points if none lies within reach. Single precision can put a place within some micrometres of
+  /// a border into the neighbouring cell.
   [[nodiscard]] std::array<std::size_t, 4> find_four(const Eigen::Array4f& x_m,
                                                      const Eigen::Array4f& y_m) const {
-    // The cells at the border have no point in reach, so places outside are put there.
+    // Cells at the border have no point in reach, so places outside are moved there.
     const Eigen::Array4f column = ((x_m - float_origin_x_m_) * float_cells_per_m_)
                                       .max(0.0F)
                                       .min(static_cast<float>(columns_ - 1));
@@ -62,7 +62,7 @@ class NearestPointGrid {
   double origin_x_m_ = 0.0;
   double origin_y_m_ = 0.0;
   double cells_per_m_ = 1.0;
-  float float_origin_x_m_ = 0.0F;  // the same again
+  float float_origin_x_m_ = 0.0F;  // single-precision copies
   float float_origin_y_m_ = 0.0F;
   float float_cells_per_m_ = 1.0F;
   int columns_ = 1;

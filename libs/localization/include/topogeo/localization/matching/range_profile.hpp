@@ -1,4 +1,4 @@
-// What was seen from a stop in each direction, and how another point lies to that: free, seen,
+// View from a stop in each direction, and the visibility of other points from there: free, seen,
 // hidden.
 #pragma once
 
@@ -18,7 +18,7 @@
 
 namespace topogeo::localization {
 
-/// How far the laser saw in each direction.
+/// Measured range of the laser in each direction.
 class RangeProfile {
  public:
   RangeProfile() = default;
@@ -28,12 +28,12 @@ class RangeProfile {
     kUnknown,  ///< no reading in that direction
     kFree,     ///< the laser saw past it
     kSurface,  ///< about where the laser saw something
-    kHidden,   ///< behind what the laser saw
+    kHidden,   ///< behind a surface that the laser saw
   };
-  /// How the scan saw a point in the robot frame. `tolerance_m` is the half-thickness of
+  /// Visibility of a point (robot frame) in the scan. `tolerance_m` is the half-thickness of
   /// kSurface.
   [[nodiscard]] View view(const Eigen::Vector2d& point_robot_m, double tolerance_m) const {
-    if (ranges_.empty()) return View::kUnknown;  // made of no scan
+    if (ranges_.empty()) return View::kUnknown;  // no scan
     const Eigen::Vector2d p = in_laser_frame(point_robot_m);
     const Range& seen = ranges_[static_cast<std::size_t>(bin_of(p))];
     if (seen.near_m == 0.0F) return View::kUnknown;
@@ -43,18 +43,18 @@ class RangeProfile {
                                                                     : View::kHidden;
   }
 
-  /// Whether a surface with this normal (SurfacePoint::normal, robot frame) turns its back on the
-  /// laser, by more than 10 degrees. The laser cannot have seen that face. False for normal 0.
+  /// Whether a surface with this normal (SurfacePoint::normal, robot frame) faces away from the
+  /// laser by more than 10 degrees, so that the laser cannot have seen it. False for normal 0.
   [[nodiscard]] bool turned_away(const Eigen::Vector2d& point_robot_m,
                                  const Eigen::Vector2d& normal) const {
-    constexpr double kGrazing = 0.17364818;  // of 10 degrees: the side of a face is not sure below
+    constexpr double kGrazing = 0.17364818;  // of 10 degrees: below that the face is not certain
     const double dx = laser_m_.x() - point_robot_m.x();
     const double dy = laser_m_.y() - point_robot_m.y();
     const double along_m = dx * normal.x() + dy * normal.y();
     return along_m < 0.0 && along_m * along_m > kGrazing * kGrazing * (dx * dx + dy * dy);
   }
 
-  /// As view(), but a face that is turned away is hidden, unless the laser saw past it.
+  /// Like view(), but a face that is turned away is hidden, unless the laser saw past it.
   [[nodiscard]] View view_of_face(const Eigen::Vector2d& point_robot_m,
                                   const Eigen::Vector2d& normal, double tolerance_m) const {
     const View seen = view(point_robot_m, tolerance_m);
@@ -66,7 +66,7 @@ class RangeProfile {
   static constexpr int kCellsPerQuadrant = 1024;
   using BinOfCell = std::array<std::int16_t, std::size_t{4} * kCellsPerQuadrant>;
 
-  // Of a bin and its neighbours; 0: no reading.
+  // Ranges of a bin and its neighbours; 0: no reading.
   struct Range {
     float near_m = 0.0F;
     float far_m = 0.0F;
@@ -74,8 +74,8 @@ class RangeProfile {
 
   static const BinOfCell& bin_of_cell();
 
-  // Looked up by the slope within the quadrant: a direction is asked for hundreds of times in a
-  // match, and half a degree needs no arc tangent.
+  // Looked up by the slope within the quadrant: a match needs hundreds of directions, and half a
+  // degree needs no arc tangent.
   [[nodiscard]] int bin_of(const Eigen::Vector2d& point_laser_m) const {
     const double ax = std::fabs(point_laser_m.x());
     const double ay = std::fabs(point_laser_m.y());

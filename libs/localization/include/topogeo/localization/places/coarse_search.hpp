@@ -1,6 +1,6 @@
-// Finds where a set of points lies on a small map, coarsely but without missing a place: branch and
-// bound over position and heading (Hess, Kohler, Rapp, Andor, "Real-time loop closure in 2D LIDAR
-// SLAM", ICRA 2016, algorithm 3), as docs/algorithms.md, "Places", tells.
+// Coarse but exhaustive search for the pose of a set of points on a small map: branch and bound
+// over position and heading (Hess, Kohler, Rapp, Andor, "Real-time loop closure in 2D LIDAR SLAM",
+// ICRA 2016, algorithm 3); docs/algorithms.md, "Places".
 #pragma once
 
 #include <cstddef>
@@ -14,18 +14,18 @@
 
 namespace topogeo::localization {
 
-/// How near to a point of the map each place is, with the maxima over squares of 1, 2, 4, ... cells
-/// that bound what a search can still find.
+/// Nearness of each cell to a point of the map, with the maxima over squares of 1, 2, 4, ... cells
+/// that bound the score a search can still reach.
 class CoarseMap {
  public:
   static constexpr double kCell_m = 0.25;
   static constexpr int kLevels = 5;  ///< squares of 1 to 16 cells
 
   CoarseMap() = default;
-  /// Throws std::invalid_argument when the points are spread over more than 250 m.
+  /// Throws std::invalid_argument if the points are spread over more than 250 m.
   explicit CoarseMap(std::span<const Eigen::Vector2d> points_m);
 
-  /// 255 at a point, 0 from 0.6 m on; the largest value of the square of 2^level cells that begins
+  /// 255 at a point, 0 from 0.6 m on; the largest value in the square of 2^level cells that begins
   /// at this cell.
   [[nodiscard]] std::uint8_t at(int level, int column, int row) const {
     const Level& l = levels_[static_cast<std::size_t>(level)];
@@ -55,14 +55,14 @@ struct CoarseMatch {
   double score = 0.0;  ///< mean of CoarseMap::at over the points, as a share of 255
 };
 
-/// What a search covers, in the frame of the map.
+/// Extent of a search, in the frame of the map.
 struct CoarseWindow {
   geometry::Pose2 centre;
   Eigen::Vector3d half_width = Eigen::Vector3d::Zero();  ///< m, m, rad
 };
 
 /// The best places whose score is at least `least` and 85 % of the best one's, best first, at least
-/// 0.75 m or 0.3 rad apart, `count` at most. The same input gives the same bits.
+/// 0.75 m or 0.3 rad apart, at most `count`. The same input gives the same bits.
 std::vector<CoarseMatch> search_coarsely(const CoarseMap& map,
                                          std::span<const Eigen::Vector2d> points_m,
                                          const CoarseWindow& window, double least,

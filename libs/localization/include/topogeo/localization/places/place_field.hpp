@@ -1,11 +1,11 @@
-// A whole map as places are searched for in it: how near everything is to what the laser saw, and
-// the cells that a scan may come from (docs/algorithms.md, "Localization in a finished map (own)").
+// Whole map prepared for the search of places: nearness of each point to a surface, and the cells
+// that a scan may come from (docs/algorithms.md, "Localization in a finished map (own)").
 //
 // A search tries every cell in 72 headings. Headings are independent of each other, so a search is
-// cut into tasks of a few of them; from the best cells of each task poses climb in a finer grid.
-// Any machine can work on these that has the field: it travels as pieces in the form of local maps,
-// which workers ask for, check and keep by their content like all others. The cut does not depend
-// on the number of workers.
+// divided into tasks of a few headings; from the best cells of each task, poses climb in a finer
+// grid. Any machine that has the field can work on them: it travels as pieces in the form of local
+// maps, which workers request, check and keep by their content like all others. The division does
+// not depend on the number of workers.
 #pragma once
 
 #include <cstddef>
@@ -27,66 +27,66 @@ namespace topogeo::localization {
 class PlaceField {
  public:
   static constexpr std::uint32_t kHeadings = 72;    ///< 5 degrees apart
-  static constexpr std::size_t kPoints = 128;       ///< of a question, at most; half of them search
-  static constexpr std::size_t kTaskPoses = 38;     ///< that climb in one task, at most
+  static constexpr std::size_t kPoints = 128;       ///< limit per question; half of them search
+  static constexpr std::size_t kTaskPoses = 38;     ///< limit of climbing poses per task
   static constexpr double kFineWidth_m = 0.30;      ///< of fine(): spans a cell of grid()
   static constexpr std::size_t kMostPieces = 1024;  ///< a larger field is not sent
-  static constexpr std::uint32_t kFirstPiece = 0x80000000U;  ///< id of one; no stop has it
+  static constexpr std::uint32_t kFirstPiece = 0x80000000U;  ///< first id of pieces; no stop has it
 
-  /// `walls`: points in the map frame, 5 cm apart. Scans come from at most `margin_m` beyond.
+  /// `walls`: points in the map frame, 5 cm apart. Scans come from up to `margin_m` beyond them.
   PlaceField(std::vector<topomap::ScanPoint> walls, double margin_m);
-  /// The same field of its pieces, in order. Throws std::invalid_argument for pieces of none.
+  /// Restores a field from its pieces, in order. Throws std::invalid_argument for invalid pieces.
   PlaceField(std::span<const std::shared_ptr<const topomap::LocalMap>> pieces,
              const PlaceQuestion& question);
 
-  /// States from which cells of grid() a scan may come, a byte for each; makes the pieces.
+  /// Sets the cells of grid() from which a scan may come, a byte for each; makes the pieces.
   void set_free(std::span<const std::uint8_t> free);
 
   [[nodiscard]] const KernelGrid& grid() const { return grid_; }
   [[nodiscard]] const std::vector<std::shared_ptr<const topomap::LocalMap>>& pieces() const {
     return pieces_;
   }
-  /// Of everything that an answer depends on.
+  /// Hash of everything that an answer depends on.
   [[nodiscard]] std::uint64_t hash() const { return hash_; }
-  /// About what it takes in memory without its pieces.
+  /// Approximate memory without the pieces.
   [[nodiscard]] std::size_t bytes() const;
 
-  /// In which poses climb: of cells of 5 cm.
+  /// Grid in which poses climb, with cells of 5 cm.
   [[nodiscard]] const KernelGrid& fine() const { return fine_; }
 
-  /// The questions that together search all headings for points in the robot frame, kPoints of them
-  /// at most.
+  /// The questions that together search all headings for points in the robot frame; uses at most
+  /// kPoints of them.
   [[nodiscard]] std::vector<std::shared_ptr<const PlaceQuestion>> questions(
       std::span<const Eigen::Vector2d> points_m) const;
-  /// Where poses climb to from the best cells of a question, no two of which touch, each in its
-  /// best heading: the best cell first, with the mean kernel value where it ends. Throws
-  /// std::invalid_argument for a question of another field or about headings that do not exist.
+  /// Climbs from the best cells of a question, no two of which touch, each in its best heading.
+  /// Returns the final poses with their mean kernel value, that of the best cell first. Throws
+  /// std::invalid_argument for a question about another field or about headings that do not exist.
   [[nodiscard]] std::vector<MatchSolution> answer(const PlaceQuestion& question) const;
 
-  /// What is wrong with an answer, for people; empty when its poses may be ones that climbed and
-  /// their values are right to the last bit. That there is no better place only a second answer
-  /// shows.
+  /// Returns the first fault of an answer as text; empty if its poses are possible results of a
+  /// climb and their values are right to the last bit. Only a second answer shows that there is no
+  /// better place.
   [[nodiscard]] std::string verify(const PlaceQuestion& question,
                                    std::span<const MatchSolution> places) const;
 
  private:
-  /// Cells beside each other in one row.
+  /// Adjacent cells of one row.
   struct Run {
     int row = 0;
     int first_column = 0;
     int cells = 0;
-    std::size_t first_seed = 0;  ///< cells of the runs before
+    std::size_t first_seed = 0;  ///< total cells of the previous runs
   };
   struct Offset {
     int column = 0;
     int row = 0;
   };
 
-  /// A free cell, and how well the points fit with the robot there.
+  /// A free cell with the score of the points when the robot is there.
   struct Seed {
     std::uint16_t score = 0;
     std::uint16_t heading = 0;
-    std::uint32_t cell = 0;  ///< counted through the runs
+    std::uint32_t cell = 0;  ///< index over all runs
   };
   [[nodiscard]] static bool comes_before(const Seed& a, const Seed& b);
 
@@ -95,9 +95,9 @@ class PlaceField {
   void check(const PlaceQuestion& question) const;
   [[nodiscard]] const Run& run_of(std::uint32_t cell) const;
   [[nodiscard]] geometry::Pose2 pose_of(const Seed& seed) const;
-  /// The best heading of each cell, in no order.
+  /// The best heading of each cell, unordered.
   [[nodiscard]] std::vector<Seed> scored(const PlaceQuestion& question) const;
-  /// Where poses climb from.
+  /// Start poses of the climbs.
   [[nodiscard]] std::vector<geometry::Pose2> starts(const PlaceQuestion& question) const;
   [[nodiscard]] bool near_free_cell(const Eigen::Vector2d& p_m) const;
   [[nodiscard]] std::vector<Offset> offsets(const PlaceQuestion& question,

@@ -1,10 +1,9 @@
-// Which earlier places look like what the robot has seen over its last metres
-// (docs/algorithms.md, "Places").
+// Finds earlier places that look like the view of the last metres (docs/algorithms.md, "Places").
 //
-// One scan of a corridor looks like another; five metres of a drive with their doors and ends do
-// so much less. What was seen over the last metres is searched, coarsely, in submaps: pieces of the
-// older path with all that was seen from them, fixed once they are complete. Proposals are only
-// that: a match of two stops has to confirm them.
+// One scan of a corridor looks like another; five metres of a drive with their doors and ends do so
+// much less. The view of the last metres is searched, coarsely, in submaps: pieces of the older
+// path with everything seen from them, fixed once they are complete. The results are only
+// proposals, which a match of two stops has to confirm.
 #pragma once
 
 #include <cstddef>
@@ -25,10 +24,10 @@
 
 namespace topogeo::localization {
 
-/// What was seen from a stop, in the frame of the robot.
+/// View from a stop, in the frame of the robot.
 struct StopView {
   RangeProfile profile;
-  std::vector<SurfacePoint> outline;  ///< some of its points, to foresee overlap
+  std::vector<SurfacePoint> outline;  ///< some of its points, to predict overlap
   std::vector<SurfacePoint> near;     ///< points within kNear_m, about 0.2 m apart
 
   static constexpr double kNear_m = 15.0;
@@ -38,45 +37,45 @@ StopView view_of(MatchFeatures features);
 
 /// An earlier place that the robot may be at.
 struct PlaceProposal {
-  std::uint32_t anchor = 0;      ///< stop in whose frame the poses are
+  std::uint32_t anchor = 0;      ///< stop that defines the frame of the poses
   std::uint32_t first_stop = 0;  ///< of the submap
   std::uint32_t last_stop = 0;
   geometry::Pose2 T_anchor_robot;    ///< as found
   UncertainPose predicted;           ///< the same as predicted
-  std::uint32_t first_of_query = 0;  ///< stop from which on all was searched with
-  /// T_anchor_robot after both were aligned as a whole, with the covariance of match_covariance();
-  /// zero where too little is in common.
+  std::uint32_t first_of_query = 0;  ///< first stop whose view was part of the query
+  /// T_anchor_robot after alignment of the whole query with the submap, with the covariance of
+  /// match_covariance(); zero if too little is in common.
   UncertainPose aligned;
   double value =
-      0.0;  ///< after that: share of the points in view of the submap that it has too, [0, 1]
+      0.0;  ///< after alignment: share of the points in view of the submap that it also has, [0, 1]
   double seen = 0.0;  ///< share of the points in view of the submap, [0, 1]
 };
 
-/// The covariance within which a place is looked for, from that of its prediction.
+/// The covariance within which a place is searched, from that of its prediction.
 Eigen::Matrix3d widened_for_places(const Eigen::Matrix3d& predicted);
 
-/// What was seen over the last metres, thinned.
+/// View of the last metres, thinned.
 struct PlaceQuery {
   PlaceQuery() = default;
   /// Points in the frame of the robot.
   explicit PlaceQuery(std::vector<SurfacePoint> seen);
 
-  MatchFeatures whole;                    ///< compared; surface alone
-  std::vector<Eigen::Vector2d> coarse_m;  ///< searched
+  MatchFeatures whole;                    ///< for the comparison; only the surface
+  std::vector<Eigen::Vector2d> coarse_m;  ///< for the search
 };
 
 class PlaceRecognition {
  public:
-  /// What is asked for: all that was seen over so much of path.
+  /// Path whose view makes a query.
   static constexpr double kQuery_m = 5.0;
 
-  /// Appends a stop, whose number is its index; `path_m` to it from the first.
+  /// Appends a stop, whose number is its index; `path_m`: path from the first stop.
   void add(std::shared_ptr<const StopView> view, double path_m);
 
-  /// Submaps of stops before `first_recent` that lie where `stop` may be, searched by what was seen
-  /// over the last metres up to it; best first, of a submap all places that fit about as well.
-  /// `relative`: of the stops, seen from `stop`. Where a
-  /// stop is known better than `least_sigma_m` on both axes its submap is left out.
+  /// Searches submaps of stops before `first_recent` around the possible positions of `stop` for
+  /// the view of the last metres before it. Best first; of each submap all places that fit about as
+  /// well. `relative`: poses of the stops seen from `stop`. Leaves out submaps whose anchor is
+  /// known better than `least_sigma_m` on both axes.
   std::vector<PlaceProposal> propose(const PoseGraph& graph, std::uint32_t stop,
                                      std::uint32_t first_recent,
                                      std::span<const UncertainPose> relative, double least_sigma_m);
@@ -86,7 +85,7 @@ class PlaceRecognition {
     std::uint32_t first = 0;  // stops
     std::uint32_t last = 0;
     std::uint32_t anchor = 0;
-    std::vector<geometry::Pose2> T_anchor_stop;  // of first to last
+    std::vector<geometry::Pose2> T_anchor_stop;  // for the stops first to last
     std::vector<geometry::Pose2> T_stop_anchor;
   };
   struct Query {

@@ -1,4 +1,4 @@
-// Keeps the values that were asked for last; what is made from the same input is the same again.
+// Cache of the most recently used values. Values must be reproducible from their key.
 #pragma once
 
 #include <algorithm>
@@ -11,10 +11,10 @@ namespace topogeo::localization {
 template <typename Value>
 class RecentlyUsed {
  public:
-  /// At least one is kept.
+  /// Keeps at least one value.
   explicit RecentlyUsed(std::size_t capacity) : capacity_(std::max<std::size_t>(1, capacity)) {}
 
-  /// The value of a key, made by make() unless it is there. Valid until the next call.
+  /// The value of a key, made by make() if it is not cached. Valid until the next call.
   template <typename Make>
   Value& get(std::size_t key, const Make& make) {
     const auto found = std::find_if(values_.begin(), values_.end(),
@@ -30,7 +30,7 @@ class RecentlyUsed {
 
  private:
   std::size_t capacity_;
-  std::list<std::pair<std::size_t, Value>> values_;  // the one used last first
+  std::list<std::pair<std::size_t, Value>> values_;  // most recently used first
 };
 
 }  // namespace topogeo::localization

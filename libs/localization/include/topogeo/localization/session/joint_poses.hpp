@@ -1,5 +1,4 @@
-// Where the parts of a map lie: least squares over all that was measured within each of them and
-// between them.
+// Poses of the parts of a map: least squares over all measurements within and between them.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +11,7 @@
 
 namespace topogeo::localization {
 
-/// Measured between stops of two parts.
+/// A measurement between stops of two parts.
 struct PartLink {
   topomap::StopId from;
   topomap::StopId to;
@@ -20,26 +19,27 @@ struct PartLink {
   UncertainPose T_from_to;
 };
 
-/// The stops of some parts, one part after the other, of each the first so many.
+/// The stops of some parts, one part after the other, and for each part the first `stops` of them.
 struct PartStretch {
   MapPart* part = nullptr;
   std::uint32_t stops = 0;
 };
 using PartOrder = std::vector<PartStretch>;
 
-/// All of each of them.
+/// All stops of each part.
 PartOrder whole_parts(std::span<MapPart* const> parts);
 
-/// Edges and links between these stops, by their places in that order.
+/// Edges and links between these stops, numbered in that order.
 std::vector<PoseGraphEdge> edges_between(const PartOrder& order, std::span<const PartLink> links);
 
-/// The stops with their poses, numbered in that order.
+/// The stops with their poses, in that order.
 topomap::Trajectory trajectory_of(const PartOrder& order);
-/// The same with their local maps. A stop that does not follow the one before starts a drive.
+/// Like trajectory_of(), with the local maps. A stop that does not follow its predecessor starts a
+/// drive.
 StoredMap map_of(const PartOrder& order);
 
-/// Places all stops of the parts by everything that was measured; the first one stays where it is.
-/// Leaves the poses as they are when there is no usable result.
+/// Places all stops of the parts by all measurements; the first stop does not move. Keeps the poses
+/// if there is no usable result.
 void place_jointly(std::span<MapPart* const> parts, std::span<const PartLink> links);
 
 }  // namespace topogeo::localization

@@ -1,4 +1,4 @@
-// The mapping algorithm that a configuration names.
+// Creates the mapping algorithm that a configuration names.
 #pragma once
 
 #include <memory>

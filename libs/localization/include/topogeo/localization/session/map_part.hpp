@@ -1,6 +1,5 @@
-// A part of a map that several robots make: the stops of one session as its own localizer holds
-// them together, or what was stored before. Where it lies relative to the other parts comes from
-// SharedMap.
+// A part of a map made by several robots: the stops of one session, held together by its own
+// localizer, or a stored map. SharedMap places it relative to the other parts.
 #pragma once
 
 #include <cstddef>
@@ -22,42 +21,42 @@ class MapPart {
  public:
   using MapPointer = std::shared_ptr<const topomap::LocalMap>;
 
-  /// Begins with the next stop of a session, in a pool of its own.
+  /// Begins with the next stop of a session, in its own pool.
   MapPart(std::uint32_t number, const LocalizerConfig& config, std::unique_ptr<MatchPool> pool);
-  /// A stored map, to which no stop comes.
+  /// A stored map, which gets no more stops.
   MapPart(std::uint32_t number, const std::shared_ptr<const StoredMap>& stored);
 
-  /// The next stop of the session; throws like MappingSession. The poses are those of the part
-  /// alone, moved rigidly to where the part lies.
+  /// Adds the next stop of the session; throws like MappingSession. The poses are those of the part
+  /// alone, moved rigidly to its place in the map.
   void add(const MapPointer& map);
-  /// Works off what is better done with all stops.
+  /// Does the work that is better done with all stops.
   void finish();
-  /// No stop comes any more; what only mapping needs is freed.
+  /// Ends the session and frees everything that only mapping needs.
   void end();
-  /// Stops come, or may come.
+  /// The session goes on: more stops may come.
   [[nodiscard]] bool goes_on() const { return session_ != nullptr; }
 
-  /// Different for each part of a map; counts them.
+  /// Consecutive number, unique within a map.
   [[nodiscard]] std::uint32_t number() const { return number_; }
   [[nodiscard]] std::size_t size() const { return maps_.size(); }
   [[nodiscard]] const std::vector<MapPointer>& maps() const { return maps_; }
-  /// As the part alone has them.
+  /// The trajectory of the part alone.
   [[nodiscard]] const topomap::Trajectory& own() const { return own_; }
-  /// Between its stops, by their places here.
+  /// Edges between its stops, by index.
   [[nodiscard]] const std::vector<PoseGraphEdge>& edges() const;
-  /// Place of a stop here; none when it is not one of these.
+  /// Index of a stop; empty if the part does not contain it.
   [[nodiscard]] std::optional<std::uint32_t> find(const topomap::StopId& stop) const;
 
   /// T_map_robot of each stop in the map of all parts.
   [[nodiscard]] const std::vector<UncertainPose>& poses() const { return poses_; }
-  /// Puts them there; as many as stops.
+  /// Sets these poses, one per stop.
   void place(std::vector<UncertainPose> poses) { poses_ = std::move(poses); }
-  /// The same as the part alone has them.
+  /// Uses the poses of the part alone.
   void place_as_own();
-  /// Moves all of them.
+  /// Moves all poses.
   void move(const geometry::Pose2& T_new_old);
-  /// The part alone has moved earlier stops, or has another number of them, since this was asked
-  /// last.
+  /// Whether the part alone has moved earlier stops, or their number has changed, since the last
+  /// call.
   bool take_moved() { return std::exchange(moved_, false); }
 
   [[nodiscard]] const MappingSession* session() const { return session_.get(); }
@@ -71,10 +70,10 @@ class MapPart {
   std::unique_ptr<MappingSession> session_;
   std::vector<MapPointer> maps_;
   topomap::Trajectory own_;
-  std::vector<PoseGraphEdge> edges_;  // once it has ended
+  std::vector<PoseGraphEdge> edges_;  // after the end
   std::vector<UncertainPose> poses_;
   std::map<topomap::StopId, std::uint32_t> places_;
-  SlamCounts counts_;  // once it has ended
+  SlamCounts counts_;  // after the end
   bool moved_ = false;
 };
 

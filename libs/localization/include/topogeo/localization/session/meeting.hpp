@@ -1,7 +1,7 @@
-// Looks for the place of one robot in what others have mapped, while all of them drive on.
+// Searches the pose of one robot in the map of others while all of them drive on.
 //
-// A MapLocalizer follows the robot in a copy of their map, which is taken anew when the map has
-// grown: so the robot that comes to a place second finds that the other was there.
+// A MapLocalizer follows the robot in a copy of their map, which is renewed when the map has grown:
+// so the robot that reaches a place second finds that the other was there.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@
 
 namespace topogeo::localization {
 
-/// A stop of the robot, as it was matched with one of the others.
+/// A stop of the robot, matched with a stop of the others.
 struct Sighting {
   topomap::StopId stop;   ///< of the robot
   topomap::StopId other;  ///< of the others
@@ -32,29 +32,29 @@ class Meeting {
 
   Meeting(const LocalizerConfig& config, std::unique_ptr<MatchPool> pool);
 
-  /// True when their map has to be given: at first, and when it has grown to so many stops that it
-  /// shows noticeably more.
+  /// True if it needs a copy of their map: at first, and when the map has grown noticeably.
   [[nodiscard]] bool wants_map(std::size_t stops) const;
-  /// Stops have left their map: it has to be given again.
+  /// Stops have left their map, so a new copy is needed.
   void renew() { renew_at_ = 0; }
-  /// Their map, as it is now. The last stops of the robot, in the order of their numbers, are
-  /// looked for in it anew, unless it is followed.
+  /// Sets a copy of their map. Unless the robot is followed, its last stops, in the order of their
+  /// numbers, are searched in it again.
   void set_map(std::shared_ptr<const StoredMap> map, std::span<const MapPointer> last_stops);
-  /// Where the last stop is in their map, from elsewhere; counts unless the robot is followed.
+  /// Sets the pose of the last stop in their map from another source; ignored while the robot is
+  /// followed.
   void expect(const MapPointer& last, const UncertainPose& T_map_robot);
 
-  /// The next stop of the robot. True when its place is certain (PlaceConfirmation).
+  /// Adds the next stop of the robot. True if its pose is certain (PlaceConfirmation).
   bool add(const MapPointer& map);
 
-  /// T_map_robot of the last stop; means nothing unless it is certain.
+  /// T_map_robot of the last stop; meaningless unless it is certain.
   [[nodiscard]] geometry::Pose2 T_map_robot() const { return follower_->last_stop()->T_map_robot; }
   [[nodiscard]] double confidence() const { return follower_->status().confidence; }
   [[nodiscard]] const PlaceConfirmation& confirmation() const { return confirmation_; }
-  /// What was seen since the robot is followed without a break.
+  /// All sightings since the robot has been followed without interruption.
   [[nodiscard]] const std::vector<Sighting>& sightings() const { return sightings_; }
-  /// The same of the last stop alone.
+  /// The sightings of the last stop.
   [[nodiscard]] std::span<const Sighting> newest() const;
-  /// Begins to look anew: what it has seen was wrong.
+  /// Restarts the search, because its sightings were wrong.
   void forget();
   [[nodiscard]] SlamCounts counts() const;
 
@@ -67,7 +67,7 @@ class Meeting {
   std::unique_ptr<MapLocalizer> follower_;
   PlaceConfirmation confirmation_;
   std::vector<Sighting> sightings_;
-  std::size_t newest_ = 0;  // of these
+  std::size_t newest_ = 0;  // index of the first newest one
   MapPointer last_;
   std::size_t renew_at_ = 0;
   SlamCounts counts_before_;

@@ -1,12 +1,12 @@
-// Several robots map one floor at a time (docs/algorithms.md, "Several robots, one map").
+// One map made by several robots at the same time (docs/algorithms.md, "Several robots, one map").
 //
 // Each session of a robot is mapped by its own localizer, as if the robot were alone: a part of the
-// map. Each robot is looked for in what the others have mapped (Meeting). When its place is certain
-// the two maps become one, at once or after somebody has agreed; from then on the newest stops of
-// each are matched with what the others see there, and all poses follow from all measurements
-// together (place_jointly). The map is that of the first part; what has not joined it waits.
+// map. Each robot is searched in the maps of the others (Meeting). When its pose is certain, the
+// two maps become one, at once or after an operator agrees. Then the newest stops of each robot are
+// matched with the others' views, and all measurements together determine all poses
+// (place_jointly). The map is that of the first part; parts that have not joined it wait.
 //
-// All of that follows from the stops in the order in which they come.
+// The result depends only on the stops and the order of their arrival.
 #pragma once
 
 #include <cstddef>
@@ -30,55 +30,55 @@ class SharedMap : public Slam {
  public:
   using MapPointer = std::shared_ptr<const topomap::LocalMap>;
 
-  /// A session that has not joined the map within so many stops begins anew with the next one.
+  /// A session that has not joined the map within this many stops restarts with the next stop.
   static constexpr std::size_t kMostApart = 2048;
-  /// Begins a map, or goes on with a stored one. Nobody else uses the pool, which must outlive
-  /// this. Throws std::invalid_argument in LocalizerMode::kThesis.
+  /// Begins a map, or continues a stored one. The pool must outlive this and have no other user.
+  /// Throws std::invalid_argument in LocalizerMode::kThesis.
   SharedMap(const LocalizerConfig& config, MatchPool& pool,
             const std::shared_ptr<const StoredMap>& stored = nullptr,
             std::size_t most_apart = kMostApart);
 
-  /// The next stop of a robot. One that follows a stop of the stored map goes on from there;
-  /// another session is another drive, whose place is looked for. Throws std::invalid_argument
-  /// when a stop is not the next one of its session.
+  /// Adds the next stop of a robot. A stop that follows one of the stored map continues from there;
+  /// another session is another drive, whose pose is searched. Throws std::invalid_argument if a
+  /// stop is not the next one of its session.
   bool add(MapPointer map) override;
-  /// Compares once more all that the robots of one map have seen; stops may follow all the same.
+  /// Compares all stops of robots in one map once more; more stops may still follow.
   void finish() override;
 
-  /// Proposals so far; with `merge: auto` they are accepted at once.
+  /// All proposals; with `merge: auto` they are accepted at once.
   [[nodiscard]] const std::vector<MergeProposal>& proposals() const { return proposals_.all(); }
-  /// Throw std::invalid_argument unless a proposal of this number is open.
+  /// Throw std::invalid_argument unless a proposal with this number is open.
   void accept(std::uint32_t number);
   void refuse(std::uint32_t number);
-  /// Two stops of a proposal that was refused before this began.
+  /// Two stops of a proposal that was refused before this map was started.
   void remember_refused(const topomap::StopId& stop, const topomap::StopId& other) {
     proposals_.remember_refused(stop, other);
   }
 
-  /// The map of the first part and all that have joined it: part by part.
+  /// The map of the first part and all parts that have joined it, part by part.
   [[nodiscard]] topomap::Trajectory trajectory() const override;
   [[nodiscard]] const std::vector<PoseGraphEdge>& edges() const override { return edges_; }
   [[nodiscard]] std::vector<topomap::LoopClosure> loop_closures() const override;
-  /// None: each part decides by numbers of its own.
+  /// Empty: each part has its own numbers for its decisions.
   [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override;
-  /// The same map as it can be stored.
+  /// The same map in the form for storage.
   [[nodiscard]] StoredMap map() const;
 
-  /// Of the robot whose stop came last ...
+  /// For the robot whose stop came last.
   [[nodiscard]] std::optional<topomap::StopPose> last_stop() const override;
   [[nodiscard]] LocalizationStatus status() const override { return status(last_robot_); }
-  /// ... and of any: not located, and searching, while its map has not joined.
+  /// For any robot: not located, and searching, while its map has not joined.
   [[nodiscard]] std::optional<topomap::StopPose> last_stop(const std::string& robot) const;
   [[nodiscard]] LocalizationStatus status(const std::string& robot) const;
-  /// The robot's stops are part of the map.
+  /// Whether the robot's stops are part of the map.
   [[nodiscard]] bool joined(const std::string& robot) const;
-  /// Stops that have not joined the map.
+  /// Number of stops that have not joined the map.
   [[nodiscard]] std::size_t stops_apart() const;
   [[nodiscard]] SlamCounts counts() const override;
 
  private:
   struct Due {
-    std::size_t links = 0;  // since the group was placed
+    std::size_t links = 0;  // since the group was last placed
     std::size_t stops = 0;
     bool moved = false;
   };
@@ -109,7 +109,7 @@ class SharedMap : public Slam {
   std::vector<PoseGraphEdge> edges_;
   std::string last_robot_;
   std::uint64_t version_ = 0;
-  std::uint64_t placed_ = 0;  // times that a group was
+  std::uint64_t placed_ = 0;  // number of joint optimisations
 };
 
 }  // namespace topogeo::localization

@@ -1,7 +1,7 @@
-// One pool for several maps: each numbers its stops and its tasks by itself.
+// One pool shared by several maps, each with its own numbers of stops and tasks.
 //
-// In the pool a stop has one number for good, by the session and the number that it has there. A
-// map that takes another in, or a robot that is followed in it, needs no second copy of a stop.
+// In the pool a stop has one permanent number, derived from its session and its number there. A map
+// that merges another, or follows a robot, needs no second copy of a stop.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace topogeo::localization {
 
 class SharedPool {
  public:
-  /// The pool must outlive this, and this all of its views. Nobody else uses it.
+  /// The pool must outlive this, and this must outlive its views. The pool must have no other user.
   explicit SharedPool(MatchPool& pool) : pool_(pool) {}
 
   /// A pool for one map.
@@ -32,7 +32,7 @@ class SharedPool {
   MatchPool& pool_;
   std::map<topomap::StopId, Known> known_;
   std::uint64_t next_task_ = 0;
-  std::shared_ptr<const PlaceField> field_;  // that the pool knows, of one of the maps
+  std::shared_ptr<const PlaceField> field_;  // the field that the pool knows, of one of the maps
 };
 
 }  // namespace topogeo::localization

@@ -1,4 +1,4 @@
-// Sums of what localizers count.
+// Sums of the counts of localizers.
 #pragma once
 
 #include <cstddef>

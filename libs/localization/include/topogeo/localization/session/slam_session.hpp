@@ -1,5 +1,5 @@
-// What a robot does with its stops, in one process or as a service: begins a map, continues a
-// stored one, or localizes in a stored map that stays as it is for good.
+// Use of a robot's stops, in one process or as a service: start a map, continue a stored one, or
+// localize in a stored map that never changes.
 #pragma once
 
 #include <cstdint>
@@ -19,40 +19,40 @@
 
 namespace topogeo::localization {
 
-/// How well a pose that a person gives is known: 0.3 m and 10 degrees.
+/// Uncertainty of a pose given by an operator: 0.3 m and 10 degrees.
 Eigen::Matrix3d given_pose_covariance();
 
-/// A stored map, and what the session is to do with it.
+/// A stored map and its use in the session.
 struct MapToUse {
   enum class Use : std::uint8_t {
     kLocalize,
     kContinue,
-    kGoOn  ///< the same, and the robot goes on from the last stop of the map
+    kGoOn  ///< like kContinue, and the robot starts at the last stop of the map
   };
   std::shared_ptr<const StoredMap> map;
   Use use = Use::kLocalize;
-  std::optional<geometry::Pose2> T_map_start;  ///< of the robot at its first stop, as a person
-                                               ///< gives it; none: the whole map is searched
+  std::optional<geometry::Pose2> T_map_start;  ///< pose of the robot at its first stop, given by an
+                                               ///< operator; empty: the whole map is searched
 };
 
 class SlamSession {
  public:
   /// Begins a map. The pool and the optimizer (see Localizer) must outlive the session.
   SlamSession(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer = nullptr);
-  /// Uses a stored map. Throws like MapLocalizer or, when it is continued, like MappingSession.
+  /// Uses a stored map. Throws like MapLocalizer or, to continue the map, like MappingSession.
   SlamSession(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer,
               const MapToUse& stored);
 
   [[nodiscard]] Slam& operator*() const { return *slam_; }
   [[nodiscard]] Slam* operator->() const { return slam_.get(); }
 
-  /// Null when a stored map stays as it is for good.
+  /// Null if a stored map never changes.
   [[nodiscard]] MappingSession* mapping_session() const { return mapping_session_; }
-  /// What follows the robot in a map; null while its stops become part of it one by one.
+  /// Follows the robot in a map; null while its stops join the map one by one.
   [[nodiscard]] MapLocalizer* follower() const {
     return mapping_session_ != nullptr ? mapping_session_->follower() : map_localizer_;
   }
-  /// Stops become part of the map, now or when their place in it is known.
+  /// Whether stops join the map, now or once their pose in it is known.
   [[nodiscard]] bool mapping() const {
     return mapping_session_ != nullptr && mapping_session_->mapping();
   }

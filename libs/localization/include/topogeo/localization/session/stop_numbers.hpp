@@ -1,8 +1,8 @@
-// Which numbers the stops of a map of several parts have while all of them grow.
+// Numbers of the stops in a map of several growing parts.
 //
-// The map is the stops of one part after the other, as if one robot had driven there after the
-// other. A stop that comes to any part but the last one stands before others, which get other
-// numbers then; so such stops are numbered some at a time.
+// The map lists the stops part by part, as if the robots had driven one after the other. A new stop
+// of any part but the last shifts the numbers of all later parts, so such stops are numbered in
+// batches.
 #pragma once
 
 #include <cstddef>
@@ -14,18 +14,18 @@ namespace topogeo::localization {
 
 class StopNumbers {
  public:
-  /// So many stops that have no number yet get theirs together.
+  /// Number of waiting stops that are numbered together.
   static constexpr std::size_t kTogether = 16;
 
   explicit StopNumbers(std::uint64_t numbered_since = 0) : numbered_since_(numbered_since) {}
 
-  /// The stops of these parts; `all`: each of them gets its number now. `version`: of the map from
-  /// now on.
+  /// Updates to the stops of these parts; `all`: numbers every stop now. `version`: the new version
+  /// of the map.
   void update(const PartOrder& parts, bool all, std::uint64_t version);
 
-  /// The stops that have numbers, in the order of these.
+  /// The numbered stops, in order of their numbers.
   [[nodiscard]] const PartOrder& order() const { return order_; }
-  /// Version since which no stop got another number.
+  /// Version of the last change of a number.
   [[nodiscard]] std::uint64_t numbered_since() const { return numbered_since_; }
 
  private:

@@ -1,8 +1,8 @@
 // Backward correction (Thesis, 7.3.1.2; docs/algorithms.md, "Backward correction"): when a cycle
 // closes, replaces each pose from the last one back to the first pose of the loop by the stored
-// relative solutions of its successor, and keeps the poses whose summed fitness is largest. The
-// search itself is that of loop_search.hpp; here are the steps that it may take and the condition
-// that maps which overlapped go on overlapping.
+// relative solutions of its successor, and keeps the poses with the largest summed fitness. The
+// search itself is that of loop_search.hpp; this file adds its steps, and the condition that
+// overlapping maps must still overlap.
 #pragma once
 
 #include <cstddef>
@@ -20,25 +20,24 @@
 
 namespace topogeo::localization {
 
-/// What the forward correction knows of one pose of the loop.
+/// Result of the forward correction for one pose of the loop.
 struct BackwardPose {
   UncertainPose T_first_this;     ///< relative to the first pose of the loop; centre and extent of
-                                  ///< the uncertainty that the pose must lie in
+                                  ///< the region that the pose must lie in
   UncertainPose T_previous_this;  ///< by odometry
   VisibleRectangle view;          ///< of its map
-  std::vector<std::uint32_t>
-      overlaps;  ///< ids of the earlier maps that its map overlaps with there
+  std::vector<std::uint32_t> overlaps;  ///< ids of the earlier maps that overlap its map there
 };
 
-/// A pose that the last map of the loop may have instead.
+/// An alternative pose for the last map of the loop.
 struct BackwardCandidate {
-  std::uint32_t via = 0;  ///< id of the earlier map against which it was found
+  std::uint32_t via = 0;  ///< id of the earlier map that it was matched with
   UncertainPose T_first_last;
   double fitness = 0.0;  ///< [0, 1]
 };
 
-/// poses[k] is of the map first_id + k. The first pose keeps its place; only the view of its entry
-/// is read.
+/// poses[k] belongs to the map first_id + k. The first pose is fixed; only the view of its entry is
+/// read.
 struct BackwardProblem {
   std::uint32_t first_id = 0;
   std::vector<BackwardPose> poses;
@@ -52,27 +51,27 @@ struct BackwardResult : LoopSearchResult {
 /// The winner of 7.3.1.2 in paths.front(); indices are those of the problem. The same input gives
 /// the same bits. Throws std::invalid_argument like search_loop(), for a covariance of odometry
 /// that is not positive definite, an overlap with a map that is not earlier, a candidate via a map
-/// that is not of the loop or is its last, or a grid of no pose.
+/// outside the loop or via its last one, or an empty grid.
 BackwardResult correct_backward(const BackwardProblem& problem, const SolutionStore& solutions,
                                 const BackwardConfig& config = {});
 
-/// Where a pose's map can lie relative to the previous one.
+/// Possible origins of a step from the previous pose.
 enum class StepKind : std::uint8_t {
   kMatched = 0,       ///< solution of both maps (eq. 7.22)
   kIntermediate = 1,  ///< through a map that both were matched with (eqs. 7.23, 7.24)
-  kOdometry = 2,      ///< overlapping maps, but nothing matches
-  kGrid = 3,          ///< nothing overlaps: a place of the odometry's search space
+  kOdometry = 2,      ///< maps overlap, but no match
+  kGrid = 3,          ///< nothing overlaps: a pose from the search space of the odometry
 };
 
 struct StepOption {
   StepKind kind = StepKind::kMatched;
   geometry::Pose2 T_previous_this;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< in the frame of the previous pose
-  double fitness = 0.0;  ///< of the match; the poorer of two through an intermediate map; else 0
+  double fitness = 0.0;  ///< of the match; the smaller of two via an intermediate map; else 0
 };
 
-/// All options of poses[k], k >= 1, in the order in which they are preferred: those of the first
-/// kind above that gives any.
+/// All options of poses[k], k >= 1, in order of preference: those of the first StepKind that gives
+/// any.
 std::vector<StepOption> step_options(const BackwardProblem& problem, const SolutionStore& solutions,
                                      const BackwardConfig& config, std::uint32_t k);
 

@@ -1,12 +1,11 @@
 // Closes cycles by the backward correction (Thesis, 7.3.1.2; docs/algorithms.md, "Backward
-// correction"): which maps are seen again, which last pose they measure, and what that does to
-// the poses since.
+// correction"): finds the maps that are seen again, the last pose that they measure, and its effect
+// on the poses since.
 //
-// What differs from the print, and why:
-// - a recent map that comes back into the overlap set (it flickers at the threshold) closes no
-//   cycle;
-// - the correction ends at the oldest of the maps seen again, as a candidate knows nothing of the
-//   poses before it.
+// Differences from the print, with reasons:
+// - a recent map that returns to the overlap set (it flickers at the threshold) closes no cycle;
+// - the correction ends at the oldest of the maps seen again, because a candidate carries no
+//   information about the poses before it.
 #pragma once
 
 #include <cstdint>
@@ -32,20 +31,21 @@ struct ClosedCycle {
 
 class CycleClosing {
  public:
-  /// Of `config` it reads revisit_matches (maps seen again that are matched per step; 0: cycles
-  /// stay open), unaided_correction_* and thesis, whose backward
-  /// correction has the resolution of the genetic search.
+  /// Reads from `config`: revisit_matches (maps seen again that are matched per step; 0: cycles
+  /// stay open), unaided_correction_* and thesis, whose backward correction has the resolution of
+  /// the genetic search.
   explicit CycleClosing(const LocalizerConfig& config) : config_(config) {}
 
-  /// Closes the cycles of the last stop, whose pose by the forward correction is known: forward and
-  /// backward in turn, since other maps may overlap once a cycle has closed. True when poses moved.
+  /// Closes the cycles of the last stop, whose pose by the forward correction is known. Repeats
+  /// matching and correction, because other maps may overlap once a cycle has closed. True if poses
+  /// moved.
   bool close(ThesisMap& map, ThesisMatching& matching);
 
   [[nodiscard]] const std::vector<topomap::LoopClosure>& closures() const { return closures_; }
   [[nodiscard]] const std::vector<LoopDecision>& decisions() const { return decisions_; }
-  /// The last cycle that was closed, for looking at.
+  /// The last closed cycle, for inspection.
   [[nodiscard]] const std::optional<ClosedCycle>& last_closing() const { return last_closing_; }
-  /// Backward corrections so far, and those of them that found no consistent poses.
+  /// Number of backward corrections, and of those without consistent poses.
   [[nodiscard]] std::uint64_t attempts() const { return attempts_; }
   [[nodiscard]] std::uint64_t failures() const { return failures_; }
 

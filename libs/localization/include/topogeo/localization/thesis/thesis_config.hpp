@@ -11,7 +11,7 @@ class ConfigSchema;
 
 namespace topogeo::localization {
 
-/// What only the thesis's algorithm reads.
+/// Settings that only the thesis's algorithm reads.
 struct ThesisConfig {
   std::uint32_t matches = 8;
   std::uint32_t cycle_solutions = 40;

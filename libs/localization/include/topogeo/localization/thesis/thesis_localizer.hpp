@@ -3,11 +3,11 @@
 // at each stop, backward correction when a cycle closes (CycleClosing).
 //
 // Each pose is that of the one match with the largest fitness (eq. 7.18); nothing is averaged, and
-// only a closed cycle moves older poses. What differs from the print, and why:
-// - matches pass the same gate as everywhere, since one poor match in a turn costs more than all
-//   good ones give; what the gate only doubts is taken when nothing better is there;
+// only a closed cycle moves older poses. Differences from the print, with reasons:
+// - matches pass the same gate as everywhere, because one poor match in a turn costs more than all
+//   good ones give; a match that the gate only doubts is used if there is no better one;
 // - the uncertainty of a pose relative to an earlier one runs along the matches between them, not
-//   along the odometry alone, which after a hundred metres would let everything overlap.
+//   along the odometry alone, by which everything would overlap after a hundred metres.
 #pragma once
 
 #include <cstdint>
@@ -26,14 +26,14 @@ namespace topogeo::localization {
 
 class ThesisLocalizer : public Slam {
  public:
-  /// Of `config` it reads seed, odometry, the settings of matches and their gate, recent_way_m,
+  /// Reads from `config`: seed, odometry, the settings of matches and their gate, recent_way_m,
   /// revisit_matches (maps seen again that are matched per step; 0: cycles stay open),
   /// smallest_expected_overlap, largest_half_width_* and unaided_correction_*. The pool must
   /// outlive the localizer.
   ThesisLocalizer(const LocalizerConfig& config, MatchPool& pool);
 
   bool add(std::shared_ptr<const topomap::LocalMap> map) override;
-  /// Nothing: the thesis has no work that waits for the end.
+  /// Does nothing: the thesis has no work that waits for the end.
   void finish() override {}
 
   [[nodiscard]] topomap::Trajectory trajectory() const override;
@@ -44,12 +44,12 @@ class ThesisLocalizer : public Slam {
   [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override {
     return cycles_.decisions();
   }
-  /// The confidence is the fitness of the match that placed the stop, halved where the gate
-  /// doubted it; the thesis has no other, and none is calibrated.
+  /// The confidence is the fitness of the match that placed the stop, halved if the gate doubted
+  /// it; the thesis has no calibrated one.
   [[nodiscard]] LocalizationStatus status() const override { return status_; }
   [[nodiscard]] SlamCounts counts() const override;
 
-  // For looking at how a pose came about.
+  // For inspection of the origin of a pose.
   [[nodiscard]] const ThesisMap& map() const { return map_; }
   [[nodiscard]] const CycleClosing& cycles() const { return cycles_; }
 

@@ -1,5 +1,5 @@
-// The stops of the thesis's algorithm: their maps, poses, overlaps and the solutions of their
-// matches, from which forward and backward correction work.
+// The stops of the thesis's algorithm: maps, poses, overlaps and solutions of matches, the data of
+// forward and backward correction.
 #pragma once
 
 #include <cstdint>
@@ -34,28 +34,28 @@ struct ThesisStop {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the pose in the map
 };
 
-/// An earlier map as it is expected to lie.
+/// An earlier map at its expected pose.
 struct ThesisNeighbour {
   std::uint32_t id = 0;
   UncertainPose T_new_earlier;
-  double overlap = 0.0;  ///< share of the earlier map that the new one should see
+  double overlap = 0.0;  ///< predicted share of the earlier map that the new one sees
 };
 
 /// A match of the newest stop with an earlier one.
 struct ThesisMatch {
   std::uint32_t earlier = 0;
   MatchResult result;
-  UncertainPose T_earlier_new;  ///< means nothing when there is nothing in common
+  UncertainPose T_earlier_new;  ///< meaningless if nothing is in common
 };
 
 class ThesisMap {
  public:
   ThesisMap(const LocalizerConfig& config, std::uint32_t solutions_per_pair);
 
-  /// The next stop, as far as it is known without its pose; place() or place_first() follows.
+  /// Appends the next stop without its pose; place() or place_first() must follow.
   void append(std::shared_ptr<const topomap::LocalMap> map);
   void place_first();
-  /// Places the last stop by a step from an earlier one; `match`: whether that is a match.
+  /// Places the last stop by a step from an earlier one; `match`: whether the step is a match.
   void place(std::uint32_t from, const UncertainPose& T_from_stop, bool match);
 
   [[nodiscard]] std::size_t size() const { return stops_.size(); }
@@ -72,24 +72,24 @@ class ThesisMap {
   /// Whether the distance driven from an earlier stop is short.
   [[nodiscard]] bool recent(std::uint32_t earlier, std::uint32_t stop) const;
   /// Steps 2 to 6 of Thesis, 7.3.1.1.1 (docs/algorithms.md, "Forward correction"): the earlier maps
-  /// whose visible rectangle overlaps with that of a stop at a pose, with enough in common to match
-  /// them. `relative`: every earlier stop seen from that one.
+  /// whose visible rectangle overlaps that of a stop at a pose, with enough in common for a match.
+  /// `relative`: every earlier stop seen from that stop.
   [[nodiscard]] std::vector<ThesisNeighbour> neighbours(
       std::uint32_t stop, const geometry::Pose2& T_map_stop,
       std::span<const UncertainPose> relative) const;
-  /// Whether the maps of two stops overlap at their present poses.
+  /// Whether the maps of two stops overlap at their current poses.
   [[nodiscard]] bool overlap_now(std::uint32_t earlier, std::uint32_t later) const;
 
-  /// Keeps the n best solutions of a match (definition 7.3.4): the refined one, then those of the
+  /// Stores the n best solutions of a match (definition 7.3.4): the refined one, then those of the
   /// search that lie elsewhere.
   void store(std::uint32_t stop, const ThesisMatch& match);
   [[nodiscard]] SolutionStore& solutions() { return solutions_; }
   [[nodiscard]] const SolutionStore& solutions() const { return solutions_; }
 
-  /// A match that closed a cycle: from now on the two stops know each other as well as it does.
+  /// Adds a match that closed a cycle as an edge between the two stops.
   void add_closure(std::uint32_t stop, const ThesisMatch& match);
-  /// All poses anew. The edges between stops hold how well neighbours know each other, which does
-  /// not change.
+  /// Replaces all poses. The edges between stops hold the relative uncertainty of neighbours, which
+  /// does not change.
   void move(const std::vector<geometry::Pose2>& T_map_robot);
 
   [[nodiscard]] topomap::StopPose pose_of(std::size_t stop) const;
@@ -97,12 +97,12 @@ class ThesisMap {
   [[nodiscard]] std::uint64_t version() const { return version_; }
 
  private:
-  // Share of the earlier map that the new one should see.
+  // Predicted share of the earlier map that the new one sees.
   [[nodiscard]] double expected_share(const ThesisStop& now, const ThesisStop& before,
                                       const UncertainPose& T_new_earlier) const;
 
   LocalizerConfig config_;
-  PoseGraph graph_;  // poses and the matches that placed them, for uncertainties alone
+  PoseGraph graph_;  // poses and their matches, only for uncertainties
   std::vector<ThesisStop> stops_;
   SolutionStore solutions_;
   std::uint64_t version_ = 0;

@@ -18,12 +18,12 @@ class ThesisMatching {
   /// The pool must outlive this.
   ThesisMatching(const LocalizerConfig& config, MatchPool& pool) : requests_(config, pool) {}
 
-  /// Makes the last stop of the map known to the pool.
+  /// Registers the last stop of the map with the pool.
   void add(const ThesisMap& map);
   /// Matches the last stop with its neighbours for this many solutions each.
   std::vector<ThesisMatch> match(const ThesisMap& map, std::span<const ThesisNeighbour> with,
                                  std::uint32_t solutions);
-  /// The solutions with which searches of the next stop against the same maps start.
+  /// Stores the solutions at which searches of the next stop against the same maps start.
   void remember(std::span<const ThesisMatch> matches);
 
   [[nodiscard]] const MatchCounts& counts() const { return requests_.counts(); }

@@ -1,5 +1,5 @@
-// What the matches of a drive with a map are worth together: several stops of it that lie in the
-// map as they lie to each other prove a place that none of them proves alone.
+// Joint evidence of the matches of a drive with a map: several stops whose poses in the map agree
+// with each other prove a place that none of them proves alone.
 #pragma once
 
 #include <deque>
@@ -8,17 +8,17 @@ namespace topogeo::localization {
 
 class DriveAgreement {
  public:
-  /// The drive went on.
+  /// The drive continued.
   void move(double distance_m) { path_m_ += distance_m; }
-  /// A stop was matched where the stops before have it, by a match that passed its gate, or by one
-  /// that is right with this probability.
+  /// A stop was matched at its expected place, by a match that passed its gate, or by one that is
+  /// right with this probability.
   void add(bool accepted, double confidence);
-  /// A stop was matched elsewhere, or should have been matched and was not.
+  /// A stop was matched elsewhere, or a match was expected and failed.
   void contradict();
 
-  /// Whether so many of the last stops agree, so far apart, that together they are right.
+  /// Whether enough of the last stops agree, far enough apart, to be right together.
   [[nodiscard]] bool enough() const;
-  /// 1.5 for each stop by an accepted match, up to 1 for each other one, over the last metres.
+  /// Sum over the last metres: 1.5 for each stop with an accepted match, up to 1 for any other.
   [[nodiscard]] double weight() const;
 
  private:

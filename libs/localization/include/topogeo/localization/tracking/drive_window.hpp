@@ -1,5 +1,5 @@
-// The last metres of a drive by themselves, whatever map it is in: how its stops lie to each other
-// by odometry and by matches with the stops just before, and all that was seen from them.
+// The last metres of a drive, independent of any map: relative poses of its stops by odometry and
+// by matches with the previous stops, and the views from them.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,12 @@
 
 namespace topogeo::localization {
 
-/// The step from the stop before.
+/// The step from the previous stop.
 struct DriveStep {
-  UncertainPose T_before_now;  ///< invertible; of the first stop: nothing
+  UncertainPose T_before_now;  ///< invertible; the identity at the first stop
   double distance_m = 0.0;
   bool matched = false;  ///< false: by odometry alone
-  /// With the stop before, when that was matched: the task and its result.
+  /// Match with the previous stop, if made: the task and its result.
   std::optional<std::pair<MatchTask, MatchResult>> match;
 };
 
@@ -32,15 +32,15 @@ class DriveWindow {
   /// The requests must outlive this.
   explicit DriveWindow(MatchRequests& requests);
 
-  /// The next stop, known to the requests under the id of `map`; `odometry` from the stop before,
-  /// nothing at the first one or after a gap. A gap, and a step by odometry alone, forgets the
-  /// stops before.
+  /// Adds the next stop, registered with the requests under the id of `map`; `odometry` from the
+  /// previous stop, empty for the first one or after a gap. A gap, or a step by odometry alone,
+  /// clears the previous stops.
   DriveStep add(std::shared_ptr<const topomap::LocalMap> map, std::shared_ptr<const StopView> view,
                 const std::optional<UncertainPose>& odometry);
 
-  /// All that was seen over the last `length_m` of path, in the frame of the last stop, ...
+  /// Everything seen over the last `length_m` of path, in the frame of the last stop.
   [[nodiscard]] std::vector<SurfacePoint> seen(double length_m) const;
-  /// ... and the path that is known, at most as long as kept_m.
+  /// Length of the stored path, at most kKept_m.
   [[nodiscard]] double length_m() const;
 
   static constexpr double kKept_m = 12.0;

@@ -1,8 +1,8 @@
-// How near every place of a finished map is to something that the laser saw, in two grids: a coarse
-// one that finds the few places that a scan may come from, and a fine one that distinguishes them.
+// Nearness of every place in a finished map to a surface, in two grids: a coarse one to find the
+// few places that a scan may come from, and a fine one to distinguish them.
 //
-// The kernels are whole numbers up to 255, so that sums of them are the same on every machine and
-// many are added at once.
+// The kernels are integers up to 255, so that their sums are the same on every machine and many are
+// added at once.
 #pragma once
 
 #include <cstddef>
@@ -20,15 +20,15 @@ namespace topogeo::localization {
 class KernelGrid {
  public:
   KernelGrid() = default;
-  /// Points in the map frame, metres. Cells are made larger than `cell_m` where the grid would
-  /// have more than 2^24 of them. `margin_m` around the points' extent is inside the grid.
+  /// Points in the map frame, metres. Cells become larger than `cell_m` if the grid would have more
+  /// than 2^24 of them. The grid extends `margin_m` beyond the points.
   KernelGrid(std::span<const Eigen::Vector2d> points_m, double cell_m, double width_m,
              double margin_m);
 
   [[nodiscard]] double cell_m() const { return cell_m_; }
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
-  /// May lie outside of the grid.
+  /// May lie outside the grid.
   [[nodiscard]] int column(double x_m) const {
     return floor_to_int((x_m - origin_m_.x()) / cell_m_);
   }
@@ -36,7 +36,7 @@ class KernelGrid {
   [[nodiscard]] Eigen::Vector2d centre_m(int column, int row) const {
     return origin_m_ + Eigen::Vector2d(column + 0.5, row + 0.5) * cell_m_;
   }
-  /// 255 at a point, falling to 0 at the width and beyond; 0 outside of the grid.
+  /// 255 at a point, falling to 0 at the width and beyond; 0 outside the grid.
   [[nodiscard]] int at(double x_m, double y_m) const {
     const double column = (x_m - origin_m_.x()) / cell_m_;
     const double row = (y_m - origin_m_.y()) / cell_m_;
@@ -62,8 +62,8 @@ class KernelGrid {
 double mean_kernel(const KernelGrid& grid, std::span<const Eigen::Vector2d> points_m,
                    const geometry::Pose2& T_map_robot);
 
-/// Climbs from a pose to where the mean kernel value is largest nearby: steps of 0.12 m and 3
-/// degrees, halved three times.
+/// Climbs from a pose to the largest mean kernel value nearby: steps of 0.12 m and 3 degrees,
+/// halved three times.
 struct Climbed {
   geometry::Pose2 T_map_robot;
   double value = 0.0;  ///< mean_kernel

@@ -1,11 +1,11 @@
-// Follows a robot in a finished map that stays as it is (docs/algorithms.md, "Localization in a
-// map"): every stop of the drive is matched with the stored stops that should look alike from where
-// odometry has it.
+// Follows a robot in a finished map that does not change (docs/algorithms.md, "Localization in a
+// map"): every stop of the drive is matched with the stored stops that should look alike from its
+// pose by odometry.
 //
-// What the stops of the drive have in common with each other gives odometry only, so errors do not
-// grow along the path. Where the state monitor reports that the robot is lost, and at the start
-// without a pose, every stop is searched for in the whole map (PlaceSearch). All matching goes
-// through the pool, and the result does not depend on who answered or when.
+// Matches between stops of the drive only improve the odometry, so errors do not grow along the
+// path. If the state monitor reports that the robot is lost, and at a start without a pose, every
+// stop is searched in the whole map (PlaceSearch). All matching goes through the pool, and the
+// result does not depend on who answered or when.
 #pragma once
 
 #include <array>
@@ -37,24 +37,24 @@ namespace topogeo::localization {
 struct LocalizedStop {
   topomap::StopId stop;
   std::int64_t stamp_ns = 0;
-  geometry::Pose2 T_map_robot;                           ///< means nothing when searching or lost
+  geometry::Pose2 T_map_robot;                           ///< meaningless when searching or lost
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< in the map frame
   LocalizationStatus status;
   std::uint32_t accepted_matches = 0;
 };
 
-/// What a tracked stop was judged by.
+/// Evidence of a tracked stop.
 struct TrackedStep {
-  UncertainPose predicted;  ///< T_map_robot by odometry from the stop before
+  UncertainPose predicted;  ///< T_map_robot by odometry from the previous stop
   StepEvidence evidence;
   std::vector<geometry::Pose2> measured;  ///< T_map_robot by each of the matches
-  std::vector<StoredMatch> accepted;      ///< those of them that are accepted
-  /// T_stop_robot of these by the scans alone, without what was predicted: for a pose graph, which
-  /// has the prediction as a measurement of its own.
+  std::vector<StoredMatch> accepted;      ///< the accepted ones
+  /// T_stop_robot of the accepted matches by the scans alone, without the prediction: for a pose
+  /// graph, which uses the prediction as a measurement of its own.
   std::vector<UncertainPose> scans_alone;
 };
 
-/// Where a robot was at the last stop of its drive.
+/// Pose of a robot at the last stop of its drive.
 struct LastPlace {
   UncertainPose T_map_robot;
   geometry::Pose2 T_odom_robot;
@@ -67,58 +67,57 @@ class MapLocalizer : public Slam {
   MapLocalizer(const LocalizerConfig& config, std::shared_ptr<const StoredMap> map,
                MatchPool& pool);
 
-  /// The next stop of the drive: the numbers of a session count on from the first that comes.
-  /// Throws std::invalid_argument otherwise. Another session goes on where the one before ended if
-  /// its odometry has the same epoch (not 0) or the pose was set since. Otherwise it is another
-  /// drive: the pose is forgotten and searched for. In the pool and in tasks the map has one of the
-  /// ids that follow those of the stored maps. False: no earlier pose moves.
+  /// Adds the next stop of the drive. The numbers of a session must be consecutive from its first
+  /// stop; throws std::invalid_argument otherwise. Another session continues where the previous one
+  /// ended if its odometry has the same epoch (not 0) or the pose was set since. Otherwise it is
+  /// another drive, whose pose is searched. In the pool and in tasks the map has one of the ids
+  /// after those of the stored maps. Returns false, because no earlier pose moves.
   bool add(std::shared_ptr<const topomap::LocalMap> map) override;
-  /// Nothing is left to be done after the last map.
+  /// Does nothing: no work is left after the last map.
   void finish() override {}
 
-  /// The robot is there, at its last stop or, before the first one, at that. Ends a search.
+  /// Sets the pose of the robot at its last stop or, before the first one, at that. Ends a search.
   void set_pose(const geometry::Pose2& T_map_robot, const Eigen::Matrix3d& covariance);
 
-  /// The robot goes on from a stop of its own that is no stop of this drive: the last one of the
-  /// map, when that has just been made. Before the first stop.
+  /// The robot continues from an own stop outside this drive: the last one of the map, if that was
+  /// just made. Call before the first stop.
   void start_after(const topomap::LocalMap& map, const geometry::Pose2& T_map_robot);
-  /// The same with what is known of a drive before. A first stop whose odometry has another epoch
-  /// is searched for.
+  /// The same for a previous drive. A first stop with another odometry epoch is searched.
   void start_after(const LastPlace& place);
 
-  /// Numbers its tasks on from there; no number may occur twice in one pool.
+  /// Continues the numbering of tasks there; no number may occur twice in one pool.
   void number_tasks_from(std::uint64_t next_task) { matching_.requests().number_from(next_task); }
   [[nodiscard]] std::uint64_t next_task() const { return matching_.requests().next_task(); }
 
-  /// Forgets the pose and searches the whole map from the next stop on.
+  /// Forgets the pose and searches the whole map, starting with the next stop.
   void search();
 
-  /// Forgets all stops but the last ones, at least `most` of them. Those that are left have other
-  /// numbers in the trajectory then.
+  /// Forgets old stops but keeps at least the `most` last ones. The others get new numbers in the
+  /// trajectory.
   void forget_stops(std::size_t most);
 
-  /// How many stops came, those that were forgotten too.
+  /// Number of received stops, including forgotten ones.
   [[nodiscard]] std::uint32_t added_stops() const { return added_; }
-  /// All stops so far that were not forgotten.
+  /// All stops that were not forgotten.
   [[nodiscard]] const std::vector<LocalizedStop>& stops() const { return stops_; }
-  /// The same as a trajectory in the frame of the map.
+  /// stops() as a trajectory in the frame of the map.
   [[nodiscard]] topomap::Trajectory trajectory() const override;
   [[nodiscard]] std::optional<topomap::StopPose> last_stop() const override;
-  /// None: the map stays as it is.
+  /// Empty: the map does not change.
   [[nodiscard]] std::vector<topomap::LoopClosure> loop_closures() const override { return {}; }
-  /// None.
+  /// Empty.
   [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override;
   [[nodiscard]] LocalizationStatus status() const override { return status_; }
   [[nodiscard]] SlamCounts counts() const override;
-  /// Of all stops so far, those that were forgotten too, by state.
+  /// Number of all stops by state, including forgotten ones.
   [[nodiscard]] const std::array<std::uint64_t, kLocalizationStates>& stops_by_state() const {
     return stops_by_state_;
   }
-  /// Of the last stop; nothing when that was searched for.
+  /// Evidence of the last stop; empty if that was searched.
   [[nodiscard]] const std::optional<TrackedStep>& last_step() const { return last_step_; }
   [[nodiscard]] std::size_t searches() const { return searches_; }
-  /// Id of the stop of the finished map that a map of the drive is given after: the number of
-  /// stored maps.
+  /// Id in the finished map after which the maps of the drive are numbered: the number of stored
+  /// maps.
   [[nodiscard]] std::uint32_t first_id() const {
     return static_cast<std::uint32_t>(matching_.stored_stops());
   }
@@ -142,16 +141,16 @@ class MapLocalizer : public Slam {
   PlaceSearch search_;
   StateMonitor monitor_;
   ContinuedPlace continued_;
-  DriveAgreement agreement_;  // of the stops that are tracked
+  DriveAgreement agreement_;  // of the tracked stops
   UncertainPose pose_;        // T_map_robot at the last stop
   bool has_pose_ = false;
-  bool monitored_ = false;                      // the last stop was, by what its pose is judged
+  bool monitored_ = false;                      // monitor_ has judged the last stop
   bool pose_is_given_ = false;                  // since the last stop
-  std::optional<geometry::Pose2> T_odom_last_;  // nothing before the first stop
-  std::optional<std::uint64_t> last_epoch_;     // of T_odom_last_, if it is known
+  std::optional<geometry::Pose2> T_odom_last_;  // empty before the first stop
+  std::optional<std::uint64_t> last_epoch_;     // of T_odom_last_, if known
   std::vector<LocalizedStop> stops_;
-  std::uint32_t added_ = 0;           // stops that came
-  std::uint64_t numbered_since_ = 0;  // of them, when some were forgotten last
+  std::uint32_t added_ = 0;           // number of received stops
+  std::uint64_t numbered_since_ = 0;  // added_ when stops were last forgotten
   std::array<std::uint64_t, kLocalizationStates> stops_by_state_{};
   std::optional<TrackedStep> last_step_;
   LocalizationStatus status_;

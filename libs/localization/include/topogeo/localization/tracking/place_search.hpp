@@ -1,9 +1,9 @@
-// The places of a map at which a robot may be, while its pose is searched for.
+// Possible places of a robot in a map during the search for its pose.
 //
-// Places that fit a stop become hypotheses; they move along with odometry and are weighed by what
-// the following stops see, against the possibility that the robot is somewhere else, until one of
-// them is left: a filter over few, discrete poses. Whoever uses it finds the places and matches the
-// stops; nothing here depends on how.
+// Places that fit a stop become hypotheses. They move with odometry and are weighted by the views
+// of the following stops, against the possibility that the robot is somewhere else, until one of
+// them is left: a filter over few, discrete poses. The caller finds the places and matches the
+// stops; the filter does not depend on how.
 #pragma once
 
 #include <cstddef>
@@ -18,50 +18,50 @@
 
 namespace topogeo::localization {
 
-/// A place where the robot may be.
+/// A possible place of the robot.
 struct PlaceHypothesis {
   UncertainPose pose;          ///< T_map_robot
-  double weight = 0.0;         ///< probability; together with the others and "elsewhere" 1
-  std::uint32_t seen = 0;      ///< stops that were matched there
-  std::uint32_t accepted = 0;  ///< of them, those whose match passed its gate
-  DriveAgreement agreement;    ///< of all of them
-  std::uint32_t wanted = 0;    ///< as many accepted before the place is taken
+  double weight = 0.0;         ///< probability; all weights and "elsewhere" add up to 1
+  std::uint32_t seen = 0;      ///< stops matched there
+  std::uint32_t accepted = 0;  ///< of these, matches that passed their gate
+  DriveAgreement agreement;    ///< of all these stops
+  std::uint32_t wanted = 0;    ///< accepted matches required to take the place
   double distance_m = 0.0;     ///< driven since the first of them
-  double fitness = 0.0;        ///< mean over the stops that were seen there
-  std::uint32_t missed = 0;    ///< stops in succession that were not matched there
+  double fitness = 0.0;        ///< mean over the stops matched there
+  std::uint32_t missed = 0;    ///< successive stops not matched there
 };
 
 class PlaceSearch {
  public:
-  /// Forgets all: a search begins.
+  /// Begins a search: forgets everything.
   void begin();
 
   /// The robot has moved: `odometry` is T_before_after over this distance.
   void move(const UncertainPose& odometry, double distance_m);
-  /// Adds the places that fit the stop and are near no hypothesis.
+  /// Adds places that fit the stop, except near existing hypotheses.
   void propose(std::span<const geometry::Pose2> T_map_robot);
-  /// The same of the place to which the drive leads, whenever that comes up.
+  /// The same for the place that the drive leads to, whenever it is found.
   void expect(const geometry::Pose2& T_map_robot);
-  /// What matching the stop at a hypothesis gave: T_map_robot of a plausible match (see
-  /// plausible()), or nothing.
+  /// Result of matching the stop at a hypothesis: T_map_robot of a plausible match (see
+  /// plausible()), or empty.
   struct Observation {
     UncertainPose T_map_robot;
     bool accepted = true;
-    double confidence = 1.0;  ///< that it is right, see match_confidence()
+    double confidence = 1.0;  ///< probability that it is right, see match_confidence()
   };
   void observe(std::size_t hypothesis, const std::optional<Observation>& measured);
-  /// Weighs the hypotheses by how well the stop fits there, in [0, 1], one number for each; those
-  /// that have come to the same place become one, hopeless ones are dropped. Throws
-  /// std::invalid_argument unless there are as many numbers as hypotheses.
+  /// Weights the hypotheses by the fitness of the stop at each of them, in [0, 1]. Merges
+  /// hypotheses that have reached the same place and drops hopeless ones. Throws
+  /// std::invalid_argument unless there is one number per hypothesis.
   void weigh(std::span<const double> fitness);
   /// Ends the work on one stop.
   void end_stop() { ++stops_; }
 
   [[nodiscard]] const std::vector<PlaceHypothesis>& hypotheses() const { return hypotheses_; }
-  /// The one of largest weight; nothing without any.
+  /// The hypothesis of largest weight; empty without any.
   [[nodiscard]] std::optional<PlaceHypothesis> best() const;
-  /// Whether it is the place: beyond doubt, and seen from often and far enough apart. `carried_m`:
-  /// over so much path, where the robot can be there only if something carried it unnoticed.
+  /// Whether it is the place: beyond doubt, and seen often and far enough apart. `carried_m`:
+  /// required path if the robot can be there only because something carried it unnoticed.
   static bool found(const PlaceHypothesis& hypothesis, double carried_m = 0.0);
 
  private:

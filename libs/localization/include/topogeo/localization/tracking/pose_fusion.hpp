@@ -1,4 +1,4 @@
-// Several measurements of one pose made one.
+// Fusion of several measurements of one pose.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace topogeo::localization {
 
-/// The most likely pose of several measurements of one pose in one frame, whose errors are
-/// independent; at least one. Their covariances must be positive definite.
+/// The most likely pose of several independent measurements in one frame; at least one. Their
+/// covariances must be positive definite.
 UncertainPose fused(const std::vector<UncertainPose>& measurements);
 
 }  // namespace topogeo::localization

@@ -1,4 +1,4 @@
-// Follows the robot from scan to scan between two stops: each scan is compared with the scan of the
+// Tracks the robot from scan to scan between two stops: each scan is compared with the scan of the
 // last stop (point to line, with the odometry as prior), so errors do not add up from scan to scan.
 #pragma once
 
@@ -15,23 +15,22 @@ namespace topogeo::localization {
 
 struct TrackedPose {
   geometry::Pose2 T_stop_robot;
-  bool matched = false;    ///< false: odometry alone since the last matched scan
-  double agreement = 0.0;  ///< share of the scan that the stop saw as well and has there, [0, 1]
+  bool matched = false;    ///< false: only odometry since the last matched scan
+  double agreement = 0.0;  ///< share of the scan in the stop's view that fits it, [0, 1]
 };
 
 class ScanTracker {
  public:
   explicit ScanTracker(ScanTrackerConfig config) : config_(config) {}
 
-  /// Starts again at a stop: its scan points in the robot frame and its odometry.
+  /// Restarts at a stop: its scan points in the robot frame and its odometry.
   void start(std::span<const topomap::ScanPoint> points, const geometry::Pose2& T_robot_laser,
              const geometry::Pose2& T_odom_robot);
 
-  /// The odometry starts anew with the next scan, which was taken about there, seen from where the
-  /// last one was.
+  /// The odometry restarts with the next scan, taken about at this pose relative to the last one.
   void restart_odometry(const geometry::Pose2& T_odom_robot, const geometry::Pose2& T_last_robot);
 
-  /// Places the next scan against the stop. Call start() first.
+  /// Places the next scan relative to the stop. Call start() first.
   TrackedPose track(std::span<const topomap::ScanPoint> points,
                     const geometry::Pose2& T_odom_robot);
 

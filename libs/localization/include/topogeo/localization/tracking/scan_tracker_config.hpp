@@ -10,7 +10,7 @@ class ConfigSchema;
 namespace topogeo::localization {
 
 struct ScanTrackerConfig {
-  OdometryNoise odometry;  ///< that of the localizer
+  OdometryNoise odometry;  ///< the localizer's
   double smallest_overlap = 0.3;
   double smallest_inliers = 0.6;
   double largest_mahalanobis2 = 16.0;

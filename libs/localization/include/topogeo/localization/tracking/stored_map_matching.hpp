@@ -1,4 +1,4 @@
-// Matches stops of a drive with the stops of a stored map that stays as it is.
+// Matches stops of a drive with the stops of a stored map that does not change.
 #pragma once
 
 #include <cstddef>
@@ -22,12 +22,12 @@
 
 namespace topogeo::localization {
 
-/// A stop of a drive as it is compared with those of a stored map.
+/// A stop of a drive, prepared for comparison with stored stops.
 struct DriveStop {
   std::shared_ptr<const topomap::LocalMap> map;  ///< with its id in the pool
   MatchFeatures features;                        ///< of the scan
-  bool follows = false;                          ///< there was a stop before
-  DriveStep step;                                ///< since then
+  bool follows = false;                          ///< there is a previous stop
+  DriveStep step;                                ///< from the previous stop
 };
 
 class StoredMapMatching {
@@ -36,22 +36,22 @@ class StoredMapMatching {
   StoredMapMatching(const LocalizerConfig& config, std::shared_ptr<const StoredMap> map,
                     MatchPool& pool);
 
-  /// Makes a stop of the drive known to the pool: the `number`th, under one of the ids that follow
-  /// those of the stored maps. Matches it with the stops before. `T_odom_last`: the odometry at the
-  /// stop before, if there is one.
+  /// Registers the `number`th stop of the drive with the pool, under one of the ids after those of
+  /// the stored maps, and matches it with the previous stops. `T_odom_last`: the odometry at the
+  /// previous stop, if any.
   DriveStop add(const topomap::LocalMap& map, std::uint32_t number,
                 const std::optional<geometry::Pose2>& T_odom_last);
 
-  /// The stored stops that should look most alike from a pose, no two of them next to each other
-  /// along the drive that mapped them; their ids are indices.
+  /// The stored stops that should look most alike from a pose, without direct neighbours along the
+  /// drive that mapped them; their ids are indices.
   [[nodiscard]] std::vector<MatchCandidate> candidates(const DriveStop& stop,
                                                        const UncertainPose& T_map_robot,
                                                        std::size_t count) const;
-  /// The places of the whole map that fit what was seen over the last metres up to this stop: the
-  /// `count` best ones. The pool searches.
+  /// The `count` best places in the whole map for the view of the last metres before this stop. The
+  /// pool searches.
   std::vector<Climbed> search(const DriveStop& stop, std::size_t count);
-  /// A task for the stop and a stored one, by index. A search space wider than the configuration
-  /// allows is cut: the whole map is searched otherwise.
+  /// A task for the stop and a stored one, by index. A search space wider than the configured limit
+  /// is cut, because the only alternative is to search the whole map.
   MatchTask task(const DriveStop& stop, std::size_t stored, const UncertainPose& T_map_robot);
   std::vector<MatchResult> run(std::span<const MatchTask> tasks) { return requests_.run(tasks); }
   /// T_map_robot by a match with a stored stop.
@@ -66,7 +66,7 @@ class StoredMapMatching {
   LocalizerConfig config_;
   std::shared_ptr<const StoredMap> map_;
   GlobalLocalizer places_;
-  PlaceQuery query_;  // of the last metres
+  PlaceQuery query_;  // for the last metres
   MatchRequests requests_;
   DriveWindow window_;
 };
