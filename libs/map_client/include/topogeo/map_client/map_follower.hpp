@@ -1,10 +1,11 @@
-// The exact current map of one robot, made of what its map store sends on the topic `map`.
+// The exact current map of one robot, assembled from the samples of its map store on the topic
+// `map`.
 //
-// No transport in here: whoever reads the topic hands over samples and disposals, in any order and
-// with any gaps. The summary of a map says which samples it consists of (samples_hash in
-// idl/map_update.idl), so a map is shown when it is whole and never before. A map store that has
-// started again, there or on another machine, sends everything again under another writer: what
-// each writer has sent is kept apart, so what its predecessor left behind never mixes in.
+// Contains no transport: the reader of the topic passes samples and disposals, in any order and
+// with any gaps. The summary of a map states its samples (samples_hash in idl/map_update.idl), so a
+// map is shown only when it is complete. A map store that restarts, there or on another machine,
+// sends everything again as another writer. The samples of each writer are kept apart, so remains
+// of a previous store never mix in.
 #pragma once
 
 #include <array>
@@ -20,29 +21,29 @@
 
 namespace topogeo::map_client {
 
-/// Names an instance of the topic, or a writer, as DDS does.
+/// Identifies an instance of the topic, or a writer, as in DDS.
 using Handle = std::array<std::uint8_t, 16>;
 
 using Element = std::shared_ptr<const msg::MapElement>;
 /// Nodes or branches, by id.
 using Elements = std::map<std::uint32_t, Element>;
 
-/// A map as the map store has it at `version`.
+/// A map in the state of the map store at `version`.
 struct Map {
   std::uint64_t map_id = 0;
-  std::uint64_t version = 0;  ///< of the trajectory that it was made with
+  std::uint64_t version = 0;  ///< version of the trajectory it is based on
   std::int64_t stamp_ns = 0;  ///< of the last stop in it
   Elements nodes = {};
   Elements branches = {};
 };
 
-/// An element that is new (no `before`), another than before, or gone (no `now`).
+/// A new element (no `before`), a changed one, or a removed one (no `now`).
 struct Change {
   Element before;
   Element now;
 };
 
-/// Of the hash of samples in a summary: one sample's part.
+/// The part of one sample in the hash of samples in a summary.
 inline std::uint64_t sample_hash(const msg::MapElement& element) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
   const auto add = [&](std::uint64_t value, int bytes) {
@@ -54,7 +55,7 @@ inline std::uint64_t sample_hash(const msg::MapElement& element) {
   return hash;
 }
 
-/// True when two elements say the same of the floor, whenever they were sent.
+/// True if two elements describe the same part of the floor, whenever they were sent.
 inline bool same_content(const msg::MapElement& a, const msg::MapElement& b) {
   return a.kind() == b.kind() && a.id() == b.id() && a.observations() == b.observations() &&
          a.last_seen_ns() == b.last_seen_ns() && a.node_kind() == b.node_kind() &&
@@ -62,38 +63,38 @@ inline bool same_content(const msg::MapElement& a, const msg::MapElement& b) {
          a.node_b() == b.node_b() && a.is_virtual() == b.is_virtual() && a.points() == b.points();
 }
 
-/// Not for several threads at a time.
+/// Not thread-safe.
 class MapFollower {
  public:
   explicit MapFollower(std::string robot_id) : robot_id_(std::move(robot_id)) {}
 
-  /// A sample. `instance` and `writer` are those of DDS's SampleInfo (instance_handle,
-  /// publication_handle). Samples of other robots are passed over. True when map() is another one
-  /// than before.
+  /// Adds a sample. `instance` and `writer` are those of DDS's SampleInfo (instance_handle,
+  /// publication_handle). Samples of other robots are ignored. True if map() has changed.
   bool put(const msg::MapElement& element, const Handle& instance, const Handle& writer);
 
-  /// A disposal, which carries no element. Do not report instances that have only lost their
-  /// writer: a map stays when its map store goes.
+  /// Handles a disposal, which carries no element. Do not report instances that have only lost
+  /// their writer: a map stays when its map store stops.
   bool remove(const Handle& instance, const Handle& writer);
 
-  /// The topic is read anew from its beginning. map() stays until all of it has come.
+  /// The topic is read again from its beginning. map() stays unchanged until all samples have
+  /// arrived.
   void begin_again() { sources_.clear(); }
 
-  /// The newest map that was whole; null before the first. Valid until the next put() or remove();
-  /// its elements are never changed and may be kept.
+  /// The newest complete map; null before the first. Valid until the next put() or remove(); its
+  /// elements never change and may be kept.
   [[nodiscard]] const Map* map() const { return map_ ? map_.get() : nullptr; }
 
-  /// True: map() is all that the map store has sent. False: there is none yet, or parts of a newer
-  /// one have come.
+  /// True if map() includes all samples of the map store. False without a map, or if parts of a
+  /// newer one have arrived.
   [[nodiscard]] bool is_current() const;
 
-  /// What makes the map of the last call, or none, into map(). Changes of versions between the two
-  /// are joined.
+  /// Changes from the map of the last call, if any, to map(). Changes of the versions in between
+  /// are combined.
   std::vector<Change> take_changes();
 
  private:
   using Key = std::pair<msg::MapElementKind, std::uint32_t>;
-  /// What one writer has sent and not disposed.
+  /// Samples of one writer that are not disposed.
   struct Source {
     std::map<Handle, Key> keys;
     Elements nodes;
@@ -172,7 +173,7 @@ inline bool MapFollower::remove(const Handle& instance, const Handle& writer) {
 inline bool MapFollower::show(const Handle& writer) {
   const Source& source = sources_.at(writer);
   if (!source.is_whole()) return false;
-  // Of others, who sent before this one, nothing is left that could become a map.
+  // Drops other writers: their samples are older and can no longer become a map.
   std::erase_if(sources_, [&](const auto& other) { return other.first != writer; });
   const msg::MapElement& summary = *source.summary;
   if (map_ && shown_writer_ == writer && shown_sample_ == summary.sequence_number()) return false;

@@ -1,5 +1,5 @@
-// Follows the map of a robot over DDS (Fast DDS), from the first moment on: what the map store has
-// sent before comes first. Needs no other part of topogeo than the generated types.
+// Follows the map of a robot over DDS (Fast DDS), including samples that the map store sent before
+// the start. Needs only the generated types of topogeo.
 #pragma once
 
 #include <algorithm>
@@ -26,36 +26,37 @@ struct MapReaderOptions {
   std::string robot_id = "robot";
   std::uint32_t domain = 0;           ///< DDS domain; unused with a participant
   std::string partition = "topogeo";  ///< --partition of the services
-  /// Of the program that uses this; it outlives the reader. Null: an own one of default settings.
+  /// Participant of the calling program, which must outlive the reader. Null: creates its own one
+  /// with default settings.
   eprosima::fastdds::dds::DomainParticipant* participant = nullptr;
-  /// A map that stays incomplete is read anew from its beginning: after so long in which nothing
-  /// comes, or after ten times as long, whatever comes. Each time in a row takes twice as long as
-  /// the one before, up to 32 times.
+  /// A map that stays incomplete is read again from its beginning: after this time without a
+  /// sample, or after ten times as long in any case. Each successive attempt waits twice as long as
+  /// the previous one, up to 32 times.
   std::chrono::milliseconds patience{2000};
 };
 
-/// Not for several threads at a time.
+/// Not thread-safe.
 class MapReader {
  public:
-  /// Joins the domain. Throws std::runtime_error when the middleware refuses.
+  /// Joins the domain. Throws std::runtime_error if the middleware refuses.
   explicit MapReader(const MapReaderOptions& options = {});
   MapReader(const MapReader&) = delete;
   MapReader& operator=(const MapReader&) = delete;
   ~MapReader();
 
-  /// Returns as soon as map() is another one than before; false when `timeout` has passed before.
+  /// Returns as soon as map() has changed; false after `timeout`.
   bool wait(std::chrono::nanoseconds timeout);
-  /// Takes what is there. True when map() is another one than before.
+  /// Takes the available samples. True if map() has changed.
   bool take();
 
-  /// As those of MapFollower.
+  /// The same as in MapFollower.
   [[nodiscard]] const Map* map() const { return follower_.map(); }
   [[nodiscard]] bool is_current() const { return follower_.is_current(); }
   std::vector<Change> take_changes() { return follower_.take_changes(); }
 
-  /// Map stores that are connected now.
+  /// Number of connected map stores.
   [[nodiscard]] int stores() const;
-  /// How often the map was read anew.
+  /// Number of times the map was read again.
   [[nodiscard]] int restarts() const { return restarts_; }
 
  private:
@@ -73,11 +74,11 @@ class MapReader {
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;
   eprosima::fastdds::dds::Topic* topic_ = nullptr;
   eprosima::fastdds::dds::DataReader* reader_ = nullptr;
-  msg::MapElement element_;  // reused, so that its points keep their memory
+  msg::MapElement element_;  // reused, so that its points keep their capacity
   Clock::time_point last_news_ = Clock::now();
-  Clock::time_point last_whole_ = Clock::now();  // or read anew
+  Clock::time_point last_whole_ = Clock::now();  // or last read again
   int restarts_ = 0;
-  int restarts_in_a_row_ = 0;  // without a whole map between them
+  int restarts_in_a_row_ = 0;  // without a complete map in between
 };
 
 inline MapReader::MapReader(const MapReaderOptions& options)
@@ -111,9 +112,10 @@ inline void MapReader::open() {
   qos.partition().push_back(options_.partition.c_str());
   subscriber_ = participant->create_subscriber(qos);
   require(subscriber_, "a subscriber");
-  // Topic names carry the version of the wire contract: peers of other versions are not seen.
+  // Topic names include the version of the wire contract, so peers with other versions do not
+  // match.
   const std::string name = "topogeo/v" + std::to_string(msg::kSchemaVersion) + "/map";
-  // One that the program has already; looking it up makes another object for it.
+  // Reuses a topic that the program already has; looking it up creates another object for it.
   topic_ = participant->lookup_topicdescription(name) != nullptr
                ? participant->find_topic(name, {0, 0})
                : participant->create_topic(name, type_.get_type_name(), dds::TOPIC_QOS_DEFAULT);
@@ -123,10 +125,10 @@ inline void MapReader::open() {
 
 inline void MapReader::make_reader() {
   namespace dds = eprosima::fastdds::dds;
-  // As the map store's writer offers it (role `state` in deploy/dds_profiles.xml): the last sample
-  // of each element, for late readers, too. The reader keeps all that wait: with a place for each
-  // element only, an element that somebody else writes takes the place of the store's, which is
-  // never sent again. Where the places of an element are full the store sends again.
+  // Matches the offer of the map store's writer (role `state` in deploy/dds_profiles.xml): the last
+  // sample of each element, also for late readers. The reader keeps all waiting samples: with a
+  // history of one per element, a sample from another writer would replace that of the store, which
+  // is never sent again. If the limit of an element is reached, the store resends.
   constexpr int kMostElements = 32768;
   constexpr int kMostOfAnElement = 256;
   constexpr int kAllocatedAtFirst = 16;
@@ -172,7 +174,7 @@ inline bool MapReader::take() {
     if (info.valid_data) {
       changed |= follower_.put(element_, instance, writer);
     } else if (info.instance_state != dds::NOT_ALIVE_NO_WRITERS_INSTANCE_STATE) {
-      // Disposed; alive where a sample that waits behind it came after the disposal.
+      // Disposed; alive if a waiting sample was sent after the disposal.
       changed |= follower_.remove(instance, writer);
     }
   }
@@ -180,7 +182,7 @@ inline bool MapReader::take() {
 }
 
 inline bool MapReader::wait(std::chrono::nanoseconds timeout) {
-  constexpr std::chrono::milliseconds kSlice{100};  // between two looks whether it is stuck
+  constexpr std::chrono::milliseconds kSlice{100};  // between two checks for a stuck map
   const Clock::time_point end = Clock::now() + timeout;
   while (!take()) {
     start_again_if_stuck();
@@ -194,7 +196,7 @@ inline bool MapReader::wait(std::chrono::nanoseconds timeout) {
 
 inline void MapReader::start_again_if_stuck() {
   constexpr int kMostDoublings = 5;
-  constexpr int kWhateverComes = 10;  // as many times the patience
+  constexpr int kWhateverComes = 10;  // multiple of the patience
   const Clock::time_point now = Clock::now();
   if (follower_.is_current() || stores() == 0) {
     last_news_ = last_whole_ = now;
