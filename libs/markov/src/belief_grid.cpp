@@ -50,7 +50,7 @@ void BeliefGrid::clear() {
 }
 
 void BeliefGrid::recentre(Cell centre) {
-  // 64 bits: the two centres may be at opposite ends of what a cell can name.
+  // 64 bits: the difference of two extreme centres exceeds 32 bits.
   const std::int64_t by_x = std::int64_t{centre.x} - centre_.x;
   const std::int64_t by_y = std::int64_t{centre.y} - centre_.y;
   centre_ = centre;

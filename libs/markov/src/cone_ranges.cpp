@@ -11,7 +11,7 @@ namespace topogeo::markov {
 namespace {
 
 constexpr double kBearing_rad = 2.0 * std::numbers::pi / ConeRanges::kBearings;
-/// 58 MB of tables; a robot needs a thousand at a place, so making them again costs little.
+/// 58 MB of tables; a robot needs a thousand per place, so making them again costs little.
 constexpr std::size_t kMostTables = 120'000;
 
 }  // namespace

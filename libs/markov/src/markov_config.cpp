@@ -41,7 +41,7 @@ std::optional<std::vector<ReliabilityBand>> bands_of(const support::NumberRows& 
   return bands;
 }
 
-/// A matrix in memory whose values are fewer or more than its cells has rows that are refused.
+/// If the number of values of a matrix in memory does not fit its cells, the rows are refused.
 support::NumberRows rows_of_matrix(const TransitionMatrix& matrix) {
   support::NumberRows rows;
   const auto columns = static_cast<std::size_t>(std::max(1, matrix.columns));

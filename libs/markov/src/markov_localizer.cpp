@@ -40,7 +40,7 @@ void add_turn(double angle_rad, std::vector<Move>& moves) {
 
 bool meets_obstacle(const ObstacleCells& map, const Eigen::Vector2d& from_m,
                     const Eigen::Vector2d& to_m) {
-  // A tenth of a cell: a corner that is cut by less is within what a cell rounds away.
+  // A tenth of a cell: a smaller cut of a corner is within the rounding to cells.
   const int steps = 1 + static_cast<int>((to_m - from_m).norm() / (0.1 * map.cell_m()));
   for (int i = 0; i <= steps; ++i) {
     const double part = static_cast<double>(i) / steps;
@@ -94,7 +94,8 @@ void MarkovLocalizer::step(const geometry::Pose2& T_map_expected, std::span<cons
   belief_.normalize();
 }
 
-/// The motion from start to end in that many steps of the matrix, the last one perhaps a part.
+/// Applies the motion from start to end in this many steps of the matrix, the last one maybe a
+/// part.
 void MarkovLocalizer::apply(const geometry::Pose2& T_start_end, const TransitionMatrix& matrix,
                             double heading_rad, double steps, MovementReport& report) {
   constexpr double kNone = 1e-9;  // so that 0.3 m are three steps of 0.1 m

@@ -69,7 +69,7 @@ std::uint64_t ObstacleCells::occupied_bits(int x, int y) const {
   if (y < 0 || y >= height_) return 0;
   const std::uint64_t* row = words_.data() + static_cast<std::ptrdiff_t>(y) * words_a_row_;
   const auto word = [&](int i) { return i >= 0 && i < words_a_row_ ? row[i] : std::uint64_t{0}; };
-  const int first = x >> 6;  // rounds down for negative x, too
+  const int first = x >> 6;  // rounds down, also for negative x
   const int shift = x & 63;
   if (shift == 0) return word(first);
   return (word(first) >> shift) | (word(first + 1) << (64 - shift));

@@ -61,7 +61,7 @@ void PoseGrid::blur_along(std::size_t stride, int length, double sigma_cells) {
   constexpr double kNone = 1e-3;
   constexpr double kTail = 3.0;
   if (sigma_cells < kNone) return;
-  // Few cells: the weights that have this variance; more: those of the normal distribution.
+  // For a few cells: weights with this variance; for more: those of the normal distribution.
   const int reach = std::max(1, static_cast<int>(std::ceil(kTail * sigma_cells)));
   std::vector<double> weights(static_cast<std::size_t>(reach) + 1);
   constexpr double kFewCells = 0.6;

@@ -28,7 +28,7 @@ double normal_density(double off_m, double sigma_m) {
   return geometry::exp(-0.5 * ratio * ratio) / (sigma_m * std::sqrt(2.0 * std::numbers::pi));
 }
 
-/// Any error up to far_off_m alike; its ends are as blurred as an exact reading is.
+/// Uniform up to far_off_m, with ends blurred like an exact reading.
 double far_density(double off_m, const PoseGridConfig& config) {
   const double inside = 0.5 + 0.5 * (config.far_off_m - off_m) / config.hit_sigma_m;
   return std::clamp(inside, 0.0, 1.0) / (2.0 * config.far_off_m);
@@ -95,7 +95,7 @@ void PoseLocalizer::keep_free_cells() {
   grid_.set_uniform();
 }
 
-/// Logarithm of the probability of a reading by what is expected, in bins.
+/// Logarithm of the probability of a reading by the expected distance, in bins.
 void PoseLocalizer::make_log_table(double reading_m, std::vector<float>& table) const {
   const auto bins = static_cast<std::size_t>(max_range_m_ / kBin_m) + 2;
   table.resize(bins);
@@ -205,7 +205,7 @@ void PoseLocalizer::watch_agreement(std::span<const float> ranges_m) {
   update_estimate();
 }
 
-/// Mean and covariance; the grid moves so that the mean is near its middle.
+/// Computes mean and covariance and shifts the grid so that the mean is near its middle.
 void PoseLocalizer::update_estimate() {
   const PoseGrid::Moments moments = grid_.moments();
   const auto cells = [&](double offset_m) {
@@ -218,7 +218,7 @@ void PoseLocalizer::update_estimate() {
                            T_map_expected_.y_m + moments.mean.y(),
                            geometry::wrap_angle(T_map_expected_.theta_rad + moments.mean.z())};
   estimate_.covariance = moments.covariance;
-  constexpr int kFar_cells = 3;  // moving it loses what is at the edge
+  constexpr int kFar_cells = 3;  // shifting loses values at the edge
   if (std::abs(by_x) < kFar_cells && std::abs(by_y) < kFar_cells && by_heading == 0) return;
   grid_.shift(-by_x, -by_y, -by_heading);
   T_map_expected_.x_m += by_x * grid_.cell_m();

@@ -99,8 +99,8 @@ void SonarModel::look_around(const ObstacleCells& map, const geometry::Pose2& T_
 void SonarModel::take_surroundings(const ObstacleCells& map, Cell centre, double reach_m) {
   margin_ = static_cast<int>(std::ceil(reach_m / cell_m_)) + 2;
   const int rows = size_ + 2 * margin_;
-  // Two words more than the bits need: surroundings_bits reads the word after its first one, and
-  // of a wide window also for its second word.
+  // Two words more than the bits need: surroundings_bits reads the word after its first one, and in
+  // a wide window also after its second one.
   words_a_row_ = (rows + 63) / 64 + 2;
   surroundings_.resize(static_cast<std::size_t>(words_a_row_) * static_cast<std::size_t>(rows));
   const Cell corner{centre.x - size_ / 2 - margin_, centre.y - size_ / 2 - margin_};
@@ -116,11 +116,11 @@ std::uint64_t SonarModel::surroundings_bits(int x, int y) const {
   const std::uint64_t* word =
       surroundings_.data() + static_cast<std::ptrdiff_t>(y) * words_a_row_ + (x >> 6);
   const int shift = x & 63;
-  // Shifted in two parts: by 64 at once would be undefined.
+  // Shifted in two parts: a shift by 64 is undefined.
   return (word[0] >> shift) | ((word[1] << 1) << (63 - shift));
 }
 
-/// Fills crossings_: from border to border of the cells, in order of distance.
+/// Fills crossings_ with the borders of cells, in order of distance.
 void SonarModel::follow_ray(const Eigen::Vector2d& start_cells, double bearing_rad) {
   const geometry::SinCos direction = geometry::sincos(bearing_rad);
   BorderWalk columns{start_cells.x(), direction.cos};
@@ -140,8 +140,8 @@ void SonarModel::follow_ray(const Eigen::Vector2d& start_cells, double bearing_r
   }
 }
 
-/// The ray of crossings_ from every asked cell at once: in each row of the window the cells whose
-/// ray meets an obstacle at this crossing get their reading and are done.
+/// Casts the ray of crossings_ from every requested cell at once: in each row of the window, cells
+/// whose ray meets an obstacle at this crossing get their reading and are done.
 void SonarModel::cast(std::span<double> readings) {
   open_ = asked_;
   const int words = (size_ + 63) / 64;
@@ -185,7 +185,7 @@ double SonarModel::probability_of(double difference_m) const {
   return 0.0;
 }
 
-/// Fills differences_ and counts and rates the readings in `match`; returns the sum of the weights
+/// Fills differences_, counts and rates the readings in `match`, and returns the sum of the weights
 /// of the compared readings.
 double SonarModel::add_differences(std::span<const float> ranges_m, PerceptualMatch& match) {
   const auto cells = static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_);

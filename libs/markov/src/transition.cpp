@@ -34,7 +34,7 @@ void check_matrix(const std::string& key, const TransitionMatrix& matrix) {
   if (!(sum >= 0.1 && sum <= 1.01)) support::refuse_value(key, sum, "a sum between 0.1 and 1.01");
 }
 
-/// Values on a square of cells around the expected place, from which the taps are read off.
+/// Values on a square of cells around the expected place, converted to taps.
 class TapSquare {
  public:
   explicit TapSquare(int half)
@@ -102,13 +102,13 @@ void check(const TransitionModel& model) {
 
 std::vector<Tap> turned(const TransitionMatrix& matrix, ArrowSense sense, double heading_rad) {
   constexpr double kQuarter_rad = 0.5 * std::numbers::pi;
-  constexpr double kSame_rad = 1e-9;  // what turning by quarters many times leaves as an error
+  constexpr double kSame_rad = 1e-9;  // error after many turns by quarters
   const double quarters = std::round(heading_rad / kQuarter_rad);
   const bool exact = std::abs(heading_rad - quarters * kQuarter_rad) < kSame_rad;
   const int quarters_in_turn = (static_cast<int>(quarters) % 4 + 4) % 4;
   const geometry::SinCos direction = geometry::sincos(heading_rad);
 
-  // A turned cell is at most half_rows + half_columns away, shared with the next one.
+  // A turned cell is at most half_rows + half_columns away and shared with the next one.
   TapSquare square{matrix.rows / 2 + matrix.columns / 2 + 1};
   std::size_t i = 0;
   for (int row = 0; row < matrix.rows; ++row) {
@@ -140,7 +140,7 @@ double spread(std::span<const Tap> taps, std::span<const RowBits> free, BeliefGr
   const std::span<double> to = grid.current();
   const int size = grid.size();
   for (const Tap& tap : taps) {
-    // From here on x and y are those of the cell that the probability comes from.
+    // Below, x and y are those of the cell that the probability comes from.
     const auto [dx, dy] = tap.offset;
     const int first_x = std::max(0, -dx);
     const int end_x = size - std::max(0, dx);

@@ -1,9 +1,9 @@
-// The state of Markov localization: probabilities of a square window of cells around the cell where
-// the robot is expected, in two buffers (MACONDO, III.1).
+// The state of Markov localization: probabilities of a square window of cells around the expected
+// cell of the robot, in two buffers (MACONDO, III.1).
 //
 // The axes of the window are those of the map. The window follows the expected position in whole
-// cells; a cell at offset (dx, dy) stands for the robot being that many cells from where it is
-// expected, wherever within its cell that is. So rounding to cells never adds up along a route.
+// cells; a cell at offset (dx, dy) means that the robot is that many cells from its expected
+// position, wherever within its cell that is. So rounding to cells never adds up along a route.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +30,7 @@ class BeliefGrid {
 
   /// Probability of the cell at an offset from the centre; zero outside the window.
   [[nodiscard]] double at(Cell offset) const;
-  /// Puts one probability. Throws std::out_of_range outside the window.
+  /// Sets one probability. Throws std::out_of_range outside the window.
   void set(Cell offset, double probability);
 
   /// size x size values, lowest row first, x within a row.
@@ -38,23 +38,23 @@ class BeliefGrid {
   [[nodiscard]] std::span<double> current() { return current_; }
   [[nodiscard]] std::span<const double> previous() const { return previous_; }
 
-  /// What is current becomes previous; the new current state is all zero.
+  /// Swaps the buffers: current becomes previous, and the new current state is all zero.
   void begin_update();
   void clear();
 
-  /// The robot moves as expected: window and probabilities go along together.
+  /// The robot moves as expected: the window moves with its probabilities.
   void carry_to(Cell centre) { centre_ = centre; }
   /// The robot does not move but is expected elsewhere: every probability stays at its cell of the
-  /// map. What is outside the new window is lost, what comes into it is zero.
+  /// map. Cells outside the new window are lost, new cells are zero.
   void recentre(Cell centre);
 
-  /// Zero where the mask (rows of free_cells_of_window) has none.
+  /// Sets cells to zero that are not in the mask (rows of free_cells_of_window).
   void keep_only(std::span<const RowBits> mask);
 
   [[nodiscard]] double sum() const;
-  /// Divides by the sum, so that it becomes one; returns the sum from before. All zero stays all
-  /// zero. Probabilities below 1e-15 become zero: they decide nothing, and slow denormal numbers
-  /// never come up.
+  /// Divides by the sum, so that it becomes one; returns the previous sum. All zero stays all zero.
+  /// Probabilities below 1e-15 become zero: they have no effect, and slow denormal numbers never
+  /// occur.
   double normalize();
 
  private:

@@ -1,5 +1,5 @@
-// What a sonar anywhere on a known grid would measure: the nearest obstacle within its cone, from
-// tables that are made where they are asked for first.
+// Predicted range of a sonar anywhere on a known grid: the nearest obstacle within its cone, from
+// tables made on demand.
 #pragma once
 
 #include <array>
@@ -14,24 +14,24 @@ namespace topogeo::markov {
 
 class ConeRanges {
  public:
-  static constexpr int kBearings = 240;  ///< of a table, 1.5 degrees apart
+  static constexpr int kBearings = 240;  ///< per table, 1.5 degrees apart
 
   /// `half_cone_rad` in [0, pi/2], `max_range_m` in (0, 60]; throws std::invalid_argument
-  /// otherwise. Outside the map there is nothing. The map must outlive it.
+  /// otherwise. Space outside the map is empty. The map must outlive this.
   ConeRanges(const ObstacleCells& map, double half_cone_rad, double max_range_m);
 
-  /// Distance from a point of the map frame, to half a cell, to the middle of what a ray crosses
-  /// of the first obstacle cell, metres; the shortest over the cone around the bearing (radians).
-  /// At most max_range_m; 0 in an obstacle.
+  /// Distance from a point of the map frame, to half a cell, to the middle of a ray's stretch
+  /// through the first obstacle cell, metres; the shortest over the cone around the bearing
+  /// (radians). At most max_range_m; 0 in an obstacle.
   [[nodiscard]] double range_m(const Eigen::Vector2d& from_m, double bearing_rad) {
     return 0.001 * static_cast<double>(range_mm(from_m, bearing_index(bearing_rad)));
   }
 
-  /// The same with the bearing as the index of the nearest one of a table.
+  /// The same for the index of a table's bearing, in millimetres.
   [[nodiscard]] std::uint16_t range_mm(const Eigen::Vector2d& from_m, int bearing);
   [[nodiscard]] static int bearing_index(double bearing_rad);
 
-  /// Tables that are held now.
+  /// Number of tables in memory.
   [[nodiscard]] std::size_t tables() const { return tables_.size(); }
 
  private:

@@ -1,5 +1,5 @@
-// The obstacles of a known environment as cells, packed one bit a cell so that a row of the window
-// is tested with a few word operations (MACONDO, III.1).
+// The obstacles of a known environment as cells, packed one bit per cell, so that a few word
+// operations test a row of the window (MACONDO, III.1).
 #pragma once
 
 #include <array>
@@ -25,17 +25,17 @@ struct CellsView {
   int height = 0;
   double resolution_m = 0.0;
   Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();  ///< outer corner of cell (0, 0), map frame
-  /// width x height, row after row, x within a row; anything but 0 is an obstacle.
+  /// width x height, row after row, x within a row; any value except 0 is an obstacle.
   std::span<const std::uint8_t> occupied;
 };
 
 class ObstacleCells {
  public:
-  /// Copies the cells; `cells_a_side` squared of them become one, which is an obstacle if any of
-  /// them is (2 makes cells of 10 cm of cells of 5 cm). A last row or column that is not whole
-  /// counts as one more. Throws std::invalid_argument naming the field: sides not in [1, 100000],
-  /// a cell not in [0.01, 1] m, an origin that is not finite, `occupied` of another size,
-  /// `cells_a_side` not in [1, 100].
+  /// Copies the cells. `cells_a_side` squared of them become one, which is an obstacle if any of
+  /// them is (2 turns cells of 5 cm into cells of 10 cm); an incomplete last row or column becomes
+  /// one more. Throws std::invalid_argument naming the field: sides not in [1, 100000], a cell not
+  /// in [0.01, 1] m, an origin that is not finite, `occupied` of another size, `cells_a_side` not
+  /// in [1, 100].
   explicit ObstacleCells(const CellsView& view, int cells_a_side = 1);
 
   [[nodiscard]] int width() const { return width_; }
@@ -51,13 +51,13 @@ class ObstacleCells {
   [[nodiscard]] bool occupied(Cell cell) const {
     return inside(cell) && (occupied_bits(cell.x, cell.y) & 1U) != 0;
   }
-  /// A place for the robot: within the map and no obstacle.
+  /// Possible cell of the robot: within the map and no obstacle.
   [[nodiscard]] bool free(Cell cell) const { return inside(cell) && !occupied(cell); }
 
-  /// The cell around a point of the map frame; may be outside. A coordinate further than 1e9 cells
-  /// from the origin counts as 1e9 cells away.
+  /// The cell that contains a point of the map frame; may be outside. A coordinate further than 1e9
+  /// cells from the origin counts as 1e9 cells away.
   [[nodiscard]] Cell cell_of(const Eigen::Vector2d& point_m) const;
-  /// Where in its cell a point lies, in cells, [0, 1) both.
+  /// Position of a point within its cell, in cells, [0, 1) both.
   [[nodiscard]] Eigen::Vector2d place_in_cell(const Eigen::Vector2d& point_m) const;
   [[nodiscard]] Eigen::Vector2d centre_m(Cell cell) const;
 
@@ -83,8 +83,8 @@ inline bool bit_of(const RowBits& row, int column) {
   return ((row[i / 64] >> (i % 64)) & 1U) != 0;
 }
 
-/// Which cells of the window of `size` x `size` cells around `centre` are free; lowest row first.
-/// `size` is odd, at most 127; `rows` keeps its memory.
+/// Free cells of the window of `size` x `size` cells around `centre`; lowest row first. `size` is
+/// odd, at most 127; `rows` keeps its capacity.
 void free_cells_of_window(const ObstacleCells& map, Cell centre, int size,
                           std::vector<RowBits>& rows);
 

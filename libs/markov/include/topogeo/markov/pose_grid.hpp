@@ -1,6 +1,6 @@
-// Probabilities of how far position and heading are off from where odometry has the robot: a grid
-// over x, y (axes of the map) and heading. It goes along with the expected pose, so motion does
-// not blur it; only errors of the heading and of odometry do.
+// Probabilities of the errors of position and heading relative to odometry: a grid over x, y (axes
+// of the map) and heading. It moves with the expected pose, so motion does not blur it; only errors
+// of the heading and of odometry do.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,7 @@ class PoseGrid {
                static_cast<std::size_t>(side_) +
            static_cast<std::size_t>(x);
   }
-  /// What a cell stands for: metres and radians off the expected pose.
+  /// Offset of a cell from the expected pose, metres and radians.
   [[nodiscard]] double offset_m(int cell) const {
     const int from_middle = cell - side_ / 2;
     return from_middle * cell_m_;
@@ -44,20 +44,21 @@ class PoseGrid {
   /// A normal distribution around the middle.
   void set_normal(double sigma_m, double sigma_rad);
   void set_uniform();
-  /// The robot moves by `step_m` (map frame, as expected): a heading that is off leads elsewhere.
+  /// The robot moves by `step_m` (map frame, as expected): a wrong heading leads elsewhere.
   void drive(const Eigen::Vector2d& step_m);
-  /// Normal errors of this size more in x and y, and in the heading.
+  /// Adds normal errors of this size in x and y, and in the heading.
   void blur(double sigma_m, double sigma_rad);
-  /// Everything moves by whole cells and headings; what leaves the grid is lost.
+  /// Moves everything by whole cells and headings; values that leave the grid are lost.
   void shift(int by_x, int by_y, int by_heading);
-  /// Makes the sum one, negligible values zero. False, without a change, when it is zero.
+  /// Normalizes the sum to one and negligible values to zero. False, without a change, if it is
+  /// zero.
   bool normalize();
 
   struct Moments {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< m, m, rad off the expected pose
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   };
-  /// Of a grid whose sum is one.
+  /// Moments of a normalized grid.
   [[nodiscard]] Moments moments() const;
 
  private:

@@ -3,10 +3,10 @@
 // Environments, Journal of Artificial Intelligence Research 11, 1999; docs/algorithms.md, "Markov
 // localization").
 //
-// What MACONDO's window leaves out and wheels and sonars need: the heading is estimated, each
-// reading multiplies the belief by its own probability (of what is expected, of something nearer
-// that is not on the map, or of anything), and sonars are heard every decimetre and not at nodes
-// alone. The window holds errors of odometry, so motion itself does not blur it.
+// MACONDO's window lacks what wheels and sonars need: here the heading is estimated, each reading
+// multiplies the belief by its own probability (of the expected obstacle, of a nearer one that is
+// not on the map, or of any distance), and sonars are used every decimetre and not only at nodes.
+// The window contains errors of odometry, so motion itself does not blur it.
 #pragma once
 
 #include <span>
@@ -32,25 +32,25 @@ struct PoseEstimate {
 
 class PoseLocalizer {
  public:
-  /// The robot stands at its base station. Throws std::invalid_argument for settings or sensors
-  /// out of range. `max_range_m`: of the sensors, beyond it they hear nothing.
+  /// Starts at the base station of the robot. Throws std::invalid_argument for settings or sensors
+  /// out of range. `max_range_m`: range of the sensors, beyond which they detect nothing.
   PoseLocalizer(const PoseGridConfig& config, ObstacleCells map, std::vector<RangeSensor> sensors,
                 double max_range_m, const geometry::Pose2& T_map_station);
   PoseLocalizer(const PoseLocalizer&) = delete;
   PoseLocalizer& operator=(const PoseLocalizer&) = delete;
 
-  /// It has moved by this, by its odometry (robot frame).
+  /// The robot has moved by this, by its odometry (robot frame).
   void move(const geometry::Pose2& T_robot_then_now);
 
-  /// What the sensors read here; metres, scan::Scan::kNoReturn for none. Throws
-  /// std::invalid_argument for another number of readings or a bad one.
+  /// Uses the current readings of the sensors; metres, scan::Scan::kNoReturn for none. Throws
+  /// std::invalid_argument for another number of readings or an invalid one.
   void perceive(std::span<const float> ranges_m);
 
-  /// Smoothed share of readings up to far_from_m that agree with what the map has at the estimated
-  /// pose, [0, 1]; 1 before there was one.
+  /// Smoothed share of readings up to far_from_m that agree with the map at the estimated pose, [0,
+  /// 1]; 1 before the first reading.
   [[nodiscard]] double agreement() const { return agreement_; }
-  /// False when the readings have not agreed with the map for long, or no free cell is possible:
-  /// then the whole window is possible again.
+  /// False if the readings have not agreed with the map for long, or no free cell is possible: then
+  /// the whole window is possible again.
   [[nodiscard]] bool located() const { return reason_.empty(); }
   [[nodiscard]] const std::string& reason() const { return reason_; }
   [[nodiscard]] const PoseEstimate& estimate() const { return estimate_; }
@@ -67,7 +67,7 @@ class PoseLocalizer {
   ObstacleCells map_;
   std::vector<RangeSensor> sensors_;
   double max_range_m_;
-  std::vector<ConeRanges> cones_;     ///< one for each opening angle
+  std::vector<ConeRanges> cones_;     ///< one per opening angle
   std::vector<std::size_t> cone_of_;  ///< by sensor
   PoseGrid grid_;
   geometry::Pose2 T_map_expected_;
