@@ -27,7 +27,7 @@ bool AddressFilter::evaluate(const SerializedPayload& payload,
     message >> length;  // robot_id
     if (!message.jump(length)) return false;
     message >> number >> number;  // stamp_ns, sequence_number
-    message >> length;            // with the zero at the end
+    message >> length;            // including the terminating zero
     const char* const begin = message.getCurrentPosition();
     if (length == 0 || !message.jump(length)) return false;
     return std::string_view(begin, std::size_t{length} - 1) == addressee_;

@@ -1,4 +1,4 @@
-// Samples that have arrived at a reader that keeps the last ones, until the program takes them.
+// Samples that have arrived at a keep-last reader, until the program takes them.
 #pragma once
 
 #include <chrono>
@@ -20,28 +20,29 @@ namespace topogeo::messaging::detail {
 struct Arrival {
   SampleInfo info;
   std::uint64_t number = 0;            ///< sequence number of its writer
-  std::shared_ptr<void> message = {};  ///< null where nothing can be read of it: a disposal
+  std::shared_ptr<void> message = {};  ///< null for a disposal, which has no content
 };
 
 /// Keeps the newest `depth` samples of each instance and writer. The history of the middleware
-/// keeps so many of each instance, whoever wrote them: there a stranger's sample takes the place of
-/// a peer's that nobody has read yet and that is never sent again, because it was acknowledged.
+/// keeps that many of each instance over all writers: there a stranger's sample can displace a
+/// peer's unread one, which is never sent again because it was acknowledged.
 ///
-/// For one thread that takes and any that put.
+/// Serves one thread that takes and any number that put.
 class Arrivals {
  public:
-  /// `capacity`: samples of all instances and writers, beyond which is_full().
+  /// `capacity`: number of samples over all instances and writers beyond which is_full().
   Arrivals(std::size_t depth, std::size_t capacity) : depth_(depth), capacity_(capacity) {}
 
-  /// Samples are in the middleware that were not put here.
+  /// The middleware has samples that were not put here yet.
   void announce();
-  /// announce() or a true is_full() since the last call.
+  /// Whether announce() was called or is_full() was true since the last call.
   bool take_announced();
 
   /// Adds samples; those of one writer may come in any order within a batch.
   void put(std::vector<Arrival> batch);
 
-  /// Takes the one that waits the longest; those of a writer come in the order of their numbers.
+  /// Takes the sample that has waited longest; samples of a writer come in the order of their
+  /// numbers.
   bool take(Arrival& oldest);
 
   /// True when `more` samples do not fit. They stay in the middleware until some here are taken.
@@ -63,7 +64,7 @@ class Arrivals {
   std::condition_variable arrived_;
   Queue queue_;                                        // oldest first
   std::map<Key, std::deque<Queue::iterator>> by_key_;  // ascending by number
-  bool announced_ = true;                              // some may have come before
+  bool announced_ = true;                              // samples may have arrived before
 };
 
 }  // namespace topogeo::messaging::detail

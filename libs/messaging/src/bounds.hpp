@@ -1,6 +1,5 @@
 // Checks that the generated code leaves out: schema version, bounds of sequences, values of
-// enumerations, keys that stand for texts. Which fields have them comes from the IDL
-// (cmake/IdlBounds.cmake).
+// enumerations, keys that represent texts. cmake/IdlBounds.cmake finds the fields in the IDL.
 #pragma once
 
 #include <cstddef>
@@ -23,15 +22,15 @@ class BoundsCheck {
  public:
   void schema(std::uint32_t version);
   void size(const char* field, std::size_t size, std::size_t bound);
-  /// An enumeration, which a peer may have filled with any number.
+  /// Checks an enumeration, which a peer may have filled with any number.
   void value(const char* field, std::uint32_t value, std::uint32_t last);
-  /// The number that stands for a text in the key of the topic.
+  /// Checks the number that represents a text in the key of the topic.
   template <class BoundedString>
   void key(const char* field, std::uint64_t key, const BoundedString& text) {
     this->key(field, key, std::string_view(text.c_str(), text.size()));
   }
   void key(const char* field, std::uint64_t key, std::string_view text);
-  /// The checks of `body` are about members of `field`.
+  /// Runs the checks of `body` on members of `field`.
   template <class Body>
   void inside(const char* field, const Body& body) {
     const std::size_t outside = path_.size();
@@ -47,7 +46,7 @@ class BoundsCheck {
   Defect defect_;
 };
 
-/// Why a message must not travel; empty when it may.
+/// The reason why a message must not travel; empty when it may.
 template <class Message>
 Defect find_defect(const Message& message) {
   BoundsCheck check;

@@ -34,7 +34,7 @@ std::vector<std::string> ConnectedPrograms::missing_of(const Handle& reader) con
   std::vector<std::string> topics = counted_->read_with(reader);
   std::erase_if(topics, [&](const std::string& topic) {
     const auto writer = std::ranges::find(others_, topic, &detail::WriterCore::topic);
-    // Without a writer here another program sends it.
+    // Without a writer here, another program sends the topic.
     return writer == others_.end() || (*writer)->connected_with(reader);
   });
   return topics;

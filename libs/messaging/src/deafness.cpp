@@ -12,15 +12,15 @@ namespace {
 
 using Status = msg::ServiceStatus;
 
-/// A shorter silence is none for a judgement by two statuses.
+/// A shorter silence does not count when two statuses are compared.
 constexpr double kLeastSilence_s = 5.0;
-/// The sender's rate is that of so long before its status: the window of TotalRate, and half a
-/// second by which samples of the total may miss its start.
+/// Time before its status that the sender's rate covers: the window of TotalRate, and half a second
+/// by which samples of the total may miss its start.
 constexpr double kRateWindow_s = 5.5;
-/// Peers have met by then, and a first rate is over a whole window.
+/// Peers have met by then, and a first rate covers a whole window.
 constexpr double kAcquainted_s = 10.0;
 constexpr double kLeastRate_hz = 1.0;
-/// Statuses come twice a second: four of them lost.
+/// Statuses come twice a second, so four were lost.
 constexpr double kFresh_s = 2.0;
 
 const msg::TopicTraffic* traffic_of(const Status& status, std::string_view topic, bool sent) {
@@ -36,7 +36,7 @@ bool works(const Status& status) {
   return at_work && status.uptime_s() >= kAcquainted_s;
 }
 
-/// A topic whose messages are for some of its readers alone may give one of them none.
+/// An addressed topic may have no messages for one of its readers.
 bool is_for_all(std::string_view topic) {
   const auto topics = all_topics();
   const auto found =
@@ -50,7 +50,7 @@ bool reports_deafness(const Status& status) {
   });
 }
 
-/// The only other service that sends the topic for the robot; null where there is none, or several.
+/// The only other service that sends the topic for the robot; null if there is none, or several.
 const HeardStatus* only_sender(std::string_view topic, const Status& reader,
                                std::span<const HeardStatus> all) {
   const HeardStatus* sender = nullptr;
@@ -109,7 +109,7 @@ std::string deafness(const HeardStatus& service, std::span<const HeardStatus> al
   }
   const HeardStatus* const sender = only_sender(topic, status, all);
   if (sender == nullptr || !works(*sender->status)) return {};
-  // The messages that the sender counts must have been sent within the silence.
+  // The messages that the sender counts must all have been sent within the silence.
   if (silence_s + service.age_s - sender->age_s < kRateWindow_s) return {};
   const double rate_per_s = traffic_of(*sender->status, topic, true)->rate_per_s();
   if (rate_per_s < kLeastRate_hz) return {};
@@ -145,9 +145,9 @@ bool DeafnessWatch::hears_sender(const Status& own, Time now) const {
   });
 }
 
-// A service that has handled a hundred messages at a stretch may hear of them from the sender
-// before its own status counts them. So each of its own statuses is judged by what the others had
-// sent when the one before was made.
+// The sender's status may count messages that this service handled in one go but has not reported
+// yet. So each of its own statuses is compared with the statuses that the others had sent by the
+// previous one.
 std::string DeafnessWatch::check(const Status& own, Time now) {
   if (own.uptime_s() == own_uptime_s_) return verdict_;
   own_uptime_s_ = own.uptime_s();

@@ -12,7 +12,7 @@ namespace topogeo::messaging {
 
 namespace {
 
-/// A partition may be a pattern; no partition is one without a name.
+/// A partition may be a pattern; no partition is the same as one without a name.
 bool meet(const RemoteEndpoint& a, const RemoteEndpoint& b) {
   const std::vector<std::string> unnamed = {""};
   const auto& names_a = a.partitions.empty() ? unnamed : a.partitions;
@@ -28,7 +28,7 @@ bool meet(const RemoteEndpoint& a, const RemoteEndpoint& b) {
   return false;
 }
 
-/// A time that is offered must not be longer than what is requested; 0 stands for no limit.
+/// A writer must not offer a longer time than the reader requests; 0 means no limit.
 bool too_long(double offered_s, double requested_s) {
   return requested_s > 0.0 && (offered_s == 0.0 || offered_s > requested_s);
 }

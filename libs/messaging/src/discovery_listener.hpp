@@ -1,4 +1,4 @@
-// Remembers the readers and writers of other processes for a participant that wants to know them.
+// Remembers the readers and writers of other processes for a participant that observes.
 #pragma once
 
 #include <map>
@@ -12,10 +12,10 @@
 
 namespace topogeo::messaging {
 
-/// Refusals as its base class; used for every participant that observes.
+/// Also reports refusals, like its base class; used for every participant that observes.
 class DiscoveryListener final : public RefusalListener {
  public:
-  /// `by_robot`: the partitions of peers have their robots behind them, which are left out.
+  /// `by_robot`: the partitions of peers end with their robots, which are left out.
   explicit DiscoveryListener(bool by_robot = false) : by_robot_(by_robot) {}
 
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
@@ -25,11 +25,11 @@ class DiscoveryListener final : public RefusalListener {
   void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
                                eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
 
-  /// Those that are there now, ordered by their ids.
+  /// The current endpoints, ordered by their ids.
   std::vector<RemoteEndpoint> endpoints() const;
 
  private:
-  /// Bounds the memory: a flood of strangers' endpoints is as good as this many.
+  /// Bounds the memory in a flood of strangers' endpoints.
   static constexpr std::size_t kMostEndpoints = 65'536;
 
   void put(const eprosima::fastrtps::rtps::GUID_t& guid, RemoteEndpoint endpoint);

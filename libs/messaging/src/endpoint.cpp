@@ -74,8 +74,8 @@ std::string profile_name(const TopicInfo& topic, const std::string& role, const 
 
 void Endpoint::Shared::push(Event event) {
   event.topic = topic;
-  // Woken under the lock: once set_wake({}) has returned, no thread is about to wake a loop that
-  // ends.
+  // Wakes under the lock: once set_wake({}) has returned, no thread is about to wake an ending
+  // loop.
   const std::lock_guard lock(mutex);
   if (events.size() == kMaxEvents) events.pop_front();
   events.push_back(std::move(event));

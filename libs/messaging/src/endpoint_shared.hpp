@@ -1,5 +1,5 @@
-// Peers and events of a writer or reader: filled by threads of the middleware, emptied by the
-// program's.
+// Peers and events of a writer or reader: threads of the middleware fill them, the program's thread
+// empties them.
 #pragma once
 
 #include <atomic>
@@ -17,7 +17,7 @@
 namespace topogeo::messaging::detail {
 
 struct Endpoint::Shared {
-  /// Events that are not taken are dropped beyond this, oldest first.
+  /// Events beyond this number are dropped, oldest first.
   static constexpr std::size_t kMaxEvents = 10'000;
 
   explicit Shared(std::string_view topic_name) : topic(topic_name) {}

@@ -23,7 +23,7 @@ namespace {
 
 /// Samples of one reader in a row, so that a full reader does not starve the others.
 constexpr std::size_t kBatch = 32;
-/// Longest wait: bounds what a missed wake-up could cost.
+/// Longest wait; bounds the cost of a missed wake-up.
 constexpr std::chrono::nanoseconds kMaxWait = std::chrono::seconds(1);
 
 struct Timer {
@@ -79,7 +79,7 @@ bool EventLoop::Impl::dispatch() {
   for (const auto& handler : handlers) handler();
   if (!stop_requested) dispatch_timers();
   if (stop_requested) return false;
-  // Samples first: those of a writer that has gone count before the news that it has.
+  // Samples first: those of a departed writer count before its departure is reported.
   const bool samples_left = dispatch_samples();
   if (!stop_requested) dispatch_events();
   return samples_left;
@@ -87,7 +87,7 @@ bool EventLoop::Impl::dispatch() {
 
 bool EventLoop::Impl::dispatch_samples() {
   bool left = false;
-  // By index: a handler may add readers.
+  // The index stays valid when a handler adds readers.
   for (std::size_t i = 0; i < sources.size(); ++i) {  // NOLINT(modernize-loop-convert)
     const std::shared_ptr<Source> source = sources[i];
     std::size_t taken = 0;
@@ -119,7 +119,7 @@ void EventLoop::Impl::dispatch_events() {
 
 void EventLoop::Impl::dispatch_timers() {
   const Clock::time_point now = Clock::now();
-  // One look at the clock, so that timers alone never keep the samples waiting.
+  // Reads the clock once, so that timers alone never keep the samples waiting.
   while (!timers.empty() && timers.begin()->first.first <= now && !stop_requested) {
     timer_delay =
         std::max<std::chrono::nanoseconds>(timer_delay, now - timers.begin()->first.first);
@@ -150,7 +150,7 @@ void EventLoop::Impl::wait(bool samples_left, std::optional<Clock::time_point> e
   waitset.wait(
       active,
       {0, static_cast<std::uint32_t>(std::min<std::int64_t>(timeout.count(), 999'999'999))});
-  guard.set_trigger_value(false);  // whatever set it is looked at next
+  guard.set_trigger_value(false);  // the next round handles whatever set it
 }
 
 EventLoop::EventLoop() : impl_(std::make_unique<Impl>()) {
@@ -173,7 +173,7 @@ void EventLoop::add_reader(std::shared_ptr<detail::ReaderCore> reader,
   impl_->waitset.attach_condition(detail::LoopAccess::reader(*reader).get_statuscondition());
   impl_->sources.push_back(
       std::make_shared<Impl::Source>(Impl::Source{std::move(reader), std::move(handler)}));
-  impl_->wake();  // events may have come before
+  impl_->wake();  // events may already be waiting
 }
 
 void EventLoop::add_writer(std::shared_ptr<detail::WriterCore> writer) {

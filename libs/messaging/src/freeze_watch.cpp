@@ -14,7 +14,7 @@ namespace {
 
 constexpr FreezeWatch::Duration kWakePeriod = std::chrono::milliseconds(500);
 
-/// Goes on while the machine sleeps, as the steady clock does not.
+/// This clock goes on while the machine sleeps; the steady clock does not.
 FreezeWatch::Duration since_boot() {
   timespec time{};
   clock_gettime(CLOCK_BOOTTIME, &time);
@@ -53,7 +53,7 @@ std::optional<FreezeWatch::Duration> FreezeWatch::stood_still() const {
   return still;
 }
 
-// Half a second too long at most: rather too early than never.
+// Reports up to half a second too much, which is better than missing a standstill.
 void FreezeWatch::watch() {
   Standstill standstill(this_moment());
   std::unique_lock lock(mutex_);

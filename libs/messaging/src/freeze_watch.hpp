@@ -13,20 +13,20 @@
 
 namespace topogeo::messaging {
 
-/// The longest time between two moments at which a thread of a process ran. Time that the thread
-/// waited for a CPU counts half: a machine that is too busy keeps all of its programs waiting, and
-/// no peer forgets one of them before its lease is over.
+/// The longest time between two moments at which a thread of a process ran. Time spent waiting for
+/// a CPU counts half: an overloaded machine delays all of its programs alike, so no peer forgets
+/// one of them before its lease is over.
 class Standstill {
  public:
   using Duration = std::chrono::nanoseconds;
 
   struct Moment {
-    Duration now;     ///< since any moment, by a clock that goes on while the machine sleeps
+    Duration now;     ///< since any moment, by a clock that runs while the machine sleeps
     Duration waited;  ///< for a CPU, by the thread since it began
   };
   explicit Standstill(const Moment& moment) : last_(moment) {}
 
-  /// The thread runs. Returns the longest time so far.
+  /// Records that the thread runs. Returns the longest time so far.
   Duration awake(const Moment& moment);
 
  private:
@@ -44,7 +44,7 @@ class FreezeWatch {
   FreezeWatch& operator=(const FreezeWatch&) = delete;
   ~FreezeWatch();
 
-  /// How long it stood still at a stretch, once that was `longest` or more.
+  /// The longest standstill, once it is at least `longest`.
   [[nodiscard]] std::optional<Duration> stood_still() const;
 
  private:
@@ -59,9 +59,8 @@ class FreezeWatch {
 };
 
 /// How long a participant may stand still, or wait twice as long for a CPU: half of the `lease`
-/// after which its peers forget it. `text` in its place, where it is not empty: seconds (> 0), or 0
-/// for any time. Throws std::runtime_error that names TOPOGEO_LONGEST_FREEZE_S when it is no such
-/// number.
+/// after which its peers forget it. A non-empty `text` replaces this: seconds (> 0), or 0 for no
+/// limit. Throws std::runtime_error that names TOPOGEO_LONGEST_FREEZE_S for any other text.
 [[nodiscard]] std::chrono::nanoseconds longest_freeze(std::chrono::nanoseconds lease,
                                                       const std::string& text);
 

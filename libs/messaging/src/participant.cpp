@@ -52,7 +52,7 @@ std::string environment(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-/// Loads the profiles once: the factory that holds them is one for the whole process.
+/// Loads the profiles once, because the factory that holds them serves the whole process.
 void load_profiles(const std::filesystem::path& requested) {
   static std::mutex mutex;
   static std::optional<std::filesystem::path> loaded;
@@ -93,9 +93,9 @@ Entity* require(Entity* entity, const std::string& what) {
 
 constexpr const char* kThisHost = "127.0.0.1";
 
-// Hosts to announce oneself to where there is no multicast: addresses or names, with ';' between.
-// A name without an address is left out, since the services of a robot go on without the others;
-// as it may be that of this host, its own address takes its place.
+// Adds the hosts to announce oneself to without multicast: addresses or names, separated by ';'. A
+// name without an address is left out, because the services of a robot go on without that host. The
+// name may be this host's own, so the own address takes its place.
 void add_peers(dds::DomainParticipantQos& qos, const std::string& hosts) {
   using eprosima::fastrtps::rtps::IPLocator;
   std::set<std::string> addresses;
@@ -110,16 +110,16 @@ void add_peers(dds::DomainParticipantQos& qos, const std::string& hosts) {
     addresses.insert(found.begin(), found.end());
   }
   for (const std::string& address : addresses) {
-    eprosima::fastrtps::rtps::Locator_t locator;  // UDP; without a port: those of the domain
+    eprosima::fastrtps::rtps::Locator_t locator;  // UDP; without a port: the ports of the domain
     IPLocator::setIPv4(locator, address);
     qos.wire_protocol().builtin.initialPeersList.push_back(locator);
   }
-  // With any peer given the middleware leaves the multicast address out.
+  // With any peer given, the middleware leaves the multicast address out.
 }
 
-// Nodes of ROS 2 on this host, also those that use no multicast, and by multicast those of the
-// network: with any peer given the middleware leaves the multicast address out, and without a port
-// it would take it for that of a host.
+// Adds nodes of ROS 2 on this host, also those without multicast, and by multicast those of the
+// network: with any peer given, the middleware leaves the multicast address out, and it takes a
+// multicast address without a port for that of a host.
 void add_ros_peers(dds::DomainParticipantQos& qos, std::uint32_t domain) {
   using eprosima::fastrtps::rtps::IPLocator;
   constexpr std::uint32_t kFirstPort = 7400;
@@ -133,19 +133,19 @@ void add_ros_peers(dds::DomainParticipantQos& qos, std::uint32_t domain) {
   qos.wire_protocol().builtin.initialPeersList.push_back(network);
 }
 
-/// What nodes of ROS 2 expect of a participant, without which they do not list it.
+/// Sets the user data without which nodes of ROS 2 do not list a participant.
 void set_ros_identity(dds::DomainParticipantQos& qos) {
   constexpr std::string_view kEnclave = "enclave=/;";
   qos.user_data().data_vec({kEnclave.begin(), kEnclave.end()});
 }
 
-/// Of the profiles file.
+/// Name of the profile for links between sites.
 constexpr std::string_view kBetweenSites = "wan";
 
-// The messages by which secured participants get to know each other carry certificates, and Fast
-// DDS 2.9.1 does not finish where those are cut into packets. Nor are others then, as each part is
-// encrypted for itself, which takes the services of a log two thirds more CPU time; but between
-// sites, where a link may lose packets, they are.
+// Sends the messages by which secured participants get to know each other in one piece: they carry
+// certificates, and Fast DDS 2.9.1 does not finish if those are cut into packets. Other messages
+// are not cut either, because each part is encrypted separately, which costs the services of a log
+// two thirds more CPU time. Between sites they are, because links may lose packets.
 void send_whole_certificates(dds::DomainParticipantQos& qos, bool rest_in_packets) {
   constexpr std::uint32_t kLargestMessage_bytes = 65500;
   for (auto& transport : qos.transport().user_transports) {
@@ -286,7 +286,7 @@ dds::ContentFilteredTopic& ParticipantCore::make_filtered(const TopicInfo& info,
   dds::Topic& related = topic(info);
   const std::lock_guard lock(mutex_);
   const std::string name = std::string(info.name) + "/filter" + std::to_string(filters_made_++);
-  // Only the parameter counts; the expression has the same meaning for other DDS programs.
+  // The filter uses only the parameter; other DDS programs need the expression.
   const std::string expression = std::string(info.addressee) + " = %0";
   return *require(participant_->create_contentfilteredtopic(name, &related, expression, {addressee},
                                                             kAddressFilterClass),

@@ -40,24 +40,24 @@ class ParticipantCore {
 
   /// The topic, made on first use.
   eprosima::fastdds::dds::Topic& topic(const TopicInfo& info);
-  /// The part of the topic that is addressed to `addressee`. Throws std::runtime_error when its
-  /// messages have no addressee.
+  /// The messages of the topic for `addressee`. Throws std::runtime_error when its messages have no
+  /// addressee.
   eprosima::fastdds::dds::ContentFilteredTopic& make_filtered(const TopicInfo& info,
                                                               const std::string& addressee);
   void remove_filtered(eprosima::fastdds::dds::ContentFilteredTopic& topic);
 
   [[nodiscard]] bool secured() const { return secured_; }
-  /// With security: whether the permissions of a peer's writer name the robot. A message for no
-  /// robot may come from any, and one of this participant for any robot.
+  /// With security: whether the permissions of a peer's writer name the robot. Any writer may send
+  /// a message for no robot, and this participant may write for any robot.
   [[nodiscard]] bool may_write_for(const Handle& writer, std::string_view robot) const;
   std::vector<std::string> take_refusals();
   bool take_new_revocations();
   [[nodiscard]] std::optional<std::chrono::nanoseconds> stood_still() const;
   [[nodiscard]] std::vector<RemoteEndpoint> discovered() const;
-  /// Whole names of the topics that a reader of another participant has announced to be read with
-  /// its own.
+  /// Whole names of the topics that the program of another participant's reader announced to read
+  /// as well.
   [[nodiscard]] std::vector<std::string> read_with(const Handle& reader) const;
-  /// Why an endpoint was not made: what the plug-ins of security logged, empty without security.
+  /// Why an endpoint was not made, as logged by the security plug-ins; empty without security.
   [[nodiscard]] std::string reason_of_denial() const;
 
  private:
@@ -65,8 +65,8 @@ class ParticipantCore {
   RevocationList revocations_;
   std::optional<FreezeWatch> freeze_watch_;     // always, once the profile is known
   std::unique_ptr<ReadWithListener> listener_;  // called while participant_ lives
-  RefusalListener* refusals_ = nullptr;         // the listener of one with security
-  DiscoveryListener* observer_ = nullptr;       // the listener of one that observes
+  RefusalListener* refusals_ = nullptr;         // the listener of a participant with security
+  DiscoveryListener* observer_ = nullptr;       // the listener of a participant that observes
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;

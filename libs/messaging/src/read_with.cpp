@@ -20,7 +20,7 @@ namespace {
 constexpr std::string_view kReadWithKey = "read_with=";
 constexpr std::size_t kMostUserData_bytes = 1024;
 
-/// The parts between separators, without empty ones.
+/// The non-empty parts between separators.
 std::vector<std::string> parts_of(std::string_view text, char separator) {
   std::vector<std::string> parts;
   while (!text.empty()) {

@@ -1,4 +1,4 @@
-// The other topics that a program reads, as the announcement of its reader lists them.
+// The other topics that a program reads, as announced with each of its readers.
 #pragma once
 
 #include <cstddef>
@@ -19,11 +19,11 @@ namespace topogeo::messaging {
 /// User data of a reader (Object Management Group, DDS 1.4, chapter 2.2.3.1):
 /// "read_with=TOPIC,TOPIC;". Other keys may stand beside it.
 std::vector<std::uint8_t> announce_read_with(std::span<const std::string_view> topics);
-/// The topics of such user data; none in other user data, nor in any that is longer than 1 kB.
+/// The topics of such user data; none for other user data or for more than 1 kB.
 std::vector<std::string> parse_read_with(std::span<const std::uint8_t> user_data);
 
-/// Remembers what the readers of other participants announce. Discovery reports a reader to it
-/// before the reader is connected.
+/// Remembers the announcements of the readers of other participants. Discovery reports a reader to
+/// it before the reader is connected.
 class ReadWithListener : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,

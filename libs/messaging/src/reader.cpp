@@ -50,8 +50,7 @@ Arrival make_arrival(const dds::SampleInfo& dds_info, std::shared_ptr<void> mess
 
 /// The largest limit that the middleware can hold.
 constexpr std::int32_t kNoLimit = std::numeric_limits<std::int32_t>::max();
-/// Readers of one topic share a pool, whose size is the sum of their limits in 32 bits: room for 60
-/// of them.
+/// Readers of one topic share a pool of 32-bit size, the sum of their limits: room for 60 of them.
 constexpr std::int32_t kMostSamples = 1 << 26;
 
 }  // namespace
@@ -95,8 +94,8 @@ void ReaderListener::on_sample_lost(dds::DataReader* /*reader*/,
 }
 
 void ReaderListener::on_data_available(dds::DataReader* reader) {
-  // Bounds what a program that takes nothing leaves in the middleware. Not one by one: for each the
-  // middleware goes through all that have come before one that was lost and is to be sent again.
+  // Bounds the samples that an idle program leaves in the middleware. Collects several at once,
+  // because each take searches all samples that wait for a lost one to be sent again.
   constexpr std::uint64_t kMostUncollected = 64;
   if (!collector_) return;
   if (reader->get_unread_count() >= kMostUncollected) collector_->collect(*reader);
@@ -139,7 +138,7 @@ std::shared_ptr<void> Collector::spare_message() {
 }
 
 void Collector::recycle(std::shared_ptr<void> message) {
-  constexpr std::size_t kMostSpare = 2;  // what a loop that keeps up has in use
+  constexpr std::size_t kMostSpare = 2;  // in use by a loop that keeps up
   const std::lock_guard lock(mutex_);
   if (message && spare_.size() < kMostSpare) spare_.push_back(std::move(message));
 }
@@ -170,9 +169,9 @@ void ReaderCore::Impl::keep_last_of_each_writer(dds::DataReaderQos& qos) {
                                   static_cast<std::size_t>(or_no_limit(limits.max_samples)));
   listener.set_collector(collector);
   qos.history().kind = dds::KEEP_ALL_HISTORY_QOS;
-  // The middleware refuses a sample while more samples of its writer are missing before it than
-  // fit into an instance, and wants room for all instances full of them.
-  constexpr std::int32_t kMostInstances = 32'768;  // where a profile has no limit
+  // The middleware refuses a sample if more earlier samples of its writer are missing than fit into
+  // an instance, and it requires room for all instances at that size.
+  constexpr std::int32_t kMostInstances = 32'768;  // if the profile has no limit
   const std::int32_t instances = limits.max_instances > 0 ? limits.max_instances : kMostInstances;
   limits.max_instances = instances;
   limits.max_samples_per_instance = kMostSamples / instances;
@@ -226,7 +225,7 @@ void ReaderCore::Impl::deliver(const Arrival& arrival, Endpoint::Shared& shared,
     note_writer(sample);
   } catch (const Refused&) {  // NOLINT(bugprone-empty-catch): the handler has reported why
   } catch (const std::invalid_argument& error) {
-    // No stranger's message ends a program that shows a run, or the run with it (faults_strangers).
+    // A stranger's message must not end a program that shows a run, or the run (faults_strangers).
     refuse(error.what());
   }
 }
@@ -255,7 +254,7 @@ void ReaderCore::Impl::end_instance(const SampleInfo& sample, const Handler& han
   if (sample.state == InstanceState::kAlive) return;  // a message came after the disposal
   const auto found = writers.find(sample.instance);
   if (found != writers.end()) {
-    // A writer without an accepted sample of the instance cannot end that of a peer.
+    // A writer without an accepted sample of the instance cannot end a peer's instance.
     if (found->second.erase(sample.writer) == 0) return;
     if (found->second.empty()) writers.erase(found);
   }
@@ -322,7 +321,7 @@ std::size_t ReaderCore::take(std::size_t limit, const Handler& handler) {
   Arrival arrival;
   while (taken < limit) {
     if (!impl_->next(arrival)) {
-      impl_->lost.clear();  // nothing of theirs waits any more
+      impl_->lost.clear();  // none of their messages waits any more
       break;
     }
     ++taken;

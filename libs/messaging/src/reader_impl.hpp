@@ -23,18 +23,18 @@
 
 namespace topogeo::messaging::detail {
 
-/// Takes the samples of a reader that keeps the last ones from the middleware: when the program
-/// takes, and before that when some wait.
+/// Takes samples from the middleware for a keep-last reader: when the program takes, or before that
+/// when several wait.
 class Collector {
  public:
   Collector(eprosima::fastdds::dds::TypeSupport type, std::size_t depth, std::size_t capacity)
       : arrivals(depth, capacity), type_(std::move(type)) {}
 
-  /// Takes the samples that have come. From any thread.
+  /// Moves the samples that have arrived from the middleware here. Thread-safe.
   void collect(eprosima::fastdds::dds::DataReader& reader);
-  /// For the program: true as soon as a sample waits, false after `timeout`.
+  /// Waits for the program: true as soon as a sample is there, false after `timeout`.
   bool wait(eprosima::fastdds::dds::DataReader& reader, std::chrono::nanoseconds timeout);
-  /// Takes a message back, so that its vectors keep their memory for the next one.
+  /// Returns a message for reuse, so that its vectors keep their memory.
   void recycle(std::shared_ptr<void> message);
 
   Arrivals arrivals;
@@ -51,7 +51,7 @@ class ReaderListener final : public eprosima::fastdds::dds::DataReaderListener {
  public:
   explicit ReaderListener(std::shared_ptr<Endpoint::Shared> shared) : shared_(std::move(shared)) {}
 
-  /// Before the reader is made; null: the program takes samples from the middleware itself.
+  /// Call before the reader is made. Null: the program takes samples from the middleware itself.
   void set_collector(std::shared_ptr<Collector> collector) { collector_ = std::move(collector); }
 
   void on_data_available(eprosima::fastdds::dds::DataReader* reader) override;
@@ -85,21 +85,20 @@ struct ReaderCore::Impl {
   Impl& operator=(const Impl&) = delete;
   ~Impl();
 
-  /// For a reader that keeps the last samples: the middleware keeps all of them for the moment
-  /// until they are collected.
+  /// Configures a keep-last reader: the middleware keeps all samples until they are collected.
   void keep_last_of_each_writer(eprosima::fastdds::dds::DataReaderQos& qos);
   void create_reader(const std::string& profile, const std::string& addressee,
                      const std::vector<std::string_view>& read_with);
 
-  /// Takes a sample; false: there is none.
+  /// Takes a sample; false if there is none.
   bool next(Arrival& arrival);
-  /// Keeps `writers` in step with a sample and passes it on.
+  /// Updates `writers` for a sample and passes it on.
   void deliver(const Arrival& arrival, Endpoint::Shared& shared, const Handler& handler);
   /// Counts and reports a message of a peer that may not write for the robot.
   void deny(const Handle& writer, std::string_view robot) const;
   void end_instance(const SampleInfo& sample, const Handler& handler);
   void note_writer(const SampleInfo& sample);
-  /// Takes a writer out of `writers`; the instances of which it was the last one become orphans.
+  /// Removes a writer from `writers`; instances that had no other writer become orphans.
   void lose(const Handle& writer);
 
   std::shared_ptr<ParticipantCore> participant;
@@ -111,15 +110,15 @@ struct ReaderCore::Impl {
   std::shared_ptr<Collector> collector;  // null: samples wait in the middleware
   eprosima::fastdds::dds::ContentFilteredTopic* filtered = nullptr;
   eprosima::fastdds::dds::DataReader* reader = nullptr;
-  // Writers of each instance that are alive and had a sample of it accepted, because the middleware
-  // does not report which instances a lost writer leaves behind. All of them: a peer still has its
+  // Living writers of each instance that had a sample of it accepted, because the middleware does
+  // not report which instances a lost writer leaves behind. All are kept, so that a peer keeps its
   // instance when a stranger who wrote the same one leaves.
   std::map<Handle, std::set<Handle>> writers;
-  std::set<Handle> lost;     // writers that went; messages of theirs may still be waiting here
-  std::set<Handle> orphans;  // instances without a writer, still to be reported
+  std::set<Handle> lost;     // departed writers; some of their messages may still wait here
+  std::set<Handle> orphans;  // instances without a writer, to be reported
 };
 
-/// What the event loop needs of a reader.
+/// Gives the event loop access to a reader.
 class LoopAccess {
  public:
   static eprosima::fastdds::dds::DataReader& reader(const ReaderCore& core) {

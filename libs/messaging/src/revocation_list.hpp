@@ -1,4 +1,4 @@
-// The list of revoked certificates in a folder of security.
+// The list of revoked certificates in a security folder.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +10,8 @@ class RevocationList {
   RevocationList() = default;
   explicit RevocationList(const std::filesystem::path& folder);
 
-  /// Whether it was written, made or removed since the construction or the last call that returned
-  /// true.
+  /// Whether the list was written, made or removed since construction or since the last call that
+  /// returned true.
   bool take_change();
 
  private:

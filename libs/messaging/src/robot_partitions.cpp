@@ -12,7 +12,7 @@ namespace topogeo::messaging {
 namespace {
 
 constexpr std::string_view kAll = "all";
-constexpr char kSeparator = '/';  // no robot of make_keys has it in its name
+constexpr char kSeparator = '/';  // make_keys allows no robot with it in its name
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;

@@ -33,10 +33,10 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 namespace {
 
-/// Refusals kept until they are taken, and peers: strangers can make any number of them.
+/// Most refusals kept until they are taken, because strangers can cause any number.
 constexpr std::size_t kMaxRefusals = 256;
 constexpr std::size_t kMaxPeers = 1024;
-/// Three messages, sent again each second where one is lost.
+/// The handshake has three messages, each sent again every second if it is lost.
 constexpr std::chrono::seconds kHandshakeTime{3};
 
 struct SecurityFile {
@@ -55,7 +55,7 @@ constexpr std::array<SecurityFile, 7> kFiles = {{
     {"dds.sec.access.builtin.Access-Permissions.permissions", "permissions.p7s", true},
 }};
 
-/// A peer's name and subject are as long as it likes.
+/// Limits the name and subject that a peer announces, which may have any length.
 constexpr std::size_t kMaxNameLength = 128;
 
 /// Denials of this process, the subjects of its peers and the last error of its security plug-ins.
@@ -72,13 +72,13 @@ SecurityErrors& security_errors() {
   return *errors;
 }
 
-/// As a peer sent it, fit for a line of a log.
+/// A peer's text, made safe for a log line.
 std::string line_of(std::string_view text) {
   return support::printable(text.substr(0, kMaxNameLength));
 }
 
-/// Logged by the functions in which, and by those to which, a peer's endpoint is denied:
-/// security_denials.cpp notes that with the name of the peer.
+/// Whether the entry is about a denied endpoint of a peer, which security_denials.cpp reports with
+/// the name of the peer.
 bool is_of_denial(const dds::Log::Entry& entry) {
   const std::string_view function = entry.context.function == nullptr ? "" : entry.context.function;
   return function == "check_remote_datawriter" || function == "check_remote_datareader" ||
@@ -92,13 +92,13 @@ class LogForwarder final : public dds::LogConsumer {
     const std::string category = entry.context.category == nullptr ? "" : entry.context.category;
     if (is_of_denial(entry)) return;
     if (category.starts_with("SECURITY")) {
-      // Without a name: whom it refuses, the RefusalListener reports with the name.
+      // No name here: the RefusalListener reports the refused peer with its name.
       count_security_error();
       SecurityErrors& errors = security_errors();
       const std::lock_guard lock(errors.mutex);
       errors.last = entry.message;
     }
-    // Once a second: what a peer that is gone leaves behind is reported for each packet.
+    // Logs once a second at most, because the remains of a departed peer cause a report per packet.
     const auto now = std::chrono::steady_clock::now();
     if (now - last_ < std::chrono::seconds(1)) return;
     last_ = now;
@@ -109,7 +109,7 @@ class LogForwarder final : public dds::LogConsumer {
   std::chrono::steady_clock::time_point last_;  // used by the logging thread alone
 };
 
-/// In place of the middleware's own printing, which a stranger could use to fill a log.
+/// Replaces the middleware's own printing, with which a stranger could fill a log.
 void forward_log() {
   static const bool done = [] {
     dds::Log::ClearConsumers();
@@ -125,7 +125,7 @@ std::string subject_of(const rtps::ParticipantProxyData& peer) {
   return subject == nullptr ? std::string() : line_of(*subject);
 }
 
-/// Empty for one that has not shown its certificate.
+/// Empty for a peer that has not shown its certificate.
 std::string shown_subject(const rtps::GuidPrefix_t& peer) {
   SecurityErrors& errors = security_errors();
   const std::lock_guard lock(errors.mutex);
@@ -214,7 +214,7 @@ void RefusalListener::on_participant_discovery(dds::DomainParticipant* /*partici
       info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT) {
     writer_robots().depart(detail::to_handle(rtps::InstanceHandle_t(info.info.m_guid)));
     if (known == peers_.end()) return;
-    report_denials();  // as long as the name is known
+    report_denials();  // while the name is still known
     if (!known->second.settled) report(prefix, "left before it had shown who it is");
     peers_.erase(known);
     forget_subject(prefix);

@@ -18,9 +18,9 @@
 namespace topogeo::messaging {
 
 /// Turns authentication, access control and encryption on, with the files that
-/// deploy/security/make_keys writes into `folder`. Throws std::runtime_error that names the file
-/// that is missing, and when ROS_DISCOVERY_SERVER is set: Fast DDS 2.9 has no security there, and
-/// participants would find nobody without a word.
+/// deploy/security/make_keys writes into `folder`. Throws std::runtime_error that names the missing
+/// file, or if ROS_DISCOVERY_SERVER is set: Fast DDS 2.9 has no security there, and participants
+/// would silently find no peers.
 void add_security(eprosima::fastdds::dds::DomainParticipantQos& qos,
                   const std::filesystem::path& folder);
 
@@ -30,35 +30,35 @@ void add_security(eprosima::fastdds::dds::DomainParticipantQos& qos,
 /// SP 800-38D, chapter 8).
 void use_long_sessions(eprosima::fastrtps::rtps::PropertyPolicy& properties);
 
-/// Does nothing; whoever calls it gets what security_races.cpp puts right linked in.
+/// Does nothing, but a call links the fixes of security_races.cpp into the program.
 void keep_security_races_away();
 
-/// A writer or reader of a peer that security keeps from ours, or a sample of such a writer.
+/// A peer's writer or reader that security does not let connect to ours, or one of its samples.
 struct Denial {
   eprosima::fastrtps::rtps::GuidPrefix_t peer;
   std::string topic;
   bool writer = false;
-  bool other_governance = false;  // its endpoint is protected otherwise than the topic is here
-  std::string robot = {};         // of the sample; empty: the whole writer or reader is kept away
+  bool other_governance = false;  // its protection differs from the topic's here
+  std::string robot = {};         // of the sample; empty: the whole writer or reader is denied
 };
 
-/// Adds one to what the RefusalListener of this process reports next. From any thread.
+/// Adds a denial to the next report of this process's RefusalListener. Thread-safe.
 void note_denial(Denial denial);
 
-/// Does nothing; whoever calls it gets what security_denials.cpp notes linked in.
+/// Does nothing, but a call links the checks of security_denials.cpp into the program.
 void note_denials();
 
-/// A peer has shown that the certificate with this subject is its own. From any thread.
+/// Records the proven certificate subject of a peer. Thread-safe.
 void note_subject(const eprosima::fastrtps::rtps::GuidPrefix_t& peer, std::string subject);
 
-/// What the security plug-ins last logged, to explain a participant or endpoint that could not be
+/// The last message of the security plug-ins, to explain why a participant or endpoint could not be
 /// made; empty when they logged nothing.
 std::string last_security_error();
 
-/// Remembers the peers that did not pass authentication: those that were refused, and those that
-/// have not finished it, because they do not accept us or have nothing to show; and those that were
-/// denied a topic. Names each by its participant's name, which it chooses itself, and the subject
-/// of its certificate: the announced one until note_subject() has the right one.
+/// Remembers peers that were refused, that did not finish authentication (they do not accept us or
+/// have nothing to show) or that were denied a topic. Names each by its participant's name, which
+/// the peer chooses itself, and by the subject of its certificate: the announced one until
+/// note_subject() has the right one.
 class RefusalListener : public ReadWithListener {
  public:
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
@@ -67,8 +67,8 @@ class RefusalListener : public ReadWithListener {
       eprosima::fastdds::dds::DomainParticipant* participant,
       eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
 
-  /// A line for each refusal since the last call: those of this participant, and what this process
-  /// denied. Bounded: of a flood the newest remain.
+  /// A line for each refusal since the last call, by this participant or, for denials, by this
+  /// process. Bounded: a flood leaves only the newest.
   std::vector<std::string> take();
 
  private:
@@ -80,7 +80,7 @@ class RefusalListener : public ReadWithListener {
     bool settled = false;  // accepted, or reported already
   };
 
-  // With the mutex locked.
+  // The mutex is locked.
   void report(const eprosima::fastrtps::rtps::GuidPrefix_t& prefix, const std::string& what);
   void report_denials();
 

@@ -11,7 +11,7 @@ namespace topogeo::messaging {
 namespace {
 
 void notify(const std::string& state) {
-  // Without a reader there is nobody to report the failure to.
+  // Without a reader there is no receiver for the failure.
   static_cast<void>(::sd_notify(0, state.c_str()));
 }
 
@@ -23,7 +23,7 @@ ServiceManager::ServiceManager(EventLoop& loop)
   loop_.post([] { notify("READY=1"); });
   std::uint64_t period_us = 0;
   if (::sd_watchdog_enabled(0, &period_us) > 0) {
-    // A third: one late tick does not kill a service that works.
+    // A third of the limit, so that one late tick does not kill a service that works.
     const auto period =
         std::max(std::chrono::microseconds(period_us / 3), std::chrono::microseconds(1));
     timer_ = loop_.add_timer(period, [] { notify("WATCHDOG=1"); });

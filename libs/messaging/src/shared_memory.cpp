@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The name of the segment of a lock "fastrtps_0123456789abcdef_el"; empty for other files, as the
-/// locks of ports are.
+/// The name of the segment of a lock "fastrtps_0123456789abcdef_el"; empty for other files, such as
+/// the locks of ports.
 std::string segment_of(std::string_view lock) {
   constexpr std::string_view kPrefix = "fastrtps_";
   constexpr std::string_view kSuffix = "_el";

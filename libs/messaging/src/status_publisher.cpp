@@ -17,19 +17,19 @@ namespace topogeo::messaging {
 
 namespace {
 
-// Tables and the search pool take a program for silent after 1.5 s: three statuses lost.
+// Tables and the search pool declare a program silent after 1.5 s, or three lost statuses.
 constexpr std::chrono::milliseconds kPeriod{500};
-// Of a fault that repeats itself: a log stays readable.
+// Limits the log lines of a repeated fault.
 constexpr std::chrono::seconds kLogPeriod{1};
-// For the last status to leave before the writer is deleted.
+// Lets the last status leave before the writer is deleted.
 constexpr std::chrono::milliseconds kFarewell{200};
-// Stands for the faults of all further reasons, once the status has no room for another one.
+// Collects the faults of further reasons once the status has no room for them.
 constexpr std::string_view kOtherFaults = "other";
 constexpr std::size_t kMaxNameSize = 48;  // status.idl
 constexpr std::string_view kForgedRemovals = "forged_removal";
 
-/// Topics where only the last sample of an instance counts: one that was lost has been replaced by
-/// a newer one before it could be sent.
+/// Topics where only the last sample of an instance counts: a newer sample replaced a lost one
+/// before it could be sent.
 bool is_replaceable(const std::string& name) {
   const auto topics = all_topics();
   return std::any_of(topics.begin(), topics.end(), [&](const TopicInfo* topic) {
@@ -168,7 +168,7 @@ void StatusPublisher::fault(std::string_view reason, std::string_view detail) {
   note_error(std::string(reason) + ": " + std::string(detail));
   if (fault.count > 1 && now - fault.last_log < kLogPeriod) {
     ++fault.not_logged;
-    spdlog::debug("{}: {}", reason, detail);  // whoever looks for the cause sees each
+    spdlog::debug("{}: {}", reason, detail);  // debug logs show every fault
     return;
   }
   if (fault.not_logged > 0) {
@@ -196,7 +196,7 @@ void StatusPublisher::on_event(const Event& event) {
     case EventKind::kUnmatched:
     case EventKind::kLivelinessGained:
     case EventKind::kLivelinessLost:
-    case EventKind::kSampleRejected:  // how a slow reader slows a replay
+    case EventKind::kSampleRejected:  // normal in a replay with a slow reader
       return;
   }
 }
@@ -214,7 +214,7 @@ void StatusPublisher::publish() {
   fill_counts();
   fill_traffic(now);
   if (on_publish_) on_publish_(status_);
-  // The next period sends again what could not be sent now.
+  // A status that could not be sent now goes out with the next period.
   if (writer_.write(status_)) status_.sequence_number(status_.sequence_number() + 1);
 }
 

@@ -13,7 +13,7 @@ namespace topogeo::messaging {
 
 namespace {
 
-/// What the history allocates for a sample before it knows how large it is, bytes.
+/// First allocation for a sample of unknown size, bytes.
 constexpr std::uint32_t kInitialPayload = 256;
 
 /// A generated type support whose histories start small and grow with the samples. The generated
@@ -26,9 +26,9 @@ class GrowingTypeSupport final : public Generated {
   [[nodiscard]] bool is_bounded() const override { return false; }
   [[nodiscard]] bool is_plain() const override { return false; }
 
-  /// A payload that is no message of the type becomes one that find_defect() refuses: where the
-  /// generated code fails the middleware keeps the sample and reads none behind it, and what it
-  /// throws ends the process (a truth value of 2, an unknown encapsulation).
+  /// Turns a payload that is no message of the type into one that find_defect() refuses. Otherwise
+  /// the middleware would keep the sample and read none behind it, and an exception of the
+  /// generated code would end the process (a truth value of 2, an unknown encapsulation).
   bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override {
     using Message = typename Generated::type;
     try {

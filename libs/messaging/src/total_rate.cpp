@@ -4,7 +4,7 @@ namespace topogeo::messaging {
 
 double TotalRate::add(Time now, std::uint64_t total) {
   samples_.emplace_back(now, total);
-  // The newest of those that are too old stays: a rate needs a time before.
+  // Keeps the newest sample before the window, because a rate needs an earlier time.
   while (samples_.size() > 2 && now - samples_[1].first >= kWindow) samples_.pop_front();
   const auto& [first_time, first_total] = samples_.front();
   const double passed_s = std::chrono::duration<double>(now - first_time).count();

@@ -16,7 +16,7 @@ namespace dds = eprosima::fastdds::dds;
 
 namespace {
 
-/// Readers whose addressee the writer compares; beyond that each reader does it itself.
+/// Number of readers whose addressee the writer compares; further readers do it themselves.
 constexpr std::size_t kMaxReaderFilters = 256;
 
 class Listener final : public dds::DataWriterListener {
@@ -111,8 +111,8 @@ bool WriterCore::write(const void* message) {
 
 void WriterCore::dispose(const void* message) {
   void* sample = const_cast<void*>(message);  // NOLINT: as in write
-  // Unregistering with autodispose (the default) disposes and also frees the writer's memory of the
-  // instance, so that ever new ids do not use up max_instances.
+  // Unregistering with autodispose (the default) disposes the instance and frees the writer's
+  // memory of it, so that ever new ids do not use up max_instances.
   const auto result = impl_->writer->unregister_instance(sample, dds::HANDLE_NIL);
   if (result != ReturnCode_t::RETCODE_OK && result != ReturnCode_t::RETCODE_PRECONDITION_NOT_MET) {
     throw std::runtime_error(shared_->topic + ": DDS dispose failed with code " +

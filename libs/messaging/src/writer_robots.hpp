@@ -1,4 +1,4 @@
-// The robots for which the writers of peers may write, as their signed permissions allow it.
+// Robots that the writers of peers may write for, by the signed permissions.
 #pragma once
 
 #include <cstddef>
@@ -13,21 +13,21 @@
 
 namespace topogeo::messaging {
 
-/// For several threads.
+/// Thread-safe.
 class WriterRobots {
  public:
-  /// Peers that have left and of which messages may still wait here to be handled.
+  /// Number of departed peers kept, because their messages may still wait to be handled.
   static constexpr std::size_t kMostDeparted = 4096;
 
-  /// The permissions of its participant allow the writer these partitions
-  /// (partitions_by_robot()), in place of those before.
+  /// The permissions of its participant allow the writer these partitions (partitions_by_robot()).
+  /// Replaces earlier ones.
   void allow(const Handle& writer, const std::vector<std::string>& partitions);
 
-  /// Whether the writer may write for the robot. False for one that nothing has allowed.
+  /// Whether the writer may write for the robot. False for a writer without permissions.
   [[nodiscard]] bool allows(const Handle& writer, std::string_view robot) const;
 
-  /// The participant to which this id belongs has left: after kMostDeparted others its writers are
-  /// forgotten, unless it has come back.
+  /// The participant with this id has left. After kMostDeparted others its writers are forgotten,
+  /// unless it has come back.
   void depart(const Handle& participant);
 
  private:

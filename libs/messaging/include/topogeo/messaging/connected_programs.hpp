@@ -1,4 +1,4 @@
-// Which programs are connected with everything that they read of this one.
+// Finds the programs that are connected to every topic that they read from this one.
 #pragma once
 
 #include <memory>
@@ -9,10 +9,10 @@
 
 namespace topogeo::messaging {
 
-/// Each reader of a program is connected at a time of its own, and what is sent on a volatile topic
-/// before that is lost. A reader announces what its program reads as well
-/// (ReaderOptions::read_with). The program is connected when its readers of all of those topics are
-/// that are written here.
+/// The readers of a program connect one by one, and messages sent on a volatile topic before that
+/// are lost. A reader also announces the other topics that its program reads
+/// (ReaderOptions::read_with). A program is connected once this holds for its readers of all of
+/// those topics that are written here.
 class ConnectedPrograms {
  public:
   /// Programs that read the topic of `counted`; `others` are the other writers of this program.
@@ -26,7 +26,7 @@ class ConnectedPrograms {
   }
 
   [[nodiscard]] int count() const;
-  /// The topics that some programs are not connected with, for people: "odometry".
+  /// The topics that some programs are not connected to yet, as readable text: "odometry".
   [[nodiscard]] std::string missing() const;
 
  private:

@@ -1,9 +1,9 @@
-// A service that gets nothing of its main input although another service sends it: one of the two
-// has forgotten the other, after an interruption that only one side has noticed.
+// Detects a deaf service: it gets nothing of its main input although another service sends it,
+// because one of the two forgot the other after an interruption that only one side noticed.
 //
-// Both judgements go by what the two services report alone, so that neither a robot that stands nor
-// a machine that is slow or frozen makes a service deaf. `topogeo status` and `topogeo doctor` see
-// two statuses and judge at once (deafness); a service that is about to end itself waits for proof
+// Both checks use only the statuses of the two services, so neither a robot that stands still nor a
+// slow or frozen machine makes a service deaf. `topogeo status` and `topogeo doctor` see two
+// statuses and judge at once (deafness); a service that is about to end itself waits for proof
 // (DeafnessWatch).
 #pragma once
 
@@ -29,22 +29,22 @@ struct HeardStatus {
   double age_s = 0.0;
 };
 
-/// Why `service` is deaf: "deaf: none of the 5.1 scan/s of sensor_gateway arrives". Empty: it is
-/// not, or its status does not show it. Deaf is one whose status says so, and one of whose main
-/// input nothing has arrived for 5 s and nothing waits to be handled, while the only sender has
-/// sent one a second or more in that time. `all`: those of its domain and partition that publish
-/// their status now. Where two of them do the same for the robot, nothing is decided.
+/// Why `service` is deaf: "deaf: none of the 5.1 scan/s of sensor_gateway arrives". Empty if it is
+/// not, or if its status does not show it. A service is deaf if its own status says so, or if its
+/// main input has been silent for 5 s with nothing left to handle while the only sender sent at
+/// least one message a second. `all`: the services of its domain and partition that publish their
+/// status now. If two of them do the same job for the robot, the result is empty.
 [[nodiscard]] std::string deafness(const HeardStatus& service, std::span<const HeardStatus> all);
 
-/// How long nothing of its main input has come to a service, by its status: since it began where
-/// none ever came. 0 s for one that is not at work, or whose main input is no topic that all its
+/// How long the main input of a service has been silent, by its status; since its start if nothing
+/// ever came. 0 s if the service is not at work, or if its main input is not a topic that all its
 /// readers get.
 [[nodiscard]] double input_silence_s(const msg::ServiceStatus& service);
 
 /// Gathers the proof that a service is deaf: within a silence of its main input the only sender, by
 /// its own count and its own clock, has sent three messages or more in 5 s, and a later status of
-/// the service counts none of them. The proof begins when the input has been silent for 3 s, so
-/// that nobody is deaf in less than 8 s. The caller passes the time, which never goes back.
+/// the service counts none of them. The proof begins when the input has been silent for 3 s, so no
+/// service is deaf in less than 8 s. The caller passes the time, which never goes back.
 class DeafnessWatch {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -60,8 +60,8 @@ class DeafnessWatch {
   /// sensor_gateway has sent in 5.1 s has arrived"; empty while there is no proof.
   [[nodiscard]] std::string check(const msg::ServiceStatus& own, Time now);
 
-  /// Whether the status of a sender of the main input comes in. Without it nothing is known: the
-  /// sender is gone or frozen, or no message of it arrives at all.
+  /// Whether statuses of a sender of the main input arrive. If not, deafness cannot be judged: the
+  /// sender is gone or frozen, or none of its messages arrive at all.
   [[nodiscard]] bool hears_sender(const msg::ServiceStatus& own, Time now) const;
 
  private:
@@ -79,7 +79,7 @@ class DeafnessWatch {
     std::uint64_t received = 0;  // by the service itself
   };
 
-  /// The service itself, as it knows itself, and the peers that were heard lately.
+  /// The service itself, by its own status, and the peers that were heard lately.
   [[nodiscard]] static std::vector<HeardStatus> all(const msg::ServiceStatus& own,
                                                     const Peers& peers, Time now);
   /// `before`: the statuses of all at the time of the previous status of the service.
@@ -88,8 +88,8 @@ class DeafnessWatch {
                                   std::span<const HeardStatus> now);
 
   Peers peers_;
-  double own_uptime_s_ = -1.0;  // of the status of the service that was judged last
-  Peers known_;                 // the others, when it was
+  double own_uptime_s_ = -1.0;  // of the service's status that was judged last
+  Peers known_;                 // the other services at that time
   Time known_since_;
   std::string verdict_;
   std::optional<Mark> mark_;  // where the proof begins

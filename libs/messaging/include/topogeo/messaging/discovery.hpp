@@ -1,4 +1,4 @@
-// What discovery announces of the readers and writers of a domain, and which of them do not fit.
+// Readers and writers that discovery announces in a domain, and those that cannot connect.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 namespace topogeo::messaging {
 
 /// The part of a reader's or writer's quality of service that decides whether two of them connect.
-/// Object Management Group, DDS 1.4, chapter 2.2.3: what a writer offers must not be less than what
-/// a reader requests.
+/// Object Management Group, DDS 1.4, chapter 2.2.3: a writer must not offer less than a reader
+/// requests.
 struct OfferedQos {
   bool reliable = false;
   std::uint32_t durability = 0;  ///< 0 volatile, 1 transient-local, 2 transient, 3 persistent
@@ -25,26 +25,26 @@ struct OfferedQos {
 /// A reader or writer of another process.
 struct RemoteEndpoint {
   Handle id;
-  std::string participant;  ///< name of its participant; empty while it is not known
-  std::string topic;        ///< whole name
+  std::string participant;  ///< name of its participant; empty while unknown
+  std::string topic;        ///< with prefix and version
   std::string type;
   bool writer = false;
   std::vector<std::string> partitions;
   OfferedQos qos;
 };
 
-/// A writer and a reader of a topic that meet in a partition and yet cannot connect.
+/// A writer and a reader that share a topic and a partition but cannot connect.
 struct Mismatch {
   RemoteEndpoint writer;
   RemoteEndpoint reader;
   std::string what;  ///< the policy, or "type"
 };
 
-/// All pairs that do not fit, one for each topic, pair of participants and policy.
+/// All mismatches, one for each topic, pair of participants and policy.
 std::vector<Mismatch> find_mismatches(std::span<const RemoteEndpoint> endpoints);
 
-/// The version of the wire contract in a topic's name: 16 for "topogeo/v16/scan"; 0 for topics of
-/// others.
+/// The version of the wire contract in a topic's name: 16 for "topogeo/v16/scan"; 0 for foreign
+/// topics.
 std::uint32_t wire_version(const std::string& topic);
 
 }  // namespace topogeo::messaging

@@ -22,10 +22,9 @@ struct Traffic {
   std::uint64_t waiting = 0;  ///< received and not handled yet
 };
 
-/// All handlers run in the thread that calls run(); an exception of a handler leaves run(), but
-/// std::invalid_argument of a handler of messages, which refuses its message: kInvalidSample.
-/// Readers and writers that were added live at least as long as the loop. Add them before run() or
-/// from a handler.
+/// All handlers run in the thread that calls run(). An exception of a handler leaves run(), except
+/// std::invalid_argument of a message handler, which refuses the message (kInvalidSample). Added
+/// readers and writers live at least as long as the loop. Add them before run() or from a handler.
 class EventLoop {
  public:
   using InstanceHandler = std::function<void(const SampleInfo&)>;
@@ -35,8 +34,8 @@ class EventLoop {
   EventLoop& operator=(const EventLoop&) = delete;
   ~EventLoop();
 
-  /// `on_message` gets the messages, `on_gone` the disposed instances and those that have lost
-  /// their writer.
+  /// `on_message` gets the messages, `on_gone` the instances that were disposed or have lost their
+  /// writer.
   template <class T>
   void add(const Reader<T>& reader, std::function<void(const T&, const SampleInfo&)> on_message,
            InstanceHandler on_gone = {}) {
@@ -50,7 +49,7 @@ class EventLoop {
     });
   }
 
-  /// Lets the events of a writer come to the event handlers.
+  /// Passes the events of a writer to the event handlers.
   template <class T>
   void add(const Writer<T>& writer) {
     add_writer(writer.core());
@@ -60,24 +59,24 @@ class EventLoop {
   /// order in which they were set.
   void on_event(EventHandler handler);
 
-  /// Calls `handler` every `period` (> 0), by the steady clock, first after one period. A tick that
-  /// comes late does not make more ticks. Returns a number for cancel_timer.
+  /// Calls `handler` every `period` (> 0), by the steady clock, first after one period. Ticks
+  /// missed in between are dropped. Returns a number for cancel_timer.
   std::uint64_t add_timer(std::chrono::nanoseconds period, std::function<void()> handler);
   /// Calls `handler` once after `delay` (>= 0).
   std::uint64_t call_after(std::chrono::nanoseconds delay, std::function<void()> handler);
   void cancel_timer(std::uint64_t timer);
-  /// The largest delay between the due time of a timer and its call since this was called last: a
-  /// handler took long, or the machine had no time for this thread.
+  /// The largest delay between the due time of a timer and its call since the last call of this
+  /// function, because a handler took long or the machine had no time for this thread.
   [[nodiscard]] std::chrono::nanoseconds take_timer_delay();
 
   /// Calls `handler` in the loop's thread. For other threads; not for signal handlers.
   void post(std::function<void()> handler);
 
-  /// Of all readers and writers of the loop, in the order in which they were added; the topic of
-  /// two of them stands there twice.
+  /// The traffic of all readers and writers of the loop, in the order in which they were added. A
+  /// topic with two of them is listed twice.
   [[nodiscard]] std::vector<Traffic> traffic() const;
 
-  /// Works until stop() is called. Calls handlers for what is there already.
+  /// Works until stop() is called, and first handles everything that is already waiting.
   void run();
   /// Works until stop() is called (then true) or `duration` has passed (then false).
   bool run_for(std::chrono::nanoseconds duration);

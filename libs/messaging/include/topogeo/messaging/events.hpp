@@ -1,4 +1,4 @@
-// What comes with samples and what happens to writers and readers.
+// Sample information, and the events of writers and readers.
 #pragma once
 
 #include <array>
@@ -18,28 +18,28 @@ struct Handle {
 
 enum class InstanceState : std::uint8_t {
   kAlive = 0,
-  kDisposed = 1,   ///< the writer says that the instance is gone
+  kDisposed = 1,   ///< the writer disposed the instance
   kNoWriters = 2,  ///< the instance's last writer left, died or lost its liveliness
 };
 
 struct SampleInfo {
-  bool valid = false;  ///< false: no message, only news about the instance
+  bool valid = false;  ///< false: no message, only a change of the instance's state
   InstanceState state = InstanceState::kAlive;
   Handle instance;            ///< same for all samples of one key
-  Handle writer;              ///< who sent it; all zero for kNoWriters found by this library
+  Handle writer;              ///< all zero for a kNoWriters found by this library
   std::int64_t stamp_ns = 0;  ///< wall clock of the writer's host when it wrote
 };
 
-/// Thrown by a handler of messages that refuses one and has reported it: the message does not count
-/// as one of its instance, and there is no event.
+/// Thrown by a message handler that refuses a message and has reported it itself: the message does
+/// not count for its instance, and there is no event.
 struct Refused final : std::exception {};
 
 enum class EventKind : std::uint8_t {
   kMatched,
   kUnmatched,         ///< a matched peer left or its process is gone
-  kIncompatibleQos,   ///< a peer of the topic exists but cannot be talked to
+  kIncompatibleQos,   ///< a peer of the topic exists but cannot connect
   kLivelinessGained,  ///< a writer is alive (again)
-  kLivelinessLost,    ///< a writer has not shown life within its lease
+  kLivelinessLost,    ///< a writer showed no life within its lease
   kDeadlineMissed,
   kSampleLost,      ///< samples that will never arrive
   kSampleRejected,  ///< the reader's history was full; a reliable writer sends again
@@ -52,7 +52,7 @@ const char* to_string(EventKind kind);
 struct Event {
   EventKind kind{};
   std::string topic;
-  Handle peer;         ///< writer or reader on the other side, where the event is about one
+  Handle peer;         ///< writer or reader on the other side, for events about one
   int count = 0;       ///< peers after kMatched..., total of the kind for the others
   std::string detail;  ///< for people; names the policy for kIncompatibleQos
 };

@@ -1,4 +1,4 @@
-// How often something comes and how long ago it last did.
+// Measures the rate of an input and the time since its last message.
 #pragma once
 
 #include <chrono>
@@ -13,15 +13,15 @@ class InputMeter {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// Rates are means over this time: long enough for a robot that stops every second, short enough
-  /// to show at once that an input has ceased.
+  /// Rates are means over this window: long enough for a robot that stops every second, short
+  /// enough to show at once that an input has ceased.
   static constexpr std::chrono::seconds kWindow{5};
 
   void count(Time now);
 
   [[nodiscard]] std::uint64_t total() const { return total_; }
-  /// Per second over the window; over the time since the first one while that is shorter, but not
-  /// shorter than a second.
+  /// Inputs per second over the window. While the first one is more recent than that, the time
+  /// since it counts, but at least a second.
   [[nodiscard]] double rate_per_s(Time now) const;
   /// Seconds since the last one; 0 before the first.
   [[nodiscard]] double age_s(Time now) const;
@@ -30,7 +30,7 @@ class InputMeter {
   std::uint64_t total_ = 0;
   Time first_;
   Time last_;
-  std::deque<std::pair<Time, std::uint64_t>> recent_;  // start of a slice of time, how many in it
+  std::deque<std::pair<Time, std::uint64_t>> recent_;  // start of a time slice, count in it
 };
 
 }  // namespace topogeo::messaging

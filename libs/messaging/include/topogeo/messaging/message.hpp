@@ -25,7 +25,7 @@ void set_text(BoundedString& field, std::string_view text, const char* field_nam
   field = std::string(text);
 }
 
-/// Assigns a bounded string, cut to its bound at a character of UTF-8: for texts for people.
+/// Assigns a bounded string, cut at a UTF-8 character to its bound: for readable texts.
 template <class BoundedString>
 void set_text_cut(BoundedString& field, std::string_view text) {
   std::size_t size = std::min(text.size(), static_cast<std::size_t>(BoundedString::max_size));
@@ -35,7 +35,7 @@ void set_text_cut(BoundedString& field, std::string_view text) {
   field = std::string(text.substr(0, size));
 }
 
-/// The number that stands for a text in the key of a topic; 0 for no text.
+/// The number that represents a text in the key of a topic; 0 for an empty text.
 inline std::uint64_t key_of(std::string_view text) {
   return text.empty() ? 0 : support::fnv1a(text);
 }

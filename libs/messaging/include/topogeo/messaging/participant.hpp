@@ -13,9 +13,9 @@
 
 namespace topogeo::messaging {
 
-/// Partition of runs that name none.
+/// Partition of runs that do not name one.
 inline constexpr const char* kDefaultPartition = "topogeo";
-/// Partition of a reader that wants to see every run on the domain.
+/// Partition of a reader that receives every run on the domain.
 inline constexpr const char* kAnyPartition = "*";
 
 struct ParticipantOptions {
@@ -27,13 +27,15 @@ struct ParticipantOptions {
   /// File of QoS profiles; empty: TOPOGEO_DDS_PROFILES of the environment, else the built-in copy
   /// of deploy/dds_profiles.xml. One process can use one file only.
   std::filesystem::path profiles_file;
-  /// Folder with a folder for each identity, made by deploy/security/make_keys: certificate,
-  /// permissions, encryption. Empty: TOPOGEO_SECURITY of the environment; empty, too: no security.
+  /// Folder with one folder per identity, made by deploy/security/make_keys: certificate,
+  /// permissions, encryption. If empty, TOPOGEO_SECURITY of the environment; without either, no
+  /// security.
   std::filesystem::path security;
   std::string identity = "topogeo";  ///< its folder there: name of the service or command
-  /// Robots that it works for; with security its keys must name them. Empty: those of its keys.
+  /// Robots that the participant works for; with security its keys must name them. Empty: the
+  /// robots of its keys.
   std::vector<std::string> robots;
-  bool observe = false;  ///< remembers the endpoints of others for discovered()
+  bool observe = false;  ///< remembers foreign endpoints for discovered()
 };
 
 class ParticipantCore;
@@ -42,22 +44,21 @@ class Participant {
  public:
   /// Joins the domain. Throws std::runtime_error when the profiles cannot be loaded, the profile is
   /// unknown, the transport cannot be opened, the security material is refused or its keys do not
-  /// name one of the robots;
-  /// std::invalid_argument for a domain over 232.
+  /// name one of the robots; std::invalid_argument for a domain over 232.
   explicit Participant(const ParticipantOptions& options = {});
 
-  /// With security: a line for each peer that was refused since the last call and for each thing
+  /// With security: a line for each peer that was refused since the last call and for each access
   /// that a peer was denied.
   [[nodiscard]] std::vector<std::string> take_refusals() const;
 
-  /// How long this process stood still, once that was half the time after which its peers forget
-  /// it, or TOPOGEO_LONGEST_FREEZE_S of the environment. Some may have forgotten it then, while it
-  /// takes itself for connected with them (Fast DDS 2.9.1): links stay dead without a word, and
-  /// only another participant meets all of them again.
+  /// How long this process stood still, once that exceeds half the time after which its peers
+  /// forget it, or TOPOGEO_LONGEST_FREEZE_S of the environment. Some peers may then have forgotten
+  /// the participant, which still takes itself for connected (Fast DDS 2.9.1): those links stay
+  /// dead silently, and only a new participant meets all peers again.
   [[nodiscard]] std::optional<std::chrono::nanoseconds> stood_still() const;
 
-  /// The readers and writers of other participants that discovery has announced and that are still
-  /// there; none without `observe`. Endpoints of its own are not among them.
+  /// The readers and writers of other participants that discovery has announced and not removed;
+  /// none without `observe`.
   [[nodiscard]] std::vector<RemoteEndpoint> discovered() const;
 
   [[nodiscard]] const std::shared_ptr<ParticipantCore>& core() const { return core_; }

@@ -1,5 +1,6 @@
-// Participants that other programs than ours see, nodes of ROS 2: in the default partition, without
-// security whatever TOPOGEO_SECURITY says, by UDP, found by multicast and on the own host without.
+// Participants for programs outside topogeo, such as nodes of ROS 2: in the default partition,
+// without security whatever TOPOGEO_SECURITY says, by UDP. They are found by multicast, on their
+// own host also without.
 #pragma once
 
 #include <string_view>

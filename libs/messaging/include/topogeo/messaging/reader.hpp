@@ -16,11 +16,11 @@ namespace topogeo::messaging {
 
 struct ReaderOptions {
   std::string role = {};  ///< replaces the role of the topic, for example kReplayRole
-  /// Only messages to it, which the writer selects; empty: every message. A reader with an
-  /// addressee gets no disposals.
+  /// Receives only the messages to this addressee, which the writer selects; empty: every message.
+  /// A reader with an addressee gets no disposals.
   std::string addressee = {};
-  /// Whole names of the other topics of which this program needs what is sent from the same moment
-  /// on: a writer that waits for its readers waits until the program is connected with these, too
+  /// Whole names of other topics whose messages this program needs from the same moment on: a
+  /// writer that waits for its readers also waits until the program is connected to these
   /// (ConnectedPrograms). The program makes a reader of each.
   std::vector<std::string_view> read_with = {};
 };
@@ -38,9 +38,9 @@ class Reader {
                                                    options.role, options.addressee,
                                                    options.read_with)) {}
 
-  /// Hands over at most `limit` samples, oldest first of each writer, and returns how many. With
-  /// info.valid false the message is empty: only info.instance and info.state count.
-  /// std::invalid_argument of the handler refuses a message: an event, kInvalidSample.
+  /// Hands over at most `limit` samples, oldest first of each writer, and returns how many. If
+  /// info.valid is false, the message is empty: only info.instance and info.state count. A handler
+  /// that throws std::invalid_argument refuses the message, which gives the event kInvalidSample.
   std::size_t take(const Handler& handler,
                    std::size_t limit = std::numeric_limits<std::size_t>::max()) {
     return core_->take(limit, [&](const void* message, const SampleInfo& info) {
@@ -56,7 +56,7 @@ class Reader {
 
   /// Writers that are connected now.
   [[nodiscard]] int matched() const { return core_->matched(); }
-  /// A writer of the program is connected to which that writer or reader belongs.
+  /// Whether a writer of the same program as the reader or writer `program` is connected.
   [[nodiscard]] bool connected_with(const Handle& program) const {
     return core_->connected_with(program);
   }

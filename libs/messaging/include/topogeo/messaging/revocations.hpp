@@ -5,8 +5,9 @@ namespace topogeo::messaging {
 
 class Participant;
 
-/// With security: whether the list of revoked certificates has changed since the start of the
-/// participant or the last call that returned true. The middleware reads it at that start only.
+/// With security: whether the list of revoked certificates has changed since the participant
+/// started or since the last call that returned true. The middleware reads the list at the start
+/// only.
 [[nodiscard]] bool take_new_revocations(const Participant& participant);
 
 }  // namespace topogeo::messaging

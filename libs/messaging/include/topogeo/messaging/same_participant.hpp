@@ -1,4 +1,4 @@
-// Which participant a reader or writer belongs to.
+// Finds the participant that a reader or writer belongs to.
 #pragma once
 
 #include <algorithm>

@@ -9,8 +9,8 @@
 
 namespace topogeo::messaging {
 
-/// Where systemd has started the program (Type=notify): READY with the first turn of the loop,
-/// signs of life from a timer of the loop (WatchdogSec), STOPPING at the end. Elsewhere it does
+/// If systemd started the program (Type=notify), reports READY with the first turn of the loop,
+/// signs of life from a timer of the loop (WatchdogSec) and STOPPING at the end. Otherwise it does
 /// nothing. Must not outlive the loop.
 class ServiceManager {
  public:
@@ -19,7 +19,7 @@ class ServiceManager {
   ServiceManager& operator=(const ServiceManager&) = delete;
   ~ServiceManager();
 
-  /// What `systemctl status` shows; sent when it has changed.
+  /// Sets the text that `systemctl status` shows; sent when it has changed.
   void show(const std::string& text);
 
  private:

@@ -1,4 +1,4 @@
-// What programs that were killed leave in shared memory.
+// Removes the shared memory that killed programs leave behind.
 #pragma once
 
 #include <chrono>
@@ -9,25 +9,25 @@
 
 namespace topogeo::messaging {
 
-/// Where Fast DDS has its shared memory.
+/// Folder of the shared memory of Fast DDS.
 inline constexpr const char* kSharedMemoryFolder = "/dev/shm";
 
-/// A segment in which nobody will write again, and its size.
+/// A segment that no process writes any more, and its size.
 struct DeadSegment {
   std::filesystem::path file;
   std::uintmax_t bytes = 0;
 };
 
-/// What remove_dead_segments() would remove.
+/// The segments that remove_dead_segments() would remove.
 std::vector<DeadSegment> find_dead_segments(
     const std::filesystem::path& folder = kSharedMemoryFolder,
     std::chrono::seconds age = std::chrono::seconds(10));
 
-/// Removes the segments of Fast DDS in which nobody will write again: each has a file beside it
-/// that its program keeps locked, and the kernel frees the lock of the dead. A killed program
-/// leaves 4 MB, so a container of 64 MB would be full after fifteen. Files younger than `age` stay,
-/// as one that starts makes the file before it locks it. Ports stay, too: Fast DDS takes them over
-/// by itself. Returns how many segments were removed; what may not be removed stays.
+/// Removes the segments of Fast DDS that no process writes any more. Each has a lock file beside it
+/// that its program keeps locked until it ends. A killed program leaves 4 MB, so fifteen of them
+/// fill a container of 64 MB. Files younger than `age` stay, because a starting program makes the
+/// file before it locks it. Ports also stay: Fast DDS takes them over by itself. Returns the number
+/// of removed segments; a segment that cannot be removed stays.
 std::size_t remove_dead_segments(const std::filesystem::path& folder = kSharedMemoryFolder,
                                  std::chrono::seconds age = std::chrono::seconds(10));
 

@@ -1,4 +1,4 @@
-// Publishes how a service is: state, main input, counters, faults.
+// Publishes the status of a service: state, main input, counters, faults.
 #pragma once
 
 #include <chrono>
@@ -22,7 +22,7 @@ struct ServiceIdentity {
   std::string service;  ///< name of the executable, up to 32 bytes
   std::string
       instance;  ///< unique among running ones, up to 64 bytes; empty: "<host>-<process id>"
-  std::string robot_id;                  ///< up to 32 bytes; empty for a service of every robot
+  std::string robot_id;                  ///< up to 32 bytes; empty: serves every robot
   std::string version;                   ///< of the software, up to 48 bytes
   std::uint64_t config_fingerprint = 0;  ///< of the configuration; 0: it has none
 };
@@ -39,22 +39,23 @@ class StatusPublisher {
   /// 200 ms for readers to have it.
   ~StatusPublisher();
 
-  /// Sent at once. `message` is for people and may be empty. Nothing is waited for any more. That
-  /// of kServiceFailed is the last error as well.
+  /// Sent at once. `message` is for people and may be empty; that of kServiceFailed is the last
+  /// error as well. Clears set_waits_for().
   void set_state(msg::ServiceState state, std::string_view message = {});
-  /// kServiceWaiting for `what`: an input, a peer. Sent at once.
+  /// Sets kServiceWaiting for `what`: an input, a peer. Sent at once.
   void wait_for(std::string_view what);
-  /// What it needs to go on whatever its state; empty: nothing. Sent with the next period.
+  /// Names the thing that the service waits for in any state; empty: nothing. Sent with the next
+  /// period.
   void set_waits_for(std::string_view what);
   [[nodiscard]] msg::ServiceState state() const { return status_.state(); }
   /// The state and its message, for people.
   [[nodiscard]] std::string text() const;
-  /// As it was sent last, but for its state, which is that of now.
+  /// The status as last sent, but with the current state.
   [[nodiscard]] const msg::ServiceStatus& message() const { return status_; }
 
-  /// Names what the service works on, before the first of it has come.
+  /// Names the main input before its first message has come.
   void set_input(std::string_view name);
-  /// Counts one of what the service works on, for example "scan". A service has one such input.
+  /// Counts a message of the main input, for example "scan". A service has one main input.
   void count_input(std::string_view name);
 
   /// Sent with the next period. Throws std::invalid_argument for a name over 48 bytes and
@@ -62,21 +63,21 @@ class StatusPublisher {
   void set_counter(const std::string& name, double value);
   void add_to_counter(const std::string& name, double amount = 1.0);
 
-  /// What came and is not worked on, by a fixed short text (up to 48 bytes, at most 64 of them;
+  /// Counts inputs that were dropped, by a fixed short reason (up to 48 bytes, at most 64 reasons;
   /// further ones count as "other"). Sent with the next period, like queues.
   void add_drops(std::string_view reason, std::uint64_t amount = 1);
   void set_drops(std::string_view reason, std::uint64_t total);
-  /// Work that waits in the service; of a reader's own queue the traffic reports it. Throws
+  /// Work that waits in the service; the traffic already reports the readers' own queues. Throws
   /// std::invalid_argument for a name over 48 bytes and std::length_error for the 17th name.
   void set_queue(const std::string& name, std::uint64_t depth, std::uint64_t capacity = 0);
 
   /// Counts a fault and logs it, once per second for each reason at most. `reason` is a fixed short
-  /// text (up to 48 bytes, at most 32 of them; further ones count as "other"), `detail` says what
-  /// happened this time.
+  /// text (up to 48 bytes, at most 32 reasons; further ones count as "other"), `detail` describes
+  /// this occurrence.
   void fault(std::string_view reason, std::string_view detail);
 
-  /// Turns events that must not be overlooked into faults: incompatible QoS, lost samples (but not
-  /// those of a state that a newer one has replaced), missed deadlines, invalid messages. The
+  /// Turns events that must not be overlooked into faults: incompatible QoS, lost samples (except
+  /// of a state that a newer sample has replaced), missed deadlines, invalid messages. The
   /// publisher sets itself as event handler of its loop.
   void on_event(const Event& event);
 

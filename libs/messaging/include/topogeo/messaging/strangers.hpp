@@ -1,4 +1,4 @@
-// What came in of peers that keep no rules or are none of ours.
+// Counts of input from peers that break the protocol or do not belong to topogeo.
 #pragma once
 
 #include <cstdint>
@@ -6,26 +6,24 @@
 namespace topogeo::messaging {
 
 struct StrangerCounts {
-  /// Packets kept from the middleware: no RTPS, or something in them that no peer of good will
-  /// sends.
+  /// Packets kept from the middleware: not RTPS, or with contents that no honest peer sends.
   std::uint64_t invalid_packets = 0;
-  /// Messages that came plain where security wants them encrypted: a stranger in the name of a
+  /// Messages that came plain although security wants them encrypted: a stranger in the name of a
   /// peer. Kept from their reader or writer.
   std::uint64_t unprotected_packets = 0;
-  /// What the security plug-ins reported: messages that they could not decode, or not encode for a
-  /// peer that is gone, and what they found wrong with certificates.
+  /// Errors that the security plug-ins reported: messages that they could not decode, or not encode
+  /// for a peer that is gone, and faults of certificates.
   std::uint64_t security_errors = 0;
-  /// Messages of authenticated peers for robots that their permissions do not name. Not handed
-  /// over.
+  /// Messages of authenticated peers for robots that their permissions do not name. Discarded.
   std::uint64_t denied_samples = 0;
   /// Announcements of readers and writers of topics that topogeo does not have.
   std::uint64_t unknown_topics = 0;
-  /// Messages that said that a peer had left, which then went on sending: from a stranger in its
-  /// name. None changed anything.
+  /// Forged messages in a peer's name that reported it as gone although it went on sending. They
+  /// had no effect.
   std::uint64_t forged_removals = 0;
 };
 
-/// Of all participants of this process since its start. From any thread.
+/// The counts over all participants of this process since its start. Thread-safe.
 [[nodiscard]] StrangerCounts stranger_counts();
 
 }  // namespace topogeo::messaging

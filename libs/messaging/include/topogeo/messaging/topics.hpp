@@ -18,30 +18,31 @@ namespace topogeo::msg {
 
 namespace topogeo::messaging {
 
-/// Role of the sensor topics while a log is replayed: a slow reader slows the writer. Writer and
+/// Role of the sensor topics during the replay of a log: a slow reader slows the writer. Writer and
 /// readers of a run must agree on it.
 inline constexpr std::string_view kReplayRole = "sensor_replay";
 
-// Names: kScan, kOdometry, ...
+// The names: kScan, kOdometry, ...
 #define TOPOGEO_TOPIC(Type, name, role, replay_role, addressee) \
   inline constexpr std::string_view k##Type = TOPOGEO_TOPIC_PREFIX name;
 #include "topogeo/messaging/topics.def"
 
-/// What the library has to know of a topic and its type.
+/// A topic and its type.
 struct TopicInfo {
   std::string_view name;
   std::string_view role;         ///< profiles in normal operation
   std::string_view replay_role;  ///< profiles while a log is replayed; empty: same as `role`
-  /// Field that names the receiver of a message: the first one after those that all messages start
-  /// with; empty: messages are for every reader.
+  /// Field that names the receiver of a message: the first one after the common header fields.
+  /// Empty: messages are for every reader.
   std::string_view addressee;
 
   /// Makes the type support; the caller owns it.
   eprosima::fastdds::dds::TopicDataType* (*make_type)();
-  /// Why a message of this type must not travel: another schema version or a sequence over its
-  /// bound. The generated code checks neither.
+  /// The reason why a message of this type must not travel: another schema version or a sequence
+  /// over its bound. The generated code checks neither.
   std::optional<std::string> (*find_defect)(const void* message);
-  /// The robot_id of a message of this type, until the message changes. Null: the type has none.
+  /// The robot_id of a message of this type, valid until the message changes. Null: the type has
+  /// none.
   std::string_view (*robot_of)(const void* message) = nullptr;
 };
 

@@ -1,4 +1,4 @@
-// How fast a total grows that is sampled from time to time.
+// Growth rate of a total that is sampled from time to time.
 #pragma once
 
 #include <chrono>
@@ -13,11 +13,11 @@ class TotalRate {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// Rates are means over this time, as those of InputMeter.
+  /// Rates are means over this window, as in InputMeter.
   static constexpr std::chrono::seconds kWindow{5};
 
-  /// The total as it is now, which does not shrink. Returns its growth per second since the first
-  /// of the samples of the window, or since the last one before a pause; 0 for the first sample.
+  /// Adds the current total, which never shrinks. Returns its growth per second since the first
+  /// sample of the window, or since the last one before a pause; 0 for the first sample.
   double add(Time now, std::uint64_t total);
 
  private:

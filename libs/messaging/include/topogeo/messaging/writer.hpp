@@ -19,20 +19,20 @@ class Writer {
       : core_(std::make_shared<detail::WriterCore>(participant, TopicTraits<T>::info(),
                                                    std::string(role))) {}
 
-  /// Sends a message. False: not sent, because the history stayed full for the profile's
-  /// max_blocking_time (a reader is slow) or has no room for another instance; send it again.
-  /// Throws std::invalid_argument when the message breaks the wire contract (schema_version not
-  /// set, a sequence over its bound) and std::runtime_error when the middleware fails.
+  /// Sends a message. Returns false if it was not sent, because the history stayed full for the
+  /// profile's max_blocking_time (a reader is slow) or has no room for another instance; send it
+  /// again. Throws std::invalid_argument when the message breaks the wire contract (schema_version
+  /// not set, a sequence over its bound) and std::runtime_error when the middleware fails.
   [[nodiscard]] bool write(const T& message) { return core_->write(&message); }
 
-  /// Says that the instance with the key of `message` is gone; other fields do not matter. Throws
-  /// std::runtime_error when the middleware fails; an instance never written is not an error.
+  /// Ends the instance with the key of `message`; other fields do not matter. Throws
+  /// std::runtime_error when the middleware fails; an instance that was never written is no error.
   void dispose(const T& message) { core_->dispose(&message); }
 
   /// Readers that are connected now.
   [[nodiscard]] int matched() const { return core_->matched(); }
-  /// A reader of the program is connected to which that writer or reader belongs, for example
-  /// SampleInfo::writer of a message of it.
+  /// Whether a reader of the same program as the reader or writer `program` is connected, for
+  /// example SampleInfo::writer of one of its messages.
   [[nodiscard]] bool connected_with(const Handle& program) const {
     return core_->connected_with(program);
   }
@@ -40,7 +40,7 @@ class Writer {
   [[nodiscard]] bool wait_for_matched(int count, std::chrono::nanoseconds timeout) const {
     return core_->wait_for_matched(count, timeout);
   }
-  /// True as soon as every connected reader has everything that was written, false after `timeout`.
+  /// True as soon as every connected reader has all written messages, false after `timeout`.
   [[nodiscard]] bool wait_for_acknowledgments(std::chrono::nanoseconds timeout) {
     return core_->wait_for_acknowledgments(timeout);
   }

@@ -1,4 +1,4 @@
-// Writers and readers without their type: what Writer<T> and Reader<T> are made of.
+// Untyped base of Writer<T> and Reader<T>.
 #pragma once
 
 #include <chrono>
@@ -18,7 +18,7 @@ namespace topogeo::messaging::detail {
 
 class LoopAccess;
 
-/// What writers and readers have in common: peers and events.
+/// Common base of writers and readers: peers and events.
 class Endpoint {
  public:
   Endpoint();
@@ -29,11 +29,11 @@ class Endpoint {
   [[nodiscard]] int matched() const;
   /// The readers or writers that are connected now.
   [[nodiscard]] std::vector<Handle> peers() const;
-  /// One of them belongs to the program of that reader or writer.
+  /// Whether a peer belongs to the same program as the reader or writer `program`.
   [[nodiscard]] bool connected_with(const Handle& program) const;
-  /// Whole name.
+  /// Name with prefix and version.
   [[nodiscard]] std::string_view topic() const;
-  /// Written, or handed over to the program, since the endpoint was made.
+  /// Messages written, or handed over to the program, since the endpoint was made.
   [[nodiscard]] std::uint64_t messages() const;
   bool wait_for_matched(int count, std::chrono::nanoseconds timeout) const;
   /// Hands over the events since the last call, oldest first, in this thread.
@@ -55,7 +55,7 @@ class WriterCore final : public Endpoint {
   bool write(const void* message);
   void dispose(const void* message);
   bool wait_for_acknowledgments(std::chrono::nanoseconds timeout);
-  /// Whole names of the topics that a reader has announced to be read with its own.
+  /// Whole names of the topics that the program of `reader` announced to read as well.
   [[nodiscard]] std::vector<std::string> read_with(const Handle& reader) const;
 
  private:
