@@ -9,15 +9,14 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kStill_m_s = 1e-6;  // slower is no motion ahead or back
-constexpr double kStraightCurvature =
-    1e-4;  // a circle of 10 km: its equations lose their digits beyond
+constexpr double kStill_m_s = 1e-6;          // slower is no motion ahead or back
+constexpr double kStraightCurvature = 1e-4;  // a circle of 10 km: rounding errors grow beyond it
 
 double arc_cosine(double cosine) {
   return geometry::atan2(std::sqrt(std::max(0.0, 1.0 - cosine * cosine)), cosine);
 }
 
-// Ahead along x; the point is mirrored for motions back.
+// Ahead along x; callers mirror the point for motion back.
 double straight_length_m(const Eigen::Vector2d& point_m, double radius_m) {
   if (std::fabs(point_m.y()) >= radius_m || point_m.x() <= 0.0) return HUGE_VAL;
   const double half_chord_m = std::sqrt(radius_m * radius_m - point_m.y() * point_m.y());
@@ -29,7 +28,7 @@ double arc_length_m(const Eigen::Vector2d& point_m, double radius_m, double turn
   const Eigen::Vector2d seen_m(point_m.x(), point_m.y() - turning_m);
   const double off_m = seen_m.norm();
   if (std::fabs(off_m - turning_m) >= radius_m || off_m < 1e-9) return HUGE_VAL;
-  // From the start, which is at -90 degrees around the middle of the circle.
+  // Angle from the start, which is at -90 degrees around the middle of the circle.
   double angle_rad = geometry::atan2(seen_m.y(), seen_m.x()) + 0.5 * std::numbers::pi;
   if (point_m.norm() < radius_m) return point_m.x() > 0.0 ? 0.0 : HUGE_VAL;
   if (angle_rad < 0.0) angle_rad += 2.0 * std::numbers::pi;
@@ -46,7 +45,7 @@ SweptArc sweep(const geometry::Velocity& motion, std::span<const Eigen::Vector2d
   SweptArc arc{limit_m, std::nullopt};
   if (std::fabs(motion.linear_m_per_s) < kStill_m_s) return arc;
   const double ahead = motion.linear_m_per_s > 0.0 ? 1.0 : -1.0;
-  // Turning about the path: positive to the left of the direction of travel.
+  // Curvature of the path: positive to the left of the direction of travel.
   const double curvature = ahead * motion.angular_rad_per_s / std::fabs(motion.linear_m_per_s);
   const double left = curvature >= 0.0 ? 1.0 : -1.0;
   for (std::size_t i = 0; i < points_m.size(); ++i) {

@@ -13,8 +13,8 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr int kCorrections = 5;       // an error that stays after these is one of the pose,
-constexpr int kMostCorrections = 12;  // or of wheels that do not bring it nearer than this
+constexpr int kCorrections = 5;       // a remaining error is one of the pose,
+constexpr int kMostCorrections = 12;  // or of wheels that cannot get nearer than this
 constexpr double kPoor_m = 0.05;
 constexpr int kLooks = 3;              // a third of a circle each
 constexpr double kLookTurn_rad = 2.1;  // three of them are a whole turn
@@ -37,8 +37,8 @@ void Arrival::accept_position() {
 }
 
 ArrivalStep Arrival::step(const ArrivalView& view, std::int64_t now_ns) {
-  constexpr double kLongest = 3.0;  // of the time to settle, for a pose that does not come
-  constexpr double kStands = 0.5;   // of it, until the robot has come to rest
+  constexpr double kLongest = 3.0;  // of the settling time, if no pose comes
+  constexpr double kStands = 0.5;   // of the settling time, until the robot has come to rest
   const double stood_s = elapsed_s(*settle_ns_, now_ns);
   const bool seen = view.fix_ns.value_or(0) >=
                     *settle_ns_ + static_cast<std::int64_t>(kStands * config_.settle_s * 1e9);
@@ -62,7 +62,7 @@ ArrivalStep Arrival::step(const ArrivalView& view, std::int64_t now_ns) {
   return {ArrivalStep::Kind::kArrived, {}, {}, std::move(message)};
 }
 
-// Stops made while it turns confirm a pose that the localizer is not sure of, or change it.
+// Stops made while turning confirm or change an uncertain pose.
 ArrivalStep Arrival::look_around(const ArrivalView& view) {
   ++looks_;
   settle_ns_.reset();

@@ -1,4 +1,4 @@
-// Arriving: the robot stands, finds out where it is, corrects what is left, and has arrived.
+// Arrival: the robot stands, finds its exact pose, corrects the remaining error and has arrived.
 #pragma once
 
 #include <cstdint>
@@ -14,19 +14,19 @@
 
 namespace topogeo::navigation {
 
-/// Where the robot stands at the end of its path.
+/// State of the robot at the end of its path.
 struct ArrivalView {
   geometry::Pose2 T_map_robot;
   std::optional<std::int64_t> fix_ns;  ///< stamp of the last pose fix
-  bool tracking = false;               ///< the localizer is sure of it
+  bool tracking = false;               ///< the localizer is certain
   Eigen::Vector2d goal_m = Eigen::Vector2d::Zero();
   std::optional<double> heading_rad;  ///< wanted at the goal
 };
 
 struct ArrivalStep {
   enum class Kind {
-    kStands,  ///< and waits for a pose of this place
-    kMoves,   ///< follows `path` and turns to `heading_rad`, and arrives again
+    kStands,  ///< and waits for a pose at this place
+    kMoves,   ///< follows `path`, turns to `heading_rad`, and arrives again
     kArrived,
   };
   Kind kind = Kind::kStands;
@@ -39,22 +39,22 @@ class Arrival {
  public:
   explicit Arrival(const NavigatorConfig& config) : config_(config) {}
 
-  /// Another goal or route: all attempts are still to come.
+  /// Another goal or route: restores all attempts.
   void reset();
-  /// It is at the end of its path and stands from now on.
+  /// The robot is at the end of its path and stands from now on.
   void begin(std::int64_t now_ns);
-  /// It has to do something else first.
+  /// The robot has another task first.
   void interrupt() { settle_ns_.reset(); }
-  /// Something keeps it off the last centimetres: only its heading is still to be corrected.
+  /// An obstacle blocks the last centimetres: only the heading remains to be corrected.
   void accept_position();
-  /// Markov localization has looked where it is.
+  /// Markov localization has checked its pose.
   void note_look() { looked_ = settling(); }
 
   [[nodiscard]] bool settling() const { return settle_ns_.has_value(); }
-  /// Markov localization has still to look where it is.
+  /// Whether Markov localization still has to check its pose.
   [[nodiscard]] bool needs_look() const { return settling() && !looked_; }
 
-  /// What comes next, while it settles.
+  /// The next step while it settles.
   ArrivalStep step(const ArrivalView& view, std::int64_t now_ns);
 
  private:
@@ -62,9 +62,9 @@ class Arrival {
   ArrivalStep correct(const ArrivalView& view, double off_m);
 
   const NavigatorConfig& config_;
-  std::optional<std::int64_t> settle_ns_;  ///< since when it stands
+  std::optional<std::int64_t> settle_ns_;  ///< start of standing
   bool looked_ = false;
-  int looks_ = 0;  ///< turns at the goal, for the localizer to become sure
+  int looks_ = 0;  ///< turns at the goal, until the localizer is certain
   int corrections_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Notices a base that is ordered to move and does not.
+// Detects a base that does not move when ordered to.
 #pragma once
 
 #include <cmath>
@@ -14,13 +14,13 @@ class BaseWatch {
  public:
   explicit BaseWatch(double stuck_s) : stuck_ns_(static_cast<std::int64_t>(stuck_s * 1e9)) {}
 
-  /// Takes the order of now and the odometry of `odometry_ns`. True: the base has not moved for
-  /// `stuck_s` though ordered to all the time. Odometry that comes late shows nothing of the time
-  /// after its stamp. The time begins anew after a gap in the orders, because a base stops by
-  /// itself when none comes.
+  /// Takes the current order and the odometry of `odometry_ns`. True: the base has not moved for
+  /// `stuck_s` though ordered to all the time. Late odometry proves nothing about the time after
+  /// its stamp. The time starts again after a gap in the orders, because a base without orders
+  /// stops by itself.
   bool stuck(const geometry::Velocity& ordered, const geometry::Pose2& T_odom_robot,
              std::int64_t odometry_ns, std::int64_t now_ns) {
-    constexpr double kLeast_m_per_s = 0.02;    // friction may stop a base that is to go slower
+    constexpr double kLeast_m_per_s = 0.02;    // friction may stop slower motion
     constexpr double kLeast_rad_per_s = 0.05;  // the same
     constexpr double kMoved_m = 0.01;          // less may be play of the wheels
     constexpr double kMoved_rad = 0.02;        // the same
@@ -48,10 +48,10 @@ class BaseWatch {
   void reset() { T_odom_then_.reset(); }
 
  private:
-  static constexpr std::int64_t kLongestGap_ns = 300'000'000;  // an order is valid for as long
+  static constexpr std::int64_t kLongestGap_ns = 300'000'000;  // validity of an order
 
   std::int64_t stuck_ns_;
-  std::int64_t ordered_ns_ = 0;  ///< when the last order was given
+  std::int64_t ordered_ns_ = 0;  ///< time of the last order
   std::int64_t since_ns_ = 0;
   std::optional<geometry::Pose2> T_odom_then_;
 };

@@ -7,7 +7,7 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr int kSeenFree = 5;        // scans in a row: one can see past an edge
+constexpr int kSeenFree = 5;        // successive scans: one may see past an edge
 constexpr std::size_t kMost = 500;  // cells in a message
 
 }  // namespace
@@ -36,7 +36,7 @@ bool Blockade::add(std::span<const Eigen::Vector2d> points_m, const planning::Gr
 void Blockade::see(const ScanPoints& scan, const geometry::Pose2& T_map_robot) {
   if (cells_.empty()) return;
   constexpr double kHalf_m = 0.05;     // of a cell
-  constexpr double kFarthest_m = 5.0;  // beams lie further apart than a cell is wide beyond
+  constexpr double kFarthest_m = 5.0;  // beyond it beams are further apart than a cell is wide
   const ScanOccupancy occupancy(scan);
   const geometry::Pose2 T_robot_map = inverse(T_map_robot);
   for (Filled& filled : cells_) {

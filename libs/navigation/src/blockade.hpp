@@ -1,4 +1,4 @@
-// What is reported to the planner as filled, until it is seen to be free again or too old.
+// Occupied cells reported to the planner, until they are seen free or are too old.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +16,15 @@ class Blockade {
  public:
   explicit Blockade(double kept_s) : kept_ns_(static_cast<std::int64_t>(kept_s * 1e9)) {}
 
-  /// Adds the cells of these points; true when one of them is new.
+  /// Adds the cells of these points; true if one of them is new.
   bool add(std::span<const Eigen::Vector2d> points_m, const planning::GridFrame& frame,
            std::int64_t now_ns);
-  /// What a scan shows of them; `T_map_robot` at its time.
+  /// Checks the cells in a scan; `T_map_robot` at its time.
   void see(const ScanPoints& scan, const geometry::Pose2& T_map_robot);
-  /// Takes away what is seen to be free, and what is too old.
+  /// Removes cells that were seen free or are too old.
   void expire(std::int64_t now_ns);
   void clear();
-  /// The planner is to answer again although nothing has changed.
+  /// Asks the planner again although nothing has changed.
   void ask_again() { ++report_.version; }
 
   [[nodiscard]] const BlockageReport& report() const { return report_; }
@@ -34,7 +34,7 @@ class Blockade {
   struct Filled {
     Eigen::Vector2d point_m;
     std::int64_t last_ns;
-    int free = 0;  ///< seen so, one time after the other
+    int free = 0;  ///< consecutive observations as free
   };
   void publish();
 

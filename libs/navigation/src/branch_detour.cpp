@@ -12,17 +12,17 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kFarthest_m = 10.0;    // a local map shows no more
-constexpr double kBesideBody_m = 0.04;  // free on either side, as paths pass obstacles anywhere
+constexpr double kFarthest_m = 10.0;    // limit of a local map
+constexpr double kBesideBody_m = 0.04;  // free on either side, as for all paths past obstacles
 
 // A place on the route ahead of the robot.
 struct RoutePlace {
   Eigen::Vector2d at_m = Eigen::Vector2d::Zero();
   double rest_m = 0.0;   // from there to the end of the route
-  std::size_t next = 0;  // index of the first point of the route behind it
+  std::size_t next = 0;  // index of the next point of the route
 };
 
-// Places every so often from the one nearest to the robot on.
+// Evenly spaced places, starting with the one nearest to the robot.
 std::vector<RoutePlace> places_ahead(std::span<const Eigen::Vector2d> route_m,
                                      const Eigen::Vector2d& robot_m) {
   constexpr double kStep_m = 0.1;
@@ -45,7 +45,7 @@ std::vector<RoutePlace> places_ahead(std::span<const Eigen::Vector2d> route_m,
   return places;
 }
 
-// Those behind the last place of the route where the body would touch an obstacle.
+// Places behind the last one at which the body would touch an obstacle.
 std::span<const RoutePlace> behind_obstacles(std::span<const RoutePlace> places,
                                              std::span<const Eigen::Vector2d> obstacles_m,
                                              double body_m) {
@@ -70,8 +70,8 @@ double distance_to_line_m(const Eigen::Vector2d& a_m, const Eigen::Vector2d& b_m
   return (a_m + share * line_m - point_m).norm();
 }
 
-// Everything near that a path must keep off: the obstacles, all that the scan shows, and the cells
-// of no-go zones and drawn walls.
+// Points near by that a path must keep off: the obstacles, the whole scan, and the cells of no-go
+// zones and drawn walls.
 std::vector<Eigen::Vector2d> to_keep_off_m(const SeenScan& seen,
                                            std::span<const Eigen::Vector2d> obstacles_m,
                                            const planning::FreeSpace& floor) {
@@ -90,7 +90,7 @@ std::vector<Eigen::Vector2d> to_keep_off_m(const SeenScan& seen,
   return points_m;
 }
 
-// Looks for the best place of a branch to leave it, and the place of the route to go on at.
+// Searches the best place to leave a branch and the place to rejoin the route.
 class DetourSearch {
  public:
   DetourSearch(const topomap::GlobalMap& graph, std::span<const Eigen::Vector2d> route_m,
@@ -104,7 +104,7 @@ class DetourSearch {
         floor_(floor) {}
 
   std::optional<BranchDetour> run(std::span<const RoutePlace> candidates) {
-    constexpr std::size_t kEvery = 6;  // points of a branch: some 0.3 m
+    constexpr std::size_t kEvery = 6;  // points of a branch: about 0.3 m
     planning::PlanScene scene;
     scene.zones = floor_.rules().zones();
     scene.lines = floor_.rules().lines();
@@ -122,10 +122,10 @@ class DetourSearch {
   }
 
  private:
-  // Beyond the clearance of the branch nothing is proved: what an obstacle hides is taken to be
-  // free, for the next scan to show.
+  // Beyond the clearance of the branch nothing is proved: floor hidden by an obstacle is assumed
+  // free until the next scan shows it.
   void leave_at_end(const planning::PlanResult& along, std::span<const RoutePlace> candidates) {
-    constexpr double kUnproved = 3.0;  // a metre there counts as so many
+    constexpr double kUnproved = 3.0;  // cost of a metre there
     constexpr std::size_t kStep = 3;   // of the places: 0.3 m
     const planning::RoutePoint& end = along.route.points.back();
     const double before_m = kUnproved * along.start->distance_m + along.route.length_m;
@@ -147,7 +147,7 @@ class DetourSearch {
            });
   }
 
-  // One-way zones.
+  // Obeys one-way zones.
   [[nodiscard]] bool obeys_rules(const Eigen::Vector2d& a_m, const Eigen::Vector2d& b_m) const {
     const planning::GridFrame& frame = floor_.frame();
     if (!floor_.rules().guides() || a_m == b_m) return true;
@@ -160,7 +160,7 @@ class DetourSearch {
     return true;
   }
 
-  // The robot, the branches, and the rest of the route.
+  // Joins the robot, the branches, and the rest of the route.
   [[nodiscard]] BranchDetour joined(const planning::Route& route, const RoutePlace& back) const {
     BranchDetour detour;
     detour.points_m.push_back(robot_m_);

@@ -1,10 +1,10 @@
-// Detours on the local map of the moment (Thesis, 1.1 and 4.2.1; docs/algorithms.md, "Driving and
+// Detours on the momentary local map (Thesis, 1.1 and 4.2.1; docs/algorithms.md, "Driving and
 // collision guard").
 //
 // The branches of the newest scan's Voronoi diagram keep the largest distance to everything that
-// the laser sees now, and need no map: they lead where the grid has no room, as over floor that
-// furniture has left. Where the scan shows fewer than two groups of objects its diagram is virtual:
-// then that leads on.
+// the laser sees now, and need no map: they lead through floor that the grid shows as blocked, for
+// example where furniture was removed. If the scan shows fewer than two groups of objects, its
+// diagram is virtual and leads on.
 #pragma once
 
 #include <memory>
@@ -21,7 +21,7 @@
 
 namespace topogeo::navigation {
 
-/// A scan and where the robot was then.
+/// A scan and the robot's pose at its time.
 struct SeenScan {
   std::shared_ptr<const scan::Scan> scan;
   geometry::Pose2 T_robot_laser;
@@ -36,11 +36,10 @@ struct BranchDetour {
   bool is_virtual = false;                ///< a part of it follows a virtual branch
 };
 
-/// From the robot along branches of the scan and back to the route (points of the map frame) behind
-/// the last place where it touches an obstacle or a point of the scan, and on to its end. What an
-/// obstacle hides is taken to be free, and avoided. Of all such the shortest; no-go and one-way
-/// zones of the floor are obeyed. Empty when no branch leads to a place from which a straight line
-/// gets back.
+/// The shortest detour along branches of the scan and back to the route (points of the map frame),
+/// behind the last place where that touches an obstacle or a point of the scan, and on to its end.
+/// Avoids obstacles, assumes hidden floor to be free, and obeys no-go and one-way zones. Empty if
+/// no branch leads to a place with a straight line back to the route.
 std::optional<BranchDetour> detour_along_branches(const SeenScan& seen,
                                                   std::span<const Eigen::Vector2d> route_m,
                                                   const Eigen::Vector2d& robot_m,

@@ -14,7 +14,7 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kStanding_m_s = 1e-6;  // slower is no motion ahead or back
+constexpr double kStanding_m_s = 1e-6;  // slower motion counts as none
 constexpr double kNsToSeconds = 1e-9;
 
 bool has_echo(const SonarReading& reading) {
@@ -65,14 +65,14 @@ void CollisionGuard::keep_off(std::int64_t stamp_ns, std::vector<Eigen::Vector2d
 }
 
 void CollisionGuard::add_drawn(std::vector<Eigen::Vector2d>& points_m) const {
-  constexpr double kCarried_m = 3.0;  // as far as a navigator drives on without a sure pose
+  constexpr double kCarried_m = 3.0;  // the distance that a navigator drives without a certain pose
   if (drawn_m_.empty() || !last_) return;
   const geometry::Pose2 T_now_then = between(last_->T_odom_robot, T_odom_drawn_);
   if (T_now_then.position_m().norm() > kCarried_m) return;
   for (const Eigen::Vector2d& point_m : drawn_m_) points_m.push_back(T_now_then * point_m);
 }
 
-// Notes since when the sonars have no echo although the laser sees something in their reach.
+// Records since when the sonars have no echo although the laser sees something in their reach.
 void CollisionGuard::watch_silence(const SonarRound& sonar) {
   const bool any = std::any_of(sonar.readings.begin(), sonar.readings.end(), has_echo);
   const auto needs_echo = [&](const SonarReading& reading) {
@@ -86,16 +86,16 @@ void CollisionGuard::watch_silence(const SonarRound& sonar) {
   }
 }
 
-// The echoes of the sonars, and whether the laser sees what they come from, too, and better.
+// The echoes of the sonars, and whether the laser also sees, more exactly, what they come from.
 void CollisionGuard::compare_echoes() {
-  constexpr double kSame_m = 0.2;  // laser and sonar see one thing: the error of both
+  constexpr double kSame_m = 0.2;  // error of both, for the same object
   constexpr double kAhead = 0.5;   // within 60 degrees of ahead or back
   echoes_.clear();
   if (!sonar_) return;
   for (const SonarReading& reading : sonar_->readings) {
     if (!has_echo(reading)) continue;
     const double range_m = static_cast<double>(reading.range_m);
-    // Beside the body a least reading is a door post, which its motion does not bring nearer.
+    // A least reading beside the body is a door post, which the motion does not bring nearer.
     const bool ahead = std::fabs(geometry::sincos(reading.T_robot_sonar.theta_rad).cos) > kAhead;
     const double away_m = ahead && range_m <= config_.sonar_least_m ? 0.0 : range_m;
     echoes_.push_back({reading.T_robot_sonar * Eigen::Vector2d(away_m, 0.0),
@@ -105,8 +105,7 @@ void CollisionGuard::compare_echoes() {
 
 bool CollisionGuard::laser_sees(const SonarReading& reading, double up_to_m) const {
   const geometry::Pose2 T_sonar_robot = inverse(reading.T_robot_sonar);
-  const double tangent =
-      std::tan(std::min(reading.half_cone_rad, 1.5));  // decides no result of mapping
+  const double tangent = std::tan(std::min(reading.half_cone_rad, 1.5));  // not used for mapping
   return std::any_of(scan_->points_m.begin(), scan_->points_m.end(), [&](const auto& point_m) {
     const Eigen::Vector2d seen_m = T_sonar_robot * point_m;
     return seen_m.x() > 0.0 && std::fabs(seen_m.y()) <= tangent * seen_m.x() &&
@@ -173,7 +172,7 @@ std::vector<Eigen::Vector2d> CollisionGuard::obstacles_m(std::int64_t now_ns) co
 
 geometry::Velocity CollisionGuard::driven() const {
   if (!last_) return {};
-  constexpr std::int64_t kOver_ns = 150'000'000;  // shorter times make noise of odometry a speed
+  constexpr std::int64_t kOver_ns = 150'000'000;  // shorter times turn odometry noise into speed
   for (std::int64_t back_ns = kOver_ns; back_ns >= 10'000'000; back_ns /= 2) {
     const auto before = odometry_.at(last_->stamp_ns - back_ns);
     if (!before) continue;
@@ -184,7 +183,7 @@ geometry::Velocity CollisionGuard::driven() const {
   return {};
 }
 
-// Obstacles are where they were seen, carried on to the newest odometry: the robot has moved since.
+// Obstacles are carried on to the newest odometry; the robot has moved since then.
 double CollisionGuard::reaction_s(std::int64_t now_ns) const {
   std::int64_t seen_ns = now_ns;
   if (last_) {
@@ -251,7 +250,7 @@ GuardVerdict CollisionGuard::judge_by_distances(const geometry::Velocity& wanted
   const double late_s = reaction_s(now_ns);
   double speed = speed_for(arc.length_m, late_s);
   const geometry::Velocity now = driven();
-  constexpr double kRolls_m_per_s = 0.05;  // slower it stops at once
+  constexpr double kRolls_m_per_s = 0.05;  // below this it stops at once
   if (std::fabs(now.linear_m_per_s) > kRolls_m_per_s &&
       (now.linear_m_per_s > 0.0) == (wanted.linear_m_per_s > 0.0)) {
     speed = std::min(speed, speed_for(sweep(now, points_m, body_m, kFarthest_m).length_m, late_s));

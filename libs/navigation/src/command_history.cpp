@@ -8,9 +8,9 @@
 namespace topogeo::navigation {
 namespace {
 
-/// More than the longest delay of a base, which follower.delay_s allows.
+/// More than the longest delay of a base that follower.delay_s allows.
 constexpr std::int64_t kKept_ns = 1'500'000'000;
-/// What counts as standing: no base moves when it is to go so slowly.
+/// Slower commands count as standing, because no base moves that slowly.
 constexpr double kStands_m_s = 1e-3;
 constexpr double kStands_rad_s = 5e-3;
 

@@ -1,5 +1,5 @@
-// Where the collision guard has stopped the robot. What only sonars hear is in no other memory, and
-// a detour has to avoid it.
+// Places where the collision guard stopped the robot. No other memory holds obstacles that only
+// sonars hear, and a detour has to avoid them.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ class ContactMemory {
  public:
   static constexpr std::size_t kMost = 20;  ///< a new one replaces the oldest
 
-  /// A contact, map frame; one that is there already counts as met again.
+  /// Adds a contact, map frame; a known one counts as met again.
   void add(const Eigen::Vector2d& contact_m, std::int64_t now_ns) {
     constexpr double kSame_m = 0.05;  // half a cell
     std::erase_if(contacts_, [&](const Contact& known) {
@@ -26,9 +26,9 @@ class ContactMemory {
   }
   void clear() { contacts_.clear(); }
 
-  /// Those of the last seconds, in the order in which they were met last.
+  /// Contacts of the last seconds, in the order of their last meeting.
   [[nodiscard]] std::vector<Eigen::Vector2d> points_m(std::int64_t now_ns) const {
-    constexpr std::int64_t kKept_ns = 12'000'000'000;  // long enough to go round it
+    constexpr std::int64_t kKept_ns = 12'000'000'000;  // long enough to drive round it
     std::vector<Eigen::Vector2d> points_m;
     for (const Contact& contact : contacts_) {
       if (now_ns - contact.met_ns < kKept_ns) points_m.push_back(contact.point_m);
@@ -41,7 +41,7 @@ class ContactMemory {
     Eigen::Vector2d point_m;
     std::int64_t met_ns;
   };
-  std::vector<Contact> contacts_;  ///< the one met last at the end
+  std::vector<Contact> contacts_;  ///< last met at the end
 };
 
 }  // namespace topogeo::navigation

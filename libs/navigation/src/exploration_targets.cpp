@@ -1,4 +1,4 @@
-// What is left to be seen of a floor, whether or not it can be reached.
+// Candidates of exploration, reachable or not.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,7 +20,7 @@ using planning::CellState;
 
 namespace {
 
-constexpr double kEntrance_m = 1.5;  // of an entrance that noise has made too narrow, at most
+constexpr double kEntrance_m = 1.5;  // greatest length of an entrance that noise has narrowed
 constexpr std::array<Cell, 8> kAround = {Cell{1, 0},  Cell{1, 1},   Cell{0, 1},  Cell{-1, 1},
                                          Cell{-1, 0}, Cell{-1, -1}, Cell{0, -1}, Cell{1, -1}};
 
@@ -96,8 +96,8 @@ std::vector<Eigen::Vector2d> Explorer::passage_sides(const topomap::GlobalMap& g
   return found_m;
 }
 
-// Squares of the floor with enough free cells beside unknown ones, each at the one of these cells
-// that is nearest to their middle.
+// Squares of the floor with enough free cells beside unknown ones, each represented by the one of
+// these cells that is nearest to their middle.
 std::vector<Eigen::Vector2d> Explorer::gaps(const planning::HybridMap& map,
                                             const UnknownFloor& unknown) const {
   const planning::OccupancyGrid& grid = map.space().grid();
@@ -128,7 +128,7 @@ std::vector<Eigen::Vector2d> Explorer::gaps(const planning::HybridMap& map,
   return found_m;
 }
 
-// The rooms that no visited pose lies in, each at the cell that is furthest from everything.
+// The rooms without a visited pose, each at its cell farthest from obstacles.
 void Explorer::add_rooms(const planning::HybridMap& map, const Rooms& rooms,
                          std::vector<Candidate>& found) const {
   const double cell_m2 = map.frame().resolution_m * map.frame().resolution_m;
@@ -142,8 +142,8 @@ void Explorer::add_rooms(const planning::HybridMap& map, const Rooms& rooms,
   }
 }
 
-// The zones that cannot be got to though free cells lead there from one that can, a short distance
-// but too narrow for the robot; each at its cell that is nearest along these.
+// The zones that are joined to a reachable one by free cells, but too narrow for the robot over a
+// short distance; each at its cell nearest along these cells.
 std::vector<Explorer::Candidate> Explorer::blocked_zones(const planning::HybridMap& map,
                                                          const std::vector<bool>& reachable) const {
   std::vector<std::optional<Cell>> entrances(reachable.size());

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kNanosecondsPerSecond = 1e9;
 constexpr double kNearer_m = 0.1;   // progress
-constexpr double kAside_rad = 0.5;  // enough turn for another stop
-constexpr int kLooksAtTarget = 2;   // at a target that stays open
+constexpr double kAside_rad = 0.5;  // turns enough for another stop
+constexpr int kLooksAtTarget = 2;   // at a target that remains open
 
 }  // namespace
 
@@ -27,7 +27,7 @@ void ExplorationTour::set_map(ExploredMap map) {
   map_ = std::move(map);
   explorer_.set_visited(map_.T_map_stops);
   planning::HybridPlannerConfig config;
-  config.goal_snap_m = 0.2;  // what was passable in the map before may be forbidden now
+  config.goal_snap_m = 0.2;  // a cell may have become forbidden in the new map
   if (map_.map) planner_ = std::make_unique<planning::HybridPlanner>(*map_.map, config);
 }
 
@@ -55,10 +55,10 @@ void ExplorationTour::judge(const NavigatorStatus& navigator, std::int64_t now_n
     target_.reset();
     return;
   }
-  if (navigator.goal_id != goal_->goal_id) return;  // it has not received it yet
+  if (navigator.goal_id != goal_->goal_id) return;  // it has not received the goal yet
   switch (navigator.state) {
     case NavigatorState::kArrived:
-      // Its last scan may not be in the map yet.
+      // The map may not contain its last scan yet.
       if (changed ||
           static_cast<double>(now_ns - nearest_ns_) > kNanosecondsPerSecond * config_.settle_s) {
         arrived();
@@ -88,7 +88,7 @@ void ExplorationTour::judge(const NavigatorStatus& navigator, std::int64_t now_n
   }
 }
 
-// It is there and the target is open all the same: another look, a little to the side, so that a
+// The robot is there, but the target is still open: looks again, turned a little, so that a new
 // stop is made.
 void ExplorationTour::arrived() {
   if (++looks_ >= kLooksAtTarget) {

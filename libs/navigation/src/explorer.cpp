@@ -14,16 +14,16 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kWide = 0.8;          // of the clearance in the widest place of a room
-constexpr double kWideEnough_m = 0.8;  // more room than that makes no better view
-constexpr double kSamePlace_m = 0.5;   // a target that was given up comes back within this
+constexpr double kWide = 0.8;          // of the clearance at the widest place of a room
+constexpr double kWideEnough_m = 0.8;  // more room does not improve the view
+constexpr double kSamePlace_m = 0.5;   // distance within which a given-up target counts as the same
 
 bool is_look(TargetKind kind) {
   return kind != TargetKind::kRoom && kind != TargetKind::kBlocked;
 }
 
-// A place that showed nothing as one kind shows nothing as another; entering a room is another
-// matter.
+// A place without result as one kind has none as another kind, except that a room can still be
+// entered.
 bool same_place(const std::vector<ExplorationTarget>& targets, TargetKind kind,
                 const Eigen::Vector2d& position_m) {
   return std::any_of(targets.begin(), targets.end(), [&](const ExplorationTarget& target) {
@@ -71,8 +71,8 @@ struct Explorer::Scene {
   Eigen::Vector2d robot_m;
 };
 
-// Those that can be reached and are worth their distance, the nearest first, as many as the tour
-// takes.
+// The nearest reachable targets that are worth their distance, in ascending order, as many as the
+// tour takes.
 std::vector<Explorer::Option> Explorer::options(const std::vector<Candidate>& candidates,
                                                 const Scene& scene) const {
   std::vector<Option> seen;
@@ -89,7 +89,7 @@ std::vector<Explorer::Option> Explorer::options(const std::vector<Candidate>& ca
   std::stable_sort(seen.begin(), seen.end(), nearer);
   std::vector<Option> found;
   for (Option& option : seen) {
-    // No path is shorter than the straight line.
+    // A path is at least as long as the straight line.
     if (found.size() >= config_.tour && option.target.distance_m >= found.back().target.distance_m)
       break;
     const bool together = std::any_of(found.begin(), found.end(), [&](const Option& other) {
@@ -153,8 +153,8 @@ bool Explorer::dropped(TargetKind kind, const Eigen::Vector2d& position_m) const
   return same_place(given_up_, kind, position_m) || same_place(put_off_, kind, position_m);
 }
 
-// Where the robot is sent: near to the target, in its sight and, of such places, the one nearest to
-// the robot; a room is entered where it is wide, and a blocked entrance looked at from nearest.
+// The viewpoint: near the target, in its sight, and the nearest such place to the robot; a room is
+// entered where it is wide, and a blocked entrance is viewed from the nearest place.
 std::optional<geometry::Pose2> Explorer::view_of(const Candidate& candidate,
                                                  const Scene& scene) const {
   const planning::FreeSpace& space = scene.map.space();

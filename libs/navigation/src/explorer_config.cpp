@@ -38,7 +38,7 @@ void describe_views(ExplorerConfig& e, support::ConfigSchema& schema) {
              "so many of the nearest ones are put in order");
 }
 
-// What no single range states.
+// Checks relations between settings.
 void check_order(const ExplorerConfig& e) {
   support::require_at_least("explorer.sight_m", e.sight_m, "explorer.unknown_near_m",
                             e.unknown_near_m);

@@ -1,4 +1,4 @@
-// The goal that the robot has, and whether it is pursued.
+// The robot's goal, and whether it is pursued.
 #pragma once
 
 #include <optional>
@@ -10,12 +10,12 @@ namespace topogeo::navigation {
 class GoalInHand {
  public:
   void set(const GoalOrder& goal);
-  /// False when there is no goal to cancel.
+  /// False if there is no goal to cancel.
   bool cancel();
   /// Does nothing without a goal.
   void pause() { paused_ = goal_.has_value(); }
   void resume() { paused_ = false; }
-  /// The goal stays in hand until there is another one or it is cancelled.
+  /// Keeps the goal until there is another one or it is cancelled.
   void arrive() { arrived_ = true; }
 
   [[nodiscard]] const std::optional<GoalOrder>& order() const { return goal_; }
@@ -26,7 +26,7 @@ class GoalInHand {
  private:
   std::optional<GoalOrder> goal_;
   bool arrived_ = false;
-  bool cancelled_ = false;  ///< the last goal was, and no other has come since
+  bool cancelled_ = false;  ///< the last goal was, and no new one has come
   bool paused_ = false;
 };
 

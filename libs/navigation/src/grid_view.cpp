@@ -13,7 +13,7 @@ using planning::OccupancyGrid;
 
 namespace {
 
-/// The cell around any point, also beyond the grid.
+/// The cell around any point, even outside of the grid.
 Cell around(const GridFrame& frame, const Eigen::Vector2d& point_m) {
   const Eigen::Vector2d in_cells = frame.in_cells(point_m);
   return {static_cast<std::int32_t>(std::floor(in_cells.x())),
@@ -21,7 +21,7 @@ Cell around(const GridFrame& frame, const Eigen::Vector2d& point_m) {
 }
 
 /// Calls `visit` for every cell of the grid whose middle is at most `reach_m` from the point, until
-/// it returns true; whether it did.
+/// it returns true; returns whether it did.
 template <class Visit>
 bool visit_disc(const GridFrame& frame, const Eigen::Vector2d& point_m, double reach_m,
                 Visit visit) {
@@ -63,8 +63,8 @@ std::optional<Cell> nearest_cell(const GridFrame& frame, const Eigen::Vector2d& 
 
 namespace {
 
-/// The zones that a robot may be in: that of its cell or, where that is not passable, or noise has
-/// shut it in, all of those that it sees near by. It may have come from any of them.
+/// The zones that a robot may be in: the zone of its cell, or, if that is not passable or a pocket
+/// made by noise, all zones that it sees near by, because it may have come from any of them.
 std::vector<planning::ZoneId> zones_around(const planning::HybridMap& map,
                                            const Eigen::Vector2d& from_m) {
   constexpr double kNear_m = 0.5;

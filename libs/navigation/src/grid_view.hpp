@@ -1,4 +1,4 @@
-// Looking around on an occupancy grid.
+// Visibility and distance queries on an occupancy grid.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +14,20 @@
 
 namespace topogeo::navigation {
 
-/// The cell of the grid nearest to a point for which `good` holds, at most `reach_m` away.
+/// The nearest cell to a point for which `good` holds, at most `reach_m` away.
 std::optional<planning::Cell> nearest_cell(const planning::GridFrame& frame,
                                            const Eigen::Vector2d& point_m, double reach_m,
                                            const std::function<bool(const planning::Cell&)>& good);
 
-/// Of those cells the one whose middle has the least cost.
+/// Like nearest_cell, but with the least cost of the cell's middle.
 std::optional<planning::Cell> best_cell(const planning::GridFrame& frame,
                                         const Eigen::Vector2d& point_m, double reach_m,
                                         const std::function<bool(const planning::Cell&)>& good,
                                         const std::function<double(const Eigen::Vector2d&)>& cost);
 
-/// Which zones can be got to from a point, by index; from one where a robot must not be, or is shut
-/// in, those that can be got to from any passable cell that it sees within 0.5 m. None when there
-/// is no such cell.
+/// Whether each zone can be reached from a point, by index. If the robot must not be at the point,
+/// or is shut in, counts zones reachable from any passable cell that it sees within 0.5 m; none
+/// without such a cell.
 std::vector<bool> reachable_zones(const planning::HybridMap& map, const Eigen::Vector2d& from_m);
 
 /// Whether no occupied cell lies on the straight line between two points of the map frame.
@@ -38,7 +38,7 @@ bool nothing_between(const planning::OccupancyGrid& grid, const Eigen::Vector2d&
 bool any_unknown(const planning::OccupancyGrid& grid, const Eigen::Vector2d& point_m,
                  double reach_m);
 
-/// From a point to the mean of the unknown cells at most `reach_m` away; (1, 0) without any.
+/// Direction from a point to the mean of the unknown cells within `reach_m`; (1, 0) without any.
 Eigen::Vector2d toward_unknown(const planning::OccupancyGrid& grid, const Eigen::Vector2d& point_m,
                                double reach_m);
 

@@ -49,7 +49,7 @@ GuardedBase::Command GuardedBase::command(const geometry::Velocity& wanted,
                                           std::int64_t now_ns) {
   Command command;
   command.verdict = guard_.judge(near_.make_room(wanted, now_ns), now_ns);
-  // It turns where there is no room to move off, too.
+  // Without room to move off, it only turns.
   if (command.verdict.allowed == geometry::Velocity{})
     command.verdict = guard_.judge(wanted, now_ns);
   const geometry::Velocity& allowed = command.verdict.allowed;
@@ -75,14 +75,14 @@ void GuardedBase::watch_motion(const geometry::Velocity& ordered,
   judge_try(now_ns);
 }
 
-// The load is known for whole spans only: a busy one may become known after the base is stuck.
+// Load is measured over whole spans, so it may be known only after the base is stuck.
 void GuardedBase::judge_try(std::int64_t now_ns) {
   if (elapsed_s(stuck_ns_, now_ns) > stuck_s_ || tries_ >= kTries || !busy_ns_) return;
   tries_again_ = tries_again_ || elapsed_s(*busy_ns_, now_ns) <= stuck_s_;
 }
 
 bool GuardedBase::held(std::int64_t now_ns) const {
-  constexpr double kPatience_s = 0.7;  // less than any obstacle_wait_s that makes sense
+  constexpr double kPatience_s = 0.7;  // less than any sensible obstacle_wait_s
   return stopped_ns_ && elapsed_s(*stopped_ns_, now_ns) > kPatience_s;
 }
 

@@ -1,5 +1,5 @@
-// The base behind its collision guard: every velocity passes here, and every reason of base and
-// sensors not to move at all.
+// The base behind its collision guard: checks every velocity, and every reason of base and sensors
+// not to move at all.
 #pragma once
 
 #include <cstdint>
@@ -30,33 +30,33 @@ class GuardedBase {
   void add(const LaserFields& fields) { guard_.add(fields); }
   void add(const BaseCondition& base) { base_ = base; }
   /// The load of this machine at `now_ns`. A base that seems stuck while the machine is busy may
-  /// get its orders too late to obey them: it is tried again once the machine has time, kTries
-  /// times at most until it moves.
+  /// get its orders too late: it is tried again once the machine has time, at most kTries times
+  /// until it moves.
   void set(const MachineLoad& load, std::int64_t now_ns);
   void keep_off(std::int64_t stamp_ns, std::vector<Eigen::Vector2d> points_m) {
     guard_.keep_off(stamp_ns, std::move(points_m));
   }
 
-  /// Why no motion at all is possible, with one line for people; kNone when it is.
+  /// The reason why no motion is possible, with one line for people; kNone if it is possible.
   HaltReason halted(std::int64_t now_ns, std::string& message) const;
 
   struct Command {
     GuardVerdict verdict;
-    bool stopped = false;        ///< the guard allows nothing of a motion ahead
-    bool newly_stopped = false;  ///< and allowed some of it before
+    bool stopped = false;        ///< the guard allows no motion ahead
+    bool newly_stopped = false;  ///< and allowed some at the last command
   };
-  /// What of a wanted velocity the base gets. Without odometry a base that does not move is not
-  /// noticed.
+  /// The part of a wanted velocity that the base gets. A stuck base is not detected without
+  /// odometry.
   Command command(const geometry::Velocity& wanted,
                   const std::optional<geometry::Pose2>& T_odom_robot, std::int64_t now_ns);
-  /// The base gets the order to stand.
+  /// Orders the base to stand.
   void stand() { watch_.reset(); }
 
-  /// The guard has stopped the motion ahead for longer than it takes a passer-by to step aside.
+  /// The guard has stopped the motion ahead for longer than a passer-by needs to step aside.
   [[nodiscard]] bool held(std::int64_t now_ns) const;
-  /// Another path or another order: what the guard has stopped before does not count any more.
+  /// Another path or order: discards the guard's earlier stops.
   void release() { stopped_ns_.reset(); }
-  /// A base that was stuck may be tried again.
+  /// Allows another try of a base that was stuck.
   void retry();
 
   [[nodiscard]] const CollisionGuard& guard() const { return guard_; }
@@ -74,14 +74,14 @@ class GuardedBase {
   NearEchoes near_;
   BaseWatch watch_;
   std::optional<BaseCondition> base_;
-  std::int64_t odometry_ns_ = 0;  ///< of the newest
+  std::int64_t odometry_ns_ = 0;  ///< stamp of the newest
   bool stuck_ = false;
-  std::int64_t stuck_ns_ = 0;               ///< when it was judged so last
+  std::int64_t stuck_ns_ = 0;               ///< last detection
   std::optional<std::int64_t> busy_ns_;     ///< when the machine was last busy
-  bool tries_again_ = false;                ///< stuck, but perhaps because the machine was busy
-  int tries_ = 0;                           ///< since it last moved
-  geometry::Pose2 T_odom_stuck_;            ///< where it last was stuck
-  std::optional<std::int64_t> stopped_ns_;  ///< since when the guard stops the motion ahead
+  bool tries_again_ = false;                ///< stuck, but maybe for lack of CPU time
+  int tries_ = 0;                           ///< since the last motion
+  geometry::Pose2 T_odom_stuck_;            ///< last pose when stuck
+  std::optional<std::int64_t> stopped_ns_;  ///< start of the guard's stop
 };
 
 }  // namespace topogeo::navigation

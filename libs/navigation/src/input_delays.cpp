@@ -10,7 +10,7 @@
 namespace topogeo::navigation {
 namespace {
 
-/// The input that a reason is about.
+/// The input that a reason refers to.
 std::optional<TimedInput> input_of(HaltReason reason) {
   switch (reason) {
     case HaltReason::kNoOdometry:
@@ -40,8 +40,8 @@ std::string_view plural_of(TimedInput input) {
   return "inputs arrive";
 }
 
-/// Reasons that a machine without time can have. Orders of people and what stands in the way are
-/// none.
+/// Whether an overloaded machine can cause the reason. It cannot cause people's orders and
+/// obstacles.
 bool may_be_busy(HaltReason reason) {
   switch (reason) {
     case HaltReason::kNoOdometry:
@@ -64,10 +64,10 @@ void InputDelays::add(TimedInput input, std::int64_t stamp_ns, std::int64_t arri
   newest_.at(static_cast<std::size_t>(input)) = Newest{stamp_ns, arrival_ns};
 }
 
-/// Nothing for an input that has gone, has never come or is in time.
+/// Nothing for an input that has ceased, never came or is in time.
 std::optional<double> InputDelays::delay_s(TimedInput input, std::int64_t now_ns) const {
   constexpr double kStillComes_s = 1.0;  // the slowest input comes four times a second
-  // Half of what the navigator stops for, with the usual settings: the rest is between two
+  // Half of the navigator's limits with the usual settings, because the rest passes between two
   // messages.
   const double least_s = input == TimedInput::kPose ? 1.5 : 0.3;
   const std::optional<Newest>& newest = newest_.at(static_cast<std::size_t>(input));
@@ -85,7 +85,7 @@ InputDelays::Reason InputDelays::explain(HaltReason reason, std::string message,
       std::string text = load_.busy
                              ? "this machine is too busy: " + what
                              : what + ": the machine that sends them or the network is too busy";
-      // A pose may have other reasons beside, and so may the silence of sonars.
+      // A pose may be missing for other reasons too, and so may echoes of sonars.
       const bool whole = reason == HaltReason::kNoScan || reason == HaltReason::kNoOdometry;
       return {whole ? std::move(text) : message + "; " + text, true};
     }

@@ -1,4 +1,4 @@
-// Whether an input that is missing has gone, or comes late because a machine is too busy.
+// Distinguishes an input that has ceased from one that is late because a machine is too busy.
 #pragma once
 
 #include <array>
@@ -12,13 +12,13 @@ namespace topogeo::navigation {
 
 class InputDelays {
  public:
-  /// A message with this stamp has come at `arrival_ns`.
+  /// A message with this stamp came at `arrival_ns`.
   void add(TimedInput input, std::int64_t stamp_ns, std::int64_t arrival_ns);
   void set(const MachineLoad& load) { load_ = load; }
 
-  /// The text of why the robot does not drive, and whether a busy machine is part of it: an input
-  /// that still comes is named with its delay (scans and odometry in place of `message`), and
-  /// a busy machine with any other reason that it can have.
+  /// The text of the reason for a halt, and whether a busy machine is part of it. An input that is
+  /// late is named with its delay (scans and odometry replace `message`), a busy machine with any
+  /// other reason that it can cause.
   struct Reason {
     std::string message;
     bool busy_machine = false;

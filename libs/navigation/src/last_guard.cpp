@@ -10,17 +10,17 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kStandingSpeed = 1e-6;  // m/s; slower is no motion ahead or back
+constexpr double kStandingSpeed = 1e-6;  // m/s; slower motion counts as none
 constexpr double kSecondsPerNs = 1e-9;
-constexpr double kSight_m = 5.0;  // no base that it guards needs more to stop
-/// m; what is left of the noise of a laser after smoothing, less than a collision guard keeps.
+constexpr double kSight_m = 5.0;  // no guarded base needs more to stop
+/// m; laser noise left after smoothing, less than a collision guard keeps.
 constexpr double kNoise_m = 0.015;
-constexpr double kSlowest = 0.01;  // m/s; bases do not go slower
-constexpr double kRolls = 0.05;    // m/s; slower it stops at once
-/// s; from a judgement to the next, kPeriod_ns, and the orders on the serial line. A collision
-/// guard counts twice as much: its commands are on their way before.
+constexpr double kSlowest = 0.01;  // m/s; bases do not move slower
+constexpr double kRolls = 0.05;    // m/s; below this it stops at once
+/// s; between two judgements, kPeriod_ns, and the orders on the serial line. A collision guard
+/// counts twice as much, because its commands travel first.
 constexpr double kDelay_s = 0.1;
-/// A scan may be that much newer than the odometry, which is carried on by its speeds.
+/// A scan may be this much newer than the odometry, which is extrapolated by its speeds.
 constexpr std::int64_t kScanAhead_ns = 500'000'000;
 
 }  // namespace
@@ -79,7 +79,7 @@ LastGuard::Judgement LastGuard::judge(const geometry::Velocity& wanted, double b
   const std::vector<Eigen::Vector2d> points_m = points_now_m();
   const double body_m = config_.radius_m + std::min(kNoise_m, config_.side_margin_m);
   double free_m = sweep(wanted, points_m, body_m, kSight_m).length_m;
-  // The arc that it is still on when it shall take another.
+  // While changing to another arc, the robot is still on the present one.
   if (std::fabs(last_->linear_mps) > kRolls && last_->linear_mps * wanted.linear_m_per_s > 0.0) {
     const geometry::Velocity driven{last_->linear_mps, last_->angular_radps};
     free_m = std::min(free_m, sweep(driven, points_m, body_m, kSight_m).length_m);

@@ -12,12 +12,12 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kWishedBeside_m = 0.3;  // free beside the body, where there is room
+constexpr double kWishedBeside_m = 0.3;  // free beside the body, if there is room
 constexpr double kLeastBeside_m = 0.07;  // the same in tight bends
-constexpr double kNear_m = 0.3;          // so near to the goal the path is straight
-constexpr double kReach_m = 10.0;        // along a path: a scan shows no more
+constexpr double kNear_m = 0.3;          // this near to the goal the path is straight
+constexpr double kReach_m = 10.0;        // along a path: the range of a scan
 
-/// Each obstacle with four points around it.
+/// Each obstacle, surrounded by four points.
 std::vector<Eigen::Vector2d> widened(std::span<const Eigen::Vector2d> obstacles_m, double by_m) {
   std::vector<Eigen::Vector2d> points_m(obstacles_m.begin(), obstacles_m.end());
   for (const Eigen::Vector2d& obstacle_m : obstacles_m) {
@@ -29,8 +29,8 @@ std::vector<Eigen::Vector2d> widened(std::span<const Eigen::Vector2d> obstacles_
   return points_m;
 }
 
-/// The robot, and what comes of a line after the place nearest to it and `ahead_m` more; the end in
-/// any case.
+/// The robot, and the rest of a line behind the place nearest to it plus `ahead_m`; always contains
+/// the end.
 std::vector<Eigen::Vector2d> rest_of(std::span<const Eigen::Vector2d> points_m,
                                      const Eigen::Vector2d& robot_m, double ahead_m) {
   double nearest_m = std::numeric_limits<double>::infinity();
@@ -75,7 +75,7 @@ std::vector<planning::PathSample> LocalPlanner::shape(
 
 std::vector<planning::PathSample> LocalPlanner::along_route(const RouteKeeper& route,
                                                             const Eigen::Vector2d& robot_m) const {
-  constexpr double kJoin_m = 0.5;  // so far ahead it is back on a route that it is beside of
+  constexpr double kJoin_m = 0.5;  // distance at which it rejoins a route beside it
   const std::vector<Eigen::Vector2d> points_m = rest_of(route.route().points_m, robot_m, kJoin_m);
   if (config_.motion == MotionStyle::kPrimitives) return straight_path(points_m);
   constexpr double kCorner_rad = 0.9;  // as in shape()
@@ -147,8 +147,8 @@ std::optional<PathBlock> LocalPlanner::blocked(std::span<const planning::PathSam
                                                double from_m, const Eigen::Vector2d& robot_m,
                                                std::span<const Eigen::Vector2d> obstacles_m,
                                                double reach_m) const {
-  constexpr double kBeside_m = 0.04;  // it passes obstacles at this distance
-  constexpr double kNearer_m = 0.03;  // more is nearer than it is now
+  constexpr double kBeside_m = 0.04;  // distance at which it passes obstacles
+  constexpr double kNearer_m = 0.03;  // a larger approach blocks
   constexpr double kStep_m = 0.05;    // as fine as a cell
   const double body_m = config_.guard.radius_m + kBeside_m;
   const auto touched = [&](const Eigen::Vector2d& at_m) {
@@ -177,7 +177,7 @@ std::optional<PathBlock> LocalPlanner::blocked(std::span<const planning::PathSam
 
 bool passable(const planning::FreeSpace& space, std::span<const planning::PathSample> path,
               double from_m) {
-  constexpr double kHere_m = 0.5;  // more than a body that stands in forbidden cells reaches
+  constexpr double kHere_m = 0.5;  // beyond the reach of a body in forbidden cells
   return std::all_of(path.begin(), path.end(), [&](const planning::PathSample& sample) {
     if (sample.distance_m < from_m + kHere_m) return true;
     const auto cell = space.frame().cell_of(sample.T_map_robot.position_m());

@@ -6,12 +6,12 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kTurn_rad_s = 0.5;  // slow enough for scans to be matched while it turns
-constexpr double kSpeed_m_s = 0.2;   // without a pose it creeps
-constexpr double kLeg_m = 1.0;       // a stop is made about as often
-constexpr double kRoomLeft_m = 0.3;  // stays free ahead of the body
-constexpr double kFacing_rad = 0.1;  // what it turns on after the command to stop
-constexpr double kStops_m = 0.1;     // the distance on after the command to stop
+constexpr double kTurn_rad_s = 0.5;  // slow enough to match scans while turning
+constexpr double kSpeed_m_s = 0.2;   // slow, without a pose
+constexpr double kLeg_m = 1.0;       // about the distance between stops
+constexpr double kRoomLeft_m = 0.3;  // remains free ahead of the body
+constexpr double kFacing_rad = 0.1;  // turns on after the command to stop
+constexpr double kStops_m = 0.1;     // moves on after the command to stop
 
 }  // namespace
 

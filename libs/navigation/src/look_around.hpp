@@ -1,5 +1,5 @@
-// Moves that let a localizer find an unknown pose: once round on the spot, then a short distance to
-// where most room is, and again.
+// Moves that let a localizer find an unknown pose: a full turn on the spot, a short distance
+// towards the most room, and so on.
 #pragma once
 
 #include <cstdint>
@@ -17,13 +17,13 @@ class LookAround {
 
   void reset() { *this = LookAround(farthest_m_); }
 
-  /// The next velocity, not judged by the guard yet.
+  /// The next velocity, not yet checked by the guard.
   geometry::Velocity step(const geometry::Pose2& T_odom_robot, const CollisionGuard& guard,
                           std::int64_t now_ns);
 
-  /// It has gone as far as it may and has looked round there.
+  /// It has gone its full distance and has turned round there.
   [[nodiscard]] bool finished() const { return phase_ == Phase::kFinished; }
-  /// It has turned once round on the spot, the first time.
+  /// It has completed its first turn on the spot.
   [[nodiscard]] bool been_round() const { return phase_ != Phase::kRound || gone_m_ > 0.0; }
   [[nodiscard]] double gone_m() const { return gone_m_; }
 

@@ -9,7 +9,7 @@ namespace topogeo::navigation {
 
 void MarkovMode::set_map(const planning::HybridMap* map) {
   if (!on()) return;
-  // A robot that was never found keeps the base station, if it has one.
+  // A robot that was never located keeps the base station, if there is one.
   if (const auto found = tracker_ ? tracker_->fix() : std::nullopt) {
     T_map_station_ = found->T_map_robot;
   }
@@ -71,11 +71,11 @@ void MarkovMode::primitive_done() {
 
 void MarkovMode::set_path(std::span<const planning::PathSample> path,
                           std::span<const Eigen::Vector2d> nodes_m) {
-  constexpr double kOnPath_m = 0.5;  // a path keeps off walls and passes a node beside its middle
-  constexpr double kJustBegun_m = 0.3;  // it has looked there
+  constexpr double kOnPath_m = 0.5;     // a path off the walls may pass beside the middle of a node
+  constexpr double kJustBegun_m = 0.3;  // it has looked there already
   nodes_at_m_.clear();
   next_node_ = 0;
-  // With a grid of poses it hears its sonars on the way.
+  // A grid of poses uses the sonars while driving.
   if (!on() || path.empty() || config_.markov.grid == MarkovGrid::kPoses) return;
   for (const Eigen::Vector2d& node_m : nodes_m) {
     const auto off_m = [&](const planning::PathSample& sample) {

@@ -1,4 +1,4 @@
-// Markov localization as a navigator's source of poses: when to look, and with what.
+// Markov localization as a navigator's source of poses: times of looks, and their readings.
 #pragma once
 
 #include <cstdint>
@@ -22,27 +22,27 @@ class MarkovMode {
 
   [[nodiscard]] bool on() const { return config_.pose_source == PoseSource::kMarkov; }
 
-  /// Goes on where it is in the new map.
+  /// Continues at its pose in the new map.
   void set_map(const planning::HybridMap* map);
   void add(const PoseFix& base_station);
   void add(const OdometrySample& odometry);
   void add(const ScanPoints& scan);
   void add(const SonarRound& sonar);
 
-  /// Starts when everything is there; the pose now, for the navigator.
+  /// Starts once all inputs are there; returns the current pose for the navigator.
   std::optional<PoseFix> pose();
   void primitive_done();
 
-  /// Where along a path border nodes are: there the robot is to look.
+  /// Sets the places along a path where the robot has to look, its border nodes.
   void set_path(std::span<const planning::PathSample> path,
                 std::span<const Eigen::Vector2d> nodes_m);
-  /// True once for each node that the robot comes to.
+  /// True once for each node that the robot reaches.
   bool comes_to_node(double progress_m);
 
   void begin_look(std::int64_t now_ns) { look_ns_ = now_ns; }
   [[nodiscard]] bool looks() const { return look_ns_.has_value(); }
-  /// Looks, if it is to, as soon as a reading has come since the robot stands; how far that has
-  /// moved the pose, metres. Nothing before.
+  /// If a look is due, performs it as soon as a reading has come since the robot stands; returns
+  /// the correction of the pose, metres. Nothing before.
   std::optional<double> look(std::int64_t now_ns);
 
  private:
@@ -53,7 +53,7 @@ class MarkovMode {
   std::optional<geometry::Pose2> T_map_station_;
   std::optional<OdometrySample> odometry_;
   std::optional<SonarRound> round_;
-  std::optional<std::int64_t> tried_ns_;  ///< stamp of the round with which it could not start
+  std::optional<std::int64_t> tried_ns_;  ///< stamp of the round that failed to start it
   std::optional<std::int64_t> look_ns_;
   std::vector<double> nodes_at_m_;
   std::size_t next_node_ = 0;

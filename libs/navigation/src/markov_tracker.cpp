@@ -45,7 +45,7 @@ std::vector<float> ranges_of(const SonarRound& round) {
 
 SonarRound laser_round(const ScanPoints& scan, double step_rad) {
   if (!(step_rad > 0.0)) throw std::invalid_argument("laser round: step_rad is not above 0");
-  constexpr double kOnBeam_rad = 0.01;  // just over the step of a PLS
+  constexpr double kOnBeam_rad = 0.01;  // slightly more than the step of a PLS
   const geometry::Pose2 T_laser_robot = inverse(scan.T_robot_laser);
   const auto beams = static_cast<std::size_t>(std::numbers::pi / step_rad + 1e-9) + 1;
   std::vector<double> off_rad(beams, kOnBeam_rad);
@@ -208,8 +208,8 @@ std::optional<PoseFix> MarkovTracker::fix() const {
   const auto estimate = localizer_->estimate();
   fix.tracking = estimate.has_value();
   fix.state_text = reason_;
-  // Until readings show otherwise it is where it is expected: the printed movement model alone lets
-  // the most probable cell run ahead.
+  // Without contrary readings the expected pose counts: with the printed movement model alone the
+  // most probable cell runs ahead.
   fix.T_map_robot =
       T_map_grid_ * localizer_->expected() * between(T_odom_followed_, last_->T_odom_robot);
   const double within_m = cells_.cell_m() / std::sqrt(12.0);

@@ -58,11 +58,11 @@ geometry::Velocity NavigationStep::step(std::int64_t at_ns) {
   return drive(pose);
 }
 
-// Finds out where the robot is now, and forgets what was placed by a pose that was wrong.
+// Updates the pose, and drops everything that was placed by a wrong one.
 void NavigationStep::locate() {
-  constexpr double kCorrected_m = 0.05;  // less is no reason for another path
-  constexpr double kMemory_m = 0.15;     // obstacles are that much out of place after a jump
-  constexpr double kRoute_m = 0.5;       // and the route may begin elsewhere after this one
+  constexpr double kCorrected_m = 0.05;  // a smaller correction needs no other path
+  constexpr double kMemory_m = 0.15;     // a larger jump misplaces obstacles
+  constexpr double kRoute_m = 0.5;       // a larger jump may change the start of the route
   if (goal.order()) status.driven_m += poses.take_driven_m();
   const bool primitive_finished = !driver.follower().take_finished().empty();
   if (const auto corrected_m = poses.update(primitive_finished, now_ns)) {
@@ -73,13 +73,13 @@ void NavigationStep::locate() {
   const double jump_m = poses.take_jump_m();
   if (jump_m > kMemory_m) surroundings.forget();
   if (jump_m > kRoute_m) driver.doubt_route();
-  // Of a pose that is not sure the points would be in a wrong place: those of before stay.
+  // With an uncertain pose the new points would be misplaced, so the previous ones stay.
   if (status.T_map_robot && poses.keeper().tracking()) {
     base.keep_off(now_ns, limits.near_m(*status.T_map_robot));
   }
 }
 
-/// Why it must not move at all; kNone when it may.
+/// The reason for no motion at all; kNone if it may move.
 HaltReason NavigationStep::halted(std::string& message) const {
   if (goal.paused()) {
     message = "paused; drives on after a resume";
@@ -130,7 +130,7 @@ void NavigationStep::take_route() {
       return;
     case RouteAnswer::kTaken:
       ++status.routes;
-      // Without a map what was seen belongs to the cells around the route before.
+      // Without a map, the memory belongs to the cells around the previous route.
       if (routes.map() == nullptr) surroundings.forget();
       wait.forget();
       base.release();
@@ -164,7 +164,7 @@ geometry::Velocity NavigationStep::drive(const geometry::Pose2& T_map_robot) {
     return stop(NavigatorState::kRelocalizing, HaltReason::kNone, "stands and looks where it is");
   }
   if (arrival.settling()) return settle(T_map_robot);
-  // Far from its route it waits for one from where it is; if none comes, it goes back to the old.
+  // Far from its route it waits for one from its place; if none comes, it returns to the old one.
   if (driver.astray(T_map_robot.position_m()) && routes.wait_s(now_ns) < config.route_wait_s) {
     return stop(NavigatorState::kRelocalizing, HaltReason::kWaitsForRoute,
                 "is not on its route; waits for another one");
@@ -173,8 +173,8 @@ geometry::Velocity NavigationStep::drive(const geometry::Pose2& T_map_robot) {
 }
 
 geometry::Velocity NavigationStep::follow(const geometry::Pose2& T_map_robot) {
-  constexpr double kNearEnough_m = 0.08;  // a goal that is too narrow for the last centimetres
-  constexpr double kStays_s = 15.0;       // longer than the last centimetres and a turn take
+  constexpr double kNearEnough_m = 0.08;  // for goals too narrow for the last centimetres
+  constexpr double kStays_s = 15.0;       // longer than the last centimetres and a turn
   const SeenObstacles obstacles = surroundings.seen(now_ns);
   const RouteDriver::Scene scene{routes, T_map_robot, obstacles, wait.over(now_ns), now_ns};
   if (driver.needs_path() || !driver.follower().has_path()) {
@@ -192,7 +192,7 @@ geometry::Velocity NavigationStep::follow(const geometry::Pose2& T_map_robot) {
   const bool near = (routes.goal_m() - T_map_robot.position_m()).norm() < kNearEnough_m;
   if (!near) near_since_ns.reset();
   if (near && !near_since_ns) near_since_ns = now_ns;
-  // Paths found again and again round what only a sonar hears bring it no nearer either.
+  // Repeated paths round obstacles that only a sonar hears bring it no nearer either.
   const bool stays = near && elapsed_s(*near_since_ns, now_ns) > kStays_s;
   if (near && (hindered || stays)) {
     near_since_ns.reset();
@@ -204,7 +204,7 @@ geometry::Velocity NavigationStep::follow(const geometry::Pose2& T_map_robot) {
     wait.drive_on(status.driven_m);
   }
   if (driven.follower.done) {
-    near_since_ns.reset();  // it gets there: how often it corrects is counted
+    near_since_ns.reset();  // it arrives: its corrections are counted
     arrival.begin(now_ns);
     return settle(T_map_robot);
   }
@@ -239,9 +239,9 @@ geometry::Velocity NavigationStep::wait_for_obstacle() {
   return stop(status.state, status.reason, status.message);
 }
 
-// Reports what is in the way as soon as that is due.
+// Reports the obstacles in the way as soon as that is due.
 void NavigationStep::describe_wait() {
-  constexpr double kAround_m = 1.0;  // of what is in the way, as much as fills a door
+  constexpr double kAround_m = 1.0;  // of the obstacles in the way: enough to fill a door
   if (wait.report_due(now_ns)) {
     const auto& block = driver.block();
     const auto& pose = status.T_map_robot;
@@ -273,7 +273,7 @@ geometry::Velocity NavigationStep::settle(const geometry::Pose2& T_map_robot) {
   return stop(NavigatorState::kDriving, HaltReason::kNone, std::move(next.message));
 }
 
-// Something keeps it off the last centimetres.
+// An obstacle blocks the last centimetres.
 geometry::Velocity NavigationStep::settle_here() {
   arrival.accept_position();
   base.release();

@@ -1,4 +1,4 @@
-// One step of the navigator: from what is known now to the velocity to command.
+// One step of the navigator: from the current state to the velocity command.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@
 
 namespace topogeo::navigation {
 
-/// Every reason not to move comes first, then the pose, then the route; every velocity passes the
+/// Checks every reason not to move first, then the pose, then the route; every velocity passes the
 /// collision guard in command().
 struct NavigationStep {
   /// Throws std::invalid_argument like check(NavigatorConfig).
@@ -64,7 +64,7 @@ struct NavigationStep {
   ObstacleWait wait;
   Arrival arrival;
   Relocalization relocalization;
-  std::optional<std::int64_t> near_since_ns;  ///< within centimetres of the goal
+  std::optional<std::int64_t> near_since_ns;  ///< start of the time within centimetres of the goal
   NavigatorStatus status;
 };
 

@@ -10,10 +10,10 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kNearRoom_m = 0.10;           // to keep
-constexpr double kOneEcho_m = 0.15;            // echoes so near to each other are of one thing
-constexpr double kNearKept_s = 4.0;            // until a turning robot hears it by another sonar
-constexpr double kNearCurvePerMetre = 0.8;     // moves a followed path by a decimetre
+constexpr double kNearRoom_m = 0.10;           // to be kept
+constexpr double kOneEcho_m = 0.15;            // closer echoes belong to one object
+constexpr double kNearKept_s = 4.0;            // until another sonar of a turning robot hears it
+constexpr double kNearCurvePerMetre = 0.8;     // shifts a followed path by a decimetre
 constexpr double kNearStepPerSecond_m = 0.05;  // while it turns on the spot
 
 bool lies_along(const Eigen::Vector2d& point_m) {
@@ -48,7 +48,7 @@ void NearEchoes::add(const SonarRound& sonar) {
   }
 }
 
-// What was heard nearer in the cone of this reading is not there.
+// A longer echo of this reading proves that nearer objects in its cone are gone.
 void NearEchoes::forget_before(const SonarReading& reading) {
   const geometry::Pose2 T_sonar_odom = inverse(odometry_->T_odom_robot * reading.T_robot_sonar);
   std::erase_if(near_, [&](const Near& near) {
@@ -59,7 +59,7 @@ void NearEchoes::forget_before(const SonarReading& reading) {
   });
 }
 
-// It may be anywhere from the body to the least range: the middle of these.
+// The object may be anywhere between the body and the least range: assumes the middle.
 void NearEchoes::note(const SonarReading& reading, std::int64_t heard_ns) {
   const Eigen::Vector2d least_m =
       reading.T_robot_sonar * Eigen::Vector2d(static_cast<double>(reading.range_m), 0.0);

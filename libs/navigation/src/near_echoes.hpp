@@ -1,7 +1,7 @@
-// Room to what sonars hear at their least range. They cannot measure how near it is, so a robot
-// that is not quite where it believes to be comes to touch it unheard: driving along it, or turning
-// on the spot on wheels that shift it. It moves off by itself, as far as nothing is on the other
-// side.
+// Keeps room to objects that sonars hear at their least range. Sonars cannot measure a shorter
+// distance, so a robot with a pose error may touch them unnoticed: while it drives along them, or
+// turns on the spot on wheels that shift it. It moves off by itself, unless something is on the
+// other side.
 #pragma once
 
 #include <cstdint>
@@ -24,9 +24,9 @@ class NearEchoes {
   void add(const OdometrySample& odometry) { odometry_ = odometry; }
   void add(const SonarRound& sonar);
 
-  /// The wanted velocity with what leads off near echoes of the last seconds: curved away from
-  /// what is on one side alone, and ahead or back while the robot turns on the spot. Unchanged
-  /// where a laser sees what is near, or nothing is.
+  /// The wanted velocity plus a component away from near echoes of the last seconds: curved away
+  /// from objects on one side only, and ahead or back while the robot turns on the spot. Unchanged
+  /// if a laser sees near objects, or there are none.
   [[nodiscard]] geometry::Velocity make_room(const geometry::Velocity& wanted,
                                              std::int64_t now_ns) const;
 

@@ -1,8 +1,8 @@
-// What the laser has seen in the last seconds that is not on the map.
+// Obstacles that the laser has seen in the last seconds and that are not on the map.
 //
-// The laser looks ahead only, so what the robot drives past is kept until it is seen to be gone or
-// forgotten. Points near to something on the map are its surfaces, seen with the errors of pose
-// and laser. What stays in its cell for a while stands there; what does not, moves.
+// The laser looks ahead only, so passed obstacles are kept until they are seen to be gone or
+// forgotten. Points near obstacles of the map are their surfaces, seen with the errors of pose and
+// laser. A point that stays in its cell for a while stands; others move.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@
 namespace topogeo::navigation {
 
 struct MemoryConfig {
-  double farthest_m = 4.0;       ///< points beyond are not taken
-  double tolerance_m = 0.21;     ///< as near to the map's obstacles it is one of them,
-  double tolerance_rad = 0.015;  ///< and so much more for each metre from the robot
-  double stands_s = 0.7;         ///< seen for so long in its cell: it stands
-  double forgotten_s = 20.0;     ///< not seen for so long
+  double farthest_m = 4.0;       ///< points beyond are ignored
+  double tolerance_m = 0.21;     ///< points this near to the map's obstacles belong to them,
+  double tolerance_rad = 0.015;  ///< plus this for each metre from the robot
+  double stands_s = 0.7;         ///< seen for this long in its cell: it stands
+  double forgotten_s = 20.0;     ///< not seen for this long
 };
 
 struct Obstacle {
@@ -42,12 +42,12 @@ class ObstacleMemory {
            const planning::FreeSpace& space);
   void clear() { cells_.clear(); }
 
-  /// Seen at least twice; in the order of the cells.
+  /// Obstacles seen at least twice, in the order of the cells.
   [[nodiscard]] std::vector<Obstacle> all() const;
 
  private:
   MemoryConfig config_;
-  std::map<std::size_t, Obstacle> cells_;  ///< by the index of the cell
+  std::map<std::size_t, Obstacle> cells_;  ///< by cell index
 };
 
 }  // namespace topogeo::navigation

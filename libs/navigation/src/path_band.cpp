@@ -8,7 +8,7 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kStep_m = 0.08;  // between the points of a band: half of what a robot swings out
+constexpr double kStep_m = 0.08;  // between the points of a band: half of the robot's swing-out
 
 std::vector<Eigen::Vector2d> dense(std::span<const Eigen::Vector2d> points_m) {
   std::vector<Eigen::Vector2d> result;
@@ -60,8 +60,8 @@ class Field {
   Field(const planning::FreeSpace& space, std::span<const Eigen::Vector2d> obstacles_m)
       : space_(space), obstacles_m_(obstacles_m) {}
 
-  // Distance to the nearest surface of the map or obstacle, about; between the middles of cells
-  // linear.
+  // Approximate distance to the nearest surface of the map or obstacle; linear between the middles
+  // of cells.
   [[nodiscard]] double clearance_m(const Eigen::Vector2d& point_m) const {
     const planning::GridFrame& frame = space_.frame();
     const Eigen::Vector2d at = frame.in_cells(point_m) - Eigen::Vector2d(0.5, 0.5);
@@ -91,7 +91,7 @@ class Field {
  private:
   [[nodiscard]] double of(const planning::Cell& cell, std::int32_t x, std::int32_t y) const {
     const planning::Cell there{cell.column + x, cell.row + y};
-    constexpr double kMost_m = 2.0;  // more room makes no better path
+    constexpr double kMost_m = 2.0;  // more room does not improve a path
     if (!space_.frame().contains(there)) return 0.0;
     if (space_.grid().at(there) != planning::CellState::kFree) return 0.0;
     return std::min(kMost_m, space_.clearance_m(there));
@@ -101,10 +101,10 @@ class Field {
   std::span<const Eigen::Vector2d> obstacles_m_;
 };
 
-// Bends that are too tight are widened, as far as there is room.
+// Widens bends that are too tight, as far as there is room.
 void relax(std::vector<Eigen::Vector2d>& path_m, const Field& field, double least_m) {
   constexpr int kRounds = 40;
-  constexpr double kTightest_rad = 3.0 * kStep_m;  // on a circle of a third of a metre
+  constexpr double kTightest_rad = 3.0 * kStep_m;  // a circle of a third of a metre
   for (int round = 0; round < kRounds; ++round) {
     bool any = false;
     for (std::size_t i = 1; i + 1 < path_m.size(); ++i) {
@@ -136,7 +136,7 @@ std::vector<Eigen::Vector2d> band(const planning::FreeSpace& space,
                                   std::span<const Eigen::Vector2d> obstacles_m,
                                   const BandConfig& config) {
   constexpr int kRounds = 60;
-  constexpr int kSmoothingOnly = 6;  // last rounds: they take the kinks off that pushes left
+  constexpr int kSmoothingOnly = 6;  // last rounds: they smooth kinks left by pushes
   constexpr int kEvenlyEvery = 10;   // pushed points drift apart
   constexpr double kPull = 0.3;
   constexpr double kPush = 0.15;
@@ -152,7 +152,7 @@ std::vector<Eigen::Vector2d> band(const planning::FreeSpace& space,
       if (missing_m <= 0.0) continue;
       next_m[i] += std::min(kPush * missing_m, kLargestPush_m) * field.uphill(path_m[i]);
     }
-    // Where the path leads through an obstacle, the band is torn.
+    // The band is torn where the path leads through an obstacle.
     constexpr double kTorn = 2.5;
     for (std::size_t i = 1; i < next_m.size(); ++i) {
       if ((next_m[i] - next_m[i - 1]).norm() > kTorn * kStep_m) return {};
@@ -199,7 +199,7 @@ std::vector<planning::PathSample> samples_of(std::span<const Eigen::Vector2d> po
     if (!corner && i > 0) {
       const double around_m = 0.5 * (vector_m.norm() + (kept_m[i] - kept_m[i - 1]).norm());
       samples.back().curvature_per_m = turn_rad / around_m;
-      // Half of the turn lies before the corner of the polyline.
+      // Half of the turn belongs to the part before the corner of the polyline.
       samples.back().T_map_robot.theta_rad = geometry::wrap_angle(heading_rad - 0.5 * turn_rad);
     }
     distance_m += vector_m.norm();

@@ -1,4 +1,4 @@
-// How far a point is from a path.
+// Distance of a point from a path.
 #pragma once
 
 #include <span>

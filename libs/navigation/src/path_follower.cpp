@@ -10,11 +10,11 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kBrake = 0.7;           // of the acceleration: stops are planned with a reserve
-constexpr double kTurnBrake = 0.6;       // the same of turns
-constexpr double kSlowest_m_s = 0.03;    // bases do not move when they are to go slower
+constexpr double kBrake = 0.7;           // of the acceleration: reserve of planned stops
+constexpr double kTurnBrake = 0.6;       // the same for turns
+constexpr double kSlowest_m_s = 0.03;    // bases do not move slower
 constexpr double kSlowest_rad_s = 0.06;  // the same
-constexpr double kLost_rad = 0.9;        // so far off the heading it turns on the spot again
+constexpr double kLost_rad = 0.9;        // larger heading errors need a turn on the spot
 constexpr double kCorner_rad = 0.02;     // less is no turn on the spot
 
 }  // namespace
@@ -72,7 +72,7 @@ void PathFollower::follow(std::vector<planning::PathSample> path,
   segment_ = 0;
   turn_from_rad_.reset();
   leg_from_m_.reset();
-  finished_.clear();  // they may never have been taken
+  finished_.clear();  // the base may never have executed them
   if (path_.size() < 2) {
     path_.clear();
     phase_ = Phase::kFinalTurn;
@@ -109,7 +109,7 @@ std::vector<planning::MotionPrimitive> PathFollower::take_finished() {
   return std::exchange(finished_, {});
 }
 
-// The nearest place of the leg, not far from the last one.
+// The nearest place of the leg, near the last one.
 PathFollower::Place PathFollower::locate(const geometry::Pose2& T_map_robot) {
   constexpr double kAhead_m = 1.0;
   const Eigen::Vector2d robot_m = T_map_robot.position_m();
@@ -150,10 +150,10 @@ PathFollower::Place PathFollower::locate(const geometry::Pose2& T_map_robot) {
   return place;
 }
 
-// What the curves within the next metre allow.
+// The speed that the curves within the next metre allow.
 double PathFollower::curve_speed(double to_go_m) const {
   constexpr double kAhead_m = 1.0;
-  constexpr double kSideways_m_per_s2 = 0.6;  // what a light load bears
+  constexpr double kSideways_m_per_s2 = 0.6;  // limit of a light load
   constexpr double kTurnShare = 0.8;          // the rest is for corrections
   const double brake = kBrake * config_.acceleration_m_per_s2;
   double speed = std::min(config_.speed_m_per_s, stopping_speed(to_go_m, 0.0, brake));
@@ -263,8 +263,8 @@ geometry::Velocity PathFollower::control(const geometry::Pose2& T_map_robot, dou
 geometry::Velocity PathFollower::ramped(const geometry::Velocity& wanted,
                                         std::int64_t now_ns) const {
   constexpr double kLongest_s = 0.2;
-  constexpr double kDown = 1.5;      // braking may be that much harder than speeding up
-  constexpr double kUsual_s = 0.05;  // between two steps, for the first one
+  constexpr double kDown = 1.5;      // ratio of braking to speeding up
+  constexpr double kUsual_s = 0.05;  // between two steps, assumed for the first
   const geometry::Velocity last = commands_.last();
   const double time_s = std::clamp(commands_.since_last_s(now_ns, kUsual_s), 0.0, kLongest_s);
   const double up = config_.acceleration_m_per_s2 * time_s;

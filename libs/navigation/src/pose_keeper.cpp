@@ -48,7 +48,7 @@ void PoseKeeper::add(const OdometrySample& sample) {
 
 void PoseKeeper::add(const PoseFix& fix) {
   if (fix_ && fix.stamp_ns < fix_->stamp_ns) return;
-  if (!fix.tracking && !fix.located) {  // counts at once, whatever odometry there is
+  if (!fix.tracking && !fix.located) {  // counts at once, with any odometry
     fix_ = fix;
     tracked_ = false;
     pending_.reset();
@@ -63,7 +63,7 @@ void PoseKeeper::add(const PoseFix& fix) {
 
 void PoseKeeper::use(const PoseFix& fix) {
   const auto then = odometry_.at(fix.stamp_ns);
-  if (!then) return;  // older than all odometry that is kept
+  if (!then) return;  // older than all stored odometry
   const geometry::Pose2 T_map_odom = fix.T_map_robot * inverse(then->T_odom_robot);
   if (fix_ && last_) {
     const Eigen::Vector2d robot_m = last_->T_odom_robot.position_m();

@@ -26,7 +26,7 @@ std::optional<double> PoseSources::update(bool primitive_finished, std::int64_t 
   markov_pose_ = markov_.pose();
   if (const auto& fix = markov_pose_) {
     keeper_.add(*fix);
-    // It looks while the pose is still good enough to drive by, before it counts as lost.
+    // Looks while the pose is still good enough to drive, before it counts as lost.
     constexpr double kUnsure = 0.8;  // of the largest deviation
     const bool unsure = keeper_.sigma_m() > kUnsure * largest_sigma_m_;
     if ((unsure || !fix->tracking) && !markov_.looks()) markov_.begin_look(now_ns);

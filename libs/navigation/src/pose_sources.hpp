@@ -1,5 +1,5 @@
-// Where poses come from: fixes of a localizer, or Markov localization on the map's grid; both
-// carried on by odometry.
+// Sources of poses: fixes of a localizer, or Markov localization on the map's grid; both carried on
+// by odometry.
 #pragma once
 
 #include <cstdint>
@@ -28,23 +28,23 @@ class PoseSources {
   void add(const ScanPoints& scan) { markov_.add(scan); }
   void add(const SonarRound& sonar) { markov_.add(sonar); }
 
-  /// Once in each step. Markov localization follows the primitive that has been executed, and looks
-  /// where it is when that is due and readings have come since the robot stands. How far such a
-  /// look has moved the pose, metres; nothing without one.
+  /// Call once per step. Markov localization follows the executed primitive, and looks if that is
+  /// due and readings have come since the robot stands. Returns the correction of the pose by that
+  /// look, metres; nothing without one.
   std::optional<double> update(bool primitive_finished, std::int64_t now_ns);
 
   [[nodiscard]] const PoseKeeper& keeper() const { return keeper_; }
-  /// As of the last update(); nothing where poses come from a localizer.
+  /// The pose at the last update(); nothing if poses come from a localizer.
   [[nodiscard]] const std::optional<PoseFix>& markov_pose() const { return markov_pose_; }
   double take_jump_m() { return keeper_.take_jump_m(); }
   double take_driven_m() { return keeper_.take_driven_m(); }
 
-  /// The path that is followed and the border nodes of its route: Markov localization looks there.
+  /// The followed path and the border nodes of its route, where Markov localization looks.
   void set_path(std::span<const planning::PathSample> path,
                 std::span<const Eigen::Vector2d> nodes_m);
   /// Whether the robot has to stand now so that Markov localization can look: at the end of its
-  /// route, at a border node along the path, or because it was not sure. `progress_m` along the
-  /// path while one is followed.
+  /// route, at a border node along the path, or because of an uncertain pose. `progress_m`: along
+  /// the path, if one is followed.
   bool must_stand(bool at_end, std::optional<double> progress_m, std::int64_t now_ns);
 
  private:

@@ -13,8 +13,8 @@ void Relocalization::begin(std::int64_t now_ns) {
 
 Relocalization::Step Relocalization::step(const Lost& lost, const CollisionGuard& guard,
                                           std::int64_t now_ns) {
-  constexpr double kStandsFirst_s = 1.0;  // many poses come back by themselves
-  // A pose that is only unsure is mostly right, and one turn on the spot makes it sure.
+  constexpr double kStandsFirst_s = 1.0;  // many poses return by themselves
+  // A merely uncertain pose is mostly right, and one turn on the spot confirms it.
   const bool may_move = lost.may_look_around || (lost.doubtful && !look_around_.been_round());
   if (!may_move || farthest_m_ <= 0.0 || !lost.T_odom_robot) return {std::nullopt, lost.why};
   if (look_around_.finished()) {

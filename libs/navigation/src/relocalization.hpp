@@ -1,5 +1,5 @@
-// A robot without a pose stands for a while and then, where it may, moves so that the localizer
-// finds out where it is.
+// Behaviour without a pose: the robot stands for a while and then, if allowed, moves so that the
+// localizer can find its pose.
 #pragma once
 
 #include <cstdint>
@@ -16,21 +16,21 @@ namespace topogeo::navigation {
 
 class Relocalization {
  public:
-  /// `farthest_m`: how far it may go without a pose; 0: it stands.
+  /// `farthest_m`: largest distance without a pose; 0: it stands.
   explicit Relocalization(double farthest_m) : farthest_m_(farthest_m), look_around_(farthest_m) {}
 
   /// The pose has been lost.
   void begin(std::int64_t now_ns);
 
   struct Lost {
-    std::string why;               ///< there is no pose, for people
+    std::string why;               ///< reason for the missing pose, for people
     bool may_look_around = false;  ///< the goal allows it
-    /// There is a pose, but the localizer is not sure of it.
+    /// There is a pose of which the localizer is not certain.
     bool doubtful = false;
     std::optional<geometry::Pose2> T_odom_robot;
   };
   struct Step {
-    std::optional<geometry::Velocity> wanted;  ///< not judged by the guard yet; nothing: it stands
+    std::optional<geometry::Velocity> wanted;  ///< not yet checked by the guard; nothing: it stands
     std::string message;                       ///< one line for people
   };
   Step step(const Lost& lost, const CollisionGuard& guard, std::int64_t now_ns);

@@ -16,7 +16,7 @@ planning::ZoneId Rooms::at(const Cell& cell) const {
                                      : planning::kNoZone;
 }
 
-// Passable cells of another room are near.
+// Whether passable cells of another room are near.
 bool Rooms::on_threshold(const Cell& cell, planning::ZoneId room) const {
   constexpr double kThreshold_m = 0.5;  // from there a laser sees little of a room
   const auto reach =

@@ -1,5 +1,5 @@
-// The rooms of a map: its wide parts, whatever the graph shows. While a floor is being mapped doors
-// come and go in the graph, and two rooms are one zone until theirs has been found.
+// The rooms of a map: its wide parts, independent of the graph. While a floor is being mapped,
+// doors come and go in the graph, and two rooms are one zone until their door has been found.
 #pragma once
 
 #include <optional>
@@ -18,11 +18,11 @@ class Rooms {
   explicit Rooms(const planning::HybridMap& map);
 
   [[nodiscard]] const std::vector<planning::Zone>& all() const { return rooms_.zones; }
-  /// kNoZone for cells that are not passable, or outside.
+  /// kNoZone for impassable cells, or outside.
   [[nodiscard]] planning::ZoneId at(const planning::Cell& cell) const;
   /// Whether one of the poses (map frame) lies inside of a room, not on its threshold.
   [[nodiscard]] bool entered(planning::ZoneId room, std::span<const geometry::Pose2> poses) const;
-  /// The cell of a room that is furthest from everything; nothing for a room without cells.
+  /// The cell of a room farthest from obstacles; nothing for a room without cells.
   [[nodiscard]] std::optional<planning::Cell> widest(const planning::Zone& room) const;
 
  private:

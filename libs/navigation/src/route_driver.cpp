@@ -13,12 +13,12 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kSees_m = 2.5;         // what is further along the path does not matter yet
-constexpr double kKeepsOff_m = 0.15;    // stops so far before the place where it would touch
+constexpr double kSees_m = 2.5;         // farther parts of the path do not matter yet
+constexpr double kKeepsOff_m = 0.15;    // stops this far before the place of contact
 constexpr double kWaiting_m_s = 0.05;   // slower counts as standing before an obstacle
 constexpr double kWaiting_rad_s = 0.1;  // so does a slower turn
-constexpr double kObstacleBrake = 0.6;  // of the acceleration, when something is in the way
-constexpr double kSeeing_s = 0.15;      // from a measurement until a command follows, about
+constexpr double kObstacleBrake = 0.6;  // of the acceleration, for obstacles in the way
+constexpr double kSeeing_s = 0.15;      // between a measurement and its command, approximately
 
 }  // namespace
 
@@ -32,7 +32,7 @@ RouteDriver::RouteDriver(const NavigatorConfig& config)
     : config_(config), planner_(config), follower_(follower_config(config)) {}
 
 bool RouteDriver::astray(const Eigen::Vector2d& robot_m) {
-  constexpr double kStray_m = 0.5;  // following a path it is never that far from it
+  constexpr double kStray_m = 0.5;  // a follower always stays closer to its path
   if (follower_.path().empty() || distance_m(follower_.path(), robot_m) <= kStray_m) return false;
   if (!needs_path_) {
     doubts_route_ = true;
@@ -51,7 +51,7 @@ bool RouteDriver::find_path(const Scene& scene) {
   planned_ns_ = scene.now_ns;
   cut_off_ = local.status == planning::DetourStatus::kLost;
   if (local.path.empty()) return false;
-  constexpr double kLong_m = 2.0;  // so much longer than the rest of the path is a long detour
+  constexpr double kLong_m = 2.0;  // beyond the rest of the path: a long detour
   if (!needs_path_ && follower_.has_path() && !scene.waited &&
       local.path.back().distance_m > follower_.rest_m() + kLong_m) {
     return false;
@@ -65,7 +65,7 @@ bool RouteDriver::find_path(const Scene& scene) {
   return true;
 }
 
-// Another path, when there is one; the old one stays otherwise.
+// Takes another path if there is one; otherwise keeps the old one.
 bool RouteDriver::go_round(const Scene& scene) {
   return !just_planned(scene.now_ns) && find_path(scene);
 }

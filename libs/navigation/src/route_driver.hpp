@@ -1,5 +1,5 @@
-// Follows the route in hand: the path to follow, searched again where something is in its way, and
-// the speed that what is in the way allows.
+// Follows the current route: searches the path again if an obstacle is in its way, and limits the
+// speed before obstacles.
 #pragma once
 
 #include <cstdint>
@@ -22,24 +22,24 @@ FollowerConfig follower_config(const NavigatorConfig& config);
 
 class RouteDriver {
  public:
-  /// Between two searches for a path round an obstacle: each takes some milliseconds, and what a
-  /// laser shows of an obstacle has changed little before.
+  /// Between two searches for a path round an obstacle: each takes some milliseconds, and the
+  /// laser's view of an obstacle changes little in a shorter time.
   static constexpr double kPlanEvery_s = 0.3;
 
   explicit RouteDriver(const NavigatorConfig& config);
 
-  /// What it drives by in one step.
+  /// Inputs of one step.
   struct Scene {
     const RouteKeeper& route;  ///< has a map and a route
     geometry::Pose2 T_map_robot;
     const SeenObstacles& obstacles;
-    bool waited = false;  ///< what is in the way has had its time to move away
+    bool waited = false;  ///< the obstacle has had its time to move away
     std::int64_t now_ns = 0;
   };
 
-  /// Another path is needed from where the robot is.
+  /// Requests another path from the robot's place.
   void need_path() { needs_path_ = true; }
-  /// The pose was lost or has jumped: the route may be of no use from where the robot is.
+  /// The pose was lost or has jumped: the route may be useless from the robot's place.
   void doubt_route() { doubts_route_ = true; }
   void trust_route() { doubts_route_ = false; }
   void forget() { follower_.forget(); }
@@ -49,22 +49,22 @@ class RouteDriver {
   [[nodiscard]] const PathFollower& follower() const { return follower_; }
   PathFollower& follower() { return follower_; }
 
-  /// Whether the robot is far off its path and a route from where it is would be better.
+  /// Whether the robot is far off its path and a route from its place would be better.
   bool astray(const Eigen::Vector2d& robot_m);
 
-  /// The last search for a path was less than kPlanEvery_s ago.
+  /// Whether the last search for a path was less than kPlanEvery_s ago.
   [[nodiscard]] bool just_planned(std::int64_t now_ns) const;
-  /// Searches a path and follows it from now on; false: there is none, or none that is better. A
-  /// detour that is much longer is only taken when what is in the way has not moved away.
+  /// Searches a path and follows it; false if there is none, or no better one. Takes a much longer
+  /// detour only after the obstacle has had its time to move away.
   bool find_path(const Scene& scene);
 
   struct Step {
     FollowerStep follower;
-    bool another_path = false;  ///< has been found
-    bool before_block = false;  ///< stands, or nearly, before something that is in the way
+    bool another_path = false;  ///< found
+    bool before_block = false;  ///< stands, or nearly, before an obstacle in the way
   };
-  /// The next velocity along the path. `held`: the guard lets it go no further, so it searches
-  /// another path.
+  /// The next velocity along the path. `held`: the guard stops the robot, so it searches another
+  /// path.
   Step follow(const Scene& scene, bool held);
 
   struct Detours {
@@ -74,15 +74,15 @@ class RouteDriver {
   };
   /// Detours taken since the last call.
   Detours take_detours() { return std::exchange(detours_, {}); }
-  /// What is in the way; nothing when nothing was in the last step along the path.
+  /// The obstacle in the way; nothing if there was none in the last step along the path.
   [[nodiscard]] const std::optional<PathBlock>& block() const { return block_; }
-  /// The same, for people.
+  /// The same as text.
   [[nodiscard]] std::string describe_block() const;
 
  private:
   bool go_round(const Scene& scene);
   double speed_past_obstacles(const Scene& scene, bool& another_path);
-  /// What slow zones allow here, and further on as far as the robot can still slow down.
+  /// The speed that slow zones allow here and within the braking distance.
   [[nodiscard]] double speed_in_zones(const Scene& scene) const;
 
   const NavigatorConfig& config_;
@@ -90,8 +90,8 @@ class RouteDriver {
   PathFollower follower_;
   bool needs_path_ = false;
   bool doubts_route_ = false;
-  bool cut_off_ = false;         ///< the last search for a path did not even begin
-  std::int64_t planned_ns_ = 0;  ///< last search for a path
+  bool cut_off_ = false;         ///< the last search for a path could not begin
+  std::int64_t planned_ns_ = 0;  ///< time of the last search for a path
   std::optional<PathBlock> block_;
   Detours detours_;
 };

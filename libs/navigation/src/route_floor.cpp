@@ -33,7 +33,7 @@ class FloorOpener {
 
  private:
   void open_line(const RoutePlan& route, std::size_t i, bool frees) {
-    constexpr double kStepsPerCell = 10.0;  // so that it skips no corner of a cell worth mentioning
+    constexpr double kStepsPerCell = 10.0;  // skips no relevant corner of a cell
     const Eigen::Vector2d& from_m = route.points_m[i];
     const Eigen::Vector2d line_m = route.points_m[i + 1] - from_m;
     const int steps = static_cast<int>(kStepsPerCell * line_m.norm() / frame_.resolution_m) + 1;
@@ -43,7 +43,7 @@ class FloorOpener {
       const Eigen::Vector2d at_m = from_m + share * line_m;
       const auto cell = frame_.cell_of(at_m);
       if (!cell || last == cell) continue;
-      // A diagonal step needs both cells beside it.
+      // A diagonal step needs both neighbouring cells.
       if (last) {
         enter({last->column, cell->row});
         enter({cell->column, last->row});
@@ -60,7 +60,7 @@ class FloorOpener {
     if (frame_.contains(cell)) entered_.push_back(cell);
   }
 
-  // What bounds the circle stays: the walls.
+  // Does not free the walls on the circle itself.
   void free_around(const Eigen::Vector2d& at_m, double clearance_m) {
     const double radius_m = std::min(clearance_m - frame_.resolution_m, reach_m_);
     if (radius_m <= 0.0) return;
@@ -93,7 +93,7 @@ bool on_branches(const RoutePlan& route) {
 std::shared_ptr<const planning::FreeSpace> floor_of(const RoutePlan& route,
                                                     const planning::FreeSpace* space) {
   if (space == nullptr) {
-    constexpr double kMargin_m = 6.0;  // more than a detour leads off the route
+    constexpr double kMargin_m = 6.0;  // more than a detour leaves the route
     return std::make_shared<const planning::FreeSpace>(planning::OccupancyGrid(
         planning::frame_around(route.points_m, kMargin_m), planning::CellState::kFree));
   }

@@ -11,10 +11,10 @@
 namespace topogeo::navigation {
 namespace {
 
-// The cells that a polyline passes, neighbours each.
+// The connected cells under a polyline.
 std::vector<planning::Cell> cells_under(const planning::GridFrame& frame,
                                         const std::vector<Eigen::Vector2d>& points_m) {
-  constexpr double kStepsPerCell = 4.0;  // so that it skips no corner of a cell worth mentioning
+  constexpr double kStepsPerCell = 4.0;  // skips no relevant corner of a cell
   std::vector<planning::Cell> cells;
   const auto add = [&](const Eigen::Vector2d& point_m) {
     const auto cell = frame.cell_of(point_m);
@@ -79,9 +79,9 @@ bool RouteKeeper::take(const RoutePlan& route) {
   return true;
 }
 
-// Whether a route of another map has room in this one, its ends apart.
+// Whether a route of another map has room in this one, except at its ends.
 bool RouteKeeper::fits(const RoutePlan& route) const {
-  constexpr double kEnds_m = 0.5;  // robot and goal may be nearer to a wall than routes lead
+  constexpr double kEnds_m = 0.5;  // robot and goal may be nearer to a wall than routes
   const std::vector<planning::Cell> cells = cells_under(map_->frame(), route.points_m);
   return !cells.empty() && std::all_of(cells.begin(), cells.end(), [&](const planning::Cell& cell) {
     const Eigen::Vector2d middle_m = map_->frame().center_m(cell);
@@ -100,7 +100,7 @@ bool RouteKeeper::usable(const RoutePlan& route, std::uint64_t least_blockages_v
 
 RouteAnswer RouteKeeper::take_offer(const Use& use) {
   constexpr double kSameGoal_m = 0.01;
-  constexpr double kSamePath_m = 0.35;  // smoothing takes a path that far off its route
+  constexpr double kSamePath_m = 0.35;  // smoothing moves a path this far off its route
   if (!offered_ || !usable(*offered_, use.least_blockages_version)) {
     return RouteAnswer::kKept;
   }
@@ -131,7 +131,7 @@ double RouteKeeper::wait_s(std::int64_t now_ns) {
 }
 
 double RouteKeeper::waited_s(std::int64_t now_ns) {
-  // A navigator that was started again has its goal before it knows the time.
+  // A restarted navigator has its goal before it knows the time.
   if (goal_ns_ == 0) goal_ns_ = now_ns;
   return elapsed_s(waits_ns_.value_or(goal_ns_), now_ns);
 }

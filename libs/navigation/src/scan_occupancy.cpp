@@ -19,7 +19,7 @@ ScanOccupancy::ScanOccupancy(const ScanPoints& scan) : T_laser_robot_(inverse(sc
 
 Occupancy ScanOccupancy::at(const Eigen::Vector2d& place_m, double radius_m) const {
   constexpr double kNoise_m = 0.08;     // of a PLS and of the pose
-  constexpr double kLeast_rad = 0.006;  // as wide as the gap between two beams
+  constexpr double kLeast_rad = 0.006;  // width of the gap between two beams
   const Eigen::Vector2d seen_m = T_laser_robot_ * place_m;
   const double range_m = seen_m.norm();
   const double around_m = radius_m + kNoise_m;
@@ -34,7 +34,7 @@ Occupancy ScanOccupancy::at(const Eigen::Vector2d& place_m, double radius_m) con
   bool hidden = false;
   for (auto beam = first; beam != beams_.end() && beam->bearing_rad <= bearing_rad + wide_rad;
        ++beam) {
-    // A surface that is met at a small angle may have its points before and behind the place.
+    // A surface at a small angle may have its points before and behind the place.
     if ((beam->end_m - seen_m).squaredNorm() <= around_m * around_m) return Occupancy::kOccupied;
     if (std::fabs(beam->bearing_rad - bearing_rad) > narrow_rad) continue;
     if (beam->range_m < range_m) {

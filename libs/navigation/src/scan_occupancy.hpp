@@ -1,4 +1,4 @@
-// What one scan shows of a place: free, occupied, or not seen.
+// State of a place in one scan: free, occupied, or not seen.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@ class ScanOccupancy {
  public:
   explicit ScanOccupancy(const ScanPoints& scan);
 
-  /// `place_m` in the robot's frame at the time of the scan, as large as `radius_m`.
+  /// `place_m` in the robot's frame at the time of the scan, with radius `radius_m`.
   [[nodiscard]] Occupancy at(const Eigen::Vector2d& place_m, double radius_m) const;
 
  private:
@@ -26,7 +26,7 @@ class ScanOccupancy {
     Eigen::Vector2d end_m;  ///< laser frame
   };
   geometry::Pose2 T_laser_robot_;
-  std::vector<Beam> beams_;  ///< ascending
+  std::vector<Beam> beams_;  ///< ascending by angle
 };
 
 }  // namespace topogeo::navigation

@@ -7,7 +7,7 @@
 namespace topogeo::navigation {
 
 ScanPoints smoothed(const ScanPoints& scan, double most_m) {
-  constexpr std::size_t kBeside = 3;      // beams either way: a door post has more
+  constexpr std::size_t kBeside = 3;      // beams on either side: a door post has more
   constexpr double kSameSurface_m = 0.1;  // noise of a PLS is less, a post stands out by more
   constexpr double kNeighbours = 0.05;    // chord between two beams, of the range
   ScanPoints result = scan;

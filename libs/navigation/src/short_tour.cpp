@@ -6,7 +6,7 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kShorter_m = 1e-6;  // less is rounding, and could go round in circles
+constexpr double kShorter_m = 1e-6;  // less is rounding, and might never end
 
 std::vector<std::size_t> nearest_first(const DistanceTable& distances_m) {
   std::vector<std::size_t> order(distances_m.places());
@@ -23,7 +23,7 @@ std::vector<std::size_t> nearest_first(const DistanceTable& distances_m) {
   return order;
 }
 
-/// Takes over `other` if it is shorter.
+/// Takes `other` if it is shorter.
 bool improve(const DistanceTable& distances_m, std::vector<std::size_t>& order,
              const std::vector<std::size_t>& other) {
   if (length_m(distances_m, other) >= length_m(distances_m, order) - kShorter_m) return false;
@@ -31,7 +31,7 @@ bool improve(const DistanceTable& distances_m, std::vector<std::size_t>& order,
   return true;
 }
 
-/// One round of all changes; whether one helped.
+/// Tries all changes once; returns whether one helped.
 bool improve_once(const DistanceTable& distances_m, std::vector<std::size_t>& order) {
   const auto places = static_cast<std::ptrdiff_t>(order.size());
   bool better = false;

@@ -1,4 +1,4 @@
-// The order in which to visit a few places.
+// The order of visits to a few places.
 #pragma once
 
 #include <cstddef>
@@ -6,8 +6,7 @@
 
 namespace topogeo::navigation {
 
-/// Distances from a start to each of some places and between them, the same in both directions,
-/// metres.
+/// Distances between a start and some places and among these, symmetric, metres.
 class DistanceTable {
  public:
   explicit DistanceTable(std::size_t places)
@@ -28,11 +27,11 @@ class DistanceTable {
   std::vector<double> between_;
 };
 
-/// Length of a tour from the start past the places in this order, which ends at the last.
+/// Length of a tour from the start past the places in this order, ending at the last.
 double length_m(const DistanceTable& distances_m, const std::vector<std::size_t>& order);
 
-/// A short tour past all places, by going on to the nearest and then turning pieces of it round and
-/// moving places within it as long as that makes it shorter. Not always the shortest.
+/// A short tour past all places: nearest neighbour first, then reversals of pieces and moves of
+/// single places as long as they shorten it. Not always the shortest.
 std::vector<std::size_t> short_tour(const DistanceTable& distances_m);
 
 }  // namespace topogeo::navigation

@@ -3,7 +3,7 @@
 namespace topogeo::navigation {
 
 void Surroundings::add(const ScanPoints& scan) {
-  constexpr std::size_t kMost = 10;  // between two steps; more come only when nothing calls step()
+  constexpr std::size_t kMost = 10;  // between two steps; more come only if nothing calls step()
   if (scans_.size() < kMost) scans_.push_back(scan);
 }
 

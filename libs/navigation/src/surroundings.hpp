@@ -1,5 +1,5 @@
-// What is near the robot and not on the map: seen by the laser, met by the collision guard, or
-// reported to the planner.
+// Unmapped objects near the robot: seen by the laser, met by the collision guard, or reported to
+// the planner.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@
 
 namespace topogeo::navigation {
 
-/// First what stands, then what may move away.
+/// Standing obstacles first, then those that may move away.
 struct SeenObstacles {
   std::vector<Eigen::Vector2d> points_m;  ///< map frame
   std::size_t standing = 0;
@@ -36,25 +36,24 @@ class Surroundings {
  public:
   explicit Surroundings(double blockage_s) : blockade_(blockage_s) {}
 
-  /// A scan, to be used in the next update(): its pose may be still to come.
+  /// A scan for the next update(), because its pose may still come.
   void add(const ScanPoints& scan);
-  /// The collision guard has stopped before something there, map frame.
+  /// The collision guard has stopped before an obstacle there, map frame.
   void add_contact(const Eigen::Vector2d& contact_m, std::int64_t now_ns) {
     contacts_.add(contact_m, now_ns);
   }
 
-  /// Once in each step: what the scans since the last one show. `space` null: there is no map, or
-  /// the pose is not known.
+  /// Call once per step: evaluates the scans since the last call. `space` null: there is no map, or
+  /// no pose.
   void update(const planning::FreeSpace* space, const PoseKeeper& poses, std::int64_t now_ns);
 
-  /// Where something was seen means nothing any more: the pose was wrong, or the map is another.
+  /// Forgets all places, because the pose was wrong or the map has changed.
   void forget();
   void forget_contacts() { contacts_.clear(); }
 
   [[nodiscard]] SeenObstacles seen(std::int64_t now_ns) const;
 
-  /// Reports what fills the cells around a point (map frame); the planner answers again in any
-  /// case.
+  /// Reports the occupied cells around a point (map frame); the planner answers again in any case.
   void report(const Eigen::Vector2d& around_m, double reach_m, const planning::GridFrame& frame,
               std::int64_t now_ns);
   [[nodiscard]] const BlockageReport& blockages() const { return blockade_.report(); }

@@ -39,8 +39,8 @@ bool UnknownFloor::beside(const Cell& cell) const {
   return false;
 }
 
-// Rays a cell apart at their ends, in steps of a cell, each of which stands for its piece of the
-// disc. The point itself can be too near to something.
+// Casts rays that are a cell apart at their ends, in steps of a cell; each step represents its
+// piece of the disc. The start itself may be closed.
 double UnknownFloor::ahead_m2(const Eigen::Vector2d& from_m, double near_m, double sight_m) const {
   const Eigen::Vector2d from = frame_.in_cells(from_m);
   const Cell here{static_cast<std::int32_t>(std::floor(from.x())),

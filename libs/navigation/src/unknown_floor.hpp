@@ -1,4 +1,4 @@
-// The unknown floor that a robot could drive into: what exploring is for.
+// Unknown floor that a robot could drive into: the goal of exploration.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,18 @@
 
 namespace topogeo::navigation {
 
-/// Unknown cells that are passable as long as nothing is seen in them. The inside of walls, racks
-/// and furniture, and what shows through holes too small for the robot, are none of them.
+/// Unknown cells that are passable unless something is seen in them. Excludes the inside of walls,
+/// racks and furniture, and floor behind holes too small for the robot.
 class UnknownFloor {
  public:
   explicit UnknownFloor(const planning::FreeSpace& space);
 
-  /// False beyond the grid.
+  /// False outside of the grid.
   [[nodiscard]] bool contains(const planning::Cell& cell) const;
-  /// Whether one of the four cells beside it is one.
+  /// Whether one of the four neighbouring cells belongs to it.
   [[nodiscard]] bool beside(const planning::Cell& cell) const;
 
-  /// How much of it can be driven into straight from a point of the map frame, if it begins at most
+  /// Area that can be driven into straight from a point of the map frame, if it begins at most
   /// `near_m` away: square metres, up to `sight_m` away.
   [[nodiscard]] double ahead_m2(const Eigen::Vector2d& from_m, double near_m, double sight_m) const;
 

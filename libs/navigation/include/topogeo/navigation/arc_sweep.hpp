@@ -1,4 +1,4 @@
-// How far a round body gets along an arc before it touches points.
+// Free distance of a round body along an arc before it touches points.
 #pragma once
 
 #include <cstddef>
@@ -17,18 +17,18 @@ struct SweptArc {
   std::optional<std::size_t> contact;  ///< index of the point that ends it; nothing: the limit does
 };
 
-/// The disc of radius `radius_m` around the origin moves along the arc of `motion` (ahead or back
-/// by the sign of linear_m_per_s), at most `limit_m`. Points are in the robot's frame. What it
-/// overlaps already ends the arc at once when the motion brings it nearer, and does not count when
-/// it does not. Without linear motion the length is the limit.
+/// Moves the disc of radius `radius_m` around the origin along the arc of `motion` (ahead or back
+/// by the sign of linear_m_per_s), at most `limit_m`. Points are in the robot's frame. A point
+/// already inside the disc ends the arc at once if the motion brings it nearer, and is ignored
+/// otherwise. Without linear motion the length is the limit.
 SweptArc sweep(const geometry::Velocity& motion, std::span<const Eigen::Vector2d> points_m,
                double radius_m, double limit_m);
 
-/// The speed from which it stops within `distance_m` when it brakes that hard after a delay: v with
-/// v delay + v^2 / (2 brake) = distance. 0 for a distance that is not above 0.
+/// The highest speed that allows a stop within `distance_m`, braking after a delay: v with v delay
+/// + v^2 / (2 brake) = distance. 0 unless the distance is above 0.
 double stopping_speed(double distance_m, double delay_s, double brake_m_per_s2);
 
-/// Where the robot is after `time_s` of a constant velocity, seen from where it was.
+/// The robot's pose after `time_s` at a constant velocity, relative to its first pose.
 geometry::Pose2 moved(const geometry::Velocity& velocity, double time_s);
 
 }  // namespace topogeo::navigation

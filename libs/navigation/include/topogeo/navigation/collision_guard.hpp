@@ -1,18 +1,17 @@
-// Keeps a robot from driving into what its laser and sonars see, whatever the planner of its path
-// wants. It has no map, no pose and no route (MACONDO, I and III; docs/algorithms.md, "Driving and
-// collision guard"). Drawn walls and no-go zones are points that its owner puts around the robot
-// while it knows where that is.
+// Prevents a robot from driving into anything that its laser and sonars see, whatever its path
+// planner wants. It has no map, no pose and no route (MACONDO, I and III; docs/algorithms.md,
+// "Driving and collision guard"). Drawn walls and no-go zones are points that its owner puts around
+// the robot while the pose is known.
 //
-// The points of the last scan, carried on by odometry, and the echoes of the sonars where the laser
-// sees nothing in their cone are what the body's disc must not touch on the arc that is wanted, nor
-// on the one that the robot is on. From the free distance follows the speed from which it still
-// stops in time, whatever happens: the age of what it sees, its delay and the time that the base
-// runs on without its gateway count (geometry/reaction_times.hpp). Noise of the laser is smoothed
-// over neighbouring beams by no more than the side margin, so a measured point itself is never
-// touched.
+// The obstacles are the points of the last scan, carried on by odometry, and the echoes of the
+// sonars if the laser sees nothing in their cone. The body's disc must not touch them on the wanted
+// arc nor on the present one. The free distance limits the speed to one from which the robot still
+// stops in time in any case: the age of its data, its delay and the time that the base runs on
+// without its gateway count (geometry/reaction_times.hpp). Laser noise is smoothed over
+// neighbouring beams by at most the side margin, so a measured point itself is never touched.
 //
-// A second line are the fields that the laser itself watches, which know nothing of odometry, body
-// or mounting (Thesis, appendix B.1).
+// The fields that the laser itself watches are a second line of defence, independent of odometry,
+// body and mounting (Thesis, appendix B.1).
 #pragma once
 
 #include <cstdint>
@@ -30,12 +29,12 @@ namespace topogeo::navigation {
 
 struct GuardVerdict {
   geometry::Velocity allowed;             ///< the wanted motion, slower on the same arc, or none
-  HaltReason reason = HaltReason::kNone;  ///< why nothing is allowed at all
+  HaltReason reason = HaltReason::kNone;  ///< why no motion at all is allowed
   std::string message;                    ///< for people; empty when the motion is allowed
-  double free_m = 0.0;   ///< along the wanted motion before the body touches something; <= 5
+  double free_m = 0.0;   ///< along the wanted motion before the body touches anything; <= 5
   bool limited = false;  ///< slower than wanted
-  /// What stands where the free distance ends, robot frame; nothing when nothing does within 5 m,
-  /// or what is there is only drawn.
+  /// The obstacle at the end of the free distance, robot frame; nothing if there is none within 5
+  /// m, or only a drawn one.
   std::optional<Eigen::Vector2d> contact_m;
 };
 
@@ -43,22 +42,22 @@ class CollisionGuard {
  public:
   static constexpr double kFarthest_m = 5.0;
 
-  /// Throws std::invalid_argument as `check`.
+  /// Throws std::invalid_argument like `check`.
   explicit CollisionGuard(const GuardConfig& config);
 
-  // Each in time order; what is not newer than the one before is left out.
+  // Each in time order; data that is not newer than the previous is ignored.
   void add(const OdometrySample& odometry);
   void add(const ScanPoints& scan);
   void add(const SonarRound& sonar);
   void add(const LaserFields& fields);
 
-  /// Points (robot frame at that time) that must not be touched though nothing stands there, in
-  /// place of those before. Odometry carries them on for 3 m; then, without newer ones, nobody
-  /// knows where they are, and they do not count.
+  /// Sets points (robot frame at that time) without a real obstacle that must not be touched.
+  /// Replaces earlier ones. Odometry carries them on for 3 m; after that, without newer ones, their
+  /// place is too uncertain and they no longer count.
   void keep_off(std::int64_t stamp_ns, std::vector<Eigen::Vector2d> points_m);
 
-  /// What of a wanted velocity is safe now. Turning on the spot of a round body always is, as long
-  /// as the sensors work. Backwards it goes only where fresh sonars point.
+  /// Returns the safe part of a wanted velocity. A round body may always turn on the spot while the
+  /// sensors work. It moves backwards only with fresh sonars.
   [[nodiscard]] GuardVerdict judge(const geometry::Velocity& wanted, std::int64_t now_ns) const;
 
   /// Why no motion at all is allowed; kNone when the sensors work. `message` may be null.
@@ -67,16 +66,16 @@ class CollisionGuard {
  private:
   [[nodiscard]] bool fresh(std::int64_t stamp_ns, std::int64_t now_ns) const;
   [[nodiscard]] std::vector<Eigen::Vector2d> obstacles_m(std::int64_t now_ns) const;
-  /// Adds what is to be kept off, in the robot frame of now.
+  /// Adds the points of keep_off(), in the current robot frame.
   void add_drawn(std::vector<Eigen::Vector2d>& points_m) const;
   [[nodiscard]] geometry::Velocity driven() const;
-  /// s; from what it sees until the base surely brakes.
+  /// s; from the measurement until the base surely brakes.
   [[nodiscard]] double reaction_s(std::int64_t now_ns) const;
   /// m/s; the speed from which it stops within a free distance.
   [[nodiscard]] double speed_for(double free_m, double reaction_s) const;
-  /// Whether the scan has a point in the sonar's cone, at most so far from it.
+  /// Whether the scan has a point in the sonar's cone within this distance.
   [[nodiscard]] bool laser_sees(const SonarReading& reading, double up_to_m) const;
-  /// What the fields of the laser leave of a verdict.
+  /// Reduces a verdict by the fields of the laser.
   void obey_fields(GuardVerdict& verdict) const;
   [[nodiscard]] GuardVerdict judge_by_distances(const geometry::Velocity& wanted,
                                                 std::int64_t now_ns) const;
@@ -90,7 +89,7 @@ class CollisionGuard {
   std::optional<SonarRound> sonar_;
   struct Echo {
     Eigen::Vector2d point_m;  ///< robot frame at that time
-    bool laser_sees;          ///< in the last scan, however old that is
+    bool laser_sees;          ///< in the last scan, of any age
   };
   std::vector<Echo> echoes_;  ///< of the last round
   std::optional<geometry::Pose2> T_odom_sonar_round_;

@@ -1,4 +1,4 @@
-// The commands of the last second, for bases that obey late: where the robot will be when it obeys.
+// Commands of the last second, to predict the pose at which a slow base obeys.
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,22 @@ namespace topogeo::navigation {
 
 class CommandHistory {
  public:
-  /// `delay_s`: from a command until the base obeys it, [0, 1].
+  /// `delay_s`: between a command and the base's obedience, [0, 1].
   explicit CommandHistory(double delay_s) : delay_s_(delay_s) {}
 
-  /// In time order.
+  /// Call in time order.
   void add(const geometry::Velocity& command, std::int64_t now_ns);
 
-  /// The pose where the base will be when it obeys: the given one carried on by the commands of the
-  /// last `delay_s`.
+  /// The pose at which the base will obey: the given one carried on by the commands of the last
+  /// `delay_s`.
   [[nodiscard]] geometry::Pose2 predicted(const geometry::Pose2& T_map_robot,
                                           std::int64_t now_ns) const;
-  /// Every command that the base may be obeying is one to stand; also before the first.
+  /// Whether the base can only be obeying commands to stand; true before the first.
   [[nodiscard]] bool stands() const;
 
   /// The last command; zero before the first.
   [[nodiscard]] geometry::Velocity last() const;
-  /// Since the last command; `otherwise_s` before the first.
+  /// Time since the last command; `otherwise_s` before the first.
   [[nodiscard]] double since_last_s(std::int64_t now_ns, double otherwise_s) const;
 
  private:

@@ -1,5 +1,5 @@
-// Where nobody may drive though nothing stands there: drawn walls and no-go zones, as points that a
-// collision guard keeps off.
+// Limits without a real obstacle: drawn walls and no-go zones, as points that a collision guard
+// keeps off.
 #pragma once
 
 #include <vector>
@@ -13,17 +13,17 @@ namespace topogeo::navigation {
 
 class DrawnLimits {
  public:
-  /// More than the guard looks ahead and carries them on without a pose.
+  /// More than the guard looks ahead and carries points on without a pose.
   static constexpr double kReach_m = 8.0;
 
-  /// There are none.
+  /// No limits.
   DrawnLimits() = default;
   explicit DrawnLimits(const planning::FreeSpace& space);
 
   [[nodiscard]] bool empty() const { return walls_m_.empty() && zones_.empty(); }
 
   /// The middles of cells of walls and of the rims of no-go zones within kReach_m, robot frame. A
-  /// zone that the robot's middle is in does not count: whoever draws it around a robot lets it
+  /// zone around the robot's centre does not count, so that a robot inside a newly drawn zone can
   /// leave.
   [[nodiscard]] std::vector<Eigen::Vector2d> near_m(const geometry::Pose2& T_map_robot) const;
 

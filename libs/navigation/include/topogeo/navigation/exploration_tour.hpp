@@ -1,5 +1,5 @@
-// Takes a robot from target to target of an explorer until nothing is left: gives goals and watches
-// what a navigator makes of them. No clock, no I/O.
+// Sends a robot from target to target of an explorer until none is left: gives goals and watches
+// how a navigator pursues them. No clock, no I/O.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct ExploredMap {
   std::uint64_t version = 0;  ///< counts the changes
   std::shared_ptr<const topomap::GlobalMap> graph;
   std::shared_ptr<const planning::HybridMap> map;
-  std::vector<geometry::Pose2> T_map_stops;  ///< where its scans were made
+  std::vector<geometry::Pose2> T_map_stops;  ///< poses of its scans
 };
 
 struct TourGoal {
@@ -32,30 +32,30 @@ struct TourGoal {
 
 class ExplorationTour {
  public:
-  /// Goals are numbered from `first_goal_id`. Throws std::invalid_argument as `check`.
+  /// Goals are numbered from `first_goal_id`. Throws std::invalid_argument like `check`.
   explicit ExplorationTour(const TourConfig& config = {}, std::uint64_t first_goal_id = 1);
   ~ExplorationTour();
 
-  /// To be called whenever it has changed.
+  /// Call whenever the map has changed.
   void set_map(ExploredMap map);
 
-  /// The same for who holds graph and map as they come: nothing happens while both are those of the
-  /// call before, or without a map. `T_map_stops` is asked for where scans were made.
+  /// Like set_map, for owners that receive graph and map separately: does nothing if both are
+  /// unchanged, or without a map. `T_map_stops` returns the poses of the scans.
   void follow(std::shared_ptr<const topomap::GlobalMap> graph,
               std::shared_ptr<const planning::HybridMap> map,
               const std::function<std::vector<geometry::Pose2>()>& T_map_stops);
 
-  /// To be called several times a second. A goal for the navigator, when there is another one than
-  /// before. Nothing happens while the navigator does not know where it is.
+  /// Call several times a second. Returns a goal for the navigator when it changes. Does nothing
+  /// while the navigator has no pose.
   std::optional<TourGoal> step(const NavigatorStatus& navigator, std::int64_t now_ns);
 
-  /// Nothing that can be reached is left.
+  /// No reachable target is left.
   [[nodiscard]] bool done() const { return done_; }
-  /// Where it goes now.
+  /// The current target.
   [[nodiscard]] const std::optional<ExplorationTarget>& target() const { return target_; }
   /// One line for people.
   [[nodiscard]] std::string message() const;
-  [[nodiscard]] std::size_t targets() const { return targets_; }  ///< gone to so far
+  [[nodiscard]] std::size_t targets() const { return targets_; }  ///< visited so far
   [[nodiscard]] std::size_t given_up() const { return explorer_.given_up(); }
 
  private:
@@ -72,13 +72,13 @@ class ExplorationTour {
   std::uint64_t next_goal_id_;
   std::optional<ExplorationTarget> target_;
   std::optional<TourGoal> goal_;
-  std::optional<TourGoal> again_;  // to be given next: the same target from another heading
+  std::optional<TourGoal> again_;  // next goal: the same target with another heading
   std::uint64_t judged_version_ = 0;
   std::uint64_t chosen_version_ = 0;
   int looks_ = 0;                        // at the target so far
-  double nearest_m_ = 0.0;               // that it came to the goal
-  std::int64_t nearest_ns_ = 0;          // and when
-  std::optional<std::int64_t> idle_ns_;  // since when there is no target
+  double nearest_m_ = 0.0;               // least distance to the goal so far
+  std::int64_t nearest_ns_ = 0;          // time of the last progress
+  std::optional<std::int64_t> idle_ns_;  // start of the time without a target
   std::size_t targets_ = 0;
   bool done_ = false;
 };

@@ -1,12 +1,13 @@
-// Where a robot that maps an unknown floor goes next (own; future work in the Thesis, 9.2;
-// docs/algorithms.md, "Exploration").
+// Selects the next target of a robot that maps an unknown floor (own; future work in the Thesis,
+// 9.2; docs/algorithms.md, "Exploration").
 //
-// The frontier are the ends of outer branches (fictitious nodes of the topo-geometric map) and,
-// where the graph has none, stretches of free cells next to unknown ones. Doors and narrowings are
-// gone to until both of their sides were seen, and every zone is entered once. A target is worth
-// what unknown floor the robot could drive into from there: what shows through holes of walls and
-// racks is worth nothing. The nearest targets are ordered by a short open tour, and its first one
-// comes next. Nothing here moves the robot: the owner drives to a target and reports where it has
+// The frontier consists of the ends of outer branches (fictitious nodes of the topo-geometric map)
+// and, where the graph has none, of free cells next to unknown ones. Doors and narrowings are
+// targets until both of their sides were seen, and every zone is entered once. The worth of a
+// target is the unknown floor that the robot could drive into from there, so views through holes of
+// walls and racks are worth nothing. The nearest targets are ordered by a short open tour, whose
+// first one comes next. Nothing here moves the robot: the owner drives to a target and reports the
+// visited poses.
 // been.
 #pragma once
 
@@ -31,11 +32,11 @@ class UnknownFloor;
 
 enum class TargetKind : std::uint8_t {
   kBranchEnd = 0,  ///< of an outer branch
-  kPassage = 1,    ///< a door or narrowing of which a side was not seen
+  kPassage = 1,    ///< a door or narrowing with an unseen side
   kGap = 2,        ///< free cells next to unknown ones
   kRoom = 3,       ///< a wide part of the floor that was never entered
-  kBlocked = 4,    ///< a zone that was seen, but the map shows no path into it; often it does when
-                   ///< the entrance is looked at from near, so these come last
+  kBlocked = 4,    ///< a visible zone without a path into it on the map; a near view of the
+                   ///< entrance often shows one, so these come last
 };
 
 /// A word for messages: "branch end", ...
@@ -43,47 +44,46 @@ std::string_view describe(TargetKind kind);
 
 struct ExplorationTarget {
   TargetKind kind = TargetKind::kGap;
-  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< what is to be seen, map frame
-  geometry::Pose2 T_map_view;  ///< where from: in a passable cell, looking at it
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< the place to be seen, map frame
+  geometry::Pose2 T_map_view;  ///< viewpoint: in a passable cell, facing the place
   double distance_m = 0.0;     ///< of the path there
 };
 
 class Explorer {
  public:
-  /// Throws std::invalid_argument as `check`.
+  /// Throws std::invalid_argument like `check`.
   explicit Explorer(const ExplorerConfig& config = {});
 
-  /// Where the scans were made that the map consists of, in place of those set before.
+  /// Sets the poses of the scans that the map consists of, replacing earlier ones.
   void set_visited(std::vector<geometry::Pose2> T_map_stops);
 
-  /// The first target of a short tour past those that can be reached; nothing: the floor is
-  /// explored. `planner` plans on `map`.
+  /// The first target of a short tour past the reachable ones; nothing: the floor is explored.
+  /// `planner` plans on `map`.
   [[nodiscard]] std::optional<ExplorationTarget> next(const topomap::GlobalMap& graph,
                                                       const planning::HybridMap& map,
                                                       const planning::HybridPlanner& planner,
                                                       const geometry::Pose2& T_map_robot) const;
 
-  /// Whether there is still something to see at a target; false as soon as the map shows it.
+  /// Whether a target still has unseen parts; false as soon as the map shows them.
   [[nodiscard]] bool open(const ExplorationTarget& target, const planning::HybridMap& map) const;
 
-  /// It cannot be reached, or was looked at in vain: it does not come again.
+  /// Excludes a target that cannot be reached, or whose visit showed nothing.
   void give_up(const ExplorationTarget& target);
   [[nodiscard]] std::size_t given_up() const { return given_up_.size(); }
 
-  /// There was no path to it when the robot wanted to go: it does not come again before the others
-  /// are done, and the second time it is given up.
+  /// Postpones a target without a path until the others are done; the second time it is given up.
   void put_off(const ExplorationTarget& target);
-  /// Takes the targets that were put off in again; false: there are none.
+  /// Restores the postponed targets; false if there are none.
   bool resume();
 
  private:
   struct Candidate {
     TargetKind kind;
     Eigen::Vector2d position_m;
-    double worth_m;  // longest path that it is worth
+    double worth_m;  // its worth as a path length
   };
   struct Option;
-  struct Scene;  // what is planned on
+  struct Scene;  // inputs of planning
   [[nodiscard]] std::vector<Candidate> candidates(const topomap::GlobalMap& graph,
                                                   const planning::HybridMap& map,
                                                   const Rooms& rooms) const;

@@ -1,4 +1,4 @@
-// Settings of exploration: where the robot goes next, and for how long it tries.
+// Settings of exploration: the choice of targets, and limits of time and attempts.
 #pragma once
 
 #include <cstdint>

@@ -13,10 +13,10 @@ struct FollowerConfig {
   double acceleration_m_per_s2 = 0.5;
   double turn_acceleration_rad_per_s2 = 2.0;
   double delay_s = 0.15;
-  double arrival_m = 0.03;    ///< stops are that exact
-  double arrival_rad = 0.02;  ///< turns on the spot are
-  /// A heading error up to this is corrected while driving, [0, 1]. Not in the configuration file:
-  /// the style of motion decides it.
+  double arrival_m = 0.03;    ///< accuracy of stops
+  double arrival_rad = 0.02;  ///< accuracy of turns on the spot
+  /// Heading errors up to this are corrected while driving, [0, 1]. Not in the configuration file,
+  /// because the style of motion decides it.
   double begin_turn_rad = 0.4;
 };
 

@@ -1,10 +1,10 @@
-// The last word on motion: whatever any program commands, the base stops before what the laser
-// sees. It stands beside the driver of the base, and judges the command that holds again and again.
+// Final check of motion: whatever any program commands, the base stops before obstacles that the
+// laser sees. It runs beside the driver of the base, and checks the current command repeatedly.
 //
-// The collision guard of a program that drives well keeps further off and brakes sooner: this one
-// has its body without margins and the shorter delay of the gateway, so that the two never dispute.
-// It sees as far as the laser does, which is not backwards (docs/algorithms.md, "Driving and
-// collision guard").
+// The collision guard of a well-behaved program keeps a larger distance and brakes earlier. This
+// guard has the body without margins and the shorter delay of the gateway, so that the two never
+// conflict. Its view is that of the laser, which does not look backwards (docs/algorithms.md,
+// "Driving and collision guard").
 #pragma once
 
 #include <cstdint>
@@ -22,33 +22,33 @@ namespace topogeo::navigation {
 
 class LastGuard {
  public:
-  /// Whoever asks must do so that often while a command holds, and at each new one.
+  /// Callers must judge this often while a command holds, and at each new command.
   static constexpr std::int64_t kPeriod_ns = 50'000'000;
 
-  /// `runs_on_s`: from the end of its program until the base brakes by itself, >= 0. Throws
-  /// std::invalid_argument as `check`.
+  /// `runs_on_s`: between the end of its program and the base's own braking, >= 0. Throws
+  /// std::invalid_argument like `check`.
   LastGuard(const GuardConfig& config, double runs_on_s);
 
-  /// In time order; what is not newer than the one before is left out.
+  /// Call in time order; a sample that is not newer than the previous is ignored.
   void add(const geometry::OdometrySample& odometry);
-  /// What the laser sees, robot frame at `stamp_ns`. Its `T_odom_robot` is not used: the odometry
-  /// of its time may still come. Points that are those of before to the last digit, though the
-  /// robot has moved, come from a laser that hangs: they show nothing.
+  /// Points of the laser, robot frame at `stamp_ns`. Ignores `T_odom_robot`, because the odometry
+  /// of that time may still come. Points identical to the previous ones, although the robot has
+  /// moved, come from a hanging laser and do not count.
   void add(const ScanPoints& scan);
 
   enum class Verdict : std::uint8_t {
     kAsWanted,
     kSlower,    ///< on the same arc
-    kObstacle,  ///< nothing of a motion ahead or back: the laser sees something there
-    kBlind      ///< the same: there is no fresh scan, or no odometry
+    kObstacle,  ///< no motion ahead or back: the laser sees something there
+    kBlind      ///< no motion ahead or back: no fresh scan, or no odometry
   };
   struct Judgement {
     geometry::Velocity allowed;
     Verdict verdict = Verdict::kAsWanted;
-    double free_m = 0.0;  ///< along the wanted motion before the body touches something; <= 5
+    double free_m = 0.0;  ///< along the wanted motion before the body touches anything; <= 5
   };
-  /// What of a velocity the base may get now, which brakes with `brake_m_per_s2` (> 0; counted up
-  /// to guard.deceleration_m_per_s2). Turning on the spot of a round body always is free.
+  /// The part of a velocity that the base may get now, if it brakes with `brake_m_per_s2` (> 0;
+  /// counted up to guard.deceleration_m_per_s2). A round body may always turn on the spot.
   [[nodiscard]] Judgement judge(const geometry::Velocity& wanted, double brake_m_per_s2,
                                 std::int64_t now_ns) const;
 
@@ -63,7 +63,7 @@ class LastGuard {
   std::optional<geometry::OdometrySample> last_;
   std::optional<ScanPoints> scan_;       ///< smoothed
   std::vector<Eigen::Vector2d> seen_m_;  ///< of the last scan, as measured ...
-  geometry::Pose2 T_odom_seen_;          ///< ... and where the robot was when they came first
+  geometry::Pose2 T_odom_seen_;          ///< ... and the pose at which they first came
 };
 
 }  // namespace topogeo::navigation

@@ -14,12 +14,12 @@
 
 namespace topogeo::navigation {
 
-/// What Markov localization holds probabilities of.
+/// The states that Markov localization assigns probabilities to.
 enum class MarkovGrid : std::uint8_t {
-  /// Positions and headings; sonars are heard while the robot drives (markov/pose_localizer.hpp).
+  /// Positions and headings; uses the sonars while driving (markov/pose_localizer.hpp).
   kPoses = 0,
   /// MACONDO's window of positions, by its matrices and weights (markov/markov_localizer.hpp). The
-  /// robot stops to hear its sonars at border nodes and at the end of its route.
+  /// robot stops for its sonars at border nodes and at the end of its route.
   kPositions = 1,
 };
 
@@ -29,11 +29,11 @@ struct MarkovTrackerConfig {
   markov::PoseGridConfig poses;
   double cell_m = 0.1;
   double heading_sigma_rad = 0.05;
-  std::string station = "base station";  ///< place of the map that the robot starts at
+  std::string station = "base station";  ///< named place where the robot starts
   double station_heading_rad = 0.0;      ///< map frame
 };
 
-/// Declares the part of the section `markov` that is about the map and the robot.
+/// Declares the settings of the section `markov` about the map and the robot.
 void describe(MarkovTrackerConfig& config, support::ConfigSchema& schema);
 
 /// Throws std::invalid_argument naming key, value and range.
@@ -44,11 +44,11 @@ enum class MotionStyle : std::uint8_t {
   kPrimitives = 1,  ///< advance, turn left, turn right (docs/algorithms.md, "Motion primitives")
 };
 
-/// Where the pose comes from.
+/// Source of the pose.
 enum class PoseSource : std::uint8_t {
   kLocalizer = 0,  ///< pose fixes that are added
   /// Markov localization (docs/algorithms.md, "Markov localization") on the map's grid. The base
-  /// station is the place of the map with that name, without one the first pose fix that is added.
+  /// station is the place with that name on the map, or else the first pose fix that is added.
   kMarkov = 1,
 };
 
@@ -68,18 +68,18 @@ struct NavigatorConfig {
   planning::DetourConfig detour;
   planning::SmoothPathConfig smooth;
   PoseSource pose_source = PoseSource::kLocalizer;
-  bool markov_by_laser = false;  ///< ranges for Markov localization from the laser, not the sonars
+  bool markov_by_laser = false;  ///< Markov localization uses the laser's ranges, not the sonars
   MarkovTrackerConfig markov;
-  /// Of the local map of the moment, by which detours lead; the same as the local mapper's.
+  /// For the momentary local map that detours follow; the same as the local mapper's.
   voronoi::VoronoiConfig voronoi;
   topomap::LocalMapConfig local_map;
 };
 
-/// Declares what this library has in the sections `navigator`, `markov` and `guard`; path, detour,
-/// Markov model and local map are declared by the libraries of their settings.
+/// Declares this library's settings in the sections `navigator`, `markov` and `guard`; other
+/// libraries declare path, detour, Markov model and local map.
 void describe(NavigatorConfig& config, support::ConfigSchema& schema);
 
-/// Throws std::invalid_argument naming key, value and range, also for the parts of other libraries.
+/// Throws std::invalid_argument naming key, value and range, also for parts of other libraries.
 void check(const NavigatorConfig& config);
 
 }  // namespace topogeo::navigation

@@ -1,11 +1,11 @@
-// Drives a base along a sampled path: leg by leg, each begun with a turn on the spot where it is
-// needed and ended with a stop.
+// Drives a base along a sampled path: leg by leg, each beginning with a turn on the spot if needed
+// and ending with a stop.
 //
 // On a leg the curvature of the motion is that of the path, corrected for the distance from it and
-// the heading error so that both die out over a distance of `kSettle_m`, whatever the speed. All
-// control is on the pose where the base will be when it obeys (command_history.hpp). Paths of
-// smooth_path() have few legs; those of straight_path() one for every advance primitive, so that
-// they are executed one after the other.
+// the heading error so that both vanish over a distance of `kSettle_m`, at any speed. All control
+// uses the pose at which the base will obey (command_history.hpp). Paths of smooth_path() have few
+// legs; paths of straight_path() have one for every advance primitive, so that these are executed
+// one after the other.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ struct FollowerStep {
   geometry::Velocity command;
   bool done = false;    ///< stands at the end of the path, in its final heading
   double rest_m = 0.0;  ///< of the path
-  double rest_s = 0.0;  ///< about
+  double rest_s = 0.0;  ///< approximately
   double off_m = 0.0;   ///< distance from the path
 };
 
@@ -39,11 +39,11 @@ class PathFollower {
  public:
   static constexpr double kSettle_m = 0.35;
 
-  /// Throws std::invalid_argument as `check`.
+  /// Throws std::invalid_argument like `check`.
   explicit PathFollower(const FollowerConfig& config);
 
-  /// Another path from here on, the robot may be moving. `path` may be empty: then there is only
-  /// the final heading to turn to.
+  /// Switches to another path, even while moving. With an empty `path` there is only the final
+  /// heading to turn to.
   void follow(std::vector<planning::PathSample> path, std::optional<double> final_heading_rad);
   void forget();
   [[nodiscard]] bool has_path() const { return active_; }
@@ -53,16 +53,15 @@ class PathFollower {
   FollowerStep step(const geometry::Pose2& T_map_robot, std::int64_t now_ns,
                     double speed_limit_m_per_s);
 
-  /// What the base really got at that time; once for each step, also while nothing is
-  /// followed.
+  /// The command that the base really got at that time; call once per step, even without a path.
   void commanded(const geometry::Velocity& command, std::int64_t now_ns);
 
   [[nodiscard]] std::span<const planning::PathSample> path() const { return path_; }
   [[nodiscard]] double progress_m() const { return progress_m_; }
   [[nodiscard]] double rest_m() const;
 
-  /// Primitives of the path executed since the last call: turns on the spot and legs. Those of the
-  /// path before are gone.
+  /// Primitives of the path executed since the last call: turns on the spot and legs. Drops those
+  /// of the previous path.
   std::vector<planning::MotionPrimitive> take_finished();
 
  private:
@@ -71,7 +70,7 @@ class PathFollower {
     Eigen::Vector2d position_m;
     double heading_rad;
     double curvature_per_m;
-    double left_m;  ///< of the path, where the robot is
+    double left_m;  ///< of the path, from the robot on
     double to_go_m;
   };
 
@@ -95,7 +94,7 @@ class PathFollower {
   Phase phase_ = Phase::kDone;
   std::size_t leg_begin_ = 0;
   std::size_t leg_end_ = 0;
-  std::size_t segment_ = 0;  ///< of the path, in which the robot is
+  std::size_t segment_ = 0;  ///< of the path, containing the robot
   double progress_m_ = 0.0;
   double off_m_ = 0.0;
 
