@@ -7,7 +7,7 @@
 namespace topogeo::pipeline {
 namespace {
 
-// Where one key stands for several variables.
+// Copies keys that stand for several variables.
 void share_values(Config& c) {
   mount_laser(c, c.local_mapper.T_robot_laser);
   c.local_mapper.tracker.odometry = c.localizer.odometry;
@@ -17,7 +17,7 @@ void share_values(Config& c) {
   c.calibration.seed = c.localizer.seed;
 }
 
-// A key that the file leaves out keeps what was there before, so it differs where that differs.
+// A key that is missing in the file keeps its earlier value, so the result then differs.
 bool sets_laser(const std::filesystem::path& file, const geometry::Pose2& read) {
   Config other;
   other.local_mapper.T_robot_laser = {1.0, 1.0, 1.0};
@@ -27,7 +27,7 @@ bool sets_laser(const std::filesystem::path& file, const geometry::Pose2& read) 
          read.theta_rad == read_again.theta_rad;
 }
 
-// Values that must fit each other, which the ranges of the keys do not state.
+// Checks relations between values beyond the ranges of the keys.
 void check_values(const Config& c) {
   scan::check(c.log);
   voronoi::check(c.local_mapper.voronoi);

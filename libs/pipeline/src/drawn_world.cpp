@@ -19,8 +19,8 @@ std::string drawn_world_text(std::string_view name, const storage::MapDrawing& d
     text += fmt::format("  - [{}, {}, {}, {}]\n", wall.a_m.x(), wall.a_m.y(), wall.b_m.x(),
                         wall.b_m.y());
   }
-  // A simulated robot stands at the first point of its tour and looks to the second, which lies
-  // under it: both are in the floor.
+  // A simulated robot starts at the first point of its tour and faces the second. Both must be
+  // inside the floor, so the second is only just ahead.
   const Eigen::Vector2d ahead_m = T_floor_start * Eigen::Vector2d(0.1, 0.0);
   text += fmt::format("tour:\n  - [{}, {}]\n  - [{}, {}]\n", T_floor_start.x_m, T_floor_start.y_m,
                       ahead_m.x(), ahead_m.y());

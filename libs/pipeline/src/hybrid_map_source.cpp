@@ -32,7 +32,7 @@ planning::ZoneMap make_zones(const planning::FreeSpace& space, const HybridMapPa
   return planning::zones_of_drawn_and_found_rooms(space, rooms, passages, config);
 }
 
-/// What a hybrid map is made of: all but the searches for the ways through its zones.
+/// A hybrid map without the route searches through its zones.
 struct Rooms {
   planning::FreeSpace space;
   planning::ZoneMap zones;
@@ -58,7 +58,7 @@ planning::RoomNumbers numbers_of(const HybridMapParts& parts) {
   return planning::RoomNumbers(parts.rooms != nullptr ? *parts.rooms : planning::RoomMemory{});
 }
 
-/// The same cells in another place.
+/// The same cells at another pose.
 planning::OccupancyGrid moved(const planning::OccupancyGrid& grid, const geometry::Pose2& T) {
   planning::GridFrame frame = grid.frame();
   frame.T_map_grid = T * frame.T_map_grid;
@@ -143,7 +143,7 @@ void remember_rooms(storage::MapDocument& document, const HybridMapConfig& confi
   planning::RoomNumbers rooms = numbers_of(parts);
   try {
     static_cast<void>(find_rooms(parts, config, rooms));
-  } catch (const std::invalid_argument&) {  // too large a floor, for instance
+  } catch (const std::invalid_argument&) {  // for instance if the floor is too large
     return;
   }
   document.rooms = rooms.memory();

@@ -12,7 +12,7 @@
 namespace topogeo::pipeline {
 namespace {
 
-// More than a mounting is measured to with a rule.
+// Larger than the error of measuring a mounting with a rule.
 constexpr double kContradicting_m = 0.02;
 constexpr double kContradicting_rad = std::numbers::pi / 180.0;
 

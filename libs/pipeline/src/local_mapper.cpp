@@ -14,12 +14,12 @@ using topomap::ScanPoint;
 
 namespace {
 
-// A scan that cannot be placed makes a stop once the robot has moved by this: a covered laser on a
-// robot that stands makes none.
+// A scan that cannot be placed makes a stop once the robot has moved this far: a covered laser on a
+// standing robot makes none.
 constexpr double kLostStop_m = 0.1;
 constexpr double kLostStop_rad = 0.05;
 
-// Never 0, which stands for no session.
+// Never 0, which means no session.
 std::uint64_t session_of(const scan::Scan& scan, const std::string& robot_id, std::uint64_t salt) {
   support::Fnv1a hash;
   hash.add(robot_id);
@@ -49,9 +49,9 @@ std::optional<LocalMap> LocalMapper::add(const scan::Scan& scan) {
   }
   const localization::TrackedPose pose = tracker_.track(points_of(scan), scan.T_odom_robot);
   const Pose2& T = pose.T_stop_robot;
-  // A scan that cannot be placed against the stop needs the wider search that only stops get, but a
-  // covered laser must not make a stop of every scan. Where scans are sparse, waiting for one more
-  // would put the next stop far beyond the wanted distance.
+  // A scan that cannot be placed relative to the stop needs the wider search that only stops get,
+  // but a covered laser must not make a stop of every scan. If scans are sparse, waiting for one
+  // more would put the next stop far beyond the wanted distance.
   const Pose2 T_last = track_.empty() ? Pose2{} : track_.last().T_stop_robot;
   const double step_m = std::sqrt((T.position_m() - T_last.position_m()).squaredNorm());
   const double turn_rad = std::fabs(geometry::wrap_angle(T.theta_rad - T_last.theta_rad));
@@ -74,10 +74,10 @@ std::optional<LocalMap> LocalMapper::finish() {
   return make_stop(scan, T_stop_robot);
 }
 
-// A base that nobody commands drives on until its watchdog stops it.
+// Searches ahead too: a base without commands drives on until its watchdog stops it.
 std::optional<Pose2> LocalMapper::find_again(const scan::Scan& scan) const {
   constexpr double kFarthest_m = 1.25;
-  constexpr double kStep_m = 0.25;  // from each of them a match finds what lies between
+  constexpr double kStep_m = 0.25;  // a match covers the distance between two starts
   const std::vector<ScanPoint> points = points_of(scan);
   localization::TrackedPose best;
   for (double ahead_m = 0.0; ahead_m <= kFarthest_m; ahead_m += kStep_m) {

@@ -28,7 +28,7 @@ geometry::Pose2 parse_pose(const std::string& text) {
 
 namespace {
 
-/// A map file as far as its stops have poses.
+/// A map file, reduced to the stops with poses.
 storage::MapDocument load_usable_map(const std::filesystem::path& file) {
   storage::MapDocument document = storage::identified(storage::read_map(file));
   document.local_maps.resize(document.trajectory.stops.size());

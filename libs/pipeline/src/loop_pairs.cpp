@@ -9,15 +9,16 @@
 namespace topogeo::pipeline {
 namespace {
 
-// The pairs by which the loop error of a trajectory is measured, so these figures are part of what
-// the error means: places nearer than this, with so much path between them.
+// Definition of the pairs that measure the loop error of a trajectory: places nearer than this,
+// with at least so much path between them. They are part of the meaning of the error.
 constexpr double kNear_m = 1.5;
 constexpr double kPathBetween_m = 20.0;
-constexpr std::size_t kMostPairs = 2000;     // of longer paths a sample
-constexpr std::size_t kPosesLookedAt = 400;  // about; longer paths are thinned out
+constexpr std::size_t kMostPairs = 2000;     // a sample of longer paths
+constexpr std::size_t kPosesLookedAt = 400;  // approximate; longer paths are thinned out
 
-/// Gives std::mt19937 the state that Python's generator has after `seed(0)`: init_by_array of the
-/// reference implementation of the Mersenne Twister with the key {0}, as no standard seed does.
+/// Gives std::mt19937 the state of Python's generator after `seed(0)`: init_by_array of the
+/// reference implementation of the Mersenne Twister with the key {0}, which no standard seed
+/// provides.
 struct PythonSeed {
   using result_type = std::uint32_t;
 
@@ -47,7 +48,7 @@ struct PythonSeed {
   }
 };
 
-/// A number in [0, limit), as Random._randbelow.
+/// A number in [0, limit), like Random._randbelow.
 std::size_t below(std::mt19937& generator, std::size_t limit) {
   const auto bits = static_cast<unsigned>(std::bit_width(limit));
   while (true) {

@@ -34,15 +34,15 @@ constexpr double kRightMatch_m = 0.25;
 constexpr double kRightMatch_rad = 0.09;
 constexpr double kNearMatch_m = 0.6;
 constexpr double kNearMatch_rad = 0.2;
-// What LoopCandidate::probability promises.
+// Limits that LoopCandidate::probability refers to.
 constexpr double kProbable_m = 0.5;
 constexpr double kProbable_rad = 0.174532925;
 
-// Of the later scan's points, seen by the older stop too.
+// Share of the later scan's points that the older stop must also see.
 constexpr double kLeastInView = 0.5;
 constexpr double kSame_m = 0.2;       // from its points, or across the outline between them
-constexpr double kOutline_m = 0.6;    // between two points of an outline at most
-constexpr double kSeenThere_m = 0.3;  // half-thickness of what a laser saw
+constexpr double kOutline_m = 0.6;    // largest distance between two points of an outline
+constexpr double kSeenThere_m = 0.3;  // half-thickness of surfaces in view
 
 struct LoopOffset {
   double distance_m = 0.0;
@@ -92,7 +92,7 @@ std::string outcome_text(const LoopCandidate& candidate) {
   return matched ? candidate.outcome : candidate.outcome + ": " + candidate.reason;
 }
 
-/// Of all decisions those that became loops and stayed.
+/// The decisions that became loops and were not outvoted.
 std::vector<const LoopCandidate*> loops_of(std::span<const LoopCandidate> candidates) {
   std::vector<const LoopCandidate*> loops;
   for (const LoopCandidate& candidate : candidates) {
@@ -164,7 +164,7 @@ Reliability reliability_of(const ReferencePoses& poses, std::span<const LoopCand
   return reliability;
 }
 
-/// Whether half of what the later stop sees is in view of the older one, and there.
+/// Whether half of the points of the later stop are in view of the older one, on its surfaces.
 bool in_view(const topomap::LocalMap& earlier, const topomap::LocalMap& later,
              const Pose2& T_earlier_later) {
   if (later.points.empty()) return false;

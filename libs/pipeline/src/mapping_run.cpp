@@ -23,7 +23,7 @@ MappingRun::MappingRun(const Config& config, std::string robot_id,
                        const std::optional<geometry::Pose2>& initial_pose)
     : config_(config),
       robot_id_(std::move(robot_id)),
-      // A log that is added to its own map is another session.
+      // A log that is added to its own map becomes another session.
       local_mapper_(config.local_mapper, robot_id_, storage::identified(*map).map_id),
       continued_(std::move(map)),
       slam_(config.localizer, pool_, nullptr,

@@ -7,7 +7,7 @@
 
 namespace topogeo::pipeline {
 
-/// The numbers of "a,b,c"; empty unless all three are finite and nothing else is there.
+/// The numbers of "a,b,c"; empty unless the text consists of exactly three finite ones.
 std::optional<std::array<double, 3>> parse_three_numbers(const std::string& text);
 
 }  // namespace topogeo::pipeline

@@ -16,7 +16,7 @@ using localization::UncertainPose;
 
 namespace {
 
-// What a match by this evidence reads of a map.
+// The features of a map that a match by this evidence uses.
 localization::MatchFeatures features_for(const topomap::LocalMap& map,
                                          localization::MatchEvidence evidence) {
   localization::MatchFeatures features = localization::extract_features(map);

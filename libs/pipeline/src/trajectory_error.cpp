@@ -21,8 +21,8 @@ namespace {
 using geometry::Pose2;
 using topomap::StampedPose;
 
-// Relations over a longer time show whether loops were closed; their errors are also given by
-// themselves.
+// Relations over a longer time show whether loops were closed; their errors are also reported
+// separately.
 constexpr std::int64_t kFarApart_ns = 30'000'000'000;
 
 std::string time_of(std::span<const StampedPose> poses) {
@@ -59,8 +59,8 @@ Paired pair_by_time(std::span<const StampedPose> unsorted_estimate,
   return paired;
 }
 
-/// The motion that brings the estimate nearest to the reference, by least squares of the distances:
-/// in the plane the angle is that of the sums of products.
+/// The motion that aligns the estimate with the reference, by least squares of the distances: in
+/// the plane the angle is that of the sums of products.
 Pose2 best_alignment(const Paired& paired) {
   const auto n = static_cast<double>(paired.estimate.size());
   Eigen::Vector2d estimated_mean_m = Eigen::Vector2d::Zero();
@@ -84,7 +84,7 @@ Pose2 best_alignment(const Paired& paired) {
   return {shift_m.x(), shift_m.y(), turn.theta_rad};
 }
 
-/// What the estimate of a relative pose errs by.
+/// Error of the estimate of a relative pose.
 struct PoseError {
   double distance_m = 0.0;
   double angle_rad = 0.0;  ///< >= 0

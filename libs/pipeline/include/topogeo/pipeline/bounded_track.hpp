@@ -1,5 +1,5 @@
-// The scans since the last stop: all of them, or evenly spread ones where a robot stands so long
-// that they would be too many. The last one is always there.
+// The scans since the last stop: all of them, or evenly spaced ones if a robot stands for so long
+// that they would be too many. The last one is always included.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace topogeo::pipeline {
 
 class BoundedTrack {
  public:
-  /// Keeps at most so many scans, at least 2.
+  /// Limit of scans, at least 2.
   explicit BoundedTrack(std::size_t most) : most_(most) {}
 
   void add(const topomap::TrackedScan& scan) {
@@ -30,7 +30,7 @@ class BoundedTrack {
     --added_;
   }
 
-  /// All that is kept; it is empty then.
+  /// Returns all kept scans and clears the track.
   std::vector<topomap::TrackedScan> take() {
     added_ = 0;
     step_ = 1;
@@ -38,7 +38,7 @@ class BoundedTrack {
   }
 
  private:
-  // Those kept are scan 0, `step_`, 2 * `step_` and so on, and the last.
+  // Keeps the scans 0, `step_`, 2 * `step_` and so on, and the last one.
   void thin_out() {
     const topomap::TrackedScan last = scans_.back();
     scans_.pop_back();
@@ -51,7 +51,7 @@ class BoundedTrack {
   std::size_t most_;
   std::vector<topomap::TrackedScan> scans_;
   std::size_t added_ = 0;
-  std::size_t step_ = 1;  // between two that are kept
+  std::size_t step_ = 1;  // between two kept scans
 };
 
 }  // namespace topogeo::pipeline

@@ -1,5 +1,4 @@
-// Every setting of the system in one place: one YAML file, the same for all services and for the
-// single-process command.
+// All settings of the system: one YAML file for all services and for the single-process command.
 #pragma once
 
 #include <filesystem>
@@ -37,12 +36,11 @@ struct Config {
   ReportConfig report;
 };
 
-/// Every key of the file: what the libraries declare of their settings, one after the other.
+/// Every key of the file: the declarations of all libraries, one after the other.
 support::ConfigSchema describe(Config& config);
 
-/// The configuration of a file, or the defaults without one. `effective` of it goes into reports.
-/// Throws std::runtime_error naming file, line and key, or file and field for values that do not
-/// fit each other.
+/// The configuration of a file, or the defaults without one. Its `effective` goes into reports.
+/// Throws std::runtime_error naming file, line and key, or file and field for inconsistent values.
 struct LoadedConfig {
   Config config;
   support::EffectiveConfig effective;

@@ -1,4 +1,4 @@
-// Floors that people draw, as worlds to simulate.
+// Worlds for the simulation, made from drawn floors.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace topogeo::pipeline {
 
-/// A world file (see world/world.hpp) of the walls of a drawing, open where its openings and doors
-/// are, with a robot that stands at `T_floor_start`. Places and zones are not in it. Throws
-/// std::invalid_argument without a wall.
+/// A world file (see world/world.hpp) with the walls of a drawing, open at its openings and doors,
+/// and a robot at `T_floor_start`. Places and zones are not included. Throws std::invalid_argument
+/// without a wall.
 std::string drawn_world_text(std::string_view name, const storage::MapDrawing& drawing,
                              const geometry::Pose2& T_floor_start);
 

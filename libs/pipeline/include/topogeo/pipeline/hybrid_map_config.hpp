@@ -7,7 +7,7 @@
 
 namespace topogeo::pipeline {
 
-/// Side of the tiles that a grid is sent in: a map that grows must not shift them.
+/// Side of the tiles in which a grid is sent: a growing map must not shift them.
 inline constexpr std::int32_t kTileCells = 64;
 
 struct HybridMapConfig {

@@ -1,9 +1,8 @@
-// Makes the hybrid map of a floor from a drawing, from what the robot has mapped, or from both
-// (MACONDO, III.2; docs/algorithms.md, "Hybrid map and planner").
+// Makes the hybrid map of a floor from a drawing, from the robot's map, or from both (MACONDO,
+// III.2; docs/algorithms.md, "Hybrid map and planner").
 //
-// The grid is the drawn one, the one that scans saw, or the two as planning::grid_of_both lays them
-// together. Zones are the drawn rooms and, outside of them, the rooms between the walls and the
-// doors of the map that the robot has made.
+// The grid is the drawn one, the one from scans, or both combined by planning::grid_of_both. Zones
+// are the drawn rooms and, outside of these, the rooms between walls and doors of the robot's map.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +19,7 @@
 
 namespace topogeo::pipeline {
 
-/// What a hybrid map is made of, read during the call only. What is missing is empty.
+/// Input of a hybrid map, read only during the call. Missing parts are empty.
 struct HybridMapParts {
   std::span<const topomap::LocalMap> local_maps;
   std::span<const topomap::StopPose> stops;
@@ -30,38 +29,37 @@ struct HybridMapParts {
 };
 HybridMapParts parts_of(const storage::MapDocument& document);
 
-/// Whether there is something to make a grid of: a drawn one, or a located stop that saw something.
+/// Whether there is a source for a grid: a drawing, or a located stop with scan points.
 bool has_grid(const HybridMapParts& parts);
 
-/// Throws std::invalid_argument saying why when there is nothing to make a grid of (no drawing and
-/// no scan points), the grid would be too large, or the configuration is out of range. The lower
-/// left corner of a grid of scans lies at a multiple of config.grid.snap_cells. Rooms have the
-/// numbers and names that `rooms` remembers from the maps before, without it those that the parts
-/// remember.
+/// Throws std::invalid_argument with the reason if there is no source for a grid (no drawing and no
+/// scan points), the grid would be too large, or the configuration is out of range. The lower left
+/// corner of a grid from scans is a multiple of config.grid.snap_cells. Rooms have the numbers and
+/// names that `rooms` remembers from earlier maps or, without it, those that the parts remember.
 planning::HybridMap make_hybrid_map(const HybridMapParts& parts, const HybridMapConfig& config,
                                     planning::RoomNumbers* rooms = nullptr);
 
-/// Numbers the rooms of a map from what the document remembers of them, and makes it remember what
-/// came of that. Nothing where no hybrid map can be made.
+/// Numbers the rooms of a map by the memory of the document, and updates that memory. Does nothing
+/// if no hybrid map can be made.
 void remember_rooms(storage::MapDocument& document, const HybridMapConfig& config);
 
-/// Takes a drawing of frame b to frame a; T is T_a_b.
+/// Moves a drawing from frame b to frame a; T is T_a_b.
 void move(storage::MapDrawing& drawing, const geometry::Pose2& T);
 
-/// A drawn floor: the grid and the places of a world file (.world.yaml, see world/world.hpp)
-/// with cells of `resolution_m`, or the grid of a YAML file (see planning/grid_file.hpp). The names
-/// of `zones` (see planning::read_zone_drawing), in the frame of the drawing, are added to it. All
-/// is taken to the map frame. Throws std::runtime_error naming file, line or field.
+/// A drawn floor: the grid and the places of a world file (.world.yaml, see world/world.hpp) with
+/// cells of `resolution_m`, or the grid of a YAML file (see planning/grid_file.hpp). Adds the names
+/// of `zones` (see planning::read_zone_drawing), in the frame of the drawing. Everything is moved
+/// to the map frame. Throws std::runtime_error naming file, line or field.
 storage::MapDrawing read_drawing(const std::filesystem::path& file,
                                  const std::optional<std::filesystem::path>& zones,
                                  double resolution_m, const geometry::Pose2& T_map_drawing = {});
 
-/// Places and zones of a file, checked like a drawing; there is no grid. Throws the same.
+/// Places and zones of a file, checked like a drawing, without a grid. Throws the same.
 storage::MapDrawing read_zones_and_places(const std::filesystem::path& file);
 
-/// Puts what `added` has on `drawing`: its grid takes the place of the one there, and so do places
-/// and zones of the same names; others come behind those there,
-/// as do walls, openings and doors that are not there yet.
+/// Adds the content of `added` to `drawing`. Its grid replaces the existing one, and so do places
+/// and zones with existing names. Other places and zones are appended, and so are new walls,
+/// openings and doors.
 void lay_over(storage::MapDrawing& drawing, storage::MapDrawing added);
 
 /// The floor of one file: a world, a grid (both as read_drawing, with no robot) or a map file.

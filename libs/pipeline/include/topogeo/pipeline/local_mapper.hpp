@@ -1,4 +1,4 @@
-// From scans to local maps: chooses the stops, follows the robot between them and makes the local
+// Makes local maps from scans: chooses the stops, tracks the robot between them and makes the local
 // map of each stop (docs/algorithms.md, "Local Voronoi diagram", "Local topo-geometric map" and
 // "Scan tracking").
 #pragma once
@@ -21,37 +21,37 @@ namespace topogeo::pipeline {
 class LocalMapper {
  public:
   /// The number of its session follows from the robot, the first scan and `session_salt`: a replay
-  /// gives 0 to have the same one each time, a robot something random. Throws std::invalid_argument
-  /// when a field of the configuration is outside its range.
+  /// passes 0 to get the same one each time, a robot something random. Throws std::invalid_argument
+  /// if a field of the configuration is outside its range.
   LocalMapper(const LocalMapperConfig& config, std::string robot_id,
               std::uint64_t session_salt = 0);
 
-  /// Other numbers for the sessions that begin from here on, as the constructor's `session_salt`.
+  /// Sets the `session_salt` of the constructor for sessions that begin from now on.
   void set_session_salt(std::uint64_t salt) { session_salt_ = salt; }
 
-  /// Goes on with the session of its last stop, as if there had been no scan since. Before the
+  /// Continues the session of its last stop, as if there had been no scan since. Call before the
   /// first scan.
   void resume(const topomap::LocalMap& last_stop);
 
-  /// Takes the next scan, in time order; gives a local map when the robot is at a stop. The first
-  /// scan is one, and the first of each epoch of the odometry: when it can be placed against the
-  /// last stop it belongs to the session, else it begins another one.
+  /// Takes the next scan, in time order; returns a local map if the robot is at a stop. The first
+  /// scan is a stop, and so is the first of each odometry epoch: if it can be placed relative to
+  /// the last stop it belongs to that session, otherwise it begins another one.
   std::optional<topomap::LocalMap> add(const scan::Scan& scan);
 
-  /// The last scan, placed against the last stop; null when that was the stop.
+  /// The last scan, placed relative to the last stop; null if it was that stop.
   [[nodiscard]] const topomap::TrackedScan* last_tracked() const {
     return track_.empty() ? nullptr : &track_.last();
   }
 
-  /// After the first scan or resume().
+  /// Call after the first scan or resume().
   [[nodiscard]] topomap::StopId last_stop() const { return {next_.session, next_.number - 1}; }
 
-  /// At the end of a log: makes a stop of the last scan, if it was none, so that the scans since
-  /// the stop before are not lost.
+  /// At the end of a log: makes the last scan a stop, unless it was one, so that the scans since
+  /// the previous stop are not lost.
   std::optional<topomap::LocalMap> finish();
 
  private:
-  /// T_stop_robot of a scan whose odometry has another origin.
+  /// T_stop_robot of a scan whose odometry has restarted.
   [[nodiscard]] std::optional<geometry::Pose2> find_again(const scan::Scan& scan) const;
   topomap::LocalMap begin_session(const scan::Scan& scan);
   topomap::LocalMap make_stop(const scan::Scan& scan, const geometry::Pose2& T_stop_robot);

@@ -1,4 +1,4 @@
-// Settings of the local mapper: when a stop is made and what its local map is.
+// Settings of the local mapper: the distance between stops and the content of their local maps.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What localizing in a stored map needs and leaves behind beside what mapping does.
+// Input and output of localizing in a stored map, beyond those of mapping.
 #pragma once
 
 #include <filesystem>
@@ -16,42 +16,42 @@
 
 namespace topogeo::pipeline {
 
-/// "x,y,degrees" in the map frame. Throws std::invalid_argument naming what is wrong.
+/// "x,y,degrees" in the map frame. Throws std::invalid_argument naming the fault.
 geometry::Pose2 parse_pose(const std::string& text);
 
-/// The local maps and poses of a map file. Throws std::runtime_error naming the file when it cannot
-/// be read or has no stop that saw anything.
+/// The local maps and poses of a map file. Throws std::runtime_error naming the file if it cannot
+/// be read or has no stop with scan points.
 std::shared_ptr<const localization::StoredMap> load_stored_map(const std::filesystem::path& file);
 
-/// The map of a document as it is localized in and continued.
+/// The map of a document, in the form for localizing in it and continuing it.
 std::shared_ptr<const localization::StoredMap> stored_map(const storage::MapDocument& document);
 
-/// What a map keeps of the measurements of a pose graph, and back.
+/// Convert the measurements of a pose graph to those of a map file, and back.
 std::vector<storage::MapEdge> map_edges(std::span<const localization::PoseGraphEdge> edges);
 std::vector<localization::PoseGraphEdge> pose_graph_edges(std::span<const storage::MapEdge> edges);
 
-/// A map file that this robot is to continue. Throws std::runtime_error naming the file when it
-/// cannot be read, has no stop that saw anything or stops without a place, is of another robot, or
-/// was made with the laser elsewhere on the robot than it is now.
+/// A map file that this robot should continue. Throws std::runtime_error naming the file if it
+/// cannot be read, has no stop with scan points, has stops without a place, belongs to another
+/// robot, or was made with another mounting of the laser.
 std::shared_ptr<const storage::MapDocument> load_map_to_continue(const std::filesystem::path& file,
                                                                  const Config& config,
                                                                  const std::string& robot_id);
 
-/// Counts of the stops of a stored map and of a drive that continues it: "stored_stops",
-/// "added_stops" and "unmapped_stops", as they stand in reports.
+/// Counts of the stops of a stored map and of a drive that continues it, for reports:
+/// "stored_stops", "added_stops" and "unmapped_stops".
 storage::ReasonCounts continuation_counts(const localization::MappingSession& session);
 
-/// Why stops of a drive are not in the map, for people; empty when all are.
+/// Explains to the user why stops of a drive are not in the map; empty if all are.
 std::string continuation_message(const localization::MappingSession& session);
 
 /// The text of localization.csv: a line for each stop with pose, state, confidence and standard
 /// deviations; the same bytes for the same stops.
 std::string localization_csv(std::span<const localization::LocalizedStop> stops);
-/// The parts of it, for those who do not have all stops at once.
+/// Parts of localization_csv(), for callers that do not have all stops at once.
 std::string localization_csv_header();
 std::string localization_csv_rows(std::span<const localization::LocalizedStop> stops);
 
-/// Stops by state, and searches, as they stand in reports.
+/// Stops by state, and searches, for reports.
 storage::ReasonCounts localization_counts(const localization::MapLocalizer& localizer);
 
 }  // namespace topogeo::pipeline

@@ -1,5 +1,5 @@
-// Which stops come back to a place, by a reference trajectory, and which of these revisits became
-// loops of the map.
+// Compares the loops of a map with a reference trajectory: stops that return to a place, and the
+// revisits that became loops.
 #pragma once
 
 #include <cstddef>
@@ -20,9 +20,9 @@ namespace topogeo::pipeline {
 /// A stop within 2 m and 57 degrees (1 rad) of a stop 30 or more stops older.
 struct Revisit {
   std::uint32_t stop = 0;  ///< local map id
-  bool tried = false;      ///< compared with at least one of the older stops that are so near
-  bool accepted = false;   ///< the map has a loop to at least one of them
-  /// Placed by the reference, half of the stop's points are in view of one of them and within 0.2 m
+  bool tried = false;      ///< compared with at least one of these older stops
+  bool accepted = false;   ///< the map has a loop to at least one of these
+  /// At the reference poses, half of the stop's points are in view of one of these and within 0.2 m
   /// of its points or outline: the two scans alone can be matched.
   bool in_view = false;
 };
@@ -32,16 +32,16 @@ struct LoopOffReference {
   storage::LoopCandidate loop;
   double off_m = 0.0;
   double off_rad = 0.0;
-  /// What the two scans have in common, overlap * (inliers - 2 violations) of
-  /// localization::PoseEvidence: at the match and at the relative pose of the reference.
+  /// Agreement of the two scans, overlap * (inliers - 2 violations) of localization::PoseEvidence:
+  /// at the match and at the relative pose of the reference.
   double in_common = 0.0;
   double in_common_by_reference = 0.0;
 
-  /// The scans fit no better than by the reference. Otherwise the reference itself is in doubt.
+  /// The scans fit no better than at the reference. Otherwise the reference itself is in doubt.
   [[nodiscard]] bool wrong() const { return in_common <= in_common_by_reference; }
 };
 
-/// Decisions of one source with one outcome, by how far they are off the reference.
+/// Decisions of one source with one outcome, by their distance from the reference.
 struct LoopOutcomeCounts {
   std::string source;     ///< LoopCandidate::source
   std::string outcome;    ///< "accepted", "match not accepted: few inliers", ...
@@ -53,11 +53,12 @@ struct LoopOutcomeCounts {
 };
 
 struct LoopRecall {
-  std::size_t stops = 0;  ///< that the reference has a pose for; the others do not count
+  std::size_t stops = 0;  ///< stops with a reference pose; others do not count
   std::vector<Revisit> revisits;
-  std::vector<LoopOffReference> off_reference;  ///< in the order in which they were accepted
+  std::vector<LoopOffReference> off_reference;  ///< in order of acceptance
   std::vector<LoopOutcomeCounts> outcomes;      ///< by source, then outcome
-  /// Of the probabilities of all decisions on matches, which are right within 0.5 m and 10 degrees.
+  /// For the probabilities of all decisions on matches, which are right within 0.5 m and 10
+  /// degrees.
   Reliability reliability;
 
   [[nodiscard]] std::size_t tried() const;             ///< of the revisits
@@ -65,14 +66,14 @@ struct LoopRecall {
   [[nodiscard]] std::size_t in_view() const;           ///< of the revisits
   [[nodiscard]] std::size_t accepted_in_view() const;  ///< of those in view
   [[nodiscard]] std::size_t wrong() const;             ///< of the loops
-  /// Decisions that were right and did not become loops, by outcome.
+  /// Right decisions that did not become loops, by outcome.
   [[nodiscard]] std::map<std::string, std::size_t> rejected() const;
 };
 
-/// `maps[i]` is the local map of id i, `candidates` are the decisions in their order: a loop that
-/// was outvoted later is none. The reference pose of a stop is the one nearest in time, at most
-/// `max_apart_ns` away. Throws std::invalid_argument when a candidate is of a stop that does not
-/// exist, and when no stop has a reference pose.
+/// `maps[i]` is the local map of id i, `candidates` are the decisions in their order; a loop that
+/// was outvoted later does not count. The reference pose of a stop is the one nearest in time, at
+/// most `max_apart_ns` away. Throws std::invalid_argument if a candidate names an unknown stop, or
+/// no stop has a reference pose.
 LoopRecall loop_recall(std::span<const topomap::LocalMap> maps,
                        std::span<const topomap::StampedPose> T_reference_robot,
                        std::span<const storage::LoopCandidate> candidates,

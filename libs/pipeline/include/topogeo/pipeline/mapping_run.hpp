@@ -1,4 +1,4 @@
-// From scans to a map in one process: what the services do together, without DDS.
+// Makes a map from scans in one process: the work of all services together, without DDS.
 #pragma once
 
 #include <cstdint>
@@ -20,14 +20,14 @@ namespace topogeo::pipeline {
 class MappingRun {
  public:
   MappingRun(const Config& config, std::string robot_id);
-  /// Localizes in a finished map instead; the document is then what this drive saw, at its place in
-  /// the frame of that map. Without an initial pose it searches. Throws like MapLocalizer.
+  /// Localizes in a finished map instead; the document then contains the stops of this drive, with
+  /// poses in the frame of that map. Without an initial pose it searches. Throws like MapLocalizer.
   MappingRun(const Config& config, std::string robot_id,
              std::shared_ptr<const localization::StoredMap> map,
              const std::optional<geometry::Pose2>& initial_pose);
 
-  /// Continues a map: its stops are the first of the document, which is the map as it was when the
-  /// robot does not find its place in it. Without an initial pose it searches. Throws like
+  /// Continues a map: its stops come first in the document, which is the unchanged map if the
+  /// robot's pose in it is not found. Without an initial pose it searches. Throws like
   /// MappingSession.
   MappingRun(const Config& config, std::string robot_id,
              std::shared_ptr<const storage::MapDocument> map,
@@ -40,7 +40,7 @@ class MappingRun {
   storage::MapDocument finish();
 
   [[nodiscard]] localization::SlamCounts match_counts() const { return slam_->counts(); }
-  /// Null when it localizes in a finished map.
+  /// Null if it localizes in a finished map.
   [[nodiscard]] const localization::MappingSession* session() const {
     return slam_.mapping_session();
   }
@@ -51,7 +51,7 @@ class MappingRun {
   [[nodiscard]] const std::vector<localization::LoopDecision>& loop_decisions() const {
     return slam_->loop_decisions();
   }
-  /// "local_mapper", "localizer" and "map_store", as the services are called that do the same.
+  /// "local_mapper", "localizer" and "map_store", named after the corresponding services.
   [[nodiscard]] const std::vector<support::StageTime>& stages() const { return times_.stages(); }
 
  private:
@@ -67,8 +67,8 @@ class MappingRun {
   support::StageTimes times_;
 };
 
-/// The global map of local maps at their poses, those left out that are not located: what map_store
-/// keeps.
+/// The global map of local maps at their poses, without stops that are not located: the content of
+/// map_store.
 topomap::GlobalMap fuse(const topomap::GlobalMapConfig& config,
                         const std::vector<topomap::LocalMap>& local_maps,
                         const topomap::Trajectory& trajectory);

@@ -1,4 +1,4 @@
-// Settings of the figures that services give to Prometheus.
+// Settings of the metrics of services for Prometheus.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 namespace topogeo::pipeline {
 
 struct MetricsConfig {
-  std::uint32_t port = 0;  ///< of the first service, the others follow; 0: none
+  std::uint32_t port = 0;  ///< of the first service, the others follow; 0: no metrics
   std::string address = "127.0.0.1";
 };
 

@@ -1,5 +1,4 @@
-// Whether stated probabilities are right: what they were, in tenths, against how often they came
-// true.
+// Checks stated probabilities: their mean in each tenth against the share that came true.
 #pragma once
 
 #include <array>
@@ -16,20 +15,20 @@ class Reliability {
     std::size_t right = 0;
     double stated = 0.0;  ///< sum of the probabilities
 
-    [[nodiscard]] double mean_stated() const;  ///< 0 without any, as the next
+    [[nodiscard]] double mean_stated() const;  ///< 0 without any, as share_right()
     [[nodiscard]] double share_right() const;
   };
 
   /// `probability` in [0, 1].
   void add(double probability, bool right);
 
-  /// Of the probabilities in [i / 10, (i + 1) / 10); 1 counts with the last.
+  /// Decisions with probabilities in [i / 10, (i + 1) / 10); 1 counts with the last.
   [[nodiscard]] const std::array<Tenth, kTenths>& tenths() const { return tenths_; }
   [[nodiscard]] std::size_t count() const;
   [[nodiscard]] std::size_t right() const;
-  /// Mean squared difference from the truth; 0 without any, as the next.
+  /// Mean squared difference from the truth; 0 without any, as log_loss().
   [[nodiscard]] double brier() const;
-  /// Mean of -log of the probability of the truth, of which at least 1e-9 is granted.
+  /// Mean of -log of the probability of the truth, with a floor of 1e-9.
   [[nodiscard]] double log_loss() const;
 
  private:

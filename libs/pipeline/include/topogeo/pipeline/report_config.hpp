@@ -1,4 +1,4 @@
-// What report.json holds beyond counts and decisions.
+// Settings of the content of report.json beyond counts and decisions.
 #pragma once
 
 #include "topogeo/support/config_schema.hpp"

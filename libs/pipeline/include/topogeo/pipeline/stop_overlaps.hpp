@@ -1,5 +1,5 @@
-// Which stops of a finished map see the same, and what a search finds of those that were matched:
-// for looking at.
+// Stops of a finished map with a common view, and the searches between matched ones, for
+// inspection.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace topogeo::pipeline {
 
-/// The search for a stop in an earlier one that the map holds a match of.
+/// The search for a stop in an earlier one that it is matched with in the map.
 struct SearchedStop {
   std::uint32_t earlier = 0;
   StopSearch search;
@@ -25,8 +25,8 @@ struct StopOverlaps {
   std::vector<SearchedStop> searches;  ///< ascending by the earlier stop
 };
 
-/// Of every stop but the first. The searches start from the poses in the map, known as well as a
-/// pose that a person states; 20 ms each. Only stops that have a pose count. Throws like
+/// Overlaps of every stop but the first. The searches start from the poses in the map with the
+/// uncertainty of a pose given by a person; 20 ms each. Only stops with a pose count. Throws like
 /// search_stop().
 std::vector<StopOverlaps> stop_overlaps(const storage::MapDocument& map,
                                         const localization::LocalizerConfig& config);

@@ -1,4 +1,4 @@
-// One search for the relative pose of two stops, with all that led to its answer: for looking at.
+// One search for the relative pose of two stops with all its intermediate results, for inspection.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace topogeo::pipeline {
 
-/// What the fitness of a pose consists of, each in [0, 1].
+/// Components of the fitness of a pose, each in [0, 1].
 struct FitnessParts {
   double scan = 0.0;         ///< points on points
   double topological = 0.0;  ///< nodes and branches
@@ -28,17 +28,17 @@ struct StopSearch {
   FitnessParts refined;
 };
 
-/// Throws std::invalid_argument unless both are among so many stops, and are two.
+/// Throws std::invalid_argument unless both are below `stops` and different.
 void check_stops(std::size_t stops, std::size_t reference, std::size_t query);
 
-/// Odometry from stop `reference` to stop `query` of a drive, through all between; also backwards.
-/// Throws like check_stops(), and std::invalid_argument where no odometry leads.
+/// Odometry from stop `reference` to stop `query` of a drive, through all stops in between; also
+/// backwards. Throws like check_stops(), and std::invalid_argument if no odometry connects them.
 localization::UncertainPose predict_by_odometry(std::span<const topomap::LocalMap> stops,
                                                 std::size_t reference, std::size_t query,
                                                 const localization::OdometryNoise& noise);
 
-/// Searches the stop `query` around where it is predicted in the frame of the stop `reference`, as
-/// a localizer of this configuration does. Throws like predict_by_odometry() and Matcher::solve().
+/// Searches the stop `query` around its prediction in the frame of the stop `reference`, like a
+/// localizer with this configuration. Throws like predict_by_odometry() and Matcher::solve().
 StopSearch search_stop(const topomap::LocalMap& reference, const topomap::LocalMap& query,
                        const localization::UncertainPose& T_reference_query,
                        const localization::LocalizerConfig& config);

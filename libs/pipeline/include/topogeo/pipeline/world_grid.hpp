@@ -1,5 +1,5 @@
-// The occupancy grid of a world file, so that routes can be planned on a drawn floor. Whoever
-// includes this links topogeo::simulation as well.
+// The occupancy grid of a world file, for planning on a drawn floor. Users must also link
+// topogeo::simulation.
 #pragma once
 
 #include "topogeo/planning/grid_sources.hpp"
@@ -7,8 +7,8 @@
 
 namespace topogeo::pipeline {
 
-/// What never changes in the world, and the parts that are there at the start; the tour and the
-/// paths of people show what is inside.
+/// The fixed parts of the world and those present at the start; the tour and the paths of people
+/// show which side is inside.
 inline planning::Drawing drawing_of(const world::World& world) {
   const world::World scene = world::scene_at(world, 0.0);
   planning::Drawing drawing;
