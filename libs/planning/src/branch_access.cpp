@@ -9,7 +9,7 @@ namespace {
 
 using topomap::MapBranch;
 
-// A segment counts as narrow as its narrower end: the two ends are a few centimetres apart.
+// A segment is as narrow as its narrower end, because its ends are only centimetres apart.
 bool wide(const MapBranch& branch, std::size_t segment, double min_clearance_m) {
   return branch.is_virtual || std::min(branch.points[segment].clearance_m,
                                        branch.points[segment + 1].clearance_m) >= min_clearance_m;
@@ -81,11 +81,11 @@ std::vector<BranchAccess> AccessFinder::of(const Eigen::Vector2d& point_m, End e
 
 std::optional<BranchAccess> AccessFinder::access(const BranchPlace& place,
                                                  const Eigen::Vector2d& point_m, End end) const {
-  constexpr double kHere_m = 0.5;     // a robot may stand so near to what it must keep away from
-  constexpr double kUnproved = 10.0;  // a metre that may not be free counts as so many
+  constexpr double kHere_m = 0.5;     // a robot may stand this near to forbidden floor
+  constexpr double kUnproved = 10.0;  // cost of a metre that may not be free
   BranchAccess access{place, kLastResort * place.distance_m, false};
-  // Where a grid is to be outvoted the goal needs room for the body, as far as fused positions are
-  // exact; without one the guard of the robot decides how near it gets.
+  // When the grid is overruled, the goal needs room for the body, up to the accuracy of fused
+  // positions; without a grid the robot's guard decides how near it gets.
   constexpr double kExact_m = 0.1;
   const bool outvotes = end == End::kGoal && space_ != nullptr;
   const double body_m = outvotes ? std::max(0.0, config_.min_clearance_m - kExact_m) : 0.0;
@@ -93,7 +93,7 @@ std::optional<BranchAccess> AccessFinder::access(const BranchPlace& place,
   const auto near_start = [&](const Eigen::Vector2d& at_m) {
     return end == End::kStart && (at_m - point_m).norm() < kHere_m;
   };
-  // A step of half a cell skips no more than the corner of one.
+  // Half a cell: misses at most the corner of one.
   const double step_m = space_ == nullptr ? 0.05 : 0.5 * space_->frame().resolution_m;
   const int steps = static_cast<int>(place.distance_m / step_m) + 1;
   int unproved = 0;

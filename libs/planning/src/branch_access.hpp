@@ -1,4 +1,4 @@
-// Places on branches from which a start or goal beside them is reached in a straight line.
+// Places on branches that are connected to a start or goal by a straight line.
 #pragma once
 
 #include <cstddef>
@@ -14,23 +14,22 @@
 
 namespace topogeo::planning {
 
-/// A place on a branch: `along` of the distance from its point `segment` to the next one.
+/// A place on a branch: the fraction `along` between its point `segment` and the next one.
 struct BranchPlace {
   std::size_t branch = 0;  ///< index in GlobalMap::branches
   std::size_t segment = 0;
   double along = 0.0;  ///< [0, 1]
   RoutePoint at;
-  double distance_m = 0.0;  ///< from the point that was looked up
+  double distance_m = 0.0;  ///< from the given point
 };
 
-/// The nearest place to a point on the map, where the clearance is at least min_clearance_m or the
-/// branch is virtual; of equally near ones the one on the branch of the lowest index. Empty when
-/// there is none.
+/// The nearest place on the map to a point, where the clearance is at least min_clearance_m or the
+/// branch is virtual; the lowest branch index breaks ties. Empty if there is none.
 std::optional<BranchPlace> nearest_place(const topomap::GlobalMap& map,
                                          const Eigen::Vector2d& point_m, double min_clearance_m);
 
-/// A metre along a branch costs 1. A metre off the branches or on a virtual one costs so much that
-/// routes have as few of them as can be, and are the shortest of these.
+/// A metre along a branch costs 1. A metre off the branches or on a virtual one costs this much, so
+/// that routes have as few of them as possible, and are shortest among these.
 inline constexpr double kLastResort = 100.0;
 
 struct BranchAccess {
@@ -39,7 +38,7 @@ struct BranchAccess {
   bool proved = false;  ///< the map shows that the line is free for the robot
 };
 
-/// Looks for places from which a point is reached.
+/// Finds the places from which a point is reached.
 class AccessFinder {
  public:
   enum class End { kStart, kGoal };
@@ -49,10 +48,10 @@ class AccessFinder {
                const BranchRules& rules, const FreeSpace* space)
       : map_(map), config_(config), rules_(rules), space_(space) {}
 
-  /// For each stretch of a branch that is open the cheapest place within config.max_snap_m. A line
-  /// crosses nothing that fills the floor. It is proved where its cells are passable, or it stays
-  /// in the circle of clearance of the place, with room for the robot at a goal on a grid. Lines
-  /// that are not cost ten times as much.
+  /// The cheapest place within config.max_snap_m on each open part of a branch. Lines do not cross
+  /// present obstacles. A line is proved if its cells are passable, or if it stays in the place's
+  /// circle of clearance, with room for the robot at a goal on a grid. Unproved lines cost ten
+  /// times as much.
   [[nodiscard]] std::vector<BranchAccess> of(const Eigen::Vector2d& point_m, End end) const;
 
  private:

@@ -13,7 +13,7 @@ namespace {
 
 using topomap::MapBranch;
 
-// A branch, or the part of one between its ends and the places where it is cut.
+// A branch, or its part between ends and cuts.
 struct Piece {
   std::size_t branch = 0;  // index in GlobalMap::branches
   std::vector<RoutePoint> points{};
@@ -53,7 +53,7 @@ struct BranchNetwork::State {
   Graph graph{};
   std::vector<Piece> pieces{};
 
-  // A vertex for each place, in the same order, behind those of the nodes.
+  // Adds a vertex for each place, in the same order, after those of the nodes.
   std::vector<Vertex> connect(std::span<const BranchPlace> places) {
     graph.clear();
     for (std::size_t i = 0; i < map.nodes.size(); ++i) add_vertex(graph);
@@ -121,7 +121,7 @@ struct BranchNetwork::State {
     pieces.push_back(std::move(piece));
   }
 
-  // The vertices from one to the other; empty when no path leads there.
+  // The vertices of the path; empty if there is none.
   [[nodiscard]] std::vector<Vertex> cheapest(Vertex from, Vertex to) const {
     std::vector<Vertex> before(num_vertices(graph));
     std::vector<double> cost(num_vertices(graph));
@@ -152,7 +152,7 @@ struct BranchNetwork::State {
     return route;
   }
 
-  // Two nodes can have several branches between them.
+  // Two nodes may be joined by several branches.
   [[nodiscard]] Track cheapest_edge(Vertex from, Vertex to) const {
     std::optional<Track> best;
     const auto [begin, end] = out_edges(from, graph);
@@ -173,7 +173,7 @@ struct BranchNetwork::State {
       route.parts.push_back({branch.is_virtual ? PlannedOn::kVirtualBranch : PlannedOn::kBranch,
                              branch.id, route.points.empty() ? 0 : route.points.size() - 1});
     }
-    // The first point is where the last piece ended.
+    // The first point repeats the end of the last piece.
     const auto skip = static_cast<std::ptrdiff_t>(route.points.empty() ? 0 : 1);
     route.points.insert(route.points.end(), points.begin() + skip, points.end());
     route.length_m += piece.length_m;

@@ -1,5 +1,5 @@
-// The topo-geometric map as a graph to search: its nodes, and branches cut where routes get on and
-// off.
+// The topo-geometric map as a search graph: its nodes, and branches cut where routes enter and
+// leave.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@
 
 namespace topogeo::planning {
 
-/// The cheapest path between accesses, with which of them it begins and ends.
+/// The cheapest path between accesses, with the indices of its first and last one.
 struct NetworkPath {
   Route route;
   std::size_t from = 0;  ///< index among the entries
@@ -24,12 +24,12 @@ struct NetworkPath {
 
 class BranchNetwork {
  public:
-  /// Both must outlive it. A piece of a branch is closed where its clearance is less than
-  /// min_clearance_m, unless it is virtual, and where the rules close it.
+  /// Both must outlive it. A piece of a branch is closed if its clearance is less than
+  /// min_clearance_m and it is not virtual, or if the rules close it.
   BranchNetwork(const topomap::GlobalMap& map, double min_clearance_m, const BranchRules& rules);
   ~BranchNetwork();
 
-  /// Between any two accesses: the least sum of the costs of both and of the pieces between.
+  /// The path between any two accesses with the least total cost of both and the pieces between.
   [[nodiscard]] std::optional<NetworkPath> cheapest(std::span<const BranchAccess> entries,
                                                     std::span<const BranchAccess> exits);
   /// The same between two nodes of the map, by MapNode::id, which must exist.

@@ -1,7 +1,7 @@
-// What closes branches or makes them slow besides their clearance: no-go, slow and one-way zones,
-// drawn walls, and what fills places now that is not on the map.
+// Rules that close or slow branches besides their clearance: no-go, slow and one-way zones, drawn
+// walls, and present obstacles that are not on the map.
 //
-// The rules are those of the grid (driving_rules.hpp), on a grid of their own that needs no map.
+// The rules are those of the grid (driving_rules.hpp), on a separate grid that needs no map.
 #pragma once
 
 #include <cstdint>
@@ -17,28 +17,28 @@ namespace topogeo::planning {
 
 class BranchRules {
  public:
-  /// Everything is open.
+  /// No rules: everything is open.
   BranchRules() = default;
-  /// `frame` covers what is to be ruled; beyond it everything is open. The robot's middle keeps
-  /// `keep_off_m` from the middles of cells that are in a no-go zone, of a drawn wall or filled.
+  /// `frame` limits the rules; everything outside is open. The robot's centre keeps `keep_off_m`
+  /// from the centres of cells that are in a no-go zone, of a drawn wall or filled.
   BranchRules(const GridFrame& frame, std::span<const DrawnZone> zones,
               std::span<const DrawnLine> lines, std::span<const Eigen::Vector2d> filled_m,
               double keep_off_m);
 
-  /// Nothing is closed, slow or one-way.
+  /// No rules apply.
   [[nodiscard]] bool empty() const { return !frame_; }
 
-  /// Whether the robot's middle must keep out of a place.
+  /// Whether the robot's centre must not be there.
   [[nodiscard]] bool shut(const Eigen::Vector2d& point_m) const;
-  /// Whether the place itself is filled, in a no-go zone or of a drawn wall.
+  /// Whether the point itself is filled, in a no-go zone or on a drawn wall.
   [[nodiscard]] bool filled(const Eigen::Vector2d& point_m) const;
 
   struct Passage {
-    bool forth = true;      ///< one may go from a to b
-    bool back = true;       ///< and from b to a
-    double slowness = 1.0;  ///< mean: how much longer it takes than elsewhere
+    bool forth = true;      ///< driving from a to b is allowed
+    bool back = true;       ///< driving from b to a is allowed
+    double slowness = 1.0;  ///< mean factor by which it takes longer than elsewhere
   };
-  /// The straight line between two points.
+  /// Rules on the straight line between two points.
   [[nodiscard]] Passage along(const Eigen::Vector2d& a_m, const Eigen::Vector2d& b_m) const;
 
  private:

@@ -1,5 +1,5 @@
-// A search window as a graph of Boost.Graph: a vertex for each cell, named by its number in the
-// window, edges to the open neighbours.
+// A search window as a graph of Boost.Graph: the vertices are the cells by their number in the
+// window, the edges lead to the open neighbours.
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@ struct CellEdge {
   friend bool operator==(const CellEdge&, const CellEdge&) = default;
 };
 
-/// Bit k stands for neighbour k: 0 to 3 straight (east, north, west, south), 4 to 7 diagonal
-/// (north-east, north-west, south-west, south-east).
+/// Bit k is neighbour k: 0 to 3 straight (east, north, west, south), 4 to 7 diagonal (north-east,
+/// north-west, south-west, south-east).
 class CellGraph {
  public:
   explicit CellGraph(const SearchWindow& window)
@@ -66,7 +66,7 @@ class CellGraph {
   }
 
   const std::uint8_t* mask_;
-  const std::uint8_t* directions_;  // null: all
+  const std::uint8_t* directions_;  // null: all allowed
   std::array<std::int32_t, 8> offsets_{};
 };
 

@@ -11,10 +11,10 @@
 
 namespace topogeo::planning {
 
-/// Calls `visit(cell)` for each cell that the line from a to b (coordinates in cells) passes
-/// through, in order, both ends included (Amanatides and Woo 1987). Where it passes through a
-/// corner of cells, the two cells beside it come too, so that walls have no gaps and sight does not
-/// slip between two obstacles. Stops when `visit` returns false; returns whether none did.
+/// Calls `visit(cell)` for each cell on the line from a to b (coordinates in cells), in order,
+/// including both ends (Amanatides and Woo 1987). If the line passes through a corner of cells,
+/// visits both cells beside it, so that walls have no gaps and no line of sight passes between two
+/// obstacles. Stops when `visit` returns false; returns whether none did.
 template <typename Visit>
 bool visit_line(const Eigen::Vector2d& a, const Eigen::Vector2d& b, Visit&& visit) {
   constexpr double kCorner = 1e-9;

@@ -35,7 +35,7 @@ class Flood {
   }
 
   [[nodiscard]] std::size_t level(std::size_t i) const {
-    constexpr double kStep_m = 0.1;  // less than that is noise of the grid
+    constexpr double kStep_m = 0.1;  // smaller differences are noise of the grid
     return static_cast<std::size_t>(clearance_m(i) /
                                     std::max(kStep_m, walls_.frame().resolution_m));
   }
@@ -52,8 +52,8 @@ class Flood {
     return levels;
   }
 
-  // A basin grows by no more than the slope beside a wall: what is further off is a floor of this
-  // height, as a corridor between two halls, and a basin of its own.
+  // A basin grows only as far as the slope beside a wall. Cells further off belong to a flat floor
+  // of this height, like a corridor between two halls, which is a basin of its own.
   void spread(const std::vector<std::size_t>& cells) {
     constexpr int kSteps = 3;
     for (int step = 0; step < kSteps; ++step) {
@@ -67,7 +67,7 @@ class Flood {
     }
   }
 
-  // That of the neighbour with the most clearance.
+  // The basin of the neighbour with the most clearance.
   [[nodiscard]] std::uint32_t widest_beside(std::size_t i) const {
     std::uint32_t basin = kNoBasin;
     std::int32_t most = -1;
@@ -116,7 +116,7 @@ class Flood {
 
   const FreeSpace& walls_;
   Basins basins_;
-  std::size_t level_of_ = 0;  // that is flooded now
+  std::size_t level_of_ = 0;  // current flood level
 };
 
 }  // namespace

@@ -36,7 +36,7 @@ void ClosedCells::close_in(SearchWindow& window) const {
 }
 
 double ClosedCells::clearance_m(const Cell& cell) const {
-  double nearest2 = HUGE_VAL;  // in cells, squared
+  double nearest2 = HUGE_VAL;  // squared, in cells
   for (const Cell& other : filled_) {
     const double across = other.column - cell.column;
     const double up = other.row - cell.row;

@@ -1,4 +1,4 @@
-// Cells that something fills now which is not on the map, and the forbidden cells round them.
+// Cells with present obstacles that are not on the map, and the forbidden cells around them.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,17 @@ namespace topogeo::planning {
 
 class ClosedCells {
  public:
-  /// `filled`: in any order, also twice, also outside of the grid. `space` must outlive it.
+  /// `filled`: in any order, with repetitions, also outside of the grid. `space` must outlive it.
   ClosedCells(const FreeSpace& space, std::span<const Cell> filled);
 
   /// Whether `forbids` holds for no cell.
   [[nodiscard]] bool empty() const { return forbidden_.empty(); }
 
-  /// Whether something fills the cell.
+  /// Whether an unmapped obstacle is in the cell.
   [[nodiscard]] bool filled(const Cell& cell) const;
 
-  /// Whether the robot's middle must keep out of the cell because of what is not on the map, though
-  /// the space alone would let it in.
+  /// Whether an unmapped obstacle keeps the robot's centre out of the cell, although the space
+  /// alone would allow it.
   [[nodiscard]] bool forbids(const Cell& cell) const;
 
   /// The cells that `forbids` holds for, row by row.
@@ -30,13 +30,13 @@ class ClosedCells {
 
   void close_in(SearchWindow& window) const;
 
-  /// As FreeSpace::clearance_m, with the filled cells as obstacles.
+  /// Like FreeSpace::clearance_m, with the filled cells as obstacles.
   [[nodiscard]] double clearance_m(const Cell& cell) const;
 
  private:
   const FreeSpace& space_;
   std::vector<Cell> filled_;     // row by row
-  std::vector<Cell> forbidden_;  // the same
+  std::vector<Cell> forbidden_;  // row by row
 };
 
 }  // namespace topogeo::planning

@@ -8,13 +8,13 @@
 namespace topogeo::planning {
 namespace {
 
-// A border that a path crosses.
+// A border crossing of a path.
 struct Crossing {
   std::uint32_t node = 0;
   ZoneId into = kNoZone;
 };
 
-// The node of the border between two cells side by side in different zones.
+// The node of the border between two neighbouring cells of different zones.
 std::optional<std::uint32_t> node_between(const HybridMap& map, const Cell& a, const Cell& b) {
   const ZoneId zone_a = map.zone_of(a);
   const ZoneId zone_b = map.zone_of(b);
@@ -27,7 +27,7 @@ std::optional<std::uint32_t> node_between(const HybridMap& map, const Cell& a, c
   return std::nullopt;
 }
 
-// A diagonal step between zones crosses the border beside one of the two cells that it passes.
+// A diagonal step between zones crosses the border at one of the two cells beside it.
 Cell beside(const HybridMap& map, const Cell& a, const Cell& b) {
   const Cell first{b.column, a.row};
   const Cell second{a.column, b.row};
@@ -35,7 +35,7 @@ Cell beside(const HybridMap& map, const Cell& a, const Cell& b) {
   return zone == map.zone_of(a) || zone == map.zone_of(b) ? second : first;
 }
 
-// In order.
+// The crossings, in order.
 std::vector<Crossing> crossings(const HybridMap& map, std::span<const Cell> cells) {
   std::vector<Crossing> found;
   const auto step = [&](const Cell& a, const Cell& b) {

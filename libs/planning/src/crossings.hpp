@@ -1,4 +1,4 @@
-// Which border nodes and edges of the hybrid map a path over cells uses.
+// Border nodes and edges of the hybrid map that a path over cells uses.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace topogeo::planning {
 
-/// As in HybridRoute.
+/// Same meaning as in HybridRoute.
 struct NodesAndEdges {
   std::vector<std::uint32_t> nodes;
   std::vector<std::uint32_t> edges;
 };
 
-/// The borders that a path crosses, wherever on their length, and the edges between them. `cells`
-/// are neighbours each; those in no zone are skipped.
+/// The borders that a path crosses, at any place, and the edges between them. `cells` are
+/// connected; cells without a zone are skipped.
 NodesAndEdges nodes_and_edges(const HybridMap& map, std::span<const Cell> cells);
 
 /// HybridEdge::id of the edge that joins two nodes within a zone; nothing without one.

@@ -14,15 +14,14 @@
 namespace topogeo::planning {
 namespace {
 
-/// What robots drive at elsewhere, as follower.speed_m_per_s by default: only how much slower a
-/// zone is counts.
+/// Speed outside of slow zones, the default of follower.speed_m_per_s: only the ratio to it counts.
 constexpr double kUsualSpeed_m_s = 0.6;
-/// Slower counts no more: a way round is never a hundred times longer.
+/// Lower limits count as this one, because a detour is never a hundred times longer.
 constexpr double kLeastSpeed_m_s = 0.006;
 
 constexpr double kCosOf120Degrees = -0.5;
 
-/// In the order of CellGraph.
+/// Same order as CellGraph.
 const std::array<Eigen::Vector2d, 8>& grid_directions() {
   static const std::array<Eigen::Vector2d, 8> kDirections = {Eigen::Vector2d(1, 0),
                                                              Eigen::Vector2d(0, 1),

@@ -9,8 +9,8 @@
 namespace topogeo::planning {
 namespace {
 
-// The lower envelope of parabolas over one line of the grid. All in integers: the distance to go
-// by is value[i] + (x - i)^2, and two parabolas p < q meet where q begins to be the lower one.
+// The lower envelope of parabolas over one line of the grid, in integers: the squared distance is
+// value[i] + (x - i)^2, and two parabolas p < q intersect where q becomes the lower one.
 class LineTransform {
  public:
   explicit LineTransform(std::size_t length) : value_(length), places_(length), starts_(length) {}
@@ -50,7 +50,7 @@ class LineTransform {
     return static_cast<std::int32_t>(at(i) + (x - i) * (x - i));
   }
 
-  // Least x from which the parabola at q > p is below that at p.
+  // Least x at which the parabola at q > p is below that at p.
   [[nodiscard]] std::int64_t first_lower(std::int64_t p, std::int64_t q) const {
     const std::int64_t above = (at(q) + q * q) - (at(p) + p * p);
     const std::int64_t twice = 2 * (q - p);

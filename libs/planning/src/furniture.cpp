@@ -11,10 +11,10 @@
 namespace topogeo::planning {
 namespace {
 
-/// Obstacles that hang together over sides and corners.
+/// Obstacle cells connected over sides and corners.
 struct Block {
   std::vector<std::size_t> cells;
-  bool at_edge = false;  ///< reaches the edge of the grid
+  bool at_edge = false;  ///< touches the edge of the grid
 };
 
 Block take_block(const OccupancyGrid& walls, std::size_t first, std::vector<bool>& taken) {
@@ -39,7 +39,7 @@ Block take_block(const OccupancyGrid& walls, std::size_t first, std::vector<bool
   return block;
 }
 
-/// Distances to the nearest free cell, for what is occupied.
+/// Distances of occupied cells to the nearest free one.
 FreeSpace depths(const OccupancyGrid& walls) {
   OccupancyGrid turned(walls.frame());
   for (std::size_t i = 0; i < walls.cells().size(); ++i) {
@@ -49,7 +49,7 @@ FreeSpace depths(const OccupancyGrid& walls) {
   return FreeSpace(std::move(turned), {.forbidden_cells = 0.0, .min_pocket_m2 = 0.0});
 }
 
-/// The cell farthest from one, and how far in cells.
+/// The cell farthest from another one, and the distance in cells.
 std::pair<Cell, double> farthest_from(const GridFrame& frame, const Block& block,
                                       const Cell& from) {
   std::pair<Cell, double> farthest{from, 0.0};
@@ -61,19 +61,19 @@ std::pair<Cell, double> farthest_from(const GridFrame& frame, const Block& block
   return farthest;
 }
 
-/// The length of what is longer than it is wide, whichever way it is turned.
+/// The length of an elongated block, at any orientation.
 double length_cells(const GridFrame& frame, const Block& block) {
   const Cell end = farthest_from(frame, block, frame.cell_at(block.cells.front())).first;
   return farthest_from(frame, block, end).second + 1.0;
 }
 
-/// Twice the area of the triangle; > 0 where the three turn left.
+/// Twice the area of the triangle; > 0 for a left turn.
 double turn(const Cell& a, const Cell& b, const Cell& c) {
   return static_cast<double>(b.column - a.column) * (c.row - a.row) -
          static_cast<double>(b.row - a.row) * (c.column - a.column);
 }
 
-/// Which part of its convex hull a block fills (Andrew's monotone chain): walls that meet at
+/// The filled fraction of a block's convex hull (Andrew's monotone chain); walls that meet at
 /// corners fill little of theirs.
 double solidity(const GridFrame& frame, const Block& block) {
   std::vector<Cell> corners;

@@ -31,11 +31,12 @@ RouteStatus status_of(PlanStatus status) {
   }
 }
 
-// Which points of a part are needed so that all others lie near the lines between them (Douglas and
-// Peucker 1973): branches have a point every few centimetres, each would be a turn of the robot.
+// Selects the points of a part so that all others lie near the lines between them (Douglas and
+// Peucker 1973): branches have a point every few centimetres, and each would be a turn of the
+// robot.
 void keep_corners(std::span<const RoutePoint> points, std::size_t first, std::size_t last,
                   std::vector<bool>& kept) {
-  constexpr double kInLine_m = 0.03;  // less than the half cell by which branches are exact
+  constexpr double kInLine_m = 0.03;  // below the accuracy of branches, half a cell
   kept[first] = kept[last] = true;
   if (last - first < 2) return;
   const Eigen::Vector2d from_m = points[first].position_m;
@@ -93,7 +94,7 @@ class BranchRoute {
     route_.clearances_m.push_back(clearance_m);
   }
 
-  // The ends of parts are kept, so that each part has its own points.
+  // Keeps the ends of parts, so that each part has its own points.
   [[nodiscard]] std::vector<bool> corners() const {
     std::vector<bool> kept(along_.points.size(), false);
     for (std::size_t k = 0; k < along_.parts.size(); ++k) {

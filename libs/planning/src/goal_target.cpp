@@ -33,7 +33,7 @@ GoalTarget resolve(const HybridMap* map, const Target& to) {
     const std::size_t nodes = map == nullptr ? 0 : map->nodes().size();
     goal.known = node->id < nodes;
     if (goal.known) {
-      // Its position is on the border; the cell on one side of it surely is passable.
+      // Its position is on the border; the cell on one side is always passable.
       goal.point_m = map->frame().center_m(map->nodes()[node->id].cells[0]);
     } else {
       goal.failure =

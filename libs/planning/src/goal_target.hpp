@@ -1,4 +1,4 @@
-// The point that a goal means.
+// Resolves a goal to a point.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,11 +9,11 @@ namespace topogeo::planning {
 
 struct GoalTarget {
   Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
-  HybridRoute failure;  ///< where it is not known
+  HybridRoute failure;  ///< if the goal is unknown
   bool known = true;
 };
 
-/// `map` null: there is none, so that only points are known.
+/// `map` null: there is none, so only points are known.
 GoalTarget resolve(const HybridMap* map, const Target& to);
 
 }  // namespace topogeo::planning

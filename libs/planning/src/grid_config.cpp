@@ -51,7 +51,7 @@ void check(const ScanGridConfig& config) {
 }
 
 void check(const InflationConfig& config) {
-  constexpr double kMostPocket_m2 = 1e6;  // more than any floor
+  constexpr double kMostPocket_m2 = 1e6;  // larger than any floor
   support::check_ranges(config);
   support::require_between("min_pocket_m2", config.min_pocket_m2, 0.0, kMostPocket_m2, "m2");
 }

@@ -19,7 +19,7 @@ namespace {
 
 using support::YamlNode;
 
-// What map_saver of ROS writes; map_server reads any.
+// Thresholds of map_saver of ROS; map_server reads any.
 constexpr double kOccupiedThreshold = 0.65;
 constexpr double kFreeThreshold = 0.196;
 constexpr int kFreePixel = 254;
@@ -35,7 +35,7 @@ struct GridDescription {
 
 geometry::Pose2 origin_of(const YamlNode& node) {
   const std::vector<YamlNode> items = node.tuple(3, "[x, y, yaw]");
-  // 1,000 km and more than a turn: anything beyond is a slip.
+  // 1,000 km and more than a turn: larger values are mistakes.
   constexpr double kMost_m = 1e6;
   constexpr double kMost_rad = 7.0;
   return {items[0].named("origin x").number(-kMost_m, kMost_m, "m"),
@@ -72,7 +72,7 @@ int pixel_of(CellState state) {
   return state == CellState::kOccupied ? 0 : kUnknownPixel;
 }
 
-// The shortest text that reads back to the same value.
+// The shortest text that reproduces the value.
 std::string text_of(double value) {
   std::array<char, 32> buffer{};
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
@@ -92,7 +92,7 @@ OccupancyGrid read_grid(const std::filesystem::path& yaml_path) {
   OccupancyGrid grid(frame);
   for (std::int32_t row = 0; row < frame.rows; ++row) {
     for (std::int32_t column = 0; column < frame.columns; ++column) {
-      // The image's first row is the farthest up.
+      // The image's first row is the top one.
       const std::size_t i = frame.index({column, frame.rows - 1 - row});
       grid.set({column, row}, state_of(image.pixels[i], image.depth, description));
     }

@@ -19,10 +19,10 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Ends a search: Boost.Graph has no other means.
+// Ends a search: Boost.Graph offers no other way.
 struct AllReached {};
 
-// The estimate of A*: never more than the path costs.
+// The estimate of A*, a lower bound of the path's cost.
 class OctileDistance {
  public:
   OctileDistance(const SearchWindow& window, const Cell& to) : window_(&window), to_(to) {}

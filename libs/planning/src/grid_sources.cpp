@@ -41,8 +41,8 @@ class Bounds {
     return frame;
   }
 
-  /// The drawn frame, grown by multiples of snap_cells until it holds the points, which are in
-  /// cells of it.
+  /// The drawn frame, extended by multiples of snap_cells until it contains the points, which are
+  /// in its cells.
   [[nodiscard]] GridFrame grown(const GridFrame& drawn, std::int32_t snap_cells) const {
     const double left = std::min(snapped(low_m_.x(), snap_cells), 0.0);
     const double down = std::min(snapped(low_m_.y(), snap_cells), 0.0);
@@ -62,7 +62,7 @@ class Bounds {
     return std::floor(cells / snap_cells) * snap_cells;
   }
 
-  // Too many cells stay too many, whatever an integer can hold.
+  // Saturates: too many cells remain too many.
   static std::int32_t cells(double count) {
     constexpr double kTooMany = 1e9;
     return static_cast<std::int32_t>(std::min(std::floor(count) + 1.0, kTooMany));
@@ -80,7 +80,7 @@ void draw_line(OccupancyGrid& grid, const Drawing::Line& line) {
   });
 }
 
-// Every cell whose square is not further from the middle than the radius.
+// Every cell whose square is within the radius of the middle.
 void draw_disc(OccupancyGrid& grid, const Drawing::Disc& disc) {
   const GridFrame& frame = grid.frame();
   const Eigen::Vector2d middle = frame.in_cells(disc.center_m);
@@ -163,7 +163,7 @@ class Evidence {
   }
 
  private:
-  // Points on the rim of a grid without a margin lie outside of it.
+  // Points on the edge of a grid without a margin lie outside of it.
   void count(const Cell& cell, std::int32_t change) {
     if (!frame_.contains(cell)) return;
     const std::size_t i = frame_.index(cell);
@@ -180,7 +180,7 @@ class Evidence {
   std::vector<Eigen::Vector2d> ends_;
 };
 
-/// Which share of a wall lies in an opening: from where to where; empty where none does.
+/// The part of a wall inside an opening, as fractions of its length; empty if none is.
 std::pair<double, double> share_in(const Drawing::Line& wall, const DrawnLine& opening) {
   const Eigen::Vector2d& from_m = opening.points_m.front();
   const Eigen::Vector2d stretch_m = opening.points_m.back() - from_m;
@@ -233,7 +233,7 @@ void check_stops(std::span<const topomap::LocalMap> maps,
                               std::to_string(maps.size()) + " local maps");
 }
 
-// Lasers and scan points of the located stops, each as `place` has it.
+// Adds lasers and scan points of the located stops, transformed by `place`.
 template <typename Place>
 void add_points(std::span<const topomap::LocalMap> maps, std::span<const topomap::StopPose> stops,
                 const Place& place, Bounds& bounds) {
@@ -246,7 +246,7 @@ void add_points(std::span<const topomap::LocalMap> maps, std::span<const topomap
   }
 }
 
-// What the scans saw on a grid that holds all their points.
+// The cells that the scans saw, on a grid that contains all their points.
 OccupancyGrid seen(const GridFrame& frame, std::span<const topomap::LocalMap> maps,
                    std::span<const topomap::StopPose> stops, const ScanGridConfig& config) {
   Evidence evidence(frame, config);
@@ -318,7 +318,7 @@ OccupancyGrid grid_of_both(const OccupancyGrid& drawn, std::span<const topomap::
       bounds);
   if (bounds.empty()) return drawn;
   OccupancyGrid grid = seen(bounds.grown(drawn.frame(), config.snap_cells), maps, stops, config);
-  // Where the drawing's first cell is now.
+  // The drawing's first cell in the new grid.
   const Eigen::Vector2d shift = grid.frame().in_cells(drawn.frame().center_m({0, 0}));
   const Cell corner{static_cast<std::int32_t>(shift.x()), static_cast<std::int32_t>(shift.y())};
   for (std::size_t i = 0; i < drawn.cells().size(); ++i) {

@@ -11,7 +11,8 @@ namespace {
 
 using CellIndex = std::size_t;
 
-// By pair of zones, ascending: for each border cell of the first its neighbours in the second.
+// Indexed by pair of zones, ascending: neighbours in the second zone of each border cell of the
+// first.
 using Borders = std::map<std::pair<ZoneId, ZoneId>, std::map<CellIndex, std::vector<CellIndex>>>;
 
 Borders find_borders(const GridFrame& frame, const ZoneMap& zones) {
@@ -37,7 +38,7 @@ Borders find_borders(const GridFrame& frame, const ZoneMap& zones) {
   return borders;
 }
 
-// The cells that hang together over sides and corners, from the first one on; taken out of `cells`.
+// The cells connected to the first one over sides and corners; removed from `cells`.
 std::vector<CellIndex> take_stretch(const GridFrame& frame, std::set<CellIndex>& cells) {
   std::vector<CellIndex> stretch{*cells.begin()};
   cells.erase(cells.begin());
@@ -157,7 +158,7 @@ void HybridMap::find_edges() {
           throw std::invalid_argument("hybrid map: zone " + std::to_string(zone.id) +
                                       " does not hang together");
         }
-        // Half of the step across the border at either end.
+        // Adds half of the step across the border at either end.
         const double cost_m = (paths[k]->cost_cells + 1.0) * frame().resolution_m;
         const auto id = static_cast<std::uint32_t>(edges_.size());
         const std::uint32_t other = ids[i + 1 + k];

@@ -85,7 +85,7 @@ HybridRoute HybridPlanner::plan(const Eigen::Vector2d& from_m, const Target& to,
   const ClosedParts parts{closed.nodes, closed.edges};
   const RouteQuery query(map_, config_, parts, cells);
   if (goal_cell) {
-    // A robot that stands where it must not, or is shut in, came from one of the zones around it.
+    // A robot on forbidden floor, or shut in, came from one of the zones around it.
     std::vector<ZoneId> tried;
     for (auto start = start_cell; start;
          start = ends.start_apart(map_, from_m, config_.start_snap_m, tried)) {

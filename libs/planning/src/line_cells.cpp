@@ -12,8 +12,8 @@ namespace {
 
 using Segment = std::pair<Eigen::Vector2d, Eigen::Vector2d>;
 
-/// The part of a segment in the grid and one cell around it (Liang and Barsky 1984), coordinates in
-/// cells. A wall that somebody draws to the end of the world costs no more than the grid.
+/// The part of a segment in the grid extended by one cell (Liang and Barsky 1984), coordinates in
+/// cells. It limits the cost of a wall that is drawn endlessly long.
 std::optional<Segment> clipped(const GridFrame& frame, const Segment& segment) {
   const Eigen::Vector2d low(-1.0, -1.0);
   const Eigen::Vector2d high(frame.columns + 1.0, frame.rows + 1.0);
@@ -33,7 +33,7 @@ std::optional<Segment> clipped(const GridFrame& frame, const Segment& segment) {
     end = std::min(end, leaves);
   }
   if (begin > end) return std::nullopt;
-  // Ends that lie inside keep every bit.
+  // Ends inside keep every bit.
   return Segment{begin > 0.0 ? Eigen::Vector2d(segment.first + begin * along) : segment.first,
                  end < 1.0 ? Eigen::Vector2d(segment.first + end * along) : segment.second};
 }
@@ -47,7 +47,7 @@ void add_line(const GridFrame& frame, const Segment& in_cells, std::vector<Cell>
   });
 }
 
-/// Cells beside the stretch, as far as walls are thick.
+/// Adds cells beside the segment, up to the thickness of walls.
 void add_opening(const GridFrame& frame, const Segment& in_cells, std::vector<Cell>& cells) {
   const auto& [a, b] = in_cells;
   const double length = (b - a).norm();

@@ -13,14 +13,14 @@ namespace topogeo::planning {
 
 struct LineCells {
   std::vector<Cell> open;   ///< of openings and doors
-  std::vector<Cell> walls;  ///< of walls, without those that are open
+  std::vector<Cell> walls;  ///< of walls, without open cells
 };
 
-/// All inside of the grid; a cell may come more than once.
+/// All lie inside of the grid; a cell may be repeated.
 LineCells cells_of_lines(const GridFrame& frame, std::span<const DrawnLine> lines);
 
-/// The cells from a to b (map frame, not the same) and so far beyond both, so that a line parts the
-/// floor although it is not drawn to the centimetre.
+/// The cells from a to b (map frame, different points), extended beyond both ends so that an
+/// inexactly drawn line still splits the floor.
 std::vector<Cell> cells_across(const GridFrame& frame, const Eigen::Vector2d& a_m,
                                const Eigen::Vector2d& b_m, double beyond_m);
 

@@ -49,7 +49,7 @@ std::optional<Cell> start_of(const FreeSpace& space, const SearchWindow& window,
   return nearest_in_sight(space.frame(), robot_m, snap_m, open, clear);
 }
 
-// Whether next to nothing can be got to from an open cell: at most a square metre.
+// Whether an open cell is connected to at most a square metre.
 bool shut_in(const SearchWindow& window, const Cell& from, double resolution_m) {
   const auto most = static_cast<std::size_t>(kPocket_m2 / (resolution_m * resolution_m));
   std::vector<Cell> found{from};
@@ -64,8 +64,8 @@ bool shut_in(const SearchWindow& window, const Cell& from, double resolution_m) 
   return found.size() <= most;
 }
 
-// Instead of a start from which no path leads: the open cell nearest to the robot, in its sight,
-// that a path leads to from `to`. Only for a robot whose cell is not open, or that is shut in.
+// Replacement for a start without a path: the open cell nearest to the robot, in its sight, with a
+// path to `to`. Only for a robot whose cell is not open, or that is shut in.
 std::optional<Cell> start_with_path(const FreeSpace& space, const SearchWindow& window,
                                     const std::vector<Cell>& obstacles,
                                     const Eigen::Vector2d& robot_m, double snap_m, const Cell& to) {
@@ -100,7 +100,7 @@ Detour failure(DetourStatus status, const char* reason) {
   return detour;
 }
 
-// The candidate by which the path to the end of the route is shortest; they are its last cells.
+// The candidate with the shortest path to the end of the route; candidates are its last cells.
 std::optional<std::size_t> cheapest(const std::vector<std::optional<CellPath>>& paths,
                                     std::span<const Cell> candidates) {
   std::optional<std::size_t> best;
@@ -115,7 +115,7 @@ std::optional<std::size_t> cheapest(const std::vector<std::optional<CellPath>>& 
   return best;
 }
 
-// Cells of the route from `from` on that lie in the window without a gap: [from, end).
+// The contiguous cells of the route in the window, starting at `from`: [from, end).
 std::size_t end_in_window(const SearchWindow& window, std::span<const Cell> route,
                           std::size_t from) {
   std::size_t end = from;
@@ -155,7 +155,7 @@ Detour plan_detour(const FreeSpace& space, std::span<const Cell> route,
   const std::size_t end = end_in_window(window, route, from);
   if (end == from) return failure(DetourStatus::kLost, "the route does not pass near the robot");
 
-  // Behind the last cell that is blocked, every one will do; before it there is no use.
+  // Candidates are all cells behind the last blocked one; earlier ones are useless.
   std::size_t behind = end;
   while (behind > from && window.open(route[behind - 1])) --behind;
   if (behind == end) {

@@ -60,7 +60,7 @@ std::vector<MotionPrimitive> motion_primitives(std::span<const Eigen::Vector2d> 
                                                double heading_rad,
                                                std::optional<double> final_heading_rad,
                                                const PrimitiveConfig& config) {
-  constexpr double kMost_rad = 1e5;  // beyond, an angle is no more exact
+  constexpr double kMost_rad = 1e5;  // larger angles are not exact enough
   using support::check_range;
   check_range("motion primitives: min_turn_rad", config.min_turn_rad, 0.0, 1.0);
   check_range("motion primitives: min_advance_m", config.min_advance_m, 0.0, 1.0);

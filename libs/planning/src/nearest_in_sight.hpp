@@ -1,4 +1,4 @@
-// The open cell that a robot gets to first which stands where it must not be.
+// The first open cell for a robot that stands on forbidden floor.
 #pragma once
 
 #include <optional>
@@ -9,9 +9,9 @@
 
 namespace topogeo::planning {
 
-/// The cell that `open` holds for whose middle is nearest to a point of the grid, at most
-/// `within_m` from it and not hidden: `clear` holds for all cells of the grid on the straight line,
-/// both ends included. Of equally near ones the first, row by row.
+/// The cell with `open` whose centre is nearest to a point of the grid, at most `within_m` from it
+/// and visible: `clear` holds for all cells of the grid on the straight line, including both ends.
+/// The first one, row by row, breaks ties.
 template <typename Open, typename Clear>
 std::optional<Cell> nearest_in_sight(const GridFrame& frame, const Eigen::Vector2d& point_m,
                                      double within_m, const Open& open, const Clear& clear) {

@@ -15,19 +15,19 @@ constexpr double kMostCells = 100'000'000;  // a search keeps about ten bytes fo
 constexpr double kMinResolution_m = 0.01;   // finer than any laser measures
 constexpr double kMaxResolution_m = 1.0;    // coarser cells hide every door
 constexpr double kMaxCoordinate_m = 1e6;    // a cell is still exact to a thousandth
-constexpr double kMaxYaw_rad = 7.0;         // one turn either way, and what rounding adds
+constexpr double kMaxYaw_rad = 7.0;         // one turn in either direction, plus rounding
 
 }  // namespace
 
 Eigen::Vector2d GridFrame::in_cells(const Eigen::Vector2d& point_m) const {
-  // Grids that are not turned, nearly all, keep every bit of the coordinates.
+  // Unrotated grids, nearly all, keep every bit of the coordinates.
   if (T_map_grid.theta_rad == 0.0) return (point_m - T_map_grid.position_m()) / resolution_m;
   return (geometry::inverse(T_map_grid) * point_m) / resolution_m;
 }
 
 std::optional<Cell> GridFrame::cell_of(const Eigen::Vector2d& point_m) const {
   const Eigen::Vector2d at = in_cells(point_m);
-  // Also false for what is not a number.
+  // Also false for NaN.
   if (!(at.x() >= 0.0 && at.y() >= 0.0 && at.x() < columns && at.y() < rows)) return std::nullopt;
   return Cell{static_cast<std::int32_t>(at.x()), static_cast<std::int32_t>(at.y())};
 }

@@ -62,7 +62,7 @@ const Cell& OpenNetwork::place_in(const Node& node, ZoneId zone) const {
 
 std::optional<GraphPath> OpenNetwork::cheapest(std::span<const GraphAccess> entries,
                                                std::span<const GraphAccess> exits) const {
-  // What is closed has no place in a network of its own.
+  // A separate network contains no closed parts.
   return graph_ ? graph_->cheapest(entries, exits) : map_.graph().cheapest(entries, exits, closed_);
 }
 
@@ -150,7 +150,7 @@ void OpenNetwork::find_nodes() {
   }
 }
 
-// A node for each pair of parts that open places of the border join.
+// Makes a node for each pair of parts that open places of the border join.
 void OpenNetwork::place_node(const BorderNode& border) {
   using PartPair = std::pair<std::uint32_t, std::uint32_t>;
   std::map<PartPair, std::array<Cell, 2>> places;
@@ -181,7 +181,7 @@ void OpenNetwork::place_node(const BorderNode& border) {
   }
 }
 
-// A diagonal step passes between two cells that must be open, too.
+// A diagonal step passes between two cells that must also be open.
 bool OpenNetwork::blocks(const std::vector<Cell>& route) const {
   for (std::size_t i = 0; i < route.size(); ++i) {
     if (cells_.forbids(route[i])) return true;
@@ -228,7 +228,7 @@ void OpenNetwork::search_zone(ZoneId zone) {
       const auto known = edge_between(map_, zone, from.border_node, to.border_node);
       if (known) {
         if (contains(closed_.edges, *known)) continue;
-        // Closed cells make no path shorter: what is not touched is still the best one.
+        // Closed cells make no path shorter, so an unaffected path remains the best.
         const HybridEdge& edge = map_.edges()[*known];
         if (!from.moved && !to.moved && !blocks(edge.route)) {
           links_.push_back(link_of(edge));

@@ -1,8 +1,8 @@
-// The graph of the hybrid map as far as it is open now.
+// The open part of the hybrid map's graph.
 //
-// As long as no cell is closed it is the graph of the map. Closed cells can cut a zone into parts
-// and shut a border in places: then a node stands for the open places of a border between the same
-// two parts, at the one nearest to its middle, and the paths that they touch are searched anew.
+// If no cell is closed, it is the graph of the map. Closed cells can cut a zone into parts and shut
+// a border in places: then a node represents the open places of a border between the same two
+// parts, at the one nearest to its middle, and affected paths are searched again.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ namespace topogeo::planning {
 
 class OpenNetwork {
  public:
-  /// `closed` are nodes and edges of the map. All three must outlive it.
+  /// `closed` are nodes and edges of the map. All arguments must outlive it.
   OpenNetwork(const HybridMap& map, const ClosedParts& closed, const ClosedCells& cells);
 
   /// Nodes of the network on the borders of a zone.
@@ -31,7 +31,7 @@ class OpenNetwork {
   /// The cell of a node of the network in a zone that it borders on.
   [[nodiscard]] const Cell& cell_in(std::uint32_t node, ZoneId zone) const;
 
-  /// The cheapest path between nodes of the network, as RouteGraph::cheapest.
+  /// The cheapest path between nodes of the network, like RouteGraph::cheapest.
   [[nodiscard]] std::optional<GraphPath> cheapest(std::span<const GraphAccess> entries,
                                                   std::span<const GraphAccess> exits) const;
 
@@ -48,7 +48,7 @@ class OpenNetwork {
   };
   [[nodiscard]] Link link(std::uint32_t edge) const;
 
-  /// For each cell of the grid, by index, whether a robot gets there from an open cell.
+  /// For each cell of the grid, by index, whether a robot can reach it from an open cell.
   [[nodiscard]] std::vector<bool> within_reach(const Cell& from) const;
 
  private:
@@ -60,8 +60,8 @@ class OpenNetwork {
   };
   struct Node {
     std::uint32_t border_node = 0;
-    std::array<Cell, 2> cells{};  // as BorderNode::cells
-    bool moved = false;           // they are not those of the border node
+    std::array<Cell, 2> cells{};  // like BorderNode::cells
+    bool moved = false;           // they differ from those of the border node
   };
 
   [[nodiscard]] static Link link_of(const HybridEdge& edge);
@@ -77,12 +77,12 @@ class OpenNetwork {
   const HybridMap& map_;
   const ClosedParts& closed_;
   const ClosedCells& cells_;
-  // The rest is filled only when cells are closed.
-  std::map<ZoneId, Parts> parts_;  // of the zones with closed cells
-  std::vector<Node> nodes_;        // the first ones have the numbers of their border nodes
+  // Used only if cells are closed.
+  std::map<ZoneId, Parts> parts_;  // of zones with closed cells
+  std::vector<Node> nodes_;        // the first ones share the numbers of their border nodes
   std::vector<std::vector<std::uint32_t>> nodes_of_;
   std::vector<Link> links_;
-  std::deque<std::vector<Cell>> routes_;  // of the links that were searched anew
+  std::deque<std::vector<Cell>> routes_;  // of links that were searched again
   std::optional<RouteGraph> graph_;
 };
 

@@ -8,8 +8,8 @@
 namespace topogeo::planning {
 namespace {
 
-constexpr int kMostAlong = 20000;  // as a grid, see occupancy_grid.cpp
-constexpr int kMostDepth = 255;    // of one byte a pixel, as all map files have
+constexpr int kMostAlong = 20000;  // as for a grid, see occupancy_grid.cpp
+constexpr int kMostDepth = 255;    // of one byte per pixel, as in all map files
 
 class PgmParser {
  public:
@@ -72,7 +72,7 @@ class PgmParser {
   }
 
   void read_text(PgmImage& image, std::size_t count) {
-    // A pixel takes a digit and a blank at least.
+    // A pixel takes at least a digit and a blank.
     if (bytes_.size() - at_ < 2 * count - 1) fail_short(count);
     image.pixels.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {

@@ -62,7 +62,7 @@ class RoomMerger {
     return openings_[a].at(b).clearance_m / std::max(peak_m_[a], peak_m_[b]);
   }
 
-  // Of equal ones the first come first.
+  // Ties go to the first ones.
   void offer(std::uint32_t a, std::uint32_t b) {
     if (a > b) std::swap(a, b);
     const Opening& opening = openings_[a].at(b);
@@ -72,7 +72,7 @@ class RoomMerger {
     offers_.emplace(ratio_of(a, b), 0xffffffff - a, 0xffffffff - b);
   }
 
-  // Its widest neighbour; nothing without one.
+  // Its neighbour with the widest opening; nothing without neighbours.
   [[nodiscard]] std::optional<std::uint32_t> opens_to(std::uint32_t room) const {
     const auto& openings = openings_[room];
     const auto widest = std::max_element(

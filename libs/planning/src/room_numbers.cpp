@@ -59,7 +59,7 @@ std::optional<Eigen::Vector2d> RoomNumbers::position_of(const RoomPoint& point,
 }
 
 void RoomNumbers::find_again(const GridFrame& frame, const Poses& poses, ZoneMap& zones) const {
-  // Common floor in cells, room, zone.
+  // Shared floor in cells, room, zone.
   std::vector<std::tuple<double, const RememberedRoom*, ZoneId>> common;
   for (const RememberedRoom& room : memory_.rooms) {
     std::map<ZoneId, std::size_t> votes;
@@ -132,7 +132,7 @@ void RoomNumbers::name(const GridFrame& frame, const std::vector<Place>& places,
 }
 
 void RoomNumbers::remember(const GridFrame& frame, const Poses& poses, const ZoneMap& zones) {
-  constexpr std::size_t kPoints = 64;  // a share is then exact to some per cent
+  constexpr std::size_t kPoints = 64;  // gives shares an accuracy of some per cent
   memory_.rooms.clear();
   for (const Zone& zone : zones.zones) {
     const bool named = zone.name != name_of(zone.room);
@@ -142,7 +142,7 @@ void RoomNumbers::remember(const GridFrame& frame, const Poses& poses, const Zon
   for (std::size_t i = 0; i < zones.zone_of_cell.size(); ++i) {
     const ZoneId zone = zones.zone_of_cell[i];
     if (zone == kNoZone) continue;
-    // Evenly over its cells.
+    // Evenly spread over its cells.
     const std::size_t cells = zones.zones[zone].cells;
     const std::size_t wanted = std::min(kPoints, cells);
     const std::size_t before = seen[zone] * wanted / cells;

@@ -1,4 +1,4 @@
-// Finding the cells that a route begins and ends at, and the reason when there is none.
+// Finds the first and last cell of a route, or the reason why there is none.
 #pragma once
 
 #include <optional>
@@ -16,26 +16,26 @@ namespace topogeo::planning {
 /// "(1.00, 2.50)"
 std::string shown(const Eigen::Vector2d& point_m);
 
-/// A route that there is not.
+/// A route that failed.
 HybridRoute no_route(RouteStatus status, std::string reason);
 
-/// Finds the cells that a route begins and ends at.
+/// Finds the first and last cell of a route.
 class EndFinder {
  public:
   EndFinder(const FreeSpace& space, const ClosedCells& cells) : space_(space), cells_(cells) {}
 
-  /// The open cell of a point, or the nearest one within snap_m that no obstacle hides. Without
-  /// any, `failure` gets status and reason of a route that begins there.
+  /// The open cell of a point, or the nearest visible one within snap_m. Without any, `failure`
+  /// gets status and reason of a route that begins there.
   [[nodiscard]] std::optional<Cell> start(const Eigen::Vector2d& point_m, double snap_m,
                                           HybridRoute& failure) const;
 
-  /// Where else a route may begin whose start is not open, or in a zone of at most a square metre,
-  /// as noise parts from the floor around it: as start(), of the cells in none of the zones given.
+  /// Another start cell for a point whose cell is not open, or in a pocket of at most a square
+  /// metre that noise cuts off: like start(), but outside of the given zones.
   [[nodiscard]] std::optional<Cell> start_apart(const HybridMap& map,
                                                 const Eigen::Vector2d& point_m, double snap_m,
                                                 const std::vector<ZoneId>& zones) const;
 
-  /// The same as start() for a route that ends there.
+  /// Like start(), for a route that ends there.
   [[nodiscard]] std::optional<Cell> goal(const Eigen::Vector2d& point_m, double snap_m,
                                          HybridRoute& failure) const;
 
@@ -55,8 +55,7 @@ class EndFinder {
   const ClosedCells& cells_;
 };
 
-/// Middle of the cell nearest to a point of all those that are reachable (by index); of equally
-/// near ones the first.
+/// Centre of the reachable cell (by index) nearest to a point; the first one breaks ties.
 std::optional<Eigen::Vector2d> nearest_cell_m(const GridFrame& frame,
                                               const Eigen::Vector2d& point_m,
                                               const std::vector<bool>& reachable);

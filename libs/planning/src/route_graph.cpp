@@ -20,7 +20,7 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 struct Directed {
   double cost = 0.0;
-  std::uint32_t edge = 0;  // index among the edges given
+  std::uint32_t edge = 0;  // index in the given edges
 };
 
 using CompressedGraph =
@@ -39,11 +39,11 @@ void check_cost(const char* what, double cost) {
                               std::to_string(cost) + ", allowed are finite values from 0");
 }
 
-// Ends the search: Boost.Graph has no other means.
+// Ends the search: Boost.Graph offers no other way.
 struct BestKnown {};
 
-// Keeps the edges of the tree and the best exit; no node examined later can lead to a better one
-// when it already costs as much.
+// Records the edges of the tree and the best exit; a later node that already costs as much cannot
+// lead to a better one.
 class ExitVisitor : public boost::default_dijkstra_visitor {
  public:
   struct Record {

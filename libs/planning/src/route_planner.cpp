@@ -37,10 +37,10 @@ void set_too_far(PlanResult& result, PlanStatus status, const char* what, const 
       config.max_snap_m);
 }
 
-// The cells that the rules are laid on: those of the grid, or as many as the map needs.
+// The cells that the rules apply to: those of the grid, or as many as the map needs.
 GridFrame rules_frame(const GlobalMap& map, const PlanScene& scene) {
   if (scene.space != nullptr) return scene.space->frame();
-  constexpr double kMargin_m = 5.0;  // more than start and goal lie off the branches
+  constexpr double kMargin_m = 5.0;  // more than start and goal are off the branches
   std::vector<Eigen::Vector2d> points_m;
   for (const MapBranch& branch : map.branches) {
     for (const topomap::BranchPoint& p : branch.points) points_m.push_back(p.position_m);
@@ -48,7 +48,7 @@ GridFrame rules_frame(const GlobalMap& map, const PlanScene& scene) {
   return frame_around(points_m, kMargin_m);
 }
 
-// So that a stretch can end where something closes a long straight piece.
+// Adds points, so that a part can end where a long straight piece is closed.
 GlobalMap with_dense_branches(const GlobalMap& map) {
   constexpr double kStep_m = 0.1;
   GlobalMap dense;
@@ -74,7 +74,7 @@ GlobalMap with_dense_branches(const GlobalMap& map) {
   return dense;
 }
 
-// Whether it is the width or the map that keeps the two apart.
+// Sets whether the width or the map separates start and goal.
 void set_apart(PlanResult& result, bool reachable_when_narrow, const PlanningConfig& config) {
   if (reachable_when_narrow) {
     result.status = PlanStatus::kTooNarrow;
@@ -87,7 +87,7 @@ void set_apart(PlanResult& result, bool reachable_when_narrow, const PlanningCon
   }
 }
 
-// One question: the accesses of start and goal, and the route between them.
+// One query: the accesses of start and goal, and the route between them.
 class RouteSearch {
  public:
   RouteSearch(const GlobalMap& map, const PlanningConfig& config, const BranchRules& rules,
@@ -124,7 +124,7 @@ class RouteSearch {
   }
 
  private:
-  // Start and goal are one place.
+  // Start and goal are the same place.
   void set_place(const BranchPlace& place, Route& route) const {
     const MapBranch& branch = map_.branches[place.branch];
     route.points.push_back(place.at);
@@ -141,7 +141,7 @@ class RouteSearch {
         what, config_.max_snap_m);
   }
 
-  // Whether it is the width, what is closed, or the map that keeps the two apart.
+  // Sets whether the width, closed parts or the map separate start and goal.
   void set_unreachable(std::span<const BranchAccess> entries, std::span<const BranchAccess> exits,
                        PlanResult& result) const {
     const BranchRules nothing;

@@ -11,16 +11,15 @@
 namespace topogeo::planning {
 namespace {
 
-// Where two pieces meet in one cell, in a route that touches a border without crossing it, that
-// cell comes once.
+// If two pieces meet in one cell, because a route touches a border without crossing it, that cell
+// is added once.
 void append(std::vector<Cell>& cells, std::vector<Cell> piece, bool backwards) {
   if (backwards) std::reverse(piece.begin(), piece.end());
   const auto skip = static_cast<std::ptrdiff_t>(cells.back() == piece.front() ? 1 : 0);
   cells.insert(cells.end(), piece.begin() + skip, piece.end());
 }
 
-// Paths shorter than this one stay in the ellipse around its ends that is as long as it: how far
-// that can reach. 0 when none is shorter.
+// Reach of the ellipse around the ends that contains all shorter paths. 0 if none is shorter.
 std::int32_t margin_of(std::span<const Cell> cells) {
   const double cost = cost_cells(cells);
   if (cost <= least_cost_cells(cells.front(), cells.back())) return 0;
@@ -30,7 +29,7 @@ std::int32_t margin_of(std::span<const Cell> cells) {
   return static_cast<std::int32_t>(half_axis) + 1;
 }
 
-// The cells that straight lines between points pass through.
+// The cells under straight lines between points.
 std::vector<Cell> cells_along(const GridFrame& frame, std::span<const Eigen::Vector2d> points_m) {
   std::vector<Cell> cells;
   for (std::size_t i = 1; i < points_m.size(); ++i) {
@@ -44,7 +43,7 @@ std::vector<Cell> cells_along(const GridFrame& frame, std::span<const Eigen::Vec
 
 }  // namespace
 
-// Paths on the grid from a cell to the nodes of its zone, with half a step across the border.
+// Paths on the grid from a cell to the nodes of its zone, plus half a step across the border.
 struct RouteQuery::Reach {
   std::vector<std::uint32_t> nodes;
   std::vector<std::optional<CellPath>> paths;
@@ -97,7 +96,7 @@ HybridRoute RouteQuery::within(const Cell& from, const Cell& to, ZoneId zone) co
   return outside;
 }
 
-// Empty when what is closed cuts the zone in two.
+// Empty if closed parts cut the zone in two.
 std::vector<Cell> RouteQuery::cells_within(const Cell& from, const Cell& to, ZoneId zone) const {
   const CellBox& box = map_.zones().zones[zone].box;
   SearchWindow window(map_.space(), box);
@@ -156,7 +155,7 @@ void RouteQuery::name_nodes_and_edges(HybridRoute& route) const {
   route.edges = std::move(used.edges);
 }
 
-// Returns whether it is the shortest path now.
+// Returns whether the path is now the shortest.
 bool RouteQuery::improve_whole(std::vector<Cell>& cells) const {
   const std::int32_t margin = margin_of(cells);
   if (margin == 0) return true;
@@ -185,7 +184,7 @@ CellBox RouteQuery::box_around(const Cell& a, const Cell& b, std::int32_t margin
 }
 
 // Plans the piece from `begin` to `end` again, in a window with a margin around both cells. False
-// when a shorter one cannot be taken because it leads through a closed edge.
+// if a shorter one leads through a closed edge and cannot be used.
 bool RouteQuery::plan_again(std::vector<Cell>& cells, std::size_t begin, std::size_t end,
                             std::int32_t margin) const {
   const Cell& a = cells[begin];
@@ -204,7 +203,7 @@ bool RouteQuery::plan_again(std::vector<Cell>& cells, std::size_t begin, std::si
   return true;
 }
 
-// Of a closed border one side is enough; the side in `keep`, where a search begins, stays open.
+// One side of a closed border is enough; the side in `keep`, where a search begins, stays open.
 void RouteQuery::close_parts(SearchWindow& window, ZoneId keep) const {
   for (const std::uint32_t id : closed_.nodes) {
     const BorderNode& node = map_.nodes()[id];

@@ -1,4 +1,4 @@
-// One query of the hybrid planner: start and goal are good.
+// One query of the hybrid planner with a valid start and goal.
 #pragma once
 
 #include <span>
@@ -13,27 +13,26 @@ namespace topogeo::planning {
 
 class RouteQuery {
  public:
-  /// `closed` are the nodes and edges that must not be used. All must outlive it.
+  /// `closed`: nodes and edges that must not be used. All arguments must outlive it.
   RouteQuery(const HybridMap& map, const HybridPlannerConfig& config, const ClosedParts& closed,
              const ClosedCells& cells)
       : map_(map), config_(config), closed_(closed), cells_(cells), network_(map, closed, cells) {}
 
-  /// With kind, cells, nodes and edges; without cells when no path leads from one open cell to the
-  /// other.
+  /// Sets kind, cells, nodes and edges; no cells if no path connects the two open cells.
   [[nodiscard]] HybridRoute run(const Cell& from, const Cell& to) const;
 
-  /// Whether slow or one-way zones on the path may make another one better, or forbid this one. On
-  /// one that touches none of them they cost nothing: it is the cheapest with them, too.
+  /// Whether slow or one-way zones on the path may favour another one, or forbid this one. If it
+  /// touches none of them, it remains the cheapest.
   [[nodiscard]] bool needs_rules(std::span<const Cell> cells) const;
-  /// As run(), by one search of the whole grid that heeds the rules of zones.
+  /// Like run(), by one search of the whole grid that obeys the rules of zones.
   [[nodiscard]] HybridRoute run_by_rules(const Cell& from, const Cell& to) const;
 
-  /// As OpenNetwork::within_reach.
+  /// Like OpenNetwork::within_reach.
   [[nodiscard]] std::vector<bool> within_reach(const Cell& from) const {
     return network_.within_reach(from);
   }
 
-  /// As `straighten`, round what is closed.
+  /// Like `straighten`, around closed parts.
   [[nodiscard]] std::vector<Eigen::Vector2d> straightened(std::span<const Cell> cells,
                                                           const Eigen::Vector2d& from_m,
                                                           const Eigen::Vector2d& to_m) const;

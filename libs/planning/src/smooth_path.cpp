@@ -55,7 +55,7 @@ class Smoother {
     return geometry::atan2(direction.y(), direction.x());
   }
 
-  // The widest arc that fits at point i: each side of a corner has half of its line.
+  // The widest arc that fits at point i: each side of a corner gets half of its line.
   [[nodiscard]] Arc corner(const std::vector<Eigen::Vector2d>& points_m, std::size_t i,
                            const Eigen::Vector2d& at_m) const {
     const Eigen::Vector2d in = (points_m[i] - points_m[i - 1]).normalized();
@@ -95,7 +95,7 @@ class Smoother {
     }
   }
 
-  // Samples of the arc, or the turn that the next sample begins with.
+  // Samples of the arc, or the turn at the next sample.
   void follow(const Arc& arc) {
     if (arc.radius_m == 0.0) {
       turn_rad_ = std::fabs(arc.turn_rad) < kStraight_rad ? 0.0 : arc.turn_rad;
@@ -118,7 +118,7 @@ class Smoother {
     turn_rad_ = 0.0;
     if (!samples_.empty()) {
       const PathSample& last = samples_.back();
-      // An arc of this chord.
+      // Length of an arc with this chord.
       const double chord_m = (at.position_m - last.T_map_robot.position_m()).norm();
       const double turned_rad = std::fabs(geometry::wrap_angle(
           at.heading_rad - sample.turn_on_spot_rad - last.T_map_robot.theta_rad));

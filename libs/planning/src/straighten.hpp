@@ -12,10 +12,10 @@
 
 namespace topogeo::planning {
 
-/// The first cell, those where the direction changes, and the last.
+/// The first cell, cells where the direction changes, and the last one.
 std::vector<Cell> corners_of(std::span<const Cell> cells);
 
-/// As `straighten` of motion_primitives.hpp, for a predicate of the passable cells.
+/// Like `straighten` of motion_primitives.hpp, for any predicate of passable cells.
 template <typename Passable>
 std::vector<Eigen::Vector2d> straighten_where(const GridFrame& frame, const Passable& passable,
                                               std::span<const Cell> cells,
@@ -38,8 +38,8 @@ std::vector<Eigen::Vector2d> straighten_where(const GridFrame& frame, const Pass
   return path_m;
 }
 
-/// The same, and no line leads from cells of one area of the rules into those of another, or where
-/// a one-way zone forbids it: pulling a path straight must not cost what was gained by going round.
+/// The same, but lines neither leave an area of the rules nor violate a one-way zone: straightening
+/// must not undo the gain of a detour.
 template <typename Passable>
 std::vector<Eigen::Vector2d> straighten_by_rules(const FreeSpace& space, const Passable& passable,
                                                  std::span<const Cell> cells,

@@ -16,7 +16,7 @@ namespace {
 
 using support::YamlNode;
 
-/// 1,000 km, beyond any site: a larger coordinate is a slip.
+/// 1,000 km, beyond any site: a larger coordinate is a mistake.
 constexpr double kMaxDrawn_m = 1e6;
 
 std::string new_name(const YamlNode& node, std::set<std::string>& taken) {
@@ -52,7 +52,7 @@ ZoneKind kind_of(const YamlNode& node) {
 }
 
 double value_of(const YamlNode& node, ZoneKind kind) {
-  constexpr double kLeastSpeed_mps = 0.01;  // slower than that is standing: draw a no_go zone
+  constexpr double kLeastSpeed_mps = 0.01;  // slower is standing: draw a no_go zone
   constexpr double kMostSpeed_mps = 10.0;
   if (kind == ZoneKind::kSlow) return node.number(kLeastSpeed_mps, kMostSpeed_mps, "m/s");
   if (kind == ZoneKind::kOneWay) return node.number(-std::numbers::pi, std::numbers::pi, "rad");

@@ -12,7 +12,7 @@
 namespace topogeo::planning {
 namespace {
 
-// Every cell gets the label of the nearest one that has a label, by steps to the four sides.
+// Every cell gets the label of the nearest labelled one, by steps to the four sides.
 void grow(const FreeSpace& space, ZoneLabels& labels) {
   std::vector<std::size_t> front;
   for (std::size_t i = 0; i < labels.of_cell.size(); ++i) {
@@ -32,7 +32,7 @@ void grow(const FreeSpace& space, ZoneLabels& labels) {
   }
 }
 
-// Sizes of the labels and lengths of the borders between them, kept while labels are joined.
+// Sizes of the labels and lengths of their borders, updated while labels are merged.
 class Merger {
  public:
   Merger(const FreeSpace& space, const ZoneLabels& labels)
@@ -52,7 +52,7 @@ class Merger {
     }
   }
 
-  /// The smallest zones first, so that the order of the labels does not decide.
+  /// The smallest zones first, so that the order of the labels does not matter.
   void join_smaller_than(double cells) {
     std::set<std::pair<std::size_t, std::uint32_t>> small;
     const auto is_small = [&](std::uint32_t label) {

@@ -23,10 +23,10 @@ namespace {
 using Points = std::vector<Eigen::Vector2d>;
 using Corner = std::pair<std::int32_t, std::int32_t>;  // of cells: column, row of its lower left
 
-constexpr double kBeyond_m = 0.5;      // that a line parts beyond its ends
-constexpr std::uint32_t kOutside = 0;  // of the parts: others count from 1
+constexpr double kBeyond_m = 0.5;      // extension of a line beyond its ends
+constexpr std::uint32_t kOutside = 0;  // number outside of all parts; others count from 1
 
-/// Whether a cell belongs to the zones, or to none and lies beside one of theirs.
+/// Whether a cell belongs to the zones, or has no zone and lies beside one of their cells.
 std::vector<bool> cells_of(const GridFrame& frame, const ZoneMap& zones,
                            std::span<const ZoneId> ids) {
   constexpr double kToWalls_m = 0.3;
@@ -53,7 +53,7 @@ std::vector<bool> cells_of(const GridFrame& frame, const ZoneMap& zones,
   return in;
 }
 
-/// Gives each cell of one part, found from a first cell, its number. Returns their count.
+/// Numbers the cells of one part, starting from a first cell. Returns their count.
 std::size_t flood(const GridFrame& frame, std::size_t first, std::uint32_t number,
                   const std::vector<bool>& in, std::vector<std::uint32_t>& part_of) {
   std::vector<std::size_t> open{first};
@@ -68,7 +68,7 @@ std::size_t flood(const GridFrame& frame, std::size_t first, std::uint32_t numbe
   return open.size();
 }
 
-/// What the cut took goes to the part that is nearest by steps.
+/// Gives the cells of the cut to the nearest part, counted in steps.
 void give_back(const GridFrame& frame, const std::vector<std::size_t>& taken,
                std::vector<std::uint32_t>& part_of) {
   for (bool changed = true; changed;) {
@@ -85,12 +85,12 @@ void give_back(const GridFrame& frame, const std::vector<std::size_t>& taken,
   }
 }
 
-/// Where the next zone begins on the way from a point, which may be through a gap, but no wall.
+/// The start of the next zone on the way from a point, which may pass a gap, but no wall.
 std::optional<Eigen::Vector2d> next_zone(const GridFrame& frame, const ZoneMap& zones,
                                          std::span<const ZoneId> ids, const Eigen::Vector2d& from_m,
                                          const Eigen::Vector2d& along) {
   constexpr double kDeepest_m = 1.5;
-  constexpr double kThickest_m = 0.3;  // of what is in no zone; walls have their clearance as well
+  constexpr double kThickest_m = 0.3;  // of floor without a zone; walls also have their clearance
   const double step_m = 0.5 * frame.resolution_m;
   double outside_m = 0.0;
   for (double ahead_m = 0.0; ahead_m <= kDeepest_m; ahead_m += step_m) {
@@ -105,8 +105,8 @@ std::optional<Eigen::Vector2d> next_zone(const GridFrame& frame, const ZoneMap& 
   return std::nullopt;
 }
 
-/// The cells of a line to gaps. The zones reach through a gap to some line between its walls: an
-/// end before it goes on to the next zone, straight ahead or turned as little as it takes.
+/// The cells of a line extended to gaps. Zones reach through a gap up to some line between its
+/// walls, so an end before it is extended to the next zone, straight or with the least turn.
 std::vector<Cell> cells_to_gaps(const GridFrame& frame, const ZoneMap& zones,
                                 std::span<const ZoneId> ids, const Eigen::Vector2d& from_m,
                                 const Eigen::Vector2d& to_m) {
@@ -127,10 +127,10 @@ std::vector<Cell> cells_to_gaps(const GridFrame& frame, const ZoneMap& zones,
 
 struct Parts {
   std::vector<std::uint32_t> part_of;  // number of each cell's part
-  std::vector<std::uint32_t> large;    // numbers of those that are not left out
+  std::vector<std::uint32_t> large;    // numbers of parts that are not left out
 };
 
-/// What hangs together when a line is cut out, whose cells are given back at the end.
+/// The connected parts after a line is cut out, whose cells are returned at the end.
 Parts parts_of(const GridFrame& frame, std::vector<bool> in, const std::vector<Cell>& cut) {
   constexpr std::size_t kLeastCells = 4;
   std::vector<std::size_t> taken;
@@ -149,7 +149,7 @@ Parts parts_of(const GridFrame& frame, std::vector<bool> in, const std::vector<C
   return parts;
 }
 
-/// Twice the area inside of a closed line; positive where it goes counter-clockwise.
+/// Twice the area inside of a closed line; positive if counter-clockwise.
 double twice_area(const std::vector<Corner>& loop) {
   double sum = 0.0;
   for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -160,13 +160,13 @@ double twice_area(const std::vector<Corner>& loop) {
   return sum;
 }
 
-/// The outer outline of a part along the sides of its cells, the part on its left.
+/// The outer outline of a part along the sides of its cells, with the part on its left.
 std::vector<Corner> outer_loop(const GridFrame& frame, std::uint32_t number,
                                const std::vector<std::uint32_t>& part_of) {
   const auto is_in = [&](const Cell& cell) {
     return frame.contains(cell) && part_of[frame.index(cell)] == number;
   };
-  std::multimap<Corner, Corner> sides;  // from corner to corner
+  std::multimap<Corner, Corner> sides;  // between neighbouring corners
   for (std::size_t i = 0; i < part_of.size(); ++i) {
     if (part_of[i] != number) continue;
     const auto [x, y] = frame.cell_at(i);
@@ -183,7 +183,7 @@ std::vector<Corner> outer_loop(const GridFrame& frame, std::uint32_t number,
     while (true) {
       auto [side, end] = sides.equal_range(at);
       if (side == end) break;
-      // Where two cells touch at a corner alone, the line stays with its cell: it turns left.
+      // If two cells touch only at a corner, the line turns left to stay with its cell.
       for (auto other = std::next(side); other != end; ++other) {
         const auto turn = [&](const Corner& to) {
           return along[0] * (to.second - at.second) - along[1] * (to.first - at.first);

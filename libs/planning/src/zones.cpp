@@ -22,7 +22,8 @@ using topomap::GlobalMap;
 using topomap::MapBranch;
 using topomap::NodeKind;
 
-// Directions are taken over this distance from a node: the first points of a branch jitter.
+// Directions are measured over this distance from a node, because the first points of a branch
+// jitter.
 constexpr double kTangentReach_m = 0.4;  // a branch bends by less than its noise on a shorter piece
 
 // The first point at least kTangentReach_m from the first one, or the last point.
@@ -36,10 +37,10 @@ Eigen::Vector2d point_ahead(std::span<const BranchPoint> points, bool from_back)
   return at(points.size() - 1);
 }
 
-// Which saddles lie at a door or narrowing of the map.
+// Whether each saddle lies at a door or narrowing of the map.
 std::vector<bool> saddles_at_doors(const GridFrame& frame, const Basins& basins,
                                    std::span<const Passage> passages) {
-  constexpr double kNear_m = 0.5;  // by so much doors of the graph and of the grid lie apart
+  constexpr double kNear_m = 0.5;  // distance between doors of the graph and of the grid
   std::vector<bool> at_door(basins.saddles.size(), false);
   for (std::size_t k = 0; k < at_door.size(); ++k) {
     const Eigen::Vector2d at_m = frame.center_m(frame.cell_at(basins.saddles[k].cell));
@@ -50,7 +51,7 @@ std::vector<bool> saddles_at_doors(const GridFrame& frame, const Basins& basins,
   return at_door;
 }
 
-// Gives the passable cells in a polygon that belong to no zone yet to `index`.
+// Assigns the passable cells in a polygon that have no owner yet to `index`.
 void fill_polygon(const FreeSpace& space, const std::vector<Eigen::Vector2d>& polygon_m,
                   std::uint32_t index, std::vector<std::uint32_t>& owner) {
   visit_cells_in(space.frame(), polygon_m, [&](const Cell& cell) {
@@ -59,8 +60,8 @@ void fill_polygon(const FreeSpace& space, const std::vector<Eigen::Vector2d>& po
   });
 }
 
-// Takes the cells across drawn doors from their owners, so that these fall into parts there. What
-// has a name stays whole.
+// Removes the cells across drawn doors from their owners, so that these fall into parts there.
+// Named zones stay whole.
 void part_at_doors(const FreeSpace& space, const std::vector<std::string>& names,
                    std::vector<std::uint32_t>& owner) {
   for (const DrawnLine& line : space.rules().lines()) {
@@ -77,7 +78,7 @@ ZoneLabels no_labels(const FreeSpace& space) {
   return {std::vector<std::uint32_t>(space.frame().size(), kNoLabel), {}, {}};
 }
 
-// The cells of drawn zones, whose names come to `names`; kNoLabel for the others.
+// Assigns the cells of drawn zones and appends their names; kNoLabel for other cells.
 std::vector<std::uint32_t> owner_of_drawn(const FreeSpace& space, std::span<const DrawnZone> drawn,
                                           std::vector<std::string>& names) {
   std::vector<std::uint32_t> owner(space.frame().size(), kNoLabel);
@@ -89,8 +90,8 @@ std::vector<std::uint32_t> owner_of_drawn(const FreeSpace& space, std::span<cons
   return owner;
 }
 
-// Gives the passable cells that belong to no zone yet to the rooms between the walls, which come
-// to `names` without one.
+// Assigns the passable cells without an owner to the rooms between the walls, appended without
+// names.
 void give_to_rooms(const FreeSpace& space, std::span<const Passage> passages,
                    const ZoneConfig& config, std::vector<std::string>& names,
                    std::vector<std::uint32_t>& owner) {
@@ -175,7 +176,7 @@ ZoneMap drawn_zones(const FreeSpace& space, std::span<const DrawnZone> drawn,
   check(config);
   std::vector<std::string> names;
   std::vector<std::uint32_t> owner = owner_of_drawn(space, drawn, names);
-  // What no polygon covers.
+  // Cells outside of all polygons.
   const auto outside = static_cast<std::uint32_t>(names.size());
   names.emplace_back();
   for (std::size_t i = 0; i < owner.size(); ++i) {

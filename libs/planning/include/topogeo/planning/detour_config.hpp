@@ -9,11 +9,11 @@ namespace topogeo::planning {
 
 struct DetourConfig {
   double half_side_m = 3.0;
-  double start_snap_m = 0.5;  ///< as HybridPlannerConfig::start_snap_m: obstacles seen now can be
+  double start_snap_m = 0.5;  ///< like HybridPlannerConfig::start_snap_m: obstacles seen now can be
                               ///< nearer than the forbidden cells
 };
 
-/// Declares the detours of the section `navigator`.
+/// Declares the detour settings of the section `navigator`.
 void describe(DetourConfig& config, support::ConfigSchema& schema);
 
 /// Throws std::invalid_argument naming key, value and range.

@@ -10,10 +10,10 @@
 
 namespace topogeo::planning {
 
-/// What a drawn line is for. The values are those of proto/map.proto and idl/drawing.idl.
+/// Kind of a drawn line. The values are those of proto/map.proto and idl/drawing.idl.
 enum class LineKind : std::uint8_t {
-  kWall = 0,     ///< not to be crossed, though the map is free there
-  kOpening = 1,  ///< a stretch of a wall, mapped or drawn, that is open
+  kWall = 0,     ///< must not be crossed, even if the map is free there
+  kOpening = 1,  ///< an open part of a mapped or drawn wall
   kDoor = 2,     ///< an opening at which two rooms meet
 };
 inline constexpr std::size_t kLineKinds = 3;
@@ -22,12 +22,12 @@ inline constexpr std::size_t kLineKinds = 3;
 struct DrawnLine {
   LineKind kind = LineKind::kWall;
   std::vector<Eigen::Vector2d> points_m;  ///< at least two, in order, map frame
-  std::string name{};                     ///< of a door; others may have none
+  std::string name{};                     ///< of a door; optional for others
 
   friend bool operator==(const DrawnLine&, const DrawnLine&) = default;
 };
 
-/// Walls are no thicker than twice this: so far on either side of an opening the floor is free.
+/// Half of the largest thickness of walls: the floor is free this far on either side of an opening.
 inline constexpr double kOpeningReach_m = 0.3;
 
 }  // namespace topogeo::planning

@@ -10,21 +10,21 @@
 
 namespace topogeo::planning {
 
-/// What a drawn zone is for. The values are those of proto/map.proto.
+/// Kind of a drawn zone. The values are those of proto/map.proto.
 enum class ZoneKind : std::uint8_t {
-  kRoom = 0,    ///< a part of the floor with a name
-  kNoGo = 1,    ///< to be kept out of
+  kRoom = 0,    ///< a named part of the floor
+  kNoGo = 1,    ///< must not be entered
   kSlow = 2,    ///< value: largest speed in m/s
-  kOneWay = 3,  ///< value: heading in rad of those who drive through it, map frame
+  kOneWay = 3,  ///< value: heading of the allowed direction in rad, map frame
 };
 inline constexpr std::size_t kZoneKinds = 4;
 
-/// A zone as it is drawn. Of several rooms that overlap the first counts.
+/// A drawn zone. If rooms overlap, the first one counts.
 struct DrawnZone {
   std::string name;
   std::vector<Eigen::Vector2d> polygon_m;  ///< corners in order, map frame
   ZoneKind kind = ZoneKind::kRoom;
-  double value = 0.0;  ///< as its kind says; else 0
+  double value = 0.0;  ///< depends on the kind; else 0
 };
 
 }  // namespace topogeo::planning

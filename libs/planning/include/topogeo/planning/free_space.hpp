@@ -1,9 +1,9 @@
-// Where the robot's middle may be: the grid with everything forbidden that is too near to an
-// obstacle (the forbidden cells of MACONDO, III.2; docs/algorithms.md, "Hybrid map and planner"),
-// and the clearance of every cell.
+// Allowed positions of the robot's centre: the grid without all cells too near to an obstacle (the
+// forbidden cells of MACONDO, III.2; docs/algorithms.md, "Hybrid map and planner"), and the
+// clearance of every cell.
 //
-// Distances are exact Euclidean ones between the middles of cells, by the separable transform of
-// Felzenszwalb and Huttenlocher (2012) on squared integers, so they are the same everywhere.
+// Distances are exact Euclidean ones between cell centres, by the separable transform of
+// Felzenszwalb and Huttenlocher (2012) on squared integers, so they are the same on every machine.
 #pragma once
 
 #include <cstdint>
@@ -20,37 +20,37 @@ namespace topogeo::planning {
 
 class FreeSpace {
  public:
-  /// The robot keeps out of no-go zones among `zones` as far as from obstacles. Cells of drawn
-  /// walls are occupied, those of openings and doors free, whatever `grid` has there. Throws
-  /// std::invalid_argument as `check`.
+  /// The robot keeps the same distance from no-go zones among `zones` as from obstacles. Cells of
+  /// drawn walls are occupied, cells of openings and doors free, whatever their state in `grid`.
+  /// Throws std::invalid_argument like `check`.
   explicit FreeSpace(OccupancyGrid grid, const InflationConfig& config = {},
                      std::span<const DrawnZone> zones = {}, std::span<const DrawnLine> lines = {});
 
-  /// The same floor where something better than the grid shows that it is open: `freed` cells are
-  /// free, unless a drawn wall stands there, and the robot's middle may be in `entered` ones, too,
-  /// however near to an obstacle they are. All must lie inside.
+  /// The same floor, opened by evidence better than the grid: `freed` cells become free unless a
+  /// drawn wall stands there, and the robot's centre may also be in `entered` cells, even if they
+  /// are too near to an obstacle. All must lie inside.
   [[nodiscard]] FreeSpace opened(std::span<const Cell> freed, std::span<const Cell> entered) const;
 
-  /// To plan on: with drawn walls, openings and doors.
+  /// The grid for planning: with drawn walls, openings and doors.
   [[nodiscard]] const OccupancyGrid& grid() const { return grid_; }
-  /// As it was given: what sensors see.
+  /// The given grid, as seen by sensors.
   [[nodiscard]] const OccupancyGrid& seen() const { return seen_ ? *seen_ : grid_; }
   [[nodiscard]] const GridFrame& frame() const { return grid_.frame(); }
   [[nodiscard]] const InflationConfig& inflation() const { return config_; }
-  /// What the zones demand besides.
+  /// Further rules of the zones.
   [[nodiscard]] const DrivingRules& rules() const { return rules_; }
 
-  /// Whether the robot's middle may be in the cell; false outside.
+  /// Whether the robot's centre may be in the cell; false outside.
   [[nodiscard]] bool passable(const Cell& cell) const {
     return frame().contains(cell) && passable_[frame().index(cell)] != 0;
   }
   [[nodiscard]] bool passable(std::size_t index) const { return passable_[index] != 0; }
 
-  /// Distance from the middle of a cell inside to that of the nearest obstacle (occupied, with
-  /// inflate_unknown also unknown), metres; infinity when the grid has none.
+  /// Distance from the centre of a cell inside to that of the nearest obstacle (occupied, with
+  /// inflate_unknown also unknown), metres; infinity if the grid has none.
   [[nodiscard]] double clearance_m(const Cell& cell) const;
 
-  /// The same in cells, squared; kNoObstacle when the grid has none.
+  /// The same in cells, squared; kNoObstacle if the grid has none.
   [[nodiscard]] std::int32_t squared_cells(std::size_t index) const { return squared_[index]; }
   static constexpr std::int32_t kNoObstacle = std::numeric_limits<std::int32_t>::max();
 

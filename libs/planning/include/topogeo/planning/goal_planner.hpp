@@ -1,8 +1,8 @@
-// Routes on all that is known of a floor: grid and zones (MACONDO, III.3), or nodes and branches
-// (Thesis, 1.1; docs/algorithms.md, "Use of the map").
+// Plans routes on all available maps of a floor: grid and zones (MACONDO, III.3), or nodes and
+// branches (Thesis, 1.1; docs/algorithms.md, "Use of the map").
 //
-// One is asked first, the other where the first has no route: a map without a grid or an unfinished
-// one, a door that noise on the grid has shut, a robot where nothing is known.
+// One planner is asked first, the other if the first has no route: for a missing or unfinished
+// grid, a door that noise on the grid has shut, or a robot on unknown floor.
 #pragma once
 
 #include <span>
@@ -20,7 +20,7 @@ struct PlanningMaps {
   const HybridMap* hybrid = nullptr;
   const topomap::GlobalMap* graph = nullptr;
 
-  /// Whether any has something to plan on: a zone or a branch.
+  /// Whether any map has a zone or a branch to plan on.
   [[nodiscard]] bool any() const {
     return (hybrid != nullptr && !hybrid->zones().zones.empty()) ||
            (graph != nullptr && !graph->branches.empty());
@@ -33,15 +33,17 @@ struct GoalPlannerConfig {
   PlanningConfig graph;
 };
 
-/// A route from a point of the map frame. `filled_m` are points of what is not on the map. Parts of
-/// the route say on what it was planned. When neither has one, what the hybrid planner says of it,
-/// or without zones the other. Throws std::invalid_argument as `check` of the settings.
+/// A route from a point of the map frame. `filled_m`: points of obstacles that are not on the map.
+/// The parts of the route name the basis of the plan. If neither planner has a route, returns the
+/// hybrid planner's answer, or without zones that of the other. Throws std::invalid_argument like
+/// `check` of the settings.
 HybridRoute plan_to_goal(const PlanningMaps& maps, const Eigen::Vector2d& from_m, const Target& to,
                          std::span<const Eigen::Vector2d> filled_m = {},
                          const GoalPlannerConfig& config = {});
 
-/// A route along branches as that of the planner on the grid: with the lines from the start to the
-/// first branch and from the last to the goal, and without points that are as good as in line.
+/// Converts a route along branches to the form of the grid planner: with the lines from the start
+/// to the first branch and from the last one to the goal, and without points that are nearly in
+/// line.
 HybridRoute along_branches(const PlanResult& result, const Eigen::Vector2d& from_m,
                            const Eigen::Vector2d& to_m);
 

@@ -12,8 +12,8 @@ namespace topogeo::planning {
 struct ScanGridConfig {
   double resolution_m = 0.1;
   double margin_m = 1.0;
-  /// The lower left corner is at multiples of so many cells, [1, 1024], so that a map that grows
-  /// seldom shifts. Not in the configuration file: the tiles on the wire fix it.
+  /// The lower left corner lies at multiples of this many cells, [1, 1024], so that a growing map
+  /// rarely shifts. Not in the configuration file, because the tiles on the wire fix it.
   std::int32_t snap_cells = 1;
   // Log-odds in hundredths.
   std::int32_t hit = 85;
@@ -24,13 +24,13 @@ struct ScanGridConfig {
 struct InflationConfig {
   double forbidden_cells = 3.0;
   bool inflate_unknown = false;  ///< unknown cells themselves are always forbidden
-  /// What hangs together and is smaller is forbidden, too; >= 0. Not in the configuration file, but
-  /// sent with a hybrid map.
+  /// Smaller connected areas are also forbidden; >= 0. Not in the configuration file, but sent with
+  /// a hybrid map.
   double min_pocket_m2 = 0.0;
 };
 inline constexpr double kPocket_m2 = 1.0;
 
-/// How rooms are told from parts of rooms.
+/// Settings that distinguish rooms from parts of rooms.
 struct RoomConfig {
   double narrowing_ratio = 0.55;
   double door_ratio = 0.7;

@@ -1,10 +1,9 @@
 // Cheapest paths over the cells of a window of the grid: A* to one cell, or one search to many.
 //
 // Eight neighbours; a step costs its length in cells, 1 or the root of 2. A diagonal step needs
-// both cells beside it open, so no path cuts a corner. Where zones are to be heeded a step costs as
-// much more as they are slower, and goes in no direction that either of its cells forbids. The
-// searches are those of Boost.Graph on a graph that is never stored: the neighbours follow from the
-// mask of open cells.
+// both cells beside it open, so no path cuts a corner. If zones are obeyed, slow ones raise the
+// cost of a step in proportion, and no step goes in a direction that either of its cells forbids.
+// The searches use Boost.Graph on an implicit graph: the mask of open cells gives the neighbours.
 #pragma once
 
 #include <cstdint>
@@ -30,23 +29,22 @@ struct CellBox {
   }
 };
 
-/// The part of a box that lies in the grid, with `cells` more on every side. The box must meet the
-/// grid.
+/// The part of the grid in a box extended by `cells` on every side. The box must overlap the grid.
 CellBox grown(const CellBox& box, std::int32_t cells, const GridFrame& frame);
 
 /// The whole grid.
 CellBox whole(const GridFrame& frame);
 
-/// Which cells of a box a search may enter.
+/// The cells of a box that a search may enter.
 class SearchWindow {
  public:
-  /// Whether a search heeds the speeds and directions of FreeSpace::rules().
+  /// Whether a search obeys the speeds and directions of FreeSpace::rules().
   enum class Rules : std::uint8_t { kIgnored, kObeyed };
 
   /// The passable cells of the box, which must lie in the grid.
   SearchWindow(const FreeSpace& space, const CellBox& box, Rules rules = Rules::kIgnored);
 
-  /// The cells of the box whose label is `label`; one label for each cell of the grid.
+  /// The cells of the box with the label `label`; one label for each cell of the grid.
   SearchWindow(const GridFrame& frame, const CellBox& box, std::span<const std::uint16_t> labels,
                std::uint16_t label);
 
@@ -56,13 +54,13 @@ class SearchWindow {
     return box_.contains(cell) && mask_[index(cell)] != 0;
   }
 
-  /// Cells outside of the box do not matter.
+  /// Ignores cells outside of the box.
   void close(const Cell& cell);
 
-  /// Closes the cells whose middle is at most `radius_cells` from that of `cell`.
+  /// Closes the cells whose centre is at most `radius_cells` from that of `cell`.
   void close_disc(const Cell& cell, double radius_cells);
 
-  // For the search: cells by number, in rows with a closed cell at each end.
+  // Search interface: cells by number, in rows with a closed cell at each end.
   [[nodiscard]] std::uint32_t index(const Cell& cell) const {
     return static_cast<std::uint32_t>(cell.row - box_.low.row + 1) * stride_ +
            static_cast<std::uint32_t>(cell.column - box_.low.column + 1);
@@ -73,7 +71,7 @@ class SearchWindow {
   }
   [[nodiscard]] std::uint32_t stride() const { return stride_; }
   [[nodiscard]] const std::vector<std::uint8_t>& mask() const { return mask_; }
-  /// By cell as the mask; empty where nothing is demanded.
+  /// Indexed like the mask; empty without rules.
   [[nodiscard]] const std::vector<float>& slowness() const { return slowness_; }
   [[nodiscard]] const std::vector<std::uint8_t>& directions() const { return directions_; }
 
@@ -86,22 +84,22 @@ class SearchWindow {
 };
 
 struct CellPath {
-  std::vector<Cell> cells;  ///< from the first to the last, >= 1
-  double cost_cells = 0.0;  ///< length between the middles of the cells, in cells
+  std::vector<Cell> cells;  ///< in order, >= 1
+  double cost_cells = 0.0;  ///< length between the cell centres, in cells
 };
 
 /// Length of a path over neighbouring cells, in cells.
 double cost_cells(std::span<const Cell> cells);
 
-/// Length of the shortest path between two cells if nothing is between (octile distance), in cells.
+/// Length of the shortest path between two cells without obstacles (octile distance), in cells.
 double least_cost_cells(const Cell& a, const Cell& b);
 
-/// The cheapest path by A* with the octile distance as its estimate; empty when there is none or
-/// one of the two cells is not open.
+/// The cheapest path by A* with the octile distance as its estimate; empty if there is none or one
+/// of the two cells is not open.
 std::optional<CellPath> shortest_path(const SearchWindow& window, const Cell& from, const Cell& to);
 
-/// The cheapest paths to each of several cells, by one search that ends when all are reached: the
-/// costs are those of an A* to each, in the time of one.
+/// The cheapest paths to each of several cells, by one search that ends when all are reached, at
+/// the cost of a single one.
 std::vector<std::optional<CellPath>> shortest_paths(const SearchWindow& window, const Cell& from,
                                                     std::span<const Cell> to);
 

@@ -2,9 +2,9 @@
 // zones, and a graph whose nodes are the middles of the borders between zones and whose edges join
 // the nodes of a zone, with cost and route from the grid.
 //
-// Building costs one search through each of its two zones for every node: with z zones of c cells
-// and k nodes each, z k searches of c cells. `plan/build_2000` measures it. What it takes to build
-// a map (grid, drawing or topo-geometric map) is stored; the map itself is built again from that.
+// Building takes one search through each of its two zones for every node: with z zones of c cells
+// and k nodes each, z k searches of c cells. `plan/build_2000` measures it. Only the source of a
+// map (grid, drawing or topo-geometric map) is stored; the map is rebuilt from it.
 #pragma once
 
 #include <array>
@@ -28,11 +28,11 @@ struct BorderNode {
   std::array<ZoneId, 2> zones{};                         ///< ascending
   std::array<Cell, 2> cells{};                           ///< cells[i] is in zones[i]
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< between the two, map frame
-  double clearance_m = 0.0;                              ///< the less of the two
-  /// The cells of the border on either side, row by row: what to close when it cannot be passed.
+  double clearance_m = 0.0;                              ///< the smaller of the two
+  /// Border cells on either side, row by row; closed when the border cannot be passed.
   std::array<std::vector<Cell>, 2> border;
 
-  /// Its cell in a zone that it borders on.
+  /// Its cell in one of its two zones.
   [[nodiscard]] const Cell& cell_in(ZoneId zone) const {
     return zone == zones[0] ? cells[0] : cells[1];
   }
@@ -44,21 +44,21 @@ struct HybridEdge {
   std::uint32_t node_a = 0;
   std::uint32_t node_b = 0;
   ZoneId zone = 0;
-  double cost_m = 0.0;      ///< between the positions of the nodes, as the route goes
+  double cost_m = 0.0;      ///< between the positions of the nodes, along the route
   std::vector<Cell> route;  ///< from node_a's cell in the zone to node_b's
 };
 
 class HybridMap {
  public:
-  /// Builds nodes and edges. Throws std::invalid_argument when the zones are not those of this
-  /// space (see zones.hpp), and for places without a name or with that of another.
+  /// Builds nodes and edges. Throws std::invalid_argument if the zones do not belong to this space
+  /// (see zones.hpp), and for places without a name or with a repeated one.
   HybridMap(FreeSpace space, ZoneMap zones, std::vector<Place> places = {});
 
   [[nodiscard]] const FreeSpace& space() const { return space_; }
   [[nodiscard]] const GridFrame& frame() const { return space_.frame(); }
   [[nodiscard]] const ZoneMap& zones() const { return zones_; }
   [[nodiscard]] const std::vector<BorderNode>& nodes() const { return nodes_; }
-  /// By zone, ascending.
+  /// Sorted by zone, ascending.
   [[nodiscard]] const std::vector<HybridEdge>& edges() const { return edges_; }
   [[nodiscard]] const std::vector<Place>& places() const { return places_; }
   [[nodiscard]] const RouteGraph& graph() const { return graph_; }
@@ -68,7 +68,7 @@ class HybridMap {
     return nodes_of_zone_[zone];
   }
 
-  /// kNoZone outside and for cells that are not passable.
+  /// kNoZone outside and for impassable cells.
   [[nodiscard]] ZoneId zone_of(const Cell& cell) const {
     return frame().contains(cell) ? zones_.zone_of_cell[frame().index(cell)] : kNoZone;
   }

@@ -1,12 +1,13 @@
 // Routes on the hybrid map (MACONDO, III.3; docs/algorithms.md, "Hybrid map and planner").
 //
-// Start and goal in one zone: A* on the grid, the graph is ignored. In two zones, adjacent or not:
-// paths on the grid from the start to every node of its zone and from every node of the goal's zone
-// to the goal, Dijkstra on the graph between every pair of them; the cheapest sum wins.
+// If start and goal are in one zone: A* on the grid, the graph is ignored. If they are in two
+// zones, adjacent or not: paths on the grid from the start to every node of its zone and from every
+// node of the goal's zone to the goal, Dijkstra on the graph between every pair of them; the
+// cheapest sum wins.
 //
-// Beyond MACONDO, because the middle of a border can lie off the shortest path: short routes, and
-// pieces of the others, are planned again on the grid; and a long path within a zone is compared
-// with those that leave it and come back.
+// Additions to MACONDO, because the middle of a border can lie off the shortest path: short routes,
+// and pieces of the others, are planned again on the grid; and a long path within a zone is
+// compared with paths that leave the zone and return.
 #pragma once
 
 #include <cstdint>
@@ -29,69 +30,69 @@ struct NodeNumber {
   std::uint32_t id = 0;
 };
 
-/// Where to go: a point of the map frame (m), a node, or the name of a place (see find_place).
+/// Target: a point of the map frame (m), a node, or the name of a place (see find_place).
 using Target = std::variant<Eigen::Vector2d, NodeNumber, std::string>;
 
-/// What must not be used now.
+/// Parts of the map that are unusable now.
 struct Closures {
-  std::vector<std::uint32_t> nodes{};  ///< borders that cannot be passed (a door found shut)
-  std::vector<std::uint32_t> edges{};  ///< paths through a zone that are blocked
-  /// Cells that something fills which is not on the map; the robot's middle keeps as far from them
-  /// as from the obstacles on the map. In any order; those outside of the grid count, too.
+  std::vector<std::uint32_t> nodes{};  ///< impassable borders (a door found shut)
+  std::vector<std::uint32_t> edges{};  ///< blocked paths through a zone
+  /// Cells occupied by obstacles that are not on the map; the robot's centre keeps the same
+  /// distance as from mapped obstacles. In any order; cells outside of the grid also count.
   std::vector<Cell> cells{};
 };
 
 enum class RouteStatus : std::uint8_t {
   kFound = 0,
   kInvalidPoint = 1,   ///< a coordinate is not finite
-  kUnknownPlace = 2,   ///< no place of that name
-  kUnknownNode = 3,    ///< no node of that number
+  kUnknownPlace = 2,   ///< no place with that name
+  kUnknownNode = 3,    ///< no node with that number
   kStartOutside = 4,   ///< outside of the grid, or in unknown cells
   kStartOccupied = 5,  ///< in an obstacle or a forbidden cell
   kGoalOutside = 6,
   kGoalOccupied = 7,
-  kUnreachable = 8,  ///< no path, or none that is open now
+  kUnreachable = 8,  ///< no path, or no open one now
 };
 
-/// A word for logs and messages: "found", "unknown place", ...
+/// Short text for logs and messages: "found", "unknown place", ...
 std::string_view describe(RouteStatus status);
 
 enum class RouteKind : std::uint8_t { kSameZone = 0, kAdjacentZones = 1, kDistantZones = 2 };
 
 struct HybridRoute {
   RouteStatus status = RouteStatus::kUnreachable;
-  std::string reason;  ///< one line for people; empty when found
-  /// When the goal cannot be had but the start is good: the place nearest to it that can.
+  std::string reason;  ///< one line for people; empty if found
+  /// If the goal is unreachable but the start is good: the nearest reachable place to it.
   std::optional<Eigen::Vector2d> nearest_reachable_m;
 
-  // Filled when found.
+  // Set if found.
   RouteKind kind = RouteKind::kSameZone;
-  std::vector<Cell> cells;                ///< from the start's to the goal's, neighbours each
-  double cost_m = 0.0;                    ///< length over the middles of the cells
+  std::vector<Cell> cells;                ///< connected, from the start's to the goal's
+  double cost_m = 0.0;                    ///< length over the centres of the cells
   std::vector<Eigen::Vector2d> points_m;  ///< the same path straightened, from start to goal
   std::vector<double> clearances_m;  ///< of the cells of `points_m`, infinite without obstacles
   double length_m = 0.0;             ///< of `points_m`
   double min_clearance_m = 0.0;      ///< least of the cells
   std::vector<ZoneId> zones;         ///< in the order of the path
-  std::vector<std::uint32_t> nodes;  ///< in order; empty when it stays in one zone
+  std::vector<std::uint32_t> nodes;  ///< in order; empty if it stays in one zone
   std::vector<std::uint32_t> edges;  ///< between them
-  /// On what it was planned. A route along branches (goal_planner.hpp) has neither cells nor zones.
+  /// Basis of the plan. A route along branches (goal_planner.hpp) has neither cells nor zones.
   std::vector<RoutePart> parts;
 
   [[nodiscard]] bool found() const { return status == RouteStatus::kFound; }
 };
 
-/// Length of the parts of a route that were planned on one thing, metres.
+/// Total length of the parts of a route with one basis, metres.
 double length_on(const HybridRoute& route, PlannedOn on);
 
 /// Plans on one map, which must outlive it.
 class HybridPlanner {
  public:
-  /// Throws std::invalid_argument as `check`.
+  /// Throws std::invalid_argument like `check`.
   explicit HybridPlanner(const HybridMap& map, const HybridPlannerConfig& config = {});
 
-  /// Everything that can be wrong with start and goal is a status. Throws std::invalid_argument
-  /// only for closed nodes or edges that do not exist.
+  /// Every fault of start and goal is a status. Throws std::invalid_argument only for closed nodes
+  /// or edges that do not exist.
   [[nodiscard]] HybridRoute plan(const Eigen::Vector2d& from_m, const Target& to,
                                  const Closures& closed = {}) const;
 
@@ -100,8 +101,8 @@ class HybridPlanner {
   HybridPlannerConfig config_;
 };
 
-/// The same by A* over the whole grid: the shortest path over cells that there is, in much more
-/// time. Without zones, nodes and edges.
+/// The same by A* over the whole grid: the shortest path over cells, in much more time, without
+/// zones, nodes and edges.
 HybridRoute plan_on_grid(const FreeSpace& space, const Eigen::Vector2d& from_m,
                          const Eigen::Vector2d& to_m, const HybridPlannerConfig& config = {});
 

@@ -10,10 +10,10 @@ namespace topogeo::planning {
 struct HybridPlannerConfig {
   double start_snap_m = 0.5;
   double goal_snap_m = 0.0;
-  /// A route that is longer than the straight line is planned again whole when all paths shorter
-  /// than it lie in a window of at most so many cells.
+  /// A route longer than the straight line is planned again as a whole if all shorter paths lie in
+  /// a window of at most this many cells.
   double exact_window_cells = 40000.0;
-  double piece_m = 10.0;  ///< of the pieces, which overlap by half, of all other routes
+  double piece_m = 10.0;  ///< of the half-overlapping pieces of other routes
 };
 
 /// Declares the section `hybrid_planner`.

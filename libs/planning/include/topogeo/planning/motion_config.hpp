@@ -7,11 +7,11 @@ class ConfigSchema;
 
 namespace topogeo::planning {
 
-// Not in the configuration file: both only keep rounding errors out of a list of primitives.
+// Not in the configuration file: both only suppress rounding errors in a list of primitives.
 struct PrimitiveConfig {
-  double min_turn_rad = 1e-3;   ///< smaller turns are left out, [0, 1]; their sum is corrected at
-                                ///< the next turn
-  double min_advance_m = 1e-3;  ///< points nearer together count as one, [0, 1]
+  double min_turn_rad = 1e-3;   ///< smaller turns are left out, [0, 1]; the next turn includes
+                                ///< their sum
+  double min_advance_m = 1e-3;  ///< closer points count as one, [0, 1]
 };
 
 struct SmoothPathConfig {
@@ -20,7 +20,7 @@ struct SmoothPathConfig {
   double step_m = 0.1;
 };
 
-/// Declares the arcs of the section `navigator`.
+/// Declares the arc settings of the section `navigator`.
 void describe(SmoothPathConfig& config, support::ConfigSchema& schema);
 
 /// Throws std::invalid_argument naming key, value and range.

@@ -1,8 +1,8 @@
 // A uniform grid over the map frame of free, occupied and unknown cells (MACONDO, III.2;
 // docs/algorithms.md, "Hybrid map and planner").
 //
-// Column and row count along x and y of the grid frame, whose origin is the lower left corner of
-// cell (0, 0). The grid frame can be turned in the map frame, as the files of map_server allow.
+// Columns and rows count along x and y of the grid frame, whose origin is the lower left corner of
+// cell (0, 0). The grid frame can be rotated in the map frame, as files of map_server allow.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +26,7 @@ struct Cell {
   friend bool operator==(const Cell&, const Cell&) = default;
 };
 
-/// Size and place of a grid.
+/// Size and pose of a grid.
 struct GridFrame {
   std::int32_t columns = 0;    ///< [1, 20000]
   std::int32_t rows = 0;       ///< [1, 20000]; columns x rows <= 1e8
@@ -53,24 +53,25 @@ struct GridFrame {
   /// (0.5, 0.5).
   [[nodiscard]] Eigen::Vector2d in_cells(const Eigen::Vector2d& point_m) const;
 
-  /// The cell that a point of the map frame lies in; empty outside and for what is not finite.
+  /// The cell that contains a point of the map frame; empty outside and for points that are not
+  /// finite.
   [[nodiscard]] std::optional<Cell> cell_of(const Eigen::Vector2d& point_m) const;
 
-  /// Middle of a cell, map frame; also of cells outside.
+  /// Centre of a cell, map frame; also for cells outside.
   [[nodiscard]] Eigen::Vector2d center_m(const Cell& cell) const;
 };
 
-/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
+/// Throws std::invalid_argument naming the field, the value and the allowed range.
 void check(const GridFrame& frame);
 
-/// The frame of a grid of 0.1 m cells, parallel to the map frame, that reaches `margin_m` beyond
-/// all points (map frame; at least one). Where a side would have more than 2,000 of them cells are
+/// The frame of a grid of 0.1 m cells, parallel to the map frame, that extends `margin_m` beyond
+/// all points (map frame; at least one). If a side would have more than 2,000 cells, they are
 /// larger, up to 1 m.
 GridFrame frame_around(std::span<const Eigen::Vector2d> points_m, double margin_m);
 
 class OccupancyGrid {
  public:
-  /// Every cell `fill`. Throws std::invalid_argument as `check`.
+  /// Sets every cell to `fill`. Throws std::invalid_argument like `check`.
   explicit OccupancyGrid(const GridFrame& frame, CellState fill = CellState::kUnknown);
 
   [[nodiscard]] const GridFrame& frame() const { return frame_; }

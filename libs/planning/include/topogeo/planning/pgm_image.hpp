@@ -15,7 +15,7 @@ struct PgmImage {
   std::vector<std::uint8_t> pixels;  ///< row by row from the top
 };
 
-/// Throws std::runtime_error naming `source` and what is wrong with the bytes.
+/// Throws std::runtime_error naming `source` and the fault.
 PgmImage parse_pgm(std::string_view bytes, const std::string& source);
 
 std::string pgm_bytes(const PgmImage& image, bool as_text);

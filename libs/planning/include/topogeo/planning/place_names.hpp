@@ -1,4 +1,4 @@
-// Places by names as people write them.
+// Finds places by names that people write.
 #pragma once
 
 #include <cstddef>
@@ -11,16 +11,16 @@
 
 namespace topogeo::planning {
 
-/// The place of exactly that name; without one the only place whose name differs from it in capital
-/// letters (A to Z) alone; null when there is none, or more than one.
+/// The place with exactly that name; otherwise the only place whose name differs just in the case
+/// of the letters A to Z; null if there is none, or more than one.
 const Place* find_place(std::span<const Place> places, std::string_view name);
 
-/// The base station of that name, as find_place; without one the only base station there is, and
-/// without any the place of that name, which has no heading.
+/// The base station with that name, like find_place; otherwise the only base station, or, without
+/// any, the place with that name, which has no heading.
 const Place* find_base_station(std::span<const Place> places, std::string_view name);
 
-/// At most so many names of places: first those that take the fewest insertions, deletions and
-/// exchanges of letters to become `name`, capitals or not; of equal ones those that come first.
+/// At most `most` names of places, ordered by the number of insertions, deletions and replacements
+/// of letters that turn them into `name`, ignoring case; the original order breaks ties.
 std::vector<std::string> similar_names(std::span<const Place> places, std::string_view name,
                                        std::size_t most);
 

@@ -15,7 +15,7 @@ struct PlanningConfig {
                                  ///< virtual; the radius of a B21 is 0.2625 m
 };
 
-/// What a route is planned on first; on the other where there is none.
+/// Preferred basis of a route; the other is used if it has none.
 enum class PlanFirstOn : std::uint8_t {
   kHybrid = 0,  ///< grid and zones (MACONDO, III.3)
   kGraph = 1,   ///< nodes and branches (Thesis, 1.1)

@@ -1,5 +1,5 @@
-// What is remembered of the rooms of a map, to know them again in the next one: RoomNumbers makes
-// and uses it, map files keep it.
+// Stored data about the rooms of a map, to recognize them in the next one: RoomNumbers makes and
+// uses it, map files store it.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace topogeo::planning {
 
-/// A point of the floor, by where it lies from a stop.
+/// A point of the floor, relative to a stop.
 struct RoomPoint {
   std::optional<topomap::StopId> stop;
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< in its frame; map frame without one
@@ -27,17 +27,17 @@ struct RememberedRoom {
   std::uint32_t number = 0;  ///< > 0
   std::size_t cells = 0;     ///< of its zone
   std::vector<RoomPoint> points;
-  std::string name;  ///< "" unless it is another than that of its number
+  std::string name;  ///< "" unless it differs from that of its number
 
   friend bool operator==(const RememberedRoom&, const RememberedRoom&) = default;
 };
 
 /// A place that lies in a room.
 struct RememberedPlace {
-  Place drawn;  ///< as the drawing had it; one that was drawn anew since is not this one
+  Place drawn;  ///< from the drawing; a redrawn place does not match
   std::uint32_t room = 0;
   RoomPoint point;
-  double stop_heading_rad = 0.0;  ///< of the stop of `point` then, map frame; 0 without one
+  double stop_heading_rad = 0.0;  ///< of the stop of `point` at that time, map frame; 0 without one
 
   friend bool operator==(const RememberedPlace&, const RememberedPlace&) = default;
 };
@@ -45,7 +45,7 @@ struct RememberedPlace {
 struct RoomMemory {
   std::vector<RememberedRoom> rooms;  ///< by number
   std::vector<RememberedPlace> places;
-  std::uint32_t last = 0;  ///< number that was given last
+  std::uint32_t last = 0;  ///< last assigned number
 
   [[nodiscard]] bool empty() const { return last == 0 && rooms.empty() && places.empty(); }
   friend bool operator==(const RoomMemory&, const RoomMemory&) = default;

@@ -1,10 +1,10 @@
-// Numbers and names of rooms that stay with them while a map is made: it grows, rooms are joined
-// and parted, and a closed loop moves all of it.
+// Persistent numbers and names of rooms while a map is made: it grows, rooms are merged and split,
+// and a closed loop moves all of it.
 //
-// Each room is remembered by points in it, and each of these by where it lies from the stop nearest
-// to it, so that it moves with the map. A room of the next map is the one remembered that most of
-// their common floor belongs to; of two that were joined the one that has more of it, and of one
-// that was parted the larger part keeps the number.
+// Each room is remembered by points in it, each stored relative to the stop nearest to it, so that
+// it moves with the map. A room of the next map is matched to the remembered room with which it
+// shares most floor. If two rooms were merged, the one with more of the floor gives its number; if
+// a room was split, its larger part keeps the number.
 #pragma once
 
 #include <cstdint>
@@ -24,14 +24,13 @@ namespace topogeo::planning {
 class RoomNumbers {
  public:
   RoomNumbers() = default;
-  /// Goes on where another one was.
+  /// Continues with the memory of another instance.
   explicit RoomNumbers(RoomMemory memory) : memory_(std::move(memory)) {}
 
-  /// Sets Zone::room of all zones: of rooms seen before the number that they had, of others the
-  /// next ones, from 1 on, in the order of the zones. A zone without a name gets that of its room:
-  /// of the only place in it, or "room NUMBER". A place that has come to lie outside of its room,
-  /// because the map has moved, is moved and turned with the room. `stops` is empty for floors that
-  /// do not move.
+  /// Sets Zone::room of all zones: the earlier number for known rooms, the next ones, from 1 on in
+  /// the order of the zones, for others. A zone without a name gets that of its room: of the only
+  /// place in it, or "room NUMBER". If the map has moved and a place lies outside of its room now,
+  /// it is moved and turned with the room. `stops` is empty for floors that do not move.
   void assign(const GridFrame& frame, std::span<const topomap::StopPose> stops, ZoneMap& zones,
               std::vector<Place>& places);
 

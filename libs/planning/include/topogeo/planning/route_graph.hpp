@@ -17,36 +17,36 @@ struct GraphEdge {
   double cost = 0.0;  ///< finite, >= 0
 };
 
-/// A node where a path can begin or end, and what it costs to get there or on from there.
+/// A node where a path can begin or end, with the cost between it and the start or goal.
 struct GraphAccess {
   std::uint32_t node = 0;
   double cost = 0.0;  ///< finite, >= 0
 };
 
-/// What must not be used now, by index.
+/// Closed parts, by index.
 struct ClosedParts {
   std::vector<std::uint32_t> nodes;
   std::vector<std::uint32_t> edges;
 };
 
 struct GraphPath {
-  double cost = 0.0;                 ///< that of the first access, the edges and the last access
+  double cost = 0.0;                 ///< of the first access, the edges and the last access
   std::vector<std::uint32_t> nodes;  ///< >= 1
-  std::vector<std::uint32_t> edges;  ///< one less
+  std::vector<std::uint32_t> edges;  ///< one less than nodes
 };
 
 class RouteGraph {
  public:
-  /// Nodes 0 to nodes - 1; edges are named by their index. Throws std::invalid_argument for an
-  /// edge to a node that does not exist and a cost out of range.
+  /// Nodes 0 to nodes - 1; edges are named by their index. Throws std::invalid_argument for an edge
+  /// to a node that does not exist and for a cost out of range.
   RouteGraph(std::size_t nodes, std::span<const GraphEdge> edges);
   RouteGraph(RouteGraph&&) noexcept;
   RouteGraph& operator=(RouteGraph&&) noexcept;
   ~RouteGraph();
 
-  /// The cheapest of all paths from an entry to an exit: the minimum over all pairs of them, as one
-  /// search from all entries at once finds it. Empty when none connects. Throws
-  /// std::invalid_argument for nodes and edges that do not exist.
+  /// The cheapest path from any entry to any exit, found by one search from all entries at once.
+  /// Empty if none is connected. Throws std::invalid_argument for nodes and edges that do not
+  /// exist.
   [[nodiscard]] std::optional<GraphPath> cheapest(std::span<const GraphAccess> entries,
                                                   std::span<const GraphAccess> exits,
                                                   const ClosedParts& closed = {}) const;

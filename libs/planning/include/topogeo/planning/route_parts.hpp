@@ -1,4 +1,5 @@
-// On what the parts of a route were planned (docs/navigation.md, "On branches or on the grid").
+// Basis on which the parts of a route were planned (docs/navigation.md, "On branches or on the
+// grid").
 #pragma once
 
 #include <cstddef>
@@ -10,17 +11,17 @@ namespace topogeo::planning {
 enum class PlannedOn : std::uint8_t {
   kGrid = 0,           ///< cells of the grid
   kBranch = 1,         ///< a branch of the topo-geometric map
-  kVirtualBranch = 2,  ///< a virtual one: the robot has passed there and seen little
+  kVirtualBranch = 2,  ///< a virtual branch: the robot has passed there but seen little
   kOffBranch = 3,      ///< a straight line between the start or the goal and a branch
 };
 
-/// A word for people: "grid", "branch", "virtual branch", "off branch".
+/// Readable name: "grid", "branch", "virtual branch", "off branch".
 std::string_view describe(PlannedOn on);
 
-/// A part of a route goes from its first point to that of the next part, the last one to the end.
+/// A part of a route, from its first point to the first point of the next part or to the end.
 struct RoutePart {
   PlannedOn on = PlannedOn::kGrid;
-  std::uint32_t branch_id = 0;  ///< MapBranch::id; 0 where it follows none
+  std::uint32_t branch_id = 0;  ///< MapBranch::id; 0 if it follows none
   std::size_t first_point = 0;  ///< index among the points of the route
 
   friend bool operator==(const RoutePart&, const RoutePart&) = default;
