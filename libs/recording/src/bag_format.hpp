@@ -1,4 +1,4 @@
-// Records of a bag of ROS 1 that are read and written here.
+// Records of a bag of ROS 1 that this library reads and writes.
 #pragma once
 
 #include <cstdint>

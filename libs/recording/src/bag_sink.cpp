@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kBagChunkSize = std::size_t{768} * 1024;  // rosbag's own
 constexpr std::size_t kHeaderEnd = 4096;
 
-/// Fields of a header, name=value each after its length.
+/// Fields of a header, each as its length and name=value.
 class HeaderFields {
  public:
   HeaderFields& text(std::string_view name, std::string_view value) {
@@ -35,7 +35,7 @@ void append_bag_record(ByteBuffer& out, const HeaderFields& header,
   out.counted(header.bytes()).number(static_cast<std::uint32_t>(data.size())).raw(data);
 }
 
-/// Seconds in the lower half, nanoseconds in the upper, so that its bytes are those of a time.
+/// Seconds in the lower half, nanoseconds in the upper, which gives the bytes of a bag's time.
 std::uint64_t bag_time(std::int64_t time_ns) {
   const auto ns = static_cast<std::uint64_t>(time_ns);
   return (ns % 1'000'000'000U) << 32U | (ns / 1'000'000'000U & 0xFFFFFFFFU);

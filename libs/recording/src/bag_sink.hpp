@@ -33,7 +33,7 @@ class BagSink final : public MessageSink {
   Compression compression_;
   ByteBuffer chunk_;
   std::map<std::uint32_t, Entries> entries_;  // of the chunk, by connection
-  std::uint64_t chunk_first_ = 0;             // times as bags have them
+  std::uint64_t chunk_first_ = 0;             // times in bag format
   std::uint64_t chunk_last_ = 0;
   std::map<std::string, std::uint32_t> connections_;
   ByteBuffer connection_records_;

@@ -22,7 +22,7 @@ class BagSource final : public ChunkedSource {
 
   bool read_record(RawMessage& message) override;
   bool read_record_of_chunk(Cursor& cursor, RawMessage& message) override;
-  /// Connections and messages, wherever they stand.
+  /// Takes connections and messages, from any place.
   bool take(const Fields& header, std::span<const std::byte> data, RawMessage& message);
   void take_connection(const Fields& header, std::span<const std::byte> data);
   void open_chunk(const Fields& header, std::span<const std::byte> data);

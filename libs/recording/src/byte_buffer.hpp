@@ -1,4 +1,4 @@
-// Bytes of a file in the making, little endian.
+// Builds the bytes of a file, little endian.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ class ByteBuffer {
     return *this;
   }
   ByteBuffer& raw(std::string_view text) { return raw(std::as_bytes(std::span(text))); }
-  /// After its length, of 32 bits.
+  /// Appends the 32-bit length, then the text.
   ByteBuffer& text(std::string_view text) {
     return number(static_cast<std::uint32_t>(text.size())).raw(text);
   }

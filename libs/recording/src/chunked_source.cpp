@@ -27,8 +27,8 @@ bool ChunkedSource::next(RawMessage& message) {
         if (read_record(message)) return true;
       }
     } catch (const FormatError& error) {
-      // Inside a chunk the length of each record leads to the next; what follows a damaged one
-      // cannot be trusted.
+      // Inside a chunk the length of each record leads to the next one, so nothing after a damaged
+      // record can be trusted.
       damage_ = file_.name() + ": byte " + std::to_string(record_) + ": " + error.what();
       ended_ = true;
     }

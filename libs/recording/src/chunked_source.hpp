@@ -1,5 +1,5 @@
-// What files of records, some of them in compressed chunks, have in common: MCAP and the bags of
-// ROS 1. They are read from front to back.
+// Common base for files of records with compressed chunks: MCAP and the bags of ROS 1. They are
+// read from front to back.
 #pragma once
 
 #include <cstdint>
@@ -24,21 +24,21 @@ class ChunkedSource : public MessageSource {
   [[nodiscard]] double fraction_read() const final;
 
  protected:
-  /// Throws std::runtime_error with `expected` where the file cannot be read or starts otherwise.
+  /// Throws std::runtime_error with `expected` if the file cannot be read or has another start.
   ChunkedSource(const std::filesystem::path& path, TopicFilter wanted,
                 std::span<const std::byte> magic, std::string_view expected);
 
-  /// Where the messages of a connection or channel go.
+  /// Destination of the messages of a connection or channel.
   struct Channel {
     std::size_t topic = 0;
     bool wanted = false;
   };
   Channel channel_of(const Topic& topic);
 
-  /// The record of the file at at(), which moves on; true when it is a message to give out. Throws
+  /// Reads the record of the file at at(), which advances; true if it is a wanted message. Throws
   /// FormatError.
   virtual bool read_record(RawMessage& message) = 0;
-  /// The same of the chunk that is open, where `cursor` stands, which is moved behind the record.
+  /// The same within the open chunk, at `cursor`, which advances.
   virtual bool read_record_of_chunk(Cursor& cursor, RawMessage& message) = 0;
 
   [[nodiscard]] InputFile& file() { return file_; }
@@ -46,7 +46,7 @@ class ChunkedSource : public MessageSource {
   void move_to(std::uint64_t at) { at_ = at; }
   [[nodiscard]] UnpackBudget& budget() { return budget_; }
   void end() { ended_ = true; }
-  /// An empty one, to be filled, whose records come next.
+  /// An empty chunk to be filled; its records come next.
   std::vector<std::byte>& begin_chunk();
 
  private:

@@ -14,7 +14,7 @@
 namespace topogeo::recording {
 namespace {
 
-/// More than any block of real data shrinks: a larger promise of a small block allocates nothing.
+/// Above the ratio of any real block, so that a small block with a large promise allocates nothing.
 constexpr std::uint64_t kLargestRatio = 100'000;
 
 [[noreturn]] void fail_size(std::uint64_t expected, std::uint64_t got) {
@@ -50,7 +50,7 @@ void decompress_lz4(std::span<const std::byte> block, std::span<std::byte> out) 
 void decompress_bz2(std::span<const std::byte> block, std::span<std::byte> out) {
   auto size = static_cast<unsigned int>(out.size());
   char none = 0;
-  // The library takes a pointer to what it does not change, and refuses to write to nothing.
+  // The library takes a mutable pointer to constant data, and rejects a null destination.
   auto* from = const_cast<char*>(reinterpret_cast<const char*>(block.data()));
   char* to = out.empty() ? &none : reinterpret_cast<char*>(out.data());
   const int result =
@@ -67,7 +67,7 @@ void decompress_zstd_into(std::span<const std::byte> block, std::span<std::byte>
 
 std::vector<std::byte> compress_zstd(std::span<const std::byte> block) {
   constexpr int kLevel =
-      1;  // as rosbag2's fast preset; recordings are written while a robot drives
+      1;  // like rosbag2's fast preset; recordings are written while a robot drives
   std::vector<std::byte> out(ZSTD_compressBound(block.size()));
   const std::size_t size =
       ZSTD_compress(out.data(), out.size(), block.data(), block.size(), kLevel);
@@ -77,8 +77,7 @@ std::vector<std::byte> compress_zstd(std::span<const std::byte> block) {
 }
 
 std::vector<std::byte> compress_lz4(std::span<const std::byte> block) {
-  // What the reader of ROS 1 takes: blocks that do not refer to each other, a checksum of the
-  // content.
+  // Options that the reader of ROS 1 requires: independent blocks, a checksum of the content.
   LZ4F_preferences_t preferences{};
   preferences.frameInfo.blockMode = LZ4F_blockIndependent;
   preferences.frameInfo.contentChecksumFlag = LZ4F_contentChecksumEnabled;
@@ -92,7 +91,7 @@ std::vector<std::byte> compress_lz4(std::span<const std::byte> block) {
 
 std::vector<std::byte> compress_bz2(std::span<const std::byte> block) {
   constexpr int kBlockSize_100k = 9;
-  // As the library's manual bounds it.
+  // Bound of the library's manual.
   std::vector<std::byte> out(block.size() + block.size() / 100 + 600);
   auto size = static_cast<unsigned int>(out.size());
   auto* from = const_cast<char*>(reinterpret_cast<const char*>(block.data()));

@@ -13,7 +13,7 @@
 namespace topogeo::recording {
 namespace {
 
-/// Just below what CARMEN logs write for "no return": all that was measured is kept, whatever the
+/// Just below the "no return" value of CARMEN logs, so that every measurement is kept, whatever the
 /// limit of mapping.
 constexpr double kRangeLimit_m = 81.9;
 
@@ -21,7 +21,7 @@ template <typename Message>
 void translate(const RawMessage& message, Encoding from, Encoding to,
                std::vector<std::byte>& bytes) {
   const auto decoded =
-      decode<Message>(message.data, from);  // also where the encoding stays: a check
+      decode<Message>(message.data, from);  // checks the message even if the encoding is the same
   bytes.clear();
   if (from == to) {
     bytes.assign(message.data.begin(), message.data.end());
@@ -30,10 +30,10 @@ void translate(const RawMessage& message, Encoding from, Encoding to,
   }
 }
 
-/// All that both formats know, message by message.
+/// Copies everything that both formats support, message by message.
 class Copy {
  public:
-  /// `name`: of the file that is read.
+  /// `name`: of the input file.
   Copy(std::string name, MessageSource& source, MessageSink& sink)
       : name_(std::move(name)), source_(source), sink_(sink) {}
 
@@ -65,7 +65,7 @@ class Copy {
     }
   }
 
-  /// The count that the message belongs to; null for types that are not copied.
+  /// The counter for the message; null for types that are not copied.
   std::uint64_t* translate_known(const Topic& topic, const RawMessage& message) {
     if (topic.encoding == Encoding::kOther) return nullptr;
     const Encoding to = sink_.encoding();
@@ -95,7 +95,7 @@ class Copy {
   std::string_view type_;
 };
 
-/// Scan by scan, where one of the two is a CARMEN log.
+/// Converts scan by scan, for a CARMEN log as input or output.
 Conversion convert_scans(const std::filesystem::path& in, const std::filesystem::path& out,
                          const ConvertOptions& options) {
   LogMounting mounting = mounting_in_log(in, options.topics);

@@ -1,4 +1,4 @@
-// What the fields of a message are read from and written to; see ros_codec.hpp.
+// Readers and writers of message fields; see ros_codec.hpp.
 #pragma once
 
 #include <array>
@@ -22,8 +22,8 @@ static_assert(std::endian::native == std::endian::little);
 template <typename Value>
 concept Number = std::is_arithmetic_v<Value>;
 
-/// Numbers are aligned to their size, counted from after the encapsulation, in CDR; in ROS 1 not at
-/// all.
+/// In CDR, numbers are aligned to their size, counted after the encapsulation; in ROS 1 they are
+/// not aligned.
 template <Encoding kEncoding>
 class FieldReader {
  public:

@@ -9,10 +9,10 @@
 namespace topogeo::recording {
 namespace {
 
-/// As of Humble, which later versions read.
+/// Version of Humble, which later releases also read.
 constexpr int kMetadataVersion = 5;
 
-/// Without the slash at its end.
+/// Removes a trailing slash.
 std::filesystem::path folder_name(const std::filesystem::path& folder) {
   return folder.has_filename() ? folder : folder.parent_path();
 }

@@ -1,4 +1,4 @@
-// Writes a folder of rosbag2: NAME/NAME_0.db3 with its metadata.yaml, which `ros2 bag` asks for.
+// Writes a folder of rosbag2: NAME/NAME_0.db3 with its metadata.yaml, which `ros2 bag` needs.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace topogeo::recording {
 
 class FolderSink final : public MessageSink {
  public:
-  /// Makes the folder. Throws std::runtime_error, also when there is something in it.
+  /// Makes the folder. Throws std::runtime_error, also if it exists and is not empty.
   explicit FolderSink(const std::filesystem::path& folder);
   [[nodiscard]] Encoding encoding() const override { return messages_.encoding(); }
   void write(const OutputMessage& message) override;

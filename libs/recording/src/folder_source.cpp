@@ -22,12 +22,12 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& folder)
           .required("rosbag2_bagfile_information");
   std::vector<std::filesystem::path> files;
   for (const support::YamlNode& name : bag.required("relative_file_paths").items()) {
-    // Bags of early versions name the folder too.
+    // Early versions also put the folder in the name.
     const std::filesystem::path path = folder / name.text();
     files.push_back(std::filesystem::exists(path)
                         ? path
                         : folder / std::filesystem::path(name.text()).filename());
-    // A folder in it could name itself.
+    // A subfolder could refer to itself.
     if (std::filesystem::is_directory(files.back())) name.fail("a file");
   }
   if (files.empty()) bag.at("relative_file_paths").fail("a file or more");

@@ -1,4 +1,4 @@
-// A file that is read in large parts, at any place.
+// A file that is read in large parts, with random access.
 #pragma once
 
 #include <cstddef>
@@ -18,14 +18,14 @@ namespace topogeo::recording {
 
 class InputFile {
  public:
-  /// Throws std::runtime_error when it cannot be opened or is no regular file.
+  /// Throws std::runtime_error if it cannot be opened or is not a regular file.
   explicit InputFile(const std::filesystem::path& path);
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::uint64_t size() const { return size_; }
 
-  /// The bytes from `offset`, fewer than `count` where the file ends; valid until the next call.
-  /// Throws std::runtime_error when reading fails.
+  /// The bytes from `offset` on, fewer than `count` at the end of the file; valid until the next
+  /// call. Throws std::runtime_error if reading fails.
   std::span<const std::byte> view(std::uint64_t offset, std::size_t count);
 
  private:
@@ -36,12 +36,12 @@ class InputFile {
   std::vector<std::byte> window_;
 };
 
-/// Thrown by a Cursor; those who know the place in the file catch it.
+/// Thrown by a Cursor; callers that know the position in the file catch it.
 struct FormatError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Goes through little-endian numbers and counted bytes.
+/// Reads little-endian numbers and counted bytes in order.
 class Cursor {
  public:
   explicit Cursor(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -71,7 +71,7 @@ class Cursor {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
   }
 
-  /// Bytes after their number, of 32 bits.
+  /// Bytes after their 32-bit count.
   std::string_view counted_text() { return text(number<std::uint32_t>()); }
 
  private:

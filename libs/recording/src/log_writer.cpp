@@ -60,7 +60,7 @@ class CarmenTarget final : public LogWriter::Target {
   scan::CarmenLogWriter log_;
 };
 
-/// Beyond what lasers of this kind measure: twice the farthest echo at least.
+/// Beyond the range of such lasers: at least twice the farthest echo.
 float range_max_of(const scan::Scan& scan) {
   float farthest_m = 100.0F;
   for (const float range_m : scan.ranges_m) farthest_m = std::max(farthest_m, 2.0F * range_m);
@@ -119,13 +119,13 @@ class RosTarget final : public LogWriter::Target {
         kGridType, stamp_ns);
   }
 
-  // ROS 1 has other definitions of these messages, which nobody here reads.
+  // ROS 1 defines these messages differently, and no reader here supports that.
   [[nodiscard]] bool holds_poses() const override { return sink_->encoding() == Encoding::kCdr; }
 
   void close() override { sink_->close(); }
 
  private:
-  /// From the scan before.
+  /// Derived from the previous scan.
   void set_speed(ros::Odometry& odometry, const scan::Scan& scan) {
     const double step_s = static_cast<double>(scan.stamp_ns - last_ns_) * 1e-9;
     if (last_ns_ != 0 && step_s > 0.0) {

@@ -1,4 +1,4 @@
-// Records of MCAP that are read and written here.
+// Records of MCAP that this library reads and writes.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'M', 'C', 'A', 'P',
 inline constexpr std::size_t kRecordHead = 9;  ///< opcode and length of the content
 
 enum class Opcode : std::uint8_t {
-  kNone = 0x00,  ///< in no file that is whole
+  kNone = 0x00,  ///< never in an intact file
   kHeader = 0x01,
   kFooter = 0x02,
   kSchema = 0x03,

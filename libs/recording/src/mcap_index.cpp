@@ -15,14 +15,15 @@ using Bytes = std::span<const std::byte>;
 
 constexpr std::uint64_t kFooterContent = 8 + 8 + 4;
 constexpr std::uint64_t kFooterSize = mcap::kRecordHead + kFooterContent + mcap::kMagic.size();
-/// That of two million chunks.
+/// Size for two million chunks.
 constexpr std::uint64_t kLargestSummary = std::uint64_t{1} << 28U;
 
 std::vector<std::byte> copy_of(Bytes bytes) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// From the summary on up to the checksum in the footer; nothing where that does not hold.
+/// The bytes between the start of the summary and its checksum in the footer; empty if that is
+/// wrong.
 std::vector<std::byte> checked_summary(InputFile& file) {
   if (file.size() < mcap::kMagic.size() + kFooterSize) return {};
   const std::uint64_t footer_at = file.size() - kFooterSize;

@@ -1,5 +1,5 @@
-// The summary at the end of an MCAP file (https://mcap.dev/spec): which channels each chunk holds,
-// so that chunks without a wanted one are passed over unread.
+// The summary at the end of an MCAP file (https://mcap.dev/spec): the channels of each chunk, so
+// that chunks without a wanted one are skipped unread.
 #pragma once
 
 #include <cstddef>
@@ -22,8 +22,8 @@ struct McapSummary {
   std::map<std::uint64_t, Chunk> chunks;         ///< by the byte where the chunk starts
 };
 
-/// Empty where the file has no summary, was cut off, or where the checksum of the summary is wrong
-/// or missing: an index that is wrong would lose messages unnoticed. Throws std::runtime_error when
+/// Empty if the file has no summary, was truncated, or if the checksum of the summary is wrong or
+/// missing, because a wrong index would silently lose messages. Throws std::runtime_error if
 /// reading fails.
 McapSummary read_summary(InputFile& file);
 

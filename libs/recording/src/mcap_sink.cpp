@@ -163,7 +163,7 @@ void McapSink::write_summary() {
   add_group(Opcode::kChunkIndex, chunk_indexes_);
   const std::uint64_t offsets_start = start + summary.size();
   summary.raw(offsets.bytes());
-  // The checksum is of all from the summary on, up to itself.
+  // The checksum covers everything from the summary up to itself.
   constexpr std::uint64_t kFooterSize = 8 + 8 + 4;
   summary.number(static_cast<std::uint8_t>(Opcode::kFooter)).number(kFooterSize);
   summary.number(start).number(offsets_start);

@@ -1,4 +1,4 @@
-// Writes MCAP as rosbag2 does (profile ros2): chunks with their indexes, a summary.
+// Writes MCAP in the form of rosbag2 (profile ros2): chunks with their indexes, a summary.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,7 @@ class McapSink final : public MessageSink {
   Channel& channel_of(const OutputMessage& message);
   std::uint16_t schema_of(std::string_view type);
   void write_chunk();
-  /// Returns the length of all indexes, and fills in where each stands.
+  /// Returns the total length of the indexes, and fills in the offset of each.
   std::uint64_t write_message_indexes(ByteBuffer& offsets);
   void write_summary();
 

@@ -33,9 +33,9 @@ void McapSource::take_summary(const McapSummary& summary) {
     for (const std::vector<std::byte>& schema : summary.schemas) take_schema(schema);
     for (const std::vector<std::byte>& channel : summary.channels) take_channel(channel);
   } catch (const FormatError&) {
-    return;  // the data section has them as well
+    return;  // the data section repeats them
   }
-  // A channel that is not in the summary would be known from a chunk that is passed over.
+  // A channel missing from the summary could only be learned from a skipped chunk.
   const auto is_known = [this](std::uint16_t id) { return channels_.contains(id); };
   const auto is_unwanted = [this](std::uint16_t id) { return !channels_.at(id).wanted; };
   const auto states_channels = [&](const auto& entry) {
@@ -88,7 +88,7 @@ bool McapSource::read_record(RawMessage& message) {
     case mcap::Opcode::kMessage:
       return take_message(content(), message);
     default:
-      return false;  // indexes, attachments, what comes in later versions
+      return false;  // indexes, attachments, records of later versions
   }
 }
 

@@ -1,5 +1,5 @@
-// Reads MCAP (https://mcap.dev/spec) from front to back, past the chunks that
-// by the index at its end have nothing that is wanted.
+// Reads MCAP (https://mcap.dev/spec) from front to back, skipping chunks in which the index at its
+// end lists no wanted channel.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ class McapSource final : public ChunkedSource {
 
   std::map<std::uint16_t, std::string> schemas_;  // names
   std::map<std::uint16_t, Channel> channels_;
-  std::map<std::uint64_t, std::uint64_t> unwanted_chunks_;  // where each starts and the next record
+  std::map<std::uint64_t, std::uint64_t> unwanted_chunks_;  // start of each and of the next record
 };
 
 }  // namespace topogeo::recording

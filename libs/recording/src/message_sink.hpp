@@ -1,4 +1,4 @@
-// Files of recordings that messages are written to.
+// Writes messages to the files of a recording.
 #pragma once
 
 #include <cstddef>
@@ -30,25 +30,25 @@ class MessageSink {
   [[nodiscard]] virtual Encoding encoding() const = 0;
   /// Throws std::runtime_error when writing fails.
   virtual void write(const OutputMessage& message) = 0;
-  /// Writes what a reader looks for at the end. Throws the same.
+  /// Writes the data that readers expect at the end. Throws likewise.
   virtual void close() = 0;
 };
 
-/// Whether create_sink() makes one of a file of that name.
+/// Whether create_sink() supports a file with that name.
 bool is_recording_name(const std::filesystem::path& path);
 
-/// By the ending of the name: .mcap, .db3, .bag; a folder of rosbag2 where there is none, or a
-/// slash; null for another. `compression`: see
-/// ConvertOptions. Throws std::runtime_error when the file cannot be created, std::invalid_argument
-/// for a compression that the format lacks.
+/// Selects the format by the ending of the name: .mcap, .db3, .bag; a folder of rosbag2 without an
+/// ending or with a trailing slash; null for others. `compression`: see ConvertOptions. Throws
+/// std::runtime_error if the file cannot be created, std::invalid_argument for a compression that
+/// the format lacks.
 std::unique_ptr<MessageSink> create_sink(const std::filesystem::path& path,
                                          const std::string& compression);
 
-/// Whether late readers get the last message of a topic: /tf_static, /map and what else is stated
-/// once.
+/// Whether late readers get the last message of a topic: /tf_static, /map and others that are
+/// stated once.
 bool is_latched(std::string_view topic);
 
-/// Quality of service as rosbag2 stores it, complete, in numbers that all its versions read.
+/// Quality of service in rosbag2's form, complete, in numbers that all its versions read.
 std::string qos_profile_text(bool latched);
 
 }  // namespace topogeo::recording

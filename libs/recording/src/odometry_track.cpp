@@ -7,9 +7,9 @@
 namespace topogeo::recording {
 namespace {
 
-/// Half an hour at 50 poses a second, without a scan that would let poses be forgotten.
+/// Half an hour at 50 poses a second without a scan that lets poses be dropped.
 constexpr std::size_t kMostSamples = 100'000;
-// A robot that stands: what odometry of wheels shows of it.
+// Odometry motion of a standing robot, at most.
 constexpr double kStands_m = 0.01;
 constexpr double kStands_rad = 0.01;
 

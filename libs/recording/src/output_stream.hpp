@@ -25,7 +25,7 @@ class OutputStream {
     check();
     at_ += bytes.size();
   }
-  /// Over what stands there; the place where writing goes on stays.
+  /// Overwrites bytes at `offset`; the position for further output is kept.
   void write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
     file_.seekp(static_cast<std::streamoff>(offset));
     file_.write(reinterpret_cast<const char*>(bytes.data()),

@@ -6,8 +6,8 @@
 
 namespace topogeo::recording {
 
-// Found by the templates of field_codec.hpp through the namespace of their argument, hence not in
-// an anonymous one.
+// The templates of field_codec.hpp find these through argument-dependent lookup, so they are not in
+// an anonymous namespace.
 
 /// A message that is read, or one that is written.
 template <typename Type, typename Message>

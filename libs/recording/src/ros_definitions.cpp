@@ -101,7 +101,7 @@ void for_each_line(std::string_view text, Use use) {
   }
 }
 
-/// The types that a type consists of, itself first, each once, in the order in which they are met.
+/// The types that a type consists of, itself first, each once, in the order of occurrence.
 std::vector<const RosDefinition*> with_parts(std::string_view type) {
   std::vector<const RosDefinition*> all = {&known(type)};
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -115,8 +115,8 @@ std::vector<const RosDefinition*> with_parts(std::string_view type) {
   return all;
 }
 
-/// Fields as ROS 1 has them: times are built in, headers are numbered, a pose's quaternion has no
-/// defaults.
+/// Fields in the form of ROS 1: times are built in, headers are numbered, a pose's quaternion has
+/// no defaults.
 std::string ros1_fields(const RosDefinition& definition) {
   std::string text;
   if (definition.type == "std_msgs/msg/Header") text += "uint32 seq\n";

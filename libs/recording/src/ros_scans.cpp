@@ -15,14 +15,14 @@ namespace {
 
 using scan::SkipReason;
 
-/// Scans that wait for odometry, at most: minutes of a recording whose topics were written one
-/// after the other.
+/// Most scans that wait for odometry: minutes of a recording whose topics were written one after
+/// the other.
 constexpr std::size_t kMostWaiting = 4096;
-/// As CARMEN logs are read: farther off is no odometry.
+/// Same limit as for CARMEN logs: a farther pose is no odometry.
 constexpr double kFarthest_m = 1e6;
 constexpr std::int64_t kLastStamp_ns = 9'000'000'000'000'000'000;
 
-/// That of the header, or where it has none, that of the recording.
+/// The stamp of the header or, if it has none, of the recording.
 std::int64_t stamp_of(const ros::Header& header, std::int64_t log_time_ns) {
   const std::int64_t stamp_ns = ros::stamp_ns_of(header.stamp_());
   return stamp_ns != 0 ? stamp_ns : log_time_ns;
@@ -105,7 +105,7 @@ std::optional<RosScans::Candidate> RosScans::take_front() {
 void RosScans::put_beams(const Waiting& from, scan::Scan& scan) const {
   ros::Sweep sweep = from.sweep;
   if (beams_ == Beams::kOnePattern) {
-    // A mounting that is not known is taken for the middle of the robot.
+    // An unknown mounting is assumed at the robot's centre.
     const geometry::Pose2 T_robot_laser =
         survey_.mounting ? survey_.mounting->T_robot_laser : geometry::Pose2{};
     if (sweep.time_step_s != 0.0) {

@@ -1,5 +1,5 @@
-// The scans of a recording with the odometry at their times, readable by themselves, not yet in
-// order of time.
+// The scans of a recording with the odometry at their times, each readable, not yet in order of
+// time.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace topogeo::recording {
 class RosScans {
  public:
   enum class Beams : std::uint8_t {
-    kOnePattern,  ///< the motion of each sweep taken out as chosen, all on the beams of most scans
+    kOnePattern,  ///< motion of each sweep removed as chosen, all on the beams of most scans
     kAsMeasured
   };
 
@@ -62,7 +62,7 @@ class RosScans {
   scan::ScanSequence::Skip skip_;
   std::unique_ptr<MessageSource> source_;
   OdometryTrack track_;
-  std::deque<Waiting> waiting_;  // for odometry at or after their last beams
+  std::deque<Waiting> waiting_;  // until odometry reaches their last beams
   std::uint64_t messages_ = 0;
   std::uint64_t scans_ = 0;
   std::uint64_t odometry_ = 0;

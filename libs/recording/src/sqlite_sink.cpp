@@ -17,7 +17,7 @@ SqliteSink::SqliteSink(const std::filesystem::path& path)
       sqlite3_open_v2(name_.c_str(), &raw, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
   database_.reset(raw);
   check(opened == SQLITE_OK);
-  // One transaction: who is interrupted has an empty recording beside a journal, which SQLite
+  // Uses one transaction: an interruption leaves an empty recording and a journal, which SQLite
   // resolves.
   execute(
       "PRAGMA synchronous = OFF;"

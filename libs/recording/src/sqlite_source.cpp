@@ -17,7 +17,7 @@ std::string column_text(sqlite3_stmt* row, int column) {
   return text == nullptr ? "" : text;
 }
 
-/// For a name in a URI.
+/// Escapes a name for a URI.
 std::string escaped(const std::string& name) {
   std::string out;
   for (const char c : name) {
@@ -57,14 +57,13 @@ SqliteSource::SqliteSource(const std::filesystem::path& path, const TopicFilter&
 SqliteSource::~SqliteSource() = default;
 
 void SqliteSource::open() {
-  // A recording beside which no file can be made, as on a read-only disk, opens as one that does
-  // not change.
+  // If no file can be made beside the recording, as on a read-only disk, opens it as immutable.
   for (const char* how : {"?mode=ro", "?mode=ro&immutable=1"}) {
     sqlite3* raw = nullptr;
     const std::string uri = "file:" + escaped(name_) + how;
     const int result =
         sqlite3_open_v2(uri.c_str(), &raw, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
-    limit_.reset();  // of the connection before
+    limit_.reset();  // of the previous connection
     database_.reset(raw);
     if (raw == nullptr) continue;
     sqlite_guard::protect(raw);
@@ -102,7 +101,7 @@ std::span<const std::byte> SqliteSource::data_of_row() {
   const auto* data = static_cast<const std::byte*>(sqlite3_column_blob(row, 3));
   if (data == nullptr) return {};
   const auto size = static_cast<std::size_t>(sqlite3_column_bytes(row, 3));
-  // Rows of a damaged file can lie on the same pages.
+  // Rows of a damaged file can share pages.
   data_bytes_ += size;
   if (data_bytes_ > file_bytes_) throw FormatError("expected messages that the file can hold");
   return {data, size};
@@ -129,8 +128,8 @@ void SqliteSource::select_messages(const TopicFilter& wanted) {
     if (!wanted(topics_[topic])) continue;
     ids += (ids.empty() ? "" : ", ") + std::to_string(id);
   }
-  // By id, which is the order of recording: in order of time SQLite would have to sort the whole
-  // file where it lacks the index, and jump about in it where it has one.
+  // Ordered by id, the order of recording: for an order by time SQLite would have to sort the whole
+  // file without an index, or jump about in it with one.
   messages_ = prepare("SELECT id, topic_id, timestamp, data FROM messages WHERE topic_id IN (" +
                       ids + ") ORDER BY id");
 }

@@ -38,9 +38,9 @@ class SqliteSource final : public MessageSource {
   void open();
   Statement prepare(const std::string& sql);
   [[noreturn]] void fail(const std::string& what);
-  /// Why the last call failed.
+  /// Cause of the last failure.
   [[nodiscard]] std::string cause() const;
-  /// The blob of the message. Throws FormatError where all so far are more than the file can hold.
+  /// The blob of the message. Throws FormatError if all so far exceed the size of the file.
   std::span<const std::byte> data_of_row();
   void read_topics();
   void select_messages(const TopicFilter& wanted);

@@ -14,7 +14,7 @@
 namespace topogeo::recording {
 namespace {
 
-/// Scans of one pattern of beams.
+/// Scans with one pattern of beams.
 struct BeamKind {
   ros::BeamPattern upright;
   ros::BeamPattern upside_down;
@@ -25,8 +25,8 @@ struct TopicFacts {
   Topic topic;
   std::uint64_t messages = 0;
   std::vector<BeamKind> beams;  // of its scans
-  std::string frame;            // of the first message: of the laser, or of odometry
-  std::string child_frame;      // of the first odometry
+  std::string frame;            // from the first message: of the laser, or of odometry
+  std::string child_frame;      // from the first odometry
 };
 
 bool is_used(const Topic& topic) {
@@ -34,7 +34,7 @@ bool is_used(const Topic& topic) {
          (topic.type == kLaserScanType || topic.type == kOdometryType || topic.type == kTfType);
 }
 
-/// The scans and odometry of all topics that could be meant, and all transforms.
+/// Collects the scans and odometry of all candidate topics, and all transforms.
 class Surveyor {
  public:
   Surveyor(const std::filesystem::path& path, const TopicChoice& choice)
@@ -105,12 +105,12 @@ void Surveyor::take(const Topic& topic, const RawMessage& message) {
       facts.child_frame = ros::frame_name(odometry.child_frame_id_());
     }
   } catch (const DecodeError&) {
-    // The reader of the log counts and explains them.
+    // The log reader counts and explains them.
   } catch (const std::invalid_argument&) {  // NOLINT(bugprone-empty-catch): as those
   }
 }
 
-/// Most messages first.
+/// Sorted by number of messages, most first.
 std::vector<const TopicFacts*> Surveyor::of_type(std::string_view type) const {
   std::vector<const TopicFacts*> found;
   for (const auto& [name, facts] : facts_) {
@@ -187,7 +187,7 @@ void Surveyor::choose_odometry() {
   }
 }
 
-/// How good a guess it is that this transform is the odometry's; 0: it is not.
+/// Rank of this transform as a candidate for the odometry's; 0: it is none.
 int odometry_rank(const ros::FrameTree::Edge& edge) {
   const std::string parent = edge.parent.substr(edge.parent.rfind('/') + 1);
   const std::string child = edge.child.substr(edge.child.rfind('/') + 1);
@@ -229,7 +229,7 @@ void Surveyor::find_mounting() {
   }
 }
 
-/// Those of most scans; the first of as many.
+/// Chooses the beams of most scans; the first pattern breaks ties.
 void Surveyor::choose_beams() {
   const std::vector<BeamKind>& kinds = facts_.at(survey_.scan_topic).beams;
   const auto most = std::ranges::max_element(kinds, {}, &BeamKind::scans);

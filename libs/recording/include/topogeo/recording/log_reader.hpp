@@ -1,6 +1,5 @@
-// One reader for all logs that people have: CARMEN text logs, and recordings of ROS (see
-// message_source.hpp). All give the same scans, so that one drive gives the same map in each
-// format.
+// One reader for all log formats: CARMEN text logs, and recordings of ROS (see message_source.hpp).
+// All return the same scans, so that a drive gives the same map in each format.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +16,14 @@
 
 namespace topogeo::recording {
 
-/// What `--log` takes, for help texts.
+/// Formats that `--log` accepts, for help texts.
 inline constexpr const char* kLogFormats =
     "CARMEN log (plain or gzip), or recording of ROS: .db3, .mcap, .bag, folder of rosbag2";
 
 class LogReader {
  public:
-  /// Opens the log and reads up to its first usable scan. Throws as scan::CarmenLogReader and
-  /// survey() do.
+  /// Opens the log and reads up to its first usable scan. Throws like scan::CarmenLogReader and
+  /// survey().
   explicit LogReader(const std::filesystem::path& path, const scan::CarmenLogOptions& options = {},
                      const TopicChoice& topics = {});
   ~LogReader();
@@ -33,10 +32,10 @@ class LogReader {
   LogReader(const LogReader&) = delete;
   LogReader& operator=(const LogReader&) = delete;
 
-  /// As scan::CarmenLogReader::next().
+  /// Like scan::CarmenLogReader::next().
   std::optional<scan::Scan> next();
 
-  /// Of a recording: `lines` are its messages that were read, of all kinds, `laser_lines` its
+  /// In a recording, `lines` counts its messages of all kinds that were read, `laser_lines` its
   /// scans.
   [[nodiscard]] const scan::CarmenLogStatistics& statistics() const;
 
@@ -49,18 +48,17 @@ class LogReader {
   std::unique_ptr<Source> source_;
 };
 
-/// Never less than the number of usable scans. Throws std::runtime_error when the log cannot be
-/// opened.
+/// At least the number of usable scans. Throws std::runtime_error if the log cannot be opened.
 std::uint64_t count_scans(const std::filesystem::path& path, const TopicChoice& topics = {});
 
 struct LogMounting {
-  std::optional<geometry::Pose2> T_robot_laser;  ///< empty where the log does not state it
+  std::optional<geometry::Pose2> T_robot_laser;  ///< empty if the log does not state it
   std::vector<std::string> notes;                ///< of Survey; none for a CARMEN log
 };
-/// Throws std::runtime_error when the log cannot be opened.
+/// Throws std::runtime_error if the log cannot be opened.
 LogMounting mounting_in_log(const std::filesystem::path& path, const TopicChoice& topics = {});
 
-/// As scan::check_carmen_log; of a recording, messages count as lines, and a fault has the number
+/// Like scan::check_carmen_log. In a recording, messages count as lines, and a fault has the number
 /// of its scan among those of the topic, from 1.
 scan::LogCheck check_log(const std::filesystem::path& path,
                          const scan::LogCheckOptions& options = {}, const TopicChoice& topics = {});

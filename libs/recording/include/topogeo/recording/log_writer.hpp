@@ -1,5 +1,5 @@
-// Writes what a robot measures and where it is as a log of any format: a CARMEN text log, or a
-// recording of ROS that ROS, Foxglove and our own reader take.
+// Writes the scans and poses of a robot as a log of any format: a CARMEN text log, or a recording
+// that ROS, Foxglove and our own reader can read.
 #pragma once
 
 #include <cstdint>
@@ -19,45 +19,45 @@ namespace topogeo::recording {
 
 class LogWriter {
  public:
-  /// Creates or replaces the file, whose name states the format: .mcap, .db3, .bag; without an
-  /// ending or with a slash a new folder of rosbag2; all others are CARMEN logs, gzip for .gz.
-  /// `T_robot_laser`: mounting of the laser, which the log states. `compression`: see
-  /// ConvertOptions. Throws std::runtime_error when the file cannot be written,
-  /// std::invalid_argument for a compression it does not have.
+  /// Creates or replaces the file, whose name selects the format: .mcap, .db3, .bag; without an
+  /// ending or with a trailing slash a new folder of rosbag2; otherwise a CARMEN log, gzip for .gz.
+  /// `T_robot_laser`: mounting of the laser, stated in the log. `compression`: see ConvertOptions.
+  /// Throws std::runtime_error if the file cannot be written, std::invalid_argument for a
+  /// compression that the format does not have.
   explicit LogWriter(const std::filesystem::path& path, const geometry::Pose2& T_robot_laser = {},
                      const std::string& compression = "zstd");
 
-  /// Closes without reporting errors; call close() to hear of them.
+  /// Closes without reporting errors; close() reports them.
   ~LogWriter();
   LogWriter(LogWriter&&) noexcept;
   LogWriter& operator=(LogWriter&&) noexcept;
   LogWriter(const LogWriter&) = delete;
   LogWriter& operator=(const LogWriter&) = delete;
 
-  /// Appends a scan with its odometry; of a recording /scan, /odom and odom -> base_link on /tf.
+  /// Appends a scan with its odometry; in a recording /scan, /odom and odom -> base_link on /tf.
   /// Throws std::invalid_argument for a scan that no log can hold (see scan::CarmenLogWriter),
-  /// std::runtime_error when writing fails.
+  /// std::runtime_error if writing fails.
   void write(const scan::Scan& scan);
 
   /// Appends a pose of the robot in the map at the time of a scan, with its covariance over x, y,
-  /// heading in the map frame: /pose, and map -> odom on /tf. Only .mcap and .db3 hold them; others
-  /// ignore it. Throws std::runtime_error when writing fails.
+  /// heading in the map frame: /pose, and map -> odom on /tf. Only .mcap and .db3 store it; other
+  /// formats ignore it. Throws std::runtime_error if writing fails.
   void write_pose(const scan::Scan& scan, const geometry::Pose2& T_map_robot,
                   const Eigen::Matrix3d& covariance);
 
-  /// Appends the graph as it is at that time, instead of those before: markers on /graph. As
-  /// write_pose().
+  /// Appends the present graph, which replaces earlier ones: markers on /graph. Formats and errors
+  /// as for write_pose().
   void write_graph(std::int64_t stamp_ns, const ros::GraphDrawing& graph);
 
-  /// Appends the occupancy grid of the map as it is at that time: /map. `cells`: see
-  /// ros::occupancy_grid(). As write_pose().
+  /// Appends the present occupancy grid of the map: /map. `cells`: see ros::occupancy_grid().
+  /// Formats and errors as for write_pose().
   void write_grid(std::int64_t stamp_ns, const ros::GridPlace& place,
                   std::vector<std::int8_t> cells);
 
-  /// Whether write_pose(), write_graph() and write_grid() leave something in the file.
+  /// Whether the file stores the data of write_pose(), write_graph() and write_grid().
   [[nodiscard]] bool holds_poses() const;
 
-  /// Flushes and closes. Throws std::runtime_error when that fails.
+  /// Flushes and closes. Throws std::runtime_error if that fails.
   void close();
 
   struct Target;

@@ -1,5 +1,5 @@
-// Odometry poses of a recording over time, for the pose at the time of a scan: they may come late
-// and with gaps, and all of them come in the end. That of live odometry is in geometry.
+// Odometry poses of a recording, for the pose at the time of a scan: they may come late and with
+// gaps, but all come in the end. The track of live odometry is in geometry.
 #pragma once
 
 #include <cstdint>
@@ -13,29 +13,29 @@ namespace topogeo::recording {
 
 class OdometryTrack {
  public:
-  /// Longest time between two poses that is interpolated over, unless the robot stood, and longest
-  /// time before the first or after the last pose for which that one stands.
+  /// Longest time between two poses for interpolation, unless the robot stood, and longest time
+  /// before the first or after the last pose for which that pose is used.
   static constexpr std::int64_t kLongestGap_ns = 1'000'000'000;
   static constexpr std::int64_t kLongestHold_ns = 100'000'000;
 
-  /// Poses come about in order of time; of two at one time the last holds.
+  /// Adds poses in approximate order of time; the last one at a time counts.
   void add(std::int64_t stamp_ns, const geometry::Pose2& T_odom_robot);
 
-  /// Whether a pose at or after that time has come.
+  /// Whether a pose at or after `stamp_ns` has come.
   [[nodiscard]] bool reaches(std::int64_t stamp_ns) const;
 
-  /// The pose at that time: the one of that stamp as it is, else interpolated linearly, the heading
-  /// the shorter way round. Empty where there is none near.
+  /// The pose at `stamp_ns`: a pose with that stamp unchanged, otherwise interpolated linearly,
+  /// with the heading along the shorter turn. Empty if none is near.
   [[nodiscard]] std::optional<geometry::Pose2> at(std::int64_t stamp_ns) const;
 
-  /// Seconds from that time to the nearest pose; empty without one.
+  /// Seconds between `stamp_ns` and the nearest pose; empty without one.
   [[nodiscard]] std::optional<double> distance_s(std::int64_t stamp_ns) const;
 
-  /// Forgets what no scan at or after that time needs.
+  /// Drops poses that no scan at or after `stamp_ns` needs.
   void forget_before(std::int64_t stamp_ns);
 
  private:
-  std::deque<geometry::OdometrySample> samples_;  // speeds are not known
+  std::deque<geometry::OdometrySample> samples_;  // speeds are unknown
 };
 
 }  // namespace topogeo::recording

@@ -1,7 +1,6 @@
-// Messages of ROS from and to bytes: CDR as ROS 2 and DDS write it, and the serialization of ROS 1,
-// which has no alignment and a sequence number in each header. Lengths are checked before anything
-// is allocated, which the code of fastddsgen does not do; that the bytes are the same as its own is
-// a test.
+// Converts messages of ROS from and to bytes: CDR of ROS 2 and DDS, and the serialization of ROS 1,
+// which has no alignment and a sequence number in each header. Lengths are checked before
+// allocation, which the code of fastddsgen does not do; a test compares the bytes with its own.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +17,7 @@ enum class Encoding : std::uint8_t {
   kOther,  ///< not read here
 };
 
-/// Thrown for bytes that are no such message: "byte 12: expected ..., got ...", counted from the
+/// Thrown for bytes that are not such a message: "byte 12: expected ..., got ...", counted from the
 /// first one.
 struct DecodeError : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -30,8 +29,8 @@ struct DecodeError : std::runtime_error {
 template <typename Message>
 Message decode(std::span<const std::byte> bytes, Encoding encoding);
 
-/// Appends a message to `bytes`, CDR in little endian. The same messages. Throws
-/// std::invalid_argument for other encodings of these.
+/// Appends one of the same messages to `bytes`, CDR in little endian. Throws std::invalid_argument
+/// for other encodings.
 template <typename Message>
 void encode(const Message& message, Encoding encoding, std::vector<std::byte>& bytes);
 

@@ -1,4 +1,4 @@
-// What recordings store of the types of messages: names, definitions, checksums.
+// Data that recordings store about message types: names, definitions, checksums.
 #pragma once
 
 #include <string>
@@ -8,22 +8,21 @@
 namespace topogeo::recording {
 
 struct RosDefinition {
-  std::string_view type;    ///< "sensor_msgs/msg/LaserScan"
-  std::string_view fields;  ///< the .msg of ROS 2, without comments
+  std::string_view type;      ///< "sensor_msgs/msg/LaserScan"
+  std::string_view fields;    ///< the .msg of ROS 2, without comments
+  std::string_view ros1_md5;  ///< of the definition in ROS 1; empty if not exchanged with ROS 1
   std::string_view
-      ros1_md5;  ///< of the definition in ROS 1; empty where it is not exchanged with ROS 1
-  std::string_view
-      type_hash;  ///< REP 2011, of ROS 2 from Iron on; empty where it is not written by itself
+      type_hash;  ///< REP 2011, of ROS 2 from Iron on; empty if never written on its own
 };
 
-/// Null for types that are not known here.
+/// Null for unknown types.
 const RosDefinition* find_definition(std::string_view type);
 
-/// The definition with those that it consists of, as MCAP (schema encoding ros2msg) and rosbag2
-/// store it. Throws std::invalid_argument for types that are not known here.
+/// The definition and those of its parts, in the format of MCAP (schema encoding ros2msg) and
+/// rosbag2. Throws std::invalid_argument for unknown types.
 std::string ros2_definition_text(std::string_view type);
 
-/// The same as ROS 1 stores it in bags.
+/// The same in the format of ROS 1 bags.
 std::string ros1_definition_text(std::string_view type);
 
 /// "sensor_msgs/LaserScan".

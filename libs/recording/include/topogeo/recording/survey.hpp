@@ -1,5 +1,5 @@
-// What a recording holds for mapping: which topics scans and odometry are taken from, and where the
-// laser sits.
+// Content of a recording for mapping: the topics of scans and odometry, and the mounting of the
+// laser.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,14 @@
 
 namespace topogeo::recording {
 
-/// What the user chooses; all may be left out.
+/// The user's choices; all are optional.
 struct TopicChoice {
   std::optional<std::string>
       scan;  ///< of sensor_msgs/LaserScan; none: /scan, else the one with most messages
   std::optional<std::string>
       odometry;  ///< of nav_msgs/Odometry or tf2_msgs/TFMessage; none: /odom, else the
                  ///< Odometry with most messages, else odom -> base of /tf
-  ros::SweepOrder sweep = ros::SweepOrder::kNone;  ///< by which the motion of a scan is taken out
+  ros::SweepOrder sweep = ros::SweepOrder::kNone;  ///< removes the motion during a scan
 };
 
 struct Survey {
@@ -32,14 +32,14 @@ struct Survey {
   std::string odom_frame;
   std::string robot_frame;  ///< child frame of the odometry
   std::optional<ros::LaserMounting>
-      mounting;  ///< empty where no transforms connect robot_frame and laser_frame
-  std::optional<ros::BeamPattern> beams;  ///< of most scans; empty where none has beams
-  /// For people, a line each: which topics are used of which, what is known of the mounting.
+      mounting;  ///< empty if no transforms connect robot_frame and laser_frame
+  std::optional<ros::BeamPattern> beams;  ///< of most scans; empty if none has beams
+  /// For people, a line each: the chosen topics and the state of the mounting.
   std::vector<std::string> notes;
 };
 
-/// Reads the whole recording once. Throws std::runtime_error naming the file and what was expected:
-/// no recording, no scans, no odometry, a chosen topic that is not there.
+/// Reads the whole recording once. Throws std::runtime_error naming the file and the expectation:
+/// no recording, no scans, no odometry, a chosen topic that does not exist.
 Survey survey(const std::filesystem::path& path, const TopicChoice& choice);
 
 }  // namespace topogeo::recording
