@@ -7,7 +7,7 @@
 namespace topogeo::render {
 namespace {
 
-/// Without the crumbs of rounding, and without a negative zero.
+/// Without rounding noise or a negative zero.
 std::string number(double value) {
   return fmt::format("{:g}", std::round(value * 1000.0) / 1000.0 + 0.0);
 }

@@ -1,4 +1,4 @@
-// Axes of any plot.
+// Axes of all plots.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace topogeo::render {
 
-/// Room that the numbers and names of axes take, and the size of their texts.
+/// Space for the numbers and names of axes, and the size of their texts.
 inline constexpr double kAxisLeft_px = 46.0;
 inline constexpr double kAxisBelow_px = 36.0;
 inline constexpr double kAxisText_px = 11.0;
@@ -27,11 +27,11 @@ void for_each_tick(double low, double high, double step, const Draw& draw) {
   for (int i = static_cast<int>(std::ceil(low / step - 1e-9)); i <= last; ++i) draw(i * step);
 }
 
-/// A grid line with its number, upright at x_px or level at y_px.
+/// A grid line with its number, vertical at x_px or horizontal at y_px.
 void draw_tick_across(cairo_t* cr, const Rect& rect, double x_px, double value);
 void draw_tick_up(cairo_t* cr, const Rect& rect, double y_px, double value);
 
-/// Names of the axes of any plot, beyond the numbers at their ticks.
+/// Names of the axes, beyond the numbers at their ticks.
 void draw_axis_names(cairo_t* cr, const Rect& rect, const std::string& across,
                      const std::string& up);
 void draw_border(cairo_t* cr, const Rect& rect);

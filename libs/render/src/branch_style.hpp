@@ -9,13 +9,13 @@
 
 namespace topogeo::render {
 
-inline constexpr double kPale = 0.35;  ///< strength of what is off the main graph
+inline constexpr double kPale = 0.35;  ///< strength of everything off the main graph
 
 inline double strength(bool in_main_graph) {
   return in_main_graph ? 1.0 : kPale;
 }
 
-/// Colour, dashes and width of a branch: thin where it is not confirmed.
+/// Colour, dashes and width of a branch: thin if unconfirmed.
 inline void set_branch_stroke(cairo_t* cr, const topomap::LocalBranch& branch, double width_px) {
   constexpr double kThin = 0.45;
   set_colour(cr,

@@ -17,7 +17,7 @@ void polygon(cairo_t* cr, const Eigen::Vector2d& centre_px, double radius_px, in
 }
 
 void set_plain_text(cairo_t* cr) {
-  // No colour fringes and no fitting to the pixels of one screen, whatever the machine is set to.
+  // No subpixel colours and no hinting, whatever the machine's settings.
   cairo_font_options_t* options = cairo_font_options_create();
   cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
   cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);

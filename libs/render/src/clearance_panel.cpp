@@ -20,7 +20,7 @@ using topomap::LocalMap;
 using topomap::LocalNode;
 using topomap::NodeKind;
 
-/// True if branch i + 1 is the next piece of the curve that branch i is a piece of.
+/// Whether branch i + 1 continues the curve of branch i.
 bool continues(const LocalMap& map, std::size_t i) {
   if (i + 1 >= map.branches.size()) return false;
   const LocalBranch& piece = map.branches[i];
@@ -29,7 +29,7 @@ bool continues(const LocalMap& map, std::size_t i) {
          map.nodes[piece.node_b].kind != NodeKind::kReal && piece.base_groups == next.base_groups;
 }
 
-/// Places of the branches beside each other and scales of the clearance plot.
+/// Positions of the branches side by side and scales of the clearance plot.
 struct ClearancePlot {
   Rect rect;
   std::vector<std::vector<double>> arc_m;  ///< per branch

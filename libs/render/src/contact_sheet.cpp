@@ -62,7 +62,7 @@ void draw_thumbnail(cairo_t* cr, const ScanView& view, const Rect& rect) {
                         view.diagram.is_virtual ? " virtual" : "",
                         view.diagram.groups.groups.size(), real),
             rect.left + 2.0, rect.top - 5.0, kText_px);
-  // One metre, in the corner.
+  // A scale bar of one metre in the corner.
   set_colour(cr, kInk);
   cairo_set_line_width(cr, 2.0);
   move_to(cr, {rect.right() - 5.0 - frame.scale_px_per_m, rect.bottom() - 5.0});

@@ -37,7 +37,7 @@ void draw_path(cairo_t* cr, std::span<const topomap::StampedPose> poses, const L
   move_to(cr, last_px);
   for (const topomap::StampedPose& p : poses) {
     const Eigen::Vector2d point_px = layout.to_px(p.pose.position_m());
-    if ((point_px - last_px).norm() < 1.0) continue;  // a robot that stands still
+    if ((point_px - last_px).norm() < 1.0) continue;  // a standing robot
     line_to(cr, point_px);
     last_px = point_px;
   }
@@ -65,7 +65,7 @@ void draw_branches(cairo_t* cr, const topomap::GlobalMap& map, bool virtual_ones
   set_dashes(cr, false);
 }
 
-// One line for all closures between the same two stretches of the path: a corridor driven twice has
+// One line for all closures between the same two parts of the path: a corridor driven twice has
 // hundreds, which would hide the map.
 void draw_loop_closures(cairo_t* cr, const MapPicture& picture, const Layout& layout) {
   constexpr std::uint32_t kStretch_stops = 8;
@@ -115,7 +115,7 @@ void draw_map(cairo_t* cr, const MapPicture& picture, const std::vector<ScanOutl
   draw_loop_closures(cr, picture, layout);
   draw_path(cr, picture.corrected, layout, kCorrected, 2.0);
   if (picture.global_map != nullptr) {
-    // On top of the trajectory, which they follow.
+    // On top of the trajectory, which runs along the branches.
     draw_branches(cr, *picture.global_map, true, layout);
     draw_nodes(cr, *picture.global_map, layout);
   }

@@ -1,4 +1,4 @@
-// The one drawing routine of both picture formats.
+// The common drawing routine of both picture formats.
 #pragma once
 
 #include <cairo.h>

@@ -18,7 +18,7 @@ constexpr double kFigureMargin_px = 18.0;
 constexpr double kFigureTitle_px = 42.0;
 constexpr double kPanelHeading_px = 24.0;
 constexpr double kFigureNote_px = 18.0;
-constexpr double kLeastAspect = 0.45;  // height of a panel by its width
+constexpr double kLeastAspect = 0.45;  // height of a panel relative to its width
 constexpr double kMostAspect = 1.6;
 constexpr double kFreeAspect = 0.7;
 
@@ -29,7 +29,7 @@ Colour colour_of(FigureColour colour) {
   return kColours[static_cast<std::size_t>(colour)];
 }
 
-/// All points that a panel shows.
+/// All points of a panel.
 template <typename Visit>
 void for_each_point(const FigurePanel& panel, const Visit& visit) {
   for (const FigureLine& line : panel.lines) {
@@ -166,7 +166,7 @@ void draw_figure_panel(cairo_t* cr, const FigurePanel& panel, const Rect& rect) 
   draw_border(cr, rect);
 }
 
-/// Rectangles of the panels, row by row, those of a row equally high; then where the notes begin.
+/// Rectangles of the panels, row by row, equally high within a row; then the start of the notes.
 struct FigurePage {
   std::vector<Rect> rects;
   double bottom_px = 0.0;

@@ -21,7 +21,7 @@ constexpr double kDot_px = 1.7;
 constexpr double kNumber_px = 13.0;
 constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
-/// Points of virtual groups stand for no reading.
+/// Points of virtual groups are not readings.
 bool is_reading(const ScanView& view, const GroupPoint& point) {
   return point.beam < view.scan.ranges_m.size() && view.scan.ranges_m[point.beam] == point.range_m;
 }
@@ -61,7 +61,7 @@ void draw_group_numbers(cairo_t* cr, const ScanView& view, const Rect& within, c
   }
 }
 
-/// Readings within the limit that no group kept.
+/// Readings within the limit without a group.
 std::vector<std::uint32_t> ungrouped_beams(const ScanView& view) {
   std::vector<bool> grouped(view.scan.ranges_m.size(), false);
   for (const PointRun& run : view.diagram.groups.groups) {
@@ -116,7 +116,7 @@ struct PolarScale {
   }
 };
 
-/// Readings of no group, those beyond the limit and, on the base line, beams without an echo.
+/// Readings without a group, those beyond the limit and, on the base line, beams without an echo.
 void draw_other_readings(cairo_t* cr, const ScanView& view, const PolarScale& scale) {
   set_colour(cr, kLaserPoints);
   const auto x_px = [&](std::size_t beam) {
@@ -139,7 +139,7 @@ void draw_other_readings(cairo_t* cr, const ScanView& view, const PolarScale& sc
   }
 }
 
-/// The space that the beams have proved free, as a soft fan.
+/// The space proved free by the beams, as a soft fan.
 void draw_free_space(cairo_t* cr, const ScanView& view, const PlanFrame& frame) {
   const Eigen::Vector2d laser_px = frame.to_px(view.map.T_robot_laser.position_m());
   const std::size_t count = std::min(view.free_range_m.size(), view.scan.ranges_m.size());
@@ -152,7 +152,7 @@ void draw_free_space(cairo_t* cr, const ScanView& view, const PlanFrame& frame) 
   cairo_fill(cr);
 }
 
-/// The cells of each group in one path: without seams between the rows.
+/// Draws the cells of each group as one path, to avoid seams between the rows.
 void draw_cells(cairo_t* cr, const ScanView& view, const PlanFrame& frame) {
   constexpr double kStrength = 0.18;
   for (std::size_t group = 0; group < view.diagram.groups.groups.size(); ++group) {
@@ -174,7 +174,7 @@ void draw_cells(cairo_t* cr, const ScanView& view, const PlanFrame& frame) {
 }  // namespace
 
 Colour group_colour(std::size_t group) {
-  // Strong enough for single dots on white, and none the red of the robot.
+  // Strong enough for single dots on white, and different from the red of the robot.
   constexpr std::array<Colour, 8> kColours{{{0.90, 0.50, 0.00},
                                             {0.12, 0.47, 0.71},
                                             {0.58, 0.30, 0.74},

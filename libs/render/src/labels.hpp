@@ -11,10 +11,10 @@
 
 namespace topogeo::render {
 
-/// Labels that keep off each other and off marks.
+/// Labels that avoid each other and marks.
 class Labels {
  public:
-  /// Keeps a square of that half side free of labels.
+  /// Blocks a square with this half side for labels.
   void block(const Eigen::Vector2d& centre_px, double half_px);
   /// Writes the text beside `at_px` at the first of eight places around it, `away_px` off, that is
   /// inside `within` and free; at the first place if none is and `always` is set.

@@ -11,7 +11,7 @@
 namespace topogeo::render {
 namespace {
 
-// Of the page; chosen by eye.
+// Sizes on the page, chosen by eye.
 constexpr double kMargin_px = 24.0;
 constexpr double kTitleHeight_px = 44.0;
 constexpr double kMinWidth_px = 720.0;
@@ -30,7 +30,7 @@ struct Box {
   [[nodiscard]] Eigen::Vector2d size_m() const { return max_m - min_m; }
 };
 
-/// Extent in the turned frame of everything that must be seen whole.
+/// Extent in the rotated frame of everything that must be fully visible.
 Box content_box(const MapPicture& picture, const std::vector<ScanOutline>& outlines,
                 const Layout& turn) {
   Box box;
@@ -89,8 +89,8 @@ std::vector<ScanOutline> outlines_in_map(const MapPicture& picture) {
 double dominant_wall_direction_rad(const std::vector<ScanOutline>& outlines) {
   constexpr int kBins = 180;  // half a degree
   constexpr double kBin_rad = kQuarterTurn_rad / kBins;
-  constexpr std::size_t kApart = 3;   // points between: less noise in the direction
-  constexpr double kLongest_m = 0.5;  // a longer step leaps from one wall to another
+  constexpr std::size_t kApart = 3;   // distance in points, to reduce noise in the direction
+  constexpr double kLongest_m = 0.5;  // a longer step joins different walls
   constexpr int kReach = 3;           // bins on either side that belong to the peak
   std::array<double, kBins> length_m{};
   for (const ScanOutline& outline : outlines) {
@@ -129,7 +129,7 @@ Layout make_layout(const MapPicture& picture, const std::vector<ScanOutline>& ou
                    const PictureOptions& options) {
   Layout layout;
   double rotation_rad = -dominant_wall_direction_rad(outlines);
-  // The smaller of the two turns, so that a map that was nearly level keeps its sides.
+  // The smaller of the two rotations, so that a map that was nearly level keeps its sides.
   if (rotation_rad < -0.5 * kQuarterTurn_rad) rotation_rad += kQuarterTurn_rad;
   set_rotation(layout, rotation_rad);
   Box box = content_box(picture, outlines, layout);

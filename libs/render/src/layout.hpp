@@ -14,14 +14,14 @@ namespace topogeo::render {
 using ScanOutline = std::vector<Eigen::Vector2d>;
 std::vector<ScanOutline> outlines_in_map(const MapPicture& picture);
 
-/// Direction of most walls in the map frame, [0, pi/2): walls stand at right angles, so directions
-/// count modulo 90 degrees. 0 where there are no walls. From the lines between neighbouring points.
+/// Direction of most walls in the map frame, [0, pi/2), modulo 90 degrees because walls meet at
+/// right angles. Derived from the lines between neighbouring points; 0 without walls.
 double dominant_wall_direction_rad(const std::vector<ScanOutline>& outlines);
 
 struct Layout {
-  double rotation_cos = 1.0;  ///< from the map frame to the turned frame of the picture
+  double rotation_cos = 1.0;  ///< rotation from the map frame to the picture's frame
   double rotation_sin = 0.0;
-  Eigen::Vector2d min_m = Eigen::Vector2d::Zero();  ///< corners of what is shown, turned frame
+  Eigen::Vector2d min_m = Eigen::Vector2d::Zero();  ///< corners of the visible part, rotated frame
   Eigen::Vector2d max_m = Eigen::Vector2d::Zero();
   double scale_px_per_m = 1.0;
   double map_left_px = 0.0;  ///< the map's rectangle on the page

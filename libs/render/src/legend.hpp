@@ -7,7 +7,7 @@
 
 namespace topogeo::render {
 
-/// Only what is in the picture is listed.
+/// Lists only the contents of the picture.
 void draw_legend(cairo_t* cr, const MapPicture& picture, const Layout& layout);
 
 }  // namespace topogeo::render

@@ -1,4 +1,4 @@
-// The parts that legends are made of: samples with their texts, and scale bars.
+// Parts of legends: samples with their texts, and scale bars.
 #pragma once
 
 #include <functional>

@@ -46,7 +46,7 @@ MatchPanels arrange_match(const MatchPicture& picture, double width_px) {
   return panels;
 }
 
-/// With room around it.
+/// Adds a border.
 Extent with_border(Extent extent, double least_m) {
   const Eigen::Vector2d border_m = (0.06 * (extent.max_m - extent.min_m)).cwiseMax(least_m);
   extent.min_m -= border_m;
@@ -76,7 +76,7 @@ Extent extent_of_search(const MatchPicture& picture) {
   return with_border(extent, 0.1);
 }
 
-// What the laser saw past, from the robot through the points in the order of the beams.
+// The visible area, from the robot through the points in the order of the beams.
 void draw_field_of_view(cairo_t* cr, const LocalMap& map, const PlanFrame& frame) {
   if (map.points.empty()) return;
   set_colour(cr, kFreeSpace);

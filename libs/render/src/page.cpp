@@ -29,7 +29,7 @@ void check(cairo_status_t status) {
   }
 }
 
-/// cairo's way to write into memory.
+/// Write function for cairo's output to memory.
 cairo_status_t append(void* bytes, const unsigned char* data, unsigned int length) {
   static_cast<std::string*>(bytes)->append(reinterpret_cast<const char*>(data), length);
   return CAIRO_STATUS_SUCCESS;
@@ -42,8 +42,8 @@ void draw_on(cairo_surface_t* surface, const std::function<void(cairo_t*)>& draw
   check(cairo_status(cr.get()));
 }
 
-/// cairo numbers its surfaces through the life of the process and writes the number into the SVG.
-/// One name for all makes the bytes depend on the picture alone.
+/// cairo numbers its surfaces over the life of the process and writes the number into the SVG. A
+/// fixed name makes the bytes depend on the picture only.
 std::string without_surface_number(std::string svg) {
   constexpr std::string_view kPrefix = "id=\"surface";
   std::size_t at = 0;

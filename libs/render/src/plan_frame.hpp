@@ -20,7 +20,7 @@ struct Extent {
   }
 };
 
-/// What must be seen of a view, robot frame: the robot, the points within the range limit, virtual
+/// Visible extent of a view, robot frame: the robot, the points within the range limit, virtual
 /// groups and branches, with a border. At least 2 m a side.
 Extent extent_of(const ScanView& view);
 
@@ -38,10 +38,10 @@ struct PlanFrame {
   }
 };
 
-/// The extent as large as it fits, in the middle of the rectangle, at most `most_px_per_m`.
+/// Fits the extent into the middle of the rectangle, as large as possible, at most `most_px_per_m`.
 PlanFrame fit(const Extent& extent, const Rect& rect_px, double most_px_per_m);
 
-/// Cuts off everything outside the rectangle, until cairo_restore.
+/// Clips everything outside the rectangle, until cairo_restore.
 void clip_to(cairo_t* cr, const Rect& rect);
 
 /// Grid lines and axes in metres ("x forward", "y left"), left of and below the rectangle.

@@ -9,8 +9,8 @@
 
 namespace topogeo::render {
 
-/// From the left edge of the first to the right edge of the last cell of a run, half-way up the
-/// row, turned frame.
+/// A run of cells: its line from the left edge of the first cell to the right edge of the last, at
+/// half the height of the row, rotated frame.
 struct RasterRun {
   Eigen::Vector2d from_m;
   Eigen::Vector2d to_m;

@@ -27,7 +27,7 @@ constexpr std::array<Colour, 6> kTints{{{0.90, 0.94, 1.00},
                                         {0.88, 0.97, 0.97},
                                         {0.99, 0.92, 0.94}}};
 
-// A tint for each zone that none of its neighbours has, as far as there are enough.
+// A tint for each zone that differs from its neighbours', as far as there are enough.
 std::vector<std::size_t> tints_of(const HybridMap& map) {
   std::vector<std::size_t> tints(map.zones().zones.size());
   for (std::size_t zone = 0; zone < tints.size(); ++zone) {
@@ -109,7 +109,7 @@ class RouteDrawing {
     return cells_to_px(map_.frame().in_cells(point_m));
   }
 
-  // As long as a robot: how one stands on a base station.
+  // An arrow as long as a robot shows its heading on a base station.
   void draw_arrow(cairo_t* cr, const planning::Place& station) const {
     constexpr double kLength_m = 0.8;
     constexpr double kBarb_m = 0.25;
@@ -133,14 +133,14 @@ class RouteDrawing {
     }
   }
 
-  // So many cells from one on to the right.
+  // This many cells, from one to the right.
   void draw_run(cairo_t* cr, const Cell& first, std::int32_t cells) const {
     const Eigen::Vector2d corner_px = cells_to_px(Eigen::Vector2d(first.column, first.row + 1));
     cairo_rectangle(cr, corner_px.x(), corner_px.y(), cells * scale_, scale_);
     cairo_fill(cr);
   }
 
-  // Neighbours in a row of one colour as one rectangle, to keep an SVG small.
+  // Draws neighbours of one colour in a row as one rectangle, to keep an SVG small.
   void draw_cells(cairo_t* cr) const {
     const auto& frame = map_.frame();
     const auto same = [](const Colour& a, const Colour& b) {

@@ -10,7 +10,7 @@ namespace topogeo::render {
 /// Log, number and stamp of the scan, and whether its diagram is virtual.
 std::string scan_title(const ScanView& view, const std::string& log_name);
 
-/// How many beams, groups, nodes of each kind and branches, and the limits they were made with.
+/// Numbers of beams, groups, nodes of each kind and branches, and the limits used.
 std::string scan_counts(const ScanView& view);
 
 }  // namespace topogeo::render

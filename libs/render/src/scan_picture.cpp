@@ -20,7 +20,7 @@ constexpr double kClearance_px = 190.0;
 constexpr double kLegendSpace_px = 76.0;
 constexpr double kScanScale_px = 160.0;  // of one metre
 
-/// Where the panels lie: polar | groups, diagram | local map, clearance over the full width.
+/// Arrangement of the panels: polar | groups, diagram | local map, clearance over the full width.
 struct Panels {
   Rect polar;
   Rect groups;

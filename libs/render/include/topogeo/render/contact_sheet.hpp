@@ -13,8 +13,8 @@ namespace topogeo::render {
 
 constexpr std::size_t kMostThumbnails = 600;  ///< a PNG cannot be higher than 32,767 pixels
 
-/// The bytes of the file, `max_width_px` wide, `views` row by row. The same views give the same SVG
-/// bytes. Throws std::invalid_argument for a width out of range, no view or more than
+/// The bytes of the file, `max_width_px` wide, with the `views` row by row. The same views give the
+/// same SVG bytes. Throws std::invalid_argument for a width out of range, no view or more than
 /// kMostThumbnails.
 std::string contact_sheet(const std::vector<ScanView>& views, const std::string& title,
                           PictureFormat format, const PictureOptions& options = {});

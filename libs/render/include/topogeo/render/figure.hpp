@@ -1,6 +1,7 @@
 // Figures of experiments: panels side by side, each with lines, dots and texts in its own axes.
 //
-// Not a plotting library: what the pictures of a scan, a match, a map or a route do not show.
+// Not a plotting library: covers only what the pictures of a scan, a match, a map or a route do not
+// show.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,7 @@
 
 namespace topogeo::render {
 
-/// Hues that colour-blind readers tell apart; the pale ones are for areas.
+/// Hues that colour-blind readers can distinguish; the pale ones are for areas.
 enum class FigureColour : std::uint8_t {
   kBlack,
   kGrey,
@@ -36,7 +37,7 @@ struct FigureLine {
   double width_px = 1.5;
   bool dashed = false;
   bool closed = false;
-  bool filled = false;  ///< the area alone, below everything that is not filled
+  bool filled = false;  ///< only the area, below everything that is not filled
 };
 
 struct FigureDots {
@@ -62,7 +63,7 @@ struct FigurePanel {
   std::string across = "right (m)";
   std::string up = "forward (m)";
   bool equal_scale = true;
-  std::optional<FigureExtent> extent{};  ///< without: around all lines, dots and texts
+  std::optional<FigureExtent> extent{};  ///< none: around all lines, dots and texts
   std::vector<FigureLine> lines{};
   std::vector<FigureDots> dots{};
   std::vector<FigureText> texts{};

@@ -12,13 +12,13 @@
 
 namespace topogeo::render {
 
-/// What is drawn, all in the map frame. Every part may be empty. What the spans view must live
-/// until the picture is drawn.
+/// Contents of the picture, all in the map frame. Every part may be empty. The viewed data must
+/// live until the picture is drawn.
 struct MapPicture {
-  std::span<const topomap::LocalMap> local_maps;    ///< their laser points
+  std::span<const topomap::LocalMap> local_maps;    ///< for their laser points
   std::span<const topomap::StopPose> stops;         ///< corrected; stops[i] is of local_maps[i]
-  std::span<const topomap::StampedPose> odometry;   ///< as of topomap::expand_odometry
-  std::span<const topomap::StampedPose> corrected;  ///< as of topomap::expand_trajectory
+  std::span<const topomap::StampedPose> odometry;   ///< from topomap::expand_odometry
+  std::span<const topomap::StampedPose> corrected;  ///< from topomap::expand_trajectory
   std::span<const topomap::LoopClosure> loop_closures;
   const topomap::GlobalMap* global_map = nullptr;  ///< nullptr: none yet
   std::string title;

@@ -1,5 +1,5 @@
-// A picture of the search for the relative pose of two stops: what was searched, what was found and
-// how the two local maps then lie on each other (Thesis, figs. 6.2 and 6.4).
+// A picture of the search for the relative pose of two stops: searched area, result, and the two
+// local maps at that pose (Thesis, figs. 6.2 and 6.4).
 //
 // All in the robot frame of the reference stop, x (forward) up and y (left) to the left.
 #pragma once
@@ -20,14 +20,14 @@ namespace topogeo::render {
 struct MatchPicture {
   const topomap::LocalMap* reference = nullptr;
   const topomap::LocalMap* query = nullptr;
-  geometry::Pose2 T_predicted;   ///< centre of what was searched
+  geometry::Pose2 T_predicted;   ///< centre of the search
   double ellipse_major_m = 0.0;  ///< semi-axes of the error ellipse of the prediction
   double ellipse_minor_m = 0.0;
   double ellipse_direction_rad = 0.0;                      ///< of its major axis from x
-  Eigen::Vector2d half_width_m = Eigen::Vector2d::Zero();  ///< of the rectangle that was searched
+  Eigen::Vector2d half_width_m = Eigen::Vector2d::Zero();  ///< of the searched rectangle
   std::vector<geometry::Pose2> solutions;                  ///< best first; numbered from 1
   bool found = false;
-  geometry::Pose2 T_found;  ///< the refined pose, when found
+  geometry::Pose2 T_found;  ///< the refined pose, if found
   std::string title;
   std::vector<std::string> lines;  ///< below the plans
 };

@@ -1,4 +1,4 @@
-// The kinds of picture file.
+// The formats of picture files.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@ namespace topogeo::render {
 
 enum class PictureFormat : std::uint8_t { kPng, kSvg };
 
-/// By the ending of the name, .png or .svg in any case. Throws std::invalid_argument naming the
-/// file for any other.
+/// Selects the format by the ending of the name, .png or .svg in any case. Throws
+/// std::invalid_argument naming the file for any other.
 PictureFormat picture_format(const std::filesystem::path& path);
 
 }  // namespace topogeo::render

@@ -12,8 +12,8 @@
 
 namespace topogeo::render {
 
-/// The bytes of the file, `max_width_px` wide. The same view gives the same SVG bytes. `log_name`
-/// stands in the title. Throws std::invalid_argument for a width out of range.
+/// The bytes of the file, `max_width_px` wide. The same view gives the same SVG bytes. The title
+/// contains `log_name`. Throws std::invalid_argument for a width out of range.
 std::string scan_picture(const ScanView& view, const std::string& log_name, PictureFormat format,
                          const PictureOptions& options = {});
 

@@ -1,4 +1,4 @@
-// One scan and everything that perception makes of it, gathered for pictures.
+// One scan and all results of perception for it, gathered for pictures.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace topogeo::render {
 
-/// Visible cells next to each other along y whose nearest sites are of one group, laser frame.
+/// Neighbouring visible cells along y whose nearest sites belong to one group, laser frame.
 struct CellRun {
   Eigen::Vector2d min_m = Eigen::Vector2d::Zero();  ///< corner with the least x and y
   Eigen::Vector2d max_m = Eigen::Vector2d::Zero();  ///< opposite corner
@@ -26,11 +26,11 @@ struct ScanView {
   voronoi::LocalVoronoiDiagram diagram;  ///< laser frame
   std::vector<double> free_range_m;      ///< per beam
   std::vector<CellRun> cells;            ///< in rows of the grid
-  topomap::LocalMap map;                 ///< robot frame; id, track and odometry are not filled
+  topomap::LocalMap map;                 ///< robot frame; without id, track and odometry
 };
 
 /// Computes the diagram with `diagram_maker`, which keeps its tables for the next scan of the same
-/// geometry, and the local map from it. Throws std::invalid_argument as LocalVoronoi::compute.
+/// geometry, and the local map from it. Throws std::invalid_argument like LocalVoronoi::compute.
 ScanView make_scan_view(const scan::Scan& scan, voronoi::LocalVoronoi& diagram_maker,
                         const topomap::LocalMapConfig& local_map,
                         const geometry::Pose2& T_robot_laser);
