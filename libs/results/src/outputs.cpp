@@ -34,7 +34,7 @@ LocatedStops located_stops(const storage::MapDocument& document) {
   return out;
 }
 
-/// What a picture of the map shows.
+/// Contents of a picture of the map.
 struct Drawn {
   explicit Drawn(const storage::MapDocument& map)
       : document(map),

@@ -15,13 +15,13 @@
 namespace topogeo::results {
 
 /// Writes trajectory.tum, odometry.tum, map.pb, map.svg and map.png into an existing directory,
-/// each whole or not at all. Stops that are not located are in odometry.tum and map.pb alone. The
-/// first two and map.pb are the same bytes for the same log, seed and configuration. Throws
-/// std::runtime_error naming the file.
+/// each whole or not at all. Unlocated stops appear in odometry.tum and map.pb only. The first
+/// three are byte-identical for the same log, seed and configuration. Throws std::runtime_error
+/// naming the file.
 void write_map_outputs(const std::filesystem::path& directory, const storage::MapDocument& document,
                        const std::string& title);
 
-/// The picture of a map as in these files; stops that are not located are left out.
+/// The picture of a map as in these files, without unlocated stops.
 std::string map_svg(const storage::MapDocument& document, const std::string& title);
 std::string map_png(const storage::MapDocument& document, const std::string& title);
 
@@ -38,7 +38,7 @@ void add_loop_candidates(storage::Report& report,
 /// Fills the overlap sets and solutions of a report.
 void add_overlaps(storage::Report& report, std::span<const pipeline::StopOverlaps> overlaps);
 
-/// Fills what was skipped of the log.
+/// Fills the part about skipped lines of the log.
 void add_log(storage::Report& report, const scan::CarmenLogStatistics& statistics);
 
 }  // namespace topogeo::results

@@ -12,7 +12,7 @@
 
 namespace topogeo::results {
 
-/// Where the stops of a drive lie after one stage of their correction.
+/// Poses of the stops of a drive after one stage of their correction.
 struct CorrectionStage {
   std::string name;   ///< "1_odometry", "2_forward", "3_backward", "4_final"
   std::string title;  ///< for people
@@ -21,13 +21,13 @@ struct CorrectionStage {
 };
 
 /// The four stages of a finished map: odometry alone; matches with maps seen shortly before, no
-/// cycle closed; cycles closed as they came; the document itself. The second and the third are
-/// worked out anew from its local maps, which takes as long as mapping them took.
+/// cycle closed; cycles closed in their order; the document itself. The second and third are
+/// computed anew from the local maps, which takes as long as mapping did.
 std::vector<CorrectionStage> correction_stages(const pipeline::Config& config,
                                                const storage::MapDocument& document);
 
-/// Draws them as stage_NAME.png into an existing directory, each with the local maps laid where the
-/// stage has them and the global map that this gives. Throws std::runtime_error naming the file.
+/// Draws the stages as stage_NAME.png into an existing directory, each with the local maps placed
+/// at that stage and the resulting global map. Throws std::runtime_error naming the file.
 void write_stage_pictures(const std::filesystem::path& directory, const pipeline::Config& config,
                           const storage::MapDocument& document, const std::string& title);
 
