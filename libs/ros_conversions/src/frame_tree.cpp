@@ -13,7 +13,7 @@
 namespace topogeo::ros {
 namespace {
 
-/// Frames that any robot has; more are the work of a damaged recording or a hostile peer.
+/// More frames than any robot has come from a damaged recording or a hostile peer.
 constexpr std::size_t kMostEdges = 4096;
 
 double rounded_to(double value, double steps_per_unit) {
@@ -68,8 +68,8 @@ std::optional<Eigen::Isometry3d> FrameTree::find(const std::string& from,
 
 std::optional<Eigen::Isometry3d> FrameTree::find(const std::string& from, const std::string& to,
                                                  bool static_only) const {
-  // By frame, so that the search takes a time in proportion to the edges: it is made for each scan,
-  // and a peer may have stated all the edges that are kept.
+  // Indexed by frame, so that the search is linear in the edges: it runs for each scan, and a peer
+  // may have filled the whole tree.
   std::unordered_map<std::string_view, std::vector<const Edge*>> edges_of;
   for (const Edge& edge : edges_) {
     if (static_only && !edge.is_static) continue;

@@ -10,13 +10,13 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr double kShortestQuaternion = 1e-3;
-/// Places of x, y and heading among x, y, z and the rotations about them.
+/// Indices of x, y and heading among x, y, z and the rotations about them.
 constexpr std::array<std::size_t, 3> kPlanarRows = {0, 1, 5};
-/// Of height, roll and pitch, which a robot on a floor does not change; not zero, so that the
-/// matrix can be inverted.
+/// Variance of height, roll and pitch, which are constant on a floor; not zero, so that the matrix
+/// can be inverted.
 constexpr double kFlatVariance = 1e-6;
 
-/// Eigen's matrices count with a sign.
+/// Eigen's indices are signed.
 double& cell(Eigen::Matrix3d& matrix, std::size_t row, std::size_t column) {
   return matrix(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
 }

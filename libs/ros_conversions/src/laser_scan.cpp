@@ -16,15 +16,15 @@ namespace topogeo::ros {
 namespace {
 
 constexpr float kNoEcho = scan::Scan::kNoReturn;
-/// Two echoes side by side that are nearer than this are taken for one surface.
+/// Neighbouring echoes that are closer than this belong to one surface.
 constexpr double kOneSurface_m = 0.2;
-/// Motion over a sweep that the beams do not show.
+/// Motion during a sweep that is too small for the beams to show.
 constexpr double kStill_m = 0.002;
 constexpr double kStill_rad = 0.001;
-// A full turn with a rounded step, a hundredth of the finest laser's step.
+// A full turn plus a rounded step, a hundredth of the finest laser's step.
 constexpr double kTurn_rad = 2.0 * std::numbers::pi + 0.01;
 constexpr double kFinest_rad = 1e-5;
-/// No mirror turns as slowly.
+/// All mirrors turn faster.
 constexpr double kLongestSweep_s = 10.0;
 
 void require(bool good, const char* field, const std::string& expected, double got) {
@@ -33,11 +33,11 @@ void require(bool good, const char* field, const std::string& expected, double g
                               std::to_string(got));
 }
 
-/// A beam of the pattern for each of the message that is kept, and their order.
+/// The pattern of the kept beams, and their order in the message.
 struct Layout {
   BeamPattern pattern;
-  std::size_t every = 1;  ///< beam of the message is kept
-  bool reversed = false;  ///< the last of the message comes first
+  std::size_t every = 1;  ///< keep each `every`-th beam of the message
+  bool reversed = false;  ///< the last beam of the message comes first
 };
 
 Layout layout_of(const LaserScan& message, bool upside_down, std::size_t most_beams) {
@@ -84,7 +84,7 @@ struct Echo {
   Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
 };
 
-/// The distance at which a ray meets the line from `a` to `b`; empty where it does not.
+/// The distance at which a ray meets the line from `a` to `b`; empty if it does not.
 std::optional<double> meet(double angle_rad, const Echo& a, const Echo& b) {
   const Eigen::Vector2d ray = direction_of(angle_rad);
   const Eigen::Vector2d edge = b.point_m - a.point_m;
@@ -94,7 +94,7 @@ std::optional<double> meet(double angle_rad, const Echo& a, const Echo& b) {
   return range_m > 0.0 ? std::optional(range_m) : std::nullopt;
 }
 
-/// Ranges of the beams of `pattern` from echoes anywhere.
+/// Ranges on the beams of `pattern` from echoes at any angle.
 std::vector<float> rebinned(std::vector<Echo> echoes, const BeamPattern& pattern) {
   std::ranges::sort(echoes, {}, &Echo::angle_rad);
   std::vector<float> ranges_m(pattern.beams, kNoEcho);
@@ -238,9 +238,10 @@ std::vector<float> deskewed(
     Eigen::Vector2d point_m = range_m * direction_of(angle_rad);
     if (T_odom_laser) {
       const Eigen::Vector2d seen_m = geometry::between(*T_odom_start, *T_odom_laser) * point_m;
-      if (seen_m.allFinite()) point_m = seen_m;  // an angle that is no number has no place in order
+      if (seen_m.allFinite()) point_m = seen_m;  // a NaN angle could not be sorted
     }
-    // Near the middle of the pattern, so that a full turn has one place for each direction.
+    // Wrapped around the middle of the pattern, so that each direction of a full turn has one
+    // place.
     const double seen_rad = geometry::atan2(point_m.y(), point_m.x());
     echoes.push_back({middle_rad + geometry::wrap_angle(seen_rad - middle_rad), point_m});
   }

@@ -1,4 +1,4 @@
-// Occupancy grids as ROS has them (nav_msgs/OccupancyGrid).
+// Converts occupancy grids to ROS (nav_msgs/OccupancyGrid).
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@ inline constexpr std::int8_t kFreeCell = 0;
 inline constexpr std::int8_t kOccupiedCell = 100;
 inline constexpr std::int8_t kUnknownCell = -1;
 
-/// Of our states: 0 free, 1 occupied, any other unknown.
+/// Converts our cell states: 0 free, 1 occupied, any other unknown.
 std::int8_t cell_of(std::uint8_t state);
 
-/// Size and place: T_map_grid takes the corner of cell (0, 0) and the directions of columns and
-/// rows into the map frame.
+/// Size and pose: T_map_grid takes the corner of cell (0, 0) and the directions of columns and rows
+/// to the map frame.
 struct GridPlace {
   std::uint32_t columns = 0;
   std::uint32_t rows = 0;
@@ -25,7 +25,7 @@ struct GridPlace {
   geometry::Pose2 T_map_grid;
 };
 
-/// `cells`: row by row from row 0, as cell_of gives them.
+/// `cells`: row by row from row 0, converted by cell_of.
 OccupancyGrid occupancy_grid(const GridPlace& place, std::vector<std::int8_t> cells,
                              const Header& header);
 

@@ -1,6 +1,6 @@
-// Laser scans of ROS (sensor_msgs/LaserScan, REP 103) as beams that ascend at one step, which is
-// what we work on: clockwise and inverted scanners turned round, the motion during a turn of the
-// mirror taken out, numbers of beams that vary put on one pattern.
+// Converts laser scans of ROS (sensor_msgs/LaserScan, REP 103) to our form, beams that ascend by
+// one step: clockwise and inverted scanners are reversed, motion during a sweep is removed, varying
+// numbers of beams are mapped to one pattern.
 #pragma once
 
 #include <cstddef>
@@ -27,54 +27,54 @@ struct BeamPattern {
 /// "720 beams from -3.1416 rad by 0.00873 rad".
 std::string text_of(const BeamPattern& pattern);
 
-/// No beam is farther off than 0.0001 rad.
+/// Whether no beam differs by more than 0.0001 rad.
 bool same_beams(const BeamPattern& a, const BeamPattern& b);
 
-/// Whether the two are of one laser, one of which lacks beams: half of the wider field of view is
-/// common to both, and no step is more than twice the other.
+/// Whether two patterns belong to one laser, although one may lack beams: they share half of the
+/// wider field of view, and no step is more than twice the other.
 bool alike(const BeamPattern& a, const BeamPattern& b);
 
-/// When the rays of a message were measured. `time_increment` cannot be taken at its word: drivers
-/// of clockwise scanners turn the ranges round and leave it (tests/bench/RESULTS.md, "Recordings of
+/// Times at which the rays of a message were measured. `time_increment` is not reliable: drivers of
+/// clockwise scanners reverse the ranges but not its sign (tests/bench/RESULTS.md, "Recordings of
 /// ROS").
 enum class SweepOrder : std::uint8_t {
   kNone,     ///< all at the stamp
-  kForward,  ///< as the message states: the first at the stamp, each one time_increment later
-  kBackward  ///< the first at the stamp, each one time_increment earlier: the last was the first
+  kForward,  ///< as the message states: the first at the stamp, each next one time_increment later
+  kBackward  ///< the first at the stamp, each next one time_increment earlier
 };
 
-/// Of "none", "forward" and "backward"; throws std::invalid_argument for another.
+/// Parses "none", "forward" or "backward"; throws std::invalid_argument for other names.
 SweepOrder sweep_order(std::string_view name);
 
 /// One turn of the mirror.
 struct Sweep {
   BeamPattern pattern;
   std::vector<float> ranges_m;  ///< by ascending angle; Scan::kNoReturn: no echo
-  double time_step_s = 0.0;     ///< from one beam to the next of ranges_m, of any sign
-  double first_beam_s = 0.0;    ///< of ranges_m, after the stamp
+  double time_step_s = 0.0;     ///< from one beam of ranges_m to the next, of any sign
+  double first_beam_s = 0.0;    ///< time of the first of ranges_m after the stamp
 
-  /// Of the beam farthest from the stamp, after it; negative before it.
+  /// Time after the stamp of the beam farthest from it; negative if before.
   [[nodiscard]] double farthest_s() const;
 };
 
-/// The beams of a message, `upside_down` seen from above: mirrored about the x axis of its frame.
-/// Of more than `most_beams` every second, third ... is taken. Throws std::invalid_argument naming
-/// the field ("expected ..., got ...") for beams that no laser has.
+/// The beams of a message; with `upside_down` in plan view: mirrored about the x axis of its frame.
+/// If there are more than `most_beams`, keeps every second, third ... one. Throws
+/// std::invalid_argument naming the field ("expected ..., got ...") for beams that no laser has.
 BeamPattern pattern_of(const LaserScan& message, bool upside_down, std::size_t most_beams);
 
-/// The same with ranges and times. A range is an echo when it is above 0, not below range_min, and,
-/// where range_max is stated, below that. Throws the same, also for times that no laser has.
+/// Like pattern_of, with ranges and times. A range is an echo if it is above 0, not below
+/// range_min, and below range_max if that is stated. Throws likewise, also for impossible times.
 Sweep to_sweep(const LaserScan& message, bool upside_down, std::size_t most_beams,
                SweepOrder order = SweepOrder::kNone);
 
-/// The ranges of the sweep on the beams of `pattern`: those of the nearest beam within half a step
-/// of the coarser one, no echo where there is none.
+/// The ranges of the sweep on the beams of `pattern`: the range of the nearest beam within half of
+/// the coarser step, no echo if there is none.
 std::vector<float> on_pattern(const Sweep& sweep, const BeamPattern& pattern);
 
 /// The ranges as if all had been measured at the stamp, on the beams of the sweep.
-/// `T_odom_laser_after` gives the laser's pose so many seconds after the stamp; where it has none,
-/// or none of finite numbers, the range stays as it was measured. The ranges stay as they are where
-/// the beams do not show the motion: below 2 mm and 0.001 rad.
+/// `T_odom_laser_after` gives the laser's pose that many seconds after the stamp; if it returns
+/// none, or none with finite numbers, the range is not changed. No range changes if the motion is
+/// too small for the beams to show: up to 2 mm and 0.001 rad.
 std::vector<float> deskewed(
     const Sweep& sweep,
     const std::function<std::optional<geometry::Pose2>(double)>& T_odom_laser_after);
@@ -82,7 +82,7 @@ std::vector<float> deskewed(
 /// Ranges at or above the limit become no echo.
 void limit_ranges(std::vector<float>& ranges_m, double range_limit_m);
 
-/// The other way, with stamp; a beam without an echo becomes +inf. `range_max_m`: of the laser.
+/// The reverse conversion; a beam without an echo becomes +inf. `range_max_m`: of the laser.
 LaserScan to_laser_scan(const scan::Scan& scan, const std::string& frame_id, float range_max_m);
 
 }  // namespace topogeo::ros

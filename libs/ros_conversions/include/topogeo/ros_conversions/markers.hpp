@@ -1,4 +1,4 @@
-// Graphs and names as viewers of ROS draw them (visualization_msgs/MarkerArray).
+// Converts graphs and names to markers for viewers of ROS (visualization_msgs/MarkerArray).
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace topogeo::ros {
 
-/// In metres, in the frame that is drawn in. Ids name the parts in viewers.
+/// Coordinates in metres, in the frame of the header. Viewers show the ids of the parts.
 struct GraphDrawing {
   struct Node {
     std::int32_t id = 0;
@@ -20,22 +20,22 @@ struct GraphDrawing {
   struct Branch {
     std::int32_t id = 0;
     bool is_virtual = false;
-    std::vector<Eigen::Vector2d> points_m;  ///< with less than two it is not drawn
+    std::vector<Eigen::Vector2d> points_m;  ///< not drawn with fewer than two
   };
   std::vector<Node> nodes;
   std::vector<Branch> branches;
 };
 
 struct NameDrawing {
-  std::string kind;  ///< a namespace of markers
+  std::string kind;  ///< namespace of the markers
   std::int32_t id = 0;
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
   std::string text;
 };
 
-/// Nodes as spheres, branches as lines, after an order to delete all others.
+/// Nodes as spheres, branches as lines, after a command that deletes all other markers.
 MarkerArray graph_markers(const GraphDrawing& graph, const Header& header);
-/// Texts, after the same order.
+/// Texts, after the same command.
 MarkerArray name_markers(const std::vector<NameDrawing>& names, const Header& header);
 
 }  // namespace topogeo::ros

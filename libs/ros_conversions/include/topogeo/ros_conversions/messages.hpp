@@ -1,4 +1,4 @@
-// The messages of ROS 2 that robots, viewers and recordings exchange with us, under short names.
+// Short names for the ROS 2 messages that robots, viewers and recordings exchange with us.
 #pragma once
 
 #include "topogeo/ros2/diagnostic_msgs.h"
