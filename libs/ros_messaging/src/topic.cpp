@@ -14,14 +14,14 @@
 namespace topogeo::ros {
 namespace {
 
-/// What the history allocates for a sample before it knows how large it is, bytes.
+/// First allocation for a sample of unknown size, bytes.
 constexpr std::uint32_t kFirstPayload = 256;
 constexpr std::size_t kLongestName = 247;
 
-/// Whether the payload is long enough for the elements that it claims. The generated code asks for
-/// one byte for each and makes room for all of them, a hundred times the payload and more, before
-/// it reads the first. It does so with every list, but of the messages that the bridge reads only
-/// TFMessage has one whose elements are much larger than a byte.
+/// Whether the payload is long enough for the elements that it claims. The generated code only
+/// requires one byte for each and allocates all of them, a hundred times the payload and more,
+/// before it reads the first. This holds for every list, but among the messages that the bridge
+/// reads only TFMessage has list elements much larger than a byte.
 template <class T>
 bool has_room(const eprosima::fastrtps::rtps::SerializedPayload_t& /*payload*/) {
   return true;
@@ -31,7 +31,7 @@ template <>
 bool has_room<TFMessage>(const eprosima::fastrtps::rtps::SerializedPayload_t& payload) {
   /// Encapsulation and the number of transforms.
   constexpr std::size_t kStart_bytes = 8;
-  /// A stamp, two texts of no length, seven numbers.
+  /// A stamp, two empty texts, seven numbers.
   constexpr std::uint64_t kLeastTransform_bytes = 8 + 2 * 4 + 7 * 8;
   if (payload.length < kStart_bytes) return false;
   const bool little_endian = (payload.data[1] & 1U) != 0U;
@@ -42,15 +42,15 @@ bool has_room<TFMessage>(const eprosima::fastrtps::rtps::SerializedPayload_t& pa
   return transforms * kLeastTransform_bytes <= payload.length - kStart_bytes;
 }
 
-/// What a reader hands over: the message, or that there was none in the payload.
+/// Data that a reader hands over: a message, or the fact that the payload held none.
 template <class T>
 struct Received final : public T {
   bool readable = true;
 };
 
-/// A generated type support whose histories grow with the samples, and to which a payload that is
-/// no message of the type is one that find_defect refuses: where the generated code fails the
-/// middleware reads nothing behind it, and what it throws ends the process.
+/// A generated type support whose histories grow with the samples. A payload that is no message of
+/// the type becomes one that find_defect refuses; otherwise the middleware would read nothing
+/// behind it, and an exception of the generated code would end the process.
 template <class Generated>
 class RosTypeSupport final : public Generated {
   using Message = typename Generated::type;
@@ -136,7 +136,7 @@ struct NamedInfo {
   messaging::TopicInfo info;
 };
 
-/// Topics that were asked for, which readers and writers point to.
+/// Keeps the topics that readers and writers point to.
 const messaging::TopicInfo& keep(const std::string& key, const std::string& name,
                                  eprosima::fastdds::dds::TopicDataType* (*make_type)(),
                                  std::optional<std::string> (*find_defect)(const void*)) {

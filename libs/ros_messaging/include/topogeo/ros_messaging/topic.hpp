@@ -1,8 +1,8 @@
-// Readers and writers of topics of ROS 2, for the participants of plain_participant.hpp and the
-// event loop of messaging.
+// Readers and writers of ROS 2 topics, for the participants of plain_participant.hpp and the event
+// loop of messaging.
 //
-// On DDS a topic of ROS has the prefix "rt" and a type name of its own (ROS 2 design, "Topic and
-// Service name mapping to DDS"). Strings and sequences are unbounded there: what cannot be read
+// On DDS, a ROS topic has the prefix "rt" and its own type name (ROS 2 design, "Topic and Service
+// name mapping to DDS"). Strings and sequences are unbounded there; a payload that cannot be read
 // becomes the event kInvalidSample.
 #pragma once
 
@@ -30,37 +30,37 @@ concept Message =
 
 /// Names the profiles of deploy/dds_profiles.xml.
 enum class Qos {
-  kBestEffort,  ///< what a slow network loses is lost
+  kBestEffort,  ///< lost samples are not sent again
   kReliable,    ///< lost packets are sent again
   kLatched,     ///< reliable, and late readers get the last message
   kTransforms   ///< reliable, deep enough for the many writers of /tf
 };
 
 struct Topic {
-  std::string name;  ///< as ROS has it: "/scan"
+  std::string name;  ///< in ROS notation: "/scan"
   Qos qos = Qos::kReliable;
 };
 
 /// Throws std::invalid_argument naming the rule that `name` breaks: it starts with '/', has
-/// letters, digits, '_' and '/', no token that is empty or starts with a digit, and at most 247
+/// letters, digits, '_' and '/', no part that is empty or starts with a digit, and at most 247
 /// characters.
 void check_topic_name(const std::string& name);
 
-/// A topic of type T as its readers and as its writers use it; lives as long as the process. Throws
-/// as check_topic_name.
+/// The topic of type T for readers, and below for writers; lives as long as the process. Throws
+/// like check_topic_name.
 template <Message T>
 const messaging::TopicInfo& reader_info(const std::string& name);
 template <Message T>
 const messaging::TopicInfo& writer_info(const std::string& name);
 
-/// Of the profiles.
+/// Name of the profiles.
 std::string role(Qos qos);
 
 }  // namespace topogeo::ros
 
 namespace topogeo::messaging {
 
-/// As the Reader of our topics; there are no disposals.
+/// Like the Reader of our own topics, but without disposals.
 template <class T>
 requires ros::Message<T>
 class Reader<T> {
@@ -76,7 +76,7 @@ class Reader<T> {
   std::shared_ptr<detail::ReaderCore> core_;
 };
 
-/// As the Writer of our topics.
+/// Like the Writer of our own topics.
 template <class T>
 requires ros::Message<T>
 class Writer<T> {
@@ -85,7 +85,7 @@ class Writer<T> {
       : core_(std::make_shared<detail::WriterCore>(participant, ros::writer_info<T>(topic.name),
                                                    ros::role(topic.qos))) {}
 
-  /// False: not sent, because a reader is slow. Throws std::runtime_error when the middleware
+  /// Returns false if a slow reader prevents sending. Throws std::runtime_error when the middleware
   /// fails.
   [[nodiscard]] bool write(const T& message) { return core_->write(&message); }
   [[nodiscard]] int matched() const { return core_->matched(); }
