@@ -9,7 +9,7 @@
 namespace topogeo::scan {
 namespace {
 
-// Beyond these a number is damaged: no robot has driven as far or turned as often.
+// Numbers beyond these are damaged: no robot has driven as far or turned as often.
 constexpr double kMaxCoordinate_m = 1e6;
 constexpr double kMaxHeading_rad = 1e4;
 
@@ -21,7 +21,7 @@ struct Bad {
   LineError error;
 };
 
-// A field as it may stand in a one-line message.
+// A field in a form for a one-line message.
 std::string quoted(std::string_view field) {
   constexpr std::size_t kLongest = 24;
   std::string text = "'";
@@ -172,10 +172,10 @@ void CarmenLineParser::parse_robotlaser(Scan& scan) {
   const std::size_t count = parse_count(kRobotlaserCount, "number of ranges");
   scan.angle_min_rad = parse_number(2, SkipReason::kGeometry, "a start angle");
   scan.angle_step_rad = parse_number(4, SkipReason::kGeometry, "an angular resolution");
-  // The tolerance lets a full turn through whose step was rounded in the log.
+  // The tolerance allows a full turn whose step was rounded in the log.
   constexpr double kTurn = 2.0 * std::numbers::pi + 0.01;
-  // A hundredth of the finest laser's; below it, angles divided by the step leave every integer
-  // type.
+  // A hundredth of the finest laser's step; below it, angles divided by the step overflow every
+  // integer type.
   constexpr double kFinest_rad = 1e-5;
   if (!(std::fabs(scan.angle_min_rad) <= kTurn) || !(scan.angle_step_rad >= kFinest_rad) ||
       !(scan.angle_step_rad * static_cast<double>(count - 1) <= kTurn)) {

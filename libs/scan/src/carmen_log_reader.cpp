@@ -82,7 +82,7 @@ struct CarmenLogReader::Impl {
   ScanSequence sequence;
   CarmenLogStatistics statistics;
   bool damage_reported = false;
-  std::optional<Scan> ready;  // accepted, not yet handed out
+  std::optional<Scan> ready;  // accepted, not yet returned
 };
 
 void CarmenLogReader::Impl::skip(SkipReason reason, std::uint64_t line, const std::string& text) {
@@ -92,7 +92,7 @@ void CarmenLogReader::Impl::skip(SkipReason reason, std::uint64_t line, const st
   }
 }
 
-// The next laser line that can be read by itself; its time is not checked.
+// The next individually readable laser line, without a check of its time.
 std::optional<ScanSequence::Candidate> CarmenLogReader::Impl::next_readable() {
   GzLines::Line line;
   while (lines.next(line)) {

@@ -40,7 +40,7 @@ void append_stamp(std::string& text, std::int64_t stamp_ns) {
   text += nanoseconds;
 }
 
-/// What a ROBOTLASER1 line has before its readings; its laser type 0 is a SICK LMS.
+/// Start of a ROBOTLASER1 line, before its readings; laser type 0 is a SICK LMS.
 void append_geometry(std::string& text, const Scan& scan) {
   text += "ROBOTLASER1 0";
   append(text, scan.angle_min_rad);
@@ -129,7 +129,7 @@ CarmenLogWriter& CarmenLogWriter::operator=(CarmenLogWriter&&) noexcept = defaul
 
 void CarmenLogWriter::write(const Scan& scan) {
   check(scan);
-  // To the last bit, so that what is read back is what was written.
+  // Exact comparison, so that reading back gives the written scan.
   const bool flaser = scan.angle_min_rad == -std::numbers::pi / 2.0 &&
                       scan.angle_step_rad == flaser_angle_step_rad(scan.ranges_m.size());
   std::string line;
@@ -143,11 +143,11 @@ void CarmenLogWriter::write(const Scan& scan) {
     append(line, range_m == Scan::kNoReturn ? kNoReturnWritten_m : range_m);
   }
   if (!flaser) line += " 0";  // remission values
-  // Without a mounting the robot's pose as it is, as a product would wrap its heading.
+  // Without a mounting the robot's pose unchanged, because a product would wrap its heading.
   const bool mounted = impl_->T_robot_laser != geometry::Pose2{};
   append_pose(line, mounted ? scan.T_odom_robot * impl_->T_robot_laser : scan.T_odom_robot);
   append_pose(line, scan.T_odom_robot);
-  if (!flaser) line += " 0 0 0 0 0";  // speeds, distances of safety and turn axis: unknown
+  if (!flaser) line += " 0 0 0 0 0";  // unknown: speeds, safety distances, turn axis
   append_stamp(line, scan.stamp_ns);
   line += " topogeo";
   append_stamp(line, scan.stamp_ns);

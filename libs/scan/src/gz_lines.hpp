@@ -25,16 +25,16 @@ class GzLines {
     bool too_long = false;  ///< longer than kMaxLine; the text is empty
   };
 
-  /// Throws std::runtime_error when the path is no readable regular file.
+  /// Throws std::runtime_error unless the path is a readable regular file.
   explicit GzLines(const std::filesystem::path& path);
 
   /// False at the end of the data. A last line without a line end counts, unless the data is
   /// damaged: then it is a fragment and is dropped.
   bool next(Line& line);
 
-  /// Why the data ends early; empty when it does not.
+  /// Reason of an early end of the data; empty without one.
   [[nodiscard]] const std::string& damage() const { return damage_; }
-  /// Uncompressed bytes so far.
+  /// Uncompressed bytes read so far.
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
   [[nodiscard]] double fraction_read() const;
 

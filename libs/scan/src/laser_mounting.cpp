@@ -14,11 +14,11 @@ namespace {
 using geometry::Pose2;
 
 constexpr std::size_t kFewestPoses = 10;  // fewer agree by chance
-constexpr double kFarthest_m = 5.0;       // farther off is another frame, no robot
-constexpr double kSamePlace_m = 0.01;     // logs with two digits round to half of it
+constexpr double kFarthest_m = 5.0;       // beyond it, the frame is not that of a robot
+constexpr double kSamePlace_m = 0.01;     // logs with two digits round by up to half of it
 constexpr double kSameHeading_rad = 0.5 * std::numbers::pi / 180.0;
-constexpr double kAgreeing = 0.9;  // share of the poses
-// A robot that stands shows one pose over and over, which agrees with itself in any frame.
+constexpr double kAgreeing = 0.9;  // required share of the poses
+// A standing robot repeats one pose, which agrees with itself in any frame.
 constexpr double kMoved_m = 0.02;
 constexpr double kMoved_rad = 0.02;
 
@@ -45,7 +45,8 @@ bool near(const Pose2& a, const Pose2& b, double place_m, double heading_rad) {
 
 std::optional<Pose2> common_mounting(std::span<const Pose2> T_robot_laser) {
   if (T_robot_laser.size() < kFewestPoses) return std::nullopt;
-  // By sine and cosine, as the headings of a laser that looks back lie on both ends of the range.
+  // Uses sine and cosine, because the headings of a laser that looks back are at both ends of the
+  // range.
   const double sine =
       median_of(T_robot_laser, [](const Pose2& pose) { return std::sin(pose.theta_rad); });
   const double cosine =
@@ -67,7 +68,7 @@ std::optional<Pose2> common_mounting(std::span<const Pose2> T_robot_laser) {
 std::optional<Pose2> mounting_in_log(const std::filesystem::path& log) {
   GzLines lines(log);
   GzLines::Line line;
-  CarmenLineParser parser(kFarthest_m);  // it reads no ranges
+  CarmenLineParser parser(kFarthest_m);  // reads no ranges
   std::vector<Pose2> mountings;
   std::optional<Pose2> last;  // of the robot
   while (lines.next(line)) {

@@ -9,9 +9,9 @@
 namespace topogeo::scan {
 namespace {
 
-/// Readings in a scan that has something to see.
+/// Echoes that a scan needs to be checked.
 constexpr std::ptrdiff_t kReturns = 10;
-/// Below these, a step is never a jump: stamps and odometry of one instant differ a little.
+/// A smaller step is never a jump: stamps and odometry of one instant differ a little.
 constexpr double kStepAllowed_m = 0.1;
 constexpr double kTurnAllowed_rad = 0.1;
 
@@ -137,7 +137,7 @@ void ScanCheck::compare_odometry(const Scan& scan) {
 void ScanCheck::compare_readings(const Scan& scan) {
   const bool same = scan.ranges_m == last_->ranges_m;
   identical_ = same ? identical_ + 1 : 1;
-  if (identical_ != options_.stuck_scans) return;  // once for each run of them
+  if (identical_ != options_.stuck_scans) return;  // once per run of identical scans
   const auto returns = std::count_if(scan.ranges_m.begin(), scan.ranges_m.end(),
                                      [](float range_m) { return range_m != Scan::kNoReturn; });
   if (returns >= kReturns) {

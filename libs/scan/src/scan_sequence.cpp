@@ -36,7 +36,7 @@ std::optional<ScanSequence::Candidate> ScanSequence::next_of_same_geometry() {
                 std::to_string(candidate->scan.ranges_m.size()));
       continue;
     }
-    // The angles of a log are rounded; one exact geometry spares comparisons.
+    // The angles of a log are rounded; one exact geometry saves comparisons.
     candidate->scan.angle_min_rad = geometry_->angle_min_rad;
     candidate->scan.angle_step_rad = geometry_->angle_step_rad;
     return candidate;
@@ -44,7 +44,7 @@ std::optional<ScanSequence::Candidate> ScanSequence::next_of_same_geometry() {
   return std::nullopt;
 }
 
-// The next scan whose time is right.
+// The next scan with a valid time.
 std::optional<ScanSequence::Candidate> ScanSequence::take() {
   while (true) {
     std::optional<Candidate> candidate = std::exchange(read_ahead_, std::nullopt);
@@ -64,9 +64,9 @@ std::optional<ScanSequence::Candidate> ScanSequence::take() {
   }
 }
 
-// A candidate far ahead of its predecessor: were it wrong and accepted, all that follows would look
-// late and be lost. When the next scan is far earlier, yet still after the last accepted one, the
-// candidate is the wrong one.
+// A candidate far ahead of its predecessor: if it were wrong and accepted, all later scans would
+// seem late and be lost. If the next scan is far earlier, yet still after the last accepted one,
+// the candidate is the wrong one.
 std::optional<ScanSequence::Candidate> ScanSequence::confirm(Candidate candidate) {
   while (true) {
     std::optional<Candidate> following = next_of_same_geometry();

@@ -1,4 +1,4 @@
-// How a CARMEN log is read.
+// Settings of the reader of CARMEN logs.
 #pragma once
 
 namespace topogeo::support {

@@ -5,8 +5,8 @@
 //   ROBOTLASER1 laser_type start_angle field_of_view angular_resolution maximum_range accuracy
 //     remission_mode n r1..rn m i1..im laser_pose(3) robot_pose(3) tv rv forward_safety
 //     side_safety turn_axis ipc_stamp host logger_stamp
-// ODOM lines, comments (#) and lines of other kinds are counted and passed over. One bad line never
-// spoils the rest: it is skipped, counted by reason and explained with its number.
+// ODOM lines, comments (#) and lines of other kinds are counted and skipped. A bad line is skipped
+// too, counted by reason and explained with its number; the rest stays usable.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@
 
 namespace topogeo::scan {
 
-/// Why a line was left out.
+/// Reason for skipping a line.
 enum class SkipReason : std::uint8_t {
   kFields,     ///< missing, surplus or non-numeric fields
   kRange,      ///< a range that is negative, infinite or not a number
@@ -37,13 +37,13 @@ enum class SkipReason : std::uint8_t {
 };
 constexpr std::size_t kSkipReasonCount = 8;
 
-/// A few words for people: "bad range".
+/// Short text for a report: "bad range".
 std::string_view describe(SkipReason reason);
 
 struct CarmenLogStatistics {
   std::uint64_t lines = 0;        ///< all lines read so far
   std::uint64_t laser_lines = 0;  ///< FLASER and ROBOTLASER1, usable or not
-  std::uint64_t scans = 0;        ///< scans handed out by next()
+  std::uint64_t scans = 0;        ///< scans returned by next()
   std::uint64_t comments = 0;     ///< comments and blank lines
   std::uint64_t odometry_lines = 0;
   std::uint64_t other_lines = 0;                          ///< other kinds of message
@@ -62,11 +62,11 @@ struct CarmenLogStatistics {
 
 class CarmenLogReader {
  public:
-  static constexpr std::size_t kMaxBeams = 2048;  ///< a line with more is bad
+  static constexpr std::size_t kMaxBeams = 2048;  ///< a line with more is skipped as bad
 
-  /// Opens the log and reads up to its first usable scan. Throws std::runtime_error when the file
-  /// is missing, unreadable, empty, binary or has no usable laser line, std::invalid_argument when
-  /// an option is out of range.
+  /// Opens the log and reads up to its first usable scan. Throws std::runtime_error if the file is
+  /// missing, unreadable, empty, binary or has no usable laser line, std::invalid_argument if an
+  /// option is out of range.
   explicit CarmenLogReader(const std::filesystem::path& path, const CarmenLogOptions& options = {});
   ~CarmenLogReader();
   CarmenLogReader(CarmenLogReader&&) noexcept;
@@ -89,7 +89,7 @@ class CarmenLogReader {
 };
 
 /// Number of laser lines in a log: a quick total for a progress bar, never less than the number of
-/// usable scans. Throws std::runtime_error when the file cannot be opened.
+/// usable scans. Throws std::runtime_error if the file cannot be opened.
 std::uint64_t count_scans(const std::filesystem::path& path);
 
 }  // namespace topogeo::scan

@@ -1,4 +1,4 @@
-// A laser scan with the odometry that belongs to it: what enters the system.
+// A laser scan with its odometry: the input of the system.
 #pragma once
 
 #include <cstdint>
@@ -14,18 +14,18 @@ struct Scan {
       0;  ///< time of measurement, since the epoch of the device or log; strictly increasing
   double angle_min_rad = 0.0;    ///< angle of the first beam in the laser frame (x forward, y left)
   double angle_step_rad = 0.0;   ///< from one beam to the next, counter-clockwise, > 0
-  std::vector<float> ranges_m;   ///< one per beam; kNoReturn where the beam met nothing
+  std::vector<float> ranges_m;   ///< one per beam; kNoReturn without an echo
   geometry::Pose2 T_odom_robot;  ///< odometry pose at the time of the scan
-  /// Odometry poses of different epochs have nothing in common: the base, or what reads it, started
-  /// anew between them, or they are of different logs.
+  /// Odometry poses of different epochs are unrelated: the base, or its reader, restarted between
+  /// them, or they belong to different logs.
   std::uint64_t odometry_epoch = 0;
 
-  /// Range of a beam without an echo. Readers of logs and devices put it for every reading at or
+  /// Range of a beam without an echo. Readers of logs and devices use it for every reading at or
   /// above the sensor's maximum and for every reading of zero or less.
   static constexpr float kNoReturn = 0.0F;
 };
 
-/// A number for a scan that no other one has, as far as its time and its ranges tell.
+/// A number that identifies a scan by its time and ranges.
 std::uint64_t fingerprint(const Scan& scan);
 
 }  // namespace topogeo::scan

@@ -1,5 +1,4 @@
-// What is wrong with the scans of a log, whatever its format: the part of LogCheck that is about
-// the scans themselves.
+// Checks the scans of a log of any format: the part of LogCheck about the scans themselves.
 #pragma once
 
 #include <cstdint>
@@ -13,19 +12,19 @@
 
 namespace topogeo::scan {
 
-/// The fault that a log has where its reader leaves out a scan for that reason.
+/// The fault of a log from which a reader skips a scan for this reason.
 LogFault fault_of(SkipReason reason);
 
 class ScanCheck {
  public:
-  /// Throws std::invalid_argument when an option is out of range.
+  /// Throws std::invalid_argument if an option is out of range.
   explicit ScanCheck(const LogCheckOptions& options);
 
-  /// A scan that is readable by itself; `line` is where it stands.
+  /// Takes a scan that is readable by itself; `line` is its place in the log.
   void take(std::uint64_t line, Scan scan);
   void found(LogFault fault, std::uint64_t line, const std::string& text);
 
-  /// All scans have come. Counts of lines are left to the caller.
+  /// Call after the last scan. The caller sets the counts of lines.
   LogCheck finish();
 
  private:
@@ -41,8 +40,8 @@ class ScanCheck {
   std::uint64_t line_ = 0;
   std::optional<Scan> last_;
   std::uint32_t identical_ = 1;
-  std::vector<std::int64_t> periods_ns_;     // between two scans, where time goes on
-  std::vector<std::uint64_t> period_lines_;  // of the second of each two
+  std::vector<std::int64_t> periods_ns_;     // between two scans, if positive
+  std::vector<std::uint64_t> period_lines_;  // line of the second of each two
 };
 
 }  // namespace topogeo::scan

@@ -1,6 +1,5 @@
-// Makes of the scans that a log gives, one by one readable, the sequence that Scan promises:
-// strictly increasing stamps, the beams of the first scan, numbers from 0 without gaps, one
-// odometry epoch.
+// Turns the individually readable scans of a log into the sequence that Scan promises: strictly
+// increasing stamps, the beams of the first scan, numbers from 0 without gaps, one odometry epoch.
 #pragma once
 
 #include <cstdint>
@@ -20,16 +19,16 @@ class ScanSequence {
     Scan scan;
     std::uint64_t place = 0;
   };
-  /// The next scan that is readable by itself, its time unchecked; empty at the end.
+  /// Returns the next scan that is readable by itself, without a check of its time; empty at the
+  /// end.
   using Source = std::function<std::optional<Candidate>()>;
-  /// Learns of each scan that is left out, with "expected ..., got ...".
+  /// Called for each skipped scan, with "expected ..., got ...".
   using Skip = std::function<void(SkipReason reason, std::uint64_t place, const std::string& text)>;
 
   /// `jump_s`: see CarmenLogOptions.
   ScanSequence(double jump_s, Source source, Skip skip);
 
-  /// Empty at the end. The first call reads ahead of what it returns, as confirming a stamp needs
-  /// the next.
+  /// Empty at the end. The first call reads ahead, because a stamp is confirmed by the next one.
   std::optional<Scan> next();
 
  private:
@@ -42,8 +41,8 @@ class ScanSequence {
   Source source_;
   Skip skip_;
   std::optional<Scan> geometry_;         // the first readable scan, which fixes the geometry
-  std::optional<Candidate> read_ahead_;  // comes before the rest of the log
-  std::optional<std::int64_t> last_ns_;  // stamp of the last scan that was accepted
+  std::optional<Candidate> read_ahead_;  // precedes the rest of the log
+  std::optional<std::int64_t> last_ns_;  // stamp of the last accepted scan
   std::uint64_t sequence_ = 0;
   std::uint64_t odometry_epoch_ = 0;
 };
