@@ -11,7 +11,7 @@ namespace topogeo::search_pool {
 namespace {
 
 constexpr std::chrono::seconds kPeriod{1};
-constexpr std::size_t kNamed = 3;  // workers of one line
+constexpr std::size_t kNamed = 3;  // workers named in one line
 
 std::string count_of(std::size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");

@@ -8,7 +8,7 @@
 namespace topogeo::search_pool {
 namespace {
 
-constexpr std::size_t kLookAhead = 64;  // so that a batch of any size is given out in linear time
+constexpr std::size_t kLookAhead = 64;  // keeps the time for a batch linear in its size
 
 bool contains(const std::deque<std::uint64_t>& held, std::uint64_t reference_hash) {
   return std::find(held.begin(), held.end(), reference_hash) != held.end();

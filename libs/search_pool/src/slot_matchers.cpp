@@ -11,11 +11,12 @@ namespace topogeo::search_pool {
 
 namespace {
 
-/// Grids on the reference maps that a matcher used last: Matcher::kKeptReferences of them.
+/// Grids on the most recently used reference maps of a matcher: Matcher::kKeptReferences of them.
 constexpr std::size_t kGrid_bytes = std::size_t{3} << 20U;
-/// View of the laser by direction, for each map.
+/// View of the laser by direction, per map.
 constexpr std::size_t kProfile_bytes = 6000;
-/// A point as a surface point with its normal and as a coarse point, over the point itself.
+/// A point as a surface point with its normal and as a coarse point, in addition to the point
+/// itself.
 constexpr std::size_t kBytesPerPoint = 40;
 
 std::size_t feature_bytes(const topomap::LocalMap& map) {
@@ -80,8 +81,8 @@ void SlotMatchers::add_field(Kept& kept, const ReadyJob& job) {
   kept.matcher.add_field(std::move(field));
 }
 
-// A matcher cannot forget single maps. One that has grown too large goes whole: what it still needs
-// is made again from the maps, in less time than one search takes for each.
+// A matcher cannot drop single maps. One that has grown too large is dropped as a whole:
+// recomputing a map that is still needed takes less time than one search.
 void SlotMatchers::make_room() {
   while (bytes() > capacity_bytes_ && kept_.size() > 1) kept_.pop_back();
   if (bytes() > std::max(capacity_bytes_, 2 * kGrid_bytes)) kept_.clear();

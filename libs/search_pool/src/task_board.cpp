@@ -14,7 +14,7 @@ using localization::MatchTask;
 
 namespace {
 
-/// To compare late answers with: more than workers hold while one answer travels.
+/// Tasks kept for comparison with late answers: more than workers hold while one answer travels.
 constexpr std::size_t kKeptTasks = 1024;
 
 }  // namespace
@@ -105,7 +105,7 @@ std::vector<MatchResult> TaskBoard::take_results() {
     results.push_back(*task.result);
     Worker* worker = task.proven ? nullptr : workers_.find(task.answered_by);
     if (worker != nullptr) ++worker->unchecked;
-    // Another answer may come from a worker that got the task too.
+    // Another worker that got the task may answer too.
     if (task.sends <= (task.answered_by.empty() ? 0U : 1U)) continue;
     kept_.insert_or_assign(task.task.task_id, task);
     if (kept_.size() > kKeptTasks) kept_.erase(kept_.begin());
@@ -134,7 +134,7 @@ bool TaskBoard::is_open(std::uint64_t task_id) const {
   return index && !batch_.at(*index).result;
 }
 
-// --- what to do next
+// --- next action
 
 TaskBoard::Assignment TaskBoard::assign(std::size_t index, WorkerLoads::Workers::value_type& worker,
                                         BoardTime now) {
@@ -157,7 +157,7 @@ std::optional<TaskBoard::Assignment> TaskBoard::next_remote(BoardTime now) {
   workers_.set_open_tasks(batch_.open());
   if (auto waiting = place_waiting(now)) return waiting;
   for (const auto& [sent, index] : batch_.out()) {
-    if (now - sent < workers_.straggler_time()) break;  // the others are younger
+    if (now - sent < workers_.straggler_time()) break;  // the others are newer
     const BoardTask& task = batch_.at(index);
     if (auto* worker = workers_.choose(task.tried, now)) {
       report_stalled(task);
@@ -247,13 +247,13 @@ void TaskBoard::accept(std::size_t index, MatchResult result, const std::string&
 }
 
 bool TaskBoard::audit_is_due(Worker* worker, std::uint64_t task_id) const {
-  // One that has gone since is like a new one: nothing is known of it.
+  // A worker that has gone since counts as new.
   if (worker == nullptr) return options_.probation > 0;
   if (worker->answers++ < options_.probation) return true;
   if (options_.audit_every == 0) return false;
   support::Fnv1a hash;
   hash.add(task_id);
-  constexpr int kUpperHalf = 32;  // the better mixed one
+  constexpr int kUpperHalf = 32;  // better mixed
   return (hash.value() >> kUpperHalf) % options_.audit_every == 0;
 }
 
@@ -311,7 +311,7 @@ void TaskBoard::refuse(const std::string& worker_id, std::uint64_t task_id, Refu
   }
 }
 
-// --- tasks taken back
+// --- returned tasks
 
 void TaskBoard::take_from(const std::string& worker_id, Worker& worker, std::uint64_t task_id) {
   WorkerLoads::take(worker, task_id);
@@ -322,7 +322,7 @@ void TaskBoard::take_from(const std::string& worker_id, Worker& worker, std::uin
 void TaskBoard::take_all_from(const std::string& worker_id, Worker& worker) {
   while (!worker.in_hand.empty()) take_from(worker_id, worker, worker.in_hand.front().task_id);
   holders_.forget(worker_id);
-  // Should it come back, it has a fresh chance.
+  // If it comes back, it may try them again.
   for (std::size_t i = 0; i < batch_.size(); ++i) {
     if (!batch_.at(i).tried.contains(worker_id)) continue;
     batch_.change(i, [&](BoardTask& task) { task.tried.erase(worker_id); });

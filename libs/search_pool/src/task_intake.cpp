@@ -9,9 +9,9 @@ namespace topogeo::search_pool {
 
 namespace {
 
-/// Whose newest maps are remembered. To forget one costs a wait.
+/// Robots whose newest maps are stored. Dropping one costs a wait.
 constexpr std::size_t kMostRobots = 64;
-/// Of one robot. Tasks name the newest, and the one or two before.
+/// Maps stored per robot. Tasks name the newest, and the one or two before.
 constexpr std::size_t kNewestMaps = 4;
 
 bool is_complete(const ReadyJob& job) {
@@ -19,7 +19,7 @@ bool is_complete(const ReadyJob& job) {
   return std::ranges::find(job.pieces, nullptr) == job.pieces.end();
 }
 
-/// Gives the job a map that it lacks. True when it wanted it.
+/// Gives the job a map that it lacks. True if the job lacked it.
 bool give(ReadyJob& job, std::uint64_t hash, const MapPointer& map) {
   const localization::MatchTask& task = job.job.task;
   bool wanted = false;
@@ -123,8 +123,8 @@ std::vector<ReadyJob> TaskIntake::add_published(MapPointer map) {
   return ready;
 }
 
-// It came, and is not the one that is meant. The last map says what time it is, not the newest: a
-// log may be driven again.
+// A map of this time has arrived, and it is not the named one. The last map defines the time, not
+// the newest stamp, because a log may be driven again.
 bool TaskIntake::is_past(const MatchJob& job) const {
   const auto published = published_.find(job.robot_id);
   return published != published_.end() && published->second.front()->stamp_ns >= job.stamp_ns;

@@ -6,7 +6,7 @@ namespace topogeo::search_pool {
 
 namespace {
 
-constexpr std::size_t kAnswerTimes = 65;     // of which the median is taken
+constexpr std::size_t kAnswerTimes = 65;     // sample of the median
 constexpr std::uint64_t kMedianPeriod = 16;  // answers between two medians
 
 bool takes_tasks(const Worker& worker) {
@@ -110,7 +110,7 @@ std::optional<BoardTime> WorkerLoads::next_straggler(BoardTime now) const {
       const BoardTime due = entry.sent + straggler_time_;
       if (due <= now) continue;
       if (!first || due < *first) first = due;
-      break;  // the later ones come later
+      break;  // later ones are due later
     }
   }
   return first;

@@ -12,7 +12,7 @@ namespace topogeo::search_pool {
 
 namespace {
 
-// Quotes and percent signs would have to be escaped in scripts, '#' ends the name in an id.
+// Quotes and percent signs would need escapes in scripts, '#' ends the name in an id.
 bool is_allowed(char c) {
   const auto code = static_cast<unsigned char>(c);
   return code > ' ' && code != 0x7F && c != '\'' && c != '"' && c != '%' && c != '#';
@@ -23,7 +23,7 @@ bool is_allowed(char c) {
 std::string default_name() {
   std::string name = support::host_name();
   name.resize(std::min(name.size(), kLongestName));
-  // A host's name is ASCII by rule; what is not would be cut in the middle of a character.
+  // A host's name is ASCII by rule; other characters could be cut in the middle.
   std::replace_if(
       name.begin(), name.end(),
       [](char c) { return !is_allowed(c) || static_cast<unsigned char>(c) >= 0x80; }, '-');

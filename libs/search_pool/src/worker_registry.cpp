@@ -9,10 +9,10 @@ namespace topogeo::search_pool {
 
 namespace {
 
-// Ids come from the network: what is remembered of them has a bound.
+// Ids come from the network, so stored ids need a limit.
 constexpr std::size_t kFormer = 1024;    // more than leave while an answer travels
-constexpr std::size_t kReported = 4096;  // beyond them faults are reported again
-constexpr std::size_t kOthers = 8;       // under one id, which should have one process
+constexpr std::size_t kReported = 4096;  // beyond this, faults are reported again
+constexpr std::size_t kOthers = 8;       // per id, which should have one process
 
 std::string named(const std::string& worker_id, const std::string& host) {
   return "worker " + worker_id + (host.empty() ? "" : " on host " + host);
@@ -78,7 +78,7 @@ void WorkerRegistry::remove(const std::string& worker_id) {
   const auto found = entries_.find(worker_id);
   former_.push_back({worker_id, found->second.owner});
   if (former_.size() > kFormer) former_.pop_front();
-  // Another process under the id takes over with its next report.
+  // Another process with the id takes over with its next report.
   entries_.erase(found);
 }
 
@@ -90,7 +90,7 @@ std::optional<std::string> WorkerRegistry::gone(const InstanceId& instance,
   if (found == entries_.end()) return {};
   Entry& entry = found->second;
   if (process == ProcessId{}) {
-    // Of one of several: the ticks without a report show which.
+    // One of several processes is gone: ticks without a report will show which.
     if (!entry.others.empty()) return {};
   } else if (process != entry.owner) {
     entry.others.erase(process);

@@ -1,4 +1,4 @@
-// How a TaskBoard deals with its workers.
+// Settings of a TaskBoard for its workers.
 #pragma once
 
 #include <chrono>
@@ -6,35 +6,34 @@
 
 namespace topogeo::search_pool {
 
-/// Since any start of one steady clock.
+/// Time on one steady clock, from any start.
 using BoardTime = std::chrono::nanoseconds;
 
 struct BoardConfig {
-  /// Tasks given to a worker for each of its slots, at least: one to work on, the rest so that it
-  /// does not stand still while an answer travels. A new worker gets no more before its probation
-  /// is over.
+  /// Minimum of tasks per slot of a worker: one to work on, the others so that it is not idle while
+  /// an answer travels. A new worker gets no more before its probation is over.
   std::uint32_t tasks_per_slot = 2;
-  /// At most: a large batch travels in messages of several tasks. Of a small one each worker gets a
-  /// half of its share, so that all end together.
+  /// Maximum of tasks per slot: a large batch travels in messages of several tasks. In a small
+  /// batch each worker gets half of its share, so that all finish together.
   std::uint32_t most_tasks_per_slot = 64;
-  /// Tasks given to one worker at most, whatever its slots; the task history of a worker on the
-  /// wire holds 128 messages, of one task each at worst.
+  /// Maximum of tasks per worker, whatever its slots; the task history of a worker on the wire
+  /// holds 128 messages, in the worst case of one task each.
   std::uint32_t tasks_per_worker = 100;
-  /// A task without an answer for so long is also given to another worker ...
+  /// A task without an answer for this time is also given to another worker ...
   BoardTime straggler_floor = std::chrono::milliseconds(250);
-  /// ... or for so many times the median time of recent answers, if that is longer.
+  /// ... or for this multiple of the median time of recent answers, if that is longer.
   double straggler_factor = 20.0;
-  /// How long a worker that did not hold a map, or could not be sent to, gets nothing.
+  /// Pause without tasks for a worker that lacked a map or could not be reached.
   BoardTime rest = std::chrono::seconds(5);
-  /// A worker that owes an answer is taken to have lost the task after so long, and gets new ones:
-  /// longer than a machine stalls that has other work, short beside a drive.
+  /// An answer overdue by this time counts as lost, and its worker gets new tasks: longer than a
+  /// busy machine stalls, short compared with a drive.
   BoardTime forget_after = std::chrono::seconds(2);
-  /// Twice as long each time that it has answered nothing since, up to this: tasks for a worker
-  /// that hangs wait for the time of a straggler.
+  /// Upper limit of the time, which doubles with each repetition without an answer: tasks of a
+  /// hanging worker wait until they are stragglers.
   BoardTime longest_forget_after = std::chrono::seconds(30);
-  /// So many first answers of every worker are compared with the answer of this process,
+  /// Number of first answers of every worker that are compared with the answer of this process,
   std::uint32_t probation = 3;
-  /// and one in so many of the later ones, chosen by the task's id; 0: none.
+  /// and one in this many of the later ones, chosen by the task's id; 0: none.
   std::uint32_t audit_every = 64;
 };
 

@@ -1,4 +1,4 @@
-// A queue that serves its users in turn: one with a long queue does not keep the others waiting.
+// A queue that serves its users in turn: a user with a long queue does not delay the others.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace topogeo::search_pool {
 
-/// First in, first out for each user; users in turn. A user who comes (back) with an empty queue is
-/// last in turn. Not safe for several threads.
+/// First in, first out for each user; users in turn. A user who starts with an empty queue is last
+/// in turn. Not thread-safe.
 template <class Item>
 class FairQueue {
  public:
@@ -23,7 +23,7 @@ class FairQueue {
     ++size_;
   }
 
-  /// The oldest item of the user whose turn it is; nothing when all queues are empty.
+  /// The oldest item of the user whose turn it is; empty if all queues are empty.
   std::optional<Item> pop() {
     if (turns_.empty()) return {};
     const auto queue = queues_.find(turns_.front());
@@ -39,7 +39,7 @@ class FairQueue {
     return item;
   }
 
-  /// Takes out everything of a user, oldest first.
+  /// Removes and returns all items of a user, oldest first.
   std::deque<Item> remove(const std::string& user) {
     const auto queue = queues_.find(user);
     if (queue == queues_.end()) return {};

@@ -1,5 +1,5 @@
-// The local maps that a worker holds, by content: robots of several runs may give other maps the
-// same id.
+// The local maps of a worker, by content: robots of several runs may use the same id for different
+// maps.
 #pragma once
 
 #include <cstddef>
@@ -11,23 +11,23 @@
 
 namespace topogeo::search_pool {
 
-/// About what a map takes in memory, bytes.
+/// Approximate memory of a map, bytes.
 std::size_t bytes_of(const topomap::LocalMap& map);
 
-/// Drops the least recently used maps when they take more than `capacity_bytes`; the one added last
-/// always stays. Whoever got a map keeps it. Not safe for several threads.
+/// Drops the least recently used maps if all together exceed `capacity_bytes`; the last added one
+/// always stays. A map already handed out stays valid. Not thread-safe.
 class MapCache {
  public:
   explicit MapCache(std::size_t capacity_bytes) : capacity_bytes_(capacity_bytes) {}
 
   /// `hash` is topomap::content_hash of the map.
   void add(std::uint64_t hash, MapPointer map);
-  /// The map of this content, now the most recently used one; null when it is not there.
+  /// The map with this content, which becomes the most recently used one; null if it is not cached.
   MapPointer find(std::uint64_t hash);
 
   [[nodiscard]] std::size_t size() const { return maps_.size(); }
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
-  /// Maps that had to make room since the start.
+  /// Number of maps dropped since the start.
   [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
 
  private:

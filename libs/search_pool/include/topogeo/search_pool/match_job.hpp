@@ -14,9 +14,9 @@ namespace topogeo::search_pool {
 using MapPointer = std::shared_ptr<const topomap::LocalMap>;
 
 struct MatchJob {
-  std::uint64_t ticket = 0;   ///< chosen by the caller, comes back with the outcome
-  std::string client_id;      ///< whose task it is
-  std::string robot_id;       ///< whose maps are meant
+  std::uint64_t ticket = 0;   ///< chosen by the caller, returned with the outcome
+  std::string client_id;      ///< sender of the task
+  std::string robot_id;       ///< robot of the maps
   std::int64_t stamp_ns = 0;  ///< of the task's message
   localization::MatchTask task;
 };
@@ -26,7 +26,7 @@ struct ReadyJob {
   MatchJob job;
   MapPointer reference;
   MapPointer query;
-  std::vector<MapPointer> pieces;  ///< of a whole map, instead of both (PlaceQuestion::pieces)
+  std::vector<MapPointer> pieces;  ///< of a whole map, instead of the two (PlaceQuestion::pieces)
 };
 
 }  // namespace topogeo::search_pool

@@ -1,4 +1,4 @@
-// When the answers of a worker leave: several in a message where more are about to come.
+// Schedule of a worker's answers: several share a message if more are about to come.
 #pragma once
 
 #include <algorithm>
@@ -14,13 +14,13 @@
 namespace topogeo::search_pool {
 
 struct OutboxRules {
-  std::size_t most_together = 1;  ///< answers in a message
+  std::size_t most_together = 1;  ///< limit of answers per message
   std::chrono::nanoseconds longest_wait{};
 };
 
-/// An outbox for each client. Its answers are due when they are as many as its tasks that are still
-/// in hand, as many as go into a message, or when the oldest has waited long. Has no clock: the
-/// caller passes the time. Not safe for several threads.
+/// An outbox for each client. Its answers are due when they are as many as its remaining tasks,
+/// when they fill a message, or when the oldest has waited long enough. Has no clock: the caller
+/// passes the time. Not thread-safe.
 template <class Answer>
 class Outboxes {
  public:
@@ -28,12 +28,12 @@ class Outboxes {
 
   explicit Outboxes(const OutboxRules& rules) : rules_(rules) {}
 
-  /// So many tasks of the client have come: an answer to each will be added.
+  /// This many tasks of the client have arrived; add() must follow for each.
   void expect(const std::string& client_id, std::size_t tasks) {
     boxes_[client_id].in_hand += tasks;
   }
 
-  /// The answer to one of those tasks. Dropped when the client is gone.
+  /// Adds the answer to one of those tasks. Dropped if the client is gone.
   void add(const std::string& client_id, Answer answer, Time now) {
     const auto found = boxes_.find(client_id);
     if (found == boxes_.end()) return;
@@ -42,7 +42,7 @@ class Outboxes {
     if (box.in_hand > 0) --box.in_hand;
   }
 
-  /// The clients whose answers are to leave now.
+  /// The clients whose answers are due.
   [[nodiscard]] std::vector<std::string> due(Time now) const {
     std::vector<std::string> clients;
     for (const auto& [client_id, box] : boxes_) {
@@ -55,7 +55,7 @@ class Outboxes {
     return found != boxes_.end() && is_due(found->second, now);
   }
 
-  /// The clients that answers wait for.
+  /// The clients with waiting answers.
   [[nodiscard]] std::vector<std::string> with_answers() const {
     std::vector<std::string> clients;
     for (const auto& [client_id, box] : boxes_) {
@@ -64,8 +64,8 @@ class Outboxes {
     return clients;
   }
 
-  /// The oldest answers to a client that has some, as many as go into a message; they are there
-  /// until something changes.
+  /// The oldest answers to a client that has some, as many as fit into a message; valid until the
+  /// next change.
   [[nodiscard]] std::vector<const Answer*> next_message(const std::string& client_id) const {
     const std::deque<Waiting>& waiting = boxes_.at(client_id).waiting;
     std::vector<const Answer*> answers;
@@ -74,7 +74,7 @@ class Outboxes {
     return answers;
   }
 
-  /// That message has left; true when more waits for the client.
+  /// Removes the answers of that message; true if more wait for the client.
   bool sent(const std::string& client_id) {
     Box& box = boxes_.at(client_id);
     std::deque<Waiting>& waiting = box.waiting;
@@ -84,7 +84,8 @@ class Outboxes {
     return !waiting.empty();
   }
 
-  /// It could not leave: nothing of the client is due for the longest wait, or until one has left.
+  /// The message could not be sent: no answer of the client is due for the longest wait, or until
+  /// one has been sent.
   void blocked(const std::string& client_id, Time now) {
     boxes_.at(client_id).not_before = now + rules_.longest_wait;
   }
@@ -96,7 +97,7 @@ class Outboxes {
   }
   void forget(const std::string& client_id) { boxes_.erase(client_id); }
 
-  /// When to look again at what is due, whatever comes until then; nothing while no answer waits.
+  /// Time of the next check of due(), whatever happens until then; empty without waiting answers.
   [[nodiscard]] std::optional<Time> next_due() const {
     std::optional<Time> next;
     for (const auto& [client_id, box] : boxes_) {
@@ -108,14 +109,14 @@ class Outboxes {
     return next;
   }
 
-  /// So many answers, at least 1, can come before what is due or next_due() may change.
+  /// Number of answers, at least 1, until due() or next_due() may change.
   [[nodiscard]] std::size_t until_due() const {
     std::size_t least = rules_.most_together;
     bool any = false;
     for (const auto& [client_id, box] : boxes_) {
       if (box.in_hand == 0) continue;
       any = true;
-      // The first one begins to wait.
+      // The first answer starts the wait.
       const std::size_t of_client =
           box.waiting.empty() ? 1 : std::max<std::size_t>(missing(box), 1);
       least = std::min(least, of_client);
@@ -123,7 +124,7 @@ class Outboxes {
     return any ? least : 1;
   }
 
-  /// Answers that wait.
+  /// Number of waiting answers.
   [[nodiscard]] std::size_t waiting() const {
     std::size_t sum = 0;
     for (const auto& [client_id, box] : boxes_) sum += box.waiting.size();
@@ -141,7 +142,7 @@ class Outboxes {
     Time not_before{};
   };
 
-  /// So many of them go into the next message.
+  /// Number of answers in the next message.
   [[nodiscard]] std::size_t together(const std::deque<Waiting>& waiting) const {
     return std::min(waiting.size(), rules_.most_together);
   }
@@ -154,7 +155,7 @@ class Outboxes {
   [[nodiscard]] bool is_due(const Box& box, Time now) const {
     return !box.waiting.empty() && now >= box.not_before && (is_full(box) || now >= gets_old(box));
   }
-  /// So many more and the box is full. Each one more that waits is one less in hand.
+  /// Number of answers until the box is full. Each new one also reduces the tasks in hand.
   [[nodiscard]] std::size_t missing(const Box& box) const {
     if (is_full(box)) return 0;
     return std::min((box.in_hand - box.waiting.size() + 1) / 2,

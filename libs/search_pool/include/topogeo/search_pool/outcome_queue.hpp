@@ -1,4 +1,4 @@
-// What slots have finished, on its way to the loop of their worker.
+// Outcomes of slots on their way to the loop of their worker.
 #pragma once
 
 #include <cstddef>
@@ -10,21 +10,21 @@
 
 namespace topogeo::search_pool {
 
-/// Slots add, the loop takes. The loop is not woken for each outcome, which costs more than the
-/// outcome itself, but when as many have come as it asked for. Safe to call from any thread.
+/// Slots add outcomes, the loop takes them. Waking the loop for each one would cost more than the
+/// outcome itself, so it wakes for the number that it has asked for. Thread-safe.
 class OutcomeQueue {
  public:
-  /// `wake` is called in the thread that adds; it must see to it that take() is called soon.
+  /// `wake` is called in the thread that adds; it must cause a call of take() soon.
   explicit OutcomeQueue(std::function<void()> wake);
 
   void add(TaskRunner::Outcome outcome);
-  /// All that wait, oldest first.
+  /// Returns all waiting outcomes, oldest first.
   std::vector<TaskRunner::Outcome> take();
-  /// Wakes when so many (>= 1, at first 1) wait, those that do already included.
+  /// Wakes when this many (>= 1, initially 1) wait, including those already waiting.
   void wake_at(std::size_t outcomes);
 
  private:
-  /// True for who is to wake: when it is time, and once until take().
+  /// True if the caller must wake: when enough are waiting, and once until take().
   [[nodiscard]] bool claim_wake();
 
   std::function<void()> wake_;

@@ -1,5 +1,5 @@
-// The lines of the log that concern a user of the search pool: which workers came and went, and how
-// long a loss delayed answers.
+// Log lines about the search pool for its users: workers that came and went, and answers delayed by
+// a loss.
 #pragma once
 
 #include <chrono>
@@ -14,18 +14,18 @@
 
 namespace topogeo::search_pool {
 
-/// Has no clock: callers pass the time, of one steady clock.
+/// Has no clock: callers pass the time of one steady clock.
 class PoolLog {
  public:
   using Sink = std::function<void(const std::string& line)>;
 
   explicit PoolLog(Sink sink);
 
-  /// The workers that can be used now. Logged when others than before, once per second at most;
-  /// what came and went again in between is left out.
+  /// Sets the usable workers. Changes are logged at most once per second, without those reverted in
+  /// between.
   void workers(const std::vector<std::string>& ids, BoardTime now);
-  /// A task has to be solved in this process, with so many workers there. Logged when it is the
-  /// first one since a worker answered, once per second at most.
+  /// A task has to be solved in this process although there are `workers` of them. Logged for the
+  /// first one since a worker answered, at most once per second.
   void searching_here(std::size_t workers, BoardTime now);
   /// A worker has answered.
   void answered() { searches_here_ = false; }
@@ -33,7 +33,7 @@ class PoolLog {
 
  private:
   Sink sink_;
-  std::set<std::string> known_;  // as logged last
+  std::set<std::string> known_;  // as last logged
   std::optional<BoardTime> last_change_;
   std::optional<BoardTime> last_search_here_;
   bool searches_here_ = false;

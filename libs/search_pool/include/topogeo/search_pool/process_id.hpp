@@ -1,4 +1,4 @@
-// Names of processes and of the status topic's instances, as the middleware gives them out.
+// Ids of processes and of instances of the status topic, as assigned by the middleware.
 #pragma once
 
 #include <array>

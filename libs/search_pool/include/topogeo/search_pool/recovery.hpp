@@ -1,4 +1,4 @@
-// How long it takes until the tasks of a worker that failed are answered by others.
+// Time until other workers have answered the tasks of a failed worker.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +12,14 @@
 
 namespace topogeo::search_pool {
 
-/// How a worker failed.
+/// Kind of failure of a worker.
 enum class WorkerFault : std::uint8_t {
-  kStalled,   ///< it is there and does not answer
-  kLost,      ///< it is gone
-  kExcluded,  ///< it gave a wrong answer
+  kStalled,   ///< present without answering
+  kLost,      ///< gone
+  kExcluded,  ///< gave a wrong answer
 };
 
-/// A worker's tasks, all answered by others or by this process.
+/// A failed worker's tasks, all answered by other workers or this process.
 struct Recovery {
   std::string worker_id;
   WorkerFault fault{};
@@ -29,17 +29,17 @@ struct Recovery {
 
 class RecoveryWatch {
  public:
-  /// A worker with open tasks failed, which showed its last sign of life at `since`.
-  /// Called again for the same worker, its tasks are added and the earliest time counts.
+  /// A worker with open tasks failed; its last sign of life was at `since`. Repeated calls for a
+  /// worker add their tasks, and the earliest time counts.
   void begin(const std::string& worker_id, WorkerFault fault, BoardTime since,
              const std::vector<std::uint64_t>& task_ids);
-  /// A task has its answer, from a worker or (empty) from this process.
+  /// A task was answered, by a worker or (empty) by this process.
   void answered(std::uint64_t task_id, const std::string& worker_id, BoardTime now);
   /// The tasks need no answer any more.
   void abandon() { cases_.clear(); }
 
-  /// Recoveries since the last call, in their order. A worker that answered
-  /// all of its tasks itself after all is left out.
+  /// Recoveries since the last call, in order, without workers that finally answered all their
+  /// tasks themselves.
   std::vector<Recovery> take();
 
  private:
@@ -48,7 +48,7 @@ class RecoveryWatch {
     BoardTime since{0};
     std::size_t tasks = 0;
     std::set<std::uint64_t> left;  // task ids
-    bool elsewhere = false;        // an answer did not come from it
+    bool elsewhere = false;        // another one gave an answer
   };
   std::map<std::string, Case> cases_;  // by worker id
   std::vector<Recovery> done_;

@@ -1,6 +1,5 @@
-// Which workers have searched in which reference maps of late, and so still have what the search
-// made of them: look-up grids, as long to build as a twentieth of a search takes. A matter of speed
-// alone; no answer depends on it.
+// Tracks which workers recently searched in which reference maps and still have the look-up grids,
+// whose construction takes a twentieth of a search. It only affects speed, not answers.
 #pragma once
 
 #include <cstddef>
@@ -17,14 +16,14 @@ namespace topogeo::search_pool {
 
 class ReferenceHolders {
  public:
-  /// A task that searches in the map of this content goes to the worker.
+  /// A task with this reference map goes to the worker.
   void add(const std::string& worker_id, std::uint64_t reference_hash);
-  /// The worker has gone, or gets no tasks any more.
+  /// The worker is gone, or gets no more tasks.
   void forget(const std::string& worker_id);
 
-  /// Of the tasks `waiting`, indices in `batch`, the one that the worker is to get: the first whose
-  /// reference it holds; if there is none, the first whose reference nobody holds; if there is none
-  /// either, the first of all. Looks at the next 64 alone. `waiting` must not be empty.
+  /// Chooses the next task of the worker among `waiting`, indices in `batch`: the first whose
+  /// reference it holds; otherwise the first whose reference no worker holds; otherwise the first
+  /// of all. Considers only the next 64. `waiting` must not be empty.
   [[nodiscard]] std::size_t choose(const std::string& worker_id,
                                    const std::set<std::size_t>& waiting,
                                    const TaskBatch& batch) const;
@@ -32,8 +31,8 @@ class ReferenceHolders {
  private:
   void release(std::uint64_t reference_hash);
 
-  std::map<std::string, std::deque<std::uint64_t>> held_;      // by worker, the latest last
-  std::unordered_map<std::uint64_t, std::size_t> holders_of_;  // how many hold it
+  std::map<std::string, std::deque<std::uint64_t>> held_;      // by worker, latest last
+  std::unordered_map<std::uint64_t, std::size_t> holders_of_;  // number of workers that hold it
 };
 
 }  // namespace topogeo::search_pool

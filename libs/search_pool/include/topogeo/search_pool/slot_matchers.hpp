@@ -1,4 +1,4 @@
-// The matchers of one slot, with what they have made of the local maps that the slot was asked for.
+// The matchers of one slot, with the features of the local maps that it has used.
 #pragma once
 
 #include <cstddef>
@@ -10,18 +10,18 @@
 
 namespace topogeo::search_pool {
 
-/// A matcher for each client, as a client has one map of each id. Each slot makes the features of
-/// the maps for itself: slots share nothing while they search. Not safe for several threads.
+/// A matcher per client, because ids of maps are unique only within a client. Each slot computes
+/// the features of the maps itself: slots share nothing while they search. Not thread-safe.
 class SlotMatchers {
  public:
-  /// The least recently used matchers are dropped when all together take more than
-  /// `capacity_bytes`, by estimate; the one in use starts anew when it does so alone.
+  /// Drops the least recently used matchers if all together exceed `capacity_bytes`, by estimate;
+  /// if the one in use does so alone, it starts again empty.
   explicit SlotMatchers(std::size_t capacity_bytes) : capacity_bytes_(capacity_bytes) {}
 
   /// Throws what Matcher::solve throws for a task that cannot be solved.
   localization::MatchResult solve(const ReadyJob& job);
 
-  /// Matchers that are kept now and local maps that they know, all together.
+  /// Number of stored matchers; maps() is the number of local maps in all of them.
   [[nodiscard]] std::size_t size() const { return kept_.size(); }
   [[nodiscard]] std::size_t maps() const;
   [[nodiscard]] std::size_t bytes() const;
@@ -32,7 +32,7 @@ class SlotMatchers {
     localization::Matcher matcher;
     std::size_t maps = 0;
     std::size_t bytes = 0;
-    std::size_t field_bytes = 0;  // of them, of the whole map that places are searched for in
+    std::size_t field_bytes = 0;  // part of `bytes` for the whole map that places are searched in
   };
 
   Kept& of(const std::string& client_id);

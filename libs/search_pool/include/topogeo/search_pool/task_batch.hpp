@@ -1,4 +1,4 @@
-// The match tasks of one batch, and which of them wait, are out or are answered.
+// The match tasks of one batch and their states: waiting, out or answered.
 #pragma once
 
 #include <cstddef>
@@ -19,21 +19,21 @@ namespace topogeo::search_pool {
 /// A task and its state.
 struct BoardTask {
   localization::MatchTask task;
-  bool here_only = false;  ///< only this process is to work on it
+  bool here_only = false;  ///< only this process may solve it
   bool proven = false;     ///< the answer is this process's own
   std::uint32_t sends = 0;
   BoardTime last_sent{0};
-  std::set<std::string> workers;                    ///< that have it now
-  std::set<std::string> tried;                      ///< that had it and were not lost
-  std::set<std::string> given;                      ///< that ever had it
-  std::optional<localization::MatchResult> result;  ///< none while it is open
+  std::set<std::string> workers;                    ///< workers that have it now
+  std::set<std::string> tried;                      ///< workers that had it and were not lost
+  std::set<std::string> given;                      ///< workers that ever had it
+  std::optional<localization::MatchResult> result;  ///< empty while it is open
   std::string answered_by;                          ///< empty: this process
   std::vector<std::pair<std::string, localization::MatchResult>> others;  ///< different answers
 };
 
 class TaskBatch {
  public:
-  /// Throws std::logic_error when a task id comes twice; then the batch is empty.
+  /// Throws std::logic_error if a task id occurs twice; the batch is then empty.
   void begin(std::span<const localization::MatchTask> tasks);
   void clear();
 
@@ -44,7 +44,7 @@ class TaskBatch {
   [[nodiscard]] const BoardTask& at(std::size_t index) const { return tasks_.at(index); }
   [[nodiscard]] std::optional<std::size_t> index_of(std::uint64_t task_id) const;
 
-  /// All changes of a task go through here, so that the lists below follow it.
+  /// All changes of a task go through here, so that the lists below stay consistent.
   template <class Change>
   void change(std::size_t index, const Change& change) {
     take_off_lists(index);
@@ -52,12 +52,12 @@ class TaskBatch {
     put_on_list(index);
   }
 
-  // Each open task is on one of these lists.
-  /// Without a worker; any will do.
+  // Each open task is in one of these lists.
+  /// Without a worker; any worker will do.
   [[nodiscard]] const std::set<std::size_t>& fresh() const { return fresh_; }
-  /// Without a worker; not any will do.
+  /// Without a worker; some workers will not do.
   [[nodiscard]] const std::set<std::size_t>& again() const { return again_; }
-  /// With a worker, by the time when it was sent last.
+  /// With a worker, by the time of the last sending.
   [[nodiscard]] const std::set<std::pair<BoardTime, std::size_t>>& out() const { return out_; }
 
  private:

@@ -1,5 +1,4 @@
-// Brings match tasks and the local maps that they name together, and asks for maps that do not
-// come.
+// Combines match tasks with the local maps that they name, and requests missing maps.
 #pragma once
 
 #include <chrono>
@@ -19,22 +18,22 @@
 namespace topogeo::search_pool {
 
 struct IntakeOptions {
-  std::size_t map_bytes = std::size_t{32} << 20U;  ///< that all maps together may take
-  /// Maps travel on another topic than the tasks that name them, so the newest that a task names
-  /// may come soon, unless its robot has published one of that time already. Older ones, which were
-  /// published before the worker came or are stored, and pieces of a whole map are asked for at
-  /// once.
+  std::size_t map_bytes = std::size_t{32} << 20U;  ///< limit of all maps together
+  /// Maps travel on another topic than the tasks that name them, so the newest one in a task may
+  /// still be on its way, unless its robot has already published one of that time. Older ones,
+  /// which were published before the worker started or are stored, and pieces of a whole map are
+  /// requested at once.
   std::chrono::nanoseconds first_request = std::chrono::milliseconds(20);
   std::chrono::nanoseconds request_period = std::chrono::milliseconds(500);
-  std::chrono::nanoseconds patience = std::chrono::seconds(2);  ///< with a map that lacks
+  std::chrono::nanoseconds patience = std::chrono::seconds(2);  ///< with a missing map
 };
 
-/// Has no clock: the caller passes the time. Not safe for several threads.
+/// Has no clock: the caller passes the time. Not thread-safe.
 class TaskIntake {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// A map that a client is to send.
+  /// A request for a map from a client.
   struct Request {
     std::string client_id;
     std::string robot_id;
@@ -44,7 +43,7 @@ class TaskIntake {
   };
   struct GivenUp {
     MatchJob job;
-    std::string why;  ///< for people, names the map
+    std::string why;  ///< message for a user; names the map
   };
   struct Due {
     std::vector<Request> requests;
@@ -54,58 +53,59 @@ class TaskIntake {
   explicit TaskIntake(const IntakeOptions& options = {})
       : options_(options), maps_(options.map_bytes) {}
 
-  /// The job with its maps, or nothing: then it waits for them.
+  /// The job with its maps; empty if it waits for them.
   std::optional<ReadyJob> add(MatchJob job, Time now);
-  /// Keeps the map and returns the jobs that have waited for it alone, oldest first.
+  /// Stores the map and returns the jobs that only lacked this one, oldest first.
   std::vector<ReadyJob> add_map(MapPointer map);
-  /// The same of a map that its robot has published. Tasks may name one of the newest by another
-  /// number than it was published with, as a localizer does that follows a stored map.
+  /// Like add_map() for a map published by its robot. Tasks may name one of the newest by another
+  /// number than the published one, when a localizer follows a stored map.
   std::vector<ReadyJob> add_published(MapPointer map);
-  /// True when a job waits for a map of this content.
+  /// True if a job waits for a map with this content.
   [[nodiscard]] bool lacks(std::uint64_t content_hash) const;
-  /// What is to be done at `now`: each map that lacks is asked for once per period and client.
+  /// Work due at `now`: each missing map is requested once per period and client.
   Due check(Time now);
-  /// When check() has something to do next; nothing while no job waits.
+  /// Time of the next work for check(); empty without waiting jobs.
   [[nodiscard]] std::optional<Time> next_check() const;
-  /// Takes out the waiting jobs of a client that is gone.
+  /// Removes the waiting jobs of a client that is gone.
   void remove(const std::string& client_id);
 
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
   [[nodiscard]] const MapCache& maps() const { return maps_; }
 
  private:
-  /// A job holds the maps that are there already, so that none of them can be dropped again before
-  /// the other one comes.
+  /// A waiting job holds the maps that have arrived, so that none of them can be dropped before the
+  /// other one arrives.
   struct Waiting {
     ReadyJob job;
     Time until;
   };
   struct Asking {
-    Time next;           // when to ask (again)
-    bool asked = false;  // already
+    Time next;           // time of the next request
+    bool asked = false;  // at least once
   };
   using Lack = std::pair<std::string, std::uint64_t>;  // client and content
 
   template <class Action>  // (Lack, map id)
   static void for_each_lack(const ReadyJob& job, Action action);
-  /// A map of this content among the newest of a robot, if they had this number; or nothing.
+  /// A map among the newest of a robot that has this content under this number; null if there is
+  /// none.
   MapPointer find_by_other_number(const std::string& robot_id, std::uint32_t map_id,
                                   std::uint64_t content_hash);
-  /// The map with this number, kept, if that makes it the one that is meant; or nothing.
+  /// The map with this number, stored, if that gives it this content; otherwise null.
   MapPointer numbered_as_meant(const topomap::LocalMap& map, std::uint32_t map_id,
                                std::uint64_t content_hash);
-  /// The map that a task names, if it is there.
+  /// The map that a task names, or null.
   MapPointer find(const MatchJob& job, std::uint32_t map_id, std::uint64_t content_hash);
-  /// True when the map of a task will not come by itself any more.
+  /// True if the map of a task will no longer arrive unrequested.
   [[nodiscard]] bool is_past(const MatchJob& job) const;
-  /// Forgets the requests for maps that no job waits for any more.
+  /// Drops requests for maps that no job waits for.
   void forget_requests();
 
   IntakeOptions options_;
   MapCache maps_;
   std::list<Waiting> waiting_;  // oldest first
   std::map<Lack, Asking> requested_;
-  std::map<std::string, std::deque<MapPointer>> published_;  // by robot, the last one first
+  std::map<std::string, std::deque<MapPointer>> published_;  // by robot, latest first
 };
 
 }  // namespace topogeo::search_pool

@@ -1,4 +1,4 @@
-// The workers of a TaskBoard: what each has in hand, and who gets the next task.
+// The workers of a TaskBoard: their tasks in hand, and the choice for the next task.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace topogeo::search_pool {
 
-/// A worker as the board sees it.
+/// State of a worker on the board.
 struct Worker {
   struct InHand {
     std::uint64_t task_id = 0;
@@ -26,9 +26,9 @@ struct Worker {
   bool excluded = false;
   BoardTime rests_until{0};
   BoardTime last_life{0};
-  std::uint64_t answers = 0;    ///< that were the first ones to their tasks
-  std::uint64_t unchecked = 0;  ///< of these, in batches that are over, never compared
-  std::uint32_t forgotten = 0;  ///< how often it lost what it had in hand since its last answer
+  std::uint64_t answers = 0;    ///< first answers to their tasks
+  std::uint64_t unchecked = 0;  ///< of these, in finished batches and never compared
+  std::uint32_t forgotten = 0;  ///< number of losses of all its tasks since its last answer
   std::vector<InHand> in_hand;  ///< oldest first
 };
 
@@ -39,33 +39,34 @@ class WorkerLoads {
   using Workers = std::map<std::string, Worker>;
   [[nodiscard]] Workers& all() { return workers_; }
   [[nodiscard]] const Workers& all() const { return workers_; }
-  /// Null when it is not known.
+  /// Null for an unknown worker.
   Worker* find(const std::string& worker_id);
 
   /// Ids of the workers that take tasks, ascending.
   [[nodiscard]] std::vector<std::string> usable() const;
   [[nodiscard]] std::size_t count_usable() const;
 
-  /// So many tasks have no answer yet: workers get their share of them (BoardConfig).
+  /// Sets the number of tasks without an answer, of which workers get their share (BoardConfig).
   void set_open_tasks(std::size_t open);
 
-  /// The worker with room that has the smallest load for its slots, first by id among equals, but
-  /// none of those that have `tried`; null for none.
+  /// The worker with room and the smallest load per slot, lowest id among equals, except those in
+  /// `tried`; null for none.
   [[nodiscard]] Workers::value_type* choose(const std::set<std::string>& tried, BoardTime now);
-  /// True when some worker, but none of those that have `tried`, takes tasks and answers in time,
-  /// as far as is known: it has room for a task sooner or later.
+  /// True if some worker, except those in `tried`, takes tasks and answers in time, as far as
+  /// known: sooner or later it has room for a task.
   [[nodiscard]] bool any_in_service(const std::set<std::string>& tried, BoardTime now) const;
-  /// Takes a task out of a worker's hands; when it was given to it, or nothing when it was not.
+  /// Removes a task from a worker; returns when it was sent, or empty if the worker did not have
+  /// it.
   static std::optional<BoardTime> take(Worker& worker, std::uint64_t task_id);
 
-  /// A task was answered so long after it was sent.
+  /// Records the time between a task and its answer.
   void note_answer_time(BoardTime time);
-  /// A task that is out for longer is taken to be a straggler.
+  /// A task that is out for longer counts as a straggler.
   [[nodiscard]] BoardTime straggler_time() const { return straggler_time_; }
-  /// When the next task becomes a straggler; nothing when none is out that is not one already.
+  /// Time at which the next task becomes a straggler; empty if all tasks that are out already are.
   [[nodiscard]] std::optional<BoardTime> next_straggler(BoardTime now) const;
-  /// True when the worker's oldest task is so old that no answer will come. Then the others are
-  /// stragglers, too.
+  /// True if the worker's oldest task is so old that no answer will come. Its other tasks then
+  /// count as stragglers, too.
   [[nodiscard]] bool has_forgotten(const Worker& worker, BoardTime now) const;
 
  private:

@@ -1,4 +1,4 @@
-// What a worker is called, by people and on the wire.
+// Name of a worker, for users and on the wire.
 #pragma once
 
 #include <cstddef>
@@ -8,15 +8,15 @@ namespace topogeo::search_pool {
 
 inline constexpr std::size_t kLongestName = 24;  ///< bytes, status.idl
 
-/// The host's name, fitted to what check_name allows.
+/// The host's name, adapted to check_name.
 std::string default_name();
 
-/// Why a name is not allowed, for people; empty for one that is. Allowed are 1 to 24 bytes without
+/// Explains to a user why a name is not allowed; empty if it is. Allowed are 1 to 24 bytes without
 /// blanks, quotes, '%', '#' and control characters.
 std::string check_name(const std::string& name);
 
-/// "<name>#<16 hexadecimal digits>" with digits that no other process has, so that two workers of
-/// one name (containers of one image have the same process ids, too) are two workers. Throws
+/// "<name>#<16 hexadecimal digits>" with digits unique to this process, so that two workers with
+/// one name (containers of one image have the same process ids, too) are distinct. Throws
 /// std::invalid_argument for a name that is not allowed.
 std::string make_worker_id(const std::string& name);
 

@@ -1,7 +1,7 @@
-// Which workers there are, by their reports, and which of them are of use.
+// Known workers, by their reports, and whether they are usable.
 //
-// A worker id belongs to the process that showed it first; another one under the same id is
-// ignored until the first has gone.
+// A worker id belongs to the process that used it first; another process with the same id is
+// ignored until the first is gone.
 #pragma once
 
 #include <cstddef>
@@ -17,14 +17,14 @@
 
 namespace topogeo::search_pool {
 
-/// What answers of a worker depend on: it must agree with that of the client.
+/// Properties that the answers of a worker depend on; they must agree with the client's.
 struct Build {
   std::string version;                    ///< of the software
-  std::uint64_t matcher_fingerprint = 0;  ///< of what the matcher makes of a known task
-  std::uint64_t config_fingerprint = 0;   ///< of the configuration; a worker's 0: any will do
+  std::uint64_t matcher_fingerprint = 0;  ///< of the matcher's answer to a known task
+  std::uint64_t config_fingerprint = 0;   ///< of the configuration; 0 from a worker: any
 };
 
-/// What a worker reports of itself.
+/// Report of a worker about itself.
 struct WorkerReport {
   std::string worker_id;
   std::string host;
@@ -32,39 +32,40 @@ struct WorkerReport {
 };
 
 struct RegistryCounts {
-  std::uint64_t other_version = 0;        ///< workers refused for it
+  std::uint64_t other_version = 0;        ///< workers refused for this reason
   std::uint64_t other_matcher = 0;        ///< the same
   std::uint64_t other_configuration = 0;  ///< the same
-  std::uint64_t shared_ids = 0;           ///< worker ids that several processes showed
+  std::uint64_t shared_ids = 0;           ///< worker ids used by several processes
 };
 
 class WorkerRegistry {
  public:
-  /// A fault with a fixed reason and what happened this time.
+  /// A fault with a fixed reason and details of this case.
   struct Fault {
     std::string reason;
     std::string detail;
   };
-  /// What follows from a report.
+  /// Result of a report.
   struct Verdict {
     bool usable = false;
-    std::optional<Fault> fault;  ///< once for each worker
+    std::optional<Fault> fault;  ///< once per worker
   };
 
   explicit WorkerRegistry(Build own);
 
-  /// A report came from a process, on an instance of the status topic.
+  /// Handles a report from a process, on an instance of the status topic.
   Verdict update(const WorkerReport& report, const ProcessId& from, const InstanceId& instance);
-  /// An instance is gone with its writer in `process`; all zero: it is not known in which. Returns
-  /// the worker that is gone with it, if it was one.
+  /// An instance is gone with its writer in `process`; all zero: the process is unknown. Returns
+  /// the worker that is gone with it, if any.
   std::optional<std::string> gone(const InstanceId& instance, const ProcessId& process);
-  /// Time has passed. The workers that were silent for `silent_ticks` ticks are gone.
+  /// Advances time by one tick. Returns the workers that are gone because they were silent for more
+  /// than `silent_ticks` ticks.
   std::vector<std::string> tick(int silent_ticks);
 
-  /// True when messages under this id are to be accepted from this process: the id belongs to it,
-  /// or did until it went.
+  /// True if messages under this id are accepted from this process: the id belongs to it, or did
+  /// until it was gone.
   [[nodiscard]] bool is_owner(const ProcessId& from, const std::string& worker_id) const;
-  /// The process that an id belongs to; all zero when there is none.
+  /// The process that an id belongs to; all zero if there is none.
   [[nodiscard]] ProcessId owner(const std::string& worker_id) const;
   [[nodiscard]] std::vector<std::string> workers_of(const ProcessId& process) const;
   /// "id on host", as far as known.
@@ -86,12 +87,12 @@ class WorkerRegistry {
 
   void remove(const std::string& worker_id);
   std::optional<Fault> refusal(const WorkerReport& report);
-  /// True when no fault was reported for this worker yet.
+  /// True if no fault of this worker has been reported yet.
   bool first_time(const std::string& worker_id);
 
   Build own_;
   std::map<std::string, Entry> entries_;  // by worker id
-  std::deque<Former> former_;             // last ones, for answers that come late
+  std::deque<Former> former_;             // latest ones, for late answers
   std::set<std::string> reported_;        // workers with a fault
   RegistryCounts counts_;
 };
