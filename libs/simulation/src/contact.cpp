@@ -8,9 +8,9 @@ namespace topogeo::simulation {
 namespace {
 
 constexpr double kNoContact_m = std::numeric_limits<double>::infinity();
-constexpr double kTouch_m = 1e-9;    // nearer than this to touching is touching
-constexpr double kOverlap_m = 1e-4;  // less is what touching comes to by rounding
-// A move along a wall is none towards it, whatever rounding gives.
+constexpr double kTouch_m = 1e-9;    // within this distance counts as touching
+constexpr double kOverlap_m = 1e-4;  // less is a touch with rounding errors
+// A move along a wall does not approach it, whatever the rounding.
 constexpr double kSidelong = 1e-6;
 
 Eigen::Vector2d nearest_m(const world::Segment& segment, const Eigen::Vector2d& point_m) {
@@ -21,20 +21,20 @@ Eigen::Vector2d nearest_m(const world::Segment& segment, const Eigen::Vector2d& 
   return segment.a_m + share * along;
 }
 
-// Distance until a point that moves along `direction` is `radius_m` away from `center_m`, from
+// Distance until a point that moves along `direction` is `radius_m` away from `center_m`, starting
 // outside.
 double distance_to_circle(const Eigen::Vector2d& center_m, double radius_m,
                           const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction) {
   const Eigen::Vector2d to_m = center_m - from_m;
   const double along_m = to_m.dot(direction);
   if (along_m <= 0.0) return kNoContact_m;
-  // Brushing past it is no contact, nor is what rounding makes of that.
+  // Grazing is no contact, even with rounding errors.
   const double beside_m = (to_m - along_m * direction).norm();
   if (beside_m >= radius_m - kTouch_m) return kNoContact_m;
   return std::max(along_m - std::sqrt(radius_m * radius_m - beside_m * beside_m), 0.0);
 }
 
-// The same for a segment, from a point more than `radius_m` away from it.
+// The same for a segment and a point more than `radius_m` away from it.
 double distance_to_segment(const world::Segment& segment, double radius_m,
                            const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction) {
   const Eigen::Vector2d span_m = segment.b_m - segment.a_m;
@@ -61,13 +61,13 @@ class PathAhead {
 
   [[nodiscard]] const FreePath& free() const { return free_; }
 
-  // Whether the surface with this nearest point, `room_m` away from the disc, is out of reach or
-  // decides already: touched, or overlapped.
+  // Whether the surface with this nearest point, `room_m` away from the disc, is already decided:
+  // out of reach, touched, or overlapped.
   bool settled(const Eigen::Vector2d& nearest, double room_m) {
     if (room_m >= free_.distance_m + kTouch_m) return true;
     if (room_m > kTouch_m) return false;
     const Eigen::Vector2d to_m = nearest - from_m_;
-    // From a point on the surface itself any move is a move away.
+    // Any move leads away from a point on the surface itself.
     if (to_m.dot(direction_) > kSidelong * to_m.norm()) stop(0.0, nearest);
     return true;
   }

@@ -6,7 +6,7 @@
 namespace topogeo::simulation {
 namespace {
 
-// As the motor controllers of small robots: 50 commands in a second.
+// 50 commands a second, like the motor controllers of small robots.
 constexpr std::int64_t kTick_ns = 20'000'000;
 constexpr double kTick_s = 0.02;
 

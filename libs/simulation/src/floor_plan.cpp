@@ -6,7 +6,7 @@ namespace topogeo::simulation {
 namespace {
 
 constexpr double kWall_m = 0.12;      // between corridor and room
-constexpr double kDoor_m = 0.9;       // as a wide office door
+constexpr double kDoor_m = 0.9;       // like a wide office door
 constexpr double kNarrowest_m = 3.0;  // room
 
 Eigen::Vector2d along(const Side& side) {
@@ -62,7 +62,7 @@ void FloorPlan::wall(const Side& side, const std::vector<Piece>& pieces) const {
 
 void FloorPlan::clutter(const Side& side, const std::vector<Piece>& pieces,
                         support::Random& random) const {
-  constexpr double kShare = 0.35;  // of the rooms with a cupboard or a pillar before them
+  constexpr double kShare = 0.35;  // of the rooms, with a cupboard or a pillar in front
   const Eigen::Vector2d u = along(side);
   for (const Piece& piece : pieces) {
     const double draw = random.uniform();
@@ -110,7 +110,7 @@ void FloorPlan::rooms(const Side& side, double depth_m, support::Random& random)
   const Eigen::Vector2d u = along(side);
   for (const Piece& piece : pieces) {
     furniture(side, piece, depth_m, random);
-    if (!piece.open) continue;  // it is never seen
+    if (!piece.open) continue;  // never visible
     const Eigen::Vector2d a_m = side.from_m + u * piece.from_m + side.out * kWall_m;
     const Eigen::Vector2d b_m = side.from_m + u * piece.to_m + side.out * kWall_m;
     line(a_m, b_m - u * (piece.to_m - piece.door_m + kDoor_m / 2.0));
@@ -143,7 +143,7 @@ void FloorPlan::furnish(const Eigen::Vector2d& low_m, const Eigen::Vector2d& hig
       at_m += long_m + random.uniform(0.4, 1.6);
     }
   }
-  // A column off the middle line, where the tour runs.
+  // A column beside the middle line, where the tour runs.
   const double share = random.uniform(0.3, 0.7);
   const double radius_m = random.uniform(0.15, 0.3);
   const double y_m = low_m.y() + (high_m.y() - low_m.y()) * (random.uniform() < 0.5 ? 0.25 : 0.75);

@@ -11,8 +11,8 @@
 
 namespace topogeo::simulation {
 
-/// One side of a corridor, from `from` to `to`, axis-parallel; `out` is the unit vector away from
-/// the corridor.
+/// One side of a corridor, from `from` to `to`, axis-parallel; the unit vector `out` points away
+/// from the corridor.
 struct Side {
   Eigen::Vector2d from_m;
   Eigen::Vector2d to_m;
@@ -28,15 +28,15 @@ class FloorPlan {
   void box(const Eigen::Vector2d& a_m, const Eigen::Vector2d& b_m, const Eigen::Vector2d& out,
            double depth_m) const;
 
-  /// Rooms of 3 to 6 m along a side, `depth_m` deep, each with a door and furniture; now and then
-  /// something stands in the corridor. A side shorter than 3 m is a plain wall.
+  /// Rooms of 3 to 6 m along a side, `depth_m` deep, each with a door and furniture, and occasional
+  /// obstacles in the corridor. A side shorter than 3 m is a plain wall.
   void rooms(const Side& side, double depth_m, support::Random& random) const;
 
-  /// A side without rooms behind it: a wall with shut doors, and things in the corridor.
+  /// A side without rooms behind it: a wall with shut doors, and obstacles in the corridor.
   void shut_doors(const Side& side, support::Random& random) const;
 
   /// Furniture along the lower and upper wall of a hall, given by two of its corners, and a column;
-  /// the hall's walls are not drawn. Its middle line stays free.
+  /// does not draw the hall's walls. Its middle line stays free.
   void furnish(const Eigen::Vector2d& low_m, const Eigen::Vector2d& high_m,
                support::Random& random) const;
 
@@ -44,7 +44,7 @@ class FloorPlan {
   struct Piece {
     double from_m;
     double to_m;
-    double door_m;  // its middle
+    double door_m;  // middle of the door
     bool open;
   };
   static std::vector<Piece> divide(double length_m, double open_share, support::Random& random);

@@ -17,8 +17,8 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-// Distance from the origin along the unit vector `beam`; infinity for a miss. A segment that the
-// beam runs along is met at its nearer end.
+// Distance from the origin along the unit vector `beam`; infinity for a miss. A beam along a
+// segment meets its nearer end.
 double distance_to(const world::Segment& segment, const Eigen::Vector2d& beam) {
   const double side_a = cross(beam, segment.a_m);
   const double side_b = cross(beam, segment.b_m);
@@ -53,8 +53,8 @@ double distance_m(const world::Segment& segment) {
   return (segment.a_m + share * along).norm();
 }
 
-// Calls `use` with every beam that can meet a segment, and with some more: two at each end of it,
-// or all where the sensor is as good as on it. So the angles need not be exact.
+// Calls `use` with every beam that can meet a segment, plus two at each end, or with all beams if
+// the sensor is practically on it. So the angles need not be exact.
 template <typename Use>
 void for_beams_of(const world::Segment& segment, double heading_rad, const BeamPattern& beams,
                   const Use& use) {

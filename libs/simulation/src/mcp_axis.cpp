@@ -8,11 +8,11 @@ namespace {
 
 using devices::McpPhase;
 
-/// Brakes without power and limp wheels stop much harder than a motor.
+/// Deceleration time of limp wheels and of brakes without power, much shorter than a motor's.
 constexpr double kBrake_s = 0.2;
-/// The last bit of a relative move is done at the speed that this long of acceleration gives.
+/// A relative move ends at the speed that this much time of acceleration gives.
 constexpr double kCreep_s = 0.02;
-constexpr std::uint16_t kUnknownBit = 0x0002;  // as in the known reports
+constexpr std::uint16_t kUnknownBit = 0x0002;  // as in known reports
 
 }  // namespace
 

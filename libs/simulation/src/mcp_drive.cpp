@@ -11,13 +11,13 @@ using devices::McpCommand;
 using devices::McpField;
 using devices::McpOrder;
 
-// After power-on, by MIRO's base driver, which quotes the B21 User's Guide of RWI.
+// Values after power-on from MIRO's base driver, which quotes the B21 User's Guide of RWI.
 constexpr std::uint32_t kTranslateVelocity = 0x0800;
 constexpr std::uint32_t kTranslateAcceleration = 0x4000;
 constexpr std::uint32_t kRotateVelocity = 0x0080;
 constexpr std::uint32_t kRotateAcceleration = 0x0400;
 
-// Of the registers of the place and of the rotation at the start, by the same guide.
+// Initial values of the position and rotation registers, from the same guide.
 constexpr double kPlaceOrigin = 0x8000;
 constexpr std::uint32_t kRotateOrigin = 0x80000000U;
 

@@ -15,14 +15,13 @@ using devices::McpCommand;
 using devices::McpField;
 using devices::McpOrder;
 
-/// Below it the base warns, by the same guide as the figures of McpDrive.
+/// The base warns below it; from the same guide as the values of McpDrive.
 constexpr double kLowBatteryVolts = 44.0;
-/// While motors turn, ticks are due so often that speeds are smooth.
+/// Interval of ticks while motors turn, short enough for smooth speeds.
 constexpr std::int64_t kMotorStep_ns = 10'000'000;
-/// A report that would wait longer than this for the line is left out.
+/// Drops a report that would wait longer than this for the line.
 constexpr std::int64_t kBacklog_ns = 50'000'000;
-/// Orders kept for tests: more than any of them sends, few enough for a simulator that runs for
-/// days.
+/// Orders kept for tests: more than any test sends, few enough for a simulator that runs for days.
 constexpr std::size_t kMostOrders = 100'000;
 
 std::int64_t ticks_ns(std::uint32_t ticks) {
@@ -217,7 +216,7 @@ void McpEmulator::execute(const McpOrder& order, std::int64_t now_ns) {
   if (!drive_.execute(order) && !execute_setting(order, now_ns)) execute_question(order, now_ns);
 }
 
-/// False if the order sets nothing.
+/// False if the order is no setting.
 bool McpEmulator::execute_setting(const McpOrder& order, std::int64_t now_ns) {
   switch (order.command) {
     case McpCommand::kDirectMode:

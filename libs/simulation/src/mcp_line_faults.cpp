@@ -5,8 +5,8 @@
 namespace topogeo::simulation {
 namespace {
 
-/// A report that is cut keeps so many bytes, or a quarter of a short one, and loses three times as
-/// many: the shortest loss that no decoder can pass over.
+/// A truncated report keeps at least this many bytes, or a quarter of a short one, and loses at
+/// least three times as many, so that no decoder can miss the loss.
 constexpr std::size_t kLeastCut = 4;
 
 }  // namespace

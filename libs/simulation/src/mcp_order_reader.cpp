@@ -15,9 +15,9 @@ namespace {
 using devices::McpCommand;
 using devices::McpOrder;
 
-/// Longer lines are cut: no order has more, and a line without an end must not fill the memory.
+/// Cuts longer lines: no order is longer, and a line without an end must not fill the memory.
 constexpr std::size_t kLongestLine = 80;
-/// Within packets four zeros follow one another at most: an argument of 0.
+/// Packets contain at most four successive zeros: an argument of 0.
 constexpr unsigned kSyncZeros = 6;
 
 std::optional<McpOrder> parsed(std::string_view line) {

@@ -14,14 +14,14 @@ Pose2 from(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), geometry::wrap_angle(v.z())};
 }
 
-// How far the robot came from scan to scan; a turn counts a little, so that a turn on the spot is
-// some distance, too.
+// Motion between two scans as a distance; a turn counts a little, so that a turn on the spot is not
+// zero.
 double effort_m(const Pose2& step) {
   constexpr double kPerRadian_m = 0.01;
   return step.position_m().norm() + kPerRadian_m * std::fabs(step.theta_rad);
 }
 
-// True steps from scan to scan between two scans whose true poses are known.
+// True steps between successive scans, for two scans with known true poses.
 void fill_steps(std::span<const Pose2> T_odom_robot, std::size_t first, std::size_t last,
                 const Pose2& T_first_last, std::vector<std::optional<Pose2>>& steps) {
   double whole_m = 0.0;

@@ -10,8 +10,8 @@ geometry::Pose2 OdometryModel::advance(const geometry::Pose2& T_world_robot) {
     const double distance_m = step.position_m().norm();
     const double turn_rad = std::fabs(step.theta_rad);
     const double root_m = std::sqrt(distance_m);
-    // All numbers are drawn at every step, so that a change of one parameter leaves the others'
-    // errors as they were.
+    // Draws all numbers at every step, so that a change of one parameter does not affect the errors
+    // of the others.
     const double range_error_m = drift_.range_sigma_m_per_sqrt_m * root_m * random_.normal();
     const double walk_rad = drift_.heading_sigma_rad_per_sqrt_m * root_m * random_.normal();
     const double turn_error_rad =

@@ -11,8 +11,8 @@ namespace topogeo::simulation {
 namespace {
 
 constexpr double kWandererRadius_m = 0.2;  // of legs, at the height of a laser
-constexpr double kStep_s = 0.1;            // 15 cm of the fastest: less than a radius
-constexpr double kFromRobot_m = 0.8;       // who yields or wanders keeps off it
+constexpr double kStep_s = 0.1;            // 15 cm for the fastest, less than a radius
+constexpr double kFromRobot_m = 0.8;       // kept by people who yield or wander
 
 Eigen::Vector2d any_direction(support::Random& random) {
   const double angle_rad = random.uniform(-std::numbers::pi, std::numbers::pi);
@@ -20,7 +20,7 @@ Eigen::Vector2d any_direction(support::Random& random) {
   return {direction.cos, direction.sin};
 }
 
-// A place on the tour, every metre of it equally likely.
+// A random place on the tour, evenly distributed along it.
 Eigen::Vector2d place_on(const std::vector<Eigen::Vector2d>& tour_m, support::Random& random) {
   double length_m = 0.0;
   for (std::size_t i = 1; i < tour_m.size(); ++i) length_m += (tour_m[i] - tour_m[i - 1]).norm();
@@ -69,11 +69,11 @@ People::People(const world::World& world, std::size_t wanderers, std::uint64_t s
 
 void People::step(Wanderer& wanderer, const world::World& scene, const Eigen::Vector2d& robot_m) {
   constexpr double kFromWalls_m = kWandererRadius_m + 0.1;
-  constexpr double kNewMind = 0.01;  // of a person who turns to another path all of a sudden
+  constexpr double kNewMind = 0.01;  // probability of a sudden turn
   const Eigen::Vector2d next_m =
       wanderer.position_m + wanderer.direction * (wanderer.speed_m_per_s * kStep_s);
   const double room_m = clearance_m(scene, next_m);
-  // Who is too near to something (a door that was shut) may move away from it.
+  // A person who is too near to a surface (a door was shut) may move away from it.
   const bool from_walls =
       room_m >= kFromWalls_m || room_m > clearance_m(scene, wanderer.position_m);
   const double robot_away_m = (next_m - robot_m).norm();

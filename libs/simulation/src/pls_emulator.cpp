@@ -11,7 +11,7 @@ namespace {
 
 using devices::PlsMode;
 
-/// A command whose bytes are further apart is none.
+/// Bytes further apart do not form a command.
 constexpr std::int64_t kByteGap_ns = 35'000'000;
 constexpr std::uint8_t kPermanentBaud = 0x66;
 constexpr std::uint8_t kScanWhole = 0x01;
@@ -131,7 +131,7 @@ int PlsEmulator::pending(PlsFault fault) const {
   return pending_[static_cast<std::size_t>(fault)];
 }
 
-/// Takes a command: ACK, the reply, and what follows from it.
+/// Carries out a command: ACK, the reply, and its effects.
 void PlsEmulator::obey(const devices::SickTelegram& command, std::int64_t now_ns) {
   const std::int64_t acknowledged_ns =
       output_.send({devices::kSickAck}, line_, now_ns + settings_.ack_delay_ns);
@@ -147,7 +147,7 @@ void PlsEmulator::obey(const devices::SickTelegram& command, std::int64_t now_ns
     return;
   }
   Reply reply = answer(command);
-  // No new scan starts before the reply to the command that may end them.
+  // No new scan starts before the reply to a command that may end the scans.
   if (reply.then.mode && mode_ == Mode::kStream) measure_at_ns_.reset();
   busy_until_ns_ = send_telegram(devices::sick_reply(reply.code, reply.data, status_), reply_ns);
   change_ = reply.then;
@@ -188,7 +188,7 @@ PlsEmulator::Reply PlsEmulator::change_mode(std::span<const std::uint8_t> data) 
   if (data.size() == 1 && data[0] == static_cast<std::uint8_t>(PlsMode::kOnRequest)) {
     return reply(devices::PlsModeReply::kDone, Mode::kOnRequest);
   }
-  // A stream has to be stopped before anything else is set.
+  // The stream must be stopped before any other setting.
   if (mode_ == Mode::kStream) return refused;
   if (data[0] == static_cast<std::uint8_t>(PlsMode::kInstallation)) {
     const bool right = std::ranges::equal(data.subspan(1), settings_.password, {}, {},
@@ -253,8 +253,8 @@ void PlsEmulator::finish_start_up(std::int64_t now_ns) {
       send_telegram(devices::sick_reply(devices::pls_reply::kPowerOn, text, status_), now_ns);
 }
 
-/// Takes a scan in the middle of the mirror's sweep, for its telegram to start some time later, and
-/// in a stream plans the next one: with the mirror's next turn, or when the line will be free.
+/// Takes a scan in the middle of the mirror's sweep, whose telegram starts some time later, and in
+/// a stream plans the next one: with the mirror's next turn, or when the line will be free.
 void PlsEmulator::measure(std::int64_t now_ns) {
   const std::int64_t planned_ns = *std::exchange(measure_at_ns_, std::nullopt);
   const int stuck_before = pending(PlsFault::kStuckScan);
@@ -304,13 +304,13 @@ std::vector<std::uint8_t> PlsEmulator::scan_data(std::int64_t now_ns) {
   return data;
 }
 
-/// Sends a telegram, with the faults that are to strike it; returns when it will have left.
+/// Sends a telegram with its pending faults; returns when it will have left.
 std::int64_t PlsEmulator::send_telegram(std::vector<std::uint8_t> telegram, std::int64_t start_ns) {
   if (silent_) return start_ns;
   bool struck = false;
   if (strikes(PlsFault::kBadCrc)) {
     struck = true;
-    // The header stays whole: that the length is checked has tests of its own.
+    // The header stays intact, because the check of the length has its own tests.
     const std::uint64_t at = kFirstAfterHeader + random_.below(telegram.size() - kFirstAfterHeader);
     telegram[at] ^= static_cast<std::uint8_t>(1U << random_.below(8));
   }

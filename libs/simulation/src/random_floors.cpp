@@ -28,7 +28,7 @@ struct Rectangle {
   }
 };
 
-// The walls of a block seen from the corridors round it: rooms in the south and north, shut doors
+// The walls of a block towards the surrounding corridors: rooms in the south and north, shut doors
 // in the east and west.
 void add_block(const FloorPlan& plan, const Rectangle& block, support::Random& random) {
   const double depth_m = 0.5 * (block.high_m.y() - block.low_m.y()) - 0.2;
@@ -38,7 +38,7 @@ void add_block(const FloorPlan& plan, const Rectangle& block, support::Random& r
   plan.shut_doors({block.low_right_m(), block.high_m, -kEast}, random);
 }
 
-// Rooms all round, outside of the corridors.
+// Rooms on all sides, outside of the corridors.
 void add_surroundings(const FloorPlan& plan, const Rectangle& inside, support::Random& random) {
   const double depth_m = random.uniform(4.0, 6.0);
   plan.rooms({inside.low_m, inside.low_right_m(), -kNorth}, depth_m, random);
@@ -141,7 +141,7 @@ world::World symmetric_building(std::uint64_t seed) {
   const double depth_m = 0.5 * apart_m - half_m - 0.2;
   const FloorPlan plan(world);
   for (const double west_m : {0.0, apart_m}) {
-    support::Random copy = random;  // the same draws for both
+    support::Random copy = random;  // identical draws for both
     const double east_m = west_m + apart_m;
     const double wing_west_m = west_m + 0.5 * apart_m - half_m;
     const double wing_east_m = wing_west_m + 2.0 * half_m;

@@ -8,7 +8,7 @@
 namespace topogeo::simulation {
 namespace {
 
-/// A byte has five falling edges at most, each of which a faster host may take for a start bit.
+/// A byte has at most five falling edges, each of which a faster host may read as a start bit.
 constexpr std::uint64_t kMostReadPerByte = 5;
 
 std::uint64_t bits_per_second_per_bit(const devices::LineSettings& one,
@@ -17,7 +17,7 @@ std::uint64_t bits_per_second_per_bit(const devices::LineSettings& one,
          static_cast<std::uint64_t>(devices::bits_per_byte(other));
 }
 
-/// How many bytes a host reads while the first `sent` bytes come from a sender of other settings.
+/// Number of bytes that a host reads for the first `sent` bytes of a sender with other settings.
 std::uint64_t read_count(std::uint64_t sent, const devices::LineSettings& sender,
                          const devices::LineSettings& host) {
   const std::uint64_t read =
@@ -25,8 +25,8 @@ std::uint64_t read_count(std::uint64_t sent, const devices::LineSettings& sender
   return std::min(read, sent * kMostReadPerByte);
 }
 
-/// Some byte that depends on what was sent, where in the message, and how it is read (the finisher
-/// of splitmix64).
+/// A byte derived from the sent one, its place in the message, and the reading settings (the
+/// finisher of splitmix64).
 std::uint8_t misread(std::uint8_t sent, std::uint64_t index, const devices::LineSettings& host) {
   std::uint64_t z = (index << 32 ^ host.baud) + sent * 0x9E3779B97F4A7C15ULL;
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;

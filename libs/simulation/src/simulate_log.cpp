@@ -29,7 +29,7 @@ void check_option(const SimulationOptions& o) {
   check_option(o.beams.range_max_m > 0.0, "beams.range_max_m", "a number > 0");
   check_option(o.laser.sigma_m >= 0.0 && o.laser.bound_m >= 0.0 && o.laser.resolution_m >= 0.0,
                "laser", "sigma_m, bound_m and resolution_m >= 0");
-  // Errors are drawn again until they lie within the bound, which must not take for ever.
+  // Errors are redrawn until they lie within the bound, which must not take forever.
   check_option(o.laser.bound_m == 0.0 || o.laser.sigma_m <= 10.0 * o.laser.bound_m, "laser.sigma_m",
                "at most ten times bound_m");
   check_option(o.laser.dropout_probability >= 0.0 && o.laser.dropout_probability <= 1.0,
@@ -47,7 +47,7 @@ void check_option(const SimulationOptions& o) {
   }
 }
 
-// The drive with its kidnappings: poses one tick apart, some of them after a jump.
+// The drive with its kidnappings: poses one tick apart, some after a jump.
 class Journey {
  public:
   Journey(const world::World& world, const SimulationOptions& options)
@@ -64,7 +64,7 @@ class Journey {
     }
   }
 
-  // One tick further; false at the end.
+  // Advances one tick; false at the end.
   bool next() {
     if (at_ + 1 >= poses_.size()) return false;
     const double step_m = path_m_[at_ + 1] - path_m_[at_];
@@ -85,13 +85,13 @@ class Journey {
   }
 
   [[nodiscard]] const geometry::Pose2& T_world_robot() const { return poses_[at_].T_world_robot; }
-  // Where the robot was when it was carried away last.
+  // Last pose before a kidnapping.
   [[nodiscard]] const geometry::Pose2& T_world_left() const { return T_world_left_; }
   [[nodiscard]] bool at_end() const { return at_ + 1 >= poses_.size(); }
   [[nodiscard]] double driven_m() const { return driven_m_; }
   [[nodiscard]] double step_m() const { return step_m_; }
   [[nodiscard]] double turned_rad() const { return turned_rad_; }
-  [[nodiscard]] bool carried() const { return carried_; }  // in the last tick, after its step
+  [[nodiscard]] bool carried() const { return carried_; }  // at the end of the last tick
   [[nodiscard]] double end_s() const { return static_cast<double>(poses_.back().time_ns) * 1e-9; }
   [[nodiscard]] std::int64_t time_ns() const { return ticks_ * poses_[1].time_ns; }
 
@@ -137,7 +137,7 @@ SimulatedLog simulate_log(const world::World& given_world, const SimulationOptio
   check_option(options);
   Journey journey(given_world, options);
   const world::World world = draw_changes(given_world, options.seed, journey.end_s());
-  // Separate seeds: a change to the laser leaves the odometry as it was, and the other way round.
+  // Separate seeds: a change of the laser does not change the odometry, and vice versa.
   support::Random laser_random(support::derive_seed(options.seed, "laser", {}));
   OdometryModel odometry(options.odometry,
                          support::Random(support::derive_seed(options.seed, "odometry", {})));

@@ -8,8 +8,8 @@
 namespace topogeo::simulation {
 namespace {
 
-/// The panels that something is within `touch_m` of: each is a piece of the rim, the first one left
-/// of ahead.
+/// The panels within `touch_m` of a surface: each is a part of the rim, the first one left of
+/// ahead.
 template <std::size_t kPanels>
 std::bitset<kPanels> touched(const world::World& scene, const geometry::Pose2& T_world_robot,
                              double touch_m) {

@@ -14,7 +14,7 @@
 namespace topogeo::simulation {
 namespace {
 
-// A step is driven in pieces, each straight: at 1 m/s and 1 rad/s less than 0.1 mm off the arc.
+// A step is driven in straight pieces: at 1 m/s and 1 rad/s less than 0.1 mm off the arc.
 constexpr double kPiece_s = 0.02;
 
 void check_robot(bool ok, const char* name, const char* expected) {
@@ -43,8 +43,8 @@ RobotOptions checked(const world::World& world, RobotOptions o) {
   return o;
 }
 
-// The base regulates what its encoders count, so these see the command, and it is the robot that
-// errs: by the same random numbers, with the opposite sign where it is systematic.
+// The base controls its encoder counts, so these follow the command and the robot's motion has the
+// errors: from the same random numbers, with the opposite sign for systematic ones.
 OdometryDrift of_robot(OdometryDrift drift) {
   drift.range_scale_error = 1.0 / (1.0 + drift.range_scale_error) - 1.0;
   drift.turn_scale_error = 1.0 / (1.0 + drift.turn_scale_error) - 1.0;
@@ -96,7 +96,7 @@ EncoderStep SimulatedRobot::step(const Velocity& command, double dt_s) {
   check_robot(std::isfinite(command.linear_m_per_s) && std::isfinite(command.angular_rad_per_s),
               "velocity", "finite numbers");
   check_robot(std::isfinite(dt_s) && dt_s >= 0.0, "dt_s", "a number >= 0");
-  // A little more than a whole number of pieces is rounding.
+  // A slight excess over a whole number of pieces is rounding.
   const double pieces = std::max(1.0, std::ceil(dt_s / kPiece_s - 1e-6));
   EncoderStep sum;
   for (double i = 0.0; i < pieces; i += 1.0) {
@@ -129,7 +129,7 @@ EncoderStep SimulatedRobot::advance(const Velocity& command, double dt_s) {
   return counted;
 }
 
-// What the robot does when its wheels go this step without errors.
+// Real motion of the robot for an error-free step of its wheels.
 geometry::Pose2 SimulatedRobot::with_errors(const geometry::Pose2& step) {
   errors_.carry({});
   const geometry::Pose2 T_sum_now = errors_.advance(step);

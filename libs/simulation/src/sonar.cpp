@@ -19,7 +19,7 @@ class Cone {
   [[nodiscard]] const Echo& nearest() const { return nearest_; }
 
   void add_echo_of(const world::Segment& segment) {
-    // The part of the segment between the two edges: shares [first, last] of it.
+    // The part of the segment between the two edges, as fractions [first, last].
     double first = 0.0;
     double last = 1.0;
     for (const double side : {1.0, -1.0}) {
@@ -46,7 +46,7 @@ class Cone {
     const Eigen::Vector2d edge(edge_.cos, center_m.y() >= 0.0 ? edge_.sin : -edge_.sin);
     const bool inside = edge_.sin * center_m.x() - edge_.cos * std::fabs(center_m.y()) >= 0.0;
     if (inside) return add_echo_of(center_m * (1.0 - circle.radius_m / apart_m), center_m);
-    // The nearest part of its outline that reaches into the cone lies on the cone's edge.
+    // The nearest part of its outline inside the cone lies on the cone's edge.
     const double along_m = edge.dot(center_m);
     const double half2 =
         circle.radius_m * circle.radius_m - (center_m - along_m * edge).squaredNorm();
@@ -75,7 +75,7 @@ struct Disturbance {
   double far_error_m = 0.0;
 };
 
-/// Draws nothing for what the settings leave out.
+/// Draws nothing for disabled settings.
 Disturbance draw_disturbance(const SonarNoise& noise, support::Random& random) {
   Disturbance drawn;
   if (noise.reflection_probability > 0.0) {

@@ -10,7 +10,7 @@
 namespace topogeo::simulation {
 namespace {
 
-constexpr double kArrived_m = 0.05;  // from a point of the tour: corners are cut by no more
+constexpr double kArrived_m = 0.05;  // from a point of the tour; limits the cutting of corners
 
 void check_drive(const char* name, double value, double low, double high) {
   if (value >= low && value <= high) return;
@@ -18,7 +18,7 @@ void check_drive(const char* name, double value, double low, double high) {
                               ", " + std::to_string(high) + "], got " + std::to_string(value));
 }
 
-// Speed that suits a heading error: full when aimed, none from 60 degrees on.
+// Relative speed for a heading error: full when aligned, zero from 60 degrees on.
 double share_of_speed(double heading_error_rad) {
   constexpr double kCosOfStop = 0.5;
   const double aim = geometry::sincos(heading_error_rad).cos;
@@ -56,7 +56,7 @@ double TourFollower::rest_m() const {
   return std::max(rest_m_, 0.0);
 }
 
-// Until it is lookahead_m away from the robot or at the end.
+// Advances until it is lookahead_m away from the robot or at the end.
 void TourFollower::run_ahead(const Eigen::Vector2d& robot_m) {
   constexpr double kStep_m = 0.01;
   while (!ahead_at_end() && (ahead_m() - robot_m).norm() < options_.lookahead_m) {
@@ -88,7 +88,7 @@ std::optional<Velocity> TourFollower::next(const geometry::Pose2& T_world_robot,
   const double acceleration = options_.acceleration_m_per_s2;
   double wanted_m_per_s = std::min(options_.speed_m_per_s * share_of_speed(error_rad),
                                    std::max(0.05, std::sqrt(2.0 * acceleration * left_m) * 0.9));
-  // Half the acceleration: the base does not brake at once.
+  // Uses half the acceleration, because the base does not brake at once.
   const double room_m = std::max(free_ahead_m - options_.keep_off_m, 0.0);
   wanted_m_per_s = std::min(wanted_m_per_s, std::sqrt(acceleration * room_m));
   speed_m_per_s_ = std::min(speed_m_per_s_ + acceleration * dt_s, wanted_m_per_s);

@@ -1,4 +1,4 @@
-// A disc that moves through a world: how far it gets before it touches something.
+// Free path of a disc that moves through a world until it touches something.
 #pragma once
 
 #include <optional>
@@ -10,20 +10,20 @@
 namespace topogeo::simulation {
 
 struct FreePath {
-  double distance_m = 0.0;  ///< at most the length asked for
-  /// The point of the surface that the disc touches then; nothing when the whole path is free.
+  double distance_m = 0.0;  ///< at most the requested length
+  /// The point of the surface that the disc touches at the end; nothing if the whole path is free.
   std::optional<Eigen::Vector2d> contact_m{};
 };
 
 /// The path of a disc from `from_m` along `direction` (of unit length), at most `length_m` (>= 0).
-/// Columns and people are solid. A surface that the disc touches or overlaps already (a door has
-/// shut on it) stops it at once if the move would bring it nearer and lets it go otherwise. What
-/// changes does not count: see scene_at.
+/// Columns and people are solid. A surface that the disc already touches or overlaps (a door has
+/// shut on it) stops the disc at once if the move brings it nearer, and is ignored otherwise.
+/// Changing parts are ignored: see scene_at.
 FreePath free_path(const world::World& scene, const Eigen::Vector2d& from_m,
                    const Eigen::Vector2d& direction, double length_m, double radius_m);
 
-/// The point nearest to the disc's centre of all that overlaps the disc by more than 0.1 mm;
-/// nothing if nothing does.
+/// The point nearest to the disc's centre among surfaces that overlap the disc by more than 0.1 mm;
+/// nothing if there is none.
 std::optional<Eigen::Vector2d> overlap_m(const world::World& scene, const Eigen::Vector2d& center_m,
                                          double radius_m);
 

@@ -1,4 +1,4 @@
-// A smooth drive along waypoints that nothing stops.
+// A smooth drive along waypoints without obstacles.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,9 @@ struct TimedPose {
 };
 
 /// True poses every 20 ms from the first waypoint, heading for the second, until the last is
-/// reached. Throws std::invalid_argument when an option is out of range or there are fewer than two
-/// different waypoints in succession, std::runtime_error when the end is not reached in twenty
-/// times the time of the path at full speed.
+/// reached. Throws std::invalid_argument if an option is out of range or there are fewer than two
+/// different waypoints in succession, std::runtime_error if the end is not reached in twenty times
+/// the time of the path at full speed.
 std::vector<TimedPose> drive(const std::vector<Eigen::Vector2d>& tour_m,
                              const DriveOptions& options);
 

@@ -11,7 +11,7 @@
 
 namespace topogeo::simulation {
 
-/// Where the beams go, in the laser frame. The default is the PLS: 361 beams over 180 degrees.
+/// Directions of the beams in the laser frame. The default is the PLS: 361 beams over 180 degrees.
 struct BeamPattern {
   double angle_min_rad = -std::numbers::pi / 2.0;
   double angle_step_rad = std::numbers::pi / 360.0;
@@ -19,19 +19,19 @@ struct BeamPattern {
   double range_max_m = 49.9;  ///< surfaces at this distance or beyond give no return
 };
 
-/// Exact distance along each beam to the first surface, metres; infinity where no surface is nearer
+/// Exact distance along each beam to the first surface, metres; infinity if no surface is nearer
 /// than range_max_m. A beam that grazes the end of a segment hits it.
 std::vector<double> raycast(const world::World& world, const geometry::Pose2& T_world_laser,
                             const BeamPattern& beams);
 
 struct LaserNoise {
-  double sigma_m = 0.02;               ///< standard deviation before the bounds cut the tails; >= 0
-  double bound_m = 0.05;               ///< no error is larger than this, before rounding; >= 0
+  double sigma_m = 0.02;               ///< standard deviation before the tails are cut; >= 0
+  double bound_m = 0.05;               ///< largest error, before rounding; >= 0
   double resolution_m = 0.01;          ///< readings are multiples of this; 0: not rounded
-  double dropout_probability = 0.002;  ///< of a beam without return although it hit; [0, 1]
+  double dropout_probability = 0.002;  ///< for a hit without return; [0, 1]
 };
 
-/// Readings for exact ranges: Scan::kNoReturn for infinity and for drop-outs. Uses the same count
+/// Readings for exact ranges: Scan::kNoReturn for infinity and for drop-outs. Uses the same number
 /// of drop-out draws for every scan, so that scans of different worlds stay comparable.
 std::vector<float> measure(const std::vector<double>& ranges_m, const LaserNoise& noise,
                            support::Random& random);

@@ -1,5 +1,5 @@
-// One motor of an emulated RWI base: runs, halts and goes given distances with the velocity and
-// acceleration that was commanded, in the base's own counts.
+// One motor of an emulated RWI base: runs, halts and moves given distances with the commanded
+// velocity and acceleration, in the base's own counts.
 #pragma once
 
 #include <cstdint>
@@ -13,29 +13,29 @@ class McpAxis {
   McpAxis(std::uint32_t velocity, std::uint32_t acceleration)
       : velocity_(velocity), acceleration_(acceleration) {}
 
-  // Acts on a motion in progress, too.
+  // These also act on a motion in progress.
   void set_velocity(std::uint32_t counts_per_s) { velocity_ = counts_per_s; }
   void set_acceleration(std::uint32_t counts_per_s2) { acceleration_ = counts_per_s2; }
 
   void run(int direction);  ///< +1 or -1
-  void go(double counts);   ///< from where the encoder is
+  void go(double counts);   ///< from the present encoder position
   void halt();
   void limp();
-  /// By hand: follows this speed whatever was commanded, which it forgets.
+  /// Driven by hand: follows this speed and forgets earlier commands.
   void follow(double counts_per_s);
 
-  /// Lets time pass. Without power the wheels are braked, and the commands stay in force.
+  /// Lets time pass. Without power the wheels are braked, and the commands remain in force.
   void advance(double dt_s, bool power);
-  /// What the encoder saw.
+  /// Motion measured by the encoder.
   void moved(double counts, double dt_s);
 
-  /// Of the wheel, as the motor turns it; counts/s.
+  /// Speed of the wheel as driven by the motor; counts/s.
   [[nodiscard]] double speed() const { return speed_; }
-  /// As the encoder saw it last.
+  /// Speed last measured by the encoder.
   [[nodiscard]] double measured() const { return measured_; }
   [[nodiscard]] double position() const { return position_; }
   [[nodiscard]] bool moves() const { return speed_ != 0.0 || aim() != 0.0; }
-  /// The word of the report.
+  /// The status word of the report.
   [[nodiscard]] std::uint16_t status() const;
 
  private:

@@ -1,4 +1,4 @@
-// The two motors of an emulated RWI base: the orders that move them, and what its encoders count.
+// The two motors of an emulated RWI base: their orders, and the counts of its encoders.
 #pragma once
 
 #include <cstdint>
@@ -14,41 +14,41 @@ namespace topogeo::simulation {
 
 class McpDrive {
  public:
-  /// Throws std::invalid_argument for a calibration that cannot be.
+  /// Throws std::invalid_argument for an impossible calibration.
   explicit McpDrive(const devices::McpCalibration& calibration);
 
-  /// As after power-on: the motors stand, all that was commanded and has been counted is gone.
+  /// State after power-on: the motors stand, all commands and counts are lost.
   void reset();
-  /// False if the order is none of motion.
+  /// False if the order does not concern motion.
   bool execute(const devices::McpOrder& order);
   void halt();
   void limp();
   /// A servo error: the translation motor goes limp until it gets a new command.
   void fail() { translation_.limp(); }
-  /// By the joystick: follows this velocity, whatever was commanded.
+  /// Driven by joystick: follows this velocity, whatever was commanded.
   void follow(const geometry::Velocity& velocity);
   /// Without power the wheels are braked.
   void set_power(bool power) { power_ = power; }
 
   /// Lets time pass until `now_ns`.
   void advance(std::int64_t now_ns);
-  /// So much time has passed without anything happening.
+  /// Lets this time pass without any event.
   void stand_still(std::int64_t duration_ns) { advanced_ns_ += duration_ns; }
-  /// What the encoders of the wheels saw in the last `time_s`: forward and counter-clockwise.
+  /// Motion measured by the wheels' encoders in the last `time_s`: forward and counter-clockwise.
   void moved(double forward_m, double turn_rad, double time_s);
 
-  /// How the motors turn the wheels; robot frame.
+  /// Wheel motion as driven by the motors; robot frame.
   [[nodiscard]] geometry::Velocity commanded_velocity() const;
   [[nodiscard]] bool moves() const { return translation_.moves() || rotation_.moves(); }
-  /// As of when the motors are.
+  /// Time up to which the motors were advanced.
   [[nodiscard]] std::int64_t advanced_ns() const { return advanced_ns_; }
-  /// All that the encoders saw since it was made, each step half its turn, forward, the other half.
+  /// Sum of all encoder steps since construction, each as half its turn, forward, the other half.
   [[nodiscard]] const geometry::Pose2& T_start_robot() const { return T_start_robot_; }
 
-  // As the base reports it.
+  // Values as reported by the base.
   [[nodiscard]] std::uint32_t translate_register() const;
   [[nodiscard]] std::uint32_t rotate_register() const;
-  /// Sets place, heading, speeds and states of the motors, as far as the mask has them.
+  /// Sets position, heading, speeds and states of the motors, as far as the mask has them.
   void fill(devices::McpReport& report) const;
 
  private:
@@ -61,7 +61,7 @@ class McpDrive {
   bool power_ = true;
   std::int64_t advanced_ns_ = 0;
   geometry::Pose2 T_base_robot_{};  // registers
-  double heading_rad_ = 0.0;        // the same, not wrapped
+  double heading_rad_ = 0.0;        // the heading, not wrapped
   geometry::Pose2 T_start_robot_{};
 };
 

@@ -1,8 +1,8 @@
 // An RWI B21 base behind its serial line: both dialects of the controller (MCP), the motors'
-// motion, the reports, the watchdog, the joystick, the emergency stop, and faults on demand. What
-// the wheels really do, the world decides: see commanded_velocity() and moved().
+// motion, the reports, the watchdog, the joystick, the emergency stop, and faults on demand. The
+// world decides the real motion of the wheels: see commanded_velocity() and moved().
 //
-// McpOrderReader reads the line, McpDrive moves the motors, McpLineFaults damages what is sent.
+// McpOrderReader reads the line, McpDrive moves the motors, McpLineFaults damages the output.
 #pragma once
 
 #include <cstddef>
@@ -28,29 +28,29 @@ namespace topogeo::simulation {
 struct McpEmulatorSettings {
   devices::LineSettings line{};
   devices::McpCalibration calibration{};
-  /// From power-on until it understands anything.
+  /// Time between power-on and its first understanding of input.
   std::int64_t start_up_ns = 2'000'000'000;
-  /// Of its lines and numbers in the ASCII dialect.
+  /// Format of its lines and numbers in the ASCII dialect.
   devices::McpAsciiForm form{};
   /// Puts a `*` before its answers.
   bool prompt = false;
-  /// Repeats what it receives until HD, or for ever: no publication decides it.
+  /// Echoes its input until HD, or forever: no publication decides it.
   bool echo_at_start = true;
   bool echo_can_be_switched_off = true;
   /// On expiry of the watchdog the motors go limp; otherwise they halt.
   bool watchdog_limps = false;
   std::uint32_t clock_at_start = 0;
-  double clock_drift_ppm = 0.0;  ///< its seconds are so much shorter than ours
+  double clock_drift_ppm = 0.0;  ///< its seconds are this much shorter than ours
   double battery_v = 48.2;
-  std::uint64_t seed = 1;  ///< of where faults hit
+  std::uint64_t seed = 1;  ///< of the places of faults
 };
 
 class McpEmulator final : public SerialDevice {
  public:
-  /// Switched on at `now_ns`. Throws std::invalid_argument for a calibration that cannot be.
+  /// Switched on at `now_ns`. Throws std::invalid_argument for an impossible calibration.
   explicit McpEmulator(const McpEmulatorSettings& settings, std::int64_t now_ns = 0);
 
-  // SerialDevice.
+  // Interface of SerialDevice.
   void receive(std::span<const std::uint8_t> bytes, const devices::LineSettings& host,
                std::int64_t now_ns) override;
   void tick(std::int64_t now_ns) override;
@@ -58,26 +58,26 @@ class McpEmulator final : public SerialDevice {
   [[nodiscard]] std::vector<std::uint8_t> take_output(const devices::LineSettings& host,
                                                       std::int64_t now_ns) override;
 
-  /// Its clock has gone on by so much while it did nothing and nothing was done to it: its watchdog
-  /// and its reports wait for as long. To be called before the next tick.
+  /// The emulator was suspended for this time, although its clock went on: its watchdog and its
+  /// reports are delayed as much. Call before the next tick.
   void stand_still(std::int64_t duration_ns);
 
-  // The world's side.
-  /// How its motors turn the wheels since the last tick; robot frame.
+  // Interface for the world.
+  /// Wheel motion as driven by the motors since the last tick; robot frame.
   [[nodiscard]] geometry::Velocity commanded_velocity() const {
     return drive_.commanded_velocity();
   }
-  /// What the encoders of the wheels saw in the last `time_s`: forward and counter-clockwise.
+  /// Motion measured by the wheels' encoders in the last `time_s`: forward and counter-clockwise.
   void moved(double forward_m, double turn_rad, double time_s) {
     drive_.moved(forward_m, turn_rad, time_s);
   }
-  /// All that the encoders saw since it was made, each step half its turn, forward, the other half.
+  /// Sum of all encoder steps since construction, each as half its turn, forward, the other half.
   [[nodiscard]] const geometry::Pose2& T_start_robot() const { return drive_.T_start_robot(); }
-  /// Bits of the switches that are pressed.
+  /// Bits of the pressed switches.
   void press_bumpers(std::uint16_t pressed, std::int64_t now_ns);
 
-  // The operator's side.
-  /// Without effect while the host has switched the joystick off. Both 0: let go.
+  // Interface for the operator.
+  /// No effect while the host has switched the joystick off. Both 0: released.
   void take_joystick(const geometry::Velocity& velocity);
   /// The motors lose their power.
   void press_emergency_stop() { drive_.set_power(false); }
@@ -87,17 +87,17 @@ class McpEmulator final : public SerialDevice {
   void fail_motor(std::int64_t now_ns);
 
   // Faults.
-  /// Without power it neither receives nor sends anything, its wheels stand, and all that it was
-  /// commanded and has counted is gone.
+  /// Without power it neither receives nor sends anything, its wheels stand, and all commands and
+  /// counts are lost.
   void switch_off(std::int64_t now_ns);
-  /// Switches on, or off and on again: as on the first day, once the time of the start-up is over.
+  /// Switches on, or off and on again: the initial state, after the start-up time.
   void switch_on(std::int64_t now_ns);
   void set_echo(bool echo) { echo_ = echo; }
   [[nodiscard]] McpLineFaults& line_faults() { return faults_; }
-  /// Sends bytes that mean nothing.
+  /// Sends random bytes.
   void send_garbage(std::size_t bytes, std::int64_t now_ns);
 
-  // What the tests read.
+  // State for tests.
   [[nodiscard]] bool ready() const { return ready_; }
   [[nodiscard]] bool binary() const { return reader_.binary(); }
   [[nodiscard]] bool echoes() const { return echo_; }
@@ -108,7 +108,7 @@ class McpEmulator final : public SerialDevice {
  private:
   static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 
-  /// The reports that it sends by itself.
+  /// The reports that it sends unasked.
   struct Reporting {
     std::uint32_t mask = 0;
     std::int64_t period_ns = 0;
@@ -120,7 +120,7 @@ class McpEmulator final : public SerialDevice {
   bool execute_setting(const devices::McpOrder& order, std::int64_t now_ns);
   void execute_question(const devices::McpOrder& order, std::int64_t now_ns);
   void answer(devices::McpCommand command, std::uint32_t value, std::int64_t now_ns);
-  /// Sends a message in the dialect that is spoken.
+  /// Sends a message in the present dialect.
   void send(std::string_view ascii, const std::vector<std::uint8_t>& binary, std::int64_t now_ns);
   void send_bytes(std::vector<std::uint8_t> bytes, std::int64_t now_ns);
   void send_line(std::string line, std::int64_t now_ns);
@@ -136,8 +136,8 @@ class McpEmulator final : public SerialDevice {
   SerialOutput output_;
 
   bool on_ = false;
-  bool ready_ = false;      // the start-up is over
-  std::int64_t on_ns_ = 0;  // switched on
+  bool ready_ = false;      // start-up has finished
+  std::int64_t on_ns_ = 0;  // time of power-on
   bool echo_ = true;
   Reporting reporting_;
   std::int64_t watchdog_ns_ = kNever;

@@ -1,4 +1,4 @@
-// Faults of the line of an emulated RWI base, on demand: what happens to the bytes that it sends.
+// Faults of the line of an emulated RWI base, on demand: damages the bytes that it sends.
 #pragma once
 
 #include <cstddef>
@@ -11,20 +11,20 @@ namespace topogeo::simulation {
 
 class McpLineFaults {
  public:
-  /// `seed`: of where faults hit.
+  /// `seed`: of the places of faults.
   explicit McpLineFaults(std::uint64_t seed) : random_(seed) {}
 
-  /// One bit of each of the next reports is wrong; in the binary dialect it may be the checksum's.
+  /// Flips one bit in each of the next reports; in the binary dialect it may be the checksum's.
   void corrupt(unsigned reports) { corrupt_ = reports; }
-  /// The next reports end somewhere in the middle.
+  /// Cuts the next reports off somewhere in the middle.
   void truncate(unsigned reports) { truncate_ = reports; }
-  /// Nothing is sent.
+  /// Suppresses all output.
   void set_silent(bool silent) { silent_ = silent; }
 
   [[nodiscard]] bool silent() const { return silent_; }
-  /// What arrives of a report; it must not be empty.
+  /// Applies the pending faults to a report, which must not be empty.
   void damage(std::vector<std::uint8_t>& report);
-  /// Bytes that mean nothing.
+  /// Random bytes.
   [[nodiscard]] std::vector<std::uint8_t> garbage(std::size_t bytes);
 
  private:

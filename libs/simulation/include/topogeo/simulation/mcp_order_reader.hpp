@@ -1,4 +1,4 @@
-// How an emulated RWI base reads its line: orders in the ASCII or in the binary dialect.
+// Reads the line of an emulated RWI base: orders in the ASCII or in the binary dialect.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,16 @@ namespace topogeo::simulation {
 
 class McpOrderReader {
  public:
-  /// What a byte completes.
+  /// Result of a byte.
   struct Reading {
     std::optional<devices::McpOrder> order{};
-    bool damaged = false;  ///< a binary packet whose checksum is wrong
+    bool damaged = false;  ///< a binary packet with a wrong checksum
   };
-  /// A line that is no order is passed over. After a damaged packet everything is, up to six zeros;
-  /// more of them may follow.
+  /// Ignores lines that are no order. After a damaged packet ignores everything until six zeros;
+  /// more zeros may follow.
   Reading read(std::uint8_t byte);
 
-  /// From ASCII, with which it starts, to binary or back.
+  /// Switches from ASCII, the initial dialect, to binary or back.
   void switch_dialect();
   [[nodiscard]] bool binary() const { return binary_; }
 

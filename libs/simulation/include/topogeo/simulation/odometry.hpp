@@ -1,5 +1,5 @@
-// Dead reckoning that errs like the wheels of an RWI B21: the distance is off by a constant factor,
-// the heading creeps to one side and wanders with the path, and turns are measured inexactly.
+// Dead reckoning with the errors of an RWI B21's wheels: the distance has a constant scale error,
+// the heading drifts to one side and wanders with the path, and turns are measured inexactly.
 #pragma once
 
 #include <numbers>
@@ -26,12 +26,11 @@ class OdometryModel {
   OdometryModel(const OdometryDrift& drift, support::Random random)
       : drift_(drift), random_(random), slip_random_(random.next_u64()) {}
 
-  /// Takes the robot to its next true pose; returns its odometry then. The first call
-  /// fixes the origin: it returns the identity.
+  /// Moves the robot to its next true pose; returns its odometry there. The first call sets the
+  /// origin: it returns the identity.
   geometry::Pose2 advance(const geometry::Pose2& T_world_robot);
 
-  /// The robot is carried there: its odometry does not notice. The pose that odometry gives
-  /// stays as it is.
+  /// Carries the robot away: its odometry does not notice, and keeps its pose.
   void carry(const geometry::Pose2& T_world_robot) { T_world_last_ = T_world_robot; }
 
  private:

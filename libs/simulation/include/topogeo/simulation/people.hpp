@@ -1,4 +1,4 @@
-// People who walk about while the robot drives: discs that the laser sees.
+// People who walk about while the robot drives: discs visible to the laser.
 #pragma once
 
 #include <cstddef>
@@ -12,21 +12,20 @@
 
 namespace topogeo::simulation {
 
-/// Where a person who follows its path is at a time since the start of the drive, if nothing makes
-/// it wait.
+/// Position of a person on its path at a time since the start of the drive, without any waiting.
 Eigen::Vector2d position_m(const world::Person& person, double time_s);
 
-/// The people of a world and `wanderers` more, who walk about at random.
+/// The people of a world plus `wanderers`, who walk about at random.
 class People {
  public:
-  /// The world must outlive this. Wanderers start near its tour, at least 3 m from its start if
-  /// there is such a place. The seed decides about their places, speeds and paths.
+  /// The world must outlive this object. Wanderers start near its tour, at least 3 m from its start
+  /// if possible. The seed determines their places, speeds and paths.
   People(const world::World& world, std::size_t wanderers, std::uint64_t seed);
 
   /// Lets them walk until `time_s`, which never goes back, in a scene (scene_at) with the robot.
   void walk(double time_s, const world::World& scene, const Eigen::Vector2d& robot_m);
 
-  /// Everybody where they are now.
+  /// Everybody at their present place.
   [[nodiscard]] std::vector<world::Circle> circles() const;
 
  private:

@@ -1,6 +1,6 @@
 // A SICK PLS laser, or an LMS-2xx at its defaults, at the other end of a serial line, byte for
-// byte: telegrams, acknowledgements, installation mode, change of the rate, scans at the pace that
-// mirror and line allow, restarts, and whatever goes wrong with such a sensor, on demand.
+// byte: telegrams, acknowledgements, installation mode, change of the rate, scans at the pace of
+// mirror and line, restarts, and typical faults on demand.
 #pragma once
 
 #include <array>
@@ -28,20 +28,20 @@ struct PlsEmulatorSettings {
   std::string power_on_text = "PLS 200-313;emulated";
   std::string software = "P 01.23";  ///< seven characters
   std::vector<devices::PlsError> errors{};
-  std::int64_t ack_delay_ns = 10'000'000;    ///< from a command's end to ACK; at most 40 ms
-  std::int64_t reply_delay_ns = 2'000'000;   ///< from ACK to the reply
-  std::int64_t start_up_ns = 9'000'000'000;  ///< from power-on to the power-on telegram
+  std::int64_t ack_delay_ns = 10'000'000;    ///< between a command's end and ACK; at most 40 ms
+  std::int64_t reply_delay_ns = 2'000'000;   ///< between ACK and the reply
+  std::int64_t start_up_ns = 9'000'000'000;  ///< between power-on and the power-on telegram
   std::int64_t mirror_period_ns = 40'000'000;
-  std::int64_t sweep_to_send_ns = 10'000'000;  ///< from the middle of the sweep to the first byte
+  std::int64_t sweep_to_send_ns = 10'000'000;  ///< middle of the sweep to the first byte
   std::uint16_t no_return_code = 8191;
-  /// Radii of the half discs that the sensor watches; 0: none is set up. A PLS knows up to 4 m of a
-  /// protective field and about 15 m of a warning field (Thesis, B.3 and table B.3).
+  /// Radii of the half discs that the sensor watches; 0: none. A PLS supports up to 4 m for a
+  /// protective field and about 15 m for a warning field (Thesis, B.3 and table B.3).
   double protective_field_m = 0.0;
   double warning_field_m = 0.0;
-  std::uint64_t seed = 1;  ///< of where faults strike
+  std::uint64_t seed = 1;  ///< of the places of faults
 };
 
-/// Faults that strike the next telegrams.
+/// Faults of the next telegrams.
 enum class PlsFault {
   kBadCrc,            ///< a bit of the telegram changes on the line
   kTruncated,         ///< the telegram ends early
@@ -53,12 +53,12 @@ inline constexpr std::size_t kPlsFaults = 5;
 
 class PlsEmulator final : public SerialDevice {
  public:
-  /// Ranges in metres at a time, one per beam from the right, 361 or another number that the sensor
-  /// knows; 0 or not finite: no return.
+  /// Ranges in metres at a time, one per beam from the right, for 361 or another supported number
+  /// of beams; 0 or not finite: no return.
   using Ranges = std::function<std::vector<float>(std::int64_t now_ns)>;
 
   /// A sensor that was switched on long before `now_ns` and waits for commands. Throws
-  /// std::invalid_argument when a setting makes no sense.
+  /// std::invalid_argument for invalid settings.
   PlsEmulator(PlsEmulatorSettings settings, Ranges ranges, std::int64_t now_ns = 0);
 
   void receive(std::span<const std::uint8_t> bytes, const devices::LineSettings& host,
@@ -68,27 +68,28 @@ class PlsEmulator final : public SerialDevice {
   [[nodiscard]] std::vector<std::uint8_t> take_output(const devices::LineSettings& host,
                                                       std::int64_t now_ns) override;
 
-  // What happens to the sensor from outside.
+  // External events.
   void switch_off();
-  /// Switches on, or off and on again: silence for the time of the start-up, then the power-on
-  /// telegram at the rate after power-on.
+  /// Switches on, or off and on again: silence for the start-up time, then the power-on telegram at
+  /// the rate after power-on.
   void switch_on(std::int64_t now_ns);
-  /// Leaves the sensor as an earlier program may have: at this rate, and streaming or not.
+  /// Sets the state that an earlier program may have left: this rate, and streaming or not.
   void set_up(std::uint32_t baud, bool streaming, std::int64_t now_ns);
   /// The byte at the end of every telegram: pollution and errors, for example.
   void set_status(std::uint8_t status) { status_ = status; }
-  /// Sets up other fields; see PlsEmulatorSettings. Throws std::invalid_argument out of range.
+  /// Changes the fields; see PlsEmulatorSettings. Throws std::invalid_argument out of range.
   void set_fields(double protective_m, double warning_m);
 
   // Faults.
-  /// Strikes the next `count` telegrams, scans or changes of the rate that the fault can strike.
+  /// Applies the fault to the next `count` telegrams, scans or changes of the rate that it
+  /// concerns.
   void inject(PlsFault fault, int count);
-  /// Neither sends nor receives anything until speak_again(); what is on the line is cut.
+  /// Neither sends nor receives anything until speak_again(); cuts the bytes on the line.
   void fall_silent(std::int64_t now_ns);
   void speak_again(std::int64_t now_ns);
-  /// How often the fault is still to strike.
+  /// Number of faults still to come.
   [[nodiscard]] int pending(PlsFault fault) const;
-  /// When the last telegram that a fault struck has left the line, or the silence ended.
+  /// Time at which the last faulty telegram left the line, or the silence ended.
   [[nodiscard]] std::int64_t fault_end_ns() const { return fault_end_ns_; }
 
   [[nodiscard]] const devices::LineSettings& line() const { return line_; }
@@ -98,7 +99,7 @@ class PlsEmulator final : public SerialDevice {
  private:
   enum class Power { kOff, kStarting, kOn };
   enum class Mode { kOnRequest, kStream, kInstallation };
-  /// What follows when a reply has left.
+  /// State change after a reply has left.
   struct Change {
     std::int64_t at_ns = 0;
     std::optional<Mode> mode{};
@@ -135,11 +136,11 @@ class PlsEmulator final : public SerialDevice {
   Mode mode_ = Mode::kOnRequest;
   bool rate_is_permanent_ = false;
   std::uint8_t status_ = 0;
-  std::int64_t mirror_ns_ = 0;                 ///< a time at which the mirror was in mid-sweep
+  std::int64_t mirror_ns_ = 0;                 ///< a time at the mirror's mid-sweep
   std::int64_t start_up_end_ns_ = 0;           ///< while starting
-  std::int64_t busy_until_ns_ = 0;             ///< commands before are lost
-  std::optional<Change> change_;               ///< awaits its time
-  std::optional<std::int64_t> measure_at_ns_;  ///< the next scan
+  std::int64_t busy_until_ns_ = 0;             ///< earlier commands are lost
+  std::optional<Change> change_;               ///< waits for its time
+  std::optional<std::int64_t> measure_at_ns_;  ///< time of the next scan
   std::vector<std::uint8_t> last_scan_;
   std::array<int, kPlsFaults> pending_{};
   bool silent_ = false;

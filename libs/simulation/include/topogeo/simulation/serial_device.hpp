@@ -20,16 +20,16 @@ class SerialDevice {
   SerialDevice& operator=(SerialDevice&&) = delete;
   virtual ~SerialDevice() = default;
 
-  /// Bytes that the host wrote with its port set to `host`. A device whose own settings differ
-  /// understands nothing of them.
+  /// Bytes that the host wrote with its port set to `host`. A device with other settings
+  /// understands none of them.
   virtual void receive(std::span<const std::uint8_t> bytes, const devices::LineSettings& host,
                        std::int64_t now_ns) = 0;
-  /// Does what is due by now (measuring, reports, watchdog, restart).
+  /// Does everything that is due by now (measuring, reports, watchdog, restart).
   virtual void tick(std::int64_t now_ns) = 0;
-  /// When `tick` is to be called at the latest.
+  /// Latest time of the next `tick`.
   [[nodiscard]] virtual std::int64_t due_ns() const = 0;
-  /// What left the device's end of the line by now at its own rate, each byte once. What the device
-  /// sends while the host's port is set otherwise reaches the host as other bytes.
+  /// Bytes that have left the device's end of the line by now at its own rate, each byte once. If
+  /// the host's port has other settings, it receives other bytes.
   [[nodiscard]] virtual std::vector<std::uint8_t> take_output(const devices::LineSettings& host,
                                                               std::int64_t now_ns) = 0;
 };

@@ -1,5 +1,5 @@
-// What an emulated device sends: bytes that leave one after the other at the device's rate, and
-// that a host with other settings reads as other bytes.
+// Output of an emulated device: its bytes leave in sequence at the device's rate, and a host with
+// other settings reads them as other bytes.
 #pragma once
 
 #include <cstddef>
@@ -13,21 +13,21 @@ namespace topogeo::simulation {
 
 class SerialOutput {
  public:
-  /// Sends `bytes` with `line` from `start_ns` on, or when all that was sent before has left,
-  /// whichever is later. Returns when the last of them will have left.
+  /// Sends `bytes` with `line` from `start_ns` on, or after all earlier bytes have left, whichever
+  /// is later. Returns when the last of them will have left.
   std::int64_t send(std::vector<std::uint8_t> bytes, const devices::LineSettings& line,
                     std::int64_t start_ns);
 
   /// When everything sent so far has left; in the past while the line is idle.
   [[nodiscard]] std::int64_t free_ns() const { return free_ns_; }
 
-  /// What left by `now_ns` and was not taken yet, as a host with the settings `host` reads it. With
-  /// other settings than the sender's these are other bytes, and another number of them when the
-  /// rates differ; the same bytes always become the same other ones.
+  /// Bytes that left by `now_ns` and were not taken yet, as read by a host with the settings
+  /// `host`. With settings other than the sender's these are other bytes, and also another number
+  /// of them if the rates differ; the same bytes are always misread in the same way.
   [[nodiscard]] std::vector<std::uint8_t> take(const devices::LineSettings& host,
                                                std::int64_t now_ns);
 
-  /// The device lost its power: nothing more leaves, and what left already is gone.
+  /// The device lost its power: nothing more leaves, and sent bytes are lost.
   void clear();
 
  private:

@@ -17,22 +17,22 @@ namespace topogeo::simulation {
 
 struct BodySensorNoise {
   double sonar_sigma_m = 0.02;     ///< standard deviation; >= 0
-  double infrared_sigma_m = 0.05;  ///< the same; no source has a figure, it calls them rough
-  double touch_m = 0.01;           ///< nearer than that to a panel is a touch; >= 0
+  double infrared_sigma_m = 0.05;  ///< the same; no source has a figure, it is called rough
+  double touch_m = 0.01;           ///< a smaller distance to a panel is a touch; >= 0
   std::uint64_t seed = 1;
 };
 
 class SimulatedBodySensors final : public devices::BodySensors {
  public:
-  /// What is there, and where the robot is, T_world_robot, at a time.
+  /// The surroundings and the robot's pose, T_world_robot, at a time.
   using Scene = std::function<world::World(std::int64_t now_ns)>;
   using Pose = std::function<geometry::Pose2(std::int64_t now_ns)>;
-  /// Readings of other sonars than those of the ring, as BodyReadings::sonar_m.
+  /// Readings of sonars other than the ring's, for BodyReadings::sonar_m.
   using Sonars = std::function<std::vector<float>()>;
 
   /// Throws std::invalid_argument for noise out of range and missing functions.
   SimulatedBodySensors(Scene scene, Pose pose, const BodySensorNoise& noise = {});
-  /// With the sonars that a robot has.
+  /// Uses the sonars of the robot.
   SimulatedBodySensors(Scene scene, Pose pose, Sonars sonars, const BodySensorNoise& noise = {});
 
   std::optional<devices::BodyReadings> read(std::int64_t now_ns) override;
@@ -45,7 +45,7 @@ class SimulatedBodySensors final : public devices::BodySensors {
 
   Scene scene_;
   Pose pose_;
-  Sonars sonars_;  // empty: those of the ring
+  Sonars sonars_;  // empty: the ring's sonars
   BodySensorNoise noise_;
   support::Random random_;
 };

@@ -1,5 +1,5 @@
-// A robot that velocities drive through a world: it collides, slips and counts its wheels' turns
-// with errors, measures by laser and sonar. A step costs microseconds, so that whole series of
+// A robot driven through a world by velocities: it collides, slips, counts its wheels' turns with
+// errors, and measures by laser and sonar. A step costs microseconds, so that whole series of
 // drives run in one process. The same arguments and calls give the same results to the last bit.
 #pragma once
 
@@ -21,22 +21,22 @@
 
 namespace topogeo::simulation {
 
-/// Now and then the wheels find less hold for a while.
+/// The wheels occasionally lose grip for a while.
 struct Slip {
-  double per_m = 0.0;       ///< how often begins a slippery stretch, on the average; [0, 10]
-  double length_m = 0.1;    ///< of such a stretch, as the wheels roll; (0, 10]
+  double per_m = 0.0;       ///< mean frequency of slippery parts; [0, 10]
+  double length_m = 0.1;    ///< of such a part, as the wheels roll; (0, 10]
   double lost_share = 0.5;  ///< of the distance rolled there; [0, 1]
 };
 
 struct RobotOptions {
   std::uint64_t seed = 1;
-  /// Nothing: at the start of the world's tour, heading along it.
+  /// None: at the start of the world's tour, heading along it.
   std::optional<geometry::Pose2> T_world_start{};
   double radius_m = devices::kB21Radius_m;  ///< of its round body; (0, 5]
   double acceleration_m_per_s2 = std::numeric_limits<double>::infinity();            ///< > 0
   double angular_acceleration_rad_per_s2 = std::numeric_limits<double>::infinity();  ///< > 0
-  /// How the distance that its wheels count differs from the one that it drives. They count what is
-  /// commanded; the robot makes the difference.
+  /// Difference between the distance that its wheels count and the one that it drives. They count
+  /// the commanded motion; the robot's motion has the errors.
   OdometryDrift odometry{};
   Slip slip{};
   BeamPattern beams{};
@@ -47,7 +47,7 @@ struct RobotOptions {
   std::size_t wanderers = 0;  ///< people besides those of the world, see People
 };
 
-/// What the wheels counted: forward and counter-clockwise.
+/// Motion counted by the wheels: forward and counter-clockwise.
 struct EncoderStep {
   double forward_m = 0.0;
   double turn_rad = 0.0;
@@ -55,28 +55,28 @@ struct EncoderStep {
 
 class SimulatedRobot {
  public:
-  /// Throws std::invalid_argument for an option out of range, a world without a tour where no start
-  /// is given, and a start where the robot overlaps something.
+  /// Throws std::invalid_argument for an option out of range, a world without a tour if no start is
+  /// given, and a start where the robot overlaps something.
   SimulatedRobot(world::World world, const RobotOptions& options);
   SimulatedRobot(const SimulatedRobot&) = delete;
   SimulatedRobot& operator=(const SimulatedRobot&) = delete;
 
-  /// Drives for `dt_s` (>= 0, worked off in pieces of at most 20 ms) as commanded. A contact stops
-  /// the motion ahead, not a turn nor the motion back. Throws std::invalid_argument for a velocity
-  /// or time that is no finite number.
+  /// Drives for `dt_s` (>= 0, in pieces of at most 20 ms) as commanded. A contact stops motion
+  /// towards it, but neither a turn nor motion away from it. Throws std::invalid_argument for a
+  /// velocity or time that is not finite.
   EncoderStep step(const Velocity& command, double dt_s);
 
-  /// It is lifted and put down there; its wheels do not turn.
+  /// Lifts the robot and puts it down there; its wheels do not turn.
   void carry(const geometry::Pose2& T_world_robot);
 
   [[nodiscard]] const geometry::Pose2& T_world_robot() const { return T_world_robot_; }
-  /// What the encoder steps add up to, from the identity on: each step goes half its turn, then
-  /// forward, then the other half.
+  /// Sum of the encoder steps, starting with the identity: each step as half its turn, forward, the
+  /// other half.
   [[nodiscard]] const geometry::Pose2& T_odom_robot() const { return T_odom_robot_; }
-  /// Of the wheels, now.
+  /// Present velocity of the wheels.
   [[nodiscard]] const Velocity& velocity() const { return velocity_; }
   [[nodiscard]] double time_s() const { return time_s_; }
-  [[nodiscard]] double path_m() const { return path_m_; }  ///< rolled, there and back
+  [[nodiscard]] double path_m() const { return path_m_; }  ///< rolled distance, there and back
 
   /// Readings of the laser here and now, one per beam; scan::Scan::kNoReturn for none.
   std::vector<float> scan();
@@ -85,30 +85,30 @@ class SimulatedRobot {
   /// Readings of the sonars here and now; scan::Scan::kNoReturn for none.
   std::vector<float> sonar();
 
-  /// In which direction from its heading it touches what has stopped it or has run into it, until
-  /// it moves away; nothing: nowhere.
+  /// Direction, relative to its heading, of a contact that has stopped it or run into it, until it
+  /// moves away; nothing without a contact.
   [[nodiscard]] std::optional<double> bumped_rad() const;
-  /// How often its own motion has ended at something.
+  /// Number of its own motions that ended at an obstacle.
   [[nodiscard]] std::uint64_t collisions() const { return collisions_; }
-  /// How often a person or a door has run into it.
+  /// Number of times that a person or a door has run into it.
   [[nodiscard]] std::uint64_t run_into() const { return run_into_; }
-  /// How far it could go straight on before it touches something, at most `limit_m`.
+  /// Free distance straight ahead until it touches something, at most `limit_m`.
   [[nodiscard]] double free_ahead_m(double limit_m) const;
 
-  /// Everything that is there now, people included.
+  /// Everything that is present now, including people.
   [[nodiscard]] world::World scene() const;
   [[nodiscard]] const RobotOptions& options() const { return options_; }
 
  private:
   EncoderStep advance(const Velocity& command, double dt_s);
-  /// The share of `displacement_m` that is free.
+  /// Moves up to `displacement_m`; returns the free share of it.
   double go(const Eigen::Vector2d& displacement_m);
   double lost_share(double rolled_m);
   geometry::Pose2 with_errors(const geometry::Pose2& step);
   void change_world();
   void look_for_overlap();
 
-  /// Something that changes at random: of its times, the world has the one that is not over yet.
+  /// A part that changes at random; the world only has its interval that is not over yet.
   struct Turns {
     std::size_t part;
     world::DrawnTurns drawn;
@@ -133,13 +133,13 @@ class SimulatedRobot {
   Velocity velocity_;
   double time_s_ = 0.0;
   double path_m_ = 0.0;
-  double slippery_m_ = 0.0;     // still to come of a slippery stretch
-  double surely_free_m_ = 0.0;  // any motion of this length touches nothing of scene_
+  double slippery_m_ = 0.0;     // rest of the present slippery part
+  double surely_free_m_ = 0.0;  // motion up to this length touches nothing of scene_
   std::optional<Eigen::Vector2d> contact_m_;
   std::uint64_t collisions_ = 0;
   std::uint64_t run_into_ = 0;
-  bool stopped_ = false;     // the last piece of motion ended at something
-  bool overlapped_ = false;  // something stands in the robot
+  bool stopped_ = false;     // an obstacle ended the last piece of motion
+  bool overlapped_ = false;  // an obstacle overlaps the robot
 };
 
 }  // namespace topogeo::simulation

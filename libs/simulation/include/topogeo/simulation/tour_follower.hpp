@@ -1,5 +1,5 @@
-// Pure pursuit: follows a path by a point that runs ahead of the robot on it, slows down to turn
-// and before obstacles, and turns on the spot where the path folds back.
+// Pure pursuit: follows a path by a target point that moves ahead of the robot on it, slows down
+// for turns and obstacles, and turns on the spot where the path folds back.
 #pragma once
 
 #include <cstddef>
@@ -15,47 +15,47 @@
 
 namespace topogeo::simulation {
 
-using geometry::Velocity;  ///< how a base is commanded
+using geometry::Velocity;  ///< commands of a base
 
 struct DriveOptions {
   double speed_m_per_s = 0.9;                               ///< at most; (0, 10]
   double turn_rad_per_s = 60.0 * std::numbers::pi / 180.0;  ///< at most; (0, 10]
   double acceleration_m_per_s2 = 0.5;                       ///< (0, 10]
-  double lookahead_m = 0.4;  ///< distance of the point ahead; corners are cut by less; [0.05, 5]
-  /// Turns by this much of the error of its heading a second; (0, 10]. Less for a base that obeys
-  /// late: over one half of the delay's inverse it swings about its path.
+  double lookahead_m = 0.4;  ///< distance of the target point; corners are cut by less; [0.05, 5]
+  /// Rate of turning per heading error; (0, 10]. Lower for a base that obeys late: above half of
+  /// the delay's inverse it oscillates about its path.
   double turn_gain_per_s = 3.0;
-  double keep_off_m = 0.1;  ///< of obstacles ahead, where the robot gets them; [0, 5]
+  double keep_off_m = 0.1;  ///< from obstacles ahead, if given to next(); [0, 5]
 };
 
 class TourFollower {
  public:
-  /// Throws std::invalid_argument when an option is out of range or there are fewer than two
+  /// Throws std::invalid_argument if an option is out of range or there are fewer than two
   /// different waypoints in succession.
   TourFollower(const std::vector<Eigen::Vector2d>& tour_m, const DriveOptions& options);
 
-  /// At the first waypoint, heading for the second.
+  /// The pose at the first waypoint, heading for the second.
   [[nodiscard]] geometry::Pose2 start() const;
 
-  /// What to do for the next `dt_s` (> 0) at this pose; nothing when the end is reached. The speed
-  /// grows with the acceleration of the options and falls at once: braking on a curve would carry
-  /// the robot off the path. `free_ahead_m` is how far it could go straight on before it touches
-  /// something: it slows down in time to stop keep_off_m before that, and waits there.
+  /// The velocity for the next `dt_s` (> 0) at this pose; nothing at the end. The speed grows with
+  /// the acceleration of the options but falls at once, because braking on a curve would carry the
+  /// robot off the path. `free_ahead_m`: free distance straight ahead. The robot slows down in time
+  /// to stop keep_off_m before its end, and waits there.
   std::optional<Velocity> next(const geometry::Pose2& T_world_robot, double dt_s,
                                double free_ahead_m = std::numeric_limits<double>::infinity());
 
-  /// Of the path, from the point ahead to the end.
+  /// Length of the path from the target point to the end.
   [[nodiscard]] double rest_m() const;
 
  private:
-  // The point that runs ahead of the robot.
+  // Advances the target point.
   void run_ahead(const Eigen::Vector2d& robot_m);
   [[nodiscard]] Eigen::Vector2d ahead_m() const;
   [[nodiscard]] bool ahead_at_end() const { return next_ == path_m_.size(); }
 
   DriveOptions options_;
   std::vector<Eigen::Vector2d> path_m_;
-  std::size_t next_ = 1;  // the point ahead is on the line from path_m_[next_ - 1] to it
+  std::size_t next_ = 1;  // the target point is on the line from path_m_[next_ - 1] to this one
   double along_m_ = 0.0;  // on that line
   double rest_m_ = 0.0;
   double speed_m_per_s_ = 0.0;
