@@ -10,11 +10,11 @@ namespace topogeo::sqlite_guard {
 namespace {
 
 constexpr int kInstructions = 10'000;  // of SQLite's virtual machine, about 0.2 ms
-// About 5 s on a small machine, and far more than a row of a sound file takes.
+// About 5 s on a small machine, and far more than reading a row of a sound file takes.
 constexpr std::uint64_t kFreeSteps = 10'000;
 constexpr std::uint64_t kInstructionsPerByte = 16;
 
-/// The first row of a statement, as "WORD 'NAME'"; empty where there is none.
+/// The first row of a statement, as "WORD 'NAME'"; empty if there is none.
 std::string first_row(sqlite3* database, const char* sql) {
   sqlite3_stmt* raw = nullptr;
   if (sqlite3_prepare_v2(database, sql, -1, &raw, nullptr) != SQLITE_OK) return {};

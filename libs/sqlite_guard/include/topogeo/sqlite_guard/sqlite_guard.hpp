@@ -1,5 +1,5 @@
-// SQLite files that other people made, by the advice of https://www.sqlite.org/security.html: what
-// stands in the file must neither run as a program nor take more time and memory than its size
+// Protection against untrusted SQLite files, after https://www.sqlite.org/security.html: the
+// contents of a file must not run as a program, nor take more time and memory than its size
 // explains.
 #pragma once
 
@@ -14,24 +14,24 @@ namespace topogeo::sqlite_guard {
 /// Rows and blobs beyond this size, in bytes, cannot be read.
 inline constexpr int kLargestBlob = 256'000'000;
 
-/// Throws std::runtime_error where the file, or a log that SQLite would read beside it, is a
-/// directory, FIFO or device. What is absent is no fault.
+/// Throws std::runtime_error if the file, or a log that SQLite would read beside it, is a
+/// directory, FIFO or device. A missing file is no fault.
 void refuse_irregular(const std::filesystem::path& path);
 
-/// Size of the file and of its write-ahead log; 0 where it cannot be told.
+/// Size of the file and of its write-ahead log; 0 if unknown.
 [[nodiscard]] std::uint64_t bytes_of(const std::filesystem::path& path);
 
 /// Sets a new connection up: the schema is not trusted, no trigger and no view runs, the file
-/// format cannot be changed, blobs have a limit. Before its first statement.
+/// format cannot be changed, blobs have a limit. Call it before the first statement.
 void protect(sqlite3* database);
 
-/// What the schema has that no map and no recording has, as "the view 'topics'"; empty: nothing, or
-/// the schema cannot be read, which the next statement reports.
+/// The first part of the schema that no map and no recording has, such as "the view 'topics'".
+/// Empty if there is none, or if the schema cannot be read, which the next statement reports.
 [[nodiscard]] std::string refused_schema(sqlite3* database);
 
-/// Interrupts the statements of a connection (SQLITE_INTERRUPT) when they have taken more steps
-/// than reading all of a sound file takes: a damaged one can lead from page to page without end.
-/// One at a time for each connection, which must outlive it.
+/// Interrupts the statements of a connection (SQLITE_INTERRUPT) once they have taken more steps
+/// than reading all of a sound file takes: a damaged file can lead from page to page without end.
+/// Only one at a time for each connection, which must outlive it.
 class WorkLimit {
  public:
   /// `file_bytes`: size of the file.
