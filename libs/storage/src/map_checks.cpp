@@ -1,4 +1,4 @@
-// Whether the parts of a map fit together.
+// Checks whether the parts of a map are consistent.
 #include <algorithm>
 #include <stdexcept>
 

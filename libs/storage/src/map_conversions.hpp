@@ -1,7 +1,7 @@
-// Between the project's types and the Protobuf messages of proto/map.proto.
+// Converts between the project's types and the Protobuf messages of proto/map.proto.
 //
-// Reading checks everything that the types promise, so that a damaged blob cannot become an index
-// out of range later on: each from_proto throws std::runtime_error naming the field and the cause.
+// Reading checks every guarantee of the types, so that a damaged blob cannot become an index out of
+// range later on: each from_proto throws std::runtime_error naming the field and the cause.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ void to_proto(const planning::Place& place, proto::Place* out);
 void to_proto(const planning::DrawnZone& zone, proto::DrawnZone* out);
 void to_proto(const planning::DrawnLine& line, proto::DrawnLine* out);
 void to_proto(const planning::OccupancyGrid& grid, proto::DrawnGrid* out);
-/// What is drawn must have passed check(MapDrawing).
+/// The drawing must have passed check(MapDrawing).
 void to_proto(const MapDrawing& drawing, proto::Drawing* out);
 void to_proto(const RefusedMerge& refused, proto::RefusedMerge* out);
 void to_proto(const planning::RememberedRoom& room, proto::Room* out);
@@ -51,13 +51,13 @@ planning::RememberedPlace from_proto(const proto::PlaceInRoom& in);
 planning::RoomMemory from_proto(const proto::Rooms& in);  ///< checked with check_rooms()
 MapDrawing from_proto(const proto::Drawing& in);          ///< checked with check(MapDrawing)
 
-/// Throws std::runtime_error unless ids, robot ids and references between the parts fit together.
+/// Throws std::runtime_error unless ids, robot ids and references between the parts are consistent.
 void check_document(const MapDocument& document);
 void check_global_map(const topomap::GlobalMap& map);
 void check_rooms(const planning::RoomMemory& rooms);
 void check_edges(const std::vector<MapEdge>& edges, std::size_t map_count);
 
-/// Makes the std::runtime_error of a check a std::invalid_argument that names the file.
+/// Turns the std::runtime_error of a check into a std::invalid_argument that names the file.
 template <typename Check>
 void require_valid(const std::string& file, const char* what, const Check& check) {
   try {
@@ -67,7 +67,7 @@ void require_valid(const std::string& file, const char* what, const Check& check
   }
 }
 
-/// The same bytes for the same message everywhere. Throws std::runtime_error above 2 GB.
+/// The same bytes for the same message on every machine. Throws std::runtime_error above 2 GB.
 std::string deterministic_bytes(const google::protobuf::MessageLite& message);
 
 template <typename Message, typename Value>

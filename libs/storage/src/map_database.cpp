@@ -86,9 +86,9 @@ void MapDatabase::create(const std::string& robot_id, std::uint64_t seed) {
 
 void MapDatabase::migrate() {
   if (stored_version(*database_) == kSchemaVersion) return;
-  database_->exec("PRAGMA foreign_keys=OFF");  // which changes nothing inside of a transaction
+  database_->exec("PRAGMA foreign_keys=OFF");  // has no effect inside a transaction
   SQLite::Transaction transaction(*database_, SQLite::TransactionBehavior::IMMEDIATE);
-  // Another program may have done it meanwhile.
+  // Another program may have upgraded it meanwhile.
   const std::int64_t version = stored_version(*database_);
   if (version == 2 || version == 3) {
     if (version == 2) make_version_3_of_2(*database_);
@@ -107,7 +107,7 @@ void MapDatabase::migrate() {
 
 void MapDatabase::read_state() {
   const sqlite_guard::WorkLimit limit(database_->getHandle(), sqlite_guard::bytes_of(name_));
-  // Finds a file that was cut short now instead of at some later read.
+  // Detects a truncated file now instead of at some later read.
   SQLite::Statement check(*database_, "PRAGMA quick_check(1)");
   const std::string verdict = check.executeStep() ? text_at(check, 0) : "no answer";
   if (verdict != "ok") {
@@ -138,7 +138,7 @@ void MapDatabase::change(const Work& work) try {
   } catch (...) {
     try {
       if (!tables_are_known_) read_tables();
-    } catch (const std::exception&) {  // the error that counts is the first one
+    } catch (const std::exception&) {  // the first error counts
       stops_->forget();
     }
     throw;

@@ -21,9 +21,9 @@
 namespace topogeo::storage {
 namespace {
 
-// Farther away double rounding shows in pictures; no building is as large.
+// Farther away rounding of doubles shows in pictures; no building is as large.
 constexpr double kMaxCoordinate_m = 1e6;
-constexpr std::size_t kLeastCorners = 3;  // of an area
+constexpr std::size_t kLeastCorners = 3;  // of a zone
 constexpr std::size_t kLeastPoints = 2;   // of a line
 
 template <typename... Args>
@@ -50,7 +50,7 @@ void check_name(const char* what, const std::string& name, std::set<std::string>
 
 void check_point(const char* what, const std::string& name, const Eigen::Vector2d& point_m) {
   for (const double value : {point_m.x(), point_m.y()}) {
-    // Also false for what is not a number.
+    // Also false for NaN.
     require_drawing(std::fabs(value) <= kMaxCoordinate_m,
                     "{} '{}': coordinate {}, allowed are {} to {} m", what, name, value,
                     -kMaxCoordinate_m, kMaxCoordinate_m);
@@ -93,7 +93,7 @@ void check_line(const planning::DrawnLine& line, std::set<std::string>& taken) {
                   "{} '{}': expected two points that differ", what, line.name);
 }
 
-/// Makes the error of a check one that knows where the entry stands.
+/// Adds the position of the entry to the error of a check.
 template <typename Check>
 void of_entry(const char* list, std::size_t index, const Check& check_entry) {
   try {
@@ -115,7 +115,7 @@ std::string compressed(std::span<const planning::CellState> cells) {
 }
 
 std::vector<std::uint8_t> uncompressed(const std::string& bytes, std::size_t cells) {
-  // The format shrinks nothing by more, so that a few bytes cannot ask for much memory.
+  // Limit of the format's compression, so that a few bytes cannot request much memory.
   constexpr std::size_t kMostCellsInAByte = 1100;
   require_drawing(cells / kMostCellsInAByte <= bytes.size(),
                   "drawn grid: {} bytes, too few for {} cells", bytes.size(), cells);

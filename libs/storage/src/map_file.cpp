@@ -26,7 +26,8 @@ std::uint64_t little_endian(std::string_view bytes) {
   return value;
 }
 
-/// Reads the version alone, so that a file of a newer format is called that and not damaged.
+/// Reads the version alone, so that a file of a newer format is reported as such and not as
+/// damaged.
 void check_start(std::string_view bytes, const std::string& name) {
   if (bytes.empty()) throw std::runtime_error(name + ": empty, expected a topogeo map");
   if (!bytes.starts_with(kMapFileStart.substr(0, bytes.size()))) {

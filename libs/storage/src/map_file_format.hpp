@@ -1,4 +1,4 @@
-// Where a map file begins and how it ends.
+// Start and end of a map file.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 namespace topogeo::storage {
 
 inline constexpr std::string_view kMapFormat = "topogeo-map";
-// Field 1 with its length: what every map file starts with.
+// Field 1 with its length: the start of every map file.
 inline constexpr std::string_view kMapFileStart = "\x0a\x0btopogeo-map";
 inline constexpr std::size_t kChecksumFieldSize = 9;  // one byte of tag, eight of value
 inline constexpr char kChecksumTag = 0x79;            // field 15, 64 bits

@@ -1,4 +1,4 @@
-// Writes the bytes of a map file one after the other, so that a map need not be in memory twice.
+// Writes the bytes of a map file in sequence, so that a map need not be in memory twice.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace topogeo::storage {
 
-/// Fields are written in the order of their numbers, as Protobuf does: the same bytes whether a map
-/// comes in one piece or in many.
+/// Writes fields in the order of their numbers, like Protobuf: the same bytes whether a map comes
+/// in one piece or in many.
 class MapFileWriter {
  public:
   using Sink = std::function<void(std::string_view)>;
@@ -22,7 +22,7 @@ class MapFileWriter {
   MapFileWriter(Sink sink, const std::string& robot_id, std::uint64_t seed);
   /// The next local map.
   void add(const topomap::LocalMap& map);
-  /// All but the local maps, and the checksum. The last call.
+  /// Writes everything except the local maps, and the checksum. The last call.
   void finish(const MapDocument& rest);
 
  private:

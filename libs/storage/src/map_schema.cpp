@@ -21,7 +21,7 @@ namespace topogeo::storage {
 namespace {
 
 constexpr std::int64_t kApplicationId = 0x54474D50;  // "TGMP": marks the file for `file` and us
-constexpr int kBusyTimeout_ms = 5000;  // for another program to finish its transaction
+constexpr int kBusyTimeout_ms = 5000;                // wait for another program's transaction
 
 // Every blob has the hash of its bytes beside it, because SQLite itself does not notice a changed
 // byte inside a blob. Ids of sessions and hashes have 64 bits and are stored as signed numbers.
@@ -69,7 +69,7 @@ constexpr const char* kSchema = R"(
   CREATE TABLE drawn_grid(id INTEGER PRIMARY KEY, blob_hash INTEGER NOT NULL, blob BLOB NOT NULL);
 )";
 
-// New in version 3: the rooms that have numbers, by number, and the places that lie in them.
+// New in version 3: the numbered rooms and the places in them.
 constexpr const char* kRoomTables = R"(
   CREATE TABLE room(
     id INTEGER PRIMARY KEY, name TEXT NOT NULL, blob_hash INTEGER NOT NULL, blob BLOB NOT NULL);
@@ -88,8 +88,8 @@ std::int64_t pragma(SQLite::Database& database, const char* name) {
   return value.getInt64();
 }
 
-/// Throws unless the file is missing, empty or starts like an SQLite file. SQLite itself takes a
-/// file shorter than its smallest page for an empty one and would overwrite it.
+/// Throws unless the file is missing, empty or starts like an SQLite file. SQLite itself treats a
+/// file shorter than its smallest page as empty and would overwrite it.
 void check_file_start(const std::filesystem::path& path) {
   constexpr std::string_view kSqliteStart("SQLite format 3\0", 16);
   constexpr std::uintmax_t kSmallestFile = 512;
@@ -104,8 +104,8 @@ void check_file_start(const std::filesystem::path& path) {
   }
 }
 
-/// The name of a file for SQLite that it takes for one that never changes. Without a log beside it
-/// nothing is missing in the file, and SQLite then leaves nothing beside it.
+/// The file's URI with which SQLite treats it as immutable. Without a log the file is complete, and
+/// SQLite then leaves no files beside it.
 std::string immutable_uri(const std::filesystem::path& path) {
   std::string uri = "file:";
   for (const char c : std::filesystem::absolute(path).string()) {
@@ -147,7 +147,7 @@ std::unique_ptr<SQLite::Database> open_map_database(const std::filesystem::path&
   auto database = open_file(path, access);
   sqlite_guard::protect(database->getHandle());
   const sqlite_guard::WorkLimit limit(database->getHandle(), sqlite_guard::bytes_of(path));
-  // The first read finds out whether this is an SQLite file at all.
+  // The first read detects whether this is an SQLite file at all.
   const std::int64_t application_id = pragma(*database, "application_id");
   const bool is_new = !has_content(*database);
   if (is_new ? access != Access::kCreate : application_id != kApplicationId) {

@@ -39,7 +39,7 @@ fs::path snapshot_path(const fs::path& database, const std::string& name) {
   return snapshot_folder(database) / (name + std::string(kSnapshotSuffix));
 }
 
-/// What SQLite may leave beside a file.
+/// Removes a file and those that SQLite may leave beside it.
 void remove_with_logs(const fs::path& path) {
   for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {
     std::error_code ignored;
@@ -81,10 +81,10 @@ MapSnapshot described(const fs::path& path) {
   return snapshot;
 }
 
-/// Copies an open database to a file of that name, which is there whole or not at all.
+/// Copies an open database to the file, which then exists whole or not at all.
 MapSnapshot write_snapshot(SQLite::Database& from, const fs::path& path) {
   fs::create_directories(path.parent_path());
-  // One program at a time makes a snapshot here; what another left that was killed is removed.
+  // Only one program at a time makes a snapshot here; remains of a killed one are removed.
   const support::FileDescriptor folder(
       ::open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (!folder.is_open() || ::flock(folder.get(), LOCK_EX) != 0) {
@@ -98,7 +98,7 @@ MapSnapshot write_snapshot(SQLite::Database& from, const fs::path& path) {
     {
       SQLite::Database copy(unfinished.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
       copy_pages(copy, from);
-      copy.exec("PRAGMA journal_mode=DELETE");  // the file alone has everything
+      copy.exec("PRAGMA journal_mode=DELETE");  // the file needs no log
     }
     MapSnapshot snapshot = described(unfinished);
     if (!snapshot.damage.empty()) throw std::runtime_error(snapshot.damage);
@@ -114,9 +114,9 @@ MapSnapshot write_snapshot(SQLite::Database& from, const fs::path& path) {
   }
 }
 
-/// A name for the former map that is not taken.
+/// An unused name for the former map.
 std::string name_before(const fs::path& database, const std::string& name) {
-  constexpr std::size_t kLongestName = 56;  // leaves room for the number
+  constexpr std::size_t kLongestName = 56;  // leaves room for a number
   const std::string wanted = ("before-" + name).substr(0, kLongestName);
   std::string free = wanted;
   for (int number = 2; fs::exists(snapshot_path(database, free)); ++number) {
@@ -130,9 +130,9 @@ std::string name_before(const fs::path& database, const std::string& name) {
                            ": a map store or another program has it open; stop it and try again");
 }
 
-/// Whether another process has the file open as an SQLite database, sound or not: SQLite locks
+/// Whether another process has the file open as an SQLite database, intact or not: SQLite locks
 /// bytes from 2^30 on (https://www.sqlite.org/fileformat2.html, "The Lock-Byte Page"). Not for
-/// files that this process has open itself: closing a file gives up the locks of a process on it.
+/// files that this process has open itself: closing a file releases the process's locks on it.
 bool is_locked(const fs::path& path) {
   const support::FileDescriptor file(::open(path.c_str(), O_RDWR | O_CLOEXEC));
   if (!file.is_open()) return false;
@@ -144,8 +144,8 @@ bool is_locked(const fs::path& path) {
   return ::fcntl(file.get(), F_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
 }
 
-/// Opens the database for this program alone: one that a map store has open cannot leave the
-/// write-ahead log. Empty when it is damaged.
+/// Opens the database exclusively: while a map store has it open, it cannot leave the write-ahead
+/// log. Empty if it is damaged.
 std::unique_ptr<SQLite::Database> open_alone(const fs::path& path) {
   constexpr int kPatience_ms = 500;  // a reader may be at work
   std::unique_ptr<SQLite::Database> database;
@@ -173,7 +173,7 @@ std::unique_ptr<SQLite::Database> open_alone(const fs::path& path) {
   }
 }
 
-/// Takes a damaged database out of the way, with its log.
+/// Moves a damaged database away, with its log.
 MapSnapshot set_aside(const fs::path& database, const fs::path& snapshot) {
   fs::create_directories(snapshot.parent_path());
   if (fs::exists(database.string() + "-wal")) {
@@ -236,8 +236,8 @@ MapSnapshot take_snapshot(const fs::path& database, const std::string& name) try
       const auto source = open_map_database(database, Access::kReadOnly);
       return write_snapshot(*source, path);
     }();
-    // Without a log the file was read as one that does not change: a map store that has started
-    // meanwhile may have changed it.
+    // Without a log the file was read as immutable, so a map store that has started meanwhile may
+    // have changed it.
     if (before.first || state() == before) return snapshot;
     remove_with_logs(path);
   }
@@ -258,7 +258,7 @@ MapSnapshot import_snapshot(const fs::path& database, const std::string& name,
   }
   const fs::path made = path.parent_path() / ".imported.sqlite";
   fs::create_directories(made.parent_path());
-  remove_with_logs(made);  // of a program that was killed
+  remove_with_logs(made);  // left by a killed program
   try {
     MapDatabase::open_or_create(made, map.robot_id, map.seed).put_document(map);
     MapSnapshot snapshot = write_snapshot(*open_map_database(made, Access::kReadOnly), path);

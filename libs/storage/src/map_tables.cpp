@@ -53,7 +53,7 @@ void MapTables::write_trajectory(std::uint64_t version, std::span<const topomap:
     pose_writer.put(pose_hashes_, stop.local_map_id, to_blob<proto::StopPose>(stop),
                     {as_signed(version)});
   }
-  // The place in the list is the id, so that reading gives back the caller's order.
+  // The index in the list is the id, so that reading restores the caller's order.
   TableWriter closure_writer(database_, "loop_closure", ", earlier_id, later_id", ", ?, ?");
   for (std::size_t i = 0; i < closures.size(); ++i) {
     closure_writer.put(closure_hashes_, static_cast<std::uint32_t>(i),
@@ -94,7 +94,7 @@ void MapTables::write_edges(const std::vector<MapEdge>& edges, std::uint32_t sto
 void MapTables::write_global_map(const topomap::GlobalMap& map) {
   require_valid(file_, "global map: ", [&] { check_global_map(map); });
   TableWriter node_writer(database_, "map_node");
-  std::vector<std::uint32_t> kept;  // ascending, as the check has found
+  std::vector<std::uint32_t> kept;  // ascending, as checked before
   const auto is_kept = [&](std::uint32_t id) { return std::ranges::binary_search(kept, id); };
   for (const topomap::MapNode& node : map.nodes) {
     node_writer.put(node_hashes_, node.id, to_blob<proto::MapNode>(node));
@@ -190,7 +190,7 @@ void MapTables::load(MapDocument& document) const {
   document.rooms.last = static_cast<std::uint32_t>(read_meta_number_or(database_, "last_room", 0));
 }
 
-// Few and short: a value of their own, so that programs of before read the file as well.
+// Few and short: stored as one value, so that older programs can still read the file.
 void MapTables::write_refused_merges(std::span<const RefusedMerge> refused) {
   std::string text;
   for (const RefusedMerge& merge : refused) {

@@ -1,4 +1,4 @@
-// What was made of the stops of a map: poses, loop closures, edges, the global map, and its
+// Tables derived from the stops of a map: poses, loop closures, edges, the global map, and its
 // drawing.
 #pragma once
 
@@ -15,18 +15,18 @@
 
 namespace topogeo::storage {
 
-/// Remembers the hash of each stored blob, to write only what has changed. When the transaction
-/// around a change fails call read() to know them again. All changes are parts of a transaction.
+/// Caches the hash of each stored blob, to write only changes. If the transaction around a change
+/// fails, call read() to restore the cache. All changes are parts of a transaction.
 class MapTables {
  public:
   MapTables(SQLite::Database& database, std::string file);
 
   void read();
 
-  /// As MapDatabase::put_trajectory and so on, in a map of so many stops.
+  /// Like MapDatabase::put_trajectory and so on, in a map with `stops` stops.
   void write_trajectory(std::uint64_t version, std::span<const topomap::StopPose> changed,
                         std::span<const topomap::LoopClosure> closures, std::uint32_t stops);
-  /// Poses, closures and edges; before the stops get other numbers.
+  /// Deletes poses, closures and edges; call before the stops are renumbered.
   void forget_stops();
   void write_numbered_since(std::uint64_t version);
   void write_edges(const std::vector<MapEdge>& edges, std::uint32_t stops);
@@ -35,7 +35,7 @@ class MapTables {
   void write_refused_merges(std::span<const RefusedMerge> refused);
   void write_rooms(const planning::RoomMemory& rooms);
 
-  /// All of a map but its local maps, not checked as a whole.
+  /// Loads all of a map except its local maps, without a check of the whole.
   void load(MapDocument& document) const;
 
   [[nodiscard]] std::uint64_t trajectory_version() const { return trajectory_version_; }

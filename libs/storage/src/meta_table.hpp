@@ -11,16 +11,16 @@ namespace topogeo::storage {
 /// Replaces the value of the key.
 void write_meta(SQLite::Database& database, const std::string& key, const std::string& value);
 
-/// Throws std::runtime_error naming file and key when there is none.
+/// Throws std::runtime_error naming file and key if it is missing.
 std::string read_meta(SQLite::Database& database, const std::string& key);
 
-/// The same, also when it is no number.
+/// The same, also if it is not a number.
 std::uint64_t read_meta_number(SQLite::Database& database, const std::string& key);
 
-/// The value of the key; empty when there is none.
+/// The value of the key; empty if it is missing.
 std::string read_meta_or_empty(SQLite::Database& database, const std::string& key);
 
-/// As read_meta_number(), but `otherwise` when there is none.
+/// Like read_meta_number(), but `otherwise` if it is missing.
 std::uint64_t read_meta_number_or(SQLite::Database& database, const std::string& key,
                                   std::uint64_t otherwise);
 

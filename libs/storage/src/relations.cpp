@@ -12,7 +12,7 @@
 namespace topogeo::storage {
 namespace {
 
-constexpr double kLargestAngle_rad = 1e4;  // beyond it a number is damaged, not an angle
+constexpr double kLargestAngle_rad = 1e4;  // a larger number is damaged
 
 Relation parse_relation(std::string_view line, const std::string& where) {
   static constexpr std::array<const char*, 6> kNames{"x", "y", "z", "roll", "pitch", "yaw"};

@@ -24,7 +24,7 @@ Json counts(const ReasonCounts& reasons) {
 Json configuration(const support::EffectiveConfig& config) {
   Json values = Json::object();
   for (const auto& [key, value] : config.values) values[key] = value;
-  // Sixteen hexadecimal digits: JSON readers often keep numbers as doubles, which would round it.
+  // Sixteen hexadecimal digits: JSON readers often store numbers as doubles, which would round it.
   return {{"fingerprint", fmt::format("{:016x}", config.fingerprint)}, {"values", values}};
 }
 
@@ -167,13 +167,13 @@ std::string report_json(const Report& report) {
   json["loop_candidates"] = loop_candidates(report.loop_candidates);
   if (!report.overlaps.empty()) json["overlaps"] = overlaps(report.overlaps);
   json["configuration"] = configuration(report.configuration);
-  // A file name need not be valid UTF-8: what is not is replaced rather than refused.
+  // A file name may be invalid UTF-8: invalid bytes are replaced rather than refused.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::vector<LoopCandidate> read_loop_candidates(const std::filesystem::path& path) {
   const std::string text = support::foreign_content(path, support::kMostMapBytes);
-  // Reports are long, and their settings more than other objects have.
+  // Reports are long, and have more settings than other objects.
   const support::JsonLimits limits{.keys = text.size(), .values = text.size()};
   if (const std::string excess = support::beyond_limits(text, limits); !excess.empty()) {
     throw std::runtime_error(path.string() + ": " + excess);

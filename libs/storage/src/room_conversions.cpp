@@ -1,4 +1,4 @@
-// Remembered rooms as Protobuf messages.
+// Converts remembered rooms to and from Protobuf messages.
 #include <algorithm>
 #include <cmath>
 

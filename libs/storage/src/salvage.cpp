@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The file and its write-ahead log in a folder of their own, which goes with the object.
+/// A copy of the file and its write-ahead log in a temporary folder, removed with the object.
 class SalvageCopy {
  public:
   explicit SalvageCopy(const fs::path& path) {
@@ -62,8 +62,8 @@ bool is_sound(const SalvagedRow& row) {
   return as_unsigned(hash->second) == support::fnv1a(bytes);
 }
 
-/// Rows in one direction up to the first that cannot be read, or up to one of `known`; false where
-/// they end that way. Rows of more than `most_bytes` share pages, which is damage, too.
+/// Reads rows in one direction up to the first unreadable one or one of `known`; returns false in
+/// the first case. More than `most_bytes` means shared pages, which is damage, too.
 bool read_rows(SQLite::Database& database, const std::string& table, const char* order,
                std::uint64_t most_bytes, std::set<std::int64_t>& known, SalvagedTable& out) {
   std::vector<SalvagedRow> rows;
@@ -105,7 +105,7 @@ SalvagedTable read_salvaged_table(SQLite::Database& database, const std::string&
   return out;
 }
 
-/// Keys and values: such a table has no row numbers.
+/// Keys and values, because such a table has no row numbers.
 SalvagedTable read_meta_rows(SQLite::Database& database) {
   SalvagedTable out;
   try {

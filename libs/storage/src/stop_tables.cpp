@@ -97,7 +97,7 @@ bool StopTables::is_same(const topomap::LocalMap& map) const {
                         "SELECT stamp_ns, content_hash FROM stop WHERE session = ? AND number = ?");
   row.bind(1, as_signed(map.stop.session));
   row.bind(2, map.stop.number);
-  return !row.executeStep() ||  // dropped: whatever it was, it is of no use any more
+  return !row.executeStep() ||  // dropped: its content no longer matters
          (integer_at(row, 0) == map.stamp_ns &&
           as_unsigned(integer_at(row, 1)) == topomap::content_hash(map));
 }
@@ -190,7 +190,7 @@ void StopTables::keep_from(std::uint64_t session, std::uint32_t number) {
   Session& held = sessions_.at(session);
   if (number <= held.kept_from) return;
   held.kept_from = number;
-  // What never came below counts as dropped, too.
+  // Numbers below that were never received count as dropped, too.
   while (held.gapless < held.kept_from) count(held, held.gapless);
   SQLite::Statement mark(database_, "UPDATE session SET kept_from = ? WHERE id = ?");
   mark.bind(1, number);
@@ -200,7 +200,7 @@ void StopTables::keep_from(std::uint64_t session, std::uint32_t number) {
 
 void StopTables::renew(std::span<const JoinedStop> stops) {
   std::set<topomap::StopId> leaving;
-  std::map<std::uint64_t, std::uint32_t> decided;  // by session: numbers below
+  std::map<std::uint64_t, std::uint32_t> decided;  // by session: all numbers below
   SQLite::Statement row(database_, "SELECT session, number FROM map_stop");
   while (row.executeStep()) {
     leaving.insert({as_unsigned(integer_at(row, 0)), number_at(row, 1, file_)});

@@ -1,4 +1,4 @@
-// The sessions, the stops as they were sent, and which number the map gave to which of them.
+// The sessions, the stops as they were sent, and their numbers in the map.
 #pragma once
 
 #include <cstddef>
@@ -18,26 +18,26 @@
 
 namespace topogeo::storage {
 
-/// Remembers which stops there are. When the transaction around a change fails call read() to know
-/// them again. All changes are parts of a transaction.
+/// Caches which stops are stored. If the transaction around a change fails, call read() to restore
+/// the cache. All changes are parts of a transaction.
 class StopTables {
  public:
   StopTables(SQLite::Database& database, std::string file);
 
-  /// Reads which stops there are. Throws std::runtime_error when they contradict each other.
+  /// Reads which stops are stored. Throws std::runtime_error if they contradict each other.
   void read();
-  /// As if there were none.
+  /// Empties the cache.
   void forget();
 
-  /// As MapDatabase::put_stops. Sessions that are new are over: see SessionState.
+  /// Like MapDatabase::put_stops. `are_over`: value for new sessions, see SessionState.
   std::vector<topomap::StopId> put(std::span<const topomap::LocalMap> stops, bool are_over);
-  /// As MapDatabase::join.
+  /// Like MapDatabase::join.
   void join(std::span<const JoinedStop> stops);
-  /// As MapDatabase::renew; nothing refers to numbers of the map.
+  /// Like MapDatabase::renew; no table may refer to numbers of the map.
   void renew(std::span<const JoinedStop> stops);
-  /// As MapDatabase::drop_session.
+  /// Like MapDatabase::drop_session.
   void drop_session(std::uint64_t session);
-  /// As MapDatabase::drop_waiting.
+  /// Like MapDatabase::drop_waiting.
   std::size_t drop_waiting(std::size_t most);
 
   /// The stops of a session from a number on, as they were sent.
@@ -59,9 +59,9 @@ class StopTables {
     std::int64_t place = 0;
     bool is_over = false;
     std::uint32_t joined = 0;         // stops in the map
-    std::uint32_t kept_from = 0;      // below it, what has not joined was dropped
-    std::set<std::uint32_t> stored;   // above `gapless`
-    std::uint32_t gapless = 0;        // all numbers below came
+    std::uint32_t kept_from = 0;      // stops below it that did not join were dropped
+    std::set<std::uint32_t> stored;   // numbers above `gapless`
+    std::uint32_t gapless = 0;        // all numbers below were received
     std::set<std::uint32_t> waiting;  // stored, not joined
   };
   Session& session(std::uint64_t id, bool is_over);

@@ -1,5 +1,5 @@
-// Upserts of one table of the map database: only blobs whose hash differs from the stored one are
-// written.
+// Upserts for one table of the map database: writes only blobs whose hash differs from the stored
+// one.
 #pragma once
 
 #include <bit>
@@ -22,7 +22,7 @@ inline std::uint64_t as_unsigned(std::int64_t value) {
   return std::bit_cast<std::uint64_t>(value);
 }
 
-/// An empty blob is stored as a blob without bytes.
+/// Binds an empty blob as a blob without bytes.
 void bind_blob(SQLite::Statement& statement, int index, const std::string& blob);
 
 /// Hash of each stored blob of a table by id.

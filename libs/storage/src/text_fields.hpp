@@ -18,16 +18,16 @@ std::string_view next_word(std::string_view& line);
 /// off. Nothing for other texts and for times beyond the range of nanoseconds.
 std::optional<std::int64_t> parse_stamp(std::string_view word);
 
-/// A finite number that takes up the whole word.
+/// The finite number that the whole word consists of.
 std::optional<double> parse_number(std::string_view word);
 
-/// The stamp of that name at the start of the line, and the rest in `line`; ns. Throws
+/// The stamp called `name` at the start of the line, and the rest in `line`; ns. Throws
 /// std::runtime_error naming `where` and the name.
 std::int64_t take_stamp(std::string_view& line, const std::string& where, const char* name);
 
-/// The finite numbers that the rest of a line of 8 consists of, one into each of `values`, named in
-/// errors by `names` (as many). `all`: the names of all 8 fields. Throws std::runtime_error naming
-/// `where` and the field.
+/// The finite numbers in the rest of a line of 8, one for each of `values`, called `names` in
+/// errors (as many). `all`: the names of all 8 fields. Throws std::runtime_error naming `where` and
+/// the field.
 void take_numbers(std::string_view line, const std::string& where,
                   std::span<const char* const> names, const char* all, std::span<double> values);
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int64_t kStampSecond_ns = 1'000'000'000;
 
-/// Fixed decimals without the minus of a value that rounds to zero.
+/// Fixed decimals, without a minus if the value rounds to zero.
 std::string fixed(double value, int decimals) {
   std::string text = fmt::format("{:.{}f}", value, decimals);
   if (text.find_first_not_of("-0.") == std::string::npos && text.starts_with('-')) text.erase(0, 1);

@@ -1,5 +1,4 @@
-// The whole map of one robot, as map.pb and the map database hold it, and where its stops come
-// from.
+// The whole map of one robot, as in map.pb and the map database, and the origin of its stops.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +15,10 @@
 
 namespace topogeo::storage {
 
-/// A measured pose of one stop seen from another.
+/// A measured pose of one stop relative to another.
 struct MapEdge {
   enum class Kind : std::uint8_t {
-    kUnknown,     ///< of a file that does not say
+    kUnknown,     ///< not stated in the file
     kOdometry,    ///< of the base
     kSequential,  ///< a match with a stop shortly before
     kLoop,        ///< a match with a stop of an earlier visit
@@ -33,8 +32,8 @@ struct MapEdge {
   friend bool operator==(const MapEdge&, const MapEdge&) = default;
 };
 
-/// Two stops that do not show one place, as a person has said who was asked whether the maps of two
-/// robots are to be joined there. They need not be in the map.
+/// Two stops that do not show one place, as stated by a person who was asked whether two robots'
+/// maps should be merged there. They need not be in the map.
 struct RefusedMerge {
   topomap::StopId stop;
   topomap::StopId other;
@@ -50,20 +49,20 @@ struct MapDocument {
   std::vector<topomap::LoopClosure> loop_closures;
   topomap::GlobalMap global_map;
   MapDrawing drawing;
-  std::uint64_t map_id = 0;    ///< the same in all states of a map; 0: it has none
-  std::vector<MapEdge> edges;  ///< that the trajectory was made of; empty: not known
+  std::uint64_t map_id = 0;    ///< the same in all states of a map; 0: none
+  std::vector<MapEdge> edges;  ///< source of the trajectory; empty: unknown
   std::vector<RefusedMerge> refused_merges = {};
-  planning::RoomMemory rooms = {};  ///< so that they keep their numbers; empty: none were given yet
+  planning::RoomMemory rooms = {};  ///< keeps their numbers; empty: none given yet
 };
 
-/// The document with a session for all its stops and a map id: those that it lacks follow from its
-/// content, so that the same file is always the same session. Without local maps it stays as it is.
+/// The document with a session for all its stops and a map id: missing ones are derived from its
+/// content, so that the same file always gives the same session. Unchanged without local maps.
 MapDocument identified(MapDocument document);
 
-/// Gives each pose the stop of its local map: files have it once.
+/// Gives each pose the stop of its local map, because files store it once.
 void name_stops(MapDocument& document);
 
-/// The id of the map that a session begins; never 0.
+/// The id of the map that begins with a session; never 0.
 std::uint64_t map_id_of(std::uint64_t first_session);
 
 }  // namespace topogeo::storage

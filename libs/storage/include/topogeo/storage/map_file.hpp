@@ -1,4 +1,5 @@
-// The map file map.pb: Protobuf as in proto/map.proto, the same bytes for the same map everywhere.
+// The map file map.pb: Protobuf as in proto/map.proto, the same bytes for the same map on every
+// machine.
 #pragma once
 
 #include <cstdint>
@@ -14,21 +15,21 @@ namespace topogeo::storage {
 
 inline constexpr std::uint32_t kMapFormatVersion = 1;
 
-/// Writes the file whole or not at all. Throws std::runtime_error naming the path when it cannot be
-/// written, std::invalid_argument when the map contradicts itself (as in read_map_file).
+/// Writes the file whole or not at all. Throws std::runtime_error naming the path if it cannot be
+/// written, std::invalid_argument if the map contradicts itself (as in read_map_file).
 void write_map_file(const std::filesystem::path& path, const MapDocument& document);
 
-/// Throws std::runtime_error naming the path and the cause: not a map file, a newer format, cut
-/// short or damaged, or a content that contradicts itself (a number that is not finite, an end of a
-/// branch or a stop that does not exist, ids out of order).
+/// Throws std::runtime_error naming the path and the cause: not a map file, a newer format,
+/// truncated or damaged, or contradictory content (a number that is not finite, an end of a branch
+/// or a stop that does not exist, ids out of order).
 MapDocument read_map_file(const std::filesystem::path& path);
 
-/// The bytes of the file, and back; `name` stands for the file in messages. They throw as above.
+/// The bytes of the file, and the reverse; messages name `name` as the file. They throw as above.
 std::string map_file_bytes(const MapDocument& document);
 MapDocument parse_map_file(std::string_view bytes, const std::string& name);
 
-/// Local maps alone, as a map store sends those of a session (proto/map.proto, LocalMaps), and
-/// back. Throws std::runtime_error naming `name` and the damage.
+/// Local maps only, as a map store sends those of a session (proto/map.proto, LocalMaps), and the
+/// reverse. Throws std::runtime_error naming `name` and the damage.
 std::string local_maps_bytes(std::span<const topomap::LocalMap> maps);
 std::vector<topomap::LocalMap> parse_local_maps(std::string_view bytes, const std::string& name);
 

@@ -1,9 +1,9 @@
 // Named copies of a map database, in a folder beside it.
 //
-// They are made with SQLite's backup: a consistent state while a map store writes, which is not
-// held up. A copy gets its name once it is whole and on the disk. To restore, the copy is written
-// into the database as one transaction: the loss of the process or the power at any moment leaves
-// the map of before or the restored one.
+// SQLite's backup makes them: a consistent state even while a map store writes, without delaying
+// it. A copy gets its name once it is complete and on the disk. Restoring writes the copy into the
+// database as one transaction, so the loss of the process or the power at any moment leaves either
+// the previous map or the restored one.
 #pragma once
 
 #include <cstdint>
@@ -21,15 +21,15 @@ namespace topogeo::storage {
 struct MapSnapshot {
   std::string name;
   std::filesystem::path path;
-  std::int64_t time_s = 0;  ///< when it was made, seconds since 1970
+  std::int64_t time_s = 0;  ///< creation time, seconds since 1970
   std::uintmax_t bytes = 0;
-  std::string damage;  ///< why it cannot be read; empty: it can be, and what follows holds
+  std::string damage;  ///< why it cannot be read; empty: the fields below are valid
   std::uint64_t map_id = 0;
   std::uint64_t trajectory_version = 0;
   std::uint32_t stops = 0;  ///< in the map
 };
 
-/// The snapshots of a database by time, then name; none without a folder of them.
+/// The snapshots of a database by time, then name; none without a snapshot folder.
 std::vector<MapSnapshot> snapshots_of(const std::filesystem::path& database);
 
 /// Throws std::invalid_argument unless the name has 1 to 64 letters, digits, '.', '-' and '_' and
@@ -37,20 +37,20 @@ std::vector<MapSnapshot> snapshots_of(const std::filesystem::path& database);
 void check_snapshot_name(std::string_view name);
 
 /// Copies the database. Throws std::invalid_argument for a wrong name, std::runtime_error naming
-/// the file when there is a snapshot of this name, the database is none or damaged, or the disk is
+/// the file if a snapshot has this name already, the file is no database or damaged, or the disk is
 /// full; nothing is left behind then.
 MapSnapshot take_snapshot(const std::filesystem::path& database, const std::string& name);
 
-/// Makes a snapshot of a map that came from elsewhere. Throws as take_snapshot() does, and
-/// std::runtime_error for a map of another robot or seed than the database, which could not go on
-/// with it; std::invalid_argument for one that contradicts itself.
+/// Makes a snapshot of an external map. Throws like take_snapshot(), and std::runtime_error for a
+/// map of another robot or seed than the database, which could not continue it;
+/// std::invalid_argument for a map that contradicts itself.
 MapSnapshot import_snapshot(const std::filesystem::path& database, const std::string& name,
                             const MapDocument& map);
 
-/// Makes the database what the snapshot is. The former content becomes the snapshot that is
-/// returned (before-NAME, with a number if that is taken); a file that is damaged is moved there as
-/// it is. Throws as take_snapshot() does, and when another program has the database open. `after`
-/// is called after each step with its name.
+/// Replaces the database by the snapshot. The former content becomes the returned snapshot
+/// (before-NAME, with a number if that is used); a damaged file is moved there unchanged. Throws
+/// like take_snapshot(), and if another program has the database open. `after` is called after each
+/// step with its name.
 std::optional<MapSnapshot> restore_snapshot(
     const std::filesystem::path& database, const std::string& name,
     const std::function<void(std::string_view)>& after = [](std::string_view) {});

@@ -1,4 +1,4 @@
-// Reads a map from whatever file holds one.
+// Reads a map from any kind of map file.
 #pragma once
 
 #include <filesystem>
@@ -7,9 +7,9 @@
 
 namespace topogeo::storage {
 
-/// Reads map.pb or map.sqlite; the content of the file decides, not its name. The file stays as it
-/// is, also while a map store writes it. Throws std::runtime_error naming the path and the cause,
-/// like read_map_file and MapDatabase::load.
+/// Reads map.pb or map.sqlite; the content of the file decides, not its name. The file is not
+/// changed, and a map store may be writing it. Throws std::runtime_error naming the path and the
+/// cause, like read_map_file and MapDatabase::load.
 MapDocument read_map(const std::filesystem::path& path);
 
 }  // namespace topogeo::storage

@@ -15,11 +15,11 @@ namespace topogeo::storage {
 struct Relation {
   std::int64_t stamp_a_ns = 0;
   std::int64_t stamp_b_ns = 0;
-  geometry::Pose2 T_a_b;  ///< of the robot at `b` seen from where it was at `a`
+  geometry::Pose2 T_a_b;  ///< pose of the robot at `b` relative to its pose at `a`
 };
 
-/// Lines "t1 t2 x y z roll pitch yaw", metres, radians, seconds; empty ones and those that start
-/// with '#' are left out, z, roll and pitch are ignored. Throws std::runtime_error naming file and
+/// Reads lines "t1 t2 x y z roll pitch yaw", metres, radians, seconds; skips empty ones and those
+/// that start with '#', and ignores z, roll and pitch. Throws std::runtime_error naming file and
 /// line.
 std::vector<Relation> read_relations(const std::filesystem::path& path);
 std::vector<Relation> parse_relations(std::string_view text, const std::string& name);

@@ -14,33 +14,33 @@
 
 namespace topogeo::storage {
 
-/// How often each reason occurred, in the order in which they are to be listed.
+/// Counts by reason, in the order of the output.
 using ReasonCounts = std::vector<std::pair<std::string, std::uint64_t>>;
 
-/// A place that the robot may have come back to, and what was decided of it.
+/// A place that the robot may have returned to, and the decision about it.
 struct LoopCandidate {
   std::uint32_t step = 0;  ///< local map id of the stop at which it was decided
   std::uint32_t earlier_id = 0;
   std::uint32_t later_id = 0;
-  std::string outcome;  ///< "accepted" or why it was not taken
+  std::string outcome;  ///< "accepted" or the reason against it
   std::string reason;   ///< of the match: "accepted" or why it was rejected
   geometry::Pose2 T_earlier_later;
-  double correction_m = 0.0;  ///< how far the match moves the later stop
+  double correction_m = 0.0;  ///< displacement of the later stop by the match
   double correction_rad = 0.0;
   double fitness = 0.0;            ///< [0, 1]
-  std::string source;              ///< why the two were compared: "prediction", "place" or "window"
-  geometry::Pose2 T_predicted;     ///< T_earlier_later as it was predicted before the match
+  std::string source;              ///< reason for the comparison: "prediction", "place" or "window"
+  geometry::Pose2 T_predicted;     ///< predicted T_earlier_later before the match
   double predicted_sigma_m = 0.0;  ///< standard deviation of its position, over both directions
   double predicted_sigma_rad = 0.0;
-  double probability = 0.0;  ///< that the match is right, [0, 1]; 0: nothing was in common
+  double probability = 0.0;  ///< of a correct match, [0, 1]; 0: no common view
 
   friend bool operator==(const LoopCandidate&, const LoopCandidate&) = default;
 };
 
-/// A pose of a stop in an earlier one that a search found, and what its fitness consists of.
+/// A pose of a stop in an earlier one, found by a search, with the parts of its fitness.
 struct OverlapSolution {
   geometry::Pose2 T_earlier_stop;
-  double fitness = 0.0;      ///< [0, 1], by the form that is configured
+  double fitness = 0.0;      ///< [0, 1], by the configured form
   double scan = 0.0;         ///< [0, 1], points on points
   double topological = 0.0;  ///< [0, 1], nodes and branches
   double prior = 0.0;        ///< (0, 1], by the prediction
@@ -53,7 +53,7 @@ struct OverlapSearch {
   std::uint32_t earlier_id = 0;
   geometry::Pose2 T_predicted;
   std::vector<OverlapSolution> solutions;  ///< best first
-  OverlapSolution refined;                 ///< fitness 0: there is none
+  OverlapSolution refined;                 ///< fitness 0: none
   std::string verdict;
   std::string reason;
 
@@ -62,7 +62,7 @@ struct OverlapSearch {
 
 struct Overlaps {
   std::uint32_t stop_id = 0;
-  std::vector<std::uint32_t> overlap_set;  ///< earlier stops that see the same, ascending
+  std::vector<std::uint32_t> overlap_set;  ///< earlier stops with a common view, ascending
   std::vector<OverlapSearch> searches;
 
   friend bool operator==(const Overlaps&, const Overlaps&) = default;
@@ -70,7 +70,7 @@ struct Overlaps {
 
 struct Report {
   std::string command;  ///< "map" or "run"
-  std::string log;      ///< file name; of a path only the last part is written
+  std::string log;      ///< file name; only the last part of a path is written
   std::string robot_id;
   std::uint64_t seed = 0;
   std::uint32_t workers = 0;
@@ -86,7 +86,7 @@ struct Report {
   ReasonCounts matches_rejected;
   std::vector<topomap::LoopClosure> loop_closures;
   std::vector<LoopCandidate> loop_candidates;  ///< in the order of the decisions
-  std::vector<Overlaps> overlaps;              ///< empty: not asked for
+  std::vector<Overlaps> overlaps;              ///< empty: not requested
   ReasonCounts localization;  ///< of a drive in a finished map: stops by state; empty: a mapping
   ReasonCounts continuation;  ///< of a map that was continued: its stops; empty: it was not
   double distance_m = 0.0;    ///< along the corrected trajectory
@@ -99,8 +99,8 @@ struct Report {
 /// JSON text, keys always in the same order, with the version of the software.
 std::string report_json(const Report& report);
 
-/// `loop_candidates` of a report. Throws std::runtime_error naming the path and what is missing or
-/// damaged.
+/// Reads `loop_candidates` of a report. Throws std::runtime_error naming the path and the missing
+/// or damaged part.
 std::vector<LoopCandidate> read_loop_candidates(const std::filesystem::path& path);
 
 /// Writes the file whole or not at all. Throws std::runtime_error naming the path.

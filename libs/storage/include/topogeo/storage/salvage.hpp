@@ -1,4 +1,4 @@
-// The rows of a damaged SQLite file that can still be read.
+// Reads the intact rows of a damaged SQLite file.
 #pragma once
 
 #include <cstddef>
@@ -17,14 +17,13 @@ struct SalvagedRow {
 
 struct SalvagedTable {
   std::vector<SalvagedRow> rows;
-  bool complete = true;           ///< false: pages of it cannot be read
-  std::size_t damaged_blobs = 0;  ///< rows left out because `blob` is not what `blob_hash` says
+  bool complete = true;           ///< false: some of its pages cannot be read
+  std::size_t damaged_blobs = 0;  ///< dropped rows whose `blob` does not match `blob_hash`
 };
 
-/// The tables by name. Each is read from its first row up to the first one that cannot be read, and
-/// then from its last one back. The file and its log stay as they are: a copy is read, which is
-/// removed afterwards. Throws std::runtime_error naming the file when not even its tables are
-/// known.
+/// The tables by name. Each is read from its first row to the first unreadable one, and then from
+/// its last row backwards. The file and its log are not changed: a temporary copy is read. Throws
+/// std::runtime_error naming the file if not even its tables can be read.
 std::map<std::string, SalvagedTable> salvage_tables(const std::filesystem::path& path);
 
 }  // namespace topogeo::storage

@@ -15,7 +15,7 @@
 
 namespace topogeo::storage {
 
-/// Seconds with nine decimals, with six where the last three are zero.
+/// Seconds with nine decimals, or with six if the last three are zero.
 std::string stamp_text(std::int64_t stamp_ns);
 
 /// The text of the file.
@@ -26,9 +26,9 @@ std::string trajectory_tum(std::span<const topomap::StampedPose> poses);
 void write_trajectory_tum(const std::filesystem::path& path,
                           std::span<const topomap::StampedPose> poses);
 
-/// Poses in the order of the file, `sequence` counting them from 0. Lines that are empty or start
-/// with '#' are left out; z and tilt are ignored, digits of a stamp below 1 ns are cut off. Throws
-/// std::runtime_error naming file and line.
+/// Poses in the order of the file, with `sequence` counting from 0. Skips lines that are empty or
+/// start with '#'; ignores z, tilt and digits of a stamp below 1 ns. Throws std::runtime_error
+/// naming file and line.
 std::vector<topomap::StampedPose> read_trajectory_tum(const std::filesystem::path& path);
 std::vector<topomap::StampedPose> parse_trajectory_tum(std::string_view text,
                                                        const std::string& name);
