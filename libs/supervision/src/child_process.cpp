@@ -22,8 +22,8 @@
 namespace topogeo::supervision {
 namespace {
 
-constexpr int kCannotExec = 127;           // the exit code that shells use for it
-constexpr std::size_t kLongestLine = 400;  // bytes; fits into a line of a log
+constexpr int kCannotExec = 127;           // the exit code of shells for this case
+constexpr std::size_t kLongestLine = 400;  // bytes; fits into a log line
 
 std::runtime_error system_error(const std::string& what) {
   return std::runtime_error(what + ": " + std::strerror(errno));
@@ -35,10 +35,10 @@ support::FileDescriptor open(const char* path, int flags) {
   return file;
 }
 
-/// For its owner alone: a program may log what it got to know in confidence.
+/// Readable by its owner only, because a program may log confidential data.
 support::FileDescriptor open_log(const std::filesystem::path& path) {
   support::FileDescriptor file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND);
-  // One that was there before had perhaps another mode; a device is no file of ours.
+  // An existing file may have another mode; a device is not a log file.
   struct stat status {};
   if (::fstat(file.get(), &status) == 0 && S_ISREG(status.st_mode)) {
     static_cast<void>(::fchmod(file.get(), S_IRUSR | S_IWUSR));

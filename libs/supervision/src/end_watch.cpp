@@ -26,7 +26,7 @@ bool a_thread_waits_for_disk(const fs::path& process) {
   return false;
 }
 
-/// User and system, in ticks of the kernel: coarse, but there everywhere.
+/// User and system time in kernel ticks: coarse, but always available.
 double ran_in_ticks_s(const fs::path& process) {
   std::istringstream fields = support::process_stat(process);
   constexpr int kBeforeTimes = 11;  // fields from the state to the one before utime
@@ -49,7 +49,7 @@ Progress read_progress(pid_t pid) {
 }
 
 EndWatch::Verdict EndWatch::check(const Progress& progress, double now_s) {
-  // The times of a thread that ends go, which is progress, too.
+  // A thread that ends takes its times with it, which is progress, too.
   const double work_s =
       std::fabs(progress.ran_s - mark_.ran_s) + std::fabs(progress.waited_s - mark_.waited_s);
   if (work_s >= kLeastWork_s || progress.reports != mark_.reports || progress.waits_for_disk) {

@@ -16,7 +16,7 @@ namespace {
 using navigation::NavigatorState;
 using navigation::NavigatorStatus;
 
-constexpr std::size_t kCells = 24;       // of the bar: leaves room for the numbers in 80 columns
+constexpr std::size_t kCells = 24;       // of the bar; leaves room for the numbers in 80 columns
 constexpr double kRedraw_s = 0.1;        // faster changes cannot be read
 constexpr double kPlainPeriod_s = 10.0;  // keeps the file of a long drive short
 

@@ -7,9 +7,10 @@ using navigation::HaltReason;
 using navigation::NavigatorState;
 using navigation::NavigatorStatus;
 
-/// A navigator publishes its status five times a second, so that fifty are missing by then.
+/// A navigator publishes its status five times a second, so fifty are missing by then.
 constexpr double kSilent_s = 10.0;
-/// One that starts again has no goal until it has heard of the last one. Beyond, it was cancelled.
+/// A restarted navigator has no goal until it receives the last one. After this time, the goal was
+/// cancelled.
 constexpr double kStartsAgain_s = 5.0;
 
 std::string text_of(const NavigatorStatus& status) {

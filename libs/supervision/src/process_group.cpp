@@ -8,9 +8,9 @@ namespace topogeo::supervision {
 
 namespace {
 
-/// Between two checks of what still runs: short against the time that a service takes to end.
+/// Time between two checks for running processes: short compared with the end of a service.
 constexpr std::chrono::milliseconds kCheckPeriod{20};
-/// Between two checks of whether one hangs, which reads files for each of its threads.
+/// Time between two checks for hanging processes, which read files for each thread.
 constexpr double kProgressPeriod_s = 0.5;
 
 }  // namespace
@@ -40,7 +40,7 @@ void ProcessGroup::start(const std::string& name, const std::string& program,
   members_.push_back(std::move(member));
 }
 
-/// The next one, of a member whose process has ended.
+/// Starts the next life of a member whose process has ended.
 void ProcessGroup::begin_life(Member& member) {
   if (const auto& exit = member.process->poll()) {
     member.earlier_wall_s += exit->wall_s;
@@ -109,7 +109,7 @@ std::optional<UnexpectedEnd> ProcessGroup::next_unexpected_end() {
     member.reported = true;
     if (member.importance == Importance::kMayFinish && exit->clean()) continue;
     const std::string last = member.process->last_line();
-    // With another exit code it has said that it cannot work with what it was given.
+    // Other exit codes mean that the process rejected its input.
     const bool died = exit->signal_number != 0 || exit->exit_code == 1;
     return UnexpectedEnd{
         member.process->name(),

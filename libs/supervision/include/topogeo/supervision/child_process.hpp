@@ -13,9 +13,9 @@ namespace topogeo::supervision {
 /// How a child ended and what it used.
 struct ChildExit {
   int exit_code = 0;      ///< when signal_number is 0
-  int signal_number = 0;  ///< that killed it, else 0
-  double wall_s = 0.0;    ///< from start to the moment that the end was seen
-  double cpu_s = 0.0;     ///< user and system, all its threads
+  int signal_number = 0;  ///< of the signal that killed it, else 0
+  double wall_s = 0.0;    ///< from start to the detected end
+  double cpu_s = 0.0;     ///< user and system, over all threads
 
   [[nodiscard]] bool clean() const { return exit_code == 0 && signal_number == 0; }
 };
@@ -25,10 +25,10 @@ std::string describe(const ChildExit& exit);
 
 class ChildProcess {
  public:
-  /// Starts the program with its output going to `log_file` (replaced), no input, in a process
-  /// group of its own (Ctrl-C in a terminal reaches this program only). The kernel kills it when
-  /// the thread that started it ends. Throws std::runtime_error when the program or the log file
-  /// cannot be opened or no process can be made.
+  /// Starts the program with its output going to `log_file` (replaced), no input, in its own
+  /// process group (Ctrl-C in a terminal reaches only this program). The kernel kills it when the
+  /// thread that started it ends. Throws std::runtime_error when the program or the log file cannot
+  /// be opened or no process can be made.
   ChildProcess(std::string name, const std::filesystem::path& program,
                const std::vector<std::string>& arguments, std::filesystem::path log_file);
   ChildProcess(ChildProcess&& other) noexcept;
@@ -39,9 +39,9 @@ class ChildProcess {
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] pid_t pid() const { return pid_; }
 
-  /// How it ended; nothing while it runs. Does not wait.
+  /// The exit, or nothing while the process runs. Does not wait.
   const std::optional<ChildExit>& poll();
-  /// Nothing happens if it has ended.
+  /// Does nothing if the process has ended.
   void send_signal(int signal_number);
   /// Waits for its end.
   void wait();

@@ -1,7 +1,7 @@
-// How far a robot is from its goal, in one line.
+// Shows on one line how far a robot is from its goal.
 //
-// On a terminal the line is redrawn in place and what stops the robot stays above it; elsewhere (a
-// file, a pipe) there is a line for each change and one every ten seconds.
+// On a terminal the line is redrawn in place and messages about stops remain above it; elsewhere (a
+// file, a pipe) each change has its own line, and so has every tenth second.
 #pragma once
 
 #include <cstddef>
@@ -13,20 +13,20 @@
 
 namespace topogeo::supervision {
 
-/// "driving [####....]  50 %, 3.0 m to go, about 5 s", or what the robot waits for.
+/// "driving [####....]  50 %, 3.0 m to go, about 5 s", or the reason why the robot waits.
 std::string progress_line(const navigation::NavigatorStatus& status);
 
 class GoalProgress {
  public:
-  /// `out` must outlive it. `columns` of the terminal: longer lines are cut.
+  /// `out` must outlive this object. `columns` of the terminal: longer lines are cut.
   GoalProgress(std::ostream& out, bool is_terminal, std::size_t columns = 80)
       : out_(out), is_terminal_(is_terminal), columns_(columns) {}
 
   /// The caller passes the time, in seconds from any start.
   void show(const navigation::NavigatorStatus& status, double now_s);
-  /// A line of its own.
+  /// Prints a line of its own.
   void print(const std::string& text);
-  /// Ends the line that is redrawn, if one is.
+  /// Ends the redrawn line, if there is one.
   void finish();
 
  private:
@@ -40,7 +40,7 @@ class GoalProgress {
   std::size_t drawn_ = 0;
 };
 
-/// Columns of the terminal at standard error; 80 when they are not known.
+/// Columns of the terminal at standard error; 80 if unknown.
 std::size_t terminal_columns();
 
 }  // namespace topogeo::supervision

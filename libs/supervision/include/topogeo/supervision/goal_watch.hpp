@@ -1,4 +1,4 @@
-// Whether a goal was reached, or when there is no more hope of it.
+// Decides when a goal is reached or must be given up.
 #pragma once
 
 #include <cstdint>
@@ -12,34 +12,34 @@ namespace topogeo::supervision {
 
 struct GoalEnd {
   bool arrived = false;
-  std::string reason;  ///< why not; empty when arrived
+  std::string reason;  ///< the reason if not arrived
 };
 
 /// A planner's answer to a goal.
 struct RouteAnswer {
   std::uint64_t goal_id = 0;
-  bool refused = false;  ///< there is no route, and another pose or map does not change that
+  bool refused = false;  ///< there is no route, and another pose or map will not change that
   std::string reason;    ///< why there is no route, for people; may be empty
 };
 
-/// The caller passes the time, in seconds from any start. It counts as by support::PatienceClock,
+/// The caller passes the time, in seconds from any start. It counts as in support::PatienceClock,
 /// and not at all while the robot's services are short of CPU time.
 class GoalWatch {
  public:
-  /// Given up when the robot has not driven for `patience_s`; a pause does not count.
+  /// Gives up when the robot has not driven for `patience_s`; a pause does not count.
   GoalWatch(std::uint64_t goal_id, double patience_s, double now_s)
       : goal_id_(goal_id), patience_s_(patience_s), clock_(now_s) {}
 
-  /// An answer to another goal does not matter.
+  /// Ignores answers to other goals.
   void add(const RouteAnswer& answer);
   void add(const navigation::NavigatorStatus& status, double now_s);
-  /// Nothing as long as it may still arrive.
+  /// Empty as long as the robot may still arrive.
   [[nodiscard]] std::optional<GoalEnd> check(double now_s);
-  /// Whether the services of the robot are short of CPU time, from now on.
+  /// Whether the services of the robot are short of CPU time from now on.
   void set_busy(bool busy, double now_s);
 
  private:
-  /// Returns the time now by the patience clock, by which all times below are.
+  /// Returns the current time of the patience clock, which all times below use.
   double pass_time(double now_s);
   [[nodiscard]] std::optional<GoalEnd> judge(const navigation::NavigatorStatus& status) const;
 
@@ -47,11 +47,11 @@ class GoalWatch {
   double patience_s_;
   support::PatienceClock clock_;
   bool busy_ = false;
-  double alive_s_ = 0.0;   // the last status of the navigator
-  double driven_s_ = 0.0;  // the robot drove, or was paused
+  double alive_s_ = 0.0;   // last status of the navigator
+  double driven_s_ = 0.0;  // the robot last drove, or was paused
   bool taken_ = false;
   bool replaced_ = false;
-  std::optional<double> without_s_;  // since when the navigator has not had the goal
+  std::optional<double> without_s_;  // the navigator lost the goal
   RouteAnswer answer_;
   std::optional<navigation::NavigatorStatus> status_;
 };

@@ -1,4 +1,4 @@
-// Programs that run together as child processes: started, watched and stopped as one.
+// Child processes that are started, watched and stopped together.
 #pragma once
 
 #include <chrono>
@@ -19,27 +19,28 @@
 
 namespace topogeo::supervision {
 
-/// What the end of a process means for the others.
+/// Effect of the end of a process on the others.
 enum class Importance : std::uint8_t {
   kNeeded,      ///< they cannot go on without it
   kMayFinish,   ///< the same, but with exit code 0 it has done its work
   kExpendable,  ///< they go on without it
 };
 
-/// Whether a process that dies can be started again, and goes on where it was.
+/// Whether a process that died can be restarted and continues its work.
 enum class Restart : std::uint8_t { kNever, kWhenItDies };
 
-/// A process that ended although its work was not done.
+/// A process that ended before its work was done.
 struct UnexpectedEnd {
   std::string name;
   std::string
       description;     ///< "localizer was killed by signal 9 (Killed); last line of its log: ..."
   bool fatal = false;  ///< the others cannot go on without it
-  /// It may be started again: it is not too often that it ended, and not by what it was given.
+  /// it may be restarted: it neither ended too often nor rejected its input
   bool can_restart = false;
 };
 
-/// How a group follows the ends of its processes. The defaults are those of this machine.
+/// Clock, progress and log with which a group follows the ends of its processes. The defaults use
+/// this machine.
 struct EndObserver {
   std::function<double()> now_s = support::monotonic_s;
   std::function<Progress(pid_t pid)> progress = read_progress;
@@ -48,66 +49,65 @@ struct EndObserver {
 
 class ProcessGroup {
  public:
-  /// Programs are taken from the folder `programs`; the output of each process goes to
+  /// Takes programs from the folder `programs`; the output of each process goes to
   /// `logs`/<name>.log. Makes the folder `logs`; throws std::filesystem::filesystem_error when that
   /// is not possible.
   ProcessGroup(std::filesystem::path programs, std::filesystem::path logs,
                EndObserver observer = {});
 
-  /// Starts a program under a name of its own; one of that name that was retired is started anew
-  /// with these arguments, one that runs goes on as it is. Throws like ChildProcess.
+  /// Starts a program under a unique name. A retired process of that name starts anew with these
+  /// arguments; a running one goes on unchanged. Throws like ChildProcess.
   void start(const std::string& name, const std::string& program,
              const std::vector<std::string>& arguments, Importance importance = Importance::kNeeded,
              Restart restart = Restart::kNever);
-  /// What is left out of the arguments when the process of that name is started again.
+  /// Drops `argument` when the process of that name is restarted.
   void leave_out_at_restart(const std::string& name, const std::string& argument);
-  /// The value of an option among its arguments when the process of that name is started again.
+  /// Replaces the value of an option when the process of that name is restarted.
   void set_at_restart(const std::string& name, const std::string& option, const std::string& value);
-  /// Starts one again that has ended, with a log of its own, <name>-2.log and so on. Throws like
+  /// Restarts a process that has ended, with a new log, <name>-2.log and so on. Throws like
   /// ChildProcess.
   void restart(const std::string& name);
 
-  /// The process of that name; -1 if there is none.
+  /// The process id for that name; -1 if there is none.
   [[nodiscard]] pid_t pid(const std::string& name) const;
 
-  /// Whether one of them is, or was until it ended, the process `pid`.
+  /// Whether `pid` belongs, or belonged until its end, to one of the processes.
   [[nodiscard]] bool has(pid_t pid) const;
 
   /// Whether the process of that name, if there is one, has ended. Does not wait.
   [[nodiscard]] bool has_ended(const std::string& name);
 
-  /// How often one is started again at most.
+  /// Most restarts of each process.
   static constexpr std::uint32_t kMostRestarts = 20;
 
-  /// One that has ended since the last call; an end that was in order is passed over.
+  /// A process that has ended since the last call; skips regular ends.
   std::optional<UnexpectedEnd> next_unexpected_end();
 
-  /// Asks the process of that name to finish (SIGTERM), which is in order from then on.
+  /// Asks the process of that name to finish (SIGTERM); a clean exit is then a regular end.
   void finish(const std::string& name);
 
-  /// Kills the process of that name, if it runs: it may be started again like one that has died.
+  /// Kills the process of that name, if it runs; it may be restarted like one that died.
   void kill(const std::string& name) { send_signal(SIGKILL, name); }
 
-  /// Asks all processes to end (SIGTERM), which is in order, but the one of that name, which goes
-  /// on.
+  /// Asks all processes except the one of that name to end (SIGTERM); their ends are then regular.
   void retire(const std::string& all_but);
-  /// True when those that were asked to retire have ended. Call it many times a second: those
-  /// that hang are killed.
+  /// True when all retiring processes have ended. Call it many times a second, because it kills
+  /// processes that hang.
   bool retired();
 
-  /// Whether the process of that name hangs, which is to end by itself: call it many times a
-  /// second. It reports what is waited for.
+  /// Whether the process of that name, which should end by itself, hangs. Call it many times a
+  /// second; it logs the wait.
   bool hangs(const std::string& name);
 
-  /// Passes so much time, in which the caller's other work goes on.
+  /// Waits that long while the caller's other work goes on.
   using Pause = std::function<void(std::chrono::milliseconds duration)>;
-  /// Asks all processes to end, `first` alone before the others (empty: all at once), and waits
-  /// for them however slow they are. Those that hang (EndWatch) are killed, and all that still run
-  /// as soon as `at_once` returns true. Returns the names of those that were killed.
+  /// Asks all processes to end, `first` before the others (empty: all at once), and waits for them
+  /// however slow they are. Kills those that hang (EndWatch), and all that still run as soon as
+  /// `at_once` returns true. Returns the names of the killed ones.
   std::vector<std::string> stop(const Pause& pause, const std::function<bool()>& at_once,
                                 const std::string& first = {});
 
-  /// Waits until all have ended. Wall and CPU time of each, in the order of their start.
+  /// Waits until all have ended. Returns their wall and CPU times in the order of their start.
   std::vector<support::StageTime> wait();
 
  private:
@@ -117,14 +117,14 @@ class ProcessGroup {
     Restart restart = Restart::kNever;
     std::string program;
     std::vector<std::string> arguments;
-    std::string left_out = {};         // of them at a restart
-    bool reported = false;             // its end
-    bool retires = false;              // it was asked to end, and another may follow
-    bool asked = false;                // to end
-    std::optional<EndWatch> end = {};  // of one that is waited for
+    std::string left_out = {};         // argument dropped at a restart
+    bool reported = false;             // its end was reported
+    bool retires = false;              // asked to end; a start may follow
+    bool asked = false;                // asked to end
+    std::optional<EndWatch> end = {};  // while its end is awaited
     std::uint32_t lives = 1;
     std::uint32_t restarts = 0;
-    double earlier_wall_s = 0.0;  // of its lives before
+    double earlier_wall_s = 0.0;  // of its earlier lives
     double earlier_cpu_s = 0.0;
   };
 
@@ -134,14 +134,14 @@ class ProcessGroup {
   void send_signal(int signal_number, const std::string& name);
   [[nodiscard]] bool runs(const std::string& name);
   bool hangs(Member& member);
-  /// Kills those that were asked to end and hang. Returns their names. Checks twice a second,
+  /// Kills processes that were asked to end but hang. Returns their names. Checks twice a second,
   /// however often it is called.
   std::vector<std::string> kill_hung();
 
   std::filesystem::path programs_;
   std::filesystem::path logs_;
   EndObserver observer_;
-  double check_s_ = 0.0;  // when ends are looked after next
+  double check_s_ = 0.0;  // time of the next check
   std::vector<Member> members_;
 };
 

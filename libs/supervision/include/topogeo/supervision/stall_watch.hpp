@@ -1,4 +1,4 @@
-// Notices that a run makes no progress.
+// Detects a run that makes no progress.
 #pragma once
 
 #include <cstdint>
@@ -6,8 +6,8 @@
 
 namespace topogeo::supervision {
 
-/// Long against any single step of the services, short against what a user waits for in vain.
-inline constexpr double kStallReported_s = 60.0;  ///< without progress: it is reported who waits
+/// Long compared with any step of the services, short compared with a user's patience.
+inline constexpr double kStallReported_s = 60.0;  ///< without progress: report who waits
 inline constexpr double kStallFailed_s = 180.0;   ///< without progress: the run has failed
 
 /// The caller passes the time, in seconds from any start.
@@ -17,7 +17,7 @@ class StallWatch {
 
   explicit StallWatch(double now_s) : last_change_s_(now_s) {}
 
-  /// `mark` is anything that changes with progress. kReport once for each stall.
+  /// `mark` is any text that changes with progress. Returns kReport once for each stall.
   Verdict check(const std::string& mark, double now_s) {
     if (mark != mark_) {
       mark_ = mark;
