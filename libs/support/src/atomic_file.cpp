@@ -23,7 +23,7 @@ namespace {
                            std::generic_category().message(error));
 }
 
-/// Removes the file at the end unless it was kept.
+/// Removes the file at the end of its life unless it was kept.
 class TemporaryFile {
  public:
   explicit TemporaryFile(fs::path path) : path_(std::move(path)) {}
@@ -43,8 +43,8 @@ fs::path directory_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-/// Makes a file that did not exist before, with the permissions that the umask leaves. Returns its
-/// descriptor, or -1 with errno.
+/// Creates a new file with the permissions that the umask allows. Returns its descriptor, or -1
+/// with errno.
 int create_beside(const fs::path& path, fs::path& created, mode_t mode = 0666) {
   constexpr int kAttempts = 100;  // leftovers of killed processes with this process's id
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
@@ -56,7 +56,7 @@ int create_beside(const fs::path& path, fs::path& created, mode_t mode = 0666) {
   return -1;
 }
 
-/// Zero, or the errno of what went wrong.
+/// Zero, or the errno of the failure.
 int write_all(int fd, std::string_view content) {
   while (!content.empty()) {
     const ssize_t written = ::write(fd, content.data(), content.size());
@@ -80,8 +80,8 @@ void write_with_mode(const fs::path& path, std::string_view content, mode_t mode
   if (::rename(temporary_path.c_str(), path.c_str()) != 0) fail(path, "cannot be replaced", errno);
   temporary.keep();
 
-  // Without this the new name, not the content, could be lost in a power cut. Some file systems
-  // cannot do it; the file is written all the same.
+  // Without this a power failure could lose the new name, though not the content. Some file systems
+  // do not support it; the file is written all the same.
   const FileDescriptor directory(
       ::open(directory_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (directory.get() >= 0) static_cast<void>(::fsync(directory.get()));

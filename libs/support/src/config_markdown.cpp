@@ -10,7 +10,7 @@
 namespace topogeo::support {
 namespace {
 
-/// Fit for a cell: on one line, no character that Markdown reads as layout.
+/// Text for a table cell: on one line, without characters that Markdown reads as layout.
 std::string cell_text(std::string_view text) {
   std::string out;
   for (const char c : text) {

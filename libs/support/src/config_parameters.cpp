@@ -1,4 +1,4 @@
-// The declarations: how each type is parsed, checked and printed.
+// Declarations of parameters: parsing, checking and printing of each type.
 #include <algorithm>
 #include <array>
 #include <charconv>

@@ -14,10 +14,10 @@
 namespace topogeo::support {
 namespace {
 
-// Thirty times the file with every key and comment: a larger one is another kind of file.
+// Thirty times the size of a file with every key and comment: a larger one is another kind of file.
 constexpr std::size_t kMaxFileSize = 1U << 20U;
 
-/// Fit for a one-line message: short, no control characters.
+/// Text for a one-line message: short, without control characters.
 std::string shown(const std::string& text) {
   constexpr std::size_t kMaxLength = 60;
   return printable(text.size() > kMaxLength ? text.substr(0, kMaxLength) + "..." : text);
@@ -28,12 +28,12 @@ class SchemaReader {
   explicit SchemaReader(const ConfigSchema& schema) : schema_(schema) {}
 
   void read(const YamlNode& root) {
-    if (root.is_null()) return;  // nothing but comments
+    if (root.is_null()) return;  // only comments
     if (!root.is_map()) root.fail_with("expected sections of 'key: value' lines");
     read_section(root, "");
   }
 
-  /// Stores all values; called when the whole file is known to be good.
+  /// Stores all values; called once the whole file is valid.
   void apply() const {
     for (const auto& assign : assignments_) assign();
   }
@@ -65,7 +65,7 @@ class SchemaReader {
                   const ConfigParameter& parameter) {
     const std::string quoted = "key '" + parameter.key + "'";
     const std::string expected = ": expected " + parameter.expected;
-    // A missing value has the position of what follows it.
+    // A missing value has the position of the next token.
     if (value.is_null()) key_node.fail_with(quoted + " without a value" + expected);
     if (!value.is_scalar()) value.fail_with(quoted + " with a list or section" + expected);
     const bool is_quoted = value.is_quoted();
@@ -119,7 +119,8 @@ class YamlWriter {
  public:
   YamlWriter(const ConfigSchema& schema, std::ostream& out) : schema_(schema), out_(out) {}
 
-  /// All keys below `prefix` ("" or "section."); a section comes where its first key was declared.
+  /// Writes all keys below `prefix` ("" or "section."); a section is placed where its first key was
+  /// declared.
   void write_section(const std::string& prefix, int depth) {
     std::set<std::string> done;
     for (const ConfigParameter& p : schema_.parameters()) {

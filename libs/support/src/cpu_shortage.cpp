@@ -22,7 +22,7 @@ std::optional<CpuUse> CpuMeter::take(double now_s) {
   for (const auto& [number, time] : last_) {
     const auto found = before.find(number);
     const ThreadTime earlier = found == before.end() ? ThreadTime{} : found->second;
-    // Another thread may have got the number of one that has ended.
+    // Another thread may have got the number of an ended one.
     use.ran_s += std::max(0.0, time.ran_s - earlier.ran_s);
     use.waited_s += std::max(0.0, time.waited_s - earlier.waited_s);
   }

@@ -23,7 +23,7 @@ std::string cause() {
   return std::generic_category().message(errno);
 }
 
-/// What the holder wrote: "<host>-<process id>"; empty when it has not yet.
+/// The text of the holder: "<host>-<process id>"; empty if it has not been written yet.
 std::string holder_of(const FileDescriptor& file) {
   std::array<char, 64> text{};
   const ssize_t size = ::pread(file.get(), text.data(), text.size(), 0);
@@ -50,7 +50,7 @@ FileLock::FileLock(const std::filesystem::path& path, std::chrono::milliseconds 
     }
     std::this_thread::sleep_for(kLockPoll);
   }
-  // Only for people: on a full disk the lock holds all the same.
+  // For users only: on a full disk the lock holds all the same.
   const std::string name = process_name() + "\n";
   if (::ftruncate(file_.get(), 0) == 0) {
     static_cast<void>(::pwrite(file_.get(), name.data(), name.size(), 0));

@@ -33,12 +33,12 @@ void require_regular(const std::filesystem::path& path, const struct stat& statu
       fmt::format("{}: {}: {}", path.string(), what, std::generic_category().message(cause)));
 }
 
-/// Up to `count` bytes from where the file is.
+/// Reads up to `count` bytes from the current position.
 std::string read_bytes(const FileDescriptor& file, std::size_t count,
                        const std::filesystem::path& path) {
   std::string bytes;
   while (bytes.size() < count) {
-    // Files of /proc have no size: memory is taken as bytes come.
+    // Files of /proc have no size, so memory grows with the bytes read.
     constexpr std::size_t kChunk = std::size_t{1} << 20U;
     const std::size_t used = bytes.size();
     bytes.resize(std::min(count, std::max(used + kChunk, bytes.capacity())));
@@ -54,11 +54,11 @@ std::string read_bytes(const FileDescriptor& file, std::size_t count,
 }  // namespace
 
 FileDescriptor open_regular_file(const std::filesystem::path& path) {
-  // Without O_NONBLOCK to open a FIFO waits for its writer.
+  // Without O_NONBLOCK, opening a FIFO waits for its writer.
   FileDescriptor file(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
   struct stat status {};
   if (!file.is_open()) {
-    // A socket cannot be opened, and a device perhaps neither.
+    // A socket cannot be opened, and maybe a device neither.
     const int cause = errno;
     if (::stat(path.c_str(), &status) == 0) require_regular(path, status);
     errno = cause;
@@ -79,7 +79,7 @@ std::string foreign_content(const std::filesystem::path& path, std::uint64_t mos
         fmt::format("{}: is {} bytes, expected at most {}", path.string(), size, most));
   };
   require_fits(static_cast<std::uint64_t>(status.st_size));
-  // One byte more, for a file that grows meanwhile.
+  // One byte more, to detect a file that grows meanwhile.
   std::string content = read_bytes(file, static_cast<std::size_t>(most) + 1, path);
   require_fits(content.size());
   return content;

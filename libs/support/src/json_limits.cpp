@@ -12,12 +12,12 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Builds nothing, and stops at what is too much.
+/// Builds nothing, and stops at the first exceeded limit.
 class LimitCheck final : public nlohmann::json_sax<Json> {
  public:
   explicit LimitCheck(const JsonLimits& limits) : limits_(limits) {}
 
-  /// Empty: nothing is too much.
+  /// Empty: within all limits.
   [[nodiscard]] const std::string& excess() const { return excess_; }
 
   bool null() override { return value(); }
@@ -63,7 +63,7 @@ class LimitCheck final : public nlohmann::json_sax<Json> {
   }
 
   JsonLimits limits_;
-  std::vector<std::size_t> keys_;  // of the objects that are open; lists have none
+  std::vector<std::size_t> keys_;  // of the open objects; lists have none
   std::size_t values_ = 0;
   std::string excess_;
 };

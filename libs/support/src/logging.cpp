@@ -31,7 +31,7 @@ spdlog::level::level_enum parse_level(std::string_view text) {
                               "': expected trace, debug, info, warning, error or off");
 }
 
-/// What a message says, without the control characters that a peer may have put into it.
+/// The text of a message without control characters, which may come from a peer.
 class PrintableText final : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm& /*time*/,

@@ -42,7 +42,7 @@ std::optional<double> pressure_in(const fs::path& file) {
   return percent * kPercent;
 }
 
-/// Folder and name of the groups: of version 2 below `root` or `root`/unified, of version 1 below
+/// Folder and name of a group: of version 2 below `root` or `root`/unified, of version 1 below
 /// `root`/cpu or the like.
 struct Group {
   bool unified = false;
@@ -96,7 +96,7 @@ void read_throttling(const fs::path& folder, MachineCpu& machine) {
   }
 }
 
-/// The least of the quotas of the process's group and of all above it.
+/// The smallest quota of the process's group and all groups above it.
 void read_quota(const MachineCpuSources& sources, MachineCpu& machine) {
   for (const Group& group : groups_of_process(sources)) {
     for (fs::path below = group.name;; below = below.parent_path()) {

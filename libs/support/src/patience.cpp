@@ -8,9 +8,9 @@
 namespace topogeo::support {
 namespace {
 
-/// Many turns of the scheduler, and short beside any patience.
+/// Many turns of the scheduler, but short compared with any patience.
 constexpr double kMeasure_s = 0.2;
-/// A wait that took so many times its time was prolonged by the machine.
+/// A wait that took this many times its counted time was prolonged by the machine.
 constexpr double kProlonged = 2.0;
 
 }  // namespace

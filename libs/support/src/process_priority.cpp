@@ -5,7 +5,7 @@
 namespace topogeo::support {
 
 bool go_first() {
-  constexpr int kNiceness = -10;  // as the system units of gateway and navigator have it
+  constexpr int kNiceness = -10;  // as in the system units of gateway and navigator
   return ::setpriority(PRIO_PROCESS, 0, kNiceness) == 0;
 }
 

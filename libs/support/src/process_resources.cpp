@@ -10,7 +10,7 @@
 namespace topogeo::support {
 
 std::uint64_t resident_bytes() {
-  std::ifstream statm("/proc/self/statm");  // pages: all of the address space, those in memory, ...
+  std::ifstream statm("/proc/self/statm");  // pages: whole address space, resident, ...
   std::uint64_t size = 0;
   std::uint64_t resident = 0;
   if (!(statm >> size >> resident)) return 0;
@@ -22,7 +22,7 @@ std::uint64_t open_files() {
   const std::filesystem::directory_iterator begin("/proc/self/fd", error);
   if (error) return 0;
   const auto entries = std::distance(begin, std::filesystem::directory_iterator());
-  return static_cast<std::uint64_t>(entries) - 1;  // but for the one that lists them
+  return static_cast<std::uint64_t>(entries) - 1;  // without the one used for listing
 }
 
 }  // namespace topogeo::support

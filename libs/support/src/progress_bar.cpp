@@ -13,11 +13,11 @@ namespace topogeo::support {
 namespace {
 
 constexpr std::uint64_t kCells = 24;       // leaves room for the texts in 80 columns
-constexpr double kRedrawInterval_s = 0.1;  // smooth, at no cost
+constexpr double kRedrawInterval_s = 0.1;  // smooth at negligible cost
 
 /// "42 s", "3 min 05 s" or "2 h 07 min".
 std::string duration_text(double duration_s) {
-  // The cap keeps the conversion defined when a stalled job's time left is astronomic.
+  // The cap keeps the conversion defined if a stalled job's remaining time is huge.
   const auto s = static_cast<std::uint64_t>(std::clamp(std::ceil(duration_s), 0.0, 3.6e8));
   if (s < 60) return fmt::format("{} s", s);
   if (s < 3600) return fmt::format("{} min {:02} s", s / 60, s % 60);
@@ -56,7 +56,7 @@ std::string ProgressBar::line(std::uint64_t done, std::uint64_t total, double el
 }
 
 void ProgressBar::draw(const std::string& text) {
-  // Blanks wipe what a longer line before this one left behind.
+  // Blanks overwrite the rest of a longer previous line.
   const std::size_t blanks = drawn_length_ > text.size() ? drawn_length_ - text.size() : 0;
   out_ << '\r' << text << std::string(blanks, ' ') << std::flush;
   drawn_length_ = text.size();
@@ -71,7 +71,7 @@ void ProgressBar::update(std::uint64_t done, std::uint64_t total, double elapsed
   }
   if (total == 0) return;
   const std::uint64_t tenths = std::min(done, total) * 10 / total;
-  if (tenths <= tenths_printed_ || tenths >= 10) return;  // the last line is left to finish()
+  if (tenths <= tenths_printed_ || tenths >= 10) return;  // finish() draws the last line
   tenths_printed_ = tenths;
   out_ << line(done, total, elapsed_s) << std::endl;
 }

@@ -37,12 +37,12 @@ double Random::uniform() {
 
 double Random::uniform(double low, double high) {
   const double value = low + (high - low) * uniform();
-  return value < high ? value : low;  // rounding may reach `high`, which is not in the interval
+  return value < high ? value : low;  // rounding may reach `high`, which is outside the interval
 }
 
 std::uint64_t Random::below(std::uint64_t n) {
   if (n == 0) throw std::invalid_argument("Random::below: n is 0, expected at least 1");
-  // The first 2^64 mod n values would make small results likelier: they are drawn again.
+  // The first 2^64 mod n values would make small results likelier, so they are redrawn.
   const std::uint64_t biased = (0 - n) % n;
   std::uint64_t value = next_u64();
   while (value < biased) value = next_u64();

@@ -26,7 +26,7 @@ FileDescriptor open_record(const std::filesystem::path& path) {
   return file;
 }
 
-/// What lies in the file: format, record, hash of both.
+/// Content of the file: format, record, hash of both.
 std::string framed(std::uint64_t format, std::string_view record) {
   std::string out(kNumber_bytes, '\0');
   std::memcpy(out.data(), &format, kNumber_bytes);
@@ -44,7 +44,7 @@ RecordFileBytes::RecordFileBytes(const std::filesystem::path& path, std::uint64_
 
 bool RecordFileBytes::load(std::span<std::byte> bytes) const {
   if (!file_.is_open()) return false;
-  std::string there(bytes.size() + 2 * kNumber_bytes + 1, '\0');  // a longer file is another one
+  std::string there(bytes.size() + 2 * kNumber_bytes + 1, '\0');  // detects a longer file
   const ssize_t count = ::pread(file_.get(), there.data(), there.size(), 0);
   if (count != static_cast<ssize_t>(there.size() - 1)) return false;
   there.pop_back();
@@ -59,7 +59,7 @@ void RecordFileBytes::store(std::span<const std::byte> bytes) const {
   const std::string out =
       framed(format_, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
   if (::pwrite(file_.get(), out.data(), out.size(), 0) != static_cast<ssize_t>(out.size())) {
-    static_cast<void>(::ftruncate(file_.get(), 0));  // no half of it may pass for the whole
+    static_cast<void>(::ftruncate(file_.get(), 0));  // a partial record must not remain
   }
 }
 

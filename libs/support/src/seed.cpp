@@ -15,7 +15,7 @@ std::uint64_t derive_seed(std::uint64_t run_seed, std::string_view robot_id,
                           std::initializer_list<std::uint64_t> ids) {
   Fnv1a hash;
   hash.add(run_seed);
-  // The length keeps ("r", {...}) apart from a longer name whose bytes equal those of the ids.
+  // The length distinguishes ("r", {...}) from a longer name whose bytes equal those of the ids.
   hash.add(std::uint64_t{robot_id.size()});
   hash.add(robot_id);
   for (const std::uint64_t id : ids) hash.add(id);

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The thread whose folder of /proc this is; nothing where that has just ended.
+/// Times of the thread with this folder of /proc; empty if it has just ended.
 std::optional<ThreadTime> time_of(const fs::path& thread) {
   constexpr double kNanosecond_s = 1e-9;
   std::ifstream file(thread / "schedstat");  // ns on a CPU, ns waiting for one, turns

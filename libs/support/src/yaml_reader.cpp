@@ -15,7 +15,7 @@
 namespace topogeo::support {
 namespace {
 
-/// Enough to find the value in the file; a message stays one line.
+/// Enough to find the value in the file, and short enough for one line.
 constexpr std::size_t kMostShown = 60;
 
 std::string shown(const YAML::Node& node) {
@@ -38,7 +38,7 @@ std::string joined(std::initializer_list<std::string_view> keys, std::string_vie
   return text;
 }
 
-// yaml-cpp counts from 0 and gives -1 to what has no place in the file.
+// yaml-cpp counts from 0 and gives -1 to values without a place in the file.
 int line_of(int mark_line) {
   return std::max(mark_line + 1, 1);
 }
@@ -58,8 +58,8 @@ int line_of(int mark_line) {
               " values, where an alias counts as all that it stands for");
 }
 
-/// Builds nothing, and throws where a text has more values or levels than is allowed: a node of
-/// yaml-cpp takes half a kilobyte.
+/// Builds nothing, and throws if a text has more values or levels than allowed: a node of yaml-cpp
+/// takes half a kilobyte.
 class YamlLimitCheck final : public YAML::EventHandler {
  public:
   explicit YamlLimitCheck(const std::string& source) : source_(source) {}
@@ -97,8 +97,8 @@ class YamlLimitCheck final : public YAML::EventHandler {
   std::size_t levels_ = 0;
 };
 
-/// Counts the values below a node, those behind aliases each time: readers go through all of them.
-/// An alias inside of what it stands for has no end of levels.
+/// Counts the values below a node, those behind aliases each time, because readers visit all of
+/// them. An alias within its own content would have endless levels.
 void count_values(const YAML::Node& node, const std::string& source, std::size_t levels,
                   std::size_t& values) {
   if (++values > kMostYamlValues) fail_values(source, line_of(node.Mark().line));
@@ -114,7 +114,7 @@ void count_values(const YAML::Node& node, const std::string& source, std::size_t
   }
 }
 
-/// Throws where a text is beyond the limits of foreign files.
+/// Throws if a text exceeds the limits of foreign files.
 void check_extent(const std::string& text, const std::string& source) {
   if (text.size() > kMostYamlBytes) {
     fail_at(source, 1,
@@ -178,7 +178,7 @@ bool YamlNode::is_scalar() const {
 }
 
 bool YamlNode::is_quoted() const {
-  return is_scalar() && content_->node.Tag() == "!";  // how yaml-cpp marks quoted scalars
+  return is_scalar() && content_->node.Tag() == "!";  // the tag of quoted scalars in yaml-cpp
 }
 
 void YamlNode::fail(const std::string& expected) const {
@@ -279,7 +279,7 @@ YamlNode parse_yaml(const std::string& text, const std::string& source, std::str
                                " YAML documents, expected one");
     }
     const YAML::Node root = documents.empty() ? YAML::Node() : documents.front();
-    // Without an alias the text itself has all values, which are counted.
+    // Without an alias the text itself contains all values, which are counted already.
     std::size_t values = 0;
     if (text.find('*') != std::string::npos) count_values(root, source, 0, values);
     return YamlNode(std::make_shared<const YamlNode::Content>(

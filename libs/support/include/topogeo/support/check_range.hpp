@@ -1,5 +1,5 @@
-// Refuses a value that is out of range. Settings have their ranges where they are
-// declared; this is for all other input: poses, readings, grids.
+// Refuses a value that is out of range. Settings declare their ranges themselves; this is for all
+// other input: poses, readings, grids.
 #pragma once
 
 #include <string_view>

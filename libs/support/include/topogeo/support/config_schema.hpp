@@ -1,9 +1,9 @@
 // Typed configuration: every parameter is declared once, with key, variable, range, unit and
 // reason.
 //
-// The declaration carries the check of a file and of a configuration in memory, the listing of what
-// is in force, the documented example file and the table of the documentation. The default of a
-// parameter is what its variable holds when it is declared. Each library declares its own
+// The declaration is the basis for checking files and configurations in memory, listing the values
+// in force, and generating the example file and the table of the documentation. The default of a
+// parameter is the value of its variable at the declaration. Each library declares its own
 // configuration structs in `describe(Config&, ConfigSchema&)` beside them.
 #pragma once
 
@@ -19,14 +19,14 @@
 
 namespace topogeo::support {
 
-/// Numbers by rows, as of a matrix; rows may differ in length.
+/// Numbers by rows, as in a matrix; rows may differ in length.
 using NumberRows = std::vector<std::vector<double>>;
 
 /// One declared parameter.
 struct ConfigParameter {
   std::string key;       ///< "section.name", any depth
-  std::string unit;      ///< "" where there is none
-  std::string why;       ///< what it does and why one would change it
+  std::string unit;      ///< "" without a unit
+  std::string why;       ///< its effect, and reasons to change it
   std::string expected;  ///< "number between 0.1 and 5 m", for messages and the example file
   std::string default_text;
   bool is_text = false;  ///< strings: quoted in YAML
@@ -34,16 +34,16 @@ struct ConfigParameter {
 
   std::function<std::string()> text;  ///< current value; doubles in the shortest form that reads
                                       ///< back to the same value
-  /// What stores the value that a text stands for; nothing if it stands for none or one out of
-  /// range.
+  /// Parses a text and returns the function that stores its value; empty for an invalid text or a
+  /// value out of range.
   std::function<std::optional<std::function<void()>>(const std::string&)> parse;
 };
 
 class ConfigSchema {
  public:
-  // Each declares a parameter. `key` is of letters, digits, '_' and '.'; `value` must outlive the
-  // schema. They throw std::invalid_argument naming the key when it is malformed, declared twice
-  // or also a section, and "key 'KEY' = 'VALUE': expected ..." when the value is out of range.
+  // Each declares a parameter. `key` consists of letters, digits, '_' and '.'; `value` must outlive
+  // the schema. Throw std::invalid_argument naming the key if it is malformed, declared twice or
+  // also a section, and "key 'KEY' = 'VALUE': expected ..." if the value is out of range.
   void add(std::string key, double* value, double min, double max, std::string unit,
            std::string why);
   void add(std::string key, std::int32_t* value, std::int32_t min, std::int32_t max,
@@ -61,21 +61,21 @@ class ConfigSchema {
   void add(const std::string& key, Enum* value,
            const std::vector<std::pair<std::string, Enum>>& names, const std::string& why);
 
-  /// A matrix or a list of tuples, written by its rows: "0.9 0.1; 0.1 0.9". `value_of` returns
-  /// nothing for rows that have not its form; `expected` says which that is.
+  /// A matrix or a list of tuples, written by rows: "0.9 0.1; 0.1 0.9". `value_of` returns nothing
+  /// for rows of another form; `expected` describes the form.
   template <typename Value>
   void add_rows(const std::string& key, Value* value, NumberRows (*rows_of)(const Value&),
                 std::optional<Value> (*value_of)(const NumberRows&), const std::string& expected,
                 const std::string& why);
 
-  /// The keys of a section that no result depends on: configurations that differ in them alone have
-  /// one fingerprint.
+  /// Excludes the keys of a section that no result depends on: configurations that differ only in
+  /// these have the same fingerprint.
   void leave_out_of_fingerprint(std::string_view section);
 
   /// In the order of declaration.
   [[nodiscard]] const std::vector<ConfigParameter>& parameters() const { return parameters_; }
 
-  /// The parameter, or nullptr.
+  /// The parameter, or null.
   [[nodiscard]] const ConfigParameter* find(std::string_view key) const;
 
   /// Whether a declared key starts with "path.".
@@ -97,47 +97,47 @@ class ConfigSchema {
   std::vector<ConfigParameter> parameters_;
 };
 
-/// Checks every declared value of a configuration against its range, by what the library of that
-/// configuration declares: `void describe(Config&, ConfigSchema&)`. Throws std::invalid_argument
-/// "key 'KEY' = 'VALUE': expected number between a and b UNIT". It takes some microseconds for each
-/// parameter: for constructors, not for what is called with every scan.
+/// Checks every value of a configuration against its declared range, by its library's `void
+/// describe(Config&, ConfigSchema&)`. Throws std::invalid_argument "key 'KEY' = 'VALUE': expected
+/// number between a and b UNIT". Takes some microseconds per parameter: for constructors, not for
+/// calls with every scan.
 template <typename Config>
 void check_ranges(Config config) {
   ConfigSchema schema;
   describe(config, schema);
 }
 
-/// The same exception for values that must fit each other, which no range of one of them states.
+/// The same exception for inconsistent values, which no single range excludes.
 [[noreturn]] void refuse_value(std::string_view key, double value, const std::string& expected);
 
 /// Throws as refuse_value unless low <= value <= high: for a limit that depends on another value.
 void require_between(std::string_view key, double value, double low, double high,
                      const std::string& unit);
 
-/// Throws as refuse_value unless value >= low, where another key holds `low`.
+/// Throws as refuse_value unless value >= low, the value of another key.
 void require_at_least(std::string_view key, double value, std::string_view low_key, double low);
 
-/// Markdown tables of all parameters, one for each section: key, default, range with unit, reason.
+/// Markdown tables of all parameters, one per section: key, default, range with unit, reason.
 void write_markdown(const ConfigSchema& schema, std::ostream& out);
 
-/// Reads a YAML file of nested sections (or dotted keys) into the declared variables; keys that it
-/// does not name keep their value. Throws std::runtime_error "FILE:LINE: key 'x.y' = 'v': expected
+/// Reads a YAML file of nested sections (or dotted keys) into the declared variables; keys missing
+/// in the file keep their value. Throws std::runtime_error "FILE:LINE: key 'x.y' = 'v': expected
 /// number between a and b m", or another cause (unknown or repeated key, wrong type, broken YAML,
 /// unreadable file); then no variable is changed.
 void load_yaml_file(const std::filesystem::path& path, const ConfigSchema& schema);
 
-/// The same for YAML text; `name` stands for the file in messages.
+/// The same for YAML text; `name` replaces the file in messages.
 void load_yaml_text(std::string_view text, const std::string& name, const ConfigSchema& schema);
 
-/// What is in force.
+/// The values in force.
 struct EffectiveConfig {
   std::vector<std::pair<std::string, std::string>> values;  ///< (key, value), order of declaration
   std::uint64_t fingerprint = 0;  ///< 64-bit FNV-1a of the values that results depend on
 };
 EffectiveConfig effective(const ConfigSchema& schema);
 
-/// A documented YAML file with the current values that load_yaml_file reads back to the same
-/// values. Default, range, unit and reason of each key stand above it as comments.
+/// A documented YAML file with the current values, which load_yaml_file reads back exactly.
+/// Comments above each key state its default, range, unit and reason.
 void write_yaml(const ConfigSchema& schema, std::ostream& out);
 
 template <typename Enum>

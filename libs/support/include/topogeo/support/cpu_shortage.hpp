@@ -1,4 +1,4 @@
-// Whether a process gets the CPU time that it needs to be in time.
+// Detects whether a process gets enough CPU time to be punctual.
 #pragma once
 
 #include <cstdint>
@@ -11,24 +11,24 @@
 
 namespace topogeo::support {
 
-/// The time of the threads of a process between two moments, summed up.
+/// Total times of the threads of a process between two moments.
 struct CpuUse {
-  double span_s = 0.0;    ///< between the two
+  double span_s = 0.0;    ///< between the moments
   double ran_s = 0.0;     ///< on a CPU
   double waited_s = 0.0;  ///< for a CPU
 
-  /// Threads that waited for a CPU, on average over the time.
+  /// Average number of threads that waited for a CPU.
   [[nodiscard]] double wait_ratio() const { return span_s > 0.0 ? waited_s / span_s : 0.0; }
-  /// Waiting, as a share of the time in which there was work to do.
+  /// Waiting, as a share of the time with work to do.
   [[nodiscard]] double wait_share() const;
 };
 
-/// Measures a process from one call to the next.
+/// Measures a process between successive calls.
 class CpuMeter {
  public:
   explicit CpuMeter(std::filesystem::path process = "/proc/self") : process_(std::move(process)) {}
 
-  /// Since the last call, the caller passes the time. Nothing at the first one and where the kernel
+  /// Use since the last call; the caller passes the time. Empty at the first call and if the kernel
   /// does not count.
   std::optional<CpuUse> take(double now_s);
 
@@ -38,37 +38,37 @@ class CpuMeter {
   std::map<long, ThreadTime> last_;
 };
 
-/// Decides when a process is short of CPU time, from what a second or so of it was like.
+/// Decides whether a process is short of CPU time, from measurements over a second or so.
 ///
-/// Two things must come together. Its timers fire late: that is what others notice, but a long
-/// handler does it, too. And its threads wait for a CPU at least as long as they run: that is what
-/// only other programs or a quota do, but a search on all CPUs does it without harm. Neither a
-/// single late second nor a single good one counts.
+/// Two conditions must hold. Timers of the process fire late: others notice that, but a long
+/// handler causes it, too. And its threads wait for a CPU at least as long as they run: only other
+/// programs or a quota cause that, but a search on all CPUs does so without harm. Neither a single
+/// late second nor a single good one counts.
 class CpuShortage {
  public:
-  /// Twice the period of a navigator's commands: it has missed one by then.
+  /// Twice the period of a navigator's commands: by then it has missed one.
   static constexpr double kLate_s = 0.1;
-  /// Work takes twice as long as on a machine that is free.
+  /// Work takes twice as long as on an idle machine.
   static constexpr double kWaitShare = 0.5;
-  /// A shortage is over only well below both: it would come and go near a threshold.
+  /// A shortage ends only well below both: near a threshold it would begin and end repeatedly.
   static constexpr double kInTime_s = 0.05;
   static constexpr double kSmallWaitShare = 0.35;
-  /// So many spans in a row begin a shortage: a program that starts takes one or two.
+  /// Successive bad spans that begin a shortage: a starting program takes one or two.
   static constexpr int kBegins = 3;
-  /// So many end it: longer than between two turns of a load that comes and goes.
+  /// Successive good spans that end it: longer than the pauses of an intermittent load.
   static constexpr int kEnds = 5;
 
-  /// `timer_delay_s`: the largest of the span. True when the answer of lasts() has changed.
+  /// `timer_delay_s`: the largest one in the span. True if the result of lasts() has changed.
   bool add(const CpuUse& use, double timer_delay_s);
 
   [[nodiscard]] bool lasts() const { return lasts_; }
-  /// The last span alone.
+  /// Whether the last span alone was short.
   [[nodiscard]] bool is_short_now() const {
     return timer_delay_s_ >= kLate_s && use_.wait_share() >= kWaitShare;
   }
   [[nodiscard]] double timer_delay_s() const { return timer_delay_s_; }
-  /// "the CPU is short: timers fire up to 0.4 s late, 71 % of its working time it waits for a CPU",
-  /// of the last span.
+  /// Describes the last span: "the CPU is short: timers fire up to 0.4 s late, 71 % of its working
+  /// time it waits for a CPU".
   [[nodiscard]] std::string text() const;
 
  private:

@@ -10,7 +10,7 @@ namespace topogeo::support {
 /// CPU time (user and system) of this process with all its threads, seconds.
 double process_cpu_s();
 
-/// CPU time of the child processes that ended and were waited for, seconds.
+/// CPU time of terminated child processes that were waited for, seconds.
 double children_cpu_s();
 
 /// Monotonic time from an arbitrary start, seconds.
@@ -22,11 +22,11 @@ struct StageTime {
   double cpu_s = 0.0;
 };
 
-/// Sums up the time of stages that are entered many times. For one thread; the CPU time counted is
-/// that of the calling thread, so work that a stage hands to other threads is not in it.
+/// Sums up the time of stages that are entered many times. For one thread: it counts the CPU time
+/// of the calling thread, without work that a stage delegates to other threads.
 class StageTimes {
  public:
-  /// Adds the time of its own life to the stage.
+  /// Adds the time of its lifetime to the stage.
   class Scope {
    public:
     Scope(StageTimes& times, std::size_t index);
@@ -41,10 +41,10 @@ class StageTimes {
     double start_cpu_s_;
   };
 
-  /// Times the named stage until the returned object goes, which must be before this one does.
+  /// Times the named stage until the returned object is destroyed, which must be before this one.
   [[nodiscard]] Scope measure(std::string_view stage);
 
-  /// In the order in which the stages were first entered.
+  /// In the order of first use.
   [[nodiscard]] const std::vector<StageTime>& stages() const { return stages_; }
 
  private:

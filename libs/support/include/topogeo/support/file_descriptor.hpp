@@ -1,4 +1,4 @@
-// A file descriptor that is closed at the end of its owner's life.
+// A file descriptor that is closed with its owner.
 #pragma once
 
 #include <utility>
@@ -9,7 +9,7 @@ namespace topogeo::support {
 
 class FileDescriptor {
  public:
-  /// Takes what open() and its like returned; negative: owns nothing.
+  /// Takes the result of open() and the like; negative: owns nothing.
   explicit FileDescriptor(int number = -1) : number_(number) {}
   FileDescriptor(const FileDescriptor&) = delete;
   FileDescriptor& operator=(const FileDescriptor&) = delete;
@@ -26,7 +26,7 @@ class FileDescriptor {
   /// The number, which the caller closes.
   [[nodiscard]] int release() { return std::exchange(number_, -1); }
   [[nodiscard]] bool is_open() const { return number_ >= 0; }
-  /// Closes now; false with errno where the kernel reports a late write error. Only while open.
+  /// Closes now; false with errno if the kernel reports a late write error. Only while open.
   bool close() { return ::close(std::exchange(number_, -1)) == 0; }
 
  private:

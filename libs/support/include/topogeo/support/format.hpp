@@ -1,6 +1,6 @@
-// Text formatting with fmt. Include this instead of fmt's own headers: the function that all
-// formatting into buffers and all logging goes through takes seconds to compile, and is compiled
-// once, in this library.
+// Text formatting with fmt. Include this instead of fmt's own headers: the function behind all
+// formatting into buffers and all logging takes seconds to compile, so it is compiled once, in this
+// library.
 #pragma once
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-// 64-bit FNV-1a: the same value on every machine. It finds differences and damage; it is no
-// protection against an attacker who wants two things to look the same.
+// 64-bit FNV-1a: the same value on every machine. It detects differences and damage; it does not
+// protect against an attacker who constructs collisions.
 #pragma once
 
 #include <cstdint>

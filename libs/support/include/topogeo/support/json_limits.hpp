@@ -1,5 +1,4 @@
-// JSON of peers and files that nobody has to trust: the work that a text makes grows with its
-// length alone.
+// JSON from untrusted peers and files: parsing takes time proportional to the length of the text.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +10,13 @@
 namespace topogeo::support {
 
 struct JsonLimits {
-  std::size_t levels = kMostLevels;  ///< of objects and lists inside each other
+  std::size_t levels = kMostLevels;  ///< of nested objects and lists
   std::size_t keys = kMostKeys;      ///< of one object
   std::size_t values = kMostValues;  ///< of the text, keys included
 };
 
-/// The first limit that a text is beyond, as "more than 100 levels of lists and objects";
-/// empty when it is within all, up to the first byte that is no JSON.
+/// The first limit that a text exceeds, as "more than 100 levels of lists and objects"; empty if it
+/// exceeds none, up to the first byte that is no JSON.
 [[nodiscard]] std::string beyond_limits(std::string_view text, const JsonLimits& limits = {});
 
 }  // namespace topogeo::support

@@ -1,4 +1,4 @@
-// The CPU time that a machine or a control group has, and how much it is asked for.
+// The CPU time available to a machine or a control group, and the demand for it.
 #pragma once
 
 #include <cstdint>
@@ -10,25 +10,25 @@ namespace topogeo::support {
 
 struct MachineCpu {
   std::uint32_t processors = 1;          ///< that this process may use
-  double load = 0.0;                     ///< threads that ran or wanted to, mean of a minute
-  std::optional<double> pressure_share;  ///< of the last 10 s, in which a thread waited for a CPU
-  /// CPUs that the control groups of this process leave it; nothing: as many as there are.
+  double load = 0.0;                     ///< threads that ran or wanted to run, mean over a minute
+  std::optional<double> pressure_share;  ///< of the last 10 s, with a thread waiting for a CPU
+  /// CPUs that the control groups allow this process; empty: all.
   std::optional<double> quota;
-  /// Periods of the group with that quota, since it was made.
+  /// Periods of the group with that quota, since its creation.
   std::uint64_t quota_periods = 0;
   std::uint64_t throttled_periods = 0;  ///< of these, in which it was stopped
 
-  /// CPUs that this process can have at most.
+  /// Upper limit of CPUs for this process.
   [[nodiscard]] double available() const;
 };
 
-/// Where the kernel shows it. Tests name other places.
+/// Folders of the kernel interface. Tests use others.
 struct MachineCpuSources {
   std::filesystem::path proc = "/proc";
   std::filesystem::path cgroup = "/sys/fs/cgroup";
 };
 
-/// Reads control groups of version 1 and 2. A value that cannot be read is left out.
+/// Reads control groups of version 1 and 2. Leaves out values that cannot be read.
 MachineCpu read_machine_cpu(const MachineCpuSources& sources = {});
 
 /// "2 processors, a quota of 0.8 CPUs, load 7.3, a thread waits for a CPU 91 % of the time".

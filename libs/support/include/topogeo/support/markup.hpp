@@ -6,7 +6,7 @@
 
 namespace topogeo::support {
 
-/// The text with the characters that markup gives a meaning (& < > ") written as entities.
+/// The text with the special characters of markup (& < > ") as entities.
 std::string escaped_markup(std::string_view text);
 
 }  // namespace topogeo::support

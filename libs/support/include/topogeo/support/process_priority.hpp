@@ -1,10 +1,10 @@
-// The right of way of a process on its machine.
+// Scheduling priority of a process.
 #pragma once
 
 namespace topogeo::support {
 
-/// This process goes before others that wait for a CPU, for as long as it lives. False: it lacks
-/// the right (CAP_SYS_NICE), and goes with the others.
+/// Gives this process priority over others that wait for a CPU, for its lifetime. False if it lacks
+/// the permission (CAP_SYS_NICE); the priority is then unchanged.
 bool go_first();
 
 }  // namespace topogeo::support

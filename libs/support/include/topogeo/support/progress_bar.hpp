@@ -1,4 +1,4 @@
-// One line with the progress, the speed and the time left of a long job.
+// One line with the progress, the speed and the remaining time of a long job.
 //
 // The caller passes the time, so the bar has no clock. On a terminal the line is redrawn in place;
 // elsewhere (a file, a pipe, a CI log) one line is printed about every tenth of the job.
@@ -15,12 +15,11 @@ bool stderr_is_terminal();
 
 class ProgressBar {
  public:
-  /// `label` stands first on the line, `unit` names what is counted ("scans"). `out` must outlive
-  /// the bar.
+  /// `label` starts the line, `unit` names the counted items ("scans"). `out` must outlive the bar.
   ProgressBar(std::ostream& out, bool is_terminal, std::string label, std::string unit);
 
-  /// `done` of `total` after `elapsed_s` seconds, total 0 while it is not known. Redraws a terminal
-  /// at most ten times a second of elapsed time.
+  /// `done` of `total` after `elapsed_s` seconds; total is 0 while unknown. Redraws a terminal at
+  /// most ten times per second of elapsed time.
   void update(std::uint64_t done, std::uint64_t total, double elapsed_s);
 
   /// Draws the last state and ends the line.

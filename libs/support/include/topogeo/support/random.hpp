@@ -34,8 +34,8 @@ class Random {
   bool has_spare_normal_ = false;
 };
 
-/// 64 bits of the machine's entropy, other ones at each call: for what must differ from start to
-/// start, never for a result.
+/// 64 bits of the machine's entropy, different at each call: for values that must differ between
+/// starts, never for a result.
 std::uint64_t unrepeatable_u64();
 
 }  // namespace topogeo::support

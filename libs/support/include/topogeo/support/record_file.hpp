@@ -1,4 +1,4 @@
-// A small record in a file of its own that outlives a process that is killed.
+// A small record in its own file, which outlives a killed process.
 #pragma once
 
 #include <array>
@@ -14,19 +14,20 @@
 
 namespace topogeo::support {
 
-/// One record of bytes, overwritten in place. It reaches the file with each call, which the loss of
-/// the process does not take away. It is not forced to disk: after a loss of power the file may
-/// have an older record, or none.
+/// One record of bytes, overwritten in place. Each call hands it to the kernel, so it survives the
+/// death of the process. It is not forced to disk: after a power failure the file may have an older
+/// record, or none.
 class RecordFileBytes {
  public:
-  /// `format` names the layout of the record; a file with another one has no record. An empty path:
-  /// nothing is kept. Throws std::runtime_error naming the file when it cannot be opened or made.
+  /// `format` names the layout of the record; a file with another format has no record. An empty
+  /// path: nothing is stored. Throws std::runtime_error naming the file if it cannot be opened or
+  /// created.
   RecordFileBytes(const std::filesystem::path& path, std::uint64_t format);
 
-  /// Fills `bytes` with the record that was stored last. False when there is none, or when it is
-  /// damaged or of another size or format.
+  /// Fills `bytes` with the last stored record. False if there is none, or if it is damaged or of
+  /// another size or format.
   [[nodiscard]] bool load(std::span<std::byte> bytes) const;
-  /// A record that cannot be written is lost, and the one before with it.
+  /// If a record cannot be written, it is lost, and the previous one with it.
   void store(std::span<const std::byte> bytes) const;
 
  private:
@@ -34,8 +35,7 @@ class RecordFileBytes {
   std::uint64_t format_;
 };
 
-/// The same for a record of type T, which lies in the file as it does in the memory of this
-/// machine.
+/// The same for a record of type T, stored in the memory layout of this machine.
 template <class T>
 class RecordFile {
   static_assert(std::is_trivially_copyable_v<T>);

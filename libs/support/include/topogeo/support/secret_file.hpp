@@ -1,4 +1,4 @@
-// Files that their owner alone may read.
+// Files that only their owner may read.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,7 @@
 
 namespace topogeo::support {
 
-/// Writes a file of mode 0600 in place of what has that name, whole or not at all. Throws
+/// Writes a file of mode 0600, replacing any file with that name, completely or not at all. Throws
 /// std::runtime_error naming the file and the cause.
 void write_secret_file(const std::filesystem::path& path, std::string_view content);
 

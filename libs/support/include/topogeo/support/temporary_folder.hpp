@@ -1,4 +1,4 @@
-// A folder of one's own that goes with the object.
+// A temporary folder that is removed with its object.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@ namespace topogeo::support {
 
 class TemporaryFolder {
  public:
-  /// In the system's folder for temporary files; `name` is a part of its own. Throws
-  /// std::runtime_error when it cannot be made.
+  /// Creates it in the system's folder for temporary files; `name` is a part of its name. Throws
+  /// std::runtime_error if it cannot be created.
   explicit TemporaryFolder(const std::string& name);
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;

@@ -1,4 +1,4 @@
-// CPU time that the threads of a process have had, and how long they waited for it.
+// CPU time used by the threads of a process, and their waiting time.
 #pragma once
 
 #include <filesystem>
@@ -11,14 +11,14 @@ struct ThreadTime {
   double waited_s = 0.0;  ///< ready to run, while other threads or a quota kept the CPU from it
 };
 
-/// The threads of the process whose folder of /proc this is, by number. Empty where the process is
-/// gone or the kernel does not count these times (schedstat).
+/// The threads of the process with this folder of /proc, by number. Empty if the process is gone or
+/// the kernel does not count these times (schedstat).
 std::map<long, ThreadTime> thread_times(const std::filesystem::path& process);
 
-/// The same of the thread that asks; zeros where the kernel does not count.
+/// Times of the calling thread; zeros if the kernel does not count them.
 ThreadTime time_of_this_thread();
 
-/// Their sum; that of threads that have ended is not in it.
+/// Sum over these threads, without those that have ended.
 ThreadTime sum_of(const std::map<long, ThreadTime>& times);
 
 }  // namespace topogeo::support

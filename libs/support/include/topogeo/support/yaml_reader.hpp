@@ -1,5 +1,5 @@
-// YAML documents, read by the one who knows what they should hold: each question states what is
-// expected, and an answer that differs is an error "FILE:LINE: KEY: expected ..., got ...".
+// YAML documents, read with the caller's expectations: each access states what it expects, and a
+// value that differs is an error "FILE:LINE: KEY: expected ..., got ...".
 #pragma once
 
 #include <cstddef>
@@ -14,15 +14,15 @@ namespace topogeo::support {
 
 struct YamlEntry;
 
-/// A value of a document or the place of one that is absent. Cheap to copy; keeps the document
-/// alive. All errors are std::runtime_error.
+/// A value of a document, or the place of an absent one. Cheap to copy; keeps the document alive.
+/// All errors are std::runtime_error.
 class YamlNode {
  public:
-  /// The key of the value, or what an item of a list or the whole document is called.
+  /// The key of the value, or the name of a list item or of the whole document.
   [[nodiscard]] const std::string& name() const;
   /// The same value under another name, for messages.
   [[nodiscard]] YamlNode named(std::string name) const;
-  /// From 1; of an absent value, the line of the map that lacks it.
+  /// Line number from 1; for an absent value, the line of the map that lacks it.
   [[nodiscard]] int line() const;
 
   [[nodiscard]] bool exists() const;
@@ -31,7 +31,7 @@ class YamlNode {
   [[nodiscard]] bool is_map() const;
   [[nodiscard]] bool is_list() const;
   [[nodiscard]] bool is_scalar() const;
-  /// "3" in quotes is a text and not a number.
+  /// Whether the value is quoted: "3" in quotes is a text and not a number.
   [[nodiscard]] bool is_quoted() const;
 
   /// Throws "FILE:LINE: NAME: expected EXPECTED, got GOT"; without `got`, the value.
@@ -42,22 +42,23 @@ class YamlNode {
 
   /// Fails unless the value is a map with none but these keys, each once.
   void allow_keys(std::initializer_list<std::string_view> keys) const;
-  /// The value of a key; absent where the key is, fails where the value is no map.
+  /// The value of a key; absent if the key is. Fails unless this is a map.
   [[nodiscard]] YamlNode at(const std::string& key) const;
   /// The value of a key that must be there.
   [[nodiscard]] YamlNode required(const std::string& key) const;
-  /// Keys and values of a map in the order of the file, repeated keys included. Fails for others.
+  /// Keys and values of a map in the order of the file, including repeated keys. Fails for other
+  /// values.
   [[nodiscard]] std::vector<YamlEntry> entries() const;
 
-  /// The items of a list, each called `item_name` or like the list; none of an absent list. Fails
-  /// for others.
+  /// The items of a list, each named `item_name` or like the list; empty for an absent list. Fails
+  /// for other values.
   [[nodiscard]] std::vector<YamlNode> items(const std::string& item_name = {}) const;
-  /// The items of a list that must have `size` of them, called like the list.
+  /// The items of a list that must have `size` of them, named like the list.
   [[nodiscard]] std::vector<YamlNode> tuple(std::size_t size, const std::string& expected) const;
 
-  /// A scalar as it is written, without quotes; fails for lists, maps and absent values.
+  /// A scalar as written, without quotes; fails for lists, maps and absent values.
   [[nodiscard]] std::string text() const;
-  /// The same; nothing for lists, maps and absent values.
+  /// Like text(), but empty for lists, maps and absent values.
   [[nodiscard]] std::optional<std::string> scalar() const;
   /// A number in [low, high]; `unit` (may be empty) is for the message.
   [[nodiscard]] double number(double low, double high, std::string_view unit) const;
@@ -79,14 +80,14 @@ struct YamlEntry {
   YamlNode value;
 };
 
-/// The only document of a text; `source` stands for the file in messages, `root_name` for the
-/// document. An empty text is a document without a value. Fails with "FILE:LINE: not valid YAML:
-/// ...", for more than one document and beyond the limits of foreign_file.hpp: bytes, levels, and
-/// values, where an alias counts as all that it stands for.
+/// The only document of a text; `source` replaces the file in messages, `root_name` is the name of
+/// the document. An empty text is a document without a value. Fails with "FILE:LINE: not valid
+/// YAML: ...", for more than one document, and beyond the limits of foreign_file.hpp: bytes,
+/// levels, and values, where an alias counts with all its content.
 [[nodiscard]] YamlNode parse_yaml(const std::string& text, const std::string& source,
                                   std::string root_name);
 
-/// A text as a scalar of a YAML file, in quotes where it would read as something else.
+/// A text as a scalar of a YAML file, in quotes if it would otherwise read as another type.
 [[nodiscard]] std::string yaml_scalar(const std::string& text);
 
 }  // namespace topogeo::support
