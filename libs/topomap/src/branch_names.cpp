@@ -5,7 +5,7 @@
 namespace topogeo::topomap {
 namespace {
 
-// Where a branch this near to its end already belongs to the junction.
+// Part of a branch near its end that already belongs to the junction.
 constexpr double kEnd_m = 0.5;
 constexpr double kShortest_m = 1.2;  // fixed: a shorter branch is all ends
 

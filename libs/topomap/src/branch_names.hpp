@@ -1,8 +1,8 @@
 // Lasting names for the branches of the global map.
 //
-// The map is extracted anew for each snapshot, so its branches have no identity of their own. Each
-// local branch that passes no anchor yet leaves one at its middle, far from the junctions and ends
-// that move a little with every view; a branch of the map is named by the lowest anchor on it.
+// Each snapshot extracts the map again, so its branches have no identity of their own. Each local
+// branch that passes no anchor yet leaves one at its middle, far from the junctions and ends that
+// move a little with every view; the lowest anchor on a branch of the map names it.
 #pragma once
 
 #include <cstdint>
@@ -24,9 +24,9 @@ namespace topogeo::topomap {
 
 class BranchNames {
  public:
-  static constexpr double kReach_m = 0.5;  ///< from an anchor to the branch that it names
+  static constexpr double kReach_m = 0.5;  ///< limit between an anchor and the branch that it names
 
-  /// Leaves anchors for the branches of one view that are real, on the main graph and unnamed.
+  /// Adds anchors for the branches of one view that are real, on the main graph and unnamed.
   void add(const LocalMap& map, const geometry::Pose2& T_map_robot);
 
   /// Anchors by name, map frame.

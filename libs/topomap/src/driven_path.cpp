@@ -7,7 +7,7 @@
 namespace topogeo::topomap {
 namespace {
 
-// Between the places that are kept of a branch: half of what two views of it may lie apart.
+// Spacing of the stored places of a branch: half the distance allowed between two views of it.
 constexpr double kSpacing_m = 0.25;
 
 std::vector<Eigen::Vector2d> places_seen(const LocalMap& map, const geometry::Pose2& T_map_robot) {

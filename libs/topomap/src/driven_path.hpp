@@ -1,4 +1,4 @@
-// Where the robot drove, and what it saw of the map there, as far as virtual links need it.
+// The driven path and the parts of the map seen along it, for virtual links.
 #pragma once
 
 #include <cstdint>
@@ -14,16 +14,16 @@ namespace topogeo::topomap {
 struct VisitedStop {
   std::uint32_t map_id = 0;
   geometry::Pose2 T_map_robot;
-  /// Its map has the id after that of the stop before it in DrivenPath::stops and is of the same
-  /// drive, so the robot drove from there to here.
+  /// Its map has the id after that of the previous stop in DrivenPath::stops and belongs to the
+  /// same drive, so the robot drove from there to here.
   bool follows = false;
-  std::vector<Eigen::Vector2d> path_m;  ///< tracked scans since that stop, map frame
+  std::vector<Eigen::Vector2d> path_m;  ///< tracked scans since the previous stop, map frame
   std::vector<ScanPoint> points;        ///< of its scan, robot frame
   /// Places on the branches that vote for the map (real, on the main graph), map frame, nearest to
   /// the robot first.
   std::vector<Eigen::Vector2d> seen_m;
 
-  /// From a point of the map frame to the nearest scan point; 0 when there is none.
+  /// Distance from a point of the map frame to the nearest scan point; 0 without points.
   [[nodiscard]] double clearance_m(const Eigen::Vector2d& point_m) const;
 };
 

@@ -17,12 +17,12 @@
 namespace topogeo::topomap {
 namespace {
 
-// Bounds of sane input, far beyond any building and any laser: more is a defect of the sender.
+// Limits of plausible input, far beyond any building and any laser: more is a fault of the sender.
 constexpr double kLargestMap_m = 5000.0;
 constexpr double kLargestView_m = 500.0;
 
 bool within(const Eigen::Vector2d& point_m, double limit_m) {
-  // Written so that NaN is outside.
+  // Written so that a NaN is outside.
   return std::fabs(point_m.x()) <= limit_m && std::fabs(point_m.y()) <= limit_m;
 }
 
@@ -61,7 +61,7 @@ struct GlobalMapBuilder::State {
   VoteGrid grid;
   NodeFusion nodes;
   BranchNames names;
-  PairFusion pairs;  // instead of the three above with FusionRule::kPairs
+  PairFusion pairs;  // replaces the three above with FusionRule::kPairs
   DrivenPath path;
 };
 

@@ -61,11 +61,11 @@ class LocalMapBuilder::Work {
   Recycled<LocalBranch> branches_;
   Components components_;
   BranchStateFinder state_finder_;
-  // Of the branch at hand.
+  // For the current branch.
   std::vector<BranchPoint> points_;
   std::vector<char> confirmed_;      // per point
-  std::vector<BranchState> cuts_;    // where the branch is cut into pieces, in order
-  std::vector<double> length_m_;     // per root: of all its branches
+  std::vector<BranchState> cuts_;    // where the branch is divided, in order
+  std::vector<double> length_m_;     // per root: total of all its branches
   std::vector<std::uint32_t> kept_;  // new id of each node
 };
 
@@ -105,9 +105,9 @@ void LocalMapBuilder::Work::take_points(const LocalVoronoiDiagram& diagram,
   }
 }
 
-/// 5.5: walks outward from the real node, or from the point nearest to the robot, and ends a loose
-/// end before the first step longer than the threshold. Successive points are compared, not each
-/// with the start (docs/algorithms.md, "Local topo-geometric map", errata).
+/// 5.5: walks outward from the real node, or from the point nearest to the robot, and cuts a loose
+/// end before the first step longer than the threshold. Compares successive points, not each with
+/// the start (docs/algorithms.md, "Local topo-geometric map", errata).
 void LocalMapBuilder::Work::cut_far_points(const DiagramBranch& branch) {
   const bool loose_a = branch.node_a == DiagramBranch::kLoose;
   const bool loose_b = branch.node_b == DiagramBranch::kLoose;
@@ -135,8 +135,7 @@ std::size_t LocalMapBuilder::Work::end_of_stretch(std::size_t first) const {
   return end;
 }
 
-/// Gives stretches of the given kind that are too short to mean anything the kind of what is beside
-/// them.
+/// Gives stretches of the given kind that are too short the kind of their neighbours.
 void LocalMapBuilder::Work::absorb_short_stretches(bool short_ones_are) {
   const char kind = short_ones_are ? 1 : 0;
   for (std::size_t first = 0; first < confirmed_.size();) {
@@ -154,8 +153,8 @@ void LocalMapBuilder::Work::absorb_short_stretches(bool short_ones_are) {
   }
 }
 
-/// Where the branch has a state, and where it stops or starts to be confirmed. The branch goes
-/// through the exact places of its states.
+/// Finds the states of the branch and the borders of its confirmed stretches. The branch passes the
+/// exact places of its states.
 void LocalMapBuilder::Work::find_cuts() {
   cuts_.clear();
   absorb_short_stretches(false);
@@ -168,7 +167,7 @@ void LocalMapBuilder::Work::find_cuts() {
     for (const BranchState& state : cuts_) points_[state.point] = state.at;
   }
   for (std::size_t i = 1; i + 1 < points_.size(); ++i) {
-    // The point on the border is the last one that is confirmed.
+    // The point on the border is the last confirmed one.
     const bool border = confirmed_[i] != 0 && (confirmed_[i - 1] == 0 || confirmed_[i + 1] == 0);
     if (border) cuts_.push_back({i, NodeKind::kFictitious, points_[i]});
   }
@@ -189,14 +188,14 @@ void LocalMapBuilder::Work::add_piece(const DiagramBranch& from, bool is_virtual
   branch.node_b = node_b;
   branch.base_groups = from.base_groups;
   branch.is_virtual = is_virtual;
-  // The ends can belong to the neighbours' kind; what lies between does not change.
+  // The ends can have the neighbours' kind; the points in between are all of one kind.
   branch.confirmed = confirmed_[first] != 0 && confirmed_[last] != 0 &&
                      confirmed_[first + (last - first) / 2] != 0;
   branch.points.assign(points_.begin() + static_cast<std::ptrdiff_t>(first),
                        points_.begin() + static_cast<std::ptrdiff_t>(last) + 1);
 }
 
-/// Adds a branch, in pieces where it has states or borders of what is confirmed.
+/// Adds a branch, divided at its states and at the borders of its confirmed stretches.
 void LocalMapBuilder::Work::add_branch(const DiagramBranch& from, bool is_virtual) {
   const NodeKind end_kind = is_virtual ? NodeKind::kVirtual : NodeKind::kFictitious;
   const auto end_node = [&](std::uint32_t node, const BranchPoint& at) {
@@ -217,8 +216,8 @@ void LocalMapBuilder::Work::add_branch(const DiagramBranch& from, bool is_virtua
   add_piece(from, is_virtual, before, node_b, first, points_.size() - 1);
 }
 
-/// Marks the graph nearest to the robot (def. 5.2.2). Loose ends of the same base groups that lie
-/// nearer than the threshold of 5.5 are ends of one branch that the laser did not see whole.
+/// Marks the graph nearest to the robot (def. 5.2.2). Loose ends of the same base groups nearer to
+/// each other than the threshold of 5.5 are ends of one branch that the laser did not see whole.
 void LocalMapBuilder::Work::mark_main_graph(LocalMap& map) {
   components_.reset(map.nodes.size());
   for (const LocalBranch& branch : map.branches) components_.join(branch.node_a, branch.node_b);

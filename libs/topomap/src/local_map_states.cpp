@@ -25,9 +25,9 @@ struct BranchStateFinder::Floor {
     return floor;
   }
 
-  /// True if walking from the floor in direction `step` the clearance rises to `rise_m` above that
-  /// of the floor, at a point farther than the threshold of 5.4, before it comes down to the floor
-  /// again. Where `confirmed` is not empty the rise ends where that is 0.
+  /// True if, walking from the floor in direction `step`, the clearance rises to `rise_m` above
+  /// that of the floor, at a point farther than the threshold of 5.4, before it returns to the
+  /// floor. Unless `confirmed` is empty, the rise ends where that is 0.
   [[nodiscard]] bool rises(std::span<const BranchPoint> points, std::span<const char> confirmed,
                            std::ptrdiff_t step, double rise_m, double confirm_m) const {
     const std::size_t from = step > 0 ? last : first;
@@ -75,16 +75,16 @@ void BranchStateFinder::find_minima(std::span<const BranchPoint> points, double 
 
 namespace {
 
-// Fixed, both: they follow from the geometry of corners.
-/// Clearances this close are taken as equal, metres.
+// Both are fixed: they follow from the geometry of corners.
+/// Clearances this close count as equal, metres.
 constexpr double kLevelM = 0.02;
-/// Behind the corner of one wall the clearance of a corridor 2 m wide is 2 cm above its level after
-/// 0.28 m, and a wider one later.
+/// Beyond the corner of one wall, the clearance of a corridor 2 m wide is 2 cm above its level
+/// after 0.28 m; that of a wider one later.
 constexpr double kLargestDelayM = 0.4;
 
 }  // namespace
 
-/// The place on a branch at an arc length within its first and last.
+/// The place on a branch at an arc length between its first and last point.
 BranchState BranchStateFinder::state_at(std::span<const BranchPoint> points, double arc_m,
                                         NodeKind kind) const {
   const auto found = std::upper_bound(arc_m_.begin() + 1, arc_m_.end() - 1, arc_m);
@@ -99,9 +99,9 @@ BranchState BranchStateFinder::state_at(std::span<const BranchPoint> points, dou
 }
 
 /// The minimum of the parabola through the squared clearances around a lowest point, by least
-/// squares: beside a door post the squared clearance is one, and readings make the lowest point
-/// itself jump along a frame of some depth. The lowest point where there are too few points, or no
-/// minimum within reach.
+/// squares: beside a door post the squared clearance is a parabola, and noise makes the lowest
+/// point itself jump along a deep frame. Falls back to the lowest point with too few points or
+/// without a minimum within reach.
 BranchState BranchStateFinder::minimum(std::span<const BranchPoint> points, std::size_t lowest,
                                        double reach_m) const {
   std::size_t first = lowest;
@@ -137,10 +137,10 @@ double BranchStateFinder::level_of(std::span<const BranchPoint> points, const Fl
 }
 
 /// Mouth of a corridor: where the clearance starts to rise from its level. Beyond the corners of a
-/// mouth the squared clearance grows with the square of the distance from it, as much where both
-/// walls end there and half as much where one does. So the root of its growth is a line over the
-/// distance: fitted by least squares up to a rise of `rise_m` and followed back to zero. The last
-/// point on the level, up to 0.3 m beyond the mouth, where there are too few points for a line.
+/// mouth the squared clearance grows with the square of the distance from it, fully if both walls
+/// end there and half as much if one does. So the root of its growth is a line over the distance:
+/// fitted by least squares up to a rise of `rise_m` and extrapolated back to zero. With too few
+/// points for a line, the last point on the level, up to 0.3 m beyond the mouth.
 BranchState BranchStateFinder::mouth_of(std::span<const BranchPoint> points, const Floor& floor,
                                         std::ptrdiff_t step, double rise_m) {
   const double level_m = level_of(points, floor);
@@ -166,7 +166,7 @@ BranchState BranchStateFinder::mouth_of(std::span<const BranchPoint> points, con
   const double spread = count * roots_sq - roots * roots;
   if (count < 4.0 || !(spread > 0.0)) return state;
   const double distance_m = (distances * roots_sq - roots * products) / spread;
-  // Where it would lie beyond the last level point, or far back, walls do not end at a corner.
+  // If it lay beyond the last level point, or far back, the walls would not end at a corner.
   const double back_m = std::clamp(-distance_m, 0.0, kLargestDelayM);
   const double inner_m = arc_m_[last] - static_cast<double>(step) * back_m;
   return state_at(points, std::clamp(inner_m, arc_m_[floor.first], arc_m_[floor.last]),

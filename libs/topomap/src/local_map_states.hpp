@@ -19,18 +19,18 @@ struct BranchState {
 class BranchStateFinder {
  public:
   /// The states of a branch in the order of its points, valid until the next call. A minimum of the
-  /// clearance, confirmed on both sides (5.3, 5.4), is a door or a narrowing; a long level stretch
-  /// that the clearance rises from is a corridor, and the end of the stretch the passage to the
-  /// hall. A maximum is no state. `confirmed` has one value per point; a state lies where it is not
-  /// 0, and so does the rise from a corridor to a hall: where a wall stops being seen the clearance
-  /// rises as at a mouth.
+  /// clearance, confirmed on both sides (5.3, 5.4), is a door or a narrowing. A long level stretch
+  /// from which the clearance rises is a corridor, and the end of the stretch the passage to the
+  /// hall. A maximum is no state. `confirmed` has one value per point; states, and the rise from a
+  /// corridor to a hall, need values other than 0, because the clearance also rises where the view
+  /// of a wall ends.
   std::span<const BranchState> find(std::span<const BranchPoint> points,
                                     std::span<const char> confirmed, const LocalMapConfig& config);
 
-  /// The states of a branch as the thesis prints them (5.1-5.4), valid until the next call: each
-  /// point at which the sign of the slope changes, when all points up to the first one farther than
-  /// state_confirm_m go on in the new direction. A change from falling to rising is a door or
-  /// narrowing, any other one a passage between hall and corridor.
+  /// The states of a branch as printed in the thesis (5.1-5.4), valid until the next call: each
+  /// point at which the sign of the slope changes, if all points up to the first one farther than
+  /// state_confirm_m continue in the new direction. A change from falling to rising is a door or
+  /// narrowing, any other a passage between hall and corridor.
   std::span<const BranchState> find_slope_changes(std::span<const BranchPoint> points,
                                                   std::span<const char> confirmed,
                                                   const LocalMapConfig& config);

@@ -13,7 +13,7 @@
 namespace topogeo::topomap {
 namespace {
 
-/// Ids from here on belong to nodes without a fused node and branches without an anchor.
+/// Ids from here on: nodes without a fused node and branches without an anchor.
 constexpr std::uint32_t kFirstUnfusedId = 1U << 30U;
 
 class Extraction {
@@ -35,7 +35,7 @@ class Extraction {
   }
 
  private:
-  // A branch while it is cut at doors and the like; points without the two nodes.
+  // A branch during the division at doors and the like; points without the two nodes.
   struct Piece {
     MapNode a;
     MapNode b;
@@ -47,7 +47,7 @@ class Extraction {
            n.weight_for >= config_.keep_share * (n.weight_for + n.weight_against);
   }
 
-  // The most observed fused node of the wanted sort near a place, each used once.
+  // The most observed fused node of the wanted kind near a place; each is used once.
   template <typename Wanted>
   std::optional<std::uint32_t> claim(const RidgePoint& place, double radius_m, Wanted wanted) {
     std::optional<std::uint32_t> best;
@@ -77,7 +77,7 @@ class Extraction {
       ++degree[e.a];
       ++degree[e.b];
     }
-    // Best supported places first, so that of two junctions near one fused node the surer gets it.
+    // Best supported places first: the better of two junctions near one fused node gets it.
     std::vector<std::uint32_t> order;
     for (std::uint32_t i = 0; i < ridge_.nodes.size(); ++i) {
       if (degree[i] > 0) order.push_back(i);
@@ -95,13 +95,13 @@ class Extraction {
   MapNode name(const RidgePoint& place, std::uint32_t degree) {
     const bool junction = degree > 2;
     const auto wanted = [junction](NodeKind k) { return !junction || k == NodeKind::kReal; };
-    // A free end is explained by a node only if that lies right there.
+    // Only a node right there explains a free end.
     const double radius = junction ? config_.node_merge_m : 0.5 * config_.node_merge_m;
     if (const std::optional<std::uint32_t> id = claim(place, radius, wanted)) return fused(*id);
     return unfused(place, junction ? NodeKind::kReal : NodeKind::kFictitious);
   }
 
-  // Doors, narrowings and hall-corridor passages cut the branch that they lie on.
+  // Divides branches at the doors, narrowings and hall-corridor passages on them.
   void place_on_branches() {
     std::vector<std::uint32_t> order;
     for (std::uint32_t id = 0; id < fusion_.nodes().size(); ++id) {
@@ -143,7 +143,7 @@ class Extraction {
     pieces_.push_back(std::move(second));
   }
 
-  // For each piece the lowest anchor that lies nearest to it, if any.
+  // For each piece the lowest of the anchors that are nearest to it, if any.
   [[nodiscard]] std::vector<std::optional<std::uint32_t>> anchors_of_pieces() const {
     std::vector<std::optional<std::uint32_t>> lowest(pieces_.size());
     for (std::uint32_t id = 0; id < names_.anchors().size(); ++id) {
@@ -185,9 +185,9 @@ class Extraction {
     }
   }
 
-  // Takes the steps of the grid out of the curves; the ends stay at their nodes.
+  // Removes the steps of the grid from the curves; the ends stay at their nodes.
   void smooth_branches() {
-    constexpr int kPasses = 6;  // fixed: what takes out steps of one cell
+    constexpr int kPasses = 6;  // fixed: enough for steps of one cell
     for (MapBranch& branch : map_.branches) {
       std::vector<BranchPoint>& p = branch.points;
       for (int pass = 0; pass < kPasses; ++pass) {

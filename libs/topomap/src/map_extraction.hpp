@@ -1,4 +1,4 @@
-// Makes the global map of the refined ridge and the fused nodes.
+// Extracts the global map from the refined ridge and the fused nodes.
 #pragma once
 
 #include "topogeo/topomap/global_map_builder.hpp"
@@ -9,9 +9,9 @@
 
 namespace topogeo::topomap {
 
-/// Ids of nodes are those of the fused nodes that lie there, ids of branches those of their
-/// anchors; what has neither (free ends, junctions that no single view saw, branches just found) is
-/// named by the block of the grid where it lies.
+/// Nodes have the ids of the fused nodes at their place, branches the ids of their anchors.
+/// Elements without either (free ends, junctions that no single view saw, new branches) are named
+/// by the block of the grid at their place.
 GlobalMap extract_map(const RidgeGraph& ridge, const NodeFusion& nodes, const BranchNames& names,
                       const GlobalMapConfig& config);
 

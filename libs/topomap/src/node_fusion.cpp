@@ -69,7 +69,7 @@ std::optional<std::uint32_t> NodeFusion::equivalent(const FusedNode& seen) const
 
 void NodeFusion::merge(std::uint32_t id, const FusedNode& seen) {
   FusedNode& known = nodes_[id];
-  // Several near-by nodes of one view are one observation; the first stands for them.
+  // Several neighbouring nodes of one view are one observation; the first one counts.
   if (known.last_view == view_) return;
   known.last_view = view_;
   tree_.remove(Entry{{known.position_m.x(), known.position_m.y()}, id});

@@ -1,4 +1,4 @@
-// Equivalent nodes of all views, merged (Thesis, 7.3.2.1).
+// Fusion of the equivalent nodes of all views (Thesis, 7.3.2.1).
 #pragma once
 
 #include <cstdint>
@@ -20,30 +20,30 @@
 
 namespace topogeo::topomap {
 
-/// A node as all views that saw it have it.
+/// A node fused from all views that saw it.
 struct FusedNode {
   NodeKind kind = NodeKind::kReal;
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< mean over the views, map frame (7.25)
   double clearance_m = 0.0;                              ///< mean over the views (7.26)
-  std::uint32_t observations = 0;                        ///< views that saw it
+  std::uint32_t observations = 0;                        ///< number of views that saw it
   std::int64_t last_seen_ns = 0;                         ///< stamp of the last of them
   double weight_for = 0.0;      ///< the same, fading beyond GlobalMapConfig::memory_views
-  double weight_against = 0.0;  ///< views that saw the place without it, fading alike
-  std::int64_t last_view = -1;  ///< view that touched it last
+  double weight_against = 0.0;  ///< views of the place without it, fading alike
+  std::int64_t last_view = -1;  ///< view that last updated it
 };
 
-/// True for kinds that can stand for the same place seen differently.
+/// True for kinds that can be one place seen differently.
 bool compatible(NodeKind a, NodeKind b);
 
 class NodeFusion {
  public:
   explicit NodeFusion(const GlobalMapConfig& config) : config_(config) {}
 
-  /// Merges the nodes of one view.
+  /// Merges the nodes of one view into the fused nodes.
   void add(const LocalMap& map, const geometry::Pose2& T_map_robot, const SeenRegion& view,
            const Sighting& sighting);
 
-  /// Index = the node's id for good.
+  /// The index is the permanent id of the node.
   [[nodiscard]] const std::vector<FusedNode>& nodes() const { return nodes_; }
 
   /// Indices of the nodes within radius_m of a point, ascending.

@@ -7,7 +7,7 @@
 namespace topogeo::topomap {
 namespace {
 
-// By NodeKind.
+// Index: NodeKind.
 constexpr std::array<std::string_view, 6> kKindNames = {"real", "fictitious", "virtual",
                                                         "door", "narrowing",  "hall_corridor"};
 static_assert(kKindNames.size() == static_cast<std::size_t>(NodeKind::kHallCorridor) + 1);

@@ -14,8 +14,8 @@ using geometry::Pose2;
 
 namespace {
 
-// What the thesis leaves open of "near and of similar inclination" (def. 6.2.4). Fixed: for
-// comparison only.
+// Choices for "near and of similar inclination" (def. 6.2.4), which the thesis leaves open. Fixed,
+// because the form is only for comparison.
 constexpr double kSameInclination = 0.87;  // cosine
 constexpr double kCoincidingShare = 0.5;   // of the points of the shorter one
 
@@ -35,7 +35,7 @@ struct PairFusion::View {
   Eigen::Vector2d high_m = Eigen::Vector2d::Zero();
   Sighting sighting;
   std::set<std::uint32_t> joined;  // nodes of the map that this view was joined with
-  std::uint32_t first_branch;      // branches from this id on are of this view
+  std::uint32_t first_branch;      // branches of this view have ids from here on
 
   View(const LocalMap& map, const Pose2& pose, const Sighting& of, std::uint32_t next_branch)
       : T_map_robot(pose),
@@ -106,8 +106,8 @@ std::optional<std::size_t> PairFusion::nearest_equivalent(const MapNode& node,
   return best;
 }
 
-// 7.25 and 7.26 with each equivalent node in turn: one that comes to lie between two that were
-// apart joins all three (fig. 8.10).
+// Applies 7.25 and 7.26 to each equivalent node in turn: one between two that were apart joins all
+// three (fig. 8.10).
 std::uint32_t PairFusion::join_node(const LocalNode& node, View& view) {
   MapNode seen{next_node_,       node.kind,           view.T_map_robot * node.position_m,
                node.clearance_m, view.sighting.views, view.sighting.last_ns};
@@ -137,8 +137,8 @@ std::uint32_t PairFusion::join_node(const LocalNode& node, View& view) {
   return seen.id;
 }
 
-// Branches of one view are not joined with each other: a short one that goes on where a long one
-// ends would take its place.
+// Branches of one view are not joined with each other: a short one that continues a long one would
+// replace it.
 bool PairFusion::equivalent(const MapBranch& known, const MapBranch& seen, const View& view) const {
   if (known.id >= view.first_branch) return false;
   std::size_t in_view = 0;
@@ -166,7 +166,7 @@ bool PairFusion::equivalent(const MapBranch& known, const MapBranch& seen, const
          kCoincidingShare * static_cast<double>(std::min(in_view, seen.points.size()));
 }
 
-// Of a branch that another one stands for in the field of view, what lies outside of it.
+// Reduces a branch that is replaced within the field of view to its parts outside.
 void PairFusion::keep_outside(std::size_t known, const View& view) {
   const auto outside = [&view](const BranchPoint& p) { return !view.contains(p.position_m); };
   MapBranch& branch = branches_[known];
@@ -184,7 +184,8 @@ void PairFusion::keep_outside(std::size_t known, const View& view) {
   branches_.push_back(std::move(rest));
 }
 
-// 7.27: the points of both outside of the common field of view, and those of the newer one in it.
+// 7.27: joins the points of both outside the common field of view with those of the newer one
+// inside.
 void PairFusion::join_branch(MapBranch seen, const View& view) {
   std::optional<MapBranch> longest;
   for (std::size_t i = branches_.size(); i-- > 0;) {
@@ -196,7 +197,7 @@ void PairFusion::join_branch(MapBranch seen, const View& view) {
     seen.observations += branches_[i].observations;
   }
   if (longest) {
-    // Its parts outside were kept as branches of their own; here they are one with the new one.
+    // Its parts outside were kept as separate branches; here they are joined with the new one.
     std::vector<BranchPoint> points = seen.points;
     std::vector<std::uint32_t> ends{seen.node_a, seen.node_b};
     const Eigen::Vector2d along =

@@ -1,8 +1,8 @@
-// The global map as the thesis prints it (Thesis, 7.3.2; docs/algorithms.md, "Global map"): each
-// view is joined with the map so far, element by element, and nothing is ever taken back.
+// The global map as printed in the thesis (Thesis, 7.3.2; docs/algorithms.md, "Global map"): each
+// view is joined with the map so far, element by element, and nothing is ever removed.
 //
 // Kept for comparison: after dozens of views the errors of the poses leave bundles of almost
-// parallel branches, and a false branch stays where no later view draws over it.
+// parallel branches, and a false branch stays unless a later view replaces it.
 #pragma once
 
 #include <cstdint>
@@ -21,11 +21,11 @@ class PairFusion {
  public:
   explicit PairFusion(const GlobalMapConfig& config) : config_(config) {}
 
-  /// Joins one view. Only real elements of its main graph count. What lies in its field of view
+  /// Joins one view. Only real elements of its main graph count. Elements in its field of view
   /// (prop. 7.3.3), the rectangle around the robot and its branches, can be equivalent.
   void add(const LocalMap& map, const geometry::Pose2& T_map_robot, const Sighting& sighting);
 
-  /// The elements so far, in the order of their ids.
+  /// The current elements, ordered by id.
   [[nodiscard]] GlobalMap map() const;
 
  private:

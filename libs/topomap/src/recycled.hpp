@@ -1,5 +1,4 @@
-// Fills a vector anew while its elements, and those that it had too many of before, keep their
-// memory.
+// Refills a vector whose elements, and surplus elements of earlier fills, keep their memory.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +7,8 @@
 
 namespace topogeo::topomap {
 
-/// Between open() and close() add() gives the next element, with what it last held. The elements
-/// that are left over at close() go to a store and come back when there are too few.
+/// Between open() and close(), add() returns the next element with its old content. close() moves
+/// the remaining elements to a store, from which add() takes them back when needed.
 template <typename Element>
 class Recycled {
  public:

@@ -27,7 +27,7 @@ class Tracer {
         if (node_of_[index(next)] == kUnassigned && used_[index(next)] == 0) follow(i, next);
       }
     }
-    // What is left are closed curves without a junction.
+    // The rest are closed curves without a junction.
     for (std::int32_t i = 0; i < count; ++i) {
       if (!kept(i) || node_of_[index(i)] != kUnassigned || used_[index(i)] != 0) continue;
       make_node(i);
@@ -43,7 +43,7 @@ class Tracer {
   [[nodiscard]] bool kept(std::int32_t i) const { return ridge_.cells()[index(i)].kept; }
   [[nodiscard]] bool is_node(std::int32_t i) const { return ridge_.kept_neighbours(i).size() != 2; }
 
-  // The crest lies at the centre of gravity of the support around a cell: finer than the grid.
+  // The crest is the centre of gravity of the support around a cell: finer than the grid.
   [[nodiscard]] RidgePoint point_at(std::int32_t i) const {
     const RidgeCells::Cell& cell = ridge_.cells()[index(i)];
     Eigen::Vector2d sum(0.0, 0.0);
@@ -62,7 +62,7 @@ class Tracer {
             cell.votes.views,   cell.votes.last_seen_ns};
   }
 
-  // One node for all junction cells that touch each other, at the best supported one.
+  // Makes one node of all touching junction cells, at the best supported one.
   void make_node(std::int32_t seed) {
     const auto id = static_cast<std::int32_t>(graph_.nodes.size());
     node_of_[index(seed)] = id;
@@ -87,7 +87,7 @@ class Tracer {
     return ridge_.cells()[index(i)].votes.support;
   }
 
-  // Walks from the node cell `from` along the curve that starts at `next` to the node at its end.
+  // Follows the curve from the node cell `from` through `next` to the node at its end.
   void follow(std::int32_t from, std::int32_t next) {
     RidgeEdge edge;
     edge.a = static_cast<std::uint32_t>(node_of_[index(from)]);

@@ -1,4 +1,4 @@
-// The ridge of the votes: a graph of curves one cell wide along the places with most support.
+// The ridge of the votes: a graph of curves one cell wide along the best supported places.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ struct RidgePoint {
   double share = 0.0;            ///< share of the views that voted for it, [0, 1]
   std::uint32_t first_seen = 0;  ///< VoteGrid::Block::first_seen of its block
   std::uint32_t views = 0;
-  std::int64_t last_seen_ns = 0;  ///< stamp of the last of them
+  std::int64_t last_seen_ns = 0;  ///< stamp of the last of these views
 };
 
 struct RidgeEdge {

@@ -13,9 +13,9 @@ namespace {
 constexpr std::array<CellIndex, 8> kAround = {
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 
-// For each pattern of the eight neighbours: true when removing the cell between them neither splits
+// For each pattern of the eight neighbours: true if removing the cell between them neither splits
 // nor joins anything (Yokoi number 1) and the cell is not the end of a curve. Two neighbours that
-// touch count as an end too: a curve two cells wide would otherwise be eaten up from its end.
+// touch count as an end too: otherwise a curve two cells wide would be eroded from its end.
 std::array<bool, 256> removable_patterns() {
   std::array<bool, 256> removable{};
   for (unsigned p = 0; p < 256; ++p) {
@@ -47,7 +47,7 @@ RidgeCells::RidgeCells(const VoteGrid& grid, const GlobalMapConfig& config) {
 }
 
 void RidgeCells::lay_out(const VoteGrid& grid, const GlobalMapConfig& config) {
-  // A border as wide as the longest walk of fill_holes lets look-ups go without bounds checks.
+  // A border as wide as the longest walk of fill_holes makes bounds checks unnecessary.
   const std::int32_t border =
       1 + static_cast<std::int32_t>(largest_hole(config)) / VoteGrid::kChunk;
   std::int32_t high_x = grid.chunks().begin()->first.second;
@@ -104,7 +104,7 @@ void RidgeCells::collect(const VoteGrid& grid, const GlobalMapConfig& config) {
   }
 }
 
-// Drops the connected sets of cells of which none reaches the higher threshold (hysteresis).
+// Drops connected sets of cells without a cell above the higher threshold (hysteresis).
 void RidgeCells::drop_unsupported(const GlobalMapConfig& config) {
   std::vector<std::int32_t> supported;
   std::vector<char> visited(cells_.size(), 0);
@@ -129,7 +129,7 @@ void RidgeCells::drop_unsupported(const GlobalMapConfig& config) {
   }
   for (const std::unique_ptr<Tile>& tile : tiles_) tile->fill(kNone);
   std::vector<Cell> cells;
-  cells.reserve(supported.size() + supported.size() / 8);  // with the holes to come
+  cells.reserve(supported.size() + supported.size() / 8);  // with room for holes
   for (const std::int32_t k : supported) cells.push_back(cells_[static_cast<std::size_t>(k)]);
   cells_ = std::move(cells);
   for (std::size_t i = 0; i < cells_.size(); ++i) {
@@ -194,8 +194,8 @@ unsigned RidgeCells::pattern(std::int32_t index) const {
   return p;
 }
 
-// Removes cells in the order of rising support as long as the shape keeps its connections and ends:
-// what is left are the crests.
+// Removes cells in the order of rising support if the shape keeps its connections and ends: the
+// crests remain.
 void RidgeCells::thin() {
   static const std::array<bool, 256> kRemovable = removable_patterns();
   using Entry = std::pair<float, std::int32_t>;

@@ -1,4 +1,4 @@
-// The set of cells that lie on a branch, thinned to curves one cell wide.
+// The set of cells on branches, thinned to curves one cell wide.
 #pragma once
 
 #include <array>
@@ -22,11 +22,11 @@ class RidgeCells {
     std::uint32_t first_seen = 0;
     bool kept = false;  ///< on the thinned ridge
   };
-  /// Indices of cells: 0 east, then counter-clockwise to 7 south-east; kNone where the neighbour is
+  /// Indices of cells: 0 east, then counter-clockwise to 7 south-east; kNone if the neighbour is
   /// not in the set.
   using Neighbours = std::array<std::int32_t, 8>;
 
-  /// Cells above the thresholds of `config`, small holes between them filled, thinned.
+  /// Collects cells above the thresholds of `config`, fills small holes and thins them.
   RidgeCells(const VoteGrid& grid, const GlobalMapConfig& config);
 
   [[nodiscard]] const std::vector<Cell>& cells() const { return cells_; }
@@ -53,7 +53,7 @@ class RidgeCells {
 
   std::vector<Cell> cells_;
   std::vector<Neighbours> neighbours_;        // of cells_
-  std::vector<std::unique_ptr<Tile>> tiles_;  // until neighbours_ is made
+  std::vector<std::unique_ptr<Tile>> tiles_;  // until neighbours_ is filled
   std::vector<std::int32_t> tile_of_chunk_;   // over the bounding box of the chunks, kNone: no tile
   std::int32_t low_x_ = 0;                    // of that box, chunks
   std::int32_t low_y_ = 0;

@@ -30,7 +30,7 @@ void drop_edges(RidgeGraph& graph, const std::vector<char>& drop) {
 }
 
 // Mean share over the worst stretch of ten points (a metre at the usual cell side): a detour round
-// a person who stood there is outvoted even where its ends run along a good branch.
+// a standing person is outvoted even if its ends run along a good branch.
 double worst_share(const RidgeGraph& graph, const RidgeEdge& edge) {
   constexpr std::size_t kStretch = 10;
   std::vector<double> shares;
@@ -47,7 +47,7 @@ double worst_share(const RidgeGraph& graph, const RidgeEdge& edge) {
   return worst / static_cast<double>(stretch);
 }
 
-// Cuts the outvoted part off the free ends.
+// Cuts outvoted parts off the free ends.
 void trim_ends(RidgeGraph& graph, const GlobalMapConfig& config) {
   const std::vector<std::uint32_t> degree = degrees(graph);
   std::vector<char> drop(graph.edges.size(), 0);
@@ -72,8 +72,8 @@ void trim_ends(RidgeGraph& graph, const GlobalMapConfig& config) {
   drop_edges(graph, drop);
 }
 
-// An outvoted branch stays only where it is the one link between two parts (a door that was closed
-// in most views).
+// Drops outvoted branches, except the only link between two parts (a door that was closed in most
+// views).
 void drop_outvoted(RidgeGraph& graph, const GlobalMapConfig& config) {
   Components parts(graph.nodes.size());
   std::vector<std::pair<double, std::size_t>> weak;
@@ -100,7 +100,7 @@ RidgeEdge reversed(RidgeEdge edge) {
   return edge;
 }
 
-// Joins the two edges at every node that has no more than these two.
+// Joins the two edges at every node that has exactly two.
 void merge_through_nodes(RidgeGraph& graph) {
   std::vector<std::vector<std::size_t>> at(graph.nodes.size());
   for (std::size_t i = 0; i < graph.edges.size(); ++i) {
@@ -127,9 +127,8 @@ void merge_through_nodes(RidgeGraph& graph) {
   drop_edges(graph, drop);
 }
 
-// Drops branches with a free end that lead nowhere: not far beyond the free circle of their
-// junction. One at a junction and round, the shortest first, because without it two others can be
-// one long branch.
+// Drops branches with a free end not far beyond the free circle of their junction. One per junction
+// and round, the shortest first, because without it two others can form one long branch.
 void prune_spurs(RidgeGraph& graph, const GlobalMapConfig& config) {
   for (;;) {
     const std::vector<std::uint32_t> degree = degrees(graph);
@@ -158,7 +157,7 @@ void prune_spurs(RidgeGraph& graph, const GlobalMapConfig& config) {
   }
 }
 
-// Moves everything at `gone` to `kept`, midway between them.
+// Moves everything at `gone` to `kept`, and that midway between them.
 void unite_nodes(RidgeGraph& graph, std::uint32_t kept, std::uint32_t gone) {
   RidgePoint& to = graph.nodes[kept];
   const RidgePoint& from = graph.nodes[gone];
@@ -173,8 +172,7 @@ void unite_nodes(RidgeGraph& graph, std::uint32_t kept, std::uint32_t gone) {
   }
 }
 
-// Two junctions linked by less than the merge distance are one (fig. 8.10); the shortest link goes
-// first.
+// Merges two junctions linked by less than the merge distance (fig. 8.10), shortest link first.
 void collapse_junctions(RidgeGraph& graph, const GlobalMapConfig& config) {
   for (;;) {
     const std::vector<std::uint32_t> degree = degrees(graph);
@@ -195,7 +193,7 @@ void collapse_junctions(RidgeGraph& graph, const GlobalMapConfig& config) {
   }
 }
 
-// Of several short links between the same two nodes only the best supported stays.
+// Keeps only the best supported of several short links between the same two nodes.
 void drop_doubles(RidgeGraph& graph, const GlobalMapConfig& config) {
   std::vector<char> drop(graph.edges.size(), 0);
   for (std::size_t i = 0; i < graph.edges.size(); ++i) {
@@ -222,10 +220,10 @@ void drop_small_components(RidgeGraph& graph, const GlobalMapConfig& config) {
   drop_edges(graph, drop);
 }
 
-// A place on the graph: a node, or a point of an edge.
+// A place on the graph: a node or a point of an edge.
 struct RidgePlace {
   std::size_t edge = 0;
-  std::optional<std::size_t> point;  // of the edge; none: the node
+  std::optional<std::size_t> point;  // index in the edge; empty: the node
   std::uint32_t node = 0;
 };
 
@@ -235,8 +233,8 @@ struct Gap {
   RidgePlace other;
 };
 
-// The nearest place of another part that the free end can reach in a straight line: where the free
-// circles of two places overlap, the line between them is free.
+// The nearest place of another part that the free end can reach in a straight line: the line
+// between two places is free if their free circles overlap.
 std::optional<Gap> nearest_gap(const RidgeGraph& graph, std::uint32_t end, Components& parts,
                                const GlobalMapConfig& config) {
   const RidgePoint& from = graph.nodes[end];
@@ -256,7 +254,7 @@ std::optional<Gap> nearest_gap(const RidgeGraph& graph, std::uint32_t end, Compo
   return best;
 }
 
-// Makes a node of a point of an edge and returns it.
+// Makes a point of an edge a node and returns it.
 std::uint32_t split(RidgeGraph& graph, const RidgePlace& place) {
   if (!place.point) return place.node;
   const auto node = static_cast<std::uint32_t>(graph.nodes.size());

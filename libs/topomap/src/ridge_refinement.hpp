@@ -1,5 +1,5 @@
-// Turns the raw ridge into a readable graph: drops what was outvoted, spurs and crumbs, collapses
-// near-by junctions, closes gaps.
+// Turns the raw ridge into a readable graph: drops outvoted branches, spurs and crumbs, merges
+// neighbouring junctions, closes gaps.
 #pragma once
 
 #include "topogeo/topomap/global_map_builder.hpp"
@@ -8,7 +8,7 @@
 
 namespace topogeo::topomap {
 
-/// Length of the edge from node to node, m.
+/// Length of the edge between its nodes, m.
 double length_m(const RidgeGraph& graph, const RidgeEdge& edge);
 
 /// The refined graph; every node has at least one edge.

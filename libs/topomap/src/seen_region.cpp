@@ -9,7 +9,7 @@ namespace topogeo::topomap {
 namespace {
 
 constexpr std::size_t kGroup = 8;
-/// Of squared lengths: what rounding makes of a distance to a box is no reason to leave it out.
+/// Tolerance of squared lengths: rounding in the distance to a box must not exclude it.
 constexpr double kRounding = 1.0 + 1e-9;
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {

@@ -1,4 +1,4 @@
-// What one scan saw: the polygon of its points, and where that polygon is open.
+// The region seen by one scan: the polygon of its points and its openings.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,12 @@ namespace topogeo::topomap {
 
 class SeenRegion {
  public:
-  /// From the scan points of `map`, in beam order seen from the laser. Neighbouring points further
-  /// apart than gap_m leave an opening between them.
+  /// Built from the scan points of `map`, in beam order seen from the laser. Neighbouring points
+  /// further apart than gap_m have an opening between them.
   SeenRegion(const LocalMap& map, double gap_m);
 
-  /// True when the point (robot frame) was seen and nothing unseen lies within radius_m of it: the
-  /// diagram at that point is then the same as if everything were known.
+  /// True if the point (robot frame) was seen and nothing unseen lies within radius_m of it: the
+  /// diagram at that point is then the same as in a fully known environment.
   [[nodiscard]] bool certain(const Eigen::Vector2d& point_m, double radius_m) const;
 
  private:
@@ -28,7 +28,8 @@ class SeenRegion {
     double length2_m2 = 0.0;
   };
 
-  /// Neighbouring openings: most of them are too far from a point to be looked at one by one.
+  /// Neighbouring openings with their box: most groups are too far from a point to check each
+  /// opening.
   struct Openings {
     std::size_t begin = 0;
     std::size_t end = 0;
@@ -41,7 +42,7 @@ class SeenRegion {
 
   Eigen::Vector2d origin_m_;
   std::vector<Eigen::Vector2d> points_m_;
-  std::vector<double> angles_rad_;  // of the points seen from the laser, ascending
+  std::vector<double> angles_rad_;  // bearing of the points from the laser, ascending
   std::vector<Segment> openings_;   // along the polygon
   std::vector<Openings> groups_;
 };

@@ -20,9 +20,9 @@
 namespace topogeo::topomap {
 namespace {
 
-// Fixed: fine enough to follow a driven curve, and the points of a map stay few.
+// Fixed: fine enough to follow a driven curve with few points.
 constexpr double kStep_m = 0.2;
-// A link is one message on the network, which holds 2,048 points; a step takes two at most.
+// A link is one message on the network with at most 2,048 points; a step takes up to two.
 constexpr double kMostSteps = 900.0;
 
 // A place on the map.
@@ -31,7 +31,7 @@ struct Place {
   std::uint32_t node = 0;  ///< index of a node of its part
 };
 
-// Which places of the map are where, and which are connected.
+// Index of the places of the map and their connections.
 class Parts {
  public:
   explicit Parts(const GlobalMap& map) : components_(map.nodes.size()), count_(map.nodes.size()) {
@@ -50,7 +50,7 @@ class Parts {
     if (count_ > 1) tree_ = Tree(entries);
   }
 
-  /// Without a node there are none.
+  /// 0 without nodes.
   [[nodiscard]] std::size_t count() const { return count_; }
   /// False if the two were connected before.
   bool join(const Place& a, const Place& b) { return components_.join(a.node, b.node); }
@@ -58,7 +58,7 @@ class Parts {
     return components_.root(a.node) == components_.root(b.node);
   }
 
-  /// The nearest place of the map, or of the part that has `like`, within reach_m of a point.
+  /// The nearest place of the map, or of the part that contains `like`, within reach_m of a point.
   [[nodiscard]] std::optional<Place> near(const Eigen::Vector2d& point_m, double reach_m,
                                           const Place* like = nullptr) {
     using Box = boost::geometry::model::box<IndexPoint>;
@@ -75,7 +75,7 @@ class Parts {
     return best;
   }
 
-  /// Where the stop touches the map.
+  /// The place where the stop touches the map.
   [[nodiscard]] std::optional<Place> touched_by(const VisitedStop& stop, double reach_m) {
     for (const Eigen::Vector2d& seen_m : stop.seen_m) {
       if (std::optional<Place> place = near(seen_m, reach_m)) return place;
@@ -93,7 +93,7 @@ class Parts {
   Tree tree_;
 };
 
-// A stop and where it touches the map.
+// A stop and the place where it touches the map.
 struct Touch {
   std::size_t stop = 0;  ///< index in DrivenPath::stops
   Place place;
@@ -112,8 +112,8 @@ class PathDrawing {
     points_.push_back({from_m, stop, stop});
   }
 
-  /// Straight on to a place between two stops; a step of less than half is left out: scans while
-  /// the robot stood or turned add nothing.
+  /// Continues straight to a place between two stops. Steps of less than half are left out, because
+  /// scans of a robot that stands or turns add nothing.
   void line_to(const Eigen::Vector2d& to_m, std::size_t stop_a, std::size_t stop_b) {
     const Eigen::Vector2d from_m = points_.back().position_m;
     const double length_m = (to_m - from_m).norm();
@@ -146,7 +146,7 @@ double length_m(const std::vector<VisitedStop>& stops, std::size_t first, std::s
   return length_m;
 }
 
-// From the place that one stop touches to the place that the other does.
+// Path from the place touched by one stop to the place touched by the other.
 std::vector<PathPoint> path_between(const std::vector<VisitedStop>& stops, const Touch& from,
                                     const Touch& to) {
   const double step_m = std::max(kStep_m, length_m(stops, from.stop, to.stop) / kMostSteps);
@@ -167,8 +167,8 @@ struct Link {
   std::vector<PathPoint> path;  ///< between the two
 };
 
-// Leaves the part of the path that lies between the two parts: from where it is last within reach
-// of the one to where it is first within reach of the other.
+// Reduces the path to the stretch between the two parts: from the last point within reach of the
+// first part to the first point within reach of the other.
 void trim(Link& link, Parts& parts, double reach_m) {
   const Place first = link.from;
   const Place last = link.to;
@@ -223,7 +223,7 @@ std::vector<BranchPoint> points_of(const Link& link, const std::vector<VisitedSt
                                    const MapNode& from, const MapNode& to) {
   std::vector<BranchPoint> points{{from.position_m, from.clearance_m}};
   for (const PathPoint& p : link.path) {
-    // What is at a node already would be a step of no length.
+    // A point at a node would give a step of length 0.
     const double to_end_m =
         std::min((p.position_m - from.position_m).norm(), (p.position_m - to.position_m).norm());
     if (to_end_m < 0.5 * kStep_m) continue;
@@ -233,7 +233,7 @@ std::vector<BranchPoint> points_of(const Link& link, const std::vector<VisitedSt
   return points;
 }
 
-// Keeps the order of ids.
+// Keeps the elements sorted by id.
 template <typename Element>
 void insert(Element element, std::vector<Element>& elements) {
   const auto at = std::ranges::lower_bound(elements, element.id, {}, &Element::id);
@@ -244,7 +244,7 @@ const MapNode& node_of(const GlobalMap& map, std::uint32_t id) {
   return *std::ranges::lower_bound(map.nodes, id, {}, &MapNode::id);
 }
 
-// The node where a link ends that comes to `place_m`, made with `new_id` when none is near enough.
+// The node at the end of a link at `place_m`; creates it with `new_id` if none is near enough.
 MapNode node_at(const Eigen::Vector2d& place_m, double near_m, std::uint32_t new_id,
                 GlobalMap& map) {
   MapBranch* branch = nullptr;

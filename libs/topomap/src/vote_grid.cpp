@@ -21,7 +21,7 @@ void VoteGrid::add(const LocalMap& map, const geometry::Pose2& T_map_robot, cons
 
 VoteGrid::ViewWindow VoteGrid::draw(const LocalMap& map, const geometry::Pose2& T_map_robot,
                                     const SeenRegion& view) const {
-  // The window holds everything that the view could have seen: its scan points and its branches.
+  // The window covers everything that the view could see: its scan points and its branches.
   Eigen::Vector2d low = T_map_robot.position_m();
   Eigen::Vector2d high = low;
   const auto extend = [&](const Eigen::Vector2d& point_robot_m) {
@@ -67,7 +67,7 @@ void VoteGrid::draw_branch(const LocalBranch& branch, const geometry::Pose2& T_m
 
 void VoteGrid::draw_point(const BranchPoint& point_map, bool certain, bool votes,
                           ViewWindow& window) const {
-  // Cells beyond the reach of the vote but near it are neutral: the branch is there, only shifted.
+  // Cells just beyond the reach of the vote are neutral: the branch may only be shifted.
   const double reach = 1.5 * config_.vote_radius_m;
   const auto n = static_cast<std::int32_t>(std::ceil(reach / config_.cell_m));
   const std::int32_t cx = to_cell(point_map.position_m.x(), config_.cell_m);

@@ -23,12 +23,12 @@ struct CellIndex {
 };
 
 struct VoteCell {
-  float support = 0.0F;      ///< sum of votes, each falling off with distance from the branch
+  float support = 0.0F;      ///< sum of votes, each falling with the distance from the branch
   float for_views = 0.0F;    ///< weight of the views with a branch near by
   float against = 0.0F;      ///< weight of the views that saw the place without a branch
   float clearance_m = 0.0F;  ///< mean of the branches near by
   float clearance_weight = 0.0F;
-  std::uint32_t views = 0;        ///< views with a branch near by, never forgotten
+  std::uint32_t views = 0;        ///< views with a branch near by; never fades
   std::int64_t last_seen_ns = 0;  ///< stamp of the last of them
 
   [[nodiscard]] double share() const {
@@ -43,22 +43,21 @@ class VoteGrid {
   static constexpr std::int32_t kChunk = 1 << kChunkBits;  ///< cells
   static constexpr std::int32_t kBlock = 4;                ///< cells
 
-  /// 4 x 4 cells. Branches are thin, so most blocks of a chunk have no votes and are not there.
+  /// 4 x 4 cells. Branches are thin, so most blocks of a chunk have no votes and do not exist.
   struct Block {
     std::array<VoteCell, static_cast<std::size_t>(kBlock* kBlock)> cells{};
-    /// Order in which blocks were first voted for, from 1; names for places that have no better
-    /// one.
+    /// Order of the first votes, from 1; names places that have no better name.
     std::uint32_t first_seen = 0;
   };
   class Chunk {
    public:
-    /// The block of a cell; null when it has no votes.
+    /// The block of a cell; null if it has no votes.
     [[nodiscard]] const Block* find(CellIndex at) const {
       const std::uint8_t slot = slots_[block_in_chunk(at)];
       return slot == 0 ? nullptr : &blocks_[slot - 1U];
     }
     Block* find(CellIndex at) { return const_cast<Block*>(std::as_const(*this).find(at)); }
-    /// The same, made where there is none.
+    /// Like find(), but creates the block if needed.
     Block& block(CellIndex at);
 
    private:
@@ -67,7 +66,7 @@ class VoteGrid {
     std::array<std::uint8_t, kBlocks> slots_{};  // index in blocks_ + 1
     std::vector<Block> blocks_;
   };
-  /// Of a cell: its number in its chunk, row by row, and in Block::cells.
+  /// Index of a cell in its chunk, row by row, and in Block::cells.
   static std::size_t cell_in_chunk(CellIndex at) {
     return static_cast<std::size_t>(at.y & (kChunk - 1)) * kChunk +
            static_cast<std::size_t>(at.x & (kChunk - 1));
@@ -85,7 +84,7 @@ class VoteGrid {
 
   explicit VoteGrid(const GlobalMapConfig& config) : config_(config) {}
 
-  /// The votes of one view.
+  /// Adds the votes of one view.
   void add(const LocalMap& map, const geometry::Pose2& T_map_robot, const SeenRegion& view,
            const Sighting& sighting);
 
@@ -95,8 +94,8 @@ class VoteGrid {
   struct ViewCell {
     float distance2_m2 = 1e9F;  // to the nearest branch point of the main graph
     float clearance_m = 0.0F;   // of that point
-    bool certain = false;       // that point
-    bool neutral = false;       // an element that takes no vote passes near by
+    bool certain = false;       // of that point
+    bool neutral = false;       // a non-voting element passes near by
   };
   struct ViewWindow {
     CellIndex low;

@@ -9,7 +9,7 @@
 
 namespace topogeo::topomap {
 
-/// Distance of each point from the first along the branch, metres. `out` keeps its memory.
+/// Distance of each point from the first along the branch, metres. `out` keeps its capacity.
 inline void arc_lengths_m(std::span<const BranchPoint> points, std::vector<double>& out) {
   out.assign(points.size(), 0.0);
   for (std::size_t i = 1; i < points.size(); ++i) {

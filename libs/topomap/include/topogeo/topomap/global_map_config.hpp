@@ -1,4 +1,4 @@
-// Settings of the global map, which local maps are fused into.
+// Settings of the fusion of local maps into the global map.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@ class ConfigSchema;
 
 namespace topogeo::topomap {
 
-/// How the branches of local maps become those of the global one.
+/// How branches of local maps are fused.
 enum class FusionRule : std::uint8_t {
   kVotes = 0,  ///< ridges of the votes of all views
-  kPairs = 1,  ///< equivalent ones are joined in pairs, as the thesis prints it (7.25-7.27)
+  kPairs = 1,  ///< equivalent branches joined in pairs, as in the thesis (7.25-7.27)
 };
 
 struct GlobalMapConfig {

@@ -1,7 +1,8 @@
 // The local topo-geometric map made at one stop of the robot (Thesis, 5.2.3).
 //
-// Coordinates are in the robot frame at the stop (x forward, y left), metres. Everything is kept:
-// elements off the main graph serve matching, the main graph serves navigation (`in_main_graph`).
+// Coordinates are in the robot frame at the stop (x forward, y left), metres. All elements are
+// kept: those off the main graph serve matching, the main graph serves navigation
+// (`in_main_graph`).
 #pragma once
 
 #include <array>
@@ -17,8 +18,8 @@
 namespace topogeo::topomap {
 
 enum class NodeKind : std::uint8_t {
-  kReal = 0,          ///< three or more generator groups equally near, proved by what was seen
-  kFictitious = 1,    ///< where what is known of a branch ends: no place of its own meaning
+  kReal = 0,          ///< three or more generator groups equally near, proved by the scan
+  kFictitious = 1,    ///< end of the known part of a branch; no place of its own
   kVirtual = 2,       ///< of a virtual diagram; for navigation only
   kDoor = 3,          ///< minimum of clearance up to door_half_width
   kNarrowing = 4,     ///< any other minimum of clearance
@@ -46,8 +47,8 @@ struct LocalBranch {
   std::array<std::uint16_t, 2> base_groups{};
   bool is_virtual = false;
   bool in_main_graph = true;
-  bool confirmed = true;  ///< the clearance circles of its points were seen; else objects not seen
-                          ///< yet can move it
+  bool confirmed = true;  ///< the clearance circles of its points were seen; otherwise unseen
+                          ///< objects can move it
   std::vector<BranchPoint> points;  ///< ordered from node_a to node_b, at least two
 };
 
@@ -57,17 +58,17 @@ struct ScanPoint {
   float y_m = 0.0F;
 };
 
-/// A scan taken after the previous stop and before this one, located against the previous stop.
+/// A scan taken between the previous stop and this one, located relative to the previous stop.
 struct TrackedScan {
   std::uint64_t sequence = 0;
   std::int64_t stamp_ns = 0;
   geometry::Pose2 T_odom_robot;
   geometry::Pose2 T_stop_robot;  ///< in the frame of the previous stop
-  bool matched = false;          ///< false: T_stop_robot is odometry alone
+  bool matched = false;          ///< false: T_stop_robot is by odometry only
 };
 
-/// A stop by its origin, which it keeps for good whatever map it becomes part of. A session is a
-/// time in which one local mapper numbers the stops of one robot.
+/// Origin of a stop, which never changes, whatever map it joins. In a session one local mapper
+/// numbers the stops of one robot.
 struct StopId {
   std::uint64_t session = 0;
   std::uint32_t number = 0;  ///< counts the stops of the session from 0
@@ -77,33 +78,32 @@ struct StopId {
 
 struct LocalMap {
   std::string robot_id;
-  std::uint32_t id = 0;  ///< number of the stop in its map; before it is in one, in its session
+  std::uint32_t id = 0;  ///< number of the stop in its map or, outside a map, in its session
   StopId stop{};
   std::uint64_t sequence = 0;  ///< of the scan taken at the stop
   std::int64_t stamp_ns = 0;
   geometry::Pose2 T_odom_robot;      ///< odometry at the stop
   std::uint64_t odometry_epoch = 0;  ///< of T_odom_robot, as in scan::Scan
   geometry::Pose2 T_previous_robot;  ///< pose in the frame of the previous stop by scan tracking;
-                                     ///< identity at id 0
+                                     ///< identity for id 0
   geometry::Pose2 T_robot_laser;     ///< mounting of the laser
   std::vector<LocalNode> nodes;
   std::vector<LocalBranch> branches;
-  std::vector<ScanPoint>
-      points;  ///< of the stop's scan, in beam order, nearer than the range limit
+  std::vector<ScanPoint> points;   ///< of the stop's scan, in beam order, within the range limit
   std::vector<TrackedScan> track;  ///< scans between the previous stop and this one, in time order
-  /// Of a map of several drives: the first stop of a later one. Neither odometry nor `track` leads
-  /// here from the stop before.
+  /// In a map of several drives: the first stop of a later drive. Neither odometry nor `track`
+  /// connects it with the previous stop.
   bool starts_drive = false;
 };
 
 /// 64-bit FNV-1a hash of everything that a match can depend on (id, points, nodes, branches,
-/// mounting), so that a worker can check that it holds the map that a task means.
+/// mounting), so that a worker can check that it holds the map that a task names.
 std::uint64_t content_hash(const LocalMap& map);
-/// The same of the map as it would be with this id.
+/// The hash of the map with this id.
 std::uint64_t content_hash(const LocalMap& map, std::uint32_t id);
 
-/// The map as the stop of this number of a map of several drives; `starts_drive`: the first of a
-/// later one.
+/// The map as stop number `id` in a map of several drives; `starts_drive`: the first stop of a
+/// later drive.
 LocalMap numbered(LocalMap map, std::uint32_t id, bool starts_drive);
 
 }  // namespace topogeo::topomap

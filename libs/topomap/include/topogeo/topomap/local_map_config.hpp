@@ -9,10 +9,10 @@ class ConfigSchema;
 
 namespace topogeo::topomap {
 
-/// What makes a place along a branch a state.
+/// Rule that decides which places along a branch are states.
 enum class StateRule : std::uint8_t {
   kFloors = 0,  ///< minima and plateaus of the clearance, confirmed on both sides
-  kSlopes = 1,  ///< each confirmed change of slope, as the thesis prints it (5.1-5.4)
+  kSlopes = 1,  ///< each confirmed change of slope, as printed in the thesis (5.1-5.4)
 };
 
 struct LocalMapConfig {
@@ -36,7 +36,7 @@ struct LocalMapConfig {
   double hall_rise_m = 0.3;
 };
 
-/// Declares the part of the section `local_map` that is about the map made from the diagram.
+/// Declares the part of the section `local_map` for the map made from the diagram.
 void describe(LocalMapConfig& config, support::ConfigSchema& schema);
 
 /// Throws std::invalid_argument naming key, value and range.

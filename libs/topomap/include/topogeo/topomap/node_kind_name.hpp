@@ -1,4 +1,4 @@
-// The words for the kinds of nodes, in files, messages and commands.
+// Names of the kinds of nodes in files, messages and commands.
 #pragma once
 
 #include <optional>
@@ -8,10 +8,10 @@
 
 namespace topogeo::topomap {
 
-/// "real", "fictitious", "virtual", "door", "narrowing", "hall_corridor"; "unknown" for a number
-/// that is none of them.
+/// "real", "fictitious", "virtual", "door", "narrowing", "hall_corridor"; "unknown" for any other
+/// number.
 std::string_view name_of(NodeKind kind);
-/// Nothing for any other word.
+/// Empty for any other word.
 std::optional<NodeKind> node_kind_of(std::string_view name);
 
 }  // namespace topogeo::topomap

@@ -1,4 +1,4 @@
-// Where a robot was at a time between two poses of its trajectory.
+// Pose of a robot at a time between two poses of its trajectory.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,9 @@
 
 namespace topogeo::topomap {
 
-/// On the straight line from the pose before to the one after, by the share of the time. Nothing
-/// before the first pose, after the last and between two that are more than `longest_gap_ns` apart.
-/// `poses` are in the order of time.
+/// Interpolated on the straight line between the two poses, in proportion to time. Empty before the
+/// first pose, after the last one and between two that are more than `longest_gap_ns` apart.
+/// `poses` are in time order.
 std::optional<geometry::Pose2> pose_at(
     std::span<const StampedPose> poses, std::int64_t stamp_ns,
     std::int64_t longest_gap_ns = std::numeric_limits<std::int64_t>::max());

@@ -1,4 +1,4 @@
-// The corrected trajectory of a robot: one pose for each stop, and from that one for each scan.
+// The corrected trajectory of a robot: one pose per stop, and from these one per scan.
 #pragma once
 
 #include <algorithm>
@@ -21,20 +21,20 @@ struct StopPose {
   Eigen::Matrix3d covariance =
       Eigen::Matrix3d::Zero();  ///< of (x, y, theta) in the map frame, m and rad
   StopId stop{};
-  bool located = true;      ///< false: the robot was not located, the pose means nothing
-  std::uint32_t views = 1;  ///< that it stands for: its own and those that were left out since
-                            ///< because they showed the same
-  std::int64_t last_view_ns = 0;  ///< stamp of the last of those left out; 0: none was
+  bool located = true;      ///< false: the robot was not located, the pose is meaningless
+  std::uint32_t views = 1;  ///< number of views it stands for: its own and those that were dropped
+                            ///< since because they showed the same
+  std::int64_t last_view_ns = 0;  ///< stamp of the last dropped view; 0: none
 
-  /// When its place was last seen like that.
+  /// Time of the last view like this of its place.
   [[nodiscard]] std::int64_t last_seen_ns() const { return std::max(stamp_ns, last_view_ns); }
 };
 
 struct Trajectory {
   std::uint64_t version = 0;    ///< grows with every change
   std::vector<StopPose> stops;  ///< index = local map id
-  /// Version in which stops left the map, or were forgotten, last, so that those after them have
-  /// other ids since; 0: none ever did.
+  /// Last version in which stops left the map or were forgotten, so that later stops got new ids;
+  /// 0: never.
   std::uint64_t numbered_since = 0;
 };
 
@@ -52,14 +52,14 @@ struct StampedPose {
   geometry::Pose2 pose;
 };
 
-/// One corrected pose (T_map_robot) for each scan in time order: stops as in `trajectory`, the
-/// scans between moved rigidly with the stop before them. Stops that are not located are left out,
-/// and the scans that follow them. `maps[i]` is the map of `trajectory.stops[i]`.
+/// One corrected pose (T_map_robot) per scan in time order: stops as in `trajectory`, the scans in
+/// between moved rigidly with the previous stop. Stops that are not located, and the scans that
+/// follow them, are left out. `maps[i]` is the map of `trajectory.stops[i]`.
 std::vector<StampedPose> expand_trajectory(const Trajectory& trajectory,
                                            std::span<const LocalMap> maps);
 
 /// The odometry poses (T_odom_robot) of all scans, moved so that the first is the identity and the
-/// first of each later drive is where `trajectory` has it. `maps[i]` is the map of
+/// first of each later drive has its pose in `trajectory`. `maps[i]` is the map of
 /// `trajectory.stops[i]`.
 std::vector<StampedPose> expand_odometry(const Trajectory& trajectory,
                                          std::span<const LocalMap> maps);
