@@ -13,20 +13,20 @@ constexpr std::uint16_t kNone = NearestSiteGrid::kNone;
 constexpr std::uint32_t kLoose = DiagramBranch::kLoose;
 
 // Directions along the corners: +column, +row, -column, -row; the bit of direction d is 1 << d.
-// Cells around corner (r, c), counted around it: (r-1,c-1), (r-1,c), (r,c), (r,c-1).
+// Cells around corner (r, c), in order: (r-1,c-1), (r-1,c), (r,c), (r,c-1).
 constexpr std::array<int, 4> kCellRow{-1, -1, 0, 0};
 constexpr std::array<int, 4> kCellCol{-1, 0, 0, -1};
-// The two of those cells on either side of the crack in each direction.
+// The two of these cells beside the crack in each direction.
 constexpr std::array<std::array<int, 2>, 4> kCellsBeside{{{1, 2}, {2, 3}, {3, 0}, {0, 1}}};
 
-/// Point equally far from all of `sites`, of which there are at least three; of more than three the
-/// one with the least squared differences. Nothing if they are almost on a line. The order of the
-/// sites does not matter.
+/// Point equally far from all of `sites`, at least three; for more than three the one with the
+/// least squared differences. Empty if they are almost on a line. Independent of the order of the
+/// sites.
 std::optional<Eigen::Vector2d> equidistant_point(std::span<const Eigen::Vector2d> sites) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& site : sites) mean += site;
   mean /= static_cast<double>(sites.size());
-  // With q_i seen from the mean, |q_i|^2 - 2 q_i x is the same number for each i.
+  // With q_i relative to the mean, |q_i|^2 - 2 q_i x is the same number for each i.
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
   Eigen::Vector2d right = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& site : sites) {
@@ -91,7 +91,7 @@ void CrackGraph::find_cracks() {
     const std::uint16_t* above = row > 0 ? grid_->group_row(row - 1) : here;
     const std::uint32_t first = static_cast<std::uint32_t>(row) * stride_;
     for (int col = 0; col < cols; ++col) {
-      // Eight bytes at a time: most cells are like their neighbours.
+      // Eight bytes at a time: most cells equal their neighbours.
       if (col > 0 && col + 4 <= cols && std::memcmp(here + col, above + col, 8) == 0 &&
           std::memcmp(here + col, here + col - 1, 8) == 0) {
         col += 3;
@@ -122,7 +122,7 @@ CrackGraph::Junction CrackGraph::make_junction(std::uint32_t corner) const {
   Junction junction;
   junction.corner = corner;
   const Eigen::Vector2d at = grid_->centre(row, col) - Eigen::Vector2d{half_m, half_m};
-  // Of each group the site nearest to the corner.
+  // The site of each group that is nearest to the corner.
   std::array<Eigen::Vector2d, 4> nearest;
   for (const std::uint16_t site : sites_around(corner)) {
     if (site == kNone) continue;
@@ -142,7 +142,7 @@ CrackGraph::Junction CrackGraph::make_junction(std::uint32_t corner) const {
   const std::span<const Eigen::Vector2d> sites(nearest.data(),
                                                static_cast<std::size_t>(junction.group_count));
   const auto equidistant = equidistant_point(sites);
-  // Three sites almost on a line have their centre anywhere; the corner is within a cell of it.
+  // The centre of three sites almost on a line is undefined; the corner is within a cell of it.
   const bool near = equidistant && (*equidistant - at).norm() <= 3.0 * half_m;
   junction.position_m = near ? *equidistant : at;
   for (const Eigen::Vector2d& site : sites) {
@@ -177,7 +177,7 @@ DiagramPoint CrackGraph::crack_point(std::uint32_t corner, int direction,
   const Site& a = sites_[grid_->site(row_p, col_p)];
   const Site& b = sites_[grid_->site(row_q, col_q)];
   groups = {std::min(a.group, b.group), std::max(a.group, b.group)};
-  // The difference of the squared distances to a and b is linear along the line from p to q: its
+  // The difference of the squared distances to a and b is linear along the line from p to q, so its
   // zero is exact.
   const double at_p = (p - b.position_m).squaredNorm() - (p - a.position_m).squaredNorm();
   const double at_q = (q - a.position_m).squaredNorm() - (q - b.position_m).squaredNorm();
@@ -193,14 +193,14 @@ int CrackGraph::next_direction(std::uint32_t corner, int arrived) const {
   const unsigned open = cracks_[corner] & ~(1U << back);
   if (open == 0) return -1;
   if (std::popcount(open) == 1) return std::countr_zero(open);
-  // Two groups crosswise. Cells 0 and 2 are of one group, 1 and 3 of the other.
+  // Two groups crosswise: cells 0 and 2 are of one group, 1 and 3 of the other.
   const auto [row, col] = row_col(corner);
   const double half_m = 0.5 * grid_->resolution_m();
   const Eigen::Vector2d at = grid_->centre(row, col) - Eigen::Vector2d{half_m, half_m};
   const auto sites = sites_around(corner);
   const auto sq = [&](std::size_t i) { return (sites_[sites[i]].position_m - at).squaredNorm(); };
   const bool even_connects = std::min(sq(0), sq(2)) <= std::min(sq(1), sq(3));
-  // A crack turns around a cell of the diagonal that is not connected: cell 1 lies between the
+  // A crack turns around a cell of the diagonal that is not connected. Cell 1 lies between the
   // cracks in directions 3 and 0, cell 2 between 0 and 1, cell 3 between 1 and 2, cell 0 between 2
   // and 3.
   constexpr std::array<int, 4> kAroundOdd{3, 2, 1, 0};
@@ -267,7 +267,7 @@ void CrackGraph::trace_pieces() {
   for (const std::uint32_t corner : corners_) {
     if (std::popcount(cracks_[corner]) == 1) trace_all(corner);
   }
-  // What is left are closed curves.
+  // The remaining cracks are closed curves.
   for (const std::uint32_t corner : corners_) trace_all(corner);
 }
 
@@ -318,7 +318,7 @@ void CrackGraph::write_nodes(LocalVoronoiDiagram& out) {
   }
 }
 
-// Junctions that are one node share most of their groups.
+// Junctions of one node share most of their groups.
 void CrackGraph::write_node_groups(LocalVoronoiDiagram& out) {
   node_groups_.clear();
   for (std::uint32_t i = 0; i < junctions_.size(); ++i) {

@@ -25,8 +25,8 @@ void Frontier::add_edge(const Eigen::Vector2d& a_m, const Eigen::Vector2d& b_m) 
 }
 
 void Frontier::add_arc(const Eigen::Vector2d& first, const Eigen::Vector2d& last) {
-  // One arc as long as the beams go on at the limit, but no longer than a quarter, so that signs of
-  // cross products show what lies within it.
+  // Extends one arc while beams reach the limit, up to a quarter, so that signs of cross products
+  // show which points are inside.
   if (!arcs_.empty() && arcs_.back().last == first && arcs_.back().first.dot(last) > 0.0) {
     arcs_.back().last = last;
   } else {

@@ -14,9 +14,9 @@
 namespace topogeo::voronoi {
 namespace {
 
-/// No laser has finer beams; below it beam numbers would overflow.
+/// Finer than any laser; below it beam numbers would overflow.
 constexpr double kLeastStep_rad = 1e-5;
-/// Of a full turn whose step was rounded in a log.
+/// For a full turn whose step was rounded in a log.
 constexpr double kTurnTolerance_rad = 0.01;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
@@ -34,9 +34,9 @@ Box box_of(const GeneratorGroups& groups, const PointRun& run) {
   return box;
 }
 
-/// Smallest distance between points of two groups (def. 4.2.6) if it is below `limit_m`, else
-/// infinity. Points farther than the limit from the other group's box are passed over, which leaves
-/// few pairs to try.
+/// Smallest distance between points of two groups (def. 4.2.6) if it is below `limit_m`, otherwise
+/// infinity. Skips points farther than the limit from the other group's box, which leaves few
+/// pairs.
 double distance_below(const GeneratorGroups& groups, const PointRun& a, const PointRun& b,
                       double limit_m) {
   const Box box = box_of(groups, b);
@@ -54,14 +54,14 @@ double distance_below(const GeneratorGroups& groups, const PointRun& a, const Po
   return best_sq < limit_sq ? std::sqrt(best_sq) : kFar;
 }
 
-/// Joins group k with the one after it (cyclic if k is the last).
+/// Joins group k with the next one (cyclic if k is the last).
 void join_with_next(GeneratorGroups& groups, std::size_t k) {
   if (k + 1 < groups.groups.size()) {
     groups.groups[k].end = groups.groups[k + 1].end;
     groups.groups.erase(groups.groups.begin() + static_cast<std::ptrdiff_t>(k) + 1);
     return;
   }
-  // The last group comes before the first: turn the points until they are one run again.
+  // The last group precedes the first: rotates the points until both are one run.
   const std::uint32_t moved = groups.groups.back().size();
   const auto middle = groups.points.end() - static_cast<std::ptrdiff_t>(moved);
   std::rotate(groups.points.begin(), middle, groups.points.end());
@@ -83,7 +83,7 @@ void drop_group(GeneratorGroups& groups, std::size_t k) {
   }
 }
 
-/// Which successive readings of a scan belong to one surface.
+/// Tells which successive readings of a scan belong to one surface.
 class Surfaces {
  public:
   Surfaces(const scan::Scan& scan, const BeamDirections& beams, const VoronoiConfig& config)
@@ -95,7 +95,7 @@ class Surfaces {
   [[nodiscard]] Eigen::Vector2d position_m(std::uint32_t beam) const {
     return beams_.directions()[beam] * static_cast<double>(ranges_m_[beam]);
   }
-  /// 4.7 for two successive beams, the second of which has a reading.
+  /// 4.7 for two successive beams; the second must have a reading.
   [[nodiscard]] bool continues(std::uint32_t before, std::uint32_t beam) const {
     if (!is_reading(before)) return false;
     const double jump_m =
@@ -112,8 +112,8 @@ class Surfaces {
     if (at_the_end && !beams_.closed()) return std::nullopt;
     return (beam + count + static_cast<std::uint32_t>(step)) % count;
   }
-  /// True if reading `c` goes on the line from reading `a` to `b`. Two readings show where a line
-  /// goes for not much longer than they are apart; along a wall the distances grow less than that.
+  /// True if reading `c` continues the line from reading `a` to `b`. Two readings define a line for
+  /// not much more than their distance; along a wall the distances grow less than that.
   [[nodiscard]] bool on_line(std::optional<std::uint32_t> a, std::uint32_t b,
                              std::uint32_t c) const {
     if (!a || !is_reading(*a)) return false;
@@ -147,7 +147,7 @@ std::size_t border_count(const GeneratorGroups& groups) {
   return groups.closed ? n : n - 1;
 }
 
-/// Distance across what lies between groups `before` and `after`.
+/// Width of the gap between the groups `before` and `after`.
 double gap_m(const GeneratorGroups& groups, std::size_t before, std::size_t after) {
   return (groups.points[groups.groups[before].end - 1].position_m -
           groups.points[groups.groups[after].begin].position_m)
@@ -234,13 +234,13 @@ void join_contiguous_groups(const VoronoiConfig& config, GeneratorGroups& groups
 }
 
 void join_alternate_groups(const VoronoiConfig& config, GeneratorGroups& groups) {
-  // A stray reading in front of a wall must not take the wall away.
+  // A stray reading in front of a wall must not remove the wall.
   const auto is_small = [&](std::size_t k) {
     return config.drop_small && config.alternate_large_only &&
            static_cast<int>(groups.groups[k].size()) <= config.min_group_points;
   };
   while (groups.groups.size() > 2) {
-    // Of three groups in a closed scan each is next to each other one: none are alternate.
+    // In a closed scan each of three groups is next to both others: none are alternate.
     if (groups.closed && groups.groups.size() == 3) return;
     const std::size_t n = groups.groups.size();
     const std::size_t pairs = groups.closed ? n : n - 2;
@@ -260,8 +260,8 @@ void join_alternate_groups(const VoronoiConfig& config, GeneratorGroups& groups)
       }
     }
     if (best == n) return;
-    // Of four groups in a closed scan a pair has one of the others on each side: the one in the
-    // narrower gap goes, whichever comes first in the scan.
+    // In a closed scan of four groups, a pair has one of the others on each side. The one in the
+    // narrower gap is dropped, whichever is first in the scan.
     if (groups.closed && n == 4) {
       const std::size_t other = (best + 2) % n;
       if (may_join(other) && gap_m(groups, other, best) < gap_m(groups, best, other)) best = other;

@@ -8,7 +8,7 @@
 namespace topogeo::voronoi {
 namespace {
 
-/// True for a beam that met something, near or far.
+/// True for a beam with an echo, near or far.
 bool is_echo(float range_m) {
   return range_m > 0.0F && std::isfinite(range_m);
 }
@@ -20,7 +20,7 @@ LocalVoronoi::LocalVoronoi(const VoronoiConfig& config) : config_(config) {
 }
 
 /// Space is free up to the reading or the range limit. A beam without an echo proves nothing,
-/// unless it is a short drop-out between two that met something.
+/// unless it is a short drop-out between two beams with echoes.
 void LocalVoronoi::measure_free_space(const scan::Scan& scan) {
   const std::size_t count = scan.ranges_m.size();
   free_range_m_.assign(count, 0.0);
@@ -30,7 +30,7 @@ void LocalVoronoi::measure_free_space(const scan::Scan& scan) {
     const double free_m = std::min(free_range_m_[from], free_range_m_[to % count]);
     for (std::size_t i = from + 1; i < to; ++i) free_range_m_[i % count] = free_m;
   };
-  std::size_t first = count;  // the first echo of all, and the last one before i
+  std::size_t first = count;  // first echo of all, and last echo before i
   std::size_t last = count;
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_echo(scan.ranges_m[i])) continue;
@@ -56,12 +56,11 @@ void LocalVoronoi::compute(const scan::Scan& scan, LocalVoronoiDiagram& out) {
   trace(out);
   out.is_virtual = out.branches.empty();
   if (out.is_virtual && !scan.ranges_m.empty()) {
-    // Groups that do not meet where it was seen are to the robot what one group is.
+    // Groups that do not meet in view are like one group to the robot.
     if (!out.groups.groups.empty()) {
       out.groups.groups = {{0, static_cast<std::uint32_t>(out.groups.points.size())}};
     }
-    // For navigation, a beam that met nothing is free: otherwise a robot in the open could not go
-    // on.
+    // For navigation, a beam without an echo is free: otherwise a robot in the open could not move.
     std::replace(free_range_m_.begin(), free_range_m_.end(), 0.0, config_.range_limit_m);
     add_virtual_groups(beams_, free_range_m_, config_, out.groups);
     trace(out);
@@ -70,9 +69,9 @@ void LocalVoronoi::compute(const scan::Scan& scan, LocalVoronoiDiagram& out) {
   measure_hidden_depths(out);
 }
 
-/// Where the line of a virtual group meets a wall the branch between them runs into the corner. The
-/// line stands for nothing, so what is narrower than the robot there is no path. A branch that is
-/// narrow all along stays: the robot is in it.
+/// If the line of a virtual group meets a wall, the branch between them runs into the corner. The
+/// line is no object, so parts narrower than the robot there are no path. A branch that is narrow
+/// all along stays: the robot is in it.
 void LocalVoronoi::drop_tight_ends(LocalVoronoiDiagram& diagram) const {
   const double least_m = 0.5 * config_.contiguous_m;
   std::uint32_t dropped = 0;  // of the branches so far
@@ -98,8 +97,7 @@ void LocalVoronoi::trace(LocalVoronoiDiagram& diagram) {
   cracks_.trace(grid_, sites_, config_, diagram);
 }
 
-/// As close as the configuration asks, or as the number of sites that the grid can separate
-/// allows.
+/// Uses the configured spacing, doubled while the sites exceed the limit of the grid.
 void LocalVoronoi::place_sites(const GeneratorGroups& groups) {
   double spacing_m = config_.site_spacing_m;
   place_sites(groups, spacing_m);
@@ -109,8 +107,7 @@ void LocalVoronoi::place_sites(const GeneratorGroups& groups) {
   }
 }
 
-/// Every reading of a group is a site, and so are points on a wall between readings that are far
-/// apart.
+/// Every reading of a group is a site, and so are points on a wall between distant readings.
 void LocalVoronoi::place_sites(const GeneratorGroups& groups, double spacing_m) {
   sites_.clear();
   for (std::size_t g = 0; g < groups.groups.size(); ++g) {

@@ -15,8 +15,8 @@ int cell_of(double coordinate_m, double resolution_m) {
   return static_cast<int>(std::floor(coordinate_m / resolution_m));
 }
 
-/// Beam nearest in angle to a point, beam count if the point is outside the field of view. Half a
-/// step beyond the outer beams still belongs to them.
+/// Beam nearest in angle to a point; beam count if the point is outside the field of view, which
+/// ends half a step beyond the outer beams.
 std::uint16_t beam_at(const BeamDirections& beams, double x_m, double y_m) {
   const std::size_t count = beams.directions().size();
   constexpr double kTurn = 2.0 * std::numbers::pi;

@@ -23,7 +23,7 @@ std::uint32_t nearest_beam(const BeamDirections& beams, const Eigen::Vector2d& p
 }
 
 /// A line of points at `side_m` to the left of the motion, from the first free place beside the
-/// robot on as long as space is free. What lies beyond the line counts as taken, as behind a wall.
+/// robot as long as space is free. Space beyond the line counts as occupied, as behind a wall.
 void add_line(const BeamDirections& beams, std::span<double> free_range_m, const Axes& axes,
               double side_m, double length_m, GeneratorGroups& groups) {
   // A tenth of a metre keeps the branch between two lines straight to a millimetre.
@@ -67,13 +67,13 @@ void add_virtual_groups(const BeamDirections& beams, std::span<double> free_rang
   }
   const double group_side = on_the_left > 0 ? 1.0 : -1.0;
   double nearest_m = config.range_limit_m;
-  double opposite_m = config.range_limit_m;  // of a group that goes round the robot
+  double opposite_m = config.range_limit_m;  // of a group that surrounds the robot
   double length_m = 0.0;
   for (const GroupPoint& point : groups.points) {
     const double side_m = group_side * axes.left.dot(point.position_m);
     const double ahead_m = axes.forward.dot(point.position_m);
     if (side_m > 0.0) length_m = std::max(length_m, ahead_m);
-    if (std::abs(side_m) < std::abs(ahead_m)) continue;  // ahead rather than beside the robot
+    if (std::abs(side_m) < std::abs(ahead_m)) continue;  // ahead rather than beside
     double& beside_m = side_m > 0.0 ? nearest_m : opposite_m;
     beside_m = std::min(beside_m, std::abs(side_m));
   }

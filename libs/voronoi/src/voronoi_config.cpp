@@ -76,7 +76,7 @@ void describe(VoronoiConfig& config, ConfigSchema& schema) {
 
 void check(const VoronoiConfig& config) {
   support::check_ranges(config);
-  // Tables of all cells: beyond 16 million cells they take hundreds of megabytes.
+  // Tables of all cells take hundreds of megabytes beyond 16 million cells.
   support::require_between("local_map.range_limit_m / local_map.resolution_m",
                            config.range_limit_m / config.resolution_m, 2.0, 2000.0, "cells");
   support::require_between("forward_rad", config.forward_rad, -6.3, 6.3, "rad");

@@ -1,11 +1,11 @@
-// From the nearest sites of the cells to ordered branches and nodes (Thesis, 4.2.2.3,
-// eq. 4.19-4.25; docs/algorithms.md, "Local Voronoi diagram"). local_voronoi.hpp compares them with
-// the cells there.
+// Turns the nearest sites of the cells into ordered branches and nodes (Thesis, 4.2.2.3, eq.
+// 4.19-4.25; docs/algorithms.md, "Local Voronoi diagram"). local_voronoi.hpp compares them with the
+// cells there.
 //
 // Cracks are the cell borders between different groups; they are followed from corner to corner of
-// the grid. A corner where three groups meet is a node. Where only two groups meet crosswise (a b /
-// b a) the crack does not cross itself: the diagonal whose group is nearer at the corner stays
-// connected. Nodes joined by a very short branch are one node at the mean of their places.
+// the grid. A corner where three groups meet is a node. If only two groups meet crosswise (a b / b
+// a), the crack does not cross itself: the diagonal whose group is nearer at the corner stays
+// connected. Nodes joined by a very short branch become one node at their mean.
 #pragma once
 
 #include <array>
@@ -24,15 +24,15 @@ namespace topogeo::voronoi {
 struct DiagramPoint {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< laser frame
   double clearance_m = 0.0;                              ///< distance to both base groups
-  /// How far the circle of the clearance reaches into what was not seen (see Frontier); 0: seen
-  /// whole.
+  /// Depth to which the circle of the clearance reaches beyond the seen space (see Frontier); 0:
+  /// the whole circle was seen.
   double hidden_m = 0.0;
 };
 
 struct DiagramNode {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< laser frame
   double clearance_m = 0.0;
-  double hidden_m = 0.0;  ///< as of a point
+  double hidden_m = 0.0;  ///< as in DiagramPoint
   /// Run of LocalVoronoiDiagram::node_groups: equally near, ascending, at least three; rarely more
   /// than four.
   PointRun base_groups;
@@ -49,12 +49,12 @@ struct DiagramBranch {
 };
 
 struct LocalVoronoiDiagram {
-  GeneratorGroups groups;          ///< of the scan; virtual groups come after them
-  std::vector<DiagramNode> nodes;  ///< every one has a branch
+  GeneratorGroups groups;          ///< of the scan, followed by virtual groups
+  std::vector<DiagramNode> nodes;  ///< each has a branch
   std::vector<DiagramBranch> branches;
   std::vector<DiagramPoint> points;        ///< of all branches
   std::vector<std::uint16_t> node_groups;  ///< base groups of all nodes
-  bool is_virtual = false;                 ///< fewer than two groups, or none that meet in sight
+  bool is_virtual = false;                 ///< fewer than two groups, or none that meet in view
 
   [[nodiscard]] std::span<const DiagramPoint> points_of(const DiagramBranch& branch) const {
     return {points.data() + branch.points.begin, branch.points.size()};
@@ -72,7 +72,7 @@ class CrackGraph {
              LocalVoronoiDiagram& out);
 
  private:
-  /// A branch while it is being traced; ends are corners.
+  /// A branch during tracing; its ends are corners.
   struct Piece {
     std::uint32_t corner_a = 0;
     std::uint32_t corner_b = 0;
@@ -124,7 +124,7 @@ class CrackGraph {
   std::vector<Piece> pieces_;
   std::vector<DiagramPoint> points_;
   std::vector<std::uint32_t> node_of_;  ///< per junction
-  std::vector<int> members_;            ///< per junction: those merged into it
+  std::vector<int> members_;            ///< per junction: number of those merged into it
   struct NodeGroup {
     std::uint32_t node = 0;
     std::uint16_t group = 0;

@@ -1,5 +1,5 @@
-// The error of taking a cell's centre for every point of the cell (Thesis, 4.2.2.2, eq. 4.17 and
-// 4.18, table 4.1).
+// Error of using a cell's centre for every point of the cell (Thesis, 4.2.2.2, eq. 4.17 and 4.18,
+// table 4.1).
 #pragma once
 
 #include <cmath>
@@ -9,10 +9,10 @@
 
 namespace topogeo::voronoi {
 
-/// E_max: half the diagonal of a cell, metres. By at most this the distance of a cell's centre to a
-/// group differs from that of any other point of the cell, and by less than twice this the
-/// distances of a cell to its base groups differ (4.19). Throws std::invalid_argument if the side
-/// of the cell, `resolution_m`, is not finite and above zero.
+/// E_max: half the diagonal of a cell, metres. The distance of a cell's centre to a group differs
+/// from that of any other point of the cell by at most this, and the distances of a cell to its
+/// base groups differ by less than twice this (4.19). Throws std::invalid_argument if the side of
+/// the cell, `resolution_m`, is not finite and above zero.
 inline double largest_distance_error_m(double resolution_m) {
   if (!std::isfinite(resolution_m) || resolution_m <= 0.0) {
     throw std::invalid_argument("resolution_m " + std::to_string(resolution_m) +

@@ -1,10 +1,10 @@
-// The frontier of one scan: the border between what it proves to be free and what it did not see.
+// The frontier of one scan: the border between the space that it proves to be free and unseen
+// space.
 //
-// A place is as far from the objects as the scan shows only if the whole circle of that clearance
-// was seen; where the frontier crosses the circle, an object that the robot does not see yet can
-// lie nearer. Behind a corner the diagram runs between the corner and whatever shows beyond it, and
-// changes with each step of the robot; the depth to which the circle is hidden separates such
-// places from those that stay. tests/bench/RESULTS.md has the figures.
+// The clearance of a place is certain only if its whole circle was seen; if the frontier crosses
+// the circle, an unseen object can be nearer. Behind a corner the diagram runs between the corner
+// and the next visible object, and changes with each step of the robot; the depth to which the
+// circle is hidden separates such places from stable ones. tests/bench/RESULTS.md has the figures.
 #pragma once
 
 #include <span>
@@ -19,13 +19,13 @@ namespace topogeo::voronoi {
 /// A reusable work space.
 class Frontier {
  public:
-  /// Takes the frontier of a scan: the free ends of the beams between the last reading of a group
-  /// and the first of the next, the two outer beams of a field of view that is not a full turn, and
-  /// the arc of the range limit. Between successive readings of one group there is none.
-  /// `free_range_m` has one value per beam, 0 where nothing is known to be free.
+  /// Computes the frontier of a scan: the free ends of the beams between the last reading of a
+  /// group and the first of the next, the two outer beams of a field of view below a full turn, and
+  /// the arc of the range limit. There is none between successive readings of one group.
+  /// `free_range_m` has one value per beam, 0 if nothing is known to be free.
   void compute(const BeamDirections& beams, std::span<const double> free_range_m,
                const GeneratorGroups& groups, double range_limit_m);
-  /// Without a frontier everything counts as seen.
+  /// Removes the frontier: all space counts as seen.
   void clear();
 
   /// Distance from a seen point (laser frame) to the frontier, metres; infinity without one.

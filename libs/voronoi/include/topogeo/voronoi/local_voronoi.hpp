@@ -1,20 +1,19 @@
 // The local Voronoi diagram of one laser scan, in the laser frame (Thesis, chapter 4;
 // docs/algorithms.md, "Local Voronoi diagram").
 //
-// Every reading of a group is a site, and so are points between readings of one wall that are far
-// apart. A branch is the crack between visible neighbour cells whose nearest sites belong to
-// different groups; a node is a corner of cells where three groups meet. That gives ordered curves
-// one cell wide, where the rule of the Thesis (every cell whose two smallest group distances differ
-// by less than 2 E_max) gives bands, and whole wedges behind a gap between two groups: there the
-// distances to both groups grow almost alike, so the rule holds over an area. The crack through a
-// wedge is the line where they are equal. Every point is moved from the cell border to the place
-// between the two cell centres where both distances are equal, so positions are far better than a
-// cell.
+// Every reading of a group is a site, and so are points between distant readings of one wall. A
+// branch is the crack between visible neighbour cells whose nearest sites belong to different
+// groups; a node is a corner of cells where three groups meet. That gives ordered curves one cell
+// wide. The rule of the Thesis (every cell whose two smallest group distances differ by less than 2
+// E_max) gives bands, and whole wedges behind a gap between two groups: there the distances to both
+// groups grow almost alike, so the rule holds over an area. The crack through a wedge is the line
+// where they are equal. Every point is moved from the cell border to the place between the two cell
+// centres where both distances are equal, so positions are far more precise than a cell.
 //
-// A diagram of fewer than two groups, or of groups that meet nowhere in sight, is virtual (4.2.1):
-// it serves navigation and is never offered to matching. With one group a line of virtual points is
-// put on the other side of the robot, parallel to the motion; with none, two of them. A virtual
-// diagram can be empty, where nothing is free.
+// A diagram of fewer than two groups, or of groups that do not meet in view, is virtual (4.2.1): it
+// serves navigation and is never matched. With one group a line of virtual points is added on the
+// other side of the robot, parallel to the motion; without groups, two lines. A virtual diagram is
+// empty if no space is free.
 #pragma once
 
 #include <cstdint>
@@ -32,17 +31,17 @@
 
 namespace topogeo::voronoi {
 
-/// Makes diagrams of the scans of one laser. The object is a work space: its tables stay valid
-/// while the scan geometry stays the same, and what it gives depends on the scan alone.
+/// Makes diagrams of the scans of one laser. A work space: its tables stay valid while the scan
+/// geometry stays the same, and its results depend on the scan alone.
 class LocalVoronoi {
  public:
   /// Throws std::invalid_argument if a field of the configuration is outside its range.
   explicit LocalVoronoi(const VoronoiConfig& config);
 
   /// The diagram of `scan` in the laser frame. Throws std::invalid_argument if the angles of the
-  /// scan make no sense (see BeamDirections) or its groups have more than 65,534 sites.
+  /// scan are invalid (see BeamDirections) or its groups have more than 65,534 sites.
   LocalVoronoiDiagram compute(const scan::Scan& scan);
-  /// The same into `out`, which keeps its memory.
+  /// The same into `out`, which keeps its capacity.
   void compute(const scan::Scan& scan, LocalVoronoiDiagram& out);
 
   [[nodiscard]] const VoronoiConfig& config() const { return config_; }
@@ -52,8 +51,8 @@ class LocalVoronoi {
   [[nodiscard]] std::span<const Site> sites() const { return sites_; }
   /// Empty if the last diagram is virtual.
   [[nodiscard]] const Frontier& frontier() const { return frontier_; }
-  /// How far each beam of the last scan is known to be free, metres. Of a virtual diagram: how far
-  /// it takes it to be free, up to its lines and without an echo up to the range limit.
+  /// Free range of each beam of the last scan, metres. For a virtual diagram it is assumed: up to
+  /// its lines, and up to the range limit without an echo.
   [[nodiscard]] std::span<const double> free_range_m() const { return free_range_m_; }
 
  private:

@@ -7,8 +7,8 @@
 // sites that do not lie on cell centres, which costs rows x sites instead of cells x sites and no
 // rounding of the sites to cells. A unit test compares it with brute force.
 //
-// Rows run along x (forward), columns along y (left), both in the laser frame; the laser stands on
-// the corner of four cells.
+// Rows run along x (forward), columns along y (left), both in the laser frame; the laser is at the
+// corner of four cells.
 #pragma once
 
 #include <cstdint>
@@ -30,15 +30,15 @@ class NearestSiteGrid {
  public:
   static constexpr std::uint16_t kNone = 0xffff;
 
-  /// Makes the table of the beam that crosses each cell. Costs some milliseconds; call it when
-  /// the scan geometry or the configuration changes.
+  /// Makes the table of the beam through each cell. Takes some milliseconds; call it when the scan
+  /// geometry or the configuration changes.
   void set_geometry(const BeamDirections& beams, const VoronoiConfig& config);
 
   /// Finds the nearest site of every cell whose centre is nearer than `free_range_m` of its beam.
-  /// `free_range_m` has one value per beam, 0 where nothing is known to be free. The window of
-  /// cells is the extent of the free space, or of the sites (4.14). Ties go to the site with the
-  /// smaller y, then to the one that comes first. Without a site there are no cells. Throws
-  /// std::invalid_argument if there are more than 65,534 sites.
+  /// `free_range_m` has one value per beam, 0 if nothing is known to be free. The window of cells
+  /// is the extent of the free space, or of the sites (4.14). Ties go to the site with the smaller
+  /// y, then to the earlier one. Without sites there are no cells. Throws std::invalid_argument for
+  /// more than 65,534 sites.
   void compute(std::span<const Site> sites, std::span<const double> free_range_m);
 
   [[nodiscard]] int rows() const { return rows_; }
@@ -75,7 +75,7 @@ class NearestSiteGrid {
   int low_x_ = 0, high_x_ = 0, low_y_ = 0, high_y_ = 0;
   bool window_of_groups_ = false;
   std::vector<Eigen::Vector2d> directions_;  // of the beams
-  std::vector<std::uint16_t> beam_of_cell_;  ///< beam count where no beam crosses the cell
+  std::vector<std::uint16_t> beam_of_cell_;  ///< beam count if no beam crosses the cell
   // The window of this scan.
   int first_x_ = 0, first_y_ = 0, rows_ = 0, cols_ = 0;
   std::vector<std::uint16_t> sites_, groups_;

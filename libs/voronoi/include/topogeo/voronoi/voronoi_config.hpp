@@ -1,7 +1,7 @@
 // Settings of the local Voronoi diagram (Thesis, 4.2; docs/algorithms.md, "Local Voronoi diagram").
 //
-// Defaults are chosen by how many real nodes are found again in a scan half a metre farther on, on
-// a simulated floor and three recorded logs together (tests/bench/repeatability.sh, RESULTS.md).
+// Defaults maximise the share of real nodes that are found again in a scan half a metre away, on a
+// simulated floor and three recorded logs together (tests/bench/repeatability.sh, RESULTS.md).
 // Without eq. 4.9 the share is 0.74, with it as printed 0.75, with `alternate_behind_only` 0.77;
 // with `join_hidden_zones` 0.58 of half as many nodes.
 #pragma once
@@ -16,8 +16,8 @@ struct VoronoiConfig {
   double range_limit_m = 10.0;
   double resolution_m = 0.05;
   bool window_of_groups = false;
-  /// Direction of the robot's forward motion in the laser frame: decides what is left and right for
-  /// hidden zones and virtual groups. Follows from the mounting of the laser.
+  /// Direction of the robot's forward motion in the laser frame: defines left and right for hidden
+  /// zones and virtual groups. Follows from the mounting of the laser.
   double forward_rad = 0.0;
   double dropout_rad = 0.035;
 
@@ -43,7 +43,7 @@ struct VoronoiConfig {
   double virtual_half_width_m = 0.6;
 };
 
-/// Declares the part of the section `local_map` that is about the diagram.
+/// Declares the part of the section `local_map` for the diagram.
 void describe(VoronoiConfig& config, support::ConfigSchema& schema);
 
 /// Throws std::invalid_argument naming key, value and range.
