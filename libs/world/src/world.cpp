@@ -44,7 +44,7 @@ World scene_at(const World& world, double driven_m, double time_s) {
   return scene;
 }
 
-// It starts anywhere in one of the two turns.
+// The drive starts at a random point of the first two turns.
 DrawnTurns::DrawnTurns(const RandomTurns& turns, std::uint64_t seed, std::size_t part)
     : turns_(turns),
       random_(support::derive_seed(seed, "changes", {part})),

@@ -1,4 +1,4 @@
-// The world file: YAML into segments and circles.
+// The world file: converts YAML to segments and circles.
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -17,7 +17,7 @@ namespace {
 
 using support::YamlNode;
 
-/// 100 km, beyond any building: a larger coordinate, distance or time is a slip.
+/// 100 km, beyond any building: a larger coordinate, distance or time is a mistake.
 constexpr double kLargest = 1e5;
 /// Walls are lines or up to 1 m thick.
 constexpr double kThickestWall_m = 1.0;
@@ -29,12 +29,12 @@ constexpr double kFastestPerson_m_s = 10.0;
 constexpr double kWidestPerson_m = 2.0;
 /// Over eleven days, longer than any drive.
 constexpr double kLatestStart_s = 1e6;
-/// A turn shorter than a scan period of a slow laser would be drawn without end.
+/// Bounds the number of draws; about the scan period of a slow laser.
 constexpr double kShortestTurn_s = 0.1;
-/// Far more than people draw: names, doors and lines are compared with each other, or drawn on a
+/// Far more entries than people draw: names, doors and lines are compared in pairs or drawn on a
 /// grid.
-constexpr std::size_t kMostEntries = 20'000;  // of a list
-constexpr std::size_t kMostDoors = 1'000;     // of a wall
+constexpr std::size_t kMostEntries = 20'000;  // in a list
+constexpr std::size_t kMostDoors = 1'000;     // in a wall
 constexpr std::size_t kMostSegments = 100'000;
 
 struct Door {
@@ -65,7 +65,7 @@ void for_intervals(const YamlNode& node, const char* unit, const Add& add) {
   }
 }
 
-// When something is there or open; nothing when that does not change. `word` is "present" or
+// The times when a part is present or open; nothing if it does not change. `word` is "present" or
 // "open".
 std::optional<ChangingPart> changes_of(const YamlNode& node, const std::string& word) {
   ChangingPart part;
@@ -95,7 +95,7 @@ void add_loop(std::initializer_list<Eigen::Vector2d> corners_m, std::vector<Segm
   }
 }
 
-/// The items of a list that is not too long; none where the map has none.
+/// The items of a list of limited length; empty if the map has no such list.
 std::vector<YamlNode> entries_of(const YamlNode& map, const std::string& key,
                                  std::size_t most = kMostEntries) {
   std::vector<YamlNode> items = map.at(key).items();
