@@ -1,4 +1,4 @@
-// Checks and conversions that several conversions share.
+// Checks and conversions shared by several message types.
 #pragma once
 
 #include <cmath>
@@ -16,8 +16,9 @@
 
 namespace topogeo::service::detail {
 
-/// Of a trajectory and what belongs to it: as many instances as readers of their topics keep
-/// (deploy/dds_profiles.xml, state_reader). Receivers keep all segments.
+/// Largest number of segments of a trajectory and its companions: the number of instances that
+/// readers of these topics keep (deploy/dds_profiles.xml, state_reader). Receivers keep all
+/// segments.
 inline constexpr std::uint32_t kMostSegments = 32'768;
 
 /// Throws std::invalid_argument unless `size` fits the bound of the field.

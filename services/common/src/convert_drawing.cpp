@@ -1,4 +1,4 @@
-// What people draw on a live map.
+// Drawings on a live map.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,7 +16,7 @@
 
 namespace topogeo::service {
 
-// storage::check has the number of zones and lines.
+// storage::check limits the number of zones and lines.
 static_assert(msg::kMaxDrawnZones >= storage::kMaxDrawnZones);
 static_assert(msg::kMaxDrawnLines >= storage::kMaxDrawnLines);
 
@@ -25,7 +25,7 @@ using detail::to_point;
 
 namespace {
 
-// As in files of zones.
+// Limits of zone files.
 constexpr double kSlowestMps = 0.01;
 constexpr double kFastestMps = 10.0;
 

@@ -103,7 +103,7 @@ std::shared_ptr<const localization::PlaceQuestion> from_question(
   out->field_hash = question.field_hash();
   out->wall_pieces = question.wall_pieces();
   out->margin_m = finite(question.margin_m(), "places.margin_m");
-  // A margin gives memory: no laser reaches a kilometre.
+  // The margin takes memory: no laser reaches a kilometre.
   constexpr double kWidestMargin_m = 1000.0;
   check(out->margin_m >= 0.0 && out->margin_m <= kWidestMargin_m, "places.margin_m", "0 to 1000");
   out->first_heading = question.first_heading();

@@ -1,4 +1,4 @@
-// Proposals to make the maps of two robots one.
+// Proposals to merge the maps of two robots.
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/merge_conversions.hpp"

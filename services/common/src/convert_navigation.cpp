@@ -15,8 +15,9 @@ using detail::finite;
 
 namespace {
 
-/// Of a normal distribution, within the bounds of msg::LivePose; position and heading are taken
-/// for independent, and the position for equally unsure in all directions, as in the worst one.
+/// Probability of a normal distribution within the bounds of msg::LivePose. Position and heading
+/// are taken as independent, and the position as equally uncertain in all directions, as in the
+/// worst.
 double confidence_of(const Eigen::Matrix3d& covariance) {
   constexpr double kWithin_m = 0.3;
   constexpr double kWithin_rad = 5.0 * std::numbers::pi / 180.0;
@@ -35,7 +36,7 @@ navigation::PoseFix to_pose_fix(const LivePose& pose) {
   navigation::PoseFix fix;
   fix.stamp_ns = pose.stamp_ns;
   fix.T_map_robot = pose.T_map_robot;
-  // While mapping it is relative to the first stop, not to the map around the robot.
+  // While mapping, the covariance is relative to the first stop, not to the map around the robot.
   if (pose.mode != msg::kModeMapping) fix.covariance = pose.covariance;
   fix.tracking = pose.status.state == localization::LocalizationState::kTracking;
   fix.located = localization::located(pose.status.state);

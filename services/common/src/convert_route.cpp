@@ -1,4 +1,4 @@
-// Goals, and the planner's answers to them.
+// Goals, and the planner's replies to them.
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/planning/motion_primitives.hpp"
 #include "topogeo/service/conversions.hpp"

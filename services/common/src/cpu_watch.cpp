@@ -8,7 +8,7 @@
 namespace topogeo::service {
 namespace {
 
-/// Several statuses and many turns of the scheduler: what happens in it is no chance.
+/// Spans several statuses and many scheduler periods, so that the result is not chance.
 constexpr double kSpan_s = 1.0;
 
 }  // namespace

@@ -9,10 +9,10 @@
 namespace topogeo::service {
 namespace {
 
-/// Waits do not grow any more after so many.
+/// Number of runs after which the waits stop growing.
 constexpr std::uint32_t kMostLives = 9;
 
-/// The name of a file: no folders in it.
+/// Makes a file name: no folders in it.
 std::string without_slashes(std::string text) {
   std::ranges::replace(text, '/', '_');
   return text;

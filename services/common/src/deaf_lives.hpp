@@ -1,4 +1,4 @@
-// How many lives of a service in a row have ended deaf, in a small file that outlives them.
+// Counts the runs of a service in a row that ended deaf, in a small file that outlives them.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@ class DeafLives {
  public:
   explicit DeafLives(std::filesystem::path file) : file_(std::move(file)) {}
 
-  /// Where a service keeps it: in the runtime directory that systemd gives it, else in memory
-  /// (/dev/shm), where `topogeo run` removes what is kept of its partition.
+  /// File of a service: in the runtime directory that systemd provides, else in memory (/dev/shm),
+  /// where `topogeo run` removes the files of its partition.
   [[nodiscard]] static std::filesystem::path place_of(const Setup& setup);
 
-  /// 0 where there is no file, or one that is damaged.
+  /// 0 when the file is missing or damaged.
   [[nodiscard]] std::uint32_t load() const;
-  /// 0 removes the file. What cannot be kept is lost: the next life waits less.
+  /// 0 removes the file. A failure to write is ignored: the next run waits less.
   void store(std::uint32_t lives) const;
 
  private:

@@ -1,5 +1,5 @@
-// Ends a service whose main input is dead while its sender sends, so that it is started again and
-// meets the sender anew.
+// Ends a service whose main input is dead although its sender sends. The restarted service
+// discovers the sender anew.
 #pragma once
 
 #include <optional>
@@ -18,22 +18,22 @@
 
 namespace topogeo::service {
 
-/// Ends the service, to be started again: it has not failed, which would end all that need it.
+/// Ends the service for a restart. It is no failure, which would end all services that need it.
 struct Deaf final : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Costs nothing while the input comes: the statuses of others are read once it is silent. They
-/// come by the participant of the service, and where that does not hear the sender at all by
-/// another one, a probe. Lives in the thread of the loop.
+/// Costs nothing while the input arrives: the statuses of others are read only once it is silent.
+/// They are read through the service's participant, and through another one, a probe, when that
+/// does not hear the sender at all. Lives in the thread of the loop.
 class DeafnessGuard {
  public:
-  /// All must outlive it. `any_robot`: as for the participant of the service.
+  /// All arguments must outlive it. `any_robot`: same as for the participant of the service.
   DeafnessGuard(const Setup& setup, bool any_robot, const messaging::Participant& participant,
                 messaging::EventLoop& loop, messaging::StatusPublisher& status);
 
-  /// Several times a second. The counter "deaf" and the fault of that name show what it finds.
-  /// Throws Deaf when the service shall end.
+  /// Call it several times a second. It sets the counter "deaf" and the fault of that name. Throws
+  /// Deaf when the service must end.
   void tick();
 
  private:

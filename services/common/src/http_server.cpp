@@ -18,9 +18,9 @@ namespace beast = boost::beast;
 namespace http = boost::beast::http;
 using asio::ip::tcp;
 
-/// For a peer that says nothing or takes nothing.
+/// Timeout for a peer that sends nothing or takes nothing.
 constexpr std::chrono::seconds kPeerPatience{5};
-/// Peers at a time; further ones are turned away, as memory is for the robot.
+/// Peers at a time; further ones are rejected to save memory for the robot.
 constexpr int kMostPeers = 16;
 constexpr std::uint32_t kMostHeader_bytes = 8192;
 
@@ -64,7 +64,7 @@ class Exchange : public std::enable_shared_from_this<Exchange> {
   http::request_parser<http::empty_body> parser_;
   http::response<http::string_body> response_;
   const HttpPage& page_;
-  std::shared_ptr<void> place_;  // among the peers of the server
+  std::shared_ptr<void> place_;  // its place among the peers of the server
 };
 
 }  // namespace
@@ -85,7 +85,7 @@ struct HttpServer::Impl {
     });
   }
 
-  // Declared first, as those below are destroyed while `peers` is there.
+  // Declared first, because the members below use `peers` while they are destroyed.
   int peers = 0;
   asio::io_context context{1};
   tcp::acceptor acceptor;

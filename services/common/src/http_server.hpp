@@ -1,4 +1,4 @@
-// Answers GET of one path by HTTP, in a thread of its own.
+// Answers HTTP GET requests for one path, in a thread of its own.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct HttpPage {
 
 class HttpServer {
  public:
-  /// Port 0: any that is free. Throws std::runtime_error with the cause when it cannot listen.
+  /// Port 0: any free one. Throws std::runtime_error with the cause when it cannot listen.
   HttpServer(const std::string& address, std::uint32_t port, HttpPage page);
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;

@@ -44,8 +44,8 @@ msg::GridTile tile_of(const planning::HybridMap& map, std::uint32_t number,
   return tile;
 }
 
-/// Parts of a zone that is drawn have its name and a number: where there is no room for both, the
-/// name is cut, at a character of UTF-8. Other names stay as they are.
+/// The parts of a drawn zone are named by its name and a number. When both together are too long,
+/// the name is cut at a UTF-8 character. Other names stay unchanged.
 std::string fitting(const std::string& name, std::size_t most) {
   const std::size_t number = name.rfind(' ');
   if (name.size() <= most || number == std::string::npos) return name;
@@ -153,7 +153,7 @@ HybridMapMessages to_messages(const planning::HybridMap& map, std::string_view r
 }
 
 planning::GridFrame frame_from_msg(const msg::HybridMap& summary) {
-  // Too many stay too many, whatever a signed number can hold.
+  // Clamped so that an excessive count stays excessive in a signed number.
   const auto cells = [](std::uint32_t count) {
     constexpr std::uint32_t kTooMany = 1'000'000'000;
     return static_cast<std::int32_t>(std::min(count, kTooMany));

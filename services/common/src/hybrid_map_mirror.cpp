@@ -89,7 +89,7 @@ void check_graph(const msg::HybridMap& summary) {
           "less than " + std::to_string(zones));
     finite(node.position().x_m(), "position of a node");
     finite(node.position().y_m(), "position of a node");
-    // Infinite where the grid has no obstacle at all.
+    // Infinite when the grid has no obstacle at all.
     check(node.clearance_m() >= 0.0, "clearance of a node", "a number of at least 0");
   }
   const std::size_t nodes = summary.nodes().size();
@@ -102,7 +102,7 @@ void check_graph(const msg::HybridMap& summary) {
   }
 }
 
-/// The zones by their cells; their extent follows from these.
+/// Builds the zones from their cells, which also give their extent.
 planning::ZoneMap zone_map(const planning::GridFrame& frame,
                            std::vector<planning::ZoneId> zone_of_cell,
                            const msg::HybridMap& summary) {
@@ -209,7 +209,7 @@ std::shared_ptr<const planning::HybridMap> HybridMapMirror::build() const {
 
 std::shared_ptr<const planning::HybridMap> HybridMapMirror::map() {
   if (!changed_ || !whole()) return map_;
-  changed_ = false;  // also when it cannot be built: the same parts would fail again
+  changed_ = false;  // also when the map cannot be built: the same parts would fail again
   map_ = build();
   version_ = summary_->version();
   return map_;

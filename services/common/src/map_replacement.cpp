@@ -10,7 +10,7 @@
 namespace topogeo::service {
 
 void when_map_is_replaced(Service& service, std::function<void()> on_replaced) {
-  // A disposal has no fields but its instance.
+  // A disposal carries no fields, only its instance.
   const auto own = std::make_shared<std::set<messaging::Handle>>();
   service.subscribe<msg::StoredMap>(
       [own](const msg::StoredMap&, const messaging::SampleInfo& info) {

@@ -20,7 +20,7 @@
 namespace topogeo::service {
 namespace {
 
-/// Search workers of one host that find a port.
+/// Ports for the search workers of one host.
 constexpr std::uint32_t kWorkerPorts = 64;
 
 prometheus::ClientMetric to_client_metric(const MetricSample& sample, MetricKind kind) {
@@ -48,8 +48,8 @@ std::string text_of(const msg::ServiceStatus& status) {
 
 }  // namespace
 
-// prometheus-cpp has a server of its own, whose threads have stacks of 100 KB: together with the
-// thread-local data of the services that is too little, and one wrong request ends the service.
+// The server of prometheus-cpp has thread stacks of 100 KB. With the thread-local data of the
+// services that is too little, and one malformed request ends the service.
 struct MetricsEndpoint::Impl {
   [[nodiscard]] std::string text() {
     std::optional<msg::ServiceStatus> copy;

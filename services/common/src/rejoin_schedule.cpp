@@ -6,8 +6,8 @@ namespace topogeo::service {
 
 using messaging::DeafnessWatch;
 
-// A service that is deaf from its start on counts as the second deaf life, also where no file tells
-// it of the first.
+// A service that is deaf from its start counts this run as the second deaf one, even without a file
+// that records the first.
 std::uint32_t RejoinSchedule::lives_before(const InputState& input) const {
   return std::max(deaf_lives_, input.ever_came ? 0U : 1U);
 }
@@ -18,8 +18,8 @@ double RejoinSchedule::wait_s(const InputState& input) const {
   return lives == 1 ? kFirstWait_s : kNextWait_s;
 }
 
-// A pause as long as the silence so far: a service is deaf for no longer than the interruption
-// that made it so.
+// The pause is as long as the silence so far, so a service is deaf for no longer than the
+// interruption that caused it.
 void RejoinSchedule::decide_probe(const InputState& input) {
   if (probes_) {
     if (input.hears_sender || input.silence_s < probe_since_s_ + kProbe_s) return;

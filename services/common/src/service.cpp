@@ -18,14 +18,14 @@ namespace topogeo::service {
 
 namespace {
 
-/// Less than the period of the status, which is to be of now.
+/// Shorter than the period of the status, so that the status is up to date.
 constexpr std::chrono::milliseconds kTick{200};
 
 }  // namespace
 
 Service::Service(const Setup& setup, bool any_robot)
     : setup_(setup), participant_(make_participant(setup.options, setup.name, any_robot)) {
-  // Signals first: one that comes while the rest starts must end the program cleanly, too.
+  // Signals first: one that arrives during start-up must end the program cleanly, too.
   signals_.emplace([this](int) { loop_.stop(); });
   status_.emplace(participant_, loop_,
                   messaging::ServiceIdentity{

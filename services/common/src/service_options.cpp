@@ -17,7 +17,7 @@ namespace topogeo::service {
 
 namespace {
 
-constexpr std::uint32_t kLargestDomain = 232;  // of DDS over UDP, whose ports follow from it
+constexpr std::uint32_t kLargestDomain = 232;  // of DDS over UDP: gives the ports
 constexpr std::size_t kLongestRobotId = 32;    // idl
 
 std::string_view environment(const char* name) {
@@ -25,9 +25,9 @@ std::string_view environment(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-/// Containers are set by their environment; an empty variable says nothing.
+/// Containers are configured by their environment; an empty variable is ignored.
 void take_environment(pipeline::MetricsConfig& metrics) {
-  constexpr std::uint32_t kLargestFirstPort = 65000;  // as of `metrics.port`
+  constexpr std::uint32_t kLargestFirstPort = 65000;  // limit of `metrics.port`
   if (const std::string_view text = environment("TOPOGEO_METRICS_PORT"); !text.empty()) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), metrics.port);
     if (error != std::errc() || end != text.data() + text.size() ||
@@ -40,7 +40,7 @@ void take_environment(pipeline::MetricsConfig& metrics) {
   if (!address.empty()) metrics.address = address;
 }
 
-/// The fingerprint stays that of the file: search workers elsewhere have just that.
+/// The fingerprint stays that of the file: search workers elsewhere have only the file.
 pipeline::LoadedConfig load(const ServiceOptions& options) {
   try {
     pipeline::LoadedConfig loaded = pipeline::load_config(options.config);

@@ -11,12 +11,12 @@ namespace topogeo::service {
 
 namespace {
 
-// Services of one network find each other in a tenth of a second. What is heard later counts, too.
+// Services of one network find each other in a tenth of a second. Later statuses count, too.
 constexpr std::chrono::milliseconds kListening{300};
-// For the other one to count who was refused: it publishes its status twice a second.
+// Lets the other service count the refusal: it publishes its status twice a second.
 constexpr std::chrono::seconds kFarewell{1};
 
-/// They do the same for the same robot.
+/// Whether both have the same task for the same robot.
 bool are_rivals(const msg::ServiceStatus& a, const msg::ServiceStatus& b) {
   const bool same = a.instance() == b.instance() && a.started_ns() == b.started_ns();
   return !same && a.service() == b.service() && a.robot_id() == b.robot_id();
@@ -45,13 +45,13 @@ SoleService::SoleService(Service& service) : service_(service) {
     }
     throw std::runtime_error(refused_);
   }
-  // A signal that came meanwhile is for the loop that follows.
+  // A signal that arrived meanwhile also ends the loop that follows.
   if (stopped) service_.loop().stop();
 }
 
 void SoleService::compare(const msg::ServiceStatus& received) {
   const msg::ServiceStatus& own = service_.status().message();
-  // It works for the robots that share the map, too.
+  // The service works for the robots that share the map, too.
   msg::ServiceStatus other = received;
   if (service_.shares_map(other.robot_id().to_string())) other.robot_id(own.robot_id());
   if (!are_rivals(other, own) || other.state() == msg::kServiceStopped) return;

@@ -15,7 +15,7 @@ using Samples = std::vector<MetricSample>;
 
 constexpr double kNano = 1e-9;
 
-/// What a field of the status is as a metric.
+/// The metric for a field of the status.
 struct FieldMetric {
   std::string_view metric;
   MetricKind kind;
@@ -122,7 +122,7 @@ constexpr auto kFieldMetrics = std::to_array<FieldMetric>({
      [](const Status& s) { return of_queues(s, true); }},
 });
 
-/// Of a counter that its declaration stands for.
+/// Labels of a counter, by its declaration.
 Labels labels_of(const CounterMetric& metric, std::string_view counter) {
   if (metric.label.empty()) return {};
   if (metric.counter.ends_with('*')) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kAskPeriod{100};
 constexpr std::chrono::milliseconds kSilence{1000};
-/// Without another piece of an answer: the store has gone, or a piece with it.
+/// Without another piece for so long, the store has gone or a piece is lost.
 constexpr std::chrono::seconds kPatience{2};
 
 }  // namespace
@@ -56,7 +56,7 @@ void StoreClient::send(bool anew) {
   if (anew) request_->request_id(requests_sent_);
   pieces_.clear();
   last_heard_ = Clock::now();
-  // One that cannot be sent now, or that nobody hears yet, is sent again by the timer.
+  // The timer repeats a request that cannot be sent now, or that the store cannot hear yet.
   heard_by_nobody_ = requests_.matched() == 0;
   static_cast<void>(requests_.write(*request_));
 }
@@ -81,8 +81,8 @@ void StoreClient::tick() {
   if (!request_) return;
   const auto silence = Clock::now() - last_heard_;
   const bool first_reader = heard_by_nobody_ && requests_.matched() > 0;
-  // A store that still works on a long answer drops the same request; another one would have it
-  // begin again, for ever where the answer takes longer than the patience.
+  // A store still working on a long answer drops a repeated request. A new request would make it
+  // start over, for ever if the answer takes longer than kPatience.
   if (first_reader || (pieces_.empty() && silence >= kSilence)) {
     send(false);
   } else if (silence >= kPatience) {

@@ -9,7 +9,7 @@ namespace topogeo::service {
 bool TrajectoryAssembly::add(const msg::TrajectorySegment& message) {
   if (message.numbered_since() < numbered_since_) return false;
   if (message.numbered_since() > numbered_since_) {
-    static_cast<void>(from_msg(message));  // throws before anything is forgotten
+    static_cast<void>(from_msg(message));  // throws before any segment is dropped
     segments_.clear();
     numbered_since_ = message.numbered_since();
   }

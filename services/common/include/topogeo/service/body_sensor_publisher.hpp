@@ -1,4 +1,4 @@
-// Sends what the sensors in the panels of a robot read: topics sonar and body_sensors.
+// Publishes the readings of a robot's body sensors: topics sonar and body_sensors.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +16,15 @@ namespace topogeo::service {
 /// Lives in the loop of its service.
 class BodySensorPublisher {
  public:
-  /// `sonars` are the places of those that `sensors` reads, which outlive this object; infrared and
-  /// tactile sensors sit as on a B21.
+  /// `sonars` are the mounts of the sonars that `sensors` reads; `sensors` must outlive this
+  /// object. Infrared and tactile sensors are placed as on a B21.
   BodySensorPublisher(Service& service, devices::BodySensors& sensors,
                       std::vector<devices::SonarMount> sonars);
 
-  /// Reads them, and sends what there is with this stamp. `now_ns` is of the clock of the sensors.
+  /// Reads the sensors and sends the readings with this stamp. `now_ns` is of the sensors' clock.
   void publish(std::int64_t now_ns, std::int64_t stamp_ns);
 
-  /// For people, why nothing is sent; empty when something is.
+  /// Why nothing is sent, as text for the user; empty when readings are sent.
   [[nodiscard]] std::string fault() const { return sensors_.fault(); }
 
  private:

@@ -1,9 +1,9 @@
-// Messages to the types of the libraries and back, exact to the last bit.
+// Conversions between messages and library types, exact to the last bit.
 //
 // to_msg throws std::invalid_argument naming the field when a value does not fit its bound.
-// from_msg throws it when the message contradicts itself (a node that does not exist, a number
-// that is not finite), so that what it gives can be worked with. What the types of the libraries
-// do not have (robot, stamp, sequence number, addresses) is an argument of to_msg.
+// from_msg throws it when the message contradicts itself (a node that does not exist, a number that
+// is not finite), so its result is safe to use. Fields without a counterpart in the library types
+// (robot, stamp, sequence number, addresses) are arguments of to_msg.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +47,7 @@ msg::Matrix3 to_msg(const Eigen::Matrix3d& matrix);
 Eigen::Matrix3d from_msg(const msg::Matrix3& matrix);
 
 msg::Scan to_msg(const scan::Scan& scan, std::string_view robot_id);
-/// Refuses ranges that are negative, infinite or no numbers and beams that do not ascend.
+/// Rejects ranges that are negative, infinite or NaN and beams that do not ascend.
 scan::Scan from_msg(const msg::Scan& message);
 
 msg::StopId to_msg(const topomap::StopId& stop);
@@ -55,12 +55,12 @@ topomap::StopId from_msg(const msg::StopId& stop);
 
 /// Fills content_hash.
 msg::LocalMap to_msg(const topomap::LocalMap& map);
-/// All but content_hash, which is not checked.
+/// Converts everything but content_hash, which is not checked.
 topomap::LocalMap content_from_msg(const msg::LocalMap& message);
-/// Checks content_hash, too.
+/// Checks content_hash as well.
 topomap::LocalMap from_msg(const msg::LocalMap& message);
 
-/// Who asks whom for matches, and what both must agree on.
+/// Client and worker of a match exchange, and the versions that both must agree on.
 struct MatchAddress {
   std::string robot_id;
   std::int64_t stamp_ns = 0;  ///< of the first task's query map
@@ -76,15 +76,15 @@ struct MatchAddress {
 msg::MatchTasks tasks_for(const MatchAddress& address);
 msg::MatchResults results_for(const MatchAddress& address);
 
-/// `stamp_ns` is that of the query map's scan.
+/// `stamp_ns` is the stamp of the query map's scan.
 msg::MatchTask to_msg(const localization::MatchTask& task, std::int64_t stamp_ns);
 localization::MatchTask from_msg(const msg::MatchTask& message);
 
 msg::MatchResult to_msg(const localization::MatchResult& result);
-/// Throws for a refusal, too: check status() first.
+/// Throws for a refused task as well: check status() first.
 localization::MatchResult from_msg(const msg::MatchResult& message);
 
-/// Number of segments that a trajectory of so many stops has.
+/// Number of segments of a trajectory with `stops` stops.
 std::uint32_t segment_count(std::size_t stops);
 /// Segment `segment` < segment_count of the trajectory.
 msg::TrajectorySegment to_segment(const topomap::Trajectory& trajectory, std::uint32_t segment,
@@ -102,27 +102,27 @@ msg::LoopClosures to_msg(std::span<const topomap::LoopClosure> closures,
                          std::uint64_t numbered_since = 0);
 std::vector<topomap::LoopClosure> from_msg(const msg::LoopClosures& message);
 
-/// Number of segments that so many measurements have: at least one.
+/// Number of segments for `edges` measurements: at least one.
 std::uint32_t edge_segment_count(std::size_t edges);
-/// Segment `segment` < edge_segment_count of the measurements that a trajectory is made of.
+/// Segment `segment` < edge_segment_count of the measurements behind a trajectory.
 msg::MapEdges to_segment(std::span<const storage::MapEdge> edges, std::uint32_t segment,
                          std::uint64_t trajectory_version, std::string_view robot_id,
                          std::int64_t stamp_ns, std::uint64_t sequence_number,
                          std::uint64_t numbered_since = 0);
-/// The measurements of one segment, checked: as many as `total` has, of ascending stops.
+/// The measurements of one segment, checked: as many as `total` implies, with ascending stops.
 std::vector<storage::MapEdge> from_msg(const msg::MapEdges& message);
 
-/// Number of segments that so many loop decisions have.
+/// Number of segments for this number of loop decisions.
 std::uint32_t decision_segment_count(std::size_t decisions);
 /// Segment `segment` < decision_segment_count of all decisions so far.
 msg::LoopDecisions to_segment(std::span<const localization::LoopDecision> decisions,
                               std::uint32_t segment, std::string_view robot_id,
                               std::int64_t stamp_ns, std::uint64_t sequence_number,
                               std::uint64_t numbered_since = 0);
-/// The decisions of one segment, checked: as many as `total` has.
+/// The decisions of one segment, checked: as many as `total` implies.
 std::vector<localization::LoopDecision> from_msg(const msg::LoopDecisions& message);
 
-/// What a localizer is to do, as in msg::LocalizationCommand.
+/// A command to the localizer, as in msg::LocalizationCommand.
 struct LocalizationCommand {
   std::uint64_t request_id = 0;
   std::string client_id;
@@ -133,16 +133,16 @@ struct LocalizationCommand {
 
 msg::LocalizationCommand to_msg(const LocalizationCommand& command, std::string_view robot_id,
                                 std::int64_t stamp_ns, std::uint64_t sequence_number);
-/// Refuses a covariance that is not symmetric and positive definite where a pose is set.
+/// Rejects the covariance of a pose to set unless it is symmetric and positive definite.
 LocalizationCommand from_msg(const msg::LocalizationCommand& message);
 
-/// A scan after that stop.
+/// A scan tracked against that stop.
 msg::TrackedPose to_msg(const topomap::TrackedScan& scan, const topomap::StopId& stop,
                         std::string_view robot_id);
 /// The scan alone.
 topomap::TrackedScan from_msg(const msg::TrackedPose& message);
 
-/// Pose of the robot now, as in msg::LivePose.
+/// Current pose of the robot, as in msg::LivePose.
 struct LivePose {
   std::int64_t stamp_ns = 0;   ///< of the scan
   std::uint64_t sequence = 0;  ///< of the scan
@@ -163,38 +163,37 @@ std::vector<msg::MapElement> to_elements(const topomap::GlobalMap& map, std::uin
                                          std::string_view robot_id, std::int64_t stamp_ns);
 topomap::MapNode node_from_msg(const msg::MapElement& message);
 topomap::MapBranch branch_from_msg(const msg::MapElement& message);
-/// Throws like node_from_msg and branch_from_msg, and when a branch ends at a node that is not
-/// there.
+/// Throws like node_from_msg and branch_from_msg, and when a branch ends at a missing node.
 topomap::GlobalMap from_elements(const map_client::Map& map);
 
-/// Where a robot shall go, or what it shall do about the goal that it has, as in msg::Goal.
+/// A destination for the robot, or a command about its current goal, as in msg::Goal.
 struct Goal {
   std::uint64_t goal_id = 0;
   std::string client_id;
   msg::GoalKind kind = msg::kGoalPosition;
-  /// By `kind`: a point, a NodeNumber or a place's name; of cancel, pause and resume it does
-  /// not matter.
+  /// Depends on `kind`: a point, a NodeNumber or a place's name; ignored for cancel, pause and
+  /// resume.
   planning::Target target = Eigen::Vector2d(0.0, 0.0);
   std::optional<double> heading_rad;  ///< of the robot in the end, map frame
   bool look_around = false;
 };
 
-/// Throws also when the target is not of the kind `kind`.
+/// Throws also when the target does not match `kind`.
 msg::Goal to_msg(const Goal& goal, std::string_view robot_id, std::int64_t stamp_ns,
                  std::uint64_t sequence_number);
-/// Refuses a place without a name.
+/// Rejects a place without a name.
 Goal from_msg(const msg::Goal& message);
 
-/// A route that was found or not, with the motions that take a robot along it whose heading is
-/// `start_heading_rad` (map frame). Header, goal and versions are left to the sender. A clearance
-/// is infinite when there is no obstacle at all.
+/// A route, found or not, with the motions for a robot that starts with heading `start_heading_rad`
+/// (map frame). The sender fills in header, goal and versions. The clearance is infinite when there
+/// is no obstacle at all.
 msg::Route to_msg(const planning::HybridRoute& route, double start_heading_rad,
                   std::optional<double> final_heading_rad);
-/// On what the parts of a route were planned; refuses those of points that it does not have.
+/// The map on which each part of a route was planned; rejects parts with points that the route
+/// lacks.
 std::vector<planning::RoutePart> route_parts_from_msg(const msg::Route& message);
-/// What a navigator has to know of a route. The nodes are where they lie on `map`; those that it
-/// does not have, and all when it is null, are left out: give the map of the route's version, or
-/// none.
+/// The navigator's view of a route. Node positions come from `map`: pass the map of the route's
+/// version, or null. Nodes that `map` lacks are left out, all of them when it is null.
 navigation::RoutePlan route_plan_from_msg(const msg::Route& message,
                                           const planning::HybridMap* map);
 

@@ -1,4 +1,4 @@
-// Publishes in the status of a service whether it gets the CPU time that it needs.
+// Publishes in a service's status whether the service gets the CPU time that it needs.
 #pragma once
 
 #include <functional>
@@ -9,10 +9,10 @@
 
 namespace topogeo::service {
 
-/// The counters are "cpu_wait_ratio" (threads that waited for a CPU, on average; not where the
-/// kernel does not count), "timer_delay_s" (the largest delay of a timer of the loop), both of the
-/// last second, and "cpu_short" (1 while support::CpuShortage lasts, else 0). It is no fault: the
-/// service does nothing wrong.
+/// The counters are "cpu_wait_ratio" (average number of threads waiting for a CPU; absent where the
+/// kernel does not count them) and "timer_delay_s" (largest delay of a timer of the loop), both
+/// over the last second, and "cpu_short" (1 during a support::CpuShortage, else 0). A shortage is
+/// not counted as a fault, because the service does nothing wrong.
 class CpuWatch {
  public:
   static constexpr const char* kWaitRatio = "cpu_wait_ratio";
@@ -23,19 +23,19 @@ class CpuWatch {
   using TimerDelay = std::function<double()>;
   using SetCounter = std::function<void(const char* name, double value)>;
 
-  /// `meter`: of this process; tests measure others.
+  /// `meter` measures this process; tests pass one for another process.
   CpuWatch(TimerDelay timer_delay, SetCounter set_counter,
            support::CpuMeter meter = support::CpuMeter());
 
-  /// Several times a second, in the thread of the loop; it measures once a second. The caller
-  /// passes the time, in seconds from any start.
+  /// Call it several times a second in the thread of the loop; it measures once a second. `now_s`
+  /// may count from any start.
   void tick(double now_s);
 
   [[nodiscard]] bool lasts() const { return shortage_.lasts(); }
-  /// The last second alone: for the reason of a halt at this moment.
+  /// Judges the last second alone: gives the reason for a halt at this moment.
   [[nodiscard]] bool is_short_now() const { return shortage_.is_short_now(); }
   [[nodiscard]] double timer_delay_s() const { return shortage_.timer_delay_s(); }
-  /// While it lasts: "the CPU is short: ..."; else empty.
+  /// "the CPU is short: ..." during a shortage; else empty.
   [[nodiscard]] std::string text() const { return lasts() ? shortage_.text() : std::string(); }
 
  private:

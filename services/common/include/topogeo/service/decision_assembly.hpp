@@ -1,5 +1,4 @@
-// All loop decisions of a robot from the segments in which they travel, in whatever order they
-// come.
+// Assembles all loop decisions of a robot from their segments, which may arrive in any order.
 #pragma once
 
 #include <cstdint>
@@ -13,17 +12,16 @@ namespace topogeo::service {
 
 class DecisionAssembly {
  public:
-  /// A segment older than the one that is held, or of other numbers than the newest, is passed
-  /// over. Throws std::invalid_argument like
-  /// from_msg.
+  /// Ignores a segment that is older than the one held, or numbered differently from the newest.
+  /// Throws std::invalid_argument like from_msg.
   void add(const msg::LoopDecisions& message);
 
-  /// The decisions from the first one up to the first that has not come.
+  /// The decisions up to the first one that is missing.
   [[nodiscard]] std::vector<localization::LoopDecision> all() const;
 
  private:
   std::map<std::uint32_t, std::vector<localization::LoopDecision>> segments_;
-  std::uint64_t numbered_since_ = 0;  // of all of them
+  std::uint64_t numbered_since_ = 0;  // of all decisions
 };
 
 }  // namespace topogeo::service

@@ -1,5 +1,5 @@
-// The measurements that a trajectory is made of from the segments in which they travel, in whatever
-// order they come.
+// Assembles the measurements behind a trajectory from their segments, which may arrive in any
+// order.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,13 @@ namespace topogeo::service {
 /// Keeps the newest of each segment of one robot.
 class EdgeAssembly {
  public:
-  /// A segment older than the one that is held is passed over; equal versions replace. Throws
+  /// Ignores a segment older than the one held; equal versions replace it. Throws
   /// std::invalid_argument like from_msg.
   void add(const msg::MapEdges& message);
 
-  /// All of them, if every segment that the newest one counts is here.
+  /// All measurements, once every segment that the newest one counts is here.
   [[nodiscard]] std::optional<std::vector<storage::MapEdge>> newest() const;
-  /// The same, if all of them are of exactly this version.
+  /// All measurements, if each segment has exactly this version.
   [[nodiscard]] std::optional<std::vector<storage::MapEdge>> whole(std::uint64_t version) const;
 
  private:
@@ -30,8 +30,8 @@ class EdgeAssembly {
     std::vector<storage::MapEdge> edges;
   };
   std::map<std::uint32_t, Segment> segments_;
-  std::uint64_t version_ = 0;  // of the newest ...
-  std::uint32_t total_ = 0;    // ... and what it counts
+  std::uint64_t version_ = 0;  // of the newest segment ...
+  std::uint32_t total_ = 0;    // ... and the total that it gives
 };
 
 }  // namespace topogeo::service

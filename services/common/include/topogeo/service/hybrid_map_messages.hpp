@@ -1,5 +1,5 @@
-// The hybrid map as messages: tiles of its grid and a summary. HybridMapMirror makes a map of them
-// again.
+// The hybrid map as messages: grid tiles and a summary. HybridMapMirror assembles the map from
+// them.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace topogeo::service {
 
-/// HybridRule::kind of a drawn line: those of zones come before.
+/// HybridRule::kind of a drawn line: the kinds of zones come first.
 constexpr std::uint8_t rule_kind_of(planning::LineKind kind) {
   return static_cast<std::uint8_t>(planning::kZoneKinds + static_cast<std::size_t>(kind));
 }
 inline constexpr std::size_t kRuleKinds = planning::kZoneKinds + planning::kLineKinds;
 
-/// Tiles in a row and rows of tiles of a grid.
+/// Size of a grid in tiles.
 struct TileLayout {
   std::uint32_t columns = 0;
   std::uint32_t rows = 0;
@@ -31,10 +31,10 @@ struct HybridMapMessages {
   msg::HybridMap summary;
 };
 
-/// All versions and sequence numbers are `version` and 0. Throws std::invalid_argument naming the
-/// field when the map has more tiles, zones, places, nodes or edges than the messages hold, or a
-/// name is too long. The parts of a drawn zone, "NAME 2", ..., have a shorter NAME where the whole
-/// does not fit.
+/// Sets every version to `version` and every sequence number to 0. Throws std::invalid_argument
+/// naming the field when the map has more tiles, zones, places, nodes or edges than the messages
+/// hold, or a name is too long. The parts of a drawn zone, "NAME 2", ..., get a shorter NAME where
+/// the whole does not fit.
 HybridMapMessages to_messages(const planning::HybridMap& map, std::string_view robot_id,
                               std::int64_t stamp_ns, std::uint64_t version);
 

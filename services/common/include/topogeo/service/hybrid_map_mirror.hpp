@@ -1,4 +1,4 @@
-// The live hybrid map of one robot, kept from its tiles and its summary, which may come in any
+// The live hybrid map of one robot, assembled from its tiles and summary, which may arrive in any
 // order.
 #pragma once
 
@@ -16,31 +16,31 @@ namespace topogeo::service {
 
 class HybridMapMirror {
  public:
-  /// Takes a tile in place of the one of its number. Throws std::invalid_argument naming the field
-  /// when it has another count of cells than msg::kTileArea, a state that does not exist or a
-  /// number out of range; the mirror is then as before.
+  /// Replaces the tile of the same number. Throws std::invalid_argument naming the field when the
+  /// number of cells is not msg::kTileArea, a state does not exist or a number is out of range; the
+  /// mirror is then unchanged.
   void put(const msg::GridTile& tile, messaging::Handle instance);
 
-  /// Takes a summary in place of the one before. Throws std::invalid_argument naming the field when
-  /// it contradicts itself: a frame or inflation out of range (see planning::check), another count
-  /// of tiles than the frame has, a name that is empty or taken, a zone or node that does not
-  /// exist, a number that is not finite; the mirror is then as before.
+  /// Replaces the summary. Throws std::invalid_argument naming the field when the summary
+  /// contradicts itself: a frame or inflation out of range (see planning::check), a number of tiles
+  /// that does not match the frame, a name that is empty or taken, a zone or node that does not
+  /// exist, a number that is not finite; the mirror is then unchanged.
   void put(const msg::HybridMap& summary);
 
-  /// Takes out the tile of an instance that was disposed; one never put is no error.
+  /// Removes the tile of a disposed instance; an instance never put is no error.
   void remove(messaging::Handle instance);
 
   /// The summary was disposed: there is no map until the next one is whole.
   void remove_summary();
 
-  /// The newest map that was whole: every tile of the grid was here with the version of the
-  /// summary. Null before the first. While an update is under way this is the map before it.
-  /// It is built here, once for each change, which takes tens of milliseconds for a large map.
-  /// Throws std::invalid_argument, once, when a whole map contradicts itself (a cell in a zone that
-  /// does not exist, or in none though the robot may be there); the one before then stays.
+  /// The newest complete map: every tile of the grid was here with the version of the summary. Null
+  /// before the first; during an update, the map before it. The map is built here, once for each
+  /// change, which takes tens of milliseconds for a large map. Throws std::invalid_argument, once,
+  /// when a complete map contradicts itself (a cell in a zone that does not exist, or a free cell
+  /// in no zone); the previous map then stays.
   std::shared_ptr<const planning::HybridMap> map();
 
-  /// Of what the last call of map() gave; 0: none.
+  /// Version of the map that map() last returned; 0: none.
   [[nodiscard]] std::uint64_t version() const { return version_; }
 
  private:

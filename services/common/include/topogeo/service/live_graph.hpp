@@ -16,7 +16,7 @@ namespace topogeo::service {
 
 class LiveGraph {
  public:
-  /// Of the robot whose map a service uses, in its loop.
+  /// Follows the robot whose map the service uses; lives in the service's loop.
   explicit LiveGraph(Service& service) : follower_(map_robot(service)) {
     using messaging::SampleInfo;
     service.subscribe<msg::MapElement>(
@@ -32,8 +32,9 @@ class LiveGraph {
   LiveGraph(const LiveGraph&) = delete;
   LiveGraph& operator=(const LiveGraph&) = delete;
 
-  /// The newest map that was whole; null before the first. Another object only when it has changed.
-  /// Throws std::invalid_argument like from_elements, once for a map; the one before stays.
+  /// The newest complete map; null before the first. The object changes only when the map has
+  /// changed. Throws std::invalid_argument like from_elements, once for each map; the previous map
+  /// stays.
   std::shared_ptr<const topomap::GlobalMap> map() {
     if (std::exchange(changed_, false)) {
       map_ = std::make_shared<const topomap::GlobalMap>(from_elements(*follower_.map()));

@@ -16,7 +16,7 @@ namespace topogeo::service {
 
 class LiveHybridMap {
  public:
-  /// Of the robot whose map a service uses, in its loop.
+  /// Follows the robot whose map the service uses; lives in the service's loop.
   explicit LiveHybridMap(Service& service) {
     service.subscribe<msg::GridTile>(
         [this](const msg::GridTile& tile, const messaging::SampleInfo& info) { put(tile, info); },
@@ -26,9 +26,9 @@ class LiveHybridMap {
         [this](const messaging::SampleInfo& info) { remove_summary(info); });
   }
 
-  /// For programs that are no service; lives in the loop. For each tile and summary that comes it
-  /// calls take(message, use), which passes over messages of other robots and calls use(message)
-  /// for the others; that throws std::invalid_argument like HybridMapMirror::put.
+  /// For programs that are no service; lives in the loop. Each tile and summary is passed to
+  /// take(message, use), which ignores messages of other robots and calls use(message) for the
+  /// rest; `use` throws std::invalid_argument like HybridMapMirror::put.
   template <class Take>
   LiveHybridMap(const messaging::Participant& participant, messaging::EventLoop& loop, Take take) {
     loop.add<msg::GridTile>(
@@ -47,7 +47,7 @@ class LiveHybridMap {
   LiveHybridMap(const LiveHybridMap&) = delete;
   LiveHybridMap& operator=(const LiveHybridMap&) = delete;
 
-  /// As HybridMapMirror::map and version.
+  /// Same as HybridMapMirror::map and version.
   std::shared_ptr<const planning::HybridMap> map() { return mirror_.map(); }
   [[nodiscard]] std::uint64_t version() const { return mirror_.version(); }
 
@@ -55,7 +55,7 @@ class LiveHybridMap {
   void put(const msg::GridTile& tile, const messaging::SampleInfo& info) {
     mirror_.put(tile, info.instance);
   }
-  // A map_store that has gone leaves its last map standing; only a disposal takes away.
+  // The last map survives a map_store that has gone; only a disposal removes it.
   void remove_tile(const messaging::SampleInfo& info) {
     if (info.state == messaging::InstanceState::kDisposed) mirror_.remove(info.instance);
   }

@@ -1,7 +1,7 @@
-// Whether the map store has put another map in the place of its own: a snapshot was restored.
+// Detects that the map store has replaced its map because a snapshot was restored.
 //
-// What a service has made of the map of before does not fit any more. A map store that restores
-// disposes its StoredMap before it ends; one that only ends does not.
+// Results based on the previous map are invalid then. A map store that restores a snapshot disposes
+// its StoredMap before it ends; a normal end does not dispose it.
 #pragma once
 
 #include <functional>
@@ -10,12 +10,12 @@
 
 namespace topogeo::service {
 
-/// Calls `on_replaced` in the loop of the service when the map of its robot, or of one that shares
-/// it, or of Setup::options.map_robot, is replaced.
+/// Calls `on_replaced` in the loop of the service when the map of its robot, of a robot that shares
+/// it, or of Setup::options.map_robot is replaced.
 void when_map_is_replaced(Service& service, std::function<void()> on_replaced);
 
-/// Runs the service. True when it has ended because its map was replaced: it is to begin anew with
-/// what the map store has then.
+/// Runs the service. Returns true when the service ended because its map was replaced: the caller
+/// starts again with the new map of the store.
 bool run_with_one_map(Service& service);
 
 }  // namespace topogeo::service

@@ -1,4 +1,4 @@
-// Proposals to make the maps of two robots one, between messages and localization.
+// Proposals to merge the maps of two robots, between messages and localization.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@
 
 namespace topogeo::service {
 
-/// `robot_id`: whose map it is.
+/// `robot_id`: robot whose map it is.
 msg::MergeProposal to_msg(const localization::MergeProposal& proposal, std::string_view robot_id,
                           std::int64_t stamp_ns, std::uint64_t sequence_number);
-/// Throws std::invalid_argument naming the field and what was expected. Of the match only the two
-/// stops come back.
+/// Throws std::invalid_argument naming the field and the expected value. The match comes back with
+/// its two stops only.
 localization::MergeProposal from_msg(const msg::MergeProposal& message);
 
 }  // namespace topogeo::service

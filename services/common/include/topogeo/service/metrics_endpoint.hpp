@@ -1,4 +1,4 @@
-// Gives the status of a service to Prometheus by HTTP, at /metrics.
+// Serves the status of a service to Prometheus by HTTP, at /metrics.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@
 
 namespace topogeo::service {
 
-/// Where a service listens.
+/// Address and ports on which a service listens.
 struct MetricsAddress {
   std::string address = "127.0.0.1";
-  std::uint32_t port = 0;   ///< 0: any that is free
-  std::uint32_t ports = 1;  ///< the first free one of so many
+  std::uint32_t port = 0;   ///< 0: any free port
+  std::uint32_t ports = 1;  ///< number of ports tried for a free one
 };
 
 class MetricsEndpoint {
@@ -24,7 +24,7 @@ class MetricsEndpoint {
   MetricsEndpoint& operator=(const MetricsEndpoint&) = delete;
   ~MetricsEndpoint();
 
-  /// What readers get from now on; nothing before the first. For any thread.
+  /// Sets the status that readers get from now on; nothing before the first call. Thread-safe.
   void update(const msg::ServiceStatus& status);
 
   [[nodiscard]] std::uint32_t port() const { return port_; }
@@ -35,8 +35,8 @@ class MetricsEndpoint {
   std::uint32_t port_ = 0;
 };
 
-/// The place of a service in the row of ports that a configuration begins: the gateway has the
-/// first, search workers the first free one of the last.
+/// The place of a service in the range of ports that begins with `first_port`: the gateway has the
+/// first, search workers share a range of their own and take its first free port.
 MetricsAddress metrics_address(const std::string& address, std::uint32_t first_port,
                                const std::string& service);
 

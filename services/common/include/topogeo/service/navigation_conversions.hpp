@@ -1,4 +1,4 @@
-// Messages to what a navigator works with and back; the rules of conversions.hpp hold.
+// Conversions between messages and the navigator's types; the rules of conversions.hpp hold.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@
 namespace topogeo::service {
 
 navigation::PoseFix to_pose_fix(const LivePose& pose);
-/// The pose of a navigator's Markov localization. One that is not tracked means nothing.
+/// The pose from a navigator's Markov localization; meaningless unless it is tracked.
 LivePose to_live_pose(const navigation::PoseFix& fix, std::uint64_t sequence);
 
 navigation::OdometrySample odometry_from_msg(const msg::Odometry& message);
 
-/// The points where the beams of a scan ended. `T_robot_laser`: mounting of the laser.
+/// The end points of a scan's beams. `T_robot_laser`: mounting of the laser.
 navigation::ScanPoints to_scan_points(const scan::Scan& scan, const geometry::Pose2& T_robot_laser);
 
-/// Refuses ranges that are negative or no finite numbers and cones that are not within (0, pi].
+/// Rejects ranges that are negative or not finite and cones that are not within (0, pi].
 navigation::SonarRound sonar_from_msg(const msg::Sonar& message);
 
 navigation::BaseCondition base_from_msg(const msg::BaseStatus& message);
@@ -31,7 +31,7 @@ msg::NavigatorStatus to_msg(const navigation::NavigatorStatus& status, std::stri
 /// Commands the speeds `linear_mps` and `angular_radps`.
 navigation::NavigatorStatus from_msg(const msg::NavigatorStatus& message);
 
-/// Throws std::invalid_argument for more points than a message takes (4,096).
+/// Throws std::invalid_argument when there are more points than a message holds (4,096).
 msg::Blockages to_msg(const navigation::BlockageReport& report, std::string_view robot_id,
                       std::int64_t stamp_ns, std::uint64_t sequence_number);
 navigation::BlockageReport from_msg(const msg::Blockages& message);

@@ -1,4 +1,4 @@
-// Which process a writer or reader belongs to.
+// The process that a writer or reader belongs to.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-// When a service whose main input is silent asks others why, reports that it is deaf, and ends in
-// order to be started again. A new life meets all peers anew; one that is deaf from its start on
-// waits longer each time, so that a fault which no restart mends costs little.
+// Timing for a service whose main input is silent: when it asks others why, reports that it is
+// deaf, and exits for a restart. A restarted service discovers all peers anew; one that is deaf
+// from its start waits longer each time, so that a fault that no restart cures costs little.
 #pragma once
 
 #include <cstdint>
@@ -12,38 +12,40 @@ namespace topogeo::service {
 /// The state of the main input now.
 struct InputState {
   double silence_s = 0.0;     ///< messaging::input_silence_s
-  bool ever_came = false;     ///< in this life
-  bool hears_sender = false;  ///< the status of its sender comes in
-  bool deaf = false;          ///< proven
+  bool ever_came = false;     ///< in this run
+  bool hears_sender = false;  ///< the sender's status arrives
+  bool deaf = false;          ///< proven: the sender sends, and nothing arrives
 };
 
 struct RejoinStep {
-  bool listen = false;  ///< to the statuses of other services
-  bool probe = false;   ///< the same by another participant, which meets all peers anew
-  bool report = false;  ///< that it is deaf, now
-  bool end = false;     ///< now
+  bool listen = false;  ///< read the statuses of other services
+  bool probe = false;   ///< read them through another participant, which discovers all peers anew
+  bool report = false;  ///< report now that the service is deaf
+  bool end = false;     ///< exit now
 };
 
-/// The caller passes the time, in seconds from any start, several times a second.
+/// Call it several times a second with the time in seconds, counted from any start.
 class RejoinSchedule {
  public:
-  /// The wait from the proof to the end in the second life in a row that is deaf.
+  /// The wait from the proof to the exit in the second deaf run in a row.
   static constexpr double kFirstWait_s = 60.0;
-  /// The same of all further ones.
+  /// The same in all further runs.
   static constexpr double kNextWait_s = 600.0;
   static constexpr double kReportEvery_s = 60.0;
-  /// So long after the service has begun to listen, without a word of the sender, it probes.
+  /// Listening time without a status of the sender after which the service probes.
   static constexpr double kListen_s = 2.0;
-  /// A probe that has heard nothing for so long ends. Meeting takes a second, with security two.
+  /// A probe that hears nothing ends after this time. Discovery takes one second, two with
+  /// security.
   static constexpr double kProbe_s = 10.0;
   static constexpr double kLongestPause_s = 600.0;
 
-  /// `deaf_lives`: how many lives of the service before this one, in a row, ended deaf.
+  /// `deaf_lives`: number of runs of the service before this one, in a row, that ended deaf.
   explicit RejoinSchedule(std::uint32_t deaf_lives) : deaf_lives_(deaf_lives) {}
 
   RejoinStep step(const InputState& input, double now_s);
 
-  /// How many there are in a row if this one ends now; 0 once its input has come and is not dead.
+  /// Number of deaf runs in a row if this one ends now; 0 once its input has arrived and is not
+  /// dead.
   [[nodiscard]] std::uint32_t deaf_lives() const { return deaf_lives_; }
 
  private:

@@ -1,4 +1,4 @@
-// How fast a log is replayed, as it stands on a command line.
+// The replay speed of a log, as given on a command line.
 #pragma once
 
 #include <optional>

@@ -28,21 +28,21 @@ namespace topogeo::service {
 
 class DeafnessGuard;
 
-/// Which messages of a topic Service::subscribe takes.
+/// Selects the messages of a topic that Service::subscribe takes.
 struct Subscription {
   std::string role = {};       ///< see messaging::ReaderOptions
   std::string addressee = {};  ///< see messaging::ReaderOptions
-  /// See messaging::ReaderOptions; subscribe to these as well.
+  /// See messaging::ReaderOptions; these topics must be subscribed as well.
   std::vector<std::string_view> read_with = {};
-  bool any_robot = false;   ///< false: those of other robots are counted and ignored ...
-  bool team = false;        ///< ... but for those of the robots that share the map
-  bool of_map = false;      ///< those of the robot whose map is used, in place of the own ones
-  bool main_input = false;  ///< what the service works on: rate and age are in its status
+  bool any_robot = false;   ///< false: messages of other robots are counted and ignored ...
+  bool team = false;        ///< ... except those of robots that share the map
+  bool of_map = false;      ///< take those of the robot whose map is used, not the own ones
+  bool main_input = false;  ///< the service's main work: its rate and age are in the status
 };
 
-/// Comes out of Service::run when the process stood still for so long that peers may have forgotten
-/// it (messaging::Participant::stood_still). A program that ends with it is started again; one that
-/// has more to lose than its peers makes another Service.
+/// Thrown by Service::run when the process stood still for so long that peers may have forgotten it
+/// (messaging::Participant::stood_still). A program that ends with it is restarted; one that has
+/// more to lose than its peers makes another Service.
 struct StoodStill final : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -59,7 +59,7 @@ class Service {
 
   [[nodiscard]] const Setup& setup() const { return setup_; }
   [[nodiscard]] const std::string& robot_id() const { return setup_.options.robot_id; }
-  /// One of the robots of Setup::options.other_robots.
+  /// Whether it is one of Setup::options.other_robots.
   [[nodiscard]] bool shares_map(const std::string& robot) const;
   [[nodiscard]] const messaging::Participant& participant() const { return participant_; }
   [[nodiscard]] messaging::EventLoop& loop() { return loop_; }
@@ -70,10 +70,10 @@ class Service {
   /// True when a signal has asked the program to end.
   [[nodiscard]] static bool stopping() { return messaging::SignalStop::received() != 0; }
 
-  /// Works until SIGINT, SIGTERM or loop().stop(). Throws std::logic_error when a subscription has
-  /// announced a topic that nothing subscribes to: a gateway would wait for ever; StoodStill; Deaf
-  /// (a std::runtime_error) when nothing of the main input arrives that is sent. An exception of a
-  /// handler makes the state kServiceFailed with its text and comes out here.
+  /// Runs until SIGINT, SIGTERM or loop().stop(). Throws std::logic_error when a subscription has
+  /// announced a topic that nothing subscribes to, because a gateway would wait for ever;
+  /// StoodStill; Deaf (a std::runtime_error) when the main input is sent but does not arrive. An
+  /// exception of a handler sets the state to kServiceFailed with its text and is rethrown here.
   void run();
 
   /// Calls `handler` in the loop for the messages of T's topic, as handler(message) or
@@ -120,8 +120,9 @@ class Service {
     return writer;
   }
 
-  /// Sends, again and again while the history is full, counted as fault "send blocked". False when
-  /// the program is asked to end before it could be sent. Throws like Writer::write.
+  /// Sends, and retries while the history is full, which counts as fault "send blocked". Returns
+  /// false when the program is asked to end before the message could be sent. Throws like
+  /// Writer::write.
   template <class T>
   bool send(messaging::Writer<T>& writer, const T& message, std::string_view what) {
     while (!writer.write(message)) {
@@ -132,7 +133,7 @@ class Service {
   }
 
  private:
-  /// False, and counted as dropped for "other robot", for messages of other robots.
+  /// Returns false for messages of other robots and counts them as dropped for "other robot".
   template <class T>
   bool is_own(const T& message, bool team, bool of_map) {
     const ServiceOptions& options = setup_.options;
@@ -145,9 +146,9 @@ class Service {
 
   void note_subscription(const messaging::TopicInfo& topic, const Subscription& subscription);
   void check_subscriptions() const;
-  /// Gives the status to Prometheus when the options or the configuration want it.
+  /// Starts the Prometheus endpoint when the options or the configuration ask for it.
   void offer_metrics();
-  /// What the status and the service manager show besides what services report themselves.
+  /// Updates the part of status and service manager that is common to all services.
   void tick();
   void report_blocked(std::string_view what);
   void report_invalid(const messaging::TopicInfo& topic, std::uint64_t sequence_number,
@@ -162,8 +163,8 @@ class Service {
   std::optional<messaging::SignalStop> signals_;
   messaging::ServiceManager manager_{loop_};
   std::set<std::string_view> subscribed_;
-  std::set<std::string_view> announced_;      // to be read with others
-  std::shared_ptr<MetricsEndpoint> metrics_;  // the status has it, too, up to its end
+  std::set<std::string_view> announced_;      // topics that have to be subscribed as well
+  std::shared_ptr<MetricsEndpoint> metrics_;  // shared with the status, which uses it up to its end
 };
 
 }  // namespace topogeo::service

@@ -1,4 +1,4 @@
-// The services that this project has.
+// The names of all services of the project.
 #pragma once
 
 #include <array>

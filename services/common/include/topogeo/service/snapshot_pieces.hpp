@@ -1,4 +1,4 @@
-// A map cut into pieces that fit into messages, and put together again.
+// Splits a map into pieces that fit into messages, and joins them again.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ namespace topogeo::service {
 /// Client id of pieces for the map store (msg::kArchiveImport).
 inline constexpr const char* kArchiveAddressee = "archive";
 
-/// How many pieces so many bytes make, 1 at least: none stands for no answer.
+/// Number of pieces for `bytes` bytes, at least 1, because 0 pieces mean no answer.
 std::uint32_t piece_count(std::size_t bytes);
 
 /// Sets number, count and bytes of piece `number` of `bytes`.
@@ -24,15 +24,15 @@ void cut_piece(msg::SnapshotPiece& piece, std::string_view bytes, std::uint32_t 
 /// Pieces of one answer, in any order.
 class PieceAssembly {
  public:
-  /// The first piece makes room for all: it may be one of `most`.
+  /// The first piece allocates room for all of them, at most `most` pieces.
   explicit PieceAssembly(std::uint32_t most) : most_(most) {}
 
-  /// Throws std::invalid_argument for a piece of another count than those before, of more than
-  /// `most`, or beyond its own count.
+  /// Throws std::invalid_argument for a piece whose count differs from the ones before or exceeds
+  /// `most`, or whose number exceeds its own count.
   void add(const msg::SnapshotPiece& piece);
   [[nodiscard]] bool empty() const { return pieces_.empty(); }
   [[nodiscard]] bool complete() const;
-  /// All bytes of a complete answer; nothing is left here.
+  /// Returns all bytes of a complete answer and clears the assembly.
   [[nodiscard]] std::string take();
   void clear() { pieces_.clear(); }
 

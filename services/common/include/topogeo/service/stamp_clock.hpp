@@ -1,4 +1,4 @@
-// The time of the clock that stamps the messages of the sensors.
+// The clock that stamps sensor messages, as seen from another process.
 #pragma once
 
 #include <algorithm>
@@ -7,19 +7,19 @@
 
 namespace topogeo::service {
 
-/// The stamps of gateway and localizer are of the gateway's clock, which is that of its host at the
-/// time when it was started. This one follows them: the message that came fastest of the last ten
-/// seconds shows how the two clocks differ, so that one that was delayed is as old as it was made.
-/// Neither host's clock matters, nor whether it was set in the meantime.
+/// Gateway and localizer stamp by the gateway's clock, which is the clock of its host as it was
+/// when the gateway started. StampClock follows it: the fastest message of the last ten seconds
+/// gives the offset between the two clocks, so that the age of a delayed message counts from its
+/// measurement. Neither host's clock matters, nor whether it was set in the meantime.
 class StampClock {
  public:
   static constexpr std::int64_t kHalfWindow_ns = 5'000'000'000;
   static constexpr std::int64_t kSetBack_ns = 1'000'000'000;
 
-  /// `offset_ns`: from the steady clock to the stamps, before any message has come.
+  /// `offset_ns`: from the steady clock to the stamps, until a message has come.
   explicit StampClock(std::int64_t offset_ns) : offset_ns_(offset_ns) {}
 
-  /// A message of the gateway came at a time of the steady clock.
+  /// Takes the stamp of a gateway message and the time at which it arrived by the steady clock.
   void observe(std::int64_t stamp_ns, std::int64_t steady_ns) {
     turn_over(steady_ns);
     const std::int64_t offset_ns = stamp_ns - steady_ns;
@@ -27,7 +27,7 @@ class StampClock {
     offset_ns_ = std::max(newest_ns_, older_ns_);
   }
 
-  /// Goes back only where the stamps have gone back by more than a second; see take_set_back().
+  /// Goes back only when the stamps have gone back by more than a second; see take_set_back().
   std::int64_t now_ns(std::int64_t steady_ns) {
     std::int64_t now_ns = steady_ns + offset_ns_;
     if (now_ns < last_ns_) {
@@ -41,7 +41,7 @@ class StampClock {
     return now_ns;
   }
 
-  /// True once after the time has gone back: nothing measured before then can be compared any more.
+  /// True once after the time has gone back: earlier measurements cannot be compared any more.
   bool take_set_back() {
     const bool set_back = set_back_;
     set_back_ = false;
@@ -62,8 +62,8 @@ class StampClock {
   std::int64_t offset_ns_;
   std::int64_t window_ns_ = kNever;  // when the newer half began
   std::int64_t newest_ns_ = kNever;  // largest offset since then
-  std::int64_t older_ns_ = kNever;   // and of the half before
-  std::int64_t last_ns_ = kNever;    // that now_ns() gave
+  std::int64_t older_ns_ = kNever;   // and in the half before
+  std::int64_t last_ns_ = kNever;    // last result of now_ns()
   bool set_back_ = false;
 };
 

@@ -1,7 +1,7 @@
-// The numbers of a service's status as metrics of Prometheus: names, units and kinds.
+// A service's status as Prometheus metrics: names, units and kinds.
 //
 // Prometheus, "Metric and label naming" and "Writing exporters" (prometheus.io/docs/practices):
-// base units in the names, totals end in _total, one metric for what differs in a label.
+// base units in the names, totals end in _total, one metric with a label for its variants.
 #pragma once
 
 #include <cstdint>
@@ -20,16 +20,16 @@ enum class MetricKind : std::uint8_t {
   kGauge
 };
 
-/// What a counter of the status is as a metric.
+/// The metric for a counter of the status.
 struct CounterMetric {
-  /// Name of the counter. With a `*` at its end it stands for all that begin so, and what follows
-  /// is the value of the label.
+  /// Name of the counter. A `*` at the end matches all counters with that prefix; the rest of their
+  /// name is the value of the label.
   std::string_view counter;
   std::string_view metric;
   MetricKind kind = MetricKind::kGauge;
   std::string_view help;
   std::string_view label = {};  ///< without a `*`: "label=value", or empty
-  double factor = 1.0;          ///< to the unit of the metric
+  double factor = 1.0;          ///< from the counter's unit to the unit of the metric
 };
 
 struct MetricSample {

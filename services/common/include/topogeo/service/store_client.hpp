@@ -1,4 +1,4 @@
-// What a service that starts wants of the map store: what is stored, and snapshots of it.
+// Queries the map store for a starting service: the stored state, and snapshots of it.
 #pragma once
 
 #include <chrono>
@@ -23,19 +23,19 @@ class StoreClient {
   StoreClient(const StoreClient&) = delete;
   StoreClient& operator=(const StoreClient&) = delete;
 
-  /// The bytes, as SnapshotKind says, or why there are none.
+  /// The bytes, in the format of the SnapshotKind, or why there are none.
   struct Answer {
     std::optional<std::string> bytes;
     std::string why;
   };
   using Handler = std::function<void(Answer answer)>;
 
-  /// Asks again and again while the store does not answer: it may be starting. One at a time; a
-  /// second request replaces the first.
+  /// Repeats the request while the store does not answer: it may be starting. Only one request is
+  /// active; a second one replaces it.
   void request(msg::SnapshotKind kind, std::uint64_t session, std::uint32_t first, Handler handler);
 
  private:
-  /// `anew`: under a number of its own, so that pieces of an earlier answer are none of this one.
+  /// `anew`: under a new number, so that pieces of an earlier answer are not mixed in.
   void send(bool anew);
   void on_piece(const msg::SnapshotPiece& piece);
   void tick();

@@ -1,4 +1,4 @@
-// A trajectory from the segments that it travels in, whatever their order.
+// Assembles a trajectory from its segments, which may arrive in any order.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@ namespace topogeo::service {
 /// Keeps the newest of each segment of one robot.
 class TrajectoryAssembly {
  public:
-  /// False when the segment is older than the one held; equal versions replace. When stops have
-  /// other numbers since, the segments of before are forgotten. Throws
+  /// Returns false when the segment is older than the one held; equal versions replace it. When the
+  /// stops have been renumbered since, the earlier segments are forgotten. Throws
   /// std::invalid_argument like from_msg.
   bool add(const msg::TrajectorySegment& message);
 
@@ -24,14 +24,14 @@ class TrajectoryAssembly {
 
   /// See topomap::Trajectory.
   [[nodiscard]] std::uint64_t numbered_since() const { return numbered_since_; }
-  /// Every stop has come, in whatever version.
+  /// Every stop has arrived, in whatever version.
   [[nodiscard]] bool complete() const;
 
-  /// The newest pose of each stop up to the first segment that has not come. Segments of different
-  /// versions may stand side by side; `version` is the newest.
+  /// The newest pose of each stop up to the first missing segment. The segments may have different
+  /// versions; `version` is the newest.
   [[nodiscard]] topomap::Trajectory newest() const;
 
-  /// The newest pose of one stop; null until it has come.
+  /// The newest pose of one stop; null until it has arrived.
   [[nodiscard]] const topomap::StopPose* stop(std::size_t number) const;
 
   /// The trajectory of exactly this version, if every segment of it is here.
