@@ -16,23 +16,23 @@ namespace topogeo::ga_worker {
 
 namespace {
 
-/// Localizers take a worker that is silent for a second to be lost: two statuses.
+/// Localizers consider a worker lost after a second of silence: two statuses.
 constexpr std::chrono::milliseconds kStatusPeriod{500};
-/// The rate of tasks is that of so long: steady, and soon up to date.
+/// The task rate is averaged over this window: steady, yet soon up to date.
 constexpr std::chrono::seconds kRateWindow{5};
-/// A client that has not connected by then, or does not take its results so long, is gone.
+/// A client that does not connect or take its results for so long is gone.
 constexpr double kClientPatience_s = 10.0;
-/// For the last status to leave before the writer is deleted.
+/// Time for the last status to leave before the writer is deleted.
 constexpr std::chrono::milliseconds kFarewell{200};
-/// A slot with less would make the features of maps again for nearly every task.
+/// A slot with less memory would recompute the features of maps for nearly every task.
 constexpr std::size_t kLeastPerSlot_bytes = std::size_t{4} << 20U;
 
-/// One half of the memory holds the local maps, the other what the slots make of them.
+/// One half of the memory holds the local maps, the other the features that slots compute of them.
 std::size_t half_of_memory(const WorkerOptions& options) {
   return (std::size_t{options.memory_mb} << 20U) / 2;
 }
 
-/// Throws std::invalid_argument for a map that is not what its hash is of.
+/// Throws std::invalid_argument for a map that does not match its hash.
 search_pool::MapPointer map_of(const msg::LocalMap& message) {
   topomap::LocalMap map = service::from_msg(message);
   map.track = {};  // matching does not use it
@@ -73,7 +73,7 @@ GaWorkerService::GaWorkerService(service::Service& service, const WorkerOptions&
 }
 
 void GaWorkerService::fill_status() {
-  messaging::set_header(status_, "", 0, 0);  // of no robot: it works for any
+  messaging::set_header(status_, "", 0, 0);  // no robot: the worker serves any
   messaging::set_worker_id(status_, options_.worker_id);
   messaging::set_text(status_.name(), options_.name, "name");
   messaging::set_text_cut(status_.host(), support::host_name());
@@ -135,7 +135,7 @@ void GaWorkerService::request(const search_pool::TaskIntake::Request& request) {
   messaging::set_worker_id(message, options_.worker_id);
   message.map_id(request.map_id);
   message.content_hash(request.content_hash);
-  // One that cannot be sent now is sent again with the next period.
+  // The next period repeats a request that cannot be sent now.
   if (requests_.write(message)) ++maps_requested_;
 }
 
@@ -170,7 +170,7 @@ void GaWorkerService::on_tasks(const msg::MatchTasks& message, const messaging::
   if (clients_.task_came(client_id, robot_id, participant, Clock::now())) {
     spdlog::info("first task of client {}, robot {}", client_id, robot_id);
   }
-  // All before the first answer, so that those to refusals travel together, too.
+  // All before the first answer, so that answers of refusal travel together, too.
   results_.expect(client_id, message.tasks().size());
   const auto refusal = objection(message);
   for (const msg::MatchTask& task : message.tasks()) {
@@ -244,7 +244,7 @@ void GaWorkerService::on_event(const messaging::Event& event) {
   }
 }
 
-// No one waits for what is left to do for them.
+// Nobody waits for the remaining work of these clients.
 void GaWorkerService::forget(const std::vector<search_pool::ClientRegistry::Entry>& gone) {
   for (const search_pool::ClientRegistry::Entry& entry : gone) {
     const std::string& client_id = entry.first;
@@ -253,10 +253,10 @@ void GaWorkerService::forget(const std::vector<search_pool::ClientRegistry::Entr
                  client.answered);
     runner_->remove(client_id);
     intake_.remove(client_id);
-    // Those, too, that a slot has begun or finished: should the client come back, it asks anew.
+    // Includes tasks that a slot has begun or finished: a returning client asks anew.
     std::erase_if(asked_, [&](const auto& task) { return task.second.client_id == client_id; });
     results_.forget(client_id);
-    // The writer has room for a limited number of instances, and a client is one.
+    // The writer has room for a limited number of instances, one per client.
     msg::MapRequest request;
     messaging::set_client_id(request, client_id);
     requests_.dispose(request);
@@ -304,7 +304,7 @@ void GaWorkerService::publish_status() {
   status_.failures(failures_);
   status_.maps_held(static_cast<std::uint32_t>(intake_.maps().size()));
   status_.clients(static_cast<std::uint32_t>(clients_.active(time - kRateWindow)));
-  // The next period sends again what could not be sent now.
+  // The next period repeats a status that cannot be sent now.
   if (statuses_.write(status_)) status_.sequence_number(status_.sequence_number() + 1);
   messaging::StatusPublisher& service_status = service_.status();
   const auto set = [&](const char* name, std::uint64_t value) {
@@ -331,7 +331,7 @@ void GaWorkerService::drain() {
   constexpr std::chrono::milliseconds kLook{5};
   const auto open = [this] { return asked_.size() + results_.waiting(); };
   search_pool::DrainWatch watch(support::monotonic_s());
-  while (!service_.loop().run_for(kLook)) {  // a second signal ends it at once
+  while (!service_.loop().run_for(kLook)) {  // a second signal ends the loop at once
     if (!watch.goes_on(support::monotonic_s(), open(), service_.cpu().lasts())) break;
   }
   results_.wait_for_acknowledgments(kFarewell);

@@ -1,5 +1,5 @@
-// The service around the slots: maps and tasks in, results, requests for maps and the worker's
-// status out.
+// The service around the slots: takes maps and tasks; publishes results, map requests and the
+// worker's status.
 #pragma once
 
 #include <chrono>
@@ -32,7 +32,7 @@ namespace topogeo::ga_worker {
 
 struct WorkerOptions {
   std::uint32_t slots = 1;
-  std::uint32_t memory_mb = 64;  ///< for local maps and what the slots make of them
+  std::uint32_t memory_mb = 64;  ///< for local maps and their features
   search_pool::SlotScheduling scheduling = search_pool::SlotScheduling::kBatch;
   std::string name;       ///< see check_name
   std::string worker_id;  ///< see make_worker_id
@@ -44,13 +44,13 @@ class GaWorkerService {
   /// Throws std::invalid_argument for 0 slots or texts that do not fit their bounds.
   GaWorkerService(service::Service& service, const WorkerOptions& options);
 
-  /// Publishes that it takes no more tasks, finishes those in hand and sends their results. To be
-  /// called after the loop has ended; a second signal ends it at once.
+  /// Publishes that it takes no more tasks, finishes those in hand and sends their results. Call it
+  /// after the loop has ended; a second signal stops it at once.
   void drain();
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// A task in hand: where the answer goes.
+  /// A task in hand, with the destination of its answer.
   struct Asked {
     std::string client_id;
     std::int64_t stamp_ns = 0;
@@ -61,19 +61,19 @@ class GaWorkerService {
   void listen();
 
   void on_tasks(const msg::MatchTasks& message, const messaging::SampleInfo& info);
-  /// Gives the task to the runner, or to those that wait for maps.
+  /// Gives the task to the runner, or queues it until its maps arrive.
   void take(const msg::MatchTask& message, const Asked& asked, const std::string& robot_id);
-  /// Answers what the slots have finished.
+  /// Answers the tasks that the slots have finished.
   void take_outcomes();
   void on_outcome(const search_pool::TaskRunner::Outcome& outcome);
   void on_event(const messaging::Event& event);
 
-  /// Why tasks are not for this worker; nothing when they are.
+  /// Why this worker must refuse the tasks; nothing when it can take them.
   [[nodiscard]] std::optional<std::pair<msg::MatchStatus, std::string>> objection(
       const msg::MatchTasks& message) const;
   void run(std::vector<search_pool::ReadyJob> jobs);
-  /// Asks for the maps that lack, gives up what has waited too long, and sets a timer for the next
-  /// time.
+  /// Requests the missing maps, gives up tasks that have waited too long, and sets a timer for the
+  /// next check.
   void request_missing_maps();
   void request(const search_pool::TaskIntake::Request& request);
   void refuse(const Asked& asked, msg::MatchStatus status, const std::string& why);

@@ -1,4 +1,4 @@
-// Works on the match tasks of any robot: genetic search for the relative pose of two local maps.
+// Solves match tasks of any robot: genetic search for the relative pose of two local maps.
 #include <string>
 #include <string_view>
 

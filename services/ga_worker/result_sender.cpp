@@ -12,7 +12,7 @@ namespace topogeo::ga_worker {
 
 namespace {
 
-/// Many short searches, and little beside the time of a batch that has so many tasks.
+/// Long enough for many short searches, and short against a batch with that many tasks.
 constexpr std::chrono::milliseconds kLongestWait{40};
 
 }  // namespace
@@ -87,7 +87,7 @@ void ResultSender::send(const std::string& client_id) {
 bool ResultSender::send_message(const std::string& client_id) {
   const std::vector<const Answer*> answers = outboxes_.next_message(client_id);
   service::MatchAddress address;
-  address.robot_id = clients_.find(client_id)->robot_id;  // which is reachable
+  address.robot_id = clients_.find(client_id)->robot_id;  // the client is reachable, hence known
   address.stamp_ns = answers.front()->stamp_ns;
   address.sequence_number = messages_sent_;
   address.worker_id = worker_id_;
@@ -108,7 +108,7 @@ void ResultSender::drop_older(Clock::time_point before) {
 void ResultSender::forget(const std::string& client_id) {
   outboxes_.forget(client_id);
   schedule();
-  // The writer has room for a limited number of instances, and a client is one.
+  // The writer has room for a limited number of instances, one per client.
   msg::MatchResults result;
   messaging::set_client_id(result, client_id);
   results_.dispose(result);

@@ -17,32 +17,33 @@
 
 namespace topogeo::ga_worker {
 
-/// The answers of a client leave when they are as many as its tasks that are still in hand: it
-/// sends new ones while the worker is busy with the rest. None waits longer than 40 ms for others.
+/// Sends the answers of a client once they are as many as its tasks still in hand, so that the
+/// client sends new tasks while the worker is busy with the rest. No answer waits longer than 40
+/// ms.
 class ResultSender {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// All that is passed by reference must outlive it. `clients` knows whom answers go to.
-  /// `outcomes`, of which answers are made, learns after each change when to wake the loop.
-  /// `collect` adds the answers to what waits there.
+  /// All references must outlive this object. `clients` gives the recipients of the answers.
+  /// `outcomes`, the source of the answers, is set after each change to wake the loop in time.
+  /// `collect` adds the finished answers from there.
   ResultSender(service::Service& service, std::string worker_id,
                const search_pool::ClientRegistry& clients, search_pool::OutcomeQueue& outcomes,
                std::function<void()> collect);
 
-  /// So many tasks of the client have come: an answer to each will be added.
+  /// Announces `tasks` tasks of the client: an answer to each will be added.
   void expect(const std::string& client_id, std::size_t tasks);
-  /// The answer to one of those tasks, whose query map has this stamp.
+  /// Adds the answer to one of those tasks; `stamp_ns` is the stamp of its query map.
   void add(const std::string& client_id, msg::MatchResult result, std::int64_t stamp_ns);
 
-  /// Sends to all clients that can be reached what waits for them.
+  /// Sends the waiting answers of all clients that can be reached.
   void send_all();
-  /// Drops what a client has not taken since `before`.
+  /// Drops answers that a client has not taken since `before`.
   void drop_older(Clock::time_point before);
-  /// The client is gone, and what was for it.
+  /// Drops a client that is gone, with its answers.
   void forget(const std::string& client_id);
 
-  /// Answers that wait.
+  /// Number of waiting answers.
   [[nodiscard]] std::size_t waiting() const { return outboxes_.waiting(); }
   void wait_for_acknowledgments(std::chrono::nanoseconds patience);
 
@@ -52,14 +53,14 @@ class ResultSender {
     std::int64_t stamp_ns = 0;
   };
 
-  /// A result to a client whose reader is not connected yet would be lost: it waits.
+  /// False while the client's reader is not connected: a result would be lost, so it waits.
   [[nodiscard]] bool is_reachable(const std::string& client_id) const;
-  /// All that waits for the client.
+  /// Sends all that waits for the client.
   void send(const std::string& client_id);
-  /// The oldest answers, as many as go into a message; false when they are not sent.
+  /// Sends the oldest answers, as many as fit into a message; false when they are not sent.
   [[nodiscard]] bool send_message(const std::string& client_id);
   void send_due();
-  /// To be called after each change: what is due next sets the timer and the queue.
+  /// Call it after each change: the next due time sets the timer and the queue.
   void schedule();
 
   service::Service& service_;
@@ -70,7 +71,7 @@ class ResultSender {
   messaging::Writer<msg::MatchResults> results_;
   search_pool::Outboxes<Answer> outboxes_;
   std::optional<std::uint64_t> timer_;
-  Clock::time_point timer_due_;  // while there is a timer
+  Clock::time_point timer_due_;  // valid while there is a timer
   std::uint64_t messages_sent_ = 0;
 };
 
