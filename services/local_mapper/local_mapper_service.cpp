@@ -16,14 +16,14 @@
 namespace topogeo::local_mapper {
 namespace {
 
-/// Of a log that has ended all scans have been delivered; a busy mapper has them in its queue.
+/// When a log has ended, all its scans have been delivered; a busy mapper has them in its queue.
 constexpr std::chrono::seconds kLastScans{1};
 
 }  // namespace
 
 LocalMapperService::LocalMapperService(service::Service& service, bool replay, bool standalone)
     : service_(service),
-      // Random salt keeps the sessions of two starts apart when a laser that stands sees the same.
+      // Random salt separates two sessions that start with the same view of a standing laser.
       mapper_(service.setup().config.config.local_mapper, service.robot_id(),
               replay ? 0 : support::unrepeatable_u64()),
       local_maps_(service.advertise<msg::LocalMap>()),
@@ -50,7 +50,7 @@ void LocalMapperService::on_stored(const msg::StoredMap& stored) {
   }
   release();
   if (begun_ || stored_) return;
-  // A log that is added to its own map is another session (as in MappingRun).
+  // A log added to its own map is another session (as in MappingRun).
   if (replay_ && stored.stops() > 0) mapper_.set_session_salt(stored.map_id());
   if (stored.session_stops() == 0) {
     begin();
@@ -87,7 +87,7 @@ void LocalMapperService::begin() {
   service_.status().wait_for("scans");
 }
 
-// What is stored comes from the map store when it is needed again.
+// The map store provides stored maps when they are needed again.
 void LocalMapperService::release() {
   const bool readers_have_all =
       sent_.depends_on_readers() && local_maps_.wait_for_acknowledgments({});
@@ -126,8 +126,8 @@ std::optional<scan::Scan> LocalMapperService::accept(const msg::Scan& message) {
   messaging::StatusPublisher& status = service_.status();
   const std::uint64_t sequence = message.sequence_number();
   const std::string name = "scan " + std::to_string(sequence);
-  // The whole message first: neither source nor number of one that is refused count, or a
-  // stranger's would have a log read again for ever (faults_strangers).
+  // Validate the whole message first. Otherwise source and number of a rejected message would
+  // count, and a stranger could have a log read again for ever (faults_strangers).
   scan::Scan scan;
   try {
     scan = service::from_msg(message);
@@ -135,17 +135,17 @@ std::optional<scan::Scan> LocalMapperService::accept(const msg::Scan& message) {
     status.fault("invalid scan", name + ": " + error.what());
     return std::nullopt;
   }
-  // A log that is read again brings the scans up to the last stop once more.
+  // A log that is read again repeats the scans up to the last stop.
   if (replay_ && !odometry_epoch_ && resumed_ && resumed_->first == message.odometry_epoch()) {
     next_sequence_ = resumed_->second + 1;
     scans_used_ = next_sequence_;
     maps_ = std::uint64_t{mapper_.last_stop().number} + 1;
   }
-  // A gateway with devices may be running already; a log begins with its first scan.
+  // A gateway with devices may already be running; a log begins with its first scan.
   const bool joins = !odometry_epoch_ && !replay_;
   const bool other_source = odometry_epoch_ && odometry_epoch_ != message.odometry_epoch();
   odometry_epoch_ = message.odometry_epoch();
-  if (joins || other_source) {  // or it has started anew
+  if (joins || other_source) {  // or the source has restarted
     next_sequence_ = sequence;
     geometry_.reset();
     last_stamp_ns_ = std::numeric_limits<std::int64_t>::min();
@@ -187,7 +187,7 @@ void LocalMapperService::publish(const topomap::LocalMap& map) {
   try {
     if (!service_.send(local_maps_, service::to_msg(map), "local map")) return;
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(error.what());  // no fault of the scan; the run cannot go on without
+    throw std::runtime_error(error.what());  // no scan's fault; the run needs the map
   }
   sent_.add(map.stop);
   service_.status().set_counter("local_maps", static_cast<double>(++maps_));
@@ -195,7 +195,7 @@ void LocalMapperService::publish(const topomap::LocalMap& map) {
   service_.status().set_counter("matched_scans", static_cast<double>(matched_));
 }
 
-// One that cannot be sent now is old by the time it could.
+// A scan that cannot be sent now would be outdated later.
 void LocalMapperService::publish_tracked() {
   const topomap::TrackedScan* scan = mapper_.last_tracked();
   if (scan == nullptr) return;
@@ -240,7 +240,7 @@ void LocalMapperService::finish_if_complete() {
   msg::StreamEnd end;
   messaging::set_header(end, service_.robot_id(), last_stamp_ns_, 0);
   end.stage(msg::kStageLocalMapper);
-  // All scans of a log that is read again may have been mapped before.
+  // When a log is read again, all its scans may have been mapped before.
   const std::uint64_t stops = scans_used_ == 0 && !resumed_ ? 0 : mapper_.last_stop().number + 1;
   end.count(stops);
   end.last_id(stops == 0 ? 0 : stops - 1);

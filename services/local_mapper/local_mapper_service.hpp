@@ -1,4 +1,4 @@
-// Wires pipeline::LocalMapper to topics: scans in, local maps out.
+// Connects pipeline::LocalMapper to topics: scans in, local maps out.
 #pragma once
 
 #include <cstdint>
@@ -22,12 +22,12 @@ namespace topogeo::local_mapper {
 /// Lives in the loop of its service.
 class LocalMapperService {
  public:
-  /// `replay`: the scans come from a log and none must be lost. `standalone`: there is no map
-  /// store, so there is no session to go on with.
+  /// `replay`: the scans come from a log and none may be lost. `standalone`: there is no map store,
+  /// hence no session to continue.
   LocalMapperService(service::Service& service, bool replay, bool standalone);
 
  private:
-  /// What all scans of a source have in common.
+  /// The beam geometry common to all scans of a source.
   struct Geometry {
     double angle_min_rad = 0.0;
     double angle_step_rad = 0.0;
@@ -36,23 +36,23 @@ class LocalMapperService {
   };
 
   void on_stored(const msg::StoredMap& stored);
-  /// Forgets local maps that late readers need not get from here.
+  /// Disposes local maps that late readers can get elsewhere.
   void release();
   void on_last_stop(const service::StoreClient::Answer& answer);
-  /// Nothing is read before it is known with which session to go on.
+  /// Starts reading, once the session to continue is known.
   void begin();
   void on_scan(const msg::Scan& message);
-  /// The scan, if it continues those before; else a fault, or scans of the log are missing that
-  /// come once more.
+  /// Returns the scan if it continues those before. Otherwise reports a fault, or requests the
+  /// missing scans of the log once more.
   std::optional<scan::Scan> accept(const msg::Scan& message);
   void on_stream_end(const msg::StreamEnd& message);
-  /// The log has ended. If then no more scans come though some are missing, they were sent while
-  /// this service was away. `next_before`: next_sequence_ at the last look.
+  /// Called after the end of a log. If scans are missing and none arrive any more, they were sent
+  /// while this service was away. `next_before`: next_sequence_ at the last check.
   void look_for_rest(std::uint64_t next_before);
-  /// False when they do not come any more: it has ended without them.
+  /// False when the missing scans will not arrive: the log has then ended without them.
   bool want_rest();
   void publish(const topomap::LocalMap& map);
-  /// Where the last scan is against the last stop.
+  /// Publishes the pose of the last scan relative to the last stop.
   void publish_tracked();
   void finish_if_complete();
 
@@ -67,7 +67,7 @@ class LocalMapperService {
   std::optional<msg::StoredMap> stored_;
   std::optional<service::StoreClient> store_;
   std::optional<std::uint64_t> odometry_epoch_;  // of the last scan
-  /// Epoch and scan of the stop that the session goes on after.
+  /// Epoch and scan of the stop after which the session continues.
   std::optional<std::pair<std::uint64_t, std::uint64_t>> resumed_;
   std::uint64_t next_sequence_ = 0;  // of the scan that is expected
   std::uint64_t scans_used_ = 0;

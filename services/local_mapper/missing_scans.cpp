@@ -8,11 +8,11 @@ namespace topogeo::local_mapper {
 namespace {
 
 constexpr std::chrono::milliseconds kAskPeriod{100};
-/// The scans that were under way come first; on a busy machine they take a while.
+/// The scans under way come first, which takes a while on a busy machine.
 constexpr std::chrono::seconds kSilence{2};
-/// A gateway whose scans come is soon known as a reader, too. A bridge to ROS is no such reader.
+/// A gateway whose scans arrive is soon known as a reader, too. A ROS bridge is no such reader.
 constexpr std::chrono::seconds kPatience{10};
-/// A log of hours is read up to the scan in a second. One that is gone never is.
+/// A log of hours is read up to the scan in a second; a log that is gone never is.
 constexpr std::chrono::seconds kLongestAnswer{60};
 
 }  // namespace

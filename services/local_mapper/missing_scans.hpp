@@ -1,4 +1,4 @@
-// Asks the gateway of a log for the scans that it sent while this service was away.
+// Requests from a log's gateway the scans that it sent while this service was away.
 #pragma once
 
 #include <chrono>
@@ -19,10 +19,10 @@ class MissingScans {
   MissingScans(const MissingScans&) = delete;
   MissingScans& operator=(const MissingScans&) = delete;
 
-  /// Wants the scans of the log of that odometry epoch from number `first` on; asks again and again
-  /// until found(). False when that is in vain: nobody takes such requests, or nobody answers.
+  /// Requests the scans from number `first` on of the log with that odometry epoch, repeatedly
+  /// until found(). False when that is in vain: no gateway takes such requests, or none answers.
   bool want(std::uint64_t odometry_epoch, std::uint64_t first);
-  /// They come, or are wanted no more.
+  /// The scans arrive, or are not needed any more.
   void found();
 
  private:
@@ -37,8 +37,8 @@ class MissingScans {
   std::uint64_t sent_ = 0;
   bool heard_by_nobody_ = false;  // the gateway was not known when the request was sent
   Clock::time_point asked_;
-  Clock::time_point since_;    // of the first request for these
-  Clock::time_point matched_;  // when somebody took requests last
+  Clock::time_point since_;    // of the first request for these scans
+  Clock::time_point matched_;  // when requests last had a reader
   std::uint64_t timer_ = 0;
 };
 

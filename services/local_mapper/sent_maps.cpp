@@ -8,7 +8,7 @@ void SentMaps::set_stored(std::uint64_t session, std::uint32_t stops) {
   nothing_stored_ = false;
 }
 
-// A session that came before the one that is stored now is complete there.
+// A session before the one being stored now is stored completely.
 bool SentMaps::is_stored(const topomap::StopId& stop) const {
   if (sent_.back().session != session_) return false;
   return stop.session != session_ || stop.number < stops_;

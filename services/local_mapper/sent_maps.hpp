@@ -1,4 +1,4 @@
-// Which of the local maps that were sent are kept for readers that come late.
+// Keeps sent local maps for readers that come late.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,10 @@
 namespace topogeo::local_mapper {
 
 struct SentMapsLimits {
-  /// So many are kept though they are stored, about 4 MB: a reader that is a little behind has them
+  /// Number of stored maps kept nevertheless, about 4 MB: a reader slightly behind gets them
   /// without asking the map store.
   std::size_t stored = 256;
-  /// So many are kept at most, about 60 MB: what a map store keeps in memory that cannot store.
+  /// Largest number kept, about 60 MB: as many as a map store that cannot write keeps in memory.
   std::size_t unstored = 4096;
 };
 
@@ -25,15 +25,16 @@ class SentMaps {
   void add(const topomap::StopId& stop) { sent_.push_back(stop); }
   /// Stops 0 to `stops` - 1 of that session are stored.
   void set_stored(std::uint64_t session, std::uint32_t stops);
-  /// There is a map store, but what comes is not stored. Whoever comes late goes on without.
+  /// There is a map store, but it stores nothing. Late readers go on without the older maps.
   void set_nothing_stored() { nothing_stored_ = true; }
 
-  /// Of maps that are not stored more than those have to be kept that late readers may want.
+  /// True when nothing is stored and more than SentMapsLimits::stored maps are held: the state of
+  /// the readers then decides which ones go.
   [[nodiscard]] bool depends_on_readers() const {
     return nothing_stored_ && sent_.size() > limits_.stored;
   }
-  /// Those that are not kept any more, oldest first; they are forgotten here. `readers_have_all`:
-  /// all readers that are connected have all.
+  /// Removes and returns the maps not kept any more, oldest first. `readers_have_all`: all
+  /// connected readers have received all maps.
   std::vector<topomap::StopId> take_old(bool readers_have_all);
   [[nodiscard]] std::size_t size() const { return sent_.size(); }
 
@@ -42,8 +43,8 @@ class SentMaps {
 
   SentMapsLimits limits_;
   std::deque<topomap::StopId> sent_;  // oldest first
-  std::uint64_t session_ = 0;         // of what is stored ...
-  std::uint32_t stops_ = 0;           // ... its stops before this one
+  std::uint64_t session_ = 0;         // of the stored maps ...
+  std::uint32_t stops_ = 0;           // ... its stops with smaller numbers
   bool nothing_stored_ = false;
 };
 
