@@ -1,4 +1,4 @@
-// Optimises in a thread of its own, so that stops and live poses go on meanwhile.
+// Optimises in a thread of its own, so that stops and live poses are processed meanwhile.
 #pragma once
 
 #include <future>
@@ -22,7 +22,7 @@ class BackgroundOptimizer : public localization::GraphOptimizer {
   }
 
  private:
-  std::future<localization::GraphSolution> job_;  // its end is awaited when this goes
+  std::future<localization::GraphSolution> job_;  // the destructor waits for its end
 };
 
 }  // namespace topogeo::localizer

@@ -1,5 +1,5 @@
-// Commands to the localizer: taken when they come, carried out between two steps, because a step
-// waits for its matches while messages arrive.
+// Commands to the localizer. They are accepted on arrival and carried out between two steps,
+// because messages also arrive while a step waits for its matches.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,12 @@ class CommandChannel {
  public:
   using Handler = std::function<CommandAnswer(const service::LocalizationCommand& command)>;
 
-  /// `on_arrival` is called for every command that can be carried out; carry_out() then is to be
-  /// called soon. Throws like Reader and Writer.
+  /// `on_arrival` is called for every command that can be carried out; call carry_out() soon after.
+  /// Throws like Reader and Writer.
   CommandChannel(service::Service& service, std::function<void()> on_arrival);
 
-  /// Gives the commands that have come to the handler, in order, and sends its answers.
-  /// `stamp_ns` is that of the last stop.
+  /// Passes the commands that have come to the handler, in order, and sends its answers. `stamp_ns`
+  /// is the stamp of the last stop.
   void carry_out(const Handler& handler, std::int64_t stamp_ns);
 
  private:

@@ -1,5 +1,5 @@
-// Where the robot is between two stops: from the corrected pose of the last stop, the scans that
-// were matched with its scan, and the odometry since.
+// Pose of the robot between two stops, from the corrected pose of the last stop, the scans matched
+// with its scan, and the odometry since.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace topogeo::localizer {
 
-/// A pose for a reading of the odometry.
+/// The pose at an odometry reading.
 struct PoseOfNow {
   std::int64_t stamp_ns = 0;   ///< of the reading
   std::uint64_t sequence = 0;  ///< of the reading
@@ -26,30 +26,30 @@ class LivePoseEstimate {
  public:
   explicit LivePoseEstimate(const localization::OdometryNoise& noise) : noise_(noise) {}
 
-  /// The newest reading of the odometry, with its epoch as in scan::Scan.
+  /// The newest odometry reading, with its epoch as in scan::Scan.
   void set_odometry(std::int64_t stamp_ns, std::uint64_t sequence,
                     const geometry::Pose2& T_odom_robot, std::uint64_t epoch);
-  /// A reading of that epoch has come that is newer.
+  /// Whether a newer reading of that epoch has arrived.
   [[nodiscard]] bool has_newer(std::int64_t stamp_ns, std::uint64_t epoch) const {
     return epoch == epoch_ && stamp_ns < stamp_ns_;
   }
-  /// The newest scan after that stop; counts while it is the last one.
+  /// The newest scan after that stop; used while it is the last stop.
   void set_tracked(const topomap::StopId& stop, const topomap::TrackedScan& scan);
-  /// The robot has made a stop. Its odometry counts unless a newer one has come.
+  /// The robot has made a stop. Its odometry is used unless a newer one has arrived.
   void set_stop(std::shared_ptr<const topomap::LocalMap> map);
   /// The pose of the last stop, as it is corrected now.
   void correct(const topomap::StopPose& pose) { stop_pose_ = pose; }
-  /// The same by a command.
+  /// Sets the same from a command.
   void correct(const geometry::Pose2& T_map_stop, const Eigen::Matrix3d& covariance);
 
   [[nodiscard]] const topomap::StopPose& stop_pose() const { return stop_pose_; }
   /// A stop has been made.
   [[nodiscard]] bool has_stop() const { return map_ != nullptr; }
-  /// The robot now, seen from its last stop by odometry; the identity where that is not known:
-  /// before the first stop, and when the odometry has begun anew since.
+  /// Pose of the robot relative to its last stop, by odometry. The identity before the first stop,
+  /// and when the odometry has restarted since.
   [[nodiscard]] geometry::Pose2 T_stop_robot() const;
-  /// Nothing before the first stop, nor from the beginning of another epoch of the odometry to the
-  /// first stop in it.
+  /// Nothing before the first stop, nor between a restart of the odometry and the first stop after
+  /// it.
   [[nodiscard]] std::optional<PoseOfNow> now() const;
 
  private:
@@ -58,7 +58,7 @@ class LivePoseEstimate {
     topomap::TrackedScan scan;
   };
 
-  /// The last stop and the newest odometry have one origin.
+  /// Whether the last stop and the newest odometry have the same origin.
   [[nodiscard]] bool comparable() const { return map_ && map_->odometry_epoch == epoch_; }
 
   localization::OdometryNoise noise_;

@@ -21,10 +21,10 @@ namespace topogeo::localizer {
 
 namespace {
 
-/// Of a robot that follows a finished map so many stops are shown at least, an hour or so, unless
-/// it follows a log or a map store stores them.
+/// At least this many stops of a robot in a finished map stay visible, about an hour; all do when a
+/// log is replayed or a map store stores them.
 constexpr std::size_t kShownStops = 2048;
-/// Twice for each status, so that none shows figures older than that.
+/// Twice per status, so that no status shows older figures.
 constexpr std::chrono::milliseconds kCountPeriod{250};
 
 localization::MapToUse map_to_use(const service::Service& service,
@@ -78,7 +78,7 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
     live_.set_tracked(service::from_msg(pose.stop()), service::from_msg(pose));
   });
   service.subscribe<msg::StreamEnd>([this](const msg::StreamEnd& end) { on_stream_end(end); });
-  // A reader that comes when no odometry does any more, after a log, gets the last pose, too.
+  // A reader that connects when no odometry arrives any more, after a log, gets the last pose, too.
   service.loop().on_event([this](const messaging::Event& event) {
     if (event.kind == messaging::EventKind::kMatched && event.topic == messaging::kLivePose) {
       send_pose();
@@ -142,7 +142,7 @@ void LocalizerService::on_stream_end(const msg::StreamEnd& message) {
 }
 
 void LocalizerService::on_odometry(const msg::Odometry& message) {
-  // A log that is read again; the stamps of a robot may go back with its clock.
+  // A log that is read again repeats old readings; a robot's stamps may go back with its clock.
   if (options_.replay && live_.has_newer(message.stamp_ns(), message.odometry_epoch())) return;
   live_.set_odometry(message.stamp_ns(), message.sequence_number(),
                      service::from_msg(message.T_odom_robot()), message.odometry_epoch());
@@ -161,7 +161,7 @@ void LocalizerService::send_pose() {
   live.covariance = now->T_map_robot.covariance;
   live.last_stop = live_.stop_pose().stop;
   live.trajectory_version = trajectory_.version();
-  // One that cannot be sent now is old by the time it could.
+  // A pose that cannot be sent now would be outdated later.
   if (!poses_.write(service::to_msg(live, service_.robot_id()))) {
     service_.status().add_drops("pose not sent");
   }
@@ -213,7 +213,7 @@ void LocalizerService::step(const StopQueue::MapPointer& map) {
     service_.status().set_state(msg::kServiceRunning);
   }
   (*slam_)->add(odometry_.add(map));
-  if (queue_.taken() < known_stops_) return;  // no pose is said of the robot until the last one
+  if (queue_.taken() < known_stops_) return;  // no pose is published before the last of these stops
   live_.set_stop(map);
   last_map_ = map;
   remember();
@@ -222,7 +222,7 @@ void LocalizerService::step(const StopQueue::MapPointer& map) {
     if (!options_.replay && !stops_are_stored_) follower->forget_stops(kShownStops);
   }
   publish(false);
-  send_pose();  // a correction shows at once, also when no odometry comes any more
+  send_pose();  // shows a correction at once, also when no odometry arrives any more
   count();
 }
 
@@ -231,7 +231,7 @@ void LocalizerService::recall() {
   const std::optional<RememberedPlace> last = memory_->load();
   if (!last) return;
   slam_->follower()->start_after(last->place);
-  // That stop is looked at once more, if the local mapper still has it.
+  // Match that stop once more, if the local mapper still has it.
   if (last->stop.number > 0) queue_.start_after({last->stop.session, last->stop.number - 1});
   spdlog::info("goes on at stop {}, where the robot was last", last->stop.number);
 }
@@ -342,7 +342,7 @@ void LocalizerService::count() {
 }
 
 void LocalizerService::report_need() {
-  // One stop does not distinguish places that look alike: a robot that stands may wait for ever.
+  // One stop does not distinguish places that look alike, so a robot that stands may wait for ever.
   if (queue_.taken() == 0) return;
   const bool lost = !finished_ && slam_->follower() != nullptr &&
                     !localization::located((*slam_)->status().state);

@@ -1,5 +1,5 @@
-// Wires localization::SlamSession to topics: local maps in, the corrected trajectory, closed loops,
-// the decision on each loop and the live pose out, with the matching done by RemotePool.
+// Connects localization::SlamSession to topics: local maps in; corrected trajectory, closed loops,
+// loop decisions and live pose out. RemotePool does the matching.
 #pragma once
 
 #include <cstddef>
@@ -32,14 +32,14 @@ namespace topogeo::localizer {
 
 struct LocalizerOptions {
   std::uint32_t wait_workers = 0;                  ///< workers to wait for before the first step
-  double wait_s = 5.0;                             ///< at most so long, > 0
-  std::optional<std::filesystem::path> map;        ///< to localize in; none: a map is made
-  std::optional<std::filesystem::path> continued;  ///< map to extend; none: one is begun
-  std::optional<geometry::Pose2> initial_pose;     ///< in either; none: it is searched for
-  std::optional<std::filesystem::path> csv;        ///< where localization.csv is written at the end
+  double wait_s = 5.0;                             ///< longest wait for them, > 0
+  std::optional<std::filesystem::path> map;        ///< map to localize in; none: a map is made
+  std::optional<std::filesystem::path> continued;  ///< map to extend; none: a new one
+  std::optional<geometry::Pose2> initial_pose;     ///< in either map; none: it is searched for
+  std::optional<std::filesystem::path> csv;        ///< localization.csv, written at the end
   std::optional<std::filesystem::path> memory;     ///< of the last place in the map (PoseMemory)
   bool standalone = false;  ///< there is no map store: a new map is begun at once
-  bool replay = false;      ///< the stops come from a log: whatever dies, the map is the same
+  bool replay = false;      ///< stops from a log: no process death may change the map
 };
 
 /// Lives in the loop of its service.
@@ -54,21 +54,21 @@ class LocalizerService {
   void send_pose();
   [[nodiscard]] std::size_t stops_in_map() const;
   void on_stream_end(const msg::StreamEnd& message);
-  /// Has the work done outside of message handlers, which the pool needs.
+  /// Schedules the work outside of message handlers, as the pool requires.
   void schedule();
   void work();
   void wait_for_workers();
   void carry_out_commands();
   CommandAnswer carry_out(const service::LocalizationCommand& command);
   void step(const StopQueue::MapPointer& map);
-  /// In a stored map: goes on where the localizer before this one was killed, if it was.
+  /// In a stored map, resumes where the previous localizer was killed, if it was.
   void recall();
-  /// Keeps where the robot is, if that is known, for the localizer after this one.
+  /// Stores the robot's place, if it is known, for the next localizer.
   void remember() const;
   void finish();
   void publish(bool whole);
   void count();
-  /// In a stored map: what a robot without a pose needs to be found.
+  /// In a stored map, reports the help that a robot without a pose needs.
   void report_need();
 
   service::Service& service_;
@@ -83,17 +83,17 @@ class LocalizerService {
   messaging::Writer<msg::RunSummary> summaries_;
   messaging::Writer<msg::StreamEnd> ends_out_;
 
-  std::optional<Resume> resume_;  // until it is known where to go on
+  std::optional<Resume> resume_;  // until the place to resume is known
   StopQueue queue_;
   std::optional<MissingStops> missing_;  // unless it is standalone
   OdometryChain odometry_;
-  std::size_t known_stops_ = 0;  // to be added again: others have their poses already
+  std::size_t known_stops_ = 0;  // to be added again: readers have their poses already
   LivePoseEstimate live_;
   std::optional<StopTable> table_;
   std::optional<PoseMemory> memory_;
   StopQueue::MapPointer last_map_;  // of the last stop, as it was sent
   bool stops_are_stored_ = false;   // by a map store
-  bool ready_ = false;              // it is known where to go on
+  bool ready_ = false;              // the place to resume is known
   bool scheduled_ = false;
   bool waited_ = false;
   bool finished_ = false;

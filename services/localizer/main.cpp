@@ -82,6 +82,6 @@ int main(int argc, char** argv) {
           const localizer::LocalizerService localizer(service, options);
           return service::run_with_one_map(service);
         };
-        while (work()) options.continued.reset();  // the map store has it
+        while (work()) options.continued.reset();  // the map store has the map now
       });
 }

@@ -9,9 +9,9 @@ namespace topogeo::localizer {
 
 namespace {
 
-/// A worker whose reader is not connected by then asks again when it is.
+/// A worker whose reader connects later than this asks again.
 constexpr std::chrono::seconds kPatience{5};
-/// Requests that wait, at most.
+/// Largest number of waiting requests.
 constexpr std::size_t kMostPending = 256;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Sends local maps to the workers that ask for them: the map that a task names may reach a worker
-// later than the task, or never.
+// Sends local maps to the workers that ask for them, because the map that a task names may reach a
+// worker later than the task, or never.
 #pragma once
 
 #include <chrono>
@@ -27,17 +27,17 @@ class MapSender {
  public:
   using FaultHandler = std::function<void(std::string_view reason, std::string_view detail)>;
 
-  /// Answers requests to `client_id`. `loop` must outlive this and must not run any more once this
-  /// has gone. Throws like Reader and Writer.
+  /// Answers requests to `client_id`. `loop` must outlive this object and must not run after its
+  /// end. Throws like Reader and Writer.
   MapSender(const messaging::Participant& participant, messaging::EventLoop& loop,
             const std::string& client_id, FaultHandler on_fault);
 
-  /// Replaces an earlier map of that id.
+  /// Replaces an earlier map with the same id.
   void add(std::shared_ptr<const topomap::LocalMap> map);
-  /// Null when there is none of that id.
+  /// Null when there is no map with that id.
   [[nodiscard]] const topomap::LocalMap* find(std::uint32_t map_id) const;
 
-  /// To be called some times in a second: sends what could not be sent before.
+  /// Call it a few times a second: sends the copies that could not be sent before.
   void tick();
 
   /// Copies sent so far.
@@ -53,15 +53,15 @@ class MapSender {
 
   void on_request(const msg::MapRequest& request, const messaging::SampleInfo& info);
   void on_event(const messaging::Event& event);
-  /// True when nothing more is to be done for the request.
+  /// True when the request needs no further work.
   bool answer(const Pending& pending);
 
   FaultHandler on_fault_;
   messaging::Reader<msg::MapRequest> requests_;
   WorkerWriter<msg::MapCopy> copies_;
   std::map<std::uint32_t, std::shared_ptr<const topomap::LocalMap>> maps_;  // by id
-  std::map<std::uint32_t, std::uint64_t> hashes_;  // of those that were asked for
-  std::list<Pending> pending_;                     // oldest first
+  std::map<std::uint32_t, std::uint64_t> hashes_;                           // of requested maps
+  std::list<Pending> pending_;                                              // oldest first
   std::uint64_t sequence_ = 0;
 };
 

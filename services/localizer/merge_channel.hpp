@@ -1,4 +1,4 @@
-// Proposals to make the maps of two robots one, out to whoever wants to answer, and the answers.
+// Proposals to merge the maps of two robots: publishes them and receives the answers.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +20,13 @@ class MergeChannel {
  public:
   using Handler = std::function<CommandAnswer(std::uint32_t number, bool accepted)>;
 
-  /// `on_arrival` is called for every answer; carry_out() then is to be called soon. Commands that
-  /// are for the localizer of one robot are refused. Throws like Reader and Writer.
+  /// `on_arrival` is called for every answer; call carry_out() soon after. Commands for the
+  /// localizer of one robot are refused. Throws like Reader and Writer.
   MergeChannel(service::Service& service, std::function<void()> on_arrival);
 
-  /// Sends those that are new or have changed. `stamp_ns` is that of the last stop.
+  /// Sends new and changed proposals. `stamp_ns` is the stamp of the last stop.
   void publish(const std::vector<localization::MergeProposal>& proposals, std::int64_t stamp_ns);
-  /// Gives the answers that have come to the handler, in order, and sends what became of them.
+  /// Passes the answers that have come to the handler, in order, and sends the outcomes.
   void carry_out(const Handler& handler, std::int64_t stamp_ns);
 
  private:

@@ -20,7 +20,7 @@ void MissingStops::check() {
   if (asking_) return;
   const std::optional<topomap::StopId> before = std::exchange(missing_, queue_.missing());
   if (!missing_ && ask_) missing_ = queue_.missing_at_end();
-  // Twice the same: what has come meanwhile is in the queue.
+  // Only after two equal checks: a map that came meanwhile is in the queue.
   if (!missing_ || missing_ != before) return;
   if (!ask_) {
     skip();
@@ -46,7 +46,7 @@ void MissingStops::on_answer(const service::StoreClient::Answer& answer) {
     }
   } catch (const std::exception& error) {
     service_.status().fault("no snapshot", error.what());
-    return;  // asked for again by the next checks
+    return;  // the next checks ask again
   }
   if (queue_.missing() == missing_) {
     skip();

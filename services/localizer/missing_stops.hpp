@@ -1,5 +1,5 @@
-// Local maps that came before a localizer did and that their sender does not keep any more: they
-// are taken from the map store, or left out where the rest can do without them.
+// Recovers local maps that were sent before the localizer started and that their sender no longer
+// keeps: from the map store, or by leaving them out when the rest can do without them.
 #pragma once
 
 #include <functional>
@@ -16,25 +16,25 @@ namespace topogeo::localizer {
 /// Lives in the loop of its service.
 class MissingStops {
  public:
-  /// Keeps a reference to `queue`; `on_change` is called when it can go on. `ask`: the map store
-  /// has them; a robot that is only to be found in a map needs no stops of before.
+  /// Keeps a reference to `queue`; `on_change` is called when the queue can go on. `ask`: the map
+  /// store has the maps; a robot that only localizes in a map does not need earlier stops.
   MissingStops(service::Service& service, StopQueue& queue, bool ask,
                std::function<void()> on_change);
 
-  /// Whether the queue waits for what does not come. To be called some times in a second.
+  /// Checks whether the queue waits for a stop that will not arrive. Call it a few times a second.
   void check();
 
  private:
   void on_answer(const service::StoreClient::Answer& answer);
-  /// Begins a session later than with its first stop, or reports that one that is on cannot go on.
+  /// Begins a session after its first stop, or reports that a running session cannot go on.
   void skip();
 
   service::Service& service_;
   StopQueue& queue_;
   bool ask_;
   std::function<void()> on_change_;
-  std::optional<service::StoreClient> store_;  // once it is needed
-  std::optional<topomap::StopId> missing_;     // by the last check
+  std::optional<service::StoreClient> store_;  // created on first use
+  std::optional<topomap::StopId> missing_;     // at the last check
   bool asking_ = false;
 };
 

@@ -10,7 +10,7 @@ namespace topogeo::localizer {
 
 namespace {
 
-/// Different for every process that ever ran, as far as workers can remember.
+/// Unique among all processes that workers may remember.
 std::string unique_client_id() {
   const auto start = std::chrono::system_clock::now().time_since_epoch();
   return support::process_name() + "-" +

@@ -1,4 +1,4 @@
-// How a localizer takes part in the search pool.
+// Options of a localizer as a client of the search pool.
 #pragma once
 
 #include "topogeo/service/service.hpp"

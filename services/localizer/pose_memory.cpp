@@ -22,7 +22,8 @@ geometry::Pose2 pose_of(const std::array<double, 3>& numbers) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-/// Two maps with the same stops at the same poses have one frame. Never 0.
+/// Identifies the frame of a map: equal for two maps with the same stops at the same poses. Never
+/// 0.
 std::uint64_t frame_of(const localization::StoredMap& map) {
   support::Fnv1a hash;
   for (const topomap::StopPose& stop : map.trajectory.stops) {

@@ -1,5 +1,5 @@
-// Where a robot was at its last stop in a finished map, in a small file that outlives a localizer
-// that is killed.
+// Remembers a robot's last stop in a finished map, in a small file that survives a killed
+// localizer.
 #pragma once
 
 #include <array>
@@ -21,18 +21,18 @@ struct RememberedPlace {
 
 class PoseMemory {
  public:
-  /// Places are those of `map`: of another one nothing is remembered. Throws std::runtime_error
-  /// naming the file when it cannot be opened or made.
+  /// Places refer to `map`: load() ignores a place in another map. Throws std::runtime_error naming
+  /// the file when it cannot be opened or made.
   PoseMemory(const std::filesystem::path& path, const localization::StoredMap& map);
 
-  /// What was stored last; empty when that is nothing, damaged, or a place in another map.
+  /// The place stored last; empty when there is none, it is damaged, or it is in another map.
   [[nodiscard]] std::optional<RememberedPlace> load() const;
   void store(const RememberedPlace& remembered) const;
-  /// Where the robot is is not known any more.
+  /// The robot's place is no longer known.
   void forget() const { file_.store(Record{}); }
 
  private:
-  /// As it lies in the file, for this machine alone. Zeros: nothing.
+  /// Layout of the file, for this machine alone. All zeros: no place.
   struct Record {
     std::uint64_t map = 0;
     std::uint64_t session = 0;
@@ -44,7 +44,7 @@ class PoseMemory {
   };
 
   support::RecordFile<Record> file_;
-  std::uint64_t map_;  // which one
+  std::uint64_t map_;  // identifies its frame
 };
 
 }  // namespace topogeo::localizer

@@ -24,13 +24,13 @@ using search_pool::WorkerRegistry;
 
 namespace {
 
-/// Longest wait for an event that wakes the pool anyway.
+/// Longest single wait for events, each of which wakes the pool at once.
 constexpr std::chrono::seconds kLongestWait{1};
 
-/// Workers publish their status every 500 ms; one that is silent for a second is gone. Liveliness
-/// of DDS alone does not do: while any other worker lives, Fast DDS 2.9 takes the dead one to live,
-/// too, until the lease of its participant ends (upstream report 4373). Ticks of the loop are
-/// counted and not time, so that no worker is lost because the loop stood still.
+/// Workers publish their status every 500 ms; one that is silent for a second is gone. DDS
+/// liveliness does not suffice: while any other worker lives, Fast DDS 2.9 reports a dead one as
+/// alive until the lease of its participant ends (upstream report 4373). The pool counts ticks of
+/// the loop, not time, so that no worker is lost because the loop stood still.
 constexpr std::chrono::milliseconds kTick{125};
 constexpr int kSilentTicks = 9;
 
@@ -93,7 +93,7 @@ void RemotePool::add_field(std::shared_ptr<const localization::PlaceField> field
 // --- the wait
 
 std::vector<MatchResult> RemotePool::match(std::span<const MatchTask> tasks) {
-  // A whole map of more pieces than a message names is searched here.
+  // A whole map with more pieces than a message can name is searched here.
   if (!tasks.empty() && tasks.front().places &&
       tasks.front().places->pieces.size() > localization::PlaceField::kMostPieces) {
     std::vector<MatchResult> results;
@@ -145,7 +145,7 @@ void RemotePool::run_loop(std::chrono::nanoseconds duration, const std::function
   const bool ended = loop_.run_for(duration);
   until_ = {};
   if ((ended && !woken_) || (options_.stopping && options_.stopping())) {
-    loop_.stop();  // the one that this runs in, too
+    loop_.stop();  // ends the loop that calls this, too
     throw Stopped();
   }
 }
@@ -210,7 +210,7 @@ bool RemotePool::send(std::span<const TaskBoard::Assignment> of_one_worker) {
   return tasks_out_.write(message, registry_.owner(address.worker_id));
 }
 
-// --- the same work here
+// --- tasks solved here
 
 void RemotePool::prepare(const MatchTask& task) {
   if (task.places) return;  // add_field did
@@ -232,7 +232,7 @@ std::string RemotePool::complaint(const MatchTask& task, const MatchResult& resu
     prepare(task);
     return matcher_.verify(task, result);
   } catch (const std::exception& error) {
-    return error.what();  // of a task that has no answer at all
+    return error.what();  // a task without any answer
   }
 }
 
@@ -381,7 +381,7 @@ void RemotePool::on_event(const messaging::Event& event) {
   if (const auto participant = tasks_out_.follow(event)) on_task_reader(*participant);
   if (event.topic != messaging::kMatchResults || event.kind != messaging::EventKind::kInvalidSample)
     return;
-  // An answer that breaks the wire contract has no task id that could be relied on.
+  // An answer that breaks the wire contract has no reliable task id.
   for (const std::string& worker_id : registry_.workers_of(service::participant_of(event.peer))) {
     if (!board_.distrust(worker_id, now())) continue;
     on_fault_("wrong match result", registry_.name(worker_id) + ": " + event.detail);

@@ -1,6 +1,6 @@
-// Lets search workers on the network work on match tasks, and does it itself where there are none
-// (design, the search pool). TaskBoard decides who gets what, WorkerRegistry who may take part;
-// this carries it over DDS and checks every answer.
+// Distributes match tasks to search workers on the network, and solves them itself when there are
+// none (design, the search pool). TaskBoard assigns the tasks, WorkerRegistry admits workers; this
+// class carries them over DDS and checks every answer.
 #pragma once
 
 #include <chrono>
@@ -31,7 +31,7 @@
 
 namespace topogeo::localizer {
 
-/// The program is to end; thrown out of RemotePool while it waits.
+/// Thrown out of RemotePool while it waits, because the program must end.
 class Stopped : public std::runtime_error {
  public:
   Stopped() : std::runtime_error("stopped while waiting for match results") {}
@@ -40,19 +40,20 @@ class Stopped : public std::runtime_error {
 struct RemotePoolOptions {
   std::string robot_id;                  ///< 1 to 32 bytes
   std::string client_id;                 ///< 1 to 64 bytes without quotes, unique on the domain
-  std::string version;                   ///< workers of another one are not used
-  std::uint64_t config_fingerprint = 0;  ///< workers that were given another one are not used
+  std::string version;                   ///< workers with another version are not used
+  std::uint64_t config_fingerprint = 0;  ///< workers with another one are not used
   search_pool::BoardConfig board;
-  /// Compute again the fitness and verdict of every answer. Off only to measure what it costs.
+  /// Recomputes fitness and verdict of every answer. Off only to measure the cost.
   bool verify = true;
-  /// Asked after every wait: true when the program is to end. Empty: never.
+  /// Checked after every wait: true when the program must end. Empty: never.
   std::function<bool()> stopping;
   /// Gets lines for the user; empty: they are logged.
   search_pool::PoolLog::Sink log;
 };
 
-/// Makes its readers and writers itself: a process has one service::Service, tests and benchmarks
-/// several pools; and statuses come from workers of every robot, with the process of their writer.
+/// Creates its own readers and writers, because tests and benchmarks have several pools but a
+/// process has one service::Service, and because statuses come from workers of every robot, with
+/// the process of their writer.
 ///
 /// Everything happens in the thread that calls it. match() runs the event loop while it waits, so
 /// it must not be called from a message handler, only from a posted or timed one or outside.
@@ -60,23 +61,22 @@ class RemotePool : public localization::MatchPool {
  public:
   using FaultHandler = std::function<void(std::string_view reason, std::string_view detail)>;
 
-  /// `loop` must outlive the pool and must not run any more once the pool has gone. Throws like
-  /// Reader and Writer.
+  /// `loop` must outlive the pool and must not run after the pool's end. Throws like Reader and
+  /// Writer.
   RemotePool(const messaging::Participant& participant, messaging::EventLoop& loop,
              RemotePoolOptions options, FaultHandler on_fault);
   ~RemotePool() override;
 
   void add_map(std::shared_ptr<const topomap::LocalMap> map) override;
   void add_field(std::shared_ptr<const localization::PlaceField> field) override;
-  /// Throws Stopped, and what Matcher::solve throws for a task that cannot be solved.
+  /// Throws Stopped, and the exceptions of Matcher::solve for a task that cannot be solved.
   std::vector<localization::MatchResult> match(
       std::span<const localization::MatchTask> tasks) override;
 
-  /// Returns how many workers there are once they are `count` or `patience` is over. Throws
-  /// Stopped.
+  /// Waits for `count` workers, at most `patience`, and returns how many there are. Throws Stopped.
   std::size_t wait_for_workers(std::size_t count, std::chrono::nanoseconds patience);
 
-  /// Tasks of the batch in work that have no answer yet.
+  /// Tasks of the current batch that have no answer yet.
   [[nodiscard]] std::size_t open_tasks() const { return board_.open_tasks(); }
   [[nodiscard]] std::size_t workers() const { return board_.workers(); }
   [[nodiscard]] const search_pool::BoardCounts& counts() const { return board_.counts(); }
@@ -91,29 +91,29 @@ class RemotePool : public localization::MatchPool {
   void on_tick();
   void drop(const std::string& worker_id);
   void on_event(const messaging::Event& event);
-  /// Readers of tasks came to or went from a process.
+  /// Readers of tasks appeared or disappeared in a process.
   void on_task_reader(const service::ParticipantId& participant);
   void on_results(const msg::MatchResults& message, const messaging::SampleInfo& info);
   void on_result(const std::string& worker_id, const msg::MatchResult& message);
   void on_answer(const std::string& worker_id, const msg::MatchResult& message);
   void on_wrong(const std::string& worker_id, std::uint64_t task_id, const std::string& what);
-  /// Works until the batch is done.
+  /// Runs the loop until the batch is done.
   void work();
-  /// Gives workers what they have room for, then ends the wait if it has come true.
+  /// Sends workers as many tasks as they can take, then ends the wait if its condition holds.
   void go_on();
   void send_waiting();
-  /// One message; false when the worker's history is full.
+  /// Sends one message; false when the worker's history is full.
   bool send(std::span<const search_pool::TaskBoard::Assignment> of_one_worker);
-  /// Solves an answered task here and blames the workers whose answers are others.
+  /// Solves an answered task here and blames the workers whose answers differ.
   void settle(const localization::MatchTask& task);
   void blame(const localization::MatchTask& task,
              const search_pool::TaskBoard::Difference& difference,
              const localization::MatchResult& truth);
-  /// What is wrong with an answer; empty: nothing.
+  /// The fault of an answer; empty: none.
   std::string complaint(const localization::MatchTask& task,
                         const localization::MatchResult& result);
   localization::MatchResult solve(const localization::MatchTask& task);
-  /// Lets the matcher know the task's maps.
+  /// Gives the task's maps to the matcher.
   void prepare(const localization::MatchTask& task);
   void log_recoveries();
   /// Runs the loop until `until` holds, for `duration` at most.
@@ -130,7 +130,7 @@ class RemotePool : public localization::MatchPool {
   messaging::Reader<msg::MatchResults> results_;
   WorkerWriter<msg::MatchTasks> tasks_out_;
   MapSender maps_;
-  localization::Matcher matcher_;  // holds the maps that it was needed for
+  localization::Matcher matcher_;  // holds the maps it has needed so far
   std::uint64_t sequence_ = 0;
   std::function<bool()> until_;
   bool woken_ = false;

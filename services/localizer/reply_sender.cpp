@@ -9,7 +9,7 @@ namespace topogeo::localizer {
 
 namespace {
 
-/// Requests of people, who wait for the reply: a few at a time.
+/// Requests come from people who wait for the reply: a few at a time.
 constexpr std::size_t kRemembered = 64;
 
 }  // namespace

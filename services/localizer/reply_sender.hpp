@@ -1,5 +1,5 @@
-// Replies of the localizer to commands and answers. Who gets none sends its request again, so a
-// request that came already is carried out once, and its reply repeated.
+// Replies of the localizer to commands and answers. A client without a reply repeats its request,
+// so a repeated request is not carried out again; only its reply is repeated.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +21,9 @@ class ReplySender {
   explicit ReplySender(service::Service& service)
       : service_(service), replies_(service.advertise<msg::LocalizationReply>()) {}
 
-  /// True when a request of that number and client came before; sends its reply again if it has
-  /// one.
+  /// True when that client sent a request of that number before; repeats the reply if there is one.
   bool came_before(std::uint64_t request_id, const std::string& client_id);
-  /// To the request of that number and client; counts it. `stamp_ns` is that of the last stop.
+  /// Replies to that request and counts it. `stamp_ns` is the stamp of the last stop.
   void reply(std::uint64_t request_id, const std::string& client_id, const CommandAnswer& answer,
              std::int64_t stamp_ns);
 

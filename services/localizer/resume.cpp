@@ -11,7 +11,7 @@ namespace topogeo::localizer {
 
 namespace {
 
-// Added again in a second or two; what that takes grows with the stops.
+// Adding them again takes a second or two, and the time grows with the stops.
 constexpr std::uint32_t kMostAddedAgain = 400;
 
 }  // namespace
@@ -52,7 +52,7 @@ void Resume::get_stops(std::uint32_t first) {
 bool Resume::usable(const service::StoreClient::Answer& answer) {
   if (answer.bytes) return true;
   service_.status().fault("no snapshot", answer.why);
-  stored_.reset();  // with the next message of the store
+  stored_.reset();  // the next message of the store sets it again
   from_ = {};
   return false;
 }
@@ -79,7 +79,7 @@ void Resume::on_stops(const service::StoreClient::Answer& answer) {
   if (!usable(answer)) return;
   try {
     std::vector<topomap::LocalMap> stops = storage::parse_local_maps(*answer.bytes, "snapshot");
-    // Views that others show as well have left a long drive.
+    // A long drive has dropped views that others show as well.
     if (!from_.map && stops.size() < stored_->session_stops()) {
       get_map();
       return;

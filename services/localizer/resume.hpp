@@ -1,4 +1,4 @@
-// Where a localizer that starts goes on: with the map that the map store has.
+// Resumes a starting localizer with the map of the map store.
 #pragma once
 
 #include <functional>
@@ -11,22 +11,22 @@
 
 namespace topogeo::localizer {
 
-/// What there is to go on with.
+/// The state from which the localizer continues.
 struct ResumeFrom {
   std::shared_ptr<const localization::StoredMap>
       map;               ///< null: the map begins with the stops below
-  bool goes_on = false;  ///< its last stop is one of the session that is on
+  bool goes_on = false;  ///< its last stop belongs to the current session
   std::vector<std::shared_ptr<const topomap::LocalMap>> stops;  ///< of that session, to be added
 };
 
-/// Waits for the map store and gets from it what it has. Lives in the loop of its service.
+/// Waits for the map store and gets its map. Lives in the loop of its service.
 class Resume {
  public:
   using Handler = std::function<void(ResumeFrom from)>;
 
-  /// A session that alone makes the map is added again from its first stop, which gives the map of
-  /// an undisturbed run to the bit: always when `exact`, else while that takes no longer than a
-  /// second or two. Calls `on_ready` once.
+  /// The stops of a session that makes up the whole map are added again from the first one, which
+  /// gives the map of an undisturbed run to the bit: always when `exact`, otherwise while that
+  /// takes no longer than a second or two. Calls `on_ready` once.
   Resume(service::Service& service, bool exact, Handler on_ready);
 
  private:
@@ -35,7 +35,7 @@ class Resume {
   void get_stops(std::uint32_t first);
   void on_map(const service::StoreClient::Answer& answer);
   void on_stops(const service::StoreClient::Answer& answer);
-  /// False, and a fault, when the store has no answer; then all is asked for again.
+  /// Returns false, with a fault, when the store has no answer; everything is then requested again.
   bool usable(const service::StoreClient::Answer& answer);
 
   service::Service& service_;

@@ -1,4 +1,4 @@
-// What the status of the localizer counts.
+// The counters in the localizer's status.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,11 @@
 
 namespace topogeo::localizer {
 
-/// Matches and loops so far.
+/// Sets the matches and loops so far.
 void set_slam_counters(const localization::Slam& slam, std::size_t loop_closures,
                        messaging::StatusPublisher& status);
 
-/// Workers, tasks and answers so far.
+/// Sets the workers, tasks and answers so far.
 void set_pool_counters(const RemotePool& pool, messaging::StatusPublisher& status);
 
 }  // namespace topogeo::localizer

@@ -1,4 +1,4 @@
-// What a localizer has done in a run, as the message for those who report on the run.
+// Summary of a localizer's run, as the message for programs that report on the run.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@ namespace topogeo::localizer {
 
 struct RunParts {
   const localization::Slam& slam;
-  const localization::MapLocalizer* in_map;       ///< null: no map that stays as it is was given
-  const localization::MappingSession* continued;  ///< null: no map was extended
+  const localization::MapLocalizer* in_map;       ///< null: it did not localize in a finished map
+  const localization::MappingSession* continued;  ///< null: it extended no map
   const search_pool::BoardCounts& pool;
 };
 

@@ -22,7 +22,7 @@ namespace {
 
 using localization::MergeProposal;
 
-/// Twice for each status, so that none shows figures older than that.
+/// Twice per status, so that no status shows older figures.
 constexpr std::chrono::milliseconds kCounterPeriod{250};
 
 }  // namespace
@@ -62,7 +62,7 @@ SharedLocalizerService::SharedLocalizerService(service::Service& service, bool s
       {.team = true});
   service.subscribe<msg::StreamEnd>([this](const msg::StreamEnd& end) { on_stream_end(end); },
                                     {.team = true});
-  // A reader that comes when no odometry does any more gets the last poses, too.
+  // A reader that connects when no odometry arrives any more gets the last poses, too.
   service.loop().on_event([this](const messaging::Event& event) {
     if (event.kind != messaging::EventKind::kMatched || event.topic != messaging::kLivePose) return;
     for (const auto& [robot, state] : robots_) send_pose(robot);
@@ -81,7 +81,7 @@ void SharedLocalizerService::resume(SharedResumeFrom from) {
     map_->remember_refused(refused.stop, refused.other);
   }
   if (from.map) {
-    // Where each robot was when the map was stored, if its session is on.
+    // Place of each robot when the map was stored, if its session continues.
     for (const topomap::LocalMap& last : from.map->maps) {
       const auto robot = robots_.find(last.robot_id);
       if (robot == robots_.end()) continue;
@@ -95,7 +95,7 @@ void SharedLocalizerService::resume(SharedResumeFrom from) {
   for (StopQueue::MapPointer& map : from.stops) {
     const auto robot = robots_.find(map->robot_id);
     if (robot == robots_.end()) continue;
-    // Earlier ones are in the map, or not wanted any more.
+    // Earlier stops are in the map, or not needed any more.
     if (begun.insert(map->stop.session).second && map->stop.number > 0) {
       robot->second.queue.start_after({map->stop.session, map->stop.number - 1});
     }
@@ -131,7 +131,7 @@ void SharedLocalizerService::send_pose(const std::string& robot) {
   live.covariance = now->T_map_robot.covariance;
   live.last_stop = estimate.stop_pose().stop;
   live.trajectory_version = trajectory_.version();
-  // One that cannot be sent now is old by the time it could.
+  // A pose that cannot be sent now would be outdated later.
   if (!poses_.write(service::to_msg(live, robot))) {
     service_.status().add_drops("pose not sent");
   }

@@ -1,5 +1,5 @@
-// Wires localization::SharedMap to topics: the local maps of several robots in, one trajectory out,
-// a live pose for each robot, and proposals to join their maps.
+// Connects localization::SharedMap to topics: the local maps of several robots in; one trajectory,
+// a live pose for each robot, and proposals to join their maps out.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +30,7 @@ namespace topogeo::localizer {
 /// Lives in the loop of its service.
 class SharedLocalizerService {
  public:
-  /// `standalone`: there is no map store, a new map is begun at once.
+  /// `standalone`: there is no map store, so a new map is begun at once.
   SharedLocalizerService(service::Service& service, bool standalone);
 
  private:
@@ -38,18 +38,18 @@ class SharedLocalizerService {
     StopQueue queue = {};
     OdometryChain odometry = {};
     LivePoseEstimate live;
-    bool ended = false;  // its stream
+    bool ended = false;  // the stream of its local maps has ended
   };
 
   void resume(SharedResumeFrom from);
   void on_map(const msg::LocalMap& message);
   void on_stream_end(const msg::StreamEnd& message);
   void send_pose(const std::string& robot);
-  /// Has the work done outside of message handlers, which the pool needs.
+  /// Schedules the work outside of message handlers, as the pool requires.
   void schedule();
   void work();
   void answer_merges();
-  /// One stop of each robot that has some; false when none has.
+  /// Adds one waiting stop of each robot; false when none waits.
   bool step_all();
   void finish();
   void publish(bool whole);
@@ -64,9 +64,9 @@ class SharedLocalizerService {
   TrajectoryPublisher trajectory_;
   messaging::Writer<msg::LivePose> poses_;
   messaging::Writer<msg::StreamEnd> ends_out_;
-  std::optional<SharedResume> resume_;  // until it is known where to go on
+  std::optional<SharedResume> resume_;  // until the place to resume is known
   std::int64_t stamp_ns_ = 0;           // of the newest stop
-  bool ready_ = false;                  // it is known where to go on
+  bool ready_ = false;                  // the place to resume is known
   bool scheduled_ = false;
   bool finished_ = false;
 };

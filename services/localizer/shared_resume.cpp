@@ -36,7 +36,7 @@ void SharedResume::on_stored(const msg::StoredMap& stored) {
 bool SharedResume::usable(const service::StoreClient::Answer& answer) {
   if (answer.bytes) return true;
   service_.status().fault("no snapshot", answer.why);
-  stored_.clear();  // with the next messages of the store
+  stored_.clear();  // the next messages of the store set it again
   sessions_.clear();
   from_ = {};
   begun_ = false;
@@ -85,7 +85,7 @@ void SharedResume::on_stops(const service::StoreClient::Answer& answer) {
   if (!usable(answer)) return;
   try {
     std::vector<topomap::LocalMap> stops = storage::parse_local_maps(*answer.bytes, "snapshot");
-    // Of a session that has not joined for long the newest ones are enough.
+    // A session that has waited long to join needs only its newest stops.
     const std::size_t most = localization::MappingSession::kMostWaiting;
     const std::size_t first = stops.size() > most ? stops.size() - most : 0;
     for (std::size_t i = first; i < stops.size(); ++i) {

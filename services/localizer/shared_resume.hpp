@@ -1,5 +1,5 @@
-// Where a localizer of several robots goes on: with their map, and with the stops of the session of
-// each that are not in it.
+// Resumes a localizer of several robots: with their map, and with the stops of each robot's session
+// that are not in it.
 #pragma once
 
 #include <functional>
@@ -17,12 +17,12 @@ namespace topogeo::localizer {
 
 struct SharedResumeFrom {
   std::shared_ptr<const localization::StoredMap> map;  ///< null: there is none yet
-  /// Of the sessions that are on, to be added again, in the order in which they were made.
+  /// Stops of the current sessions, to be added again in the order in which they were made.
   std::vector<std::shared_ptr<const topomap::LocalMap>> stops;
   std::vector<storage::RefusedMerge> refused_merges;
 };
 
-/// Waits for the map store and gets from it what it has. Lives in the loop of its service.
+/// Waits for the map store and gets its map. Lives in the loop of its service.
 class SharedResume {
  public:
   using Handler = std::function<void(SharedResumeFrom from)>;
@@ -35,14 +35,14 @@ class SharedResume {
   void on_map(const service::StoreClient::Answer& answer);
   void get_stops();
   void on_stops(const service::StoreClient::Answer& answer);
-  /// False, and a fault, when the store has no answer; then all is asked for again.
+  /// Returns false, with a fault, when the store has no answer; everything is then requested again.
   bool usable(const service::StoreClient::Answer& answer);
 
   service::Service& service_;
   Handler on_ready_;
   std::map<std::string, msg::StoredMap> stored_;  // by robot
-  bool begun_ = false;                            // all of them are here
-  std::vector<msg::StoredMap> sessions_;          // whose stops are to be asked for
+  bool begun_ = false;                            // all messages have arrived
+  std::vector<msg::StoredMap> sessions_;          // their stops are still to be requested
   SharedResumeFrom from_;
   service::StoreClient client_;
 };

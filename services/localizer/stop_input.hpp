@@ -1,4 +1,4 @@
-// Local maps as they come, into the queue of a localizer.
+// Adds arriving local maps to the queue of a localizer.
 #pragma once
 
 #include "topogeo/msg/local_map.h"
@@ -8,8 +8,8 @@
 
 namespace topogeo::localizer {
 
-/// Adds a local map that is new, and reports one of another run or one that comes after the end
-/// (`finished`). False when it was not added. Throws like service::from_msg().
+/// Adds a new local map; reports one of another run or one that comes after the end (`finished`).
+/// Returns false when it was not added. Throws like service::from_msg().
 bool add_stop(service::Service& service, const msg::LocalMap& message, bool finished,
               StopQueue& queue);
 

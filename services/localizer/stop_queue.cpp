@@ -67,7 +67,7 @@ bool StopQueue::gap_at(const topomap::StopId& stop) const {
 }
 
 std::optional<topomap::StopId> StopQueue::missing() const {
-  std::vector<topomap::StopId> wanted;  // any of them can be taken next
+  std::vector<topomap::StopId> wanted;  // any of them may be taken next
   if (last_) wanted.push_back(last_->next());
   for (const std::uint64_t session : sessions_) {
     if (!last_ || session != last_->session) wanted.push_back(first_of(session));

@@ -1,4 +1,4 @@
-// localization.csv of a drive in a finished map, however long it is.
+// Writes localization.csv for a drive of any length in a finished map.
 #pragma once
 
 #include <cstddef>
@@ -12,25 +12,24 @@ namespace topogeo::localizer {
 
 class StopTable {
  public:
-  /// Those of the drive that are still known, and how many there were in all.
+  /// The stops of the drive that are still known, and the number of all its stops.
   struct Stops {
     std::span<const localization::LocalizedStop> known;
     std::size_t added = 0;
   };
 
-  /// What comes before the end is in FILE.part. Throws std::runtime_error when it cannot be
-  /// written.
+  /// Rows go to FILE.part until the end. Throws std::runtime_error when it cannot be written.
   explicit StopTable(std::filesystem::path file);
 
-  /// Writes the stops since the last call, but not the last one, whose pose may still be set. That
-  /// this fails is said at the end: no robot is to be left alone for a table.
+  /// Writes the stops since the last call, except the last one, whose pose may still be set. Errors
+  /// are reported by finish(), because a table must not stop a robot.
   void add(Stops stops);
-  /// The last one too; the file has its name from now on. Throws std::runtime_error when not all
-  /// could be written.
+  /// Writes the last stop, too, and gives the file its name. Throws std::runtime_error when not all
+  /// rows could be written.
   void finish(Stops stops);
 
  private:
-  /// Those before number `end`.
+  /// Writes the stops before number `end`.
   void write(Stops stops, std::size_t end);
   void check() const;
 

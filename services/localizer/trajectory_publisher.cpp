@@ -58,7 +58,7 @@ bool TrajectoryPublisher::send_segments(const topomap::Trajectory& trajectory, b
   });
 }
 
-// New ones come last: what is before the first that differs is there already.
+// New edges are appended, so readers already have all edges before the first difference.
 bool TrajectoryPublisher::send_edges(const localization::Slam& slam, std::uint64_t version,
                                      std::int64_t stamp_ns, bool whole) {
   std::vector<storage::MapEdge> edges = pipeline::map_edges(slam.edges());
@@ -67,7 +67,7 @@ bool TrajectoryPublisher::send_edges(const localization::Slam& slam, std::uint64
   const auto first = whole ? std::size_t{0} : static_cast<std::size_t>(differs - edges.begin());
   edges_ = std::move(edges);
   const std::uint32_t count = service::edge_segment_count(edges_.size());
-  // When edges were only removed, the last segment has the new number of them.
+  // When edges were only removed, the last segment carries the new total.
   auto segment = std::min(static_cast<std::uint32_t>(first / msg::kSegmentEdges), count - 1);
   for (; segment < count; ++segment) {
     const msg::MapEdges message =
@@ -78,7 +78,7 @@ bool TrajectoryPublisher::send_edges(const localization::Slam& slam, std::uint64
   return true;
 }
 
-// Decisions are only appended, so the last segment that was sent and those after it have changed.
+// Decisions are only appended, so only the last segment sent and those after it have changed.
 bool TrajectoryPublisher::send_decisions(const std::vector<localization::LoopDecision>& decisions,
                                          std::int64_t stamp_ns) {
   if (decisions.size() == decisions_) return true;

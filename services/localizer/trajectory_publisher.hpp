@@ -1,4 +1,4 @@
-// Publishes trajectory, closed loops and the decisions on them: after each step what has changed.
+// Publishes trajectory, closed loops and loop decisions: the changes after each step.
 #pragma once
 
 #include <cstddef>
@@ -22,15 +22,15 @@ class TrajectoryPublisher {
   /// Throws like Writer.
   explicit TrajectoryPublisher(service::Service& service);
 
-  /// Sends what has changed since the last call, or (`whole`) all of it, so that a reader has it
-  /// whole in one version. `stamp_ns` is that of the last stop. False when the service stops before
-  /// all is sent.
+  /// Sends the changes since the last call, or (`whole`) everything, so that a reader has it all in
+  /// one version. `stamp_ns` is the stamp of the last stop. Returns false when the service stops
+  /// before everything is sent.
   [[nodiscard]] bool publish(const localization::Slam& slam, const topomap::Trajectory& trajectory,
                              std::int64_t stamp_ns, bool whole);
 
-  /// Of the trajectory that was published last.
+  /// Version of the trajectory published last.
   [[nodiscard]] std::uint64_t version() const { return version_; }
-  /// Closed loops that were sent last.
+  /// Number of closed loops sent last.
   [[nodiscard]] std::size_t closures() const { return closures_.size(); }
 
  private:

@@ -1,4 +1,4 @@
-// Which segments of a trajectory have to be sent again after a change.
+// Finds the segments of a trajectory that must be sent again after a change.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@ namespace topogeo::localizer {
 
 class TrajectoryUpdates {
  public:
-  /// Segments with a stop that is new or differs in any bit from what update() saw last, ascending.
-  /// After a usual step that is the last one, when stops got other numbers all.
+  /// Segments with a stop that is new or differs in any bit from the last update(), ascending.
+  /// Usually only the last one; all of them after a renumbering of stops.
   std::vector<std::uint32_t> update(const topomap::Trajectory& trajectory);
 
  private:

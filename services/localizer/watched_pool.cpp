@@ -13,7 +13,7 @@ using localization::MatchTask;
 
 namespace {
 
-/// Between two searches that are shown: most take milliseconds, and nobody reads faster.
+/// Pause between two published searches: most take milliseconds, and nobody reads faster.
 constexpr std::chrono::milliseconds kSearchPeriod{500};
 
 msg::SearchHypothesis hypothesis_of(const localization::MatchSolution& solution) {
@@ -23,7 +23,7 @@ msg::SearchHypothesis hypothesis_of(const localization::MatchSolution& solution)
   return out;
 }
 
-/// The best ones first, as many as a message has room for.
+/// Puts the best solutions first, as many as fit into a message.
 template <class Sequence>
 void put_best(std::vector<localization::MatchSolution> solutions, Sequence& out) {
   std::ranges::stable_sort(solutions, std::ranges::greater{},
@@ -79,7 +79,7 @@ void add_results(std::span<const MatchTask> tasks, std::span<const MatchResult> 
     match.reason(static_cast<msg::MatchReason>(result.reason));
     match.fitness(result.fitness);
     if (result.status != localization::MatchStatus::kSolved) continue;
-    // Where it ended, and where else the maps allow it.
+    // The solution found, and the alternatives that the maps allow.
     std::vector<localization::MatchSolution> solutions = {
         {result.T_reference_query, result.fitness}};
     if (result.second.fitness > 0.0) solutions.push_back(result.second);
@@ -113,8 +113,7 @@ std::vector<MatchResult> WatchedPool::match(std::span<const MatchTask> tasks) {
   if (Clock::now() < next_) return pool_.match(tasks);
   const std::int64_t stamp_ns = stamp_of(tasks.front());
   msg::Search search = searched(tasks, stops_);
-  // Others hear of a search that takes long while it runs; what came of it belongs to it and is
-  // sent in any case.
+  // Viewers see a long search while it runs. Its result belongs to it and is always sent.
   send(search, stamp_ns);
   std::vector<MatchResult> results = pool_.match(tasks);
   add_results(tasks, results, stops_, search);
@@ -125,7 +124,7 @@ std::vector<MatchResult> WatchedPool::match(std::span<const MatchTask> tasks) {
 
 void WatchedPool::send(msg::Search& search, std::int64_t stamp_ns) {
   messaging::set_header(search, service_.robot_id(), stamp_ns, sent_++);
-  static_cast<void>(writer_.write(search));  // one that cannot be sent now is not worth keeping
+  static_cast<void>(writer_.write(search));  // not worth a retry
 }
 
 }  // namespace topogeo::localizer

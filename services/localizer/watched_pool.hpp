@@ -1,5 +1,4 @@
-// A pool whose searches can be watched: what goes through it is published as topic kSearch, for
-// people alone.
+// A pool whose searches can be watched: publishes them as topic kSearch, for people only.
 #pragma once
 
 #include <chrono>
@@ -16,21 +15,21 @@
 
 namespace topogeo::localizer {
 
-/// Stops by the ids that tasks name them with.
+/// Stops by the map ids that tasks use.
 using StopsOfTasks = std::map<std::uint32_t, topomap::StopId>;
 
-/// The first tasks as they are when the search begins, without header; of a search of the whole map
-/// none of them. Maps that `stops` does not have are left out.
+/// The message for the start of a search, without header: its first tasks, without those that
+/// search the whole map and those with maps unknown to `stops`.
 msg::Search searched(std::span<const localization::MatchTask> tasks, const StopsOfTasks& stops);
 
-/// Adds what came of it. `results` are in the order of the tasks.
+/// Adds the results of the search. `results` are in the order of the tasks.
 void add_results(std::span<const localization::MatchTask> tasks,
                  std::span<const localization::MatchResult> results, const StopsOfTasks& stops,
                  msg::Search& search);
 
 class WatchedPool : public localization::MatchPool {
  public:
-  /// Both outlive it.
+  /// Both arguments must outlive it.
   WatchedPool(service::Service& service, localization::MatchPool& pool);
 
   void add_map(std::shared_ptr<const topomap::LocalMap> map) override;

@@ -15,18 +15,18 @@
 
 namespace topogeo::localizer {
 
-/// Keeps which processes are connected, because a message to a worker whose reader is not would be
-/// lost. Forgets the ids of a process that is gone: a writer has room for a bounded number of them,
-/// and every worker that starts has a new one.
+/// Tracks which processes are connected, because a message to a worker without a connected reader
+/// would be lost. Forgets the ids of a process that is gone, because a writer has room for a
+/// bounded number of them and every starting worker has a new one.
 template <class T>
 class WorkerWriter {
  public:
   explicit WorkerWriter(const messaging::Participant& participant) : writer_(participant) {}
 
-  /// To be added to the loop whose events are given to follow().
+  /// Add it to the loop whose events are passed to follow().
   [[nodiscard]] const messaging::Writer<T>& writer() const { return writer_; }
 
-  /// A reader of the process is connected.
+  /// Whether a reader of the process is connected.
   [[nodiscard]] bool connected(const service::ParticipantId& process) const {
     return readers_.contains(process);
   }
@@ -37,8 +37,8 @@ class WorkerWriter {
     return writer_.write(message);
   }
 
-  /// The process to which a reader of this writer came, or from which one went; nothing when the
-  /// event is about something else.
+  /// The process in which a reader of this writer appeared or disappeared; nothing for other
+  /// events.
   std::optional<service::ParticipantId> follow(const messaging::Event& event) {
     if (event.topic != messaging::TopicTraits<T>::info().name) return {};
     const service::ParticipantId process = service::participant_of(event.peer);
