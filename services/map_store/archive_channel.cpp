@@ -28,8 +28,8 @@ msg::StoredSnapshot described(const storage::MapSnapshot& snapshot) {
   return out;
 }
 
-/// By time; the newest ones where there are more than a message has room for, and of files with
-/// names that no snapshot may have none.
+/// In order of time; only the newest ones when there are more than a message holds. Files whose
+/// names are invalid for snapshots are left out.
 std::vector<msg::StoredSnapshot> described(const std::vector<storage::MapSnapshot>& snapshots) {
   std::vector<msg::StoredSnapshot> out;
   for (const storage::MapSnapshot& snapshot : snapshots) {
@@ -82,7 +82,7 @@ void ArchiveChannel::on_request(const msg::ArchiveRequest& request) {
     return;
   }
   const bool here = import_request_ == request.request_id() && imported_.complete();
-  if (request.action() == msg::kArchiveImport && !here) return;  // it comes again
+  if (request.action() == msg::kArchiveImport && !here) return;  // the client repeats the request
   msg::ArchiveReply& reply = last_.emplace();
   messaging::set_header(reply, service_.robot_id(), support::wall_clock_ns(), sent_++);
   messaging::set_text(reply.client_id(), request.client_id().to_string(), "client_id");
@@ -99,7 +99,7 @@ void ArchiveChannel::on_request(const msg::ArchiveRequest& request) {
   if (!database_.empty()) reply.snapshots() = described(storage::snapshots_of(database_));
   static_cast<void>(replies_.write(reply));
   if (reply.accepted() && request.action() == msg::kArchiveRestore) {
-    // The client has the reply before its writer goes.
+    // Lets the client get the reply before its writer goes.
     constexpr std::chrono::milliseconds kReplyPatience{500};
     static_cast<void>(replies_.wait_for_acknowledgments(kReplyPatience));
     restore_(request.name().to_string());

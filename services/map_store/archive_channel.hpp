@@ -1,5 +1,5 @@
-// Snapshots of the map for those who ask over DDS: listed, made and imported here, restored by the
-// program, which has to let go of the database first.
+// Handles snapshot requests over DDS: lists, makes and imports them here; the program restores
+// them, because it has to release the database first.
 #pragma once
 
 #include <cstdint>
@@ -21,24 +21,24 @@ namespace topogeo::map_store {
 /// Lives in the loop of its service.
 class ArchiveChannel {
  public:
-  /// Called before a snapshot is made, so that all that has come is in it. Throws
+  /// Called before a snapshot is made, so that the snapshot contains everything received. Throws
   /// std::runtime_error.
   using Store = std::function<void()>;
-  /// Called after the reply to a request to restore: the program is to do it.
+  /// Called after the reply to a restore request: the program then restores the snapshot.
   using Restore = std::function<void(const std::string& name)>;
 
-  /// An empty `database`: there is none, and every request is refused. Throws like Reader and
-  /// Writer.
+  /// An empty `database` means that there is none and every request is refused. Throws like Reader
+  /// and Writer.
   ArchiveChannel(service::Service& service, std::filesystem::path database, Store store,
                  Restore restore);
 
-  /// Of the snapshot with that StoredSnapshot::name_key. Throws std::runtime_error when there is
-  /// none.
+  /// File of the snapshot with that StoredSnapshot::name_key. Throws std::runtime_error when there
+  /// is none.
   [[nodiscard]] std::filesystem::path path_of(std::uint64_t name_key) const;
 
  private:
   void on_request(const msg::ArchiveRequest& request);
-  /// What was done, as a sentence. Throws std::exception saying why not.
+  /// Returns the action taken, as a sentence. Throws std::exception with the reason for a refusal.
   std::string carry_out(const msg::ArchiveRequest& request);
   void on_piece(const msg::SnapshotPiece& piece);
 
@@ -47,9 +47,9 @@ class ArchiveChannel {
   Store store_;
   Restore restore_;
   messaging::Writer<msg::ArchiveReply> replies_;
-  std::optional<msg::ArchiveReply> last_;  // who gets none sends the request again
+  std::optional<msg::ArchiveReply> last_;  // a client without a reply repeats its request
   service::PieceAssembly imported_{msg::kMaxImportedPieces};
-  std::uint64_t import_request_ = 0;  // that the pieces are of
+  std::uint64_t import_request_ = 0;  // to which the pieces belong
   std::uint64_t sent_ = 0;
 };
 

@@ -17,7 +17,7 @@
 namespace topogeo::map_store {
 namespace {
 
-/// More than a database takes to be opened: its log and the index of that.
+/// More than opening a database takes: its log and the index of the log.
 constexpr std::size_t kRoom_bytes = std::size_t{1} << 20U;
 constexpr std::chrono::seconds kRoomPeriod{2};
 
@@ -25,7 +25,7 @@ bool is_lack_of_room(int error) {
   return error == ENOSPC || error == EDQUOT || error == EFBIG;
 }
 
-/// Zero, or the errno of what went wrong.
+/// Returns zero or the errno of the failure.
 int write_and_sync(int file, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(file, bytes.data(), bytes.size());
@@ -33,7 +33,7 @@ int write_and_sync(int file, std::string_view bytes) {
     if (written < 0) return errno;
     bytes.remove_prefix(static_cast<std::size_t>(written));
   }
-  // Some file systems look for room no earlier.
+  // Some file systems detect a lack of room only here.
   return ::fsync(file) == 0 ? 0 : errno;
 }
 

@@ -15,7 +15,7 @@ namespace topogeo::map_store {
 
 namespace {
 
-/// Orders of people, who wait for the answer: a few at a time.
+/// Orders come from people who wait for the answer: a few at a time.
 constexpr std::size_t kAnswersRemembered = 64;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Takes orders for the drawing of a map, answers them and publishes what is drawn.
+// Takes and answers orders that change the drawing of a map, and publishes the drawing.
 #pragma once
 
 #include <cstdint>
@@ -16,23 +16,23 @@ namespace topogeo::map_store {
 /// Lives in the loop of its service.
 class DrawingChannel {
  public:
-  /// Makes a drawing that of the map, and stores it where the map is stored. Throws
-  /// std::runtime_error saying why it cannot.
+  /// Makes a drawing the one of the map, and stores it where the map is stored. Throws
+  /// std::runtime_error with the reason when it cannot.
   using Take = std::function<void(storage::MapDrawing)>;
 
-  /// `drawing` is that of the map, read when an order comes. `is_stored`: false for a map that is
-  /// only shown. `resolution_m` of grids that floors become.
+  /// `drawing` is the one of the map, read when an order arrives. `is_stored`: false for a map that
+  /// is only shown. `resolution_m` is for floors turned into grids.
   DrawingChannel(service::Service& service, const storage::MapDrawing& drawing, bool is_stored,
                  double resolution_m, Take take);
 
-  /// Publishes the drawing of now; one that does not fit the messages is a fault.
+  /// Publishes the current drawing; one that does not fit the messages is a fault.
   void publish(std::int64_t stamp_ns);
 
  private:
   void on_order(const msg::DrawingOrder& order);
   void answer(const msg::DrawingOrder& order, msg::DrawingResult result,
               const std::string& message);
-  /// True, and sent again, when there is an answer to this order.
+  /// Returns true, and repeats the answer, when this order has already been answered.
   bool repeated(const msg::DrawingOrder& order);
 
   service::Service& service_;
@@ -40,7 +40,7 @@ class DrawingChannel {
   bool is_stored_;
   double resolution_m_;
   Take take_;
-  std::int64_t stamp_ns_ = 0;  // of what was published last
+  std::int64_t stamp_ns_ = 0;  // of the last publication
   std::uint64_t states_sent_ = 0;
   std::uint64_t answers_sent_ = 0;
   std::deque<msg::DrawingAnswer> newest_;

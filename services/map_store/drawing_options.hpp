@@ -1,4 +1,4 @@
-// Drawings on the command line of a map store.
+// Command-line options for drawings on a map.
 #pragma once
 
 #include <filesystem>
@@ -21,8 +21,8 @@ struct DrawingOptions {
 void add_drawing_options(command_line::Command& app, DrawingOptions& options);
 
 /// The drawing in the map frame; empty without any of the flags. Throws service::UsageError for
-/// flags that do not go together and a pose that is none, service::BadInputError naming the file
-/// for what cannot be read.
+/// flags that do not go together or a malformed pose, service::BadInputError naming the file for
+/// one that cannot be read.
 storage::MapDrawing read_drawing(const DrawingOptions& options, double resolution_m);
 
 }  // namespace topogeo::map_store

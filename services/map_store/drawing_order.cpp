@@ -12,7 +12,7 @@ namespace topogeo::map_store {
 
 namespace {
 
-/// Walls, openings and doors become the grid.
+/// Turns walls, openings and doors into the grid.
 void make_floor(storage::MapDrawing& drawing, const msg::Point2& inside, double resolution_m) {
   if (!std::isfinite(inside.x_m()) || !std::isfinite(inside.y_m())) {
     throw std::invalid_argument("inside: expected finite coordinates");

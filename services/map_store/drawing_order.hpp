@@ -1,4 +1,4 @@
-// What an order makes of the drawing of a map.
+// Effect of an order on the drawing of a map.
 #pragma once
 
 #include <optional>
@@ -11,11 +11,11 @@ namespace topogeo::map_store {
 
 struct DrawingOutcome {
   msg::DrawingResult result = msg::kDrawingDone;
-  std::string message;                         ///< for people: why not
-  std::optional<storage::MapDrawing> drawing;  ///< the new one, of the next version; when done
+  std::string message;                         ///< for people: reason of a refusal
+  std::optional<storage::MapDrawing> drawing;  ///< the new drawing, one version higher, when done
 };
 
-/// `now` stays as it is. A floor becomes a grid with cells of `resolution_m`.
+/// `now` stays unchanged. A floor becomes a grid with cells of `resolution_m`.
 DrawingOutcome carry_out(const msg::DrawingOrder& order, const storage::MapDrawing& now,
                          double resolution_m);
 

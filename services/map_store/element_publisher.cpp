@@ -28,7 +28,7 @@ bool ElementPublisher::publish(const topomap::GlobalMap& map, std::uint64_t map_
   }
   bool all_sent = true;
   for (msg::MapElement& element : update.changed) {
-    // Without an element that it counts, a summary is of no use.
+    // A summary is of no use without the elements it counts.
     if (element.kind() == msg::kElementSummary && !all_sent) break;
     all_sent &= send(element);
   }

@@ -1,4 +1,4 @@
-// Sends the elements of the global map that have changed.
+// Sends the changed elements of the global map.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ class ElementPublisher {
  public:
   explicit ElementPublisher(service::Service& service);
 
-  /// `stamp_ns` is of the last stop in the map. False when something could not be sent: call it
-  /// again.
+  /// `stamp_ns` is that of the last stop in the map. Returns false when something could not be
+  /// sent: call it again.
   bool publish(const topomap::GlobalMap& map, std::uint64_t map_id, std::int64_t stamp_ns);
 
  private:

@@ -12,7 +12,7 @@ namespace topogeo::map_store {
 
 namespace {
 
-/// Of what an element says of the floor, whenever it is sent; of a summary, of what it counts.
+/// Hash of an element's content, independent of when it is sent; for a summary, hash of its counts.
 std::uint64_t content_of(const msg::MapElement& element) {
   support::Fnv1a hash;
   const auto add = [&](const msg::BranchPoint& point) {
@@ -65,7 +65,7 @@ ElementUpdates::Update ElementUpdates::update_to(const topomap::GlobalMap& map,
     gone.kind(key.first);
     gone.id(key.second);
   }
-  // Any other change makes another summary.
+  // Any other change also changes the summary.
   if (same_summary && update.gone.empty() && update.changed.size() == 1) update.changed.clear();
   return update;
 }
@@ -76,7 +76,7 @@ void ElementUpdates::number(msg::MapElement& element) const {
 }
 
 void ElementUpdates::sent(const msg::MapElement& element) {
-  forget(key_of(element));  // the sample before
+  forget(key_of(element));  // the previous sample
   const bool counts = element.kind() != msg::kElementSummary;
   const Sent sent{content_of(element), counts ? map_client::sample_hash(element) : 0};
   samples_hash_ += sent.sample;

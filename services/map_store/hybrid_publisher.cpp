@@ -10,7 +10,7 @@ namespace topogeo::map_store {
 
 namespace {
 
-/// Versions grow over a new start, too: a reader may still have tiles of the map store before.
+/// Versions also grow across restarts: a reader may still have tiles of the previous map store.
 std::uint64_t first_version() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return static_cast<std::uint64_t>(

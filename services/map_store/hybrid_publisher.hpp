@@ -1,4 +1,4 @@
-// Sends the hybrid map: the tiles that have changed, and its summary.
+// Sends the hybrid map: its changed tiles and its summary.
 #pragma once
 
 #include <cstdint>
@@ -16,27 +16,27 @@ namespace topogeo::map_store {
 /// Lives in the loop of its service.
 class HybridPublisher {
  public:
-  /// Rooms keep the numbers that are remembered.
+  /// Rooms keep their remembered numbers.
   explicit HybridPublisher(service::Service& service, planning::RoomMemory rooms = {});
 
-  /// Makes the map with the configuration of the service and sends it. Without
-  /// anything to make a grid of there is none; one that cannot be made or does not fit the messages
-  /// is a fault. `stamp_ns` is of the last stop.
+  /// Builds the map with the configuration of the service and sends it. Nothing is sent when there
+  /// is nothing to make a grid of; a map that cannot be built or does not fit the messages is a
+  /// fault. `stamp_ns` is that of the last stop.
   void publish(const pipeline::HybridMapParts& parts, std::int64_t stamp_ns);
 
-  /// The same with a map that is made. Throws std::invalid_argument when it does not fit the
+  /// Sends an existing map in the same way. Throws std::invalid_argument when it does not fit the
   /// messages.
   void publish(const planning::HybridMap& map, std::int64_t stamp_ns);
 
-  /// Tries what could not be sent once more. True when nothing is left.
+  /// Retries everything that could not be sent. True when nothing is left.
   bool send_rest();
 
-  /// Of the last one that was published; 0 before the first.
+  /// Version of the map published last; 0 before the first.
   [[nodiscard]] std::uint64_t version() const {
     return rest_.summary ? rest_.summary->version() : updates_.sent_version();
   }
 
-  /// Goes on with other numbers of rooms.
+  /// Continues with other room numbers.
   void remember(planning::RoomMemory rooms) { rooms_ = planning::RoomNumbers(std::move(rooms)); }
   [[nodiscard]] const planning::RoomMemory& rooms() const { return rooms_.memory(); }
 

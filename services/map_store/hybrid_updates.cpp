@@ -11,7 +11,7 @@ namespace topogeo::map_store {
 
 namespace {
 
-/// Equal but for what changes with every update.
+/// Equal except for the fields that change with every update.
 bool same_tile(msg::HybridMap a, const msg::HybridMap& b) {
   a.stamp_ns(b.stamp_ns());
   a.sequence_number(b.sequence_number());

@@ -1,4 +1,4 @@
-// What has to be sent so that readers of the hybrid map have its newest state.
+// Finds the parts of the hybrid map to send so that readers have the newest state.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@
 
 namespace topogeo::map_store {
 
-/// Remembers what was sent of the hybrid map of one robot.
+/// Remembers the parts sent of one robot's hybrid map.
 class HybridUpdates {
  public:
-  /// Versions are larger than `version`.
+  /// All versions will be larger than `version`.
   HybridUpdates(std::string robot_id, std::uint64_t version)
       : robot_id_(std::move(robot_id)), version_(version) {}
 
@@ -26,16 +26,16 @@ class HybridUpdates {
 
     [[nodiscard]] bool empty() const { return gone.empty() && !summary; }
   };
-  /// Tiles that are as they were are not in it. Every update has a version of its own, so that no
-  /// tile of an update that was sent in part passes for one of the next. `stamp_ns` is of the last
-  /// stop in the map. Report what was sent with sent() and disposed(). Throws std::invalid_argument
-  /// like service::to_messages.
+  /// Unchanged tiles are left out. Every update has its own version, so that a tile of a partly
+  /// sent update cannot be mistaken for one of the next. `stamp_ns` is that of the last stop in the
+  /// map. Report each part with sent() or disposed(). Throws std::invalid_argument like
+  /// service::to_messages.
   Update update_to(const planning::HybridMap& map, std::int64_t stamp_ns);
 
   void sent(const msg::GridTile& tile);
   void sent(const msg::HybridMap& summary);
   void disposed(const msg::GridTile& tile) { sent_.erase(tile.tile()); }
-  /// Of the last summary that was sent; 0 before the first.
+  /// Version of the last summary sent; 0 before the first.
   [[nodiscard]] std::uint64_t sent_version() const {
     return sent_summary_ ? sent_summary_->version() : 0;
   }
@@ -47,7 +47,7 @@ class HybridUpdates {
   std::uint64_t version_;
   struct SentTile {
     std::uint64_t version = 0;
-    std::uint64_t content = 0;  // hash of its cells, as the cells of a large map take ten megabytes
+    std::uint64_t content = 0;  // hash of its cells: those of a large map take ten megabytes
   };
   std::map<std::uint32_t, SentTile> sent_;
   std::optional<msg::HybridMap> sent_summary_;

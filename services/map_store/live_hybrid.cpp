@@ -6,7 +6,7 @@ namespace topogeo::map_store {
 
 namespace {
 
-// It is made in one go and may take long: at most a tenth of the time.
+// The map is made in one go, which may take long: at most a tenth of the time.
 constexpr std::chrono::seconds kHybridPeriod{4};
 constexpr int kHybridShare = 10;
 

@@ -1,5 +1,5 @@
-// When the hybrid map of a map that is being made is made anew: now and then as the map grows, and
-// at once when somebody draws.
+// Decides when to rebuild the hybrid map of a growing map: now and then as the map grows, and at
+// once when people draw.
 #pragma once
 
 #include <chrono>
@@ -19,21 +19,21 @@ class LiveHybrid {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// `map` is what there is of nodes and branches; nothing is due while there is nothing.
+  /// `map` has the nodes and branches so far; without it nothing is due.
   LiveHybrid(service::Service& service, planning::RoomMemory rooms,
              std::optional<topomap::GlobalMap> map);
 
-  /// What the next one is made of.
+  /// Sets the global map for the next hybrid map.
   void take(topomap::GlobalMap map);
   [[nodiscard]] const std::optional<topomap::GlobalMap>& map() const { return map_; }
-  /// Another drawing: the next one is due at once, before there is a map, too.
+  /// The drawing has changed: the next map is due at once, even before there is a global map.
   void redraw();
 
-  /// Sends what is left of the last one. True when the next is to be made now.
+  /// Sends the rest of the last map. True when the next one is due now.
   [[nodiscard]] bool due();
-  /// Makes and sends the next one, which is due; `parts` lack the global map.
+  /// Builds and sends the next map; `parts` lack the global map.
   void make(pipeline::HybridMapParts parts, std::int64_t stamp_ns);
-  /// Of a run that is complete: the last one, whatever is due.
+  /// Sends the last map of a complete run, whether due or not.
   void finish(const pipeline::HybridMapParts& parts, std::int64_t stamp_ns);
 
   void remember(planning::RoomMemory rooms) { publisher_.remember(std::move(rooms)); }

@@ -42,10 +42,10 @@ void check_directory(const std::filesystem::path& directory) {
   }
 }
 
-/// Of the results and the database: map.lock beside map.sqlite and map.pb, and one beside a
-/// database elsewhere. They stay until the process ends.
+/// Locks the results and the database: map.lock beside map.sqlite and map.pb, and another lock
+/// beside a database elsewhere. The lock files stay until the process ends.
 std::vector<support::FileLock> lock(const map_store::MapStoreOptions& store) {
-  // A map store that was killed needs a moment to give its memory and its files back.
+  // A killed map store needs a moment to release its memory and files.
   constexpr std::chrono::seconds kPatience{1};
   std::set<std::filesystem::path> paths = {store.directory / "map.lock"};
   paths.insert(std::filesystem::path(store.database).replace_extension(".lock"));
@@ -76,7 +76,7 @@ struct StoreOptions {
   map_store::DrawingOptions drawing;
   std::vector<std::string> robots;
 
-  /// Shows a map that there is, takes nothing in.
+  /// Only shows an existing map and takes nothing in.
   [[nodiscard]] bool serves() const { return map || (drawing.drawing && store.directory.empty()); }
 };
 
@@ -125,14 +125,14 @@ void serve(const service::Setup& setup, const StoreOptions& options) {
   service.run();
 }
 
-/// Until the program is to end, or a snapshot is to take the place of the map: its name then.
+/// Runs until the program must end, or until a snapshot replaces the map: returns its name then.
 std::optional<std::string> keep_until_restored(const service::Setup& setup, StoreOptions& options) {
   const map_store::MapStoreOptions& store = options.store;
   service::Service service(service::with_robots(setup, options.robots));
   const service::SoleService sole(service);
   const std::uint64_t seed = setup.config.config.localizer.seed;
   if (options.anew) map_store::set_aside_database(store.database);
-  options.anew = false;  // once, however often it is tried
+  options.anew = false;  // only once, even when the start is retried
   storage::MapDatabase database =
       map_store::last_database(store.database, setup.options.robot_id, seed);
   if (store.continued) map_store::begin_with(database, *store.continued);
@@ -143,7 +143,7 @@ std::optional<std::string> keep_until_restored(const service::Setup& setup, Stor
   return std::nullopt;
 }
 
-/// Keeps the map in its directory until the program is to end.
+/// Keeps the map in its directory until the program must end.
 void keep_in_directory(const service::Setup& setup, StoreOptions& options) {
   map_store::MapStoreOptions& store = options.store;
   check_directory(store.directory);
@@ -155,12 +155,12 @@ void keep_in_directory(const service::Setup& setup, StoreOptions& options) {
   }
 }
 
-/// The same. A full disk is no reason to end: the unit of a program with kBadInput is not started
-/// again.
+/// Does the same, but waits when the disk is full: systemd does not restart a program that ends
+/// with kBadInput.
 void keep_in_spite_of_full_disk(const service::Setup& setup, StoreOptions& options) {
   const std::array directories = {options.store.directory,
                                   std::filesystem::absolute(options.store.database).parent_path()};
-  // A file that may not grow any more is a full disk and no reason to die.
+  // A file that must not grow any more means a full disk and must not kill the process.
   std::signal(SIGXFSZ, SIG_IGN);
   for (bool had_room = false;;) {
     try {
@@ -169,7 +169,7 @@ void keep_in_spite_of_full_disk(const service::Setup& setup, StoreOptions& optio
       const bool room = map_store::have_room(directories);
       const bool bad_input = dynamic_cast<const service::BadInputError*>(&error) != nullptr;
       if (service::Service::stopping() || (room && (had_room || !bad_input))) throw;
-      had_room = room;  // once more: it may have come a moment ago
+      had_room = room;  // retry: room may just have become free
       if (!room && !map_store::wait_for_room(setup, directories, error.what())) return;
     }
   }
@@ -190,9 +190,9 @@ void keep(const service::Setup& setup, StoreOptions options) {
   keep_in_spite_of_full_disk(setup, options);
 }
 
-/// Memory that is needed for a moment, as when the live map is drawn up or a snapshot is made, goes
-/// back to the system at once. By default the heap keeps it, up to 32 MB a block, and the blocks
-/// that stay lie between: 310 MB instead of 257 MB with the map of topogeo_map_store_bench.
+/// Returns large blocks to the system at once, such as those for drawing the live map or making a
+/// snapshot. The heap would keep blocks of up to 32 MB, with small live blocks between them: 310 MB
+/// instead of 257 MB with the map of topogeo_map_store_bench.
 void give_back_large_blocks() {
   constexpr int kLarge_bytes = 256 * 1024;
   ::mallopt(M_MMAP_THRESHOLD, kLarge_bytes);

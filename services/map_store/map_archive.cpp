@@ -16,10 +16,10 @@ namespace topogeo::map_store {
 
 namespace {
 
-// The loop of the service stands still so long when another program holds the file.
+// Longest time that the service's loop stands still while another program holds the file.
 constexpr std::chrono::milliseconds kPatience{250};
 
-/// The number of a file on its disk; 0 when there is none.
+/// Inode number of a file; 0 when there is none.
 std::uint64_t file_number(const std::filesystem::path& path) {
   struct stat status {};
   return ::stat(path.c_str(), &status) == 0 ? status.st_ino : 0;
@@ -80,7 +80,7 @@ std::vector<topomap::StopId> MapArchive::flush() {
     for (std::size_t i = 0; i < count; ++i) queued_.erase(queue_[i].stop);
     queue_.erase(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(count));
   }
-  // Not at every stop that comes.
+  // Not at every stop that arrives.
   if (database_.waiting_count() >= kMostWaiting + kBatch) database_.drop_waiting(kMostWaiting);
   return different;
 }

@@ -55,13 +55,13 @@ MapInput::Arrival MapInput::add(topomap::LocalMap map) {
 }
 
 void MapInput::add(const msg::TrajectorySegment& message) {
-  static_cast<void>(service::from_msg(message));  // a refused one begins and ends no renewal
+  static_cast<void>(service::from_msg(message));  // an invalid message changes no renewal
   if (message.numbered_since() > trajectory_.numbered_since()) {
     renewal_of(message.numbered_since()).trajectory.add(message);
     renew();
     return;
   }
-  // The localizer has started again with the numbers of before.
+  // The localizer has restarted with the previous numbers.
   if (renewal_ && message.version() >= renewal_numbers_) renewal_.reset();
   if (message.numbered_since() == trajectory_.numbered_since()) check_stops(message);
   trajectory_.add(message);
@@ -94,7 +94,7 @@ void MapInput::take_in(topomap::LocalMap map) {
   const auto id = static_cast<std::uint32_t>(local_maps_.size());
   const bool follows = id == 0 || local_maps_.back().stop.next() == map.stop;
   local_maps_.push_back(topomap::numbered(std::move(map), id, !follows));
-  ++edge_changes_;  // edges that were here before it can be used now
+  ++edge_changes_;  // earlier edges may become usable now
 }
 
 MapInput::Renewal& MapInput::renewal_of(std::uint64_t numbered_since) {
@@ -118,7 +118,7 @@ void MapInput::renew() {
         "not in this map: the localizer does not go on with this map",
         first.number, first.session));
   }
-  // Nothing leaves the map because of a stop that is late.
+  // A late stop must not remove anything from the map.
   bool late = false;
   for (const topomap::StopPose& stop : trajectory.stops) {
     late |= !before.contains(stop.stop) && !waiting_.contains(stop.stop);
@@ -160,7 +160,7 @@ void MapInput::drop_old() {
     auto old = waiting_.lower_bound({last.session, 0});
     while (old != waiting_.end() && old->first < last) drop(old++);
   }
-  // Of the oldest session that has any.
+  // Drop from the oldest session that has any.
   for (std::size_t i = 0; waiting_.size() > kMostWaiting && i < sessions_.size();) {
     const auto oldest = waiting_.lower_bound({sessions_[i], 0});
     if (oldest == waiting_.end() || oldest->first.session != sessions_[i]) {

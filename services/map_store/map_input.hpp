@@ -1,5 +1,5 @@
-// Collects local maps, trajectory and loop closures of a robot, which may come in any order, also
-// after a new start of the map store or of those who send them.
+// Collects the local maps, trajectory and loop closures of a robot, which may arrive in any order,
+// also after a restart of the map store or of their senders.
 #pragma once
 
 #include <cstdint>
@@ -27,27 +27,27 @@ class MapInput {
     std::vector<topomap::LoopClosure> closures = {};
     std::vector<storage::MapEdge> edges = {};
     std::vector<storage::RefusedMerge> refused_merges = {};
-    std::vector<topomap::LocalMap> waiting = {};  ///< as they were sent, in the order of arrival
+    std::vector<topomap::LocalMap> waiting = {};             ///< as sent, in the order of arrival
     std::map<std::uint64_t, std::uint32_t> first_kept = {};  ///< see storage::SessionState
   };
   MapInput() = default;
   explicit MapInput(Stored stored);
 
-  /// At most so many maps wait for the trajectory, about 60 MB; then the oldest is dropped. Local
-  /// maps wait in vain while the robot is only localized, and while a drive has not found its place
-  /// in the map that it is to extend.
+  /// Largest number of maps waiting for the trajectory, about 60 MB; beyond it the oldest is
+  /// dropped. Local maps wait in vain while the robot only localizes, and while a drive has not
+  /// found its place in the map that it extends.
   static constexpr std::size_t kMostWaiting = 4096;
 
   enum class Arrival : std::uint8_t {
     kNew,
-    kKnown,     ///< the same map came before, or it comes too late to be used
-    kDifferent  ///< another map came before under this id; that one stays
+    kKnown,     ///< the same map came before, or too late to be used
+    kDifferent  ///< another map came before with this id; that one stays
   };
   Arrival add(topomap::LocalMap map);
 
-  /// Older segments and closures than those held are passed over. They throw std::invalid_argument
-  /// like service::from_msg, and when they name other stops than the map has. A trajectory whose
-  /// stops are numbered anew, because some have left the map, takes effect when it is complete.
+  /// Segments and closures older than those held are ignored. They throw std::invalid_argument like
+  /// service::from_msg, and when they name other stops than the map has. A trajectory that
+  /// renumbers its stops, because some have left the map, takes effect when it is complete.
   void add(const msg::TrajectorySegment& message);
   void add(const msg::LoopClosures& message);
   void add(const msg::MapEdges& message);
@@ -55,42 +55,42 @@ class MapInput {
   /// The end of the localizer's stream; the last one counts.
   void set_end(const msg::StreamEnd& message) { end_ = message; }
 
-  /// Local maps of the stops of the trajectory, without gaps, numbered as it numbers them.
+  /// Local maps of the trajectory's stops, without gaps, with the trajectory's numbers.
   [[nodiscard]] const std::vector<topomap::LocalMap>& local_maps() const { return local_maps_; }
-  /// Version of the trajectory since which they have these numbers.
+  /// Trajectory version since which the stops have these numbers.
   [[nodiscard]] std::uint64_t numbered_since() const { return trajectory_.numbered_since(); }
-  /// Maps that came and that the trajectory does not have, or not yet.
+  /// Number of received maps that the trajectory does not have, or not yet.
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
-  /// Maps that were dropped: the trajectory went on without them, or too many waited for it.
+  /// Number of dropped maps: the trajectory went on without them, or too many waited for it.
   [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
-  /// A stop that the trajectory names although its map was dropped: the local maps end before it.
+  /// A stop of the trajectory whose map was dropped: the local maps end before it.
   [[nodiscard]] std::optional<topomap::StopId> lost() const;
-  /// The newest trajectory, as far as it can be used: stops without gaps whose maps are here.
+  /// The newest trajectory, up to the first stop whose map is missing.
   [[nodiscard]] topomap::Trajectory newest_trajectory() const;
-  /// The newest closures between stops whose maps are here.
+  /// The newest closures between stops whose maps have arrived.
   [[nodiscard]] std::vector<topomap::LoopClosure> usable_closures() const;
-  /// The newest measurements between stops whose maps are here.
+  /// The newest measurements between stops whose maps have arrived.
   [[nodiscard]] std::vector<storage::MapEdge> usable_edges() const;
   /// Grows whenever usable_edges() may have changed: with each message, and with each local map.
   [[nodiscard]] std::uint64_t edge_changes() const { return edge_changes_; }
-  /// Each once; none leaves them.
+  /// Each refused merge once; none is ever removed.
   [[nodiscard]] const std::vector<storage::RefusedMerge>& refused_merges() const {
     return refused_merges_;
   }
   [[nodiscard]] std::uint64_t version() const { return trajectory_.version(); }
 
-  /// The final trajectory, when everything that the end of the stream names is here: all maps, all
-  /// segments, closures and edges of the final version.
+  /// The final trajectory, once everything that the end of the stream names has arrived: all maps,
+  /// and all segments, closures and edges of the final version.
   [[nodiscard]] std::optional<topomap::Trajectory> final_trajectory() const;
 
  private:
-  /// What distinguishes a map from another one of its id.
+  /// Distinguishes a map from another one with the same id.
   struct Arrived {
     std::uint64_t sequence = 0;
     std::uint64_t content_hash = 0;
     bool operator==(const Arrived&) const = default;
   };
-  /// A trajectory of other numbers than the map has now.
+  /// A trajectory with other stop numbers than the current map.
   struct Renewal {
     service::TrajectoryAssembly trajectory;
     std::vector<topomap::LoopClosure> closures;
@@ -99,13 +99,13 @@ class MapInput {
   };
   void check_stops(const msg::TrajectorySegment& message) const;
   Renewal& renewal_of(std::uint64_t numbered_since);
-  /// Makes the map that of renewal_, when that is complete.
+  /// Replaces the map by renewal_ once that is complete.
   void renew();
   void take_in(topomap::LocalMap map);
   void remember(const topomap::LocalMap& map);
-  /// Takes in the maps that the trajectory names and that are here.
+  /// Adds the arrived maps that the trajectory names.
   void extend();
-  /// Forgets the maps that cannot be used any more.
+  /// Drops the maps that cannot be used any more.
   void drop_old();
   using Waiting = std::map<topomap::StopId, topomap::LocalMap>;
   void drop(Waiting::iterator map);
@@ -115,12 +115,12 @@ class MapInput {
   std::map<topomap::StopId, Arrived> arrived_;
   Waiting waiting_;
   std::map<std::uint64_t, std::uint32_t> first_kept_;  // by session: numbers below are dropped
-  std::vector<std::uint64_t> sessions_;                // in the order in which they came
+  std::vector<std::uint64_t> sessions_;                // in order of arrival
   std::uint64_t dropped_ = 0;
   service::TrajectoryAssembly trajectory_;
   std::vector<topomap::LoopClosure> closures_;
   std::optional<std::uint64_t> closures_version_;
-  std::vector<storage::MapEdge> stored_edges_;  // until newer ones have come
+  std::vector<storage::MapEdge> stored_edges_;  // until newer ones arrive
   service::EdgeAssembly edges_;
   std::uint64_t edge_changes_ = 0;
   std::vector<storage::RefusedMerge> refused_merges_;

@@ -11,8 +11,8 @@ namespace topogeo::map_store {
 
 namespace {
 
-/// What did not fit into a history is sent again as often as readers can be expected to have made
-/// room.
+/// Parts that did not fit into a history are retried after this time, when readers have probably
+/// made room.
 constexpr std::chrono::milliseconds kServerRetryPeriod{500};
 constexpr std::chrono::milliseconds kServerSnapshotPeriod{40};
 constexpr std::chrono::milliseconds kServerSnapshotSlice{20};
@@ -57,7 +57,7 @@ MapServer::MapServer(service::Service& service, storage::MapDocument document,
                hybrid.zones().zones.size(), hybrid.places().size());
 }
 
-// No session goes on here: a local mapper begins one and keeps little of it.
+// Announces that no session is stored: a local mapper then begins a new one and keeps little of it.
 void MapServer::announce() {
   msg::StoredMap message;
   messaging::set_header(message, service_.robot_id(), stamp_ns_, 0);

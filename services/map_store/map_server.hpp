@@ -1,4 +1,4 @@
-// Shows a map that is finished, or drawn, to all readers, and gives it to those who ask.
+// Publishes a finished or drawn map to all readers, and serves it on request.
 #pragma once
 
 #include "topogeo/planning/hybrid_map.hpp"
@@ -16,25 +16,25 @@ namespace topogeo::map_store {
 /// Lives in the loop of its service.
 class MapServer {
  public:
-  /// Sends both maps. `hybrid` is made of `document`. Throws std::invalid_argument when it does not
-  /// fit the messages.
+  /// Sends both maps. `hybrid` was made from `document`. Throws std::invalid_argument when a map
+  /// does not fit the messages.
   MapServer(service::Service& service, storage::MapDocument document,
             const planning::HybridMap& hybrid);
 
  private:
-  /// Sends what could not be sent before.
+  /// Sends the parts that could not be sent before.
   void send();
   void announce();
 
   service::Service& service_;
   storage::MapDocument document_;
-  std::int64_t stamp_ns_ = 0;  // of its last stop
+  std::int64_t stamp_ns_ = 0;  // of the map's last stop
   ElementPublisher elements_;
   HybridPublisher hybrid_;
   messaging::Writer<msg::StoredMap> stored_out_;
   messaging::Writer<msg::SnapshotPiece> pieces_out_;
   SnapshotQueue snapshots_;
-  ArchiveChannel copies_;  // refuses all: there is no database
+  ArchiveChannel copies_;  // refuses all requests: there is no database
   DrawingChannel drawing_;
   bool announced_ = false;
   bool elements_sent_ = false;

@@ -20,8 +20,8 @@ using std::chrono::milliseconds;
 
 namespace {
 
-// The live map shares the cores with the localizer: 50 ms of work every 250 ms, a fifth; more while
-// it is far behind, after a start or a loop that moves everything.
+// The live map shares the cores with the localizer: 50 ms of work every 250 ms, a fifth; more when
+// it is far behind, after a restart or a loop that moves everything.
 constexpr milliseconds kLivePeriod{250};
 constexpr milliseconds kLiveSlice{50};
 constexpr milliseconds kCatchUpSlice{150};
@@ -32,7 +32,7 @@ constexpr milliseconds kStorePeriod{200};
 constexpr std::chrono::seconds kStoreRetryPeriod{1};
 constexpr std::chrono::seconds kEdgePeriod{2};  // measurements: at most a twentieth of the time
 constexpr int kEdgeShare = 20;
-// Answers to requests for the map: a quarter of the time while there are some.
+// Answers to map requests take a quarter of the time while there are any.
 constexpr milliseconds kSnapshotPeriod{40};
 constexpr milliseconds kSnapshotSlice{10};
 constexpr std::uint32_t kPiecesUnderWay = 64;  // 3.6 MB
@@ -72,7 +72,8 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
                [this](storage::MapDrawing drawing) { take_drawing(std::move(drawing)); }) {
   stored_refusals_ = input_.refused_merges().size();
   if (!options_.drawing.empty()) archive_.put(options_.drawing);
-  // There is a map before any scan, be it empty; one that has to be fused first comes when it is.
+  // Even an empty map is published before the first scan; one that must be fused first follows
+  // later.
   if (hybrid_.map() || input_.local_maps().empty()) {
     publish(hybrid_.map().value_or(topomap::GlobalMap{}));
   }
@@ -167,7 +168,7 @@ bool MapStoreService::store(bool all) {
   }
 }
 
-// All of them are compared with what is stored, which takes its time on a large map.
+// Limited, because all edges are compared with the stored ones, which takes long on a large map.
 void MapStoreService::store_edges(bool now) {
   if (input_.edge_changes() == stored_edges_ || (!now && Clock::now() < next_edges_)) return;
   const auto start = Clock::now();
@@ -177,7 +178,7 @@ void MapStoreService::store_edges(bool now) {
   next_edges_ = end + std::max<Clock::duration>(kEdgePeriod, kEdgeShare * (end - start));
 }
 
-// The map goes on in memory; senders keep what is not acknowledged.
+// The map continues in memory; senders keep unacknowledged data.
 void MapStoreService::storing_failed(const std::string& why) {
   service_.status().fault("database", why);
   service_.status().set_state(msg::kServiceFailed, why);
@@ -203,7 +204,7 @@ void MapStoreService::write_snapshot(const msg::SnapshotRequest& request,
     storage::MapDatabase::open_read_only(copies_.path_of(request.session())).write_map_file(sink);
     return;
   }
-  if (!finished_) store(true);  // what cannot be stored is not in it
+  if (!finished_) store(true);  // the snapshot lacks data that cannot be stored
   const storage::MapDatabase& database = archive_.database();
   if (request.kind() == msg::kSnapshotMap) {
     database.write_map_file(sink);
@@ -213,7 +214,7 @@ void MapStoreService::write_snapshot(const msg::SnapshotRequest& request,
 }
 
 bool MapStoreService::send_piece(const msg::SnapshotPiece& piece) {
-  // So much is under way at a time: what a slow reader does not take stays in memory.
+  // Limits the pieces under way: those that a slow reader does not take stay in memory.
   if (piece.piece() % kPiecesUnderWay == 0 &&
       !pieces_out_.wait_for_acknowledgments(kSnapshotSlice)) {
     return false;
@@ -224,7 +225,7 @@ bool MapStoreService::send_piece(const msg::SnapshotPiece& piece) {
 void MapStoreService::work_on_live_map() {
   const topomap::Trajectory trajectory = input_.newest_trajectory();
   live_map_.renumber(trajectory.numbered_since);
-  // Not between a map and its publication, or frequent corrections would leave nothing to publish.
+  // Not between a map and its publication: frequent corrections would leave nothing to publish.
   if (Clock::now() >= next_publish_) live_map_.check(trajectory.stops);
   const auto start = Clock::now();
   const bool far_behind = live_map_.size() + kFarBehind < input_.local_maps().size();
@@ -290,7 +291,7 @@ void MapStoreService::finish_if_complete() {
   try {
     finish(*trajectory);
   } catch (const std::exception& error) {
-    // A full disk may be cleared: the map is still here, so this is tried again.
+    // The disk may be cleared, and the map is still here: try again later.
     service_.status().fault("results not written", error.what());
     service_.status().set_state(msg::kServiceFailed, error.what());
     next_attempt_ = Clock::now() + kRetryPeriod;
@@ -326,7 +327,7 @@ storage::MapDocument MapStoreService::final_document(const topomap::Trajectory& 
 void MapStoreService::end() {
   if ((finished_ && !drawn_since_) || input_.newest_trajectory().stops.empty()) return;
   next_store_ = {};
-  live_map_ = LiveMap(service_.setup().config.config.global_map);  // its memory is needed
+  live_map_ = LiveMap(service_.setup().config.config.global_map);  // frees its memory
   store(true);
   const storage::MapDocument document = final_document(input_.newest_trajectory(), hybrid_.rooms());
   write_results(options_.directory, document, options_.title);
@@ -339,7 +340,7 @@ void MapStoreService::end() {
 
 void MapStoreService::finish(const topomap::Trajectory& trajectory) {
   if (!store(true)) throw std::runtime_error("the map file could not be brought up to date");
-  // As a run in one process: the numbers of maps on the way depend on when these were made.
+  // Same as a run in one process: room numbers of intermediate maps depend on their timing.
   const auto& before = options_.continued;
   const storage::MapDocument document =
       final_document(trajectory, before ? before->rooms : planning::RoomMemory{});

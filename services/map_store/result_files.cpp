@@ -20,8 +20,8 @@ void set_aside_database(const fs::path& path) {
                                  "; move it away or name another file with --database");
   }
   try {
-    // The map of the run before is kept once: a map store that was started again by mistake must
-    // not cost it. The write-ahead log is empty here, since opening it above has merged it.
+    // The map of the previous run is kept once, so that a mistaken restart does not destroy it. The
+    // write-ahead log is empty here, because opening the database above has merged it.
     fs::path previous = path;
     previous.replace_extension(".previous" + path.extension().string());
     fs::rename(path, previous);

@@ -1,4 +1,4 @@
-// Whose a session is, where several robots share a map: its stops say.
+// Finds the robot of a session by the session's stops, when several robots share a map.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@ namespace topogeo::map_store {
 
 class SessionRobots {
  public:
-  /// `robot`: of the map; that of sessions without any stop.
+  /// `robot`: robot of the map, used for sessions without any stop.
   explicit SessionRobots(std::string robot) : robot_(std::move(robot)) {}
 
-  /// A stop of the session came from there.
+  /// Records that a stop of the session came from that robot.
   void name(std::uint64_t session, const std::string& robot) { names_.try_emplace(session, robot); }
-  /// Of a stored session, by one of its stops when none came.
+  /// Robot of a stored session; read from one of its stored stops when none was recorded.
   [[nodiscard]] const std::string& of(const storage::SessionState& session,
                                       const storage::MapDatabase& database);
 

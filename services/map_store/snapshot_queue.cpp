@@ -25,7 +25,7 @@ void SnapshotQueue::add(const msg::SnapshotRequest& request) {
   if ((answer_ && same(answer_->request)) || std::ranges::any_of(waiting_, same)) return;
   if (waiting_.size() < kMostRequests) {
     waiting_.push_back(request);
-  } else if (refused_requests_.size() < kMostRequests) {  // beyond, the sender hears nothing
+  } else if (refused_requests_.size() < kMostRequests) {  // beyond, there is no reply
     refused_requests_.push_back(request);
   }
 }

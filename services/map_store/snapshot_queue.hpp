@@ -1,5 +1,5 @@
-// The answers to requests for the map: made one after the other, cut into pieces, and sent as fast
-// as their readers take them.
+// Answers to map requests: made one after the other, cut into pieces, and sent as fast as their
+// readers take them.
 #pragma once
 
 #include <chrono>
@@ -14,12 +14,12 @@
 
 namespace topogeo::map_store {
 
-/// One answer is in memory at a time, whatever asks.
+/// Keeps only one answer in memory at a time.
 class SnapshotQueue {
  public:
-  /// So many requests wait, more are refused.
+  /// Largest number of waiting requests; more are refused.
   static constexpr std::size_t kMostRequests = 64;
-  /// A reader that takes nothing for so long is given up.
+  /// A reader that takes nothing for so long is dropped.
   static constexpr std::chrono::seconds kPatience{10};
 
   using Clock = std::chrono::steady_clock;
@@ -31,14 +31,14 @@ class SnapshotQueue {
 
   SnapshotQueue(std::string robot_id, Source source, Send send);
 
-  /// A request; the same one twice is answered once.
+  /// Adds a request; a repeated one is answered once.
   void add(const msg::SnapshotRequest& request);
 
-  /// Sends what can be sent now, for about `slice`. True when nothing is left.
+  /// Sends pieces for about `slice`. True when nothing is left.
   bool work(Clock::time_point now, std::chrono::milliseconds slice);
 
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
-  /// Whole answers, answers that say why there is none, and answers whose reader was given up.
+  /// Numbers of complete answers, refusals with a reason, and answers whose reader was dropped.
   [[nodiscard]] std::uint64_t served() const { return served_; }
   [[nodiscard]] std::uint64_t refused() const { return refused_; }
   [[nodiscard]] std::uint64_t given_up() const { return given_up_; }

@@ -1,5 +1,5 @@
-// Tells senders what is stored: a message for each robot that shares the map, after each
-// transaction that has changed something of it.
+// Acknowledges stored data to its senders: a message for each robot that shares the map, after each
+// transaction that changed the robot's part.
 #pragma once
 
 #include <cstdint>
@@ -19,17 +19,17 @@ class StoredChannel {
  public:
   explicit StoredChannel(service::Service& service);
 
-  /// Stops of the session come from that robot.
+  /// Records that the stops of a session come from that robot.
   void name_session(std::uint64_t session, const std::string& robot) {
     robots_.name(session, robot);
   }
-  /// What the database has now, as far as it was not sent.
+  /// Publishes the state of the database where it has changed.
   void publish(const storage::MapDatabase& database);
-  /// Another map takes the place of this one: who has made something of it begins anew.
+  /// Announces that another map replaces this one: users of this map start over.
   void withdraw();
 
  private:
-  /// What was sent last, and how many messages were.
+  /// The last message, and the number of messages sent.
   struct Sent {
     msg::StoredMap message;
     std::uint64_t count = 0;

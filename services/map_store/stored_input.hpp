@@ -1,4 +1,4 @@
-// What a map store that starts goes on with.
+// Stored state with which a map store starts.
 #pragma once
 
 #include <optional>
@@ -12,10 +12,9 @@
 
 namespace topogeo::map_store {
 
-/// The map that is there. `drawing` becomes what is drawn now, laid over the drawing of the map
-/// unless people have drawn on that since;
-/// `shown` its global map, if it has one; `rooms` what is remembered of its rooms. Throws like
-/// MapDatabase::load.
+/// Returns the stored map. `drawing` is laid over the drawing of the map, unless people have drawn
+/// on that since, and becomes the result; `shown` becomes the stored global map, if there is one;
+/// `rooms` the remembered rooms. Throws like MapDatabase::load.
 MapInput::Stored stored_input(const storage::MapDatabase& database, storage::MapDrawing& drawing,
                               std::optional<topomap::GlobalMap>& shown,
                               planning::RoomMemory& rooms);
