@@ -1,5 +1,5 @@
-// The goal that the robot is on its way to, in a small file that outlives a navigator that is
-// killed. The client that gave it may be gone: its order is nowhere else.
+// Remembers the goal under way, in a small file that survives a killed navigator. The client that
+// gave it may be gone, so its order exists nowhere else.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +18,13 @@ struct RememberedGoal {
 
 class GoalMemory {
  public:
-  /// An empty path: nothing is kept. Throws std::runtime_error naming the file when it cannot be
-  /// opened or made.
+  /// With an empty path nothing is kept. Throws std::runtime_error naming the file when it cannot
+  /// be opened or made.
   explicit GoalMemory(const std::filesystem::path& path);
 
-  /// The goal that was stored last; empty when there is none.
+  /// The goal stored last; empty when there is none.
   [[nodiscard]] std::optional<RememberedGoal> load() const;
-  /// Writes only what has changed. Empty: the robot has no goal.
+  /// Writes only changes. Empty: the robot has no goal.
   void store(const std::optional<RememberedGoal>& goal);
 
  private:

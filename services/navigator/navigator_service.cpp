@@ -20,10 +20,10 @@ namespace {
 
 constexpr milliseconds kPeriod{50};        // a scan takes 40 to 100 ms: faster finds nothing new
 constexpr milliseconds kMapPeriod{100};    // tiles of an update come one by one
-constexpr milliseconds kLastCommand{200};  // for the gateway to have the last command
-constexpr std::int64_t kStopTail_ns = 1'000'000'000;       // zeros go on that long: one may be lost
-constexpr std::int64_t kStatusPeriod_ns = 200'000'000;     // as often as a person reads it
-constexpr std::int64_t kBlockagesPeriod_ns = 200'000'000;  // a plan takes some milliseconds
+constexpr milliseconds kLastCommand{200};  // time for the gateway to get the last command
+constexpr std::int64_t kStopTail_ns = 1'000'000'000;       // repeats zeros: one may be lost
+constexpr std::int64_t kStatusPeriod_ns = 200'000'000;     // as fast as a person reads it
+constexpr std::int64_t kBlockagesPeriod_ns = 200'000'000;  // planning takes some milliseconds
 
 std::int64_t nanoseconds(std::chrono::nanoseconds duration) {
   return duration.count();
@@ -33,12 +33,12 @@ std::int64_t steady_now_ns() {
   return nanoseconds(std::chrono::steady_clock::now().time_since_epoch());
 }
 
-/// Until a stamp of the sensors has come.
+/// Used until the first stamp of a sensor.
 std::int64_t host_offset_ns() {
   return nanoseconds(std::chrono::system_clock::now().time_since_epoch()) - steady_now_ns();
 }
 
-/// Whether the base is the navigator's in this state, even when it stands.
+/// Whether the navigator owns the base in this state, even at a standstill.
 bool holds_the_base(NavigatorState state) {
   return state == NavigatorState::kDriving || state == NavigatorState::kRelocalizing ||
          state == NavigatorState::kBlocked;
@@ -104,8 +104,8 @@ void NavigatorService::listen_to_orders() {
 void NavigatorService::listen_to_sensors() {
   service_.subscribe<msg::LivePose>(
       [this](const msg::LivePose& pose) {
-        if (pose.mode() == msg::kModeMarkov) return;  // its own
-        // The whole message first: the stamp of one that is refused must not count.
+        if (pose.mode() == msg::kModeMarkov) return;  // the navigator's own pose
+        // Validate the whole message first: the stamp of a rejected one must not count.
         const navigation::PoseFix fix = service::to_pose_fix(service::from_msg(pose));
         note_arrival(navigation::TimedInput::kPose, fix.stamp_ns);
         if (is_newer(Source::kPose, fix.stamp_ns)) navigator_.add(fix);
@@ -135,7 +135,7 @@ void NavigatorService::listen_to_sensors() {
 }
 
 bool NavigatorService::is_newer(Source source, std::int64_t stamp_ns) {
-  // One that is from the future would make all that follow it old, and the robot stand for good.
+  // A stamp from the future would make all later ones old and stop the robot for good.
   constexpr std::int64_t kAhead_ns = 1'000'000'000;
   const bool sets_clock = source == Source::kScan || source == Source::kOdometry;
   if (!sets_clock) {
@@ -147,7 +147,7 @@ bool NavigatorService::is_newer(Source source, std::int64_t stamp_ns) {
   }
   std::optional<std::int64_t>& last_ns = last_ns_.at(static_cast<std::size_t>(source));
   if (last_ns && stamp_ns <= *last_ns) {
-    // Odometry that came with a scan may be newer than what comes by itself.
+    // Odometry messages may be older than the odometry that came with a scan.
     if (source != Source::kOdometry) service_.status().add_drops("not newer");
     return false;
   }
@@ -205,7 +205,7 @@ void NavigatorService::on_goal(const msg::Goal& message) {
       goal_ = navigation::GoalOrder{goal.goal_id, goal.look_around};
       paused_ = false;
       navigator_.set_goal(*goal_);
-      // The planner may have been faster.
+      // The planner may have answered before the goal arrived here.
       if (route_ && route_->goal_id() == goal.goal_id) on_route(*route_);
       break;
   }
@@ -228,7 +228,7 @@ void NavigatorService::take_map() {
     service_.status().fault("invalid hybrid map", error.what());
     return;
   }
-  if (!map || map == map_) return;  // the rest of the update is to come
+  if (!map || map == map_) return;  // the rest of the update is under way
   map_ = std::move(map);
   navigator_.set_map(map_, live_map_.version());
   service_.status().set_counter("map_version", static_cast<double>(live_map_.version()));
@@ -291,7 +291,7 @@ void NavigatorService::send_command(const geometry::Velocity& velocity, std::int
   message.linear_mps(velocity.linear_m_per_s);
   message.angular_radps(velocity.angular_rad_per_s);
   message.valid_for_s(geometry::kCommandValid_s);
-  // One that is not sent is made up for by the next; without any the gateway halts the base.
+  // The next command makes up for a lost one; without any, the gateway halts the base.
   if (!commands_.write(message)) {
     service_.status().fault("send blocked", "motion command");
     return;
@@ -312,7 +312,7 @@ void NavigatorService::publish_status(std::int64_t now_ns) {
       service_.status().add_to_counter("arrivals");
       goal_.reset();
     }
-    remember();  // before others can know
+    remember();  // stored before others see the change
     service_.status().set_state(msg::kServiceRunning,
                                 std::string(navigation::describe(status.state)) +
                                     (status.message.empty() ? "" : ": " + status.message));

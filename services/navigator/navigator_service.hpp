@@ -1,9 +1,9 @@
-// Takes goals, routes, pose and sensors; gives motion commands, its status and the blockages on its
-// path, and with Markov localization the pose of the robot.
+// Takes goals, routes, pose and sensor data; publishes motion commands, its status, the blockages
+// on its path and, with Markov localization, the pose of the robot.
 //
 // Time is that of the sensors' stamps, see StampClock. Commands go out twenty times a second while
-// a goal is driven to, and zeros for a second after that; then nothing, so that others may drive. A
-// goal belongs to the robot and not to the client that gave it: it stays when the client is gone,
+// the robot drives to a goal, and zeros for a second after that; then nothing, so that others may
+// drive. A goal belongs to the robot and not to the client that gave it: it survives the client
 // until it is reached, cancelled or replaced.
 #pragma once
 
@@ -30,13 +30,13 @@ namespace topogeo::navigator {
 /// Lives in the loop of its service.
 class NavigatorService {
  public:
-  /// It keeps its goal in the file `memory` (empty: none), to go on with it in its next life.
-  /// Throws std::invalid_argument for a configuration out of range, std::runtime_error when the
-  /// file cannot be made.
+  /// Keeps its goal in the file `memory` (empty: none) to continue it after a restart. Throws
+  /// std::invalid_argument for a configuration out of range, std::runtime_error when the file
+  /// cannot be made.
   explicit NavigatorService(service::Service& service, const std::filesystem::path& memory = {});
   NavigatorService(const NavigatorService&) = delete;
   NavigatorService& operator=(const NavigatorService&) = delete;
-  /// The last command is to stand still.
+  /// Sends a command to stand still.
   ~NavigatorService();
 
  private:
@@ -49,23 +49,23 @@ class NavigatorService {
   void on_route(const msg::Route& message);
   void on_scan(const msg::Scan& message);
   void take_map();
-  /// False, and counted, for a message that is not newer than the one before, or that is ahead of
-  /// scans and odometry, which set the clock.
+  /// False, and counted, for a message that is not newer than the one before or that is ahead of
+  /// the clock, which scans and odometry set.
   bool is_newer(Source source, std::int64_t stamp_ns);
-  /// For the reason of a halt: how late a message came.
+  /// Notes the delay of a message, for the reason of a halt.
   void note_arrival(navigation::TimedInput input, std::int64_t stamp_ns);
-  /// Sets the clock by a message that has just come.
+  /// Sets the clock by a message that has just arrived.
   void note_stamp(std::int64_t stamp_ns);
 
-  /// The goal of the life before, which its client may not send again.
+  /// Restores the goal of the previous run, which its client may not send again.
   void resume();
   void remember();
   void tick();
-  /// The time of the sensors has gone back: begins again with the goal at hand.
+  /// Starts over with the current goal, because the sensors' time has gone back.
   void begin_again();
   void command(const geometry::Velocity& velocity, std::int64_t now_ns);
   void send_command(const geometry::Velocity& velocity, std::int64_t now_ns);
-  /// Of Markov localization: planner and people have no other one.
+  /// Publishes the pose of Markov localization, the only one that planner and people have then.
   void publish_pose();
   void publish_status(std::int64_t now_ns);
   void publish_blockages(std::int64_t now_ns);
@@ -78,11 +78,11 @@ class NavigatorService {
   std::optional<navigation::GoalOrder> goal_;
   bool paused_ = false;
   GoalMemory memory_;
-  std::optional<msg::Route> route_;  // the last one
+  std::optional<msg::Route> route_;  // the newest one
   std::array<std::optional<std::int64_t>, kSources> last_ns_;
 
   std::int64_t command_until_ns_ = 0;  // by the steady clock: zeros are sent until then
-  bool moving_ = false;                // the last command was another than to stand
+  bool moving_ = false;                // the last command was not a standstill
   std::uint64_t commands_sent_ = 0;
   std::uint64_t statuses_sent_ = 0;
   std::uint64_t blockages_sent_ = 0;
