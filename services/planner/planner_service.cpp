@@ -15,11 +15,10 @@ namespace topogeo::planner {
 
 namespace {
 
-/// Tiles of an update come one by one, in an order of their own: the map is taken when they have
-/// settled.
+/// Tiles of an update arrive one by one, in any order: the map is taken when they have settled.
 constexpr std::chrono::milliseconds kMapPeriod{100};
 
-/// A robot that could not begin where it was may be able to from this far.
+/// A robot that could not start where it was may be able to from this far.
 constexpr double kMoved_m = 0.1;
 
 bool is_on_branches(const msg::Route& route) {
@@ -54,7 +53,7 @@ void PlannerService::note_what_is_missing() {
 }
 
 void PlannerService::on_pose(const msg::LivePose& message) {
-  // Both a localizer and a navigator may have one: that by which the robot is driven counts.
+  // Localizer and navigator may both publish a pose: only the one used for driving counts.
   const bool of_navigator = message.mode() == msg::kModeMarkov;
   const bool by_markov =
       service_.setup().config.config.navigator.pose_source == navigation::PoseSource::kMarkov;
@@ -80,14 +79,14 @@ void PlannerService::on_goal(const msg::Goal& message) {
     if (goal_ && (message.goal_id() == 0 || message.goal_id() == goal_->goal_id())) goal_.reset();
     return;
   }
-  // One that the navigator refuses is answered, but the robot is still on its way to another.
+  // A goal that the navigator refuses is answered, but the robot continues to its previous goal.
   msg::Route refusal;
   if (!goal_from(message, refusal)) {
     send(message, refusal);
     throw std::invalid_argument(refusal.message().to_string());
   }
   service_.status().add_to_counter("goals");
-  goal_.reset();  // the one before needs no answer on a newer map
+  goal_.reset();  // the previous goal needs no answer on a newer map
   take_maps();
   goal_ = message;
   plan();
@@ -98,7 +97,7 @@ void PlannerService::take_maps() {
   const bool graph_changed = take_graph();
   if (!map_changed && !graph_changed) return;
   note_what_is_missing();
-  // A robot on its way along the grid is not to be sent another route for each new branch.
+  // A robot driving along the grid must not get a new route for each new branch.
   if (map_changed || !map_ || refused_at_ || on_branches_) plan();
 }
 
@@ -124,7 +123,7 @@ bool PlannerService::take_map() {
     service_.status().fault("invalid hybrid map", error.what());
     return false;
   }
-  if (map == map_) return false;  // the rest of the update is to come
+  if (map == map_) return false;  // the rest of the update is under way
   map_ = std::move(map);
   map_version_ = live_map_.version();
   messaging::StatusPublisher& status = service_.status();

@@ -1,5 +1,5 @@
-// Answers goals with routes on the live map, its grid and zones or its nodes and branches, and
-// again when the map, the blockages, or whether the pose is known has changed.
+// Answers goals with routes on the live map, its grid and zones or its nodes and branches; answers
+// again when the map or the blockages change, or when the pose becomes known.
 #pragma once
 
 #include <cstdint>
@@ -27,14 +27,14 @@ class PlannerService {
   void on_pose(const msg::LivePose& message);
   void on_goal(const msg::Goal& message);
   void on_blockages(const msg::Blockages& message);
-  /// Takes the mirrored maps over, if they are whole and have changed, and plans again.
+  /// Takes changed complete maps from the mirrors and plans again.
   void take_maps();
   bool take_map();
   bool take_graph();
   void note_what_is_missing();
-  /// Plans for the goal at hand, if there is one, and sends the answer.
+  /// Plans for the current goal, if there is one, and sends the answer.
   void plan();
-  /// Completes the answer to a goal and sends it; false when the program is asked to end before.
+  /// Completes the answer to a goal and sends it; false when the program must end first.
   bool send(const msg::Goal& goal, msg::Route& route);
 
   service::Service& service_;
@@ -45,7 +45,7 @@ class PlannerService {
   navigation::BlockageReport blockages_;
   bool on_branches_ = false;                   // the last answer
   std::optional<msg::Goal> goal_;              // active
-  std::optional<geometry::Pose2> refused_at_;  // where the last answer was a refusal
+  std::optional<geometry::Pose2> refused_at_;  // place of the last refusal
   std::uint64_t sent_ = 0;
 
   service::LiveHybridMap live_map_;
