@@ -104,7 +104,7 @@ std::optional<GridMirror::Change> GridMirror::take() {
       copy(tiles_.at(number), number);
     }
   }
-  if (low_row >= high_row) return std::nullopt;  // places or rules alone
+  if (low_row >= high_row) return std::nullopt;  // only places or rules have changed
   change.column = static_cast<std::int32_t>(low_column * kSide);
   change.row = static_cast<std::int32_t>(low_row * kSide);
   change.columns = std::min(high_column * kSide, map_->columns()) - low_column * kSide;

@@ -1,4 +1,4 @@
-// Joins a robot that speaks ROS 2 with the services of topogeo; no part of ROS is needed.
+// Connects a robot that speaks ROS 2 to the services of topogeo; needs no part of ROS.
 #include <charconv>
 #include <chrono>
 #include <cstdlib>
@@ -34,7 +34,7 @@ struct BridgeOptions {
   std::optional<double> show_mounting_s;
 };
 
-/// As ROS reads it: 0x10 is 16.
+/// Parsed like ROS does: 0x10 is 16.
 std::uint32_t domain_of_environment(std::uint32_t otherwise) {
   constexpr unsigned long kLargestDomain = 232;
   const char* text = std::getenv("ROS_DOMAIN_ID");
@@ -91,7 +91,7 @@ ros_bridge::Settings load(const BridgeOptions& options) {
     ros_bridge::Directions& directions = settings.directions;
     if (options.sensors) {
       directions.sensors = *options.sensors;
-      // The base is ours then.
+      // With sensors out, the base is ours.
       const bool ours = directions.sensors == ros_bridge::Direction::kOut;
       if (ours && directions.velocity == ros_bridge::Direction::kOut) {
         directions.velocity = ros_bridge::Direction::kOff;
@@ -115,7 +115,7 @@ void print_settings(const BridgeOptions& options) {
   support::write_yaml(schema, std::cout);
 }
 
-/// Out of sight of other services, and without a word to ROS.
+/// Runs in a partition of its own, unseen by other services, and sends nothing to ROS.
 void show_mounting(service::Setup setup, ros_bridge::Settings settings, std::uint32_t domain,
                    double wait_s) {
   setup.options.partition = "show-mounting-" + std::to_string(::getpid());

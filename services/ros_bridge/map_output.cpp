@@ -9,7 +9,7 @@
 namespace topogeo::ros_bridge {
 namespace {
 
-/// Tiles of an update come one by one.
+/// Tiles of an update arrive one by one.
 constexpr std::chrono::milliseconds kMapPeriod{200};
 
 }  // namespace
@@ -64,7 +64,7 @@ void MapOutput::publish_grid() {
   }
   const auto period_ns = std::llround(ros_.settings().map_period_s * 1e9);
   const bool due = whole_is_old_ && steady_now_ns() - whole_ns_ >= period_ns;
-  // A reader that comes now gets the last whole map, and no update from before its time.
+  // A new reader would get an outdated map, because earlier updates are not repeated for it.
   const bool newcomer = whole_is_old_ && grids_->matched() > readers_;
   readers_ = grids_->matched();
   if ((change && change->whole) || due || newcomer) publish_whole();

@@ -1,4 +1,4 @@
-// The map: occupancy grid with its updates, graph, names of rooms.
+// Publishes the map: occupancy grid with its updates, graph, names of rooms.
 #pragma once
 
 #include <cstdint>
@@ -36,8 +36,8 @@ class MapOutput {
   std::optional<service::LiveGraph> live_graph_;
   std::shared_ptr<const topomap::GlobalMap> graph_;
   int readers_ = 0;            // of the grid
-  bool whole_is_old_ = false;  // the last whole grid lacks what came after it
-  std::int64_t whole_ns_ = 0;  // steady clock: when it was sent
+  bool whole_is_old_ = false;  // the last whole grid lacks later updates
+  std::int64_t whole_ns_ = 0;  // steady clock: when the last whole grid was sent
   std::uint64_t timer_ = 0;
 };
 

@@ -9,7 +9,7 @@
 namespace topogeo::ros_bridge {
 namespace {
 
-/// No robot of a building is as fast; a pose that is carried on by such speeds stays a number.
+/// No indoor robot is as fast, and a pose extrapolated by such speeds stays finite.
 bool plausible(double linear_mps, double angular_radps) {
   constexpr double kMostMps = 100.0;
   constexpr double kMostRadps = 100.0;

@@ -1,4 +1,4 @@
-// Odometry of ROS as ours.
+// Conversion of ROS odometry to ours.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,17 @@
 
 namespace topogeo::ros_bridge {
 
-/// The pose and the speeds that the message states. Empty for a pose as ros::planar, and for speeds
-/// that are no numbers up to 100 m/s and 100 rad/s.
+/// Pose and speeds of the message. Empty if ros::planar rejects the pose, or a speed is not finite
+/// or exceeds 100 m/s or 100 rad/s.
 std::optional<geometry::OdometrySample> to_sample(const ros::Odometry& message);
 
-/// The pose that odom -> robot states, with the speeds since `last`: 0 without it and where they
-/// would be larger than those of a message, which is a jump. Empty as ros::planar.
+/// Pose of the transform odom -> robot, with the speeds since `last`. The speeds are 0 without
+/// `last` and where they would exceed the limits of a message, which means a jump. Empty like
+/// ros::planar.
 std::optional<geometry::OdometrySample> to_sample(
     const ros::TransformStamped& message, const std::optional<geometry::OdometrySample>& last);
 
-/// `epoch`: the odometry that the pose belongs to.
+/// `epoch`: epoch of the odometry that the pose belongs to.
 msg::Odometry to_msg(const geometry::OdometrySample& sample, std::string_view robot_id,
                      std::uint64_t epoch, std::uint64_t sequence_number);
 

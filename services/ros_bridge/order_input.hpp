@@ -1,4 +1,4 @@
-// What people tell the robot in RViz and Foxglove: goals and where it is.
+// Takes orders that people give in RViz and Foxglove: goals and the robot's pose.
 #pragma once
 
 #include <cstdint>

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kClick_m = 0.5;
 constexpr double kClick_rad = 15.0 * std::numbers::pi / 180.0;
-/// Of a speed that is none but for the rounding.
+/// Tolerance for a speed that is zero up to rounding.
 constexpr double kNothing = 1e-6;
 
 geometry::Pose2 map_from(const std::string& frame, const Settings::Frames& frames,

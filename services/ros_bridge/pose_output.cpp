@@ -14,7 +14,7 @@ namespace {
 
 /// Consumers of tf expect 20 Hz and more.
 constexpr std::chrono::milliseconds kTransformPeriod{25};
-/// Longer than a pose takes to come back.
+/// Covers more than the time that a pose takes to come back.
 constexpr std::size_t kReadingsKept = 2000;
 constexpr std::size_t kStampsKept = 200;
 
@@ -64,7 +64,7 @@ void PoseOutput::on_pose(const service::LivePose& pose) {
   T_map_robot_ = pose.T_map_robot;
   const auto odometry = T_odom_robot_.find(pose.stamp_ns);
   if (odometry == T_odom_robot_.end()) {
-    // The pose may have overtaken its odometry on the way here.
+    // The pose may have arrived before its odometry.
     if (T_odom_robot_.empty() || T_odom_robot_.rbegin()->first < pose.stamp_ns) waiting_ = pose;
     return;
   }
@@ -79,7 +79,7 @@ void PoseOutput::publish_transform() {
   if (!transforms_ || !T_map_odom_) return;
   const Settings& settings = ros_.settings();
   const std::int64_t stamp_ns = ros_.now_ns() + std::llround(settings.transform_tolerance_s * 1e9);
-  if (!sent_ns_.empty() && sent_ns_.back() == stamp_ns) return;  // tf takes each stamp once
+  if (!sent_ns_.empty() && sent_ns_.back() == stamp_ns) return;  // tf accepts each stamp once
   sent_ns_.push_back(stamp_ns);
   if (sent_ns_.size() > kStampsKept) sent_ns_.pop_front();
   ros::TFMessage message;

@@ -1,4 +1,4 @@
-// Joins a robot that speaks ROS 2 with the services of topogeo.
+// Connects a robot that speaks ROS 2 to the services of topogeo.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@
 
 namespace topogeo::ros_bridge {
 
-/// Lives in the loop of its service; each part is made as the settings want it.
+/// Lives in the loop of its service; the settings select which parts are created.
 class RosBridgeService {
  public:
   /// `ros_domain`: DDS domain of the ROS nodes. Throws like RosSide.
@@ -28,14 +28,14 @@ class RosBridgeService {
   RosBridgeService(const RosBridgeService&) = delete;
   RosBridgeService& operator=(const RosBridgeService&) = delete;
 
-  /// After the loop: readers of scans hear that they end.
+  /// Call it after the loop: reports the end of the stream to scan readers.
   void finish();
 
-  /// Where the laser is, once it is known; with sensors of ROS.
+  /// Mounting of the laser, once it is known; only with sensors of ROS.
   [[nodiscard]] std::optional<ros::LaserMounting> mounting() const;
 
  private:
-  /// Where sensors are ours.
+  /// With our own sensors.
   void listen_to_odometry(bool replay);
   void publish_plan(const msg::Route& route);
   void publish_diagnostics();

@@ -1,5 +1,4 @@
-// The side of the bridge that nodes of ROS see: a participant of its own, beside that of the
-// service.
+// The bridge as ROS nodes see it: a participant of its own, beside that of the service.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +19,7 @@ namespace topogeo::ros_bridge {
 
 class RosSide {
  public:
-  /// `domain`: of ROS. Throws like messaging::Participant.
+  /// `domain`: DDS domain of ROS. Throws like messaging::Participant.
   RosSide(service::Service& service, Settings settings, std::uint32_t domain);
 
   [[nodiscard]] service::Service& service() const { return service_; }
@@ -33,8 +32,8 @@ class RosSide {
     return writer;
   }
 
-  /// Calls handler(message, info). std::invalid_argument from the handler is something in the
-  /// message that cannot be used: see complain().
+  /// Calls handler(message, info). std::invalid_argument from the handler means that the message is
+  /// unusable: see complain().
   template <ros::Message T, class Handler>
   void subscribe(const std::string& name, ros::Qos qos, Handler handler) {
     const messaging::Reader<T> reader(participant_, ros::Topic{name, qos});
@@ -48,7 +47,7 @@ class RosSide {
     });
   }
 
-  /// Sends; counted as a fault when a reader is too slow.
+  /// Sends; a reader that is too slow counts as a fault.
   template <ros::Message T>
   void send(messaging::Writer<T>& writer, const T& message) {
     if (!writer.write(message)) {
@@ -56,15 +55,15 @@ class RosSide {
     }
   }
 
-  /// Counts something that cannot be used among the drops of the status, and logs the first of its
-  /// reason (up to 48 bytes, a fixed text).
+  /// Counts an unusable input among the drops of the status, and logs the first one for each reason
+  /// (a fixed text, up to 48 bytes).
   void complain(const std::string& reason, const std::string& detail);
-  /// As complain() for what is counted elsewhere.
+  /// Same as complain(), for inputs counted elsewhere.
   void set_complaints(const std::string& reason, std::uint64_t count, const std::string& detail);
-  /// What was complained of last, for people; empty: nothing.
+  /// The last complaint, for people; empty: none.
   [[nodiscard]] const std::string& last_complaint() const { return last_complaint_; }
 
-  /// The newest stamp of the sensors, which is the time that ROS has; 0 before the first.
+  /// The newest stamp of the sensors, which is the current time for ROS; 0 before the first.
   [[nodiscard]] std::int64_t now_ns() const { return now_ns_; }
   void set_now(std::int64_t stamp_ns) { now_ns_ = ros::usable_stamp_ns(stamp_ns); }
 
@@ -79,11 +78,11 @@ class RosSide {
   std::int64_t now_ns_ = 0;
 };
 
-/// One of several writers of a topic that only one should write: the first, until it is silent for
-/// a second.
+/// Selects one writer of a topic that should have only one: the first, until it is silent for a
+/// second.
 class SoleWriter {
  public:
-  /// False for those of another writer. Times are of a steady clock.
+  /// False for messages of other writers. Times are of a steady clock.
   bool accept(const messaging::Handle& writer, std::int64_t steady_ns) {
     constexpr std::int64_t kSilence_ns = 1'000'000'000;
     if (writer_ && *writer_ != writer && steady_ns - last_ns_ < kSilence_ns) return false;
@@ -97,7 +96,7 @@ class SoleWriter {
   std::int64_t last_ns_ = 0;
 };
 
-/// Of a steady clock.
+/// Nanoseconds of a steady clock.
 std::int64_t steady_now_ns();
 
 }  // namespace topogeo::ros_bridge

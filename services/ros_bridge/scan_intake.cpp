@@ -11,10 +11,10 @@ namespace topogeo::ros_bridge {
 namespace {
 
 constexpr std::int64_t kTimeJump_ns = 1'000'000'000;
-/// No robot of a building is as fast, and no odometry as coarse.
+/// No indoor robot is as fast, and no odometry as coarse.
 constexpr double kFastestMps = 5.0;
 constexpr double kJump_m = 0.5;
-/// As where a log contradicts the configuration.
+/// Same tolerance as for a log that contradicts the configuration.
 constexpr double kMountingTolerance_m = 0.02;
 
 std::string text(const geometry::Pose2& pose) {
@@ -176,7 +176,7 @@ std::optional<scan::Scan> ScanIntake::finish(const ros::Sweep& sweep, std::int64
   scan.T_odom_robot = odometry->T_odom_robot;
   scan.sequence = next_sequence_++;
   scan.odometry_epoch = epochs_;
-  // The configured frame of the laser may be turned against that of /tf: only places must agree.
+  // The configured laser frame may be rotated against that of /tf: only the positions must agree.
   const double turn_rad =
       geometry::wrap_angle(mounting_->T_robot_laser.theta_rad - options_.T_robot_laser.theta_rad);
   scan.angle_min_rad = pattern_->angle_min_rad + turn_rad;

@@ -1,5 +1,5 @@
-// Scans and odometry of ROS put together to ours: each scan gets the odometry of its time, one
-// pattern of beams and one epoch of odometry; what cannot be used is counted by its reason.
+// Combines scans and odometry of ROS: each scan gets the odometry of its time; all scans get one
+// beam pattern. Unusable inputs are counted by reason.
 #pragma once
 
 #include <array>
@@ -22,44 +22,44 @@
 
 namespace topogeo::ros_bridge {
 
-/// Why something that came was not used.
+/// Why an input was not used.
 enum class IntakeDrop : std::uint8_t {
   kInvalidScan,
-  kOtherFrame,     ///< of another laser than the first scan
-  kNoOdometry,     ///< before the first, or too long after the last
-  kNoMounting,     ///< nothing joins the frames of the robot and of the laser
-  kTilted,         ///< the laser does not look along the floor
-  kOtherMounting,  ///< not where the configuration has the laser
-  kOldScan,        ///< not after the scan before it
-  kOtherBeams,     ///< not those of the first scan, nor a part of them
+  kOtherFrame,     ///< the first scan came from another laser
+  kNoOdometry,     ///< before the first odometry, or too long after the last
+  kNoMounting,     ///< no transform between the frames of robot and laser
+  kTilted,         ///< the laser does not scan parallel to the floor
+  kOtherMounting,  ///< the configuration has the laser elsewhere
+  kOldScan,        ///< not newer than the previous scan
+  kOtherBeams,     ///< neither those of the first scan nor a part of them
   kInvalidOdometry,
   kOldOdometry
 };
 inline constexpr std::size_t kIntakeDrops = 10;
-/// For people.
+/// Text for people.
 std::string_view describe(IntakeDrop drop);
 
 struct IntakeOptions {
-  geometry::Pose2 T_robot_laser;      ///< as our services are configured
+  geometry::Pose2 T_robot_laser;      ///< from the configuration of our services
   bool mounting_from_tf = true;       ///< false: the laser is where it is configured, upright
-  std::int64_t odometry_wait_ns = 0;  ///< a scan waits for odometry so long at most; >= 0
+  std::int64_t odometry_wait_ns = 0;  ///< longest wait of a scan for odometry; >= 0
   std::int64_t longest_extrapolation_ns = 0;  ///< see OdometryTrack
-  std::size_t most_beams = 2048;              ///< scans of more are thinned out
+  std::size_t most_beams = 2048;              ///< scans with more are thinned out
   ros::SweepOrder sweep = ros::SweepOrder::kNone;
   double range_limit_m = 1e9;  ///< ranges at or above it are no echo
 };
 
-/// Arrival times are of a steady clock, stamps those of the messages.
+/// Arrival times are of a steady clock; stamps are those of the messages.
 class ScanIntake {
  public:
   explicit ScanIntake(const IntakeOptions& options) : options_(options), track_(0) { begin(); }
 
-  /// The frame of the robot, of whose mountings and odometry the rest speaks.
+  /// Sets the robot's frame, to which mountings and odometry refer.
   void set_robot_frame(const std::string& frame) { robot_frame_ = frame; }
   ros::FrameTree& frames() { return frames_; }
 
-  /// The pose of the robot by odometry. A stamp over a second before the last one, or a pose that
-  /// no robot gets to since then, begins another epoch; returns why, or an empty text.
+  /// Adds the robot's pose by odometry. A stamp over a second before the last one, or a pose that
+  /// no robot can have reached since, begins another epoch: returns the reason, else an empty text.
   std::string add(const geometry::OdometrySample& sample);
   void add(const ros::LaserScan& message, std::int64_t arrival_ns);
   void count(IntakeDrop drop, const std::string& detail);
@@ -68,21 +68,21 @@ class ScanIntake {
     scan::Scan scan;
     std::int64_t arrival_ns = 0;
   };
-  /// The scans that can leave by now, in order.
+  /// The scans that can be published by now, in order.
   std::vector<Leaving> take(std::int64_t now_ns);
-  /// When `take` has something at the latest; the largest number while nothing waits.
+  /// Latest time at which take() returns something; the largest number while nothing waits.
   [[nodiscard]] std::int64_t due_ns() const;
 
-  /// Where the laser of the last scan is; empty before one whose mounting is known.
+  /// Mounting of the last scan's laser; empty until the first known mounting.
   [[nodiscard]] const std::optional<ros::LaserMounting>& mounting() const { return mounting_; }
   [[nodiscard]] std::uint64_t epochs() const { return epochs_; }
-  /// Numbers scans and odometry of an epoch; the service makes the epoch's own number of it.
+  /// Number of the next scan in the current epoch.
   [[nodiscard]] std::uint64_t scans() const { return next_sequence_; }
   [[nodiscard]] std::uint64_t adapted() const { return adapted_; }
   [[nodiscard]] std::uint64_t dropped(IntakeDrop drop) const {
     return drops_[static_cast<std::size_t>(drop)];
   }
-  /// What was said of a reason last.
+  /// The last detail for a reason.
   [[nodiscard]] const std::string& detail(IntakeDrop drop) const {
     return details_[static_cast<std::size_t>(drop)];
   }
@@ -107,7 +107,7 @@ class ScanIntake {
   std::deque<Waiting> waiting_;
   std::optional<std::string> laser_frame_;
   std::optional<ros::LaserMounting> mounting_;
-  std::optional<ros::BeamPattern> pattern_;  // of the first scan, which all have from then on
+  std::optional<ros::BeamPattern> pattern_;  // of the first scan; all later ones are adapted to it
   std::int64_t last_stamp_ns_ = std::numeric_limits<std::int64_t>::min();
   std::uint64_t next_sequence_ = 0;
   std::uint64_t epochs_ = 0;

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kStatePeriod{500};
 constexpr std::chrono::milliseconds kLastDelivery{2000};
-/// Faster sideways than this is no error of measurement.
+/// A faster sideways motion is no measurement error.
 constexpr double kSidewaysMps = 0.05;
 
 IntakeOptions intake_options(const RosSide& ros) {

@@ -1,5 +1,5 @@
-// Scan, odometry and frames of ROS as our scans and odometry: what the sensor gateway is for
-// devices.
+// Converts scan, odometry and frames of ROS to our scans and odometry: the counterpart of the
+// sensor gateway for devices.
 #pragma once
 
 #include <cstdint>
@@ -24,16 +24,16 @@ class SensorInput {
   SensorInput& operator=(const SensorInput&) = delete;
   ~SensorInput();
 
-  /// The stream ends: those who read scans may finish. Once, at the end.
+  /// Ends the stream, so that scan readers may finish. Call it once, at the end.
   void finish();
 
-  /// Gets each transform of tf that is none of the robot's own frames: parent, child, stamp.
+  /// Called for each tf transform outside of the robot's own frames: parent, child, stamp.
   std::function<void(const std::string&, const std::string&, std::int64_t)> on_foreign_transform;
 
-  /// Gets each odometry that is published: stamp, epoch, T_odom_robot.
+  /// Called for each published odometry: stamp, epoch, T_odom_robot.
   std::function<void(std::int64_t, std::uint64_t, const geometry::Pose2&)> on_reading;
 
-  /// Where the laser is, once a scan has come whose mounting is known and can be used.
+  /// Mounting of the laser, once a scan with a known, usable mounting has arrived.
   [[nodiscard]] const ScanIntake& intake() const { return intake_; }
 
  private:

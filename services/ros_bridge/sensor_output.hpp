@@ -1,4 +1,4 @@
-// Our scans and odometry as those of ROS: robots whose devices, logs or simulators are ours.
+// Publishes our scans and odometry to ROS, for robots with devices, logs or simulators of ours.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,19 @@
 namespace topogeo::ros_bridge {
 
 /// Lives in the loop of its service. Publishes scan, odometry, odom -> robot on tf, robot -> laser
-/// on tf_static and, if so set, the time of the stamps as clock.
+/// on tf_static and, if set so, the time of the stamps as clock.
 class SensorOutput {
  public:
-  /// `replay`: a log is read, as of the gateway.
+  /// `replay`: the gateway replays a log.
   SensorOutput(RosSide& ros, bool replay);
 
  private:
-  /// What came last of a topic.
+  /// The newest message of a topic.
   struct Last {
     std::uint64_t odometry_epoch = 0;
     std::optional<std::int64_t> stamp_ns;
   };
-  /// Whether a log that is read again brings it once more; if not, it is the last from now on.
+  /// Whether a log that is read again repeats this message; if not, it becomes the newest.
   [[nodiscard]] bool is_repeated(std::uint64_t odometry_epoch, std::int64_t stamp_ns,
                                  Last& last) const;
   void on_scan(const msg::Scan& scan);

@@ -96,7 +96,7 @@ void describe_qos(ConfigSchema& schema, Settings& settings) {
   schema.add("qos.velocity", &qos.velocity, kinds, "of the velocity in either direction");
 }
 
-/// The whole name of a relative or absolute one.
+/// The absolute name of a topic.
 std::string resolved(const std::string& name, const std::string& ros_namespace) {
   if (name.starts_with('/')) return name;
   return ros_namespace + "/" + name;

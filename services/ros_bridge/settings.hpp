@@ -1,4 +1,4 @@
-// What the bridge is set to: names, frames, quality of service and directions of the topics of ROS.
+// Settings of the bridge: names, frames, quality of service and directions of the ROS topics.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace topogeo::ros_bridge {
 enum class Direction { kIn, kOut, kOff };
 enum class OdometrySource { kTopic, kTransforms };
 
-/// What is taken from ROS and given to it.
+/// The direction of each topic, in from ROS or out to it.
 struct Directions {
   Direction sensors = Direction::kIn;
   Direction velocity = Direction::kOff;
@@ -31,7 +31,8 @@ struct Directions {
   bool clock = false;
 };
 
-/// As in the file. Names of topics are relative to the namespace unless they start with '/'.
+/// Same structure as the file. Topic names are relative to the namespace unless they begin with
+/// '/'.
 struct Settings {
   struct Topics {
     std::string scan = "scan";
@@ -53,8 +54,8 @@ struct Settings {
   struct Frames {
     std::string map = "map";
     std::string odom = "odom";
-    std::string robot;  ///< empty: the one that odometry names, with odometry of /tf base_link
-    std::string laser = "laser";  ///< of the scans that we give
+    std::string robot;  ///< empty: the frame named by odometry; base_link with odometry from /tf
+    std::string laser = "laser";  ///< of the scans that we publish
   } frames;
   struct QualityOfService {
     ros::Qos scan = ros::Qos::kBestEffort;
@@ -62,7 +63,7 @@ struct Settings {
     ros::Qos map = ros::Qos::kLatched;
     ros::Qos velocity = ros::Qos::kReliable;
   } qos;
-  /// All there is, unless the file says otherwise.
+  /// Everything is on unless the file says otherwise.
   Directions directions{
       Direction::kIn, Direction::kOut, true, true, true, true, true, true, true, true, false};
   OdometrySource odometry_source = OdometrySource::kTopic;
@@ -79,15 +80,15 @@ struct Settings {
 /// Declares every key with its variable in `settings`, its range, unit and reason.
 support::ConfigSchema describe(Settings& settings);
 
-/// Command line of the bridge, which has the last word.
+/// Command-line options, which override the file.
 struct SettingOptions {
   std::optional<std::filesystem::path> file;
   std::vector<std::string> remaps;  ///< FROM:=TO, __ns:=NAMESPACE
   std::string ros_namespace;        ///< empty: none
 };
 
-/// The settings of the file with every topic as its whole name, after namespace and remappings.
-/// Throws std::runtime_error naming file, key or remapping and what was expected.
+/// The settings of the file, with namespace and remappings applied to every topic name. Throws
+/// std::runtime_error naming file, key or remapping and what was expected.
 Settings load_settings(const SettingOptions& options);
 
 }  // namespace topogeo::ros_bridge

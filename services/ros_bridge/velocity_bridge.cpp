@@ -90,7 +90,7 @@ void VelocityBridge::send(double linear_mps, double angular_radps) {
 
 void VelocityBridge::on_twist(const ros::Twist& twist) {
   msg::MotionCommand command = to_motion(twist);
-  // When it was made, not when the sensors were heard last: the gateway refuses old commands.
+  // Stamped when made, not with the last sensor time: the gateway rejects old commands.
   messaging::set_header(command, ros_.service().robot_id(), support::wall_clock_ns(), sent_);
   if (!commands_->write(command)) {
     ros_.service().status().fault("send blocked", "motion command");

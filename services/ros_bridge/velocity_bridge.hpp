@@ -1,4 +1,4 @@
-// Velocities: those of our navigator to the base of ROS, or those of ROS to our base.
+// Carries velocities: our navigator's to the base of ROS, or those of ROS to our base.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,14 @@
 
 namespace topogeo::ros_bridge {
 
-/// Lives in the loop of its service. A base of ROS keeps its last velocity, so one that is not
-/// followed by another within its time is ended by a zero; a velocity of ROS holds for half a
-/// second.
+/// Lives in the loop of its service. A base of ROS keeps its last velocity, so a zero follows a
+/// velocity whose time ends without another one; a velocity of ROS holds for half a second.
 class VelocityBridge {
  public:
   explicit VelocityBridge(RosSide& ros);
   VelocityBridge(const VelocityBridge&) = delete;
   VelocityBridge& operator=(const VelocityBridge&) = delete;
-  /// Stops a base that was told to move.
+  /// Stops a base that is moving.
   ~VelocityBridge();
 
  private:
