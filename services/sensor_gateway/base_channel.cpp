@@ -19,12 +19,12 @@ using std::chrono::milliseconds;
 
 namespace {
 
-/// As all statuses: twice a second.
+/// Same as for all statuses: twice a second.
 constexpr milliseconds kStatusPeriod{500};
-/// At the end the base gets so long to take the order to stop: a slow line needs a tenth of it.
+/// Longest wait at the end for the base to take the stop command: a slow line needs a tenth of it.
 constexpr milliseconds kLongestStop{500};
 constexpr milliseconds kStopPoll{10};
-/// A command never holds for longer, whatever it states: a robot whose navigator hangs must stop.
+/// No command holds for longer, whatever it states: a robot whose navigator hangs must stop.
 constexpr double kLongestCommand_s = 0.5;
 
 msg::BaseState to_msg(devices::BaseState state) {
@@ -86,8 +86,8 @@ BaseChannel::BaseChannel(service::Service& service, const DeviceConfig& config,
 BaseChannel::~BaseChannel() {
   service_.loop().cancel_timer(timer_);
   if (stopped_ || !line_.is_open()) return;
-  // An exception ends the service: the loop does not run any more, so only what the line takes at
-  // once gets to the base. Its watchdog does the rest.
+  // After an exception the loop no longer runs, so the base gets only what the line takes at once.
+  // Its watchdog does the rest.
   try {
     driver_.halt(line_.now_ns());
     line_.carry_out();
@@ -98,7 +98,7 @@ BaseChannel::~BaseChannel() {
 }
 
 void BaseChannel::begin_epoch(std::int64_t stamp_ns) {
-  // Where the system's clock was set back meanwhile, others would take what comes for old.
+  // If the system's clock was set back meanwhile, others would reject new messages as old.
   const bool resumed =
       remembered_ && driver_.odometry_resumed() && stamp_ns > remembered_->last_stamp_ns;
   odometry_epoch_ = resumed ? remembered_->epoch : support::unrepeatable_u64();
@@ -155,7 +155,7 @@ std::optional<std::int64_t> BaseChannel::age_of(const msg::MotionCommand& comman
                                                 std::int64_t now_ns) {
   const std::optional<std::int64_t> age_ns =
       ages_.age_ns(info.writer, command.stamp_ns(), now_ns, time_.stamp_ns(now_ns));
-  // A command to stand is never refused.
+  // A command to stand still is never refused.
   if (command.linear_mps() == 0.0 && command.angular_radps() == 0.0) return 0;
   if (age_ns && *age_ns <= CommandAges::kOldest_ns) return age_ns;
   service_.status().add_drops(age_ns ? "old command" : "command of unknown age");

@@ -1,4 +1,4 @@
-// The base of the robot: its line, its odometry, its state, and the commands to it.
+// The robot's base: its line, odometry and state, and the commands to it.
 #pragma once
 
 #include <cstdint>
@@ -25,9 +25,9 @@ namespace topogeo::sensor_gateway {
 /// Lives in the loop of its service.
 class BaseChannel {
  public:
-  /// `on_epoch` gets the epoch of the odometry before `on_odometry` gets the first sample; these
-  /// are stamped by the steady clock. With a `remembered` state the odometry goes on in its epoch,
-  /// if the base has counted on.
+  /// `on_epoch` gets the epoch of the odometry before `on_odometry` gets the first sample; samples
+  /// are stamped by the steady clock. With a `remembered` state the odometry continues in its
+  /// epoch, if the base has kept counting.
   struct Hooks {
     std::function<void(std::uint64_t epoch, bool resumed)> on_epoch;
     std::function<void(const geometry::OdometrySample&)> on_odometry;
@@ -38,36 +38,36 @@ class BaseChannel {
   BaseChannel& operator=(const BaseChannel&) = delete;
   BaseChannel(BaseChannel&&) = delete;
   BaseChannel& operator=(BaseChannel&&) = delete;
-  /// Halts the base, unless stop() has done it.
+  /// Halts the base, unless stop() has done so.
   ~BaseChannel();
 
-  /// What the laser sees, stamped by the steady clock: the base stops before it, whatever is
-  /// commanded.
+  /// Takes the laser's view, stamped by the steady clock: the base stops before obstacles, whatever
+  /// is commanded.
   void see(const navigation::ScanPoints& scan);
 
-  /// Whether it takes motion commands.
+  /// Whether the base takes motion commands.
   [[nodiscard]] bool ready() const { return driver_.status().commands_taken; }
-  /// For people: "ready", or the state and why.
+  /// For people: "ready", or the state and the reason.
   [[nodiscard]] std::string describe() const;
   /// Sets the counters of the service's status.
   void count();
-  /// Empty before the first odometry.
+  /// Empty until the first odometry.
   [[nodiscard]] std::optional<devices::OdometerState> odometer_state() const {
     return driver_.odometer_state();
   }
 
   [[nodiscard]] messaging::Writer<msg::Odometry>& odometry() { return odometry_; }
 
-  /// Halts the base and waits, at most half a second, until it stands. Its own watchdog stops it
-  /// if this does not reach it.
+  /// Halts the base and waits until it stands, at most half a second. The base's own watchdog stops
+  /// it if this command does not arrive.
   void stop();
 
  private:
   void after_driver(std::int64_t now_ns);
-  /// Whether the odometry goes on or begins, once it is known.
+  /// Decides whether the odometry continues or begins a new epoch.
   void begin_epoch(std::int64_t stamp_ns);
   void on_command(const msg::MotionCommand& command, const messaging::SampleInfo& info);
-  /// Nothing, and counted, for one that is old or may be.
+  /// The age of a command; nothing, with a drop counted, when it is too old or unknown.
   std::optional<std::int64_t> age_of(const msg::MotionCommand& command,
                                      const messaging::SampleInfo& info, std::int64_t now_ns);
   [[nodiscard]] devices::BaseVelocity guarded(const devices::BaseVelocity& wanted,
@@ -81,7 +81,7 @@ class BaseChannel {
   Hooks hooks_;
   std::optional<std::uint64_t> odometry_epoch_;
   devices::BaseDriver driver_;
-  std::optional<navigation::LastGuard> guard_;  ///< with a laser
+  std::optional<navigation::LastGuard> guard_;  ///< only with a laser
   navigation::LastGuard::Verdict verdict_ = navigation::LastGuard::Verdict::kAsWanted;
   std::uint64_t guard_stops_ = 0;
   CommandAges ages_;

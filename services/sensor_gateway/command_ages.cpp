@@ -6,7 +6,8 @@
 namespace topogeo::sensor_gateway {
 namespace {
 
-/// Clocks drift apart by a millisecond in it; a queue that stands for longer is noticed before.
+/// Clocks drift apart by about a millisecond in it, and a longer stall of a queue is noticed
+/// before.
 constexpr std::int64_t kAgeWindow_ns = 10'000'000'000;
 
 }  // namespace

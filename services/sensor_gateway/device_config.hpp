@@ -1,4 +1,4 @@
-// The devices of a robot: which ports they are at and how they are spoken to.
+// The devices of a robot: their ports and protocols.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@
 
 namespace topogeo::sensor_gateway {
 
-/// As in the file; a device without a port does not exist.
+/// Same structure as the file; a device without a port does not exist.
 struct DeviceFile {
   struct Laser {
     std::string port;
     devices::PlsSettings settings;
     std::string detection_bauds;  ///< numbers separated by blanks
     enum class Kind { kDetect, kPls, kLms } kind = Kind::kDetect;
-    double ack_timeout_s = 0.0;  ///< this and the rest: in nanoseconds in `settings`
+    double ack_timeout_s = 0.0;  ///< this and the following: as nanoseconds in `settings`
     double reply_timeout_s = 0.0;
     double baud_reply_timeout_s = 0.0;
     double settle_s = 0.0;
@@ -35,7 +35,7 @@ struct DeviceFile {
     devices::BaseSettings settings;
     std::uint32_t report_mask = 0;
     std::uint32_t error_delay_ticks = 0;
-    std::int32_t torque = -1;  ///< negative: left as it is
+    std::int32_t torque = -1;  ///< negative: left unchanged
   } base;
   enum class Body { kNone, kB21 } body = Body::kNone;
   double odometry_wait_s = 0.0;
@@ -47,11 +47,11 @@ struct DeviceFile {
 /// Declares every key with its variable in `file`, its range, unit and reason.
 support::ConfigSchema describe(DeviceFile& file);
 
-/// What a gateway works with.
+/// Configuration that the gateway uses.
 struct DeviceConfig {
-  std::string laser_port;  ///< empty: there is none
+  std::string laser_port;  ///< empty: no laser
   devices::PlsSettings laser;
-  std::string base_port;  ///< empty: there is none
+  std::string base_port;  ///< empty: no base
   devices::BaseSettings base;
   bool body_sensors = false;  ///< sonars, infrared and tactile sensors of a B21
   std::int64_t odometry_wait_ns = 0;
@@ -61,8 +61,8 @@ struct DeviceConfig {
 /// Throws std::invalid_argument naming the key whose value is wrong.
 DeviceConfig to_config(const DeviceFile& file);
 
-/// The devices of a file, some of them at other ports than it names. Throws std::runtime_error
-/// naming file, and line and key where it can.
+/// The devices of a file, optionally at other ports. Throws std::runtime_error naming the file, and
+/// line and key where possible.
 DeviceConfig load_devices(const std::filesystem::path& path,
                           const std::optional<std::string>& laser_port = {},
                           const std::optional<std::string>& base_port = {});

@@ -20,9 +20,9 @@ using std::chrono::milliseconds;
 
 namespace {
 
-constexpr milliseconds kStatePeriod{250};    // twice for each status, so that it is never older
-constexpr milliseconds kBodyPeriod{100};     // as a ring of sonars that fires in turns
-constexpr milliseconds kLastDelivery{2000};  // for readers to have what was published
+constexpr milliseconds kStatePeriod{250};    // twice per status, so that it is up to date
+constexpr milliseconds kBodyPeriod{100};     // period of a ring of sonars that fire in turns
+constexpr milliseconds kLastDelivery{2000};  // time for readers to receive published data
 
 ScanGateOptions gate_options(const service::Service& service, const DeviceConfig& config,
                              std::uint64_t odometry_epoch) {
@@ -127,7 +127,7 @@ void DeviceGateway::compare_watchdog(double watchdog_s) {
 }
 
 void DeviceGateway::remember() {
-  if (!base_) return;  // while it is made
+  if (!base_) return;  // while it is being made
   const std::optional<devices::OdometerState> state = base_->odometer_state();
   if (!state) return;
   memory_.store({*state, odometry_epoch_, gate_.scans(), time_.stamp_ns(steady_now_ns())});

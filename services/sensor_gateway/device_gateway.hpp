@@ -1,4 +1,4 @@
-// Gives the scans, odometry and states of real devices, and drives the base.
+// Publishes the scans, odometry and states of real devices, and drives the base.
 #pragma once
 
 #include <cstdint>
@@ -27,9 +27,9 @@ namespace topogeo::sensor_gateway {
 /// Lives in the loop of its service.
 class DeviceGateway {
  public:
-  /// Scans are numbered and published from when `readers` programs that read them are connected.
-  /// In the file `memory` (empty: none) it keeps where odometry and numbers are, to go on there
-  /// when it starts again, and in MEMORY.laser at which rate the laser sends.
+  /// Scans are numbered and published once `readers` programs that read them are connected. The
+  /// file `memory` (empty: none) keeps the state of odometry and numbers across restarts, and
+  /// MEMORY.laser the baud rate of the laser.
   DeviceGateway(service::Service& service, const DeviceConfig& config, int readers,
                 const std::filesystem::path& memory = {});
   DeviceGateway(const DeviceGateway&) = delete;
@@ -38,19 +38,19 @@ class DeviceGateway {
   DeviceGateway& operator=(DeviceGateway&&) = delete;
   ~DeviceGateway();
 
-  /// After the loop: halts the base, waits until the readers have what was published and
+  /// Call it after the loop: halts the base, waits until the readers have all published data and
   /// announces the end of the stream.
   void finish();
 
  private:
   void remember();
-  /// A base that runs on for longer than guards count is a fault.
+  /// Reports a fault if the base runs on for longer than the guards assume.
   void compare_watchdog(double watchdog_s);
-  /// What the laser sees, at once: the base stops before it.
+  /// Shows the laser's view to the base at once, which stops before obstacles.
   void show_base(const devices::PlsScan& scan);
-  /// Publishes what can leave by now.
+  /// Publishes the scans that are ready.
   void release(std::int64_t now_ns);
-  /// False, and a fault, when it cannot be sent.
+  /// False, with a fault, when the scan cannot be sent.
   bool publish(const scan::Scan& scan);
   void publish_state();
   void read_body();
@@ -64,13 +64,13 @@ class DeviceGateway {
   messaging::Writer<msg::StreamEnd> stream_end_;
   std::int64_t last_stamp_ns_ = 0;
   std::uint64_t sent_ = 0;
-  // From when the last bytes of a scan were read from the port to when it was published.
+  // Time between reading the last bytes of a scan from the port and publishing it.
   std::int64_t latency_ns_ = 0;          // of the last scan
-  std::int64_t largest_latency_ns_ = 0;  // of all
-  std::int64_t wait_ns_ = 0;             // what of latency_ns_ the scan waited for odometry
-  std::string published_;                // as the state of the service
+  std::int64_t largest_latency_ns_ = 0;  // of all scans
+  std::int64_t wait_ns_ = 0;             // part of latency_ns_ spent waiting for odometry
+  std::string published_;                // last state of the service
   std::uint64_t timer_ = 0;              // of publish_state
-  std::uint64_t release_timer_ = 0;      // while scans wait for odometry
+  std::uint64_t release_timer_ = 0;      // runs while scans wait for odometry
   std::uint64_t body_timer_ = 0;         // of read_body
   std::unique_ptr<devices::BodySensors> body_sensors_;
   std::optional<service::BodySensorPublisher> body_;

@@ -1,4 +1,4 @@
-// From the clock of the ports to the one that messages carry.
+// Converts the clock of the ports to the clock of the messages.
 #pragma once
 
 #include <chrono>
@@ -8,8 +8,8 @@
 
 namespace topogeo::sensor_gateway {
 
-/// Nanoseconds since the epoch that a time of the steady clock stands for. The difference between
-/// the clocks is taken once, so that stamps keep their order when the system's clock is set.
+/// Converts times of the steady clock to nanoseconds since the epoch. The offset between the clocks
+/// is taken once, so that stamps keep their order when the system's clock is set.
 class HostTime {
  public:
   HostTime()

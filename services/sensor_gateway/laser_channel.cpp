@@ -10,12 +10,12 @@ namespace topogeo::sensor_gateway {
 
 namespace {
 
-/// As all statuses: twice a second.
+/// Same as for all statuses: twice a second.
 constexpr std::chrono::milliseconds kLaserStatusPeriod{500};
-/// The rate of scans is that of so long: at 9600 baud a laser gives one in 0.8 s.
+/// The scan rate is averaged over this window: at 9600 baud a scan takes 0.8 s.
 constexpr std::int64_t kRateWindow_ns = 4'000'000'000;
 
-/// What was dropped, by reason, named alike everywhere.
+/// Numbers of dropped scans and bytes by reason, with the same names everywhere.
 std::vector<std::pair<std::string, std::uint64_t>> drops_of(const devices::PlsCounters& counters,
                                                             const LineStatistics& line,
                                                             const ScanGate& gate) {

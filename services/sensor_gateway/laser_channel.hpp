@@ -1,4 +1,4 @@
-// The laser of the robot: its line, its scans and its state.
+// The robot's laser: its line, scans and state.
 #pragma once
 
 #include <array>
@@ -24,8 +24,8 @@ namespace topogeo::sensor_gateway {
 /// Lives in the loop of its service.
 class LaserChannel {
  public:
-  /// `on_scan` gets each scan as soon as it comes, and `gate`; then `on_scans` is called. In the
-  /// file `memory` (empty: none) it keeps at which rate the laser sends.
+  /// `on_scan` gets each scan on arrival, as does `gate`; then `on_scans` is called. The file
+  /// `memory` (empty: none) keeps the baud rate of the laser.
   LaserChannel(service::Service& service, const DeviceConfig& config, const HostTime& time,
                ScanGate& gate, const std::filesystem::path& memory,
                std::function<void(const devices::PlsScan&)> on_scan,
@@ -37,7 +37,7 @@ class LaserChannel {
   ~LaserChannel();
 
   [[nodiscard]] bool running() const;
-  /// For people: "running", or the state and why.
+  /// For people: "running", or the state and the reason.
   [[nodiscard]] std::string describe() const;
   /// Sets the counters of the service's status.
   void count();
@@ -64,7 +64,7 @@ class LaserChannel {
   bool protective_field_ = false;
   bool published_warning_ = false;
   bool published_protective_ = false;
-  std::deque<std::int64_t> recent_ns_;  // when the last scans came
+  std::deque<std::int64_t> recent_ns_;  // arrival times of recent scans
   std::uint64_t timer_ = 0;
   SerialLine line_;
 };

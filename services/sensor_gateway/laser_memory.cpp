@@ -20,7 +20,7 @@ struct NamedParity {
 };
 constexpr std::array<NamedParity, 3> kParities{
     {{"none", Parity::kNone}, {"even", Parity::kEven}, {"odd", Parity::kOdd}}};
-/// Those of a SICK laser.
+/// Rates of a SICK laser.
 constexpr std::array<std::uint32_t, 4> kBauds{9600, 19200, 38400, 500'000};
 
 std::string text_of(const LineSettings& line) {
@@ -49,7 +49,7 @@ std::optional<LineSettings> LaserMemory::load() const {
 void LaserMemory::store(const LineSettings& line) {
   if (path_.empty() || stored_ == line) return;
   stored_ = line;
-  // Not forced to disk, for which the gateway would stand still; half of it is read as nothing.
+  // Not forced to disk, which would block the gateway; a partial file counts as empty.
   std::ofstream(path_, std::ios::binary) << text_of(line);
 }
 

@@ -1,5 +1,5 @@
-// At which rate the laser sends, in a small file that outlives a gateway that is killed: a laser
-// that goes on sending is heard at once there, and is searched for for seconds elsewhere.
+// Remembers the laser's baud rate in a small file that survives a killed gateway: a laser that
+// keeps sending at that rate is found at once, at any other rate only after a search of seconds.
 #pragma once
 
 #include <filesystem>
@@ -12,13 +12,13 @@ namespace topogeo::sensor_gateway {
 
 class LaserMemory {
  public:
-  /// An empty path: nothing is kept.
+  /// With an empty path nothing is kept.
   explicit LaserMemory(std::filesystem::path path) : path_(std::move(path)) {}
 
-  /// What was stored last; empty when that is nothing or damaged. The laser may have another rate
-  /// by now.
+  /// The rate stored last; empty when there is none or it is damaged. The laser may use another
+  /// rate by now.
   [[nodiscard]] std::optional<devices::LineSettings> load() const;
-  /// Writes only what has changed. What cannot be written is lost: the laser is searched for.
+  /// Writes only changes. A failure to write is ignored: the laser is then searched for.
   void store(const devices::LineSettings& line);
 
  private:

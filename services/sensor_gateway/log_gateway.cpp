@@ -17,10 +17,10 @@ using std::chrono::milliseconds;
 
 namespace {
 
-/// Scans in a row before signals and timers get their turn.
+/// Scans in a row before signals and timers are served.
 constexpr int kBatch = 16;
 constexpr milliseconds kReplayPoll{20};
-/// Falling further behind than this moves the schedule instead of rushing after it.
+/// A replay that falls further behind shifts its schedule instead of rushing.
 constexpr std::chrono::seconds kLargestDelay{1};
 
 std::chrono::steady_clock::duration duration_of(double seconds) {
@@ -28,7 +28,7 @@ std::chrono::steady_clock::duration duration_of(double seconds) {
       std::chrono::duration<double>(seconds));
 }
 
-/// Odometry at a scan, its speed from the one before.
+/// Odometry at a scan, with the speed since the previous scan.
 msg::Odometry odometry_of(const scan::Scan& scan, const std::string& robot_id,
                           const msg::Odometry& last) {
   msg::Odometry out;
@@ -77,7 +77,7 @@ void LogGateway::on_request(const msg::ScanRequest& request) {
   if (sent_ == 0) return;
   const bool of_this_log = request.odometry_epoch() == last_odometry_.odometry_epoch();
   const std::uint64_t wanted = of_this_log ? request.first_scan() : 0;
-  if (wanted >= sent_ && !all_read_) return;  // it comes anyway
+  if (wanted >= sent_ && !all_read_) return;  // the replay will reach it anyway
   try {
     go_back_to(std::min(wanted, sent_ - 1));
   } catch (const std::runtime_error& error) {
@@ -106,7 +106,7 @@ void LogGateway::go_back_to(std::uint64_t number) {
   sent_ = number;
   all_read_ = end_sent_ = false;
   service_.status().set_state(msg::kServiceRunning);
-  service_.loop().cancel_timer(timer_);  // it may be that of a scan after a long gap
+  service_.loop().cancel_timer(timer_);  // it may belong to a scan after a long gap
   go_on_after({});
 }
 

@@ -1,5 +1,4 @@
-// Replays a log: scans and odometry as messages, at the wanted pace, and at the end reports how
-// many.
+// Replays a log: publishes scans and odometry at the wanted pace, and at the end their number.
 #pragma once
 
 #include <chrono>
@@ -20,21 +19,21 @@ namespace topogeo::sensor_gateway {
 
 struct GatewayOptions {
   std::filesystem::path log;
-  recording::TopicChoice topics;  ///< of a log that is a recording of ROS
+  recording::TopicChoice topics;  ///< for a ROS recording
   service::ReplayRate rate;       ///< empty: lossless
   std::optional<int> readers;     ///< scan readers to wait for before the first scan, >= 0; none: 1
-  int odometry_readers = 0;       ///< the same of odometry
+  int odometry_readers = 0;       ///< the same for odometry
   bool exit_at_end = false;
 };
 
-/// Lives in the loop of its service. Begins when the readers that it waits for are connected: these
-/// get every message from the first on, also those on the other topics that they read with it.
-/// Every rate uses the replay QoS, so a slow reader slows the replay and none is lost. A local
-/// mapper that was away has the log read again from the scan on that it lacks; other readers get
-/// those scans twice.
+/// Lives in the loop of its service. The replay begins when the awaited readers are connected: they
+/// get every message from the first on, also on the other topics that they read with it. Every rate
+/// uses the replay QoS, so a slow reader slows the replay and no message is lost. A local mapper
+/// that was away has the log read again from its first missing scan; other readers get those scans
+/// twice.
 class LogGateway {
  public:
-  /// `scans_total` is for people watching.
+  /// `scans_total` is shown to people.
   LogGateway(service::Service& service, const GatewayOptions& options, recording::LogReader reader,
              std::uint64_t scans_total);
 
@@ -42,16 +41,16 @@ class LogGateway {
   using Clock = std::chrono::steady_clock;
 
   void begin();
-  /// Reads the log again where that brings scans that are wanted.
+  /// Reads the log again if that provides the requested scans.
   void on_request(const msg::ScanRequest& request);
-  /// Makes the scan of that number the next one to be sent, and goes on from it at the pace of the
-  /// log. Throws std::runtime_error when the log has not so many any more.
+  /// Makes the scan of that number the next one to send, and continues from it at the log's pace.
+  /// Throws std::runtime_error when the log no longer has that many.
   void go_back_to(std::uint64_t number);
-  /// Comes back after `delay` for what is to be done then: scans, or the end.
+  /// Schedules the next step after `delay`: scans, or the end.
   void go_on_after(Clock::duration delay);
-  /// Sends what is due now and comes back when the next is.
+  /// Sends the messages that are due and schedules the next ones.
   void replay();
-  /// Makes the next scan of the log the one to send; false at the end.
+  /// Reads the next scan of the log for sending; false at the end.
   bool read_next();
   bool send_pending();
   void count();
@@ -67,11 +66,11 @@ class LogGateway {
   ReaderWait readers_;
 
   Clock::time_point start_;
-  Clock::time_point due_;  // of the pending messages
+  Clock::time_point due_;  // time of the pending messages
   std::optional<msg::Scan> pending_scan_;
   std::optional<msg::Odometry> pending_odometry_;
   msg::Odometry last_odometry_;
-  std::uint64_t sent_ = 0;  // scans of the log, the number of the next one
+  std::uint64_t sent_ = 0;  // scans of the log; also the number of the next one
   bool all_read_ = false;
   bool end_sent_ = false;
   std::uint64_t ends_sent_ = 0;

@@ -1,4 +1,4 @@
-// Gives the scans and odometry of a robot, from its devices or from a log.
+// Publishes the scans and odometry of a robot, from its devices or from a log.
 #include <filesystem>
 #include <optional>
 #include <string>

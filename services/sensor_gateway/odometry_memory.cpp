@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint64_t kFormat = 0x324D4F4745475054;  // "TPGEGOM2": the layout of OdometryRecord
 
-/// The steady clock begins anew with the machine.
+/// The steady clock restarts with the machine.
 std::uint64_t this_boot() {
   static const std::uint64_t boot =
       support::fnv1a(support::file_content("/proc/sys/kernel/random/boot_id"));

@@ -1,4 +1,4 @@
-// Where the odometry is, in a small file that outlives a gateway that is killed.
+// Remembers the state of the odometry in a small file that survives a killed gateway.
 #pragma once
 
 #include <array>
@@ -15,12 +15,12 @@ struct RememberedOdometry {
   devices::OdometerState state;
   std::uint64_t epoch = 0;
   std::uint64_t next_sequence = 0;  ///< of scans
-  std::int64_t last_stamp_ns = 0;   ///< of what was published
+  std::int64_t last_stamp_ns = 0;   ///< of the last published message
 };
 
-/// As it lies in the file, for this machine alone.
+/// Layout of the file, for this machine alone.
 struct OdometryRecord {
-  std::uint64_t boot = 0;  ///< of the machine, which the steady clock begins anew with
+  std::uint64_t boot = 0;  ///< of the machine, with which the steady clock restarts
   std::array<std::uint32_t, devices::kMcpFields> fields{};
   std::uint64_t mask = 0;
   std::int64_t arrival_ns = 0;
@@ -32,17 +32,17 @@ struct OdometryRecord {
   std::int64_t last_stamp_ns = 0;
 };
 
-/// It is not forced to disk, since after a loss of power the base counts anew as well.
+/// Not forced to disk, because the base also restarts its count after a loss of power.
 class OdometryMemory {
  public:
-  /// An empty path: nothing is kept. Throws std::runtime_error naming the file when it cannot be
-  /// opened or made.
+  /// With an empty path nothing is kept. Throws std::runtime_error naming the file when it cannot
+  /// be opened or made.
   explicit OdometryMemory(const std::filesystem::path& path);
 
-  /// What was stored last; empty when that is nothing, damaged, or from before the machine was
-  /// started.
+  /// The state stored last; empty when there is none, it is damaged, or it is from before the last
+  /// boot.
   [[nodiscard]] std::optional<RememberedOdometry> load() const;
-  /// What cannot be written is lost: the odometry then begins anew.
+  /// A failure to write is ignored: the odometry then begins a new epoch.
   void store(const RememberedOdometry& odometry) const;
 
  private:

@@ -9,7 +9,7 @@ namespace topogeo::sensor_gateway {
 
 namespace {
 
-constexpr std::chrono::milliseconds kReaderPoll{20};  // no scan waits noticeably
+constexpr std::chrono::milliseconds kReaderPoll{20};  // delays no scan noticeably
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Waits until the programs that need a gateway's messages from the first one on are connected.
+// Waits for the programs that need a gateway's messages from the first one on.
 #pragma once
 
 #include <functional>
@@ -15,20 +15,20 @@ class ReaderWait {
  public:
   struct Wanted {
     std::string topic;  ///< for people
-    int programs = 0;   ///< that read it
+    int programs = 0;   ///< number of programs that read it
     messaging::ConnectedPrograms connected;
   };
-  /// Gets the text of the wait, for people, whenever it changes.
+  /// Called with the text of the wait, for people, whenever it changes.
   using Report = std::function<void(const std::string& what)>;
 
   ReaderWait(messaging::EventLoop& loop, std::vector<Wanted> wanted);
 
-  /// Calls `on_complete` once: before this returns where all are connected already.
+  /// Calls `on_complete` once, before returning if all readers are already connected.
   void start(Report report, std::function<void()> on_complete);
 
  private:
   void check();
-  /// Empty when it has all.
+  /// Empty when all readers are connected.
   [[nodiscard]] std::string missing() const;
 
   messaging::EventLoop& loop_;

@@ -1,4 +1,4 @@
-// When each scan of a replayed log is due.
+// Schedule of a replayed log's scans.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,7 @@ namespace topogeo::sensor_gateway {
 
 class ReplayPace {
  public:
-  /// Gaps in the log longer than this are replayed as kShortened_s: they would make people wait for
-  /// a lunch break.
+  /// Longer gaps in the log are replayed as kShortened_s, so that nobody waits for a lunch break.
   static constexpr std::int64_t kLongestGap_ns = 60'000'000'000;
   static constexpr double kShortened_s = 1.0;
 
@@ -19,7 +18,7 @@ class ReplayPace {
 
   struct Due {
     double after_s = 0.0;        ///< real time from the first scan to this one
-    double shortened_gap_s = 0;  ///< length in the log of a gap that was shortened, else 0
+    double shortened_gap_s = 0;  ///< length in the log of a shortened gap, else 0
   };
   /// Stamps must increase from call to call. The first scan is due at 0.
   Due next(std::int64_t stamp_ns);

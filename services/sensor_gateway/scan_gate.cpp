@@ -89,7 +89,7 @@ std::optional<scan::Scan> ScanGate::finish(devices::PlsScan&& scan) {
   return out;
 }
 
-// A laser that hangs gives old readings with new stamps, which would bend the map.
+// A laser that hangs sends old readings with new stamps, which would bend the map.
 bool ScanGate::repeats(const std::vector<float>& ranges_m, const geometry::Pose2& T_odom_robot) {
   constexpr double kMoved_m = 0.01;
   constexpr double kMoved_rad = 0.005;

@@ -1,5 +1,5 @@
-// Puts scans and odometry together: numbers and stamps scans, gives each the odometry at its time,
-// and counts those that cannot be used.
+// Combines scans and odometry: numbers and stamps scans, adds the odometry at their time, and
+// counts unusable scans.
 #pragma once
 
 #include <array>
@@ -18,35 +18,35 @@
 
 namespace topogeo::sensor_gateway {
 
-/// Why a scan that the laser gave was not published.
+/// Reason why a scan of the laser was not published.
 enum class ScanDrop : std::uint8_t {
   kNoReader,    ///< there is no reader yet
-  kNoOdometry,  ///< before the first, or too long after the last
-  kTime,        ///< not after the scan before it
+  kNoOdometry,  ///< before the first odometry, or too long after the last
+  kTime,        ///< not newer than the previous scan
   kGeometry,    ///< other beams than the first scan
-  kRepeated     ///< the readings of the one before to the last digit, but the robot has moved
+  kRepeated     ///< same readings as the previous scan to the last digit, but the robot has moved
 };
 inline constexpr std::size_t kScanDrops = 5;
-/// For people.
+/// Text for people.
 std::string_view describe(ScanDrop drop);
 
 struct ScanGateOptions {
   bool has_base = true;                       ///< false: the odometry is always the identity
-  std::int64_t odometry_wait_ns = 0;          ///< for odometry after a scan, at most; >= 0
+  std::int64_t odometry_wait_ns = 0;          ///< longest wait for odometry after a scan; >= 0
   std::int64_t longest_extrapolation_ns = 0;  ///< see OdometryTrack
   std::uint64_t odometry_epoch = 0;           ///< of the odometry that it gets
-  double range_max_m = 49.9;  ///< ranges from here on are no return, as when a log is read
+  double range_max_m = 49.9;                  ///< larger ranges mean no return, as in logs
 };
 
-/// All times are of one steady clock; it needs not be the one of the stamps that leave.
+/// All times are of one steady clock, which may differ from the clock of published stamps.
 class ScanGate {
  public:
   explicit ScanGate(const ScanGateOptions& options)
       : options_(options), track_(options.longest_extrapolation_ns) {}
 
-  /// Nothing leaves before this is set.
+  /// Nothing is published before this call.
   void open() { open_ = true; }
-  /// The odometry that comes is of this epoch, and the next scan has this number. Before the first.
+  /// Sets the epoch of the odometry and the number of the next scan. Call it before the first.
   void begin(std::uint64_t odometry_epoch, std::uint64_t next_sequence) {
     options_.odometry_epoch = odometry_epoch;
     next_sequence_ = next_sequence;
@@ -55,12 +55,12 @@ class ScanGate {
   void add(const geometry::OdometrySample& sample) { track_.add(sample); }
 
   struct Leaving {
-    scan::Scan scan;              ///< stamped by the same clock as the times here
+    scan::Scan scan;              ///< stamped by the clock of the times here
     std::int64_t arrival_ns = 0;  ///< when it was added
   };
-  /// The scans that can leave by now, in order.
+  /// The scans that can be published by now, in order.
   std::vector<Leaving> take(std::int64_t now_ns);
-  /// When `take` has something at the latest; the largest number while nothing waits.
+  /// Latest time at which take() returns something; the largest number while nothing waits.
   [[nodiscard]] std::int64_t due_ns() const;
 
   [[nodiscard]] std::uint64_t scans() const { return next_sequence_; }
@@ -92,7 +92,7 @@ class ScanGate {
   std::deque<Waiting> waiting_;
   std::optional<Geometry> geometry_;
   std::vector<float> seen_m_;    // ranges of the last scan ...
-  geometry::Pose2 T_odom_seen_;  // ... and where the robot was when they came first
+  geometry::Pose2 T_odom_seen_;  // ... and the robot's pose when they first came
   std::int64_t last_stamp_ns_ = std::numeric_limits<std::int64_t>::min();
   std::uint64_t next_sequence_ = 0;
   std::uint64_t extrapolated_ = 0;

@@ -10,9 +10,9 @@ namespace topogeo::sensor_gateway {
 
 namespace {
 
-/// When a timer comes later than this, the process did not get to run.
+/// A timer that fires later than this means that the process did not get to run.
 constexpr std::int64_t kLate_ns = 50'000'000;
-/// For the port's thread, to read what came meanwhile.
+/// Time for the port's thread to read bytes that came meanwhile.
 constexpr std::chrono::milliseconds kReadTime{10};
 
 }  // namespace
@@ -23,7 +23,7 @@ SerialLine::SerialLine(messaging::EventLoop& loop, devices::SerialDriver& driver
       driver_(driver),
       after_(std::move(after)),
       self_(std::make_shared<SerialLine*>(this)) {
-  // The loop outlives the port and its thread; this line may not outlive what was posted.
+  // The loop outlives the port and its thread, but this line may go before events they have posted.
   port_ =
       std::make_unique<SerialPort>(options, [&event_loop = loop, self = self_](PortEvent event) {
         event_loop.post([self, event = std::move(event)] {
@@ -96,7 +96,7 @@ void SerialLine::tick() {
   timer_armed_ = false;
   const std::int64_t now = now_ns();
   if (now - timer_due_ns_ > kLate_ns && !deferred_) {
-    // The device was not silent: this process did not listen.
+    // The device was not silent; this process did not listen.
     deferred_ = true;
     timer_armed_ = true;
     timer_ = loop_.call_after(kReadTime, [this] { tick(); });

@@ -1,4 +1,4 @@
-// Connects a driver with its device: a port, the driver and the event loop of a service.
+// Connects a driver to its device: a port, the driver and the event loop of a service.
 #pragma once
 
 #include <cstdint>
@@ -14,21 +14,21 @@
 namespace topogeo::sensor_gateway {
 
 struct LineStatistics {
-  std::uint64_t opened = 0;      ///< times that the port was opened
-  std::uint64_t lost = 0;        ///< times that it was lost
-  std::uint64_t not_opened = 0;  ///< tries that failed
+  std::uint64_t opened = 0;      ///< times the port was opened
+  std::uint64_t lost = 0;        ///< times it was lost
+  std::uint64_t not_opened = 0;  ///< failed attempts
   std::uint64_t bytes_in = 0;
-  std::uint64_t bytes_stale = 0;  ///< dropped, as they came before a change of the settings
+  std::uint64_t bytes_stale = 0;  ///< dropped, because they came before a change of settings
 };
 
-/// Lives in the thread of its loop, and so does the driver.
+/// Lives in the thread of its loop, as does the driver.
 class SerialLine {
  public:
-  /// Called after everything that was passed to the driver, so that it can fetch what the driver
-  /// found; `now_ns` never goes back.
+  /// Called after each input to the driver, so that the caller can fetch its results; `now_ns`
+  /// never goes back.
   using AfterHandler = std::function<void(std::int64_t now_ns)>;
 
-  /// The driver outlives the line. Throws like SerialPort.
+  /// The driver must outlive the line. Throws like SerialPort.
   SerialLine(messaging::EventLoop& loop, devices::SerialDriver& driver, const PortOptions& options,
              AfterHandler after);
   SerialLine(const SerialLine&) = delete;
@@ -38,12 +38,12 @@ class SerialLine {
   ~SerialLine();
 
   [[nodiscard]] bool is_open() const { return open_; }
-  /// Why the port is not open, one line naming it; empty when it is or was not tried yet.
+  /// Why the port is not open, one line naming it; empty when it is open or not yet tried.
   [[nodiscard]] const std::string& why_closed() const { return why_closed_; }
   [[nodiscard]] const LineStatistics& statistics() const { return statistics_; }
 
-  /// Carries out what the driver orders. To be called after every call of the driver that did not
-  /// come from this line.
+  /// Carries out the driver's orders. Call it after every call of the driver that this line did not
+  /// make.
   void carry_out();
 
   /// True as soon as all orders are carried out or lost with the port; false after `timeout`.
@@ -51,7 +51,7 @@ class SerialLine {
     return port_->wait_written(timeout);
   }
 
-  /// Now, and never before an earlier answer or the stamp of a byte that the driver has got.
+  /// The current time, never before an earlier result or the stamp of a byte given to the driver.
   [[nodiscard]] std::int64_t now_ns();
 
  private:
@@ -66,14 +66,14 @@ class SerialLine {
   bool open_ = false;
   std::string why_closed_;
   std::uint64_t epoch_opened_ = 0;
-  std::uint64_t given_ = 0;  // orders, since the port was opened
+  std::uint64_t given_ = 0;  // number of orders since the port was opened
   std::int64_t last_ns_ = 0;
   LineStatistics statistics_;
   std::uint64_t timer_ = 0;
   std::int64_t timer_due_ns_ = 0;
   bool timer_armed_ = false;
-  bool deferred_ = false;              // the timer was late and waits for what is to be read
-  std::shared_ptr<SerialLine*> self_;  // what the port's thread posts may come after the end
+  bool deferred_ = false;              // a late timer waits for bytes to be read
+  std::shared_ptr<SerialLine*> self_;  // events of the port may arrive after the end
   std::unique_ptr<SerialPort> port_;
 };
 

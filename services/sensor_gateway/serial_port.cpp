@@ -33,8 +33,8 @@ namespace {
 constexpr milliseconds kLongestDrain{2000};
 constexpr milliseconds kDrainPoll{1};
 
-/// These have no parity and refuse every other than none; whatever is at their far end does
-/// without.
+/// Pseudo-terminals have no parity and reject every setting but none; the program at their far end
+/// works without it.
 bool is_pseudo_terminal(int fd) {
   constexpr unsigned kFirstMajor = 136;  // of the Unix98 ones, see devices.txt of Linux
   constexpr unsigned kLastMajor = 143;
@@ -56,8 +56,8 @@ asio::serial_port_base::parity::type asio_parity(devices::Parity parity) {
   return asio::serial_port_base::parity::none;
 }
 
-/// Makes the driver of the port hand on bytes at once. USB adapters collect them for up to 16 ms
-/// otherwise. Ports that have no such setting do without it.
+/// Makes the port's driver deliver bytes at once; USB adapters otherwise collect them for up to 16
+/// ms. Ports without this setting work without it.
 void ask_for_low_latency(int fd) {
   serial_struct settings{};
   if (::ioctl(fd, TIOCGSERIAL, &settings) != 0) return;
@@ -73,7 +73,7 @@ std::int64_t steady_now_ns() {
       .count();
 }
 
-/// All members but `epoch_` belong to the thread.
+/// All members except `epoch_` belong to the thread.
 class SerialPort::Impl {
  public:
   Impl(PortOptions options, std::function<void(PortEvent)> notify)
@@ -86,7 +86,7 @@ class SerialPort::Impl {
   ~Impl() {
     context_.stop();
     thread_.join();
-    // Closing would wait for it.
+    // Closing would wait for unsent bytes.
     if (port_.is_open()) static_cast<void>(::tcflush(port_.native_handle(), TCOFLUSH));
   }
 
@@ -114,7 +114,7 @@ class SerialPort::Impl {
   void open();
   void prepare(error_code& error);
   void read();
-  /// Takes what is due from the queue, unless a write is under way.
+  /// Carries out the next order of the queue, unless a write is under way.
   void carry_out();
   void finish_order();
   void change(const devices::LineSettings& settings);
@@ -147,7 +147,7 @@ void SerialPort::Impl::open() {
   if (error) {
     error_code ignored;
     port_.close(ignored);
-    // Asio gives what tcgetattr returns for a file that is no terminal.
+    // Asio returns the error of tcgetattr for a file that is no terminal.
     const bool is_other = error == error_code(ENOTTY, boost::system::system_category());
     notify(PortEvent::Kind::kNotOpened,
            options_.path + ": cannot open: " + (is_other ? "no serial port" : error.message()));
@@ -160,8 +160,8 @@ void SerialPort::Impl::open() {
   read();
 }
 
-/// Locked, as two programs on one port would each get half of the bytes. The lock is the usual one
-/// of terminal programs; TIOCEXCL does not hold against the superuser.
+/// Locks the port, because two programs on one port would each get half of the bytes. Terminal
+/// programs use the same lock; TIOCEXCL does not bind the superuser.
 void SerialPort::Impl::prepare(error_code& error) {
   const int fd = port_.native_handle();
   if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
@@ -184,7 +184,7 @@ void SerialPort::Impl::prepare(error_code& error) {
 void SerialPort::Impl::read() {
   port_.async_read_some(asio::buffer(buffer_), [this, opened = epoch_opened_](
                                                    const error_code& error, std::size_t size) {
-    if (opened != epoch_opened_ || !port_.is_open()) return;  // of a port that was closed
+    if (opened != epoch_opened_ || !port_.is_open()) return;  // event of a port that was closed
     if (error) {
       lose(error == asio::error::eof ? "unplugged" : error.message());
       return;
@@ -249,8 +249,8 @@ void SerialPort::Impl::change(const devices::LineSettings& settings) {
   ++epoch_;
 }
 
-/// Waits until everything has left the port; false when that takes too long, which tcdrain alone
-/// would not notice. Only tcdrain waits for the bytes inside the hardware.
+/// Waits until all bytes have left the port; false when that takes too long, which tcdrain alone
+/// would not detect. Only tcdrain waits for the bytes inside the hardware.
 bool SerialPort::Impl::drain() {
   const auto end = std::chrono::steady_clock::now() + kLongestDrain;
   const int fd = port_.native_handle();

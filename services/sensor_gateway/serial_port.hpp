@@ -1,10 +1,10 @@
-// A serial port in a thread of its own: opens it again and again until it is there, reads, writes
-// in order, and notices when it goes. Works with pseudo-terminals, too.
+// A serial port in a thread of its own: retries until the port opens, reads, writes in order, and
+// detects its loss. Works with pseudo-terminals, too.
 //
-// Boost.Asio does the work: it is there already (the header-only part of Boost), supports 500,000
-// baud and parity, reads and writes without blocking each other, and reports an unplugged adapter
-// as an error of the pending read. libserialport, the other candidate, asks for modem lines when it
-// opens a port, which a pseudo-terminal does not have.
+// Boost.Asio does the work: its header-only part is in use anyway, it supports 500,000 baud and
+// parity, reads and writes without blocking each other, and reports an unplugged adapter as an
+// error of the pending read. libserialport, the other candidate, queries modem lines when it opens
+// a port, which a pseudo-terminal does not have.
 #pragma once
 
 #include <chrono>
@@ -18,18 +18,18 @@
 
 namespace topogeo::sensor_gateway {
 
-/// Now, by the clock of all stamps of this folder: nanoseconds of the steady clock.
+/// The clock of all stamps in this folder: nanoseconds of the steady clock.
 std::int64_t steady_now_ns();
 
 struct PortOptions {
-  std::string path;  ///< of the device, or a link to it, for example /dev/ttyUSB0
-  /// Wait before a port that cannot be opened or was lost is tried again: doubled from try to try,
-  /// up to the longest, and back to the first as soon as something was received.
+  std::string path;  ///< of the device or of a link to it, for example /dev/ttyUSB0
+  /// Wait before retrying a port that cannot be opened or was lost: doubled from try to try, up to
+  /// the longest, and reset as soon as something is received.
   std::chrono::milliseconds first_wait{100};
   std::chrono::milliseconds longest_wait{5000};
 };
 
-/// What happened to a port.
+/// An event of a port.
 struct PortEvent {
   enum class Kind { kOpened, kNotOpened, kLost, kBytes, kWritten };
   Kind kind{};
@@ -37,33 +37,32 @@ struct PortEvent {
   std::uint64_t epoch = 0;  ///< see SerialPort::epoch
   std::string why;          ///< kNotOpened, kLost: one line naming the port
   std::vector<std::uint8_t> bytes;
-  std::uint64_t orders = 0;  ///< kWritten: how many are carried out since the port was opened
+  std::uint64_t orders = 0;  ///< kWritten: number carried out since the port was opened
 };
 
 class SerialPort {
  public:
   /// Starts the thread; `notify` is called in it. Throws std::invalid_argument when the path is
-  /// empty or a wait is not positive. Everything else that can be wrong with a port comes as an
-  /// event, as it may be right later.
+  /// empty or a wait is not positive. Every other problem of a port comes as an event, because it
+  /// may pass.
   SerialPort(const PortOptions& options, std::function<void(PortEvent)> notify);
   SerialPort(const SerialPort&) = delete;
   SerialPort& operator=(const SerialPort&) = delete;
   SerialPort(SerialPort&&) = delete;
   SerialPort& operator=(SerialPort&&) = delete;
-  /// Closes the port. What was not written by then is not written.
+  /// Closes the port. Unwritten orders are dropped.
   ~SerialPort();
 
-  /// Carries the orders out one after the other, after those given before. They are for the port
-  /// as it was opened in `epoch_opened` (of the event kOpened): if it was lost since, they are
-  /// dropped.
+  /// Carries the orders out in turn, after the earlier ones. They are meant for the port as opened
+  /// in `epoch_opened` (from the event kOpened): if it was lost since, they are dropped.
   void write(std::vector<devices::LineOrder> orders, std::uint64_t epoch_opened);
 
-  /// Counts the times that the port was opened or lost or its settings changed. Bytes of an
-  /// earlier epoch than this are no longer wanted. For any thread.
+  /// Counts how often the port was opened or lost or changed its settings. Bytes of an earlier
+  /// epoch are not wanted any more. Thread-safe.
   [[nodiscard]] std::uint64_t epoch() const;
 
-  /// True as soon as all that was given to write() has left the port or is lost with it; false
-  /// after `timeout`.
+  /// True as soon as everything given to write() has left the port or is lost with it; false after
+  /// `timeout`.
   [[nodiscard]] bool wait_written(std::chrono::milliseconds timeout);
 
  private:
