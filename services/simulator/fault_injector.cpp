@@ -9,12 +9,12 @@
 namespace topogeo::simulator {
 namespace {
 
-// A disturbance about as long as a report, ten times a second: some reports get through.
+// A disturbance as long as a report, ten times a second: some reports get through.
 constexpr std::int64_t kGarbagePeriod_ns = 100'000'000;
 constexpr std::size_t kGarbage_bytes = 24;
-/// More scans or reports than a fault of the longest duration can hit.
+/// More scans or reports than the longest fault can affect.
 constexpr int kForEver = 1'000'000'000;
-/// In the status byte of a PLS (SICK LMS quick manual, telegram listing).
+/// Bit in the status byte of a PLS (SICK LMS quick manual, telegram listing).
 constexpr std::uint8_t kPolluted = 0x80;
 
 Device device_of(const msg::SimulatorCommand& message) {
@@ -106,7 +106,7 @@ void FaultInjector::tick() {
       garbage_ns_ = now_ns + kGarbagePeriod_ns;
       devices_.base().send_garbage(kGarbage_bytes, now_ns);
     } else if (active.fault.kind == msg::kSimulatedJoystick) {
-      set(active.fault, true);  // whoever holds it drives on whatever the host commands
+      set(active.fault, true);  // the joystick keeps driving, whatever the host commands
     }
   }
   std::erase_if(active_, [now_ns](const Active& active) { return active.end_ns <= now_ns; });

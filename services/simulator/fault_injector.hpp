@@ -1,4 +1,4 @@
-// Makes the faults that commands ask for, and ends them when their time is over.
+// Injects the faults that commands ask for, and ends them in time.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace topogeo::simulator {
 struct Fault {
   msg::SimulatedFault kind = msg::kSimulatedSilence;
   Device device = Device::kLaser;
-  double duration_s = 1.0;          ///< in the world; (0, 3600]
+  double duration_s = 1.0;          ///< time in the world; (0, 3600]
   simulation::Velocity velocity{};  ///< of the joystick
 };
 
@@ -25,12 +25,12 @@ std::string describe(const Fault& fault);
 
 class FaultInjector {
  public:
-  /// `devices` outlives it.
+  /// `devices` must outlive it.
   explicit FaultInjector(SimulatedDevices& devices) : devices_(devices) {}
 
-  /// Begins now; one of the same kind and device that goes on already lasts longer instead.
+  /// Begins a fault now; an active one of the same kind and device is prolonged instead.
   void begin(const Fault& fault);
-  /// Ends what is over; to be called often.
+  /// Ends faults whose time is over; call it often.
   void tick();
   [[nodiscard]] std::size_t active() const { return active_.size(); }
 
@@ -46,7 +46,7 @@ class FaultInjector {
 
   SimulatedDevices& devices_;
   std::vector<Active> active_;
-  std::int64_t garbage_ns_ = 0;  // when the base sends some more
+  std::int64_t garbage_ns_ = 0;  // when the base sends the next garbage
 };
 
 }  // namespace topogeo::simulator

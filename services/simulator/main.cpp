@@ -1,4 +1,4 @@
-// A simulated robot: a laser and a base on pseudo-terminals with a world behind them.
+// A simulated robot: laser and base on pseudo-terminals, in a simulated world.
 #include <string>
 
 #include "topogeo/command_line/command_line.hpp"
@@ -46,7 +46,7 @@ void add_options(command_line::Command& app, Arguments& arguments) {
   app.add_option("--base-baud", arguments.options.devices.base_baud, "rate of the base's line")
       ->check(command_line::one_of({1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200}))
       ->capture_default_str();
-  // What a person does with the manufacturer's program at a real laser.
+  // A person sets this with the manufacturer's program on a real laser.
   app.add_option("--protective-field", arguments.options.devices.protective_field_m,
                  "radius of the field of the laser in which nothing may be ahead, metres; 0: none")
       ->check(command_line::range(0.0, 4.0))
@@ -89,7 +89,7 @@ world::World load(const std::filesystem::path& path) {
   }
 }
 
-/// False: the process stood still, and its peers may have forgotten it.
+/// False when the process stood still and its peers may have forgotten it.
 bool run(const service::Setup& setup, simulator::SimulatedWorld& world) {
   service::Service service(setup);
   const simulator::SimulatorService simulator(service, world);
@@ -116,9 +116,9 @@ int main(int argc, char** argv) {
         if (arguments.sonars == 6) robot.sonars = devices::macondo_sonars();
         if (arguments.sonar_noise == "macondo") robot.sonar = simulation::macondo_sonar_noise();
         simulator::SimulatedWorld world(load(arguments.world), arguments.options);
-        // Real devices do not wait for other programs of the machine.
+        // Real devices do not wait for other programs on the machine.
         static_cast<void>(support::go_first());
-        // The robot is where it is in this process alone, so the process goes on.
+        // Only this process knows where the robot is, so the process continues.
         while (!run(setup, world)) {
         }
       });

@@ -30,7 +30,7 @@ std::runtime_error failure(const std::filesystem::path& link, const std::string&
   return std::runtime_error(link.string() + ": " + what + ": " + std::strerror(errno));
 }
 
-/// As a serial port is before it was set: bytes as they are, no echo, 9600 baud.
+/// Sets a port to the state before its configuration: raw bytes, no echo, 9600 baud.
 bool make_raw(int terminal) {
   termios settings{};
   if (::tcgetattr(terminal, &settings) != 0) return false;
@@ -94,8 +94,8 @@ devices::LineSettings PseudoTerminal::host(devices::Parity parity) const {
 }
 
 std::vector<std::uint8_t> PseudoTerminal::receive() const {
-  // One read may end at the bytes of an earlier write; only one that finds none makes Linux hand
-  // over what is still on its way.
+  // One read may end at the bytes of an earlier write. Linux delivers bytes still under way only to
+  // a read that finds none.
   std::vector<std::uint8_t> bytes;
   std::array<std::uint8_t, 4096> part{};
   for (ssize_t got = 0; (got = ::read(device_end_.get(), part.data(), part.size())) > 0;) {

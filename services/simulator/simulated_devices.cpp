@@ -9,7 +9,7 @@
 namespace topogeo::simulator {
 namespace {
 
-// The world moves on in pieces of this length, or shorter ones where a device has something to do.
+// The world advances in steps of this length, or shorter ones when a device has to act.
 constexpr std::int64_t kPiece_ns = 5'000'000;
 constexpr devices::Parity kLaserParity = devices::Parity::kEven;
 
@@ -72,7 +72,7 @@ void SimulatedDevices::advance(std::int64_t to_ns) {
 
 void SimulatedDevices::exchange(simulation::SerialDevice& device, const PseudoTerminal& port,
                                 devices::Parity parity) {
-  if (!port.plugged()) {  // what the device sends now goes nowhere
+  if (!port.plugged()) {  // the device's output is lost
     static_cast<void>(device.take_output({}, now_ns_));
     return;
   }

@@ -1,4 +1,4 @@
-// A world with a robot in it whose laser and base are on serial lines, on the world's clock.
+// A world with a robot whose laser and base are on serial lines, on the world's clock.
 #pragma once
 
 #include <cstdint>
@@ -18,10 +18,10 @@ namespace topogeo::simulator {
 enum class Device { kLaser, kBase };
 
 struct DeviceOptions {
-  std::filesystem::path laser_port;  ///< link to make
+  std::filesystem::path laser_port;  ///< link to create
   std::filesystem::path base_port;
   std::uint32_t base_baud = 9600;
-  /// Fields that the laser watches by itself, see PlsEmulatorSettings; 0: none is set up.
+  /// Fields monitored by the laser itself, see PlsEmulatorSettings; 0: not set up.
   double protective_field_m = 0.0;
   double warning_field_m = 0.0;
   simulation::RobotOptions robot;
@@ -30,15 +30,15 @@ struct DeviceOptions {
 /// All times are nanoseconds of the world's clock and never go back.
 class SimulatedDevices {
  public:
-  /// The devices are switched on at 0, their ports are there. Throws like SimulatedRobot,
-  /// PseudoTerminal::plug and the emulators.
+  /// The devices are switched on at time 0, with their ports plugged in. Throws like
+  /// SimulatedRobot, PseudoTerminal::plug and the emulators.
   SimulatedDevices(world::World world, const DeviceOptions& options);
 
-  /// Lets the world and the devices run until `now_ns` and exchanges bytes with the ports.
+  /// Advances the world and the devices to `now_ns` and exchanges bytes with the ports.
   void run_until(std::int64_t now_ns);
 
-  /// So much time passes in which the world stands still; the clocks of the devices go on. The base
-  /// did not hear what its host has sent meanwhile: its watchdog waits, too.
+  /// The world stands still for this time, while the clocks of the devices go on. The base has not
+  /// heard its host meanwhile, so its watchdog waits, too.
   void stand_still(std::int64_t duration_ns) {
     now_ns_ += duration_ns;
     base_.stand_still(duration_ns);
@@ -51,7 +51,7 @@ class SimulatedDevices {
     return device == Device::kLaser ? laser_port_ : base_port_;
   }
   [[nodiscard]] std::int64_t now_ns() const { return now_ns_; }
-  /// Bytes of the devices that were not read in time.
+  /// Bytes from the devices that were not read in time.
   [[nodiscard]] std::uint64_t bytes_lost() const { return bytes_lost_; }
 
  private:
@@ -68,7 +68,7 @@ class SimulatedDevices {
   std::uint64_t bytes_lost_ = 0;
 };
 
-/// Bits of the base's sixteen bumper switches, counter-clockwise from ahead, that something at
+/// Bits of the base's sixteen bumper switches, counter-clockwise from ahead, that a contact at
 /// `direction_rad` from the heading presses.
 std::uint16_t bumper_bits(double direction_rad);
 

@@ -11,16 +11,16 @@
 namespace topogeo::simulator {
 namespace {
 
-/// About the time of one byte at 9600 baud: serial ports deliver as smoothly as real ones.
+/// About the time of one byte at 9600 baud, so that ports deliver as smoothly as real ones.
 constexpr std::chrono::milliseconds kTick{1};
-/// Of the true pose: often enough to judge every scan by it.
+/// Period of the true pose: often enough to judge every scan by it.
 constexpr std::int64_t kTruthPeriod_ns = 20'000'000;
-/// As a ring of sonars that fires in turns.
+/// Period of a ring of sonars that fire in turns.
 constexpr std::int64_t kBodyPeriod_ns = 100'000'000;
-/// Of the counters in the status, for people.
+/// Period of the status counters, for people.
 constexpr std::int64_t kStatePeriod_ns = 1'000'000'000;
-/// Where the machine leaves this process without time for longer, the world's clock stands still
-/// for the rest: a robot that runs on blindly would hit something.
+/// When the machine gives this process no time for longer, the world's clock stands still for the
+/// rest, because a robot that runs on blindly would hit something.
 constexpr std::chrono::milliseconds kLatest{200};
 constexpr double kLookAhead_m = 5.0;
 
@@ -65,7 +65,7 @@ void SimulatorService::tick() {
       std::chrono::nanoseconds(std::llround(static_cast<double>(devices_.now_ns()) / time_factor));
   if (const auto late = passed - done - kLatest; late.count() > 0) {
     service_.status().add_to_counter("stood_still_s", std::chrono::duration<double>(late).count());
-    // No host sees the clock of a real base stop.
+    // The clock of a real base never stops for its host.
     devices_.stand_still(std::llround(static_cast<double>(nanoseconds(late)) * time_factor));
   }
   devices_.run_until(std::llround(static_cast<double>(nanoseconds(passed)) * time_factor));

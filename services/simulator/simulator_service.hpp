@@ -1,5 +1,5 @@
-// A simulated robot on DDS and serial ports: paces the world, publishes where the robot really is
-// and what the sensors in its panels measure, and takes faults.
+// A simulated robot on DDS and serial ports: paces the world, publishes the robot's true pose and
+// the readings of its body sensors, and takes fault commands.
 #pragma once
 
 #include <chrono>
@@ -21,8 +21,8 @@ struct SimulatorOptions {
   double time_factor = 1.0;  ///< world time over real time, > 0
 };
 
-/// The world and the devices in it, on the world's clock. They outlive a service that joins its
-/// peers anew: the robot stays where it is, and its ports stay open.
+/// The world and its devices, on the world's clock. They outlive a service that rejoins its peers:
+/// the robot stays in place, and its ports stay open.
 struct SimulatedWorld {
   using Clock = std::chrono::steady_clock;
 
@@ -34,15 +34,15 @@ struct SimulatedWorld {
   SimulatorOptions options;
   SimulatedDevices devices;
   FaultInjector faults{devices};
-  Clock::time_point start;      ///< when the world's clock was 0
-  std::int64_t start_stamp_ns;  ///< of that, since the epoch
+  Clock::time_point start;      ///< real time at world time 0
+  std::int64_t start_stamp_ns;  ///< the same since the epoch
 };
 
-/// Lives in the loop of its service. The sonars, infrared and tactile sensors of a B21 are on a bus
-/// of their own, not on the line of the base: their readings go out directly.
+/// Lives in the loop of its service. The sonars, infrared and tactile sensors of a B21 have a bus
+/// of their own, apart from the line of the base: their readings are published directly.
 class SimulatorService {
  public:
-  /// Both must outlive it.
+  /// Both arguments must outlive it.
   SimulatorService(service::Service& service, SimulatedWorld& world);
 
  private:
@@ -50,7 +50,7 @@ class SimulatorService {
   void publish_truth();
   void publish_state();
   void on_command(const msg::SimulatorCommand& command);
-  /// The stamp of what happens in the world now.
+  /// The stamp of the current world time.
   [[nodiscard]] std::int64_t stamp_ns() const;
 
   service::Service& service_;
@@ -59,7 +59,7 @@ class SimulatorService {
   messaging::Writer<msg::GroundTruth> truth_;
   simulation::SimulatedBodySensors body_sensors_;
   service::BodySensorPublisher body_;
-  std::int64_t truth_due_ns_ = 0;  // in the world, and the next two
+  std::int64_t truth_due_ns_ = 0;  // world time, like the next two
   std::int64_t body_due_ns_ = 0;
   std::int64_t state_due_ns_ = 0;
   std::uint64_t truths_ = 0;
