@@ -1,4 +1,4 @@
-// topogeo base: commands of an operator to the base of a robot.
+// topogeo base: operator commands to the base of a robot.
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -74,7 +74,7 @@ void print_base(const msg::BaseStatus& status) {
                                         : ", refuses motion commands\n");
 }
 
-/// The next status of the base for which `wanted` holds; nothing when the patience is over before.
+/// The next base status for which `wanted` holds; nothing when the patience ends first.
 std::optional<msg::BaseStatus> next_status(
     messaging::Reader<msg::BaseStatus>& reader, const BaseRequest& request,
     support::Patience& patience, const std::function<bool(const msg::BaseStatus&)>& wanted) {
@@ -102,7 +102,7 @@ int show(const BaseRequest& request) {
   return service::kOk;
 }
 
-/// Sends the command and shows what the base is like afterwards.
+/// Sends the command and shows the base's state afterwards.
 int send_base_command(BaseRequest request) {
   const messaging::Participant participant =
       join_for(request.view, "topogeo/base", request.robot_id);

@@ -1,4 +1,4 @@
-// Opens a page on the user's screen, where there is one.
+// Opens a page on the user's screen, if there is one.
 #pragma once
 
 #include <filesystem>
@@ -6,12 +6,12 @@
 
 namespace topogeo::cli {
 
-/// The link in the first of the lines that a web service prints.
+/// The link in the first line that a web service prints.
 std::string operator_link(const std::string& links);
 
-/// Starts the browser that the user has chosen (xdg-open) and goes on; nothing without a screen or
-/// a browser. The browser gets `page`, a file of mode 0600 that is written here and leads to the
-/// link: `ps` shows what a browser is started with, and the operator's link has the token in it.
+/// Starts the user's browser (xdg-open) without waiting; does nothing without a screen or a
+/// browser. The browser gets `page`, a file of mode 0600 written here that redirects to the link,
+/// because `ps` shows the arguments of a browser and the operator's link contains the token.
 void open_in_browser(const std::string& link, const std::filesystem::path& page);
 
 }  // namespace topogeo::cli

@@ -1,4 +1,4 @@
-// topogeo calibrate-laser: where the laser sits on a robot, from one of its logs.
+// topogeo calibrate-laser: finds the mounting of the laser on a robot from one of its logs.
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -40,9 +40,8 @@ struct CalibrateLaserOptions {
   std::optional<std::filesystem::path> out;
 };
 
-/// A laser that is not where it is taken to be moves otherwise than odometry says: these variances,
-/// as of a decimetre for each radian of turn and each metre of path, let matches be found all the
-/// same.
+/// With a wrong mounting the laser moves differently from the odometry. These variances, about a
+/// decimetre for each radian of turn and each metre of path, let matches be found nevertheless.
 constexpr double kTurnShiftVariance = 0.02;  // m2/rad
 constexpr double kSidewaysVariance = 0.01;   // m2/m
 
@@ -56,7 +55,7 @@ pipeline::Config searching_widely(pipeline::Config config, const Pose2& T_robot_
   return config;
 }
 
-/// What was found, and from what.
+/// The result, and the matched log behind it.
 struct Found {
   MatchedLog log;
   LaserCalibration laser;
@@ -81,8 +80,8 @@ Found calibrate_once(const CalibrateLaserOptions& options, const pipeline::Confi
   return found;
 }
 
-/// Scans are matched again with the mounting found, until that changes no more: with a wrong
-/// mounting the best matches, those of long paths and large turns, are not found.
+/// Matches the scans again with the mounting found, until it settles: with a wrong mounting the
+/// best matches, those of long paths and large turns, are missed.
 Found calibrate_laser(const CalibrateLaserOptions& options, const pipeline::Config& config) {
   constexpr int kMostRounds = 6;
   constexpr double kSmallShift_m = 0.003;

@@ -1,4 +1,4 @@
-// topogeo calibrate-odometry: how wrong the odometry of a robot is, from one of its logs.
+// topogeo calibrate-odometry: measures the odometry errors of a robot from one of its logs.
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -39,7 +39,7 @@ struct CalibrateOptions {
   std::optional<std::filesystem::path> out;
 };
 
-/// All that is read before the work starts.
+/// All inputs, read before the work starts.
 struct CalibrationInputs {
   pipeline::LoadedConfig config;
   OpenLog log;
@@ -66,7 +66,7 @@ CalibrationInputs read_inputs(const CalibrateOptions& options) {
   return {std::move(config), std::move(log), std::move(reference)};
 }
 
-/// The motions of a log as measured, and what people should know of where they come from.
+/// The measured motions of a log, and the source of the measurement for people.
 struct Measured {
   LocalMaps maps;
   std::vector<localization::MeasuredMotion> motions;
@@ -109,7 +109,7 @@ OdometryCalibration calibrate(const CalibrateOptions& options, const Calibration
   }
 }
 
-/// As people and the file get it: three digits, which is more than is known.
+/// Text for people and the file: three digits, more than the accuracy.
 std::string digits(double value) {
   return fmt::format("{:.3g}", value);
 }
@@ -142,7 +142,7 @@ void print_table(std::ostream& out, const CalibrationInputs& inputs,
   }
 }
 
-/// Matches are searched for as far as the configured noise reaches, and no farther.
+/// Matches are only searched within the configured noise.
 void warn_of_narrow_search(std::ostream& out, const CalibrationInputs& inputs,
                            const OdometryCalibration& found) {
   constexpr double kFarAbove = 2.0;

@@ -21,7 +21,7 @@
 namespace topogeo::cli {
 namespace {
 
-/// Accepted matches for each stop, at most: enough that motions of one to six metres occur.
+/// Largest number of accepted matches per stop: enough to get motions of one to six metres.
 constexpr std::uint32_t kRecentMatches = 6;
 
 }  // namespace
@@ -136,7 +136,7 @@ std::string configuration_with(const std::string& block, const std::string& comm
   pipeline::Config values;
   const support::ConfigSchema schema = pipeline::describe(values);
   support::load_yaml_file(*config, schema);
-  values.local_mapper.T_robot_laser = T_robot_laser;  // of the log, if the file leaves it open
+  values.local_mapper.T_robot_laser = T_robot_laser;  // from the log, if the file leaves it open
   support::load_yaml_text(block, "the values found", schema);
   std::ostringstream whole;
   support::write_yaml(schema, whole);

@@ -1,4 +1,4 @@
-// What the calibrating commands share: a log as local maps with matches between recent stops.
+// Shared by the calibration commands: a log as local maps with matches between recent stops.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,9 @@
 
 namespace topogeo::cli {
 
-/// The configuration of the file or the defaults, with the laser where choose_mounting has it;
-/// tries out whether `out`, if any, can be written. Throws service::UsageError,
-/// service::BadInputError for the log and std::runtime_error for `out`.
+/// The configuration of the file or the defaults, with the laser mounting of choose_mounting;
+/// checks that `out`, if given, can be written. Throws service::UsageError, service::BadInputError
+/// for the log and std::runtime_error for `out`.
 pipeline::LoadedConfig load_for_calibration(const std::optional<std::filesystem::path>& config,
                                             const std::optional<std::filesystem::path>& out,
                                             const std::filesystem::path& log,
@@ -26,13 +26,13 @@ pipeline::LoadedConfig load_for_calibration(const std::optional<std::filesystem:
 /// A log before its first scan.
 struct OpenLog {
   recording::LogReader reader;
-  std::uint64_t laser_lines = 0;  ///< at least as many as there are usable scans
+  std::uint64_t laser_lines = 0;  ///< upper bound of the number of usable scans
 };
 /// Throws service::BadInputError.
 OpenLog open_log(const std::filesystem::path& path, const scan::CarmenLogOptions& options,
                  const recording::TopicChoice& topics);
 
-/// A progress bar on stderr, if that is a terminal, else a line that names the work.
+/// A progress bar on stderr if that is a terminal, else a line that names the work.
 class Bar {
  public:
   Bar(const char* label, const char* unit);
@@ -45,7 +45,7 @@ class Bar {
   std::uint64_t done_ = 0;
 };
 
-/// Makes the local maps of the log and gives each to `use`.
+/// Makes the local maps of the log and passes each to `use`.
 localization::LocalMaps make_maps(
     const pipeline::Config& config, OpenLog& log, const char* label,
     const std::function<void(const std::shared_ptr<const topomap::LocalMap>&)>& use);
@@ -54,8 +54,8 @@ struct MatchedLog {
   localization::LocalMaps maps;
   localization::MatchedMotions matched;
 };
-/// Makes the local maps and matches each with some of the recent ones. Closing loops would cost as
-/// much again and shows nothing of single steps.
+/// Makes the local maps and matches each with some recent ones. Closing loops would cost as much
+/// again and adds nothing about single steps.
 MatchedLog match_log(const pipeline::Config& config, OpenLog& log);
 
 /// "52 stops, 41.3 m of path, 30.2 rad of turn".
@@ -64,8 +64,8 @@ std::string describe_drive(const localization::LocalMaps& maps);
 std::string describe_matches(const pipeline::Config& config,
                              const localization::MatchedMotions& matched);
 
-/// A configuration that `topogeo map` takes: the block alone after a comment, or with `config` all
-/// of its values, the laser where it was, with those of the block in place. Throws
+/// A configuration for `topogeo map`: the block alone after a comment, or with `config` all of its
+/// values, the laser mounting unchanged, with the block's values replaced. Throws
 /// std::runtime_error naming file and line.
 std::string configuration_with(const std::string& block, const std::string& comment,
                                const std::optional<std::filesystem::path>& config,

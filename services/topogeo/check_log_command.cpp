@@ -1,4 +1,4 @@
-// topogeo check-log: what is wrong with a log, before hours are spent on it.
+// topogeo check-log: reports the faults of a log before hours are spent on it.
 #include <iostream>
 #include <memory>
 #include <numbers>
@@ -18,7 +18,8 @@
 namespace topogeo::cli {
 namespace {
 
-// Of this command alone, so that scripts can distinguish a faulty log from a file that is no log.
+// Exit codes of this command only, so that scripts can tell a faulty log from a file that is no
+// log.
 constexpr int kClean = 0;
 constexpr int kFaulty = 1;
 constexpr int kUnreadable = 2;
@@ -97,7 +98,7 @@ void print_faults_json(const std::string& path, const scan::LogCheck& check) {
                         {"text", finding.text}});
   }
   out["findings"] = std::move(findings);
-  // The text of a damaged log need not be UTF-8.
+  // Texts in a damaged log may be invalid UTF-8.
   std::cout << out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
 }
 

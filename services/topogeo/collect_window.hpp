@@ -1,4 +1,4 @@
-// When a command that lists what lives on a domain has heard of all.
+// Decides when a command that lists a domain has heard all of its services.
 #pragma once
 
 #include <cstddef>
@@ -9,14 +9,14 @@ namespace topogeo::cli {
 /// seconds, as support::Patience counts it.
 class CollectWindow {
  public:
-  static constexpr double kCollect_s = 1.2;  ///< at least: two periods, discovery takes the rest
-  /// It goes on until none has come for longer than a period: a busy machine discovers some later.
+  static constexpr double kCollect_s = 1.2;  ///< at least: two periods, plus discovery
+  /// It continues until none has come for more than a period: a busy machine discovers some later.
   static constexpr double kSettled_s = 0.8;
 
-  /// It ends after `longest_s`, however many there are.
+  /// It ends after `longest_s`, whatever the count.
   explicit CollectWindow(double longest_s) : longest_s_(longest_s) {}
 
-  /// `count`: how many have been heard.
+  /// `count`: number heard so far.
   [[nodiscard]] bool goes_on(double waited_s, std::size_t count) {
     if (count != count_) changed_s_ = waited_s;
     count_ = count;

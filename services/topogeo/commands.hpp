@@ -1,13 +1,13 @@
 // The subcommands of topogeo. Each function adds one to the program; when the command line names
-// it, it does its work and sets `exit_code` (service::ExitCode, or 128 + signal when interrupted),
-// or throws service::UsageError, service::BadInputError or std::runtime_error.
+// it, it runs and sets `exit_code` (service::ExitCode, or 128 + signal when interrupted), or throws
+// service::UsageError, service::BadInputError or std::runtime_error.
 #pragma once
 
 #include "topogeo/command_line/command_line.hpp"
 
 namespace topogeo::cli {
 
-/// Exit code of a program that a signal has ended, less the signal, as in shells.
+/// Exit code of a program ended by a signal, minus the signal number, as in shells.
 inline constexpr int kSignalBase = 128;
 
 void add_run_command(command_line::Command& app, int& exit_code);

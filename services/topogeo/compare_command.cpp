@@ -1,4 +1,5 @@
-// topogeo compare: how far a trajectory is from a reference, and which revisits a map recognized.
+// topogeo compare: the errors of a trajectory against a reference, and the revisits recognized by a
+// map.
 #include <cmath>
 #include <exception>
 #include <filesystem>
@@ -82,7 +83,7 @@ Figures figures_of(const CompareOptions& options) {
       relations = pipeline::relations_error(estimate, given);
     }
     return {pipeline::trajectory_error(estimate, reference, options.max_apart_ns()), relations};
-  } catch (const std::invalid_argument& error) {  // of trajectory_error, which has no file names
+  } catch (const std::invalid_argument& error) {  // by trajectory_error: no file names
     throw service::BadInputError(options.estimate.string() + " and " + options.reference.string() +
                                  ": " + error.what());
   } catch (const std::exception& error) {

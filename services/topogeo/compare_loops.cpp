@@ -42,7 +42,7 @@ LoopRecall recall_of(const LoopComparison& comparison) {
     const geometry::Pose2 T_laser_robot = geometry::inverse(comparison.T_robot_laser);
     for (topomap::StampedPose& pose : reference) pose.pose = pose.pose * T_laser_robot;
     return pipeline::loop_recall(map.local_maps, reference, candidates, comparison.max_apart_ns);
-  } catch (const std::invalid_argument& error) {  // of loop_recall, which has no file names
+  } catch (const std::invalid_argument& error) {  // from loop_recall, which does not know the files
     throw service::BadInputError(comparison.map.string() + " and " + comparison.reference.string() +
                                  ": " + error.what());
   } catch (const std::exception& error) {

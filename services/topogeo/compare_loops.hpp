@@ -13,7 +13,7 @@ struct LoopComparison {
   std::filesystem::path map;
   std::filesystem::path reference;              ///< TUM
   std::optional<std::filesystem::path> report;  ///< default: report.json beside the map
-  geometry::Pose2 T_robot_laser;                ///< the reference is of the laser
+  geometry::Pose2 T_robot_laser;                ///< the reference describes the laser
   std::int64_t max_apart_ns = 0;
   bool json = false;
 };

@@ -1,4 +1,4 @@
-// topogeo config: every key of the configuration, documented, as a file to start from.
+// topogeo config: every key of the configuration, documented, as a template file.
 #include <exception>
 #include <filesystem>
 #include <iostream>

@@ -1,4 +1,4 @@
-// topogeo convert: one log from another.
+// topogeo convert: converts a log to another format.
 #include <filesystem>
 #include <iostream>
 #include <memory>

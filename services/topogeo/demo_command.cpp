@@ -1,4 +1,4 @@
-// topogeo demo: maps a synthetic floor with all services and prints how far off the result is.
+// topogeo demo: maps a synthetic floor with all services and prints the error of the result.
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -76,7 +76,7 @@ int show_demo(DemoOptions options) {
   return run_log(options.run);
 }
 
-/// The map of a drive through the world, with its places, as it comes out of one process.
+/// The map of a drive through the world, with its places, made in one process.
 storage::MapDocument make_map(const DemoOptions& options, const pipeline::Config& config,
                               const world::World& world) {
   const simulation::SimulatedLog log = simulate(world);
@@ -91,7 +91,7 @@ storage::MapDocument make_map(const DemoOptions& options, const pipeline::Config
   return document;
 }
 
-/// Writes the built-in world where no other was given; the file.
+/// The world's file; writes the built-in world unless another was given.
 std::filesystem::path world_file(const DemoOptions& options) {
   if (options.world) return *options.world;
   std::filesystem::path file = options.run.job.out / "floor.world.yaml";
@@ -99,7 +99,7 @@ std::filesystem::path world_file(const DemoOptions& options) {
   return file;
 }
 
-/// Maps the floor by a drive; a simulated robot starts in that map, whose file is among the
+/// Maps the floor by a drive; a simulated robot then starts in that map, whose file is among the
 /// results.
 void put_robot_on_mapped_floor(DemoOptions& options) {
   const Inputs inputs = check_inputs(options.run.job);
@@ -113,7 +113,7 @@ void put_robot_on_mapped_floor(DemoOptions& options) {
   if (!options.unknown_start) options.run.job.initial_pose = "0,0,0";
 }
 
-/// Sends a simulated robot to a place on the floor, in the map of a drive before.
+/// Sends a simulated robot to a place on the floor, in the map of an earlier drive.
 int show_goto(DemoOptions options) {
   static_cast<void>(to_goal(options.goal));
   check_picture(options.goal.picture);
@@ -124,13 +124,13 @@ int show_goto(DemoOptions options) {
   return run_goto(options.run);
 }
 
-/// A page for a simulated robot in the map of a drive before.
+/// Shows a page for a simulated robot in the map of an earlier drive.
 int show_web(DemoOptions options) {
   put_robot_on_mapped_floor(options);
   return run_web(options.run);
 }
 
-/// The same floor through the serial lines of emulated devices, in real time.
+/// Maps the same floor through the serial lines of emulated devices, in real time.
 int show_devices(DemoOptions options) {
   static_cast<void>(check_inputs(options.run.job));
   support::check_writable_directory(options.run.job.out);
@@ -146,7 +146,7 @@ void add_demo_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command =
       app.add_subcommand("demo", "Map a synthetic floor and compare the result with the truth");
   auto options = std::make_shared<DemoOptions>();
-  // Faster than a B21 likes to go, so that nobody has to wait for long.
+  // Faster than a B21 usually drives, so that nobody has to wait for long.
   options->simulation.speed_m_per_s = 1.5;
   command->add_option("--out", options->run.job.out, "directory for the results")
       ->required()

@@ -1,4 +1,4 @@
-// topogeo doctor: what is wrong with this machine, and between the services of its domain.
+// topogeo doctor: checks this machine and the services of its domain for faults.
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -23,8 +23,8 @@
 namespace topogeo::cli {
 namespace {
 
-/// Of the package.
-constexpr const char* kInstalledState = "/var/lib/topogeo";  // the packages make it
+/// Paths of the installed package.
+constexpr const char* kInstalledState = "/var/lib/topogeo";  // created by the packages
 constexpr const char* kInstalledDevices = "/etc/topogeo/devices.yaml";
 
 struct DoctorOptions {
@@ -42,7 +42,7 @@ MachineQuestions questions_of(const DoctorOptions& options) {
   questions.map_folder = options.map.value_or(std::filesystem::exists(kInstalledState, unknown)
                                                   ? std::filesystem::path(kInstalledState) / "map"
                                                   : std::filesystem::current_path(unknown));
-  if (questions.map_folder.empty()) questions.map_folder = ".";  // that folder was removed
+  if (questions.map_folder.empty()) questions.map_folder = ".";  // the current folder was removed
   questions.devices = options.devices;
   if (!questions.devices && std::filesystem::exists(kInstalledDevices, unknown)) {
     questions.devices = kInstalledDevices;
@@ -93,7 +93,7 @@ std::vector<Finding> examine_domain(const DomainView& view) {
 }
 
 int examine(const DoctorOptions& options) {
-  // The machine first: a participant removes what the dead have left.
+  // The machine first: a participant cleans up after dead processes.
   std::vector<Finding> findings =
       run_checks(machine_checks(), gather_machine_facts(questions_of(options)));
   if (!options.alone) {

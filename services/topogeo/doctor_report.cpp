@@ -10,7 +10,7 @@
 namespace topogeo::cli {
 namespace {
 
-/// Columns of severity and name of the check, with what is between.
+/// Columns of severity and check name, including their separators.
 constexpr std::size_t kSeverityWidth = 9;
 constexpr std::size_t kCheckWidth = 15;
 
@@ -26,7 +26,7 @@ const char* severity_name(Severity severity) {
   return "unknown";
 }
 
-/// `text` broken between words behind `head`, further lines indented to its width.
+/// `text` broken between words after `head`, with further lines indented to its width.
 std::string hanging(std::string head, const std::string& raw_text, std::size_t columns) {
   const std::string text = support::printable(raw_text);
   const std::string indent(head.size(), ' ');
@@ -86,7 +86,7 @@ std::string findings_json(std::span<const Finding> findings) {
                                   {"why", finding.why},
                                   {"remedy", finding.remedy}});
   }
-  // Names of files need not be UTF-8.
+  // File names may be invalid UTF-8.
   return report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -1,4 +1,4 @@
-// What `topogeo doctor` has found, for people and for programs.
+// The findings of `topogeo doctor`, for people and for programs.
 #pragma once
 
 #include <cstddef>
@@ -22,11 +22,11 @@ struct Finding {
   std::string check;  ///< short name of the check
   Severity severity = Severity::kGood;
   std::string what;
-  std::string why;     ///< it matters; empty when all is well
+  std::string why;     ///< why it matters; empty when all is well
   std::string remedy;  ///< what to do
 };
 
-/// A check of facts: what is wrong, nothing when all is well, and what is reported then.
+/// A check of facts: its findings, none when all is well, and the text for that case.
 template <class Facts>
 struct Check {
   const char* name;
@@ -34,7 +34,7 @@ struct Check {
   std::string (*good)(const Facts& facts);
 };
 
-/// The findings of all checks in their order, one of Severity::kGood where a check has none.
+/// The findings of all checks in order, with one of Severity::kGood for a check without findings.
 template <class Facts>
 std::vector<Finding> run_checks(std::span<const Check<Facts>> checks, const Facts& facts) {
   std::vector<Finding> all;
@@ -51,8 +51,8 @@ std::vector<Finding> run_checks(std::span<const Check<Facts>> checks, const Fact
 
 std::size_t count(std::span<const Finding> findings, Severity severity);
 
-/// A line for each finding, why and what to do below those that are not good, then the sums. Lines
-/// have at most `columns` bytes unless a command that they quote is longer.
+/// One line per finding, with reason and remedy below the bad ones, then the totals. Lines have at
+/// most `columns` bytes unless they quote a longer command.
 std::string findings_text(std::span<const Finding> findings, std::size_t columns = kColumns);
 /// {"problems": n, "hints": n, "findings": [{"check", "severity", "what", "why", "remedy"}]}
 std::string findings_json(std::span<const Finding> findings);

@@ -20,12 +20,12 @@ namespace {
 using enum Severity;
 using Findings = std::vector<Finding>;
 
-/// Tables take a service for silent after 1.5 s, so clocks must agree better than people see.
+/// Tables report a service as silent after 1.5 s, so clocks must agree better than people notice.
 constexpr double kWrongClock_s = 0.5;
 constexpr double kPoorClock_s = 0.1;
-/// The first status of a service may be up to half a second old when it comes.
+/// The first status of a service may be half a second old on arrival.
 constexpr std::size_t kLeastSamples = 2;
-/// A robot has one of each.
+/// Services that a robot has once.
 constexpr auto kOnceForEachRobot = std::to_array<std::string_view>(
     {"sensor_gateway", "local_mapper", "localizer", "map_store", "planner", "navigator"});
 
@@ -93,7 +93,7 @@ std::string good_cpu(const DomainFacts& facts) {
 
 // --- robots
 
-/// Two partitions may each have a robot of one name, which is not the same robot.
+/// Two partitions may have robots of the same name, which are different robots.
 using RobotInPartition = std::pair<std::string, std::string>;
 
 RobotInPartition robot_of(const msg::ServiceStatus& status, const DomainFacts& facts) {
@@ -102,7 +102,7 @@ RobotInPartition robot_of(const msg::ServiceStatus& status, const DomainFacts& f
           partition == facts.partitions.end() ? "" : partition->second};
 }
 
-// One that is started again may be there twice on its host until the old one is forgotten.
+// A restarted service may be listed twice on its host until the old one is forgotten.
 Findings check_robots(const DomainFacts& facts) {
   std::map<RobotInPartition, std::map<std::string, std::set<std::string>>> hosts_of_services;
   for (const msg::ServiceStatus& status : facts.services) {
@@ -288,7 +288,7 @@ std::string good_inputs(const DomainFacts& /*facts*/) {
 
 // --- strangers
 
-/// What was refused of messages in the name of a peer.
+/// Number of forged messages in the name of a peer that the service rejected.
 std::uint64_t forged_messages(const msg::ServiceStatus& status) {
   std::uint64_t sum = 0;
   for (const msg::FaultCount& drop : status.drops()) {

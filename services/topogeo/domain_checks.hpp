@@ -1,4 +1,4 @@
-// What can be wrong between the services that are on a domain now.
+// Checks for faults between the services that are now on a domain.
 #pragma once
 
 #include <cstddef>
@@ -15,15 +15,16 @@
 
 namespace topogeo::cli {
 
-/// How far the clock of a host is behind that of this one, from the stamps of messages.
+/// Lag of a host's clock behind the clock of this host, from the stamps of messages.
 class ClockLag {
  public:
-  /// A message with the host's wall clock in it was received at `received_ns` of this one.
+  /// Adds a message with the other host's wall clock, received at `received_ns` of this host's
+  /// clock.
   void add(std::int64_t stamp_ns, std::int64_t received_ns);
 
   [[nodiscard]] std::size_t samples() const { return samples_; }
-  /// The least lag of all samples: the time that a message takes makes it larger, never smaller.
-  /// Negative for a clock that is ahead.
+  /// The smallest lag of all samples, because the transport time only increases it. Negative for a
+  /// clock that is ahead.
   [[nodiscard]] double lag_s() const { return lag_s_; }
 
  private:
@@ -32,13 +33,13 @@ class ClockLag {
 };
 
 struct DomainFacts {
-  std::vector<msg::ServiceStatus> services;  ///< the last of each
+  std::vector<msg::ServiceStatus> services;  ///< the newest of each
   std::vector<messaging::RemoteEndpoint> endpoints;
-  std::map<std::string, std::string> partitions;  ///< by instance; runs have some of their own
+  std::map<std::string, std::string> partitions;  ///< by instance; runs have their own
   std::map<std::string, ClockLag> clocks;         ///< by host
   std::uint32_t domain = 0;
-  std::string host;       ///< that this program runs on
-  std::size_t units = 0;  ///< active ones of it whose services join a domain
+  std::string host;       ///< host of this program
+  std::size_t units = 0;  ///< its active units whose services join a domain
   std::string version;    ///< of this program
   std::uint32_t wire_version = msg::kSchemaVersion;
 };

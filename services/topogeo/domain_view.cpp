@@ -15,8 +15,8 @@ namespace topogeo::cli {
 namespace {
 
 constexpr std::chrono::milliseconds kSlice{100};
-// Between two tables of --watch: a service that dies is found out after a second and is to be shown
-// within two.
+// Interval between two tables of --watch: a dead service is detected after a second and must be
+// shown within two.
 constexpr std::chrono::milliseconds kAgain{500};
 
 messaging::ParticipantOptions options_of(const DomainView& view, const std::string& name) {

@@ -1,4 +1,4 @@
-// What lives on a domain, shown by a command: the flags and the timing that the commands share.
+// Flags and timing shared by the commands that show the services of a domain.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace topogeo::cli {
 
-/// That a --wait-seconds may ask for.
+/// Limit of --wait-seconds.
 constexpr double kLongestWait_s = 3600.0;
 
 struct DomainView {
@@ -21,23 +21,23 @@ struct DomainView {
   std::string partition = messaging::kAnyPartition;
   std::filesystem::path profiles_file;
   bool watch = false;
-  double wait_s = 3.2;  ///< for the first that is found
+  double wait_s = 3.2;  ///< for the first service
 };
 
-/// Adds --robot, whose default is TOPOGEO_ROBOT of the environment, else what `robot_id` is.
+/// Adds --robot, with TOPOGEO_ROBOT of the environment as default, else the value of `robot_id`.
 void add_robot_option(command_line::Command& app, std::string& robot_id, const char* description);
 
 /// Adds --domain, --partition and --profiles; `view` must outlive the app.
 void add_domain_options(command_line::Command& app, DomainView& view);
 
-/// The same, --watch and --wait-seconds.
+/// Adds the same, --watch and --wait-seconds.
 void add_view_options(command_line::Command& app, DomainView& view);
 
 /// Joins the domain under a name that DDS tools show. `identity`, `observe`: see
 /// ParticipantOptions. Throws like messaging::Participant.
 messaging::Participant join(const DomainView& view, const std::string& name,
                             const std::string& identity = "topogeo", bool observe = false);
-/// The same for a command about one robot, which with security its keys must name.
+/// The same for a command about one robot, which the keys must name when security is on.
 messaging::Participant join_for(const DomainView& view, const std::string& name,
                                 const std::string& robot_id);
 
@@ -46,8 +46,8 @@ struct Collected {
   std::string reason;  ///< see support::Patience::reason
 };
 
-/// Receives until all that publish their status have done so, then shows them; again and again with
-/// --watch, until Ctrl-C. `count`: how many there are so far.
+/// Receives until all publishers of a status have been heard, then shows them; with --watch
+/// repeatedly, until Ctrl-C. `count`: number heard so far.
 Collected collect_and_show(const DomainView& view, messaging::EventLoop& loop,
                            const std::function<std::size_t()>& count,
                            const std::function<void()>& show);

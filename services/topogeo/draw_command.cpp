@@ -1,4 +1,4 @@
-// topogeo draw: what is drawn on the live map, and another drawing in its place.
+// topogeo draw: shows or replaces the drawing on the live map.
 #include <chrono>
 #include <cstdint>
 #include <filesystem>

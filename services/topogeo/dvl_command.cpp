@@ -1,4 +1,4 @@
-// topogeo dvl: pictures of the local Voronoi diagram and map of a scan, or of many scans of a log.
+// topogeo dvl: pictures of the local Voronoi diagram and map of one scan or many scans of a log.
 #include <algorithm>
 #include <exception>
 #include <filesystem>
@@ -37,7 +37,7 @@ struct DvlOptions {
   std::uint32_t width_px = 1600;
 };
 
-/// Progress on stderr, but only of what takes longer than a second.
+/// Shows progress on stderr, but only for work that takes longer than a second.
 class SlowProgress {
  public:
   explicit SlowProgress(const char* label)
@@ -83,7 +83,7 @@ recording::LogReader open_scans(const DvlOptions& options, const pipeline::Confi
   }
 }
 
-/// Number of usable scans: that of laser lines can be larger.
+/// Number of usable scans, which may be smaller than that of laser lines.
 std::uint64_t count_usable(recording::LogReader reader, std::uint64_t laser_lines) {
   SlowProgress progress("counting scans");
   std::uint64_t count = 0;
@@ -110,8 +110,8 @@ std::string picture_of_scan(const DvlOptions& options, const pipeline::Config& c
                                         options.log.string(), read, read - 1));
 }
 
-/// Sequence numbers of the scans to show, ascending: evenly spread, each in the middle of its
-/// share of the log, or every N-th from the first.
+/// Sequence numbers of the scans to show, ascending: evenly spread, each in the middle of its share
+/// of the log, or every N-th from the first.
 std::vector<std::uint64_t> chosen_scans(const DvlOptions& options, std::uint64_t scans) {
   std::vector<std::uint64_t> chosen;
   if (options.every) {
@@ -144,7 +144,7 @@ std::string sheet_of_log(const DvlOptions& options, const pipeline::Config& conf
     progress.update(scan->sequence + 1, scans);
     if (scan->sequence != chosen[views.size()]) continue;
     views.push_back(maker.make(*scan));
-    views.back().cells.clear();  // large, and not in a thumbnail
+    views.back().cells.clear();  // large, and not shown in a thumbnail
   }
   progress.finish(scans);
   report_skipped(reader.statistics());

@@ -15,7 +15,7 @@
 namespace topogeo::cli {
 namespace {
 
-/// Of the driven path in the picture: less does not show.
+/// Step of the driven path in the picture: less is not visible.
 constexpr double kPathStep_m = 0.1;
 
 std::int64_t monotonic_ns() {
@@ -38,7 +38,7 @@ ExploreSession::ExploreSession(const messaging::Participant& participant,
   listen(loop);
 }
 
-// The services count what they cannot use of a message; here it is passed over.
+// Ignores invalid messages, which the services count.
 void ExploreSession::listen(messaging::EventLoop& loop) {
   using messaging::SampleInfo;
   loop.add<msg::MapElement>(
@@ -69,7 +69,7 @@ void ExploreSession::take_map() {
   if (std::exchange(graph_changed_, false)) {
     try {
       graph_ = std::make_shared<const topomap::GlobalMap>(service::from_elements(*follower_.map()));
-    } catch (const std::invalid_argument&) {  // the one before stays
+    } catch (const std::invalid_argument&) {  // the previous map stays
     }
   }
   tour_.follow(graph_, map_, [this] {

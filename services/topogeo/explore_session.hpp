@@ -1,5 +1,5 @@
-// An exploration of the floor around a robot: follows the map as it grows and sends the robot from
-// target to target.
+// Explores the floor around a robot: follows the growing map and sends the robot from target to
+// target.
 #pragma once
 
 #include <cstddef>
@@ -34,16 +34,16 @@ class ExploreSession {
 
   [[nodiscard]] GoalClient& client() { return client_; }
 
-  /// Takes the map over when it has changed, gives the next goal, shows what is new. Call it some
-  /// ten times a second. Throws std::runtime_error when a goal cannot be sent.
+  /// Takes a changed map, sends the next goal, shows progress. Call it about ten times a second.
+  /// Throws std::runtime_error when a goal cannot be sent.
   void tick();
 
   [[nodiscard]] bool done() const { return tour_.done(); }
-  /// Why it cannot explore, as far as that will not change by itself; empty: it can.
+  /// Why it cannot explore, if that will not change by itself; empty: it can.
   [[nodiscard]] std::string trouble() const;
-  /// A line for the end: targets, metres, what was given up.
+  /// A final line: targets, metres, abandoned targets.
   [[nodiscard]] std::string summary() const;
-  /// The map and the path driven, as a picture (.png or .svg). Throws std::runtime_error when it
+  /// The map and the driven path as a picture (.png or .svg). Throws std::runtime_error when it
   /// cannot be written.
   void write_picture(const std::filesystem::path& file) const;
 
@@ -65,7 +65,7 @@ class ExploreSession {
   bool graph_changed_ = false;
   std::shared_ptr<const topomap::GlobalMap> graph_;
   std::shared_ptr<const planning::HybridMap> map_;
-  std::uint64_t goal_id_ = 0;  // as the tour numbers it
+  std::uint64_t goal_id_ = 0;  // number given by the tour
   std::optional<msg::LivePose> pose_;
   std::vector<Eigen::Vector2d> path_m_;  // map frame
   double driven_m_ = 0.0;

@@ -18,7 +18,7 @@
 namespace topogeo::cli {
 namespace {
 
-/// What the map of the floor has besides its walls, which are its grid.
+/// The zones file of a drawn floor: the drawing without its walls, which become the grid.
 std::string zones_text(storage::MapDrawing drawing) {
   service::drop_grid_lines(drawing);
   service::check_rules(drawing);
@@ -49,7 +49,7 @@ RunOptions with_floor(RunOptions options, const msg::FloorOrder& order, const st
   floor.pose = fmt::format("{},{},{}", T_start_floor.x_m, T_start_floor.y_m,
                            T_start_floor.theta_rad * 180.0 / std::numbers::pi);
   options.floor = std::move(floor);
-  // A new map: nothing of the one before holds there.
+  // A new map: nothing of the previous one applies.
   options.job.map.reset();
   options.job.continued.reset();
   options.job.initial_pose.reset();

@@ -1,4 +1,4 @@
-// Floors that are drawn on the page, for the simulator of a run.
+// Puts floors drawn on the page into the simulator of a run.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +15,15 @@
 
 namespace topogeo::cli {
 
-/// The same run with the simulated robot in a drawn floor, where a new map begins that has the
-/// floor as its drawing. Writes NAME.world.yaml and NAME.zones.yaml into the folder of the run.
-/// Throws std::invalid_argument saying what is wrong with the floor.
+/// The same run with the simulated robot in a drawn floor and a new map that has the floor as its
+/// drawing. Writes NAME.world.yaml and NAME.zones.yaml into the folder of the run. Throws
+/// std::invalid_argument naming the fault of the floor.
 RunOptions with_floor(RunOptions options, const msg::FloorOrder& order, const std::string& name);
 
-/// Takes orders to simulate a drawn floor and answers them. Lives in the loop of its run.
+/// Takes and answers orders to simulate a drawn floor. Lives in the loop of its run.
 class FloorLoader {
  public:
-  /// Called with the run to go on with, after the answer.
+  /// Called after the answer with the run to continue with.
   using Load = std::function<void(const RunOptions&)>;
 
   FloorLoader(const messaging::Participant& participant, messaging::EventLoop& loop,
@@ -38,7 +38,7 @@ class FloorLoader {
   Load load_;
   std::uint32_t floors_ = 0;
   std::uint64_t answers_sent_ = 0;
-  msg::DrawingAnswer last_;  // for an order that comes again
+  msg::DrawingAnswer last_;  // for a repeated order
   messaging::Reader<msg::FloorOrder> orders_;
   messaging::Writer<msg::DrawingAnswer> answers_;
 };

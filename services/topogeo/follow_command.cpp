@@ -41,7 +41,7 @@ const char* kind_name(const msg::MapElement& element) {
   return element.kind() == msg::kElementNode ? "node" : "branch";
 }
 
-/// The words of GraphML and GeoJSON for msg::NodeKind.
+/// Names of msg::NodeKind in GraphML and GeoJSON.
 std::string_view node_kind_name(const msg::MapElement& node) {
   return topomap::name_of(static_cast<topomap::NodeKind>(node.node_kind()));
 }
@@ -90,7 +90,7 @@ nlohmann::ordered_json json_of(const map_client::Change& change) {
   return out;
 }
 
-/// The line at the end of an update.
+/// Last line of an update.
 std::string summary_of(const map_client::Map& map, bool json) {
   if (!json) {
     return fmt::format("map {:016x} version {}: {} nodes, {} branches", map.map_id, map.version,
@@ -138,7 +138,7 @@ class Follower {
     });
   }
 
-  /// Until a signal, or with --once until there is a map. Exit code.
+  /// Runs until a signal, or with --once until there is a map. Returns the exit code.
   int run() {
     const messaging::SignalStop signals([this](int) { loop_.stop(); });
     say_waiting();

@@ -16,7 +16,7 @@
 namespace topogeo::cli {
 namespace {
 
-/// That no other client has, and never 0.
+/// Unique among all clients, and never 0.
 std::uint64_t new_goal_id() {
   std::random_device random;
   return (static_cast<std::uint64_t>(random()) << 16U) + (random() & 0xFFFFU) + 1;
@@ -46,7 +46,7 @@ GoalClient::GoalClient(const messaging::Participant& participant, messaging::Eve
       service_statuses_(participant),
       statuses_(participant),
       routes_(participant),
-      // The services count what they cannot use of a map; here it is only drawn.
+      // Invalid messages are ignored: the services count them, and here the map is only drawn.
       live_map_(participant, loop, [this](const auto& message, const auto& use) {
         if (!is_own(message)) return;
         try {
@@ -84,7 +84,7 @@ void GoalClient::listen() {
   });
 }
 
-// A status that breaks the wire contract is passed over: the next one comes soon.
+// Ignores a status that breaks the wire contract: the next one comes soon.
 void GoalClient::take_status(const msg::NavigatorStatus& status) {
   try {
     status_ = service::from_msg(status);

@@ -1,4 +1,4 @@
-// Gives a goal to a robot's planner and navigator and follows whether it is reached.
+// Gives a goal to a robot's planner and navigator and reports whether it is reached.
 #pragma once
 
 #include <cstdint>
@@ -29,32 +29,31 @@ class GoalClient {
   GoalClient(const GoalClient&) = delete;
   GoalClient& operator=(const GoalClient&) = delete;
 
-  /// What of a planner and a navigator of the robot is not there; empty: both are.
+  /// The missing ones of the robot's planner and navigator; empty: both are there.
   [[nodiscard]] std::string missing() const;
 
-  /// "the robot's machine is too busy: the CPU is short for navigator" while it is; else empty.
+  /// "the robot's machine is too busy: the CPU is short for navigator" during that; else empty.
   [[nodiscard]] std::string too_busy() const;
 
-  /// Sends a goal with a number of its own, or an order about the goal that the robot has.
-  /// `patience_s`: see supervision::GoalWatch. Throws std::runtime_error when it cannot be sent and
-  /// std::invalid_argument for one that does not fit into a message.
+  /// Sends a goal under a new number, or an order about the robot's current goal. `patience_s`: see
+  /// supervision::GoalWatch. Throws std::runtime_error when it cannot be sent and
+  /// std::invalid_argument when it does not fit into a message.
   void send(service::Goal goal, double patience_s = 60.0);
-  /// Orders the robot to stop and forget the goal sent; nothing when none was.
+  /// Orders the robot to stop and drop the goal sent; does nothing when none was sent.
   void cancel();
-  /// Waits until the readers have what was sent; false when the patience is over before.
+  /// Waits until the readers have received everything; false when the patience ends first.
   bool delivered(support::Patience& patience);
 
-  /// Of the goal sent: nothing as long as it may still be reached.
+  /// End of the goal sent; nothing while it may still be reached.
   [[nodiscard]] std::optional<supervision::GoalEnd> end();
-  /// The newest.
   [[nodiscard]] const std::optional<navigation::NavigatorStatus>& status() const { return status_; }
-  /// The first that was found for the goal sent.
+  /// The first route found for the goal sent.
   [[nodiscard]] const std::optional<msg::Route>& route() const { return route_; }
-  /// The newest whole map; null before.
+  /// The newest complete map; null until there is one.
   std::shared_ptr<const planning::HybridMap> map();
-  /// Whether the robot does not drive and is not commanded to move; true before the first status.
+  /// Whether the robot stands still and has no command to move; true before the first status.
   [[nodiscard]] bool stands() const;
-  /// Whether the newest status is of the goal sent.
+  /// Whether the newest status refers to the goal sent.
   [[nodiscard]] bool taken() const { return status_ && status_->goal_id == goal_id_; }
 
  private:
@@ -82,8 +81,7 @@ class GoalClient {
   service::LiveHybridMap live_map_;
 };
 
-/// What a picture shows of a route: where it goes and where it begins and ends. Its cells are not
-/// in a message.
+/// The visible part of a route: its path with start and end. A message does not contain the cells.
 planning::HybridRoute route_to_draw(const msg::Route& route);
 
 }  // namespace topogeo::cli

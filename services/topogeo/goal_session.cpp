@@ -24,7 +24,7 @@ msg::GoalKind kind_of(const planning::Target& target) {
   return std::holds_alternative<std::string>(target) ? msg::kGoalPlace : msg::kGoalPosition;
 }
 
-/// "through 3 zones and 2 borders", or how much of it follows branches.
+/// "through 3 zones and 2 borders", or the share of the route on branches.
 std::string planned_on(const msg::Route& route) {
   const planning::HybridRoute drawn = route_to_draw(route);
   const double branch_m = planning::length_on(drawn, planning::PlannedOn::kBranch);
@@ -106,7 +106,7 @@ void GoalSession::tick() {
 
 void GoalSession::draw_route() {
   const std::shared_ptr<const planning::HybridMap> map = client_.map();
-  if (!map) return;  // it comes later
+  if (!map) return;  // the map comes later
   drawn_ = true;
   const std::string title =
       fmt::format("to {}: {:.1f} m", options_.target, client_.route()->length_m());

@@ -1,5 +1,5 @@
-// A goal from the command line: waits for the services, sends it, shows how the robot gets on,
-// draws the route.
+// A goal from the command line: waits for the services, sends it, shows the robot's progress, draws
+// the route.
 #pragma once
 
 #include <filesystem>
@@ -25,10 +25,10 @@ struct GoalOptions {
 /// Adds --heading, --look-around, --picture and --patience.
 void add_goal_options(command_line::Command& app, GoalOptions& options);
 
-/// Throws service::UsageError for a picture of a format that is not known.
+/// Throws service::UsageError for an unknown picture format.
 void check_picture(const std::optional<std::filesystem::path>& picture);
 
-/// Throws service::UsageError for a target or a picture that cannot be.
+/// Throws service::UsageError for an invalid target or picture.
 service::Goal to_goal(const GoalOptions& options);
 
 class GoalSession {
@@ -41,10 +41,10 @@ class GoalSession {
   [[nodiscard]] supervision::GoalProgress& progress() { return progress_; }
 
   void send();
-  /// Shows what is new and draws the route when it is known. Call it some ten times a second.
-  /// Throws std::runtime_error when the picture cannot be written.
+  /// Shows progress and draws the route once it is known. Call it about ten times a second. Throws
+  /// std::runtime_error when the picture cannot be written.
   void tick();
-  /// Of the goal; nothing while it may still be reached.
+  /// End of the goal; nothing while it may still be reached.
   [[nodiscard]] std::optional<supervision::GoalEnd> end() { return client_.end(); }
 
  private:

@@ -1,4 +1,4 @@
-// topogeo goto: sends a robot somewhere and shows how it gets there.
+// topogeo goto: sends a robot to a place and shows its progress.
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -97,7 +97,7 @@ int go_there(const GotoOptions& options) {
   }
   const supervision::GoalEnd end = *session.end();
   if (end.arrived) return service::kOk;
-  call_off(loop, session.client());  // it must not set out when no one expects it any more
+  call_off(loop, session.client());  // it must not set out when nobody waits for it any more
   throw std::runtime_error(end.reason);
 }
 

@@ -1,4 +1,4 @@
-// One run of all services on a simulated robot that is sent to a place of a stored map.
+// One run of all services with a simulated robot that is sent to a place on a stored map.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +20,13 @@ namespace topogeo::cli {
 
 struct GotoResult {
   bool arrived = false;
-  int signal_number = 0;  ///< that has stopped the run, else 0
-  std::string failure;    ///< why it did not arrive, when no signal did that
+  int signal_number = 0;  ///< signal that stopped the run, else 0
+  std::string failure;    ///< why it did not arrive, unless a signal stopped it
   double drive_s = 0.0;   ///< from the goal to its end
   std::optional<navigation::NavigatorStatus> status;  ///< the last one
   std::optional<Eigen::Vector2d> goal_m;              ///< end of the route, map frame
   std::vector<topomap::StampedPose> estimated;  ///< poses while the robot was tracked, map frame
-  std::vector<topomap::StampedPose> truth;      ///< the same; what the map's origin is, see run()
+  std::vector<topomap::StampedPose> truth;      ///< the same; for the map's origin see run()
   std::uint64_t collisions = 0;
   std::uint64_t run_into = 0;
 };
@@ -37,9 +37,9 @@ class GotoRun {
   /// map. Throws like ServiceRun and GoalSession.
   explicit GotoRun(const RunOptions& options);
 
-  /// Comes back when no service runs any more. Call it once. The robot stands at the start of the
-  /// tour at first: that is taken for the map's origin, where the drive began that made the map,
-  /// and of a robot without a laser for its base station.
+  /// Returns when all services have ended. Call it once. The robot's first pose, at the start of
+  /// the tour, is taken as the map's origin, where the mapping drive began, and for a robot without
+  /// a laser as its base station.
   GotoResult run();
 
  private:
@@ -47,15 +47,15 @@ class GotoRun {
   void report_wait(const std::string& what);
   void call_off();
   void on_pose(const msg::LivePose& pose);
-  /// Where the robot stands at first, see run().
+  /// First pose of the robot, see run().
   [[nodiscard]] geometry::Pose2 T_map_start();
-  /// What there is still to wait for; empty: the robot may set out.
+  /// The condition still awaited; empty: the robot may set out.
   [[nodiscard]] std::string waits_for();
 
   RunOptions options_;
   GotoResult result_;
   supervision::GotoPhases phases_;
-  std::string reported_;  // what it waits for, as the user was informed last
+  std::string reported_;  // the condition last shown to the user
   std::optional<msg::LivePose> pose_;
 
   ServiceRun run_;

@@ -1,4 +1,4 @@
-// Where a simulated robot really is, from start to end.
+// Records the true poses of a simulated robot from start to end.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@ namespace topogeo::cli {
 
 class GroundTruthLog {
  public:
-  /// `step_s` has passed in the world since the message before; 0 at the first.
+  /// `step_s`: world time since the previous message; 0 for the first.
   using Handler = std::function<void(const msg::GroundTruth& truth, double step_s)>;
 
   /// Lives in the loop. `on_truth` (may be empty) is called for each message of the robot.
@@ -24,7 +24,6 @@ class GroundTruthLog {
 
   /// World frame, fifty times a second.
   [[nodiscard]] const std::vector<topomap::StampedPose>& poses() const { return poses_; }
-  /// The newest message.
   [[nodiscard]] const msg::GroundTruth& last() const { return last_; }
 
  private:

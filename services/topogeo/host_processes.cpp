@@ -25,7 +25,7 @@ std::string content(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(input), {}};
 }
 
-/// Strings with a zero byte behind each.
+/// Strings that each end with a zero byte.
 std::vector<std::string> strings(const std::string& bytes) {
   std::vector<std::string> strings;
   std::istringstream input(bytes);
@@ -33,7 +33,7 @@ std::vector<std::string> strings(const std::string& bytes) {
   return strings;
 }
 
-/// The service that a program is; packages call it "topogeo-local-mapper". Empty: none.
+/// The service of a program; packages call it "topogeo-local-mapper". Empty: none.
 std::string service_of(const std::string& program) {
   std::string name = std::filesystem::path(program).filename().string();
   if (name.starts_with(kPackagePrefix)) {
@@ -68,7 +68,7 @@ std::uint32_t domain_of(const std::vector<std::string>& words,
   return domain;
 }
 
-/// Reads state and age of proc(5), /proc/PID/stat. False: it has ended.
+/// Reads state and age from /proc/PID/stat, see proc(5). False: the process has ended.
 bool read_stat(HostProcess& process, const std::filesystem::path& folder, double up_s) {
   std::istringstream fields = support::process_stat(folder);
   std::string state;

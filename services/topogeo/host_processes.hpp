@@ -1,5 +1,5 @@
-// The services of this project that run as processes of this host, whether or not they are heard:
-// one that is stopped by a signal or a debugger answers no discovery.
+// The services of this project that run as processes on this host, whether they are heard or not:
+// one stopped by a signal or a debugger does not answer discovery.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@ namespace topogeo::cli {
 struct HostProcess {
   pid_t pid = 0;
   std::string service;       ///< "localizer"
-  std::uint32_t domain = 0;  ///< of its command line, else of its environment if it can be read
-  std::string partition;     ///< of its command line, else the default
+  std::uint32_t domain = 0;  ///< from its command line, else from its environment if readable
+  std::string partition;     ///< from its command line, else the default
   bool stopped = false;      ///< by a signal or a debugger
-  double age_s = 0.0;        ///< since it was started
+  double age_s = 0.0;        ///< since its start
 };
 
-/// The services in the network of this process, by pid; none where there is no `proc`. A process
-/// of another user counts as one of this network.
+/// The services in the network of this process, by pid; none without `proc`. A process of another
+/// user counts as being in this network.
 std::vector<HostProcess> host_processes(const std::filesystem::path& proc = "/proc");
 
 }  // namespace topogeo::cli

@@ -10,15 +10,15 @@
 namespace topogeo::cli {
 namespace {
 
-/// That the units of the package read.
+/// Environment file of the package's units.
 constexpr const char* kSettings = "/etc/topogeo/topogeo.env";
-/// The others are of services alone.
+/// The other variables are for services only.
 constexpr auto kOfCommands = std::to_array<const char*>(
     {"TOPOGEO_DOMAIN", "TOPOGEO_ROBOT", "TOPOGEO_SECURITY", "TOPOGEO_PEERS", "ROS_DISCOVERY_SERVER",
      "TOPOGEO_DDS_PARTICIPANT", "TOPOGEO_DDS_PROFILES"});
 constexpr const char* kBlank = " \t\r";
 
-/// Where packages put programs; those of a build lie elsewhere.
+/// Whether this program lies where packages install programs, not in a build tree.
 bool is_installed() {
   std::error_code error;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);

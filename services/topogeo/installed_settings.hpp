@@ -1,4 +1,4 @@
-// What the settings of the installed services of a robot mean for commands on the same host.
+// Applies the settings of a robot's installed services to commands on the same host.
 #pragma once
 
 #include <istream>
@@ -7,14 +7,14 @@
 
 namespace topogeo::cli {
 
-/// The variables of a file for systemd's EnvironmentFile= (systemd.exec(5)): NAME=VALUE in a line,
-/// VALUE perhaps in quotes, comments behind # or ;. Other lines are passed over.
+/// The variables of a file for systemd's EnvironmentFile= (systemd.exec(5)): one NAME=VALUE per
+/// line, VALUE optionally in quotes, comments after # or ;. Other lines are ignored.
 std::map<std::string, std::string> environment_in(std::istream& file);
 
-/// Gives this process what /etc/topogeo/topogeo.env says of domain, robot, security and how
-/// services find each other, unless its environment says so itself: an installed command meets the
-/// services of its host. Nothing where the program was not installed, or where there is no such
-/// file; one that cannot be read is named on stderr.
+/// Takes domain, robot, security and discovery settings from /etc/topogeo/topogeo.env unless the
+/// environment sets them, so that an installed command meets the services of its host. Does nothing
+/// when the program was not installed or the file does not exist; an unreadable file is reported on
+/// stderr.
 void take_installed_settings();
 
 }  // namespace topogeo::cli

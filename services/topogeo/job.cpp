@@ -38,7 +38,7 @@ Job open_log(const JobOptions& options, Inputs inputs) {
   }
 }
 
-/// How the stops of a drive in a finished map went; empty for a mapping.
+/// Summary of the stops of a drive in a finished map; empty for a mapping.
 std::string localization_line(const storage::Report& report) {
   if (report.localization.empty()) return {};
   std::string line = "localization:";
@@ -48,7 +48,7 @@ std::string localization_line(const storage::Report& report) {
   return line + "\n";
 }
 
-/// What became of a map that was continued; empty otherwise.
+/// Summary of an extended map; empty otherwise.
 std::string continuation_line(const storage::Report& report) {
   if (report.continuation.empty()) return {};
   std::string line = "continued map:";

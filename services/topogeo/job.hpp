@@ -1,4 +1,4 @@
-// What mapping a log needs and leaves behind, whether in one process or in many.
+// Inputs and outputs of mapping a log, in one process or in many.
 #pragma once
 
 #include <cstdint>
@@ -19,79 +19,78 @@ namespace topogeo::cli {
 
 struct JobOptions {
   std::filesystem::path log;
-  recording::TopicChoice topics;  ///< of a log that is a recording of ROS
+  recording::TopicChoice topics;  ///< for a ROS recording
   std::filesystem::path out;
   std::optional<std::filesystem::path> config;
   std::string robot_id = "robot";
   std::optional<std::filesystem::path> reference;  ///< trajectory to compare with
-  std::optional<std::filesystem::path> map;        ///< to localize in; none: a map is made
-  std::optional<std::filesystem::path> continued;  ///< map to extend; none: one is begun
-  std::optional<std::string> initial_pose;         ///< "x,y,degrees" in either
-  bool overlaps = false;  ///< in the report, also where the configuration does not ask for them
+  std::optional<std::filesystem::path> map;        ///< map to localize in; none: a map is made
+  std::optional<std::filesystem::path> continued;  ///< map to extend; none: a new one
+  std::optional<std::string> initial_pose;         ///< "x,y,degrees" in either map
+  bool overlaps = false;  ///< in the report, even if the configuration does not ask for them
 };
 
 /// Adds --config.
 void add_config_option(command_line::Command& app, std::optional<std::filesystem::path>& config);
-/// Adds --width, of a picture.
+/// Adds --width, for a picture.
 void add_width_option(command_line::Command& app, std::uint32_t& width_px);
-/// Adds --config and --robot, which every mapping command has.
+/// Adds --config and --robot, common to all mapping commands.
 void add_common_options(command_line::Command& app, JobOptions& options);
 /// Adds --scan-topic and --odometry-topic.
 void add_topic_options(command_line::Command& app, recording::TopicChoice& topics);
-/// Adds --overlaps, of the commands that make a map.
+/// Adds --overlaps, for commands that make a map.
 void add_overlaps_option(command_line::Command& app, JobOptions& options);
-/// Adds --log, those of its topics, --out and --reference as well.
+/// Adds --log with its topic options, --out and --reference.
 void add_log_options(command_line::Command& app, JobOptions& options);
 
-/// Which options on stored maps a command has.
+/// The options on stored maps that a command has.
 enum class StoredMapUse : std::uint8_t {
   kLocalize,  ///< --map, which is required
   kContinue,  ///< --continue
-  kEither,    ///< both, one of which may be given
+  kEither,    ///< both, of which one may be given
 };
 
-/// Adds them and --initial-pose.
+/// Adds those options and --initial-pose.
 void add_map_options(command_line::Command& app, JobOptions& options, StoredMapUse use);
 
-/// What mapping needs besides scans.
+/// Inputs of mapping besides scans.
 struct Inputs {
   pipeline::LoadedConfig config;
   std::shared_ptr<const localization::StoredMap> map;     ///< of JobOptions::map
   std::shared_ptr<const storage::MapDocument> continued;  ///< of JobOptions::continued
 };
 
-/// Takes the mounting of the laser from the log unless the configuration sets it, and reports on
-/// stderr what people should know of that, and of the topics that are used of a recording. Throws
-/// service::BadInputError when the log cannot be opened.
+/// Takes the laser mounting from the log unless the configuration sets it, and reports that and the
+/// chosen topics of a recording on stderr. Throws service::BadInputError when the log cannot be
+/// opened.
 void choose_mounting(pipeline::LoadedConfig& config, const std::filesystem::path& log,
                      const recording::TopicChoice& topics);
 
-/// Finds out before the work starts whether configuration, stored map and reference can be used,
-/// wherever the scans come from; where there is a log, with the laser where choose_mounting has it.
-/// Throws service::UsageError for options and configuration,
-/// service::BadInputError for the others.
+/// Checks before the work starts that configuration, stored map and reference are usable, whatever
+/// the source of the scans; with a log, the laser mounting is that of choose_mounting. Throws
+/// service::UsageError for options and configuration, service::BadInputError for the rest.
 Inputs check_inputs(const JobOptions& options);
 
 struct Job {
   JobOptions options;
   Inputs inputs;
   recording::LogReader reader;    ///< before its first scan
-  std::uint64_t laser_lines = 0;  ///< at least as many as there are usable scans
+  std::uint64_t laser_lines = 0;  ///< upper bound of the number of usable scans
 };
 
-/// The same for a log, which it opens, and makes the output directory. Throws the same, and
+/// The same for a log, which it opens; also makes the output directory. Throws the same, and
 /// std::runtime_error for the directory.
 Job prepare(const JobOptions& options);
 
-/// Fills the overlap sets and solutions of a report where they are asked for, by the map.pb that
-/// was written.
+/// Adds overlap sets and solutions to a report if they are asked for, from the map.pb that was
+/// written.
 void add_overlaps(storage::Report& report, const JobOptions& options,
                   const pipeline::Config& config);
 
-/// Reports on stderr what was left out of the log; nothing when that is nothing.
+/// Reports the skipped parts of the log on stderr, if there are any.
 void report_skipped(const scan::CarmenLogStatistics& statistics);
 
-/// A few lines for people: how much was mapped, how long it took, where the results are.
+/// A few lines for people: mapped stops, time taken, place of the results.
 void print_summary(std::ostream& out, const storage::Report& report,
                    const std::filesystem::path& directory);
 
@@ -100,8 +99,8 @@ struct Comparison {
   pipeline::TrajectoryError odometry;
   pipeline::TrajectoryError corrected;
 };
-/// Throws std::runtime_error naming the file that cannot be read, std::invalid_argument when too
-/// few poses match in time.
+/// Throws std::runtime_error naming an unreadable file, std::invalid_argument when too few poses
+/// match in time.
 Comparison compare(const std::filesystem::path& directory, const std::filesystem::path& reference);
 void print_comparison(std::ostream& out, const Comparison& comparison);
 

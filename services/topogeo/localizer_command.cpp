@@ -25,7 +25,7 @@ struct LocalizerRequest {
   double wait_s = 5.0;
 };
 
-/// Prints the reply. Throws std::runtime_error when nobody answers.
+/// Prints the reply. Throws std::runtime_error when there is no answer.
 int send_localizer_command(const LocalizerRequest& request,
                            const service::LocalizationCommand& command) {
   const msg::LocalizationReply reply =

@@ -14,28 +14,28 @@ using Findings = std::vector<Finding>;
 
 constexpr std::uint64_t kMega = 1'000'000;
 
-// Two ports for each program of a domain, and the library tries a hundred pairs.
+// Two ports per program of a domain, and the library tries a hundred pairs.
 constexpr std::uint32_t kPortsOfPrograms = 200;
-// What Linux gives a UDP socket by itself: below it a local map of 64 KB, which the kernel counts
-// twice, is lost as soon as a second one comes.
+// Linux's default for a UDP socket. With less, a second local map of 64 KB, which the kernel counts
+// twice, is lost.
 constexpr std::uint64_t kLeastReceiveBuffer_bytes = 200'000;
-// For the burst of local maps that a restarted localizer is sent.
+// Room for the burst of local maps that a restarted localizer gets.
 constexpr std::uint64_t kGoodReceiveBuffer_bytes = 1 * kMega;
-// Each program makes a segment of 4 MB; a robot has seven programs.
+// Each program creates a segment of 4 MB; a robot has seven programs.
 constexpr std::uint64_t kLeastSharedMemory_bytes = 8 * kMega;
 constexpr std::uint64_t kGoodSharedMemory_bytes = 48 * kMega;
-// A day of driving makes some hundred MB of database, written once more when it is copied.
+// A day of driving makes a database of some hundred MB, and copying it needs the same again.
 constexpr std::uint64_t kLeastDisk_bytes = 200 * kMega;
 constexpr std::uint64_t kGoodDisk_bytes = 2'000 * kMega;
-// A service takes up to 150 MB after a long drive, all of a robot up to a GB.
+// A service takes up to 150 MB after a long drive, all services of a robot up to a GB.
 constexpr std::uint64_t kLeastMemory_bytes = 256 * kMega;
 constexpr std::uint64_t kGoodMemory_bytes = 1'000 * kMega;
-// A start of all services meets any quota for some seconds of a long run.
+// The start of all services hits any quota for some seconds of a long run.
 constexpr double kMuchThrottled = 0.25;
-// A search for loops keeps every CPU busy for a while, which is one thread for each. A
-// thread that wakes up among three waits for two others.
+// A search for loops keeps every CPU busy for a while with one thread each. A thread that wakes
+// among three waits for two others.
 constexpr double kCrowded = 3.0;
-// A load is the mean of a minute and may be over: then hardly a thread waits now.
+// A load is the mean of a minute and may be over: then hardly any thread waits now.
 constexpr double kMuchPressure = 0.5;
 // Sockets, segments and locks of a service with a pool of a hundred peers.
 constexpr std::uint64_t kLeastOpenFiles = 256;

@@ -1,4 +1,4 @@
-// What can be wrong with a machine before any service runs on it.
+// Checks for faults of a machine before any service runs on it.
 #pragma once
 
 #include <span>

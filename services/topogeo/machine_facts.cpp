@@ -28,12 +28,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Ports of a domain: its first one, that of the first program, and the distance of two domains.
+// Port numbers of a domain: the first one, the first program's offset, the distance of two domains.
 constexpr std::uint32_t kFirstPort = 7400;
 constexpr std::uint32_t kFirstOwnPort = 10;
 constexpr std::uint32_t kPortsOfDomain = 250;
 
-// Users that the package makes: one runs the map store and commands, the other the gateway.
+// Users created by the package: one runs the map store and commands, the other the gateway.
 constexpr std::string_view kServicesUser = "topogeo";
 constexpr const char* kGatewayUser = "topogeo-sensor-gateway";
 
@@ -76,7 +76,7 @@ void ask_for_ports(const FactSources& sources, MachineFacts& facts) {
   range >> facts.first_ephemeral_port >> facts.last_ephemeral_port;
 }
 
-/// Lists of hosts have ';' between them.
+/// Lists of hosts are separated by ';'.
 bool names_hosts(const char* variable) {
   return environment_text(variable).find_first_not_of(';') != std::string::npos;
 }
@@ -89,7 +89,7 @@ void ask_for_network(const FactSources& sources, MachineFacts& facts) {
   facts.multicast = probe_multicast();
   facts.multicast_route = has_multicast_route(sources.proc / "net/route");
   facts.receive_buffer_bytes = number_in(sources.proc / "sys/net/core/rmem_default");
-  // Network namespaces of older kernels do not show it.
+  // Older kernels do not show it in network namespaces.
   if (facts.receive_buffer_bytes == 0) facts.receive_buffer_bytes = receive_buffer_of_a_socket();
 }
 
@@ -124,7 +124,7 @@ void ask_for_shared_memory(const FactSources& sources, MachineFacts& facts) {
   }
 }
 
-/// Whether a user may read and write a file, by its owner, groups and mode.
+/// Whether a user may read and write a file, by owner, groups and mode.
 bool can_open(const passwd& user, const struct stat& file) {
   constexpr mode_t kBoth = 06;
   if (user.pw_uid == file.st_uid) return (file.st_mode >> 6U & kBoth) == kBoth;
@@ -145,7 +145,7 @@ SerialPortFacts serial_port(const fs::path& path, bool named) {
   if (!facts.exists) return facts;
   facts.user = user_name();
   facts.accessible = ::access(path.c_str(), R_OK | W_OK) == 0;
-  // The ports are the gateway's alone, and the other services are not to have them.
+  // Only the gateway may have the ports, not the other services.
   if (const passwd* gateway = ::getpwnam(kGatewayUser);
       gateway != nullptr && facts.user == kServicesUser) {
     facts.user = kGatewayUser;
@@ -178,7 +178,7 @@ void ask_for_devices(const MachineQuestions& questions, MachineFacts& facts) {
   std::ranges::sort(facts.serial_ports, {}, &SerialPortFacts::path);
 }
 
-/// A map folder is made when it is needed, so the nearest one above that exists counts.
+/// A map folder is made on demand, so the nearest existing one above counts.
 void ask_for_disk(const fs::path& map_folder, MachineFacts& facts) {
   std::error_code error;
   fs::path folder = fs::absolute(map_folder, error);
@@ -198,7 +198,7 @@ void ask_for_disk(const fs::path& map_folder, MachineFacts& facts) {
   facts.disk_free_bytes = free_bytes(folder);
 }
 
-/// The least of the limits that hold, those of all control groups above included.
+/// The smallest effective limit, including those of all control groups above.
 std::optional<std::uint64_t> memory_limit(const FactSources& sources) {
   std::optional<std::uint64_t> least;
   const auto take = [&](std::uint64_t bytes) { least = least ? std::min(*least, bytes) : bytes; };

@@ -1,4 +1,4 @@
-// What `topogeo doctor` has to know of the machine that it runs on.
+// The facts about the machine that `topogeo doctor` examines.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,19 @@
 
 namespace topogeo::cli {
 
-/// Of a network interface that is up and can do multicast.
+/// A multicast test on a network interface that is up and supports it.
 struct MulticastProbe {
   std::string interface;
-  std::string error;  ///< why nothing came back; empty: it came
+  std::string error;  ///< why nothing came back; empty: the packet did
 };
 
 struct SerialPortFacts {
   std::string path;
   bool exists = false;
   bool accessible = false;  ///< for `user`
-  std::string group;        ///< that the port belongs to
-  bool named = false;       ///< by the file of devices; else it was found in /dev
-  std::string user{};  ///< who opens it: that of the gateway's unit, else who runs this program
+  std::string group;        ///< owner of the port
+  bool named = false;       ///< by the devices file; else it was found in /dev
+  std::string user{};       ///< who opens it: the user of the gateway's unit, else of this program
 };
 
 struct MachineFacts {
@@ -33,14 +33,14 @@ struct MachineFacts {
   std::uint32_t domain = 0;
   std::uint32_t discovery_port = 0;        ///< UDP, shared by all programs of the domain
   std::string discovery_port_error;        ///< why it cannot be shared; empty: it can
-  std::string discovery_port_owner;        ///< program that has it, where that is known
-  std::uint32_t used_ports = 0;            ///< of those that programs have for themselves
-  std::uint32_t first_ephemeral_port = 0;  ///< that the system gives to any program
+  std::string discovery_port_owner;        ///< program that has it, if known
+  std::uint32_t used_ports = 0;            ///< number of the programs' own ports in use
+  std::uint32_t first_ephemeral_port = 0;  ///< first port that the system assigns to any program
   std::uint32_t last_ephemeral_port = 0;
 
   // network
-  std::string found_by;  ///< variable that makes multicast needless; empty: it is needed
-  bool secured = false;  ///< with TOPOGEO_SECURITY, which discovery servers do not know
+  std::string found_by;  ///< variable that makes multicast unnecessary; empty: it is needed
+  bool secured = false;  ///< with TOPOGEO_SECURITY, which discovery servers do not support
   std::vector<MulticastProbe> multicast;
   bool multicast_route = false;
   std::uint64_t receive_buffer_bytes = 0;  ///< of a UDP socket, net.core.rmem_default
@@ -53,13 +53,13 @@ struct MachineFacts {
   std::uint64_t dead_bytes = 0;
 
   // devices
-  std::string devices_error;  ///< why the file that was named cannot be used
+  std::string devices_error;  ///< why the named file cannot be used
   std::vector<SerialPortFacts> serial_ports;
 
   // disk
   std::string map_folder;
   std::string map_folder_error;  ///< why it cannot be written; empty: it can
-  std::string closed_folder;     ///< above that of the map, which `user` may not look into
+  std::string closed_folder;     ///< above the map's, without access for `user`
   std::uint64_t disk_free_bytes = 0;
 
   support::MachineCpu cpu;
@@ -70,7 +70,7 @@ struct MachineFacts {
   std::uint64_t open_files_limit = 0;
 };
 
-/// Where the facts are. Tests name other places.
+/// Sources of the facts. Tests use other paths.
 struct FactSources {
   std::filesystem::path proc = "/proc";
   std::filesystem::path cgroup = "/sys/fs/cgroup";
@@ -81,12 +81,12 @@ struct FactSources {
 struct MachineQuestions {
   std::uint32_t domain = 0;
   std::filesystem::path map_folder;
-  std::optional<std::filesystem::path> devices;  ///< file of devices; none: ports found in /dev
+  std::optional<std::filesystem::path> devices;  ///< devices file; none: ports found in /dev
   FactSources sources;
 };
 
-/// Asks the system. Sends a packet to each interface and writes a file into the folder of the map
-/// and into shared memory, which it removes.
+/// Queries the system. Sends a packet to each interface, and writes and removes a file in the map
+/// folder and in shared memory.
 MachineFacts gather_machine_facts(const MachineQuestions& questions);
 
 }  // namespace topogeo::cli

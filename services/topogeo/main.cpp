@@ -61,7 +61,7 @@ int run(int argc, const char* const* argv) {
   return exit_code;
 }
 
-/// Not to be mixed with those of the host.
+/// These services must not be mixed with those of the host.
 bool has_services_of_its_own(std::string_view command) {
   return command == "run" || command == "demo" || command == "view";
 }

@@ -1,4 +1,4 @@
-// topogeo map: the whole way from a log to a map in this process, without DDS.
+// topogeo map: makes a map from a log in this process, without DDS.
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
@@ -26,13 +26,13 @@
 namespace topogeo::cli {
 namespace {
 
-/// Ctrl-C: asks the work to end after the scan in hand; where the work cannot be asked, ends the
-/// program at once, which loses nothing because nothing has been written.
+/// Ctrl-C asks the work to end after the current scan. Work that cannot be asked is ended at once,
+/// which loses nothing because nothing has been written.
 class Interruption {
  public:
   Interruption() : signals_([this](int number) { on_signal(number); }) {}
 
-  /// While it lives a signal ends the program at once.
+  /// While it exists, a signal ends the program at once.
   class Immediate {
    public:
     explicit Immediate(Interruption& owner) : owner_(owner) { owner_.set_immediate(true); }
@@ -44,7 +44,7 @@ class Interruption {
     Interruption& owner_;
   };
 
-  /// Number of the signal that came, 0 if none has.
+  /// Number of the received signal, 0 if there is none.
   [[nodiscard]] int received() const { return received_; }
 
  private:
@@ -67,7 +67,7 @@ class Interruption {
   messaging::SignalStop signals_;  // last: its thread uses the others
 };
 
-/// Takes all scans of the log; false when a signal came.
+/// Takes all scans of the log; false after a signal.
 bool add_scans(Job& job, pipeline::MappingRun& run, support::StageTimes& times,
                const Interruption& interruption) {
   support::ProgressBar bar(std::cerr, support::stderr_is_terminal(), "mapping", "scans");
@@ -122,7 +122,7 @@ std::unique_ptr<pipeline::MappingRun> make_run(const Job& job) {
                                                 job.inputs.map, initial_pose);
 }
 
-/// Reports on stderr why stops are not in the map; nothing when all are or none was to be.
+/// Reports on stderr why stops are not in the map, if any are missing.
 void report_unmapped(const localization::MappingSession* session) {
   if (session == nullptr) return;
   const std::string message = pipeline::continuation_message(*session);
@@ -171,7 +171,7 @@ int map_log(const JobOptions& options, bool stages) {
   storage::write_report(options.out / "report.json", report);
   print_summary(std::cout, report, options.out);
   if (interruption.received() != 0)
-    return kSignalBase + interruption.received();  // came while writing
+    return kSignalBase + interruption.received();  // the signal came while writing
   if (options.reference) print_comparison(std::cout, compare(options.out, *options.reference));
   return 0;
 }

@@ -1,4 +1,4 @@
-// topogeo match: the search for the relative pose of two stops, as text, JSON and a picture.
+// topogeo match: searches the relative pose of two stops; output as text, JSON and a picture.
 #include <algorithm>
 #include <charconv>
 #include <exception>
@@ -68,13 +68,13 @@ Pair parse_pair(const std::string& text) {
   throw std::invalid_argument("--stops " + text + ": expected two numbers, like 12,80");
 }
 
-/// Stops of a drive; where they are when a map says so.
+/// Stops of a drive, with their poses if they come from a map.
 struct Stops {
   std::vector<topomap::LocalMap> maps;
   std::vector<topomap::StopPose> poses;
 };
 
-/// By the ending of its name; everything else is read as a log.
+/// Decided by the file name's extension; everything else is read as a log.
 bool is_map(const std::filesystem::path& file) {
   const std::string ending = file.extension().string();
   return ending == ".pb" || ending == ".sqlite";
@@ -97,7 +97,7 @@ Stops stops_of_log(const std::filesystem::path& file, const pipeline::Config& co
     pipeline::LocalMapper mapper(config.local_mapper, "robot");
     const auto keep = [&](std::optional<topomap::LocalMap> map) {
       if (!map) return;
-      // As in the map of the log.
+      // Numbered like the stops of a map of this log.
       stops.maps.push_back(
           topomap::numbered(std::move(*map), static_cast<std::uint32_t>(stops.maps.size()), false));
     };

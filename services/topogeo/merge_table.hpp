@@ -1,4 +1,4 @@
-// The merges that a localizer of several robots proposes, as `topogeo store merges` shows them.
+// The merges proposed by a localizer of several robots, as `topogeo store merges` shows them.
 #pragma once
 
 #include <cstddef>
@@ -15,13 +15,13 @@ class MergeTable {
  public:
   using Proposal = localization::MergeProposal;
 
-  /// A later one of the same number replaces it.
+  /// A later proposal of the same number replaces it.
   void put(const Proposal& proposal) { proposals_[proposal.number] = proposal; }
-  /// The number in the status of the localizer: proposals for a late reader take a while.
+  /// The number in the localizer's status: proposals for a late reader take a while.
   void expect(double count) { expected_ = count; }
 
   [[nodiscard]] bool has_localizer() const { return expected_.has_value(); }
-  /// The localizer has published how many there are, and so many have come.
+  /// The localizer has published the number of proposals, and all have arrived.
   [[nodiscard]] bool is_complete() const {
     return expected_ && static_cast<double>(proposals_.size()) >= *expected_;
   }

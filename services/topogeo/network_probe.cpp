@@ -28,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kHexadecimal = 16;
-/// For a packet that never leaves the machine.
+/// Timeout of a packet that never leaves the machine.
 constexpr int kEchoPatience_ms = 1000;
 
 std::string last_error() {
@@ -84,7 +84,7 @@ std::string why_no_echo(in_addr interface) {
   return ::poll(&waiting, 1, kEchoPatience_ms) == 1 ? "" : "nothing comes back";
 }
 
-/// "socket:[12345]" of the sockets at a port.
+/// "socket:[12345]" for each socket at a port.
 std::vector<std::string> sockets_at(std::uint32_t port, const fs::path& proc) {
   std::vector<std::string> sockets;
   for (const UdpSocket& socket : udp_sockets(proc)) {

@@ -1,5 +1,5 @@
-// topogeo places: the places and zones of a map, world or grid file or of the live map, and edits
-// of the places of a map file.
+// topogeo places: lists the places and zones of a map, world or grid file or of the live map, and
+// edits the places of a map file.
 #include <algorithm>
 #include <chrono>
 #include <exception>
@@ -48,7 +48,7 @@ struct PlacesOptions {
   double wait_s = 5.0;
 };
 
-/// NAME=X,Y or, of a base station, NAME=X,Y,DEG. Throws service::UsageError.
+/// NAME=X,Y or, for a base station, NAME=X,Y,DEG. Throws service::UsageError.
 planning::Place place_of(const std::string& text) {
   const std::size_t equals = text.rfind('=');
   const std::string numbers = equals == std::string::npos ? "" : text.substr(equals + 1);
@@ -87,7 +87,7 @@ void remove_place(std::vector<planning::Place>& places, const std::string& name)
                   names.empty() ? "the map has none" : "the map has " + names));
 }
 
-/// Changes the places of a map file, which is then written whole.
+/// Changes the places of a map file and rewrites it.
 void edit(const PlacesOptions& options) {
   storage::MapDrawing added;
   for (const std::string& text : options.added) {
@@ -163,7 +163,7 @@ void print_file(const PlacesOptions& options) {
   }
 }
 
-/// The live map of the robot. Throws std::runtime_error when there is none in time.
+/// The live map of the robot. Throws std::runtime_error when none arrives in time.
 std::shared_ptr<const planning::HybridMap> live_map(const PlacesOptions& options) {
   const messaging::Participant participant =
       join_for(options.view, "topogeo/places", options.robot_id);

@@ -1,4 +1,4 @@
-// topogeo plan: the shortest way between two points of a map file.
+// topogeo plan: the shortest path between two points of a map file.
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -88,7 +88,7 @@ void print_json(const planning::Route& route) {
   std::cout << json.dump(2) << '\n';
 }
 
-/// The floor under the route: the grid of the map or, where it has none, an empty one.
+/// The floor under the route: the grid of the map or, if there is none, an empty one.
 planning::HybridMap floor_of(const storage::MapDocument& document,
                              const pipeline::HybridMapConfig& config) {
   const pipeline::HybridMapParts parts = pipeline::parts_of(document);

@@ -14,11 +14,11 @@
 namespace topogeo::cli {
 namespace {
 
-/// Names of workers matter more than those of hosts: they keep that much more.
+/// Worker names matter more than host names: they get this many more columns.
 constexpr std::size_t kMoreOfWorkers = 6;
-/// Kept free for the usual states, "  draining" the longest of them.
+/// Reserved for the usual states, "  draining" being the longest.
 constexpr std::size_t kPoolStateWidth = 10;
-/// Lines of text() that are neither a worker nor a robot: sums, two heads, two blanks.
+/// Lines of text() besides workers and robots: totals, two heads, two blanks.
 constexpr std::size_t kOtherLines = 6;
 
 std::uint64_t open_tasks(const msg::ServiceStatus& localizer) {

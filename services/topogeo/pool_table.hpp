@@ -26,27 +26,27 @@ class PoolTable {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// How long a worker or robot that is silent stays in the table, for people who watch it.
+  /// Time that a silent worker or robot stays in the table, for people who watch it.
   static constexpr std::chrono::seconds kForget{10};
 
-  /// `version` and `matcher_fingerprint` of this program: workers of others are marked.
+  /// `version` and `matcher_fingerprint` of this program: workers with others are marked.
   PoolTable(std::string version, std::uint64_t matcher_fingerprint)
       : version_(std::move(version)), matcher_fingerprint_(matcher_fingerprint) {}
 
   void update(const msg::WorkerStatus& status, const messaging::SampleInfo& info,
               Clock::time_point now);
   void remove_worker(const messaging::SampleInfo& info);
-  /// Workers have their faults and their CPU in it, localizers their tasks; others are ignored.
+  /// Adds a worker's faults and CPU state, or a localizer's tasks; other services are ignored.
   void update(const msg::ServiceStatus& status, const messaging::SampleInfo& info,
               Clock::time_point now);
   void remove_service(const messaging::SampleInfo& info);
-  /// Forgets what has been silent for kForget.
+  /// Forgets workers and robots that have been silent for kForget.
   void forget_silent(Clock::time_point now);
 
   [[nodiscard]] std::size_t workers() const { return workers_.size(); }
 
-  /// A line with the sums, a line for each worker by name, a line for each robot. No wider than
-  /// `size`; of workers that do not fit in its rows the number is given.
+  /// A line with the totals, a line for each worker by name, a line for each robot. No wider than
+  /// `size`; workers that do not fit in its rows are given as a number.
   [[nodiscard]] std::string text(Clock::time_point now, const TextSize& size = {}) const;
   /// {"workers": [...], "robots": [...], "total": {...}}; field names as in the IDL.
   [[nodiscard]] std::string json(Clock::time_point now, int indent) const;

@@ -1,4 +1,4 @@
-// Connects a command with the program of one robot among those of several.
+// Connects a command to the program of one robot among several.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 
 namespace topogeo::cli {
 
-/// Waits until `commands` is connected with a program whose status `wanted` accepts, until the
-/// patience is over: a command that is sent when only another robot is connected is lost.
+/// Waits until `commands` is connected to a program whose status `wanted` accepts, or until the
+/// patience ends: a command sent while only another robot is connected is lost.
 template <class Status, class Command, class Wanted>
 bool connect_with_program(messaging::Reader<Status>& statuses,
                           const messaging::Writer<Command>& commands, support::Patience& patience,
@@ -35,7 +35,7 @@ bool connect_with_program(messaging::Reader<Status>& statuses,
   }
 }
 
-/// Waits until the readers have all that was written; false when the patience is over before.
+/// Waits until the readers have received everything; false when the patience ends first.
 template <class Command>
 bool is_delivered(messaging::Writer<Command>& writer, support::Patience& patience) {
   constexpr std::chrono::milliseconds kAcknowledgmentPoll{100};
@@ -46,7 +46,7 @@ bool is_delivered(messaging::Writer<Command>& writer, support::Patience& patienc
 }
 
 /// Sends a command and waits until its readers have it. Throws std::runtime_error when it cannot be
-/// sent or the patience is over before.
+/// sent or the patience ends first.
 template <class Command>
 void send_with(messaging::Writer<Command>& writer, const Command& command,
                support::Patience& patience) {

@@ -1,4 +1,4 @@
-// topogeo record: writes the scans that a gateway publishes as a log that can be replayed.
+// topogeo record: writes the scans that a gateway publishes to a log that can be replayed.
 #include <atomic>
 #include <memory>
 #include <optional>
@@ -15,7 +15,7 @@
 namespace topogeo::cli {
 namespace {
 
-/// A signal that comes while the recorder is made ends it like a later one.
+/// A signal during the construction of the recorder ends it like a later one.
 void record(const RecordRequest& request) {
   std::optional<Recorder> recorder;
   std::atomic<Recorder*> made = nullptr;

@@ -20,12 +20,12 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Without a message for so long after the end of the stream nothing will come any more.
+/// After this time without a message since the end of the stream, no more will come.
 constexpr double kPatience_s = 5.0;
 constexpr milliseconds kRecordTick{50};
-/// A grid is large: while the map grows it is recorded so often.
+/// Recording period of a growing grid, because a grid is large.
 constexpr std::chrono::seconds kGridPeriod{5};
-/// Scans whose poses may still come: a minute or two.
+/// Scans whose poses may still arrive: a minute or two.
 constexpr std::size_t kRecentScans = 2048;
 
 recording::LogWriter open_log(const RecordRequest& request) {
@@ -65,7 +65,7 @@ Recorder::Recorder(const RecordRequest& request)
     : request_(request),
       log_(open_log(request)),
       participant_(join_for(request.view, "topogeo/record", request.robot_id)),
-      // Slows a replay down rather than lose scans.
+      // Slows a replay down rather than losing scans.
       scans_(participant_, {std::string(messaging::kReplayRole), {}}),
       ends_(participant_),
       poses_(participant_),
@@ -147,7 +147,7 @@ void Recorder::take(const msg::Scan& message) {
   patience_.begin_again(support::monotonic_s());
   const std::uint64_t number = message.sequence_number();
   if (recorded_ > 0 && number < next_) {
-    // A log that is read again: its gateway was away, or who maps it was.
+    // A log read again, because its gateway or its mapper was away.
     if (message.odometry_epoch() == odometry_epoch_ && message.stamp_ns() <= last_stamp_ns_) return;
     throw std::runtime_error("scan " + std::to_string(number) + " came after scan " +
                              std::to_string(next_ - 1) +
@@ -191,7 +191,7 @@ void Recorder::record_graph() {
   patience_.begin_again(support::monotonic_s());
   if (!graph_is_new_ || recorded_ == 0) return;
   graph_is_new_ = false;
-  (void)follower_.take_changes();  // the whole is drawn
+  (void)follower_.take_changes();  // the whole map is drawn
   log_.write_graph(last_stamp_ns_, drawing_of(*follower_.map()));
   ++graphs_;
 }
@@ -218,7 +218,7 @@ bool Recorder::has_graph() const {
 }
 
 bool Recorder::has_grid() {
-  (void)hybrid_.map();  // takes what has come
+  (void)hybrid_.map();  // takes the tiles that have arrived
   return hybrid_.version() >= mapped_->last_id();
 }
 
@@ -234,7 +234,7 @@ bool Recorder::is_complete() {
 void Recorder::stop_at_end() {
   if (is_complete()) loop_.stop();
   if (!expected_) return;
-  // A localizer or map store that is there and has not ended has work to do.
+  // A connected localizer or map store that has not ended still has work to do.
   const bool works = (poses_.matched() > 0 && !localized_) || (elements_.matched() > 0 && !mapped_);
   if (log_.holds_poses() && works && next_ >= *expected_) return;
   if (patience_.is_over(support::monotonic_s())) loop_.stop();

@@ -1,4 +1,4 @@
-// Writes what a robot measures, and where it is in which map, as a log.
+// Records a robot's measurements, and its poses on the map, as a log.
 #pragma once
 
 #include <cstdint>
@@ -30,32 +30,32 @@ struct RecordRequest {
   std::optional<std::string> laser;  ///< see pipeline::parse_mounting
 };
 
-/// The scans of a gateway, and in formats that hold them the poses of the localizer, graph and grid
-/// of the map store, as far as these are there.
+/// Records the scans of a gateway and, in formats that hold them, the poses of the localizer and
+/// the graph and grid of the map store, as far as these services are there.
 class Recorder {
  public:
-  /// Throws service::UsageError and service::BadInputError for what is wrong with the request.
+  /// Throws service::UsageError and service::BadInputError for a faulty request.
   explicit Recorder(const RecordRequest& request);
 
-  /// Until the gateway's stream has ended and with it what localizer and map store make of it, or
-  /// stop(). Throws std::runtime_error when the log cannot be written or scans are missing.
+  /// Runs until the gateway's stream has ended and with it those of localizer and map store, or
+  /// until stop(). Throws std::runtime_error when the log cannot be written or scans are missing.
   void run();
-  /// Makes run() end return, also one that has not begun. For any thread.
+  /// Makes run() return, even if it has not begun. Thread-safe.
   void stop() { loop_.stop(); }
 
  private:
   void listen();
   void take(const msg::Scan& message);
-  /// Of a robot that knows where it is; poses come after their scans.
+  /// Takes the pose of a localized robot; poses come after their scans.
   void take_pose(const msg::LivePose& pose);
   void take_end(const msg::StreamEnd& end);
-  /// The graph of now at the time of the newest scan, once there is one.
+  /// Records the current graph at the time of the newest scan, once there is one.
   void record_graph();
-  /// The grid of now, unless it is that of the last one.
+  /// Records the current grid unless it is the same as the last one.
   void take_grid();
-  /// Each stage that is there has ended, and what it counts has come.
+  /// Each connected stage has ended, and everything that it counts has arrived.
   [[nodiscard]] bool is_complete();
-  /// The graph and the grid of the map store's end.
+  /// The final graph or grid of the map store has arrived.
   [[nodiscard]] bool has_graph() const;
   [[nodiscard]] bool has_grid();
   void stop_at_end();
@@ -79,9 +79,9 @@ class Recorder {
   std::uint64_t odometry_epoch_ = 0;            // of the last scan
   std::uint64_t first_ = 0;                     // number of the first scan recorded
   std::uint64_t next_ = 0;                      // number of the scan that is expected
-  std::uint64_t next_pose_ = 0;                 // after the last scan of which a pose came
+  std::uint64_t next_pose_ = 0;                 // after the last scan with a pose
   std::uint64_t recorded_ = 0;
-  std::uint64_t missing_ = 0;  // between the scans recorded
+  std::uint64_t missing_ = 0;  // among the scans recorded
   std::uint64_t poses_came_ = 0;
   std::uint64_t with_pose_ = 0;  // scans
   bool graph_is_new_ = false;

@@ -1,5 +1,5 @@
-// topogeo reproduce: the figures and tables of the publications, made by this program, beside what
-// is published.
+// topogeo reproduce: makes the figures and tables of the publications and compares them with the
+// published ones.
 #include <algorithm>
 #include <iostream>
 #include <memory>

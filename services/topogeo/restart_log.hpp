@@ -1,4 +1,4 @@
-// The services of a run that have died: when each is started again, and how long it was away.
+// Services of a run that have died: when each is restarted, and how long it was away.
 #pragma once
 
 #include <chrono>
@@ -10,35 +10,35 @@
 
 namespace topogeo::cli {
 
-/// Services have the names of their processes. Has no clock: the caller passes the time, in seconds
+/// Services are named like their processes. Has no clock: the caller passes the time, in seconds
 /// from any start.
 class RestartLog {
  public:
   static constexpr std::chrono::milliseconds kFirstDelay{100};
   static constexpr std::chrono::milliseconds kLongestDelay{5000};
-  /// A service that was at work for so long before it died did not die of its start.
+  /// A service that worked for so long before it died did not die from its start.
   static constexpr double kSettled_s = 5.0;
 
   struct Restart {
-    std::chrono::milliseconds delay{};  ///< until it is to be started again
-    std::uint32_t number = 0;           ///< how often it was started again, this one included
+    std::chrono::milliseconds delay{};  ///< until the restart
+    std::uint32_t number = 0;           ///< number of restarts, including this one
   };
 
-  /// The service has died. One that dies again and again waits twice as long each time.
+  /// Records a death. A service that dies repeatedly waits twice as long each time.
   Restart died(const std::string& name, double now_s);
-  /// The service is at work. Returns how long it was away, seconds; nothing when it was not.
+  /// The service works. Returns how long it was away, seconds; nothing when it was not.
   std::optional<double> at_work(const std::string& name, double now_s);
   [[nodiscard]] bool is_away(const std::string& name) const { return away_since_s_.contains(name); }
-  /// Those that have died and are not at work again, in order.
+  /// The services that have died and do not work again yet, in order.
   [[nodiscard]] std::vector<std::string> away() const;
-  /// All services are started anew.
+  /// Forgets the absences, because all services are restarted.
   void clear();
 
  private:
   std::map<std::string, std::uint32_t> restarts_;
-  std::map<std::string, std::uint32_t> deaths_in_row_;  // without settled work between
+  std::map<std::string, std::uint32_t> deaths_in_row_;  // without settled work in between
   std::map<std::string, double> away_since_s_;
-  std::map<std::string, double> at_work_since_s_;  // those that were started again
+  std::map<std::string, double> at_work_since_s_;  // restarted services
 };
 
 }  // namespace topogeo::cli

@@ -33,7 +33,7 @@ void wait_for_services(messaging::EventLoop& loop, const RobotInDomain& robot,
 }
 
 void call_off(messaging::EventLoop& loop, GoalClient& client) {
-  constexpr double kLastWord_s = 5.0;  // for the robot to have the order, and to stop
+  constexpr double kLastWord_s = 5.0;  // time for the robot to get the order and to stop
   client.cancel();
   support::Patience patience(kLastWord_s, support::monotonic_s());
   static_cast<void>(client.delivered(patience));

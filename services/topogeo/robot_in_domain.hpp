@@ -1,4 +1,4 @@
-// A live robot that a command sends somewhere: which one, on which domain, and waiting for it.
+// The live robot that a command sends somewhere: its name, its domain, and the wait for it.
 #pragma once
 
 #include <chrono>
@@ -20,14 +20,13 @@ struct RobotInDomain {
   double wait_s = 5.0;  ///< for planner and navigator
 };
 
-/// Adds --robot, --wait-seconds and what add_domain_options does; `robot` must outlive the app.
+/// Adds --robot, --wait-seconds and the flags of add_domain_options; `robot` must outlive the app.
 void add_robot_options(command_line::Command& app, RobotInDomain& robot);
 
-/// Between two checks of a condition: people notice no wait of that length.
+/// Interval between two checks of a condition: too short for people to notice.
 inline constexpr std::chrono::milliseconds kRobotTick{50};
 
-/// Runs the loop until `condition` holds; false when the patience is over before, or a signal
-/// comes.
+/// Runs the loop until `condition` holds; false when the patience ends first, or after a signal.
 template <class Condition>
 bool wait_for(messaging::EventLoop& loop, support::Patience& patience, const Condition& condition) {
   while (!condition()) {
@@ -36,12 +35,12 @@ bool wait_for(messaging::EventLoop& loop, support::Patience& patience, const Con
   return true;
 }
 
-/// Comes back when planner and navigator are there, or at a signal. Throws std::runtime_error that
-/// names what is missing.
+/// Returns when planner and navigator are there, or after a signal. Throws std::runtime_error
+/// naming the missing one.
 void wait_for_services(messaging::EventLoop& loop, const RobotInDomain& robot,
                        const GoalClient& client);
 
-/// The robot stops and forgets the goal that was sent.
+/// Makes the robot stop and drop the goal that was sent.
 void call_off(messaging::EventLoop& loop, GoalClient& client);
 
 /// Exit code after a signal.

@@ -30,7 +30,7 @@ void add_matches(storage::Report& report, const msg::RunSummary& summary) {
   }
 }
 
-/// Stops by state and searches, under the names that pipeline::localization_counts gives them.
+/// Stops by state, and searches, under the names of pipeline::localization_counts.
 void add_localization(storage::Report& report, const msg::RunSummary& summary) {
   for (const msg::StateCount& count : summary.stops_by_state()) {
     const auto state = static_cast<localization::LocalizationState>(count.state());
@@ -39,7 +39,7 @@ void add_localization(storage::Report& report, const msg::RunSummary& summary) {
   report.localization.emplace_back("searches", summary.searches());
 }
 
-/// Stops of a continued map, under the names that pipeline::continuation_counts gives them.
+/// Stops of a continued map, under the names of pipeline::continuation_counts.
 void add_continuation(storage::Report& report, const msg::RunSummary& summary) {
   report.continuation = {{"stored_stops", summary.stored_stops()},
                          {"added_stops", summary.added_stops()},
@@ -48,8 +48,8 @@ void add_continuation(storage::Report& report, const msg::RunSummary& summary) {
   if (!message.empty()) std::cerr << "topogeo: " << message << '\n';
 }
 
-/// Where a simulated robot starts that is sent somewhere: at the origin of the map, unless
-/// a flag has another place.
+/// Sets the start of a simulated robot with a goal: the origin of the map, unless a flag gives
+/// another place.
 RunOptions with_start(RunOptions options, bool unknown) {
   if (!options.job.map && options.goal) {
     throw service::UsageError("run: --goto needs --map (see --help)");
@@ -150,7 +150,7 @@ int run_log(const RunOptions& options) {
 
   storage::Report report = make_report(options, job.inputs.config.effective, result);
   add_overlaps(report, options.job, job.inputs.config.config);
-  while (job.reader.next()) {  // to learn what the gateway skipped
+  while (job.reader.next()) {  // to count the lines that the gateway skipped
   }
   results::add_log(report, job.reader.statistics());
   report.wall_s = support::monotonic_s() - start_s - result.stayed_s;

@@ -1,4 +1,4 @@
-// topogeo run with devices in place of a log: real ones, or those of a simulated robot.
+// topogeo run with devices instead of a log: real ones, or those of a simulated robot.
 #include <iostream>
 #include <span>
 #include <sstream>
@@ -30,7 +30,7 @@ using topomap::StampedPose;
 void write_devices(const RunOptions& options) {
   const SimulatorOptions& simulation = *options.simulation;
   sensor_gateway::DeviceFile file;
-  const support::ConfigSchema schema = describe(file);  // with the defaults as they are
+  const support::ConfigSchema schema = describe(file);  // with the default values
   if (!simulation.no_laser) file.laser.port = simulated_port(options, "laser").string();
   file.laser.settings.baud = simulation.laser_baud;
   file.laser.kind = sensor_gateway::DeviceFile::Laser::Kind::kPls;
@@ -47,7 +47,7 @@ void write_devices(const RunOptions& options) {
   support::write_file_atomically(options.devices, text.str());
 }
 
-/// Finds out before anything starts whether the devices are those that a run needs.
+/// Checks before the start that the devices are those that a run needs.
 void check_devices(const RunOptions& options) {
   const auto check = [&options](const std::string& port, const char* key, const char* why) {
     if (port.empty()) {
@@ -64,7 +64,7 @@ void check_devices(const RunOptions& options) {
   }
 }
 
-/// All services must have the mounting that the robot of ROS states.
+/// Makes all services use the laser mounting that the ROS robot states.
 void ask_for_mounting(RunOptions& options) {
   std::cerr << "topogeo: waiting for a scan of ROS and its transforms\n";
   options.laser.reset();

@@ -1,4 +1,4 @@
-// topogeo run --goto: a simulated robot is sent to a place of a stored map.
+// topogeo run --goto: sends a simulated robot to a place on a stored map.
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -21,7 +21,7 @@ namespace {
 
 using topomap::StampedPose;
 
-/// How far the estimated poses were from the truth.
+/// Prints the errors of the estimated poses against the truth.
 void print_pose_errors(const std::vector<StampedPose>& estimated,
                        const std::vector<StampedPose>& truth) {
   const std::vector<StampedPose> true_poses = truth_at(estimated, truth);
@@ -63,7 +63,7 @@ void print_arrival(const RunOptions& options, const GotoResult& result) {
   print_pose_errors(result.estimated, result.truth);
 }
 
-/// Without a laser no scan is matched: any map that has a grid will do.
+/// Without a laser no scan is matched, so any map with a grid will do.
 JobOptions inputs_of(JobOptions job, bool no_laser) {
   if (!no_laser) return job;
   job.map.reset();

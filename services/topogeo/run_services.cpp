@@ -24,13 +24,13 @@ Arguments operator+(Arguments arguments, const Arguments& more) {
   return arguments;
 }
 
-/// The mounting of the laser where it is not left to the configuration.
+/// The laser mounting, unless the configuration gives it.
 Arguments laser_argument(const RunOptions& options) {
   if (!options.laser) return {};
   return {"--laser=" + pipeline::mounting_argument(*options.laser)};
 }
 
-/// What a map store keeps, or the map that it shows as it is.
+/// Outputs of a map store, or the finished map that it shows.
 Arguments store_arguments(const RunOptions& options) {
   if ((options.goal || options.web) && options.job.map) return {"--map", options.job.map->string()};
   Arguments arguments = {"--out", options.job.out.string(), "--new", "--title",
@@ -45,7 +45,7 @@ Arguments store_arguments(const RunOptions& options) {
   return arguments;
 }
 
-/// What makes a localizer follow the robot in a stored map, or extend it.
+/// Flags that make a localizer follow the robot in a stored map, or extend it.
 Arguments map_arguments(const RunOptions& options) {
   Arguments arguments;
   if (options.job.continued) arguments = {"--continue", options.job.continued->string()};
@@ -59,14 +59,14 @@ Arguments map_arguments(const RunOptions& options) {
   return arguments;
 }
 
-/// Makes a service keep what its next life needs, where there is a place for it.
+/// Makes a service save the state for its restart, if there is a place for it.
 Arguments memory_argument(const std::string& partition, const std::string& what) {
   const std::filesystem::path memory = memory_of_run(partition, what);
   if (!std::filesystem::is_directory(memory.parent_path())) return {};
   return {"--memory", memory.string()};
 }
 
-/// The devices, the log or the robot of ROS, and a simulator where there are no real devices.
+/// Starts the devices, the log or the ROS robot, and a simulator if there are no real devices.
 void start_source(ProcessGroup& processes, const RunOptions& options, const std::string& partition,
                   const Arguments& common) {
   if (from_ros(options)) {
@@ -99,14 +99,14 @@ void start_source(ProcessGroup& processes, const RunOptions& options, const std:
     source = {"--devices", options.devices.string()};
     source = source + memory_argument(partition, "odometry");
   }
-  // All of them have the first scan.
+  // Each of these readers gets the first scan.
   const int readers = readers_of_scans(options, !options.record.empty());
   processes.start(kGateway, kGateway,
                   common + source + Arguments{"--readers", std::to_string(readers)},
                   Importance::kNeeded, Restart::kWhenItDies);
 }
 
-/// Beside the source of the scans, whose scans it gives to ROS.
+/// Starts the bridge beside the source of the scans, which it passes on to ROS.
 void start_bridge(ProcessGroup& processes, const RunOptions& options, const Arguments& common) {
   Arguments arguments = common + ros_arguments(*options.ros) + Arguments{"--sensors", "out"};
   if (options.devices.empty()) arguments = arguments + Arguments{"--replay", "--clock"};
@@ -138,7 +138,7 @@ bool from_ros(const RunOptions& options) {
   return options.ros && options.job.log.empty() && options.devices.empty();
 }
 
-// Were the page of a log not counted, it could be taken for the mapper and show less than all.
+// The page of a log must be counted: it could otherwise be mistaken for the mapper and miss scans.
 int readers_of_scans(const RunOptions& options, bool recorder) {
   const bool maps = !options.simulation || !options.simulation->no_laser;
   const bool page_of_log = options.web && !options.job.log.empty();
@@ -203,14 +203,14 @@ void start_services(ProcessGroup& processes, const RunOptions& options,
                      Arguments{"--link-file", link_file_beside(log).string()});
   }
   if (options.ros && !from_ros(options)) start_bridge(processes, options, common);
-  if (options.job.log.empty() && options.devices.empty() && !options.ros) return;  // a map alone
+  if (options.job.log.empty() && options.devices.empty() && !options.ros) return;  // map only
   start("planner", common);
-  // The robot of a log cannot be sent.
+  // A robot of a log cannot be given a goal.
   const bool replay = !options.job.log.empty();
   if (options.goal || options.explore || (options.web && !replay)) {
     start("navigator", common + memory_argument(partition, "goal"));
   }
-  // Without a laser there is nothing to match, and the navigator finds the robot.
+  // Without a laser there is nothing to match, and the navigator localizes the robot.
   if (options.simulation && options.simulation->no_laser) {
     start_source(processes, options, partition, common);
     return;

@@ -15,7 +15,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Speeds change more slowly than the base could change them, so that it keeps up.
+/// Keeps speed changes below the base's limit, so that it can follow.
 constexpr double kShareOfAcceleration = 0.6;
 
 }  // namespace
@@ -35,7 +35,7 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
       end_reader_, [this](const msg::StreamEnd& end, const messaging::SampleInfo&) {
         if (end.stage() != msg::kStageMapStore || end.robot_id() != options_.job.robot_id.c_str())
           return;
-        // What services do with their inputs when they are stopped is no end of the run.
+        // Output of services that are being stopped does not end the run.
         if (run_.ended()) return;
         result_.finished = true;
         run_.loop().stop();
@@ -84,7 +84,7 @@ RunResult RunSupervisor::run() {
   if (result_.finished) wait_for_summary();
   if (result_.finished && !options_.record.empty()) wait_for_recorder();
   if (result_.finished && options_.web) stay_for_page();
-  // Without the end of the stream samples are still on their way.
+  // Without the end of the stream, samples are still under way.
   result_.times = run_.stop(!result_.finished);
   result_.failure = run_.failure();
   return std::move(result_);
@@ -102,7 +102,7 @@ void RunSupervisor::tick() {
 }
 
 void RunSupervisor::watch_tour() {
-  // All services are there for the start of the drive: a scan has come through.
+  // A mapped scan means that all services are ready for the drive.
   if (counter(result_.services.find("local_mapper"), "scans") > 0.0) tour_->set_out();
   if (tour_->arrived()) end_stream();
   if (tour_->overdue()) {
@@ -153,7 +153,7 @@ void RunSupervisor::check_stall() {
 }
 
 void RunSupervisor::show_progress() {
-  // The localizer is the last to see a scan, but it counts stops, so these are put in scans.
+  // The localizer is the last stage but counts stops, which are converted to scans here.
   const msg::ServiceStatus* mapper = result_.services.find("local_mapper");
   const msg::ServiceStatus* localizer = result_.services.find("localizer");
   const double maps = counter(mapper, "local_maps");
@@ -187,7 +187,7 @@ void RunSupervisor::print(const std::string& text) {
 }
 
 // Summary and decisions were sent before the end of the stream, but on topics of their own, whose
-// writers may not even be known yet when the machine is busy.
+// writers may not even be discovered yet on a busy machine.
 void RunSupervisor::wait_for_summary() {
   const auto complete = [this] {
     return summary_came_ && decisions_.all().size() >= result_.summary.loop_decisions();
@@ -210,7 +210,7 @@ void RunSupervisor::wait_for_summary() {
                 : "no summary came from the localizer: there is a map, but no report");
 }
 
-// Who asked for a page wants to see in it what was mapped.
+// A user who asked for a page wants to see the map on it.
 void RunSupervisor::stay_for_page() {
   if (run_.signal_number() != 0) return;
   print("the map is finished and in " + options_.job.out.string() +
@@ -220,7 +220,7 @@ void RunSupervisor::stay_for_page() {
   result_.stayed_s = support::monotonic_s() - since_s;
 }
 
-// What the last services have published is still to be written.
+// Data published last still has to be written.
 void RunSupervisor::wait_for_recorder() {
   if (!run_.wait_for_end(kRecorder)) {
     print("the recording is not complete: its program has not ended by itself");

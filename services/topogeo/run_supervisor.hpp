@@ -1,4 +1,4 @@
-// One run of all services on a log: starts them, watches them to the end of the log, stops them.
+// One run of all services on a log: starts them, monitors them to the end of the log, stops them.
 #pragma once
 
 #include <cstdint>
@@ -25,28 +25,27 @@ namespace topogeo::cli {
 
 struct RunResult {
   bool finished = false;                  ///< the map is written
-  int signal_number = 0;                  ///< that has stopped the run, else 0
-  double stayed_s = 0.0;                  ///< how long its page stayed after that
-  std::string failure;                    ///< why it did not finish, when no signal did that
-  std::vector<support::StageTime> times;  ///< of each service
-  ServiceTable services;                  ///< their last statuses
+  int signal_number = 0;                  ///< signal that stopped the run, else 0
+  double stayed_s = 0.0;                  ///< how long the page stayed after the end
+  std::string failure;                    ///< why it did not finish, unless a signal stopped it
+  std::vector<support::StageTime> times;  ///< per service
+  ServiceTable services;                  ///< last statuses
   msg::RunSummary summary;                ///< of the localizer, when finished
   std::vector<localization::LoopDecision> loop_decisions;  ///< all, when finished
-  // Of a simulation:
-  std::vector<topomap::StampedPose> truth;  ///< where the robot really was
+  // For a simulation:
+  std::vector<topomap::StampedPose> truth;  ///< true poses of the robot
   std::uint64_t collisions = 0;
 };
 
 class RunSupervisor {
  public:
-  /// Starts the services, in a partition of their own. `laser_lines` is how many scans there are to
-  /// come, at most. Throws like ServiceRun.
-  /// For a simulation: its world has a tour. A run on devices ends with the tour, or with the first
-  /// signal; the map of what was seen by then is finished. With a page the services of a finished
-  /// run stay until a signal comes.
+  /// Starts the services, in a partition of their own. `laser_lines`: largest number of scans to
+  /// come. Throws like ServiceRun. The world of a simulation has a tour. A run on devices ends with
+  /// the tour, or with the first signal; the map of everything seen by then is finished. With a
+  /// page, the services of a finished run stay until a signal.
   RunSupervisor(const RunOptions& options, std::uint64_t laser_lines);
 
-  /// Comes back when no service runs any more. Call it once.
+  /// Returns when all services have ended. Call it once.
   RunResult run();
 
  private:
@@ -77,7 +76,7 @@ class RunSupervisor {
   messaging::Reader<msg::StreamEnd> end_reader_;
   messaging::Reader<msg::LoopDecisions> decision_reader_;
   messaging::Reader<msg::RunSummary> summary_reader_;
-  std::optional<TourDriver> tour_;  // while exploring it stands still and keeps the truth
+  std::optional<TourDriver> tour_;  // during exploration it only records the truth
   std::optional<ExploreSession> exploration_;
   bool stream_ended_ = false;  // the gateway was asked to end
 };

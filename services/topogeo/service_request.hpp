@@ -26,9 +26,9 @@ struct ServicePeer {
   std::string what = "localizer";  ///< for people
 };
 
-/// Sends `request`, which gets an id of its own, until the service has replied: its first reply
-/// may go before it knows this reader. It carries out a request once and repeats the reply. Throws
-/// std::runtime_error when nobody replies.
+/// Sends `request`, with a new id, until the service has replied: the first reply may be sent
+/// before the service knows this reader. It carries out a request once and repeats the reply.
+/// Throws std::runtime_error when there is no reply.
 template <class Reply, class Request>
 Reply ask(const ServicePeer& peer, Request request) {
   constexpr double kAgain_s = 1.0;

@@ -17,7 +17,7 @@
 namespace topogeo::cli {
 namespace {
 
-/// Often enough for a progress line that moves; ends of processes need not be seen sooner.
+/// Fast enough for a smooth progress line; process ends need not be detected sooner.
 constexpr std::chrono::milliseconds kRunTick{50};
 
 messaging::Participant join(const RunOptions& options, const std::string& partition) {
@@ -30,9 +30,9 @@ messaging::Participant join(const RunOptions& options, const std::string& partit
   return messaging::Participant(participant);
 }
 
-/// A partition that no other run has.
+/// A partition unique to this run.
 std::string own_partition() {
-  // The process id shows people whose it is, the random number keeps containers apart.
+  // The process id shows people the owner; the random number separates containers.
   return fmt::format("run-{}-{:08x}", ::getpid(), std::random_device{}());
 }
 
@@ -100,7 +100,7 @@ void ServiceRun::run() {
 void ServiceRun::tick() {
   if (ended_) return;
   if (next_ && processes_.retired()) {
-    forget_memories();  // the base of another simulator was switched off
+    forget_memories();  // the base of the previous simulator was switched off
     start_all(*std::exchange(next_, std::nullopt));
   }
   if (recorder_there_ && processes_.has_ended(kRecorder)) forget_recorder();
@@ -128,7 +128,7 @@ void ServiceRun::look_for_links() {
     hooks_.on_links(with_token, without_token);
     return;
   }
-  // A terminal shows the token to who has started this; in its place may be a log.
+  // The token is shown only on a terminal, that is to the user: a log might be read by others.
   std::string links = ::isatty(STDERR_FILENO) == 1 ? with_token : without_token;
   while (!links.empty()) {
     const std::size_t end = links.find('\n');
@@ -154,7 +154,7 @@ void ServiceRun::restart(const std::string& name, const std::string& description
 void ServiceRun::forget_recorder() {
   recorder_there_ = false;
   processes_.set_at_restart(source_, "--readers", std::to_string(other_readers_));
-  // One that was started again before waits for the recorder, too.
+  // A source restarted before waits for the recorder, too.
   if (restarts_.is_away(source_)) processes_.kill(source_);
 }
 
@@ -228,8 +228,8 @@ bool ServiceRun::wait_for_end(const std::string& name) {
   return processes_.has_ended(name);
 }
 
-// The source alone and first: a writer whose reader goes while samples are on their way to it can
-// lock up inside Fast DDS 2.9.1 (matched_reader_remove against the flow controller's thread).
+// First the source alone: a writer whose reader goes while samples are under way to it can deadlock
+// inside Fast DDS 2.9.1 (matched_reader_remove against the flow controller's thread).
 std::vector<support::StageTime> ServiceRun::stop(bool source_first) {
   const auto pause = [this](std::chrono::milliseconds duration) { loop_.run_for(duration); };
   const int came = signals_came_.load();

@@ -6,7 +6,7 @@
 namespace topogeo::cli {
 namespace {
 
-/// Times and what the system gives a process change while nothing is done.
+/// Times and resources of a process change even without work.
 bool is_work(std::string_view name) {
   return !name.ends_with("_s") && name != "resident_bytes" && name != "open_files" &&
          !name.starts_with("cpu_");

@@ -16,27 +16,27 @@ namespace topogeo::cli {
 class ServiceTable {
  public:
   void update(const msg::ServiceStatus& status, const messaging::SampleInfo& info);
-  /// The service ended or is silent.
+  /// Removes a service that has ended or is silent.
   void remove(const messaging::SampleInfo& info);
 
   /// Ordered by service, then instance.
   [[nodiscard]] std::vector<const msg::ServiceStatus*> rows() const;
 
-  /// The status of a service, or nullptr; of several that which started last.
+  /// The status of a service, or nullptr; of several instances, the one started last.
   [[nodiscard]] const msg::ServiceStatus* find(std::string_view service) const;
 
-  /// "navigator, planner": those that are short of CPU time; empty when none is.
+  /// "navigator, planner": the services short of CPU time; empty when none is.
   [[nodiscard]] std::string short_of_cpu() const;
 
-  /// Counters of all services but search workers, which may serve other runs too, and but those
-  /// that grow without work (CPU time): as long as this does not change, nothing moves.
+  /// Counters of all services except search workers, which may serve other runs too, and without
+  /// counters that grow without work (CPU time). While this does not change, nothing moves.
   [[nodiscard]] std::string progress_mark() const;
 
  private:
   using Name = std::pair<std::string, std::string>;  // service, instance
 
-  // By name, because the handles of one instance are not always the same: the generated code
-  // derives them from a buffer with left-overs between the two strings of this key.
+  // Keyed by name, because the handles of one instance may differ: the generated code derives them
+  // from a buffer with remnants between the two strings of this key.
   std::map<Name, msg::ServiceStatus> by_name_;
   std::map<messaging::Handle, Name> names_;
 };
@@ -44,13 +44,13 @@ class ServiceTable {
 /// The value of a counter, 0 if the service has none of that name.
 double counter(const msg::ServiceStatus* status, std::string_view name);
 
-/// "the CPU is short: timers fire up to 0.4 s late"; empty for a service that has enough.
+/// "the CPU is short: timers fire up to 0.4 s late"; empty for a service with enough CPU time.
 std::string cpu_shortage(const msg::ServiceStatus& status);
 
 /// "waiting", "running", ...
 std::string_view to_string(msg::ServiceState state);
 
-/// "localizer waiting: for 2 workers", one for each service, separated by "; ".
+/// "localizer waiting: for 2 workers" for each service, separated by "; ".
 std::string describe_states(const ServiceTable& table);
 
 }  // namespace topogeo::cli

@@ -1,6 +1,5 @@
 // topogeo simulate-route: plans on a map, a drawn floor or a grid, and shows the route as steps and
-// as a picture before anything moves (MACONDO, III.3.1; docs/algorithms.md, "Hybrid map and
-// planner").
+// a picture before anything moves (MACONDO, III.3.1; docs/algorithms.md, "Hybrid map and planner").
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -42,8 +41,8 @@ struct Floor {
   topomap::GlobalMap graph;
 };
 
-/// A world file (.world.yaml), a grid (.yaml) or a map file as the hybrid map that robots would
-/// have of it.
+/// Reads a world file (.world.yaml), a grid (.yaml) or a map file as the hybrid map that robots
+/// would get from it.
 Floor read_source(const SimulateRouteOptions& options, const pipeline::HybridMapConfig& config) {
   storage::MapDocument floor =
       pipeline::read_floor(options.source, options.zones, config.grid.resolution_m);
@@ -51,13 +50,13 @@ Floor read_source(const SimulateRouteOptions& options, const pipeline::HybridMap
   return {std::move(map), std::move(floor.global_map)};
 }
 
-/// What stands where --block says.
+/// Obstacles at the points of --block.
 struct Blocks {
   std::vector<Eigen::Vector2d> points_m;
   std::vector<planning::Cell> cells;
 };
 
-/// Throws service::UsageError for one that is off the map.
+/// Throws service::UsageError for a point off the map.
 Blocks blocks_of(const std::vector<std::string>& texts, const planning::GridFrame& frame) {
   Blocks blocks;
   for (const std::string& text : texts) {
@@ -71,7 +70,7 @@ Blocks blocks_of(const std::vector<std::string>& texts, const planning::GridFram
   return blocks;
 }
 
-/// The metres on virtual branches and beside branches come with their own line: they are the last
+/// Metres on virtual branches and beside branches are listed separately, because they are the last
 /// resort.
 void print_parts(const planning::HybridRoute& route) {
   const double virtual_m = planning::length_on(route, planning::PlannedOn::kVirtualBranch);

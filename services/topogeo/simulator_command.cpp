@@ -1,4 +1,4 @@
-// topogeo simulator: makes something go wrong in a running simulator.
+// topogeo simulator: injects a fault into a running simulator.
 #include <algorithm>
 #include <chrono>
 #include <iostream>

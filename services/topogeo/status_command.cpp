@@ -1,4 +1,4 @@
-// topogeo status: the services that live on a domain, how they are and what they are fed.
+// topogeo status: the services on a domain, their state and their inputs.
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -23,13 +23,13 @@
 namespace topogeo::cli {
 namespace {
 
-/// With --watch, to ask for the units of this host costs another program.
+/// Limited for --watch, because querying the units starts another program.
 constexpr std::chrono::seconds kUnitsPeriod{2};
 
 struct StatusOptions {
   DomainView view;
-  std::string service;  ///< only those of this name; empty: all
-  std::string host;     ///< only those of this host; empty: all
+  std::string service;  ///< only this name; empty: all
+  std::string host;     ///< only this host; empty: all
   std::vector<std::string> expected;
   bool verbose = false;
   bool json = false;
@@ -82,8 +82,7 @@ int show_status(const StatusOptions& options) {
   const bool redraw = options.view.watch && !options.json && ::isatty(STDOUT_FILENO) != 0;
   const Collected collected = collect_and_show(
       options.view, loop,
-      // One that is expected, or was discovered just now, is waited for as long as the first one
-      // is.
+      // A service that is expected or was just discovered is awaited as long as the first one.
       [&] {
         const StatusTable::Clock::time_point now = StatusTable::Clock::now();
         if (options.host.empty()) unheard.discovered(participant.discovered(), now);

@@ -16,11 +16,11 @@
 namespace topogeo::cli {
 namespace {
 
-/// Names of services matter more: they keep that much more.
+/// Service names matter more: they get this many more columns.
 constexpr std::size_t kMoreOfServices = 6;
 constexpr const char* kMissing = "missing";
 constexpr const char* kSilentState = "silent";
-/// A fault this long ago is no reason for how a service is now.
+/// An older fault does not explain the present state of a service.
 constexpr double kRecentError_s = 60.0;
 
 /// "0.3 s", "12 s", "5 min", "3 h".

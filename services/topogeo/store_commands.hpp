@@ -1,4 +1,4 @@
-// The subcommands of `topogeo store`; each function adds some, as those of commands.hpp do.
+// The subcommands of `topogeo store`, added like those of commands.hpp.
 #pragma once
 
 #include "topogeo/command_line/command_line.hpp"

@@ -1,4 +1,4 @@
-// topogeo store export: a map in the form of another program.
+// topogeo store export: writes a map in the format of another program.
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -43,7 +43,7 @@ int store_export(ExportOptions options) {
   return service::kOk;
 }
 
-/// Names of the forms.
+/// Names of the formats.
 std::vector<std::string> format_names() {
   std::vector<std::string> names;
   for (const exchange::ExportFormat& format : exchange::export_formats()) {

@@ -13,7 +13,7 @@ namespace topogeo::cli {
 namespace {
 
 constexpr std::string_view kDatabaseStart = "SQLite format 3";
-// A Protobuf text field of eleven bytes, then its text.
+// A Protobuf text field of eleven bytes, followed by its text.
 constexpr std::string_view kMapFileStart = "\x0a\x0btopogeo-map";
 
 std::string start_of(const std::filesystem::path& file) {

@@ -11,20 +11,20 @@
 
 namespace topogeo::cli {
 
-/// A map file (map.pb) or map database, by its content. Throws service::BadInputError naming the
-/// file and the cause.
+/// A map file (map.pb) or map database, recognized by its content. Throws service::BadInputError
+/// naming the file and the cause.
 storage::MapDocument read_any_map(const std::filesystem::path& file);
 
-/// Whether the file begins as a map file or a map database does.
+/// Whether the file begins like a map file or a map database.
 bool looks_like_map(const std::filesystem::path& file);
 
-/// Whether it begins as an SQLite file does.
+/// Whether the file begins like an SQLite file.
 bool looks_like_database(const std::filesystem::path& file);
 
 /// Throws service::UsageError naming file and key.
 pipeline::Config read_config(const std::optional<std::filesystem::path>& file);
 
-/// Each on stderr in a line of its own.
+/// Prints each note on stderr, on a line of its own.
 void print_notes(const exchange::Notes& notes);
 
 }  // namespace topogeo::cli

@@ -1,4 +1,4 @@
-// topogeo store import: what other programs made, as a map file or into one.
+// topogeo store import: converts files of other programs to a map file, or adds them to one.
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -42,7 +42,7 @@ struct ImportOptions {
   exchange::GridMapSettings grid;
 };
 
-/// The drawing of this project: a world, or zones and places.
+/// Reads a drawing of this project: a world, or zones and places.
 exchange::MapGraph read_own_drawing(const fs::path& file, double resolution_m) {
   exchange::MapGraph graph;
   graph.drawing = file.filename().string().ends_with(".world.yaml")
@@ -87,7 +87,7 @@ geometry::Pose2 pose_of_file(const ImportOptions& options) {
   }
 }
 
-/// Nodes and branches of a grid alone and, if wanted, the stops they are made from.
+/// Makes nodes and branches from a grid alone and, if wanted, the stops behind them.
 void add_graph(storage::MapDocument& document, const ImportOptions& options,
                const pipeline::Config& config) {
   const planning::FreeSpace space(*document.drawing.grid, config.hybrid_map.inflation);

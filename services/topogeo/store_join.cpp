@@ -1,4 +1,4 @@
-// topogeo store align, merge and remove-session: maps of one place put together and apart.
+// topogeo store align, merge and remove-session: joins and separates maps of one place.
 #include <cmath>
 #include <exception>
 #include <filesystem>
@@ -38,7 +38,7 @@ struct AlignOptions {
   exchange::AlignSettings settings;
 };
 
-/// A map; a world or grid becomes one with what a robot would see of it.
+/// Reads a map; a world or grid becomes a map of a robot's simulated views.
 storage::MapDocument read_with_stops(const fs::path& file, const pipeline::Config& config) {
   if (file.extension() != ".yaml") return read_any_map(file);
   try {
@@ -62,7 +62,7 @@ storage::MapDocument read_with_stops(const fs::path& file, const pipeline::Confi
 void print_alignment(const exchange::Alignment& a, bool json) {
   const geometry::Pose2& T = a.T_map_foreign;
   const double degrees = T.theta_rad * 180.0 / std::numbers::pi;
-  // No minus before a zero.
+  // Avoids a minus before a zero.
   const auto shown = [](double value) { return std::fabs(value) < 5e-4 ? 0.0 : value; };
   if (json) {
     const nlohmann::ordered_json out = {{"found", a.found},

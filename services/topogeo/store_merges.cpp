@@ -1,4 +1,4 @@
-// topogeo store merges, accept and refuse: what a localizer of several robots proposes to join.
+// topogeo store merges, accept and refuse: the merges proposed by a localizer of several robots.
 #include <chrono>
 #include <cstdint>
 #include <iostream>

@@ -1,4 +1,4 @@
-// topogeo store prune: drops what a map can do without.
+// topogeo store prune: drops dispensable parts of a map.
 #include <cstdint>
 #include <exception>
 #include <filesystem>

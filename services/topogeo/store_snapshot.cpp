@@ -24,7 +24,7 @@ struct SnapshotOptions {
   std::string name;
 };
 
-/// The database that a map store of this directory has; a file stands for itself.
+/// The database of a map store's directory; a file is returned unchanged.
 fs::path database_of(const fs::path& map) {
   return fs::is_directory(map) ? map / "map.sqlite" : map;
 }

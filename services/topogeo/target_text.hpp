@@ -14,7 +14,7 @@ namespace topogeo::cli {
 /// "1.5,-2": metres in the map frame; nothing for any other text.
 std::optional<Eigen::Vector2d> point_of(std::string_view text);
 
-/// The same for a flag that must have one: throws service::UsageError naming it.
+/// The same for a flag that requires a point: throws service::UsageError naming it.
 Eigen::Vector2d point_for(std::string_view flag, std::string_view text);
 
 /// X,Y, #NODE or the name of a place.

@@ -8,14 +8,14 @@
 namespace topogeo::cli {
 namespace {
 
-/// Lines of at most `columns` bytes that begin with two blanks, broken between words.
+/// Lines of at most `columns` bytes, indented by two blanks and broken between words.
 std::string wrapped(const std::string& text, std::size_t columns) {
   const std::string indent = "  ";
   std::string lines;
   std::string line = indent;
   for (std::size_t begin = 0; begin < text.size();) {
     std::size_t end = std::min(text.find(' ', begin), text.size());
-    end = std::min(end, begin + columns - indent.size());  // of a word without end
+    end = std::min(end, begin + columns - indent.size());  // a word without an end
     const std::string word = text.substr(begin, end - begin);
     if (line.size() > indent.size() && line.size() + 1 + word.size() > columns) {
       lines += line + "\n";

@@ -28,7 +28,7 @@ struct TopOptions {
 constexpr int kIndent = 2;
 constexpr int kOneLine = -1;  // of nlohmann
 
-/// Of the terminal; lines of 80 columns for everything else.
+/// Size of the terminal; lines of 80 columns for any other output.
 TextSize space_for(bool terminal) {
   winsize window{};
   if (!terminal || ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) != 0 || window.ws_col == 0) {

@@ -12,13 +12,13 @@
 namespace topogeo::cli {
 namespace {
 
-/// As the navigator: 20 commands in a second, each valid until ten later ones are lost.
+/// Same as the navigator: 20 commands a second, each valid until ten later ones are lost.
 constexpr double kCommandPeriod_s = 0.05;
 constexpr double kValid_s = 0.5;
-/// Without a scan for so long the robot stands: a gateway or a laser begins anew.
+/// After this time without a scan the robot stops: a gateway or a laser is restarting.
 constexpr double kBlind_s = 1.0;
-/// From a command until the base has obeyed it, about: the network, the line, and the time to reach
-/// the speed. The commands are for where the robot will be by then.
+/// Approximate delay from a command until the base obeys it: network, line, and time to reach the
+/// speed. Commands are computed for the robot's pose after this delay.
 constexpr double kDelay_s = 0.2;
 
 geometry::Pose2 ahead_of(const msg::GroundTruth& truth) {
@@ -81,7 +81,7 @@ void TourDriver::command(const simulation::Velocity& velocity) {
   command.linear_mps(velocity.linear_m_per_s);
   command.angular_radps(velocity.angular_rad_per_s);
   command.valid_for_s(kValid_s);
-  // One that is not sent is made up for by the next.
+  // The next command makes up for a lost one.
   if (commands_.write(command)) ++commands_sent_;
 }
 

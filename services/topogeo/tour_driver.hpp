@@ -1,6 +1,6 @@
 // Drives a simulated robot along the tour of its world by motion commands, which go through gateway
-// and base like those of a navigator, for which it stands in: without scans the robot stands. The
-// simulator reports where the robot really is.
+// and base like those of a navigator. Without scans the robot stands still. The simulator reports
+// the true poses.
 #pragma once
 
 #include <cstdint>
@@ -26,16 +26,17 @@ class TourDriver {
              std::string robot_id, const std::vector<Eigen::Vector2d>& tour_m,
              const simulation::DriveOptions& options);
 
-  /// Until this is called the robot stands still.
+  /// Starts the drive; the robot stands still before.
   void set_out() { started_ = true; }
-  /// The robot stands at the end of the tour, and a scan has come from there.
+  /// The robot stands at the end of the tour, and a scan from there has arrived.
   [[nodiscard]] bool arrived() const { return arrived_; }
-  /// Of the tour, [0, 1].
+  /// Completed share of the tour, [0, 1].
   [[nodiscard]] double share() const;
-  /// Twenty times what the tour takes at full speed has passed: it will not arrive any more.
+  /// Twenty times the duration of the tour at full speed has passed: the robot will not arrive any
+  /// more.
   [[nodiscard]] bool overdue() const { return driven_s_ > limit_s_; }
 
-  /// Where the robot really was.
+  /// True poses of the robot.
   [[nodiscard]] const GroundTruthLog& truth() const { return truth_; }
 
  private:
@@ -51,8 +52,8 @@ class TourDriver {
   bool started_ = false;
   bool arrived_ = false;
   bool at_end_ = false;
-  double scan_came_s_ = 0.0;    // in the world
-  double command_due_s_ = 0.0;  // in the world
+  double scan_came_s_ = 0.0;    // world time
+  double command_due_s_ = 0.0;  // world time
   double driven_s_ = 0.0;
   double standing_s_ = 0.0;  // at the end
   std::uint64_t commands_sent_ = 0;

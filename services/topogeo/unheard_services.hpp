@@ -1,5 +1,5 @@
-// Services that are there and do not publish their status: discovery or the list of processes of
-// this host knows them.
+// Services that exist but do not publish their status: they are known from discovery or from the
+// list of processes of this host.
 #pragma once
 
 #include <chrono>
@@ -21,34 +21,34 @@
 
 namespace topogeo::cli {
 
-/// One of them, for the table of `topogeo status`.
+/// An unheard service, for the table of `topogeo status`.
 struct UnheardService {
   std::string name;    ///< "localizer"
   std::string reason;  ///< "discovery finds robot/localizer, and it publishes no status"
 };
 
-/// The caller passes the time, which never goes back.
+/// The caller passes the time, which must never go back.
 class UnheardServices {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// A service has that long for its first status, from its discovery on.
+  /// Time that a service has for its first status, counted from its discovery.
   static constexpr std::chrono::milliseconds kFirstStatus{1500};
-  /// A process that was started less than so long ago may not have joined its domain yet.
+  /// A process younger than this may not have joined its domain yet.
   static constexpr double kStarting_s = 10.0;
 
-  /// Services of that domain and partition ("*": of all).
+  /// Services of that domain and partition ("*": all partitions).
   UnheardServices(std::uint32_t domain, std::string partition)
       : domain_(domain), partition_(std::move(partition)) {}
 
   /// A status has come.
   void heard(const msg::ServiceStatus& status, const messaging::SampleInfo& info);
-  /// The endpoints that discovery knows now, in place of those before.
+  /// Replaces the endpoints that discovery knows.
   void discovered(std::span<const messaging::RemoteEndpoint> endpoints, Time now);
-  /// The same of the services of the host with that name.
+  /// Replaces the running services of the host with that name.
   void running(std::vector<HostProcess> processes, const std::string& host);
 
-  /// Whether one that is discovered may still publish its first status.
+  /// Whether a discovered service may still publish its first status.
   [[nodiscard]] bool may_come(Time now) const;
   /// The services that should have been heard by now, each once, by name.
   [[nodiscard]] std::vector<UnheardService> list(Time now) const;
@@ -63,7 +63,7 @@ class UnheardServices {
   std::string partition_;
   std::set<messaging::Handle> heard_;                                // writers of statuses
   std::set<std::pair<std::string, std::uint32_t>> processes_heard_;  // host, process
-  std::map<messaging::Handle, Writer> writers_;                      // that are discovered
+  std::map<messaging::Handle, Writer> writers_;                      // discovered writers
   std::vector<HostProcess> running_;
   std::string host_;
 };

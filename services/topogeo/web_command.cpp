@@ -1,4 +1,4 @@
-// topogeo web: a page for a robot that runs; topogeo view: for a stored map.
+// topogeo web: a page for a running robot; topogeo view: a page for a stored map.
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
@@ -40,7 +40,7 @@ struct ViewCommand {
   std::uint32_t domain = 0;
 };
 
-/// Becomes the program `web`.
+/// Replaces this process by the program `web`.
 [[noreturn]] void become_web_service(const WebCommand& command) {
   const std::filesystem::path program =
       std::filesystem::read_symlink("/proc/self/exe").parent_path() / "web";
@@ -67,7 +67,7 @@ int view(const ViewCommand& command) {
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }
-  const support::TemporaryFolder logs("view");  // of the services
+  const support::TemporaryFolder logs("view");  // logs of the services
   RunOptions options;
   options.domain = command.domain;
   options.job.map = command.map;

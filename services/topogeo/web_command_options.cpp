@@ -20,7 +20,7 @@ std::string token_of_environment() {
   return given != nullptr ? given : "";
 }
 
-/// The token of the command line, of its file or of the environment.
+/// The token from the command line, from its file or from the environment.
 std::optional<std::string> given_token(const WebOptions& options) {
   if (options.token && options.token_file) {
     throw service::UsageError("expected --token or --token-file, not both");
@@ -129,7 +129,7 @@ std::string links_in(const std::filesystem::path& log, bool with_token) {
       }
       links += line + '\n';
     }
-    // The second line is whole when its end has come.
+    // The second line is complete once its end has arrived.
     if (of_spectators && !file.eof()) return links + line + '\n';
   }
   return {};

@@ -36,7 +36,7 @@ class WebRun {
     run_.start(options, std::move(hooks));
   }
 
-  /// Until a signal, or an end of a service that nothing works without.
+  /// Runs until a signal, or until a required service ends.
   void run() {
     run_.run();
     static_cast<void>(run_.stop(true));
@@ -45,14 +45,14 @@ class WebRun {
 
  private:
   void show(const std::string& links, const std::string& without_token) const {
-    // In place of a terminal there may be a log, which others read.
+    // Standard output may be a log that others read instead of a terminal.
     std::cout << (::isatty(STDOUT_FILENO) == 1 ? links : without_token) << "Ctrl-C ends it.\n"
               << std::flush;
     if (open_browser_) open_in_browser(operator_link(links), page_);
   }
 
   bool open_browser_;
-  std::filesystem::path page_;  // that leads the browser to the operator's
+  std::filesystem::path page_;  // leads the browser to the operator's link
   ServiceRun run_;
   std::optional<FloorLoader> floors_;
 };

@@ -1,5 +1,5 @@
-// All services and a page, until Ctrl-C: of a simulated robot that stands until the page sends it,
-// or of a stored map alone.
+// All services and a page, until Ctrl-C: for a simulated robot that waits for goals from the page,
+// or only for a stored map.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace topogeo::cli {
 
-/// Runs the services of `options`, which has a web service, until a signal comes; 0 then. Without a
-/// simulation and devices there are only those that show a map. Throws like ServiceRun, and
-/// std::runtime_error when a service ends that is needed.
+/// Runs the services of `options`, including a web service, until a signal; then returns 0. Without
+/// simulation and devices, only the services that show a map run. Throws like ServiceRun, and
+/// std::runtime_error when a required service ends.
 int run_web(RunOptions options, bool open_browser = false);
 
 }  // namespace topogeo::cli

@@ -13,9 +13,9 @@ namespace {
 
 using Clock = WorkerTable::Clock;
 
-/// Names of workers matter more than those of hosts: they keep that much more.
+/// Worker names matter more than host names: they get this many more columns.
 constexpr std::size_t kMoreOfNames = 6;
-/// Kept free for the usual states, "  draining" the longest of them.
+/// Reserved for the usual states, "  draining" being the longest.
 constexpr std::size_t kStateWidth = 10;
 
 std::string duration_text(double duration_s) {

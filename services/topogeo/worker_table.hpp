@@ -16,19 +16,19 @@
 
 namespace topogeo::cli {
 
-/// What a worker is doing, or why it is not used, as seen by a program of `version` and
-/// `matcher_fingerprint`. `silence` is the time since its last status.
+/// State of a worker, or why a program of `version` and `matcher_fingerprint` does not use it.
+/// `silence` is the time since its last status.
 std::string worker_state(const msg::WorkerStatus& status, std::chrono::nanoseconds silence,
                          const std::string& version, std::uint64_t matcher_fingerprint);
 
-/// Workers publish twice a second; one that is silent for so long hangs or is cut off.
+/// Workers publish twice a second: one silent for this long hangs or is cut off.
 inline constexpr std::chrono::milliseconds kWorkerSilent{1500};
 
 class WorkerTable {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// `version` and `matcher_fingerprint` of this program: workers of others are marked.
+  /// `version` and `matcher_fingerprint` of this program: workers with others are marked.
   WorkerTable(std::string version, std::uint64_t matcher_fingerprint)
       : version_(std::move(version)), matcher_fingerprint_(matcher_fingerprint) {}
 
@@ -41,11 +41,11 @@ class WorkerTable {
 
   [[nodiscard]] bool empty() const { return rows_.empty(); }
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
-  /// Head line, one line for each worker by name, no wider than `columns`, a line with the sums.
-  /// Columns that are the same everywhere are left out; a state that does not fit stands below.
-  /// Workers publish twice a second; one that is silent for kSilent is marked.
+  /// Head line, one line for each worker by name, no wider than `columns`, and a line with the
+  /// totals. Columns with the same value everywhere are left out; a state that does not fit goes
+  /// below. A worker silent for kSilent is marked.
   [[nodiscard]] std::string text(Clock::time_point now, std::size_t columns = kColumns) const;
-  /// Everything, a block of lines for each worker.
+  /// All fields, in a block of lines per worker.
   [[nodiscard]] std::string details(Clock::time_point now) const;
   /// The same for programs: an array of objects, field names as in the IDL.
   [[nodiscard]] std::string json(Clock::time_point now) const;

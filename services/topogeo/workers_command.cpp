@@ -1,4 +1,4 @@
-// topogeo workers: the search workers on the domain and what they are doing.
+// topogeo workers: the search workers on the domain and their current tasks.
 #include <iostream>
 #include <memory>
 

@@ -102,14 +102,14 @@ void figure_4_19(Report& report) {
     panel.lines.push_back({{on_page(cell_m), on_page(nearest_m)}, FigureColour::kBlack, 1.25});
     panel.texts.push_back({on_page(0.5 * (cell_m + nearest_m)),
                            fmt::format("{:.2f} m", (nearest_m - cell_m).norm())});
-    // Group 1 is the whole wall to the right: the perpendicular to it.
+    // Group 1 is the whole wall to the right, so its nearest point is on the perpendicular.
     if (g == 0) off_m = std::fabs((nearest_m - cell_m).norm() - (cell_m.y() + 0.9));
   }
   report.draw({.title = "Distance of a cell to groups (4.16)", .panels = {panel}});
   report.worked_out("distance to the wall, off its perpendicular", off_m, 0.0, "m", 0.01);
 }
 
-// The print cuts digits off where it should round.
+// The print truncates digits instead of rounding.
 void table_4_1(Report& report) {
   struct Row {
     int resolution_cm;

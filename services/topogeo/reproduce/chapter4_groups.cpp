@@ -1,4 +1,4 @@
-// Thesis, 4.2.1: the groups of a scan, each rule with and without it.
+// Thesis, 4.2.1: the groups of a scan, with and without each rule.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -45,7 +45,7 @@ double count(std::size_t n) {
 }
 
 /// Panels of a figure that explains one rule: the readings, then groups and diagram without and
-/// with it.
+/// with the rule.
 void draw_rule(Report& report, const SeenScene& without, const SeenScene& with,
                const std::string& rule) {
   Figure figure;
@@ -200,9 +200,9 @@ VoronoiConfig without_hidden_zones() {
   return config;
 }
 
-/// Draws what a corner hides: seen from the robot, the walls turn away from the path at the near
-/// point of a jump of range, and what follows begins at the far one. These scenes have their walls
-/// along the axes of the robot.
+/// Draws the area that a corner hides: seen from the robot, the walls turn away at the near point
+/// of a range jump, and the next wall begins at the far point. The walls of these scenes are
+/// parallel to the axes of the robot.
 void add_hidden(FigurePanel& panel, const SeenScene& seen) {
   const auto& groups = seen.diagram.groups;
   for (std::size_t g = 1; g < groups.groups.size(); ++g) {

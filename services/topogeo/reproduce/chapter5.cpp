@@ -155,7 +155,7 @@ void figure_5_3(Report& report) {
   report.worked_out("state above the least clearance", door.clearance_m - least_m, 0.0, "m", 0.01);
 }
 
-/// Figures 5.4 and 5.5: one state of this kind at a place that the scene says.
+/// Figures 5.4 and 5.5: one state of this kind at the place given by the scene.
 void draw_state(Report& report, const std::string& number, NodeKind kind,
                 const Eigen::Vector2d& expected_m, double tolerance_m) {
   const SeenScene without = scene5(number, without_states());

@@ -27,7 +27,7 @@ using render::FigureColour;
 using render::FigurePanel;
 
 constexpr double kDegree_rad = std::numbers::pi / 180.0;
-constexpr double kSearchProbability = 0.95;  // that of the Thesis
+constexpr double kSearchProbability = 0.95;  // as in the Thesis
 
 void table_6_1(Report& report) {
   struct Row {
@@ -40,7 +40,7 @@ void table_6_1(Report& report) {
   }
 }
 
-/// Step between neighbouring values of a gene of so many bits over [-30, 50].
+/// Step between neighbouring values of a gene of `bits` bits over [-30, 50].
 double gene_step(std::uint32_t bits) {
   localization::MatchTask task;
   task.T_reference_query = {10.0, 0.0, 0.0};
@@ -164,12 +164,12 @@ void figure_6_4(Report& report) {
   report.worked_out("rectangle beyond its ellipse, of its half side", off_m, 0.0, "", 0.01);
 }
 
-/// Two maps of one place, the query displaced from where it belongs by less and less.
+/// Two maps of one place, with the query displaced from its true pose in decreasing steps.
 struct DisplacedPair {
   topomap::LocalMap reference;
   topomap::LocalMap query;
   Pose2 T_true;
-  std::vector<Pose2> displacements;  ///< of the query, in its own frame; the last is none
+  std::vector<Pose2> displacements;  ///< of the query, in its own frame; the last is the identity
 };
 
 struct DisplacedFitness {
@@ -218,7 +218,7 @@ void compare_displaced(Report& report, const DisplacedPair& pair,
     add_robot(panel, {}, FigureColour::kRed);
     add_robot(panel, pair.T_true * off, FigureColour::kBlue);
     panel.extent = {{-3.5, -1.5}, {3.5, 4.5}};
-    // Where the query is outside of that, around its whole map.
+    // If the query lies outside of that, show its whole surroundings.
     constexpr double kReach_m = 4.5;
     const Eigen::Vector2d at_m = on_page((pair.T_true * off).position_m());
     if ((at_m.array() < panel.extent->low.array()).any()) {

@@ -1,4 +1,4 @@
-// Thesis, 7.3.1.2: what the backward correction makes of the stop after the turn.
+// Thesis, 7.3.1.2: the backward correction at the stop after the turn.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -27,7 +27,7 @@ double size_as_number(std::size_t n) {
   return static_cast<double>(n);
 }
 
-/// The first stop that looks back along the corridor.
+/// The first stop with a view back along the corridor.
 std::size_t turned_stop(const Drive& drive) {
   for (std::size_t k = 0; k < drive.truth.size(); ++k) {
     if (std::fabs(geometry::wrap_angle(drive.truth[k].theta_rad)) > 2.5) return k;
@@ -184,8 +184,8 @@ void figure_7_26(Report& report) {
   report.show("combinations", size_as_number(later.points.size()));
 }
 
-/// Largest ratio of a pose's distance from where it is expected to the half side of its search
-/// space; up to 1 it lies inside.
+/// Largest ratio of a pose's distance from its expected place to half the side of its search space;
+/// up to 1 it lies inside.
 double farthest_in_space(const Correction::Backward& backward, const Correction& correction) {
   double farthest = 0.0;
   const auto& config = correction.config.thesis.backward;
@@ -248,7 +248,7 @@ void figure_7_27(Report& report) {
                     std::max(0.15, pose_errors(forward, drive.truth).last_m));
 }
 
-/// What becomes of the loop when steps may be taken in one way alone.
+/// The loop when steps of one kind only are allowed.
 struct BackwardWay {
   const char* name;
   StepKind kind;
@@ -326,7 +326,7 @@ void figure_7_30(Report& report) {
   const Correction::Backward& backward = first_closing(correction);
   const auto& problem = backward.problem;
   const auto& last = problem.poses.back();
-  // Each candidate alone: those that lead to no consistent poses are refused.
+  // Each candidate alone: candidates without consistent poses are refused.
   const auto refused_alone = [&](const localization::BackwardCandidate& candidate) {
     localization::BackwardProblem only = problem;
     only.candidates = {candidate};
@@ -336,7 +336,7 @@ void figure_7_30(Report& report) {
   };
   const auto refused =
       static_cast<std::size_t>(std::ranges::count_if(problem.candidates, refused_alone));
-  // One that is moved along the corridor until its map sees nothing of the overlap.
+  // A candidate moved along the corridor until its map no longer sees the overlap.
   localization::BackwardCandidate moved = problem.candidates.at(0);
   moved.T_first_last.T_a_b.x_m += 20.0;
   const Pose2 T_first_last = moved.T_first_last.T_a_b;

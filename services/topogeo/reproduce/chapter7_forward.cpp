@@ -32,7 +32,7 @@ Eigen::Vector3d half_width_of(const UncertainPose& pose, const Correction& corre
                                          correction.config.search_heading_sigmas);
 }
 
-/// By odometry from stop `from` to stop `to`.
+/// Odometry from stop `from` to stop `to`.
 UncertainPose by_odometry(const Correction& correction, std::size_t from, std::size_t to) {
   UncertainPose sum;
   for (std::size_t k = from + 1; k <= to; ++k) {
@@ -145,7 +145,7 @@ FigurePanel views_panel(const Drive& drive, const Correction& correction, std::s
 }
 
 void figure_7_10(Report& report) {
-  // Of matches that place each position the search spaces are those of single steps.
+  // Each position has its own match, so the search spaces are those of single steps.
   const Correction& correction = report.runs().correction(kPositions, {.backward = false});
   const Drive& drive = report.runs().drive(kPositions);
   const auto& stop = correction.map();

@@ -1,4 +1,4 @@
-// Thesis, 7.3.2: local maps become one, step by step.
+// Thesis, 7.3.2: the fusion of local maps, step by step.
 #include <algorithm>
 
 #include "topogeo/support/format.hpp"

@@ -1,4 +1,4 @@
-// The parts of chapter 8, and what their pictures share.
+// The parts of chapter 8, and helpers shared by their pictures.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace topogeo::reproduce {
 std::vector<Experiment> chapter8_corridor();
 std::vector<Experiment> chapter8_loop();
 
-/// All readings of a drive, where odometry or the truth has the stops, and its path.
+/// All readings of a drive, at the stops by odometry or by the truth, and its path.
 render::FigurePanel readings_panel(const Drive& drive, const std::string& title, bool truth);
 /// The local maps of the first stops at these poses, and their path.
 render::FigurePanel maps_panel(const Drive& drive, const std::vector<geometry::Pose2>& poses,

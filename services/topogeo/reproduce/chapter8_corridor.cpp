@@ -105,8 +105,8 @@ void figure_8_7(Report& report) {
                 errors.mean_m < pose_errors(drive.odometry, drive.truth).mean_m);
 }
 
-/// Stretches of branches of a global map, or of a local one at its pose, that lie in a rectangle of
-/// the world, metres.
+/// Length of the branches of a global map, or of a local one at its pose, inside a rectangle of the
+/// world, metres.
 template <class Map>
 double length_within(const Map& map, const Pose2& T_world_map, const Eigen::Vector2d& low,
                      const Eigen::Vector2d& high) {
@@ -123,7 +123,7 @@ double length_within(const Map& map, const Pose2& T_world_map, const Eigen::Vect
   return length_m;
 }
 
-/// Around a place of the world, with what is there when the robot is at a stop.
+/// A panel around a place of the world, with the scene at the time of a stop.
 FigurePanel place_panel(const Drive& drive, std::size_t stop, const Eigen::Vector2d& at_m,
                         const std::string& title) {
   FigurePanel panel;
@@ -134,15 +134,15 @@ FigurePanel place_panel(const Drive& drive, std::size_t stop, const Eigen::Vecto
   return panel;
 }
 
-// The leaf of experiment_1.world.yaml that stands almost along the wall, and the corridor beside
-// it.
+// The door leaf of experiment_1.world.yaml that stands almost along the wall, and the corridor
+// beside it.
 const Eigen::Vector2d kLeafLow_m(18.3, -1.1);
 const Eigen::Vector2d kLeafHigh_m(20.1, -0.55);
 const Eigen::Vector2d kBesideLow_m(18.3, -0.55);
 const Eigen::Vector2d kBesideHigh_m(20.1, 0.55);
 
-/// What the local map of each stop has behind the leaf, as long as the door there is shut; nothing
-/// where it has no branch along the leaf.
+/// For each stop before the door opens, the branch length behind the leaf in its local map; nothing
+/// when the map has no branch along the leaf.
 std::vector<std::optional<double>> behind_leaf_m(const Drive& drive,
                                                  const std::vector<Pose2>& poses) {
   constexpr double kDoorOpens_m = 33.0;  // of the path

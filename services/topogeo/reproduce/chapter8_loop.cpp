@@ -46,8 +46,8 @@ namespace {
 
 constexpr const char* kLoop = "loop";
 
-/// The stops of the published stages, 59 to 62: the one that first closes the loop, the two after
-/// it, and the last.
+/// The stops of the published stages, 59 to 62: the one that first closes the loop, the next two,
+/// and the last.
 std::size_t stage_stop(const Correction& correction, std::size_t stage) {
   const std::size_t last = correction.poses_after.size() - 1;
   if (stage == 3) return last;
@@ -57,7 +57,7 @@ std::size_t stage_stop(const Correction& correction, std::size_t stage) {
   return std::min(first + stage, last);
 }
 
-/// The stop at the place of the published position 62.
+/// The stop at the place of published position 62.
 std::size_t published_end(const Drive& drive) {
   const Eigen::Vector2d end_m(-0.4, 13.8);  // of the world
   const auto away_m = [&](const Pose2& pose) {
@@ -214,7 +214,8 @@ void times_8_1(Report& report) {
   report.at_most("all corrections of the drive (hours there)", correction.wall_s, 7200.0, "s");
 }
 
-/// Why matches that would close the loop were refused: "match not accepted: few inliers (3), ...".
+/// Why matches that would have closed the loop were refused: "match not accepted: few inliers (3),
+/// ...".
 std::string refusals(const Correction& correction) {
   std::map<std::string, int> counts;
   for (const localization::LoopDecision& decision : correction.localizer->loop_decisions()) {

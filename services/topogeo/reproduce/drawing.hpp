@@ -17,24 +17,24 @@
 
 namespace topogeo::reproduce {
 
-/// From x forward, y left to the axes of the page.
+/// Converts x forward, y left to the axes of the page.
 inline Eigen::Vector2d on_page(const Eigen::Vector2d& point_m) {
   return {-point_m.y(), point_m.x()};
 }
 
-/// The k-th of colours that differ.
+/// The k-th of a series of distinct colours.
 render::FigureColour distinct_colour(std::size_t k);
 
-/// Surfaces of a world as the laser at T_world_laser sees them, pale.
+/// Surfaces of a world seen by a laser at T_world_laser, pale.
 void add_walls(render::FigurePanel& panel, const world::World& world,
                const geometry::Pose2& T_world_laser);
 /// The robot, at a pose in the frame of the page.
 void add_robot(render::FigurePanel& panel, const geometry::Pose2& T_page_robot,
                render::FigureColour colour = render::FigureColour::kRed);
-/// Ranges over the angles of the beams, from the right.
+/// Ranges over the beam angles, from the right.
 render::FigurePanel polar_panel(const scan::Scan& scan, double range_limit_m,
                                 const std::string& title);
-/// Readings of each group in a colour of its own, with the number of the group.
+/// Readings of each group in its own colour, with the number of the group.
 void add_groups(render::FigurePanel& panel, const voronoi::GeneratorGroups& groups);
 /// Branches green, nodes blue, as in the Thesis, chapter 4.
 void add_diagram(render::FigurePanel& panel, const voronoi::LocalVoronoiDiagram& diagram);
@@ -47,7 +47,7 @@ void add_map(render::FigurePanel& panel, const topomap::GlobalMap& map,
 void add_points(render::FigurePanel& panel, const topomap::LocalMap& map,
                 const geometry::Pose2& T_page_robot, render::FigureColour colour,
                 double radius_px = 1.0);
-/// Along the axes of the frame.
+/// A rectangle parallel to the axes of the frame.
 void add_rectangle(render::FigurePanel& panel, const localization::VisibleRectangle& rectangle,
                    render::FigureColour colour, bool dashed = false);
 void add_path(render::FigurePanel& panel, const std::vector<geometry::Pose2>& poses,

@@ -1,7 +1,8 @@
-// One row of the reproduction: a figure or table of a publication and what makes its counterpart.
+// One row of the reproduction: a figure or table of a publication, and the code for its
+// counterpart.
 //
-// To add one: a function that measures and draws with a Report, and a line in the list of its
-// chapter (chapter4.cpp, ...).
+// A new experiment needs a function that measures and draws with a Report, and a line in the list
+// of its chapter (chapter4.cpp, ...).
 #pragma once
 
 #include <filesystem>
@@ -17,38 +18,38 @@ namespace topogeo::reproduce {
 class SharedRuns;
 
 struct ReportPicture {
-  std::string file;  ///< name inside of the folder of all results
+  std::string file;  ///< name in the folder of all results
   std::string caption;
 };
 
-/// Collects what an experiment measures; writes its pictures.
+/// Collects an experiment's measurements and writes its pictures.
 class Report {
  public:
   /// `folder` exists; pictures are <experiment>.png and <experiment>_<part>.png in it.
   Report(std::filesystem::path folder, std::string experiment, SharedRuns& runs);
 
   void add(Value value) { values_.push_back(std::move(value)); }
-  /// For people alone.
+  /// For people only.
   void show(std::string name, double measured, std::string unit = "");
-  /// Equal to what is printed.
+  /// Expected to equal the printed value.
   void printed(std::string name, double measured, double expected, std::string unit = "",
                double tolerance = 1e-9);
-  /// Equal to what was worked out by hand.
+  /// Expected to equal the value worked out by hand.
   void worked_out(std::string name, double measured, double expected, std::string unit = "",
                   double tolerance = 1e-9);
-  /// The smaller or the larger the better.
+  /// The smaller or the larger, the better.
   void at_most(std::string name, double measured, double printed, std::string unit = "",
                double tolerance = 0.0);
   void at_least(std::string name, double measured, double printed, std::string unit = "",
                 double tolerance = 0.0);
-  /// A statement of the publication that holds or not.
+  /// A statement of the publication that holds or does not.
   void states(std::string statement, bool holds);
 
   void add(Table table) { tables_.push_back(std::move(table)); }
   void note(std::string text) { notes_.push_back(std::move(text)); }
   void draw(const render::Figure& figure, const std::string& caption = "",
             const std::string& part = "");
-  /// Bytes of a PNG file that something else drew.
+  /// Keeps the bytes of a PNG file drawn elsewhere.
   void keep_picture(const std::string& bytes, const std::string& caption,
                     const std::string& part = "");
 
@@ -56,7 +57,7 @@ class Report {
   [[nodiscard]] const std::vector<Table>& tables() const { return tables_; }
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
   [[nodiscard]] const std::vector<ReportPicture>& pictures() const { return pictures_; }
-  /// Drives that several experiments look at.
+  /// Drives shared by several experiments.
   [[nodiscard]] SharedRuns& runs() { return *runs_; }
 
  private:
@@ -70,19 +71,19 @@ class Report {
 };
 
 struct Experiment {
-  std::string name;         ///< "figure-4.8": of files and on the command line
+  std::string name;         ///< "figure-4.8": in file names and on the command line
   std::string publication;  ///< short name of docs/algorithms.md
   std::string number;       ///< "Figure 4.8"
-  std::string caption;      ///< what is shown, in our words
+  std::string caption;      ///< contents of the figure, in our words
   void (*run)(Report&) = nullptr;
-  std::string why{};    ///< the known reason for differences, in case that there are any
+  std::string why{};    ///< the known reason for differences, if there are any
   bool drives = false;  ///< takes seconds: it simulates whole drives
 };
 
-/// All of them, in the order of the publications; names are unique.
+/// All experiments, in the order of the publications; names are unique.
 const std::vector<Experiment>& experiments();
 
-// Of a chapter each; those of chapters 4, 7 and 8 are in headers of their own.
+// One function per chapter; those of chapters 4, 7 and 8 are in headers of their own.
 std::vector<Experiment> chapter5();
 std::vector<Experiment> chapter6();
 std::vector<Experiment> macondo();

@@ -16,20 +16,20 @@ struct Outcome {
   std::vector<std::string> notes;
   std::vector<ReportPicture> pictures;
   double wall_s = 0.0;
-  std::string failure{};  ///< what was thrown; empty: nothing
+  std::string failure{};  ///< text of the exception; empty: none
 
-  /// That of the values; differs where the experiment failed.
+  /// Verdict of the values; kDiffers after a failure.
   [[nodiscard]] Verdict verdict() const;
   /// "equal", "better" or "differs because ...", computed from the values.
   [[nodiscard]] std::string verdict_text() const;
 };
 
-/// The bytes of index.html; the files of pictures are relative to it.
+/// The bytes of index.html; picture paths are relative to it.
 std::string index_page(const std::vector<Outcome>& outcomes);
 /// The bytes of index.json.
 std::string index_json(const std::vector<Outcome>& outcomes);
 
-/// Runs one; pictures go to `folder`, which exists. A failure becomes an outcome.
+/// Runs an experiment; its pictures go to `folder`, which exists. A failure becomes an outcome.
 Outcome run_experiment(const Experiment& experiment, const std::filesystem::path& folder,
                        SharedRuns& runs);
 

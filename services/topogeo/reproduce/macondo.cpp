@@ -24,10 +24,10 @@ using render::FigureColour;
 using render::FigurePanel;
 
 constexpr int kWindow = 7;
-constexpr int kRows = 5;  // of the seven that the print shows
+constexpr int kRows = 5;  // of the seven in the print
 constexpr const char* kFloor = "experiment_2";
 
-/// The printed state: one in the middle, or spread by an advance.
+/// The printed state: one peak in the middle, and the peak spread by an advance.
 constexpr std::array<std::array<double, 3>, 3> kPrintedAdvance{
     {{0.0, 0.0625, 0.0078}, {0.0, 0.7929, 0.0625}, {0.0, 0.0625, 0.0078}}};
 
@@ -137,7 +137,7 @@ void macondo_figure_7(Report& report) {
   compare_state(report, true);
 }
 
-// The scene of figure 8 with the obstacles that its readings need; the robot is _.
+// The scene of figure 8 with the obstacles implied by its readings; the robot is _.
 constexpr std::array<const char*, 11> kFigure8{
     "....#.....", "..#.......", "..........", "..........", "..........", "..___...#.",
     "..___.....", "..___...#.", "..........", "..........", "..#.#....."};
@@ -206,7 +206,7 @@ void macondo_reliability(Report& report) {
   double far_worst_m = 0.0;
   for (int step = 1; step <= 9; ++step) {
     const double distance_m = 0.5 * step;
-    // The first sonar looks at a wall at right angles.
+    // The first sonar faces a wall at a right angle.
     const double front_m = six_sonars().front().T_robot_sensor.x_m;
     world::World wall;
     wall.segments.push_back({{distance_m + front_m, -5.0}, {distance_m + front_m, 5.0}});
@@ -357,7 +357,7 @@ void macondo_arrival(Report& report) {
                   90.0, "%", 1.0);
   report.show("the same by the wheels alone", 100.0 * by_wheels.arrived / kDrives, "%");
   report.show("drives that touched something", counts.hits);
-  // What the errors of the wheels do, and what a way back that is blocked does.
+  // Effects of wheel errors and of a blocked path back.
   report.add({"The same drives with a share of the wheels' errors.",
               {"errors of the wheels", "drives", "arrived", "way back blocked once or more",
                "of these arrived", "of the others arrived", "lost", "touched something"},

@@ -54,15 +54,16 @@ Eigen::Vector2d draw_place(const planning::HybridMap& map, support::Random& rand
   }
 }
 
-/// Executes primitives with the errors of the published transition matrices: each cell of an
-/// advance, and each turn, displaces the robot as they say. As there, the heading is right.
+/// Executes primitives with the errors of the published transition matrices, which displace the
+/// robot after each cell of an advance and after each turn. The heading is exact, as in the
+/// publication.
 class Wheels {
  public:
-  /// `errors`: share of them that happens, [0, 1].
+  /// `errors`: share of the errors that occur, [0, 1].
   Wheels(const world::World& scene, const Pose2& T_start, double errors, support::Random& random)
       : scene_(scene), T_(T_start), errors_(errors), random_(random) {}
 
-  /// What was executed: an advance ends before an obstacle.
+  /// Returns the executed move: an advance ends before an obstacle.
   markov::Move execute(markov::Move move) {
     if (move.kind == markov::MoveKind::kAdvance) {
       const double sign = move.amount < 0.0 ? -1.0 : 1.0;
@@ -119,7 +120,7 @@ markov::Move move_of(const planning::MotionPrimitive& primitive) {
   throw std::logic_error("unknown primitive");
 }
 
-/// Where a move takes a robot that does not err.
+/// The pose after an error-free move.
 Pose2 after(const Pose2& T, const markov::Move& move) {
   switch (move.kind) {
     case markov::MoveKind::kAdvance:
@@ -132,7 +133,7 @@ Pose2 after(const Pose2& T, const markov::Move& move) {
   throw std::logic_error("unknown move");
 }
 
-/// Long advances in parts.
+/// Splits long advances.
 std::vector<markov::Move> moves_of(const std::vector<planning::MotionPrimitive>& primitives) {
   std::vector<markov::Move> moves;
   for (const planning::MotionPrimitive& primitive : primitives) {
@@ -164,9 +165,8 @@ Task draw_drive(const planning::HybridMap& map, support::Random& random) {
   }
 }
 
-/// Compares what the sonars read with what they should, and goes back to the route when the robot
-/// is not where it should be. False when it is lost; `kept_off` becomes true when the way is
-/// blocked.
+/// Compares the sonar readings with the expected ones, and returns to the route when the robot has
+/// left it. False when the robot is lost; `kept_off` becomes true when the path back is blocked.
 bool relocalize(const world::World& scene, const Pose2& T_route, Wheels& wheels,
                 markov::MarkovLocalizer& localizer, support::Random& random, bool& kept_off) {
   if (!localizer.perceive(published_readings(scene, wheels.pose(), random)).possible) return false;

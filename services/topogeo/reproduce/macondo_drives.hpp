@@ -14,18 +14,18 @@
 
 namespace topogeo::reproduce {
 
-/// A drawn floor with cells of 10 cm; the frame of the map is that of the world.
+/// A drawn floor with cells of 10 cm; the map frame is the world frame.
 struct DrawnFloor {
   world::World world;
   std::shared_ptr<const planning::HybridMap> map;
 };
 DrawnFloor draw_floor(const world::World& world);
 
-/// MACONDO's six, as Markov localization takes them.
+/// MACONDO's six sonars, as inputs of Markov localization.
 std::vector<markov::RangeSensor> six_sonars();
 
-/// Readings as MACONDO, III.1, reports them: exact up to 2.5 m, from there to 5 m three of four off
-/// by up to 30 cm, none beyond.
+/// Readings as MACONDO, III.1, reports them: exact up to 2.5 m; from there to 5 m, three of four
+/// off by up to 30 cm; none beyond.
 std::vector<float> published_readings(const world::World& scene, const geometry::Pose2& T_robot,
                                       support::Random& random);
 
@@ -35,19 +35,19 @@ struct MacondoDrive {
   geometry::Pose2 goal;
   bool localized = true;   ///< Markov localization never lost all cells
   bool hit = false;        ///< the middle of the robot came into an obstacle
-  bool kept_off = false;   ///< the way back to the route was blocked once or more
+  bool kept_off = false;   ///< the path back to the route was blocked once or more
   double error_x_m = 0.0;  ///< at the end, along the axes of the grid
   double error_y_m = 0.0;
-  /// Within the cell of the goal or one beside it.
+  /// Within the cell of the goal or an adjacent one.
   [[nodiscard]] bool arrived() const;
 };
 
 struct MacondoKind {
   bool sonars = true;         ///< without them the robot trusts its wheels
-  double wheel_errors = 1.0;  ///< share of the errors of the printed transition matrices, [0, 1]
+  double wheel_errors = 1.0;  ///< share of the printed transition matrices' errors, [0, 1]
 };
 
-/// From and to places that `seed` draws, 3 m apart at least.
+/// Drives between two places drawn with `seed`, at least 3 m apart.
 MacondoDrive drive_macondo(const DrawnFloor& floor, std::uint64_t seed,
                            const MacondoKind& kind = {});
 

@@ -1,4 +1,4 @@
-// What an experiment measures, what is published of it, and the verdict that follows from both.
+// Measured values of an experiment, the published ones, and the resulting verdict.
 #pragma once
 
 #include <cstdint>
@@ -8,18 +8,18 @@
 
 namespace topogeo::reproduce {
 
-/// How a measured value is compared with the expected one.
+/// Relation between a measured value and the expected one.
 enum class Relation : std::uint8_t {
-  kShown,    ///< not at all: for people
-  kEqual,    ///< the same, within the tolerance
+  kShown,    ///< not compared: for people
+  kEqual,    ///< equal within the tolerance
   kSmaller,  ///< smaller is better
   kLarger,   ///< larger is better
 };
 
-/// Where an expected value comes from.
+/// Source of an expected value.
 enum class Origin : std::uint8_t {
   kPrinted,    ///< the publication prints or states it
-  kWorkedOut,  ///< follows from the scene by the publication's equations, worked out by hand
+  kWorkedOut,  ///< worked out by hand from the scene with the publication's equations
 };
 
 struct Value {
@@ -28,7 +28,7 @@ struct Value {
   double measured = 0.0;
   std::optional<double> expected{};
   Relation relation = Relation::kShown;
-  double tolerance = 0.0;  ///< a difference up to this is none
+  double tolerance = 0.0;  ///< a difference up to this is ignored
   Origin origin = Origin::kPrinted;
 };
 
@@ -37,17 +37,17 @@ enum class Verdict : std::uint8_t { kEqual, kBetter, kDiffers };
 /// "equal", "better", "differs".
 const char* to_string(Verdict verdict);
 
-/// A value without an expected one is equal; one that is not finite differs from any.
+/// A value without an expected one is equal; one that is not finite always differs.
 Verdict verdict_of(const Value& value);
 
-/// Differs if any value does or none is compared; else better if any is; else equal.
+/// Differs if any value does or none is compared; otherwise better if any is; otherwise equal.
 Verdict verdict_of(const std::vector<Value>& values);
 
-/// The values that differ, as one line; empty if none does.
+/// The differing values as one line; empty if there are none.
 std::string differences(const std::vector<Value>& values);
 
-/// A number as tables show it: "yes" and "no" for a statement, else at most four significant digits
-/// and the unit.
+/// A number as shown in tables: "yes" or "no" for a statement, otherwise at most four significant
+/// digits and the unit.
 std::string text_of(double number, const std::string& unit);
 
 struct Table {

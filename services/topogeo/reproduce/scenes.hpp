@@ -1,4 +1,4 @@
-// One scan of a scene, and everything that perception makes of it by the Thesis's settings.
+// One scan of a scene, and its diagram and local map with the settings of the Thesis.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace topogeo::reproduce {
 
-/// An exact scan, without noise, of the laser of the Thesis: 361 beams over 180 degrees.
+/// A noise-free scan of the laser of the Thesis: 361 beams over 180 degrees.
 scan::Scan exact_scan(const world::World& world, const geometry::Pose2& T_world_laser);
 
 struct SeenScene {
@@ -26,11 +26,11 @@ struct SeenScene {
 
 SeenScene see(const world::World& world, const geometry::Pose2& T_world_laser,
               const voronoi::VoronoiConfig& voronoi, const topomap::LocalMapConfig& local_map);
-/// Scene of tests/data/figures/figure_<number>.world.yaml from its k-th place, looking along x.
+/// Scene of tests/data/figures/figure_<number>.world.yaml seen from its k-th place, facing along x.
 SeenScene see_scene(const std::string& number, const voronoi::VoronoiConfig& voronoi,
                     const topomap::LocalMapConfig& local_map, std::size_t place = 0);
 
-/// How many nodes of this kind the map has.
+/// Number of nodes of this kind in the map.
 std::size_t count_nodes(const topomap::LocalMap& map, topomap::NodeKind kind);
 
 }  // namespace topogeo::reproduce

@@ -31,7 +31,7 @@ struct DriveSetup {
   double longest_m;  ///< of the path; the rest is not driven
   std::size_t most_stops;
   double range_m;   ///< of diagrams and maps
-  double recent_m;  ///< what was seen up to so much path ago is not seen again
+  double recent_m;  ///< stops within this much path are recent; older ones close loops
 };
 
 constexpr double kThesisRange_m = 4.0;
@@ -61,14 +61,14 @@ pipeline::LocalMapperConfig mapper_config(const DriveSetup& setup) {
   config.stop_distance_m = setup.stop_distance_m;
   config.stop_turn_rad = kStopTurn_rad;
   config.voronoi.range_limit_m = setup.range_m;
-  // What is matched lies in the field of view of the diagram, as in the Thesis, where that is
-  // small.
+  // With a small field of view, scan points are matched only inside the diagram's view, as in the
+  // Thesis.
   if (setup.range_m <= kThesisRange_m) config.local_map.points_range_m = setup.range_m;
   return config;
 }
 
-/// Adds the stop of the scan that was taken last. The mapper makes more stops than it is told where
-/// maps would not overlap; `apart_m`: those are left out.
+/// Adds the stop of the last scan. The mapper makes additional stops where maps would not overlap;
+/// `apart_m`: stops closer than this are left out.
 void add_stop(Drive& drive, topomap::LocalMap map, const Pose2& T_world_robot, double path_m,
               double apart_m) {
   if (!drive.stops.empty() && path_m - drive.path_m.back() < apart_m) return;
@@ -86,7 +86,7 @@ void add_stop(Drive& drive, topomap::LocalMap map, const Pose2& T_world_robot, d
 Drive make_drive(const DriveSetup& setup) {
   Drive drive;
   drive.world = world_named(setup.world);
-  // The published drive ends at position 62; this one goes on until it is back where it began.
+  // The published drive ends at position 62; this one continues to its start.
   if (setup.loop) drive.world.tour_m.insert(drive.world.tour_m.end(), {{-0.2, 7.0}, {0.0, 3.0}});
   const simulation::SimulatedLog log =
       simulation::simulate_log(drive.world, setup.loop ? simulation::thesis_experiment_2()
@@ -116,7 +116,7 @@ Drive make_drive(const DriveSetup& setup) {
   return drive;
 }
 
-/// The parameters of the Thesis, as far as it prints them.
+/// The parameters of the Thesis, as far as they are printed.
 localization::LocalizerConfig thesis_config(const CorrectionKind& kind, const DriveSetup& setup) {
   localization::LocalizerConfig config;
   config.mode = localization::LocalizerMode::kThesis;
@@ -126,7 +126,7 @@ localization::LocalizerConfig thesis_config(const CorrectionKind& kind, const Dr
   config.evidence = kind.evidence;
   if (!kind.backward) config.revisit_matches = 0;
   config.recent_way_m = setup.recent_m;
-  if (!setup.loop) {  // a straight drive, of which odometry errs by degrees, not by tens of them
+  if (!setup.loop) {  // the odometry of a straight drive errs by degrees, not by tens of them
     config.odometry.heading_rad2_per_m = 0.01;
   }
   return config;

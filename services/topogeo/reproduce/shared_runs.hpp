@@ -1,4 +1,4 @@
-// Drives that several experiments look at, each made once, when it is first asked for.
+// Drives shared by several experiments, each made on first use.
 #pragma once
 
 #include <cstddef>
@@ -31,16 +31,16 @@ struct Drive {
   [[nodiscard]] std::vector<topomap::LocalMap> maps() const;
 };
 
-/// What the Thesis's algorithm makes of a drive.
+/// The corrections of a drive by the Thesis's algorithm.
 struct Correction {
   localization::LocalizerConfig config;
   std::unique_ptr<localization::MatchPool> pool;
   std::unique_ptr<localization::ThesisLocalizer> localizer;
   std::vector<std::vector<geometry::Pose2>> poses_after;  ///< [k]: all poses after stop k
-  std::vector<std::vector<std::uint32_t>> overlaps;       ///< [k]: MS of stop k, at stop k
+  std::vector<std::vector<std::uint32_t>> overlaps;       ///< [k]: set MS of stop k, at stop k
   std::vector<bool> closed;  ///< [k]: whether stop k moved earlier poses
-  /// Of the backward correction at stop k, poses of all its solutions, best first; the loop begins
-  /// at the stop `first`.
+  /// Backward correction at stop k: poses of all its solutions, best first; the loop begins at the
+  /// stop `first`.
   struct Backward {
     std::size_t stop = 0;
     std::size_t first = 0;
@@ -57,23 +57,24 @@ struct Correction {
   }
 };
 
-/// How nodes and branches alone, or with scan points, are matched; and whether cycles are closed.
+/// Matching with nodes and branches only or also with scan points, and with or without cycle
+/// closing.
 struct CorrectionKind {
   localization::FitnessForm form = localization::FitnessForm::kCombined;
   bool backward = true;
-  /// What lets a match pass: by kFitness every one that has a fitness, as printed.
+  /// Condition for a match to pass; kFitness accepts every match with a fitness, as printed.
   localization::MatchEvidence evidence = localization::MatchEvidence::kScan;
   friend auto operator<=>(const CorrectionKind&, const CorrectionKind&) = default;
 };
 
 class SharedRuns {
  public:
-  /// "corridor": experiment 1 with a stop each 1.3 m; "positions": its first 24 m with a stop each
-  /// 2.4 m and 4 m of range, "positions, 10 m" with 10 m; "turn": up to its turn with a stop each
-  /// 0.66 m, of which there are 45; "loop": experiment 2 with a stop each 1.5 m, and back to where
-  /// it began; "apart": experiment 1 with stops so far apart, and seen so little, that local maps
-  /// do not overlap; "door": a corridor with a door that opens. Throws std::invalid_argument for
-  /// another name.
+  /// "corridor": experiment 1 with a stop every 1.3 m; "positions": its first 24 m with a stop
+  /// every 2.4 m and 4 m of range, "positions, 10 m" with 10 m; "turn": up to its turn with 45
+  /// stops, one every 0.66 m; "loop": experiment 2 with a stop every 1.5 m, and back to its start;
+  /// "apart": experiment 1 with stops so far apart and ranges so short that local maps do not
+  /// overlap; "door": a corridor with a door that opens. Throws std::invalid_argument for any other
+  /// name.
   const Drive& drive(const std::string& name);
   const Correction& correction(const std::string& drive, const CorrectionKind& kind = {});
 
@@ -92,8 +93,8 @@ struct PoseErrors {
 PoseErrors pose_errors(const std::vector<geometry::Pose2>& poses,
                        const std::vector<geometry::Pose2>& truth);
 
-/// The global map of the first `count` stops at these poses; as the Thesis fuses (7.25 to 7.27)
-/// unless told otherwise.
+/// The global map of the first `count` stops at these poses, fused by default as in the Thesis
+/// (7.25 to 7.27).
 topomap::GlobalMap fused(const Drive& drive, const std::vector<geometry::Pose2>& poses,
                          std::size_t count, topomap::FusionRule rule = topomap::FusionRule::kPairs);
 

@@ -1,5 +1,5 @@
 // The worlds of the experiments: the scenes of tests/data/figures and the replicas of
-// tests/data/thesis, compiled in so that they are wherever the program is.
+// tests/data/thesis, compiled in so that the program needs no files.
 #pragma once
 
 #include <string>
@@ -11,14 +11,14 @@
 namespace topogeo::reproduce {
 
 struct WorldText {
-  std::string_view name;  ///< of the file, without .world.yaml
+  std::string_view name;  ///< file name without .world.yaml
   std::string_view text;
 };
 
-/// All of them, by name.
+/// All worlds, by name.
 const std::vector<WorldText>& world_texts();
 
-/// Throws std::invalid_argument for a name that is not there.
+/// Throws std::invalid_argument for an unknown name.
 world::World world_named(std::string_view name);
 bool has_world(std::string_view name);
 
