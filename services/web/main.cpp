@@ -1,4 +1,4 @@
-// Shows a robot to pages and programs, by HTTP and WebSocket.
+// Serves a robot's state to pages and programs, by HTTP and WebSocket.
 #include <filesystem>
 #include <iostream>
 #include <optional>

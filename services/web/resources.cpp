@@ -31,7 +31,7 @@ std::vector<std::string_view> parts_of(std::string_view path) {
   return parts;
 }
 
-/// Of the parts "tiles", layer, frame, level, column, "row.png".
+/// Place given by the parts "tiles", layer, frame, level, column, "row.png".
 std::optional<TilePlace> tile_place(const std::vector<std::string_view>& parts) {
   constexpr std::size_t kParts = 6;
   constexpr std::string_view kEnd = ".png";

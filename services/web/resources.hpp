@@ -1,5 +1,4 @@
-// What GET answers besides the files of the page: tiles, what lies at a point, facts of the
-// service.
+// Answers to GET besides the files of the page: tiles, details of a point, facts about the service.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +12,7 @@
 
 namespace topogeo::web {
 
-/// Of "x_m=1.2&y_m=3.4": the value of a key; empty when it is not there.
+/// The value of a key in "x_m=1.2&y_m=3.4"; empty when the key is missing.
 std::string query_value(std::string_view query, std::string_view key);
 
 /// A whole number, 0 or more. Throws std::invalid_argument naming `key`.

@@ -15,7 +15,7 @@
 namespace topogeo::web {
 namespace {
 
-/// As browsers send them; "file://" is that of programs whose page is a file.
+/// Checks for the form that browsers send; programs whose page is a file send "file://".
 void check_origins(const std::vector<std::string>& origins) {
   for (const std::string& origin : origins) {
     const std::size_t host = origin.find("://");
@@ -106,7 +106,7 @@ ServerConfig server_config(const WebOptions& options, const std::string& robot_i
 
 PageFiles page_files(const WebOptions& options) {
   if (!options.page.empty()) return PageFiles(options.page);
-  // Of a build, and of an installation, where programs are in libexec/topogeo.
+  // Paths in a build and in an installation, where programs are in libexec/topogeo.
   const std::filesystem::path program =
       std::filesystem::read_symlink("/proc/self/exe").parent_path();
   for (const char* folder : {"../share/topogeo/web", "../../share/topogeo/web"}) {

@@ -1,4 +1,4 @@
-// The command line of the service.
+// Command line of the service.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +19,12 @@ struct WebOptions {
   std::string bind = "127.0.0.1";
   std::optional<std::string> token;
   std::optional<std::filesystem::path> token_file;
-  std::filesystem::path link_file;  ///< that gets the operator's link; empty: it is printed
+  std::filesystem::path link_file;  ///< gets the operator's link; empty: it is printed
   std::filesystem::path certificate;
   std::filesystem::path key;
   std::vector<std::string> hosts;
   std::vector<std::string> origins;
-  std::filesystem::path page;  ///< empty: beside the program
+  std::filesystem::path page;  ///< empty: the one beside the program
   std::uint32_t most_viewers = 64;
   bool without_tls = false;
   std::string map_robot;
@@ -32,16 +32,16 @@ struct WebOptions {
 
 void add_web_options(command_line::Command& app, WebOptions& options);
 
-/// Throws service::UsageError where options do not go together, and service::BadInputError for a
-/// token file that cannot be read. A token that is not given is made.
+/// Makes a token if none is given. Throws service::UsageError for options that do not go together,
+/// and service::BadInputError for an unreadable token file.
 ServerConfig server_config(const WebOptions& options, const std::string& robot_id);
 
-/// Throws std::runtime_error for a folder that was given and cannot be used.
+/// Throws std::runtime_error for a given folder that cannot be used.
 PageFiles page_files(const WebOptions& options);
 
-/// Two lines: the operator's link and that of spectators. With a link file the operator's link,
-/// with the token, goes there alone, and the line names the file. Throws service::BadInputError
-/// where it cannot be written.
+/// Two lines: the link of operators and that of spectators. With a link file the operator's link,
+/// which contains the token, goes only there, and the line names the file. Throws
+/// service::BadInputError when the file cannot be written.
 std::string links(const ServerConfig& config, std::uint32_t port,
                   const std::filesystem::path& link_file);
 

@@ -22,9 +22,9 @@ namespace topogeo::web {
 namespace {
 
 constexpr std::chrono::milliseconds kCountsPeriod{500};
-constexpr std::chrono::milliseconds kLimitsPeriod{200};  // while somebody drives by hand
+constexpr std::chrono::milliseconds kLimitsPeriod{200};  // while anybody drives by hand
 constexpr int kProtocolVersion = 1;
-/// What POST takes, below /api/.
+/// POST paths below /api/.
 constexpr std::array<std::string_view, 18> kOffers = {
     "goal",    "preview",  "pause",   "resume",  "cancel",      "stop",
     "release", "return",   "pose",    "search",  "mode",        "merge",
@@ -127,7 +127,7 @@ void WebService::stop(Respond respond) {
   post([this] { cancel(); });
 }
 
-// Behind what was ordered before: a robot that is released has no goal of before its stop.
+// Queued after earlier orders, so that a released robot has no goal from before its stop.
 void WebService::release_stop(Respond respond) {
   hand_over({true, "/api/release", {}, {}, true}, std::move(respond));
 }
@@ -152,7 +152,7 @@ HandSender::Hooks WebService::hand_hooks() {
           }};
 }
 
-// `anew`: even those that it has.
+// `anew`: even unchanged limits.
 void WebService::show_limits(bool anew) {
   std::shared_ptr<const planning::HybridMap> map;
   try {
@@ -262,7 +262,7 @@ Answer WebService::give_goals(const std::string& body) {
   try {
     id = goals_.add(orders);
     exploration_.stop();
-  } catch (const std::invalid_argument& error) {  // a name that is not there
+  } catch (const std::invalid_argument& error) {  // an unknown name
     return error_answer(409, error.what());
   }
   return {202, text_of(Json{{"goal_id", std::to_string(id)}, {"waiting", goals_.waiting()}})};
@@ -273,7 +273,7 @@ Answer WebService::go_back() {
   for (const char* name : {"base", "base station"}) {
     if (const auto found = map_.find(name); found && found->place) goal.name = found->name;
   }
-  if (goal.name.empty()) goal.point_m = Eigen::Vector2d(0.0, 0.0);  // where the map began
+  if (goal.name.empty()) goal.point_m = Eigen::Vector2d(0.0, 0.0);  // the origin of the map
   exploration_.stop();
   const std::uint64_t id = goals_.add({{goal}, false});
   return {202, text_of(Json{{"goal_id", std::to_string(id)}, {"waiting", 0}})};
@@ -303,7 +303,7 @@ Answer WebService::preview(const std::string& body) {
                        config.navigator.follower);
 }
 
-// Goals of another floor mean nothing.
+// Goals on another floor are meaningless.
 void WebService::load_floor(const std::string& body, const Respond& respond) {
   drawing_.load_floor(body, [this, respond](Answer answer) {
     if (answer.status < 300) cancel();

@@ -1,9 +1,9 @@
-// What pages and programs see of a robot and may order: topics of DDS on one side, HTTP and
-// WebSocket on the other.
+// Lets pages and programs observe and command a robot: DDS topics on one side, HTTP and WebSocket
+// on the other.
 //
-// Handlers of topics turn messages into channels of the board, in the loop of the service; the
-// server shows the board in threads of its own, and hands orders to the loop. Stop and driving by
-// hand have a thread that nothing else uses.
+// Topic handlers turn messages into channels of the board, in the loop of the service; the server
+// shows the board in threads of its own and passes orders to the loop. Stop and driving by hand
+// have a dedicated thread.
 #pragma once
 
 #include <cstdint>
@@ -42,7 +42,7 @@ namespace topogeo::web {
 /// Lives in the loop of its service.
 class WebService : private Backend {
  public:
-  /// Listens from here on. Throws like Server.
+  /// Starts listening. Throws like Server.
   WebService(service::Service& service, const ServerConfig& config, PageFiles files);
   WebService(const WebService&) = delete;
   WebService& operator=(const WebService&) = delete;
@@ -51,7 +51,7 @@ class WebService : private Backend {
   [[nodiscard]] std::uint32_t port() const { return server_->port(); }
 
  private:
-  // In the threads of the server.
+  // Called in the server's threads.
   void handle(const Request& request, Respond respond) override;
   void stop(Respond respond) override;
   void release_stop(Respond respond) override;
@@ -59,11 +59,11 @@ class WebService : private Backend {
   void release(std::uint64_t viewer) override;
   void hand_over(Request request, Respond respond);
   [[nodiscard]] Answer info(const Request& request) const;
-  /// Calls it in the loop, unless this is gone by then.
+  /// Calls `work` in the loop, unless this object is gone by then.
   template <class Work>
   void post(Work work);
 
-  // In the loop.
+  // Called in the loop.
   void work_off_requests();
   void answer(const Request& request, const Respond& respond);
   void obey(const Request& request, const Respond& respond);
@@ -86,7 +86,7 @@ class WebService : private Backend {
   FoxgloveFeed feed_;
   EventLog events_{board_};
   FoxgloveView foxglove_;
-  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // for what is posted
+  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // for posted work
   HandThread hand_;
   MapView map_;
   GraphView graph_;
@@ -103,7 +103,7 @@ class WebService : private Backend {
   std::uint64_t timer_ = 0;
   std::uint64_t limits_timer_ = 0;
   std::unique_ptr<Server> server_;
-  // Below the server: an answer that is still to be given holds on to a connection.
+  // Below the server, because a pending answer holds a connection.
   History history_{service_, drive_};
   LocalizerRequests localizer_;
   std::mutex mutex_;

@@ -18,9 +18,9 @@
 namespace topogeo::web {
 namespace {
 
-/// After a closed loop all segments come at once: they are shown together.
+/// After a closed loop all segments arrive at once and are shown together.
 constexpr std::chrono::milliseconds kTrailPeriod{200};
-constexpr std::size_t kChunk = 32;  // stops of a key
+constexpr std::size_t kChunk = 32;  // stops per key
 
 Json decision_json(const msg::LoopDecision& decision) {
   Json json = {{"step", decision.step()},
@@ -74,7 +74,7 @@ DriveView::DriveView(service::Service& service, Board& board, EventLog& events)
 
 void DriveView::on_segment(const msg::TrajectorySegment& message,
                            const messaging::SampleInfo& info) {
-  // A localizer that has started again in a finished map counts its stops from 0.
+  // A localizer restarted in a finished map counts its stops from 0.
   if (info.writer != std::exchange(localizer_, info.writer)) trajectory_ = {};
   if (trajectory_.add(message)) trail_changed_ = true;
 }

@@ -1,4 +1,4 @@
-// The drive on the board: stops, loops, proposals to join maps, the local map of the last stop.
+// The drive on the board: stops, loops, proposals to join maps, the last stop's local map.
 #pragma once
 
 #include <cstddef>
@@ -26,23 +26,23 @@ class EventLog;
 /// Lives in the loop of its service.
 class DriveView {
  public:
-  /// So many local maps that were heard are kept.
+  /// Number of received local maps that are kept.
   static constexpr std::size_t kMostHeard = 512;
 
   DriveView(service::Service& service, Board& board, EventLog& events);
 
-  /// Where the stops of the map are.
+  /// Poses of the stops on the map.
   [[nodiscard]] std::vector<geometry::Pose2> T_map_stops() const;
-  /// Stops and loops of a map that is only shown; nothing where a trajectory is heard.
+  /// Shows stops and loops of a finished map, unless a trajectory is received.
   void show_stored(const storage::MapDocument& map);
 
   /// The stop of this number in the trajectory.
   [[nodiscard]] std::optional<topomap::StopId> stop_at(std::size_t number) const;
-  /// T_map_robot, if its place is known.
+  /// T_map_robot, if the pose is known.
   [[nodiscard]] std::optional<geometry::Pose2> pose_of(const topomap::StopId& stop) const;
-  /// Without its track; null when it was not heard, or is not kept any more.
+  /// The received map without its track; null if it was not received or is no longer kept.
   [[nodiscard]] const topomap::LocalMap* heard(const topomap::StopId& stop) const;
-  /// 0 while none is heard.
+  /// 0 until one is received.
   [[nodiscard]] std::uint64_t trajectory_version() const { return trajectory_.version(); }
 
  private:
@@ -56,10 +56,10 @@ class DriveView {
 
   Board& board_;
   EventLog& events_;
-  messaging::Handle localizer_{};  // whose trajectory it is
+  messaging::Handle localizer_{};  // writer of the trajectory
   service::TrajectoryAssembly trajectory_;
   bool trail_changed_ = false;
-  std::map<topomap::StopId, geometry::Pose2> located_;  // T_map_robot of the stops of the map
+  std::map<topomap::StopId, geometry::Pose2> located_;  // T_map_robot of the map's stops
   std::uint64_t loops_numbered_since_ = 0;
   std::uint32_t loops_ = 0;             // shown
   std::vector<topomap::StopId> stops_;  // of the trajectory

@@ -1,4 +1,4 @@
-// What has happened, in sentences, the newest of it: channel `events`.
+// Recent events as sentences: channel `events`.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace topogeo::web {
 
-/// For any thread.
+/// Thread-safe.
 class EventLog {
  public:
   enum class Level : std::uint8_t { kInfo, kWarning, kError };

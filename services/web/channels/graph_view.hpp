@@ -16,7 +16,7 @@ class GraphView {
  public:
   GraphView(service::Service& service, Board& board);
 
-  /// For routes: the newest whole one; null before. Throws std::invalid_argument like
+  /// The newest complete map, for routes; null before the first. Throws std::invalid_argument like
   /// from_elements.
   std::shared_ptr<const topomap::GlobalMap> map();
 
@@ -25,7 +25,7 @@ class GraphView {
 
   Board& board_;
   map_client::MapFollower follower_;
-  bool changed_ = false;  // since map() was called last
+  bool changed_ = false;  // since the last call of map()
   std::shared_ptr<const topomap::GlobalMap> map_;
 };
 

@@ -62,7 +62,7 @@ void HealthView::on_service(const msg::ServiceStatus& status, const SampleInfo& 
   Row& row = rows_[key];
   note(row, status);
   std::vector<Edit> edits = {{key, text_of(service_json(status))}};
-  // One that was lost and has come again under another name is not lost.
+  // A lost service that has come back under another name is not lost.
   for (auto other = rows_.begin(); other != rows_.end();) {
     const bool replaced =
         other->first != key && other->second.lost && other->second.service == row.service;
@@ -100,7 +100,7 @@ void HealthView::on_service_gone(const SampleInfo& info) {
   } else if (row != rows_.end()) {
     row->second.lost = true;
     events_.add(Level::kError, row->second.service, "is gone");
-    // With all fields, as pages expect them.
+    // Includes all fields that pages expect.
     Json lost = service_json(row->second.last);
     lost["state"] = "lost";
     board_.edit(Channel::kServices, {{key->second, text_of(lost)}});

@@ -28,7 +28,7 @@ class HealthView {
     msg::ServiceState state = msg::kServiceStarting;
     bool lost = false;
     std::uint64_t faults = 0;
-    msg::ServiceStatus last;  ///< what a lost service reported before
+    msg::ServiceStatus last;  ///< last report of a service that may be lost
   };
 
   void on_service(const msg::ServiceStatus& status, const messaging::SampleInfo& info);
@@ -40,7 +40,7 @@ class HealthView {
   Board& board_;
   EventLog& events_;
   std::string robot_id_;
-  std::map<std::string, Row> rows_;  // by key of the channel
+  std::map<std::string, Row> rows_;  // by the channel's key
   std::map<messaging::Handle, std::string> keys_;
   std::map<messaging::Handle, std::string> workers_;
 };

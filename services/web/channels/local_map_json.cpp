@@ -10,10 +10,10 @@
 namespace topogeo::web {
 namespace {
 
-/// Of an outline: points closer to the one before are left out.
+/// Distance below which consecutive outline points are dropped.
 constexpr double kOutlineStep_m = 0.08;
 
-/// Centimetres, x and y in turn.
+/// x and y of each point in turn, in centimetres.
 Json outline_json(const topomap::LocalMap& map) {
   constexpr float kCentimetres = 100.0F;
   Json outline = Json::array();

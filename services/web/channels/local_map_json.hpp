@@ -12,11 +12,12 @@
 
 namespace topogeo::web {
 
-/// As of channel `local_map`: nodes and branches of the main graph and the points of the scan, in
-/// the frame of the robot at the stop. `T_map_stop`: where it is on the map, if that is known.
+/// JSON of channel `local_map`: nodes and branches of the main graph and the scan points, in the
+/// frame of the robot at the stop. `T_map_stop`: pose of the stop on the map, if known.
 Json local_map_json(const topomap::LocalMap& map, const std::optional<geometry::Pose2>& T_map_stop);
 
-/// So many stops from `first` on, as `GET /api/drive` has them: stamp, pose and outline of each.
+/// Number of stops from `first` on in an answer to `GET /api/drive`: stamp, pose and outline of
+/// each.
 inline constexpr std::size_t kDriveStops = 200;
 Json drive_json(const storage::MapDocument& map, std::size_t first);
 

@@ -14,7 +14,7 @@ namespace {
 using planning::Cell;
 using planning::CellState;
 
-// Indices of the palette of the grid: the larger one wins where pixels are joined.
+// Indices into the grid palette: the larger one wins when pixels are merged.
 constexpr std::uint8_t kNothing = 0;
 constexpr std::uint8_t kFree = 1;
 constexpr std::uint8_t kOccupied = 2;
@@ -134,7 +134,7 @@ MapPicture::Image MapPicture::half_of(const Image& image) {
 const MapPicture::Image& MapPicture::image(Layer layer, std::uint32_t level) const {
   const std::scoped_lock lock(mutex_);
   std::vector<Image>& images = images_.at(static_cast<std::size_t>(layer));
-  images.reserve(kLevels);  // so that what was given stays where it is
+  images.reserve(kLevels);  // keeps references to the images valid
   if (images.empty()) images.push_back(draw_cells(layer));
   while (images.size() <= level) images.push_back(half_of(images.back()));
   return images[level];
@@ -147,7 +147,7 @@ std::optional<std::string> MapPicture::png(const TilePlace& place) const {
   const auto columns = static_cast<std::uint32_t>(from.columns);
   const auto rows = static_cast<std::uint32_t>(from.rows);
   if (place.column > columns / kSide || place.row > rows / kSide) return std::nullopt;
-  std::vector<std::uint8_t> pixels(std::size_t{kSide} * kSide, kNothing);  // from the upper row on
+  std::vector<std::uint8_t> pixels(std::size_t{kSide} * kSide, kNothing);  // from the top row down
   bool anything = false;
   const std::uint32_t first_column = place.column * kSide;
   const std::uint32_t first_row = place.row * kSide;

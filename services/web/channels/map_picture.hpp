@@ -1,6 +1,6 @@
-// The grid of a map as pictures of 256 x 256 pixels at several scales, and what lies at a point.
+// The grid of a map as pictures of 256 x 256 pixels at several scales, with lookup by cell.
 //
-// At level n a pixel is 2^n x 2^n cells: occupied where one of them is, else free where one is.
+// At level n a pixel is 2^n x 2^n cells: occupied if any of them is, otherwise free if any is.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace topogeo::web {
 
-/// A square of 64 x 64 cells as it came, row by row from the lower left one; cells beyond the grid
+/// A received square of 64 x 64 cells, row by row from the lower left one; cells beyond the grid
 /// are unknown.
 struct GridSquare {
   std::uint64_t version = 0;
@@ -26,7 +26,7 @@ struct GridSquare {
 
 enum class Layer : std::uint8_t { kGrid, kRooms };
 
-/// Where a tile lies: its lower left pixel is cell (256 * 2^level * column, 256 * 2^level * row).
+/// Position of a tile: its lower left pixel is cell (256 * 2^level * column, 256 * 2^level * row).
 struct TilePlace {
   Layer layer = Layer::kGrid;
   std::uint32_t level = 0;
@@ -41,7 +41,7 @@ struct ColorImage {
   std::string rgba;
 };
 
-/// Of one version of a map; never changed. For any thread.
+/// The pictures of one map version. Immutable and thread-safe.
 class MapPicture {
  public:
   static constexpr std::int32_t kSquareCells = 64;
@@ -55,15 +55,15 @@ class MapPicture {
              std::vector<std::shared_ptr<const GridSquare>> squares,
              std::vector<std::uint8_t> zone_colors);
 
-  /// PNG with a palette; nothing where no cell is known (Layer::kGrid) or in a zone
+  /// PNG with a palette; nothing for a tile without known cells (Layer::kGrid) or without zones
   /// (Layer::kRooms), and beyond the grid.
   [[nodiscard]] std::optional<std::string> png(const TilePlace& place) const;
 
-  /// The whole of it in four bytes a pixel (red, green, blue, alpha), row by row from the lower
-  /// left one, at the finest level with `most_pixels` at the most.
+  /// The whole picture with four bytes per pixel (red, green, blue, alpha), row by row from the
+  /// lower left one, at the finest level that has at most `most_pixels`.
   [[nodiscard]] ColorImage colors(Layer layer, std::size_t most_pixels) const;
 
-  /// Of a cell of the grid.
+  /// State of a grid cell.
   [[nodiscard]] planning::CellState state_at(const planning::Cell& cell) const;
   [[nodiscard]] std::optional<std::uint16_t> zone_at(const planning::Cell& cell) const;
   [[nodiscard]] const planning::GridFrame& frame() const { return frame_; }
@@ -86,8 +86,7 @@ class MapPicture {
   std::vector<std::shared_ptr<const GridSquare>> squares_;
   std::vector<std::uint8_t> zone_colors_;
   mutable std::mutex mutex_;
-  mutable std::array<std::vector<Image>, 2>
-      images_;  // by layer and level, made when they are wanted
+  mutable std::array<std::vector<Image>, 2> images_;  // by layer and level, made on demand
 };
 
 }  // namespace topogeo::web

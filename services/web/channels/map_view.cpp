@@ -18,8 +18,8 @@ namespace {
 using messaging::InstanceState;
 using messaging::SampleInfo;
 
-/// Few colours, others than those of the rooms next door, and if possible the one of the name, so
-/// that a room keeps its colour while the map grows.
+/// Assigns few colours, different from those of adjoining rooms, and if possible derived from the
+/// name, so that a room keeps its colour while the map grows.
 std::vector<std::uint8_t> room_colors(const msg::HybridMap& map) {
   std::vector<std::vector<std::size_t>> neighbours(map.zones().size());
   for (const msg::HybridNode& node : map.nodes()) {
@@ -43,7 +43,7 @@ std::vector<std::uint8_t> room_colors(const msg::HybridMap& map) {
   return colors;
 }
 
-/// A cell of each zone that lies nearest to the middle of all its cells.
+/// For each zone, its cell nearest to the centroid of all its cells.
 std::vector<std::optional<planning::Cell>> middles_of(const MapPicture& picture,
                                                       std::size_t zones) {
   struct Sum {

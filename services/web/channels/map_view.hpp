@@ -1,4 +1,4 @@
-// The hybrid map on the board: grid, rooms, places, rules; its pictures, and the map itself for
+// The hybrid map on the board: grid, rooms, places, rules, its pictures, and the map itself for
 // routes.
 #pragma once
 
@@ -25,39 +25,38 @@ namespace topogeo::web {
 
 /// A room or a place, by its name.
 struct NamedPoint {
-  bool place = false;  ///< else a room
-  std::string name;    ///< as the map writes it
-  Eigen::Vector2d position_m =
-      Eigen::Vector2d::Zero();  ///< map frame; of a room, well inside of it
+  bool place = false;                                    ///< otherwise a room
+  std::string name;                                      ///< as spelled in the map
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< map frame; for a room, well inside it
 };
 
-/// A version of the map as it is shown. For any thread.
+/// The version of the map that is shown. Thread-safe.
 struct ShownMap {
   std::string
-      frame;  ///< 8 hexadecimal digits: another grid, or another life of the map store, has others
+      frame;  ///< 8 hexadecimal digits; changes with the grid and with a restart of the map store
   std::uint64_t version = 0;
   std::vector<std::string> rooms;  ///< names, by zone
   std::shared_ptr<const MapPicture> picture;
 };
 
-/// Lives in the loop of its service, but for shown().
+/// Lives in the loop of its service, except shown().
 class MapView {
  public:
-  /// `on_shown` gets each version that is shown; may be empty.
+  /// `on_shown` gets each version shown; may be empty.
   using OnShown = std::function<void(const std::shared_ptr<const MapPicture>&)>;
   MapView(service::Service& service, Board& board, OnShown on_shown = {});
 
-  /// Null before the first whole map. For any thread.
+  /// Null before the first complete map. Thread-safe.
   [[nodiscard]] std::shared_ptr<const ShownMap> shown() const;
-  /// For routes; null before the first. Throws std::invalid_argument like HybridMapMirror::map.
+  /// For routes; null before the first map. Throws std::invalid_argument like HybridMapMirror::map.
   std::shared_ptr<const planning::HybridMap> map() { return mirror_.map(); }
-  /// A place, or else a room; capitals (A to Z) matter only where names differ by them alone.
+  /// A place, or else a room; case (A to Z) matters only between names that differ in nothing else.
   [[nodiscard]] std::optional<NamedPoint> find(std::string_view name) const;
 
  private:
   void put(const msg::GridTile& tile, const messaging::SampleInfo& info);
   void put(const msg::HybridMap& summary, const messaging::SampleInfo& info);
-  /// Shows the map if all of it has come.
+  /// Shows the map if it is complete.
   void show();
   [[nodiscard]] std::vector<std::shared_ptr<const GridSquare>> squares_if_whole() const;
   void show_frame(const std::string& frame);
@@ -72,7 +71,7 @@ class MapView {
   std::map<std::uint32_t, std::shared_ptr<const GridSquare>> squares_;
   std::map<messaging::Handle, std::uint32_t> numbers_;
   std::optional<msg::HybridMap> summary_;
-  messaging::Handle writer_;  // of the summary
+  messaging::Handle writer_;  // writer of the summary
   std::vector<NamedPoint> names_;
   mutable std::mutex mutex_;
   std::shared_ptr<const ShownMap> shown_;

@@ -9,7 +9,7 @@
 namespace topogeo::web {
 namespace {
 
-/// libpng reports errors by a function that must not come back.
+/// libpng reports errors through a function that must not return.
 [[noreturn]] void fail(png_structp, png_const_charp message) {
   throw std::runtime_error(std::string("PNG: ") + message);
 }

@@ -14,8 +14,8 @@ struct Color {
   std::uint8_t alpha = 255;
 };
 
-/// `pixels`: indices into at most 16 colours, from the upper left one row by row. Throws
-/// std::runtime_error when it cannot be made and std::invalid_argument for another count of pixels.
+/// `pixels`: indices into at most 16 colours, row by row from the upper left one. Throws
+/// std::runtime_error when encoding fails and std::invalid_argument for a wrong number of pixels.
 std::string palette_png(std::uint32_t width, std::uint32_t height,
                         std::span<const std::uint8_t> pixels, std::span<const Color> colors);
 

@@ -11,7 +11,7 @@ namespace {
 
 using std::string_view;
 
-/// By the numbers of the enumeration.
+/// Word for an enumeration value; `words` are in the order of the values.
 template <class Enum, std::size_t size>
 string_view word(const std::array<string_view, size>& words, Enum value) {
   const auto number = static_cast<std::size_t>(value);

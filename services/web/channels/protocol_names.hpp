@@ -24,7 +24,7 @@ std::string_view name_of(msg::MatchReason reason);
 std::string_view name_of(msg::ServiceState state);
 std::string_view name_of(msg::MergeState state);
 
-/// What a state of the localizer means, in a sentence.
+/// Explains a state of the localizer in a sentence.
 std::string reason_of(msg::LocalizationState state);
 
 }  // namespace topogeo::web

@@ -20,7 +20,7 @@ bool is_located(msg::LocalizationState state) {
 
 using Level = EventLog::Level;
 
-constexpr double kPoseAge_s = 0.5;  // a scan is not drawn where the robot was before
+constexpr double kPoseAge_s = 0.5;  // keeps a scan from being drawn at a former pose
 
 Level level_of(msg::LocalizationState state) {
   if (state == msg::kStateTracking) return Level::kInfo;
@@ -80,8 +80,8 @@ void RobotView::on_scan(const msg::Scan& message) {
   if (!waits) show_scan();
 }
 
-// The localizer gives the pose of a scan a few milliseconds after it: until then the scan waits,
-// and the next one takes its place.
+// The localizer publishes the pose of a scan a few milliseconds after the scan. Until then the scan
+// waits, and the next one replaces it.
 void RobotView::show_scan() {
   if (!scan_) return;
   Json json = {{"stamp_s", seconds(scan_->stamp_ns)}, {"sequence", scan_sequence_}};

@@ -1,4 +1,4 @@
-// The robot on the board: pose, scan, what it does, its route, its devices.
+// The robot on the board: pose, scan, activity, route, devices.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace topogeo::web {
 
 class EventLog;
 
-/// Who else needs what the view gets; each may be empty.
+/// Callbacks for other users of the view's data; each may be empty.
 struct RobotHooks {
   std::function<void(const navigation::ScanPoints&)> on_scan;
   std::function<void(const msg::LivePose&)> on_pose;
@@ -30,14 +30,14 @@ class RobotView {
  public:
   RobotView(service::Service& service, Board& board, EventLog& events, RobotHooks hooks = {});
 
-  /// The newest; its pose means something in TRACKING and AMBIGUOUS.
+  /// The newest pose; it is meaningful only in TRACKING and AMBIGUOUS.
   [[nodiscard]] const std::optional<msg::LivePose>& pose() const { return pose_; }
 
  private:
-  /// `sent_ns`: wall clock of its sender.
+  /// `sent_ns`: wall clock of the sender.
   void on_pose(const msg::LivePose& pose, std::int64_t sent_ns);
   void on_scan(const msg::Scan& message);
-  /// Shows the scan with the pose of the same number, or without one when none has come in time.
+  /// Shows the scan with its own pose, or without one when none has arrived in time.
   void show_scan();
   void on_navigator(const msg::NavigatorStatus& status);
   void on_route(const msg::Route& route);
@@ -51,7 +51,7 @@ class RobotView {
   service::Service& service_;
   std::optional<msg::LivePose> pose_;
   double pose_came_s_ = 0.0;                    // by the steady clock
-  std::optional<navigation::ScanPoints> scan_;  // not shown yet
+  std::optional<navigation::ScanPoints> scan_;  // not yet shown
   std::uint64_t scan_sequence_ = 0;
   std::optional<msg::NavigatorState> navigator_state_;
   std::optional<msg::BaseState> base_state_;

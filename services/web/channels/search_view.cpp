@@ -13,7 +13,7 @@
 namespace topogeo::web {
 namespace {
 
-/// The stops that a search is about come with the trajectory, which is shown a little later.
+/// The stops of a search arrive with the trajectory, which is shown a little later.
 constexpr std::chrono::milliseconds kSearchDelay{300};
 
 template <class Sequence>

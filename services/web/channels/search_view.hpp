@@ -1,4 +1,4 @@
-// What the localizer searches at the moment, on the board.
+// The current search of the localizer, on the board.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,8 @@ class DriveView;
 /// Lives in the loop of its service.
 class SearchView {
  public:
-  /// `drive` has the places of the stops that hypotheses are relative to, and outlives it.
+  /// `drive` gives the poses of stops to which hypotheses are relative; it must outlive this
+  /// object.
   SearchView(service::Service& service, Board& board, const DriveView& drive);
 
  private:
@@ -23,7 +24,7 @@ class SearchView {
 
   Board& board_;
   const DriveView& drive_;
-  std::optional<msg::Search> newest_;  // not shown yet
+  std::optional<msg::Search> newest_;  // not yet shown
 };
 
 }  // namespace topogeo::web

@@ -41,7 +41,7 @@ LiveMessage FoxgloveFeed::newest(LiveTopic topic) const {
   if (!entry) return {};
   if (!entry->json) {
     entry->json = std::make_shared<const std::string>(entry->make());
-    entry->make = {};  // and what it holds on to
+    entry->make = {};  // and the data that it holds
   }
   return {entry->version, entry->time_ns, entry->json};
 }

@@ -1,5 +1,5 @@
-// The newest message of each live topic for Foxglove. It is made when somebody wants it: a service
-// that nobody watches spends nothing on it.
+// The newest message of each live topic for Foxglove, made on demand: a service without viewers
+// spends nothing on it.
 #pragma once
 
 #include <array>
@@ -14,23 +14,23 @@
 namespace topogeo::web {
 
 struct LiveMessage {
-  std::uint64_t version = 0;  ///< 0: there is none yet
-  std::int64_t time_ns = 0;   ///< when it came, by the wall clock
+  std::uint64_t version = 0;  ///< 0: none yet
+  std::int64_t time_ns = 0;   ///< arrival by the wall clock
   std::shared_ptr<const std::string> json;
 };
 
 class FoxgloveFeed {
  public:
-  /// Calls `on_change` after each change, in the thread that made it, without a lock held.
+  /// Calls `on_change` after each change, in the thread that made it, without holding a lock.
   void on_change(std::function<void()> handler);
 
-  /// Replaces the message of a topic; `make` gives its JSON, in the thread that calls newest(). For
-  /// any thread.
+  /// Replaces the message of a topic; newest() calls `make` for its JSON in the reading thread.
+  /// Thread-safe.
   void set(LiveTopic topic, std::function<std::string()> make);
 
-  /// For any thread.
+  /// Thread-safe.
   [[nodiscard]] std::uint64_t version(LiveTopic topic) const;
-  /// For one thread.
+  /// For a single thread.
   [[nodiscard]] LiveMessage newest(LiveTopic topic) const;
 
  private:
@@ -38,7 +38,7 @@ class FoxgloveFeed {
     std::uint64_t version = 0;
     std::int64_t time_ns = 0;
     std::function<std::string()> make;
-    std::shared_ptr<const std::string> json;  // of the reading thread alone
+    std::shared_ptr<const std::string> json;  // used only by the reading thread
   };
 
   mutable std::mutex mutex_;

@@ -10,7 +10,7 @@ namespace topogeo::web {
 
 constexpr const char* kMapFrame = "map";
 
-/// Since 1970, or since the epoch of the robot's source.
+/// Since 1970, or since the epoch of the robot's data source.
 inline Json foxglove_time(std::int64_t stamp_ns) {
   constexpr std::int64_t kNanoseconds = 1'000'000'000;
   const std::int64_t fraction_ns = ((stamp_ns % kNanoseconds) + kNanoseconds) % kNanoseconds;

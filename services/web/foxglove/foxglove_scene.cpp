@@ -12,7 +12,7 @@
 namespace topogeo::web {
 namespace {
 
-// What lies on the floor, over the grid: a few centimetres apart, so that nothing flickers.
+// Heights of objects on the floor, over the grid: a few centimetres apart to avoid flicker.
 constexpr double kRuleHeight_m = 0.02;
 constexpr double kGraphHeight_m = 0.04;
 constexpr double kRouteHeight_m = 0.06;
@@ -30,7 +30,7 @@ constexpr int kLineLoop = 1;
 constexpr int kDeleteOne = 0;
 constexpr int kDeleteAll = 1;
 
-/// Parts from 0 to 1.
+/// Components from 0 to 1.
 struct SceneColor {
   double red = 0.0;
   double green = 0.0;
@@ -91,7 +91,7 @@ Json text_json(double x_m, double y_m, const std::string& text, const SceneColor
           {"text", text}};
 }
 
-/// Without anything to see.
+/// An entity without primitives.
 Json empty_entity(const std::string& id, std::int64_t now_ns) {
   return {{"timestamp", foxglove_time(now_ns)},
           {"frame_id", kMapFrame},
@@ -108,7 +108,7 @@ void draw_graph(const Json& object, Json& entity) {
     entity["lines"].push_back(line_json(object.at("points_m"), kGraphHeight_m, kBranchWidth_m,
                                         kLineStrip,
                                         object.value("virtual", false) ? kPurple : kBlue));
-  } else if (object.contains("kind")) {  // the summary of the map has none
+  } else if (object.contains("kind")) {  // the summary of the map has no kind
     entity["spheres"].push_back(sphere_json(object.at("x_m"), object.at("y_m"), kNodeSize_m,
                                             color_of_node(object.at("kind"))));
   }
@@ -172,7 +172,7 @@ std::string scene_update(Channel channel, const Json& update, std::int64_t now_n
     Json entity = empty_entity(key, now_ns);
     try {
       draw(channel, key, object, entity);
-    } catch (const Json::exception&) {  // a number that is not known
+    } catch (const Json::exception&) {  // an unknown number
       return;
     }
     if (is_visible(entity)) entities.push_back(std::move(entity));

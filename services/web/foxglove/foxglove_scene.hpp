@@ -1,5 +1,5 @@
-// Messages of the board's channels for Foxglove: what pages draw as entities of a scene, events as
-// a log.
+// Converts messages of the board's channels for Foxglove: drawn objects become scene entities,
+// events become a log.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace topogeo::web {
 
-/// `update`: a whole message of `channel`, as the board gives it. One foxglove.SceneUpdate; for
-/// Channel::kEvents a foxglove.Log for each event, in their order. An entity's id is its key in the
-/// table. `now_ns` stamps what has no time of its own. Throws std::invalid_argument for a channel
-/// that no topic shows.
+/// `update`: a whole message of `channel` from the board. Returns one foxglove.SceneUpdate, or for
+/// Channel::kEvents a foxglove.Log per event, in order. An entity's id is its key in the table.
+/// `now_ns` stamps objects without a time of their own. Throws std::invalid_argument for a channel
+/// without a topic.
 std::vector<std::string> foxglove_messages(Channel channel, std::string_view update,
                                            std::int64_t now_ns);
 

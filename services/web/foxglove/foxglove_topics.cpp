@@ -10,7 +10,7 @@
 namespace topogeo::web {
 namespace {
 
-/// Megabytes each: not with every stop of a robot that maps.
+/// Such messages have megabytes each: not one for every stop of a mapping robot.
 constexpr double kGridPeriod_s = 1.5;
 
 constexpr std::string_view kScene = "foxglove.SceneUpdate";
@@ -28,7 +28,7 @@ constexpr std::array<FoxgloveTopic, kFoxgloveTopics> kTopics = {{
     {11, "/log", "foxglove.Log", {}, Channel::kEvents, 0.0},
 }};
 
-// Shapes of JSON values and of messages.
+// Schemas of JSON values and of messages.
 namespace shape {
 
 using Members = std::vector<std::pair<std::string, Json>>;
@@ -103,7 +103,7 @@ Json color() {
   return object({{"r", number()}, {"g", number()}, {"b", number()}, {"a", number()}});
 }
 
-/// Of cells and points: where a number lies among their bytes.
+/// Fields of packed cells and points: position of a number among their bytes.
 Json packed_fields() {
   return list_of(object({{"name", text()},
                          {"offset", integer()},
@@ -178,7 +178,7 @@ Json texts() {
                          {"text", text()}}));
 }
 
-// Primitives that no topic uses are left out: their lists would always be empty.
+// Primitives that no topic uses are left out, because their lists would always be empty.
 Json scene_update() {
   const Json deletion = object(
       {{"timestamp", time()}, {"type", enumeration({"MATCHING_ID", "ALL"})}, {"id", text()}});

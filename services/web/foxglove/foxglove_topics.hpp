@@ -1,4 +1,4 @@
-// Topics that Foxglove and Lichtblick see, and the shapes of their messages: Foxglove's well-known
+// Topics for Foxglove and Lichtblick, with the schemas of their messages: Foxglove's well-known
 // types in JSON, each described by a JSON schema.
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace topogeo::web {
 
-/// Those that the service makes as they come; the newest counts.
+/// Topics that the service itself fills; only the newest message counts.
 enum class LiveTopic : std::uint8_t { kTransforms, kPose, kScan, kMap, kRoomMap };
 inline constexpr std::size_t kLiveTopics = static_cast<std::size_t>(LiveTopic::kRoomMap) + 1;
 
@@ -21,17 +21,17 @@ struct FoxgloveTopic {
   std::uint32_t channel_id = 0;
   std::string_view name;
   std::string_view schema;         ///< "foxglove.Grid"
-  std::optional<LiveTopic> live;   ///< where it comes from: of the service ...
-  std::optional<Channel> channel;  ///< ... or out of a channel of the board
-  double shortest_period_s = 0.0;  ///< between two messages for one client
+  std::optional<LiveTopic> live;   ///< source: the service itself ...
+  std::optional<Channel> channel;  ///< ... or a channel of the board
+  double shortest_period_s = 0.0;  ///< between two messages to one client
 };
 
 inline constexpr std::size_t kFoxgloveTopics = 11;
 const std::array<FoxgloveTopic, kFoxgloveTopics>& foxglove_topics();
-/// Null: there is none.
+/// Null for an unknown channel.
 const FoxgloveTopic* foxglove_topic(std::uint64_t channel_id);
 
-/// JSON schema of a type, as text. Throws std::out_of_range for one that no topic has.
+/// JSON schema of a type, as text. Throws std::out_of_range for a type without a topic.
 std::string foxglove_schema(std::string_view type);
 
 /// The message that advertises all topics.

@@ -23,13 +23,13 @@ using geometry::Pose2;
 constexpr const char* kOdometryFrame = "odom";
 constexpr const char* kRobotFrame = "base_link";
 constexpr const char* kLaserFrame = "laser";
-/// Of odometry: more than what comes between a scan and its pose.
+/// Number of odometry messages kept: more than arrive between a scan and its pose.
 constexpr std::size_t kKeptOdometry = 256;
-/// Scans and odometry come by two topics.
+/// Scans and odometry arrive on two topics, hence possibly out of order.
 constexpr std::int64_t kDisorder_ns = 5'000'000'000;
-/// 4 MB: larger maps come with larger cells.
+/// 4 MB; larger maps are sent with larger cells.
 constexpr std::size_t kMostGridCells = 1'000'000;
-// Numbers of the types of packed fields.
+// Type numbers of packed fields.
 constexpr int kUint8 = 1;
 constexpr int kFloat32 = 7;
 
@@ -127,7 +127,7 @@ void FoxgloveView::take(const msg::LivePose& pose) {
   feed_.set(LiveTopic::kPose, [stamp_ns = pose.stamp_ns(), T_map_robot] {
     return pose_in_frame(stamp_ns, T_map_robot);
   });
-  // A pose is that of a scan, or of an odometry message.
+  // A pose belongs to a scan or to an odometry message.
   const auto at = std::ranges::find(odometry_, pose.stamp_ns(), &Stamped::stamp_ns);
   if (at == odometry_.end()) return;
   T_map_odom_ = Stamped{pose.stamp_ns(), T_map_robot * inverse(at->T)};
@@ -144,7 +144,7 @@ void FoxgloveView::take(const std::shared_ptr<const MapPicture>& picture) {
 }
 
 void FoxgloveView::add_odometry(std::int64_t stamp_ns, const Pose2& T_odom_robot) {
-  if (newest_ && stamp_ns < newest_->stamp_ns - kDisorder_ns) {  // another source, or it began anew
+  if (newest_ && stamp_ns < newest_->stamp_ns - kDisorder_ns) {  // another source or a restart
     odometry_.clear();
     newest_.reset();
     T_map_odom_.reset();

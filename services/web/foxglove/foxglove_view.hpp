@@ -18,8 +18,8 @@
 
 namespace topogeo::web {
 
-/// Frames: map -> odom -> base_link -> laser. map -> odom is there as long as the pose means
-/// something. Lives in the loop of the service.
+/// Frames: map -> odom -> base_link -> laser. map -> odom exists as long as the robot is localized.
+/// Lives in the loop of the service.
 class FoxgloveView {
  public:
   FoxgloveView(FoxgloveFeed& feed, const geometry::Pose2& T_robot_laser)
@@ -41,12 +41,12 @@ class FoxgloveView {
 
   FoxgloveFeed& feed_;
   geometry::Pose2 T_robot_laser_;
-  std::deque<Stamped> odometry_;  // as it came: the pose of a scan comes later than the scan
+  std::deque<Stamped> odometry_;  // as received: the pose follows its scan later
   std::optional<Stamped> newest_;
   std::optional<Stamped> T_map_odom_;
 };
 
-/// foxglove.FrameTransforms of one transform after the other.
+/// foxglove.FrameTransforms with these transforms in turn.
 struct FrameTransform {
   std::int64_t stamp_ns = 0;
   const char* parent = "";
@@ -61,7 +61,7 @@ std::string pose_in_frame(std::int64_t stamp_ns, const geometry::Pose2& T_map_ro
 /// foxglove.PointCloud, frame "base_link": x, y and z as 32-bit floats.
 std::string point_cloud(const navigation::ScanPoints& scan);
 
-/// foxglove.Grid, frame "map": red, green, blue and alpha of each cell, a byte each.
+/// foxglove.Grid, frame "map": red, green, blue and alpha of each cell, one byte each.
 std::string colored_grid(const MapPicture& picture, Layer layer, std::int64_t stamp_ns);
 
 }  // namespace topogeo::web

@@ -1,7 +1,6 @@
-// A program that watches by Foxglove's WebSocket protocol, as Foxglove and Lichtblick do.
+// A client that watches through Foxglove's WebSocket protocol, such as Foxglove and Lichtblick.
 //
-// It may subscribe and nothing else. Of the topics that have changed since they were last sent the
-// one goes next that was sent longest ago.
+// It may only subscribe. Changed topics are sent in turn: the one sent longest ago goes next.
 #pragma once
 
 #include <array>
@@ -18,10 +17,10 @@
 
 namespace topogeo::web {
 
-/// That of the header Sec-WebSocket-Protocol which the service speaks; empty: none of them.
+/// The supported name in the header Sec-WebSocket-Protocol; empty: none.
 std::string foxglove_subprotocol(std::string_view offered);
 
-/// A frame with a message: opcode 1, id of the subscription, time, payload.
+/// A frame with a message: opcode 1, subscription id, time, payload.
 std::string message_data(std::uint32_t subscription, std::int64_t time_ns,
                          std::string_view payload);
 
@@ -33,7 +32,7 @@ class FoxgloveViewer : public Watcher {
   struct Subscription {
     const FoxgloveTopic* topic = nullptr;
     std::uint64_t held = 0;  // version
-    std::uint64_t turn = 0;  // number of the message that was sent last
+    std::uint64_t turn = 0;  // number of the last message sent
     double sent_s = 0.0;
   };
 
@@ -50,7 +49,7 @@ class FoxgloveViewer : public Watcher {
 
   std::map<std::uint32_t, Subscription> subscriptions_;
   std::uint64_t messages_sent_ = 0;
-  std::optional<std::uint32_t> frames_of_;  // subscription of what is made or sent
+  std::optional<std::uint32_t> frames_of_;  // subscription of the message being made or sent
 };
 
 }  // namespace topogeo::web

@@ -15,9 +15,10 @@
 namespace topogeo::web {
 namespace {
 
-/// A large map takes its time to copy.
+/// Copying a large map takes a while.
 constexpr double kArchivePatience_s = 20.0;
-// Of a map file: at most 180 MB/s, and no more under way than fits into the history of the writer.
+// Limits for sending a map file: at most 180 MB/s, and no more under way than the writer's history
+// holds.
 constexpr std::chrono::milliseconds kPiecePeriod{20};
 constexpr std::uint32_t kPiecesAtOnce = 64;
 
@@ -43,7 +44,7 @@ ArchiveRequests::ArchiveRequests(service::Service& service)
       pending_(service, "no map store has answered", kArchivePatience_s),
       requests_(service.advertise<msg::ArchiveRequest>()),
       pieces_(service.advertise<msg::SnapshotPiece>()) {
-  // Other readers of pieces than that of the map store may be connected before it.
+  // Other readers of pieces may connect before that of the map store.
   service.loop().on_event([this](const messaging::Event& event) {
     if (event.kind == messaging::EventKind::kMatched && event.topic == messaging::kSnapshotPiece) {
       next_piece_ = 0;

@@ -1,4 +1,4 @@
-// Requests to the map store for its snapshots, maps that become some, and its replies.
+// Requests to the map store for snapshots and for maps to become snapshots, and its replies.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 namespace topogeo::web {
 
 /// Lives in the loop of its service. Each function answers once: 200 with the snapshots by time,
-/// 409 where the map store refuses, 503 where none replies in time.
+/// 409 when the map store refuses, 503 when none replies in time.
 class ArchiveRequests {
  public:
   explicit ArchiveRequests(service::Service& service);
@@ -25,10 +25,10 @@ class ArchiveRequests {
   ~ArchiveRequests();
 
   void list(Respond respond);
-  /// Both throw std::invalid_argument for a name that no snapshot can have.
+  /// Both throw std::invalid_argument for an invalid snapshot name.
   void take(const std::string& name, Respond respond);
   void restore(const std::string& name, Respond respond);
-  /// A map file becomes a snapshot. One at a time: 503 while another is sent.
+  /// Makes a snapshot from a map file. One at a time: 503 while another is being sent.
   void import(const std::string& name, std::string map_file, Respond respond);
 
  private:
@@ -43,11 +43,11 @@ class ArchiveRequests {
   PendingRequests pending_;
   messaging::Writer<msg::ArchiveRequest> requests_;
   messaging::Writer<msg::SnapshotPiece> pieces_;
-  std::string map_file_;  // that is sent
+  std::string map_file_;  // the one being sent
   std::uint64_t import_request_ = 0;
   std::uint32_t next_piece_ = 0;
   std::uint64_t pieces_sent_ = 0;
-  std::optional<std::uint64_t> timer_;  // while one is sent
+  std::optional<std::uint64_t> timer_;  // runs while one is sent
 };
 
 }  // namespace topogeo::web

@@ -8,7 +8,7 @@
 namespace topogeo::web {
 namespace {
 
-/// Of the drawing, where no scan was taken.
+/// The grid of a map; the grid of its drawing when the map has no scans.
 planning::OccupancyGrid grid_of_map(const storage::MapDocument& map,
                                     const planning::ScanGridConfig& config) {
   if (map.local_maps.empty() && map.drawing.grid) return *map.drawing.grid;

@@ -1,4 +1,4 @@
-// What differs between two versions of a map, for pages.
+// Compares two versions of a map for pages.
 #pragma once
 
 #include <memory>
@@ -12,16 +12,16 @@
 namespace topogeo::web {
 
 struct NamedVersion {
-  std::string name;  ///< of a snapshot; empty: the map of now
+  std::string name;  ///< of a snapshot; empty: the current map
   std::shared_ptr<const storage::MapDocument> map;
 };
 
 struct Comparison {
-  Json json;        ///< as GET /api/compare, without "picture"
-  std::string png;  ///< as difference_png() makes it
+  Json json;        ///< answer of GET /api/compare, without "picture"
+  std::string png;  ///< result of difference_png()
 };
 
-/// Takes as long as the grids of both take. Throws like difference().
+/// Takes as long as building both grids. Throws like difference().
 Comparison compared(const NamedVersion& before, const NamedVersion& after,
                     const planning::ScanGridConfig& config);
 

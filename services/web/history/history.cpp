@@ -17,7 +17,7 @@ namespace topogeo::web {
 namespace {
 
 constexpr std::string_view kExportPath = "/api/export/";
-/// What the files of an export are called.
+/// Name of exported files, without extension.
 constexpr const char* kExportStem = "map";
 
 Answer json_answer(const Json& json) {
@@ -38,7 +38,7 @@ Answer formats_answer() {
   return json_answer({{"formats", std::move(formats)}});
 }
 
-/// The path of an export: the stem where there are several files, else the file.
+/// Path of an export: the name without extension if it has several files, otherwise the file.
 std::string export_path(const exchange::ExportFormat& format) {
   return format.endings.size() > 1 ? kExportStem
                                    : kExportStem + std::string(format.endings.front());
@@ -150,7 +150,7 @@ void History::local_map(const std::string& query, const Respond& respond) {
 void History::drive(const std::string& query, const Respond& respond) {
   const std::string text = query_value(query, "first");
   const std::size_t first = text.empty() ? 0 : parse_number(text, "first");
-  // Parts that follow are of the drive whose first part was asked for, as far as it is kept.
+  // Later parts belong to the drive whose first part was requested, as long as that map is kept.
   const auto good = [this, first](const storage::MapDocument& map) {
     return first > 0 || is_of_now(map);
   };

@@ -1,5 +1,5 @@
-// What pages ask of stored maps: local maps of stops, the drive to play, snapshots, what differs
-// between two versions, and files for other programs.
+// Answers requests about stored maps: local maps of stops, the drive to replay, snapshots,
+// differences between two versions, and files for other programs.
 #pragma once
 
 #include <cstdint>
@@ -22,16 +22,16 @@ namespace topogeo::web {
 /// Lives in the loop of its service.
 class History {
  public:
-  /// `drive` outlives it.
+  /// `drive` must outlive it.
   History(service::Service& service, DriveView& drive);
 
-  /// Whether get() answers this path. For any thread.
+  /// Whether get() answers this path. Thread-safe.
   [[nodiscard]] static bool has(std::string_view path);
-  /// Answers once, soon or when the map store has answered. Throws std::invalid_argument for a
-  /// request that cannot be understood.
+  /// Answers once, at once or after the map store has answered. Throws std::invalid_argument for a
+  /// malformed request.
   void get(const Request& request, const Respond& respond);
 
-  /// {"name": "monday"}. Both throw std::invalid_argument as get() does.
+  /// Body: {"name": "monday"}. Both throw std::invalid_argument like get().
   void take_snapshot(const std::string& body, const Respond& respond);
   void restore(const std::string& body, const Respond& respond);
   /// See MapMerge.
@@ -43,7 +43,7 @@ class History {
   }
 
  private:
-  /// Makes an answer of maps, in a thread.
+  /// Makes an answer from maps, in a background thread.
   using Make = std::function<Answer()>;
 
   void local_map(const std::string& query, const Respond& respond);
@@ -51,19 +51,19 @@ class History {
   void compare(const std::string& query, const Respond& respond);
   void picture(const std::string& query, const Respond& respond) const;
   void export_file(const std::string& path, const Respond& respond);
-  /// What the page gets of a comparison; its picture replaces the one before.
+  /// JSON of a comparison for the page; its picture replaces the previous one.
   [[nodiscard]] Json shown(Comparison comparison);
   [[nodiscard]] bool is_of_now(const storage::MapDocument& map) const;
-  /// Answers with what `make` returns; 409 where it throws std::exception.
+  /// Answers with the result of `make`; 409 when it throws std::exception.
   void answer_later(Make make, const Respond& respond);
 
   service::Service& service_;
   DriveView& drive_;
   ArchiveRequests archive_;
-  // The picture of the comparison that was made last, by its number.
+  // The picture of the last comparison, by its number.
   std::uint64_t compared_ = 0;
   std::string difference_png_;
-  // Both go after the thread that works for them has ended.
+  // Both are destroyed after the thread that works for them has ended.
   std::unique_ptr<MapCopies> copies_;
   std::unique_ptr<MapMerge> merge_;
   Background background_;

@@ -12,7 +12,7 @@ namespace topogeo::web {
 namespace {
 
 constexpr std::chrono::seconds kCopiesTick{1};
-constexpr double kCopyKept_s = 120.0;  // without being used
+constexpr double kCopyKept_s = 120.0;  // without use
 constexpr std::size_t kMostCopies = 2;
 constexpr double kFetchPatience_s = 60.0;
 
@@ -59,7 +59,7 @@ void MapCopies::fetch_next() {
   const std::string snapshot = waiting_.front().snapshot;
   store_.request(msg::kSnapshotMap, messaging::key_of(snapshot), 0,
                  [this, snapshot, fetch = ++fetch_](service::StoreClient::Answer answer) {
-                   if (fetch != fetch_) return;  // it was given up
+                   if (fetch != fetch_) return;  // this fetch was given up
                    if (answer.bytes) {
                      take(snapshot, std::move(*answer.bytes));
                    } else {

@@ -1,5 +1,5 @@
-// Whole maps of the map store, fetched when they are wanted and kept for a while: the one of now
-// and those of its snapshots.
+// Complete maps from the map store, fetched on demand and kept for a while: the current one and
+// those of its snapshots.
 #pragma once
 
 #include <cstdint>
@@ -21,21 +21,21 @@ namespace topogeo::web {
 class MapCopies {
  public:
   using Document = std::shared_ptr<const storage::MapDocument>;
-  /// The map, or null and why there is none.
+  /// The map, or null and the reason.
   using Handler = std::function<void(const Document& map, const std::string& why)>;
   using Check = std::function<bool(const storage::MapDocument& map)>;
   static constexpr std::size_t kMostWaiting = 16;
 
-  /// `on_shown`: a map store shows a map that nothing is added to.
+  /// `on_shown`: called when a map store shows a finished map.
   MapCopies(service::Service& service, Background& background, std::function<void()> on_shown);
   ~MapCopies();
   MapCopies(const MapCopies&) = delete;
   MapCopies& operator=(const MapCopies&) = delete;
 
-  /// `snapshot`: its name; empty: the map of now. A copy that is kept is taken where it is `good`,
-  /// which a snapshot always is.
+  /// `snapshot`: its name; empty: the current map. Uses a kept copy if it is `good`, as a snapshot
+  /// always is.
   void get(const std::string& snapshot, const Check& good, Handler handler);
-  /// Maps that were fetched before may be others now.
+  /// The maps fetched so far may have changed.
   void forget() { kept_.clear(); }
 
  private:
@@ -52,7 +52,7 @@ class MapCopies {
   [[nodiscard]] Document find(const std::string& snapshot, const Check& good);
   void fetch_next();
   void take(const std::string& snapshot, std::string bytes);
-  /// To all who want this one.
+  /// Passes the map to all requests for this snapshot.
   void give(const std::string& snapshot, const Document& map, const std::string& why);
   void tick();
 
@@ -62,7 +62,7 @@ class MapCopies {
   std::deque<Wanted> waiting_;
   std::vector<Kept> kept_;
   bool fetching_ = false;
-  std::uint64_t fetch_ = 0;  // counts them
+  std::uint64_t fetch_ = 0;  // number of the current fetch
   double fetching_since_s_ = 0.0;
   std::uint64_t timer_ = 0;
 };

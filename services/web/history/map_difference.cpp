@@ -18,7 +18,8 @@ using planning::OccupancyGrid;
 
 constexpr double kMostCells = 16e6;
 
-/// Parallel to the map, with the cells of `a`, at a multiple of their size.
+/// A frame parallel to the map that encloses both grids, with the cells of `a`, aligned to
+/// multiples of their size.
 GridFrame frame_of_both(const GridFrame& a, const GridFrame& b) {
   Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector2d high = -low;
@@ -26,7 +27,7 @@ GridFrame frame_of_both(const GridFrame& a, const GridFrame& b) {
     for (const Cell& corner : {Cell{0, 0}, Cell{frame->columns - 1, 0}, Cell{0, frame->rows - 1},
                                Cell{frame->columns - 1, frame->rows - 1}}) {
       const Eigen::Vector2d middle = frame->center_m(corner);
-      // Of a cell that may be turned, and more.
+      // Covers a cell in any rotation, with a margin.
       const Eigen::Vector2d half = Eigen::Vector2d::Constant(frame->resolution_m);
       low = low.cwiseMin(middle - half);
       high = high.cwiseMax(middle + half);

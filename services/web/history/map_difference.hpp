@@ -1,4 +1,4 @@
-// What differs between two versions of a map: cell by cell of their grids.
+// The difference between two versions of a map, cell by cell of their grids.
 #pragma once
 
 #include <array>
@@ -15,24 +15,24 @@ enum class CellChange : std::uint8_t {
   kSame = 0,
   kGone = 1,  ///< occupied before, free now
   kNew = 2,   ///< free before, occupied now
-  kSeen = 3,  ///< unknown before
-  kLost = 4,  ///< unknown now
+  kSeen = 3,  ///< was unknown
+  kLost = 4,  ///< is unknown now
 };
 inline constexpr std::size_t kCellChanges = 5;
 
 struct MapDifference {
-  planning::GridFrame frame;      ///< around both grids
+  planning::GridFrame frame;      ///< encloses both grids
   std::vector<CellChange> cells;  ///< row by row from row 0
   std::array<double, kCellChanges> areas_m2{};
 };
 
-/// Walls that moved by a cell are the same: a cell counts as gone or new only where the other grid
-/// has nothing occupied in the cells around it. Throws std::invalid_argument where the frame around
+/// A wall that moved by one cell counts as unchanged: a cell is gone or new only if the other grid
+/// has nothing occupied in the cells around it. Throws std::invalid_argument when the frame around
 /// both would have more than 16 million cells.
 MapDifference difference(const planning::OccupancyGrid& before,
                          const planning::OccupancyGrid& after);
 
-/// Upper row first; cells that are the same are transparent.
+/// Top row first; unchanged cells are transparent.
 std::string difference_png(const MapDifference& difference);
 
 }  // namespace topogeo::web

@@ -15,7 +15,7 @@
 namespace topogeo::web {
 namespace {
 
-/// Of the map that a merge has made.
+/// Snapshot name for a merged map.
 std::string merged_name() {
   const std::time_t now = std::time(nullptr);
   std::tm fields{};
@@ -24,7 +24,7 @@ std::string merged_name() {
   return {text.data(), std::strftime(text.data(), text.size(), "merged-%Y%m%d-%H%M%S", &fields)};
 }
 
-/// Why nothing was merged, as one sentence.
+/// Why nothing was merged, in one sentence.
 std::string why_apart(const exchange::MergedMap& made) {
   std::string why = "the maps do not join";
   for (const std::string& note : made.notes) why += ": " + note;

@@ -1,5 +1,5 @@
-// The map of now joined with a map file that an operator offers: made, looked at, accepted or
-// refused.
+// Merges the current map with a map file offered by an operator, who reviews and then accepts or
+// refuses the result.
 #pragma once
 
 #include <cstdint>
@@ -22,29 +22,30 @@ namespace topogeo::web {
 /// Lives in the loop of its service.
 class MapMerge {
  public:
-  /// What the page gets of a comparison, with the address of its picture. Called in the loop.
+  /// Returns the JSON of a comparison for the page, with the address of its picture. Called in the
+  /// loop.
   using Show = std::function<Json(Comparison comparison)>;
 
-  /// All outlive it.
+  /// All references must outlive it.
   MapMerge(service::Service& service, const DriveView& drive, MapCopies& copies,
            ArchiveRequests& archive, Background& background, Show show);
 
-  /// The bytes of a map.pb. 200 with what the merge would change (docs/web_protocol.md); 400 where
-  /// it is no map file; 409 where the maps do not join, or while another one is worked on. Nothing
-  /// has changed yet.
+  /// Takes the bytes of a map.pb. Answers 200 with the changes that the merge would make
+  /// (docs/web_protocol.md); 400 for no map file; 409 when the maps do not join, or during another
+  /// merge. The map itself does not change yet.
   void offer(std::string map_file, const Respond& respond);
-  /// {"number", "accept"}. Accepted the merged map takes the place of the map of now, of which a
-  /// snapshot stays. Throws std::invalid_argument for another body.
+  /// Body: {"number", "accept"}. An accepted map replaces the current one, which stays as a
+  /// snapshot. Throws std::invalid_argument for another body.
   void answer(const std::string& body, const Respond& respond);
 
  private:
   struct Proposal {
     std::uint64_t number = 0;
     std::string map_file;
-    std::uint64_t trajectory_version = 0;  ///< of the map that was merged
+    std::uint64_t trajectory_version = 0;  ///< of the merged map
   };
   struct Result {
-    Answer refusal;  ///< where nothing was merged
+    Answer refusal;  ///< reason when nothing was merged
     std::string map_file;
     Comparison comparison;
     bool merged = false;

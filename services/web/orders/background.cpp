@@ -36,7 +36,7 @@ void Background::work() {
       jobs_.pop_front();
     }
     Rest rest = job();
-    job = nullptr;  // what it holds goes before the loop may work on
+    job = nullptr;  // releases its data before the loop may continue
     loop_.post([alive = std::weak_ptr<bool>(alive_), rest = std::move(rest)] {
       if (!alive.expired()) rest();
     });

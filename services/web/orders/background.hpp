@@ -1,4 +1,4 @@
-// Work that takes longer than the loop of a service may stand: one thing at a time, in a thread.
+// Work that would block the loop of a service for too long: one job at a time, in a thread.
 #pragma once
 
 #include <condition_variable>
@@ -14,21 +14,21 @@ namespace topogeo::web {
 
 class Background {
  public:
-  /// What is left to do in the loop.
+  /// The rest of a job, called in the loop.
   using Rest = std::function<void()>;
   using Job = std::function<Rest()>;
-  /// So many wait for the one that is worked on.
+  /// Largest number of jobs waiting for the current one.
   static constexpr std::size_t kMostJobs = 4;
 
-  /// `loop` outlives it.
+  /// `loop` must outlive it.
   explicit Background(messaging::EventLoop& loop);
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;
-  /// Waits for the job that is worked on, forgets the others.
+  /// Waits for the current job and drops the others.
   ~Background();
 
-  /// False when too many wait. The job must not throw; what it returns is called in the loop,
-  /// unless this is gone by then.
+  /// False when too many jobs wait. The job must not throw; its result is called in the loop unless
+  /// this object is gone by then.
   bool run(Job job);
 
  private:

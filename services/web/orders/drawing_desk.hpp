@@ -1,5 +1,4 @@
-// What is drawn on the map: shows it, and hands what is drawn anew to the map store or the
-// simulator.
+// The drawing on the map: shows it, and passes edited drawings to the map store or the simulator.
 #pragma once
 
 #include <cstdint>
@@ -21,20 +20,20 @@ namespace topogeo::web {
 
 class EventLog;
 
-/// Lives in the loop of its service, but for shown() and takes_floors().
+/// Lives in the loop of its service, except shown() and takes_floors().
 class DrawingDesk {
  public:
   DrawingDesk(service::Service& service, Board& board, EventLog& events);
 
-  /// GET /api/drawing. For any thread.
+  /// Answer to GET /api/drawing. Thread-safe.
   [[nodiscard]] Answer shown() const;
-  /// Somebody simulates the robot, and can simulate it elsewhere. For any thread.
+  /// Whether a simulator can put the robot into another floor. Thread-safe.
   [[nodiscard]] bool takes_floors() const { return floors_.matched() > 0; }
 
-  // POST; throw std::invalid_argument like the parsers of drawing_text.hpp.
+  // POST handlers; they throw std::invalid_argument like the parsers of drawing_text.hpp.
   void replace(const std::string& body, const Respond& respond);
   void load_floor(const std::string& body, const Respond& respond);
-  /// Nobody gets an answer any more: each holds on to a connection. Before the server goes.
+  /// Drops all pending answers, because each holds a connection. Call it before the server ends.
   void abandon() { pending_.reset(); }
 
  private:
@@ -53,9 +52,9 @@ class DrawingDesk {
   std::string client_id_;
   std::optional<PendingRequests> pending_;
   std::uint64_t sent_ = 0;
-  std::uint64_t version_ = 0;  // of the drawing shown
+  std::uint64_t version_ = 0;  // of the shown drawing
   mutable std::mutex mutex_;
-  std::shared_ptr<const std::string> json_;  // null: none has come
+  std::shared_ptr<const std::string> json_;  // null: none received
   messaging::Writer<msg::DrawingOrder> orders_;
   messaging::Writer<msg::FloorOrder> floors_;
 };

@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kFarthestDrawn_m = 1e6;
 constexpr double kDrawnTurn_rad = 2.0 * std::numbers::pi;
-constexpr std::size_t kMostRooms = 256;  // to be joined at once
+constexpr std::size_t kMostRooms = 256;  // in one join
 
 Json flat_list(const std::vector<Eigen::Vector2d>& points_m) {
   Json out = Json::array();
@@ -54,7 +54,7 @@ std::string text_in(const Json& json, const char* key) {
   return found->get<std::string>();
 }
 
-/// Calls `use` for each entry of a list; what it throws gets list, index and name.
+/// Calls `use` for each entry of a list; its errors get list, index and name.
 template <class Use>
 void for_each_entry(const Json& json, const char* list, const Use& use) {
   const auto found = json.find(list);
@@ -99,7 +99,7 @@ planning::DrawnZone zone_of(const Json& json) {
   return zone;
 }
 
-/// All lists, of version 0.
+/// All lists, as version 0.
 storage::MapDrawing content_of(const Json& json) {
   storage::MapDrawing drawing;
   for_each_entry(json, "places",

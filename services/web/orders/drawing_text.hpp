@@ -1,4 +1,4 @@
-// Drawings as JSON of the protocol.
+// Drawings in the JSON of the protocol.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +16,12 @@
 
 namespace topogeo::web {
 
-/// A drawing without a grid, and the version that stands in it.
+/// JSON of a drawing without its grid, including its version.
 Json json_of(const storage::MapDrawing& drawing);
 
-// All throw std::invalid_argument naming list, index, key and what was expected.
+// All functions throw std::invalid_argument naming list, index, key and the expected value.
 
-/// The whole drawing; its version is the one that was edited.
+/// Parses a whole drawing; its version is the one that was edited.
 storage::MapDrawing parse_drawing(const std::string& body);
 
 struct ShapesOrder {
@@ -31,7 +31,7 @@ struct ShapesOrder {
 ShapesOrder parse_shapes_order(const std::string& body);
 
 struct FloorText {
-  bool simulator = false;  ///< else the robot
+  bool simulator = false;  ///< otherwise the robot
   std::string name;
   geometry::Pose2 T_floor_start;
   storage::MapDrawing drawing;

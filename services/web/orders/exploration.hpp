@@ -1,4 +1,4 @@
-// Exploring by itself: the robot goes to all that it can get to and has not seen. No transport.
+// Autonomous exploration: the robot visits all reachable areas that it has not seen. No transport.
 #pragma once
 
 #include <chrono>
@@ -14,11 +14,11 @@
 
 namespace topogeo::web {
 
-/// What is known of the floor; either may be null.
+/// The known floor; either map may be null.
 struct ExploredFloor {
   std::shared_ptr<const topomap::GlobalMap> graph;
   std::shared_ptr<const planning::HybridMap> map;
-  std::function<std::vector<geometry::Pose2>()> T_map_stops;  ///< asked when the map has changed
+  std::function<std::vector<geometry::Pose2>()> T_map_stops;  ///< called when the map has changed
 };
 
 struct ExplorationGoal {
@@ -28,26 +28,26 @@ struct ExplorationGoal {
 
 class Exploration {
  public:
-  /// From the beginning, also of what was given up before. Throws std::invalid_argument as `check`
-  /// of its configuration.
+  /// Starts over, including targets given up before. Throws std::invalid_argument like `check` of
+  /// the configuration.
   void start(const navigation::TourConfig& config);
   void stop() { tour_.reset(); }
   [[nodiscard]] bool running() const { return tour_ != nullptr; }
 
-  /// To be called every `period`: the next goal, when there is another one than before. `taken`:
-  /// the navigator's status is of the goal given last. While it is paused no time passes.
+  /// Call it every `period`: returns the next goal when it differs from the previous one. `taken`:
+  /// the navigator's status refers to the last goal. Paused time does not count.
   std::optional<ExplorationGoal> step(const ExploredFloor& floor,
                                       navigation::NavigatorStatus navigator, bool taken,
                                       std::chrono::nanoseconds period);
 
-  /// Nothing that can be reached is left; false before start().
+  /// Nothing reachable is left; false before start().
   [[nodiscard]] bool done() const { return tour_ && tour_->done(); }
-  /// A line for people, while it is running.
+  /// A line for people during the exploration.
   [[nodiscard]] std::string summary() const;
 
  private:
   std::unique_ptr<navigation::ExplorationTour> tour_;
-  std::uint64_t goal_id_ = 0;  // as the tour numbers it
+  std::uint64_t goal_id_ = 0;  // number given by the tour
   std::chrono::nanoseconds time_{0};
 };
 

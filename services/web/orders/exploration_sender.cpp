@@ -68,7 +68,7 @@ void ExplorationSender::step() {
   if (!exploration_.running()) return;
   try {
     newest_ = floor_();
-  } catch (const std::invalid_argument&) {  // of a map that is not whole: the one before stays
+  } catch (const std::invalid_argument&) {  // an incomplete map: the previous one stays
   }
   navigation::NavigatorStatus navigator = navigator_;
   navigator.T_map_robot.reset();

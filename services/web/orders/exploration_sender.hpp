@@ -1,4 +1,4 @@
-// Lets the robot explore by itself on an operator's order.
+// Starts autonomous exploration on an operator's order.
 #pragma once
 
 #include <cstdint>
@@ -19,19 +19,19 @@ namespace topogeo::web {
 /// Lives in the loop of its service.
 class ExplorationSender {
  public:
-  /// `floor`: as it is now, asked for several times a second while it explores. May throw
-  /// std::invalid_argument: then the one before stays.
+  /// `floor` returns the current floor and is called several times a second while exploring. If it
+  /// throws std::invalid_argument, the previous floor stays.
   ExplorationSender(service::Service& service, GoalSender& goals, EventLog& events,
                     const RobotView& robot, std::function<ExploredFloor()> floor);
   ExplorationSender(const ExplorationSender&) = delete;
   ExplorationSender& operator=(const ExplorationSender&) = delete;
   ~ExplorationSender();
 
-  /// Refused (409) for a robot that does not map.
+  /// Refused (409) for a robot that is not mapping.
   Answer start();
-  /// The goal that the robot has stays.
+  /// The robot's current goal stays.
   void stop();
-  /// What the navigator reports; `end`: how the goal has ended by it.
+  /// Takes a navigator status; `end`: how the goal ended by it.
   void take(const msg::NavigatorStatus& status, std::optional<GoalList::End> end);
 
  private:

@@ -34,7 +34,7 @@ std::optional<GoalList::End> GoalList::take(const msg::NavigatorStatus& status) 
     static_cast<void>(add({}, true));
     return End::kArrived;
   }
-  // Until the navigator has it, its status is of the goal before.
+  // Until the navigator takes the goal, its status refers to the previous one.
   if (!taken_) return std::nullopt;
   clear();
   return End::kTakenOver;

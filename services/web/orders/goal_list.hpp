@@ -1,4 +1,4 @@
-// Goals in a row: which one the robot has, and which ones wait. No clock, no transport.
+// A sequence of goals: the current one, and the waiting ones. No clock, no transport.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace topogeo::web {
 
-/// A goal that the map has.
+/// A goal resolved on the map.
 struct Goal {
   std::uint64_t id = 0;  ///< never 0
   std::string text;      ///< for people
@@ -21,14 +21,13 @@ class GoalList {
  public:
   enum class End : std::uint8_t { kArrived, kTakenOver };
 
-  /// Replaces all, or waits behind those that are there. True: current() is another one now and is
-  /// to be sent.
+  /// Replaces all goals, or appends to them. True when current() has changed and must be sent.
   bool add(std::deque<Goal> goals, bool append);
   void clear();
 
-  /// What the navigator reports. Nothing, or how the current goal ended; with kArrived the next one
-  /// is current() and is to be sent, with kTakenOver, because somebody else gave or cancelled a
-  /// goal, none is left.
+  /// Takes a navigator status. Returns how the current goal ended, if it did. After kArrived the
+  /// next goal is current() and must be sent; after kTakenOver, because another client gave or
+  /// cancelled a goal, none is left.
   std::optional<End> take(const msg::NavigatorStatus& status);
 
   [[nodiscard]] const std::optional<Goal>& current() const { return current_; }
@@ -36,7 +35,7 @@ class GoalList {
 
  private:
   std::optional<Goal> current_;
-  bool taken_ = false;  // the navigator has it
+  bool taken_ = false;  // by the navigator
   std::deque<Goal> waiting_;
 };
 

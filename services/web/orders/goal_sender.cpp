@@ -15,7 +15,7 @@
 namespace topogeo::web {
 namespace {
 
-/// That no other client has, and never 0.
+/// Unique among all clients, and never 0.
 std::uint64_t random_goal_id() {
   std::random_device random;
   return (std::uint64_t{random()} << 16U) + (random() & 0xFFFFU) + 1;

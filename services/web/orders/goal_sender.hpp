@@ -1,4 +1,4 @@
-// Gives the robot its goals, one after the other: channel `goals`.
+// Sends the robot its goals, one after the other: channel `goals`.
 #pragma once
 
 #include <cstdint>
@@ -23,15 +23,15 @@ class GoalSender {
  public:
   GoalSender(service::Service& service, Board& board, const MapView& map, EventLog& events);
 
-  /// Throws std::invalid_argument naming a place that the map does not have; then nothing has
-  /// changed. The id of the first of these goals.
+  /// Returns the id of the first of these goals. Throws std::invalid_argument naming an unknown
+  /// place; nothing has changed then.
   std::uint64_t add(const GoalOrders& orders);
-  /// One goal of an exploration, in place of all others; its id.
+  /// Replaces all goals by one goal of an exploration; returns its id.
   std::uint64_t send_to(const geometry::Pose2& T_map_goal, const std::string& text);
   void pause();
   void resume();
   void cancel();
-  /// How the current goal has ended, if it has; then the next one is on its way.
+  /// How the current goal ended, if it did; the next one has then been sent.
   std::optional<GoalList::End> take(const msg::NavigatorStatus& status);
   /// Whether goals come from an exploration.
   void set_exploring(bool exploring);
@@ -39,7 +39,7 @@ class GoalSender {
   /// Whether there is a goal that has not ended.
   [[nodiscard]] bool under_way() const { return list_.current().has_value(); }
   [[nodiscard]] std::size_t waiting() const { return list_.waiting().size(); }
-  /// Where a goal is on the map of now.
+  /// Position of a goal on the current map.
   [[nodiscard]] Eigen::Vector2d position_of(const WantedGoal& goal) const;
 
  private:

@@ -19,8 +19,8 @@
 namespace topogeo::web {
 namespace {
 
-constexpr std::chrono::milliseconds kHandPeriod{50};        // as the navigator
-constexpr std::chrono::milliseconds kLastHandCommand{200};  // for the gateway to have the last one
+constexpr std::chrono::milliseconds kHandPeriod{50};        // as for the navigator
+constexpr std::chrono::milliseconds kLastHandCommand{200};  // lets the gateway get the last one
 
 }  // namespace
 
@@ -84,7 +84,7 @@ void HandSender::on_odometry(const msg::Odometry& odometry) {
 }
 
 void HandSender::on_pose(const msg::LivePose& pose) {
-  if (pose.state() != msg::kStateTracking) return;  // the points of before are carried on
+  if (pose.state() != msg::kStateTracking) return;  // the guard carries the previous points on
   pose_.emplace();
   pose_->stamp_ns = pose.stamp_ns();
   pose_->T_map_robot = service::from_msg(pose.T_map_robot());
@@ -169,7 +169,7 @@ void HandSender::command(const geometry::Velocity& velocity, std::int64_t stamp_
   tally_.add("commands");
 }
 
-// The base of another robot may be connected already when that of the own one is not.
+// Another robot's base may already be connected when the own one is not.
 bool HandSender::base_hears() const {
   return base_ && orders_.connected_with(*base_);
 }
@@ -195,7 +195,7 @@ bool HandSender::order(msg::BaseCommandKind kind) {
   messaging::set_header(message, service_.robot_id(), support::wall_clock_ns(), orders_sent_++);
   messaging::set_client_id(message, client_id_);
   message.kind(kind);
-  const bool heard = base_hears();  // before it is sent, or it may be lost after all
+  const bool heard = base_hears();  // before sending: a later base may miss it
   if (orders_.write(message)) return heard;
   hooks_.on_blocked("base command");
   return false;

@@ -1,4 +1,4 @@
-// Drives the base by hand, in what the collision guard allows, and halts it: channel `drive`.
+// Drives the base by hand, within the limits of the collision guard, and halts it: channel `drive`.
 #pragma once
 
 #include <atomic>
@@ -24,17 +24,17 @@
 
 namespace topogeo::web {
 
-/// Now, by the steady clock.
+/// Time of the steady clock.
 std::int64_t steady_ns();
 
 class EventLog;
 
-/// Lives in the loop that it is given, which has nothing else to do: what it is ordered is done at
-/// once, whatever the other threads of the service do.
+/// Lives in a loop of its own, so that orders are carried out at once, whatever the other threads
+/// of the service do.
 class HandSender {
  public:
   struct Hooks {
-    /// The robot was left alone before and may have a goal. keep_off() follows.
+    /// Called when a drive by hand begins; the robot may have a goal. keep_off() follows.
     std::function<void()> on_first;
     /// A message was not sent because its readers are slow.
     std::function<void(const char* message)> on_blocked;
@@ -44,20 +44,20 @@ class HandSender {
              EventLog& events, Tally& tally, Hooks hooks);
   HandSender(const HandSender&) = delete;
   HandSender& operator=(const HandSender&) = delete;
-  /// The last command is to stand still.
+  /// Sends a command to stand still.
   ~HandSender();
 
-  /// An order that was received at `came_ns` of the steady clock; one that is old is refused.
+  /// An order received at `came_ns` of the steady clock; old orders are refused.
   void drive(std::uint64_t viewer, const geometry::Velocity& wanted, std::int64_t came_ns);
   void release(std::uint64_t viewer);
-  /// Where drawn walls and no-go zones are. Until it is known who takes the controls does not move.
+  /// Sets the drawn walls and no-go zones. Until they are known, the robot does not move.
   void keep_off(std::shared_ptr<const navigation::DrawnLimits> limits);
-  /// The base stops at once and holds until release_stop(). False: no base hears it; one that comes
-  /// before release_stop() is stopped then.
+  /// Halts the base until release_stop(). Returns false when no base hears it; a base that connects
+  /// before release_stop() is then halted, too.
   [[nodiscard]] bool stop();
-  /// False: no base hears it.
+  /// Returns false when no base hears it.
   [[nodiscard]] bool release_stop();
-  /// Somebody drives. For any thread.
+  /// Whether anybody drives by hand. Thread-safe.
   [[nodiscard]] bool is_held() const { return held_; }
 
  private:
@@ -69,11 +69,11 @@ class HandSender {
   void tick();
   void keep_off_drawn();
   void command(const geometry::Velocity& velocity, std::int64_t stamp_ns);
-  /// Whether the base hears it.
+  /// Returns whether the base hears it.
   bool order(msg::BaseCommandKind kind);
   [[nodiscard]] bool base_hears() const;
   void show(const navigation::GuardVerdict& verdict, bool held);
-  /// Takes the messages of the own robot.
+  /// Subscribes to messages of the own robot.
   template <class T, class Handler>
   void subscribe(Handler handler);
 
@@ -86,8 +86,8 @@ class HandSender {
   std::string client_id_;
   service::StampClock clock_;
   navigation::CollisionGuard guard_;
-  std::shared_ptr<const navigation::DrawnLimits> limits_;  // null: not known since the first order
-  std::optional<navigation::PoseFix> pose_;  // the last one that is sure, unless it was used
+  std::shared_ptr<const navigation::DrawnLimits> limits_;  // null: unknown since the first order
+  std::optional<navigation::PoseFix> pose_;                // the newest reliable one, until used
   ManualDrive drive_;
   std::atomic<bool> held_ = false;
   bool commanding_ = false;
@@ -95,7 +95,7 @@ class HandSender {
   std::uint64_t orders_sent_ = 0;
   messaging::Writer<msg::MotionCommand> commands_;
   messaging::Writer<msg::BaseCommand> orders_;
-  std::optional<messaging::Handle> base_;  // the writer of the status of the robot's base
+  std::optional<messaging::Handle> base_;  // writer of the base's status
   bool stop_unheard_ = false;
 };
 

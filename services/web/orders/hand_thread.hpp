@@ -1,5 +1,5 @@
-// Stop, Release and driving by hand in a thread of their own: neither the topics of a large map nor
-// the requests of any number of pages keep them waiting.
+// Stop, Release and driving by hand in a thread of their own, so that neither the topics of a large
+// map nor many requests of pages delay them.
 #pragma once
 
 #include <cstdint>
@@ -19,14 +19,14 @@ namespace topogeo::web {
 
 class HandThread {
  public:
-  /// The hooks are called in this thread. An exception of it ends the loop of the service.
+  /// The hooks are called in this thread. An exception in it ends the loop of the service.
   HandThread(service::Service& service, Board& board, EventLog& events, Tally& tally,
              HandSender::Hooks hooks);
   HandThread(const HandThread&) = delete;
   HandThread& operator=(const HandThread&) = delete;
   ~HandThread();
 
-  // For any thread; see HandSender.
+  // Thread-safe; see HandSender.
   void drive(std::uint64_t viewer, const geometry::Velocity& wanted);
   void release(std::uint64_t viewer);
   void stop(Respond respond);
@@ -34,12 +34,12 @@ class HandThread {
   void keep_off(std::shared_ptr<const navigation::DrawnLimits> limits);
   [[nodiscard]] bool is_held() const { return hand_.is_held(); }
 
-  /// Ends the thread; what was not answered never is.
+  /// Ends the thread; unanswered orders stay unanswered.
   void end();
 
  private:
   struct Order {
-    bool stop = false;  ///< else release
+    bool stop = false;  ///< otherwise release
     Respond respond;
   };
   void run();
@@ -50,7 +50,7 @@ class HandThread {
   messaging::EventLoop loop_;
   HandSender hand_;
   std::mutex mutex_;
-  std::deque<Order> orders_;  // here and not in the loop: they hold on to connections
+  std::deque<Order> orders_;  // here and not in the loop, because they hold connections
   bool ended_ = false;
   std::thread thread_;
 };

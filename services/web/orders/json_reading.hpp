@@ -1,4 +1,4 @@
-// Fields of JSON that somebody sends, checked.
+// Checked reading of fields in received JSON.
 #pragma once
 
 #include <optional>
@@ -7,11 +7,11 @@
 
 namespace topogeo::web {
 
-// All throw std::invalid_argument naming key and expectation.
+// All functions throw std::invalid_argument naming key and expectation.
 
-/// A number from least to most; nothing when the key is missing.
+/// A number in [least, most]; nothing when the key is missing.
 std::optional<double> number(const Json& json, const char* key, double least, double most);
-/// The same of a key that must be there.
+/// The same for a required key.
 double needed(const Json& json, const char* key, double least, double most);
 
 }  // namespace topogeo::web

@@ -22,7 +22,7 @@ LocalizerRequests::LocalizerRequests(service::Service& service)
       pending_(service, "no localizer has answered", kRequestPatience_s),
       commands_(service.advertise<msg::LocalizationCommand>()),
       answers_(service.advertise<msg::MergeAnswer>()) {
-  // A localizer of several robots answers under the name of the map.
+  // A localizer of several robots replies under the name of the map.
   service.subscribe<msg::LocalizationReply>(
       [this](const msg::LocalizationReply& reply) { on_reply(reply); }, {.any_robot = true});
 }

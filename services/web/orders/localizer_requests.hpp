@@ -17,7 +17,7 @@
 namespace topogeo::web {
 
 /// Lives in the loop of its service. Each function answers once: 200 with accepted and message, 409
-/// where the localizer refuses, 503 where none replies within five seconds.
+/// when the localizer refuses, 503 when none replies within five seconds.
 class LocalizerRequests {
  public:
   explicit LocalizerRequests(service::Service& service);

@@ -13,7 +13,7 @@ namespace topogeo::web {
 namespace {
 
 constexpr std::size_t kMostGoals = 50;
-constexpr std::size_t kLongestName = 64;  // as messages have it
+constexpr std::size_t kLongestName = 64;  // limit of the messages
 constexpr double kFarthest_m = 1e5;
 
 bool flag(const Json& json, const char* key, bool otherwise) {

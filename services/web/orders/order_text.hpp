@@ -1,4 +1,4 @@
-// Orders of the operator, from the bodies of their requests.
+// Parses the operator's orders from the bodies of requests.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ struct WantedGoal {
 };
 
 struct GoalOrders {
-  std::vector<WantedGoal> goals;  ///< 1 to 50, in a row
-  bool append = false;            ///< after those that wait
+  std::vector<WantedGoal> goals;  ///< 1 to 50, in sequence
+  bool append = false;            ///< after the waiting ones
 };
 
 struct PoseOrder {
@@ -35,18 +35,18 @@ struct MergeOrder {
   bool accept = false;
 };
 
-// All throw std::invalid_argument naming key and expectation.
+// All functions throw std::invalid_argument naming key and expectation.
 GoalOrders parse_goals(const std::string& body);
 PoseOrder parse_pose_order(const std::string& body);
 MergeOrder parse_merge_order(const std::string& body);
 /// "mapping" (true) or "localization".
 bool parse_mapping_mode(const std::string& body);
-/// {"name": "monday"}: the name.
+/// Returns the name in {"name": "monday"}.
 std::string parse_name(const std::string& body);
-/// A body that says nothing: empty, or an object.
+/// Accepts only a body without content: empty, or an object.
 void check_plain(const std::string& body);
 
-/// "place room A" or "1.20, 3.40": for people.
+/// For people: "place room A" or "1.20, 3.40".
 std::string describe(const WantedGoal& goal);
 
 }  // namespace topogeo::web

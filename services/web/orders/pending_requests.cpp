@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kRequestTick{100};
 
-/// Ids of another process are others.
+/// Random, so that ids differ between processes.
 std::uint64_t first_request_id() {
   return std::uint64_t{std::random_device{}()} << 16U;
 }

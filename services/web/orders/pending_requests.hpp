@@ -1,4 +1,4 @@
-// Requests of pages to another service, in the loop of this one.
+// Requests of pages to another service, handled in the loop of this one.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace topogeo::web {
 
-/// The clock and the CPU watch of a RequestTable. Lives in the loop of its service.
+/// A RequestTable with its clock and CPU watch. Lives in the loop of its service.
 class PendingRequests {
  public:
   /// See RequestTable. The other service carries out a request once and repeats its reply.
@@ -21,11 +21,11 @@ class PendingRequests {
   PendingRequests& operator=(const PendingRequests&) = delete;
   ~PendingRequests();
 
-  /// Sends a request under a number of its own: `send` is called with it, perhaps several times.
-  /// `heard`: see RequestTable.
+  /// Sends a request under a new number: calls `send` with it, perhaps several times. `heard`: see
+  /// RequestTable.
   void begin(Respond respond, std::function<void(std::uint64_t id)> send,
              std::function<bool()> heard = {});
-  /// The handler of the reply to a request; nothing where it was answered.
+  /// The handler for the reply to a request; nothing when it was already answered.
   std::optional<Respond> take(std::uint64_t id) { return table_.take(id); }
 
  private:

@@ -17,7 +17,7 @@ double heading_rad(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
 
 }  // namespace
 
-// The follower drives arcs around corners that are not sharp: only the turning costs time there.
+// The follower rounds corners that are not sharp, so only the turning takes time there.
 double drive_time_s(const std::vector<Eigen::Vector2d>& points_m,
                     const navigation::FollowerConfig& follower) {
   double time_s =

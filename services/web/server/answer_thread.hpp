@@ -1,5 +1,5 @@
-// Makes answers and messages in a thread of its own, so that the thread of the connections, which
-// carries Stop, never waits for one.
+// Makes answers and messages in a thread of its own, so that the connection thread, which carries
+// Stop, never waits for them.
 #pragma once
 
 #include <condition_variable>
@@ -13,7 +13,7 @@ namespace topogeo::web {
 
 class AnswerThread {
  public:
-  /// Work for operators is done before all other.
+  /// Work for operators comes first.
   enum class Turn : std::uint8_t { kFirst, kLater };
 
   AnswerThread();
@@ -21,9 +21,9 @@ class AnswerThread {
   AnswerThread& operator=(const AnswerThread&) = delete;
   ~AnswerThread();
 
-  /// For any thread. After stop() nothing is done.
+  /// Thread-safe. Does nothing after stop().
   void post(Turn turn, std::function<void()> work);
-  /// Ends after the work that is being done, and drops the rest.
+  /// Ends after the current work and drops the rest.
   void stop();
 
  private:

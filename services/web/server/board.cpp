@@ -109,7 +109,7 @@ bool Board::apply(State& state, std::vector<Edit>& edits, bool anew) {
     }
     std::ranges::move(removals, std::back_inserter(edits));
   }
-  bool changed = state.version == 0;  // an empty table is something else than none yet
+  bool changed = state.version == 0;  // an empty table differs from a missing one
   const std::uint64_t version = state.version + 1;
   for (Edit& edit : edits) {
     const auto held = state.objects.find(edit.key);

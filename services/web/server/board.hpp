@@ -1,9 +1,9 @@
-// What viewers see: channels, each a value or a table of objects, with the versions that let a
-// viewer who was away get exactly what it lacks.
+// The state shown to viewers: channels, each a value or a table of objects, with versions that let
+// a returning viewer get exactly the changes it lacks.
 //
 // Viewers pull: the board keeps the newest state and no messages, so that a slow viewer costs
-// nothing. A message joins all changes since the version that a viewer holds; those who hold the
-// same version share one text.
+// nothing. A message joins all changes since the version that a viewer holds; viewers with the same
+// version share one text.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@
 
 namespace topogeo::web {
 
-/// In the order in which a viewer gets what has changed.
+/// In the order in which changes are sent to a viewer.
 enum class Channel : std::uint8_t {
   kTime,
   kPose,
@@ -56,50 +56,50 @@ enum class Channel : std::uint8_t {
 };
 inline constexpr std::size_t kChannels = static_cast<std::size_t>(Channel::kViewers) + 1;
 
-/// As the protocol names it: "pose", "local_map", ...
+/// Name in the protocol: "pose", "local_map", ...
 std::string_view name_of(Channel channel);
 std::optional<Channel> channel_of(std::string_view name);
-/// False: a value.
+/// False for a value.
 bool is_table(Channel channel);
 
-/// A new object of a table, as JSON; empty: it is gone.
+/// A new object of a table, as JSON; empty: removed.
 struct Edit {
   std::string key;
   std::string json;
 };
 
-/// What brings a viewer up to date.
+/// The message that brings a viewer up to date.
 struct Update {
   std::shared_ptr<const std::string> text;  ///< a whole message
-  std::uint64_t version = 0;                ///< that the viewer holds then
+  std::uint64_t version = 0;                ///< version that the viewer then holds
 };
 
-/// For any thread.
+/// Thread-safe.
 class Board {
  public:
-  /// Keys that are gone are remembered up to this number for each table; a viewer who has missed
-  /// more gets the whole table.
+  /// Largest number of removed keys remembered per table; a viewer that has missed more gets the
+  /// whole table.
   static constexpr std::size_t kRemembered = 4096;
 
-  /// `clock_s`: seconds since any start, never backwards, by which values become old.
+  /// `clock_s`: seconds from any start, never going back; gives the ages of values.
   explicit Board(std::function<double()> clock_s = support::monotonic_s)
       : clock_s_(std::move(clock_s)) {}
 
-  /// Calls `on_change` after each change, in the thread that made it, without a lock held.
+  /// Calls `on_change` after each change, in the thread that made it, without holding a lock.
   void on_change(std::function<void(Channel)> handler);
 
-  /// Replaces a value, JSON. One that is equal to the one before is no change, but makes it new.
+  /// Replaces a value, as JSON. An equal value is no change, but counts as heard anew.
   void set(Channel channel, std::string json);
-  /// How long ago each value was set, in seconds, as JSON: {"pose":0.1,...}.
+  /// Age of each value in seconds, as JSON: {"pose":0.1,...}.
   [[nodiscard]] std::string ages_s() const;
-  /// All edits of one call come to viewers together. Objects that are equal are no change. `anew`:
-  /// what the table had before and is not among the edits is gone.
+  /// Viewers get all edits of one call together. Equal objects are no change. `anew` removes all
+  /// objects that are not among the edits.
   void edit(Channel channel, std::vector<Edit> edits, bool anew = false);
 
   /// 0 before the first change. Never waits for another thread.
   [[nodiscard]] std::uint64_t version(Channel channel) const;
-  /// For a viewer who holds `held` (0: nothing), which is not the version of now. What it was never
-  /// given, a larger one than that of now, counts as nothing.
+  /// Update for a viewer with version `held` (0: none), which is not the current one. A larger
+  /// version, which was never given out, counts as none.
   [[nodiscard]] Update update(Channel channel, std::uint64_t held) const;
 
  private:
@@ -113,8 +113,8 @@ class Board {
     double set_s = 0.0;
     std::map<std::string, Object> objects;
     std::deque<std::pair<std::uint64_t, std::string>> gone;  // version and key, ascending
-    std::uint64_t forgotten = 0;  // what was gone up to this version is not known any more
-    // The last messages made for the version of now, by the version that they start from.
+    std::uint64_t forgotten = 0;  // removals up to this version are no longer known
+    // The last messages made for the current version, by their starting version.
     mutable std::map<std::uint64_t, std::shared_ptr<const std::string>> texts;
   };
 

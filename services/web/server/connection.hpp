@@ -1,4 +1,4 @@
-// A connection of a viewer, with or without TLS: one type for both, so that Beast is compiled once.
+// A viewer's connection, with or without TLS: one type for both, so that Beast is compiled once.
 #pragma once
 
 #include <chrono>
@@ -23,7 +23,7 @@ class Connection {
  public:
   using executor_type = beast::tcp_stream::executor_type;
 
-  /// `tls` may be null; else it outlives this.
+  /// `tls` may be null; otherwise it must outlive this object.
   Connection(asio::ip::tcp::socket socket, asio::ssl::context* tls)
       : streams_(std::make_unique<Streams>(std::move(socket), tls)) {}
 
@@ -56,7 +56,7 @@ class Connection {
     }
   }
 
-  /// Both directions, without waiting for the peer.
+  /// Closes both directions without waiting for the peer.
   void close() {
     beast::error_code ignored;
     socket().shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
@@ -74,7 +74,7 @@ class Connection {
   std::unique_ptr<Streams> streams_;
 };
 
-// What Beast asks of a stream of one's own at the end of a WebSocket.
+// Functions that Beast requires for closing the WebSocket of a custom stream.
 inline void beast_close_socket(Connection& connection) {
   connection.close();
 }

@@ -22,17 +22,17 @@ namespace http = beast::http;
 namespace {
 
 constexpr std::string_view kPageProtocol = "topogeo";
-constexpr std::chrono::seconds kIdle{30};  // between two requests, and for one to come or go
+constexpr std::chrono::seconds kIdle{30};  // between two requests, and for receiving or sending one
 constexpr std::chrono::seconds kLinger{2};
-constexpr std::chrono::milliseconds kPause{250};  // after a request that came too often
+constexpr std::chrono::milliseconds kPause{250};  // after a request that came too soon
 constexpr std::size_t kDrained_bytes = 65536;     // at a time ...
-constexpr int kMostDrained = 64;                  // ... and so often
+constexpr int kMostDrained = 64;                  // ... and at most so often
 constexpr std::uint32_t kMostRequestHeader_bytes = 8192;
 constexpr std::uint64_t kMostBody_bytes = 65536;
-/// A drawing with all that it may have, each number with all of its digits.
+/// A drawing of the largest size, with all digits of each number.
 constexpr std::uint64_t kMostDrawing_bytes = std::uint64_t{8} << 20U;
-constexpr std::chrono::seconds kUpload{120};             // for a body that is larger than usual
-constexpr const char* kShapesPath = "/api/room_shapes";  // computes only, for everybody
+constexpr std::chrono::seconds kUpload{120};             // for a body larger than usual
+constexpr const char* kShapesPath = "/api/room_shapes";  // only computes, hence for everybody
 
 std::string_view path_of(std::string_view target) {
   return target.substr(0, target.find('?'));
@@ -42,8 +42,7 @@ bool stops_or_releases(std::string_view path) {
   return path == "/api/stop" || path == "/api/release";
 }
 
-/// What browsers are told of each answer: the page takes nothing from elsewhere, and is framed by
-/// nobody.
+/// Browser policy for each answer: the page loads nothing from elsewhere, and no site may frame it.
 constexpr const char* kContentPolicy =
     "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
     "connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
@@ -71,7 +70,7 @@ HttpSession::HttpSession(Connection connection, ServerState& state, std::string 
 HttpSession::~HttpSession() {
   Places::leave(*this);
   --state_.peers[address()].connections;
-  // Who connects anew for each request has no other limits.
+  // A peer that opens a new connection for each request must meet the same limits.
   if (state_.peers.size() <= ServerState::kMostPeers) return;
   std::erase_if(state_.peers, [](const auto& peer) { return peer.second.connections == 0; });
 }
@@ -103,7 +102,7 @@ void HttpSession::shake_hands() {
 void HttpSession::read() {
   parser_.emplace();
   parser_->header_limit(kMostRequestHeader_bytes);
-  parser_->body_limit(kMostMapFile_bytes);  // that of each request follows from its header
+  parser_->body_limit(kMostMapFile_bytes);  // the header sets the limit of each request
   connection_.expires_after(kIdle);
   http::async_read_header(connection_, buffer_, *parser_,
                           [self = shared_from_this()](beast::error_code error, std::size_t) {
@@ -169,7 +168,7 @@ void HttpSession::on_read(beast::error_code error) {
   }
 }
 
-// What is no HTTP ends the connection; what is too much gets an answer first.
+// Invalid HTTP ends the connection; an oversized request gets an answer first.
 void HttpSession::answer_read_error(beast::error_code error) {
   if (error == http::error::end_of_stream || error == beast::error::timeout ||
       error.category() != http::make_error_code(http::error::bad_method).category()) {
@@ -213,14 +212,14 @@ std::optional<Answer> HttpSession::refusal_of_sender() {
   if (request.method() != http::verb::post) {
     return refuse(405, "method", "expected GET or POST");
   }
-  // The token first: who has none learns nothing else.
+  // Check the token first, so that a peer without it learns nothing else.
   if (!authorized_ && request.target() != kShapesPath) {
     return refuse(401, "no token", "this needs the operator's token");
   }
   return {};
 }
 
-// Whoever has the token shares no limit with those who have none, at the same address neither.
+// Requests with the token never share a limit with those without, not even from one address.
 std::optional<Answer> HttpSession::refusal_by_rate() {
   const auto& request = parser_->get();
   const double now_s = state_.config.clock_s();
@@ -243,7 +242,7 @@ std::optional<Answer> HttpSession::refusal_by_rate() {
 }
 
 void HttpSession::upgrade() {
-  // Programs that speak Foxglove's protocol ask for "/".
+  // Programs that speak Foxglove's protocol request "/".
   const std::string offered = header(http::field::sec_websocket_protocol);
   const std::string foxglove = foxglove_subprotocol(offered);
   if (foxglove.empty() && parser_->get().target() != "/ws") {
@@ -292,7 +291,7 @@ void HttpSession::route() {
 }
 
 void HttpSession::answer(Request request) {
-  connection_.expires_never();  // the answer may take as long as that of another service
+  connection_.expires_never();  // the answer may wait for another service
   if (request.post && request.path == "/api/stop") {
     state_.backend.stop(responder());
   } else if (request.post && request.path == "/api/release") {
@@ -364,7 +363,7 @@ void HttpSession::send(std::shared_ptr<Response> response) {
                     });
 }
 
-// A stranger who asks too often waits, and costs no work meanwhile.
+// A peer that sends requests too often waits, which costs no work.
 void HttpSession::read_next() {
   Places::touch(*this);
   if (!too_often_ || authorized_) {

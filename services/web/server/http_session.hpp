@@ -1,6 +1,5 @@
-// One connection: requests, one after the other, until it becomes a WebSocket or ends. Who it is
-// and what it may is decided by the header of each request: a body comes only where one is
-// expected.
+// One connection: requests in turn, until it becomes a WebSocket or ends. The header of each
+// request decides its sender and rights: a body is read only where one is expected.
 #pragma once
 
 #include <memory>
@@ -19,7 +18,7 @@ namespace topogeo::web {
 
 class HttpSession : public std::enable_shared_from_this<HttpSession>, private Places::Guest {
  public:
-  /// It ends in the thread of the connections, whoever lets it go last.
+  /// Destroyed in the connection thread, wherever the last reference is released.
   static std::shared_ptr<HttpSession> make(Connection connection, ServerState& state,
                                            std::string peer);
   HttpSession(const HttpSession&) = delete;
@@ -35,21 +34,21 @@ class HttpSession : public std::enable_shared_from_this<HttpSession>, private Pl
   HttpSession(Connection connection, ServerState& state, std::string peer);
   void give_way() override { connection_.close(); }
   void shake_hands();
-  /// Goes on after a pause.
+  /// Continues after a pause.
   void pause(void (HttpSession::*then)());
   void read();
   void on_header(beast::error_code error);
   void read_body(std::uint64_t most);
   void on_read(beast::error_code error);
   void answer_read_error(beast::error_code error);
-  /// Nothing when the request may go on.
+  /// Nothing when the request may continue.
   std::optional<Answer> refusal();
   std::optional<Answer> refusal_of_sender();
   std::optional<Answer> refusal_by_rate();
   Answer refuse(unsigned status, const char* reason, const std::string& sentence);
-  /// The largest body that this request may have.
+  /// The largest body allowed for this request.
   [[nodiscard]] std::uint64_t most_body_bytes() const;
-  /// The header has shown the operator's token, or not.
+  /// Records whether the header contained the operator's token.
   void note_token(bool shown);
   void upgrade();
   void route();
@@ -59,19 +58,19 @@ class HttpSession : public std::enable_shared_from_this<HttpSession>, private Pl
   void send_file(const PageFile& file);
   void send(const Answer& answer);
   void send(std::shared_ptr<Response> response);
-  /// Ends the connection when the peer has: what it still sends would make its system drop our
-  /// answer.
+  /// Ends the connection after the peer has: data still under way would make the peer's system drop
+  /// our answer.
   void linger();
   [[nodiscard]] std::string header(beast::http::field field) const;
 
   Connection connection_;
   ServerState& state_;
   RateLimit requests_{200.0, 1500.0};  // without the token
-  asio::steady_timer pause_;           // before the next request of who asks too often
+  asio::steady_timer pause_;           // before the next request of a peer that sends too often
   beast::flat_buffer buffer_;
   std::optional<Parser> parser_;
-  bool authorized_ = false;  // this request
-  bool too_often_ = false;   // the same
+  bool authorized_ = false;  // for this request
+  bool too_often_ = false;   // for this request
   int drained_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Numbers and texts of messages as JSON of the protocol.
+// Numbers and texts of messages in the JSON of the protocol.
 #pragma once
 
 #include <cmath>
@@ -11,12 +11,12 @@ namespace topogeo::web {
 
 using Json = nlohmann::ordered_json;
 
-/// On one line; bytes that are no UTF-8 are replaced.
+/// On one line; invalid UTF-8 is replaced.
 inline std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// To a thousandth: millimetres, milliradians. What is not finite becomes null.
+/// Rounds to a thousandth: millimetres, milliradians. Infinite values and NaN become null.
 inline Json rounded(double value) {
   constexpr double kThousandths = 1000.0;
   if (!std::isfinite(value)) return nullptr;
@@ -24,7 +24,7 @@ inline Json rounded(double value) {
   return number == 0.0 ? 0.0 : number;  // never -0
 }
 
-/// As exactly as it is; what is not finite becomes null.
+/// Full precision; infinite values and NaN become null.
 inline Json exact(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
@@ -34,7 +34,7 @@ inline Json seconds(std::int64_t stamp_ns) {
   return rounded(static_cast<double>(stamp_ns) / 1e9);
 }
 
-/// Of a bounded text of a message.
+/// Converts a bounded text of a message.
 template <class Text>
 std::string text_of_message(const Text& text) {
   return text.c_str();

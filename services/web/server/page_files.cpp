@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kGzipWindow = 15 + 16;  // largest window, with the header of gzip
 
-/// Empty when it cannot be compressed.
+/// Empty when compression fails.
 std::string gzip(const std::string& content) {
   z_stream stream{};
   if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, kGzipWindow, MAX_MEM_LEVEL,
@@ -24,7 +24,7 @@ std::string gzip(const std::string& content) {
     return {};
   }
   std::string out(deflateBound(&stream, content.size()), '\0');
-  // zlib takes its input as bytes that it could change, and does not.
+  // zlib declares its input as mutable, but does not change it.
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-const-cast)
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(content.data()));
   stream.avail_in = static_cast<uInt>(content.size());

@@ -10,20 +10,20 @@ namespace topogeo::web {
 
 struct PageFile {
   std::string content;
-  std::string compressed;  ///< gzip; empty where that is no shorter
+  std::string compressed;  ///< gzip; empty if it would not be shorter
   std::string content_type;
   std::string etag;  ///< in quotes
 };
 
 class PageFiles {
  public:
-  /// Of every regular file of the folder and those below. Throws std::runtime_error naming the
-  /// folder or file that cannot be read, and when there is no index.html.
+  /// Loads every regular file of the folder and its subfolders. Throws std::runtime_error naming an
+  /// unreadable folder or file, or when there is no index.html.
   explicit PageFiles(const std::filesystem::path& folder);
-  /// A page of one line that names what is missing: without a folder of the page.
+  /// Without a folder: a page of one line that names the missing part.
   PageFiles();
 
-  /// Of "/", "/panel", "/app.js"; null when there is none.
+  /// File for a path such as "/", "/panel" or "/app.js"; null when there is none.
   [[nodiscard]] const PageFile* find(std::string_view path) const;
 
  private:
@@ -32,7 +32,7 @@ class PageFiles {
   std::map<std::string, PageFile, std::less<>> files_;
 };
 
-/// Of the end of a name; "application/octet-stream" where it is not known.
+/// Content type by the file extension; "application/octet-stream" if unknown.
 std::string content_type_of(const std::filesystem::path& file);
 
 }  // namespace topogeo::web

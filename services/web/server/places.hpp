@@ -1,5 +1,5 @@
-// The places of connections. Without a free one that guest leaves who was silent longest, of the
-// address that holds most of them: whoever comes is heard, and one address cannot shut out others.
+// The places of connections. When none is free, the address with the most places loses the one that
+// was silent longest: newcomers are heard, and one address cannot shut out others.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,7 @@ class Places {
 
    private:
     friend class Places;
-    /// Its place is taken: it ends soon.
+    /// Its place was taken: the guest must end soon.
     virtual void give_way() = 0;
 
     std::string address_;
@@ -38,11 +38,11 @@ class Places {
   Places& operator=(const Places&) = delete;
   ~Places() = default;
 
-  /// Takes a place, and leaves the one that the guest has elsewhere. False: another one had to go.
+  /// Takes a place, and releases the guest's place elsewhere. False when another guest had to go.
   bool enter(Guest& guest);
-  /// The guest was heard; nothing for one without a place.
+  /// Records that the guest was heard; does nothing without a place.
   static void touch(Guest& guest);
-  /// Nothing for one without a place.
+  /// Does nothing without a place.
   static void leave(Guest& guest);
   [[nodiscard]] std::size_t size() const { return guests_.size(); }
 
@@ -50,7 +50,7 @@ class Places {
   Guest& dispensable() const;
 
   std::size_t most_;
-  std::list<Guest*> guests_;  // who was silent longest first
+  std::list<Guest*> guests_;  // the one silent longest first
 };
 
 }  // namespace topogeo::web

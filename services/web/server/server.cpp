@@ -23,7 +23,7 @@
 namespace topogeo::web {
 namespace {
 
-/// Less than what the page waits for before it takes the connection for dead.
+/// Shorter than the silence after which the page considers the connection dead.
 constexpr std::chrono::seconds kTimePeriod{1};
 constexpr std::chrono::milliseconds kAcceptAgain{100};
 
@@ -65,8 +65,8 @@ struct Server::Impl {
   void tick();
   void wake();
 
-  // In this order: sessions, which the context holds, use the state and TLS until the context is
-  // gone.
+  // In this order: sessions, which the context owns, use the state and TLS until the context is
+  // destroyed.
   ServerState state;
   std::optional<asio::ssl::context> tls;
   asio::io_context context{1};
@@ -109,7 +109,7 @@ void Server::Impl::listen() {
 void Server::Impl::accept() {
   acceptor.async_accept([this](beast::error_code error, asio::ip::tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
-    if (error) {  // perhaps no file descriptor is left: trying again at once would spin
+    if (error) {  // possibly out of file descriptors: an immediate retry would spin
       retry.expires_after(kAcceptAgain);
       retry.async_wait([this](beast::error_code stopped) {
         if (!stopped) accept();
@@ -142,7 +142,7 @@ void Server::Impl::tick() {
   });
 }
 
-// Changes come from other threads and many at once: one turn through the viewers is enough.
+// Other threads make many changes at once: one pass over the viewers is enough.
 void Server::Impl::wake() {
   if (woken.exchange(true)) return;
   asio::post(context, [this] {

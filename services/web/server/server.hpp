@@ -14,8 +14,8 @@ namespace topogeo::web {
 
 class Server {
  public:
-  /// All outlive it. Throws std::runtime_error naming address, port or file when it cannot listen
-  /// there or cannot use the certificate.
+  /// All references must outlive it. Throws std::runtime_error naming address, port or file when it
+  /// cannot listen or cannot use the certificate.
   Server(const ServerConfig& config, Board& board, const PageFiles& files, Backend& backend,
          Tally& tally, FoxgloveFeed& feed);
   Server(const Server&) = delete;

@@ -1,4 +1,4 @@
-// The sessions of a server share this state. It lives in the thread of the connections.
+// State shared by the sessions of a server. Lives in the connection thread.
 #pragma once
 
 #include <cstdint>
@@ -20,27 +20,27 @@ namespace topogeo::web {
 
 class Watcher;
 
-/// The rates of all pages with the token together.
+/// Common limits of all pages with the token.
 struct OperatorLimits {
-  RateLimit requests{400.0, 1500.0};  ///< a page asks for some hundred tiles at once
+  RateLimit requests{400.0, 1500.0};  ///< a page requests some hundred tiles at once
   RateLimit posts{20.0, 40.0};
-  RateLimit stops{50.0, 200.0};  ///< Stop and Release, which nothing else uses up
+  RateLimit stops{50.0, 200.0};  ///< Stop and Release only
 };
 
-/// The rates of all pages without the token at one address together.
+/// Common limits of all pages without the token at one address.
 struct PeerLimits {
   RateLimit requests{400.0, 1500.0};
   RateLimit posts{2.0, 10.0};
-  RateLimit handshakes{10.0, 60.0};  ///< of TLS: each costs 2 ms, in the thread of all connections
-  bool had_token = false;            ///< the operator is there: handshakes without a limit
+  RateLimit handshakes{10.0, 60.0};  ///< of TLS: each takes 2 ms in the connection thread
+  bool had_token = false;            ///< an operator was here: no limit of handshakes
   int connections = 0;
 };
 
 struct ServerState {
   static constexpr std::size_t kMostGuests = 256;
   static constexpr std::size_t kMostOperators = 64;
-  static constexpr std::size_t kReservedViewers = 16;  ///< with the token, beside all others
-  static constexpr std::size_t kMostPeers = 1024;      ///< remembered without a connection
+  static constexpr std::size_t kReservedViewers = 16;  ///< additional places with the token
+  static constexpr std::size_t kMostPeers = 1024;      ///< remembered without connections
 
   ServerConfig config;
   Board& board;
@@ -50,9 +50,9 @@ struct ServerState {
   FoxgloveFeed& feed;
 
   Places guests{kMostGuests};        ///< connections without the token
-  Places operators{kMostOperators};  ///< with it
+  Places operators{kMostOperators};  ///< connections with the token
   OperatorLimits operator_limits{};
-  RateLimit stranger_posts{10.0, 40.0};       ///< without the token, of all addresses together
+  RateLimit stranger_posts{10.0, 40.0};       ///< without the token, from all addresses together
   std::map<std::string, PeerLimits> peers{};  ///< by address
   std::set<Watcher*> viewers{};
   std::uint64_t last_viewer = 0;
@@ -60,9 +60,10 @@ struct ServerState {
   void refuse(std::string_view reason) {
     tally.add(std::string("refused: ") + std::string(reason));
   }
-  /// Shows how many watch.
+  /// Publishes the number of viewers.
   void show_viewers();
-  /// Sets a value of the board, whose lock may be held for long, from the thread of the answers.
+  /// Sets a value of the board from the answer thread, because the board's lock may be held for
+  /// long.
   void show(Channel channel, std::string json);
 
   AnswerThread answers{};

@@ -1,4 +1,4 @@
-// Counts of the server's thread for the status of the service.
+// Counters of the server thread for the status of the service.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace topogeo::web {
 
-/// For any thread.
+/// Thread-safe.
 class Tally {
  public:
   void add(std::string_view name, std::uint64_t amount = 1) {

@@ -1,5 +1,5 @@
-// How late a message is: its way from the page took longer than that of the quickest one on the
-// same connection. The clocks of page and service have nothing in common but their rate.
+// Lateness of a message: how much longer it took from the page than the fastest one on the same
+// connection. The clocks of page and service need only the same rate.
 #pragma once
 
 #include <algorithm>
@@ -9,11 +9,11 @@ namespace topogeo::web {
 
 class TransitClock {
  public:
-  /// Two clocks drift apart by less than that; by as much the quickest way is forgotten.
+  /// Bound of the drift between two clocks; the fastest transit ages at this rate.
   static constexpr double kDrift = 2e-4;
 
-  /// Seconds, 0 for the quickest. `sent_s`: by the clock of the page; `came_s`: by that of the
-  /// service, never backwards; both from any start.
+  /// Seconds, 0 for the fastest message. `sent_s`: by the clock of the page; `came_s`: by that of
+  /// the service, never going back; both from any start.
   double lateness_s(double sent_s, double came_s) {
     const double transit_s = came_s - sent_s;
     const double drifted_s = quickest_s_ ? *quickest_s_ + kDrift * (came_s - last_s_) : transit_s;

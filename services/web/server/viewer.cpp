@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kHelloPatience{250};
 constexpr int kProtocol = 1;
-/// As long as a base drives on without an order: what is older was waiting somewhere.
+/// Time that a base drives on without an order: an older order was delayed somewhere.
 constexpr double kLatestOrder_s = 0.3;
 
 }  // namespace
@@ -141,7 +141,7 @@ void Viewer::stop() {
     refuse("no token", "this needs the operator's token", "stop");
     return;
   }
-  // A viewer that has gone meanwhile gets no answer; its last reference ends in this thread.
+  // A viewer that has gone meanwhile gets no answer; its last reference must end in this thread.
   const auto self = std::static_pointer_cast<Viewer>(shared_from_this());
   state().backend.stop(
       [weak = std::weak_ptr<Viewer>(self), executor = socket().get_executor()](Answer answer) {

@@ -1,7 +1,7 @@
 // A page that watches: a WebSocket that is brought up to date whenever it can take more.
 //
-// Of the channels that have changed since they were last sent the one goes next that was sent
-// longest ago, so that a slow link gets some of everything.
+// Changed channels are sent in turn: the one sent longest ago goes next, so that a slow link gets
+// some of everything.
 #pragma once
 
 #include <array>
@@ -45,14 +45,14 @@ class Viewer : public Watcher {
 
   std::uint64_t number_;
   asio::steady_timer hello_timer_;
-  bool ready_ = false;  // the first message has come, or will not
+  bool ready_ = false;  // the first message has arrived or will not
   TransitClock transit_;
   std::array<bool, kChannels> wanted_{};
   std::array<std::uint64_t, kChannels> held_{};
-  std::array<bool, kChannels> anew_{};           // to be sent whole although nothing has changed
-  std::array<std::uint64_t, kChannels> sent_{};  // number of the message that was sent last
+  std::array<bool, kChannels> anew_{};           // to be sent whole even without changes
+  std::array<std::uint64_t, kChannels> sent_{};  // number of the last message sent
   std::uint64_t messages_sent_ = 0;
-  std::size_t made_ = 0;  // channel of the message that is made
+  std::size_t made_ = 0;  // channel of the message being made
 };
 
 }  // namespace topogeo::web

@@ -1,4 +1,4 @@
-// What a page sends through its WebSocket.
+// Messages from a page through its WebSocket.
 #pragma once
 
 #include <cstdint>
@@ -17,18 +17,18 @@ struct ViewerMessage {
 
   Op op = Op::kPing;
   std::string token;                      ///< kHello
-  std::string life;                       ///< kHello: of the service that `have` is of
+  std::string life;                       ///< kHello: run of the service to which `have` refers
   std::map<Channel, std::uint64_t> have;  ///< kHello: versions that the page holds
-  bool all_channels = true;               ///< kHello: it has named none
-  std::vector<Channel> channels;          ///< kHello, kWant: what it wants
+  bool all_channels = true;               ///< kHello: it names none
+  std::vector<Channel> channels;          ///< kHello, kWant: wanted channels
   Channel channel{};                      ///< kResync
-  std::optional<double> page_ms;          ///< kHello, kPing, kDrive: when it left, by its clock
+  std::optional<double> page_ms;          ///< kHello, kPing, kDrive: send time by its clock
   double linear_mps = 0.0;                ///< kDrive
   double angular_radps = 0.0;             ///< kDrive
 };
 
-/// Throws std::invalid_argument with what was expected. Channels that do not exist are passed over,
-/// so that a page of another version works.
+/// Throws std::invalid_argument with the expected form. Unknown channels are ignored, so that a
+/// page of another version works.
 ViewerMessage parse_viewer_message(std::string_view text);
 
 }  // namespace topogeo::web

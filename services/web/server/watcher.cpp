@@ -115,7 +115,7 @@ void Watcher::pump() {
   }
 }
 
-// The last reference to a watcher must not end in the thread of the answers.
+// The last reference to a watcher must not be released in the answer thread.
 void Watcher::make() {
   Work work = next_work();
   if (!work) return;

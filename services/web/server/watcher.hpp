@@ -1,6 +1,6 @@
-// Whoever watches by a WebSocket: one message is on its way at a time, and no queue of them; a slow
-// link gets what is newest when there is room. The derived class decides what is sent, and the
-// thread of the answers makes it: here only bytes come and go.
+// A WebSocket client that watches. Only one message is under way at a time, without a queue: a slow
+// link gets the newest state when it has room. The derived class chooses the messages and the
+// answer thread makes them; this class only transfers bytes.
 #pragma once
 
 #include <cstdint>
@@ -27,15 +27,16 @@ class Watcher : public std::enable_shared_from_this<Watcher> {
     std::shared_ptr<const std::string> bytes;
     bool binary = false;
   };
-  /// Messages that follow each other.
+  /// Consecutive messages.
   struct Made {
     std::deque<Frame> frames;
-    std::uint64_t version = 0;  ///< that the watcher holds then
+    std::uint64_t version = 0;  ///< version that the watcher then holds
   };
-  /// Makes messages in the thread of the answers; empty: there is nothing new.
+  /// Makes messages in the answer thread; an empty result means no news.
   using Work = std::function<Made()>;
 
-  /// `place` is held as long as the connection lasts. `has_token`: it has shown the operator's.
+  /// `place` is held for the life of the connection. `has_token`: the request had the operator's
+  /// token.
   Watcher(Connection connection, ServerState& state, std::shared_ptr<void> place, bool has_token);
   Watcher(const Watcher&) = delete;
   Watcher& operator=(const Watcher&) = delete;
@@ -44,29 +45,29 @@ class Watcher : public std::enable_shared_from_this<Watcher> {
   /// `subprotocol` goes into the answer to the handshake; empty: none.
   void start(beast::http::request<beast::http::string_body> request,
              const std::string& subprotocol = {});
-  /// Sends the next message, if there is one and none is on its way.
+  /// Sends the next message, if there is one and none is under way.
   void pump();
-  /// It has shown the operator's token.
+  /// Whether it has shown the operator's token.
   [[nodiscard]] bool is_operator() const { return operator_; }
 
  protected:
   /// The handshake is done.
   virtual void on_open() = 0;
   virtual void on_text(const std::string& text) = 0;
-  /// The connection has ended or is being closed; more than once.
+  /// The connection has ended or is being closed; may be called more than once.
   virtual void on_end() {}
-  /// The next work; its messages go behind those of control().
+  /// The next work; its messages follow those of control().
   virtual Work next_work() = 0;
-  /// Its messages are made and go next.
+  /// The messages are made and will be sent next.
   virtual void on_made(std::uint64_t version) = 0;
-  /// How a refusal is worded; `what`: of which order, or empty.
+  /// Text of a refusal; `what`: the refused order, or empty.
   [[nodiscard]] virtual std::string refusal(const std::string& sentence,
                                             std::string_view what) const = 0;
 
   void refuse(std::string_view reason, const std::string& sentence, std::string_view what = {});
-  /// Goes before all else.
+  /// Sent before all other messages.
   void control(std::string text);
-  /// Drops the messages of next_work() that are not on their way yet.
+  /// Drops the messages of next_work() that are not yet under way.
   void drop_frames() { frames_.clear(); }
   void set_operator() { operator_ = true; }
   [[nodiscard]] ServerState& state() { return state_; }
@@ -89,7 +90,7 @@ class Watcher : public std::enable_shared_from_this<Watcher> {
   int refusals_ = 0;
   bool open_ = false;
   bool writing_ = false;
-  bool making_ = false;  // next_work() is with the thread of the answers
+  bool making_ = false;  // next_work() runs in the answer thread
   bool closing_ = false;
   bool operator_;
   std::deque<std::string> controls_;

@@ -1,4 +1,4 @@
-// What the server asks of the service behind it: answers to requests, and driving by hand.
+// Interface from the server to the service behind it: answers to requests, and driving by hand.
 #pragma once
 
 #include <chrono>
@@ -10,32 +10,32 @@
 
 namespace topogeo::web {
 
-/// A map file may be sent to it, in the form of `map.pb`.
+/// Path for uploading a map file in the format of `map.pb`.
 inline constexpr std::string_view kMapUploadPath = "/api/merge_map";
 inline constexpr std::uint64_t kMostMapFile_bytes = std::uint64_t{64} << 20U;
 
 struct Request {
-  bool post = false;        ///< else GET
+  bool post = false;        ///< otherwise GET
   std::string path;         ///< "/api/goal"
-  std::string query;        ///< what follows the question mark, as it came
-  std::string body;         ///< of POST
-  bool authorized = false;  ///< has the operator's token; of POST that writes always
+  std::string query;        ///< part after the question mark, unchanged
+  std::string body;         ///< POST only
+  bool authorized = false;  ///< has the operator's token; always true for a POST that writes
 };
 
 struct Answer {
-  unsigned status = 200;  ///< of HTTP
+  unsigned status = 200;  ///< HTTP status
   std::string body;
   std::string content_type = "application/json";
-  bool cacheable = false;  ///< for good: the resource has its version in its name
+  bool cacheable = false;  ///< permanently: the path of the resource contains its version
 };
 
-/// An error as the protocol has it: {"error": "a sentence"}.
+/// An error in the form of the protocol: {"error": "a sentence"}.
 Answer error_answer(unsigned status, const std::string& sentence);
 
 /// Called once, in any thread.
 using Respond = std::function<void(Answer)>;
 
-/// All but handle() are called in the thread of the connections, and come back at once.
+/// Except handle(), all functions are called in the connection thread and return at once.
 class Backend {
  public:
   Backend() = default;
@@ -43,14 +43,14 @@ class Backend {
   Backend& operator=(const Backend&) = delete;
   virtual ~Backend() = default;
 
-  /// In the thread of the answers.
+  /// Called in the answer thread.
   virtual void handle(const Request& request, Respond respond) = 0;
   /// POST /api/stop and /api/release, with the token. Their answers wait for no other request.
   virtual void stop(Respond respond) = 0;
   virtual void release_stop(Respond respond) = 0;
-  /// An operator holds key or finger. `viewer` is a number that no other has had.
+  /// An operator holds a key or a button. `viewer` is a unique number.
   virtual void drive(std::uint64_t viewer, double linear_mps, double angular_radps) = 0;
-  /// Let go, or gone; also for one that has never driven.
+  /// The viewer let go or is gone; also called for one that has never driven.
   virtual void release(std::uint64_t viewer) = 0;
 };
 
@@ -60,16 +60,16 @@ inline double steady_s() {
 
 struct ServerConfig {
   std::string address = "127.0.0.1";
-  std::uint32_t port = 0;  ///< 0: any that is free
-  std::string token;       ///< for writing; empty: nobody may
-  std::string life;        ///< another one after each start
+  std::uint32_t port = 0;  ///< 0: any free port
+  std::string token;       ///< required for writing; empty: nobody may write
+  std::string life;        ///< identifies this run of the service
   std::string robot_id;
   std::vector<std::string> hosts;    ///< names of this machine, see is_own_host
-  std::vector<std::string> origins;  ///< further ones, see is_own_origin
+  std::vector<std::string> origins;  ///< further allowed ones, see is_own_origin
   std::string certificate_file;      ///< PEM, with the chain; empty: no TLS
   std::string key_file;              ///< PEM
   std::uint32_t most_viewers = 64;
-  /// Seconds since any start, never backwards: how often a peer may ask is counted by it.
+  /// Seconds from any start, never going back; used by the rate limits.
   std::function<double()> clock_s = steady_s;
 };
 

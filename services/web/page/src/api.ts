@@ -5,7 +5,7 @@ const kTokenKey = "topogeo-token";
 const kTimeoutMs = 10000;
 
 /**
- * The token of the operator's link. It is taken out of the address, so that nobody copies it by
+ * The token of the operator's link. It is removed from the address, so that nobody copies it by
  * mistake.
  */
 export function take_token(): string {
@@ -17,7 +17,7 @@ export function take_token(): string {
   return sessionStorage.getItem(kTokenKey) ?? "";
 }
 
-/** Why an order was not taken, as a sentence for people; status: of HTTP, 0 without an answer. */
+/** Why an order was refused, as a sentence for people; status: of HTTP, 0 without an answer. */
 export class ApiError extends Error {
   constructor(
     message: string,
@@ -41,7 +41,7 @@ export class Api {
     return (await this.request("GET", path, undefined, timeout_ms)).blob();
   }
 
-  /** POST of an order, its answer. Throws an ApiError. */
+  /** POST of an order; returns its answer. Throws an ApiError. */
   async post<Answer = unknown>(
     what: string,
     body: unknown = {},
@@ -51,7 +51,7 @@ export class Api {
     return read_json<Answer>(await this.request("POST", `/api/${what}`, text, timeout_ms));
   }
 
-  /** POST of a file, its answer. Throws an ApiError. */
+  /** POST of a file; returns its answer. Throws an ApiError. */
   async send_file<Answer>(what: string, file: Blob, timeout_ms: number): Promise<Answer> {
     return read_json<Answer>(await this.request("POST", `/api/${what}`, file, timeout_ms));
   }

@@ -1,4 +1,4 @@
-// What the parts of the page share.
+// Shared by the parts of the page: connection, rights, map.
 import { Api } from "./api";
 import { Channels } from "./channels";
 import { Connection } from "./connection";
@@ -6,7 +6,7 @@ import { MapView } from "./map/map_view";
 import { Notices } from "./ui/notices";
 import { Theme } from "./ui/theme";
 
-/** Whether there is a connection, and what this page may do. */
+/** Whether there is a connection, and the rights of this page. */
 export class Rights {
   connected = false;
   may_write = false;
@@ -24,12 +24,12 @@ export class Rights {
     this.notify();
   }
 
-  /** Whether the service takes this order at all. */
+  /** Whether the service accepts this order; true while that is unknown. */
   offers(what: string): boolean {
     return this.offered === null || this.offered.has(what);
   }
 
-  /** Whether the service has said that it takes this order. */
+  /** Whether the service has announced that it accepts this order. */
   knows(what: string): boolean {
     return this.offered?.has(what) ?? false;
   }

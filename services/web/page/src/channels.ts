@@ -1,4 +1,4 @@
-// The page's copy of what the service knows: values, and tables that deltas keep current.
+// The page's copy of the service's state: values, and tables kept current by deltas.
 import {
   kTables,
   TableMessage,
@@ -9,20 +9,20 @@ import {
   Values,
 } from "./protocol";
 
-/** What a message has changed in a table. */
+/** The changes of a table by one message. */
 export interface Change {
   set: string[];
   gone: string[];
-  all: boolean; // a snapshot: keys that are not in `set` are gone, too
+  all: boolean; // a snapshot: keys that are not in `set` are removed, too
 }
 
 type TableListener = (change: Change) => void;
 
 export class Channels {
   private readonly values: { [Name in ValueName]?: Values[Name] | null } = {};
-  // When the service heard a value last, by the clock of this page.
+  // Time at which the service last received a value, by the clock of this page.
   private readonly heard_ms = new Map<string, number>();
-  // The values that have come in this connection.
+  // The values received over this connection.
   private readonly live = new Set<ValueName>();
   private readonly tables = new Map<TableName, Map<string, unknown>>();
   private readonly versions = new Map<TableName, number>();
@@ -34,12 +34,12 @@ export class Channels {
     for (const name of kTables) this.tables.set(name, new Map());
   }
 
-  /** The newest value; null where there is none. */
+  /** The newest value; null if there is none. */
   value<Name extends ValueName>(name: Name): Values[Name] | null {
     return (this.values[name] as Values[Name] | undefined) ?? null;
   }
 
-  /** How long ago the service heard a value last, in milliseconds; null where there is none. */
+  /** Milliseconds since the service last received a value; null if there is none. */
   age_ms(name: ValueName): number | null {
     const heard_ms = this.heard_ms.get(name);
     if (heard_ms === undefined || this.value(name) === null) return null;
@@ -50,7 +50,7 @@ export class Channels {
     return this.tables.get(name) as ReadonlyMap<string, Tables[Name]>;
   }
 
-  /** Versions of the tables that are held, for the service to go on from. */
+  /** Versions of the tables held, from which the service continues. */
   held(): Record<string, number> {
     return Object.fromEntries(this.versions);
   }
@@ -65,7 +65,7 @@ export class Channels {
     this.table_listeners.set(name, [...(this.table_listeners.get(name) ?? []), listener]);
   }
 
-  /** Takes a message of a channel; false when it is a delta on a version that is not held. */
+  /** Applies a message of a channel; false for a delta on a version that is not held. */
   apply(message: ValueMessage | TableMessage): boolean {
     this.unconfirmed.delete(message.channel);
     if ("from" in message) return this.apply_table(message);
@@ -75,7 +75,7 @@ export class Channels {
     return true;
   }
 
-  /** Forgets what was true at the moment alone; the map and the tables stay, to go on from. */
+  /** Forgets momentary values; keeps the map and the tables to continue from. */
   forget_moment(): void {
     for (const name of Object.keys(this.values) as ValueName[]) {
       if (name !== "map") this.apply({ channel: name, version: 0, value: null });
@@ -84,7 +84,7 @@ export class Channels {
     this.live.clear();
   }
 
-  // The first value of a connection may be an old one: `time`, which comes before, says how old.
+  // The first value of a connection may be old; `time`, which arrives earlier, gives its age.
   private note_age(message: ValueMessage): void {
     const now_ms = performance.now();
     const name = message.channel;
@@ -99,13 +99,13 @@ export class Channels {
     this.live.add(name);
   }
 
-  /** Another service speaks from now on, which counts versions of its own. */
+  /** A new service answers from now on, with version numbers of its own. */
   begin_anew(): void {
     this.versions.clear();
     for (const name of [...kTables, "map"]) this.unconfirmed.add(name);
   }
 
-  /** Forgets what the service has not sent since begin_anew(): it has none. */
+  /** Forgets everything not sent since begin_anew(): the service does not have it. */
   drop_unconfirmed(): void {
     for (const name of this.unconfirmed) {
       if (name === "map") {
@@ -121,7 +121,7 @@ export class Channels {
 
   private apply_table(message: TableMessage): boolean {
     const table = this.tables.get(message.channel);
-    if (!table) return true; // of a newer service
+    if (!table) return true; // from a newer service
     const all = message.from === 0;
     if (!all && message.from !== this.versions.get(message.channel)) return false;
     if (all) table.clear();

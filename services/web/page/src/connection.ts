@@ -1,14 +1,14 @@
-// The WebSocket: connects, goes on after interruptions from what the page holds, notices a dead
+// The WebSocket: connects, continues after interruptions from the page's state, detects a dead
 // connection.
 import { Channels } from "./channels";
 import { TableMessage, ValueMessage } from "./protocol";
 
 const kSilenceMs = 5000; // the service sends something every two seconds
 const kPongMs = 1000;
-const kSnapshotsMs = 5000; // until a service that is new has sent all that it has
+const kSnapshotsMs = 5000; // until a new service has sent its whole state
 const kFirstDelayMs = 500;
 const kLongestDelayMs = 4000;
-const kMostLate = 20; // clocks that have stood still do not agree any more; a new connection does
+const kMostLate = 20; // clocks that stood still disagree; a new connection corrects that
 
 export interface Listener {
   connected(may_write: boolean, error: string): void;
@@ -25,7 +25,7 @@ interface Control {
   late_s?: number;
 }
 
-/** With the token the service keeps a place for this page; its bytes in hexadecimal digits. */
+/** With the token, in hexadecimal digits, the service reserves a place for this page. */
 function protocols(token: string): string[] {
   if (!token) return ["topogeo"];
   const bytes = [...new TextEncoder().encode(token)];
@@ -41,9 +41,9 @@ export class Connection {
   private last_message_ms = 0;
   private pong_timer = 0;
   private retry_timer = 0;
-  private late = 0; // orders in this connection
+  private late = 0; // orders of this connection
 
-  /** names: the channels wanted; empty: all. */
+  /** names: the wanted channels; empty: all. */
   constructor(
     private readonly channels: Channels,
     private readonly token: string,
@@ -56,14 +56,14 @@ export class Connection {
     this.connect();
   }
 
-  /** Sends a message of the page; false when there is no connection. */
+  /** Sends a message of the page; false without a connection. */
   send(message: Record<string, unknown>): boolean {
     if (!this.open || this.socket?.readyState !== WebSocket.OPEN) return false;
     this.socket.send(JSON.stringify(message));
     return true;
   }
 
-  /** An order to drive by hand. It has the time of this page: one that waits somewhere is refused. */
+  /** An order to drive by hand, with the time of this page, so that a delayed order is refused. */
   drive(linear_mps: number, angular_radps: number): void {
     this.send({ op: "drive", linear_mps, angular_radps, page_ms: performance.now() });
   }
@@ -107,7 +107,7 @@ export class Connection {
     }
   }
 
-  // After a restart of the service the old map stays until the new one is there.
+  // After a restart of the service, the old map stays until the new one arrives.
   private follow_life(life: string): void {
     if (this.life !== "" && this.life !== life) {
       this.channels.begin_anew();

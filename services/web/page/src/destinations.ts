@@ -1,4 +1,4 @@
-// Names to which the robot can be sent.
+// Named destinations for the robot.
 import { Channels } from "./channels";
 
 export interface Destination {
@@ -8,7 +8,7 @@ export interface Destination {
   y_m: number;
 }
 
-/** Places, then rooms, each by name; a room called as a place is left out. */
+/** Places, then rooms, each sorted by name; a room with the name of a place is left out. */
 export function destinations(channels: Channels): Destination[] {
   const by_name = (a: Destination, b: Destination) =>
     a.name.localeCompare(b.name, "en", { numeric: true });
@@ -31,7 +31,8 @@ export function destinations(channels: Channels): Destination[] {
 const kFirstPlaceNumber = 101;
 
 /**
- * Numbers for a keypad, in the order of the list: "room 7" has its own, all others count from 101.
+ * Numbers for a keypad, in the order of the list: "room 7" keeps its own, all others count from
+ * 101.
  */
 export function numbered(list: Destination[]): Map<number, Destination> {
   const numbers = new Map<number, Destination>();

@@ -1,4 +1,4 @@
-// Texts of the view Draw, a part of texts.ts.
+// Texts of the view Draw, part of texts.ts.
 import { area, length, Maybe, point } from "./format";
 
 export const draw_texts = {

@@ -1,4 +1,4 @@
-// Numbers with their units, for people.
+// Formats numbers with their units, for people.
 
 const kDash = "–";
 
@@ -8,7 +8,7 @@ function known(value: Maybe): value is number {
   return typeof value === "number" && Number.isFinite(value);
 }
 
-/** "3.4 m", "120 m", "1.25 km"; a dash for what is not known. */
+/** "3.4 m", "120 m", "1.25 km"; a dash for an unknown value. */
 export function length(meters: Maybe): string {
   if (!known(meters)) return kDash;
   if (meters >= 1000) return `${(meters / 1000).toFixed(2)} km`;
@@ -66,7 +66,7 @@ export function clock(time_s: number): string {
   return new Date(1000 * time_s).toLocaleTimeString("en-GB");
 }
 
-/** Day and time of seconds since 1970; of a source that counts from elsewhere the seconds. */
+/** Day and time for seconds since 1970; seconds for a source that counts from elsewhere. */
 export function moment(time_s: number): string {
   if (time_s < 1e8) return `${time_s.toFixed(1)} s`;
   const date = new Date(1000 * time_s);
@@ -78,7 +78,7 @@ export function point(x_m: number, y_m: number): string {
   return `${fixed(x_m, 2)}, ${fixed(y_m, 2)} m`;
 }
 
-// As toFixed, but a small negative number is "0.00" and not "-0.00".
+// Like toFixed, but without a minus before a zero.
 function fixed(value: number, digits: number): string {
   return value.toFixed(digits).replace(/^-(?=[0.]+$)/, "");
 }

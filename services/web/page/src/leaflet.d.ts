@@ -1,4 +1,4 @@
-// The part of Leaflet 1.7 that the page uses; Debian packages the library without types.
+// The part of Leaflet 1.7 that the page uses; Debian's package has no types.
 declare module "leaflet" {
   export class Point {
     x: number;

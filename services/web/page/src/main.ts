@@ -1,4 +1,4 @@
-// The operator's page: the map, and beside it the views.
+// The operator's page: the map with the views beside it.
 import { Api, take_token } from "./api";
 import { App, Rights, ViewPart } from "./app";
 import { Channels } from "./channels";
@@ -21,7 +21,7 @@ import { UnderstandView } from "./views/understand";
 
 type ViewName = keyof typeof texts.views;
 
-// Views as tabs, by the pattern of the ARIA practices: arrows move between tabs.
+// Views as tabs, following the ARIA practices: arrows move between tabs.
 class Tabs {
   readonly element: HTMLElement;
   private readonly panel: HTMLElement;
@@ -98,7 +98,7 @@ class Tabs {
   }
 }
 
-// What stands on the map while there is none.
+// Placeholder shown until a map arrives.
 function empty_map(channels: Channels): HTMLElement {
   const services = h("p");
   const element = h(

@@ -1,4 +1,4 @@
-// What the service sends and takes; docs/web.md describes it. Metres, radians, seconds, map frame.
+// Messages to and from the service, described in docs/web.md. Metres, radians, seconds, map frame.
 import { NodeKind } from "./map/graph_layer";
 
 export interface Pose {
@@ -7,7 +7,7 @@ export interface Pose {
   state: "TRACKING" | "AMBIGUOUS" | "SEARCHING" | "LOST";
   mode: "mapping" | "localization";
   confidence: number | null;
-  x_m: number; // means nothing in SEARCHING and LOST, as y_m and theta_rad
+  x_m: number; // meaningless in SEARCHING and LOST, like y_m and theta_rad
   y_m: number;
   theta_rad: number;
   covariance: (number | null)[]; // 3 x 3, row-major
@@ -16,7 +16,7 @@ export interface Pose {
 
 export interface Scan {
   points_robot_m: number[]; // x, y of each hit, robot frame
-  x_m?: number; // of the robot at that scan; missing where its pose is not known
+  x_m?: number; // of the robot at that scan; missing if its pose is not known
   y_m?: number;
   theta_rad?: number;
 }
@@ -101,10 +101,10 @@ export interface Pose2 {
 export interface LocalMap {
   session: string;
   number: number;
-  x_m?: number; // where the stop is on the map; missing where unknown
+  x_m?: number; // pose of the stop on the map; missing if unknown
   y_m?: number;
   theta_rad?: number;
-  laser_m?: [number, number]; // robot frame of the stop, as what follows
+  laser_m?: [number, number]; // in the robot frame at the stop, like the following fields
   nodes: [number, number, NodeKind][];
   branches: number[][];
   points_m: number[];
@@ -114,7 +114,7 @@ export interface LocalMap {
 export type Hypothesis = [number, number, number, number | null];
 
 export interface SearchedMatch extends Pose2 {
-  // x_m .. of the prediction, where the search space has its middle
+  // x_m .. of the prediction, the centre of the search space
   base_theta_rad: number; // heading of the search space and of the covariance
   half_widths: [number, number, number];
   covariance: (number | null)[];
@@ -149,7 +149,7 @@ export interface Values {
   drawing: { version: string };
   search: Search;
   viewers: { viewers: number; operators: number };
-  time: { time_s: number; ages_s?: Record<string, number> }; // how long ago each value was heard
+  time: { time_s: number; ages_s?: Record<string, number> }; // age of each value
 }
 
 export interface Room extends PointM {
@@ -193,10 +193,10 @@ export interface Loop extends Pose2 {
   probability: number | null;
 }
 
-/** A stop of the drive that a map was made of; x_m .. missing where the robot was not located. */
+/** A stop of the drive behind a map; x_m .. missing if the robot was not located. */
 export interface DriveStop extends Partial<Pose2> {
   stamp_s: number;
-  outline_cm?: number[]; // x, y of points that the laser hit, robot frame
+  outline_cm?: number[]; // x, y of scan points, robot frame
   starts_drive?: boolean;
 }
 
@@ -238,7 +238,7 @@ export interface Comparison extends Pose2 {
   picture: string;
 }
 
-/** What a merge with a map file would make of the map. */
+/** The effect of a merge with a map file. */
 export interface MergedMap extends Comparison {
   number: number;
   joined: number;

@@ -1,4 +1,4 @@
-// A stop that was sent and is not done before the base itself says so.
+// A stop order counts as pending until the base itself confirms it.
 import { Api } from "./api";
 import { Rights } from "./app";
 import { Channels } from "./channels";
@@ -6,10 +6,10 @@ import { held_text, sentence } from "./robot_state";
 import { texts } from "./texts";
 
 export class Stopping {
-  private sent_ms: number | null = null; // null: none is under way
+  private sent_ms: number | null = null; // null: none pending
   private refused = "";
 
-  /** on_change: what text() gives may differ; on_held: the base has confirmed a stop. */
+  /** on_change: text() may have changed; on_held: the base has confirmed a stop. */
   constructor(
     private readonly channels: Channels,
     private readonly rights: Rights,
@@ -22,7 +22,7 @@ export class Stopping {
     }
   }
 
-  /** Sends the order, and once more by `send`, a connection that stands already. */
+  /** Sends the order, and again by `send` over the existing connection. */
   async stop(send: () => void): Promise<void> {
     if (!this.rights.may_write) return;
     this.sent_ms = performance.now();
@@ -37,19 +37,19 @@ export class Stopping {
     this.on_change();
   }
 
-  /** The robot was released: the stop of before is none any more. */
+  /** The robot was released: an earlier stop is no longer pending. */
   forget(): void {
     this.sent_ms = null;
     this.on_change();
   }
 
-  /** What is said as long as the base has not confirmed; null when there is nothing to confirm. */
+  /** Text shown until the base confirms the stop; null when none is pending. */
   text(): string | null {
     if (this.sent_ms === null) return null;
     return this.refused ? texts.stop_failed(this.refused) : texts.stop_sent;
   }
 
-  // A base that was heard last before the stop was sent says nothing about it.
+  // A report from before the stop order cannot confirm it.
   private check(): void {
     if (this.sent_ms === null) return;
     const age_ms = this.channels.age_ms("base");

@@ -219,7 +219,7 @@ export const texts = {
     base_not_ready: "The base takes no commands.",
     base_stuck: "The base does not move.",
   } as Record<string, string>,
-  // To these the navigator's own message adds nothing.
+  // Reasons that need no message of the navigator.
   whole_halts: {
     waits_for_route: "It waits for a route.",
     paused: "Paused. It drives on after “Resume”.",

@@ -1,4 +1,4 @@
-// The texts of the view Time; texts.ts has all others.
+// Texts of the view Time; texts.ts has all others.
 import { count, duration } from "./format";
 import { MergedMap } from "./protocol";
 

@@ -1,4 +1,4 @@
-// The texts of the view Understand; texts.ts has all others.
+// Texts of the view Understand; texts.ts has all others.
 import { count, degrees, length, Maybe, percent } from "./format";
 
 export const understand_texts = {
@@ -23,7 +23,7 @@ export const understand_texts = {
     place: "Compared because it looks like that place.",
     window: "Compared because it looks like that place, as a whole.",
   } as Record<string, string>,
-  // By what the localizer says of a loop.
+  // Keyed by the localizer's explanation of a loop.
   meanings: {
     "nothing in common": "The two stops hardly see the same part of the floor.",
     "little overlap": "The two stops see too little of the same floor.",

@@ -1,20 +1,20 @@
-// A picture of a plan behind what is drawn: put in place by two points of known distance. It stays
-// in the page.
+// The picture of a plan behind the drawing, placed by two points of known distance. It stays in the
+// page.
 import { View } from "../map/map_canvas";
 import { distance, heading, Point } from "./geometry";
 
-/** Where a picture lies: its upper left corner, and what a pixel of it is. */
+/** Placement of a picture: its upper left corner, and the size of its pixels. */
 export interface Placement {
   x_m: number; // upper left corner, map frame
   y_m: number;
   metres_per_pixel: number;
-  angle_rad: number; // of its lines, counter-clockwise
+  angle_rad: number; // of its rows, counter-clockwise
 }
 
 const kFirstWidth_m = 20;
-const kStraight_rad = 0.15; // plans are scanned a little askew
+const kStraight_rad = 0.15; // plans are scanned slightly askew
 
-/** A picture of so many pixels around a point, before it is measured. */
+/** A picture of this many pixels around a point, before it is measured. */
 export function first_placement(width: number, height: number, centre: Point): Placement {
   const metres_per_pixel = kFirstWidth_m / width;
   return {
@@ -26,8 +26,8 @@ export function first_placement(width: number, height: number, centre: Point): P
 }
 
 /**
- * The distance from a to b, as they lie now, is meant to be distance_m: a stays where it is. A line
- * that is nearly along an axis is turned onto it.
+ * Scales the picture so that the present distance from a to b becomes distance_m; a stays in place.
+ * A line that is nearly parallel to an axis is rotated onto it.
  */
 export function measured(at: Placement, a: Point, b: Point, distance_m: number): Placement {
   const factor = distance_m / distance(a, b);

@@ -1,4 +1,4 @@
-// A drawing that is edited: history for undo and redo, what was saved last, what is selected.
+// An edited drawing: undo history, last saved state, selection.
 import { Drawing, empty_drawing, Item, item_of, ItemRef } from "./drawing";
 
 const kMostSteps = 200;
@@ -11,7 +11,7 @@ export class DrawingDocument {
   private before_drag: Drawing | null = null;
   private chosen: ItemRef | null = null;
   private readonly listeners: (() => void)[] = [];
-  /** Of the service, that the edits are based on; empty: none was read. */
+  /** Version of the service's drawing that the edits are based on; empty: none was read. */
   version = "";
 
   get drawing(): Drawing {
@@ -26,7 +26,7 @@ export class DrawingDocument {
     return (this.chosen && item_of(this.current, this.chosen)) ?? null;
   }
 
-  /** Differs from what was saved; what is undone down to it does not. */
+  /** Whether it differs from the saved drawing; undoing all edits makes them equal again. */
   get is_dirty(): boolean {
     return this.current !== this.saved;
   }
@@ -48,20 +48,20 @@ export class DrawingDocument {
     this.notify();
   }
 
-  /** One step of the history; the selection becomes `selected`, or stays as far as it can. */
+  /** Makes one step of the history; the selection becomes `selected`, or stays if possible. */
   edit(drawing: Drawing, selected: ItemRef | null = this.chosen): void {
     this.before_drag = null;
     this.push(this.current);
     this.show(drawing, selected);
   }
 
-  /** While something is dragged: shown at once, one step of the history at the end. */
+  /** During a drag: shown at once, but one step of the history at the end. */
   drag(drawing: Drawing): void {
     this.before_drag ??= this.current;
     this.show(drawing, this.chosen);
   }
 
-  /** The drag ends; false: as if it had not been. */
+  /** Ends the drag; false: cancels it. */
   end_drag(keep: boolean): void {
     const before = this.before_drag;
     this.before_drag = null;
@@ -85,7 +85,7 @@ export class DrawingDocument {
     this.show(after, this.chosen);
   }
 
-  /** Another drawing takes the place of this one; nothing can be undone. */
+  /** Replaces the drawing; nothing can be undone. */
   load(drawing: Drawing, version: string): void {
     this.done = [];
     this.undone = [];
@@ -95,19 +95,19 @@ export class DrawingDocument {
     this.show(drawing, null);
   }
 
-  /** What others have saved takes the place of this one, which undo brings back. */
+  /** Replaces the drawing by the one that others have saved; undo restores it. */
   take_over(drawing: Drawing, version: string): void {
     this.saved = drawing;
     this.version = version;
     this.edit(drawing, null);
   }
 
-  /** Back to what was saved last; undo brings the edits back. */
+  /** Returns to the saved drawing; undo restores the edits. */
   discard(): void {
     if (this.is_dirty) this.edit(this.saved, null);
   }
 
-  /** `drawing` is what the service has as `version` now; edits may have gone on meanwhile. */
+  /** The service now has `drawing` as `version`; edits may have continued meanwhile. */
   mark_saved(drawing: Drawing, version: string): void {
     this.saved = drawing;
     this.version = version;

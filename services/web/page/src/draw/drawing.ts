@@ -1,13 +1,13 @@
-// What people draw on the map: places, zones, walls, openings, doors. It is kept apart from what
-// was mapped. Metres and radians, map frame; lists of points are flat: x, y, x, y. A drawing is
-// never changed in place: each edit makes another one, so that undo is a list of them.
+// The drawing on the map: places, zones, walls, openings, doors, kept apart from the mapped data.
+// Metres and radians, map frame; lists of points are flat: x, y, x, y. A drawing is never changed
+// in place: each edit makes a new one, so that undo is a list of them.
 import { texts } from "../texts";
 
 export interface DrawnPlace {
   name: string;
   x_m: number;
   y_m: number;
-  heading_rad?: number; // a base station: where the robot looks when it stands there
+  heading_rad?: number; // a base station: heading of the robot that stands there
 }
 
 export type ZoneKind = "room" | "no_go" | "slow" | "one_way";
@@ -38,7 +38,7 @@ export interface Drawing {
 
 export type ListName = keyof Drawing;
 export type Item = Drawing[ListName][number];
-/** What an item is for people, and the tool that draws it. */
+/** The kind of an item for people, which is also the tool that draws it. */
 export type ItemKind = "place" | "base" | "wall" | "opening" | "door" | ZoneKind;
 
 /** One item of a drawing. */
@@ -47,11 +47,11 @@ export interface ItemRef {
   index: number;
 }
 
-// Those that lie above come first.
+// Upper layers first.
 export const kLists: readonly ListName[] = ["places", "doors", "openings", "walls", "zones"];
 const kZoneKinds: readonly ZoneKind[] = ["room", "no_go", "slow", "one_way"];
 
-/** Limits of the service, for each list and for the corners of an item. */
+/** Limits of the service, per list and for the corners of an item. */
 export const kMostItems = 4096;
 export const kMostCorners = 256;
 
@@ -63,7 +63,7 @@ export function item_of(drawing: Drawing, ref: ItemRef): Item | undefined {
   return drawing[ref.list][ref.index];
 }
 
-/** All items, those that lie above first. */
+/** All items, upper layers first. */
 export function all_items(drawing: Drawing): { ref: ItemRef; item: Item }[] {
   return kLists.flatMap((list) =>
     (drawing[list] as Item[]).map((item, index) => ({ ref: { list, index }, item })),
@@ -76,7 +76,7 @@ export function kind_of(list: ListName, item: Item): ItemKind {
   return list === "doors" ? "door" : list === "openings" ? "opening" : "wall";
 }
 
-/** The points of an item; of a place the one where it is. */
+/** The points of an item; for a place its position. */
 export function points_of(item: Item): number[] {
   if ("corners_m" in item) return item.corners_m;
   return "points_m" in item ? item.points_m : [item.x_m, item.y_m];
@@ -93,12 +93,12 @@ export function is_closed(list: ListName): boolean {
   return list === "zones";
 }
 
-/** How few points an item of a list may have. */
+/** Smallest number of points of an item in a list. */
 export function fewest_points(list: ListName): number {
   return list === "places" ? 1 : list === "zones" ? 3 : 2;
 }
 
-/** Whether an item may have more than the fewest points. */
+/** Whether an item may have more than that smallest number. */
 export function is_extensible(list: ListName): boolean {
   return list === "zones" || list === "walls";
 }
@@ -108,7 +108,7 @@ export function with_item(drawing: Drawing, ref: ItemRef, item: Item): Drawing {
   return { ...drawing, [ref.list]: items };
 }
 
-/** The item becomes the last of its list. */
+/** Appends the item to its list. */
 export function with_new(drawing: Drawing, list: ListName, item: Item): Drawing {
   return { ...drawing, [list]: [...drawing[list], item] };
 }
@@ -118,7 +118,7 @@ export function without(drawing: Drawing, ref: ItemRef): Drawing {
   return { ...drawing, [ref.list]: items };
 }
 
-/** Whether a list takes another name: places among themselves, zones and doors among themselves. */
+/** Whether a name is free in a list: unique among places, and among zones and doors together. */
 export function name_is_free(
   drawing: Drawing,
   list: ListName,
@@ -129,7 +129,7 @@ export function name_is_free(
   return named.every((item, i) => item.name !== name || (own?.list === list && own.index === i));
 }
 
-/** "slow 2": a base with the first number that makes a name of its own. */
+/** "slow 2": a base with the first number that makes the name unique. */
 export function free_name(drawing: Drawing, list: ListName, base: string): string {
   for (let number = 1; ; ++number) {
     const name = `${base} ${number}`;
@@ -137,7 +137,7 @@ export function free_name(drawing: Drawing, list: ListName, base: string): strin
   }
 }
 
-/** Where the robot stands when it begins: the first base station. */
+/** Start of the robot: the first base station. */
 export function start_of(
   drawing: Drawing,
 ): { x_m: number; y_m: number; heading_rad: number } | null {
@@ -151,10 +151,7 @@ export function to_mm(value: number): number {
   return Math.round(1000 * value) / 1000 + 0; // no -0
 }
 
-/**
- * A drawing of JSON, from the service or a file. Throws an Error whose message names the item that
- * is wrong.
- */
+/** Parses a drawing from JSON, of the service or a file. Throws an Error naming the faulty item. */
 export function parse_drawing(json: unknown): Drawing {
   const words = texts.draw.parse;
   if (!is_object(json)) throw new Error(words.no_drawing);
@@ -188,7 +185,7 @@ function numbers(value: unknown, fewest: number): number[] | null {
   return good && value.length <= 2 * kMostCorners ? value : null;
 }
 
-// Null where something is missing or out of its range.
+// Null if a field is missing or out of range.
 function parse_item(list: ListName, fields: Fields): Item | null {
   const name = typeof fields.name === "string" ? fields.name : "";
   if (list === "places") {

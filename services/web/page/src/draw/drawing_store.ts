@@ -1,4 +1,4 @@
-// The drawing that the service has, read anew whenever somebody has saved.
+// The service's drawing, read again whenever anybody has saved.
 import { Api } from "../api";
 import { Rights } from "../app";
 import { Channels } from "../channels";
@@ -13,7 +13,7 @@ const kMostReads = 3; // in a row
 
 export class DrawingStore {
   drawing: Drawing = empty_drawing();
-  version = ""; // empty: none was read yet
+  version = ""; // empty: none read yet
   private reading: Promise<void> | null = null;
   private readonly listeners: (() => void)[] = [];
 
@@ -33,14 +33,14 @@ export class DrawingStore {
     this.listeners.push(listener);
   }
 
-  /** Reads it anew; what cannot be read stays as it was. */
+  /** Reads the drawing again; after a failure the previous one stays. */
   read(): Promise<void> {
     this.reading ??= this.fetch().finally(() => (this.reading = null));
     return this.reading;
   }
 
   /**
-   * Saves on top of a version; the new one, and what the service has to say about it. Throws an
+   * Saves on top of a version; returns the new version and the service's message. Throws an
    * ApiError, 409 when others have saved.
    */
   async save(drawing: Drawing, version: string): Promise<Saved> {
@@ -54,7 +54,7 @@ export class DrawingStore {
     return this.version === "" || (newest !== undefined && newest !== this.version);
   }
 
-  // Somebody may save while it is read: then once more.
+  // Read once more if somebody saves during the read.
   private async fetch(): Promise<void> {
     try {
       for (let i = 0; i < kMostReads && (i === 0 || this.is_old()); ++i) {
@@ -62,7 +62,7 @@ export class DrawingStore {
         this.take(parse_drawing(answer), String(answer.version));
       }
     } catch {
-      // The next version, or the next connection, tries again.
+      // The next version or connection tries again.
     }
   }
 

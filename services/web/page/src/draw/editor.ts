@@ -1,5 +1,4 @@
-// The edit mode on the map: gives presses and keys to the tool that is chosen, and draws what is
-// edited.
+// The edit mode on the map: passes presses and keys to the chosen tool, and draws the edited items.
 import { draw_drawing, kArrowPx, zone_color } from "../map/drawing_layer";
 import {
   draw_cursor,
@@ -30,32 +29,32 @@ import { Sketch, Finished } from "./sketch";
 import { snap, Snapped, SnapSettings } from "./snapping";
 import { is_item_tool, make_item, OtherTool, shape_of, snaps, ToolName } from "./tools";
 
-const kReachPx = 11; // how near a press takes hold, and how far corners draw
-const kNamePx = 12; // how far names stand above lines and places
-const kKeyStep_m = 0.1; // of the cursor, without a grid
+const kReachPx = 11; // reach of a press, and of the pull of corners
+const kNamePx = 12; // distance of names above lines and places
+const kKeyStep_m = 0.1; // step of the cursor without a grid
 
 export interface EditorHooks {
-  /** Draw the map anew. */
+  /** Redraws the map. */
   redraw(): void;
-  /** Tool, item on its way or cursor have changed. */
+  /** The tool, the current item or the cursor has changed. */
   changed(): void;
   drawn(item: Item): void;
-  /** A tool has its points that makes no item itself. */
+  /** A tool that makes no item itself has its points. */
   asked(tool: OtherTool, drawn: Finished): void;
-  /** What is in the middle of the map. */
+  /** The point in the middle of the map. */
   middle(): MapPointer;
 }
 
 interface Drag {
   grip: Grip;
-  item: Item; // as it was
+  item: Item; // before the drag
   from: Point;
 }
 
 export class Editor implements MapTool, Overlay {
   readonly settings: SnapSettings = { grid_m: 0.1, corners: true, right_angles: true };
   background: Background | null = null;
-  /** Nothing of the robot's map is shown. */
+  /** The robot's map is hidden. */
   alone = false;
   private name: ToolName = "select";
   private sketch: Sketch | null = null;
@@ -76,12 +75,12 @@ export class Editor implements MapTool, Overlay {
     return this.name;
   }
 
-  /** Where the next point will be; null while the pointer is not on the map. */
+  /** Position of the next point; null while the pointer is off the map. */
   get at(): Point | null {
     return this.cursor;
   }
 
-  /** Another document; what was on its way is gone. */
+  /** Opens another document; drops the unfinished item. */
   open(document: DrawingDocument, alone: boolean): void {
     this.choose("select");
     this.edited = document;
@@ -99,13 +98,13 @@ export class Editor implements MapTool, Overlay {
     this.refresh();
   }
 
-  /** Whether an item is on its way, and whether it could end here. */
+  /** Whether an item is unfinished, and whether it could end here. */
   progress(): { points: number; complete: boolean } {
     const complete = this.sketch !== null && !this.sketch.is_empty && this.sketch.finish() !== null;
     return { points: this.sketch?.points.length ?? 0, complete };
   }
 
-  /** Another tool: what is on its way and could end here is kept. */
+  /** Selects another tool; an item that could end here is finished and kept. */
   switch_to(tool: ToolName): void {
     this.finish();
     this.choose(tool);
@@ -116,7 +115,7 @@ export class Editor implements MapTool, Overlay {
     if (drawn) this.complete(drawn);
   }
 
-  /** Takes back the item on its way, or else the selection. */
+  /** Drops the unfinished item, or else the selection. */
   escape(): void {
     if (this.sketch && !this.sketch.is_empty) this.choose(this.name);
     else if (this.name !== "select") this.choose("select");
@@ -177,7 +176,7 @@ export class Editor implements MapTool, Overlay {
     this.refresh();
   }
 
-  // ---- keys; true: it was one of the editor's
+  // ---- keys; true: the editor has handled it
 
   key(event: KeyboardEvent): boolean {
     const control = event.ctrlKey || event.metaKey;
@@ -191,7 +190,7 @@ export class Editor implements MapTool, Overlay {
     return true;
   }
 
-  /** Arrows and Enter on the map: the cursor draws as a pointer does. */
+  /** Arrows and Enter on the map: the cursor draws like a pointer. */
   map_key(key: string): boolean {
     if (!this.sketch) return false;
     const steps: Record<string, [number, number]> = {
@@ -209,7 +208,7 @@ export class Editor implements MapTool, Overlay {
       this.sketch.move(this.cursor);
     } else if (key === "Enter") {
       this.sketch.press(at);
-      // Enter where the last point is ends a line.
+      // Enter at the last point ends a line.
       const drawn = this.sketch.lift(at, true, (this.settings.grid_m || kKeyStep_m) / 4);
       if (drawn) this.complete(drawn);
     } else {
@@ -267,7 +266,7 @@ export class Editor implements MapTool, Overlay {
     const anchor = anchor_of(item, grip.part);
     let to: Point = at;
     if (anchor) {
-      // The anchor keeps its distance to the pointer.
+      // The anchor keeps its offset from the pointer.
       const wanted = { ...at, x: anchor.x + at.x - from.x, y: anchor.y + at.y - from.y };
       to = this.snapped(wanted, neighbour_of(grip.ref.list, item, grip.part), item);
     } else if (grip.part.what === "middle") {
@@ -277,7 +276,7 @@ export class Editor implements MapTool, Overlay {
     this.edited.drag(drawing);
   }
 
-  // own: the item that is dragged, at whose corners it does not snap.
+  // own: the dragged item, whose own corners do not attract it.
   private snapped(at: MapPointer, from: Point | null = null, own: Item | null = null): Snapped {
     const wanted = !this.sketch || snaps(this.name);
     const none: SnapSettings = { grid_m: 0, corners: false, right_angles: false };

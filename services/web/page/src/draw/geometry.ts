@@ -17,7 +17,7 @@ export function heading(from: Point, to: Point): number {
   return Math.atan2(to.y - from.y, to.x - from.x);
 }
 
-/** The segments of a line, of a closed one with that from the last point to the first. */
+/** The segments of a line; a closed line includes that from the last point to the first. */
 export function segments_of(points: number[], closed: boolean): [Point, Point][] {
   const count = points.length / 2;
   const segments: [Point, Point][] = [];
@@ -30,7 +30,7 @@ export function length_of(points: number[], closed: boolean): number {
   return segments_of(points, closed).reduce((sum, [a, b]) => sum + distance(a, b), 0);
 }
 
-/** Of a closed line that does not cross itself. */
+/** Area of a closed line that does not cross itself. */
 export function area_of(corners: number[]): number {
   const twice = segments_of(corners, true).reduce((sum, [a, b]) => sum + a.x * b.y - b.x * a.y, 0);
   return Math.abs(twice) / 2;
@@ -64,7 +64,7 @@ export function distance_to(points: number[], closed: boolean, at: Point): numbe
   );
 }
 
-/** Whether a closed line goes round a point (by crossings of a ray). */
+/** Whether a closed line encloses a point (by ray crossings). */
 export function contains(corners: number[], at: Point): boolean {
   let inside = false;
   for (const [a, b] of segments_of(corners, true)) {

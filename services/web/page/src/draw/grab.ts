@@ -1,4 +1,4 @@
-// What of a drawing a press takes hold of, and what a drag makes of it.
+// Finds the item or handle under a press, and applies a drag to it.
 import {
   all_items,
   Drawing,
@@ -19,7 +19,7 @@ import { snap_heading } from "./snapping";
 
 export type Part =
   | { what: "corner"; index: number }
-  | { what: "middle"; index: number } // of the segment after this corner: a new corner
+  | { what: "middle"; index: number } // of the segment after this corner: becomes a new corner
   | { what: "heading" }
   | { what: "whole" };
 
@@ -32,7 +32,7 @@ export interface Handle extends Point {
   part: Part;
 }
 
-/** The arrow of a base station or of a one-way zone; null where an item has none. */
+/** Heading of the arrow of a base station or a one-way zone; null for other items. */
 export function heading_of(item: Item): number | null {
   if ("kind" in item) return item.kind === "one_way" ? item.value : null;
   return "x_m" in item ? (item.heading_rad ?? null) : null;
@@ -44,7 +44,7 @@ export function with_heading(item: Item, heading_rad: number): Item {
   return "x_m" in item ? { ...item, heading_rad: rounded } : item;
 }
 
-/** Where a selected item is taken hold of. arrow_m: length of an arrow at this zoom. */
+/** Handles of a selected item. arrow_m: length of an arrow at this zoom. */
 export function handles_of(list: ListName, item: Item, arrow_m: number): Handle[] {
   const points = points_of(item);
   const count = points.length / 2;
@@ -67,7 +67,7 @@ export function handles_of(list: ListName, item: Item, arrow_m: number): Handle[
   return handles;
 }
 
-/** What lies under a point: of several zones the smallest. */
+/** The item at a point: the smallest if several zones overlap. */
 export function item_at(drawing: Drawing, at: Point, reach_m: number): ItemRef | null {
   let zone: ItemRef | null = null;
   let least = Infinity;
@@ -83,7 +83,7 @@ export function item_at(drawing: Drawing, at: Point, reach_m: number): ItemRef |
   return zone;
 }
 
-/** A handle of the selected item, or an item; null on nothing. */
+/** A handle of the selected item, or an item; null if there is none. */
 export function grip_at(
   drawing: Drawing,
   selected: ItemRef | null,
@@ -93,7 +93,7 @@ export function grip_at(
 ): Grip | null {
   const item = selected && item_of(drawing, selected);
   if (selected && item) {
-    // Corners come before the middles between them.
+    // Corners have precedence over the midpoints between them.
     const near = handles_of(selected.list, item, arrow_m).find((h) => distance(h, at) <= reach_m);
     if (near) return { ref: selected, part: near.part };
   }
@@ -101,13 +101,13 @@ export function grip_at(
   return ref ? { ref, part: { what: "whole" } } : null;
 }
 
-/** The point that a drag snaps: a corner itself, of a whole item its first. */
+/** The point that snaps in a drag: a corner itself; for a whole item, its first point. */
 export function anchor_of(item: Item, part: Part): Point | null {
   if (part.what === "heading" || part.what === "middle") return null;
   return point_at(points_of(item), part.what === "corner" ? part.index : 0);
 }
 
-/** The corner before one that is dragged, for right angles; null where there is none. */
+/** The corner before a dragged one, for right angles; null if there is none. */
 export function neighbour_of(list: ListName, item: Item, part: Part): Point | null {
   if (part.what !== "corner") return null;
   const points = points_of(item);
@@ -116,7 +116,7 @@ export function neighbour_of(list: ListName, item: Item, part: Part): Point | nu
   return index < count ? point_at(points, index) : null;
 }
 
-/** The item after a drag that brings its anchor to `to`. */
+/** The item after a drag of its anchor to `to`. */
 export function moved(item: Item, part: Part, to: Point): Item {
   const points = [...points_of(item)];
   switch (part.what) {
@@ -139,7 +139,7 @@ export function moved(item: Item, part: Part, to: Point): Item {
   return with_points(item, points);
 }
 
-/** The item without a corner; null when it needs all of them. */
+/** The item without a corner; null if it needs all of them. */
 export function without_corner(list: ListName, item: Item, index: number): Item | null {
   const points = [...points_of(item)];
   if (points.length / 2 <= fewest_points(list)) return null;

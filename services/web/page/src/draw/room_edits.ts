@@ -1,4 +1,4 @@
-// Split, join and rename rooms that the map has: the service computes their outlines, which become
+// Splits, joins and renames rooms of the map: the service computes their outlines, which become
 // zones of the kind room.
 import { Api } from "../api";
 import { Room } from "../protocol";
@@ -8,12 +8,12 @@ import { contains, Point } from "./geometry";
 
 type Rooms = ReadonlyMap<string, Room>;
 
-const kShares = [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8]; // of a line, where a room is looked for
+const kShares = [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8]; // along a line, where a room is searched
 
-/** A reason for people why a room cannot be edited. */
+/** For people: why a room cannot be edited. */
 export class RoomError extends Error {}
 
-/** Number of the room at a point; undefined where there is none. */
+/** Number of the room at a point; undefined if there is none. */
 async function zone_at(
   api: Api,
   rooms: Rooms,
@@ -29,14 +29,14 @@ async function zone_at(
   return (await api.get<{ zone?: number }>(path)).zone;
 }
 
-/** The same. Throws a RoomError where there is none. */
+/** The same. Throws a RoomError if there is none. */
 async function room_at(api: Api, rooms: Rooms, drawing: Drawing, at: Point): Promise<number> {
   const zone = await zone_at(api, rooms, drawing, at);
   if (zone === undefined) throw new RoomError(texts.draw.rooms.none_here);
   return zone;
 }
 
-/** The room at the middle of a line, or next to it: a table may stand in the middle. */
+/** The room at the middle of a line or near it, because a table may stand in the middle. */
 async function room_along(
   api: Api,
   rooms: Rooms,
@@ -62,7 +62,7 @@ function name_of(rooms: Rooms, zone: number): string {
   return rooms.get(String(zone))?.name ?? "";
 }
 
-// The new rooms take the place of drawn ones that have the names of those edited.
+// The new rooms replace drawn ones with the names of the edited rooms.
 function replace(drawing: Drawing, names: string[], zones: { name: string; corners_m: number[] }[]): Drawing {
   const kept = drawing.zones.filter((zone) => zone.kind !== "room" || !names.includes(zone.name));
   let edited: Drawing = { ...drawing, zones: kept };
@@ -79,7 +79,7 @@ function replace(drawing: Drawing, names: string[], zones: { name: string; corne
   return edited;
 }
 
-/** The room that a line crosses, parted by it. */
+/** Splits the room that a line crosses. */
 export async function split_room(
   api: Api,
   rooms: Rooms,
@@ -97,7 +97,7 @@ export async function split_room(
   );
 }
 
-/** Two rooms as one, with the name of the first. */
+/** Joins two rooms; the result has the name of the first. */
 export async function join_rooms(
   api: Api,
   rooms: Rooms,
@@ -112,7 +112,7 @@ export async function join_rooms(
   return replace(drawing, names, [{ name: names[0], corners_m: shapes[0] }]);
 }
 
-/** The room at a point as a zone of the drawing, which can be named; it comes last. */
+/** The room at a point as a zone of the drawing, added at the end, which can then be named. */
 export async function room_to_rename(
   api: Api,
   rooms: Rooms,

@@ -1,25 +1,27 @@
-// An item on its way: what presses, drags and taps on the map make of a tool's shape. Points are
-// snapped before they come here.
+// An unfinished item: applies presses, drags and taps on the map to a tool's shape. The points
+// passed in are already snapped.
 import { distance, heading, Point } from "./geometry";
 import { snap_heading } from "./snapping";
 
-/** point: one tap; arrow: press and drag; segment: two points; line, polygon: as many as it takes. */
+/**
+ * point: one tap; arrow: press and drag; segment: two points; line, polygon: any number of points.
+ */
 export type Shape = "point" | "arrow" | "segment" | "line" | "polygon";
 
 export interface Finished {
   points: number[]; // x, y of each, metres
-  heading_rad: number; // of an arrow
+  heading_rad: number; // for an arrow
 }
 
 export class Sketch {
   readonly points: Point[] = [];
-  /** Where the pointer is: the end of the rubber band. */
+  /** Position of the pointer: the end of the rubber band. */
   cursor: Point | null = null;
   private pressed: Point | null = null;
 
   constructor(readonly shape: Shape) {}
 
-  /** The line comes from here: right angles are measured there. */
+  /** The last point, from which right angles are measured. */
   get from(): Point | null {
     return this.points[this.points.length - 1] ?? (this.is_drag() ? this.pressed : null);
   }
@@ -32,7 +34,7 @@ export class Sketch {
     return this.points.length === 0;
   }
 
-  /** Where an arrow begins while it is dragged. */
+  /** Start of an arrow while it is dragged. */
   get base(): Point | null {
     return this.shape === "arrow" ? this.pressed : null;
   }
@@ -52,8 +54,8 @@ export class Sketch {
   }
 
   /**
-   * The press ends; tapped: it did not move. near_m: how near to its first or last point a tap ends
-   * a line. The item when it is whole, else null.
+   * Ends a press; tapped: it did not move. near_m: a tap so near to the first or last point ends a
+   * line. Returns the item when it is complete, else null.
    */
   lift(at: Point, tapped: boolean, near_m: number): Finished | null {
     const pressed = this.pressed ?? at;
@@ -63,23 +65,23 @@ export class Sketch {
     return done;
   }
 
-  /** The item as it is; null while points are missing. */
+  /** The current item; null while points are missing. */
   finish(): Finished | null {
     const fewest = this.shape === "polygon" ? 3 : this.shape === "point" ? 1 : 2;
     return this.points.length >= fewest ? this.done() : null;
   }
 
-  /** Takes the last point back; false when there is none. */
+  /** Removes the last point; false if there is none. */
   step_back(): boolean {
     return this.points.pop() !== undefined;
   }
 
-  /** The second finger of a pinch has come: the press was not meant. */
+  /** A second finger begins a pinch: the press was not intended. */
   cancel_press(): void {
     this.pressed = null;
   }
 
-  /** What is seen of it: the points so far, and the one at the pointer. */
+  /** The visible points: those so far, and the one at the pointer. */
   shown(): Point[] {
     const { cursor, pressed } = this;
     if (this.shape === "arrow" || this.shape === "point") return [];

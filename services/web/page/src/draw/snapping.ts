@@ -1,5 +1,5 @@
-// Where a point that is drawn by hand is meant: at a corner that is there, at a right angle to what
-// is drawn, on the grid.
+// Snaps a point drawn by hand to an existing corner, to a right angle with the drawing, or to the
+// grid.
 import { distance, heading, Point } from "./geometry";
 
 export interface SnapSettings {
@@ -9,10 +9,10 @@ export interface SnapSettings {
 }
 
 export interface SnapContext {
-  corners: Point[]; // that are there
-  from: Point | null; // where the line comes from
-  before: Point | null; // and where that comes from
-  reach_m: number; // how far a corner or a direction draws the point
+  corners: Point[]; // existing ones
+  from: Point | null; // previous point of the line
+  before: Point | null; // the point before that
+  reach_m: number; // reach of the attraction of a corner or a direction
 }
 
 export interface Snapped extends Point {
@@ -23,7 +23,7 @@ const kQuarter = Math.PI / 2;
 const kSameDirection = 1e-9;
 const kHeadingNear_rad = 0.12;
 
-/** Corners count more than right angles, these more than the grid. */
+/** Corners have precedence over right angles, and right angles over the grid. */
 export function snap(at: Point, settings: SnapSettings, context: SnapContext): Snapped {
   if (settings.corners) {
     const corner = nearest(context.corners, at);
@@ -39,7 +39,7 @@ export function on_grid(at: Point, step_m: number): Point {
   return { x: to_step(at.x, step_m), y: to_step(at.y, step_m) };
 }
 
-/** The nearest multiple of 45 degrees where it is near, else the angle itself. */
+/** The nearest multiple of 45 degrees if it is close, else the angle itself. */
 export function snap_heading(angle: number): number {
   const eighth = (Math.PI / 4) * Math.round(angle / (Math.PI / 4));
   return Math.abs(angle - eighth) <= kHeadingNear_rad ? eighth : angle;
@@ -57,7 +57,7 @@ function nearest(points: Point[], at: Point): Point | null {
   return best;
 }
 
-// On a ray from the last point, along the axes or at a right angle to the line so far.
+// On a ray from the last point, parallel to an axis or at a right angle to the previous segment.
 function at_right_angle(at: Point, grid_m: number, context: SnapContext): Point | null {
   const { from, before, reach_m } = context;
   if (!from || distance(from, at) <= reach_m) return null;
@@ -75,7 +75,7 @@ function at_right_angle(at: Point, grid_m: number, context: SnapContext): Point 
   return best;
 }
 
-// Along an axis the end is on the grid, else the length is a multiple of its step.
+// Parallel to an axis the end lies on the grid; otherwise the length is a multiple of its step.
 function on_ray(from: Point, dx: number, dy: number, along: number, grid_m: number): Point {
   const length = grid_m > 0 ? to_step(along, grid_m) : along;
   if (Math.abs(dy) < kSameDirection) {

@@ -1,12 +1,12 @@
-// The tools of the edit mode: the shape that each draws, and the item that comes of it.
+// The tools of the edit mode: the shape that each draws, and the resulting item.
 import { texts } from "../texts";
 import { Drawing, free_name, Item, ItemKind, ListName, name_is_free, to_mm, ZoneKind } from "./drawing";
 import { distance, heading, point_at } from "./geometry";
 import { Finished, Shape } from "./sketch";
 
-/** Those that make an item. */
+/** Tools that make an item. */
 export type ItemTool = Exclude<ItemKind, "room">;
-/** Those about rooms that the map has, and about the picture in the background. */
+/** Tools for rooms of the map, and for the background picture. */
 export type OtherTool = "split" | "join" | "rename" | "measure" | "shift";
 export type ToolName = "select" | ItemTool | OtherTool;
 
@@ -46,12 +46,12 @@ export function is_item_tool(tool: ToolName): tool is ItemTool {
   return kItemTools.some((known) => known === tool);
 }
 
-/** Whether a tool is meant to draw where exactly the grid and corners are. */
+/** Whether a tool draws exactly on the grid and corners. */
 export function snaps(tool: ToolName): boolean {
   return is_item_tool(tool) || tool === "split";
 }
 
-/** What a tool has drawn, with a name that the drawing does not have. */
+/** Makes a tool's item from its points, with a name unique in the drawing. */
 export function make_item(
   tool: ItemTool,
   drawn: Finished,
@@ -84,7 +84,7 @@ function make_place(
   if (tool === "place") {
     return { name: free_name(drawing, "places", texts.draw.kinds.place), x_m, y_m };
   }
-  // The name by which "Return to base" finds it.
+  // "Return to base" looks for this name.
   const name = name_is_free(drawing, "places", "base") ? "base" : free_name(drawing, "places", "base");
   return { name, x_m, y_m, heading_rad: to_mm(heading_rad) };
 }
@@ -95,7 +95,7 @@ function make_zone(kind: ZoneKind, corners_m: number[], drawing: Drawing): Item 
   return { name, kind, value, corners_m };
 }
 
-// Along the longer one of the first two edges.
+// Direction of the longer one of the first two edges.
 function along(corners: number[]): number {
   const [a, b, c] = [point_at(corners, 0), point_at(corners, 1), point_at(corners, 2)];
   return distance(a, b) >= distance(b, c) ? heading(a, b) : heading(b, c);

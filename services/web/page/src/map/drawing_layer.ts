@@ -1,4 +1,4 @@
-// What people drew, in a look of its own: hatched zones, thick walls, gaps and leaves of doors.
+// The drawing, with a style of its own: hatched zones, thick walls, gaps and leaves of doors.
 import { Drawing, DrawnDoor, DrawnLine, DrawnPlace, DrawnZone, ItemRef } from "../draw/drawing";
 import { heading_of } from "../draw/grab";
 import { middle_of } from "../draw/geometry";
@@ -7,7 +7,7 @@ import { View } from "./map_canvas";
 import { to_pixels } from "./to_pixels";
 
 const kHatchPx = 11;
-/** Length of arrows at each zoom. */
+/** Length of arrows at every zoom. */
 export const kArrowPx = 30;
 const kStationPx = 11;
 
@@ -29,7 +29,7 @@ export function zone_color(kind: DrawnZone["kind"], palette: Palette): string {
   return { no_go, slow, one_way, room: drawn }[kind];
 }
 
-/** selected: is drawn stronger. zones: whether those that demand something are drawn, too. */
+/** selected: drawn stronger. zones: whether to draw zones with a rule, too. */
 export function draw_drawing(
   context: CanvasRenderingContext2D,
   view: View,
@@ -133,7 +133,7 @@ function hatch(
   context.restore();
 }
 
-/** From a point on, of the same length at each zoom. */
+/** An arrow from a point, of the same length at every zoom. */
 export function draw_arrow(
   context: CanvasRenderingContext2D,
   view: View,
@@ -156,7 +156,7 @@ export function draw_arrow(
   context.restore();
 }
 
-// A stretch that is open: two posts, and the gap between them.
+// An open stretch: two posts, and the gap between them.
 function draw_gap(
   context: CanvasRenderingContext2D,
   view: View,
@@ -171,7 +171,7 @@ function draw_gap(
   draw_posts(context, view, gap, palette.drawn);
 }
 
-// The leaf and its swing, as on plans of architects.
+// The leaf and its swing, as on architects' plans.
 function draw_door(
   context: CanvasRenderingContext2D,
   view: View,

@@ -1,4 +1,4 @@
-// What the edit mode shows besides the drawing: grid, handles, lengths, the item on its way.
+// Overlays of the edit mode besides the drawing: grid, handles, lengths, unfinished item.
 import { is_closed, Item, ItemRef, points_of } from "../draw/drawing";
 import { area_of, distance, middle_of, Point, segments_of } from "../draw/geometry";
 import { Handle } from "../draw/grab";
@@ -16,7 +16,7 @@ const kHandlePx = 6;
 const kShortestLabelledPx = 56;
 const kBesidePx = 32;
 
-/** Lines of the grid; where they would be too dense every 5th or 10th. */
+/** Lines of the grid; only every 5th or 10th where they would be too dense. */
 export function draw_grid(
   context: CanvasRenderingContext2D,
   view: View,
@@ -70,7 +70,7 @@ export function draw_selection(
   draw_lengths(context, view, points, closed, palette);
 }
 
-/** The item that is being drawn. */
+/** The unfinished item. */
 export function draw_sketch(
   context: CanvasRenderingContext2D,
   view: View,
@@ -106,7 +106,7 @@ export function draw_sketch(
   }
 }
 
-/** Where the next point will be. */
+/** Position of the next point. */
 export function draw_cursor(
   context: CanvasRenderingContext2D,
   view: View,
@@ -157,7 +157,7 @@ function draw_lengths(
     if (meters * view.scale < kShortestLabelledPx) continue;
     const at = { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 };
     if (closed) {
-      // Beside upright sides, so that the inside stays free for the name.
+      // Beside vertical sides, so that the inside stays free for the name.
       const upright = Math.abs(b.y - a.y) / meters;
       at.x += (Math.sign(at.x - middle.x) * upright * kBesidePx) / view.scale;
     }

@@ -1,5 +1,5 @@
-// A drive as it was: which stop was reached when, and which part of the floor had been seen until
-// then. Cells keep the first stop that saw them, so that any moment is one pass over the cells.
+// A past drive: when each stop was reached, and the part of the floor seen until then. Cells keep
+// the first stop that saw them, so that any moment is one pass over the cells.
 import { DriveStop, Pose2 } from "../protocol";
 import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";
@@ -9,12 +9,12 @@ import { draw_body, draw_points } from "./robot_layer";
 const kFinestM = 0.1; // side of a cell
 const kMostCells = 4e6;
 const kMarginM = 0.5;
-const kWidestGapRad = 0.3; // between two points of an outline that the laser looked through
-const kLongestPauseS = 5; // between two stops, as played
+const kWidestGapRad = 0.3; // between two points of an outline where the laser saw no wall
+const kLongestPauseS = 5; // between two stops, in the replay
 const kNever = 0xffffffff;
 
 export class Film {
-  /** Seconds from the beginning at which each stop is reached, as played. */
+  /** Seconds from the beginning at which each stop is reached, in the replay. */
   readonly times_s: number[] = [];
   private resolution_m = kFinestM;
   private left = 0; // metres
@@ -26,7 +26,7 @@ export class Film {
   private readonly picture = document.createElement("canvas");
   private pictured = ""; // stop and colours of the picture
 
-  /** stops: all of a drive; laser: where it is on the robot, metres. */
+  /** stops: all of a drive; laser: its position on the robot, metres. */
   constructor(
     readonly stops: DriveStop[],
     private readonly laser: [number, number],
@@ -44,7 +44,7 @@ export class Film {
     return this.times_s[this.times_s.length - 1] ?? 0;
   }
 
-  /** The last stop that was reached by then. */
+  /** The last stop reached by then. */
   stop_at(time_s: number): number {
     let [low, high] = [0, this.times_s.length - 1];
     while (low < high) {
@@ -55,7 +55,7 @@ export class Film {
     return low;
   }
 
-  /** Enters what stops saw: first to last, the last one not included. In this order. */
+  /** Enters the views of the stops first to last, without last itself. Call it in this order. */
   see(first: number, last: number): void {
     for (let i = first; i < Math.min(last, this.stops.length); ++i) this.see_stop(i);
   }
@@ -69,7 +69,7 @@ export class Film {
     };
   }
 
-  /** How many cells were known at a stop, and how many of them were walls. */
+  /** Number of cells known at a stop, and of walls among them. */
   count(stop: number): { known: number; walls: number } {
     let [known, walls] = [0, 0];
     for (let i = 0; i < this.free_since.length; ++i) {
@@ -106,7 +106,7 @@ export class Film {
     draw_body(context, view, at, palette.robot, palette);
   }
 
-  /** Between two stops on the straight line; null where the robot was not located. */
+  /** Interpolated between two stops; null while the robot was not located. */
   pose_at(time_s: number): Pose2 | null {
     const stop = this.stop_at(time_s);
     const [from, to] = [this.stops[stop], this.stops[stop + 1]];
@@ -173,7 +173,7 @@ export class Film {
     }
   }
 
-  // The cells whose middles lie in a triangle, row by row.
+  // The cells whose centres lie in a triangle, row by row.
   private fill(a: number[], b: number[], c: number[], index: number): void {
     const low = Math.max(0, Math.floor(Math.min(a[1], b[1], c[1])));
     const high = Math.min(this.rows - 1, Math.ceil(Math.max(a[1], b[1], c[1])));
@@ -253,7 +253,7 @@ function on_map(stop: Pose2, x_m: number, y_m: number): Pose2 {
   return compose(stop, { x_m, y_m, theta_rad: 0 });
 }
 
-// A colour "#rrggbb" as a pixel of an ImageData seen as words of 32 bits (little-endian).
+// A colour "#rrggbb" as a pixel of an ImageData seen as 32-bit words (little-endian).
 function pixel_of(color: string): number {
   const value = Number.parseInt(color.slice(1, 7), 16);
   const [red, green, blue] = [(value >> 16) & 255, (value >> 8) & 255, value & 255];

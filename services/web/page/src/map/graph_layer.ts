@@ -1,6 +1,5 @@
 // Nodes and branches of the topo-geometric map. 100,000 branch points are drawn in one pass over
-// typed arrays: branches out of view are passed over, and points closer than a pixel to the last
-// one drawn.
+// typed arrays, skipping branches out of view and points closer than a pixel to the last one drawn.
 import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";
 
@@ -119,7 +118,7 @@ function trace(context: CanvasRenderingContext2D, view: View, points: Float32Arr
   }
 }
 
-/** The sign of a kind of node, also for the legend. Centre and size in pixels. */
+/** The sign for a kind of node, also used in the legend. Centre and size in pixels. */
 export function draw_node(
   context: CanvasRenderingContext2D,
   kind: NodeKind,

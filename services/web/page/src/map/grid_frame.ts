@@ -1,4 +1,4 @@
-// Where the grid of the map lies: squares of 64 x 64 cells, pictures of 256 x 256 pixels in levels.
+// Geometry of the map's grid: squares of 64 x 64 cells, pictures of 256 x 256 pixels in levels.
 import { MapInfo } from "../protocol";
 
 export const kSquareCells = 64;
@@ -6,7 +6,7 @@ export const kTilePixels = 256;
 export const kLargestLevel = 8;
 const kSquaresPerTile = kTilePixels / kSquareCells;
 
-/** A range of pictures of a level, ends included. */
+/** A range of pictures of a level, both ends included. */
 export interface TileRange {
   first_column: number;
   last_column: number;
@@ -78,7 +78,7 @@ export function known_box(info: MapInfo, squares: Iterable<string>): Box | null 
   ]);
 }
 
-/** The level whose pixels are at least as fine as those of a screen with `pixels_per_cell`. */
+/** The level whose pixels are at least as fine as screen pixels at `pixels_per_cell`. */
 export function level_for(pixels_per_cell: number): number {
   return Math.max(0, Math.min(kLargestLevel, Math.floor(-Math.log2(pixels_per_cell))));
 }
@@ -108,7 +108,7 @@ export function tile_key(level: number, column: number, row: number): string {
   return `${level}/${column}/${row}`;
 }
 
-/** Versions of pictures: the largest of the squares that they cover. */
+/** Versions of pictures: the largest among the squares that they cover. */
 export class TileVersions {
   private readonly versions = new Map<string, number>();
 
@@ -116,7 +116,7 @@ export class TileVersions {
     this.versions.clear();
   }
 
-  /** Takes the version of a square into account, on all levels. */
+  /** Takes the version of a square into account on all levels. */
   add(info: MapInfo, square: number, version: number): void {
     const in_row = Math.ceil(info.columns / kSquareCells);
     let column = Math.floor((square % in_row) / kSquaresPerTile);
@@ -129,13 +129,13 @@ export class TileVersions {
     }
   }
 
-  /** How many pictures of a level there are. */
+  /** Number of pictures of a level. */
   count(level: number): number {
     const prefix = `${level}/`;
     return [...this.versions.keys()].filter((key) => key.startsWith(prefix)).length;
   }
 
-  /** undefined where nothing is known. */
+  /** undefined if nothing is known. */
   of(level: number, column: number, row: number): number | undefined {
     return this.versions.get(tile_key(level, column, row));
   }

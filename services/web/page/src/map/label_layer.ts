@@ -1,12 +1,12 @@
-// Names of rooms and places, and zones that demand something, on the map.
+// Names of rooms and places, and zones with a rule, on the map.
 import { PointM, Room, Rule } from "../protocol";
 import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";
 import { to_pixels } from "./to_pixels";
 
 const kFont = "13px system-ui, sans-serif";
-const kLinePx = 17; // from one name to the next below
-const kGoalPx = 14; // from the middle of a goal's ring to where names may begin
+const kLinePx = 17; // from one name to the next one below
+const kGoalPx = 14; // from the middle of a goal's ring to the names
 const kBesideGoalPx = 24; // from there to the middle of a name above or below
 
 export interface Label {
@@ -44,8 +44,8 @@ export function draw_rules(
 }
 
 /**
- * Places first, then zones, then large rooms; a name that would cover another is left out, one
- * that a goal would cover stands above or below it.
+ * Places first, then zones, then large rooms. A name that would cover another is left out; one
+ * under a goal moves above or below it.
  */
 export function draw_labels(
   context: CanvasRenderingContext2D,
@@ -107,7 +107,7 @@ function draw_pin(context: CanvasRenderingContext2D, x: number, y: number, palet
   context.stroke();
 }
 
-// Goals are drawn above the names, where the robot is: what stands there could not be read.
+// Goals are drawn above the names, which would be hidden there.
 function keep_off(label: Label, goals: readonly (readonly [number, number])[]): void {
   const covering = goals.find(
     ([x, y]) =>
@@ -119,7 +119,7 @@ function keep_off(label: Label, goals: readonly (readonly [number, number])[]): 
   label.y = label.y < y - 1 ? y - kBesideGoalPx : y + kBesideGoalPx;
 }
 
-/** Text with its width, in the context's font; not where it would cover one that is `drawn`. */
+/** Draws text of this width in the context's font, unless it would cover one in `drawn`. */
 export function draw_label(
   context: CanvasRenderingContext2D,
   label: Label,

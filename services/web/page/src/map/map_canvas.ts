@@ -1,10 +1,10 @@
-// A canvas on the map that is drawn anew only when the view leaves it or the zoom changes: while
-// the map is dragged the browser shifts the drawn picture, whatever is on it.
+// A canvas on the map that is redrawn only when the view leaves it or the zoom changes: during a
+// drag of the map, the browser shifts the drawn picture, whatever its content.
 import * as L from "leaflet";
 
 /**
- * How metres of the map frame become pixels of a canvas: X = scale x + offset_x, Y = offset_y -
- * scale y.
+ * Conversion from metres of the map frame to pixels of a canvas: X = scale x + offset_x, Y =
+ * offset_y - scale y.
  */
 export interface View {
   scale: number; // pixels per metre
@@ -12,7 +12,7 @@ export interface View {
   offset_y: number;
   width: number; // pixels
   height: number;
-  // What is visible, metres.
+  // The visible part, metres.
   min_x: number;
   min_y: number;
   max_x: number;
@@ -30,7 +30,7 @@ export class MapCanvas {
   private frame = 0;
   private zooming = false; // animated: the picture is scaled until the end
 
-  /** padding: how far the canvas reaches beyond the view on each side, as a share of the view. */
+  /** padding: margin of the canvas beyond the view on each side, as a share of the view. */
   constructor(
     private readonly map: L.Map,
     z_index: number,
@@ -58,7 +58,7 @@ export class MapCanvas {
     this.redraw();
   }
 
-  /** Draws with the next frame. */
+  /** Redraws with the next frame. */
   redraw(): void {
     if (this.frame !== 0) return;
     this.frame = requestAnimationFrame(() => {
@@ -68,7 +68,7 @@ export class MapCanvas {
   }
 
   private redraw_if_left(): void {
-    if (this.map.getZoom() !== this.zoom) return; // while zooming the old picture is scaled
+    if (this.map.getZoom() !== this.zoom) return; // during a zoom the old picture is scaled
     const bounds = this.map.getBounds();
     const low = bounds.getSouthWest();
     const high = bounds.getNorthEast();
@@ -119,7 +119,7 @@ export class MapCanvas {
     this.draw(this.context, view);
   }
 
-  // Scales what was drawn to a zoom on the way.
+  // Scales the drawn picture to an intermediate zoom.
   private transform(center: L.LatLng, zoom: number): void {
     if (Number.isNaN(this.zoom)) return;
     const pane = L.DomUtil.getPosition(this.map.getPane("mapPane"));

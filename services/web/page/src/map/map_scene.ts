@@ -1,4 +1,4 @@
-// What is on the map: takes the channels, draws the still part and the moving part.
+// The content of the map: follows the channels, draws the static and the moving parts.
 import { Channels } from "../channels";
 import { Loop, PointM, Rule } from "../protocol";
 import { Drawing, empty_drawing } from "../draw/drawing";
@@ -41,15 +41,15 @@ export type DrawAbove = (
   palette: Palette,
 ) => void;
 
-/** A goal that is chosen and not given yet. */
+/** A chosen goal that has not been given yet. */
 export interface Mark {
   x_m: number;
   y_m: number;
 }
 
-/** What is drawn on the map while it is edited, in place of the drawing that was saved. */
+/** Drawn on the map in edit mode, in place of the saved drawing. */
 export interface Overlay {
-  /** Nothing of the robot's map is shown. */
+  /** The robot's map is hidden. */
   readonly alone: boolean;
   draw_still(context: CanvasRenderingContext2D, view: View): void;
   draw_moving(context: CanvasRenderingContext2D, view: View): void;
@@ -66,12 +66,12 @@ export class MapScene {
     scan: true,
     local_map: false,
   };
-  // Chosen by the views.
+  // Set by the views.
   marks: Mark[] = [];
-  preview: number[] = []; // x, y of each point of the route, metres
+  preview: number[] = []; // x, y of each route point, metres
   pose_mark: PoseMark | null = null;
   chosen_loop: Loop | null = null;
-  drawn: Drawing = empty_drawing(); // as it was saved
+  drawn: Drawing = empty_drawing(); // the saved one
   overlay: Overlay | null = null;
   readonly above = new Map<string, DrawAbove>(); // of the views: drawn above the map
 
@@ -81,7 +81,7 @@ export class MapScene {
   private readonly graph = new GraphLayer();
   readonly trail = new TrailLayer();
   private frame = "";
-  private room_colors = ""; // of all rooms: pictures of rooms change with them
+  private room_colors = ""; // of all rooms: their pictures change with them
   private shown = false;
 
   constructor(
@@ -101,7 +101,7 @@ export class MapScene {
     channels.on_table("rules", still);
     channels.on_table("loops", still);
     channels.on_value(["pose", "scan", "route", "goals", "local_map"], moving_changed);
-    let named_for = ""; // the goals that the names keep off
+    let named_for = ""; // goals that the names avoid
     channels.on_value(["route", "goals"], () => {
       const goals = JSON.stringify(this.goals());
       if (goals !== named_for) still_changed();
@@ -109,7 +109,7 @@ export class MapScene {
     });
   }
 
-  /** The box around what is known of the floor; null without a map. */
+  /** The box around the known floor; null without a map. */
   box(): Box | null {
     if (this.overlay?.alone) return kEmptyPlane;
     const info = this.channels.value("map");
@@ -117,7 +117,7 @@ export class MapScene {
     const cells = this.grid.known_cells(this.versions);
     if (!cells) return known_box(info, this.channels.table("tiles").keys());
     const box = box_of_cells(info, cells.low, cells.high);
-    // In steps, so that a map that grows does not move with each cell.
+    // In steps, so that a growing map does not shift with each cell.
     return {
       min_x: kBoxStepM * Math.floor(box.min_x / kBoxStepM),
       min_y: kBoxStepM * Math.floor(box.min_y / kBoxStepM),
@@ -156,7 +156,7 @@ export class MapScene {
       const rooms = [...this.channels.table("rooms").values()].filter(
         (room) => !named.has(room.name),
       );
-      // While the drawing is edited its places and zones are named by the editor.
+      // In edit mode, the editor names the drawing's places and zones.
       const places = this.overlay ? new Map<string, PointM>() : named;
       draw_labels(context, view, { rooms, places, rules, goals: this.goals() }, palette);
     }
@@ -194,13 +194,13 @@ export class MapScene {
     for (const draw of this.above.values()) draw(context, view, palette);
   }
 
-  /** Draws all anew, after something chosen has changed. */
+  /** Redraws everything after a change of a choice. */
   refresh(): void {
     this.still_changed();
     this.moving_changed();
   }
 
-  /** Where the robot is on its way to; null where it has no goal or no route. */
+  /** Destination of the robot; null without a goal or a route. */
   private route_end(): PointM | null {
     const route = this.channels.value("route");
     if (!route?.found || !this.channels.value("goals")?.current) return null;
@@ -240,7 +240,7 @@ export class MapScene {
     });
     this.channels.on_table("tiles", (change) => {
       const info = this.channels.value("map");
-      // After a change of the frame all squares come anew.
+      // After a change of the frame, all squares arrive again.
       if (change.gone.length > 0 || change.set.length === this.channels.table("tiles").size) {
         rebuild();
       } else if (info) {
@@ -256,7 +256,7 @@ export class MapScene {
     });
   }
 
-  // For those who measure how long it takes until the map is on the screen.
+  // For measuring the time until the map is on the screen.
   private mark_shown(): void {
     if (this.shown) return;
     this.shown = true;

@@ -1,22 +1,22 @@
-// A tool that takes presses and drags on the map, as long as the map does not move by them: with
-// two fingers, and where the tool does not want a press, they move it as ever.
+// A tool that takes presses and drags on the map. Two fingers, and presses that the tool refuses,
+// still move the map.
 import * as L from "leaflet";
 
-/** Where a pointer is. */
+/** Position of a pointer. */
 export interface MapPointer {
   x: number; // metres, map frame
   y: number;
   pixels_per_m: number;
-  tapped: boolean; // it has not moved since it was pressed
+  tapped: boolean; // it has not moved since the press
 }
 
 export interface MapTool {
-  /** A press; true: the drag that follows is the tool's, not the map's. */
+  /** A press; true: the following drag belongs to the tool, not to the map. */
   press(at: MapPointer): boolean;
-  /** The pointer moves; pressed: after a press that was taken. */
+  /** The pointer moves; pressed: after an accepted press. */
   move(at: MapPointer, pressed: boolean): void;
   lift(at: MapPointer): void;
-  /** The press was not meant: another finger has come. */
+  /** The press was not intended: another finger has come. */
   cancel(): void;
 }
 
@@ -29,7 +29,7 @@ export class ToolListener {
 
   constructor(private readonly map: L.Map) {
     const container = map.getContainer();
-    // Before Leaflet sees them.
+    // Handled before Leaflet.
     container.addEventListener("pointerdown", (event) => this.on_down(event), true);
     container.addEventListener("pointermove", (event) => this.on_move(event));
     window.addEventListener("pointerup", (event) => this.on_up(event));
@@ -43,7 +43,7 @@ export class ToolListener {
     return this.tool !== null;
   }
 
-  /** null: the map is moved only. class_name: of the map's element while the tool is there. */
+  /** null: the map only moves. class_name: of the map's element while the tool is active. */
   set(tool: MapTool | null, class_name = ""): void {
     if (this.pressed) this.give_up();
     const container = this.map.getContainer();

@@ -1,4 +1,4 @@
-// The map on the page: pan, zoom, fit, follow, and what a tap or a drag on it means.
+// The map on the page: pan, zoom, fit, follow, and the handling of taps and drags.
 import * as L from "leaflet";
 import { Channels } from "../channels";
 import { Theme } from "../ui/theme";
@@ -9,19 +9,19 @@ import { MapPointer, MapTool, ToolListener } from "./map_tool";
 import { PoseTool } from "./pose_tool";
 import { PoseMark } from "./robot_layer";
 
-const kFirstZoom = 4; // 16 pixels a metre
+const kFirstZoom = 4; // 16 pixels per metre
 const kLargestFitZoom = 6;
 
 export class MapView {
   readonly scene: MapScene;
-  readonly stage: HTMLElement; // around the map, for notes on it
+  readonly stage: HTMLElement; // around the map, holds notes on it
   private readonly map: L.Map;
   private readonly still: MapCanvas;
   private readonly moving: MapCanvas;
   private readonly scale_bar: HTMLElement;
-  private moved = false; // by a person: until then a map that grows is kept in view
+  private moved = false; // by a person: until then a growing map is kept in view
   private following = false;
-  private fitted = ""; // the box that was last fitted
+  private fitted = ""; // the last fitted box
   private readonly tools: ToolListener;
 
   on_tap: (x_m: number, y_m: number, pixels_per_m: number) => void = () => undefined;
@@ -65,7 +65,7 @@ export class MapView {
       this.moved = true;
       this.follow(false);
     });
-    // Leaflet takes the key 6 as "minus", which opens a view here.
+    // Leaflet uses the key 6 as "minus"; here it opens a view.
     const { keyboard } = this.map as unknown as { keyboard: { _zoomKeys: Record<number, number> } };
     delete keyboard._zoomKeys[54];
     container.addEventListener("keydown", (event) => {
@@ -95,7 +95,7 @@ export class MapView {
     this.map.zoomOut();
   }
 
-  /** Shows all that is known of the floor, and goes on so while it grows. */
+  /** Shows the whole known floor, also while it grows. */
   fit(animate = true): void {
     this.moved = false;
     const box = this.scene.box();
@@ -143,14 +143,14 @@ export class MapView {
     this.map.fitBounds(bounds, { padding: [32, 32], maxZoom: kLargestFitZoom });
   }
 
-  /** Whether arrow keys move the map. */
+  /** Sets whether arrow keys move the map. */
   take_keys(take: boolean): void {
     if (take) this.map.keyboard.enable();
     else this.map.keyboard.disable();
   }
 
   /**
-   * Has press and drag on the map set a pose: the point where it begins, looking to where it ends.
+   * Lets a press and drag on the map set a pose: position at its start, heading towards its end.
    */
   start_pose(on_change: (mark: PoseMark) => void): void {
     const before = () => this.scene.pose_mark?.theta ?? 0;
@@ -166,7 +166,7 @@ export class MapView {
     this.end_tool();
   }
 
-  /** Gives presses and drags to a tool. drawing: it draws, else it takes hold of what is there. */
+  /** Gives presses and drags to a tool. drawing: it draws, else it grabs existing items. */
   start_tool(tool: MapTool, drawing: boolean): void {
     this.tools.set(tool, drawing ? "drawing" : "selecting");
   }
@@ -175,13 +175,13 @@ export class MapView {
     this.tools.set(null);
   }
 
-  /** What is in the middle of the view, metres, and its scale. */
+  /** The point in the middle of the view, metres, and its scale. */
   middle(): MapPointer {
     const { lng, lat } = this.map.getCenter();
     return { x: lng, y: lat, pixels_per_m: 2 ** this.map.getZoom(), tapped: true };
   }
 
-  /** Whether the map is an empty plane for a new floor. True: that is another than before. */
+  /** Shows or hides an empty plane for a new floor. Returns true for a change. */
   show_plane(plane: boolean): boolean {
     const { classList } = this.map.getContainer();
     const changed = classList.contains("plane") !== plane;
@@ -189,7 +189,7 @@ export class MapView {
     return changed;
   }
 
-  /** Draws what moves anew. */
+  /** Redraws the moving parts. */
   redraw_moving(): void {
     this.moving.redraw();
   }
@@ -213,7 +213,7 @@ export class MapView {
     if (off_px > 2) this.map.panTo([pose.y_m, pose.x_m], { animate: off_px > 60, duration: 0.3 });
   }
 
-  // A bar of 1, 2 or 5 times a power of ten metres, at most 120 pixels.
+  // A bar of 1, 2 or 5 times a power of ten metres, at most 120 pixels long.
   private show_scale(): void {
     const scale = 2 ** this.map.getZoom();
     const most = 120 / scale;

@@ -1,12 +1,12 @@
-// Two local maps laid on each other as a loop was matched, and how well they agree.
+// Two local maps overlaid as a loop was matched, and their agreement.
 import { LocalMap, Loop, Pose2 } from "../protocol";
 import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";
 import { draw_body, draw_local_map, draw_points, ellipse_of } from "./robot_layer";
 
-const kNearM = 0.1; // points of both that show one wall
+const kNearM = 0.1; // between points of both maps on one wall
 
-/** The pose b of a frame in which a lies: a and b as T_map_a, T_a_b. */
+/** The composition of two poses: a and b as T_map_a, T_a_b. */
 export function compose(a: Pose2, b: Pose2): Pose2 {
   const [cos, sin] = [Math.cos(a.theta_rad), Math.sin(a.theta_rad)];
   const theta = a.theta_rad + b.theta_rad;
@@ -17,7 +17,7 @@ export function compose(a: Pose2, b: Pose2): Pose2 {
   };
 }
 
-/** How far two poses of one frame are apart: metres, radians. */
+/** Distance between two poses of one frame: metres, radians. */
 export function apart(a: Pose2, b: Pose2): [number, number] {
   const turn = b.theta_rad - a.theta_rad;
   return [
@@ -36,11 +36,11 @@ function inside(polygon: number[], x: number, y: number): boolean {
 }
 
 export interface Agreement {
-  overlap: number; // share of what the later stop saw that the earlier one could see
-  near: number; // of that, share within 0.1 m of what the earlier one saw
+  overlap: number; // share of the later stop's view that the earlier one could see
+  near: number; // share of that within 0.1 m of the earlier view
 }
 
-/** T_earlier_later: as matched. Points lie in the frames of their stops. */
+/** T_earlier_later: as matched. Points are in the frames of their stops. */
 export function agreement(earlier: LocalMap, later: LocalMap, T_earlier_later: Pose2): Agreement {
   const [laser_x, laser_y] = earlier.laser_m ?? [0, 0];
   const walls = earlier.points_m;
@@ -64,7 +64,7 @@ export function agreement(earlier: LocalMap, later: LocalMap, T_earlier_later: P
   return { overlap: all > 0 ? seen / all : 0, near: seen > 0 ? near / seen : 0 };
 }
 
-/** What is laid on each other: both maps and where they are on the map. */
+/** An overlay: both maps and their poses on the map. */
 export interface LaidMaps {
   loop: Loop;
   earlier: LocalMap;
@@ -80,7 +80,7 @@ export function draw_laid_maps(
 ): void {
   const { loop, T_map_earlier } = laid;
   const matched = compose(T_map_earlier, loop);
-  context.globalAlpha = 0.75; // what lies below pales
+  context.globalAlpha = 0.75; // fades what lies below
   context.fillStyle = palette.free;
   context.fillRect(0, 0, view.width, view.height);
   context.globalAlpha = 1;
@@ -92,7 +92,7 @@ export function draw_laid_maps(
   draw_body(context, view, at(matched), palette.later, palette);
 }
 
-// Where the poses had put the later stop, with 2 sigma, and from there to where it was matched.
+// The predicted place of the later stop, with 2 sigma, and a line from there to the match.
 function draw_prediction(
   context: CanvasRenderingContext2D,
   view: View,

@@ -1,11 +1,11 @@
-// Press where the robot stands, drag to where it looks.
+// Press at the robot's position, drag in the direction of its heading.
 import { MapPointer, MapTool } from "./map_tool";
 import { PoseMark } from "./robot_layer";
 
 export class PoseTool implements MapTool {
   private from: MapPointer | null = null;
 
-  /** heading: as long as the drag gives none; on_change: for each move. */
+  /** heading: used until the drag gives one; on_change: called at each move. */
   constructor(
     private readonly heading: () => number,
     private readonly on_change: (mark: PoseMark) => void,

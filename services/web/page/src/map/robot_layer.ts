@@ -1,5 +1,4 @@
-// What moves: the robot with the ellipse of its covariance, its scan, its route and where it is
-// sent.
+// The moving objects: the robot with its covariance ellipse, its scan, its route and its goals.
 import { LocalMap, Pose, Scan } from "../protocol";
 import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";
@@ -16,7 +15,8 @@ export interface PoseMark {
 }
 
 /**
- * Half axes (metres) and direction (radians) of the ellipse of a covariance; null when it is none.
+ * Half axes (metres) and direction (radians) of a covariance ellipse; null for an invalid
+ * covariance.
  */
 export function ellipse_of(covariance: (number | null)[]): [number, number, number] | null {
   const [xx, xy, , , yy] = covariance;
@@ -55,7 +55,7 @@ export function draw_robot(
   draw_body(context, view, { x: pose.x_m, y: pose.y_m, theta: pose.theta_rad }, color, palette);
 }
 
-/** A round body with its direction. */
+/** A round body with its heading. */
 export function draw_body(
   context: CanvasRenderingContext2D,
   view: View,
@@ -96,7 +96,7 @@ export function draw_scan(
   draw_points(context, view, scan.points_robot_m, scan.x_m, scan.y_m, scan.theta_rad, palette.scan);
 }
 
-/** Points of a scan, in the frame of a robot that stands there. */
+/** Points of a scan, in the frame of a robot at this pose. */
 export function draw_points(
   context: CanvasRenderingContext2D,
   view: View,
@@ -119,7 +119,7 @@ export function draw_points(
   }
 }
 
-/** points: x, y of each, metres. A line with an edge, so that it shows on any ground. */
+/** points: x, y of each, metres. The line has an edge, so that it is visible on any ground. */
 export function draw_route(
   context: CanvasRenderingContext2D,
   view: View,
@@ -144,7 +144,7 @@ export function draw_route(
   context.setLineDash([]);
 }
 
-/** Where the robot is sent: a ring with a point; number: of several in a row. */
+/** A goal of the robot: a ring with a point; number: position in a sequence. */
 export function draw_goal(
   context: CanvasRenderingContext2D,
   view: View,
@@ -175,7 +175,7 @@ export function draw_goal(
   }
 }
 
-/** The local Voronoi diagram of a stop, and what it was made of. */
+/** The local Voronoi diagram of a stop, and the scan points behind it. */
 export function draw_local_map(
   context: CanvasRenderingContext2D,
   view: View,

@@ -1,5 +1,5 @@
-// The search of the localizer: where it looks (rectangle), where the poses expect the robot (ellipse),
-// and what it has found (hypotheses, the darker the fitter).
+// The search of the localizer: the search space (rectangle), the predicted pose (ellipse), and the
+// solutions found (hypotheses, the darker the fitter).
 import { Hypothesis, Search, SearchedMatch } from "../protocol";
 import { Palette } from "../ui/theme";
 import { draw_label, Label } from "./label_layer";
@@ -9,7 +9,7 @@ import { to_pixels } from "./to_pixels";
 
 const kSigmas = 2;
 const kArrowPx = 16;
-const kLabelled = 3; // hypotheses with their fitness in numbers
+const kLabelled = 3; // hypotheses with fitness numbers
 
 export function draw_search(
   context: CanvasRenderingContext2D,
@@ -76,7 +76,7 @@ function draw_hypotheses(
   context.globalAlpha = 1;
 }
 
-// Fitness in numbers, of the fittest of each search; a number that would cover a better one is left
+// Numbers of the fittest hypotheses of each search; a number that would cover a better one is left
 // out.
 function draw_figures(
   context: CanvasRenderingContext2D,

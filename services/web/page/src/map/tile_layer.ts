@@ -1,5 +1,5 @@
 // Pictures of the grid and of the rooms, in the colours of the theme. A picture stays until its
-// next version has come, and one of another level until those of the level wanted are there.
+// next version arrives, and one of another level until those of the wanted level arrive.
 import { MapInfo } from "../protocol";
 import { Palette } from "../ui/theme";
 import {
@@ -18,8 +18,8 @@ const kKeptTiles = 220;
 
 interface Tile {
   picture: HTMLCanvasElement | null;
-  known: CellBox | null; // around what is not transparent
-  version: string; // that is shown or on its way
+  known: CellBox | null; // around the visible pixels
+  version: string; // shown or on its way
   used: number;
 }
 
@@ -29,9 +29,9 @@ export class TileLayer {
   private readonly tiles = new Map<string, Tile>();
   private shown_level = 0;
   private uses = 0;
-  private generation = 0; // counts what makes all pictures void
+  private generation = 0; // changes when all pictures become invalid
 
-  /** layer: as in the address; on_load: something is to be drawn anew. */
+  /** layer: as in the address; on_load: called when a redraw is due. */
   constructor(
     private readonly layer: "grid" | "rooms",
     private readonly recolor: () => Recolor,
@@ -43,7 +43,10 @@ export class TileLayer {
     ++this.generation;
   }
 
-  /** extra: on what pictures depend besides their versions. True when all of the view is there. */
+  /**
+   * extra: further state that the pictures depend on. Returns true when the whole view is
+   * available.
+   */
   draw(
     context: CanvasRenderingContext2D,
     view: View,
@@ -55,7 +58,7 @@ export class TileLayer {
     const level = level_for(view.scale * info.resolution_m * ratio);
     const complete = this.load(view, info, versions, level, extra);
     context.save();
-    // Cells of the grid, rows upwards, to pixels.
+    // Maps grid cells, rows upwards, to pixels.
     const [cos, sin] = [Math.cos(info.theta_rad), Math.sin(info.theta_rad)];
     const cell = view.scale * info.resolution_m;
     const [x, y] = to_map(info, 0, 0);
@@ -96,7 +99,7 @@ export class TileLayer {
     }
   }
 
-  // Fetches what is missing; true when all that is in view is there.
+  // Fetches missing pictures; returns true when the view is complete.
   private load(
     view: View,
     info: MapInfo,
@@ -137,7 +140,7 @@ export class TileLayer {
       this.on_load();
     };
     image.onerror = () => {
-      // Perhaps the service starts again.
+      // The service may be restarting.
       window.setTimeout(() => {
         if (tile.version === version) tile.version = "";
         this.on_load();
@@ -146,7 +149,7 @@ export class TileLayer {
     image.src = `/tiles/${this.layer}/${info.frame}/${key}.png?v=${version}`;
   }
 
-  /** The box around all that is known; null while a picture of it is missing. */
+  /** The box around the known part; null while one of its pictures is missing. */
   known_cells(versions: TileVersions): CellBox | null {
     const prefix = `${this.shown_level}/`;
     const tiles = [...this.tiles].filter(([key, tile]) => tile.picture && key.startsWith(prefix));
@@ -191,14 +194,14 @@ function known_of(key: string, pixels: Uint8ClampedArray): CellBox | null {
   if (right < 0) return null;
   const [level, column, row] = key.split("/").map(Number);
   const cells = 2 ** level;
-  const above = kTilePixels * (row + 1); // the first line of a picture is the upper one
+  const above = kTilePixels * (row + 1); // the first line of a picture is the top one
   return {
     low: [cells * (kTilePixels * column + left), cells * (above - bottom - 1)],
     high: [cells * (kTilePixels * column + right + 1), cells * (above - top)],
   };
 }
 
-// As the service paints them.
+// Colours that the service paints.
 const kRoomColors = [0x8dd3c7, 0xffffb3, 0xbebada, 0xfb8072, 0x80b1d3, 0xfdb462];
 
 function rgb(color: string): [number, number, number] {

@@ -20,7 +20,7 @@ export class TrailLayer {
     this.chunks.delete(number);
   }
 
-  /** How many stops there are. */
+  /** Number of stops. */
   size(): number {
     let stops = 0;
     for (const [number, chunk] of this.chunks) {
@@ -29,7 +29,7 @@ export class TrailLayer {
     return stops;
   }
 
-  /** x, y (metres), theta (radians) of a stop; null when its place is not known. */
+  /** x, y (metres), theta (radians) of a stop; null when its pose is not known. */
   stop(number: number): [number, number, number] | null {
     return this.chunks.get(Math.floor(number / kChunkStops))?.[number % kChunkStops] ?? null;
   }
@@ -57,7 +57,9 @@ export class TrailLayer {
     context.stroke();
   }
 
-  /** Lines between the stops of accepted loops; the chosen one thick, also when it was rejected. */
+  /**
+   * Lines between the stops of accepted loops; the chosen loop is thick, even if it was rejected.
+   */
   draw_loops(
     context: CanvasRenderingContext2D,
     view: View,

@@ -1,4 +1,4 @@
-// A name, a bar like that of a battery, and the value in words.
+// A name, a bar like that of a battery, and the value as text.
 import { h, set_attribute, set_text } from "./dom";
 
 export type Level = "good" | "fair" | "bad" | "plain";
@@ -30,7 +30,7 @@ export class Bar {
     );
   }
 
-  /** share: how full, [0, 1]. */
+  /** share: filled part, [0, 1]. */
   set(share: number, text: string, level: Level = "plain"): void {
     const percent = Math.round(100 * Math.max(0, Math.min(1, share)));
     this.fill.style.width = `${percent}%`;

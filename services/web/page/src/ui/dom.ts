@@ -5,8 +5,8 @@ type Listener = (event: never) => void;
 type Value = string | number | boolean | null | undefined | Listener;
 
 /**
- * An element with attributes and children. A function is a listener ("onclick"), true an empty
- * attribute; false, null and undefined leave an attribute out.
+ * Creates an element with attributes and children. A function is a listener ("onclick"), true an
+ * empty attribute; false, null and undefined omit an attribute.
  */
 export function h<Tag extends keyof HTMLElementTagNameMap>(
   tag: Tag,
@@ -27,17 +27,17 @@ export function h<Tag extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/** Puts children in place of what an element had. */
+/** Replaces the children of an element. */
 export function fill(element: HTMLElement, ...children: Child[]): void {
   element.replaceChildren(...children.filter((child): child is Node | string => Boolean(child)));
 }
 
-/** Sets a text, only where it differs: screen readers announce each change of a live region. */
+/** Sets a text only if it differs, because screen readers announce each change of a live region. */
 export function set_text(element: HTMLElement, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }
 
-/** Sets an attribute, only where it differs. */
+/** Sets an attribute only if it differs. */
 export function set_attribute(element: HTMLElement, name: string, value: string): void {
   if (element.getAttribute(name) !== value) element.setAttribute(name, value);
 }
@@ -56,7 +56,7 @@ export function button(
   return h("button", { type: "button", class: "button", onclick: on_click, ...extra }, text);
 }
 
-/** An input under its label; wide: over all columns of its grid. */
+/** An input below its label; wide: spans all columns of its grid. */
 export function field(label: string, input: HTMLElement, wide = ""): HTMLElement {
   return h("div", { class: `field-pair ${wide}` }, h("label", { for: input.id }, label), input);
 }
@@ -86,7 +86,7 @@ const kIcons = {
 };
 export type IconName = keyof typeof kIcons;
 
-/** A picture of lines that goes with a text; screen readers pass it over. */
+/** A line drawing beside a text; screen readers skip it. */
 export function icon(name: IconName): SVGSVGElement {
   const space = "http://www.w3.org/2000/svg";
   const svg = document.createElementNS(space, "svg");

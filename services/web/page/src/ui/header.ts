@@ -1,4 +1,4 @@
-// Always in view: the state in large letters with its reason, and Stop.
+// Always visible: the state in large letters with its reason, and Stop.
 import { Api } from "../api";
 import { Rights } from "../app";
 import { Channels } from "../channels";
@@ -29,7 +29,7 @@ export class Header {
   private readonly held: HeldBanner;
   private readonly token = h("div", { class: "banner fair", role: "alert", hidden: true });
 
-  /** What Stop does besides its order. */
+  /** Called by Stop in addition to its order. */
   on_stop: () => void = () => undefined;
 
   constructor(
@@ -80,7 +80,7 @@ export class Header {
     show(this.token, true);
   }
 
-  /** Stops the robot, whatever it does. False: this page may not. */
+  /** Stops the robot in any state. False: this page may not. */
   stop_now(): boolean {
     if (!this.rights.may_write) return false;
     void this.stopping.stop(() => this.on_stop());

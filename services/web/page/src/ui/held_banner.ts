@@ -1,4 +1,4 @@
-// That the base is held, what its release would do, and the release.
+// Shows that the base is held and the effect of its release, and releases it.
 import { Api } from "../api";
 import { Rights } from "../app";
 import { Channels } from "../channels";
@@ -12,9 +12,9 @@ export class HeldBanner {
   private readonly words = h("span");
   private readonly release: HTMLButtonElement;
   private readonly answers: HTMLElement;
-  private asked: string | null = null; // the goal that the question names
+  private asked: string | null = null; // goal named in the question
 
-  /** on_release: the order to release was taken. */
+  /** on_release: the release order was accepted. */
   constructor(
     private readonly channels: Channels,
     private readonly rights: Rights,
@@ -44,7 +44,7 @@ export class HeldBanner {
     show(this.answers, this.asked !== null && this.rights.can("release"));
   }
 
-  // A robot with a goal drives as soon as it may: whoever releases it is asked first.
+  // A robot with a goal drives as soon as it may, so the release asks for confirmation.
   private ask(): void {
     this.asked = pending_goal(this.channels);
     if (this.asked === null) void this.send();

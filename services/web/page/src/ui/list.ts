@@ -6,7 +6,7 @@ export class KeyedList<Entry> {
   readonly element: HTMLElement;
   private readonly elements = new Map<string, HTMLElement>();
 
-  /** create: an element for a key; update: shows an entry in it. */
+  /** create: makes an element for a key; update: shows an entry in it. */
   constructor(
     class_name: string,
     private readonly create: (key: string) => HTMLElement,

@@ -1,4 +1,4 @@
-// Buttons on the map: zoom, fit, follow, what is shown.
+// Buttons on the map: zoom, fit, follow, visible layers.
 import { kLayers } from "../map/map_scene";
 import { MapView } from "../map/map_view";
 import { texts } from "../texts";

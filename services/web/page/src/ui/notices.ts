@@ -1,10 +1,10 @@
-// Short messages that go by themselves; errors stay longer.
+// Short messages that disappear by themselves; errors stay longer.
 import { button, h } from "./dom";
 import { sentence } from "../robot_state";
 import { texts } from "../texts";
 
 const kShownMs = { info: 4000, error: 10000 };
-const kSignMs = 200; // an answer that comes sooner needs no sign before it
+const kSignMs = 200; // a faster answer needs no waiting notice
 const kSlowMs = 3000;
 
 export class Notices {
@@ -18,7 +18,7 @@ export class Notices {
     window.setTimeout(() => notice.remove(), kShownMs[kind]);
   }
 
-  /** Reports that an order was sent, and what becomes of it. True when it was taken. */
+  /** Reports that an order was sent, and its outcome. Returns true if it was accepted. */
   async report(order: Promise<unknown>, done: string): Promise<boolean> {
     const end_waiting = this.show_waiting();
     try {
@@ -33,7 +33,7 @@ export class Notices {
     }
   }
 
-  /** Says why something was not done. */
+  /** Reports why something was not done. */
   fail(error: unknown): void {
     this.show(sentence(error instanceof Error ? error.message : String(error)), "error");
   }
@@ -48,7 +48,7 @@ export class Notices {
     return notice;
   }
 
-  // That an answer is waited for; the function returned takes it away.
+  // Shows that an answer is awaited; the returned function removes the notice.
   private show_waiting(): () => void {
     let notice: HTMLElement | null = null;
     const sign = window.setTimeout(() => (notice = this.add(texts.waiting.sent, "info")), kSignMs);

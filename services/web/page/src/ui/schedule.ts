@@ -1,5 +1,5 @@
 /**
- * A function that has `work` done once with the next frame, however often it is called until then.
+ * Returns a function that runs `work` once in the next frame, however often it is called before.
  */
 export function once_a_frame(work: () => void): () => void {
   let waiting = false;
@@ -13,7 +13,7 @@ export function once_a_frame(work: () => void): () => void {
   };
 }
 
-/** The same, but not more often than every period_ms. */
+/** The same, but at most once every period_ms. */
 export function at_most_every(period_ms: number, work: () => void): () => void {
   let waiting = false;
   let last_ms = -Infinity;

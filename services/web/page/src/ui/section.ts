@@ -5,7 +5,7 @@ export function section(title: string, ...children: (Node | string | null)[]): H
   return h("section", { class: "section" }, h("h2", {}, title), ...children);
 }
 
-/** The same, which can be folded. */
+/** The same, foldable. */
 export function folded(title: string, open: boolean, ...children: Node[]): HTMLDetailsElement {
   return h(
     "details",

@@ -1,5 +1,5 @@
-// Space stops, whatever has the focus, but where a text is typed. Enter presses what Space presses
-// elsewhere.
+// Space stops the robot wherever the focus is, except in text fields. Enter does what Space usually
+// does.
 const kNoTexts = ["checkbox", "radio", "range", "button", "submit", "color", "file"];
 
 function types_text(target: EventTarget | null): boolean {
@@ -7,10 +7,10 @@ function types_text(target: EventTarget | null): boolean {
   return target instanceof Element && target.closest("textarea, [contenteditable]") !== null;
 }
 
-/** stop: returns false where this page may not stop; Space then does what it does elsewhere. */
+/** stop: returns false if this page may not stop; Space then keeps its usual function. */
 export function listen_for_stop_key(stop: () => boolean): void {
   let taken = false;
-  // Before all other listeners, some of which keep keys to themselves.
+  // Registered before all other listeners, some of which consume keys.
   document.addEventListener(
     "keydown",
     (event) => {
@@ -22,7 +22,7 @@ export function listen_for_stop_key(stop: () => boolean): void {
     },
     { capture: true },
   );
-  // Browsers press a button when Space is let go.
+  // Browsers press a button when Space is released.
   document.addEventListener(
     "keyup",
     (event) => {

@@ -1,5 +1,5 @@
-// Dark and light: by the system until the operator chooses. Colours live in style.css; canvases
-// read them there.
+// Dark and light: follows the system until the operator chooses. Colours are defined in style.css,
+// where canvases read them.
 import { NodeKind } from "../map/graph_layer";
 
 export interface Palette {
@@ -28,7 +28,7 @@ export interface Palette {
   grid: string;
   loop: string;
   local: string;
-  earlier: string; // of two stops that are compared
+  earlier: string; // for two compared stops
   later: string;
   search: string;
 }

@@ -1,4 +1,4 @@
-// Correct: where the robot is, the whole map searched, mapping or not, maps made one.
+// Correct: set the pose, search the whole map, switch mapping, merge maps.
 import { App, ViewPart } from "../app";
 import { PoseMark } from "../map/robot_layer";
 import { Merge } from "../protocol";

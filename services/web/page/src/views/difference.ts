@@ -1,4 +1,4 @@
-// What differs between two versions of the map, on the map in colours.
+// Shows the differences between two versions of the map in colours on the map.
 import * as format from "../format";
 import { MapScene } from "../map/map_scene";
 import { Comparison } from "../protocol";
@@ -10,13 +10,15 @@ const words = texts.time;
 const kAbove = "difference";
 const kChanges = ["gone", "new", "seen", "lost"] as const;
 
-/** Takes the difference off the map. */
+/** Removes the difference from the map. */
 export function hide_difference(scene: MapScene): void {
   scene.above.delete(kAbove);
   scene.refresh();
 }
 
-/** Lays a difference over the map; its legend and figures. Throws where the picture is gone. */
+/**
+ * Lays a difference over the map; returns its legend and figures. Throws if the picture is gone.
+ */
 export async function show_difference(scene: MapScene, made: Comparison): Promise<HTMLElement> {
   const picture = new Image();
   picture.src = made.picture;

@@ -1,4 +1,4 @@
-// Draw: the edit mode. Tools, the selected item, save; rooms split and joined; a new floor.
+// Draw: the edit mode, with tools, selected item, saving, editing of rooms, and a new floor.
 import { App, ViewPart } from "../app";
 import { DrawingDocument } from "../draw/document";
 import { Drawing, Item, kind_of } from "../draw/drawing";
@@ -170,7 +170,7 @@ export class DrawView implements ViewPart {
     const done = { split: words.rooms.split, join: words.rooms.joined, rename: words.rooms.rename };
     try {
       const edited = await edits[tool]();
-      if (document.drawing !== before) return; // it was edited meanwhile
+      if (document.drawing !== before) return; // edited meanwhile
       document.edit(edited, { list: "zones", index: edited.zones.length - 1 });
       notices.show(done[tool]);
       if (tool === "rename") this.ask_name();

@@ -1,5 +1,5 @@
-// A new floor from nothing, loaded into simulator or robot; the drawing as a file; the picture
-// behind it.
+// Draws a new floor and loads it into simulator or robot; handles drawing files and the background
+// picture.
 import { App } from "../app";
 import { Background, measured } from "../draw/background";
 import { parse_drawing, start_of } from "../draw/drawing";
@@ -33,7 +33,7 @@ export class DrawFloor {
   private readonly distance_form: HTMLFormElement;
   private readonly loads: HTMLElement;
   private readonly not_offered = h("p", { class: "quiet" }, words.not_offered);
-  private pair: [Point, Point] | null = null; // of the picture, to be measured
+  private pair: [Point, Point] | null = null; // measuring points on the picture
 
   constructor(
     private readonly app: App,
@@ -75,7 +75,7 @@ export class DrawFloor {
     if (alone) (this.element as HTMLDetailsElement).open = true;
   }
 
-  /** The tools of the picture have their points. */
+  /** The picture's tools have their points. */
   asked(tool: "measure" | "shift", drawn: Finished): void {
     const { background } = this.editor;
     const [a, b] = [point_at(drawn.points, 0), point_at(drawn.points, 1)];
@@ -261,7 +261,7 @@ export class DrawFloor {
   }
 }
 
-// A button that lets a file be chosen from the disk.
+// A button to choose a file from the disk.
 function file_button(text: string, accept: string, take: (file: File) => void): HTMLElement {
   const input = h("input", { type: "file", accept, hidden: true, "aria-label": text });
   input.addEventListener("change", () => {

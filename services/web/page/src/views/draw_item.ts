@@ -27,7 +27,7 @@ export function size_text(ref: ItemRef, item: Item): string {
   return words.measures(length_of(points, closed), closed ? area_of(points) : null);
 }
 
-/** What an item is called: its name, or its kind with its number. */
+/** Title of an item: its name, or its kind with its number. */
 export function title_of(ref: ItemRef, item: Item): string {
   const kind = words.titles[kind_of(ref.list, item)];
   return "name" in item && item.name ? item.name : words.numbered(kind, ref.index + 1);
@@ -35,7 +35,7 @@ export function title_of(ref: ItemRef, item: Item): string {
 
 export class DrawItem {
   readonly element = h("section", { class: "section", "aria-label": words.item });
-  private shown = ""; // which item, and how it is built
+  private shown = ""; // the item shown, and its structure
   private readonly updates: ((item: Item) => void)[] = [];
   private readonly size = h("p", { class: "quiet" });
 
@@ -172,7 +172,7 @@ function number_input(id: string, limits: Record<string, number> = {}): HTMLInpu
   return h("input", { type: "number", step: "any", class: "field", id, required: true, ...limits });
 }
 
-// What is being typed stays.
+// Does not overwrite the input being typed in.
 function show_value(input: HTMLInputElement, value: string): void {
   if (document.activeElement !== input && input.value !== value) input.value = value;
 }

@@ -1,4 +1,4 @@
-// All that is drawn, to be chosen without the map.
+// List of all drawn items, to select them without the map.
 import { DrawingDocument } from "../draw/document";
 import { all_items, Item, ItemRef, points_of } from "../draw/drawing";
 import { middle_of } from "../draw/geometry";

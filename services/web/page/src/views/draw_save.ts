@@ -1,4 +1,4 @@
-// Undo, redo, save, discard; what happens when others have saved meanwhile.
+// Undo, redo, save, discard, and conflicts with others who have saved meanwhile.
 import { ApiError } from "../api";
 import { App } from "../app";
 import { DrawingStore } from "../draw/drawing_store";
@@ -64,7 +64,7 @@ export class DrawSave {
     show(this.conflict, !alone && document.is_dirty && this.is_behind() && !this.saving);
   }
 
-  /** Shows what was saved last, unless something is edited here. */
+  /** Shows the drawing saved last, unless there are edits here. */
   take_newest(): void {
     const { document, alone } = this.editor;
     if (alone || this.saving) return;

@@ -1,4 +1,4 @@
-// The tools, how the chosen one is used, grid and snapping.
+// The tools with a hint for the chosen one, grid and snapping.
 import { App } from "../app";
 import { Editor } from "../draw/editor";
 import { ToolName } from "../draw/tools";

@@ -1,11 +1,11 @@
-// Driving by hand: while a button or a key is held, an order every 100 ms; none means stop.
+// Driving by hand: sends an order every 100 ms while a button or a key is held; silence means stop.
 import { App } from "../app";
 import * as format from "../format";
 import { texts } from "../texts";
 import { button, h, icon, IconName, set_text, show } from "../ui/dom";
 
 const kPeriodMs = 100;
-const kLateMs = 300; // an order, or a key that was pressed, so long ago is none any more
+const kLateMs = 300; // an order or a key press older than this is ignored
 const kTurnRadps = 0.6;
 const kFastestMps = 0.6;
 const kFirstMps = 0.3;
@@ -31,7 +31,7 @@ function is_late(event: Event): boolean {
 
 export class DrivePad {
   readonly element: HTMLElement;
-  // Pointers and keys that are held, each with its direction.
+  // Held pointers and keys, each with its direction.
   private readonly held = new Set<string>();
   private readonly pad: HTMLElement;
   private readonly state = h("p", { class: "quiet", role: "status" });
@@ -85,7 +85,7 @@ export class DrivePad {
     this.show_state();
   }
 
-  /** Lets go of everything, and of the keys. */
+  /** Releases everything when it becomes inactive. */
   set_active(active: boolean): void {
     if (this.active === active) return;
     this.active = active;
@@ -113,7 +113,7 @@ export class DrivePad {
       element.addEventListener(type, (event) => this.let_go(name(event)));
     }
     element.addEventListener("contextmenu", (event) => event.preventDefault());
-    // With the keyboard the button itself is held.
+    // With the keyboard, the button itself is held.
     element.addEventListener("keydown", (event) => {
       if (event.key !== "Enter") return; // Space stops
       event.preventDefault();
@@ -164,7 +164,7 @@ export class DrivePad {
     if (this.held.delete(name) && this.held.size === 0) this.release();
   }
 
-  /** The robot stops, whatever is held: it has to be pressed again. */
+  /** Stops the robot although something is held: a new press is needed. */
   let_go_of_all(): void {
     this.release();
   }
@@ -178,7 +178,7 @@ export class DrivePad {
     this.app.connection.send({ op: "release" });
   }
 
-  // A page that stood still does not know what was let go meanwhile.
+  // A page that stood still does not know which keys were released meanwhile.
   private go_on(): void {
     const now_ms = performance.now();
     const late = this.due_ms !== 0 && now_ms - this.due_ms > kLateMs;
@@ -191,7 +191,7 @@ export class DrivePad {
     const wants = (direction: Direction) =>
       [...this.held].some((name) => name.startsWith(`${direction}:`)) ? 1 : 0;
     const speed = Number(this.speed.value) * (wants("forward") - wants("backward"));
-    // Backwards a key to the left still turns the robot's front to the left.
+    // Also when driving backwards, a key to the left turns the robot's front to the left.
     const turn = kTurnRadps * (wants("turn_left") - wants("turn_right"));
     this.app.connection.drive(speed, turn);
   }

@@ -1,4 +1,4 @@
-// Plays the drive that the map was made of: a slider, speeds, pause.
+// Replays the drive behind the map: a slider, speeds, pause.
 import { App } from "../app";
 import * as format from "../format";
 import { Film } from "../map/film";
@@ -10,7 +10,7 @@ import { section } from "../ui/section";
 
 const words = texts.time;
 const kSpeeds = [1, 4, 16, 64];
-const kSliceStops = 100; // worked on without a pause for the page
+const kSliceStops = 100; // processed without a pause for the page
 const kSliderSteps = 1000;
 
 export class FilmPlayer {
@@ -22,12 +22,12 @@ export class FilmPlayer {
   private readonly slider: HTMLInputElement;
   private readonly speed: HTMLSelectElement;
   private readonly moment = h("p", { class: "film-moment" });
-  private readonly note = h("p", { class: "map-note" }, words.film_note); // on the map, over the film
+  private readonly note = h("p", { class: "map-note" }, words.film_note); // above the film
   private film: Film | null = null;
   private time_s = 0;
   private frame = 0;
   private last_ms = 0;
-  private loads = 0; // counts them: an earlier one stops when another begins
+  private loads = 0; // counts loads, so that an earlier one stops when another begins
 
   constructor(private readonly app: App) {
     this.start = button(words.load, () => void this.load(), { class: "button primary" });
@@ -63,7 +63,7 @@ export class FilmPlayer {
     this.element = section(words.film, hint, this.start, this.status, this.controls);
   }
 
-  /** Shows the map of now again. */
+  /** Shows the current map again. */
   close(): void {
     ++this.loads;
     this.set_playing(false);

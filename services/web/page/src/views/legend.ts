@@ -1,4 +1,4 @@
-// Which sign on the map is what, and what keys do.
+// Explains the signs on the map and the keys.
 import { draw_node, NodeKind } from "../map/graph_layer";
 import { texts } from "../texts";
 import { Facts } from "../ui/bar";

@@ -1,4 +1,4 @@
-// The chosen loop: both local maps laid on each other on the map, and the evidence in words.
+// The chosen loop: both local maps overlaid on the map, and the evidence as text.
 import { App } from "../app";
 import { agreement, apart, compose, draw_laid_maps, LaidMaps } from "../map/match_layer";
 import { LocalMap, Loop } from "../protocol";
@@ -117,7 +117,7 @@ export class LoopDetail {
   }
 }
 
-/** What the last part of "match not accepted: few inliers" means; nothing of an accepted loop. */
+/** Explains the last part of "match not accepted: few inliers"; empty for an accepted loop. */
 export function meaning_of(explanation: string): string {
   return words.meanings[explanation.replace(/^.*: /, "")] ?? "";
 }

@@ -1,4 +1,4 @@
-// Loops accepted and rejected with their reasons; the chosen one shows on the map.
+// Accepted and rejected loops with their reasons; the chosen one is shown on the map.
 import { App } from "../app";
 import { Loop } from "../protocol";
 import { sentence } from "../robot_state";
@@ -102,7 +102,7 @@ export class LoopList {
     set_attribute(title, "aria-pressed", String(key === this.chosen));
     set_text(why, `${reason_of(loop)} ${words.sources[loop.source] ?? ""}`);
     const { fitness, probability, correction_m, correction_rad } = loop;
-    // A map file keeps the closed loops alone.
+    // A map file contains only closed loops.
     const measured = [fitness, probability, correction_m].some((value) => value !== null);
     set_text(
       facts,
@@ -114,7 +114,7 @@ export class LoopList {
   }
 }
 
-/** Why it was rejected, as a sentence; what was decided where there is no more to say. */
+/** Why it was rejected, as a sentence; or the outcome if there is no explanation. */
 function reason_of(loop: Loop): string {
   const outcome = loop.explanation || words.outcomes[loop.outcome] || loop.outcome;
   return meaning_of(loop.explanation) || sentence(outcome);

@@ -1,4 +1,4 @@
-// Another map file joined with the map of now: offered, looked at, accepted or refused.
+// Merges another map file with the current map: upload, review, accept or refuse.
 import { App } from "../app";
 import { MergedMap, Snapshots } from "../protocol";
 import { sentence } from "../robot_state";
@@ -8,8 +8,8 @@ import { section } from "../ui/section";
 import { hide_difference, show_difference } from "./difference";
 
 const words = texts.time;
-const kMost_bytes = 64 * 1024 * 1024; // that the service takes
-const kPatienceMs = 600000; // of large maps
+const kMost_bytes = 64 * 1024 * 1024; // limit of the service
+const kPatienceMs = 600000; // for large maps
 
 export class MapMerge {
   readonly element: HTMLElement;
@@ -22,7 +22,7 @@ export class MapMerge {
   });
   private readonly result = h("div", { hidden: true, class: "card merge-result" });
 
-  /** on_restored: the map has become another one. */
+  /** on_restored: the map was replaced. */
   constructor(
     private readonly app: App,
     private readonly on_restored: () => void,
@@ -41,7 +41,7 @@ export class MapMerge {
     show(this.element, available && this.app.rights.can("merge_map"));
   }
 
-  /** Takes what is shown off the map. */
+  /** Removes the review from the map. */
   close(): void {
     hide_difference(this.app.map.scene);
     show(this.result, false);
@@ -71,7 +71,7 @@ export class MapMerge {
       this.say(h("strong", {}, words.not_merged(file.name)), ` ${sentence(why)}`);
     } finally {
       this.file.disabled = false;
-      this.file.value = ""; // the same one may be chosen again
+      this.file.value = ""; // allows choosing the same file again
     }
   }
 

@@ -1,4 +1,4 @@
-// Now: how the robot and its map are.
+// Now: the state of the robot and its map.
 import { App, ViewPart } from "../app";
 import { Channels } from "../channels";
 import * as format from "../format";
@@ -12,8 +12,8 @@ import { once_a_frame } from "../ui/schedule";
 import { folded, section } from "../ui/section";
 import { legend } from "./legend";
 
-const kStaleLoopStops = 60; // a bar of the last loop is empty then
-const kMostSquares = 16384; // that a grid can have
+const kStaleLoopStops = 60; // number of stops after which the bar of the last loop is empty
+const kMostSquares = 16384; // limit of a grid
 
 const words = texts.now;
 
@@ -174,7 +174,8 @@ export class NowView implements ViewPart {
     const base = channels.value("base");
     show(this.battery.element, typeof base?.battery_v === "number");
     if (base) {
-      // The base reports whether it is low; how full it is nobody knows from the voltage alone.
+      // The base reports only whether the battery is low; its charge does not follow from the
+      // voltage alone.
       this.battery.set(
         base.battery_low ? 0.15 : 1,
         with_age(channels, "base", words.battery_value(base.battery_v, base.battery_low)),

@@ -1,4 +1,4 @@
-// The search of the localizer while it runs: on the map, and in a sentence.
+// The current search of the localizer: on the map, and as a sentence.
 import { App } from "../app";
 import { draw_search } from "../map/search_layer";
 import { texts } from "../texts";
@@ -6,7 +6,7 @@ import { h, set_text, show } from "../ui/dom";
 
 const words = texts.understand;
 const kAbove = "search";
-const kOldMs = 5000; // after that nothing is searched any more
+const kOldMs = 5000; // after that the search has ended
 
 export class SearchPart {
   readonly element: HTMLElement;

@@ -1,4 +1,4 @@
-// Send: choose goals, see the route, go; what is under way; driving by hand.
+// Send: choose goals, see the route, go; the current goals; driving by hand.
 import { App, ViewPart } from "../app";
 import { Destination, destinations } from "../destinations";
 import { Goal, Preview } from "../protocol";
@@ -12,8 +12,8 @@ import { DrivePad } from "./drive_pad";
 import { Underway } from "./underway";
 
 const words = texts.send;
-const kPlannerTime_ms = 1000; // the planner has a new drawing by then
-const kNamedPx = 18; // a tap so near to a place means the place
+const kPlannerTime_ms = 1000; // time until the planner has a new drawing
+const kNamedPx = 18; // a tap this near to a place selects the place
 
 interface Choice {
   goal: Goal;
@@ -35,8 +35,8 @@ export class SendView implements ViewPart {
   private adding = false;
   private visible = false;
   private replan = 0; // timer
-  private last: Preview | null = null; // null while it is planned
-  private asked = 0; // counts previews: an answer to an earlier one is old
+  private last: Preview | null = null; // null while planning
+  private asked = 0; // number of the last preview: answers to earlier ones are ignored
 
   constructor(private readonly app: App) {
     this.drive = new DrivePad(app);
@@ -97,7 +97,7 @@ export class SendView implements ViewPart {
     this.show_on_map(visible);
   }
 
-  /** Stop lets go of the controls, too. */
+  /** Stop also releases the manual controls. */
   let_go(): void {
     this.drive.let_go_of_all();
   }
@@ -123,7 +123,7 @@ export class SendView implements ViewPart {
     void this.preview();
   }
 
-  // With a list begun, a choice comes to it; else it takes the place of the one before.
+  // While a list is being built, a choice is added to it; otherwise it replaces the previous one.
   private kept(): Choice[] {
     const kept = this.adding ? this.choices : [];
     this.adding = false;
@@ -135,7 +135,7 @@ export class SendView implements ViewPart {
     if (this.filter.value.trim() !== "" && found.length > 0) this.choose(found[0]);
   }
 
-  // What is drawn may open or close the route that is shown.
+  // An edited drawing may open or close the shown route.
   private plan_again(): void {
     if (this.choices.length > 0) void this.preview();
   }
@@ -176,7 +176,7 @@ export class SendView implements ViewPart {
     scene.refresh();
   }
 
-  // answer: null while it is planned.
+  // answer: null while planning.
   private show_card(answer: Preview | null): void {
     show(this.card, this.choices.length > 0);
     if (this.choices.length === 0) return fill(this.card);

@@ -1,4 +1,4 @@
-// Time: the drive played, versions of the map, files for other programs.
+// Time: replay of the drive, versions of the map, files for other programs.
 import { App, ViewPart } from "../app";
 import { ExportFormats } from "../protocol";
 import { texts } from "../texts";
@@ -10,7 +10,7 @@ import { MapMerge } from "./map_merge";
 import { Versions } from "./versions";
 
 const words = texts.time;
-const kPatienceMs = 120000; // of large maps
+const kPatienceMs = 120000; // for large maps
 
 interface ExportFile {
   format: string;

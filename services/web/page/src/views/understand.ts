@@ -1,4 +1,4 @@
-// Understand: why the robot is unsure, which loops were decided how, who works, what happened.
+// Understand: causes of uncertainty, loop decisions, active services, events.
 import { App, ViewPart } from "../app";
 import * as format from "../format";
 import { LogEvent, Worker } from "../protocol";
@@ -50,7 +50,7 @@ export class UnderstandView implements ViewPart {
       () => h("li", {}, h("time"), h("span", { class: "source" }), h("span", { class: "text" })),
       show_event,
     );
-    this.events.element.tabIndex = 0; // it scrolls
+    this.events.element.tabIndex = 0; // scrollable by keyboard
     this.events.element.setAttribute("aria-label", words.events);
     this.element = h(
       "div",

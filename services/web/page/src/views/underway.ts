@@ -1,4 +1,4 @@
-// What the robot is sent to, how far it is, what blocks it; pause, resume, cancel.
+// The robot's goal, its progress and obstacles; pause, resume, cancel.
 import { App } from "../app";
 import { has_foreign_goal, navigator_text } from "../robot_state";
 import { texts } from "../texts";
@@ -55,7 +55,7 @@ export class Underway {
     }
   }
 
-  // Without a connection nobody here knows what the robot does.
+  // Without a connection the robot's state is unknown.
   private title(): string {
     const { channels, rights } = this.app;
     const goals = channels.value("goals");
@@ -73,7 +73,7 @@ export class Underway {
     const exploring = goals?.exploring ?? false;
     set_text(this.goal, this.title());
     set_text(this.state, navigator_text(channels, rights));
-    // The goal says it; that there is no navigator, a note to who may command.
+    // Idle shows in the goal; pages that may command report a missing navigator elsewhere.
     const missing = rights.connected && !rights.may_write;
     show(this.state, navigator ? navigator.state !== "idle" : missing);
 

@@ -1,4 +1,4 @@
-// Snapshots of the map: made, restored, and compared with each other and the map of now.
+// Snapshots of the map: make, restore, and compare them with each other and the current map.
 import { App } from "../app";
 import * as format from "../format";
 import { Comparison, Snapshot, Snapshots } from "../protocol";
@@ -10,7 +10,7 @@ import { section } from "../ui/section";
 import { hide_difference, show_difference } from "./difference";
 
 const words = texts.time;
-const kPatienceMs = 60000; // of large maps
+const kPatienceMs = 60000; // for large maps
 
 export class Versions {
   readonly element: HTMLElement;
@@ -23,7 +23,7 @@ export class Versions {
   private readonly compare: HTMLElement;
   private readonly result = h("div", { hidden: true });
   private snapshots: Snapshot[] = [];
-  private available = false; // the map store keeps some
+  private available = false; // the map store keeps snapshots
 
   /** on_update: whether the map store keeps snapshots. */
   constructor(
@@ -90,13 +90,13 @@ export class Versions {
     this.show_all();
   }
 
-  /** Takes the difference off the map. */
+  /** Removes the difference from the map. */
   close(): void {
     hide_difference(this.app.map.scene);
     show(this.result, false);
   }
 
-  /** Once the map store has started with another map. */
+  /** Updates after the map store has restarted with another map. */
   update_soon(): void {
     window.setTimeout(() => void this.update(), 3000);
   }
@@ -162,7 +162,7 @@ export class Versions {
     const order = this.app.api.post("restore", { name }, kPatienceMs);
     if (!(await this.app.notices.report(order, words.restored))) return;
     on_done();
-    this.close(); // a difference from the map of before
+    this.close(); // its difference refers to the previous map
     this.update_soon();
   }
 
