@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Maps every log of a data folder with one process and prints how far odometry and the corrected
-# trajectory are from the reference, as the accuracy table of RESULTS.md, and how many places that
-# the robot came back to were recognized (topogeo compare --help).
+# Maps every log of a data folder with one process and prints the errors of odometry and of the corrected trajectory
+# against the reference, as the accuracy table of RESULTS.md, and how many revisited places were recognized (topogeo
+# compare --help).
 #   tests/bench/accuracy.sh [--mode graph|thesis] EVALUATION_TOOL [DATA_FOLDER]
-# --mode maps with localizer.mode set so; default: the default configuration.
+# --mode sets localizer.mode; default: the default configuration.
 # EVALUATION_TOOL compares two TUM trajectories and prints JSON (evaluate_trajectory.py).
 # DATA_FOLDER holds X.clf.gz, X.ref.tum and X.relations; default ../shared/data beside the project.
 # TOPOGEO names the executable; default build/bin/topogeo.

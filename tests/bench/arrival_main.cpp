@@ -1,6 +1,6 @@
 // Does a robot get where it is sent? Simulated drives in a closed loop, in one process and on
 // simulated time: three floors, each mapped by a drive of its own, then random starts and goals
-// with sensor noise, slip, and something unexpected on the way in a third of them.
+// with sensor noise, slip, and in a third of the runs an unexpected obstacle on the route.
 //
 //   topogeo_arrival [--runs 200] [--wheels mild|b21] [--unknown-start] [--jobs 2]
 //   topogeo_arrival --floor NAME --run N [--picture FILE.png] [--trace FILE.csv]

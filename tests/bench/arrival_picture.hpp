@@ -9,7 +9,7 @@
 namespace topogeo::bench {
 
 /// PNG in the map frame: the grid of the map (occupied dark, unknown grey), the world's surfaces in
-/// black, the obstacle in orange, routes in blue, the true way in red, the told one in green.
+/// black, the obstacle in orange, routes in blue, the true path in red, the estimated one in green.
 /// Throws std::runtime_error naming the file.
 void write_arrival_picture(const std::filesystem::path& file, const MappedFloor& floor,
                            const ArrivalTask& task, const ArrivalRecord& record,

@@ -19,7 +19,7 @@ using geometry::Pose2;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// A pose that somebody tells, as well as he can.
+/// An initial pose with the error of one given by hand.
 Pose2 told(const Pose2& T_map_robot, std::uint64_t seed) {
   constexpr double kSigma_m = 0.1;
   constexpr double kSigma_rad = 5.0 * kDegree;
@@ -93,8 +93,8 @@ ArrivalResult run_arrival(const MappedFloor& floor, const ArrivalConfig& config,
   const double start_s = loop.time_s();
   constexpr std::uint64_t kTrace = 20;  // ticks
   std::uint64_t ticks = 0;
-  double arrived_s = -1.0;          // negative: it has not
-  constexpr double kRolls_s = 1.0;  // until the wheels surely stand
+  double arrived_s = -1.0;          // negative: not yet
+  constexpr double kRolls_s = 1.0;  // until the wheels have stopped for certain
   while (loop.time_s() - start_s < config.longest_s) {
     loop.tick();
     if (record != nullptr && ticks++ % kTrace == 0) keep(loop, *record);

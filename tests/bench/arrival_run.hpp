@@ -23,7 +23,6 @@ enum class ObstacleKind : std::uint8_t { kNone = 0, kBox, kColumn, kPerson, kShu
 /// A word for tables: "none", "box", ...
 const char* to_string(ObstacleKind kind);
 
-/// What a run is given.
 struct ArrivalTask {
   std::uint64_t seed = 0;
   geometry::Pose2 T_map_start;
@@ -33,7 +32,7 @@ struct ArrivalTask {
   double route_length_m = 0.0;
   ObstacleKind obstacle = ObstacleKind::kNone;
   Eigen::Vector2d obstacle_m = Eigen::Vector2d::Zero();  ///< its middle, world frame
-  bool appears = false;                                  ///< when the robot is 1.5 to 3 m before it
+  bool appears = false;                                  ///< once the robot is 1.5 to 3 m from it
   world::World world;                                    ///< with the obstacle
 };
 
@@ -43,13 +42,13 @@ struct ArrivalConfig {
   Wheels wheels = Wheels::kMild;
   double slip_per_m = 0.2;
   double obstacle_share = 1.0 / 3.0;
-  double goal_clearance_m = 0.4;  ///< of start and goal, to what the map has as occupied
+  double goal_clearance_m = 0.4;  ///< of start and goal, to occupied cells of the map
   bool pose_given = true;         ///< false: the start is unknown, the robot may look around
   double longest_s = 600.0;       ///< of simulated time
 };
 
-/// Start and goal of one run, at least 3 m from each other along the way, and an obstacle on the
-/// planned route in some runs, past which another way leads. The same arguments draw the same.
+/// Start and goal of one run, with a route of at least 3 m between them; in some runs an obstacle
+/// on the planned route that leaves another one free. The same arguments draw the same task.
 ArrivalTask draw_task(const MappedFloor& floor, const ArrivalConfig& config, std::uint64_t seed);
 
 struct TracePoint {
@@ -60,12 +59,12 @@ struct TracePoint {
 };
 
 struct ArrivalResult {
-  bool arrived = false;  ///< the navigator says so
-  /// At the end, of the robot to the goal; in the map as it is around the robot ...
+  bool arrived = false;  ///< as the navigator reports
+  /// Error of the robot at the end, against the goal in the map around the robot ...
   double error_m = 0.0;
   double heading_error_rad = 0.0;
-  double world_error_m = 0.0;  ///< ... and in the frame of its first stop, with what it is bent
-  double pose_error_m = 0.0;   ///< of the told pose to the true one, as error_m
+  double world_error_m = 0.0;  ///< ... and in the frame of its first stop, with the bend of the map
+  double pose_error_m = 0.0;   ///< of the estimated pose against the true one, as error_m
   std::uint64_t collisions = 0;
   std::uint64_t run_into = 0;
   double time_s = 0.0;
@@ -78,7 +77,7 @@ struct ArrivalResult {
   [[nodiscard]] bool good() const;  ///< arrived within 10 cm and 5 degrees, without a collision
 };
 
-/// What of a run is kept besides for people.
+/// Additional data of a run, for pictures and traces.
 struct ArrivalRecord {
   std::vector<TracePoint> trace;  ///< five times a second
   std::vector<std::vector<Eigen::Vector2d>> routes_m;

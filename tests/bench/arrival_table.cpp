@@ -21,7 +21,7 @@ double at_least(std::size_t good, std::size_t of) {
   return (p + kZ * kZ / (2.0 * n) - spread) / (1.0 + kZ * kZ / n);
 }
 
-/// Value that `share` of them do not exceed; 0 of none.
+/// Value that a share of the values do not exceed; 0 without values.
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   std::sort(values.begin(), values.end());

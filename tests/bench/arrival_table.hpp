@@ -10,13 +10,13 @@ namespace topogeo::bench {
 
 struct ArrivalRow {
   std::string floor;
-  std::uint64_t run = 0;  ///< with the floor: repeats it
+  std::uint64_t run = 0;  ///< repeats the run, together with the floor
   ObstacleKind obstacle = ObstacleKind::kNone;
   ArrivalResult result;
 };
 
-/// A line for each floor, with and without an obstacle, and all together; then the runs that did
-/// not end well, one line each.
+/// A line for each floor, with and without an obstacle, and one for all together; then a line for
+/// each run that did not end well.
 std::string arrival_table(const std::vector<ArrivalRow>& rows);
 
 }  // namespace topogeo::bench

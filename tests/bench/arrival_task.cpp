@@ -21,15 +21,15 @@ using geometry::Pose2;
 using planning::Cell;
 
 constexpr double kLeastWay_m = 3.0;
-constexpr double kKeepOff_m = 1.0;  // obstacles, from start and goal
+constexpr double kKeepOff_m = 1.0;  // between obstacles and start or goal
 constexpr std::int32_t kDraws = 1000;
 
 struct Obstacle {
   ObstacleKind kind = ObstacleKind::kNone;
   Eigen::Vector2d at_m = Eigen::Vector2d::Zero();  // map frame
-  double half_m = 0.2;                             // of its side, or its radius
+  double half_m = 0.2;                             // half its side, or its radius
 
-  /// Nothing of it is farther from its middle.
+  /// Largest distance of its surface from its middle.
   [[nodiscard]] double radius_m() const {
     return kind == ObstacleKind::kBox ? half_m * std::numbers::sqrt2 : half_m;
   }
@@ -63,7 +63,7 @@ Eigen::Vector2d point_on(const std::vector<Eigen::Vector2d>& line_m, double alon
   return line_m.back();
 }
 
-/// Whether a robot that keeps half a metre from the obstacle's surface gets to the goal.
+/// Whether a robot that keeps half a metre from the obstacle's surface can reach the goal.
 bool leaves_a_way(const MappedFloor& floor, const ArrivalTask& task, const Obstacle& obstacle) {
   constexpr double kPast_m = 0.5;
   const planning::FreeSpace& space = floor.map->space();
@@ -76,13 +76,13 @@ bool leaves_a_way(const MappedFloor& floor, const ArrivalTask& task, const Obsta
   return planning::shortest_path(window, *from, *to).has_value();
 }
 
-/// A door on the way that can be shut; there is none on most ways.
+/// A door on the route that can be shut; most routes have none.
 std::optional<Obstacle> draw_shut_door(const MappedFloor& floor, const planning::HybridRoute& route,
                                        support::Random& random) {
   if (route.nodes.empty()) return std::nullopt;
   const planning::BorderNode& node =
       floor.map->nodes().at(route.nodes[random.below(route.nodes.size())]);
-  constexpr double kDoor_m = 0.7;  // half of it
+  constexpr double kDoor_m = 0.7;  // half a door
   if (node.clearance_m > kDoor_m) return std::nullopt;
   return Obstacle{ObstacleKind::kShutDoor, node.position_m, node.clearance_m};
 }

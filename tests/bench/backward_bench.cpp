@@ -1,5 +1,5 @@
-// The backward correction of a loop of 60 poses with 40 candidates of the last one, as long as that
-// of experiment 2 of the thesis.
+// The backward correction of a loop of 60 poses, as long as that of experiment 2 of the thesis,
+// with 40 candidates for the last pose.
 #include <cstdint>
 
 #include <benchmark/benchmark.h>

@@ -106,7 +106,7 @@ void ClosedLoop::scan() {
   }
 }
 
-// As the localizer service tells it.
+// Publishes the pose like the localizer service.
 void ClosedLoop::locate() {
   const std::optional<topomap::StopPose> stop = localizer_.last_stop();
   if (local_maps_.empty() || !stop) return;
@@ -126,8 +126,8 @@ void ClosedLoop::locate() {
   navigator_.add(*pose_);
 }
 
-// The planner's part: a route for the goal as soon as there are map and pose, and another one when
-// the map or what blocks the way has changed.
+// The planner's part: plans a route to the goal once there are a map and a pose, and again when the
+// map or an obstruction has changed.
 void ClosedLoop::plan_if_due() {
   if (!goal_ || !planner_ || !located_) return;
   const std::uint64_t blockages = navigator_.blockages().version;

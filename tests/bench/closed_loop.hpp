@@ -1,6 +1,6 @@
-// The whole system with a robot in a drawn world, in one process and on simulated time: what the
-// sensors say goes through local maps, localizer, planner and navigator to the wheels, as it does
-// through the services. The same arguments give the same drive to the last bit.
+// The whole system with a robot in a drawn world, in one process and on simulated time: sensor data
+// goes through local maps, localizer, planner and navigator to the wheels, as it does through the
+// services. The same arguments give the same drive to the last bit.
 #pragma once
 
 #include <cstdint>
@@ -28,10 +28,10 @@ struct ClosedLoopConfig {
   navigation::NavigatorConfig navigator;
   planning::HybridPlannerConfig planner;
   simulation::RobotOptions robot;
-  /// The pose's covariance is that to the first stop and says nothing of the map around the robot:
-  /// it is left out.
+  /// Leaves out the pose's covariance, because it refers to the first stop and not to the map
+  /// around the robot.
   bool mapping = false;
-  double obeys_after_s = 0.15;  ///< the base, from a command on
+  double obeys_after_s = 0.15;  ///< delay from a command to the base's motion
 };
 
 /// Where to go: `target` as the planner takes it.
@@ -58,15 +58,15 @@ class ClosedLoop {
   [[nodiscard]] double time_s() const { return 1e-9 * static_cast<double>(now_ns_); }
   [[nodiscard]] const simulation::SimulatedRobot& robot() const { return robot_; }
   [[nodiscard]] const navigation::Navigator& navigator() const { return navigator_; }
-  /// As the navigator gets it; nothing before the first stop.
+  /// The navigator's input; empty before the first stop.
   [[nodiscard]] const std::optional<navigation::PoseFix>& pose() const { return pose_; }
-  /// Stops so far, that of the last local map included.
+  /// Stops so far, including that of the last local map.
   [[nodiscard]] const std::vector<std::shared_ptr<const topomap::LocalMap>>& local_maps() const {
     return local_maps_;
   }
   /// True when the last tick made a stop that moved the poses of earlier ones, or the first one.
   [[nodiscard]] bool made_stop() const { return made_stop_; }
-  /// Every plan that the planner has made for the goal, refusals included.
+  /// Every plan made for the goal, including refusals.
   [[nodiscard]] const std::vector<navigation::RoutePlan>& plans() const { return plans_; }
 
  private:
@@ -92,7 +92,7 @@ class ClosedLoop {
   bool made_stop_ = false;
   std::vector<std::shared_ptr<const topomap::LocalMap>> local_maps_;
   std::optional<navigation::PoseFix> pose_;
-  bool located_ = false;  // the pose means something
+  bool located_ = false;  // the pose is valid
   std::deque<Command> commands_;
   geometry::Velocity obeyed_;
 

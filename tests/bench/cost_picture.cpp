@@ -64,11 +64,11 @@ void draw_axes(cairo_t* cairo, const Axes& axes, const std::string& title) {
   }
 }
 
-// The quantile of each window of steps, as a line.
+// The quantile over each window of steps, as a line.
 void draw_quantile(cairo_t* cairo, const Axes& axes, const std::vector<StepCost>& steps,
                    double quantile) {
   constexpr std::size_t kWindow = 100;
-  cairo_new_path(cairo);  // a text leaves its end behind as the current point
+  cairo_new_path(cairo);  // text leaves its end behind as the current point
   for (std::size_t from = 0; from < steps.size(); from += kWindow) {
     const std::size_t to = std::min(from + kWindow, steps.size());
     std::vector<double> costs_ms;

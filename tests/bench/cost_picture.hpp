@@ -1,4 +1,4 @@
-// A picture of what each step costs along a log.
+// A picture of the cost of each step along a log.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ struct StepCost {
   double cpu_ms = 0.0;
 };
 
-/// Dots for the steps, lines for median and 95th percentile of windows of 100, over the way; the
+/// Dots for the steps, lines for median and 95th percentile of windows of 100, over the path; the
 /// cost on a logarithmic axis. PNG. Throws std::invalid_argument without steps, std::runtime_error
 /// when the file cannot be written.
 void draw_costs(const std::string& file, const std::string& title,

@@ -1,4 +1,4 @@
-// Whether the covariances of matches and predictions fit the errors that they make.
+// Checks whether the covariances of matches and predictions fit their errors.
 #pragma once
 
 #include <cstddef>
@@ -22,12 +22,12 @@ struct MeanSquaredDistance {
   [[nodiscard]] double mean() const;  ///< 0 without any
 };
 
-/// Of three stops i, j, k that were matched in pairs: the match of i and k against the composition
-/// of the other two, by the calibrated covariances.
+/// Compares the match of stops i and k with the composition of the matches i, j and j, k, by the
+/// calibrated covariances.
 MeanSquaredDistance match_triangles(const localization::PoseGraph& graph);
 
-/// Of predictions between stops 30 or more stops apart that were compared when the robot came to
-/// the later one, against the reference poses (by local map id).
+/// Compares predictions with the reference poses (by local map id), for pairs of stops 30 or more
+/// apart; each prediction is the one that was tested when the robot reached the later stop.
 MeanSquaredDistance revisit_predictions(
     std::span<const localization::LoopDecision> decisions,
     std::span<const std::optional<geometry::Pose2>> T_reference_robot);

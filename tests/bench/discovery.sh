@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
-# What participants cost the network by being there: N workers of one domain that have nothing
-# to do, in a network of their own (needs root), over UDP. Packets and bytes until all know each
-# other, and in a second afterwards; from these deploy/SCALING.md plans.
+# Network load of idle participants: N workers of one domain, in a network of their own (needs root), over UDP. Prints
+# packets and bytes until all know each other, and in a second afterwards; deploy/SCALING.md plans with these numbers.
 #
 #   tests/bench/discovery.sh [N...]                     8 16 32 64
 #   SERVER=1 tests/bench/discovery.sh [N...]            with a discovery server instead of multicast
@@ -27,11 +26,11 @@ one() {  # N: in a network of its own
     "$bin/ga_worker" --slots 1 --name "w$i" > /dev/null 2>&1 &
     pids+=($!)
   done
-  # Until the traffic of two seconds differs by less than a tenth from that of the two before.
+  # Until the traffic of two seconds differs by less than a tenth from that of the two seconds before.
   local last=0 now=0 bytes=0
   for ((i = 0; i < 90; ++i)); do
     bytes=$(counters | cut -d' ' -f1)
-    sleep 2  # packets of this time are counted
+    sleep 2  # packets of these two seconds are counted
     now=$(($(counters | cut -d' ' -f1) - bytes))
     if [ "$i" -gt 3 ] && [ $((now - last)) -lt $((last / 10)) ] &&
       [ $((last - now)) -lt $((last / 10)) ]; then break; fi

@@ -27,7 +27,7 @@ namespace {
 using geometry::Pose2;
 using planning::Cell;
 
-/// The truth: where a robot can get to from its start, and what its body covers there.
+/// The truth: where a robot can get to from its start, and the area that its body covers there.
 class Reach {
  public:
   Reach(const world::World& world, std::uint64_t seed)
@@ -45,7 +45,7 @@ class Reach {
 
   [[nodiscard]] const Pose2& T_world_start() const { return T_world_start_; }
 
-  /// Share of what the body can cover that a map knows.
+  /// Share of the coverable area that a map knows.
   [[nodiscard]] double seen(const planning::OccupancyGrid& grid, const Pose2& T_map_world) const {
     std::size_t known = 0;
     for (const std::size_t index : covered_) {
@@ -111,12 +111,12 @@ class Reach {
 
   planning::FreeSpace space_;
   planning::ZoneMap zones_;
-  std::vector<std::size_t> cells_;    // that its middle can get to
-  std::vector<std::size_t> covered_;  // and its body
+  std::vector<std::size_t> cells_;    // that its middle can reach
+  std::vector<std::size_t> covered_;  // that its body can cover
   Pose2 T_world_start_;
 };
 
-/// The map so far, as the map store makes it.
+/// The map so far, fused as the map store does it.
 class GrowingMap {
  public:
   explicit GrowingMap(const topomap::GlobalMapConfig& config) : builder_(config) {}
@@ -125,7 +125,7 @@ class GrowingMap {
     while (maps_.size() < maps.size()) maps_.push_back(*maps[maps_.size()]);
   }
 
-  /// Takes over the poses; the graph is made again when one has moved noticeably.
+  /// Takes over the poses; rebuilds the graph when one has moved noticeably.
   navigation::ExploredMap update(const topomap::Trajectory& trajectory) {
     if (moved(trajectory.stops)) {
       builder_.rebuild(maps_, trajectory.stops);
@@ -166,7 +166,7 @@ class GrowingMap {
   }
 
   topomap::GlobalMapBuilder builder_;
-  std::vector<Pose2> used_;  // that each map was fused at
+  std::vector<Pose2> used_;  // pose at which each map was fused
   std::vector<topomap::LocalMap> maps_;
   std::uint64_t version_ = 0;
 };
@@ -177,7 +177,7 @@ ClosedLoopConfig loop_config(const ExplorationConfig& config, const Pose2& T_wor
   loop.system = config.system;
   loop.navigator = config.navigator;
   loop.mapping = true;
-  loop.planner.goal_snap_m = 0.3;  // what was free when the goal was chosen may be forbidden now
+  loop.planner.goal_snap_m = 0.3;  // the goal's cell may have become forbidden since
   loop.robot = b21_robot(T_world_start, config.system.local_mapper.T_robot_laser, config.wheels,
                          config.slip_per_m, seed);
   return loop;

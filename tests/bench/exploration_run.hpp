@@ -1,4 +1,4 @@
-// A robot is put down somewhere on a floor that it does not know and explores it: mapping, choosing
+// A robot starts at an unknown place on an unknown floor and explores it: mapping, choosing
 // targets, planning and driving in a closed loop, scored with the truth.
 #pragma once
 
@@ -29,22 +29,22 @@ struct ExplorationConfig {
 };
 
 struct ExplorationResult {
-  bool done = false;      ///< the explorer says so
+  bool done = false;      ///< as the explorer reports
   double seen = 0.0;      ///< share of the floor that the robot's body can get to, [0, 1]
-  std::size_t rooms = 0;  ///< wide parts of 2 m^2 or more that it can get to
+  std::size_t rooms = 0;  ///< reachable wide parts of 2 m^2 or more
   std::size_t entered = 0;
   std::uint64_t collisions = 0;
   double path_m = 0.0;
-  double scripted_m = 0.0;  ///< way of a tour past everything by somebody who knows the floor
+  double scripted_m = 0.0;  ///< length of a tour past everything on the known floor
   double time_s = 0.0;
   std::size_t targets = 0;
   std::size_t given_up = 0;
   std::size_t stops = 0;
-  double pose_error_m = 0.0;  ///< root mean square over the stops, from the start on
-  std::string end;            ///< what the tour and the navigator said last
+  double pose_error_m = 0.0;  ///< root mean square over the stops, relative to the start
+  std::string end;            ///< last messages of the tour and the navigator
 };
 
-/// What of a run is kept besides for people; all in the map frame.
+/// Additional data of a run, for pictures and logs; all in the map frame.
 struct ExplorationRecord {
   std::shared_ptr<const planning::HybridMap> map;
   std::vector<Eigen::Vector2d> path_m;  ///< true
@@ -52,7 +52,7 @@ struct ExplorationRecord {
 };
 
 /// Explores a floor of kNavigationFloors from a start that the seed draws. The same arguments give
-/// the same.
+/// the same result.
 ExplorationResult explore(std::string_view floor, const ExplorationConfig& config,
                           std::uint64_t seed, ExplorationRecord* record = nullptr);
 

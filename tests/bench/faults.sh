@@ -1,22 +1,22 @@
 #!/usr/bin/env bash
-# A robot and two PCs in network namespaces, behind a switch that does a fault to their packets, or several ("loss 20,
-# reorder 10"); or a process freezes, or clocks step. Needs root. Prints a row for each fault.
+# A robot and two PCs in network namespaces, behind a switch that applies one or several faults to their packets ("loss
+# 20, reorder 10"); or a process freezes, or clocks step. Needs root. Prints a row for each fault.
 #
-# Mapping of a log: the robot has the gateway and the local mapper, pc1 the localizer and a worker, pc2 the map
-# store and a worker. Wall time; recovery after the fault (until the map store has stored another stop); whether
-# the map is that of `topogeo map` to the byte.
+# Mapping of a log: the robot has the gateway and the local mapper, pc1 the localizer and a worker, pc2 the map store
+# and a worker. Prints the wall time, the recovery time after the fault (until the map store has stored another stop),
+# and whether the map equals that of `topogeo map` to the byte.
 #
-# Driving ("drive ..."): the robot, a simulated one, has the gateway and the navigator, pc1 all else. What the network
-# or a clock does first, it does while the robot drives on; then the robot is cut off, and joined again with the fault
-# still there: time until it stands and until it drives again, time of the whole drive, collisions. Where the navigator
-# freezes the goal is given up, so the robot stays where it is. Strangers on pc2: "drive flood" sends packets of them to
-# both, "drive absurd" samples of absurd content on all topics, "drive topics" ever new topics, "drive strangers" does
-# all three at once; the largest memory of a service.
+# Driving ("drive ..."): the simulated robot has the gateway and the navigator, pc1 all other services. A fault of the
+# network or a clock begins while the robot drives on; then the robot is cut off, and joined again with the fault still
+# active. Prints the times until it stops and until it drives again, the time of the whole drive, and collisions. When
+# the navigator freezes, the goal is given up and the robot stays where it is. Strangers on pc2: "drive flood" sends
+# packets to both, "drive absurd" samples of absurd content on all topics, "drive topics" ever new topics, "drive
+# strangers" all three at once; the row has the largest memory of a service.
 #
 # "secured ..." is the same with certificates, and the profile for links between sites.
 #
-# A row is as expected by what happens and in which order. How long it takes counts only with --limits, for a machine that
-# does nothing else.
+# The result of a row depends on the events and their order. Durations count only with --limits, on a machine that does
+# nothing else.
 #
 #   tests/bench/faults.sh [BUILD [--limits] [FAULT...]]     all faults: about fifteen minutes
 #   tests/bench/faults.sh build "loss 5" "cut pc1" "drive cut"
@@ -27,13 +27,13 @@ shift
 limits=""
 [ "${1:-}" != --limits ] || { limits=1; shift; }
 scans=300
-cut_s=10  # a cut lasts, of which nothing is expected but that it is over then
-# Limits of a drive. The navigator stands when its pose is 3 s old, the gateway when a command is 0.5 s old. Braking takes
-# a second; two more are for a machine that has other work.
+cut_s=10  # duration of a cut; during it nothing is expected
+# Limits of a drive. The navigator stops when its pose is 3 s old, the gateway when a command is 0.5 s old. Braking
+# takes a second; two more allow for other load on the machine.
 most_to_stand_ms=6000
 most_when_frozen_ms=3500
 most_memory_mb=150
-three_seconds=60  # of the world: ground truth comes 20 times a second
+three_seconds=60  # of the world: the simulator publishes the ground truth 20 times a second
 faults=("$@")
 [ $# -gt 0 ] || faults=(none "loss 1" "loss 5" "loss 20" "delay 100" "reorder 10" "duplicate 20" "cut robot"
   "cut pc1" "cut pc2" "freeze worker" "clock robot" "clock pc1" "clock pc2"
@@ -46,7 +46,7 @@ need_programs
 need python3
 make_hosts
 
-# Stops of the map that are stored for good.
+# Number of stops in the stored map.
 stored() {
   python3 - "$out/map.sqlite" 2> /dev/null << 'END' || echo 0
 import sqlite3, sys
@@ -66,7 +66,7 @@ start_run() {
   start_on robot sensor_gateway "$bin/sensor_gateway" --log "$work/log.clf" --rate "$rate"
 }
 
-# Does the fault while the run is on its way; sets `recovery`. Fails where the run has ended before the fault was over.
+# Injects the fault during the run and sets `recovery`. Fails when the run has ended before the fault was over.
 disturb() {  # FAULT
   local before end
   recovery=-
@@ -95,16 +95,16 @@ disturb() {  # FAULT
 }
 more_stored_or_ended() { more_stored_than "$1" || run_ended; }
 
-# Forward by an hour, back by two: both signs. faketime reads the file once a second; who is too late for the first step
-# meets the second.
+# Forward by an hour, back by two: both signs. faketime reads the file once a second; a process that misses the first
+# step gets the second.
 step_clock_to_and_fro() {  # HOST
   step_clock "$1" +3600
   sleep 2  # services work with the wrong time
   step_clock "$1" -3600
-  sleep 2  # they meet the second step before anything else
+  sleep 2  # the second step takes effect before anything else
 }
 
-# map_with FAULT: the run of the log, until it ends; sets recovery and took.
+# map_with FAULT: maps the log to its end; sets recovery and took.
 map_with() {
   local from
   from=$(now_ms)
@@ -120,7 +120,7 @@ map_with() {
 start_drive() {
   "$bin/topogeo" config --devices | sed "/^laser:/,/^base:/ { s|^  port: .*|  port: $out/laser|; s|^  kind: .*|  kind: pls|; }
     /^base:/,\$ { s|^  port: .*|  port: $out/base|; s|^  dialect: .*|  dialect: binary|; }" > "$out/devices.yaml"
-  # The world has no clock that could step, nor has who watches it.
+  # The simulator and its watcher keep the real clock.
   stepping="" start_on robot simulator "$bin/simulator" --world "$source_dir/tests/data/floor.world.yaml" \
     --laser-port "$out/laser" --base-port "$out/base"
   stepping="" start_on robot drive_watch "$build/tests/drive_watch" --log-level off
@@ -131,7 +131,7 @@ start_drive() {
   start_on pc1 localizer "$bin/localizer" --map "$work/floor/map.pb" --initial-pose 0,0,0
   wait_for "the ports of the simulator" test -e "$out/base" || fail "the simulator does not start"
   start_on robot sensor_gateway "$bin/sensor_gateway" --devices "$out/devices.yaml"
-  # Twenty metres along the first drive.
+  # Goal: twenty metres along the first drive.
   goal=$(awk '{ if (NR > 1) way += sqrt(($2 - x) ^ 2 + ($3 - y) ^ 2); x = $2; y = $3
     if (way > 20) { print x "," y; exit } }' "$work/floor/trajectory.tum")
   send_goal
@@ -142,13 +142,13 @@ send_goal() {
 }
 
 drives() { tail -n 1 "$work/drive_watch.log" 2> /dev/null | awk '{ exit !($2 > 0.2) }'; }
-# Whether it has not moved for so many ground truths since line SINCE.
+# Whether it has stood still for COUNT ground truths since line SINCE.
 stands() {  # SINCE COUNT
   tail -n "+$(($1 + 1))" "$work/drive_watch.log" | tail -n "$2" |
     awk -v count="$2" '$2 > 0.005 || $3 > 0.005 { moves = 1 } END { exit moves || NR < count }'
 }
 truths() { wc -l < "$work/drive_watch.log"; }
-# Whether it has driven for so many ground truths since line SINCE, or has arrived.
+# Whether it has driven for COUNT ground truths since line SINCE, or has arrived.
 has_driven() {  # SINCE COUNT
   tail -n "+$(($1 + 1))" "$work/drive_watch.log" | awk -v count="$2" '$2 > 0.2 { ++n } END { exit n < count }' || goto_ended
 }
@@ -167,7 +167,7 @@ largest_memory_mb() {
   done | sort -n | tail -n 1
 }
 
-# What services count when strangers are there: packets, samples, topics.
+# Counter that each kind of stranger raises in services: packets, samples, topics.
 declare -A counted_as=([flood]=invalid_packet [absurd]=invalid_sample [topics]=unknown_topic)
 
 start_stranger() {  # flood, absurd or topics
@@ -177,8 +177,8 @@ start_stranger() {  # flood, absurd or topics
   esac
 }
 
-# Whether the navigator, beside the guard, has counted what a stranger sent: without it nothing came to the robot. Who
-# comes when strangers are many is not known at once.
+# Whether the navigator (the guard runs beside it) has counted the stranger's data: otherwise none reached the robot.
+# The order of arrival of several strangers is unknown.
 counted() {  # REASON
   on robot "$bin/topogeo" status navigator --json --wait-seconds 20 2> /dev/null | python3 -c 'import json, sys
 services = json.load(sys.stdin)
@@ -187,10 +187,10 @@ sys.exit(not any(sys.argv[1] in {**s["faults"], **s["drops"]} for s in services)
 
 collisions() { awk 'END { print $4 }' "$work/drive_watch.log"; }
 
-# Each sets `result` while it is not met.
+# Each sets `result` until its condition is met.
 must_stand() {  # MOST_MS SINCE_MS
   result="no: does not stand"
-  # For good: it may stand for a moment for another reason.
+  # For good: it may stop for a moment for another reason.
   wait_for "the robot to stand for three seconds of the world" stands "$(truths)" $three_seconds || return 1
   stood=$(stood_after "$2")
   result="no: stands after $stood ms"
@@ -210,7 +210,7 @@ must_arrive() {
   result="no: does not arrive"
   until arrived; do
     line=$(truths)
-    # However slowly: it hangs where it has not moved in all the time of a hang.
+    # Speed does not matter: it hangs when it has not moved for the whole hang limit.
     if wait_for "the robot at its goal" goto_ended; then
       arrived || gave_up_for_time || return 1
       arrived || send_goal
@@ -221,7 +221,7 @@ must_arrive() {
   arrival="$((($(now_ms) - started) / 1000)) s"
 }
 has_moved() { tail -n "+$(($1 + 1))" "$work/drive_watch.log" | awk '$2 > 0.005 { ++n } END { exit !n }'; }  # SINCE
-# Not heard for ten seconds, a navigator counts as gone; on a busy machine it goes on.
+# A navigator that was silent for ten seconds counts as gone, though it goes on when the machine is only busy.
 gave_up_for_time() { tail -n 1 "$work/goto.log" | grep -q 'the navigator is gone\|the navigator does not take the goal'; }
 
 cut_off() {
@@ -290,7 +290,7 @@ end_run() {
   cp "$kept/switch.log" "$work"
 }
 
-print_head() {  # KIND: where another table begins
+print_head() {  # KIND: begins another table
   [ "$kind" != "$1" ] || return 0
   [ -z "$kind" ] || echo
   kind=$1
@@ -330,7 +330,7 @@ for name in "${faults[@]}"; do
     "clock "* | "drive clock "*)
       stepping=$(find /usr/lib -name libfaketimeMT.so.1 2> /dev/null | head -n 1)
       if [ -z "$stepping" ]; then
-        # deploy/packages.txt has it: where CI lacks it, the row must not be left out silently.
+        # deploy/packages.txt lists it: CI must not leave the row out silently.
         [ "${CI:-}" != true ] || fail "$fault: faketime is not installed"
         echo "| $name: left out, faketime is not installed |"
         continue
@@ -351,7 +351,7 @@ for name in "${faults[@]}"; do
   fi
   [ -e "$work/alone" ] || map_alone "$scans" "$work/alone"
   make_log "$scans" "$work/log.clf"
-  # What happens once needs a run that lasts longer than it: where it does not, another one is half as fast.
+  # A single event needs a run that outlasts it: when the run ends first, it is repeated at half the speed.
   case $fault in "cut "*) rate=4 ;; "freeze "* | "clock "*) rate=8 ;; *) rate=lossless ;; esac
   until map_with "$fault"; do
     rate=$(awk -v rate="$rate" 'BEGIN { print rate / 2 }')

@@ -1,11 +1,11 @@
-// How long it takes from the start of all services to the first pose of the robot.
+// Time from the start of all services to the first pose of the robot.
 //
 //   topogeo_first_pose [--runs N]
 //
 // Starts `topogeo run --sim` (simulator with emulated laser and base, gateway, local mapper,
 // localizer, map store, planner, a worker), the same with `--explore` (and the navigator) and,
 // without a simulator, `topogeo run --log` of a drive through the same floor, each from the
-// beginning, and listens to the topic of the pose.
+// beginning, and reads the topic of the pose.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -38,7 +38,7 @@ using namespace topogeo;
 using Clock = std::chrono::steady_clock;
 using Path = std::filesystem::path;
 
-/// Seconds from the start of the program to the first pose; it is ended then.
+/// Seconds from the start of the program to the first pose; then ends the program.
 double seconds_to_pose(const std::vector<std::string>& arguments, const Path& work,
                        std::uint32_t domain) {
   messaging::ParticipantOptions options;

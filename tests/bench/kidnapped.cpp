@@ -1,13 +1,13 @@
-// Robots that are carried away while they drive in a finished map: how soon the localizer says so,
-// and how far it drives until it is right again. And the fit of the state monitor.
+// Robots that are carried away while they drive in a finished map: how soon the localizer reports
+// it, and how far they drive until it is right again. Also fits the state monitor.
 //
 //   topogeo_kidnapped [--runs N] [--first-seed S] [--fit]
 //
-// Each run draws a floor, maps it in one drive, and drives it again with other noise; on the way
-// the robot is put down elsewhere on its tour. The tables also say how often a TRACKING
-// stop is right (0.3 m, 5 degrees; the truth relative to the nearest stop of the map), by its
-// confidence. --fit prints the logistic functions of state_monitor.cpp that explain
-// the matches and the predictions of these runs best; fit and table want different seeds.
+// Each run draws a floor, maps it in one drive, and drives it again with other noise; during the
+// second drive the robot is put down elsewhere on its tour. The tables also show how often a
+// TRACKING stop is right (0.3 m, 5 degrees; the truth relative to the nearest stop of the map), by
+// its confidence. --fit prints the logistic functions of state_monitor.cpp that explain the matches
+// and the predictions of these runs best; use different seeds for fit and table.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -46,7 +46,7 @@ struct Outcome {
   double way_until_right_m = -1.0;
   bool recovered_wrong = false;  // TRACKING at a wrong place after the kidnapping
   std::size_t stops_before = 0;
-  std::size_t lost_before = 0;  // said to be lost or searching though it was not
+  std::size_t lost_before = 0;  // reported lost or searching before the kidnapping
 };
 
 struct Calibration {
@@ -136,8 +136,7 @@ void collect(const localization::TrackedStep& step, const Pose2& truth, Samples&
           {{1.0, match.doubt, match.rivalry}, is_near(step.measured[i], truth)});
     }
   }
-  // What odometry hands on, as far as its own covariance does not say it: is the robot where the
-  // prediction has it, give or take a metre?
+  // Odometry's errors beyond its own covariance: is the robot within a metre of the prediction?
   samples.predictions.push_back(
       {{1.0, localization::contradiction(step.evidence), step.evidence.distance_m},
        (step.predicted.T_a_b.position_m() - truth.position_m()).norm() < 1.0});
@@ -187,7 +186,7 @@ bool is_known(LocalizationState state) {
   return state == LocalizationState::kTracking || state == LocalizationState::kAmbiguous;
 }
 
-/// Tells the outcome of one run from what the localizer says at each stop.
+/// Outcome of one run, from the localizer's status at each stop.
 class Watch {
  public:
   void add_way(double step_m) {

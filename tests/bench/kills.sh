@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Each service killed with -9 ten times at random moments of the simulated drive through the demo
-# floor (topogeo run --sim: gateway, emulated laser and base, all services): the map must end
-# complete, its error within 1 cm of that of an undisturbed run. The drive is in real time, so that no
-# two have the same scans and a busy machine loses some: besides the row of each drive, the scans that
-# it mapped are recorded and mapped again with nothing killed, which is the run to compare with.
+# Kills each service with -9 ten times at random moments of the simulated drive through the demo floor (topogeo run
+# --sim: gateway, emulated laser and base, all services): the map must end complete, its error within 1 cm of that of an
+# undisturbed run. The drive is in real time, so no two drives have the same scans and a busy machine loses some:
+# besides the row of each drive, the scans that it mapped are recorded and mapped again with nothing killed, which is
+# the run to compare with.
 #
 #   tests/bench/kills.sh OUT [KILLS] [SERVICE...]     ten kills, all services, 4 minutes each
 #
@@ -25,13 +25,13 @@ mkdir -p "$out"
 drive() {  # NAME: starts a drive
   touch "$out/$1.err"
   local how=()
-  # The tour is driven without it.
+  # Without a navigator to explore, the simulator drives its tour.
   if [ "$1" = navigator ]; then how=(--explore); fi
   "$bin/topogeo" run --sim "$world" --out "$out/$1" --workers 1 "${how[@]}" \
     --record "$out/$1.clf" > "$out/$1.out" 2> "$out/$1.err" &
   run=$!
 }
-process() {  # SERVICE: the child of the run that has it
+process() {  # SERVICE: the child of the run with its process
   case $1 in
     ga_worker_1) pgrep -P "$run" -f "/ga_worker .*--name ga_worker_1" ;;
     *) pgrep -P "$run" -x "$1" ;;
@@ -63,7 +63,7 @@ for service in "${services[@]}"; do
   done=0
   until grep -q 'mapping' "$out/$service.err" || [ "$service" = navigator ]; do sleep 0.2; done  # between two checks
   for ((i = 0; i < kills; ++i)); do
-    # A drive takes 200 s on a machine of its own: the moments are spread over the first 150.
+    # A drive takes 200 s on an idle machine: the moments are spread over the first 150.
     sleep "$((150 / kills / 2 + RANDOM % (150 / kills))).$((RANDOM % 1000))"
     kill -0 "$run" 2> /dev/null || break
     pid=$(process "$service") || continue

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Services that are killed and started again while a log is mapped: all are started by hand, the
-# localizer, the map store and the worker are killed with -9 in turn, and the map must be that of
-# `topogeo map` to the byte. Prints how long each was away. As root the localizer also moves to another
-# machine, once: a network namespace with an address of its own, with the same map store.
+# Services that are killed and started again while a log is mapped: all are started by hand, the localizer, the map
+# store and the worker are killed with -9 in turn, and the map must equal that of `topogeo map` to the byte. Prints how
+# long each was away. When run as root, the localizer also moves to another machine once: a network namespace with an
+# address of its own, with the same map store.
 #
-#   tests/bench/lives.sh LOG [ROUNDS]      LOG as ./run demo leaves it: demo/floor.clf.gz
+#   tests/bench/lives.sh LOG [ROUNDS]      LOG is from ./run demo: demo/floor.clf.gz
 #
 # Over UDP: a killed program leaves shared memory behind in which others may wait for seconds.
 set -euo pipefail
@@ -18,7 +18,7 @@ declare -A pids
 machine=""  # process that holds the other network namespace
 trap 'kill "${pids[@]}" $machine 2> /dev/null || true; rm -rf "$work"' EXIT
 
-other_machine() {  # before any service starts: they look for interfaces once
+other_machine() {  # before any service starts, because services list interfaces only once
   [ "$(id -u)" = 0 ] || return 1
   unshare --net sleep infinity &
   machine=$!
@@ -32,7 +32,7 @@ other_machine() {  # before any service starts: they look for interfaces once
     "ip link set lo up; ip addr add 10.213.7.2/24 dev lw$$; ip link set lw$$ up"
 }
 
-start() {  # SERVICE [WORDS]: on this machine, or by the words before the command
+start() {  # SERVICE [WORDS]: on this machine, or through the command WORDS
   local service=$1 before=("${@:2}")
   set -- "$service"
   case $1 in
@@ -54,7 +54,7 @@ again() {  # SERVICE WHERE [WORDS]: kills it and starts it again
   echo "$1 killed, and there again$2 after $((($(date +%s%N) - from) / 1000000)) ms"
   sleep 1  # nothing of this life goes on in the next one
 }
-running() {  # SERVICE: its process says that it works
+running() {  # SERVICE: its process reports that it works
   "$bin/topogeo" status "$1" --partition "$partition" --json 2> /dev/null |
     grep -q "\"process_id\": *${pids[$1]}\b"
 }

@@ -1,4 +1,4 @@
-// Maps a long drive through a large synthetic floor and reports what each step costs against the
+// Maps a long drive through a large synthetic floor and reports the cost of each step against the
 // length of the log: a CSV file, a picture and a summary.
 #include <cmath>
 #include <cstdio>
@@ -40,7 +40,7 @@ struct LongLogOptions {
   std::string config_file;
 };
 
-// A scan each half metre or 45 degrees: 4,000 of them or a few more on 2 km.
+// A scan every half metre or 45 degrees: a little over 4,000 scans on 2 km.
 simulation::SimulatedLog drive(const LongLogOptions& options) {
   simulation::SimulationOptions simulation;
   simulation.seed = options.seed;
@@ -78,7 +78,7 @@ void report(const std::string& what, const std::vector<bench::StepCost>& steps, 
               bench::sample_quantile(costs_ms, 1.0));
 }
 
-// The steps over the kilometre that ends here.
+// Reports the steps of the kilometre that ends here.
 void report_last_kilometre(double at_m, const std::vector<bench::StepCost>& steps) {
   const auto first_after = [&](double path_m) {
     const auto found = std::find_if(steps.begin(), steps.end(), [&](const bench::StepCost& step) {
@@ -111,7 +111,7 @@ void run_log(const LongLogOptions& options) {
   if (!options.log.empty()) write_log(options.log, log);
   const double memory_before_mb = peak_memory_mb();
   pipeline::MappingRun mapping(config, "robot");
-  std::vector<bench::StepCost> steps;  // of the scans at which a stop was made and matched
+  std::vector<bench::StepCost> steps;  // of scans at which a stop was made and matched
   std::vector<topomap::StampedPose> truth;
   double path_m = 0.0;
   const double start_s = support::process_cpu_s();
@@ -134,7 +134,7 @@ void run_log(const LongLogOptions& options) {
   for (const double at_m : {1e3, 2e3, 5e3, 10e3, 20e3}) {
     if (at_m < 1.1 * path_m) report_last_kilometre(at_m, steps);
   }
-  std::fflush(stdout);  // what follows takes minutes on a long log
+  std::fflush(stdout);  // the next part takes minutes on a long log
   const storage::MapDocument map = mapping.finish();
   const double end_s = support::process_cpu_s();
 

@@ -48,7 +48,7 @@ std::vector<StampedPose> reference_of(const Recording& recording) {
   return reference;
 }
 
-/// By local map id.
+/// Reference poses by local map id.
 std::vector<std::optional<Pose2>> reference_of_stops(const std::vector<LocalMap>& maps,
                                                      const std::vector<StampedPose>& reference) {
   std::map<std::int64_t, Pose2> pose_at;

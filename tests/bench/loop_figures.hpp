@@ -1,4 +1,4 @@
-// Maps a recording and measures what became of its loops.
+// Maps a recording and measures its loops.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,7 @@ struct LoopFigures {
   double cpu_s = 0.0;
 };
 
-/// `relations`: the file of hand-checked relative poses, if there is one. Throws std::runtime_error
+/// `relations`: the file of hand-checked relative poses, may be empty. Throws std::runtime_error
 /// and std::invalid_argument for files that cannot be used.
 LoopFigures measure_loops(const Recording& recording, const pipeline::Config& config,
                           const std::optional<std::filesystem::path>& relations);

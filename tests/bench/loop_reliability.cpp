@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kRight_m = 0.5;
 constexpr double kRight_rad = 10.0 * std::numbers::pi / 180.0;
-constexpr double kRidge = 1e-3;  // of the mean log likelihood: terms are of the size of one
+constexpr double kRidge = 1e-3;  // of the mean log likelihood, whose terms are about one
 constexpr int kNewtonSteps = 60;
 
 using Terms = Eigen::Matrix<double, localization::kLoopTerms, 1>;

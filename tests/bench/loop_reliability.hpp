@@ -21,7 +21,7 @@ struct JudgedDecision {
   bool right = false;  ///< within 0.5 m and 10 degrees
 };
 
-/// Of all decisions on matches between stops with a true pose.
+/// Judges all decisions on matches between stops with a true pose.
 std::vector<JudgedDecision> judged_decisions(
     std::span<const localization::LoopDecision> decisions,
     const std::vector<std::optional<geometry::Pose2>>& T_world_stop);
@@ -32,14 +32,14 @@ struct JudgedLog {
   std::vector<JudgedDecision> decisions;
 };
 
-/// Coefficients of largest likelihood of loop_probability(), with a ridge that keeps those finite
-/// that no wrong decision bounds. Each log counts the same, however many decisions it has.
+/// Maximum-likelihood coefficients of loop_probability(), with a ridge that keeps those finite that
+/// no wrong decision bounds. Each log has the same weight, however many decisions it has.
 localization::LoopTerms fitted_coefficients(std::span<const JudgedLog> logs,
                                             std::optional<std::size_t> left_out);
 
 /// Prints the coefficients, and tables of probability against share right: all decisions with the
-/// coefficients of the library, and each log with those fitted to the others. Logs of one name up
-/// to a slash are left out together.
+/// coefficients of the library, and each log with those fitted to the others. Logs whose names are
+/// equal up to a slash are left out together.
 void print_reliability(std::ostream& out, std::span<const JudgedLog> logs);
 
 /// A line for each decision: log, right, outcome, evidence.

@@ -1,12 +1,12 @@
-// Which places of recorded logs are recognized, and whether covariances fit the errors.
+// Measures which places of recorded logs are recognized, and whether covariances fit the errors.
 //
 //   topogeo_loops [--config FILE] [--jobs J] [--data FOLDER] [--verbose] [--floors N]
 //                 [--reliability] [--decisions FILE] NAME[/N]...
 //
-// Maps NAME.clf.gz of the folder, as topogeo map does, NAME/N with every N-th scan alone, and
-// prints one row of a table: errors against NAME.ref.tum and NAME.relations, revisits
+// Maps NAME.clf.gz of the folder, as topogeo map does, NAME/N with only every N-th scan, and prints
+// one row of a table: errors against NAME.ref.tum and NAME.relations, revisits
 // (pipeline/loop_recall.hpp) and mean squared Mahalanobis distances (covariance_checks.hpp).
-// --floors adds drives through synthetic floors, --reliability says whether the probabilities of
+// --floors adds drives through synthetic floors, --reliability checks whether the probabilities of
 // the decisions are right (loop_reliability.hpp).
 #include <algorithm>
 #include <atomic>
@@ -153,7 +153,7 @@ void print_details(const bench::LoopFigures& f) {
   }
 }
 
-/// The drives through one synthetic floor together as one log.
+/// Prints the drives through one synthetic floor together as one log.
 void print_judged(const LoopOptions& options,
                   const std::map<std::size_t, bench::JudgedLog>& judged) {
   std::vector<bench::JudgedLog> logs;
@@ -175,7 +175,7 @@ void print_judged(const LoopOptions& options,
   }
 }
 
-/// Each log as soon as it is done; returns whether all could be measured.
+/// Prints each log as soon as it is done; returns whether all could be measured.
 bool print_logs(const LoopOptions& options, const pipeline::LoadedConfig& config) {
   std::map<std::size_t, bench::JudgedLog> judged;
   std::atomic<std::size_t> next = 0;

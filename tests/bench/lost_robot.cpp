@@ -3,13 +3,13 @@
 //   topogeo_lost_robot [--path M] [--starts N] [--stops K] [--workers W] [--rounds R] [--map FILE]
 //
 // A floor is mapped in one drive and driven again with other noise; the robot is lost at N stops of
-// the second drive, evenly spread, and adds K stops from each of them while it searches, without a
-// pose to begin with. "Whole map": from the question to all answers of a search of the whole map;
-// "stop": all that is done for a stop of a lost robot, its matches too. "By CPU": CPU time of the
-// localizer, and that of the workers shared evenly among them, together; that is what a search
-// takes on idle cores, where the localizer waits meanwhile, and other programs do not change it.
-// Everything is real: the localizer's end of the pool, DDS, workers in processes of one slot. The
-// poses of all stops must be the same bytes with any number of workers.
+// the second drive, evenly spread, and adds K stops from each of them while it searches, without an
+// initial pose. "Whole map": from the request to all results of a search of the whole map; "stop":
+// all work for a stop of a lost robot, including its matches. "by CPU": CPU time of the localizer
+// plus an equal share of the workers' CPU time; this is the time of a search on idle cores, where
+// the localizer waits for the workers, and other programs do not change it. Everything is real: the
+// localizer's end of the pool, DDS, workers in processes of one slot. The poses of all stops must
+// be the same bytes with any number of workers.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -106,7 +106,7 @@ std::vector<std::vector<MapPointer>> drives_of(const LostOptions& options,
   return drives;
 }
 
-/// A pool, and how long whole maps were searched in it.
+/// A pool that measures how long searches of whole maps take.
 class TimedPool : public localization::MatchPool {
  public:
   explicit TimedPool(localization::MatchPool& pool) : pool_(pool) {}
@@ -123,7 +123,7 @@ class TimedPool : public localization::MatchPool {
     }
     return results;
   }
-  /// Since it was asked last.
+  /// Times since the last call.
   std::vector<double> take_whole_map_ms() { return std::exchange(whole_map_ms_, {}); }
 
  private:
@@ -233,7 +233,7 @@ double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// By CPU, for each stop.
+/// CPU time for each stop, with the workers' share.
 double cpu_ms(const Result& result, std::size_t workers) {
   const double s =
       result.cpu_s + result.workers_s / static_cast<double>(std::max<std::size_t>(1, workers));
@@ -271,7 +271,7 @@ void print(const std::vector<Result>& results, std::size_t least_workers, std::s
   }
 }
 
-// The teams take turns, so that what else the machine does meets them alike.
+// The teams take turns, so that other load on the machine affects them alike.
 void run(const LostOptions& options) {
   const pipeline::Config config;
   const auto map = make_map(options, config);
@@ -290,7 +290,7 @@ void run(const LostOptions& options) {
       const Result result = team.search(options, drives);
       if (!first) first = result;
       if (!same(*first, result)) throw std::runtime_error("other poses with other workers");
-      if (round > 0) append(results[i], result);  // in the first one workers ask for what they need
+      if (round > 0) append(results[i], result);  // in the first round workers request missing maps
       ++i;
     }
   }

@@ -1,6 +1,6 @@
 // The map store on a large map: 10,000 local maps along a path through a building, a global map of
-// 100,000 branch points, all of it made up. Prints what storing, starting, a snapshot and a loop
-// that moves everything take, the size of the file and the memory of the process.
+// 100,000 branch points, all of it made up. Prints the cost of storing, starting, a snapshot and a
+// loop that moves everything, the size of the file and the memory of the process.
 //
 //   topogeo_map_store_bench [LOCAL_MAPS [insert|serve]]
 #include <algorithm>
@@ -116,7 +116,7 @@ void print(const std::string& what, double value, const char* unit, const char* 
             << std::flush;
 }
 
-/// What a map store has to hold while it runs.
+/// Memory of a running map store.
 struct Running {
   explicit Running(const std::filesystem::path& path)
       : archive(storage::MapDatabase::open_existing(path), path) {
@@ -159,7 +159,7 @@ void insert(const std::filesystem::path& path, std::uint32_t count) {
   print("all local maps fused once (work on the live map)", fuse_s, "s", "-");
 }
 
-/// In a process of its own, so that its memory is that of a map store.
+/// Runs in a process of its own, so that its memory is that of a map store.
 void serve(const std::filesystem::path& path, std::uint32_t count) {
   std::optional<Running> running;
   const double start_s = seconds([&] { running.emplace(path); });

@@ -1,9 +1,8 @@
-// Of two local maps seen 0.5 m apart on the simulated floor:
-//
-// match/KxG   one match of K individuals and G generations, refinement included: what a task of the
-//             search pool costs. The Thesis took 10-30 s for 100 x 50 on a 400 MHz PC.
+// Matching of two local maps seen 0.5 m apart on the simulated floor:
+// match/KxG   one match of K individuals and G generations, refinement included: the cost of a task
+//             in the search pool. The Thesis took 10-30 s for 100 x 50 on a 400 MHz PC.
 // verify      the check of an answer, which the client of a pool does for each.
-// reference   the look-up grids on a map, made when a match or a check is the first to refer to it.
+// reference   the look-up grids of a map, made when a match or a check is the first to refer to it.
 #include <cstdint>
 #include <memory>
 
@@ -27,7 +26,7 @@ struct Pair {
   topomap::LocalMap reference = map_at({8.6, 1.2, 0.1}, 0);
   topomap::LocalMap query = map_at({9.1, 1.2, 0.4}, 1);
   localization::Matcher matcher;
-  // What odometry is taken to know after a path of 0.5 m and a turn of 0.3 rad.
+  // Assumed knowledge of odometry after a path of 0.5 m and a turn of 0.3 rad.
   localization::MatchTask task =
       localization::test::task_between(reference, query, {0.6, 0.05, 0.25}, 0.10, 0.18);
 

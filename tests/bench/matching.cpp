@@ -1,13 +1,13 @@
-// How right matches of two local maps are, and whether their verdicts can be trusted.
+// Accuracy of matches of two local maps, and whether their verdicts can be trusted.
 //
 //   topogeo_matching [--world FILE]... [--log FILE --reference FILE.tum]... [--config FILE]
 //
 // First table: pairs of stops i,i+1 and i,i+3 against their true relative pose, by odometry, by the
 // scan tracker and by matching with every form of the fitness. Second table: how well matches of
-// three stops agree with each other, which bounds what the references can tell. Third table: pairs
-// of stops that do not overlap, or that look the same a few metres on, with a false prediction:
-// what is accepted of them though it is wrong; beside it what is kept of pairs that do overlap.
-// matching.sh names the inputs.
+// three stops agree with each other, which bounds the accuracy of the references. Third table:
+// pairs of stops with a false prediction that do not overlap, or look the same a few metres on: the
+// wrong matches that are accepted, beside the matches kept of pairs that do overlap. matching.sh
+// names the inputs.
 #include <cstdio>
 #include <exception>
 #include <limits>

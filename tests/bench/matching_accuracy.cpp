@@ -24,7 +24,7 @@ constexpr double kWorse_m = 0.05;
 constexpr double kWorse_rad = std::numbers::pi / 180.0;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-/// One way to a relative pose, over all pairs.
+/// One method for a relative pose, over all pairs.
 struct Row {
   std::string name;
   std::vector<double> error_m;
@@ -33,7 +33,7 @@ struct Row {
   std::size_t worse = 0;
   std::uint64_t evaluations = 0;
   double ms = 0.0;
-  bool matches = false;  ///< evaluations and time mean something
+  bool matches = false;  ///< evaluations and time are valid
 
   void add(const PoseError& error, const PoseError& odometry) {
     error_m.push_back(error.m);
@@ -71,7 +71,7 @@ void print(std::FILE* out, const std::string& log, std::size_t apart, const Row&
   }
 }
 
-/// The two rows of a form: as the genetic search leaves it, and refined.
+/// The two rows of a form of the fitness: the result of the genetic search, and the refined one.
 struct Form {
   FitnessForm form;
   Row found;
@@ -95,8 +95,8 @@ std::vector<Pair> pairs_of(const MatchingRun& run, std::size_t apart, std::size_
   return some;
 }
 
-/// As the localizer asks about the stop just reached: it is the reference, and what the scan
-/// tracker says of the way there is an initial individual.
+/// The localizer's task for a new stop: it is the reference, and the scan tracker's relative pose
+/// is an initial individual.
 MatchTask task_for(const MatchingRun& run, const Pair& pair, const UncertainPose& odometry) {
   MatchTask task = run.task(pair.later, pair.earlier,
                             {geometry::inverse(odometry.T_a_b),
@@ -112,7 +112,7 @@ Pose2 matched(MatchingRun& run, const Pair& pair) {
   return geometry::inverse(run.matcher().solve(task_for(run, pair, expected)).T_reference_query);
 }
 
-/// Milliseconds that the refinement of a result's solutions takes, which is part of solving.
+/// Milliseconds of the refinement of a result's solutions, which is part of solving.
 double refinement_ms(MatchingRun& run, const Pair& pair, const MatchTask& task,
                      const MatchResult& result) {
   const localization::Reference reference = localization::make_reference(run.features(pair.later));
@@ -152,14 +152,14 @@ void print_accuracy(std::FILE* out, MatchingRun& run, std::size_t apart, std::si
     const auto add = [&](Row& row, const Pose2& T_later_earlier) {
       row.add(error_of(geometry::inverse(T_later_earlier), pair.T_earlier_later), odometry_error);
     };
-    run.matcher().solve(task);  // makes what the matcher keeps of the reference
+    run.matcher().solve(task);  // fills the matcher's cache for the reference
     for (Form& form : forms) {
       task.fitness_form = form.form;
       const double start_s = support::process_cpu_s();
       const MatchResult result = run.matcher().solve(task);
       const double ms = 1e3 * (support::process_cpu_s() - start_s);
       const bool solved = result.status == localization::MatchStatus::kSolved;
-      // Who finds nothing is left with odometry.
+      // Without a solution, odometry remains.
       add(form.found, solved ? result.solutions.front().T_reference_query : task.T_reference_query);
       add(form.refined, solved ? result.T_reference_query : task.T_reference_query);
       form.found.evaluations += result.evaluations;

@@ -40,8 +40,8 @@ UncertainPose prediction(const Pose2& T_expected, double half_width_m) {
   return pose;
 }
 
-/// Moves a prediction away from the pose that it speaks of, by its own covariance, but not so far
-/// that its search space no longer holds that pose.
+/// Moves a prediction away from its pose, by its own covariance, but not so far that its search
+/// space no longer holds that pose.
 void disturb(UncertainPose& pose, double share, Random& random) {
   const auto draw = [&](double sigma, double most) {
     double value = 0.0;

@@ -1,5 +1,5 @@
-// What matching accepts though it is wrong, where the surroundings invite the mistake, and what it
-// keeps of right matches at the same width of search.
+// Wrong matches that are accepted in surroundings that invite the mistake, and right matches that
+// are kept at the same width of search.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@ namespace topogeo::bench {
 
 class LookAlikes {
  public:
-  /// `pairs` of each kind per log. With a file name every match is written there too, one a line,
-  /// with its evidence; throws std::runtime_error when the file cannot be written.
+  /// Uses `pairs` of each kind per log. With a file name, every match is also written there, one a
+  /// line, with its evidence; throws std::runtime_error when the file cannot be written.
   LookAlikes(std::size_t pairs, const std::string& samples_file);
 
   /// Tries the pairs of a log.

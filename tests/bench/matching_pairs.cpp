@@ -20,7 +20,7 @@ using support::Random;
 constexpr double kOverlap = 0.35;
 constexpr double kApart = 0.05;
 constexpr double kWallTolerance_m = 0.10;  // the far side of a wall is not in view
-constexpr double kBareCorridor = 0.10;     // of the wall points, at most, that face along it
+constexpr double kBareCorridor = 0.10;     // largest share of wall points that face along it
 
 bool overlaps(const MatchingRun& run, std::size_t a, std::size_t b, const Pose2& T_a_b) {
   constexpr double kFarthest_m = 15.0;
@@ -57,7 +57,7 @@ void choose(std::vector<StopPair>& pairs, std::size_t count, Random& random) {
   pairs.resize(std::min(count, pairs.size()));
 }
 
-/// Direction of the walls that a stop sees, if it sees hardly any others; in its own frame.
+/// Direction of the walls that a stop sees, if it sees hardly any others; in the stop's frame.
 std::optional<Eigen::Vector2d> corridor_of(const localization::MatchFeatures& features) {
   constexpr std::size_t kFewest = 40;
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
@@ -73,7 +73,7 @@ std::optional<Eigen::Vector2d> corridor_of(const localization::MatchFeatures& fe
   return solver.eigenvectors().col(0);
 }
 
-/// How often two points of a stop lie so far from each other: the same from wherever it is seen.
+/// Histogram of the distances between two points of a stop: the same from any pose.
 using Shape = std::array<double, 40>;
 
 Shape shape_of(const std::vector<localization::SurfacePoint>& points) {
@@ -101,7 +101,7 @@ double unlike(const Shape& a, const Shape& b) {
   return sum;
 }
 
-/// The stops that lie apart from one, those of the most similar shape first.
+/// The stops that do not overlap with `stop`, the most similar in shape first.
 std::vector<StopPair> candidates(const MatchingRun& run, const std::vector<Shape>& shapes,
                                  std::size_t stop, std::size_t count) {
   std::vector<std::pair<double, std::size_t>> others;
@@ -118,7 +118,7 @@ std::vector<StopPair> candidates(const MatchingRun& run, const std::vector<Shape
   return found;
 }
 
-/// Where the query looks most like the reference, whatever odometry says, and how well it fits.
+/// Pose at which the query looks most like the reference, regardless of odometry, and its fitness.
 std::pair<Pose2, double> best_fit(MatchingRun& run, const StopPair& pair) {
   constexpr double kAnywhere = 100.0;
   localization::UncertainPose anywhere;
@@ -163,7 +163,7 @@ std::vector<StopPair> apart_pairs(const MatchingRun& run, std::size_t count, Ran
   constexpr double kTolerance_m = 0.5;
   constexpr int kTries = 200;
   std::vector<StopPair> pairs;
-  // A log may have few such pairs; so many draws and no more.
+  // A log may have few such pairs, so the draws are limited.
   for (std::size_t draw = 0; draw < 20 * count && pairs.size() < count; ++draw) {
     StopPair pair{random.below(run.size()), random.below(run.size()), {}, {}};
     const auto T = run.truth(pair.reference, pair.query);

@@ -41,7 +41,7 @@ UncertainPose MatchingRun::odometry(std::size_t earlier, std::size_t later) cons
     sum = {sum.T_a_b * step.T_a_b,
            geometry::compose_covariance(sum.T_a_b, sum.covariance, step.T_a_b, step.covariance)};
   }
-  // As the localizer adds it: a robot that only turned has a covariance that can be inverted.
+  // The localizer adds the same, so that the covariance of a robot that only turned is invertible.
   sum.covariance(0, 0) += 1e-4;
   sum.covariance(1, 1) += 1e-4;
   sum.covariance(2, 2) += 1e-5;

@@ -1,4 +1,4 @@
-// The stops of a recording with their true poses, and how matches between them are asked for.
+// The stops of a recording with their true poses, and the tasks for matches between them.
 #pragma once
 
 #include <cstddef>
@@ -36,12 +36,11 @@ class MatchingRun {
   /// The same by the scan tracker, which compares each scan with the stop before it.
   [[nodiscard]] geometry::Pose2 tracked(std::size_t earlier, std::size_t later) const;
 
-  /// Share of the points of one stop that another stop has in view, if it stands at
-  /// `T_viewer_seen` from there.
+  /// Share of the points of one stop that another stop has in view when it is at `T_viewer_seen`.
   [[nodiscard]] double in_view(std::size_t viewer, std::size_t seen,
                                const geometry::Pose2& T_viewer_seen, double tolerance_m) const;
 
-  /// The task by which the localizer would compare two stops.
+  /// The localizer's task for a comparison of two stops.
   [[nodiscard]] localization::MatchTask task(
       std::size_t reference, std::size_t query,
       const localization::UncertainPose& T_reference_query) const;

@@ -27,7 +27,7 @@ using planning::Cell;
 constexpr double kSight_m = 4.0;
 constexpr std::uint64_t kLoopsSeed = 5;
 
-/// What of the free space a tour has come past.
+/// Free space that a tour has seen.
 class Seen {
  public:
   explicit Seen(const planning::FreeSpace& space)
@@ -64,7 +64,7 @@ class Seen {
   std::vector<bool> seen_;
 };
 
-/// The cells that a robot gets to, the widest first, so that a tour stops in the middle of rooms.
+/// The cells that a robot can reach, the widest first, so that a tour stops in the middle of rooms.
 std::vector<Cell> reachable_cells(const planning::FreeSpace& space, const Cell& start) {
   const planning::ZoneMap parts = planning::drawn_zones(space, {});
   const planning::ZoneId part = parts.zone_of_cell[space.frame().index(start)];
@@ -79,12 +79,12 @@ std::vector<Cell> reachable_cells(const planning::FreeSpace& space, const Cell& 
   return cells;
 }
 
-/// Where to stop so that everything is seen from one of the stops.
+/// Stops from which, together, everything is seen.
 std::vector<Cell> visits(const planning::FreeSpace& space, const Cell& start) {
   Seen seen(space);
   seen.look_from(start);
   std::vector<Cell> stops;
-  constexpr std::int32_t kLeast = 20;  // squared cells: nothing is worth a visit in corners
+  constexpr std::int32_t kLeast = 20;  // squared cells: corners are not worth a visit
   for (const Cell& cell : reachable_cells(space, start)) {
     const std::size_t index = space.frame().index(cell);
     if (seen.at(index) || space.squared_cells(index) < kLeast) continue;

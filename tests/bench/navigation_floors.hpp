@@ -1,5 +1,5 @@
 // Three floors for closed-loop runs, each with the map that the system itself makes of it: a drive
-// past everything is simulated, mapped as `topogeo map` does it, and the hybrid map built from
+// past everything is simulated, mapped as `topogeo map` does it, and the hybrid map is built from
 // that.
 #pragma once
 
@@ -25,15 +25,15 @@ namespace topogeo::bench {
 inline constexpr std::array<std::string_view, 3> kNavigationFloors{"office", "warehouse",
                                                                    "two loops"};
 
-/// How the wheels err.
+/// Error model of the wheels.
 enum class Wheels : std::uint8_t {
-  kMild = 0,  ///< as the simulator's default
-  kB21 = 1,   ///< as one in a recorded log, see simulation::b21_odometry
+  kMild = 0,  ///< the simulator's default
+  kB21 = 1,   ///< that of a recorded log, see simulation::b21_odometry
 };
 
 simulation::OdometryDrift drift_of(Wheels wheels, std::uint64_t seed);
 
-/// A B21 as all closed-loop runs have it.
+/// The B21 of all closed-loop runs.
 simulation::RobotOptions b21_robot(const geometry::Pose2& T_world_start,
                                    const geometry::Pose2& T_robot_laser, Wheels wheels,
                                    double slip_per_m, std::uint64_t seed);
@@ -46,7 +46,7 @@ world::World navigation_floor(std::string_view name);
 std::vector<Eigen::Vector2d> tour_of_everything(const world::World& world);
 
 /// The tour of the world, which closes the long loops, back to its start, then the tour of
-/// everything: what somebody drives who makes a map.
+/// everything: a person's drive to make a map.
 std::vector<Eigen::Vector2d> mapping_tour(const world::World& world);
 
 struct MappedFloor {
@@ -55,12 +55,12 @@ struct MappedFloor {
   std::shared_ptr<const planning::HybridMap> map;
   std::vector<geometry::Pose2> T_world_stop;  ///< the truth of each stop of the map
   double tour_m = 0.0;
-  double seconds = 0.0;  ///< that the drive and its map took
+  double seconds = 0.0;  ///< duration of the drive and its mapping
 
   /// Frame of the map, by its first stop.
   [[nodiscard]] geometry::Pose2 T_world_map() const;
-  /// Frame of the map as the stop nearest to `point_m` (world) has it: without what the map is bent
-  /// between the two.
+  /// Frame of the map at the stop nearest to `point_m` (world), which excludes the bend of the map
+  /// between the first stop and that one.
   [[nodiscard]] geometry::Pose2 T_world_map_at(const Eigen::Vector2d& point_m) const;
 };
 

@@ -1,4 +1,4 @@
-// Drives that know nothing of each other, several at a time.
+// Independent drives, several at a time.
 #pragma once
 
 #include <atomic>
@@ -9,8 +9,8 @@
 
 namespace topogeo::bench {
 
-/// What `drive` gives for each job, in their order, with so many threads. Throws what a drive threw
-/// when all threads have ended.
+/// Returns the results of `drive` in the order of the jobs, with so many threads. Rethrows a
+/// drive's exception when all threads have ended.
 template <typename Row, typename Job, typename Drive>
 std::vector<Row> drive_in_parallel(const std::vector<Job>& jobs, unsigned threads_at_a_time,
                                    const Drive& drive) {

@@ -1,4 +1,4 @@
-// A year of patrol: how large the map becomes, and whether the last drive is as right as the first.
+// A year of patrol: growth of the map, and whether the last drive is as accurate as the first.
 #include <algorithm>
 #include <exception>
 #include <filesystem>

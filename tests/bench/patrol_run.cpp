@@ -37,7 +37,7 @@ struct Box {
   Eigen::Vector2d high_m;
 };
 
-/// Where the cupboard stands by turns, at walls of the corridors.
+/// Places of the cupboard in turn, at walls of the corridors.
 const std::vector<Box>& cupboard_places() {
   static const std::vector<Box> places = {
       {{7.4, 0.06}, {8.3, 0.5}},     {{29.5, 9.4}, {29.94, 10.3}}, {{14.0, 0.06}, {14.9, 0.5}},
@@ -60,7 +60,7 @@ std::size_t place_of_cupboard(const PatrolOptions& options, std::size_t drive) {
   return drive / options.drives_per_move % cupboard_places().size();
 }
 
-/// The floor as it is on a drive: nine doors are open or shut.
+/// The floor during a drive: each of nine doors is open or shut.
 world::World floor_of(const PatrolOptions& options, std::size_t drive) {
   world::World world = world::load_world(std::filesystem::path(TOPOGEO_SOURCE_DIR) / "tests" /
                                          "data" / "floor.world.yaml");
@@ -88,7 +88,7 @@ simulation::SimulatedLog drive_of(const PatrolOptions& options, std::size_t driv
   return simulation::simulate_log(floor_of(options, drive), simulation);
 }
 
-/// A map store without DDS: the messages of the localizer go in as they are sent.
+/// A map store without DDS, which gets the localizer's messages directly.
 class Store {
  public:
   Store(const std::filesystem::path& directory, const pipeline::Config& config)
@@ -120,7 +120,7 @@ class Store {
     archive_.put(map_);
   }
 
-  /// Whether it has the stops of the localizer under their numbers, in memory and in the file.
+  /// Whether it has the stops of the localizer under their ids, in memory and in the file.
   [[nodiscard]] bool has_map_of(const localization::MappingSession& session) const {
     const auto& maps = session.maps();
     if (input_.local_maps().size() != maps.size()) return false;
@@ -215,7 +215,7 @@ class Patrol {
     return count == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(count));
   }
 
-  /// Cells of the front of a box: those at the wall behind it are occupied anyway.
+  /// Occupied cells of the front of a box, because those at the wall behind it are always occupied.
   [[nodiscard]] std::size_t occupied(const planning::OccupancyGrid& grid, const Box& box) const {
     constexpr double kWall_m = 0.25;
     constexpr double kStep_m = 0.05;

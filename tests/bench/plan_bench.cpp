@@ -1,5 +1,5 @@
-// Routes on a floor of 200 x 200 m: 2,000 x 2,000 cells, 200 drawn zones, six pieces of furniture
-// in each; through a graph of 10,000 nodes; and round what stands in the way.
+// Routes on a floor of 200 x 200 m (2,000 x 2,000 cells, 200 drawn zones, six pieces of furniture
+// in each), through a graph of 10,000 nodes, and round obstacles.
 #include <cstdint>
 #include <vector>
 
@@ -50,7 +50,7 @@ const LargeFloor& large_floor() {
   return floor;
 }
 
-// One query after the other, so that the median over repetitions is that of a usual one.
+// Runs one query after the other, so that the median over repetitions is that of a usual one.
 void plan_hybrid(benchmark::State& state) {
   static const HybridMap map = large_floor().map();
   const HybridPlanner planner(map);
@@ -104,8 +104,8 @@ void plan_graph(benchmark::State& state) {
 }
 BENCHMARK(plan_graph)->Name("plan/graph_10000")->Unit(benchmark::kMillisecond);
 
-// A robot on its way through a floor of 60 x 40 m that sees something in its way, half a second's
-// work of a laser: the furniture round it again and a box ahead.
+// A robot that drives through a floor of 60 x 40 m gets half a second of laser data: the furniture
+// round it again and a box ahead.
 void plan_detour_round_box(benchmark::State& state) {
   static const BlockFloor floor = block_floor({12, 10, 50, 40, 10, 2}, kSeed);
   static const FreeSpace space(floor.grid);
@@ -144,7 +144,7 @@ void plan_detour_round_box(benchmark::State& state) {
 }
 BENCHMARK(plan_detour_round_box)->Name("plan/detour")->Unit(benchmark::kMillisecond);
 
-// The floor of 200 x 200 m with something in 40 of its doors and in the way.
+// The floor of 200 x 200 m with obstacles in 40 of its doors and on the route.
 void plan_closed(benchmark::State& state) {
   static const HybridMap map = large_floor().map();
   const HybridPlanner planner(map);

@@ -28,8 +28,8 @@ std::vector<std::uint8_t> scan(support::Random& random, std::uint64_t most_cm) {
   return devices::sick_reply(0xB0, data, 0);
 }
 
-// Whole scans of 361 values, in parts as a port hands them on; a stream that begins in mid-scan
-// when `late` bytes of it are missing.
+// Whole scans of 361 values, in parts as a port delivers them; the stream begins in mid-scan when
+// `late` bytes of it are missing.
 void decode_scans(benchmark::State& state, std::size_t part, std::uint64_t most_cm,
                   std::size_t late) {
   support::Random random(1);

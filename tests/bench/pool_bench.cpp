@@ -1,25 +1,23 @@
-// What the search pool costs and gains. Everything is real (client, DDS, other processes) but for
-// the searches of dispatch/64; no other program is to run meanwhile, and two cores are needed.
+// Cost and gain of the search pool. Everything is real (client, DDS, other processes) but for the
+// searches of dispatch/64; no other program may run meanwhile, and two cores are needed.
 //
 // dispatch/64         tasks through 64 workers in 8 processes that answer without searching. Each
 //                     worker has readers and writers of its own; a process shares one participant,
-//                     as 64 participants on two cores would measure the scheduler. The client does
-//                     all that a localizer's does, checking of every answer and audits included.
-// dispatch/64_bare    the same without the checking of answers.
+//                     because 64 participants on two cores would measure the scheduler. The
+//                     client does all that a localizer's does, checks and audits included.
+// dispatch/64_bare    the same without the checks of answers.
 // pool/2              1,000 tasks of 100 individuals and 50 generations with two real workers;
 //                     `speed_up` against one with the same tasks, median of nine pairs.
 //                     pool/2_50x30: the default parameters. On two cores the client and the
-//                     middleware run at the expense of the workers; pool/2_200x100 shows what is
-//                     left of that with longer searches. `*_cpu_us`: of a task, all threads of the
-//                     processes, in the time of the other ones, too.
-// message/K           600 bytes, as many as a task has, K of them in a message, from one
-// participant to
-//                     another of this process: CPU time of both for each of them. What tasks in
+//                     middleware run at the expense of the workers; pool/2_200x100 shows how much
+//                     this matters with longer searches. `*_cpu_us`: CPU time for each task, all
+//                     threads of the processes; a worker's includes the other team's batches.
+// message/K           messages of K times 600 bytes, the size of a task, between two participants
+//                     of this process: CPU time of both for each 600 bytes. It shows how much
 //                     batches would save of the cost of a task.
 // board/W             the client's bookkeeping alone: a task to one of W workers and its answer.
 // pool/latency        one task at a time: median of the time through a pool of one real worker
-// minus
-//                     that of the same search in this process, all maps known everywhere.
+//                     minus that of the same search in this process, all maps known everywhere.
 // pool/late_map       from the moment that the client knows a worker that has just been started to
 //                     the answer to a task on maps that were sent before, minus the search.
 // pool/late_map_asked the same with maps that were never sent, so that the worker has to ask.
@@ -60,7 +58,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// What a batch took.
+/// Times of a batch.
 struct Cost {
   double wall_s = 0.0;
   double cpu_s = 0.0;  // of this process
@@ -95,7 +93,7 @@ void dispatch(benchmark::State& state, bool verify) {
   for (std::size_t i = 0; i < kProcesses; ++i)
     workers.start_stubs(client.flags(), kWorkers / kProcesses);
   if (!have_workers(state, client, kWorkers)) return;
-  // Until every worker has gone through the comparisons that a new one has to.
+  // Warm-up: every worker passes the comparisons that a new worker has to.
   for (int i = 0; i < 2; ++i) cost_of(client, source.next(kBatch, kStubTasks));
 
   const std::uint64_t resent = client.pool().counts().resent;
@@ -149,7 +147,7 @@ void speed_up(benchmark::State& state, std::uint32_t individuals, std::uint32_t 
   const std::vector<MatchTask> first = batch();
   for (Team* team : {&one, &two}) cost_of(team->client, first);  // makes the features of the maps
 
-  // In turn, so that a machine whose speed changes is the same for both.
+  // In turn, so that a change of the machine's speed affects both alike.
   std::vector<double> ratios;
   std::vector<double> by_two_s;
   double client_cpu_s = 0.0;
@@ -206,7 +204,7 @@ void message(benchmark::State& state, std::size_t tasks_in_message) {
     came = 0;
     for (std::size_t sent = 0; sent < kTasks; sent += tasks_in_message) {
       if (!writer.write(piece)) state.SkipWithError("not sent");
-      // As in the pool, where few are under way to a worker.
+      // The pool behaves alike: few tasks are under way to a worker.
       while (came <= sent) static_cast<void>(loop.run_for(std::chrono::seconds(1)));
     }
     const double used_s = support::process_cpu_s() - before_s;

@@ -3,17 +3,17 @@
 //   topogeo_pool_load [--workers W] [--robots R] [--cost-us C] [--seconds S] [--per-process N]
 //                     [--lead-seconds T] [--server]
 //
-// Every worker is a process with a participant of its own (unless N are put into one), whose
-// search is stubbed: a right answer after a fixed time. Every robot is a process, too, with all
-// that a localizer does with tasks: it checks every answer and searches a share of them again. The
-// first robot floods the pool with batches of 1,000 tasks, the others ask for a dozen at a time, as
-// steps of a drive do. All have a partition of their own and begin together. With --server they
-// find each other by a discovery server, as deploy/SCALING.md wants it of more than 16
-// participants: 68 that do by multicast leave two cores no time for tasks.
+// Every worker is a process with a participant of its own (unless N share one), whose search is
+// stubbed: a right answer after a fixed time. Every robot is also a process and handles tasks like
+// a localizer: it checks every answer and searches a share of them again. The first robot floods
+// the pool with batches of 1,000 tasks, the others request a dozen at a time, like the steps of a
+// drive. All have a partition of their own and begin together. With --server they find each other
+// by a discovery server, which deploy/SCALING.md recommends for more than 16 participants:
+// multicast discovery of 68 leaves two cores no time for tasks.
 //
-// Prints a row for each robot and what each worker did. A task that is lost would be sent again
-// ("resent") or searched by the robot ("here"), and every batch is counted. Exits with 1 when a
-// task had no answer or a worker no task.
+// Prints a row for each robot and the number of tasks of each worker. A lost task would be sent
+// again ("resent") or searched by the robot ("here"), and every batch is counted. Exits with 1 when
+// a task had no answer or a worker no task.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -77,7 +77,7 @@ int run_robot(const LoadOptions& options, double start_s) {
     std::printf("robot: %zu of %zu workers came\n", client.pool().workers(), options.workers);
     return 1;
   }
-  // Until every worker has gone through the comparisons that a new one has to.
+  // Warm-up: every worker passes the comparisons that a new worker has to.
   for (int i = 0; i < 2; ++i)
     client.pool().match(source.next(4 * options.workers, bench::kStubTasks));
   wait_for_start(start_s);
@@ -108,7 +108,7 @@ int run_robot(const LoadOptions& options, double start_s) {
   return answered == asked && client.fault().empty() ? 0 : 1;
 }
 
-/// What workers report that they have done.
+/// Number of tasks done, as each worker reports it.
 class DoneByWorker {
  public:
   explicit DoneByWorker(std::uint32_t domain)
@@ -136,7 +136,7 @@ class DoneByWorker {
   std::map<std::string, std::uint64_t> done_;
 };
 
-/// A discovery server on this host, which all participants made from here on use.
+/// A discovery server on this host for all participants created from here on.
 supervision::ChildProcess start_server() {
   constexpr const char* kPort = "11811";
   if (::setenv("ROS_DISCOVERY_SERVER", (std::string("127.0.0.1:") + kPort).c_str(), 1) != 0) {
@@ -166,7 +166,7 @@ bool run_all(const LoadOptions& options) {
   const std::filesystem::path out =
       std::filesystem::temp_directory_path() / ("load-" + std::to_string(domain));
   std::filesystem::create_directories(out);
-  // Robots are let go when all of them know all workers, as far as one can foresee.
+  // Robots start once all of them should know all workers.
   const double start_s =
       std::chrono::duration<double>(Clock::now().time_since_epoch()).count() + options.lead_s;
   std::vector<supervision::ChildProcess> robots;

@@ -51,7 +51,7 @@ std::vector<MatchTask> TaskSource::next(std::size_t count, std::uint64_t differe
     task.query_hash = hashes_[query];
     task.T_reference_query =
         geometry::between(maps_[reference]->T_odom_robot, maps_[query]->T_odom_robot);
-    // What odometry is taken to know after half a metre; 95 % of it and two deviations.
+    // Assumed covariance of odometry after half a metre; searched: 95 % of it, two deviations.
     task.covariance = Eigen::Vector3d(0.01, 0.01, 0.0324).asDiagonal();
     task.half_width = localization::search_half_width(task.covariance, 0.95, 2.0);
   }
@@ -69,7 +69,7 @@ PoolClient::PoolClient(const Maps& maps, bool verify, std::uint32_t domain) {
   options_.domain = domain;
   options_.partition = "bench-" + number;
   options_.name = "bench";
-  // Where traffic is protected (TOPOGEO_SECURITY), nobody may write both tasks and local maps.
+  // When traffic is protected (TOPOGEO_SECURITY), no identity may write both tasks and local maps.
   options_.identity = "local_mapper";
   map_participant_.emplace(options_);
   map_writer_.emplace(*map_participant_);

@@ -1,5 +1,5 @@
-// What the benchmarks of the search pool work with: local maps of a simulated drive, tasks on them,
-// a client in this process and workers in others.
+// Helpers of the search-pool benchmarks: local maps of a simulated drive, tasks on them, a client
+// in this process and workers in others.
 #pragma once
 
 #include <chrono>
@@ -22,7 +22,7 @@
 
 namespace topogeo::bench {
 
-/// Longer than anything takes on a busy machine.
+/// Longer than any step takes on a busy machine.
 constexpr std::chrono::seconds kPatience{30};
 
 using Clock = std::chrono::steady_clock;
@@ -34,15 +34,15 @@ inline double seconds_since(Clock::time_point start) {
 /// Maps of the stops of a drive through the simulated floor; the same in every process.
 localization::test::Maps maps_of_floor();
 
-/// Makes tasks between each map and the three before it in turn, as a localizer does, round and
-/// round.
+/// Makes tasks between each map and the three before it in turn, as a localizer does, over and
+/// over.
 class TaskSource {
  public:
   explicit TaskSource(localization::test::Maps maps);
 
   [[nodiscard]] const localization::test::Maps& maps() const { return maps_; }
-  /// The next `count` tasks, with ascending ids; after `different` of them they repeat but for the
-  /// id. The seed tells the different ones apart.
+  /// The next `count` tasks, with ascending ids; after `different` of them they repeat except for
+  /// the id. The seed identifies the different ones.
   std::vector<localization::MatchTask> next(
       std::size_t count, std::uint64_t different = std::numeric_limits<std::uint64_t>::max());
 
@@ -64,16 +64,16 @@ std::vector<std::string> flags_of(std::uint32_t domain, const std::string& parti
 /// A localizer's end of the pool, in a partition of its own.
 class PoolClient {
  public:
-  /// Knows the maps but sends them to nobody.
+  /// Knows the maps but does not publish them.
   explicit PoolClient(const localization::test::Maps& maps, bool verify = true,
                       std::uint32_t domain = random_domain());
 
   [[nodiscard]] localizer::RemotePool& pool() { return *pool_; }
   /// Flags that let a service meet this client.
   [[nodiscard]] std::vector<std::string> flags() const;
-  /// Sends the maps to whoever listens, now or later.
+  /// Publishes the maps to present and later readers.
   void publish(const localization::test::Maps& maps);
-  /// What went wrong last; empty: nothing.
+  /// The last fault; empty if none.
   [[nodiscard]] const std::string& fault() const { return fault_; }
 
  private:
@@ -96,12 +96,12 @@ class Workers {
 
   /// Starts a real worker of one slot.
   void start_real(const PoolClient& client, std::vector<std::string> flags = {});
-  /// Starts a process with `count` workers that answer without searching (stub_workers.hpp), where
-  /// `flags` say; each answer takes so long.
+  /// Starts a process with `count` workers that answer without searching (stub_workers.hpp);
+  /// `flags` set their domain and partition, and each answer takes `cost`.
   void start_stubs(std::vector<std::string> flags, std::size_t count,
                    std::chrono::microseconds cost = {});
   [[nodiscard]] std::size_t size() const { return children_.size(); }
-  /// CPU time of the threads of a process, the one started as number `worker`.
+  /// CPU time of the threads of the process that was started as number `worker`.
   [[nodiscard]] double cpu_s(std::size_t worker) const;
 
  private:

@@ -7,7 +7,7 @@
 
 namespace topogeo::bench {
 
-/// Of a line of /proc/self/status that gives kB; 0 without it.
+/// Value in MB of a line of /proc/self/status that is in kB; 0 if the line is missing.
 inline double memory_of_status_mb(std::string_view name) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {

@@ -1,5 +1,5 @@
-// How fast recordings of ROS are read: message by message, and as the scans that mapping takes; the
-// rate is in bytes of messages per second.
+// How fast ROS recordings are read: message by message, and as the scans for mapping; the rate is
+// in bytes of messages per second.
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -18,8 +18,8 @@ namespace {
 
 using namespace topogeo;
 
-/// 3,000 scans of 1,080 beams with odometry, 15 MB, removed at the end; `maps`: with four of 1.2 MB
-/// after every 60 scans, 240 MB in all, of which three are in chunks of their own.
+/// 3,000 scans of 1,080 beams with odometry, 15 MB, removed at the end. `maps` adds four maps of
+/// 1.2 MB after every 60 scans, 240 MB in all; three of the four are in chunks of their own.
 class RecordedFile {
  public:
   RecordedFile(const std::string& ending, const std::string& compression, bool maps = false)
@@ -87,7 +87,7 @@ void scans(benchmark::State& state, const std::string& ending) {
   state.SetBytesProcessed(state.iterations() * bytes);
 }
 
-/// `indexed` or without the checksum of the index, which is not used then: bytes of the file.
+/// Unless `indexed`, the index lacks its checksum and is not used. Rate in bytes of the file.
 void scans_among_maps(benchmark::State& state, bool indexed) {
   const RecordedFile file(".mcap", "none", true);
   if (!indexed) {

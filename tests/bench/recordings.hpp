@@ -1,5 +1,5 @@
-// Scans with a true pose, for the programs that measure against it: simulated logs and recorded
-// ones with their reference trajectory.
+// Scans with a true pose, for programs that measure errors: simulated logs and recorded ones with
+// their reference trajectory.
 #pragma once
 
 #include <cstddef>

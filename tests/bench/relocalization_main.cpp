@@ -1,11 +1,11 @@
-// How often a scan is found again in a finished map without any idea of where it was taken.
+// How often a scan is found again in a finished map without an initial pose.
 //
 //   topogeo_relocalization [--scans N] [--csv FILE] LOG...
 //
-// "same drive": the map of the whole log, asked with scans that are no stops of it. "second half":
-// the map of the first half of the log, asked with scans of the second half where the robot came
-// back to a place that the first half had seen. The truth is the pose by the map of the whole log,
-// relative to the nearest stop of the map that was asked. Right is within 0.3 m and 5 degrees.
+// "same drive": the map of the whole log, searched with scans that are no stops of it. "second
+// half": the map of the first half of the log, searched with scans of the second half at places
+// that the first half had seen. The truth is the pose by the map of the whole log, relative to the
+// nearest stop of the searched map. Right is within 0.3 m and 5 degrees.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -30,7 +30,7 @@ using geometry::Pose2;
 
 struct Question {
   const scan::Scan* scan = nullptr;
-  Pose2 T_map_robot;  // truth in the map that is asked
+  Pose2 T_map_robot;  // truth in the searched map
 };
 
 struct Row {
@@ -116,7 +116,7 @@ void evaluate(const std::string& file, std::size_t count, const pipeline::Config
   std::vector<scan::Scan> scans;
   while (const auto scan = reader.next()) scans.push_back(*scan);
   const storage::MapDocument whole = map_of(scans, scans.size(), config);
-  std::map<std::uint64_t, Pose2> truth;  // by sequence of the scan
+  std::map<std::uint64_t, Pose2> truth;  // by sequence number of the scan
   for (const auto& pose : topomap::expand_trajectory(whole.trajectory, whole.local_maps)) {
     truth[pose.sequence] = pose.pose;
   }

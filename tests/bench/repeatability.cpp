@@ -1,14 +1,14 @@
-// How much of a local map is found again in the local map made half a metre farther on.
+// Share of a local map that is found again in the local map made half a metre farther on.
 //
 //   topogeo_repeatability [--world FILE]... [--log FILE --reference FILE.tum]... [--config FILE]
 //
-// For each scan the next one that lies `--apart` metres away by the true poses (simulation) or by
-// the reference trajectory (recorded log). A node or branch point is in common view when the other
-// scan proves the place to be free, within its range limit, and shows the circle of its
-// clearance as far as the configuration asks of a real node. It is found again when the other map
-// has a real node (a confirmed branch) within 0.15 m of it; states have 0.3 m, because along the
-// branch a door is no point. Both directions count. Prints a row of a table for each input, or with
-// --total one for all together; repeatability.sh makes whole tables.
+// Compares each scan with the next one that lies `--apart` metres away by the true poses
+// (simulation) or by the reference trajectory (recorded log). A node or branch point is in common
+// view when the other scan proves the place to be free, within its range limit, and shows the
+// circle of its clearance as far as the configuration requires of a real node. It is found again
+// when the other map has a real node (a confirmed branch) within 0.15 m of it; states have 0.3 m,
+// because a door has no exact position along the branch. Both directions count. Prints a table row
+// for each input, or with --total one for all together; repeatability.sh makes whole tables.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -35,7 +35,7 @@ using topomap::NodeKind;
 
 constexpr double kFound_m = 0.15;
 
-/// A local map and what was seen free when it was made.
+/// A local map and the area seen free when it was made.
 struct View {
   geometry::Pose2 T_world_robot;
   geometry::Pose2 T_robot_laser;
@@ -46,8 +46,8 @@ struct View {
   voronoi::Frontier frontier;
   double largest_hidden_share = 1.0;
 
-  /// True if the scan also proves how far the nearest object is from there: it could hold the same
-  /// node or branch point.
+  /// True if the scan also proves the distance of the nearest object from there, so it could hold
+  /// the same node or branch point.
   [[nodiscard]] bool confirms(const Eigen::Vector2d& point_robot_m, double clearance_m) const {
     const Eigen::Vector2d at = geometry::inverse(T_robot_laser) * point_robot_m;
     return clearance_m - frontier.distance_m(at) <= largest_hidden_share * clearance_m;
@@ -87,11 +87,11 @@ std::vector<View> views_of(const bench::Recording& input,
   return views;
 }
 
-/// How many of a kind of element were looked for and found.
+/// Number of elements of one kind in common view, and of those found again.
 struct Tally {
   std::size_t count = 0;
   std::size_t found = 0;
-  double distance_m = 0.0;  ///< sum over those found
+  double distance_m = 0.0;  ///< sum over the elements found
 
   void add(double apart_m, double found_m) {
     ++count;
@@ -111,7 +111,7 @@ struct Counts {
   std::size_t scans = 0, with_node = 0, real_nodes = 0;
   std::size_t pairs = 0;
   Tally nodes, states, points;
-  /// In common view if the place is, whether or not the circle is; a node counts as found where
+  /// In common view if the place is, regardless of the circle; a node counts as found where
   /// branches meet, confirmed or not.
   Tally nodes_by_place, points_by_place;
 
@@ -199,7 +199,7 @@ void look_for(const View& from, const View& in, Counts& counts) {
   }
 }
 
-/// The scan after number i that lies most nearly `apart_m` away, within a quarter of it.
+/// The scan after number i whose distance is nearest to `apart_m`, within a quarter of it.
 std::optional<std::size_t> partner(const std::vector<View>& views, std::size_t i, double apart_m) {
   constexpr std::size_t kAhead = 20;
   std::optional<std::size_t> best;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# How long until a program is heard that takes the place of one killed with -9: a subscriber of the
-# map that hears a map store that lives, and a subscriber that lives and hears a map store.
+# Time until data arrives after a program killed with -9 is replaced: a new subscriber of the map receives from a
+# running map store, and a running subscriber receives from a new map store.
 #
 #   tests/bench/restart.sh [ROUNDS]
 #
@@ -30,7 +30,7 @@ start living topogeo follow --json
 start killed topogeo follow --json
 start worker ga_worker --slots 1
 wait_for_maps 1
-sleep 2  # discovery is over, which would be measured
+sleep 2  # discovery is over and is not measured
 for ((round = 1; round <= rounds; ++round)); do
   kill_now killed
   from=$(date +%s%N)
@@ -44,5 +44,5 @@ for ((round = 1; round <= rounds; ++round)); do
   start store map_store --out "$work/out"
   wait_for_maps $((before + 1))
   echo "$round: restarted subscriber $subscriber ms, restarted map store $(ms_since "$from") ms"
-  sleep 1  # nothing of this round goes on in the next one
+  sleep 1  # nothing of this round continues in the next one
 done

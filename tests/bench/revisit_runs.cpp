@@ -24,7 +24,7 @@ constexpr std::size_t kOlder = 40;
 constexpr std::size_t kLeftOut = 30;  // scans between the map and the drive
 constexpr double kSamePlace_m = 2.0;
 constexpr double kSameView_rad = 1.0;
-constexpr double kGoesOn = 0.5;  // of the scans of the drive that are in a known place
+constexpr double kGoesOn = 0.5;  // share of the drive's scans at a known place
 
 bool was_here(const Recording& recording, std::size_t scan, std::size_t end) {
   const std::optional<Pose2>& here = recording.T_world_robot[scan];
@@ -40,7 +40,7 @@ bool was_here(const Recording& recording, std::size_t scan, std::size_t end) {
   return false;
 }
 
-/// The map that grows by the scans before each revisit.
+/// A map that grows by the scans before each revisit.
 class GrowingStoredMap {
  public:
   GrowingStoredMap(const Recording& recording, const pipeline::Config& config)
@@ -73,10 +73,10 @@ class GrowingStoredMap {
   const Recording& recording_;
   pipeline::MappingRun run_;
   std::size_t next_ = 0;
-  std::vector<Pose2> truths_;  // of the scans that the map is made of
+  std::vector<Pose2> truths_;  // of the scans in the map
 };
 
-/// By the stop of the map that is nearest in truth.
+/// True pose in the map, relative to the stop that is nearest in truth.
 Pose2 truth_in(const localization::StoredMap& map, const GrowingStoredMap& made,
                const Pose2& T_world_robot) {
   std::size_t best = 0;

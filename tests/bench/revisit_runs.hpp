@@ -1,4 +1,4 @@
-// Localizes in the map of all that was driven before a revisit, with what was seen from there on.
+// Localizes in the map of all scans before a revisit, with the scans from there on.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +15,11 @@
 namespace topogeo::bench {
 
 struct RevisitOptions {
-  std::size_t most = 12;   ///< revisits of a log that are run, spread over it
+  std::size_t most = 12;   ///< revisits per log, spread over it
   std::size_t scans = 40;  ///< of the drive that is localized
 };
 
-/// What was reported at a stop of the second drive.
+/// Result at a stop of the second drive.
 struct RevisitStop {
   std::size_t scan = 0;
   double path_m = 0.0;  ///< driven from the first scan of the drive
@@ -36,14 +36,14 @@ struct RevisitRun {
   std::vector<RevisitStop> stops;
 
   static constexpr double kWrong_m = 0.5;
-  /// Path driven to the first stop that is tracked where the robot is.
+  /// Path driven to the first stop that is tracked at the right place.
   [[nodiscard]] std::optional<double> found_m() const;
   [[nodiscard]] std::size_t tracking() const;
   [[nodiscard]] std::size_t wrong() const;
 };
 
-/// Scans at which a revisit begins: within 2 m and 57 degrees of one 40 or more older, and so is
-/// the last of the `scans` that follow, or half of them.
+/// Scans at which a revisit begins: within 2 m and 57 degrees of a scan that is 40 or more older.
+/// The last of the following `scans` scans, or half of them, are near older ones too.
 std::vector<std::size_t> revisits_of(const Recording& recording, const RevisitOptions& options);
 
 /// The map is made of the scans up to 30 before the revisit, with the reference as odometry.

@@ -1,12 +1,12 @@
-// Whether a robot finds its place where it has been before: at revisits of recorded logs, and in
+// Whether a robot localizes at a place that it visited before: at revisits in recorded logs, and in
 // the maps of other days.
 //
 //   topogeo_revisits [--data FOLDER] [--most N] [--scans N] [--verbose] [--json FILE] NAME[/N]...
 //   topogeo_revisits --sessions NAME NAME NAME...
 //
 // Revisits: the map of all scans that are 30 or more before one, with the reference as odometry,
-// then the scans from there on as they were recorded, without an initial pose (revisit_runs.hpp).
-// Sessions: each log continues the map of each other one (session_runs.hpp).
+// then the scans from there on as recorded, without an initial pose (revisit_runs.hpp). Sessions:
+// each log continues the map of each other one (session_runs.hpp).
 #include <algorithm>
 #include <atomic>
 #include <exception>

@@ -1,5 +1,5 @@
 // Rooms of a floor of 200 x 200 m, 2,000 x 2,000 cells with 200 rooms: finding them between the
-// walls, and knowing them again in the next map.
+// walls, and recognizing them in the next map.
 #include <cstdint>
 #include <vector>
 
@@ -21,7 +21,7 @@ const FreeSpace& floor_of_rooms() {
   return space;
 }
 
-// As many stops as a drive through all rooms makes.
+// Number of stops of a drive through all rooms.
 std::vector<topomap::StopPose> stops_every_metres(double apart_m) {
   const GridFrame& frame = floor_of_rooms().frame();
   std::vector<topomap::StopPose> stops;

@@ -1,6 +1,6 @@
-// What the bridge to ROS 2 costs: time from a scan of ROS to ours, CPU time while it passes scans
-// on, time until a late reader has a large map. Starts ros_bridge and plays both sides; prints
-// three lines.
+// Cost of the bridge to ROS 2: time from a ROS scan to ours, CPU time while it passes scans on,
+// time until a late reader has a large map. Starts ros_bridge and plays both sides; prints three
+// lines.
 //
 //   topogeo_ros_bridge_bench PATH_OF_ROS_BRIDGE [SECONDS]
 #include <algorithm>
@@ -59,7 +59,7 @@ ros::Header header(const std::string& frame, std::int64_t stamp_ns) {
   return header;
 }
 
-/// Of a process, user and system; s.
+/// User and system CPU time of a process, s.
 double cpu_s(pid_t pid) {
   std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
   std::string word;

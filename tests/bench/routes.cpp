@@ -1,10 +1,10 @@
-// How often each planner finds a route between two poses that were driven.
+// How often each planner finds a route between two poses of a drive.
 //
 //   topogeo_routes [--pairs N] [--seed N] [--verbose] LOG...
 //
-// Each log is mapped; pairs of its stops are drawn by chance. "grid": the hybrid planner alone;
-// "branches": nodes and branches alone, without and with the grid beside them; "live": as the
-// planner answers, the other where one has no route, with either first.
+// Each log is mapped; pairs of its stops are drawn at random. "grid": the hybrid planner alone;
+// "branches": nodes and branches alone, without and with the grid beside them; "live": the planner
+// service's order, where the second planner answers when the first has no route, in both orders.
 #include <array>
 #include <cstdio>
 #include <exception>

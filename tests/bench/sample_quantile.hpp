@@ -1,4 +1,4 @@
-// A quantile of times that were measured.
+// A quantile of measured times.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 namespace topogeo::bench {
 
-/// The value that stands at `share`, [0, 1], of the sorted values, of which there is at least one.
+/// The value at `share`, [0, 1], of the sorted values; needs at least one value.
 inline double sample_quantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];

@@ -17,7 +17,7 @@ using geometry::Pose2;
 
 namespace {
 
-/// The rigid motion that moves the points `b` onto `a` best.
+/// The rigid motion that best moves the points `b` onto `a`.
 Pose2 fitted(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b) {
   Eigen::Vector2d mean_a = Eigen::Vector2d::Zero();
   Eigen::Vector2d mean_b = Eigen::Vector2d::Zero();

@@ -25,9 +25,9 @@ struct SessionDrive {
 /// A stop of a drive before it joined a map.
 struct FollowedStop {
   localization::LocalizationState state = localization::LocalizationState::kSearching;
-  geometry::Pose2 T_stored_later;  ///< of the frames of the two maps, if its pose is right
+  geometry::Pose2 T_stored_later;  ///< between the frames of the two maps, if its pose is right
   double path_m = 0.0;
-  /// Of what it should have seen (localization::contradiction()); nothing unless it was tracked.
+  /// Contradicted share of its expected view (localization::contradiction()); only when tracked.
   std::optional<double> contradicted;
 };
 
@@ -36,22 +36,22 @@ struct SessionPair {
   std::size_t stored = 0;  ///< index of the drives
   std::size_t later = 0;
   std::size_t stops = 0;   ///< of the later drive
-  std::size_t joined = 0;  ///< that are in the map at the end
-  /// By the first stop that joined them, metres after the first one; none: it did not join.
+  std::size_t joined = 0;  ///< stops in the map at the end
+  /// Path driven until the drive joined the map; empty: it did not join.
   std::optional<double> joined_after_m;
-  geometry::Pose2 T_stored_later;  ///< of the frames of the two maps, by the stops of the later one
+  geometry::Pose2 T_stored_later;  ///< between the two maps' frames, by the later drive's stops
   std::vector<FollowedStop> followed;
-  double spread_m = 0.0;  ///< rms of what this leaves between its stops in both maps
+  double spread_m = 0.0;  ///< rms of the remaining differences between its stops in both maps
 };
 
-/// Going round three drives by their pairs.
+/// A cycle of three drives, composed of their pairs.
 struct SessionCycle {
   std::vector<std::size_t> drives;
   double closing_m = 0.0;
   double closing_rad = 0.0;
 };
 
-/// A CARMEN log by its configuration. Throws std::runtime_error naming the file.
+/// A CARMEN log, mapped with its configuration. Throws std::runtime_error naming the file.
 SessionDrive session_drive(const std::string& log_file, const std::string& name,
                            pipeline::LoadedConfig config);
 

@@ -1,4 +1,4 @@
-// The forward step of the localizer deep in a log, and whole logs. Real logs are looked for in
+// The forward step of the localizer deep in a log, and whole logs. Real logs are read from
 // TOPOGEO_LOG_DIR, by default ../shared/data beside the source tree; without them their benchmarks
 // do not exist.
 #include <cstdlib>

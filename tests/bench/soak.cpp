@@ -1,18 +1,18 @@
-// Services that run for long: does anything grow?
+// Checks that services which run for long do not grow.
 //
 //   topogeo_soak [--hours H] [--rate R] [--workers N] [--warm-up SHARE] [--csv FILE]
 //
 // A floor is mapped in one drive and driven there and back in it for H hours of robot time, which
-// the services follow R times faster: sensor gateway, local mapper, localizer, map store,
-// planner, navigator and N workers, as processes. Sampled while they work: resident memory, open
-// files and threads of each, shared memory, and the disk that the results take. The first half is
-// warm-up (another share with --warm-up): caches and histories fill, the last of them the stops of
-// a drive that the localizer keeps, 1,024 with their maps and up to 4,096 with their poses. Where
-// the machine is too slow for the rate, this program, a reader of the scans like the services,
-// holds the log up until the localizer has caught up: what waits in its queue is no growth. After
-// it the memory of each service must stay within 5 % of what it was at the end of the warm-up, with
-// 1 MB for what one sample differs from the next; open files and shared memory must not grow at
-// all; and when all have ended, nothing of them must be left in shared memory. Exits with 1 when
+// the services follow R times faster: sensor gateway, local mapper, localizer, map store, planner,
+// navigator and N workers, as processes. Samples while they work: resident memory, open files and
+// threads of each, shared memory, and the disk space of the results. The first half is warm-up
+// (another share with --warm-up), because caches and histories fill. The last history to fill is
+// the localizer's: 1,024 stops of a drive with their maps and up to 4,096 with their poses. On a
+// machine too slow for the rate, this program, which reads the scans like the services, holds the
+// log up until the localizer has caught up, because a queue is no growth. After the warm-up the
+// memory of each service must stay within 5 % of its value at the end of the warm-up, plus 1 MB for
+// noise between samples; open files and shared memory must not grow at all; and after the end no
+// shared memory of the services may remain. Exits with 1 when something grew.
 // something grew.
 #include <algorithm>
 #include <chrono>
@@ -60,7 +60,7 @@ struct SoakOptions {
   Path csv;
 };
 
-/// What a process has, by /proc.
+/// Resources of a process, from /proc.
 struct Usage {
   double rss_mb = 0.0;
   std::size_t files = 0;
@@ -70,11 +70,11 @@ struct Usage {
 struct Footprint {
   double at_s = 0.0;
   std::map<std::string, Usage> services;  // by name
-  std::set<Path> shared;                  // memory of all of them
+  std::set<Path> shared;                  // of all services
   double disk_mb = 0.0;
 };
 
-/// Everything that was sampled, and what of the shared memory was there after the end.
+/// All samples, and the shared memory that remained after the end.
 struct Soaked {
   std::vector<Footprint> samples;
   std::set<Path> left;
@@ -90,13 +90,13 @@ std::size_t entries(const Path& folder) {
   return count;
 }
 
-/// Space that a file takes, MB; 0 when there is none.
+/// Disk space of a file, MB; 0 without the file.
 double file_mb(const Path& file) {
   struct stat status {};
   return ::lstat(file.c_str(), &status) == 0 ? static_cast<double>(status.st_blocks) / 2048.0 : 0.0;
 }
 
-/// Space that the files of a folder take, MB.
+/// Disk space of the files of a folder, MB.
 double space_mb(const Path& folder) {
   std::error_code gone;
   double sum_mb = 0.0;
@@ -107,7 +107,7 @@ double space_mb(const Path& folder) {
   return sum_mb;
 }
 
-/// Adds the files of shared memory that a process has: those of other programs are not of interest.
+/// Adds a process's files of shared memory, without those of other programs.
 void add_shared_memory(const std::string& pid, std::set<Path>& files) {
   std::ifstream maps("/proc/" + pid + "/maps");
   for (std::string line; std::getline(maps, line);) {
@@ -127,7 +127,7 @@ Usage usage_of(const std::string& pid) {
   return usage;
 }
 
-/// There and back through the floor for so long.
+/// A tour there and back through the floor for so many hours.
 world::World laps_of(world::World world, double hours) {
   const std::vector<Eigen::Vector2d> there = world.tour_m;
   double lap_m = 0.0;
@@ -176,7 +176,7 @@ messaging::ParticipantOptions own_domain() {
   return options;
 }
 
-/// Reads the scans, but only while the localizer keeps up with the local mapper, by their status: a
+/// Reads the scans only while the localizer keeps up with the local mapper, by their status: a
 /// reader with a full history holds the log up for all.
 class Pace {
  public:
@@ -193,8 +193,8 @@ class Pace {
   }
 
   void keep(std::chrono::milliseconds duration) {
-    constexpr std::chrono::milliseconds kPeriod{10};  // the history takes 128 scans
-    constexpr double kMostBehind = 20.0;              // stops; those of 256 scans follow
+    constexpr std::chrono::milliseconds kPeriod{10};  // the history holds 128 scans
+    constexpr double kMostBehind = 20.0;              // stops; made of 256 scans
     for (const auto end = Clock::now() + duration; Clock::now() < end;) {
       static_cast<void>(loop_.run_for(kPeriod));
       scans_.take_events([](const messaging::Event&) {});
@@ -202,7 +202,7 @@ class Pace {
     }
   }
 
-  /// The localizer has done all of the log.
+  /// The localizer has processed the whole log.
   [[nodiscard]] bool finished() const { return finished_; }
 
  private:
@@ -215,7 +215,7 @@ class Pace {
   bool finished_ = false;
 };
 
-/// The services of a robot that follows a finished map, the source of its scans last.
+/// Starts the services of a robot that follows a finished map; the source of its scans is the last.
 std::vector<supervision::ChildProcess> start(const SoakOptions& options, const Path& work) {
   const Path bin = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   const std::vector<std::string> common{"--domain", std::to_string(own_domain().domain),
@@ -230,15 +230,15 @@ std::vector<supervision::ChildProcess> start(const SoakOptions& options, const P
   add("planner", {});
   add("navigator", {});
   for (std::size_t i = 0; i < options.workers; ++i) add("ga_worker", {"--slots", "1"});
-  // As on a robot: who reads a log keeps all of its stops.
+  // No --replay, as on a robot: a localizer that reads a log keeps all of its stops.
   add("localizer", {"--map", work / "map.pb", "--wait-workers", std::to_string(options.workers)});
   add("local_mapper", {"--replay"});
-  // Local mapper, navigator and this program.
+  // The readers are the local mapper, the navigator and this program.
   add("sensor_gateway", {"--log", work / "laps.clf", "--rate", options.rate, "--readers", "3"});
   return services;
 }
 
-/// Until the localizer has done all of the log.
+/// Runs until the localizer has processed the whole log.
 Soaked run(const SoakOptions& options, const Path& work) {
   Pace pace;
   std::vector<supervision::ChildProcess> services = start(options, work);
@@ -267,7 +267,7 @@ Soaked run(const SoakOptions& options, const Path& work) {
   }
   for (supervision::ChildProcess& service : services) service.send_signal(SIGTERM);
   for (supervision::ChildProcess& service : services) service.wait();
-  std::set<Path> own;  // they write to the reader of this program
+  std::set<Path> own;  // shared memory of this program, where services write to its reader
   add_shared_memory("self", own);
   for (const Path& file : shared) {
     if (std::filesystem::exists(file) && !own.contains(file)) soaked.left.insert(file);
@@ -275,7 +275,7 @@ Soaked run(const SoakOptions& options, const Path& work) {
   return soaked;
 }
 
-/// The middle one of what some samples have.
+/// Median of a value over some samples.
 template <class Value>
 double middle(const std::vector<Footprint>& samples, std::size_t first, std::size_t count,
               Value value) {
@@ -292,14 +292,14 @@ class Report {
   Report(const std::vector<Footprint>& samples, std::size_t warm)
       : samples_(samples), warm_(warm), few_(std::max<std::size_t>(1, samples.size() / 20)) {}
 
-  /// A row; the value may grow by `share` and `most` after the warm-up.
+  /// A row; the value may grow by `share` of itself plus `most` after the warm-up.
   template <class Value>
   void row(const std::string& name, Value value, double share, double most) {
     const Rise rise = rise_of(value);
     judge(name, rise, rise.peak > rise.warm * (1.0 + share) + most);
   }
-  /// A row; the value may grow for a while, as where a service whose input pauses opens a second
-  /// participant, and has to be what it was at the end.
+  /// A row; the value may grow for a while and must return: a service whose input pauses opens a
+  /// second participant, for example.
   template <class Value>
   void row_that_goes_back(const std::string& name, Value value) {
     const Rise rise = rise_of(value);

@@ -1,5 +1,5 @@
 // Does a robot without a laser get where it is sent? Simulated drives in a closed loop on drawn
-// floors: from a base station that is drawn at random, by Markov localization with sonars alone.
+// floors: from a random base station, by Markov localization with sonars alone.
 //
 //   topogeo_sonar_arrival [--runs 200] [--sonars 24|6] [--wheels mild|b21] [--grid poses|positions]
 //   topogeo_sonar_arrival --floor NAME --run N [--trace FILE.csv]

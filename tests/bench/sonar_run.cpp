@@ -65,7 +65,7 @@ class SonarLoop {
   [[nodiscard]] const simulation::SimulatedRobot& robot() const { return robot_; }
   [[nodiscard]] const navigation::NavigatorStatus& status() const { return navigator_.status(); }
   [[nodiscard]] std::size_t plans() const { return plans_; }
-  /// Metres, the last round; scan::Scan::kNoReturn for none.
+  /// The last round, metres; scan::Scan::kNoReturn for none.
   [[nodiscard]] const std::vector<float>& ranges_m() const { return ranges_m_; }
 
  private:
@@ -100,7 +100,7 @@ class SonarLoop {
     const auto& pose = navigator_.status().T_map_robot;
     if (!pose) return;
     const navigation::BlockageReport& blockages = navigator_.blockages();
-    constexpr double kMoved_m = 0.1;  // after a refusal, as the planner's service has it
+    constexpr double kMoved_m = 0.1;  // after a refusal, as in the planner service
     const bool again = refused_at_m_ && (*refused_at_m_ - pose->position_m()).norm() >= kMoved_m;
     if (planned_for_ == blockages.version && !again) return;
     planned_for_ = blockages.version;
@@ -158,11 +158,11 @@ Pose2 draw_standing_pose(const DrawnFloor& floor, const SonarDriveConfig& config
   throw std::runtime_error(floor.name + ": no place for the robot");
 }
 
-/// A box on the route, where a robot can get past it.
+/// Puts a box on the route where a robot can get past it.
 bool put_box(const DrawnFloor& floor, const planning::HybridRoute& route, support::Random& random,
              SonarTask& task) {
-  constexpr double kKeepsOff_m = 1.2;  // of station and goal
-  constexpr double kPast_m = 0.75;     // from the middle of the box to what is beside it
+  constexpr double kKeepsOff_m = 1.2;  // from station and goal
+  constexpr double kPast_m = 0.75;     // from the middle of the box to its surroundings
   if (route.points_m.size() < 2) return false;
   const std::size_t piece = random.below(route.points_m.size() - 1);
   const double share = random.uniform();
@@ -189,7 +189,7 @@ constexpr std::string_view kTraceHeader =
     "time_s,true_x_m,true_y_m,true_theta_rad,x_m,y_m,theta_rad,collisions,room_m,linear_m_per_s,"
     "angular_rad_per_s,ranges_m,state,reason,message\n";
 
-/// `room_m`: from the body to the nearest thing; `ranges_m`: as the sonars are mounted, 0 for none.
+/// `room_m`: from the body to the nearest object; `ranges_m`: in mounting order, 0 for none.
 std::string trace_line(const SonarLoop& loop, const world::World& world) {
   const Pose2& truth = loop.robot().T_world_robot();
   const navigation::NavigatorStatus& status = loop.status();
@@ -299,10 +299,10 @@ SonarResult run_sonar_drive(const DrawnFloor& floor, const SonarDriveConfig& con
                             const SonarTask& task, const std::filesystem::path& trace) {
   SonarLoop loop(floor, config, task);
   constexpr std::uint64_t kTraceTicks = 20;
-  constexpr double kRolls_s = 1.0;  // until the wheels surely stand
+  constexpr double kRolls_s = 1.0;  // until the wheels have stopped for certain
   const double start_s = loop.time_s();
   constexpr double kGivesUp_s = 60.0;  // standing for so long
-  double arrived_s = -1.0;             // negative: it has not
+  double arrived_s = -1.0;             // negative: not yet
   double largest_m = 0.0;
   double moved_s = start_s;
   double path_m = 0.0;

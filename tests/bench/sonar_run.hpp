@@ -1,6 +1,6 @@
 // One simulated drive of a robot without a laser: it starts at the base station of a drawn floor,
-// knows where it is by Markov localization with its sonars alone, and drives the primitives of the
-// hybrid planner's route to a goal (MACONDO, III; docs/algorithms.md, "Markov localization").
+// localizes by Markov localization with its sonars alone, and drives the primitives of the hybrid
+// planner's route to a goal (MACONDO, III; docs/algorithms.md, "Markov localization").
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@
 
 namespace topogeo::bench {
 
-/// A floor as somebody has drawn it; the frame of the map is that of the world.
+/// A floor drawn by hand; the frame of the map is that of the world.
 struct DrawnFloor {
   std::string name;
   world::World world;
@@ -31,23 +31,23 @@ struct DrawnFloor {
 /// std::invalid_argument for another name.
 DrawnFloor draw_floor(std::string_view name, const pipeline::HybridMapConfig& config);
 
-/// Those that the table has.
+/// The floors of the table.
 std::vector<std::string> drawn_floor_names();
 
 struct SonarDriveConfig {
   pipeline::Config system;
   Wheels wheels = Wheels::kMild;
-  int sonars = 24;  ///< 24 as a B21 has them, or the 6 of MACONDO
+  int sonars = 24;  ///< the 24 of a B21, or the 6 of MACONDO
   double slip_per_m = 0.2;
-  double goal_clearance_m = 0.4;  ///< of station and goal, to what the map has as occupied
-  /// How exactly somebody puts the robot on its base station, one sigma.
+  double goal_clearance_m = 0.4;  ///< of station and goal, to occupied cells of the map
+  /// Accuracy of placing the robot on its base station, one sigma.
   double station_sigma_m = 0.03;
   double station_sigma_rad = 0.035;
-  double obstacle_share = 0.0;  ///< of the drives with a box on the route that is not on the map
+  double obstacle_share = 0.0;  ///< share of drives with an unmapped box on the route
   double longest_s = 900.0;     ///< of simulated time
 };
 
-/// With the settings of this file, or of deploy/sonar_robot.example.yaml. Throws as load_config.
+/// With the settings of this file, or of deploy/sonar_robot.example.yaml. Throws like load_config.
 SonarDriveConfig sonar_drive_config(const std::filesystem::path& settings = {});
 
 struct SonarTask {
@@ -60,20 +60,20 @@ struct SonarTask {
   bool obstacle = false;
 };
 
-/// Station and goal, at least 3 m from each other along the route. The same arguments draw the
-/// same.
+/// Draws a station and a goal with a route of at least 3 m between them. The same arguments draw
+/// the same task.
 SonarTask draw_sonar_task(const DrawnFloor& floor, const SonarDriveConfig& config,
                           std::uint64_t seed);
 
 struct SonarResult {
-  bool arrived = false;    ///< the navigator says so
+  bool arrived = false;    ///< as the navigator reports
   double error_m = 0.0;    ///< of the robot to the goal, at the end
   double error_x_m = 0.0;  ///< along the axes of the grid
   double error_y_m = 0.0;
   double heading_error_rad = 0.0;
   double pose_error_m = 0.0;     ///< of the reported pose to the true one, at the end
   double largest_pose_m = 0.0;   ///< the same, largest of the drive
-  std::uint64_t collisions = 0;  ///< of the robot with something
+  std::uint64_t collisions = 0;  ///< of the robot with any object
   double time_s = 0.0;
   double path_m = 0.0;
   std::uint32_t guard_stops = 0;

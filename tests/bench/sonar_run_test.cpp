@@ -1,4 +1,4 @@
-// A few drives by sonars alone: the short form of topogeo_sonar_arrival.
+// A few drives with sonars alone: the short form of topogeo_sonar_arrival.
 #include "sonar_run.hpp"
 
 #include <gtest/gtest.h>

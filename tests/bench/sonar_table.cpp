@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kToDegrees = 180.0 / std::numbers::pi;
 
-/// Value that `share` of them do not exceed; 0 of none.
+/// Value that a share of the values do not exceed; 0 without values.
 double sonar_quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   std::sort(values.begin(), values.end());

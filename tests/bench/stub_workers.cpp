@@ -45,7 +45,7 @@ Answers solve_all() {
   return answers;
 }
 
-/// The clients whose readers of answers all workers of this process are connected with.
+/// The clients to whose result readers all workers of this process are connected.
 class Clients {
  public:
   Clients(messaging::EventLoop& loop, std::size_t workers) : workers_(workers) {
@@ -93,7 +93,7 @@ class StubWorker {
     status_.process_id(static_cast<std::uint32_t>(::getpid()));
     status_.slots(1);
     status_.matcher_fingerprint(localization::matcher_fingerprint());
-    constexpr std::chrono::milliseconds kStatusPeriod{500};  // as a ga_worker
+    constexpr std::chrono::milliseconds kStatusPeriod{500};  // that of a ga_worker
     loop.add_timer(kStatusPeriod, [this] { announce(); });
     announce();
   }
@@ -111,8 +111,8 @@ class StubWorker {
     service::ParticipantId client;
   };
 
-  // One task after the other, clients in turn, as in a ga_worker of one slot. Without a cost all
-  // tasks of a message are answered in one.
+  // Takes one task after the other, clients in turn, like a ga_worker of one slot. Without a cost,
+  // one message answers all tasks of a message.
   void take(const Asked& asked) {
     if (cost_.count() == 0) {
       answer(asked);
@@ -135,7 +135,7 @@ class StubWorker {
     });
   }
 
-  // As a ga_worker: an answer to a client whose reader is not connected yet would be lost.
+  // Keeps an answer whose client is not connected yet, like a ga_worker: it would be lost.
   void answer(const Asked& asked) {
     if (!answered(asked)) unsent_.push_back(asked);
   }

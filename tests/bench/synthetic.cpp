@@ -1,5 +1,5 @@
-// Maps drives through synthetic floors, some seeds of each, and prints how far the result is from
-// the truth, which loops were closed and which are false; synthetic.sh prints its table.
+// Maps drives through synthetic floors, some seeds of each, and prints the errors against the
+// truth, the closed loops and the false ones; synthetic.sh prints its table.
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
@@ -53,7 +53,7 @@ void tell(const std::string& floor, const SyntheticResult& r) {
   }
 }
 
-// All seeds of one floor, `jobs` at a time; results in the order of the seeds.
+// Runs all seeds of one floor, `jobs` at a time; results in the order of the seeds.
 std::vector<SyntheticResult> run_floor(const bench::SyntheticFloor& floor,
                                        const SyntheticOptions& options,
                                        const pipeline::Config& config) {

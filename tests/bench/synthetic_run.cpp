@@ -18,7 +18,7 @@ namespace topogeo::bench {
 namespace {
 
 constexpr double kDegree_rad = std::numbers::pi / 180.0;
-constexpr double kEarlier_m = 15.0;  // of way, for an older place to count as seen before
+constexpr double kEarlier_m = 15.0;  // driven since, for a place to count as seen before
 
 std::vector<topomap::StampedPose> truth_of(const simulation::SimulatedLog& log) {
   std::vector<topomap::StampedPose> truth;
@@ -28,7 +28,7 @@ std::vector<topomap::StampedPose> truth_of(const simulation::SimulatedLog& log) 
   return truth;
 }
 
-// Stops with their true poses and the true way to each.
+// Stops with their true poses and the true path length to each.
 struct Stops {
   std::vector<geometry::Pose2> T_world_robot;
   std::vector<double> path_m;

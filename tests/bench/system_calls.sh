@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Which system calls the services make, and which of them the units of deploy/systemd refuse them: all services of a
-# robot that explores a simulated room, each under strace, as their units start them. With TOPOGEO_SECURITY with its keys.
+# System calls of the services, and those that the units of deploy/systemd refuse: all services of a robot that explores
+# a simulated room, each under strace and started as by its unit; with its keys when TOPOGEO_SECURITY is set.
 #
 #   tests/bench/system_calls.sh [BUILD]       needs strace and systemd-analyze; about two minutes
 #
-# A call that is refused gets EPERM (SystemCallErrorNumber=). Those in `harmless` are known; any other one fails.
+# A refused call gets EPERM (SystemCallErrorNumber=). Calls in `harmless` are accepted; any other refused one fails.
 [ $# -gt 0 ] || set -- "$(dirname "${BASH_SOURCE[0]}")/../../build"
 source "$(dirname "${BASH_SOURCE[0]}")/../container/common.sh"
 
@@ -12,19 +12,19 @@ need strace systemd-analyze python3
 need_programs
 export TOPOGEO_DDS_PARTICIPANT=udp_only
 claim_domain
-# The gateway asks to go first, which its unit (Nice=) has given it already. SQLite gives files away as root alone, as which
-# no unit runs its service.
+# The gateway requests a high priority, which its unit (Nice=) has already set. SQLite changes the owner of files only
+# as root, and no unit runs its service as root.
 harmless=("sensor_gateway setpriority" "map_store fchown")
 
 mkdir "$work/bin" "$work/calls"
 for program in "$bin"/*; do ln -s "$program" "$work/bin/"; done
-# It looks for the services beside itself.
+# `topogeo` finds the services beside its own executable.
 cp --remove-destination "$bin/topogeo" "$work/bin/topogeo"
 declare -A units=([sensor_gateway]=sensor-gateway [local_mapper]=local-mapper [localizer]=localizer [map_store]=map-store
   [planner]=planner [navigator]=navigator [ga_worker]=worker@)
 for service in "${!units[@]}"; do
   rm "$work/bin/$service"
-  # shellcheck disable=SC2016  # of the wrapper, which stays the process that `topogeo run` ends
+  # shellcheck disable=SC2016  # expanded in the wrapper, which stays the process that `topogeo run` ends
   printf '#!/bin/bash\nexec strace -D -f -c -U name,calls -o "%s.$$" "%s" "$@"\n' "$work/calls/$service" "$bin/$service" \
     > "$work/bin/$service"
   chmod +x "$work/bin/$service"

@@ -1,5 +1,5 @@
 // Maps recorded logs and the replicas of the thesis's experiments with each of its configurations
-// (tests/data/thesis/*.config.yaml) and prints how far the poses are from the truth.
+// (tests/data/thesis/*.config.yaml) and prints the errors of the poses against the truth.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

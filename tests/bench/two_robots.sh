@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Two halves of a log as two robots that map at a time into one store: their maps become one when
-# they have seen the same place. Leaves the map, its pictures and trajectory.tum in DIR.
+# Maps two halves of a log as two robots at the same time into one store: their maps become one when they have seen the
+# same place. Leaves the map, its pictures and trajectory.tum in DIR.
 #
 #   tests/bench/two_robots.sh LOG DIR [RATE] [--ga_worker]
 #
@@ -30,7 +30,7 @@ start map_store --out "$out" --new --title "two robots" --robot-id a --with-robo
 start localizer --robot-id a --with-robots b
 [ "${4:-}" = "" ] || start ga_worker
 for robot in a b; do start local_mapper --robot-id "$robot"; done
-sleep 2  # discovery is over, which would be measured
+sleep 2  # discovery is over and is not measured
 for robot in a b; do
   start sensor_gateway --log "$work/$robot.clf" --robot-id "$robot" --rate "$rate"
 done
