@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What the tests of the page in Chromium share; sourced.
-# shellcheck disable=SC2317  # those that source it call its functions
+# Shared functions of the page's tests in Chromium; sourced.
+# shellcheck disable=SC2317  # scripts that source it call its functions
 source "$(dirname "${BASH_SOURCE[0]}")/../container/common.sh"
 
 # Skips where there is no browser, page or playwright-core.
@@ -10,7 +10,7 @@ need_browser() {
   need_node_packages
 }
 
-# A simulated robot with all of its services and the web service.
+# Needs the programs of a simulated robot with all its services, and of the web service.
 need_robot() {
   need_programs
   local program
@@ -19,7 +19,7 @@ need_robot() {
   done
 }
 
-# Fetched once; npm takes nothing else than what the lock file names by its hash.
+# Fetched once; npm installs only packages that the lock file pins by hash.
 need_node_packages() {
   need node npm
   [ "$(node -p 'parseInt(process.versions.node)')" -ge 18 ] || skip "Node $(node --version) is older than 18" "Node 18"
@@ -42,7 +42,7 @@ run_browser_test() {
   chromium=$(command -v chromium) || true
   if [ -n "$chromium" ]; then
     step "tests in $(chromium --version --no-sandbox)"
-    # It draws without a graphics card, on the cores of the robot: whoever looks on must not be in its way.
+    # Chromium renders without a graphics card, on the robot's cores: a low priority keeps it out of the robot's way.
     printf '#!/bin/sh\nexec nice -n 10 %s "$@"\n' "$chromium" > "$work/chromium"
     chmod +x "$work/chromium"
     chromium=$work/chromium

@@ -1,5 +1,5 @@
-// Drawing with a simulated robot: what is drawn is obeyed. It explores its room first, so that there is floor to go
-// round.
+// Drawing with a simulated robot: the robot obeys the drawing. It explores its room first, so that there is floor for
+// detours.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
@@ -8,7 +8,7 @@ import { wait_for, SimulatedRun } from "./robot.mjs";
 
 const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source } = process.env;
 
-const kBegin = { x_m: 0, y_m: 0 }; // where the robot begins
+const kBegin = { x_m: 0, y_m: 0 }; // the robot's start
 const kAhead = { x_m: 3, y_m: 0 };
 
 const robot = new SimulatedRun(join(build, "bin"), source, process.env.TOPOGEO_WORK);
@@ -34,13 +34,13 @@ test("the robot explores its room by itself", async () => {
       return Math.hypot(at.x_m - from.x_m, at.y_m - from.y_m) > 0.3;
     },
   );
-  // Goes on until all is seen: the far side of the room, behind the table, too.
+  // It explores until all is seen, including the far side of the room behind the table.
   await text(page, ".section h3", /has no goal/);
   await page.click("#tab-understand");
   await text(page, ".events .text", /explored: .*nothing is left/);
 });
 
-/** Where points of the map frame are on the screen, in the view Draw: two points of the cursor say it. */
+/** Maps points of the map frame to the screen, in the view Draw, from two positions of the cursor. */
 async function screen_of_map() {
   await page.locator(".tool[data-tool=place]").click();
   const box = await page.locator("#map").boundingBox();
@@ -70,7 +70,7 @@ async function drag(from, to) {
   await page.mouse.up();
 }
 
-/** Length of the route from where the robot stands; null without one. */
+/** Length of the route from the robot's position; null without one. */
 async function route_length(goal) {
   const answer = await robot.ask("preview", goal);
   return answer.found ? answer.length_m : null;
@@ -88,7 +88,7 @@ async function is_at(what, x_m, y_m) {
   });
 }
 
-// The table of the room leaves a passage below, where the robot stands, and one above.
+// The table leaves a passage below, where the robot starts, and one above.
 test("a no-go zone across the way is gone round, and driven through when it is gone", async () => {
   assert.equal(await robot.post("goal", kBegin), 202);
   await is_at("the robot is back", 0, 0);
@@ -116,12 +116,12 @@ test("a no-go zone across the way is gone round, and driven through when it is g
   const watched = setInterval(async () => {
     const { x_m, y_m } = await run.true_place();
     entered ||= x_m > 1.5 && x_m < 2.1 && y_m < 0.6;
-  }, 50); // as often as the place comes; one that is missed cannot fail the test
+  }, 50); // as often as the place is published; a missed sample cannot fail the test
   await is_at("the robot arrives", 3, 0);
   clearInterval(watched);
   assert.equal(entered, false, "the robot was in the no-go zone");
 
-  // Chosen in the list, for those who see no map.
+  // Chosen in the list, for users who do not see the map.
   await page.getByText(/^All items/).click();
   await page.locator(".draw-items").getByText("no-go 1").click();
   await page.click("#draw-delete");
@@ -147,7 +147,7 @@ test("a floor of two rooms is drawn, loaded into the simulator, and driven in", 
   await page.getByRole("button", { name: "Load into the simulator" }).click();
   await page.getByRole("button", { name: "Yes, load it" }).click();
   await text(page, ".notice", /floor is loaded/);
-  // A map of its own, which begins at the base station, looking along x.
+  // A new map, which begins at the base station, with the x axis ahead.
   await wait_for(
     "the robot stands in the new floor",
     async () => {

@@ -1,4 +1,4 @@
-// A made-up drive round a corridor as a CARMEN log, more than once round, so that loops close. Metres, radians; the same
+// A made-up drive round a corridor as a CARMEN log, more than one round, so that loops close. Metres, radians; the same
 // bytes each time.
 const kOuter = [0, 0, 12, 9];
 const kBoxes = [[2, 2, 10, 7], [0, 4, 0.5, 4.6], [6, 0, 6.4, 0.5], [11.3, 5, 12, 6], [8, 8.5, 9, 9], [3, 8.7, 3.3, 9]];
@@ -7,7 +7,7 @@ const kRange_m = 20;
 const kStep_m = 0.1;
 const kDrift = 0.01; // of the odometry, radians a metre
 
-// Without them the corridor looks much the same from its other end.
+// Without furniture the corridor looks much the same from its other end.
 const kFurniture = [[4, 0, 5, 0.5], [9.2, 0, 10.3, 0.3], [11.5, 2, 12, 2.5], [5, 8.5, 6.5, 9], [0, 6, 0.3, 7.6], [2, 7, 4.5, 7.4]];
 
 function walls({ scale, furnished }) {
@@ -20,7 +20,7 @@ function walls({ scale, furnished }) {
   ]);
 }
 
-/** Distance to the next wall from a point in a direction. */
+/** Distance from a point to the next wall in a direction. */
 function cast(x, y, angle, lines) {
   const [dx, dy] = [Math.cos(angle), Math.sin(angle)];
   let nearest = kRange_m;
@@ -54,7 +54,7 @@ function path(corners, { first, scale }) {
 }
 
 /**
- * corners: how many sides of the corridor are driven; four are one round. first: the side where it begins. scale: of the
+ * corners: number of sides that are driven; four are one round. first: the side where it begins. scale: of the
  * whole building.
  */
 export function drive_log(corners, { first = 0, scale = 1, furnished = false } = {}) {

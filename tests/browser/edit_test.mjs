@@ -1,5 +1,5 @@
-// The edit mode of the page in a browser, with a service that stands in: drawing by mouse, finger and keyboard, undo,
-// saving, what happens when others save, rooms, a new floor with a picture, files.
+// The edit mode of the page in a browser, with a stub service: drawing by mouse, finger and keyboard, undo, saving,
+// saves of other editors, rooms, a new floor with a picture, files.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -9,7 +9,7 @@ import { wait_for } from "./robot.mjs";
 import { kAddress, StandIn } from "./stand_in.mjs";
 
 const { TOPOGEO_BUILD: build } = process.env;
-const kPixelsPerMetre = 16; // of a page without a map, whose middle is (0, 0)
+const kPixelsPerMetre = 16; // scale of a page without a map, whose middle is (0, 0)
 
 let browser;
 
@@ -36,7 +36,7 @@ async function end({ page, context }) {
   await context.close();
 }
 
-/** Where a point of the map frame is on the screen. */
+/** Position of a point of the map frame on the screen. */
 async function on_screen(page, [x, y]) {
   const box = await page.locator("#map").boundingBox();
   return [box.x + box.width / 2 + kPixelsPerMetre * x, box.y + box.height / 2 - kPixelsPerMetre * y];
@@ -57,7 +57,7 @@ async function click(page, at) {
 
 const press = (page, name) => page.getByRole("button", { name, exact: true }).click();
 
-/** Saves, and what the service has then. */
+/** Saves, and returns the drawing that the service has then. */
 async function saved({ page, service }) {
   const before_save = service.version;
   await press(page, "Save");
@@ -87,7 +87,7 @@ test("a wall of corners, closed at the first, snaps to grid and right angles", a
   const opened = await open();
   const { page } = opened;
   await choose(page, "wall");
-  // A few pixels off each time.
+  // Each click is a few pixels off.
   for (const at of [[-6.04, -4.03], [5.97, -3.8], [6.15, 4.04], [-6.03, 3.9], [-6.1, -3.9]]) await click(page, at);
   const { walls } = await saved(opened);
   assert.deepEqual(walls, [{ points_m: [-6, -4, 6, -4, 6, 4, -6, 4, -6, -4] }]);
@@ -180,7 +180,7 @@ test("when somebody else has saved, theirs is taken or mine saved over it", asyn
   await page.getByText("Somebody else has saved").waitFor();
   await press(page, "Save mine over it");
   await wait_for("mine is saved", () => service.drawing.places[0].name === "place 1");
-  // What others save while nothing is edited here comes by itself.
+  // Without edits here, a save from elsewhere is loaded by itself.
   service.save_elsewhere({ places: [{ name: "later", x_m: 0, y_m: 0 }] });
   await page.locator(".draw-items li").getByText("later").waitFor({ state: "attached" });
   await end(opened);
@@ -191,7 +191,7 @@ test("a save that crosses another one is refused, and offers both", async () => 
   const { page, service } = opened;
   await choose(page, "place");
   await click(page, [1, 1]);
-  ++service.version; // the page has not heard of it
+  ++service.version; // without a message to the page
   service.drawing.places = [{ name: "theirs", x_m: 0, y_m: 0 }];
   await press(page, "Save");
   await page.getByText("Somebody else has saved").waitFor();
@@ -207,7 +207,7 @@ test("leaving with something unsaved is asked about", async () => {
   await page.click("#tab-now");
   await page.getByText("waits in the view Draw").waitFor();
   const asked = page.waitForEvent("dialog");
-  // It never ends, because the page stays.
+  // The reload never ends, because the page stays.
   const reloaded = page.reload({ timeout: 2000 }).catch(() => null);
   const dialog = await asked;
   assert.equal(dialog.type(), "beforeunload");
@@ -320,7 +320,7 @@ test("a picture is measured by two points of known distance", async () => {
   const now = Number(await page.inputValue("#known-distance"));
   await page.fill("#known-distance", String(now / 2));
   await press(page, "Apply");
-  // Half as long in both directions.
+  // Half the distance: half the size in both directions.
   await wait_for("the picture is smaller", async () => Math.abs((await red()) / before_measure - 0.25) < 0.02);
   await press(page, "Remove picture");
   await wait_for("it is gone", async () => (await red()) === 0);
@@ -338,7 +338,7 @@ test("a finger draws a zone, two fingers zoom", async () => {
   await send("touchStart", [from]);
   for (let i = 1; i <= 5; ++i) await send("touchMove", [from.map((v, k) => v + ((to[k] - v) * i) / 5)]);
   await send("touchEnd", []);
-  // A pinch is none: it draws nothing, the map is larger then.
+  // A pinch is no stroke: it draws nothing and enlarges the map.
   const [x, y] = await on_screen(page, [0, 0]);
   const scale = () => page.locator(".scale").innerText();
   const before_pinch = await scale();
@@ -372,13 +372,13 @@ test("a tap sends the robot, a finger that is held drives it", async () => {
   const drives = () => service.ops.filter((op) => op === "drive").length;
   const send = (type, ...touchPoints) => touch.send("Input.dispatchTouchEvent", { type, touchPoints });
   const stood_still = await watch_standstill(page);
-  // A page that stood still lets go by itself, or takes no notice of the finger. Then the finger comes again.
+  // A page that froze releases the controls by itself, or ignores the finger. Then the finger presses again.
   for (let slipped = false; !slipped; ) {
     await send("touchStart", point);
     const at_start = { drives: drives(), ops: service.ops.length };
     await wait_for("it drives for as long as the finger is there", async () =>
       drives() > at_start.drives + 5 || stood_still());
-    // A finger that slips is none that lets go.
+    // A finger that slips still holds.
     await send("touchMove", { ...point, y: point.y + 15 });
     const before_slip = drives();
     await wait_for("it goes on", async () => drives() > before_slip + 2 || stood_still());

@@ -1,8 +1,8 @@
-// How long it takes to load and to draw a long drive in the view Time. Prints figures; asserts nothing.
+// Time to load and to draw a long drive in the view Time. Prints numbers; asserts nothing.
 //
 //   TOPOGEO_BUILD=$PWD/build node tests/browser/film.mjs [STOPS=2000]
 //
-// The service stands in: a robot maps a floor of 100 m x 60 m by rows 3 m apart, a stop each metre, 120 points each.
+// A stub service plays a robot that maps a floor of 100 m x 60 m in rows 3 m apart: a stop each metre, 120 points each.
 import { createRequire } from "node:module";
 import { join } from "node:path";
 import { kAddress, StandIn } from "./stand_in.mjs";
@@ -60,7 +60,7 @@ try {
   await page.locator("#film-slider").waitFor({ timeout: 120000 });
   await page.selectOption("#film-speed", "64");
   await page.click("#film-play");
-  await new Promise((resolve) => setTimeout(resolve, 8000)); // the frames of this time are measured
+  await new Promise((resolve) => setTimeout(resolve, 8000)); // the frames of these seconds are measured
   await page.screenshot({ path: join(build, "tests/browser/screenshots/film.png") });
   const measured = (name) =>
     page.evaluate((of) => performance.getEntriesByName(of).map((entry) => entry.duration), name);

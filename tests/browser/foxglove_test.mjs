@@ -1,4 +1,4 @@
-// Foxglove's own client library with a simulated robot: what it decodes is where the simulator's truth has it.
+// Foxglove's own client library with a simulated robot: decoded messages agree with the simulator's truth.
 import assert from "node:assert/strict";
 import { createRequire } from "node:module";
 import { join } from "node:path";
@@ -11,7 +11,7 @@ const { FoxgloveClient } = packages("@foxglove/ws-protocol");
 const schemas = packages("@foxglove/schemas/jsonschema");
 const WebSocket = packages("ws");
 
-// The map begins where the robot starts, at (1, 1) of a room of 6 x 4 m, and looks along x.
+// The map's origin is the robot's start, at (1, 1) of a room of 6 x 4 m, with the x axis ahead.
 const kRoom = { left_m: -1, right_m: 5, lower_m: -1, upper_m: 3 };
 const kNear_m = 0.15;
 const kBegun_s = Date.now() / 1e3;
@@ -54,7 +54,7 @@ before(async () => {
       for (const entity of message.entities) entities.set(entity.id, entity);
     }
   });
-  // Topics come one by one, the places of the map after its grid: what a test asks for has come before.
+  // Topics come one by one, the places of the map after its grid: wait for those that tests use.
   for (const topic of ["/pose", "/map", "/tf", "/scan", "/places"]) {
     await wait_for(`a message of ${topic}`, () => newest.has(topic));
   }
@@ -74,7 +74,7 @@ function place_names() {
   return message("/places").entities.flatMap(({ texts }) => texts.map(({ text }) => text));
 }
 
-/** Our schema says nothing that Foxglove's does not. */
+/** Our schema is a part of Foxglove's. */
 function assert_part_of(ours, theirs, where) {
   assert.equal(ours.type, theirs.type, where);
   if (ours.oneOf) {
@@ -143,7 +143,7 @@ test("the scan lies on the walls of the room", () => {
   assert.ok(on_walls > 0.5 * points, `${on_walls} of ${points} on the walls; the others on table and column`);
 });
 
-/** How long the walls of a grid are, about. */
+/** Approximate length of the walls of a grid. */
 function walls_m({ data, cell_stride, cell_size }) {
   const bytes = Buffer.from(data, "base64");
   let walls = 0;
@@ -180,7 +180,7 @@ test("a route comes and goes with its goal, and the pose follows the robot", asy
   });
   await wait_for("no route", () => message("/route").entities.length === 0);
   assert.ok(counts.get("/pose") > 10);
-  // By the wall clock, in the time of this test.
+  // The stamp is the wall clock's, within this test.
   const stamp_s = Number(newest.get("/pose").timestamp) / 1e9;
   assert.ok(stamp_s > kBegun_s && stamp_s < Date.now() / 1e3 + 1, `${stamp_s}, begun at ${kBegun_s}`);
 });

@@ -1,6 +1,6 @@
-// Understand and Time in a browser: loops with both local maps, the drive played, snapshots, versions compared and
-// restored, files for other programs. A map store and the web service run, no robot: first on a map that is only shown,
-// then on a database.
+// The views Understand and Time in a browser: loops with both local maps, the drive played, snapshots, versions
+// compared and restored, files for other programs. A map store and the web service run without a robot: first on a
+// read-only map, then on a database.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
@@ -19,7 +19,7 @@ const topogeo = (...options) => execFileSync(join(build, "bin/topogeo"), options
 let browser;
 let page;
 
-/** Stops and loops of a map file, of its report. */
+/** Stops and loops of a map file, from its report. */
 function facts(folder) {
   const report = topogeo("store", "info", file(`${folder}/map.pb`)).toString();
   return { stops: Number(/stops\s+(\d+)/.exec(report)[1]), loops: Number(/loops\s+(\d+)/.exec(report)[1]) };
@@ -60,7 +60,7 @@ async function open(address = robot.address, service = null) {
   return opened;
 }
 
-/** Waits until a selector has a text; the text then. */
+/** Waits until a selector has a text, and returns it. */
 function text(selector, pattern, on = page) {
   return wait_for(`${selector} with ${pattern}`, async () =>
     (await on.locator(selector).allInnerTexts()).find((entry) => pattern.test(entry)),
@@ -72,7 +72,7 @@ async function get(path) {
   return { status: answer.status, bytes: Buffer.from(await answer.arrayBuffer()) };
 }
 
-/** A screenshot, and nothing serious found by axe-core. */
+/** Takes a screenshot and fails when axe-core finds something serious. */
 async function picture(name, on = page) {
   await on.screenshot({ path: join(kPictures, `${name}.png`) });
   await assert_accessible(on, name);
@@ -139,7 +139,7 @@ test("every format of the store is a download, with the bytes that the command w
   for (const { format, files } of formats) {
     for (const name of files) {
       const { status, bytes } = await get(`/api/export/${format}/${name}`);
-      // The map has no zones: masks and zone sets are of none.
+      // Masks and zone sets contain no zones, because the map has none.
       assert.equal(status, 200, `${format}: ${bytes.toString().slice(0, 200)}`);
       assert.ok(bytes.length > 0, name);
     }
@@ -177,7 +177,7 @@ test("without a robot nothing says that one was stopped or explores", async () =
 });
 
 test("snapshots are made, compared and restored", async () => {
-  // Half of the drive as a snapshot of the whole one: a snapshot is a database that may be copied elsewhere.
+  // Stores half of the drive as a snapshot of the whole one: a snapshot is a database that may be copied elsewhere.
   await robot.end("web");
   await robot.end("map_store");
   await robot.start_store("--continue", file("half/map.pb"), "--out", file("store_half"), "--new");
@@ -193,7 +193,7 @@ test("snapshots are made, compared and restored", async () => {
   await page.fill("#snapshot-name", "whole");
   await page.getByRole("button", { name: "Make a snapshot" }).click();
   await text(".snapshots h3", /^whole$/);
-  // Names are read whole.
+  // Fields are wide enough for whole names.
   for (const [field, width] of [["#snapshot-name", 200], ["#compare-before", 300], ["#compare-after", 300]]) {
     assert.ok((await page.locator(field).boundingBox()).width >= width, field);
   }
@@ -211,7 +211,7 @@ test("snapshots are made, compared and restored", async () => {
   const none = await areas("whole", "");
   assert.deepEqual([none.gone_m2, none.new_m2, none.seen_m2, none.lost_m2], [0, 0, 0, 0]);
   const grown = await areas("half", "");
-  // What two sides of the corridor do not show of it: most of the 2 x 5 m behind the block.
+  // Most of the 2 x 5 m behind the block, which the first two sides of the corridor do not show.
   assert.ok(grown.seen_m2 > 5 && grown.seen_m2 < 11, JSON.stringify(grown));
   assert.ok(grown.gone_m2 < 1 && grown.new_m2 < 1, JSON.stringify(grown));
   await picture("time-versions");
@@ -222,7 +222,7 @@ test("snapshots are made, compared and restored", async () => {
   await row.getByRole("button", { name: "Restore" }).click();
   await row.getByRole("button", { name: "Restore it" }).click();
   await text(".notice", /becomes that of snapshot half/);
-  // It is not asked again, and what differed from the map of before is off the map.
+  // The question is gone, and so are the differences from the previous map.
   assert.equal(await page.getByRole("button", { name: "Restore it" }).isVisible(), false);
   assert.equal(await page.getByText("Seen since").first().isVisible(), false);
   await wait_for("the map of half", async () => {
@@ -234,7 +234,7 @@ test("snapshots are made, compared and restored", async () => {
   assert.deepEqual(page.faults, []);
 });
 
-/** Offers a map file on the page; what it says of it. */
+/** Offers a map file on the page, and returns the page's answer. */
 async function offer(name, pattern) {
   await page.setInputFiles("#merge-file", name);
   return text(".merge-result", pattern);
@@ -275,7 +275,7 @@ test("another map of the place is merged once the operator has seen and accepted
 
   const shown = await offer(file("evening/map.pb"), /map\.pb joins the map/);
   const joined = Number(/(\d+) stops of the smaller map/.exec(shown)[1]);
-  assert.ok(joined > total / 2, shown); // the morning is the smaller one
+  assert.ok(joined > total / 2, shown); // the map of the morning is the smaller one
   await page.getByRole("button", { name: "Make it the map" }).click();
   await text(".notice", /becomes that of snapshot merged-/);
   await wait_for("the merged map", async () => {
@@ -287,7 +287,7 @@ test("another map of the place is merged once the operator has seen and accepted
   assert.deepEqual(page.faults, []);
 });
 
-/** A service whose robot has come to two rooms that look alike. */
+/** A service whose robot has seen two rooms that look alike. */
 class TwoRooms extends StandIn {
   async answer(route) {
     const url = new URL(route.request().url());

@@ -1,5 +1,5 @@
 // Measures the page with a large map, without a robot: a floor of 2 x 2 km with 100,000 branch points.
-//   ctest --test-dir build -R browser.page    fetches what drives the browser
+//   ctest --test-dir build -R browser.page    fetches the browser driver
 //   TOPOGEO_BUILD=build node tests/browser/large_map.mjs
 import { existsSync, readFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -47,7 +47,7 @@ function picture() {
   ]);
 }
 
-// A walk of steps of 0.3 m from a point of a lattice; always the same.
+// A path in steps of 0.3 m from a point of a lattice; always the same.
 function branch(number) {
   const points = [];
   let x = (number % 45) * (kSide_m / 45);
@@ -106,7 +106,7 @@ async function open(browser) {
   return page;
 }
 
-// Milliseconds of script and of layout for each frame while the map is dragged to and fro.
+// Milliseconds of script and of layout for each frame while the map is dragged back and forth.
 async function drag(page) {
   const session = await page.context().newCDPSession(page);
   await session.send("Performance.enable");

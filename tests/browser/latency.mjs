@@ -1,11 +1,11 @@
-// How long a pose takes from its message to the screen, in parts, and what viewers cost the localizer. Prints a table;
-// asserts nothing.
+// Latency of a pose from its message to the screen, in parts, and the cost of viewers for the localizer. Prints a
+// table; asserts nothing.
 //
 //   TOPOGEO_BUILD=$PWD/build TOPOGEO_SOURCE=$PWD node tests/browser/latency.mjs [SECONDS=20] [VIEWERS=20]
 //
-// A simulated robot turns on the spot; all clocks are that of this machine. The stamp of a pose is when the base sent its
-// odometry, its message leaves the localizer, is heard by the web service, comes to the page, and is on the screen when
-// the frame after the one that draws it begins.
+// A simulated robot turns on the spot; all clocks are that of this machine. The stamp of a pose is the time at which
+// the base sent its odometry. The localizer sends the pose, the web service receives it, the page receives it, and it
+// is on the screen when the frame after the one that draws it begins.
 import { mkdtempSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
@@ -24,7 +24,7 @@ const browser = await browsers.launch({
   args: ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"],
 });
 
-/** Notes, in a page, the ages of each pose in ms: since its odometry, its message, the web service, the page. */
+/** In a page: logs the ages of each pose in ms since its odometry, its message, the web service, the page. */
 function watch_poses() {
   window.drawn = [];
   const Plain = window.WebSocket;
@@ -54,7 +54,7 @@ function watch_poses() {
   };
 }
 
-/** In a page: so many that get everything and show nothing. */
+/** In a page: opens viewers that get everything and show nothing. */
 function open_viewers(count) {
   window.sockets = Array.from({ length: count }, () => {
     const socket = new WebSocket(`ws://${location.host}/ws`);
@@ -82,7 +82,7 @@ try {
     await crowd.evaluate(open_viewers, others);
     await page.evaluate(() => (window.drawn.length = 0));
     const before = { localizer: robot.cpu_s("localizer"), web: robot.cpu_s("web") };
-    await new Promise((resolve) => setTimeout(resolve, 1000 * seconds)); // poses of this time are measured
+    await new Promise((resolve) => setTimeout(resolve, 1000 * seconds)); // poses of these seconds are measured
     const cpu = (name) => ((1000 * (robot.cpu_s(name) - before[name])) / seconds).toFixed(1);
     const drawn = await page.evaluate(() => window.drawn);
     const quantiles = (part) => {

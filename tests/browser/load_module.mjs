@@ -5,7 +5,7 @@ import { pathToFileURL } from "node:url";
 
 const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source } = process.env;
 
-/** esbuild takes types away, as for the page. */
+/** esbuild strips the types, as for the page. */
 export async function load(module) {
   const out = join(build, "tests/browser/modules", `${module.replace("/", "_")}.mjs`);
   const file = join(source, "services/web/page/src", `${module}.ts`);

@@ -1,5 +1,5 @@
 // Parts of the page that need no browser: the copy of the tables, the frame of the pictures, numbers of goals, units;
-// drawing_test.mjs has those of the edit mode.
+// drawing_test.mjs tests those of the edit mode.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { load } from "./load_module.mjs";
@@ -24,7 +24,7 @@ test("tables follow deltas, and nothing is taken on a version that is not held",
   assert.equal(channels.apply(delta(3, 5, { d: 1 })), false);
   assert.deepEqual(Object.fromEntries(channels.table("events")), { b: 5, c: 6 });
   assert.deepEqual(channels.held(), { events: 4 });
-  // A snapshot takes the place of everything.
+  // A snapshot replaces the whole value.
   assert.equal(channels.apply(delta(0, 1, { z: 9 })), true);
   assert.deepEqual(Object.fromEntries(channels.table("events")), { z: 9 });
   assert.deepEqual(
@@ -166,7 +166,7 @@ test("numbers have units, and what is not known is a dash", () => {
   );
 });
 
-/** A square room of 4 x 4 m as a stop in its middle sees it: points every 5 cm. */
+/** A square room of 4 x 4 m seen from its middle: points every 5 cm. */
 function room_points() {
   const points = [];
   for (let s = -2; s < 2; s += 0.05) points.push(2, s);
@@ -183,7 +183,7 @@ test("two stops agree as far as they see the same walls", () => {
   assert.deepEqual(same, { overlap: 1, near: 1 });
   assert.deepEqual(agreement(room, room, at(0, 0, Math.PI / 2)), { overlap: 1, near: 1 });
   assert.equal(agreement(room, room, at(50, 0)).overlap, 0);
-  // Shifted by half a room: half of its points lie in the other's view, and of these the parts of two walls.
+  // Shifted by half a room: half of its points lie in the other's view, and half of these on its walls.
   const shifted = agreement(room, room, at(2, 0));
   assert.ok(Math.abs(shifted.overlap - 0.5) < 0.05, JSON.stringify(shifted));
   assert.ok(Math.abs(shifted.near - 0.5) < 0.07, JSON.stringify(shifted));
@@ -206,7 +206,7 @@ test("a drive plays by its stamps, without long pauses, and shows what was seen 
   assert.deepEqual(film.times_s, [0, 2, 7, 8]);
   assert.deepEqual([0, 1.9, 2, 7.5, 8].map((time_s) => film.stop_at(time_s)), [0, 0, 1, 2, 3]);
   assert.equal(film.pose_at(1).x_m, 5);
-  assert.equal(film.pose_at(7.5).x_m, 20); // on the way to where nobody knows
+  assert.equal(film.pose_at(7.5).x_m, 20); // on the path to an unknown pose
   assert.equal(film.pose_at(8), null);
   film.see(0, 4);
   for (const [index, rooms] of [
@@ -287,7 +287,7 @@ test("the first value of a connection is as old as the service says, the next on
   tell("pose", pose);
   assert.equal(channels.age_ms("pose"), 0);
   assert.equal(robot_state(channels, rights).name, "TRACKING");
-  // A base that reports the same again and again is not sent anew: its age is.
+  // An unchanged report of the base is not sent again, only its age.
   tell("time", { time_s: 2, ages_s: { pose: 3, base: 0.2 } });
   assert.equal(channels.age_ms("base"), 200);
   assert.match(robot_state(channels, rights).reason, /\(3 s old\)$/);

@@ -1,5 +1,5 @@
-// The page with a service that stands in: signs while an answer is waited for, words that contradict nothing, the
-// keyboard alone, the panel on small screens.
+// The page with a stub service: signs of waiting for an answer, texts without contradictions, the keyboard alone, the
+// panel on small screens.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
@@ -27,16 +27,16 @@ before(async () => {
 
 after(() => close(browser));
 
-/** A robot whose localizer answers when the test lets it. */
+/** A robot whose localizer answers on the test's command. */
 class SlowLocalizer extends StandIn {
-  answers = []; // to give
+  answers = []; // pending
 
   constructor() {
     super(join(build, "share/topogeo/web"));
     this.offers = [...this.offers, "pose", "search", "mode"];
   }
 
-  /** A page of it, without waiting for a state. */
+  /** Opens a page without waiting for a state. */
   async serve_with(of, use) {
     const context = await new_context(of, { viewport: kSizes.desk });
     await this.serve(context);
@@ -89,7 +89,7 @@ test("an order that is not answered shows that it waits, and at the end that nob
   await service.answers.shift()(503, { error: "no localizer has answered" });
   await text(page, ".notice", /No localizer has answered/);
   assert.equal(await page.getByText("Nothing has answered yet").count(), 0);
-  assert.equal(await apply.isEnabled(), true); // with the numbers as they were
+  assert.equal(await apply.isEnabled(), true); // the numbers are unchanged
   await apply.click();
   await text(page, ".notice", /Sent, waiting/);
   await service.answers.shift()(200, { accepted: true });
@@ -156,7 +156,7 @@ test("while it explores, what is left is that to the next point", async () => {
 
 const kBase = { reason: "", battery_v: 12, battery_low: false, commands_taken: true };
 
-/** The banners, which the stand-in hides so that the map keeps its size. */
+/** Shows the banners, which the stub hides so that the map keeps its size. */
 const show_banners = (page) => page.addStyleTag({ content: ".banners { display: block !important }" });
 
 test("a stop is not done before the base itself reports it", async () => {
@@ -171,7 +171,7 @@ test("a stop is not done before the base itself reports it", async () => {
   await wait_for("both orders", () => service.orders.includes("stop") && service.ops.includes("stop"));
   service.show("base", { ...kBase, state: "moving" });
   service.show("pose", kPose);
-  await after_in_page(page, 100); // two frames, in which it would change
+  await after_in_page(page, 100); // two frames, time for a wrong change
   assert.equal(await page.locator("#stop-sent").isVisible(), true);
   assert.equal(await page.getByText("The robot is stopped and held").count(), 0);
   await assert_accessible(page, "a stop that is not confirmed");
@@ -261,7 +261,7 @@ test("orders to drive have a time, and a page that stood still lets go", async (
     performance.now = () => now() + 6000;
   });
   await wait_for("the robot is let go", () => service.ops.at(-1) === "release");
-  await after_in_page(page, 300); // three orders, which would be wrong
+  await after_in_page(page, 300); // time for three wrong orders
   assert.equal(service.ops.at(-1), "release");
   await page.keyboard.up("w");
   await end(opened);
@@ -301,7 +301,7 @@ test("without a connection nothing is said of goals", async () => {
   assert.equal(await page.getByText("No navigator is running").filter({ visible: true }).count(), 0);
   service.reachable = true;
   await text(page, ".section h3", /The robot has no goal/);
-  // A goal that was sent before the service began anew, or from elsewhere.
+  // The goal was sent from elsewhere, or before the service restarted.
   service.show("navigator", { state: "driving", reason: "none", message: "drives" });
   await text(page, ".section h3", /has a goal that was not sent from here/);
   await end(opened);
@@ -345,9 +345,9 @@ test("without a navigator the robot cannot be sent, which is said once", async (
   await end(opened);
 });
 
-/** Passes time of the page itself: where nothing must happen, a slow machine can only hide a fault. */
+/** Waits in the page: when nothing must happen, a slow machine can only hide a fault. */
 function after_in_page(page, ms) {
-  // The page is late with all that it does where the machine is, with this timer too.
+  // On a slow machine this timer of the page is late together with the rest of the page.
   return page.evaluate((time_ms) => new Promise((resolve) => setTimeout(resolve, time_ms)), ms);
 }
 
@@ -370,7 +370,7 @@ test("the keyboard alone finds its way, and sees where it is", async () => {
   await page.keyboard.press("ArrowUp");
   assert.equal(await focused(), "tab-time");
 
-  // The map shows its focus also after it was touched, where Leaflet takes the outline away.
+  // A map that was clicked also shows its keyboard focus, though Leaflet removes the outline.
   await page.locator("#map").click({ position: { x: 200, y: 300 } });
   await page.locator("#stop").focus();
   await page.keyboard.press("Tab");
@@ -378,7 +378,7 @@ test("the keyboard alone finds its way, and sees where it is", async () => {
   const ring = () => page.locator("#map").evaluate((map) => getComputedStyle(map).outlineStyle);
   assert.equal(await ring(), "solid");
 
-  // The number of a view opens it and leaves the map alone, which plus zooms and arrows move.
+  // A view's number key opens it and does not move the map; plus zooms and arrows move it.
   const scale = () => page.locator(".scale").innerText();
   const empty = await scale();
   show_squares(opened.service, 256);
@@ -386,18 +386,18 @@ test("the keyboard alone finds its way, and sees where it is", async () => {
   const shown = await scale();
   for (const key of "123456") await page.keyboard.press(key);
   assert.equal(await page.getAttribute("#tab-time", "aria-selected"), "true");
-  await after_in_page(page, 500); // a zoom, which would be wrong, lasts a quarter of a second
+  await after_in_page(page, 500); // a wrong zoom would last a quarter of a second
   assert.equal(await scale(), shown);
   await page.keyboard.press("+");
   await wait_for("the map is zoomed", async () => (await scale()) !== shown);
   const zoomed = await scale();
   await page.keyboard.press("ArrowLeft");
-  // It stays so when the map grows, as after a drag.
+  // The view stays when the map grows, as after a drag.
   show_squares(opened.service, 1024);
   await after_in_page(page, 700); // as above
   assert.equal(await scale(), zoomed);
 
-  // The ring around a name is not cut off by the list, which scrolls.
+  // The scrolling list does not cut off the focus ring around a name.
   await page.click("#tab-send");
   const name = await page.locator(".names .button").first().boundingBox();
   const names = await page.locator(".names").boundingBox();

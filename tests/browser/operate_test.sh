@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The page in Chromium with a service that stands in: waiting, words, keyboard, small screens.
+# The page in Chromium with a stub service: waiting, texts, keyboard, small screens.
 source "$(dirname "${BASH_SOURCE[0]}")/browser.sh"
 
 need_browser

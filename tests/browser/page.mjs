@@ -1,4 +1,4 @@
-// The operator's page in a browser, for tests: pages of a robot, and what they show.
+// The operator's page in a browser, for tests: the pages of a robot and their contents.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdirSync } from "node:fs";
@@ -12,7 +12,7 @@ const packages = createRequire(join(build, "tests/browser/"));
 const playwright = packages("playwright-core");
 const axe = packages.resolve("axe-core/axe.min.js");
 
-/** Where screenshots go. */
+/** Folder for screenshots. */
 export const kPictures = join(build, "tests/browser/screenshots");
 mkdirSync(kPictures, { recursive: true });
 
@@ -30,14 +30,14 @@ export function launch() {
   });
 }
 
-/** A context whose pages wait for what a click needs until it counts as a hang. */
+/** A context whose pages wait for the target of a click up to the hang limit. */
 export async function new_context(browser, options) {
   const context = await browser.newContext(options);
   context.setDefaultTimeout(kHangLimit_ms);
   return context;
 }
 
-/** Ends a browser, if there is one; by force when it hangs at its end, which is nothing of ours. */
+/** Closes a browser, if there is one; kills it when it hangs while closing, which is not the page's fault. */
 export async function close(browser) {
   if (!browser) return;
   const closed = browser.close();
@@ -47,13 +47,13 @@ export async function close(browser) {
   await closed;
 }
 
-/** A browser beside a simulated robot, which both run from start() to stop(). */
+/** A browser beside a simulated robot; both run from start() to stop(). */
 export class WatchedRobot {
   constructor(robot) {
     this.robot = robot;
   }
 
-  /** Until the robot has a pose. */
+  /** Returns once the robot has a pose. */
   async start() {
     await this.robot.start();
     this.browser = await launch();
@@ -71,7 +71,7 @@ export class WatchedRobot {
     return this.channels.newest(channel);
   }
 
-  /** Until some more poses have come, one for each scan. */
+  /** Waits for some more poses, one for each scan. */
   async pass_poses(count) {
     for (let i = 0; i < count; ++i) {
       const last_s = (await this.newest("pose"))?.sent_s;
@@ -79,13 +79,13 @@ export class WatchedRobot {
     }
   }
 
-  /** Where it really is, in the map. */
+  /** True position of the robot, map frame. */
   async true_place() {
     return in_map(await this.newest("truth"));
   }
 }
 
-/** A page with the errors that it had. */
+/** A page that collects its errors. */
 export async function open_page(context, address) {
   const page = await context.newPage();
   page.faults = [];
@@ -107,7 +107,7 @@ export async function text(page, selector, pattern) {
   }
 }
 
-/** The rules of axe-core that look at colours. */
+/** The rules of axe-core that check colours. */
 export const kColorRules = ["color-contrast", "link-in-text-block"];
 
 /** Fails when axe-core finds something serious on a page, by all its rules or by `rules`. */
@@ -122,8 +122,8 @@ export async function assert_accessible(page, what, rules = undefined) {
 }
 
 /**
- * Watches whether the page stands still for a quarter of a second, or gets a press so late: with 0.3 s it lets go of the
- * robot. Returns a function that tells whether it did, since it was told to "forget" last.
+ * Watches whether the page freezes for a quarter of a second, or gets a press so late: after 0.3 s it releases the
+ * robot. Returns a function that returns whether it did since the last call with "forget".
  */
 export async function watch_standstill(page) {
   await page.evaluate(() => {

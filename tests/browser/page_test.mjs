@@ -1,5 +1,5 @@
-// The operator's page in a browser, with a simulated robot: the page is clicked as a person does, and the truth of the
-// simulator says what came of it.
+// The operator's page in a browser, with a simulated robot: the test clicks as a person does, and checks the result by
+// the simulator's truth.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
@@ -15,7 +15,7 @@ before(() => run.start());
 
 after(() => run.stop());
 
-/** A page of the operator (or of a spectator), with the errors that it had. */
+/** A page of the operator (or of a spectator) that collects its errors. */
 async function open(view, { token = robot.token, path = "/", options = undefined } = {}) {
   const own = options ? await new_context(run.browser, options) : run.context;
   const page = await open_page(own, `${robot.address}${path}${token ? `#token=${token}` : ""}`);
@@ -141,13 +141,13 @@ test("Stop holds the robot until it is released", async () => {
 });
 
 test("a restored map stays without what the drive under way has mapped since", async () => {
-  // Nothing while the map store or the localizer begin anew.
+  // Null while the map store or the localizer restart.
   const stops_stored = async () => {
     const answer = await fetch(`${robot.address}/api/drive`);
     return answer.ok ? (await answer.json()).total : null;
   };
   const go_to = async (place) => {
-    // Refused as long as nobody has published a map with this place.
+    // Refused until a map with this place is published.
     const goal = await wait_for(`${place} is known`, async () => (await robot.ask("goal", { place })).goal_id);
     await wait_for(
       `the robot is at ${place}`,
@@ -158,14 +158,14 @@ test("a restored map stays without what the drive under way has mapped since", a
     );
   };
   await go_to("base");
-  // Stops that were on their way when the robot arrived are in it or not.
+  // The snapshot may miss stops that were in transit when the robot arrived.
   const { snapshots } = await robot.ask("snapshot", { name: "before-the-tour" });
   const before = snapshots.find(({ name }) => name === "before-the-tour").stops;
   await go_to("room A");
   await wait_for("stops of the tour", async () => (await stops_stored()) > before + 1);
   assert.equal(await robot.post("restore", { name: "before-the-tour" }), 200);
   await wait_for("the localizer begins anew", () => robot.has_logged("localizer", "begins anew with it"));
-  const begun_s = Date.now() / 1000; // poses that were sent before are those of the localizer of before
+  const begun_s = Date.now() / 1000; // earlier poses are those of the previous localizer
   await wait_for(
     "the robot knows where it is",
     async () => {
@@ -175,7 +175,7 @@ test("a restored map stays without what the drive under way has mapped since", a
       return Math.hypot(at.x_m - pose.x_m, at.y_m - pose.y_m) < 0.3;
     },
   );
-  // The robot goes on in it, from where it stands: one more stop. Those of the tour do not come back.
+  // The robot continues in the restored map from its position, with one more stop. The tour's stops do not come back.
   const stops = await wait_for("the restored map", stops_stored);
   assert.ok(stops >= before && stops <= before + 1, `${stops} stops, ${before} in the snapshot`);
   await go_to("base");
@@ -210,7 +210,7 @@ test("the panel sends by number", async () => {
   await end(page);
 });
 
-// Last: a robot that stands after this has a pose, and knows at its next stop whether it is the right one.
+// Last, because the standing robot then has a pose that is confirmed only at its next stop.
 test("the pose is set by dragging, in a map that stays as it is", async () => {
   const page = await open("correct");
   await wait_for("no pose is chosen while the robot maps", () =>
@@ -220,7 +220,7 @@ test("the pose is set by dragging, in a map that stays as it is", async () => {
   await text(page, "button", /Map from now on/);
   await page.getByRole("button", { name: "Set on the map" }).click();
   const at = await run.newest("pose");
-  // A drag on the map fills the fields; then the pose is typed, for the robot is to stay where it is.
+  // A drag on the map fills the fields; then the true pose is typed, so that the robot stays localized.
   const shown = await page.inputValue("#pose-x");
   const box = await page.locator("#map").boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);

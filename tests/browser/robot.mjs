@@ -4,12 +4,12 @@ import { existsSync, mkdirSync, openSync, readFileSync, writeFileSync } from "no
 import { createServer } from "node:net";
 import { join } from "node:path";
 
-/** A wait that lasts longer is a hang, see tests/container/common.sh. No verdict depends on it. */
+/** A longer wait is a hang, see tests/container/common.sh. No verdict depends on it. */
 export const kHangLimit_ms = 1000 * Number(process.env.TOPOGEO_HANG_LIMIT_S ?? 300);
 
 /**
- * Waits until `check` gives something true, which is returned. Prints every ten seconds what it waits for, and fails
- * with it after a hang.
+ * Waits until `check` returns something true, and returns it. Prints every ten seconds what it waits for, and fails
+ * with that text after a hang.
  */
 export async function wait_for(what, check) {
   const begun_ms = performance.now();
@@ -27,8 +27,8 @@ export async function wait_for(what, check) {
 }
 
 /**
- * Holds a key until `check` gives something true, as wait_for does. It repeats the key, as keyboards do: a page that stood
- * still lets go of the robot and has to be told again.
+ * Holds a key until `check` returns something true, like wait_for. It repeats the key, as keyboards do: a page that
+ * froze releases the robot and needs the key again.
  */
 export function hold_key(page, key, what, check) {
   return wait_for(what, async () => {
@@ -37,16 +37,16 @@ export function hold_key(page, key, what, check) {
   });
 }
 
-/** Whether a promise is fulfilled before it counts as a hang. */
+/** Whether a promise is fulfilled within the hang limit. */
 export function ends(promise) {
   let timer;
   const late = new Promise((resolve) => {
-    timer = setTimeout(() => resolve(false), kHangLimit_ms); // of hangs alone
+    timer = setTimeout(() => resolve(false), kHangLimit_ms); // expires only in a hang
   });
   return Promise.race([promise.then(() => true), late]).finally(() => clearTimeout(timer));
 }
 
-/** Ends a process by a signal; one that does not end is killed, and fails with where its threads wait. */
+/** Ends a process by a signal; if it hangs, kills it and fails with the stacks of its threads. */
 async function end_process(name, { process: running, ended }, signal) {
   running.kill(signal);
   if (await ends(ended)) return;
@@ -66,14 +66,14 @@ function free_port() {
   });
 }
 
-// The map begins where the robot starts, at (1, 1) of the world, and looks along x.
+// The map's origin is the robot's start, at (1, 1) of the world, with the x axis ahead.
 const kStart = { x_m: 1, y_m: 1 };
 const kPlaces = `places:
   - {name: room A, at: [3, 0]}
   - {name: base, at: [0, 0]}
 `;
 
-/** What its web service is ordered and asked. */
+/** Requests to its web service. */
 class Orders {
   token = "token-of-the-test";
 
@@ -81,12 +81,12 @@ class Orders {
     return `http://127.0.0.1:${this.port}`;
   }
 
-  /** POST of an order, its status code. */
+  /** Posts an order and returns the status code. */
   async post(order, body, token = this.token) {
     return (await this.send(order, body, token)).status;
   }
 
-  /** POST of a question, its answer. */
+  /** Posts a request and returns the answer. */
   async ask(order, body) {
     return (await this.send(order, body, this.token)).json();
   }
@@ -98,7 +98,7 @@ class Orders {
   }
 }
 
-/** All services as processes of their own, which can be ended one by one. */
+/** All services as separate processes, which can be ended one by one. */
 export class Robot extends Orders {
   processes = new Map();
 
@@ -140,14 +140,14 @@ export class Robot extends Orders {
     await this.start_web();
   }
 
-  /** Starts a map store with these options, and the web service: no robot. */
+  /** Starts a map store with these options, and the web service, without a robot. */
   async start_store(...options) {
     this.run("map_store", ...options);
     this.port ??= await free_port();
     await this.start_web();
   }
 
-  /** Starts the web service at the port that it had before. */
+  /** Starts the web service at its previous port. */
   async start_web() {
     this.run("web", "--port", String(this.port), "--token", this.token);
     await wait_for("the web service answers", () => fetch(`${this.address}/api/info`).catch(() => null));
@@ -157,7 +157,7 @@ export class Robot extends Orders {
     const log = openSync(join(this.work, `${name}.log`), "a");
     const started = spawn(join(this.bin, name), options, {
       stdio: ["ignore", log, log],
-      // Killed programs leave shared memory behind at which others can wait.
+      // Killed programs leave shared memory behind, and others can wait at its locks.
       env: { ...process.env, TOPOGEO_DDS_PARTICIPANT: "udp_only" },
     });
     const ended = new Promise((resolve) => started.on("exit", resolve));
@@ -186,7 +186,7 @@ export class Robot extends Orders {
     if (failed) throw failed.reason;
   }
 
-  /** Whether a service has said so since the test began. */
+  /** Whether a service has logged this text since the test began. */
   has_logged(name, text) {
     return this.output(name).includes(text);
   }
@@ -204,7 +204,7 @@ export class Robot extends Orders {
   }
 }
 
-/** The same robot by `topogeo run`, as an operator starts it: it takes floors for its simulator. */
+/** The same robot started by `topogeo run`, which accepts floors for its simulator. */
 export class SimulatedRun extends Orders {
   /** bin: folder of the programs; source: of the project; work: where files go. */
   constructor(bin, source, work) {
@@ -230,7 +230,7 @@ export class SimulatedRun extends Orders {
   }
 }
 
-/** Where the robot truly is, in the frame of the map, of the channel `truth`. */
+/** True position of the robot, map frame, from the channel `truth`. */
 export function in_map(truth) {
   return { x_m: truth.x_m - kStart.x_m, y_m: truth.y_m - kStart.y_m };
 }

@@ -1,5 +1,5 @@
-// A service in the test itself, for what a page does before there is a robot: files of the page, the drawing with its
-// versions, outlines of rooms. No process, no port: the browser's requests are answered here.
+// A stub service inside the test, for the page's behaviour without a robot: files of the page, the drawing with its
+// versions, outlines of rooms. It has no process and no port: it answers the browser's requests here.
 import { readFileSync } from "node:fs";
 import { extname, join } from "node:path";
 
@@ -7,7 +7,7 @@ const kTypes = { ".html": "text/html", ".js": "text/javascript", ".css": "text/c
 export const kAddress = "http://stand-in.test";
 const kRobot = "stand-in";
 const kTable = { x_m: -3, y_m: 0 }; // in the left room
-// The map keeps its size, so that tests know where a point of it is on the screen.
+// The map keeps its size, so that tests can compute screen positions.
 const kSteady = ".banners { display: none } .header { height: 72px; overflow: hidden }";
 
 const empty = () => ({ places: [], zones: [], walls: [], openings: [], doors: [] });
@@ -17,12 +17,12 @@ export class StandIn {
   version = 1;
   floors = [];
   exploring = false;
-  previews = 0; // asked for
+  previews = 0; // number of requested previews
   ops = []; // of messages that pages sent
-  messages = []; // the same, whole
-  orders = []; // that pages sent by POST and that it only takes
-  reachable = true; // by WebSocket
-  ages_s = undefined; // how long ago each value was heard
+  messages = []; // the same messages, whole
+  orders = []; // sent by pages by POST and only recorded
+  reachable = true; // through the WebSocket
+  ages_s = undefined; // time since each value was received
   offers = ["goal", "preview", "drawing", "room_shapes", "floor", "explore", "cancel", "stop", "release"];
   /** Two rooms of 4 x 4 m that meet at x = 0; zone 0 lies left. */
   rooms = {
@@ -36,20 +36,20 @@ export class StandIn {
     this.page_files = page_files;
   }
 
-  /** Answers all that pages of a browser context ask. */
+  /** Answers all requests of a browser context's pages. */
   async serve(context) {
     await context.route("**/*", (route) => this.answer(route));
     await context.routeWebSocket("**/ws", (socket) => this.connect(socket));
   }
 
-  /** Somebody else saves. */
+  /** Saves as another editor. */
   save_elsewhere(drawing) {
     this.drawing = { ...empty(), ...drawing };
     ++this.version;
     this.tell({ channel: "drawing", version: this.version, value: { version: String(this.version) } });
   }
 
-  /** Ends all connections; none comes again before `reachable` is set. */
+  /** Ends all connections; pages cannot reconnect before `reachable` is set. */
   cut() {
     this.reachable = false;
     for (const socket of this.sockets) socket.close();
@@ -158,7 +158,7 @@ export class StandIn {
   }
 }
 
-// The two rooms, joined or cut by an upright line.
+// The two rooms, joined, or cut by a vertical line.
 function room_shapes({ zones, cut_m }) {
   const left = zones.includes(0) ? -4 : 0;
   const right = zones.includes(1) ? 4 : 0;

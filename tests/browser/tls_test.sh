@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The web service behind a certificate: HTTPS and a WebSocket over TLS work, plain HTTP and old TLS do not.
+# The web service with a certificate: HTTPS and a WebSocket over TLS work, plain HTTP and old TLS do not.
 source "$(dirname "${BASH_SOURCE[0]}")/../container/common.sh"
 
 need openssl curl python3

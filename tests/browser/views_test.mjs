@@ -1,5 +1,5 @@
-// Every view of the operator's page with a robot that stands: what screen readers, keyboards and eyes need is there, in
-// all sizes and both schemes. Screenshots of all of them.
+// Every view of the operator's page with a robot that stands still: accessible to screen readers, keyboards and eyes,
+// in all sizes and both schemes. Takes screenshots of all views.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test } from "node:test";

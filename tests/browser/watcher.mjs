@@ -1,5 +1,5 @@
-// Another viewer, beside the page: what the service sends, without the page in between. Runs in the browser, because
-// the Node of Debian has no WebSocket.
+// A second viewer beside the page, which reads the service's messages directly. Runs in the browser, because Debian's
+// Node has no WebSocket.
 
 /** Opens a blank page of the service's origin that keeps the newest value of each channel. */
 export async function watch(context, address) {
@@ -15,7 +15,7 @@ export async function watch(context, address) {
         const message = JSON.parse(data);
         if (message.channel) window.newest[message.channel] = message.value;
       };
-      socket.onclose = () => setTimeout(connect, 300); // the service starts again meanwhile
+      socket.onclose = () => setTimeout(connect, 300); // the service is restarting
     };
     connect();
   });
