@@ -1,5 +1,5 @@
-// Writes motion commands in the name of the navigator until it is stopped, and prints how many it
-// has written; for the test of security.
+// Writes motion commands in the name of the navigator until it is stopped, and prints their number;
+// for the test of security.
 //   command_writer DOMAIN PARTITION
 #include <chrono>
 #include <cstdint>
@@ -30,7 +30,7 @@ void write_commands(const std::string& domain, const std::string& partition) {
   messaging::Writer<msg::MotionCommand> commands(participant);
   messaging::EventLoop loop;
   std::uint64_t written = 0;
-  // As often as the navigator.
+  // The navigator's period.
   loop.add_timer(std::chrono::milliseconds(50), [&] {
     msg::MotionCommand command;
     messaging::set_header(command, "robot", 0, written);

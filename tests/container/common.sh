@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What the tests of this folder have in common. Sourced with the build folder as first argument of the test.
+# Shared functions of the tests of this folder. Sourced with the build folder as first argument of the test.
 set -euo pipefail
 
 source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -9,9 +9,9 @@ work=$(mktemp -d)
 cleanups=()
 keepers=()  # commands that add logs to $work before a test that failed cleans up
 
-# keep_files: copies what explains a failure, logs of services included, to build/tests/failed/NAME when ctest runs the
-# test, else to $TOPOGEO_TEST_KEEP/NAME. With KEEP alone all stays where it is, and this fails. Maps, logs of scans and
-# programs can be made again.
+# keep_files: copies files that explain a failure, logs of services included, to build/tests/failed/NAME when ctest runs
+# the test, else to $TOPOGEO_TEST_KEEP/NAME. With KEEP alone, all files stay in place and it fails. Maps, logs of scans
+# and programs are left out, because they can be made again.
 keep_files() {
   local keeper kept
   for keeper in "${keepers[@]}"; do eval "$keeper" > /dev/null 2>&1 || true; done
@@ -30,7 +30,7 @@ keep_files() {
   echo "kept: $kept" >&2
 }
 
-# The last thing that was to be cleaned up goes first; files are kept before, while containers are still there.
+# Runs the last cleanup first; keeps files before that, while containers still exist.
 clean_up() {
   local status=$? stays='' i
   if [ $status -ne 0 ] && [ $status -ne 77 ]; then keep_files || stays=1; fi
@@ -42,13 +42,13 @@ trap clean_up EXIT
 step() { printf '%3d s: %s\n' $SECONDS "$*"; }
 fail() { printf 'FAILED: %s\n' "$*" >&2; exit 1; }
 
-# skip REASON [COMMAND]: ends the test as skipped. COMMAND is what makes it run. Readers of the output rely on the form.
+# skip REASON [COMMAND]: ends the test as skipped; COMMAND makes it run. Other programs parse this output.
 skip() {
   [ "${TOPOGEO_NO_SKIPS:-}" != 1 ] || fail "it would be skipped, and TOPOGEO_NO_SKIPS is 1: $1"
   printf 'skipped: %s; %s makes it run\n' "$1" "${2:-./run build}"
   exit 77  # SKIP_RETURN_CODE
 }
-# installs PROGRAM...: the command that does.
+# installs PROGRAM...: prints the command that installs them.
 installs() {
   local program stage stages=''
   for program in "$@"; do
@@ -63,13 +63,14 @@ installs() {
   done
   echo "./run packages --install$stages"
 }
-# need PROGRAM...: all of them, or the test is skipped.
+# need PROGRAM...: skips the test unless all of them are installed.
 need() {
   local program absent=()
   for program in "$@"; do command -v "$program" > /dev/null || absent+=("$program"); done
   [ ${#absent[@]} -eq 0 ] || skip "without ${absent[*]}" "$(installs "${absent[@]}")"
 }
-# there PROGRAM WITHOUT: for a part of a test; says what is WITHOUT it, and fails where CI is true, which installs all.
+# there PROGRAM WITHOUT: for a part of a test; prints what is WITHOUT it; fails when CI is true, because CI installs
+# all.
 there() {
   ! command -v "$1" > /dev/null || return 0
   [ "${CI:-}" != true ] || fail "$1 is not installed: $2"
@@ -77,7 +78,7 @@ there() {
   return 1
 }
 
-# Programs with a sanitizer in containers report where others of this build do. What looks for leaks traces its process.
+# Containers with a sanitizer report to the folder of this build. The leak checker traces its process.
 sanitizer_options=(ASAN_OPTIONS LSAN_OPTIONS UBSAN_OPTIONS TSAN_OPTIONS)
 sanitized=()
 if [ -n "${ASAN_OPTIONS:-}${TSAN_OPTIONS:-}" ]; then
@@ -90,7 +91,7 @@ if [ -n "${ASAN_OPTIONS:-}${TSAN_OPTIONS:-}" ]; then
   }
 fi
 
-# A wait that lasts longer is a hang: five minutes, longer on a slow machine. No verdict depends on it.
+# A longer wait is a hang: five minutes, longer on a slow machine. No verdict depends on it.
 hang_limit_s=$(awk -v factor="${TOPOGEO_TIME_FACTOR:-1}" 'BEGIN { print int(300 * (factor > 1 ? factor : 1)) }')
 
 # wait_for WHAT COMMAND...: until the command succeeds. Prints every ten seconds what it waits for; fails after a hang.
@@ -109,12 +110,12 @@ wait_for() {
     sleep 0.2  # between two checks
   done
 }
-# What a program of ours takes as patience in its options: it gives up when wait_for would.
-# shellcheck disable=SC2034  # of the tests
+# Patience of our programs, as options: they give up when wait_for would.
+# shellcheck disable=SC2034  # used by the tests
 patient=(--wait-seconds "$hang_limit_s" --patience "$hang_limit_s")
 
-# arrives COMMAND...: whether `topogeo goto` has brought the robot there, $work/goto.log has what it printed. It gives up
-# when it has not heard the navigator for ten seconds, as on a machine that is busy: then the goal is to be given again.
+# arrives COMMAND...: whether `topogeo goto` has brought the robot there; its output is in $work/goto.log. It gives up
+# after ten seconds without the navigator, for instance on a busy machine: then the goal must be sent again.
 arrives() {
   ! "$@" "${patient[@]}" > "$work/goto.log" 2>&1 || return 0
   tail -n 1 "$work/goto.log" | grep -q 'the navigator is gone\|the navigator does not take the goal' ||
@@ -124,7 +125,7 @@ arrives() {
 
 now_ms() { echo $(($(date +%s%N) / 1000000)); }
 
-# A DDS domain that no other test has, in VARIABLE.
+# Sets VARIABLE to a DDS domain that no other test uses.
 claim_domain_as() {  # VARIABLE
   local lock number
   for number in {1..100}; do
@@ -138,8 +139,8 @@ claim_domain_as() {  # VARIABLE
   fail "no free DDS domain from 1 to 100"
 }
 
-# One for all that is started from here on: a worker serves each partition of its domain, and this machine hears what
-# containers say to a bridge.
+# One domain for all that is started from here on, because a worker serves each partition of its domain, and this
+# machine receives what containers send to a bridge.
 claim_domain() {
   claim_domain_as TOPOGEO_DOMAIN
   export TOPOGEO_DOMAIN
@@ -152,7 +153,7 @@ need_programs() {
   done
 }
 
-# Two calls of Ninja in one folder would spoil each other's work.
+# Concurrent calls of Ninja in one folder would corrupt each other's work.
 lock_build() { exec 8> "$build/.packages.lock"; flock 8; }
 unlock_build() { exec 8>&-; }
 
@@ -160,7 +161,7 @@ make_manuals() {  # with the build locked
   ninja -C "$build" manuals > "$work/ninja.log" 2>&1 || { cat "$work/ninja.log"; fail "manual pages"; }
 }
 
-# Packages of the programs as they are now.
+# Makes packages of the current programs if needed.
 need_packages() {
   need dpkg-shlibdeps
   need_programs
@@ -178,7 +179,7 @@ need_packages() {
 
 need_engine() {
   need docker
-  # Of GCC 12; elsewhere than in a container ./run starts it with fixed addresses.
+  # A limit of GCC 12; outside containers ./run starts it with fixed addresses.
   [ -z "${TSAN_OPTIONS:-}${ASAN_OPTIONS:-}" ] || [ "$(cat /proc/sys/vm/mmap_rnd_bits)" -le 28 ] ||
     skip "the sanitizer does not know the addresses here" "sysctl vm.mmap_rnd_bits=28"
   docker info > /dev/null 2>&1 || skip "no container engine runs" tests/container/start_engine
@@ -186,7 +187,7 @@ need_engine() {
 
 image=topogeo-test
 
-# The image of the packages; the tests share it.
+# The image with the packages; the tests share it.
 need_image() {
   need_engine
   need_packages
@@ -197,7 +198,7 @@ need_image() {
     sha256sum | cut -c1-16)
   if [ "$(docker image inspect -f '{{ index .Config.Labels "key" }}' $image 2> /dev/null)" != "$key" ]; then
     local base=${BASE:-debian:bookworm}
-    # Where no registry answers, a mirror of packages does: two minutes for the one, then the other.
+    # Without a registry, a mirror of packages is the fallback, after two minutes.
     docker image inspect "$base" > /dev/null 2>&1 || timeout 120 docker pull -q "$base" > /dev/null 2>&1 ||
       "$source_dir/deploy/base-image.sh" "$base" > "$work/base.log" 2>&1 ||
       { tail -n 5 "$work/base.log"; skip "no base image can be pulled or made" "docker pull $base"; }
@@ -209,13 +210,13 @@ need_image() {
   exec 7>&-
 }
 
-# make_log N FILE: a log of the synthetic floor, its first N scans.
+# make_log N FILE: writes the first N scans of a log of the synthetic floor.
 make_log() {
   local all=$build/tests/container-floor.clf
   exec 6> "$build/.log.lock"
   flock 6
   if [ ! -e "$all" ]; then
-    # The demo writes the log first; what it makes of it is not needed here.
+    # The demo writes the log first; its map is not needed here.
     "$bin/topogeo" demo --out "$work/made_log" --workers 0 > "$work/made_log.log" 2>&1 ||
       { cat "$work/made_log.log"; fail "topogeo demo"; }
     gunzip -c "$work/made_log/floor.clf.gz" > "$all.new"
@@ -225,7 +226,7 @@ make_log() {
   awk -v most="$1" '/^FLASER/ && ++scans > most { exit } { print }' "$all" > "$2"
 }
 
-# map_alone N DIR: what one process makes of the first N scans, in a log of the name log.clf. Made once for all tests.
+# map_alone N DIR: the results of one process on the first N scans, in a log named log.clf. Made once for all tests.
 map_alone() {
   local kept
   make_log "$1" "$work/log.clf"

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Functions that the tests of compose.yaml share. Sourced after common.sh, with IMAGE, DOMAIN, SECURITY, LOG and OUT of
 # compose.yaml set.
-# shellcheck disable=SC2154  # common.sh sets what is not set here
+# shellcheck disable=SC2154  # common.sh sets these variables
 
 export TOPOGEO_DDS_PARTICIPANT=udp_only PARTICIPANT=udp_only
-profile=robot  # which is up
+profile=robot  # the active profile
 
 # make_certificates FOLDER
 make_certificates() {
@@ -14,11 +14,11 @@ make_certificates() {
 }
 secured() { TOPOGEO_SECURITY=$SECURITY "$bin/topogeo" "$@"; }
 
-# Health checks more often than each 30 s.
+# Health checks more often than every 30 s.
 { echo "services:"; printf '  %s: {healthcheck: {interval: 4s}}\n' \
   sensor_gateway navigator local_mapper localizer map_store planner worker; } > "$work/often.yaml"
 files=(-f "$source_dir/deploy/compose.yaml" -f "$work/often.yaml")
-if [ ${#sanitized[@]} -gt 0 ]; then  # as common.sh does with `docker run`; and more memory
+if [ ${#sanitized[@]} -gt 0 ]; then  # like common.sh for `docker run`, with more memory
   echo "services:" > "$work/sanitized.yaml"
   sed -nE '/^services:/,$ s/^  ([a-z_0-9]+):$/\1/p' "$source_dir/deploy/compose.yaml" | while read -r service; do
     printf '  %s:\n    mem_limit: 2g\n    cap_add: [SYS_PTRACE]\n    volumes: ["%s", "%s"]\n    environment:\n' "$service" \
@@ -29,7 +29,7 @@ if [ ${#sanitized[@]} -gt 0 ]; then  # as common.sh does with `docker run`; and 
 fi
 compose() { docker-compose -p "topogeo-$$" "${files[@]}" --profile "$profile" "$@"; }
 cleanups+=("compose down -t 5")
-# shellcheck disable=SC2016  # expanded when it is done
+# shellcheck disable=SC2016  # expanded when it runs
 keepers+=('compose logs --no-color > "$work/compose.log" 2>&1')
 up() { compose up -d "$@" > "$work/up.log" 2>&1 || { tail -n 5 "$work/up.log"; fail "compose up, profile $profile"; }; }
 down() { compose down -t "$hang_limit_s" > "$work/down.log" 2>&1 || { tail -n 5 "$work/down.log"; fail "compose down, profile $profile"; }; }
@@ -38,14 +38,14 @@ is_health() { [ "$(health "$1")" = "$2" ]; }                        # CONTAINER 
 all_healthy() { [ "$(health "$@" | sort | uniq -c | xargs)" = "$# healthy" ]; }
 # Sends a signal to the program of a container, below its init: signal NAME CONTAINER
 signal() { docker exec "$2" sh -c "kill -$1 \$(cat /proc/1/task/1/children)"; }
-# A service that hangs makes its own container unhealthy and no other one: one_is_unhealthy CONTAINER OTHERS...
+# one_is_unhealthy CONTAINER OTHERS...: a service that hangs makes only its own container unhealthy.
 one_is_unhealthy() {
   wait_for "healthy containers" all_healthy "$@" || { compose ps; fail "not all containers are healthy"; }
   signal STOP "$1"
   wait_for "an unhealthy container" is_health "$1" unhealthy || { compose ps; fail "a container whose service hangs is $(health "$1")"; }
-  # A check that a busy machine held up is no sign of it.
+  # A late health check on a busy machine is not counted as a failure.
   wait_for "healthy containers of the others" all_healthy "${@:2}" || { compose ps; fail "a service that hangs makes the containers of others unhealthy"; }
   signal CONT "$1"
-  # One that its peers have forgotten meanwhile ends, and is started again.
+  # A service that its peers have dropped meanwhile ends and is restarted.
   wait_for "healthy containers" all_healthy "$@" || { compose ps; fail "a container does not get well when its service goes on"; }
 }

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# The services of a robot from compose.yaml, with certificates, as the page of deployment has it: all are well and
-# healthy, the robot drives, who has no certificate sees nothing, and at the end the map is there. A service that hangs
-# makes its own container unhealthy.
+# The services of a robot from compose.yaml, with certificates, as on the deployment page: all are well and healthy, the
+# robot drives, a client without a certificate sees nothing, and the map is there at the end. A service that hangs makes
+# its own container unhealthy.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need_engine
 need docker-compose openssl
 need_image
 claim_domain
-claim_domain_as truth  # of the simulator, which is not of the robot, and has no certificate
+claim_domain_as truth  # domain of the simulator, which is outside the robot and has no certificate
 chmod 755 "$work"
 
 step "certificates, a laser and a base"
@@ -31,7 +31,7 @@ for device in laser base; do
 done
 
 step "the services"
-# shellcheck disable=SC2119  # of the whole profile
+# shellcheck disable=SC2119  # no argument: the whole profile
 up
 all_run() { secured status > "$work/status" 2>&1 && [ "$(grep -c ' running ' "$work/status")" = 6 ]; }
 wait_for "all services to be well" all_run || { cat "$work/status"; compose logs --tail 5; fail "not all services are well"; }

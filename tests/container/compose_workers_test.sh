@@ -21,13 +21,13 @@ up --scale worker=2
 both_there() { secured workers --json > "$work/workers" && [ "$(grep -c '"worker_id"' "$work/workers")" = 2 ]; }
 wait_for "both workers" both_there || { cat "$work/workers"; fail "not both workers are there"; }
 both_worked() { secured workers --json > "$work/workers" && [ "$(grep -c '"tasks_done": [1-9]' "$work/workers")" = 2 ]; }
-# Workers have a small share of the cores: where others want all of them, a robot may well be done before they are.
+# Workers have a small share of the cores: on a busy machine a robot may be done before they are.
 mapped_by_both() {
   rm -rf "$work/helped"
   secured run --log "$LOG" --out "$work/helped" --workers 0 --wait-workers 2 > "$work/run.log" 2>&1 ||
     { tail -n 5 "$work/run.log"; fail "topogeo run"; }
   same_results "$work/helped" "$work/alone"
-  both_worked  # they report twice a second; after a report that came too late there is another run
+  both_worked  # workers report twice a second; after a late report the run is repeated
 }
 wait_for "a run with work for both workers" mapped_by_both || { cat "$work/workers"; fail "not both workers had work"; }
 step "a worker that hangs"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# `topogeo doctor` finds faults that need a network, mounts and users of their own. Each case has namespaces for
-# itself, so the machine stays as it is.
+# `topogeo doctor` finds faults that need a network, mounts and users of their own. Each case has its own namespaces, so
+# the machine stays unchanged.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 [ -x "$bin/topogeo" ] || skip "topogeo is not built" "./run build"
@@ -8,7 +8,7 @@ need unshare ip setpriv python3
 unshare -m -n true 2> /dev/null || skip "this user may not make namespaces" "root, with CAP_SYS_ADMIN in a container,"
 chmod 755 "$work"
 
-# With these a machine is well; each case spoils one.
+# A machine without faults; each case breaks one of these.
 # shellcheck disable=SC2016  # expanded in the namespace
 well='
   ip link set lo up multicast on
@@ -19,8 +19,8 @@ well='
   mkdir -p "$work/map"
 '
 
-# examine NAME COMMANDS [PREFIX...]: runs the commands in new namespaces, then doctor behind the prefix. Its report is
-# in $work/NAME.json, its exit code in $work/NAME.code.
+# examine NAME COMMANDS [PREFIX...]: runs the commands in new namespaces, then doctor after the prefix. Its report is in
+# $work/NAME.json, its exit code in $work/NAME.code.
 examine() {
   local name=$1 commands=$2
   shift 2
@@ -39,7 +39,7 @@ examine() {
   ' bash "$well" "$commands" "$name" "$@" || fail "$name: the case cannot be made"
 }
 
-# expect NAME CHECK SEVERITY TEXT: the finding is there; a problem makes the exit code 1.
+# expect NAME CHECK SEVERITY TEXT: the finding is present; a problem makes the exit code 1.
 expect() {
   python3 - "$work/$1.json" "$(cat "$work/$1.code")" "$2" "$3" "$4" << 'PYTHON' || fail "$1"
 import json, sys
@@ -95,7 +95,7 @@ fi
 examine small_memory 'export TOPOGEO_DDS_PARTICIPANT=local; mount -t tmpfs -o size=4m,mode=1777 tmpfs /dev/shm'
 expect small_memory 'shared memory' problem '4 MB are free'
 
-# A segment whose program was killed: nobody holds the lock beside it.
+# A segment of a killed program: no process holds the lock beside it.
 examine left_behind '
   export TOPOGEO_DDS_PARTICIPANT=local
   head -c 4000000 /dev/zero > /dev/shm/fastrtps_0123456789abcdef
@@ -129,7 +129,7 @@ expect small_disk disk problem 'MB are free'
 examine few_files 'ulimit -n 64'
 expect few_files 'open files' problem '64 files'
 
-# A sanitizer takes terabytes of addresses.
+# A sanitizer reserves terabytes of address space.
 if [ ${#sanitized[@]} -eq 0 ]; then
   examine memory_limit 'ulimit -v 240000'
   expect memory_limit memory problem 'no more than 246 MB'

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A simulated robot drives to "room A" with its services on three hosts, and goes on driving while each service is
-# replaced by one of a newer image.
+# A simulated robot drives to "room A" with its services on three hosts, and continues while each service is replaced by
+# one from a newer image.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 source "$(dirname "${BASH_SOURCE[0]}")/hosts.sh"
 
@@ -17,8 +17,8 @@ for host in robot pc1 pc2; do start_host "$host"; done
 
 release=$image
 
-# run HOST SERVICE [OPTIONS]: a container of the release in the network of the host, as compose.yaml makes them.
-# Those of the robot see the pseudo-terminals of the simulator.
+# run HOST SERVICE [OPTIONS]: a container of the release in the network of the host, as in compose.yaml. The robot's
+# containers share the pseudo-terminals of the simulator.
 run() {
   docker run -d --name "$network-$1-$2" --network "container:$network-$1" --init --no-healthcheck --user root \
     -e TOPOGEO_DOMAIN -e TOPOGEO_METRICS_PORT="${metrics:-}" -v "$work:/exchange" -v /dev/pts:/dev/pts "$release" "${@:2}" > /dev/null
@@ -40,7 +40,7 @@ run_service() {
 
 container_of() { docker ps -a --format '{{ .Names }}' | grep -E "^$network-(robot|pc1|pc2)-$1\$"; }
 
-# state SERVICE: what its status says, "-" where there is none.
+# state SERVICE: its state and message, "-" without a status.
 state() {
   on robot topogeo status "$1" --json 2> /dev/null |
     python3 -c 'import json, sys
@@ -50,7 +50,7 @@ print(services[-1]["state"], services[-1]["message"]) if services else print("-"
 is_in_state() { state "$1" | grep -q "$2"; }
 lives() { [ "$(state "$1")" != - ] && ! is_in_state "$1" 'lost\|silent\|failed'; }
 show() { docker logs "$(container_of "$1")" 2>&1 | tail -n 15; }
-# Why the robot stands: what those say that make the map.
+# Shows why the robot stands still: logs of the services that make map and plan.
 show_all() {
   local service
   on robot topogeo status
@@ -68,7 +68,7 @@ wait_for "the ports of the simulator" test -L "$work/laser" || { show simulator;
 plans() { is_in_state planner '^running' && ! is_in_state planner 'needs'; }
 wait_for "a map at the planner" plans || { on robot topogeo status; show sensor_gateway; fail "the planner gets no map"; }
 
-# drive PLACE: to its end, until it is there.
+# drive PLACE: drives until the robot has arrived.
 drive() {
   wait_for "the robot in $1" arrives on robot topogeo goto "$1" || { on robot topogeo status; fail "the robot does not get to $1"; }
 }
@@ -86,9 +86,9 @@ step "each service replaced by one of a newer image"
 printf 'FROM %s\nLABEL release=newer\n' "$image" | docker build -q -t "$image-newer" - > /dev/null 2>&1
 cleanups+=("docker rmi $image-newer")
 release=$image-newer
-# Who gave a goal does not wait longer for the navigator than ten seconds; a busy machine may need more to replace it.
+# `goto` waits at most ten seconds for the navigator; a busy machine may need more to replace it.
 may_fail() { [ -e "$work/may_fail" ] || tail -n 1 "$work/tour.log" | grep -q "the navigator is gone"; }
-# To and fro, as long as there is something to replace.
+# Drives back and forth until all services are replaced.
 (
   trap 'exit 0' TERM
   while :; do
@@ -131,7 +131,7 @@ for service in $services; do
   [ "$(docker inspect -f '{{ index .Config.Labels "release" }}' "$(container_of "$service")")" = newer ] ||
     fail "$service is not of the newer image"
 done
-# On a busy machine one look may find a service late with its status.
+# On a busy machine a single check may find a service late with its status.
 all_are_well() { on robot topogeo status > "$work/status"; }
 wait_for "all services to be well" all_are_well || { cat "$work/status"; fail "not all services are well"; }
 count_collisions() {

@@ -8,7 +8,7 @@ make_network() {
   claim_domain
   docker network create "$network" > /dev/null
   cleanups+=("docker network rm $network")
-  # shellcheck disable=SC2016  # expanded when it is done
+  # shellcheck disable=SC2016  # expanded when it runs
   keepers+=('for name in $(docker ps -a --filter "name=$network-" --format "{{ .Names }}"); do
     docker logs "$name" > "$work/${name#"$network"-}.container.log" 2>&1; done')
 }
@@ -27,7 +27,7 @@ on() {  # HOST COMMAND...
   docker exec "$network-$1" "${@:2}"
 }
 
-# start_on HOST NAME COMMAND...: in the background; output in $work/log/HOST.NAME.
+# start_on HOST NAME COMMAND...: starts it in the background; output in $work/log/HOST.NAME.
 start_on() {
   mkdir -p "$work/log"
   # shellcheck disable=SC2016
@@ -38,7 +38,7 @@ start_on() {
 # shellcheck disable=SC2016
 is_gone_on() { on "$1" sh -c '! kill -0 "$(cat "/run/$1.pid")" 2> /dev/null' sh "$2"; }  # HOST NAME
 
-# kill_on HOST NAME [SIGNAL]: and waits until it is gone.
+# kill_on HOST NAME [SIGNAL]: waits until it is gone.
 kill_on() {
   # shellcheck disable=SC2016
   on "$1" sh -c 'pid=$(cat "/run/$1.pid"); kill -"$2" "$pid"' sh "$2" "${3:-9}" || return 1
@@ -47,7 +47,7 @@ kill_on() {
 
 is_lost() { ! docker inspect "$network-$1" > /dev/null 2>&1; }  # HOST
 
-# lose_host NAME: everything on it at once, as without power; only $work is left. start_host makes it again.
+# lose_host NAME: kills everything on it at once, like a power failure; only $work is left. start_host makes it again.
 lose_host() {
   local containers
   mapfile -t containers < <(docker ps --format '{{ .Names }}' | grep -E "^$network-$1(-|\$)")
@@ -62,14 +62,14 @@ no_multicast_on() {  # HOST
   nsenter -t "$pid" -n iptables -A OUTPUT -d 224.0.0.0/4 -j DROP
 }
 
-# has_dropped_on HOST COUNT: so many packets, after no_multicast_on.
+# has_dropped_on HOST COUNT: whether so many packets were dropped since no_multicast_on.
 has_dropped_on() {
   local pid
   pid=$(docker inspect -f '{{ .State.Pid }}' "$network-$1")
   nsenter -t "$pid" -n iptables -nvxL OUTPUT | awk -v least="$2" '$3 == "DROP" && $1 >= least { found = 1 } END { exit !found }'
 }
 
-# Stops that the run has stored for good.
+# Number of stops that the run has stored.
 stops_stored() {
   python3 - "$work/$run/map.sqlite" 2> /dev/null << 'END' || echo 0
 import sqlite3, sys
@@ -78,9 +78,9 @@ END
 }
 more_stops_than() { [ "$(stops_stored)" -gt "$1" ] || [ -e "$work/$run/map.pb" ]; }
 
-# count_workers LEAST: of the lines of `topogeo workers`, those of workers that have done so many tasks.
+# count_workers LEAST: number of workers in the output of `topogeo workers` that have done so many tasks.
 count_workers() { awk -v least="$1" '$4 == "%" && $5 ~ /^[0-9]+$/ && $5 >= least' | wc -l; }
-# Number of workers that have done something, and of those that are there.
+# Number of workers that have done a task, and of all workers.
 workers_done() { on robot topogeo workers 2> /dev/null | count_workers 1; }
 workers_there() { on robot topogeo workers 2> /dev/null | count_workers 0; }
 
@@ -96,14 +96,14 @@ start_service() {  # NAME, on the robot
   esac
 }
 
-# start_mapping RUN: all services of the robot; the results come into $work/RUN.
+# start_mapping RUN: starts all services of the robot; the results are written to $work/RUN.
 start_mapping() {
   run=$1
   local service
   for service in map_store localizer local_mapper planner sensor_gateway; do start_service $service; done
 }
 
-# wait_for_map: of the run that start_mapping has begun.
+# wait_for_map: waits for the results of start_mapping.
 wait_for_map() {
   wait_for "the trajectory of run $run" test -e "$work/$run/trajectory.tum" ||
     { tail -n 3 "$work"/log/* >&2; fail "no trajectory"; }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A robot and search workers on other hosts: the map of a log is that of one process to the byte, also when
-# services are killed and started again and when a host joins late; discovery by two servers without multicast.
+# A robot and search workers on other hosts: the map of a log equals that of one process to the byte, also when services
+# are killed and restarted and when a host joins late; discovery by two servers without multicast.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 source "$(dirname "${BASH_SOURCE[0]}")/hosts.sh"
 
@@ -23,7 +23,7 @@ same_results "$work/plain" "$work/alone"
 stop_mapping
 
 has_ended() { [ -e "$work/$run/map.pb" ]; }
-# Where the log has ended before all of that was done, the run counts for nothing: another one, half as fast.
+# When the log ends before all of this is done, the run is repeated at half the speed.
 lose_all() {
   local victim stops
   for victim in sensor_gateway local_mapper localizer map_store planner; do
@@ -63,9 +63,9 @@ step "a host that joins late"
 kill_on pc1 ga_worker TERM
 kill_on pc2 ga_worker TERM
 late_worked() { [ "$(count_workers 1 < "$work/log/robot.watch")" -ge 1 ] || has_ended; }
-# Whether the late host has work before the log ends.
+# Whether the late host has done work before the log ends.
 join_late() {
-  # It listens before the host joins: a `topogeo workers` listens for more than a second before it lists any.
+  # The list starts before the host joins: `topogeo workers` collects for more than a second before it lists any.
   rm -f "$work/log/robot.watch"
   start_on robot watch topogeo workers --watch
   wait_for "the map" test -e "$work/$run/map.sqlite" || fail "no map is begun"
@@ -75,7 +75,7 @@ join_late() {
   start_worker pc2
   wait_for "work of the late host" late_worked || fail "the late host got no work"
   [ "$(count_workers 1 < "$work/log/robot.watch")" -ge 1 ] || return 1
-  # A worker reports twice a second, and is listed twice a second.
+  # A worker reports twice a second, and the list is updated twice a second.
   step "the late host is listed with a task done $(($(now_ms) - joined)) ms after its start, up to 1200 ms late"
 }
 export workers=0
@@ -90,7 +90,7 @@ until join_late; do
   start_mapping "late-at-$rate"
 done
 kill_on robot watch TERM
-# The rest without waiting for the time of the robot.
+# The rest runs without waiting for real time.
 kill_on robot sensor_gateway
 rate=lossless
 start_service sensor_gateway
@@ -102,7 +102,7 @@ kill_on pc2 ga_worker TERM
 step "discovery by servers, multicast off"
 for host in robot pc1 pc2; do no_multicast_on $host; done
 start_worker pc1
-# What it says of itself, again and again, has met the end of the line.
+# Its repeated announcements are dropped.
 wait_for "announcements of the worker that are dropped" has_dropped_on pc1 3 || fail "the worker does not announce itself"
 [ "$(workers_there)" = 0 ] || fail "multicast is not off: a worker was found without a server"
 kill_on pc1 ga_worker
@@ -135,7 +135,7 @@ step "it comes back, and the other one dies"
 kill_on pc2 ga_worker TERM
 start_on pc1 server fast-discovery-server -i 0 -l 0.0.0.0 -p 11811
 kill_on pc2 server
-# The services that ran all the time, and a worker that they have not met before.
+# The services that ran all the time, and a worker that is new to them.
 all_well() { on robot topogeo status --expect sensor_gateway,local_mapper,localizer,map_store,planner > /dev/null; }
 start_worker pc2
 wait_for "a worker, with the server that came back" one_worker || fail "no worker is found with the server that came back"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What cmake --install makes: units that systemd accepts, and headers and libraries with which a program of
-# somebody else hears a service.
+# Result of cmake --install: units that systemd accepts, and headers and libraries with which a program outside the
+# project receives from a service.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need_programs
@@ -14,18 +14,18 @@ unlock_build
 prefix=$work/root$(sed -n 's/^CMAKE_INSTALL_PREFIX:PATH=//p' "$build/CMakeCache.txt")
 
 step "units"
-# Certificates have dates: no service starts before the clock is set where the machine waits for that.
+# Certificates have dates: on machines that wait for a clock, no service starts before it is set.
 late=$(grep -L '^After=.*time-sync\.target' "$prefix"/lib/systemd/system/*.service) || true
 [ -z "$late" ] || fail "not after time-sync.target: $late"
 if there systemd-analyze "the units are not checked"; then
   cp -r "$prefix/lib/systemd/system" "$work/units"
-  # Names of programs are looked up in the folders of the system; here they are somewhere else.
+  # systemd looks programs up in the system's folders; here they are elsewhere.
   sed -Ei "s#^ExecStart=([^/ ][^ ]*)#ExecStart=$prefix/bin/\\1#" "$work"/units/*.service
-  # Of a package that need not be here.
+  # Its package may be missing here.
   sed -i 's#^ExecStart=/usr/bin/fast-discovery-server#ExecStart=/bin/true#' "$work"/units/*.service
   for unit in "$work"/units/*@.service; do mv "$unit" "${unit/@/@1}"; done
   for unit in "$work"/units/*; do
-    # What other units of this machine have wrong is not of interest.
+    # Errors in other units of this machine are ignored.
     MANPATH=$prefix/share/man systemd-analyze verify "$unit" 2>&1 | grep -F topogeo > "$work/verify" || true
     [ ! -s "$work/verify" ] || { cat "$work/verify"; fail "$(basename "$unit")"; }
   done
@@ -45,7 +45,7 @@ if there systemd-analyze "the rights of units are not checked"; then
   for unit in "${units[@]}"; do
     name=$(basename "$unit")
     cp "$unit" "$work/${name/@/@1}"
-    # In tenths. What a unit without any of it has is 9 and more.
+    # The threshold is in tenths. A unit without any restriction has 9 or more.
     systemd-analyze security --offline=true --threshold=30 "$work/${name/@/@1}" > "$work/exposure" 2>&1 ||
       { tail -n 1 "$work/exposure"; fail "$name can do too much"; }
   done
@@ -61,7 +61,7 @@ if there docker-compose "the compose file is not checked"; then
     DOMAIN=7 docker-compose -f "$source_dir/deploy/compose.yaml" --profile $profile config > "$work/$profile.yaml" ||
       fail "compose.yaml, $profile"
   done
-  # A health check is of the domain that is set, and on the network of the host of one service.
+  # A health check uses the configured domain, and in the host's network checks one service.
   python3 - "$work"/{robot,ros,web,offboard,demo}.yaml <<'PY' || fail "compose.yaml"
 import sys, yaml
 
@@ -113,7 +113,7 @@ heard=$(timeout "$hang_limit_s" "$work/subscriber/subscriber" "$TOPOGEO_DOMAIN" 
 step "the operator's page"
 make_log 60 "$work/log.clf"
 "$prefix/bin/topogeo" map --log "$work/log.clf" --out "$work/map" > "$work/map.log" 2>&1 || { cat "$work/map.log"; fail "map"; }
-# page_is_whole COMMAND...: what the pages that it serves name is there.
+# page_is_whole COMMAND...: every file that the served pages name exists.
 page_is_whole() {
   local log=$work/$1.page file address
   "$prefix/bin/topogeo" "$@" --port 0 --domain "$TOPOGEO_DOMAIN" > "$log" 2>&1 &
@@ -133,7 +133,7 @@ page_is_whole view "$work/map/map.pb" --no-browser
 page_is_whole web
 
 step "signs of life for systemd"
-# The socket of the service manager, as systemd makes it.
+# A socket of the service manager, as systemd creates it.
 python3 - "$prefix/libexec/topogeo/planner" "$partition" "$hang_limit_s" <<'PY' || fail "sd_notify"
 import os, socket, subprocess, sys, tempfile
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# make_keys killed at each of its commands: nothing looks complete that is not, and the next call goes on. What it
-# cannot do it says and fails. What services make of the keys is security_test.sh.
+# make_keys killed at each of its commands: nothing incomplete looks complete, and the next call continues. A request
+# that it cannot fulfil fails with a message. security_test.sh tests the keys in services.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need openssl
@@ -9,7 +9,7 @@ make_keys=$source_dir/deploy/security/make_keys
 # The robots of a folder's certificate, of its permissions and of its file, each as one line.
 robots_of_certificate() { openssl x509 -in "$1/certificate.pem" -noout -subject -nameopt multiline |
   sed -n 's/^ *organizationalUnitName *= //p' | xargs; }
-robots_of_permissions() {  # each stands there twice, once for what is written and once for what is read
+robots_of_permissions() {  # each appears twice, once for writing and once for reading
   sed -n 's#^ *<partition>\(.*\)</partition>.*#\1#p' "$1/permissions.p7s" | sed 's#^[*]/##; s#^[*]$#all#' | awk '!seen[$0]++' | xargs
 }
 robots_of_file() { xargs < "$1/robots"; }
@@ -19,7 +19,7 @@ is_for() {  # FOLDER ROBOTS
   [ "$(robots_of_certificate "$1")" = "$in_certificate" ] && [ "$(robots_of_permissions "$1")" = "$2" ] && [ "$(robots_of_file "$1")" = "$2" ]
 }
 
-# whole FOLDER SERVICE: the files in the folder belong together and to the authorities.
+# whole FOLDER SERVICE: the files in the folder match each other and the authorities.
 whole() {
   local ca=${1%/*/*}/ca file
   for file in identity_ca.pem permissions_ca.pem governance.p7s revoked.pem; do
@@ -31,7 +31,7 @@ whole() {
     2> "$work/smime.log" | grep -q "<grant name=\"$2\">" || return 1
   is_for "$1" "$(robots_of_file "$1")"
 }
-# all_whole KEYS: what has a certificate is whole, and so are the authorities, where they are.
+# all_whole KEYS: every folder with a certificate is whole, and so are existing authorities.
 all_whole() {
   local certificate folder file
   for file in identity_ca.key permissions_ca.key governance.p7s openssl.cnf index.txt revoked.pem; do
@@ -44,8 +44,8 @@ all_whole() {
 }
 has() { [ "$(cd "$1" && echo ./*/*/certificate.pem)" = "$2" ]; }  # KEYS CERTIFICATES
 
-# Commands that keep what is in $KEYS as $STATES/N before the N-th of them does anything, and end their process group where N
-# is LAST_STEP: what a kill leaves at that step.
+# Wrappers that copy $KEYS to $STATES/N before the N-th command does anything, and kill their process group when N is
+# LAST_STEP: the copy is the state after a kill at that step.
 mkdir "$work/mortal"
 cat > "$work/mortal/openssl" <<'SH'
 #!/bin/bash
@@ -60,17 +60,17 @@ exec "${0##*/}" "$@"
 SH
 chmod +x "$work/mortal/openssl"
 for command in mkdir mv cp rm; do cp "$work/mortal/openssl" "$work/mortal/$command"; done
-# record STATES COMMAND...: the exit code of the command on $work/keys; the states go to the folder of that name in $work.
+# record STATES COMMAND...: runs the command on $work/keys and returns its exit code; the states go to $work/STATES.
 record() {
   mkdir -p "$work/$1/000"
   { STATES=$work/$1 KEYS=$work/keys PATH=$work/mortal:$PATH setsid --wait "${@:2}"; } > "$work/record.log" 2>&1
 }
 files_of() { (cd "$1" && find . | sort); }
-# What make_keys leaves in DIR/.new it removes first: states that differ in nothing else are one.
+# make_keys first removes leftovers in DIR/.new, so states that differ only there count as one.
 essence() { (cd "$1" && find . -path ./keys/.new -prune -o -type f -exec sha256sum {} + -o -print | sort | sha256sum); }
 
-# killed_at_each_step STATES LEAST COMMAND...: of make_keys with $work/keys as it is. No state looks complete that is not, and
-# the same command goes on from each.
+# killed_at_each_step STATES LEAST COMMAND...: runs make_keys on the present $work/keys. No state may look complete that
+# is not, and the same command must continue from each.
 killed_at_each_step() {
   local states=$work/$1 least=$2 state last=0 first=$work/before-$1 middle code=0 n=0
   shift 2
@@ -79,7 +79,7 @@ killed_at_each_step() {
   rm -r "$states/000"
   last=$(find "$states" -mindepth 1 -maxdepth 1 | wc -l)
   [ "$last" -gt "$least" ] || fail "only $last steps of $*"
-  # A kill leaves what was kept, here at half of the steps.
+  # A real kill at half of the steps leaves the recorded state.
   middle=$((last / 2))
   rm -r "$work/keys"
   [ ! -e "$first" ] || cp -a "$first" "$work/keys"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The packages: lintian finds no errors, they install in a clean container, the programs run there, and
-# nothing is left when they are removed. The workers do so alone, and a subscriber compiles against topogeo-dev.
+# The packages: lintian finds no errors, they install in a clean container, the programs run there, and nothing is left
+# after removal. The same holds for the workers alone; a subscriber compiles against topogeo-dev.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need_packages
@@ -18,7 +18,7 @@ chmod 755 "$work"
 docker run --rm -i --user root -v "$work:/exchange" $image bash -euo pipefail -c '
   [ "$(topogeo --version)" = "topogeo 0.1.0" ]
   cd /tmp
-  # As the user of the services.
+  # Runs as the user of the services.
   install -d -o topogeo /tmp/out
   setpriv --reuid topogeo --regid topogeo --clear-groups env HOME=/tmp \
     topogeo run --log /exchange/log.clf --out /tmp/out --workers 1 > /tmp/run.log 2>&1 || { cat /tmp/run.log; exit 1; }
@@ -36,7 +36,7 @@ docker run --rm -i --user root -v "$work:/exchange" $image bash -euo pipefail -c
   [ "$(stat -c "%a %U:%G" /etc/topogeo/topogeo.env)" = "640 root:topogeo" ] || { echo "settings are for all"; exit 1; }
   [ "$(stat -c "%a %U:%G" /etc/topogeo/web.env)" = "600 root:root" ] || { echo "the token is for all"; exit 1; }
   [ "$(getent group dialout | cut -d: -f4)" = topogeo-sensor-gateway ] || { getent group dialout; exit 1; }
-  # Each service gets its keys, and those alone.
+  # Each service gets its own keys and no others.
   mkdir -p /tmp/keys/web /tmp/keys/map_store /tmp/keys/ga_worker
   for service in web map_store ga_worker; do echo key > /tmp/keys/$service/key.pem; done
   /usr/share/topogeo/security/own_keys /tmp/keys
@@ -46,12 +46,12 @@ web 700 topogeo-web web/key.pem 600 topogeo-web" ] || { ls -lR /tmp/keys; exit 1
   for user in topogeo topogeo-planner; do
     if setpriv --reuid $user --regid $user --clear-groups cat /tmp/keys/web/key.pem 2> /dev/null; then exit 1; fi
   done
-  # What docker keeps of a health check says why the command itself fails.
+  # The output that docker keeps of a health check names the reason of its failure.
   if TOPOGEO_SECURITY=/nowhere health > /tmp/health 2>&1; then exit 1; fi
   grep -q /nowhere /tmp/health || { echo "no reason of a failed health check:"; cat /tmp/health; exit 1; }
   if TOPOGEO_SECURITY=/nowhere health ga_worker here > /tmp/health 2>&1; then exit 1; fi
   grep -q /nowhere /tmp/health || { echo "no reason of a failed health check of a worker:"; cat /tmp/health; exit 1; }
-  # As systemctl enable makes them; a unit of somebody else stays enabled.
+  # Creates the links of systemctl enable; a unit outside the project stays enabled.
   enabled=/etc/systemd/system
   mkdir -p $enabled/multi-user.target.wants $enabled/topogeo.target.wants
   touch /lib/systemd/system/topography.service
@@ -82,7 +82,7 @@ step "the image has $(((all - base) / 1000000)) MB beyond its base"
 
 step "topogeo-workers alone, and a subscriber that hears one"
 claim_domain
-# The network of the host: that of the engine need not reach a mirror or proxy.
+# Uses the network of the host, because that of the engine may not reach a mirror or proxy.
 # shellcheck disable=SC2016
 docker run --rm --network host -v "$build/packages:/packages:ro" -v "$source_dir/tests/container/subscriber:/subscriber:ro" \
   -e DEBIAN_FRONTEND=noninteractive -e TOPOGEO_DOMAIN -e hang_limit_s="$hang_limit_s" "${BASE:-debian:bookworm}" bash -euo pipefail -c '

@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 # Plain by the specification of DDS security (1.1, 7.3.7 and 8.3): participants announce themselves, and show their
-# certificates and permissions, before they have keys. The names of participants hold that of the robot.
+# certificates and permissions, before they have keys. The names of participants include that of the robot.
 ANNOUNCEMENT, HANDSHAKE = "000100c2", "000201c3"
 TOPIC_DISCOVERY, LIVELINESS = ("000003c2", "000004c2"), ("000200c2",)
 DATA, DATA_FRAG, SEC_PREFIX = 0x15, 0x16, 0x31
@@ -31,7 +31,7 @@ def capture(command):
     running = True
     while running:
         running = process.poll() is None
-        # What was sent before it ended is there afterwards.
+        # After the command has ended, packets that it sent before are still read.
         while select.select([listener], [], [], 0.1 if running else 0)[0]:
             packet, sender = listener.recvfrom(1 << 17)
             if sender[2] != socket.PACKET_OUTGOING:  # lo shows each packet as it goes and as it comes
@@ -50,16 +50,16 @@ def messages_of(packets):
         protocol = packet[9 if version == 4 else 6]
         if (version, protocol) == (4, socket.IPPROTO_UDP):
             yield packet[4 * (packet[0] & 15) + 8 :]
-        elif (version, protocol) not in NO_DATA:  # ICMP quotes what is here already
+        elif (version, protocol) not in NO_DATA:  # ICMP quotes packets that are already captured
             yield packet
 
 
 def submessages(message):
-    at = 20  # behind the header of RTPS
+    at = 20  # after the RTPS header
     while at + 4 <= len(message):
         kind, flags = message[at], message[at + 1]
         size = struct.unpack_from("<H" if flags & 1 else ">H", message, at + 2)[0]
-        end = at + 4 + size if size or kind in (0x01, 0x09) else len(message)  # 0: the last one, to the end
+        end = at + 4 + size if size or kind in (0x01, 0x09) else len(message)  # size 0: the last one, up to the end
         yield kind, message[at:end]
         at = end
 
@@ -100,7 +100,7 @@ def readable(packets, robot, log):
                 transformation = submessage[4:8].hex()
                 found.add(TRANSFORMATIONS.get(transformation, transformation))
             elif writer in TOPIC_DISCOVERY + LIVELINESS:
-                # Writers that send nothing beat, too, where others of the same use are encrypted.
+                # Writers without data also send heartbeats, although others of the same kind are encrypted.
                 if kind not in HEARTBEATS:
                     found.add("discovery of topics" if writer in TOPIC_DISCOVERY else "liveliness")
             elif writer is not None:

@@ -1,6 +1,5 @@
-// Preloaded into a program it makes that forget its own permissions: Fast DDS lets it create
-// writers and readers of all topics, as if the program had been changed. What others permit it is
-// up to them.
+// Makes a program ignore its own permissions when preloaded: Fast DDS lets it create writers and
+// readers of all topics, like a modified program. Its peers still decide what they accept.
 extern "C" bool create_any_writer() __asm__(
     "_ZN8eprosima8fastrtps4rtps8security11Permissions23check_create_datawriterERKNS2_6HandleEjRK"
     "NSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEERKSt6vectorISC_SaISC_EERNS2_"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# A robot that speaks ROS 2 (by Cyclone DDS, on a host of its own, without security) drives to a goal of a ROS node with
-# our secured services: bridge, mapping and planning on one host, a search worker on another, the page on a third. The
-# nodes get map, pose and plan; a stranger on their host gets nothing of ours.
+# A robot with ROS 2 (on Cyclone DDS, on a host of its own, without security) drives to the goal of a ROS node with our
+# secured services: bridge, mapping and planning on one host, a search worker on another, the page on a third. The nodes
+# get map, pose and plan; a stranger on their host gets none of our data.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 source "$(dirname "${BASH_SOURCE[0]}")/hosts.sh"
 
@@ -51,7 +51,7 @@ wait_for "a transform at the nodes of ROS" heard '^tf map odom ' || { show; fail
 step "a goal of a node"
 on nodes /exchange/nodes/ros_peer "$TOPOGEO_DOMAIN" goal 1.5 0 0 > "$work/goal.log" 2>&1 ||
   { cat "$work/goal.log"; show; fail "no plan for the node's goal"; }
-# Its truth is that of the robot, not ours.
+# Uses the robot's ground truth, not our estimate.
 arrived() {
   awk '/^truth/ { near = ($2 - 1.5) ^ 2 + $3 ^ 2 < 0.16 && $5 == "stands"; collisions = $7 }
     END { exit !(near && collisions == 0) }' "$work/log/nodes.robot"
@@ -65,7 +65,7 @@ wait_for "work of the worker" worked || { on robot topogeo workers; fail "the wo
 on page bash -c 'exec 3<> /dev/tcp/127.0.0.1/8080
   printf "GET /api/info HTTP/1.0\r\nHost: 127.0.0.1:8080\r\n\r\n" >&3; cat <&3' > "$work/info"
 grep -q '200 OK' "$work/info" || { cat "$work/info"; fail "the page does not answer"; }
-# One look may come before the newcomer has met all others: authentication takes its time.
+# A single check may come before the newcomer has met all others, because authentication takes time.
 all_are_seen() {
   on robot topogeo status > "$work/status" 2>&1 || true
   for service in ros_bridge map_store localizer planner navigator web ga_worker; do

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The Kubernetes manifests against the types of its API (those of its OpenAPI description, as TypeScript) and the dashboard
-# against the types of Grafana: a key that it does not know, one that is missing or a value of a wrong type is an error.
+# Checks the Kubernetes manifests against the types of its API (from its OpenAPI description, as TypeScript) and the
+# dashboard against the types of Grafana: an unknown key, a missing one or a value of a wrong type is an error.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need npm tsc python3
@@ -53,7 +53,7 @@ for path in map(pathlib.Path, sys.argv[3:]):
         for name, faulty in with_faults(text, faults):
             write(name, yaml.safe_load_all(faulty))
 
-# What stands in JSON for a type: an enumeration of texts is its texts.
+# JSON form of a type: an enumeration of texts becomes its texts.
 dashboard = """import { Dashboard } from "@grafana/schema";
 type Json<T> = T extends string ? `${T}` : T extends number ? number :
   T extends object ? { [K in keyof T]: Json<T[K]> } : T;

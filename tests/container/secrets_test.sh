@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# No private key is in a file of the repository or of the image.
+# No file of the repository or of the image contains a private key.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need openssl
 step "the repository"
 openssl genpkey -algorithm EC -pkeyopt ec_paramgen_curve:P-256 -out "$work/planted.key" 2> "$work/openssl.log" ||
   { cat "$work/openssl.log"; fail "openssl makes no key"; }
-# Scripts and documents name such lines; only a key has one for itself.
+# Scripts and documents may name such lines within text; only a key has one as a whole line.
 key_line='^[[:space:]]*-----BEGIN ([A-Z0-9]+ )*PRIVATE KEY( BLOCK)?-----[[:space:]]*$'
-# keys_in FOLDER: files with private keys that git has there.
+# keys_in FOLDER: files with private keys that git tracks there.
 keys_in() {
   local status=0
   git -c safe.directory="$1" -C "$1" grep --text --files-with-matches --extended-regexp -e "$key_line" || status=$?
@@ -28,7 +28,8 @@ fi
 
 need_image
 step "the image"
-# The words in any file of the project, and lines of keys in all others; GnuTLS has keys to test itself. One is planted.
+# Searches the image for the words in the project's files, and for key lines in all others; GnuTLS has keys for its
+# self-test. One key is planted.
 # shellcheck disable=SC2016  # the words of the inner shell
 docker run --rm --interactive --user root --env key_line="$key_line" $image sh -euc '
   cat > /etc/topogeo/planted.key

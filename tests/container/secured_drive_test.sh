@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
-# Tests of what may happen while a robot drives, again with keys: each service killed with -9, short emergency stops, a
-# gateway that is gone, halts, Stop among hostile connections. Prints how long services take to be at work again.
+# Repeats tests with a driving robot, with keys: each service killed with -9, short emergency stops, a gateway that is
+# gone, halts, Stop among hostile connections. Prints how long services take to work again.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need openssl
 need_programs
 export TOPOGEO_DDS_PARTICIPANT=udp_only
-# The tests speak for a base, too.
+# The tests also publish as a base.
 { cat "$source_dir/deploy/security/permissions.txt"; echo "topogeo writes: base_status"; } > "$work/permissions.txt"
 TOPOGEO_PERMISSIONS=$work/permissions.txt "$source_dir/deploy/security/make_keys" "$work/keys" issue --robot robot robot
 export TOPOGEO_SECURITY=$work/keys/robot
 
-# again PROGRAM TEST...: those tests, with keys. A name that no test has is an error.
+# again PROGRAM TEST...: runs these tests with keys. An unknown test name is an error.
 again() {
   local name
   for name in "${@:2}"; do

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Two sites with security, joined by a WireGuard tunnel and nothing else: addresses of the tunnel are the peers, as
-# discovery servers carry no security. Sites are network namespaces. The map of a log is that of one process.
+# Two sites with security, joined only by a WireGuard tunnel: its addresses are the peers, because discovery servers
+# carry no security. Sites are network namespaces. The map of a log equals that of one process.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 source "$(dirname "${BASH_SOURCE[0]}")/tunnel.sh"
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# DDS security with the material of make_keys: a whole run is that of one process; strangers get nothing and are
-# counted and named: without certificate, of a foreign authority, expired, revoked; a worker that writes the map or
-# motion commands is denied, even if its own side lets it. Packets show what the specification leaves plain, no more.
+# DDS security with the keys of make_keys: a whole run equals that of one process; strangers get nothing and are counted
+# and named: without certificate, of a foreign authority, expired, revoked; a worker that writes the map or motion
+# commands is denied, even if its own side permits it. Packets show only what the specification leaves plain.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need openssl faketime python3
@@ -26,9 +26,9 @@ answers() { wait_for "a status of ${*:2}" gives_status "$@"; }  # FOLDER [SERVIC
 stop() { kill "$pid"; wait "$pid" || fail "a service ended with $?"; }
 
 before=0  # peers that the planner had refused
-heard=0   # lines of its log until then
-# counts NAME: whether the planner has refused more peers than before, NAME among them. Its log has the names: as its last
-# error another one may have come since.
+heard=0   # log lines until then
+# counts NAME: whether the planner has refused more peers than before, including NAME. Its log has the name, because its
+# last error may already be another one.
 counts() {
   status "$keys/robot" planner > "$work/planner.status" || return 1
   local refused
@@ -39,7 +39,7 @@ counts() {
   heard=$(wc -l < "$work/planner.log")
 }
 
-# refuses WHO NAME ENVIRONMENT...: a program that asks for the status with this environment gets nothing, and the
+# refuses WHO NAME ENVIRONMENT...: a program that requests the status with this environment gets nothing, and the
 # planner counts and names it.
 refuses() {
   env "${@:3}" "$bin/topogeo" status --partition $partition --watch > "$work/$1.log" 2>&1 &
@@ -52,12 +52,12 @@ refuses() {
   return 0
 }
 
-# 400 days ago, the steady clock apart. The command `faketime` would be a process of its own to end.
+# Sets the clock back by 400 days, except the steady clock. The command `faketime` would be another process to end.
 past=(LD_PRELOAD="$(find /usr/lib -name libfaketimeMT.so.1 | head -n 1)" FAKETIME=-400d
   FAKETIME_DONT_FAKE_MONOTONIC=1)
 
 step "keys"
-# What is valid today and was valid then, and what was valid for a month.
+# One certificate was issued 400 days ago and is still valid; the other was valid for a month.
 env "${past[@]}" "$make_keys" "$keys" issue --robot all robot
 env "${past[@]}" DAYS=30 "$make_keys" "$keys" issue --robot all old status
 "$make_keys" "$keys" issue --robot all pc1 ga_worker status
@@ -79,12 +79,12 @@ secured "$keys/robot" "$bin/topogeo" run --log "$work/log.clf" --robot $robot --
 same_results "$work/run" "$work/alone"
 grep -q ' 0 sent to workers' "$work/run.log" && fail "the workers had no work"
 
-# What the services themselves send must not look like a stranger's.
+# Packets of the services themselves must not look like those of a stranger.
 drops_unprotected() { status "$keys/robot" planner | grep unprotected_packet; }
 
 step "packets, without multicast"
-# overheard NAME FOLDER: what a listener reads while a log is mapped, in $work/NAME.readable. A network of its own: lo
-# has no route for multicast there. Two addresses of hosts, as two hosts would have.
+# overheard NAME FOLDER: writes what a listener can read while a log is mapped to $work/NAME.readable. It has a network
+# of its own, where lo has no route for multicast, and two host addresses, like two hosts.
 overheard() {
   # shellcheck disable=SC2016  # the words of the inner shell
   TOPOGEO_SECURITY=$2 TOPOGEO_PEERS='127.0.0.1;localhost' unshare --net bash -c 'ip link set lo up && exec "$@"' - \
@@ -97,7 +97,7 @@ if unshare --net true 2> /dev/null; then
   overheard secured "$keys/robot"
   echo AES-256-GCM | diff - "$work/secured.readable" || fail "packets of secured services are not as expected (<)"
   overheard plain ""
-  # A run may be too short for signs of life.
+  # A short run may have no liveliness messages.
   grep -vx liveliness "$work/plain.readable" | diff <(printf '%s\n' "discovery of topics" "key of the robot" \
     match_tasks "messages of topics" "name of a topic" "name of a type" "name of a worker" "name of the robot" \
     "ranges of a scan" service_status) - || fail "a listener does not read plain packets as expected (<)"
@@ -114,7 +114,7 @@ planner=$pid
 answers "$keys/robot" || fail "the owner gets no status"
 answers "$keys/pc1" || fail "another host of the owner gets no status"
 drops_unprotected && fail "the owner's packets are taken for a stranger's"
-# A heartbeat that is not encrypted, as if a peer had sent it, to each participant that this host may have.
+# An unencrypted heartbeat, as if from a peer, to each possible participant of this host.
 heartbeat='RTPS\x02\x02\x01\x0f\x01\x0f\x09\x09\x09\x09\x09\x09\x09\x09\x09\x09\x07\x01\x1c\x00\x00\x00\x00\x00'
 heartbeat+='\x00\x00\x01\x02\x00\x00\x00\x00\xe8\x03\x00\x00\x00\x00\x00\x00\xe8\x03\x00\x00\x01\x00\x00\x00'
 for number in {0..9}; do
@@ -125,14 +125,14 @@ refuses "no certificate" "'topogeo status' ([0-9a-f.]*)" TOPOGEO_SECURITY=
 refuses "foreign authority" "'topogeo status' (/O=topogeo/CN=status.abroad;" TOPOGEO_SECURITY="$work/foreign/abroad"
 
 step "expired, renewed, revoked"
-# In the past nothing is wrong with it, and its own side accepts the planner.
+# The client's clock is in the past: its certificate is valid there, and it accepts the planner.
 refuses expired "'topogeo status' (/O=topogeo/CN=status.old;" TOPOGEO_SECURITY="$keys/old" "${past[@]}"
 STARTDATE=20240101000000Z ENDDATE=20250101000000Z "$make_keys" "$keys" renew pc1 status
 status "$keys/pc1" > "$work/expired" && fail "an expired certificate is accepted"
 grep -q "was refused" "$work/expired" || { cat "$work/expired"; fail "an expired certificate has no clear error"; }
 "$make_keys" "$keys" renew pc1 status
 answers "$keys/pc1" || fail "a renewed certificate is refused"
-# What was lost may be older than the last renewal.
+# The stolen certificate may be older than the last renewal.
 cp -r "$keys/pc1" "$work/stolen"
 "$make_keys" "$keys" renew pc1 status
 "$make_keys" "$keys" revoke pc1 status
@@ -152,7 +152,7 @@ pid=$planner
 stop
 
 step "a worker that writes the map and motion commands"
-write_commands() {  # FOLDER ENVIRONMENT...: as the navigator
+write_commands() {  # FOLDER ENVIRONMENT...: writes as the navigator
   env TOPOGEO_SECURITY="$1" "${@:2}" "$build/tests/command_writer" "$TOPOGEO_DOMAIN" $partition \
     > "$work/commands" 2> "$work/command_writer.log" &
   pid=$!
@@ -186,7 +186,7 @@ denied_by_itself() {  # PROGRAM OPTIONS...
 denied_by_itself "$bin/map_store" --out "$work/thief/out" --partition $partition
 denied_by_itself "$build/tests/command_writer" "$TOPOGEO_DOMAIN" $partition
 
-# steal HOW ENVIRONMENT...: its own side no longer forbids it.
+# steal HOW ENVIRONMENT...: the worker's own side no longer forbids it.
 steal() {
   write_commands "$work/thief" "${@:2}"
   local commands=$pid

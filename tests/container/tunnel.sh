@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # shellcheck disable=SC2154  # common.sh sets work
-# A WireGuard tunnel between two sites. Who sources this has `enter SITE`, which sets `inside` to the words that run a
-# command in the network of a site.
+# A WireGuard tunnel between two sites. Scripts that source this define `enter SITE`, which sets `inside` to the command
+# prefix for the network of a site.
 
-# need_tunnel: skips the test where a tunnel cannot be made.
+# need_tunnel: skips the test when a tunnel cannot be made.
 need_tunnel() {
   need wireguard-go wg iptables
   [ -c /dev/net/tun ] || skip "there is no /dev/net/tun" "mkdir -p /dev/net && mknod /dev/net/tun c 10 200"
@@ -16,8 +16,8 @@ make_tunnel_key() {  # SITE
 
 has_interface() { "${inside[@]}" wg show "$1" > /dev/null 2>&1; }
 
-# tunnel SITE ADDRESS PEER ADDRESS_OF_PEER ENDPOINT: afterwards nothing else leaves the site. The name of the interface
-# is also that of a socket of this machine.
+# tunnel SITE ADDRESS PEER ADDRESS_OF_PEER ENDPOINT: afterwards only tunnel traffic leaves the site. The interface's
+# name is unique, because it also names a socket of this machine.
 tunnel() {
   local interface=wg$$${1:0:2} inside
   enter "$1"

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# The packages on a machine with systemd, as the page of deployment has it: the units come up and find each other,
-# root sees them, what dies or hangs is started again, and busy workers do not starve who drives the robot.
+# The packages on a machine with systemd, as on the deployment page: the units come up and find each other, root sees
+# them, a service that dies or hangs is restarted, and busy workers do not starve the services that drive the robot.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need_image
 claim_domain
-# Of the simulator, so that it is not of the robot, and of who watches where the robot really is.
+# Domain of the simulator and of the program that watches the true motion, which are outside the robot.
 claim_domain_as truth
 machine=topogeo-machine-$$
 
@@ -14,7 +14,7 @@ printf 'FROM %s\nUSER root\nRUN apt-get update -q && apt-get install -q -y --no-
   "systemd systemd-sysv sudo procps iproute2" | docker build -q --network host -t "$image-systemd" - > "$work/build.log" 2>&1 ||
   { tail -n 5 "$work/build.log"; fail "the image of the machine cannot be made"; }
 cleanups+=("docker rm -f $machine")
-# shellcheck disable=SC2016  # expanded when it is done
+# shellcheck disable=SC2016  # expanded when it runs
 keepers+=('docker logs $machine > "$work/machine.log" 2>&1; docker exec $machine journalctl --no-pager > "$work/journal.log"')
 boot() {
   docker rm -f $machine > /dev/null 2>&1 || true
@@ -28,7 +28,7 @@ has_settled() {
     docker logs $machine 2>&1 | grep -q 'Freezing execution'
 }
 boots() { boot "$@" && wait_for "systemd" has_settled && is_up; }
-# An engine without all privileges of root cannot give them; a part is enough for control groups of version 1.
+# An engine without all privileges cannot grant them; some are enough for control groups of version 1.
 boots --privileged ||
   boots --cap-add SYS_ADMIN --cap-add SYS_NICE --security-opt seccomp=unconfined --security-opt apparmor=unconfined \
     --cgroupns host -v /sys/fs/cgroup:/sys/fs/cgroup ||
@@ -54,7 +54,7 @@ state() { here systemctl show -P "$2" "$1"; }
 is_state() { [ "$(state "$1" "$2")" = "$3" ]; }
 
 step "a wrong file of devices"
-# Commands take both from there, too: nothing else here says them.
+# Commands also read domain and robot from these files, which are the only source here.
 here sed -i "s/^TOPOGEO_DOMAIN=.*/TOPOGEO_DOMAIN=$TOPOGEO_DOMAIN/; s/^TOPOGEO_ROBOT=.*/TOPOGEO_ROBOT=anna/" \
   /etc/topogeo/topogeo.env /etc/topogeo/worker.env
 here sh -c 'topogeo config --devices > /etc/topogeo/devices.yaml'
@@ -78,7 +78,7 @@ here sh -ec 'for device in laser base; do
     sed -i "/^$device:/,/port:/s#port: .*#port: $port#" /etc/topogeo/devices.yaml
   done'
 here systemctl restart topogeo.target
-# All seven, as root and as the user of the services.
+# All seven, queried as root and as the user of the services.
 all_run() { here topogeo status > "$work/status" 2>&1 && [ "$(grep -c ' running ' "$work/status")" = 7 ]; }
 wait_for "all services to be well" all_run || { cat "$work/status"; fail "not all services are well"; }
 all_run_for_their_user() { as_topogeo topogeo status > /dev/null; }
@@ -93,7 +93,7 @@ docker exec -d $machine sh -c "exec nice -n -20 /root/drive_watch --domain $TOPO
 drives() { here tail -n 1 /root/motion | awk '{ exit !($2 > 0.1) }'; }
 is_new() { ! is_state topogeo-navigator MainPID "$1" && ! is_state topogeo-navigator MainPID 0; }
 
-# Prints how the commands came meanwhile.
+# Prints the intervals of the commands during the drive.
 drive_to() {  # X,Y
   local from
   from=$(now_ms)
@@ -105,7 +105,7 @@ drive_to() {  # X,Y
     END { printf "       %d commands, every %.1f ms, at most %d ms apart\n", n, (n > 1 ? sum / (n - 1) : 0), most }'
 }
 
-# What moved since MS, each half second, and what the services said.
+# Shows the motion since MS, every half second, and the services' logs.
 show_drive() {
   local file
   for file in motion commands; do
@@ -115,7 +115,7 @@ show_drive() {
   here journalctl -u 'topogeo-*' --no-pager -o short-unix | tail -n 40
 }
 
-# On the way to X,Y the navigator freezes: the gateway stops the robot before systemd starts another navigator.
+# The navigator freezes on the path to X,Y: the gateway stops the robot before systemd starts another navigator.
 freeze_on_the_way_to() {  # X,Y
   local navigator from until drive
   navigator=$(state topogeo-navigator MainPID)
@@ -126,14 +126,14 @@ freeze_on_the_way_to() {  # X,Y
   here kill -STOP "$navigator"
   wait_for "another navigator" is_new "$navigator" || fail "the navigator that hangs is not started again"
   until=$(here systemctl show --timestamp=unix -P ExecMainStartTimestamp topogeo-navigator)
-  # It stands for the last ten lines before, half a second.
+  # The robot stands still for at least the last ten lines, half a second.
   here cat /root/motion | awk -v from="$from" -v until="${until#@}000" '$1 > from && $1 < until {
       if ($2 > 0.005 || $3 > 0.005) { last = $1; still = 0 } else { ++still }
     }
     END { printf "       stands after %d ms\n", (last ? last - from : 0); exit still < 10 }' ||
     { show_drive "$from"; fail "the robot drives on without its navigator"; }
   wait_for "all services to be well" all_run || { cat "$work/status"; fail "not all services are well after the navigator hung"; }
-  wait $drive || true  # with the new navigator, if it came soon enough for who gave the goal
+  wait $drive || true  # succeeds if the new navigator came before `goto` gave up
 }
 
 step "what dies or hangs"
@@ -147,13 +147,13 @@ freeze_on_the_way_to 3,0
 is_state topogeo-local-mapper MainPID "$others" || fail "another service was started again, too"
 
 step "eight busy workers"
-# With all settings of the unit of workers, and as busy as none is.
+# The workers' unit with all its settings, but fully busy.
 here sh -c 'sed "s/^Type=.*/Type=exec/; /^WatchdogSec=/d; s|^ExecStart=.*|ExecStart=/bin/sh -c \"while :; do :; done\"|" \
     /lib/systemd/system/topogeo-worker@.service > /etc/systemd/system/busy-worker@.service
   systemctl daemon-reload
   systemctl start busy-worker@1 busy-worker@2 busy-worker@3 busy-worker@4 busy-worker@5 busy-worker@6 busy-worker@7 \
     busy-worker@8'
-# As the kernel has it, in control groups of version 1 or 2. All workers together are one group beside the services.
+# The kernel's value, in control groups of version 1 or 2. All workers together are one group beside the services.
 weight() {  # UNIT
   local group
   group=$(state "$1" ControlGroup)

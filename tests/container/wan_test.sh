@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Two sites joined by a WireGuard tunnel: nothing else passes between them, discovery servers are at addresses of the
-# tunnel, and the map of a log is that of one process to the byte.
+# Two sites joined only by a WireGuard tunnel, with discovery servers at its addresses: the map of a log equals that of
+# one process to the byte.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 source "$(dirname "${BASH_SOURCE[0]}")/hosts.sh"
 source "$(dirname "${BASH_SOURCE[0]}")/tunnel.sh"
