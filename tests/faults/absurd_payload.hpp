@@ -1,5 +1,5 @@
-// Payloads that keep the wire contract of a type and mean nothing: numbers that are none or beyond
-// all limits, texts and sequences of no and of full length, stamps of other centuries.
+// Meaningless payloads within the wire contract of a type: numbers that are NaN or beyond all
+// limits, texts and sequences that are empty or of full length, stamps of other centuries.
 #pragma once
 
 #include <algorithm>
@@ -23,17 +23,17 @@
 
 namespace topogeo::test {
 
-/// What a sample of a stranger states beside nonsense.
+/// Fixed contents of a stranger's sample; the rest is absurd.
 struct AbsurdStyle {
   std::string robot_id = "robot";
-  /// Texts of fields by their names, for those who are addressed.
+  /// Texts of fields by their names, for example to address a peer.
   std::map<std::string, std::string> texts = {};
   /// Enumerators by type and field, as "Goal.kind".
   std::map<std::string, std::uint32_t> enumerators = {};
   /// True: no floating-point number is finite and no sequence is empty, so that each message with
-  /// such a number has to be refused.
+  /// such a number must be refused.
   bool not_finite = true;
-  /// Sequences and texts as long as their bounds, and the bytes, allow.
+  /// Sequences and texts as long as their bounds and kMostBytes allow.
   bool full = false;
 };
 
@@ -52,11 +52,11 @@ class AbsurdPayload {
 
  private:
   static constexpr std::size_t kHeader_bytes = 4;
-  /// A sample of up to 64 KiB is not cut up.
+  /// Below 64 KiB, so that a sample is not fragmented.
   static constexpr std::size_t kMostBytes = 48'000;
 
   void add_struct(const std::string& type) {
-    std::map<std::string, std::string> texts;  // those so far, for their keys
+    std::map<std::string, std::string> texts;  // texts so far, for keys
     for (const IdlMember& member : schema_.members(type)) {
       const auto given = style_.enumerators.find(type + "." + member.name);
       if (given != style_.enumerators.end()) {
@@ -138,7 +138,7 @@ class AbsurdPayload {
     const std::size_t bound = std::stoul(member.type.substr(std::strlen("string<")));
     switch (style_.full ? 0 : random_.below(4)) {
       case 0:
-        return std::string(bound, '\xff');  // no UTF-8
+        return std::string(bound, '\xff');  // not UTF-8
       case 1:
         return "stranger";
       case 2:
@@ -169,7 +169,7 @@ class AbsurdPayload {
   Unsigned integer() {
     constexpr auto kAllOnes = std::numeric_limits<Unsigned>::max();
     constexpr auto kHighest = static_cast<Unsigned>(kAllOnes / 2);
-    // As signed numbers: -1 and near to it, the largest, the smallest, the year 2250 in ns.
+    // Signed values: -1 and close to it, the largest, the smallest, the year 2250 in ns.
     constexpr std::uint64_t kYear2250_ns = 8'830'000'000'000'000'000;
     switch (random_.below(6)) {
       case 0:
@@ -187,7 +187,7 @@ class AbsurdPayload {
     }
   }
 
-  /// Returns where it begins.
+  /// Returns the position of its first byte.
   template <class Number>
   std::size_t add_number(Number value) {
     while ((bytes_.size() - kHeader_bytes) % sizeof value != 0) bytes_.push_back('\0');

@@ -1,8 +1,8 @@
-// A gateway whose scans do not reach a local mapper, while each of the two takes itself for
-// connected with the other. The mapper has to find that out, end with the exit code that its
-// supervisors start it again for, and be at work in its next life.
+// A gateway whose scans do not reach a local mapper, while each of the two believes that it is
+// connected to the other. The mapper must detect that, end with the exit code for a restart by its
+// supervisor, and work in its next life.
 //
-// This test is the gateway: what it sends passes the function below, which may lose it.
+// This test is the gateway: the function below may drop the packets that it sends.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -37,11 +37,11 @@
 
 namespace {
 
-/// The packets of this process that are lost. For several threads.
+/// The packets of this process that are dropped. Thread-safe.
 class Losses {
  public:
   void lose_scans(bool lost) { scans_ = lost; }
-  /// All that goes to the ports that were sent to so far, but for the groups of multicast.
+  /// Drops all packets to the ports used so far, except multicast.
   void lose_known_ports(bool lost) { ports_ = lost; }
 
   bool take(std::span<const std::uint8_t> packet, const sockaddr* address) {
@@ -56,7 +56,7 @@ class Losses {
   }
 
  private:
-  /// Ranges of 2 m, each like the next.
+  /// All ranges are 2 m, a pattern that can be found in a packet.
   static bool has_scan(std::span<const std::uint8_t> packet) {
     constexpr std::array<std::uint8_t, 16> kRanges = {0, 0, 0, 0x40, 0, 0, 0, 0x40,
                                                       0, 0, 0, 0x40, 0, 0, 0, 0x40};
@@ -77,7 +77,7 @@ Losses& losses() {
 
 }  // namespace
 
-// Takes the place of the function of the C library for the middleware, too.
+// Replaces the function of the C library, also for the middleware.
 extern "C" ssize_t sendto(int socket, const void* packet, std::size_t size, int flags,
                           const sockaddr* address, socklen_t address_size) {
   using Function = ssize_t (*)(int, const void*, std::size_t, int, const sockaddr*, socklen_t);
@@ -111,7 +111,7 @@ class DeafnessTest : public testing::Test {
     ::unsetenv("TOPOGEO_SECURITY");  // NOLINT(concurrency-mt-unsafe): one thread
   }
 
-  /// False where there is no openssl.
+  /// False without openssl.
   bool make_keys() {
     ::setenv("TOPOGEO_SECURITY", (scratch_ / "keys/robot").c_str(), 1);  // NOLINT: one thread
     return issue_keys(scratch_ / "keys", "--robot robot robot sensor_gateway local_mapper");
@@ -140,7 +140,7 @@ class DeafnessTest : public testing::Test {
         scratch_, "local_mapper", std::vector<std::string>{"--domain", domain_, "--standalone"});
   }
 
-  /// The gateway sends scans until `condition` holds.
+  /// Sends the gateway's scans until `condition` holds.
   bool wait(const std::string& what, const std::function<bool()>& condition) {
     return wait_in_loop(gateway_->loop, what, condition);
   }
@@ -201,7 +201,7 @@ TEST_F(DeafnessTest, AServiceWhoseInputAloneIsLostIsAtWorkAgainInItsNextLife) {
   expect_next_life();
 }
 
-// The status of the sender does not come either: only another participant hears it.
+// The status of the sender does not arrive either: only another participant receives it.
 TEST_F(DeafnessTest, SoIsOneThatHearsNothingOfItsSender) {
   start_both();
   losses().lose_known_ports(true);

@@ -1,6 +1,6 @@
-// Prints how a simulated robot moves, a line for each ground truth: milliseconds since 1970, m/s,
-// rad/s, collisions so far; or, with --commands, the first three for each motion command. Has the
-// flags of a service; ends with SIGTERM.
+// Prints the motion of a simulated robot, a line for each ground truth: milliseconds since 1970,
+// m/s, rad/s, collisions so far; or, with --commands, the first three for each motion command. Has
+// the flags of a service; ends with SIGTERM.
 #include <chrono>
 #include <cmath>
 #include <cstdint>

@@ -1,7 +1,7 @@
-// An Ethernet switch between TAP devices that loses, delays, reorders and repeats frames as it is
-// told, where the kernel has no netem. It makes a device for each host named; whoever starts it
-// moves them into the network namespaces of the hosts. Orders come on its standard input, a line
-// each:
+// An Ethernet switch between TAP devices that loses, delays, reorders and repeats frames on
+// command, for kernels without netem. It makes a device for each host named; the caller moves the
+// devices into the network namespaces of the hosts. Commands are read from its standard input, a
+// line each:
 //
 //   clear | loss PERCENT | delay MS | reorder PERCENT | duplicate PERCENT | cut HOST | join HOST
 //
@@ -40,9 +40,9 @@ using Address = std::array<std::uint8_t, 6>;
 
 /// Later than the frames behind it, which are sent within a few milliseconds.
 constexpr std::chrono::milliseconds kReordered{20};
-/// More than a device hands over: the MTU is 1500.
+/// Larger than any frame of a device, because the MTU is 1500.
 constexpr std::size_t kMaxFrame = 2048;
-/// What may wait: a second of a gigabit. What comes on top is lost, as in a switch.
+/// Queue limit: a second at a gigabit. Frames beyond it are lost, as in a switch.
 constexpr std::size_t kMaxWaiting = 80'000;
 
 [[noreturn]] void fail(const std::string& what) {
@@ -68,7 +68,7 @@ struct Port {
 
 struct Waiting {
   Clock::time_point due;
-  std::uint64_t number;  // keeps the order of frames that are due at one time
+  std::uint64_t number;  // keeps the order of frames that are due at the same time
   std::size_t to;
   Frame frame;
   bool operator>(const Waiting& other) const {
@@ -82,7 +82,7 @@ class FaultySwitch {
     for (const std::string& host : hosts) ports_.push_back({host, open_device(host)});
   }
 
-  /// Until the standard input ends.
+  /// Runs until the standard input ends.
   void run() {
     std::vector<pollfd> waits = {{STDIN_FILENO, POLLIN, 0}};
     for (const Port& port : ports_) waits.push_back({port.device, POLLIN, 0});

@@ -1,5 +1,5 @@
-// Plain messages of discovery that nobody of good will sends, in the name of a peer (Object
-// Management Group, DDSI-RTPS 2.3, chapters 8.5 and 9.6).
+// Plain discovery messages that an attacker would send in the name of a peer (Object Management
+// Group, DDSI-RTPS 2.3, chapters 8.5 and 9.6).
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace topogeo::test {
 
-/// Writers of discovery, each with its reader.
+/// Entity ids of a discovery writer and its reader.
 struct DiscoveryPair {
   std::array<std::uint8_t, 4> reader;
   std::array<std::uint8_t, 4> writer;
@@ -23,14 +23,14 @@ constexpr DiscoveryPair kOfParticipants = {{0, 1, 0, 0xc7}, {0, 1, 0, 0xc2}};
 constexpr DiscoveryPair kOfWriters = {{0, 0, 3, 0xc7}, {0, 0, 3, 0xc2}};
 constexpr DiscoveryPair kOfReaders = {{0, 0, 4, 0xc7}, {0, 0, 4, 0xc2}};
 
-/// Numbers are written with their low byte first.
+/// Numbers are little-endian.
 class ForgedMessages {
  public:
   /// `victim`: a reader or a writer of the peer.
   explicit ForgedMessages(const messaging::Handle& victim)
       : prefix_(victim.bytes.begin(), victim.bytes.begin() + kPrefix_bytes) {}
 
-  /// "The participant has left", in every encoding that a parser may take.
+  /// "The participant has left", in every encoding that a parser may accept.
   std::vector<Packet> removals_of_participant() {
     const Packet guid = participant();
     const Packet key = joined({{0, 3, 0, 0}, parameter(0x50, guid), kEnd});
@@ -63,7 +63,7 @@ class ForgedMessages {
                         kEnd}));
   }
 
-  /// What the participant announces, with a lease of 1/128 s, and without any.
+  /// The participant's announcement, with a lease of 1/128 s and without a lease.
   std::vector<Packet> short_leases(const Packet& announcement) {
     const Packet lease = {0x02, 0, 8, 0};
     const auto found =
@@ -79,8 +79,8 @@ class ForgedMessages {
     return {brief, none};
   }
 
-  /// The same packet, in which a prefix without a key says that all is in an envelope. Fast DDS
-  /// passes over a prefix that is not the first submessage.
+  /// The same packet after a prefix without a key, which pretends that the packet is in an
+  /// envelope. Fast DDS skips a prefix that is not the first submessage.
   static Packet in_dummy_envelope(Packet packet) {
     constexpr std::ptrdiff_t kHeader_bytes = 20;
     const Packet no_timestamp = {0x09, 3, 0, 0};
@@ -118,7 +118,7 @@ class ForgedMessages {
 
   [[nodiscard]] Packet participant() const { return joined({prefix_, {0, 0, 1, 0xc1}}); }
 
-  /// Higher than all that the peer has sent; from 1 on where it sends nothing.
+  /// Higher than all numbers of the peer, or counted from 1 when it sends nothing.
   Packet next_number(const DiscoveryPair& pair) {
     constexpr std::size_t kMoreThanSent = 256;
     const std::size_t number =
@@ -150,7 +150,7 @@ class ForgedMessages {
                           rest}));
   }
 
-  /// The only one of a sample that is a key.
+  /// A single fragment of a sample that is a key.
   Packet fragment(const Packet& parameters, const Packet& key) {
     const DiscoveryPair& pair = kOfParticipants;
     return packet(0x16, kInline | 4U,

@@ -1,5 +1,5 @@
 // A stranger without a key takes the name of a peer: "it has left", "its writer has left", "its
-// lease is 4 ms". No link may be lost, with security and without; what came is counted.
+// lease is 4 ms". No link may be lost, with security and without; forged messages are counted.
 #include "forged_messages.hpp"
 
 #include <chrono>
@@ -39,7 +39,7 @@ unsigned volleys() {
   return std::getenv("TOPOGEO_ALL_FAULTS") != nullptr ? 100 : 5;
 }
 
-/// Two services that send each other messages, in one process.
+/// Two services in one process that send each other messages.
 class ForgedMessagesTest : public testing::Test {
  protected:
   ForgedMessagesTest() {
@@ -50,13 +50,13 @@ class ForgedMessagesTest : public testing::Test {
   ForgedMessagesTest& operator=(const ForgedMessagesTest&) = delete;
   ~ForgedMessagesTest() override { ::close(socket_); }
 
-  /// Makes keys for both. False where there is no openssl.
+  /// Makes keys for both. False without openssl.
   bool make_keys() {
     keys_ = scratch_ / "keys/robot";
     return issue_keys(scratch_ / "keys", "--robot robot robot sensor_gateway local_mapper");
   }
 
-  /// Starts both, with the keys that have been made, and waits until they are connected.
+  /// Starts both, with their keys if there are any, and waits until they are connected.
   void connect() {
     announcements_ = std::make_unique<Announcements>(first_port_);
     gateway_ = std::make_unique<Side>(options("sensor_gateway"));
@@ -74,7 +74,7 @@ class ForgedMessagesTest : public testing::Test {
     return options;
   }
 
-  /// Each sends status after status and counts what it gets from the other one.
+  /// Each side sends statuses and counts those of the other one.
   struct Side {
     explicit Side(const messaging::ParticipantOptions& options)
         : name(options.name), participant(options), writer(participant), reader(participant) {
@@ -100,7 +100,7 @@ class ForgedMessagesTest : public testing::Test {
       return found != last.end() && found->second > 0;
     }
 
-    /// What this side knows about the other one: its writers, or its readers.
+    /// The other side's writers or readers that this side has discovered.
     std::vector<messaging::Handle> endpoints(bool writers) const {
       std::vector<messaging::Handle> found;
       for (const RemoteEndpoint& endpoint : participant.discovered()) {
@@ -129,7 +129,7 @@ class ForgedMessagesTest : public testing::Test {
     });
   }
 
-  /// Sends to each port that the participants of a host have for discovery.
+  /// Sends to each discovery port that a participant of a host may have.
   void send(const Packet& packet) {
     constexpr std::uint16_t kParticipants = 16;
     for (std::uint16_t number = 0; number < kParticipants; ++number) {
@@ -140,7 +140,7 @@ class ForgedMessagesTest : public testing::Test {
     }
   }
 
-  /// In the name of each of the two, until one has shown that it has not left.
+  /// Forges the removal of both, and waits until one is counted as forged.
   void forge_removals() {
     const std::uint64_t before = messaging::stranger_counts().forged_removals;
     for (Side* side : {gateway_.get(), mapper_.get()}) {
@@ -153,7 +153,7 @@ class ForgedMessagesTest : public testing::Test {
 
   [[nodiscard]] int lost_links() const { return gateway_->lost_links + mapper_->lost_links; }
 
-  /// In the name of the peer of `side`.
+  /// Forged in the name of the peer of `side`.
   ForgedMessages& forged_by(const Side& side) {
     auto& forged = forged_[side.name];
     if (!forged) forged = std::make_unique<ForgedMessages>(side.endpoints(true).at(0));
@@ -204,7 +204,7 @@ TEST_F(ForgedMessagesTest, NobodyElseShortensTheLeaseOfAPeer) {
   ASSERT_EQ(leases.size(), 2U);
   for (const Packet& packet : leases) {
     send(packet);
-    // What was sent after it has been read after it.
+    // Packets are read in order: when these are counted, the one before was read.
     forge_removals();
   }
   expect_all_links();
@@ -235,7 +235,7 @@ TEST_F(ForgedMessagesTest, PlainMessagesDoNotRemoveAProtectedReaderOrWriter) {
   expect_all_links();
 }
 
-// Who leaves says so by its readers and writers, which is believed at once.
+// A leaving peer disposes of its readers and writers, which takes effect at once.
 TEST_F(ForgedMessagesTest, APeerThatLeavesIsDisconnectedAtOnce) {
   connect();
   const std::uint64_t before = messaging::stranger_counts().forged_removals;

@@ -1,4 +1,4 @@
-// Packets of RTPS of strangers: random ones, and those of real peers with bytes changed.
+// RTPS packets of strangers: random ones, and real ones with bytes changed.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace topogeo::test {
 
 using Packet = std::vector<std::uint8_t>;
 
-/// What participants of a domain announce by multicast.
+/// Multicast announcements of the participants of a domain.
 class Announcements {
  public:
   explicit Announcements(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
@@ -44,7 +44,7 @@ class Announcements {
   Announcements& operator=(const Announcements&) = delete;
   ~Announcements() { ::close(socket_); }
 
-  /// The next one; empty when none comes.
+  /// The next announcement; empty when none comes.
   Packet next() {
     Packet packet(65536);
     const ssize_t size = ::recv(socket_, packet.data(), packet.size(), 0);
@@ -58,7 +58,7 @@ class Announcements {
 
 constexpr std::size_t kPrefix_bytes = 12;
 
-/// Another prefix of the sender, wherever it stands.
+/// Replaces the sender's GUID prefix everywhere in the packet.
 inline void rename_sender(Packet& packet, const Packet& name) {
   const Packet prefix(packet.begin() + 8, packet.begin() + 8 + kPrefix_bytes);
   for (auto at = packet.begin(); at != packet.end();) {
@@ -67,11 +67,11 @@ inline void rename_sender(Packet& packet, const Packet& name) {
   }
 }
 
-/// Packets of RTPS (Object Management Group, DDSI-RTPS 2.2, chapter 9.4): submessages of all kinds
+/// RTPS packets (Object Management Group, DDSI-RTPS 2.2, chapter 9.4): submessages of all kinds
 /// with random bodies, and real announcements with bytes changed.
 class Garbage {
  public:
-  /// In the name of ever new peers, or of those who sent the `real` ones.
+  /// Senders are ever new peers, or those of the `real` packets.
   Garbage(std::vector<Packet> real, bool new_names)
       : real_(std::move(real)), new_names_(new_names) {}
 
@@ -109,10 +109,10 @@ class Garbage {
   }
 
   void add_submessage(Packet& packet) {
-    // PAD, ACKNACK, HEARTBEAT, GAP, the INFO_ ones, NACK_FRAG, HEARTBEAT_FRAG, DATA, DATA_FRAG
+    // PAD, ACKNACK, HEARTBEAT, GAP, the INFO_ kinds, NACK_FRAG, HEARTBEAT_FRAG, DATA, DATA_FRAG
     constexpr std::array<std::uint8_t, 14> kKinds = {0x01, 0x06, 0x07, 0x08, 0x09, 0x0c, 0x0d,
                                                      0x0e, 0x0f, 0x12, 0x13, 0x15, 0x16, 0x30};
-    // Those of discovery and of user data, the readers and the writers.
+    // Readers and writers, of discovery and of user data.
     constexpr std::array<std::uint32_t, 8> kEntities = {0x000100c7, 0x000100c2, 0x000003c7,
                                                         0x000003c2, 0x000004c7, 0x000004c2,
                                                         0x00000107, 0x00000102};

@@ -7,10 +7,10 @@ hosts=(robot pc1 pc2)
 declare -A pids=()
 export TOPOGEO_DDS_PARTICIPANT=${TOPOGEO_DDS_PARTICIPANT:-udp_only}
 
-# Whether it is ready, or has ended.
+# Whether the switch is ready, or has ended.
 switch_answers() { grep -qs ready "$work/switch.log" || ! kill -0 "$1" 2> /dev/null; }  # PID
 
-# Skips the test where the kernel or the rights of the user do not allow it.
+# Skips the test when the kernel or the user's rights do not permit it.
 make_hosts() {
   need ip nsenter
   [ "$(id -u)" = 0 ] || skip "namespaces need root" root
@@ -45,7 +45,7 @@ on() {  # HOST COMMAND...
   nsenter --net="/run/netns/topogeo-$$-$1" "${@:2}"
 }
 
-# start_on HOST NAME COMMAND...: in the background; output in $work/NAME.log. Where the clock of a host may
+# start_on HOST NAME COMMAND...: starts it in the background; output in $work/NAME.log. When the clock of a host may
 # step, faketime reads it from a file.
 start_on() {
   local host=$1 name=$2 clock=()
@@ -60,7 +60,7 @@ start_on() {
 
 step_clock() { printf '%s\n' "$2" > "$work/$1.clock"; }  # HOST OFFSET, for example +3600
 
-stop() {  # NAME [SIGNAL]: and waits until it is gone
+stop() {  # NAME [SIGNAL]: waits until it is gone
   local pid=${pids[$1]:-}
   [ -n "$pid" ] || return 0
   unset "pids[$1]"

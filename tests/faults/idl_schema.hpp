@@ -1,4 +1,4 @@
-// The types of the IDL files, read when a test runs, so that a new message is among them by itself.
+// The types of the IDL files, read at run time, so that tests cover new messages automatically.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ struct IdlMember {
   std::string name;
 };
 
-/// Of files written as those in idl/: a member has a line, and arrays only in type definitions.
+/// Parses files in the style of idl/: one line for each member, arrays only in type definitions.
 class IdlSchema {
  public:
   /// Throws std::runtime_error when there is no struct in the *.idl of the folder.
@@ -37,17 +37,17 @@ class IdlSchema {
   [[nodiscard]] const std::vector<IdlMember>& members(const std::string& type) const {
     return structs_.at(type);
   }
-  /// Values of an enumeration, which are 0 and those that follow; 0 for other types.
+  /// Number of values of an enumeration, counted from 0; 0 for other types.
   [[nodiscard]] std::size_t enumerators(const std::string& type) const {
     const auto found = enums_.find(type);
     return found == enums_.end() ? 0 : found->second;
   }
-  /// Of an array of double; 0 for other types.
+  /// Size of an array of double; 0 for other types.
   [[nodiscard]] std::size_t array_size(const std::string& type) const {
     const auto found = arrays_.find(type);
     return found == arrays_.end() ? 0 : found->second;
   }
-  /// Of a number, or of the name of a constant.
+  /// Value of a number, or of a named constant.
   [[nodiscard]] std::uint64_t constant(const std::string& text) const {
     const auto found = constants_.find(text);
     return std::stoull(found == constants_.end() ? text : found->second);

@@ -1,5 +1,5 @@
-// A key of one robot is stolen, and the program that has it is changed: it writes and reads what is
-// of another robot. Its peers refuse that, count it and name it by its certificate.
+// The key of one robot is stolen and its program is changed: it writes and reads data of another
+// robot. Its peers refuse that, count it and name it by its certificate.
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
@@ -25,11 +25,11 @@
 
 namespace {
 
-/// Whether the programs of this process ask their own permissions before they make a writer or a
+/// Whether programs of this process check their own permissions before they create a writer or
 /// reader.
 bool g_obedient = true;
 
-/// The subject that they announce for their certificates; empty: the true one.
+/// The certificate subject that they announce; empty: the true one.
 std::string g_announced_subject;  // NOLINT(cert-err58-cpp)
 
 constexpr const char* kGetIdentity =
@@ -44,7 +44,7 @@ constexpr const char* kCheckReader =
     "NSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEERKSt6vectorISC_SaISC_EERNS2_"
     "17SecurityExceptionE";
 
-/// The decision of the library, whose function this test takes the place of.
+/// The decision of the library, whose function this test replaces.
 template <class... Arguments>
 bool decide(const char* symbol, Arguments... arguments) {
   using Function = bool (*)(Arguments...);
@@ -139,8 +139,8 @@ class RobotPermissionsTest : public testing::Test {
     return Participant(options);
   }
 
-  /// A program with the keys of anna's gateway that is changed to ask for what is of `robots` and
-  /// announces the certificate of bert's.
+  /// A modified program with the keys of anna's gateway, which requests data of `robots` and
+  /// announces the certificate of bert's gateway.
   Participant steal(const std::string& robots) {
     g_obedient = false;
     std::filesystem::copy(keys_of("anna"), keys_of("thief"),
@@ -160,7 +160,7 @@ class RobotPermissionsTest : public testing::Test {
     return scan;
   }
 
-  /// Writes scans, and takes those that come, until the condition holds.
+  /// Writes scans and takes received ones until the condition holds.
   template <class Condition>
   [[nodiscard]] bool wait(const std::string& what, const Condition& condition) {
     return wait_for(what, condition, [this] {
@@ -174,7 +174,7 @@ class RobotPermissionsTest : public testing::Test {
     });
   }
 
-  /// The robots of all scans that come.
+  /// Collects the robots of all received scans.
   void read_to(std::vector<std::string>& robots, Reader<msg::Scan>& reader) {
     steps_.emplace_back([&] {
       reader.take([&](const msg::Scan& got, const SampleInfo& info) {
@@ -184,7 +184,7 @@ class RobotPermissionsTest : public testing::Test {
     });
   }
 
-  /// Whether the participant has refused something in this way, at any time.
+  /// Whether the participant has refused something for this reason at any time.
   bool has_refused(const Participant& participant, const std::string& how) {
     for (std::string& line : participant.take_refusals()) refusals_.push_back(std::move(line));
     return std::ranges::any_of(refusals_, [&](const std::string& line) {
@@ -276,7 +276,7 @@ TEST_F(RobotPermissionsTest, KeysOfAnotherRobotAreAClearError) {
                         HasSubstr("the keys are for 'anna', not for 'bert'"))));
 }
 
-// Keys of before robots were named have no list of them, and permissions for every partition.
+// Older keys have no list of robots, and permissions for every partition.
 TEST_F(RobotPermissionsTest, OlderKeysWorkForEveryRobot) {
   for (const char* service : {"sensor_gateway", "local_mapper"}) {
     std::filesystem::remove(keys_of("pool") / service / "robots");

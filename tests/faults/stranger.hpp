@@ -1,4 +1,4 @@
-// Strangers who speak DDS: samples of the right types with absurd content, bytes that are no
+// Strangers that use DDS: samples of the right types with absurd content, bytes that are no
 // message, topics that do not exist.
 #pragma once
 
@@ -35,7 +35,7 @@
 
 namespace topogeo::test {
 
-/// Sends whatever bytes it is given as samples of a type.
+/// Sends any bytes as samples of a type.
 class AnyBytes final : public eprosima::fastdds::dds::TopicDataType {
   using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
 
@@ -65,7 +65,7 @@ class AnyBytes final : public eprosima::fastdds::dds::TopicDataType {
   }
 };
 
-/// A participant of Fast DDS that keeps none of our rules.
+/// A participant of Fast DDS that follows none of our rules.
 class Stranger {
  public:
   explicit Stranger(std::uint32_t domain) {
@@ -90,7 +90,7 @@ class Stranger {
         participant_);
   }
 
-  /// Of any bytes.
+  /// A writer of arbitrary bytes.
   eprosima::fastdds::dds::DataWriter& writer(const std::string& topic, const std::string& type) {
     return writer(topic, eprosima::fastdds::dds::TypeSupport(
                              new AnyBytes(type)));  // NOLINT: it takes it over
@@ -104,7 +104,7 @@ class Stranger {
     qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
     qos.durability().kind = dds::TRANSIENT_LOCAL_DURABILITY_QOS;
     qos.history().depth = 64;
-    // As strict as readers of statuses want it.
+    // The strictest setting that readers of statuses require.
     qos.liveliness().lease_duration = {1, 0};
     qos.liveliness().announcement_period = {0, 250'000'000};
     qos.endpoint().history_memory_policy =
@@ -118,12 +118,12 @@ class Stranger {
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
 };
 
-/// Samples on all topics that keep the bounds of the types and mean nothing.
+/// Meaningless samples within the bounds of their types, on all topics.
 ///
-/// Without security whoever writes a valid message is obeyed, so none of these is valid for the
-/// robot: no floating-point number in them is finite, or else they are for another robot. Those of
-/// types that have no such number, or whose number is not what matters, are all for another robot,
-/// unless they are refused for something else.
+/// Without security any valid message takes effect, so none of these is valid for the robot: either
+/// none of its floating-point numbers is finite, or it is for another robot. Samples are always for
+/// another robot when their type has no such number, or when receivers act without checking it,
+/// unless they are refused for another reason.
 class AbsurdSamples {
  public:
   AbsurdSamples(const messaging::Participant& participant, std::uint32_t domain)
@@ -143,7 +143,7 @@ class AbsurdSamples {
   AbsurdSamples& operator=(const AbsurdSamples&) = delete;
   ~AbsurdSamples() = default;
 
-  /// One on each topic. Throws std::logic_error when a reader would refuse it as no message.
+  /// Writes one on each topic. Throws std::logic_error when a reader would reject it as malformed.
   void write(std::uint64_t number) {
     meet_peers();
     for (const Topic& topic : topics_) {
@@ -160,7 +160,7 @@ class AbsurdSamples {
     eprosima::fastdds::dds::DataWriter* writer;
   };
 
-  /// Who is addressed: the names of workers and of their clients are in what they send.
+  /// Collects addressees: statuses, tasks and requests contain the ids of workers and clients.
   void meet_peers() {
     workers_.take([this](const msg::WorkerStatus& status, const messaging::SampleInfo& info) {
       if (info.valid && status.slots() < 1000) worker_ = status.worker_id().to_string();
@@ -174,12 +174,12 @@ class AbsurdSamples {
   }
 
   AbsurdStyle style(const std::string& type, std::uint64_t number) {
-    // A base is halted, a goal cancelled, a drive paused by whoever asks for it.
+    // A halt, a cancelled goal or a pause would take effect from any sender.
     static const std::map<std::string, std::uint32_t> kRefusable = {
         {"Goal.kind", msg::kGoalPosition}, {"BaseCommand.kind", msg::kBaseSetLimits}};
-    // What fails, or ends, is taken for true without a look at any number.
+    // Receivers act on a failure or an end without checking any number.
     static const std::set<std::string> kObeyed = {"RunSummary", "ServiceStatus"};
-    // Cells of no state, pieces that nobody asked for, maps and sessions that nobody has.
+    // Refused: cells of no state, unrequested pieces, requests for unknown maps and sessions.
     static const std::set<std::string> kRefused = {"GridTile", "MapRequest", "SnapshotRequest",
                                                    "SnapshotPiece"};
     AbsurdStyle style;
@@ -233,8 +233,8 @@ class AbsurdSamples {
   std::set<std::string> clients_;
 };
 
-/// Samples on all topics that are no message: cut off, counts of four billion, truth values of 255,
-/// no text's end.
+/// Malformed samples on all topics: cut off, counts of four billion, truth values of 255, texts
+/// without an end.
 class NoMessages {
  public:
   explicit NoMessages(std::uint32_t domain) : stranger_(domain) {

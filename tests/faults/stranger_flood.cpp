@@ -1,5 +1,5 @@
 // Floods hosts with packets of strangers until SIGTERM: garbage, and participants that do not
-// exist. It hears by multicast what the participants of domain 0 announce.
+// exist. It listens to the multicast announcements of domain 0.
 //
 //   stranger_flood ADDRESS...
 #include <chrono>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::uint16_t kFirstPort = 7400;
 constexpr std::uint64_t kPorts = 32;
-/// In one go, with 2 ms after it: some five thousand packets a second.
+/// Packets sent at once, with a pause of 2 ms: some five thousand packets a second.
 constexpr int kAtOnce = 10;
 
 volatile std::sig_atomic_t g_stopped = 0;

@@ -1,5 +1,5 @@
-// A stranger who speaks DDS in domain 0 until SIGTERM: fifty times a second samples of absurd
-// content and bytes that are no message on all topics, or a topic that does not exist.
+// A stranger that uses DDS in domain 0 until SIGTERM: fifty times a second, samples of absurd
+// content and malformed samples on all topics, or a new topic that does not exist.
 //
 //   stranger_samples absurd | topics
 #include <chrono>
@@ -18,7 +18,7 @@ namespace topogeo::test {
 namespace {
 
 constexpr std::chrono::milliseconds kPeriod{20};
-/// Then it goes, with all of them, and comes again as another.
+/// After so many topics it leaves with all of them and returns as a new participant.
 constexpr std::size_t kTopicsAtOnce = 300;
 
 volatile std::sig_atomic_t g_samples_stopped = 0;
@@ -34,7 +34,7 @@ void write_absurd_samples() {
   for (; g_samples_stopped == 0; ++rounds) {
     samples.write(rounds);
     no_messages.write(rounds);
-    std::this_thread::sleep_for(kPeriod);  // pacing: services have to get at their own work
+    std::this_thread::sleep_for(kPeriod);  // pacing: services need time for their own work
   }
   std::cout << rounds << " samples on each topic" << std::endl;
 }

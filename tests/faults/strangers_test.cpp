@@ -1,6 +1,6 @@
 // Strangers on the network of a run: participants that come and go, samples of absurd content,
-// topics that do not exist, packets of garbage at the ports. The map must be that of one process,
-// the memory of all services stays small, and what was refused is in their statuses.
+// unknown topics, garbage packets at the ports. The map must equal that of one process, the memory
+// of all services stays small, and their statuses count what was refused.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -38,7 +38,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// What any service may take after a long log.
+/// Memory limit of any service after a long log.
 constexpr std::size_t kMostMemoryMb = kTimeFactor == 1 ? 150 : 600;  // a sanitizer takes its own
 
 std::size_t memory_mb(pid_t pid) {
@@ -59,7 +59,7 @@ class StrangersTest : public testing::Test {
     EXPECT_EQ(map.wait(), 0) << map.err();
   }
 
-  /// A run of the log that lasts some ten seconds, or more at a lower rate.
+  /// Starts a run of the log that lasts some ten seconds, or longer at a lower rate.
   void start(const std::string& rate = "3") {
     rate_ = rate;
     run_ = std::make_unique<Program>(
@@ -69,7 +69,7 @@ class StrangersTest : public testing::Test {
     run_->wait_for_progress(5);
   }
 
-  /// The highest memory of each service and the faults that any has reported, until it ends.
+  /// Tracks the highest memory of each service and all reported faults until the run ends.
   void finish() {
     EXPECT_EQ(run_->wait(), 0) << run_->err();
     EXPECT_TRUE(read_file(scratch_ / "out/map.pb") == read_file(scratch_ / "alone/map.pb"));
@@ -93,14 +93,14 @@ class StrangersTest : public testing::Test {
     });
   }
 
-  /// A run that is over, however fast the machine is, is followed by another one of the same log.
+  /// Starts another run of the same log when one is over, which depends on the machine.
   void keep_running() {
     if (!run_->ended()) return;
     finish();
     start(rate_);
   }
 
-  /// At least `least` times, and until services have reported all of these.
+  /// Writes at least `least` times, until services have reported all of these reasons.
   template <class Samples>
   void write_until_counted(Samples& samples, const std::vector<std::string>& reasons,
                            std::uint64_t least) {
@@ -116,7 +116,7 @@ class StrangersTest : public testing::Test {
         }));
   }
 
-  /// Between two turns of a stranger: the services have to get at their own work, too.
+  /// Pause between two turns of a stranger, because services need time for their own work.
   void pace() {
     std::this_thread::sleep_for(milliseconds(20));  // pacing
     look();
@@ -177,7 +177,7 @@ TEST_F(StrangersTest, SamplesOfAbsurdContentAreRefusedAndCounted) {
   finish();
 }
 
-// With the devices, the navigator and a map that stays as it is.
+// The same for a drive with devices and navigator in a finished map.
 TEST_F(StrangersTest, ADriveGoesOnAmongSamplesOfAbsurdContent) {
   run_ = std::make_unique<Program>(
       scratch_, "topogeo",
@@ -230,7 +230,7 @@ class GarbageTest : public StrangersTest {
   GarbageTest& operator=(const GarbageTest&) = delete;
   ~GarbageTest() override { ::close(socket_); }
 
-  /// Starts the run and returns what its participants announce.
+  /// Starts the run and returns the announcements of its participants.
   std::vector<Packet> start_and_listen(const std::string& rate = "3") {
     Announcements announcements(first_port_);
     start(rate);
@@ -243,7 +243,7 @@ class GarbageTest : public StrangersTest {
     return real;
   }
 
-  /// To one of the ports that the participants of a host have.
+  /// Sends to one of the ports that participants of a host may have.
   void send(const Packet& packet, std::size_t number) {
     to_.sin_port = htons(static_cast<std::uint16_t>(first_port_ + 10 + number % 16));
     ::sendto(socket_, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&to_),
@@ -278,8 +278,8 @@ TEST_F(GarbageTest, OfUnknownPeersIsDropped) {
   finish();
 }
 
-// Without security whoever takes the name of a peer speaks for it, so the run need not end as it
-// would. But no service dies, hangs or grows.
+// Without security a stranger can act in a peer's name, so the run may end differently. But no
+// service may die, hang or grow.
 TEST_F(GarbageTest, InTheNameOfPeersKillsNoService) {
   const std::vector<Packet> real = start_and_listen("0.3");
   const std::vector<pid_t> services = run_->services();
@@ -290,7 +290,7 @@ TEST_F(GarbageTest, InTheNameOfPeersKillsNoService) {
   static_cast<void>(run_->wait());
 }
 
-/// A list of parameters of a writer, with one more.
+/// A writer's list of parameters with an additional one.
 Packet announced_writer(const Packet& guid_prefix, std::uint8_t number, const Packet& parameter) {
   Packet list = {0, 3, 0, 0, 0x5a, 0, 16, 0};
   list.insert(list.end(), guid_prefix.begin(), guid_prefix.end());
@@ -311,14 +311,14 @@ Packet packet_of(const Packet& prefix, std::uint8_t kind, std::uint8_t flags, co
   return packet;
 }
 
-// Each of these made Fast DDS 2.9.1 end the process, hang, or take memory without end. The stranger
-// is one that the services know, as anybody may announce himself.
+// Each of these made Fast DDS 2.9.1 exit, hang, or take memory without limit. Services know the
+// stranger, because any participant may announce itself.
 TEST_F(GarbageTest, WhatKilledAParserIsRefused) {
   Packet stranger = start_and_listen().front();
   const Packet prefix = {1, 15, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9};
   rename_sender(stranger, prefix);
-  // A partition of a thousand million characters, as many data representations, statistics that
-  // are not at the end, a first sample 2^39.
+  // A partition of a thousand million characters, as many data representations, statistics that are
+  // not at the end, a first sample 2^39.
   const std::vector<Packet> lists = {
       announced_writer(prefix, 1, {0x29, 0, 12, 0, 2, 0, 0, 0, 0, 0, 0, 0x40, 'x', 0, 0, 0}),
       announced_writer(prefix, 2, {0x73, 0, 8, 0, 0, 0, 0, 0x40, 0, 0, 0, 0}),
