@@ -16,11 +16,11 @@
 namespace topogeo::fuzz {
 namespace {
 
-// A few kilobytes of gzip hold thousands of scans, and all of them go the same way.
+// A few kilobytes of gzip hold thousands of scans, and all of them take the same code path.
 constexpr int kMaxScans = 64;
 constexpr std::size_t kMaxMaps = 3;
 
-/// The reader promises these of every scan that it hands out.
+/// Guarantees of the reader for every scan that it returns.
 class ScanPromises {
  public:
   void check(const scan::Scan& scan) {
@@ -97,7 +97,7 @@ void check_map(const topomap::LocalMap& map, std::size_t beams) {
   }
 }
 
-/// A sixteenth of the default's cells: a diagram of the default costs more than all else together.
+/// A sixteenth of the default number of cells: a default diagram costs more than everything else.
 voronoi::VoronoiConfig coarse() {
   voronoi::VoronoiConfig config;
   config.range_limit_m = 5.0;

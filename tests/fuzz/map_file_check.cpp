@@ -18,7 +18,7 @@ std::optional<storage::MapDocument> read(std::string_view bytes) {
   }
 }
 
-/// The fields of `body` after the start of a file (format and version), before its checksum.
+/// A file with the fields of `body` between its header (format and version) and its checksum.
 std::string sealed(std::string_view body) {
   std::string bytes("\x0a\x0btopogeo-map\x10\x01");
   bytes += body;

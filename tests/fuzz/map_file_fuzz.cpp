@@ -7,7 +7,7 @@
 
 // NOLINTNEXTLINE(readability-identifier-naming): the name that libFuzzer calls
 extern "C" int LLVMFuzzerInitialize(int* /*argc*/, char*** /*argv*/) {
-  // Protobuf prints a line for each string that is not UTF-8, which is what most inputs hold.
+  // Protobuf prints a line for each string that is not UTF-8, which most inputs contain.
   google::protobuf::SetLogHandler(nullptr);
   return 0;
 }

@@ -21,7 +21,7 @@ using Messages = std::vector<devices::McpMessage>;
 constexpr std::uint32_t kMask = 0x000A0A7A;
 constexpr std::int64_t kPart_ns = 20'000'000;
 constexpr std::size_t kPart_bytes = 23;
-constexpr std::size_t kMostOrders = 5;  // of one part
+constexpr std::size_t kMostOrders = 5;  // per part
 
 Bytes written(const devices::McpReport& report, bool ascii) {
   Bytes bytes;

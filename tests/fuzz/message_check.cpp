@@ -38,7 +38,7 @@ namespace topogeo::fuzz {
 namespace {
 
 constexpr std::int64_t kNow_ns = 1'000'000'000'000;
-/// A search of more individuals takes longer than all else, and does nothing else.
+/// A larger search would take most of the time and test nothing else.
 constexpr std::uint64_t kMostEvaluations = 4096;
 
 /// A room of 4 x 6 m, seen from inside.
@@ -67,7 +67,7 @@ const topomap::LocalMap& room() {
   return map;
 }
 
-/// Of the room with a map beside it.
+/// A match task in the room, against a map beside it.
 localization::MatchTask task_with(const topomap::LocalMap& query) {
   localization::MatchTask task;
   task.reference_map_id = room().id;
@@ -137,12 +137,12 @@ void navigate(const Input& input) {
   }
 }
 
-// What receivers do with a message that has no defect. Most throw std::invalid_argument.
+// Handling of valid messages in the receivers. Most throw std::invalid_argument.
 
 template <class Message>
-void receive(const Message& /*message*/) {}  // they only show it
+void receive(const Message& /*message*/) {}  // only displayed
 
-/// A floor with what is drawn on it can be planned on.
+/// A floor with any accepted drawing must be usable for planning.
 void plan_on_drawing(const storage::MapDrawing& drawing) {
   const planning::FreeSpace space(floor().space().grid(), {0.5, false}, drawing.zones,
                                   drawing.lines);
@@ -158,7 +158,7 @@ void receive(const msg::DrawingState& message) {
 void receive(const msg::DrawingOrder& message) {
   storage::MapDrawing now;
   now.version = message.version();
-  // Cells of a metre: a floor may be as large as one likes.
+  // Cells of a metre, because a floor has no size limit.
   const map_store::DrawingOutcome outcome = map_store::carry_out(message, now, 1.0);
   require(outcome.drawing.has_value() == (outcome.result == msg::kDrawingDone),
           "an order is carried out or refused");
@@ -203,7 +203,7 @@ void receive(const msg::TrackedPose& message) {
 
 void receive(const msg::LocalMap& message) {
   const topomap::LocalMap map =
-      service::content_from_msg(message);  // no chance change keeps the hash
+      service::content_from_msg(message);  // no random change keeps the hash
   map_store::MapInput input;
   static_cast<void>(input.add(map));
   topomap::LocalMap query = map;
@@ -235,7 +235,7 @@ void receive_task(const msg::MatchTask& message) {
 }
 
 void receive(const msg::MatchTasks& message) {
-  // One is as good as many, and takes less time.
+  // One task covers as much as many, in less time.
   if (!message.tasks().empty()) receive_task(message.tasks().front());
 }
 
@@ -387,7 +387,7 @@ std::size_t check_bytes(std::string_view bytes) {
   return 2;
 }
 
-// A message of each topic. Those of no special form have nothing in them.
+// A valid message for each topic; without a special form it is empty.
 
 template <class Message>
 void fill(Message& /*message*/) {}

@@ -15,7 +15,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::size_t kHeader_bytes = 20;
 
-/// Walks over a packet as the middleware does, and so tells how many submessages it would read.
+/// Number of submessages that the middleware would read in a packet.
 std::size_t submessages(const Bytes& packet) {
   std::size_t count = 0;
   for (std::size_t at = kHeader_bytes; at < packet.size(); ++count) {
@@ -31,7 +31,7 @@ std::size_t submessages(const Bytes& packet) {
   return count;
 }
 
-/// Walks over a list of parameters as the middleware does.
+/// Walks through a list of parameters like the middleware.
 void walk_parameters(const Bytes& payload) {
   const bool little = (payload[1] & 1U) != 0;
   const auto u16 = [&](std::size_t at) {

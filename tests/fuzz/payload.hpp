@@ -1,4 +1,4 @@
-// Payloads of samples as readers get them and as writers send them.
+// Payloads of samples in the form of readers and writers.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace topogeo::fuzz {
 
 using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
 
-/// The bytes of a payload, with the room that the middleware leaves behind them: none.
+/// A payload without spare bytes at its end, as the middleware passes it.
 struct Arrived {
   explicit Arrived(std::string_view bytes)
       : payload(static_cast<std::uint32_t>(std::max<std::size_t>(1, bytes.size()))) {
@@ -35,14 +35,14 @@ std::string written_payload(const Message& message, eprosima::fastdds::dds::Type
   return {reinterpret_cast<const char*>(payload.data), payload.length};  // NOLINT: bytes
 }
 
-/// What an input names in its first line; behind it is a payload.
+/// Kind of the payload, named in the first line of an input.
 struct MessageKind {
   std::string_view name;
   std::size_t (*check)(std::string_view payload);
   std::string (*sample)();  ///< a payload that passes
 };
 
-/// The check of the kind that the input names; 0 when it names none.
+/// Runs the check of the kind that the input names; returns 0 when it names none.
 inline std::size_t check_named(std::span<const MessageKind> kinds, std::string_view bytes) {
   const std::size_t end = bytes.find('\n');
   const auto kind = std::ranges::find(kinds, bytes.substr(0, end), &MessageKind::name);

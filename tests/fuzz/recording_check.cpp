@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostMessages = 10'000;
 
-/// SQLite opens no file that has no name of its own.
+/// A temporary file with a name, because SQLite opens no other.
 class NamedFile {
  public:
   explicit NamedFile(std::string_view content)
@@ -86,7 +86,7 @@ void read_as_log(const std::filesystem::path& file) {
 std::size_t check_recording(std::string_view bytes) {
   const auto check = [](const std::filesystem::path& file) {
     const std::size_t messages = count_messages(file);
-    // Any other file is read as a CARMEN log, which check_carmen_log() does.
+    // check_carmen_log() covers all other files, which are read as CARMEN logs.
     if (recording::is_recording(file)) read_as_log(file);
     return messages;
   };

@@ -34,9 +34,9 @@ constexpr std::int64_t kTick_ns = 100'000'000;
 /// The longest `transforms.tolerance_s`.
 constexpr std::int64_t kTolerance_ns = 5'000'000'000;
 
-// What leaves the bridge.
+// Output of the bridge.
 
-/// The bridge would take std::invalid_argument for something in the message that it cannot use.
+/// The bridge would mistake std::invalid_argument for an unusable message.
 template <class Call>
 void require_no_refusal(const Call& call, const char* promise) {
   try {
@@ -46,7 +46,7 @@ void require_no_refusal(const Call& call, const char* promise) {
   }
 }
 
-/// A message of ours that the bridge makes passes the checks of its readers and their conversion.
+/// Our message, made by the bridge, must pass the checks of its readers and their conversion.
 template <class Message, class FromMsg>
 void check_leaving(const Message& message, const FromMsg& from_msg) {
   require(!messaging::TopicTraits<Message>::info().find_defect(&message),
@@ -55,7 +55,7 @@ void check_leaving(const Message& message, const FromMsg& from_msg) {
                      "readers take a message that the bridge makes");
 }
 
-/// Finite, and small enough that sums and products of it are, with an angle of one turn.
+/// A pose must be finite and small enough for finite sums and products, with its angle in one turn.
 void check_pose(const geometry::Pose2& pose) {
   constexpr double kFarthest_m = 1e12;
   require(std::fabs(pose.x_m) <= kFarthest_m && std::fabs(pose.y_m) <= kFarthest_m &&
@@ -67,7 +67,7 @@ void check_leaving(const geometry::OdometrySample& sample) {
   check_pose(sample.T_odom_robot);
   check_leaving(ros_bridge::to_msg(sample, "robot", 1, 0),
                 [](const msg::Odometry& message) { return service::odometry_from_msg(message); });
-  // The time of all that the bridge publishes from then on, in timers that nothing may end.
+  // Timers of the bridge publish with this time, and an exception there would end it.
   require_no_refusal(
       [&] {
         static_cast<void>(ros::time_of(ros::usable_stamp_ns(sample.stamp_ns) + kTolerance_ns));
@@ -87,7 +87,7 @@ void check_leaving(const scan::Scan& scan) {
 
 struct IntakeRun {
   ScanIntake intake;
-  std::uint64_t scans = 0;  ///< that came
+  std::uint64_t scans = 0;  ///< received
 
   explicit IntakeRun(ros::SweepOrder sweep, const std::string& laser_frame = "laser",
                      bool upside_down = false)
@@ -114,7 +114,7 @@ struct IntakeRun {
     ++scans;
   }
 
-  /// The scans that leave; each of the others is counted by its reason.
+  /// Returns the output scans; requires that each of the others is counted by its reason.
   std::vector<ScanIntake::Leaving> finish() {
     std::vector<ScanIntake::Leaving> leaving = intake.take(kRosNow_ns);
     for (const ScanIntake::Leaving& scan : leaving) check_leaving(scan.scan);
@@ -124,7 +124,7 @@ struct IntakeRun {
       if (drop == IntakeDrop::kInvalidOdometry || drop == IntakeDrop::kOldOdometry) continue;
       dropped += intake.dropped(drop);
     }
-    // What waits where another odometry begins is not counted.
+    // Pending scans are not counted when another odometry begins.
     require(intake.epochs() > 1 || leaving.size() + dropped == scans,
             "a scan leaves or is counted");
     if (const auto& mounting = intake.mounting()) check_pose(mounting->T_robot_laser);
@@ -135,7 +135,7 @@ struct IntakeRun {
 constexpr std::array kSweeps = {ros::SweepOrder::kNone, ros::SweepOrder::kForward,
                                 ros::SweepOrder::kBackward};
 
-/// Whether one of the scans leaves that stand before and after each sample of the odometry.
+/// Whether any scan is output, with scans before and after each odometry sample.
 bool drive(ros::SweepOrder sweep, const std::vector<geometry::OdometrySample>& samples) {
   IntakeRun run(sweep);
   for (const geometry::OdometrySample& sample : samples) {
@@ -163,7 +163,7 @@ bool check_odometry(const geometry::OdometrySample& sample) {
   return taken;
 }
 
-/// A scan of the laser at the end of the frames that the message states, if they reach so far.
+/// A scan of the laser at the end of the message's chain of frames, if the chain is complete.
 bool check_frames(const ros::TFMessage& message) {
   IntakeRun run(ros::SweepOrder::kForward);
   std::size_t kept = 0;
@@ -190,7 +190,7 @@ bool check_frames(const ros::TFMessage& message) {
   return kept > 0;
 }
 
-/// Each transform as one of odom -> robot after the other.
+/// Tests each transform as a successive one from odom to robot.
 bool check_odometry_transforms(const ros::TFMessage& message) {
   std::optional<geometry::OdometrySample> last;
   std::vector<geometry::OdometrySample> samples;
@@ -232,7 +232,7 @@ bool receive_in_bridge(const ros::LaserScan& message) {
   bool taken = false;
   for (const ros::SweepOrder sweep : kSweeps) {
     for (const bool upside_down : {false, true}) {
-      // The first scan decides of what beams the others are.
+      // The first scan determines the beams of the others.
       for (const bool is_first : {true, false}) {
         IntakeRun run(sweep, frame, upside_down);
         for (std::int64_t i = -10; i <= 10; ++i) {

@@ -1,4 +1,4 @@
-// What must hold of what the bridge does with a message of ROS that could be read.
+// Invariants of the bridge for a readable ROS message.
 #pragma once
 
 #include <cstdint>
@@ -10,21 +10,21 @@
 namespace topogeo::fuzz {
 
 inline constexpr std::int64_t kRosNow_ns = 1'700'000'000'000'000'000;
-/// Where the robot of the checks has its laser.
+/// Mounting of the laser in these checks.
 inline constexpr geometry::Pose2 kRosMounting{0.1, 0.0, 0.0};
 
-/// A stamp before or after all that ROS knows becomes the first or the last.
+/// Clamps a stamp outside the range of ROS to its first or last one.
 ros::Header header_at(const std::string& frame, std::int64_t stamp_ns);
 
-/// Half a turn, two metres from everything.
+/// Half a turn, all ranges two metres.
 ros::LaserScan scan_at(std::int64_t stamp_ns, const std::string& frame = "laser");
 
-// Each returns whether the bridge makes something of the message. Throws std::invalid_argument,
+// Each returns whether the bridge produces output for the message. Throws std::invalid_argument,
 // which the bridge counts, and BrokenPromise.
 
 bool receive_in_bridge(const ros::LaserScan& message);
 bool receive_in_bridge(const ros::Odometry& message);
-/// As of /tf_static, and as of /tf with each transform one of odom -> robot.
+/// Tests it as a message of /tf_static, and of /tf with each transform from odom to robot.
 bool receive_in_bridge(const ros::TFMessage& message);
 bool receive_in_bridge(const ros::PoseStamped& message);
 bool receive_in_bridge(const ros::PoseWithCovarianceStamped& message);

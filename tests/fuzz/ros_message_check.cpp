@@ -16,9 +16,9 @@
 namespace topogeo::fuzz {
 namespace {
 
-// What the middleware does with a payload.
+// Handling of a payload in the middleware.
 
-/// A message as a reader makes it, which decodes each over the one before it.
+/// A reader's message, which decodes each payload over the previous one.
 template <class Message>
 class Slot {
  public:
@@ -28,7 +28,7 @@ class Slot {
   Slot& operator=(const Slot&) = delete;
   ~Slot() { type_.delete_data(data_); }
 
-  /// Whether the reader hands it over.
+  /// Whether the reader delivers it.
   bool read(std::string_view bytes) {
     Arrived input(bytes);
     require(type_.deserialize(&input.payload, data_), "a reader is never left with a sample");
@@ -43,7 +43,7 @@ class Slot {
   void* data_;
 };
 
-/// Bytes that the lists of a message take, whether or not it could be read to its end.
+/// Memory of the lists of a message in bytes, even when decoding stopped early.
 template <class Message>
 std::size_t taken_bytes(const Message& /*message*/) {
   return 0;
@@ -82,7 +82,7 @@ std::size_t check_payload(std::string_view bytes) {
   }
 }
 
-// A message of each input, which the bridge takes.
+// A sample of each type that the bridge accepts.
 
 void fill(ros::LaserScan& message) {
   message = scan_at(kRosNow_ns);

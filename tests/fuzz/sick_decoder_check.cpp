@@ -19,7 +19,7 @@ using devices::SickDecoder;
 using devices::SickEvent;
 
 constexpr std::int64_t kByteGap_ns = 35'000'000;
-/// A silence after every so many bytes, so that the driver also gives up and asks again.
+/// A silence after so many bytes, so that the driver also gives up and repeats its request.
 constexpr std::size_t kSickPart_bytes = 97;
 
 std::vector<SickBytes> events(SickDecoder& decoder) {
@@ -50,7 +50,7 @@ std::vector<SickBytes> decode(SickDecoder& decoder, std::span<const std::uint8_t
   return found;
 }
 
-/// What is found stands in the stream, in its order, each byte of it used once.
+/// Requires that found telegrams occur in the stream, in order, each byte used once.
 void check_found(std::span<const std::uint8_t> bytes, const std::vector<SickBytes>& found) {
   auto rest = bytes.begin();
   for (const SickBytes& event : found) {
@@ -74,7 +74,7 @@ void check_listener(std::span<const std::uint8_t> bytes, SickDecoder::Listener l
   SickDecoder parts(listener, kByteGap_ns);
   require(decode(parts, bytes, 3) == found, "the cut of the stream does not matter");
   require(parts.counters() == whole.counters(), "nor does it for what is counted");
-  // A good telegram behind anything, after a silence, is found, and in the end nothing waits.
+  // After a silence, a good telegram is found behind any bytes, and nothing remains pending.
   const SickBytes good = devices::sick_reply(0xA0, SickBytes{0}, 0);
   const SickBytes question = devices::sick_command(0x31);
   const SickBytes& last = listener == SickDecoder::Listener::kHost ? good : question;
@@ -92,7 +92,7 @@ void check_scan(const devices::PlsScan& scan, std::int64_t last_ns) {
           "ranges are below the largest");
 }
 
-/// The driver, with the bytes as what the sensor says, and time for it to ask and be disappointed.
+/// Feeds the bytes to the driver as the sensor's answers, with time for timeouts and requests.
 void check_pls_driver(std::span<const std::uint8_t> bytes) {
   devices::PlsDriver driver({});
   std::int64_t now_ns = 0;
