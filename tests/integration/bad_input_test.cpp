@@ -1,4 +1,4 @@
-// The error messages for a log, configuration or directory that cannot be used.
+// Error messages for a log, configuration or directory that cannot be used.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -37,7 +37,7 @@ class BadInputTest : public testing::Test {
     return {code, program.err()};
   }
 
-  /// The command ends with this code and one line that names what is wrong, before it does a thing.
+  /// Expects that the command ends with this code and a one-line error, before it does anything.
   void expect_refused(std::vector<std::string> words, const std::vector<std::string>& more,
                       int code, const std::string& named) {
     words.insert(words.end(), more.begin(), more.end());
@@ -55,7 +55,7 @@ class BadInputTest : public testing::Test {
     return scratch_ / name;
   }
 
-  /// Lines of a good log.
+  /// Lines of a valid log.
   std::vector<std::string> good_lines() {
     write_log("room", scratch_ / "good.clf");
     std::vector<std::string> lines;
@@ -122,7 +122,7 @@ TEST_F(BadInputTest, BadLinesAreToldCountedAndLeftOut) {
   ASSERT_GT(lines.size(), 30U);
   const std::size_t good = lines.size();
   const std::string sample = lines[20];
-  // From the back, so that the numbers of the lines before stay: line numbers count from 1.
+  // Edited from the back, so that earlier lines keep their numbers; line numbers count from 1.
   lines.insert(lines.begin() + 20, without_words(with_word(sample, 1, "180"), 2, 181));
   lines.insert(lines.begin() + 15, lines[3]);                        // time goes backwards
   lines.insert(lines.begin() + 12, without_words(sample, 100, 50));  // too few ranges
@@ -188,7 +188,7 @@ TEST_F(BadInputTest, ConfigurationFaultsNameTheLine) {
   }
 }
 
-// Whatever the scans come from, nothing is begun with inputs that cannot be used.
+// Nothing starts when inputs cannot be used, whatever the source of scans.
 TEST_F(BadInputTest, RunsOnDevicesCheckTheirInputsBeforeAnythingStarts) {
   const std::string world = std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml";
   const std::string devices = file("robot.yaml", "laser.port: /dev/laser\n");

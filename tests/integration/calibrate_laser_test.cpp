@@ -1,5 +1,5 @@
-// topogeo calibrate-laser: finds where the simulated laser sits, and reports what a log does not
-// show.
+// topogeo calibrate-laser finds the mounting of the simulated laser, and reports what a log cannot
+// determine.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -22,7 +22,7 @@ using testing::HasSubstr;
 
 constexpr double kRadians = std::numbers::pi / 180.0;
 
-/// "  x  +0.095 +- 0.001 m forward": the first two numbers of the line of this name.
+/// " x +0.095 +- 0.001 m forward": the first two numbers of the line with this name.
 struct Part {
   double value = 0.0;
   double spread = 0.0;
@@ -55,7 +55,7 @@ class CalibrateLaserTest : public CommandTest {
     write_log(world, log_, truth, options);
   }
 
-  /// Each part lies within three of its spreads and what a millimetre's rounding adds.
+  /// Each part must lie within three of its spreads plus the rounding to a millimetre.
   void expect_mounting(const Pose2& truth) const {
     const Part x = part("x");
     const Part y = part("y");
@@ -63,7 +63,7 @@ class CalibrateLaserTest : public CommandTest {
     EXPECT_NEAR(x.value, truth.x_m, 3.0 * x.spread + 0.001);
     EXPECT_NEAR(y.value, truth.y_m, 3.0 * y.spread + 0.001);
     EXPECT_NEAR(yaw.value * kRadians, truth.theta_rad, (3.0 * yaw.spread + 0.001) * kRadians);
-    EXPECT_LT(x.spread, 0.02);  // so that the interval above is narrow
+    EXPECT_LT(x.spread, 0.02);  // the interval above is narrow
     EXPECT_LT(y.spread, 0.02);
     EXPECT_LT(yaw.spread, 1.0);
   }
@@ -87,7 +87,7 @@ TEST_F(CalibrateLaserTest, FindsALaserAtTheFrontAndMapsWithIt) {
   EXPECT_THAT(read_file(out), HasSubstr("laser:\n  x_m: "));
   EXPECT_THAT(out_, HasSubstr(read_file(out).substr(read_file(out).find("laser:"))));
 
-  // Poses are those of the robot: with the laser in its place they are right.
+  // Poses are those of the robot, so they are right when the laser's mounting is.
   const auto rms_m = [&](const std::vector<std::string>& more) {
     std::vector<std::string> words = {"map",         "--log", log_, "--out", scratch_ / "map",
                                       "--reference", truth};

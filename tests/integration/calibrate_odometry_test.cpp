@@ -1,5 +1,5 @@
-// topogeo calibrate-odometry: finds the drift of the simulation, writes a configuration that maps,
-// and reports what it cannot use.
+// topogeo calibrate-odometry finds the drift of the simulation, writes a configuration for mapping,
+// and reports unusable inputs.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -68,7 +68,7 @@ class CalibrateOdometryTest : public CommandTest {
  protected:
   CalibrateOdometryTest() : CommandTest("calibrate-odometry") {}
 
-  /// What the drift of simulation::OdometryDrift amounts to.
+  /// Expects the drift of simulation::OdometryDrift.
   void expect_simulated_drift() {
     const simulation::OdometryDrift drift;
     const auto table = rows(out_);
@@ -107,7 +107,7 @@ TEST_F(CalibrateOdometryTest, FindsTheDriftOfTheSimulationByMatching) {
   expect_simulated_drift();
   EXPECT_THAT(err_, HasSubstr("matching"));
   EXPECT_THAT(read_file(out), HasSubstr("odometry:\n  translation_m2_per_m: "));
-  // The block on the screen is that of the file.
+  // The printed block equals that of the file.
   EXPECT_THAT(out_, HasSubstr(read_file(out).substr(read_file(out).find("odometry:"))));
 
   Program map(scratch_, "topogeo",

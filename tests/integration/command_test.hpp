@@ -15,7 +15,7 @@ class CommandTest : public testing::Test {
  protected:
   explicit CommandTest(std::string command) : command_(std::move(command)) {}
 
-  /// Exit code of `topogeo COMMAND WORDS...`; what it prints is in out_ and err_ then.
+  /// Runs `topogeo COMMAND WORDS...` and returns its exit code; its output is in out_ and err_.
   int run(std::vector<std::string> words) {
     words.insert(words.begin(), command_);
     Program program(scratch_, "topogeo", words);

@@ -1,4 +1,4 @@
-// The commands beside mapping: help, configuration, status, plan, demo, and the report of a run.
+// Commands other than mapping: help, configuration, status, plan, demo, and the report of a run.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -77,7 +77,7 @@ TEST_F(CommandsTest, WrongCommandLinesAreToldInOneLine) {
       {"run", "--log", "l", "--out", "o", "--robot", std::string(33, 'x')},
       {"map", "--log", "l", "--out", "o", "--nonsense"},
       {"plan", "m", "--from", "1", "--to", "2,3"},
-      // Before a file is read or a service starts.
+      // Refused before a file is read or a service starts.
       {"run", "--log", "l", "--out", "o", "--web", "--token", "short"},
       {"demo", "--out", "o", "--web", "--bind", "0.0.0.0"},
       {"view", "m", "--key", "k"},
@@ -103,8 +103,8 @@ TEST_F(CommandsTest, APageIsRefusedAPortThatIsInUseBeforeAnythingStarts) {
   EXPECT_FALSE(std::filesystem::exists(scratch_ / "out"));
 }
 
-// Services come one after the other, and on a busy machine one may be silent for a moment: asked
-// until all are there and well. The run is so slow that it lasts as long as that takes.
+// Services start one after the other, and on a busy machine one may be silent for a moment: the
+// status is polled until all are there and well. The run is slow enough to last for that.
 TEST_F(CommandsTest, StatusShowsTheServicesOfARun) {
   const std::string log = scratch_ / "log.clf.gz";
   write_log("floor", log);
@@ -174,8 +174,8 @@ TEST_F(CommandsTest, PlansBetweenRoomsOfAMappedFloor) {
   Program mapping(scratch_, "topogeo", {"map", "--log", log, "--out", scratch_ / "out"});
   ASSERT_EQ(mapping.wait(), 0) << mapping.err();
 
-  // The map begins at (1.3, 1.2) of the floor, looking along x: from the south room at (9.1, 4.4)
-  // to the one in the east at (26.4, 15.2). Straight they are 20.4 m apart, through the walls.
+  // The map's origin is (1.3, 1.2) of the floor, with the same axes: from the south room at (9.1,
+  // 4.4) to the east room at (26.4, 15.2). The straight distance through the walls is 20.4 m.
   Program plan(scratch_, "topogeo",
                {"plan", map, "--from", "7.8,3.2", "--to", "25.1,14", "--json"});
   ASSERT_EQ(plan.wait(), 0) << plan.err();
@@ -192,7 +192,7 @@ TEST_F(CommandsTest, PlansBetweenRoomsOfAMappedFloor) {
   EXPECT_THAT(text.out(), HasSubstr("length "));
   EXPECT_THAT(read_file(picture), StartsWith("\x89PNG"));
 
-  // Something stands on the way: round it, through other rooms.
+  // An obstacle on the route: the new one goes through other rooms.
   const json& middle = route["points"][route["points"].size() / 2];
   const double x_m = middle["x_m"];
   const double y_m = middle["y_m"];

@@ -1,4 +1,4 @@
-// topogeo compare: its figures on paths worked by hand, as text and JSON, and what it refuses.
+// topogeo compare: its results on paths worked by hand, as text and JSON, and its errors.
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -19,8 +19,8 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-// Three steps of 1 m along x, a second each; the estimate begins elsewhere, looks to the left, and
-// its last step is 1.3 m long.
+// Three steps of 1 m along x, a second each; the estimate begins elsewhere, faces left, and its
+// last step is 1.3 m long.
 constexpr const char* kReference =
     "# t x y z qx qy qz qw\n"
     "10.0 0 0 0 0 0 0 1\n11.0 1 0 0 0 0 0 1\n12.0 2 0 0 0 0 0 1\n13.0 3 0 0 0 0 0 1\n";
@@ -78,14 +78,14 @@ TEST_F(CompareTest, JsonHasTheSameFiguresUnrounded) {
 }
 
 TEST_F(CompareTest, TheLargestTimeApartCanBeSet) {
-  // Without the pose that is 10 ms late three remain.
+  // Without the pose that is 10 ms late, three remain.
   ASSERT_EQ(run({estimate_, reference_, "--max-dt", "0.001"}), 0) << err_;
   EXPECT_THAT(out_, HasSubstr("matched 0.750"));
   EXPECT_EQ(run({estimate_, reference_, "--max-dt", "-1"}), 2);
 }
 
 TEST_F(CompareTest, AConfigurationMovesTheEstimateToTheLaser) {
-  // The robot turns about its own origin, the laser 0.4 m in front of it goes round a circle.
+  // The robot turns about its own origin; the laser, 0.4 m in front of it, moves on a circle.
   std::ofstream(estimate_) << "10 0 0 0 0 0 0 1\n11 0 0 0 0 0 0.707106781 0.707106781\n"
                               "12 0 0 0 0 0 1 0\n";
   std::ofstream(reference_) << "10 0.4 0 0 0 0 0 1\n11 0 0.4 0 0 0 0.707106781 0.707106781\n"

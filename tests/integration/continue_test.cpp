@@ -1,5 +1,5 @@
-// Continuing a stored map: over DDS as in one process, when the robot is not found in it, and with
-// maps that cannot be continued.
+// Continuing a stored map: over DDS as in one process, when the robot is not found in the map, and
+// with maps that cannot be continued.
 #include <algorithm>
 #include <fstream>
 #include <string>
@@ -57,7 +57,7 @@ class ContinueTest : public testing::Test {
   json report(const std::string& out) {
     return json::parse(read_file(scratch_ / out / "report.json"));
   }
-  /// What `map --continue` and `run --continue` with so many workers say, in folders of these
+  /// Outcomes of `map --continue` and `run --continue` with so many workers, in folders of these
   /// names.
   struct Both {
     Outcome alone;

@@ -1,5 +1,5 @@
-// The wire contract as another implementation of DDS sees it: Cyclone DDS, with types made from our
-// IDL by its own compiler, reads every topic and hears when an instance is disposed, which takes
+// The wire contract with another implementation of DDS: Cyclone DDS, with types generated from our
+// IDL by its own compiler, reads every topic and notices when an instance is disposed, which needs
 // keys of at most 16 bytes.
 #include <chrono>
 #include <functional>
@@ -22,7 +22,7 @@
 namespace topogeo::test {
 namespace {
 
-/// With every member of the key that is no zero.
+/// A message in which every key member is non-zero.
 template <class T>
 T keyed_message() {
   T message;
@@ -53,7 +53,7 @@ class CycloneTest : public testing::Test {
                                         std::vector<std::string>{own_domain(), kPartition});
   }
 
-  /// Whether the reader says `line` when `send` is done again and again: what it reads may be lost.
+  /// Whether the reader prints `line` while `send` is repeated, because messages may be lost.
   template <class Send>
   bool says(const std::string& line, const Send& send) {
     const auto said = [&] {
@@ -65,7 +65,7 @@ class CycloneTest : public testing::Test {
     });
   }
 
-  /// Its writer is there from now on; what comes back sends and compares.
+  /// Creates the writer at once; the returned function sends and compares.
   template <class T>
   std::function<void()> check() {
     return [this, name = std::string(messaging::TopicTraits<T>::info().name),
@@ -88,7 +88,7 @@ class CycloneTest : public testing::Test {
 
 TEST_F(CycloneTest, ReadsEveryTopicAndHearsOfDisposals) {
   ASSERT_TRUE(says("ready", [] {})) << reader_->err();
-  // All writers first: the two implementations take seconds to find each other.
+  // Creates all writers first: the two implementations take seconds to discover each other.
   std::vector<std::function<void()>> checks;
 #define TOPOGEO_TOPIC(type, name, role, replay_role, addressee) \
   checks.push_back(check<msg::type>());

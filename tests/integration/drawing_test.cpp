@@ -1,4 +1,4 @@
-// What is drawn on the page: kept by the map store, obeyed by the robot, simulated as a floor.
+// A drawing from the page: kept by the map store, obeyed by the robot, simulated as a floor.
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -25,7 +25,7 @@ HttpReply draw(std::uint32_t port, const json& drawing) {
   return http_post(port, "/api/drawing", kToken, drawing.dump());
 }
 
-/// Asks again until the drawing has this version; it comes on a topic of its own.
+/// Polls until the drawing has this version; it is published on a topic of its own.
 bool has_version(std::uint32_t port, const std::string& version) {
   return test::wait_for("version " + version + " of the drawing", [&] {
     const json drawing = drawing_at(port);
@@ -103,7 +103,7 @@ TEST_F(DrawingOnRobot, IsObeyedAndAFloorIsDrivenIn) {
   json drawing = drawing_at(port_);
   ASSERT_TRUE(drawing.is_object());
 
-  // A no-go zone across the corridor: round, or not at all. Without it: through.
+  // A no-go zone across the corridor: the route avoids it, or there is none. Without it: through.
   const json through = preview();
   ASSERT_EQ(through["found"], true) << through;
   EXPECT_NEAR(through["length_m"].get<double>(), 7.5, 0.5);
@@ -115,7 +115,7 @@ TEST_F(DrawingOnRobot, IsObeyedAndAFloorIsDrivenIn) {
   const json round = preview();
   EXPECT_TRUE(round["found"] == false || round["length_m"].get<double>() > 12.0) << round;
 
-  // By hand it gets to the zone and no further.
+  // Driven by hand, the robot gets to the zone and no further.
   const double start_m = page_.values["truth"]["x_m"];
   const auto driven_m = [&] { return page_.values["truth"]["x_m"].get<double>() - start_m; };
   const auto holds = [&] {
@@ -126,7 +126,7 @@ TEST_F(DrawingOnRobot, IsObeyedAndAFloorIsDrivenIn) {
   const bool held = test::wait_for("the zone to hold a robot that is driven by hand", holds, [&] {
     socket_->send(
         {{"op", "drive"}, {"linear_mps", 0.5}, {"angular_radps", 0.0}, {"page_ms", page_ms()}});
-    wait_for([] { return false; }, milliseconds(50));  // between two orders of a hand
+    wait_for([] { return false; }, milliseconds(50));  // between two commands by hand
   });
   EXPECT_TRUE(held) << page_.values["drive"];
   EXPECT_GT(driven_m(), 2.0);

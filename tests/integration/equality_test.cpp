@@ -1,4 +1,4 @@
-// A run of all services over DDS gives the bytes of a run in one process, whatever the number of
+// A run of all services over DDS produces the bytes of a run in one process, with any number of
 // workers and whatever happens to them.
 #include <csignal>
 #include <cstdlib>
@@ -33,13 +33,13 @@ class EqualityTest : public testing::Test {
     ASSERT_FALSE(read_file(scratch_ / "map" / "map.pb").empty());
   }
 
-  /// The same, of a drive that comes back: its late loops move earlier poses.
+  /// The same for a drive that returns to earlier places: its late loops move earlier poses.
   void map_with_loops(const std::string& world) {
     ASSERT_NO_FATAL_FAILURE(map(world));
     EXPECT_GE(late_loops(), 10) << "the drive closes no loop that corrects it";
   }
 
-  /// Loops over more than half of the drive.
+  /// Number of loops that span more than half of the drive.
   int late_loops() {
     const auto report = nlohmann::json::parse(read_file(scratch_ / "map" / "report.json"));
     const int stops = report["counts"]["stops"];
@@ -64,7 +64,7 @@ class EqualityTest : public testing::Test {
     return words;
   }
 
-  /// So slow that the run lasts when it has been seen to be half-way, and works little: 6 s of it.
+  /// Slow enough to be interrupted half-way, with little work: it lasts 6 s.
   std::vector<std::string> slow_run_words(const std::string& out, int workers) {
     std::vector<std::string> words = run_words(out, workers);
     words.insert(words.end(), {"--rate", "8"});
@@ -81,13 +81,13 @@ class EqualityTest : public testing::Test {
 
   Scratch scratch_;
   std::string log_ = scratch_ / "log.clf.gz";
-  std::vector<std::string> configuration_;  // words for both commands
+  std::vector<std::string> configuration_;  // options for both commands
 };
 
 class EqualityByWorkersTest : public EqualityTest, public testing::WithParamInterface<int> {};
 
-// Round a block and on: the loop closes after 40 of 55 stops, and several tasks of a stop are there
-// for all workers.
+// Once round a block and on: the loop closes after 40 of 55 stops, and a stop has tasks for all
+// workers.
 TEST_P(EqualityByWorkersTest, Ring) {
   map_with_loops("ring");
   Program run(scratch_, "topogeo", run_words("run", GetParam()));
@@ -101,7 +101,7 @@ TEST_P(EqualityByWorkersTest, Ring) {
 INSTANTIATE_TEST_SUITE_P(Workers, EqualityByWorkersTest, testing::Values(0, 1, 2, 4),
                          [](const auto& workers) { return std::to_string(workers.param); });
 
-// A long drive: samples are more than the histories of their writers keep.
+// A long drive: more samples than the histories of their writers hold.
 TEST_F(EqualityTest, Floor) {
   map_with_loops("floor");
   Program run(scratch_, "topogeo", run_words("run", 2));
@@ -165,7 +165,7 @@ class SharedMemoryTest : public EqualityTest {
   SharedMemoryTest() { ::setenv("TOPOGEO_DDS_PARTICIPANT", "local", 1); }
   ~SharedMemoryTest() override { ::unsetenv("TOPOGEO_DDS_PARTICIPANT"); }
 
-  /// Segments and ports of Fast DDS that the programs have mapped, by name.
+  /// Names of the Fast DDS segments and ports that the programs have mapped.
   static std::set<std::string> mapped_by(const std::vector<pid_t>& programs) {
     const std::string begin = std::string(kSharedMemory) + "fastrtps_";
     std::set<std::string> names;
@@ -189,7 +189,7 @@ class SharedMemoryTest : public EqualityTest {
     return names;
   }
 
-  /// Files of these segments and ports that are there: they themselves, their locks and semaphores.
+  /// Existing files of these segments and ports: the segments, their locks and semaphores.
   static std::set<std::string> files_of(const std::set<std::string>& mapped) {
     std::set<std::string> names;
     for (const std::string& file : files()) {
@@ -201,8 +201,8 @@ class SharedMemoryTest : public EqualityTest {
   }
 };
 
-// Other tests may use shared memory beside this one, and killed programs may have left ports: only
-// what these programs have mapped counts, and was not there before.
+// Other tests may use shared memory at the same time, and killed programs may have left ports: only
+// files that these programs have mapped, and that are new, count.
 TEST_F(SharedMemoryTest, SameBytesAndNothingIsLeft) {
   if (::access(kSharedMemory, W_OK) != 0) GTEST_SKIP() << kSharedMemory << " cannot be written";
   map("corridor");
@@ -242,7 +242,7 @@ TEST_F(EqualityTest, SecondRunReplacesTheResultsOfTheFirst) {
   }
 }
 
-// The Thesis's own algorithm instead of the pose graph.
+// The Thesis's algorithm instead of the pose graph.
 TEST_F(EqualityTest, ModeThesis) {
   std::ofstream(scratch_ / "thesis.yaml") << "localizer:\n  mode: thesis\n";
   configuration_ = {"--config", scratch_ / "thesis.yaml"};

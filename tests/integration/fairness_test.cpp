@@ -1,5 +1,5 @@
-// One pool of workers serves several robots: one that floods it does not keep the others waiting,
-// and maps of one id stay apart.
+// One pool of workers serves several robots: a robot that floods it does not delay the others, and
+// maps with the same id stay separate.
 #include <atomic>
 #include <memory>
 #include <mutex>
@@ -12,7 +12,7 @@ namespace {
 
 using localization::MatchTask;
 
-/// The same stops as another robot saw them, which saw less.
+/// The same stops from another robot with fewer points.
 Maps seen_by_another(const Maps& maps) {
   Maps out;
   for (const auto& map : maps) {
@@ -24,7 +24,7 @@ Maps seen_by_another(const Maps& maps) {
   return out;
 }
 
-/// The localizer's end of the pool of one robot, in the thread that makes it.
+/// The localizer's end of the pool for one robot, in the thread that creates it.
 class Robot {
  public:
   Robot(const std::string& name, Maps maps)
@@ -40,7 +40,7 @@ class Robot {
     for (const auto& map : maps_) pool_->add_map(map);
   }
 
-  /// What this process makes of the tasks.
+  /// Results of this process for the tasks.
   [[nodiscard]] std::vector<localization::MatchResult> match_here(
       const std::vector<MatchTask>& tasks) const {
     localization::InProcessPool in_process;
@@ -69,7 +69,7 @@ class FairnessTest : public ::testing::Test {
     }
   }
 
-  /// In any thread: Fast DDS makes the participants of one process one at a time.
+  /// Works in any thread: Fast DDS creates the participants of one process one at a time.
   std::unique_ptr<Robot> make_robot(const std::string& name, const Maps& maps) {
     const std::lock_guard lock(making_);
     return std::make_unique<Robot>(name, maps);
@@ -89,10 +89,10 @@ bool identical(const std::vector<localization::MatchResult>& found,
                     [](const auto& a, const auto& b) { return localization::identical(a, b); });
 }
 
-// One flood after the other, each of work for a second, until the modest robots are through with
-// twenty small batches, one after the other. A batch that waited until the flood before it has
-// ebbed away would see as many floods as there are batches, however fast this machine is; served
-// in turn, all twenty together see a few.
+// Floods of a second's work follow each other until the modest robots have finished twenty small
+// batches in sequence. If a batch waited for the end of the previous flood, there would be as many
+// floods as batches, however fast the machine is; when served in turn, all twenty batches together
+// see a few.
 TEST_F(FairnessTest, ARobotThatFloodsThePoolStarvesNoOther) {
   constexpr std::size_t kFlood = 300;
   constexpr std::size_t kSmall = 3;
@@ -112,7 +112,7 @@ TEST_F(FairnessTest, ARobotThatFloodsThePoolStarvesNoOther) {
       return;
     }
     std::vector<MatchTask> tasks = tasks_on(robot->maps(), kFlood);
-    for (MatchTask& task : tasks) task.genetic.generations = 400;  // of 10 ms and more
+    for (MatchTask& task : tasks) task.genetic.generations = 400;  // 10 ms or more for each task
     floods = true;
     bool right = true;
     while (modest_under_way > 0) {

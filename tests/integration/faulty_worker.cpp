@@ -32,11 +32,11 @@ namespace {
 
 enum class Fault : std::uint8_t {
   kNotANumber,      // a pose with NaN
-  kUnknownTask,     // right, but under the id of a task that nobody asked for
+  kUnknownTask,     // right, but with the id of an unknown task
   kManySolutions,   // more solutions than wanted
   kGarbage,         // bytes that cannot be decoded
-  kShifted,         // the pose is off by 10 cm, all else is that of the right one
-  kEmbellished,     // the right pose is made out to be better than it is
+  kShifted,         // the pose is off by 10 cm, the rest is right
+  kEmbellished,     // the right pose with a better score than it has
   kPoorer,          // searches for two generations only
   kOtherVersion,    // has another version
   kOtherMatcher,    // computes differently, as its status shows
@@ -54,13 +54,13 @@ Fault fault_of(std::string_view name) {
   throw std::invalid_argument("--fault: '" + std::string(name) + "' is none");
 }
 
-/// Sends the address of a result, so that it gets to its client, and nonsense after it.
+/// Sends the valid address of a result, so that it reaches its client, followed by garbage.
 class GarbageType final : public msg::MatchResultsPubSubType {
  public:
   GarbageType() { m_typeSize = 1024; }
   bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override {
     if (!msg::MatchResultsPubSubType::serialize(data, payload)) return false;
-    constexpr std::uint32_t kAddress = 160;  // more than it takes
+    constexpr std::uint32_t kAddress = 160;  // larger than any address
     payload->length = kAddress + 40;
     for (std::uint32_t i = kAddress; i < payload->length; ++i) payload->data[i] = 0xFF;
     return true;
@@ -131,7 +131,7 @@ class FaultyWorker {
   }
 
   void announce() {
-    // Who is to answer beside another one does not appear before tasks get to it.
+    // A worker with a copied id announces itself only when tasks can reach it.
     if (fault_ == Fault::kCopiedWorkerId && tasks_->matched() == 0) return;
     if (!statuses_.write(status_)) std::cerr << "status not sent\n";
   }
@@ -141,7 +141,7 @@ class FaultyWorker {
     answer_waiting();
   }
 
-  /// Tasks wait for their maps.
+  /// Answers tasks that waited for their maps.
   void answer_waiting() {
     for (auto it = waiting_.begin(); it != waiting_.end();) {
       if (matcher_.has_map(it->reference_map_id, it->reference_hash) &&
@@ -199,7 +199,7 @@ class FaultyWorker {
   std::string client_id_;  // of the last task
   std::list<localization::MatchTask> waiting_;
   localization::Matcher matcher_;
-  messaging::EventLoop loop_;  // last: it goes before the readers
+  messaging::EventLoop loop_;  // last, because it must be destroyed before the readers
 };
 
 std::optional<std::string> value_of(std::span<char*> words, std::string_view flag) {

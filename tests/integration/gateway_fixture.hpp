@@ -1,4 +1,4 @@
-// A gateway on the emulated devices of a simulator, and what both publish.
+// A gateway on the emulated devices of a simulator, and the data that both publish.
 #pragma once
 
 #include <chrono>
@@ -31,17 +31,17 @@ class GatewayOnDevices : public testing::Test {
   GatewayOnDevices();
 
   void start_simulator();
-  /// Waits for one reader of scans, which is this test. `keys` are further lines of the file.
+  /// Waits for one reader of scans, which is this test. `keys` are additional lines of the file.
   void start_gateway(const std::string& keys = {});
-  /// Both, and until the laser runs, the base is ready and `scans` have come.
+  /// Starts both and waits until the laser runs, the base is ready and `scans` have come.
   void start(std::size_t scans = 5);
 
-  /// Hands on what comes until `condition` holds.
+  /// Receives messages until `condition` holds.
   template <class Condition>
   bool wait_for(const Condition& condition) {
     return wait_in_loop(loop_, "the gateway and its devices", condition);
   }
-  /// The same while motion is commanded ten times a second.
+  /// The same while sending motion commands ten times a second.
   template <class Condition>
   bool drive_until(double linear_mps, double angular_radps, const Condition& condition) {
     auto next = std::chrono::steady_clock::now();
@@ -59,7 +59,7 @@ class GatewayOnDevices : public testing::Test {
   void strike(msg::SimulatedFault fault, msg::SimulatedDevice device, double duration_s);
   /// Waits until all faults have begun.
   bool wait_for_begin();
-  /// Lets that time pass in the simulated world, which stands still when the machine is busy.
+  /// Lets that time pass in the simulated world, which stops while the machine is busy.
   bool wait_in_world(double duration_s);
 
   [[nodiscard]] bool base_is(msg::BaseState state) const {
@@ -68,11 +68,11 @@ class GatewayOnDevices : public testing::Test {
   [[nodiscard]] bool laser_is(msg::LaserState state) const {
     return laser_status_ && laser_status_->state() == state;
   }
-  /// Of the gateway's status; 0 if it has none of that name.
+  /// A counter of the gateway's status; 0 if it has none of that name.
   [[nodiscard]] double counter(std::string_view name) const;
   [[nodiscard]] std::uint64_t drops(std::string_view reason) const;
 
-  // A killed program leaves a part of /dev/shm behind that others may still wait at.
+  // A killed program leaves segments in /dev/shm that others may still wait at.
   const bool udp_only_ = (use_udp_only(), true);
   Scratch scratch_;
   std::string domain_ = own_domain();
@@ -97,7 +97,7 @@ class GatewayOnDevices : public testing::Test {
   std::optional<msg::ServiceStatus> gateway_status_;
   std::optional<msg::StreamEnd> end_;
   std::uint64_t commands_ = 0;
-  std::optional<std::int64_t> command_stamp_ns_;  ///< nothing: now
+  std::optional<std::int64_t> command_stamp_ns_;  ///< empty: now
   int strikes_ = 0;
 
   std::unique_ptr<Program> simulator_;

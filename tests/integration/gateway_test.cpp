@@ -1,5 +1,5 @@
-// The gateway on emulated devices: what it gives, how it comes back from faults, and that the base
-// stops whenever it must.
+// The gateway on emulated devices: its output, its recovery from faults, and that the base stops
+// whenever it must.
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -48,8 +48,8 @@ TEST_F(GatewayOnDevices, SaysHowLongScansWaitForOdometry) {
   start_simulator();
   start_gateway("odometry.wait_s: 1\n");
   ASSERT_TRUE(wait_for([&] { return counter("scans_sent") > 25.0; })) << gateway_->err();
-  // The base reports ten times a second at best, and of the scans between two reports one comes
-  // shortly after the first.
+  // The base reports at most ten times a second, and some scan between two reports comes shortly
+  // after the first.
   EXPECT_TRUE(wait_for([&] { return counter("scan_wait_ms") > 0.0; }));
   EXPECT_GT(counter("scan_latency_ms"), counter("scan_wait_ms"));
   EXPECT_GT(counter("scan_latency_largest_ms"), 30.0);
@@ -69,7 +69,7 @@ TEST_F(GatewayOnDevices, EndOfTheGatewayStopsTheBase) {
   gateway_->send_signal(SIGTERM);
   EXPECT_TRUE(wait_for([&] { return truth_->linear_mps() == 0.0; }));
   EXPECT_EQ(gateway_->wait(), 0);
-  // Turning alone ends as well.
+  // Turning without driving also ends.
   gateway_.reset();
   base_status_.reset();
   start_gateway();
@@ -78,7 +78,7 @@ TEST_F(GatewayOnDevices, EndOfTheGatewayStopsTheBase) {
   gateway_->send_signal(SIGTERM);
   EXPECT_TRUE(wait_for([&] { return truth_->angular_radps() == 0.0; }));
   EXPECT_EQ(gateway_->wait(), 0);
-  // A gateway that is gone without a word: the base's own watchdog stops it.
+  // After a gateway that is killed, the base's own watchdog stops it.
   gateway_.reset();
   base_status_.reset();
   start_gateway();
@@ -115,8 +115,8 @@ class GatewayInEmergency : public GatewayOnDevices {
 
 TEST_F(GatewayInEmergency, EmergencyStopHoldsUntilResetFiveTimes) {
   start();
-  // A busy machine may have no fresh scan, and so command no motion, while the stop of a standing
-  // robot lasts.
+  // On a busy machine no scan may be fresh enough for motion while a standing robot is stopped, so
+  // it turns first.
   ASSERT_TRUE(drive_until(0.0, 0.5, [&] { return truth_->angular_radps() > 0.3; }));
   for (int i = 0; i < 5; ++i) {
     strike(msg::kSimulatedEmergencyStop, msg::kSimulatedBase, 1.5);
@@ -126,7 +126,7 @@ TEST_F(GatewayInEmergency, EmergencyStopHoldsUntilResetFiveTimes) {
   }
 }
 
-/// The robot does not stand in it: power is back before its wheels have stopped.
+/// The robot is still moving: power is back before its wheels have stopped.
 TEST_F(GatewayInEmergency, AShortEmergencyStopHoldsUntilResetToo) {
   start();
   for (int i = 0; i < 3; ++i) {
@@ -168,11 +168,11 @@ TEST_F(GatewayOnDevices, JoystickIsSeenAndLetGo) {
   EXPECT_TRUE(drive_until(0.2, 0.0, [&] { return truth_->linear_mps() > 0.15; }));
 }
 
-/// The base forgets its counters and settings with its power, the odometry goes on nevertheless.
+/// The base forgets its counters and settings without power, but the odometry continues.
 TEST_F(GatewayOnDevices, OdometryOutlivesRestartsOfTheBase) {
   start();
   const auto stands = [&] { return truth_->linear_mps() == 0.0 && base_is(msg::kBaseReady); };
-  // What has come since then was measured after it.
+  // Waits for samples that were measured after the robot stopped.
   const auto settle = [&] {
     const std::size_t samples = odometry_.size();
     return wait_for([&] { return stands() && odometry_.size() >= samples + 5; });
@@ -191,7 +191,7 @@ TEST_F(GatewayOnDevices, OdometryOutlivesRestartsOfTheBase) {
         geometry::between(T_world_start, service::from_msg(truth_->T_world_robot()));
     const geometry::Pose2 reported =
         geometry::between(T_odom_start, service::from_msg(odometry_.back().T_odom_robot()));
-    // 5 cm on the three times 0.3 m, and as much of each metre that a late command adds to them.
+    // 5 cm on the three drives of 0.3 m, and in proportion when late commands make them longer.
     const double driven_m = std::max(0.9, truth.position_m().norm());
     EXPECT_LT((truth.position_m() - reported.position_m()).norm(), 0.05 / 0.9 * driven_m) << i;
   }
@@ -210,7 +210,7 @@ std::ostream& operator<<(std::ostream& out, const FaultCase& fault) {
 
 class GatewayFaults : public GatewayOnDevices, public testing::WithParamInterface<FaultCase> {};
 
-/// Five times: the fault begins and ends, and what the device gives comes again, from after the
+/// Five times: the fault begins and ends, and the device's data comes again, measured after the
 /// end.
 TEST_P(GatewayFaults, ComesBackFiveTimes) {
   start();
@@ -267,7 +267,7 @@ TEST_F(GatewayOnDevices, DropsAreCountedByReason) {
 }
 
 TEST_F(GatewayOnDevices, SaysWhichPortItMisses) {
-  start_gateway();  // without a simulator
+  start_gateway();  // no simulator
   ASSERT_TRUE(wait_for([&] { return laser_status_ && base_status_; }));
   ASSERT_TRUE(wait_for([&] {
     return std::string(laser_status_->reason().c_str()).find("laser.port") != std::string::npos;

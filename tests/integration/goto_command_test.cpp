@@ -1,4 +1,4 @@
-// topogeo goto: with a navigator, and a robot and a planner in this process.
+// topogeo goto with a real navigator, and a robot and a planner in this process.
 #include <csignal>
 #include <filesystem>
 #include <string>
@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const Eigen::Vector2d kNorthGoal_m(3.5, 1.0);  // the robot starts at (1, 1) and looks along x
+const Eigen::Vector2d kNorthGoal_m(3.5, 1.0);  // the robot starts at (1, 1), heading along x
 
 class GotoCommand : public NavigatorOnRobot {
  protected:

@@ -17,7 +17,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// Writes map/map.pb, made by a drive through one of the worlds of the tests.
+/// Writes map/map.pb from a drive through one of the test worlds.
 void map_world(const Scratch& scratch, const std::string& world) {
   write_log(world, scratch / "drive.clf");
   Program map(scratch, "topogeo",
@@ -30,7 +30,7 @@ TEST(Goto, ASimulatedRobotIsSentToAPointOfAStoredMap) {
   const Scratch scratch;
   ASSERT_NO_FATAL_FAILURE(map_world(scratch, "room"));
   const std::string out = scratch / "out";
-  // The origin of the map is where the tour begins, at (1, 1); the robot looks along the wall.
+  // The map's origin is the start of the tour, at (1, 1); the robot heads along the wall.
   Program run(scratch, "topogeo",
               {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml", "--map",
                scratch / "map/map.pb", "--goto", "3,0", "--heading", "90", "--out", out,
@@ -45,8 +45,8 @@ TEST(Goto, ASimulatedRobotIsSentToAPointOfAStoredMap) {
   EXPECT_FALSE(std::filesystem::is_symlink(out + "/base.port"));
 }
 
-/// Services that are killed together while the robot drives in a finished map. One scan of its
-/// floor does not tell where the robot is: searched for in the whole map, it would stand for good.
+/// Services that are killed together while the robot drives in a finished map. One scan of this
+/// floor does not determine the pose: after a search of the whole map it would stand forever.
 class GotoLives : public testing::TestWithParam<std::vector<std::string>> {};
 
 TEST_P(GotoLives, TheRobotIsFoundWhereItIsAndDrivesOn) {
@@ -124,8 +124,8 @@ TEST(Explore, SaysWhoIsMissing) {
   EXPECT_THAT(command.err(), HasSubstr("no planner and no navigator"));
 }
 
-// The floor is drawn, with a base station on which the robot is put; there is no laser, so neither
-// local mapper nor localizer.
+// The floor is drawn, and the robot starts on its base station; there is no laser, so neither local
+// mapper nor localizer.
 TEST(Goto, ARobotWithSonarsAloneIsSentFromItsBaseStationToARoom) {
   use_udp_only();
   const Scratch scratch;

@@ -77,8 +77,8 @@ class HealthTest : public testing::Test {
     out = program.out() + program.err();
     return code;
   }
-  /// Runs a command again and again until it ends with `code` and prints `text`: on a busy machine
-  /// a service may be found late or be silent for a moment. Returns its last output.
+  /// Repeats a command until it ends with `code` and prints `text`: on a busy machine a service may
+  /// be found late or be silent for a moment. Returns its last output.
   std::string run_until(const std::vector<std::string>& words, int code, const std::string& text) {
     std::string out;
     EXPECT_TRUE(wait_for("topogeo " + words.front() + " to print '" + text + "'", [&] {
@@ -114,7 +114,7 @@ TEST_F(HealthTest, AKilledServiceIsLostToItsReaders) {
   ASSERT_TRUE(eventually("the planner to be lost", [&] { return gone_.contains("planner"); }));
 }
 
-// A status asked for later has never heard of it, nor does discovery know it.
+// A later status command has never received from it, and discovery does not know it either.
 TEST_F(HealthTest, AServiceThatIsFrozenIsNamedByAStatusThatIsAskedForLater) {
   set_longest_freeze(0);
   const auto planner = start("planner");
@@ -126,7 +126,7 @@ TEST_F(HealthTest, AServiceThatIsFrozenIsNamedByAStatusThatIsAskedForLater) {
   EXPECT_THAT(run_until({"status"}, 0, "planner"), testing::Not(HasSubstr("planner  silent")));
 }
 
-// A status asked for later has never heard of it.
+// A later status command has never received from it.
 TEST_F(HealthTest, AServiceThatDiedBeforeIsMissingWhereItIsExpected) {
   const auto planner = start("planner");
   const auto mapper = start("local_mapper");
@@ -146,7 +146,7 @@ TEST_F(HealthTest, AServiceThatDiedBeforeIsMissingWhereItIsExpected) {
 TEST_F(HealthTest, StatusWaitsForAServiceThatComesLater) {
   Program status(scratch_, "topogeo",
                  {"status", "planner", "--wait-seconds", "600", "--domain", domain_});
-  // One that starts later and does not have the option gives up before.
+  // A later service without the option gives up before this one.
   std::string out;
   EXPECT_EQ(run({"status", "planner"}, out), 1) << out;
   EXPECT_FALSE(status.ended());
@@ -204,7 +204,7 @@ TEST_F(HealthTest, EveryCounterOfEveryServiceIsAMetric) {
 
 // --- metrics
 
-/// Body and head of what a service gives at /metrics.
+/// Head and body of a service's answer at /metrics.
 std::string scrape(std::uint16_t port) {
   const support::FileDescriptor line(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_in peer{};
@@ -337,7 +337,7 @@ TEST_F(HealthTest, DoctorFindsAWrongClockAndAnotherVersion) {
   messaging::set_service(status, "planner", "late-1");
   messaging::set_text(status.host(), "late", "host");
   messaging::set_text(status.version(), "0.0.1", "version");
-  // As a service whose clock is an hour behind.
+  // Status of a service whose clock is an hour behind.
   loop_.add_timer(milliseconds(100), [&] {
     status.stamp_ns(support::wall_clock_ns() - kHour_ns);
     ASSERT_TRUE(statuses.write(status));
@@ -346,7 +346,7 @@ TEST_F(HealthTest, DoctorFindsAWrongClockAndAnotherVersion) {
   const std::string out = run_until({"doctor", "--json"}, 1, "the clock of late is ");
   loop_.stop();
   publishing.join();
-  // What a status takes to arrive counts as well.
+  // The transport delay of a status adds to the difference.
   EXPECT_THAT(problems_of(out, "clocks"),
               testing::ElementsAre(HasSubstr("the clock of late is 36")));
   EXPECT_THAT(problems_of(out, "versions"),

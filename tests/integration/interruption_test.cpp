@@ -1,4 +1,4 @@
-// What happens to a run whose services die or that somebody stops.
+// A run whose services die or that is stopped by the user.
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -27,15 +27,15 @@ class InterruptionTest : public testing::Test {
  protected:
   InterruptionTest() { use_udp_only(); }
 
-  /// Of a run that lasts 6 s and works little.
+  /// Options of a run that lasts 6 s with little work.
   std::vector<std::string> words() {
     write_log("ring", log_);
     return {"run", "--log",    log_,         "--out",  out_, "--workers",
             "1",   "--domain", own_domain(), "--rate", "8"};
   }
 
-  /// A program that `interrupt` has ended. One that was through before, as this process did not get
-  /// to run, shows nothing: another one is started.
+  /// A program that `interrupt` has ended. On a busy machine it may finish before the interruption;
+  /// then another one is started.
   template <class Interrupt>
   std::unique_ptr<Program> interrupted(const std::vector<std::string>& words,
                                        const Interrupt& interrupt) {
@@ -48,7 +48,7 @@ class InterruptionTest : public testing::Test {
     }));
     return program;
   }
-  /// The words of a run with a simulated robot.
+  /// Options of a run with a simulated robot.
   [[nodiscard]] std::vector<std::string> simulated() const {
     return {"run",   "--sim",    std::string(TOPOGEO_TEST_DATA) + "/short.world.yaml",
             "--out", out_,       "--workers",
@@ -56,7 +56,7 @@ class InterruptionTest : public testing::Test {
   }
   static void freeze_for_2_s(pid_t process) {
     ::kill(process, SIGSTOP);
-    std::this_thread::sleep_for(std::chrono::seconds(2));  // it is frozen for so long
+    std::this_thread::sleep_for(std::chrono::seconds(2));  // the time of the freeze
     ::kill(process, SIGCONT);
   }
 
@@ -65,7 +65,7 @@ class InterruptionTest : public testing::Test {
   std::string out_ = scratch_ / "out";
 };
 
-// Services are started again (EqualityTest); the simulated robot is where it was nowhere else.
+// Other services are restarted (EqualityTest), but only the simulator has the robot's pose.
 TEST_F(InterruptionTest, WhatCannotBeStartedAgainIsNamedAndTheRestIsStopped) {
   Program run(scratch_, "topogeo", simulated());
   run.wait_for_progress(10);
@@ -77,7 +77,7 @@ TEST_F(InterruptionTest, WhatCannotBeStartedAgainIsNamedAndTheRestIsStopped) {
   EXPECT_THAT(run.services(), IsEmpty());
 }
 
-// Its peers may have forgotten it, and neither side would notice.
+// Peers may have dropped it without either side noticing.
 TEST_F(InterruptionTest, AServiceThatWasFrozenIsStartedAgain) {
   set_longest_freeze(1);
   Program run(scratch_, "topogeo", words());
@@ -88,13 +88,13 @@ TEST_F(InterruptionTest, AServiceThatWasFrozenIsStartedAgain) {
   const auto is_started_again = [&run] {
     return run.err().find("started again (1)") != std::string::npos;
   };
-  // It may have begun to watch after it was stopped for the first time.
+  // Its watchdog may have started only after the first freeze.
   ASSERT_TRUE(wait_for("the local mapper to end", is_started_again, freeze)) << run.err();
   EXPECT_THAT(run.err(), HasSubstr("stood still for "));
   EXPECT_EQ(run.wait(), 0) << run.err();
 }
 
-// The robot is where it is in that process alone: it meets its peers anew without ending.
+// Only this process has the robot's pose: it reconnects to its peers without ending.
 TEST_F(InterruptionTest, ASimulatorThatWasFrozenGoesOn) {
   set_longest_freeze(1);
   Program run(scratch_, "topogeo", simulated());

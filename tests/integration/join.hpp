@@ -1,4 +1,4 @@
-// A test as a participant beside the programs that it starts.
+// Lets a test take part as a participant beside the programs that it starts.
 #pragma once
 
 #include <cstdint>

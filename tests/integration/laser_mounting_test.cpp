@@ -1,4 +1,4 @@
-// A log whose two poses put the laser ahead of the robot's point is mapped with it there.
+// A log whose two poses imply a laser ahead of the robot's origin is mapped with that mounting.
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -27,7 +27,7 @@ class LaserMountingTest : public testing::Test {
     write_log("room", log_, truth_, options, options.T_robot_laser);
   }
 
-  /// Runs `topogeo WORDS...`, which must end well.
+  /// Runs `topogeo WORDS...`, which must succeed.
   void run(const std::vector<std::string>& words) {
     Program program(scratch_, "topogeo", words);
     ASSERT_EQ(program.wait(), 0) << program.err();
@@ -42,7 +42,7 @@ class LaserMountingTest : public testing::Test {
     run(words);
   }
 
-  /// Of the corrected trajectory, from the comparison with the reference.
+  /// RMS error of the corrected trajectory against the reference.
   [[nodiscard]] double rms_m() const {
     std::istringstream line(out_.substr(out_.find("  corrected")));
     std::string word;

@@ -85,7 +85,7 @@ class LocalizerTest : public ::testing::Test {
     EXPECT_EQ(last_status_->fault_count(), 0U) << last_status_->message().to_string();
   }
 
-  // A killed program leaves a part of /dev/shm behind that others may still wait at.
+  // A killed program leaves segments in /dev/shm that others may still wait at.
   const bool udp_only_ = (use_udp_only(), true);
   std::string partition_ = random_partition();
   Scratch scratch_;
@@ -109,7 +109,7 @@ class LocalizerTest : public ::testing::Test {
 
 TEST_F(LocalizerTest, MapsInAnyOrderGiveTheTrajectoryOfOneProcess) {
   const auto localizer = start("localizer");
-  // The end first, then from the last map to the first: nothing may be lost by a race of topics.
+  // Sends the end first, then the maps from last to first: a race of topics must lose nothing.
   end_stream();
   for (auto map = maps_.rbegin(); map != maps_.rend(); ++map) publish(**map);
   ASSERT_TRUE(wait_until("the end of the stream", [&] { return end_.has_value(); }));
@@ -140,7 +140,7 @@ TEST_F(LocalizerTest, WithoutTheWorkersItGoesOnAfterAWhile) {
   EXPECT_THAT(localizer->err(), ::testing::HasSubstr("0 of 3 workers came within 0.2 s"));
 }
 
-// No odometry comes any more.
+// Odometry has ended by then.
 TEST_F(LocalizerTest, AReaderThatComesAfterTheLogGetsTheLastPose) {
   const auto localizer = start("localizer");
   for (const auto& map : maps_) publish(*map);
@@ -182,8 +182,8 @@ TEST_F(LocalizerTest, TheLivePoseFollowsTheOdometryBetweenStops) {
   EXPECT_GT(pose.covariance(0, 0), 0.0);
 }
 
-/// A map of the room, and a localizer for it that comes when the sender of the local maps does not
-/// keep the first half any more.
+/// A map of the room, and a localizer that starts when the sender of the local maps no longer keeps
+/// the first half.
 class LateLocalizer : public LocalizerTest {
  protected:
   LateLocalizer() {
@@ -225,7 +225,7 @@ TEST_F(LateLocalizer, GetsTheFirstStopsOfALogFromTheMapStore) {
   EXPECT_EQ(last_status_->fault_count(), 0U);
 }
 
-// While it adds the stops of the robot's drive again, it hears where odometry has the robot now.
+// It receives the robot's present odometry while it adds the stops of the drive again.
 TEST_F(LateLocalizer, SaysNoPoseBeforeItHasAddedTheStopsAgain) {
   const auto store = start("map_store", {"--out", scratch_ / "out"});
   for (const auto& map : maps_) publish(*map);
@@ -277,7 +277,7 @@ TEST_F(LateLocalizer, GoesOnWithoutThemWhereNothingIsStored) {
 
 TEST_F(LateLocalizer, NeedsNoneOfThemWhileTheRobotDrives) {
   for (const auto& map : maps_) publish(*map);
-  const auto localizer = start_late({});  // no map store either
+  const auto localizer = start_late({});  // without a map store
   end_stream();
   ASSERT_TRUE(wait_until("the end of the stream", [&] { return end_.has_value(); }))
       << localizer->err();

@@ -1,5 +1,5 @@
-// A log that is read again for a local mapper that was away: what the gateway sends then, and what
-// the local mapper does where the source of the scans cannot go back.
+// A log is read again for a local mapper that was away: the gateway's output, and the mapper's
+// behaviour when the source of the scans cannot go back.
 #include <chrono>
 #include <csignal>
 #include <memory>
@@ -35,7 +35,7 @@ bool wait_in(messaging::EventLoop& loop, const Condition& condition) {
                         [&] { loop.run_for(std::chrono::milliseconds(5)); });
 }
 
-/// The test in place of the local mapper.
+/// The test takes the place of the local mapper.
 class LogReadAgain : public testing::Test {
  protected:
   LogReadAgain() {
@@ -66,7 +66,7 @@ class LogReadAgain : public testing::Test {
     ASSERT_GT(scans_.size(), 20U);
   }
 
-  /// What comes after that request, up to the next end of the stream.
+  /// Scans after this request, up to the next end of the stream.
   std::vector<msg::Scan> ask(std::uint64_t odometry_epoch, std::uint64_t first) {
     scans_.clear();
     odometry_.clear();
@@ -128,8 +128,7 @@ TEST_F(LogReadAgain, TheLastScanForWhoHadAll) {
   EXPECT_EQ(ask(all[0].odometry_epoch(), all.size()), std::vector{all.back()});
 }
 
-/// As a program whose announcements come one after the other, with a time between that a test
-/// decides.
+/// A program that announces its readers one after the other, with a delay that a test controls.
 class LateLogReader : public testing::Test {
  protected:
   LateLogReader() {
@@ -154,8 +153,8 @@ class LateLogReader : public testing::Test {
                                (scratch_ / "log.clf").string()});
     gateway_ = std::make_unique<Program>(scratch_, "sensor_gateway", words);
   }
-  /// Reads scans and odometry from now on until the log has ended, and returns the numbers of the
-  /// odometry.
+  /// Reads scans and odometry from now on until the log has ended, and returns the sequence numbers
+  /// of the odometry.
   std::vector<std::uint64_t> read_odometry(const messaging::Participant& participant) {
     std::vector<std::uint64_t> odometry;
     const messaging::Reader<msg::Odometry> reader(participant,
@@ -175,7 +174,7 @@ class LateLogReader : public testing::Test {
     return odometry;
   }
   [[nodiscard]] bool has_all_scans() const { return scans_.size() == *scans_in_log_; }
-  /// The gateway reports that it waits for it, or has sent scans instead.
+  /// Waits until the gateway reports that it waits for `what`, or has sent scans instead.
   [[nodiscard]] bool wait_until_missed(const std::string& what) {
     return test::wait_for(
         "the gateway to miss " + what,
@@ -218,7 +217,7 @@ TEST_F(LateLogReader, OfOdometryAloneIsWaitedForWhereItIsCounted) {
   EXPECT_GT(scans_.size(), 20U);
 }
 
-// A log file that is gone: there is nothing to go back to, and the gateway lives.
+// The log file is gone, so there is nothing to go back to, but the gateway lives.
 TEST_F(LogReadAgain, SaysWhyItCannotBeRead) {
   read_all();
   messaging::Reader<msg::ServiceStatus> status_reader(participant_);
@@ -236,7 +235,7 @@ TEST_F(LogReadAgain, SaysWhyItCannotBeRead) {
   EXPECT_TRUE(wait_in(loop_, [&] { return said; })) << gateway_->err();
 }
 
-// All programs of a log, whose map is finished. What is killed then has nothing to do any more.
+// All programs of a log whose map is finished. A mapper killed then has no work left.
 TEST(LocalMapperOfALog, AsksOnceWhenAllIsMapped) {
   use_udp_only();
   const Scratch scratch;
@@ -248,7 +247,7 @@ TEST(LocalMapperOfALog, AsksOnceWhenAllIsMapped) {
   messaging::EventLoop loop;
   bool mapped = false;
   std::uint64_t gateway_ends = 0;
-  std::uint32_t finished = 0;  // process of the mapper that has
+  std::uint32_t finished = 0;  // process of the mapper that has finished
   loop.add<msg::StreamEnd>(ends_reader,
                            [&](const msg::StreamEnd& end, const messaging::SampleInfo&) {
                              mapped = mapped || end.stage() == msg::kStageMapStore;
@@ -276,12 +275,12 @@ TEST(LocalMapperOfALog, AsksOnceWhenAllIsMapped) {
   ASSERT_TRUE(wait_in(loop, [&] { return finished == process; })) << mapper->err();
   EXPECT_TRUE(wait_in(loop, [&] { return gateway_ends == 2; }))
       << "the log was read again up to its last scan";
-  // It would ask again after two seconds.
+  // A second request would come after two seconds.
   loop.run_for(std::chrono::milliseconds(2500));
   EXPECT_EQ(gateway_ends, 2U);
 }
 
-// As behind a source that knows nothing of such requests.
+// The source of the scans does not know such requests.
 TEST(LocalMapperOfALog, GoesOnWithoutTheScansThatNobodySendsAgain) {
   use_udp_only();
   const Scratch scratch;

@@ -1,4 +1,4 @@
-// How far the stops of a map are from where they were in truth.
+// Errors of a map's stops against their true places.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace topogeo::test {
 
-/// Largest distance of a stop from its true place, m, with the first one at its true one.
-/// `T_world_robot` gives the true pose of a stop.
+/// Largest distance of a stop from its true place, m, when the first stop is aligned with its true
+/// pose. `T_world_robot` returns the true pose of a stop.
 inline double largest_error_m(
     const storage::MapDocument& map,
     const std::function<geometry::Pose2(const topomap::LocalMap&)>& T_world_robot) {

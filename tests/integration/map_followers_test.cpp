@@ -1,6 +1,6 @@
-// Twenty programs follow the map of a robot while its map store grows it, moves it, takes from it,
-// is killed and starts again. Some join late, lose messages, sleep or start again themselves. In
-// the end each holds what the store holds.
+// Twenty programs follow the map of a robot while its map store adds to it, moves it, deletes from
+// it, is killed and restarted. Some join late, lose messages, sleep or restart themselves. In the
+// end each holds the store's map.
 #include <csignal>
 #include <filesystem>
 #include <memory>
@@ -27,8 +27,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// A participant whose messages to others, acknowledgements above all, get lost, and which has no
-/// room for a burst of messages from them.
+/// A participant that loses outgoing messages, above all acknowledgements, and has no room for a
+/// burst of incoming ones.
 eprosima::fastdds::dds::DomainParticipant* lossy_participant() {
   namespace dds = eprosima::fastdds::dds;
   constexpr std::uint8_t kLostAcknowledgements = 30;  // per cent
@@ -70,7 +70,7 @@ class Subscriber {
     if (reader_ && !asleep_) static_cast<void>(reader_->wait(milliseconds(0)));
   }
   [[nodiscard]] map_client::MapReader& reader() { return *reader_; }
-  /// It has the map of a version, and nothing of a newer one.
+  /// Whether it has the map of a version, and nothing of a newer one.
   [[nodiscard]] bool has(std::uint64_t version) const {
     return reader_ && reader_->is_current() && reader_->map()->version == version;
   }
@@ -101,7 +101,7 @@ class MapFollowers : public testing::Test {
       if (subscriber->kind() == kind) action(*subscriber);
     }
   }
-  /// Until the first subscriber, which is there all the time, has the map of a version.
+  /// Waits until the first subscriber, which is always there, has the map of a version.
   void wait_for(std::uint64_t version) {
     ASSERT_TRUE(eventually([&] { return subscribers_.front()->has(version); })) << version;
   }
@@ -188,7 +188,7 @@ TEST_F(MapFollowers, EndWithExactlyWhatTheStoreHolds) {
     EXPECT_EQ(map.map_id, drive_.map().map_id) << i;
     EXPECT_EQ(map.stamp_ns, of_first.stamp_ns) << i;
     const auto same = [](const auto& a, const auto& b) {
-      return a.first == b.first && *a.second == *b.second;  // all fields, as they were sent
+      return a.first == b.first && *a.second == *b.second;  // all fields as sent
     };
     EXPECT_TRUE(std::ranges::equal(map.nodes, of_first.nodes, same)) << i;
     EXPECT_TRUE(std::ranges::equal(map.branches, of_first.branches, same)) << i;

@@ -1,4 +1,4 @@
-// A map store that is killed, stopped, started again, or whose disk is full: the map lives on.
+// A map store that is killed, stopped, restarted, or whose disk is full: the map survives.
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -53,7 +53,7 @@ TEST_F(MapStoreKilled, AtAnyMomentItHasAllThatItAcknowledged) {
   const unsigned kills = std::getenv("TOPOGEO_ALL_FAULTS") != nullptr ? 200 : 6;
   for (unsigned kill = 0; kill < kills; ++kill) {
     Program store(scratch_, "map_store", words());
-    // Somewhere between its start and the last of what comes: also before it is there at all.
+    // Kills it at any time up to the last message, also before it has started up.
     const auto lead = milliseconds(random.below(1500));
     const auto begin = std::chrono::steady_clock::now();
     std::uint32_t stops = std::max(1U, drive_.most_stored());
@@ -66,7 +66,7 @@ TEST_F(MapStoreKilled, AtAnyMomentItHasAllThatItAcknowledged) {
     }
     store.send_signal(SIGKILL);
     ASSERT_EQ(store.wait(), 128 + SIGKILL) << store.err();
-    drive_.run_for(milliseconds(20));  // acknowledgements that are under way
+    drive_.run_for(milliseconds(20));  // acknowledgements in transit
     if (drive_.most_stored() == 0) continue;
     const auto database = storage::MapDatabase::open_read_only(file("map.sqlite"));
     ASSERT_EQ(database.sessions().size(), 1U);
@@ -108,7 +108,7 @@ TEST_F(MapStoreLives, StoppedItWritesTheMapAndGoesOnWithItLater) {
     store.send_signal(SIGTERM);
     EXPECT_EQ(store.wait(), 0);
   }
-  // A reader that writes nothing down needs no more than the file.
+  // A reader that writes nothing needs only the file.
   EXPECT_TRUE(storage::map_file_bytes(storage::read_map(file("map.sqlite"))) ==
               read_file(file("map.pb")));
   Program store(scratch_, "map_store", words({"--new"}));
@@ -173,7 +173,7 @@ TEST_F(MapStoreLives, SnapshotsAreTakenWhileItWritesAndRestoredWhenItIsStopped) 
     const auto [restored, why] = run_store_command({"store", "restore", out, "four"});
     EXPECT_EQ(restored, 1);
     EXPECT_THAT(why, HasSubstr("a map store or another program has it open"));
-    drive_.send(drive_.stops() - 1);  // it goes on
+    drive_.send(drive_.stops() - 1);  // it continues
     ASSERT_TRUE(drive_.wait_for_stored(drive_.stops() - 1));
     store.send_signal(SIGTERM);
     EXPECT_EQ(store.wait(), 0) << store.err();
@@ -186,7 +186,7 @@ TEST_F(MapStoreLives, SnapshotsAreTakenWhileItWritesAndRestoredWhenItIsStopped) 
   EXPECT_THAT(lines, HasSubstr("before-four"));
   EXPECT_EQ(run_store_command({"store", "snapshot", out, "a/b"}).first, 2);
   EXPECT_EQ(run_store_command({"store", "snapshot", scratch_ / "none", "a"}).first, 3);
-  // It goes on with the map of that time; the senders still have the rest.
+  // It continues with the map of that time; the senders still have the rest.
   Program store(scratch_, "map_store", words());
   drive_.finish();
   store.wait_for_error_text("local maps, ");
@@ -213,7 +213,7 @@ TEST_F(MapStoreLives, OnAFullDiskTheMapGoesOnInMemory) {
   EXPECT_TRUE(storage::map_file_bytes(drive_.map()) == read_file(file("map.pb")));
 }
 
-/// Programs that are started meanwhile can make no file larger than this: a full disk.
+/// Programs started meanwhile can make no file larger than this: a full disk.
 class FullDiskForPrograms {
  public:
   explicit FullDiskForPrograms(rlim_t bytes) {
@@ -232,7 +232,7 @@ class FullDiskForPrograms {
   rlimit before_{};
 };
 
-// Too little for the index of the database's log, and enough for what the program logs.
+// Too small for the index of the database's log, large enough for the program's own log.
 constexpr rlim_t kTooLittle_bytes = 16'000;
 
 TEST_F(MapStoreLives, StartedOnAFullDiskItWaitsForRoom) {

@@ -1,4 +1,4 @@
-// The map store that shows a map that there is, and the command that lists its places.
+// The map store that shows an existing map, and the command that lists its places.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -74,7 +74,7 @@ constexpr const char* kWorld =
     "tour: [[1, 1]]\n"
     "places: [{name: desk, at: [5, 3]}]\n";
 
-/// What a program makes of these maps that starts now.
+/// State of a program that starts now and reads the maps.
 struct LateReader {
   LateReader(const std::string& domain, const std::string& partition)
       : participant([&] {
@@ -140,7 +140,7 @@ class MapStoreShows : public testing::Test {
     return code;
   }
 
-  // A killed program leaves a part of /dev/shm behind that others may still wait at.
+  // A killed program leaves segments in /dev/shm that others may still wait at.
   const bool udp_only_ = (use_udp_only(), true);
   std::string partition_ = "maps" + std::to_string(std::random_device{}());
   Scratch scratch_;
@@ -185,7 +185,7 @@ TEST_F(MapStoreShows, ADrawingOverAMap) {
   EXPECT_EQ(reader.hybrid.map()->places().size(), 3U);
 }
 
-// What a drive makes, sent as local mapper and localizer do.
+// Results of a drive, sent like local mapper and localizer do.
 TEST_F(MapStoreShows, TheMapOfADriveWithItsPlaces) {
   pipeline::MappingRun run({}, "robot");
   const world::World world = world::load_world(std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml");
@@ -231,7 +231,7 @@ TEST_F(MapStoreShows, TheMapOfADriveWithItsPlaces) {
   };
   EXPECT_TRUE(wait_in_loop(reader.loop, "the map of the whole drive", is_final));
   expect_same(*reader.hybrid.map(), hybrid);
-  expected.rooms = {};  // with the drawing
+  expected.rooms = {};  // they come with the drawing
   pipeline::remember_rooms(expected, {});
   EXPECT_TRUE(storage::map_file_bytes(expected) == read_file(scratch_ / "out" / "map.pb"));
 }
@@ -301,7 +301,7 @@ TEST_F(MapStoreShows, ABaseStationHasItsHeadingInDegrees) {
   EXPECT_NEAR(std::cos(*place("dock").station_heading_rad), 0.0, 1e-12) << "once round and back";
   EXPECT_NEAR(std::sin(*place("dock").station_heading_rad), -1.0, 1e-12);
 
-  // Put there anew without a heading it is a place like any other.
+  // Added again without a heading, it is an ordinary place.
   ASSERT_EQ(places({map, "--add", "base station=1,1"}), 0) << err_;
   EXPECT_FALSE(place("base station").station_heading_rad);
   const std::string before = read_file(map);

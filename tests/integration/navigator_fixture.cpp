@@ -41,7 +41,7 @@ simulation::RobotOptions robot_options() {
 }
 
 planning::HybridMap make_map() {
-  // As who gets it does.
+  // The same map that receivers build from the message.
   const planning::FreeSpace space(planning::grid_of(pipeline::drawing_of(room())),
                                   {.min_pocket_m2 = planning::kPocket_m2});
   return {space, planning::zones_by_width(space), {}};
@@ -110,7 +110,7 @@ std::int64_t NavigatorOnRobot::stamp_ns() const {
   return kSomeDay_ns + std::chrono::nanoseconds(Clock::now() - start_).count();
 }
 
-/// The world is as late as this process.
+/// Moves the world by the time passed, so it is as late as this process.
 void NavigatorOnRobot::move() {
   const std::int64_t now_ns = stamp_ns();
   if (moved_ns_ == 0) moved_ns_ = now_ns;
@@ -157,7 +157,7 @@ void NavigatorOnRobot::sense() {
   static_cast<void>(bases_.write(base));
 }
 
-/// What a planner does.
+/// Answers like a planner.
 void NavigatorOnRobot::answer(const msg::Goal& message) {
   const service::Goal goal = service::from_msg(message);
   if (goal.kind != msg::kGoalPosition && goal.kind != msg::kGoalPlace) return;

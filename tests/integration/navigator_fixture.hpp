@@ -1,6 +1,6 @@
-// A navigator in a process of its own with a simulated robot in this one, in real time: what comes
-// from gateway, localizer, map store and planner in earnest comes from here, and the motion
-// commands drive the robot.
+// A navigator in a process of its own with a simulated robot in this one, in real time: this
+// process sends the data of gateway, localizer, map store and planner, and the motion commands
+// drive the robot.
 #pragma once
 
 #include <chrono>
@@ -40,22 +40,22 @@ class NavigatorOnRobot : public testing::Test {
 
   /// Starts the navigator and waits until it is connected and has map and sensors.
   void start();
-  /// A goal at a point of the map frame, which is that of the world.
+  /// Sends a goal at a point of the map frame, which is that of the world.
   void send_goal(std::uint64_t id, const Eigen::Vector2d& target_m);
   void send_order(msg::GoalKind kind, std::uint64_t id = 0);
-  /// The client that has given the goal ends.
+  /// Ends the client that sent the goal.
   void lose_client() { goals_.reset(); }
-  /// As far as what they publish goes, this process is a planner, too.
+  /// Makes this process publish as a planner, too.
   void pretend_planner();
 
-  /// Lets the world go on until `condition` holds.
+  /// Runs the world until `condition` holds.
   template <class Condition>
   bool wait_for(const std::string& what, const Condition& condition) {
     return wait_in_loop(loop_, what, condition);
   }
-  /// The world goes on that long.
+  /// Runs the world for that long.
   void pass(std::chrono::milliseconds duration) { loop_.run_for(duration); }
-  /// Lets the world go on until the program ends; its exit code.
+  /// Runs the world until the program ends; returns its exit code.
   int wait_for_end(Program& program);
 
   [[nodiscard]] bool is(msg::NavigatorState state) const {
@@ -64,17 +64,17 @@ class NavigatorOnRobot : public testing::Test {
   [[nodiscard]] bool halted(msg::HaltReason reason) const {
     return status_ && status_->reason() == reason;
   }
-  /// The robot rolls.
+  /// Whether the robot moves.
   [[nodiscard]] bool rolls() const { return robot_.velocity().linear_m_per_s > 0.1; }
   [[nodiscard]] bool told_to_stand() const {
     return command_ && command_->linear_mps() == 0.0 && command_->angular_radps() == 0.0;
   }
   [[nodiscard]] bool stands() const { return robot_.velocity() == simulation::Velocity{}; }
-  /// Of the navigator's status; 0 if it has none of that name.
+  /// A counter of the navigator's status; 0 if it has none of that name.
   [[nodiscard]] double counter(std::string_view name) const;
   [[nodiscard]] std::uint64_t drops(std::string_view reason) const;
 
-  // A killed program leaves a part of /dev/shm behind that others may still wait at.
+  // A killed program leaves segments in /dev/shm that others may still wait at.
   const bool udp_only_ = (use_udp_only(), true);
   Scratch scratch_;
   std::string domain_ = own_domain();
@@ -102,7 +102,7 @@ class NavigatorOnRobot : public testing::Test {
   messaging::Writer<msg::LivePose> poses_;
 
  private:
-  std::optional<messaging::Writer<msg::Goal>> goals_;  // none: the client is gone
+  std::optional<messaging::Writer<msg::Goal>> goals_;  // empty: the client is gone
   messaging::Writer<msg::Route> routes_;
   messaging::Writer<msg::GridTile> tiles_;
   messaging::Writer<msg::HybridMap> maps_;

@@ -1,4 +1,4 @@
-// The navigator as a process: what it commands, and when it does not.
+// The navigator as a process: its motion commands, and when it sends none.
 #include <chrono>
 #include <csignal>
 #include <cstdint>
@@ -10,7 +10,7 @@
 namespace topogeo::test {
 namespace {
 
-const Eigen::Vector2d kGoal_m(3.5, 1.0);  // the robot starts at (1, 1) and looks along x
+const Eigen::Vector2d kGoal_m(3.5, 1.0);  // the robot starts at (1, 1), heading along x
 
 TEST_F(NavigatorOnRobot, DrivesToTheGoalThenLeavesTheBaseToOthers) {
   start();
@@ -24,7 +24,7 @@ TEST_F(NavigatorOnRobot, DrivesToTheGoalThenLeavesTheBaseToOthers) {
   EXPECT_EQ(robot_.collisions(), 0U);
   EXPECT_NEAR(status_->driven_m(), 2.5, 0.3);
   ASSERT_TRUE(wait_for("the robot to stand", [&] { return told_to_stand() && stands(); }));
-  // The event is that nothing comes any more, for much longer than between two commands.
+  // The event is the end of the commands: none for much longer than their period.
   std::uint64_t before = 0;
   ASSERT_TRUE(wait_for("the commands to end", [&] {
     before = commands_;
@@ -53,7 +53,7 @@ TEST_F(NavigatorOnRobot, PausesResumesAndCancels) {
   start();
   send_goal(5, {4.5, 1.0});
   ASSERT_TRUE(wait_for("the robot to drive", [&] { return rolls(); })) << navigator_->err();
-  send_order(msg::kGoalCancel, 99);  // another goal is meant
+  send_order(msg::kGoalCancel, 99);  // the id of another goal
   send_order(msg::kGoalPause);
   ASSERT_TRUE(wait_for("the robot to pause",
                        [&] { return halted(msg::kHaltPaused) && told_to_stand() && stands(); }));
@@ -66,7 +66,7 @@ TEST_F(NavigatorOnRobot, PausesResumesAndCancels) {
   EXPECT_LT(robot_.T_world_robot().x_m, 4.4);
 }
 
-// The page that gave the goal dies with the navigator.
+// The page that sent the goal dies with the navigator.
 TEST_F(NavigatorOnRobot, DrivesOnToAGoalWhoseClientIsGoneInItsNextLife) {
   memory_ = scratch_ / "goal";
   start();

@@ -26,7 +26,7 @@ using std::chrono::milliseconds;
 namespace {
 
 constexpr std::size_t kScans = 330;
-/// Stops that the localizer has to work on, at most, while the run goes on.
+/// Largest number of stops pending at the localizer while the run goes on.
 constexpr std::size_t kBacklog = 8;
 
 messaging::ParticipantOptions own_options() {
@@ -48,7 +48,7 @@ Drive::Drive(const Scratch& scratch) : log_(scratch / "log.clf.gz"), out_(scratc
     writer.write(simulated.scans[i]);
   }
   writer.close();
-  scan::CarmenLogReader reader(log_);  // a log rounds what was simulated
+  scan::CarmenLogReader reader(log_);  // a log rounds the simulated values
   while (auto scan = reader.next()) scans_.push_back(std::move(*scan));
   Program map(scratch, "topogeo", {"map", "--log", log_, "--out", out_.string()});
   if (map.wait() != 0) throw std::runtime_error("topogeo map: " + map.err());
@@ -132,10 +132,10 @@ Program& ServiceRun::start_worker(const std::string& name) {
   return *own_workers_.back();
 }
 
-// --- how far the run gets
+// --- progress of the run
 
 void ServiceRun::step() {
-  // Not by the maps that have come: a mapper that has little of the cores would get all at once.
+  // Not by received maps: a mapper with little CPU time would then get all scans at once.
   const bool has_room = drive_.stops_of(next_scan_) < stops_ + kBacklog;
   if (next_scan_ < drive_.scans().size() && has_room) send_scan();
   loop_.run_for(milliseconds(1));
@@ -143,7 +143,7 @@ void ServiceRun::step() {
 
 void ServiceRun::send_scan() {
   const auto message = service::to_msg(drive_.scans()[next_scan_], "robot");
-  if (scan_writer_.write(message)) ++next_scan_;  // else the mapper is slow
+  if (scan_writer_.write(message)) ++next_scan_;  // otherwise the mapper is slow
 }
 
 bool ServiceRun::go_on_until(const Condition& condition) {

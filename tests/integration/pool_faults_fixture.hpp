@@ -1,5 +1,5 @@
-// A run of the real services in which the test plays the sensor gateway: it decides how far the run
-// gets, so that things happen in the middle of it on a machine of any speed.
+// A run of the real services in which the test plays the sensor gateway: it controls the progress
+// of the run, so that events happen in the middle of it on a machine of any speed.
 #pragma once
 
 #include <chrono>
@@ -29,7 +29,7 @@ namespace topogeo::test {
 
 inline const std::chrono::seconds kFaultPatience = hang_limit();
 
-/// The first part of a drive through the simulated floor, once past a place that it has seen.
+/// The first part of a drive through the simulated floor, up to one return to a known place.
 class Drive {
  public:
   /// Writes the log and maps it with `topogeo map`.
@@ -37,21 +37,21 @@ class Drive {
 
   [[nodiscard]] const std::vector<scan::Scan>& scans() const { return scans_; }
   [[nodiscard]] const std::string& log() const { return log_; }
-  /// A file of the results of one process.
+  /// A result file of one process.
   [[nodiscard]] std::string expected(const std::string& file) const;
-  /// Matches that one process has tried.
+  /// Number of matches that one process has tried.
   [[nodiscard]] double expected_tasks() const;
-  /// Stops that one process makes of so many scans.
+  /// Number of stops that one process makes of so many scans.
   [[nodiscard]] std::size_t stops_of(std::size_t scans) const;
 
  private:
   std::string log_;
   std::filesystem::path out_;
   std::vector<scan::Scan> scans_;
-  std::vector<std::uint64_t> stop_scans_;  // numbers of the scans that were taken at a stop
+  std::vector<std::uint64_t> stop_scans_;  // numbers of the scans taken at a stop
 };
 
-/// map_store, local_mapper and localizer on a partition of their own.
+/// map_store, local_mapper and localizer in a partition of their own.
 class ServiceRun {
  public:
   using Condition = std::function<bool()>;
@@ -63,50 +63,48 @@ class ServiceRun {
   /// Asks the services to end.
   ~ServiceRun();
 
-  /// Flags for programs that are to take part.
+  /// Flags for programs that take part.
   [[nodiscard]] std::vector<std::string> flags() const;
-  /// Starts a ga_worker of this run.
+  /// Starts a ga_worker for this run.
   Program& start_worker(const std::string& name);
 
-  /// Sends scans until `condition` holds. False when it does not in the longest time that anything
-  /// takes. The localizer has always some stops to work on, and never many.
+  /// Sends scans until `condition` holds. False when it does not within the hang limit. The
+  /// localizer always has some stops to work on, and never many.
   bool go_on_until(const Condition& condition);
-  /// Until so many stops are localized.
+  /// Continues until so many stops are localized.
   bool go_on_until_stop(std::size_t stop);
   /// Sends the rest and waits for the results.
   bool finish();
-  /// Sends scans (if the localizer has little left to do) and receives what has come.
+  /// Sends scans (if the localizer has little left to do) and receives messages.
   void step();
 
   // These do not send scans.
   bool wait_until(const Condition& condition);
   bool wait_for_workers(std::size_t count);
-  /// Until the localizer has worked off everything.
+  /// Waits until the localizer has no work left.
   bool wait_until_idle();
 
   /// Stops localized so far.
   [[nodiscard]] std::size_t stops() const { return stops_; }
   /// A counter of the localizer; -1: not published yet.
   [[nodiscard]] double counter(const std::string& name) const;
-  /// How often a fault happened to the localizer.
+  /// Number of the localizer's faults with this reason.
   [[nodiscard]] std::uint64_t faults(const std::string& reason) const;
   [[nodiscard]] bool has_ended() const { return ended_; }
-  /// What the localizer has logged.
+  /// The localizer's log.
   [[nodiscard]] std::string log() const { return localizer_->err(); }
   /// Status of the workers, by process id.
   [[nodiscard]] const std::map<pid_t, msg::WorkerStatus>& workers() const { return workers_; }
   [[nodiscard]] std::uint64_t tasks_done(const Program& worker) const;
 
-  /// The results are those of one process, and every task was answered.
+  /// Expects the results of one process, and an answer for every task.
   void expect_same_results();
-  /// Workers that the middleware is connected with; a killed one is among them until its lease
-  /// ends.
+  /// Workers that the middleware is connected to; a killed one counts until its lease ends.
   [[nodiscard]] std::size_t connected_workers() const {
     return static_cast<std::size_t>(workers_in_.matched());
   }
 
-  /// Prints the longest time that the localizer took to recover from the loss of a worker; fails
-  /// if it never had to.
+  /// Prints the localizer's longest recovery from the loss of a worker; fails without any.
   void report_recovery();
 
  private:

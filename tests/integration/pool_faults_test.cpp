@@ -1,5 +1,5 @@
-// Whatever happens to the workers of a run, and whatever they answer: its results are those of one
-// process, and no task is lost.
+// The results of a run equal those of one process, and no task is lost, under all faults and wrong
+// answers of its workers.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -22,11 +22,11 @@ using std::chrono::milliseconds;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Share of the tasks that workers do while there are some; the localizer does others itself when
-/// the machine is so busy that workers miss their time.
+/// Share of the tasks that present workers do; the localizer does others itself when a busy machine
+/// makes workers miss their time.
 constexpr double kMost = 0.7;
 
-/// Enough for every worker to have had a task.
+/// Enough for every worker to get a task.
 constexpr std::size_t kFewStops = 6;
 
 class PoolFaultsTest : public testing::Test {
@@ -45,8 +45,8 @@ class PoolFaultsTest : public testing::Test {
     words.insert(words.end(), {"--fault", fault});
     return std::make_unique<Program>(scratch_, "../tests/faulty_worker", words);
   }
-  /// Kills workers that have tasks in hand: they get some while they do not work. If they got none
-  /// in that moment, on a busy machine, others take their places and are killed in turn.
+  /// Kills workers that have tasks in hand: they get some while they are stopped. If they got none
+  /// on a busy machine, others take their places and are killed in turn.
   static void kill_with_tasks_in_hand(ServiceRun& run, std::vector<Program*> workers) {
     const auto all = static_cast<std::size_t>(run.counter("workers"));
     while (true) {
@@ -62,14 +62,14 @@ class PoolFaultsTest : public testing::Test {
       ASSERT_TRUE(run.wait_for_workers(all));
     }
   }
-  /// Lets a worker with the fault join for some stops and then ends it. `found_out`: whether
-  /// the localizer has noticed.
+  /// Lets a worker with the fault join for some stops and then ends it. `found_out`: whether the
+  /// localizer has noticed.
   void join_with_fault(ServiceRun& run, const std::string& fault,
                        const std::function<bool(const std::string& worker)>& found_out) {
     SCOPED_TRACE(fault);
     const std::unique_ptr<Program> worker = start_faulty(run, fault);
     const std::string id = fault + "#" + std::to_string(worker->pid());
-    // By the log: it may be found out before a status has counted it.
+    // Checks the log, because the worker may be found out before a status has counted it.
     EXPECT_TRUE(run.wait_until([&] {
       return run.log().find("worker " + id + " joined") != std::string::npos;
     })) << worker->err();
@@ -80,7 +80,7 @@ class PoolFaultsTest : public testing::Test {
     EXPECT_EQ(worker->wait(), 0) << worker->err();
     EXPECT_TRUE(run.wait_for_workers(1));
   }
-  /// The worker is named in a fault (empty: of any reason) and gets no more tasks.
+  /// Expects a fault that names the worker (empty: of any reason), and no more tasks for it.
   void expect_excluded(ServiceRun& run, const std::string& fault,
                        const std::string& reason = "wrong match result") {
     // A reason is logged once per second.
@@ -94,7 +94,7 @@ class PoolFaultsTest : public testing::Test {
     });
     EXPECT_TRUE(reason.empty() || run.faults(reason) > 0);
   }
-  /// The worker is named as one that stalls, and gets no tasks for a while.
+  /// Expects that the worker is reported as stalled, and gets no tasks for a while.
   void expect_passed_over(ServiceRun& run, const std::string& fault) {
     join_with_fault(run, fault, [&](const std::string& worker) {
       return run.log().find(worker + " stalled with") != std::string::npos;
@@ -104,7 +104,7 @@ class PoolFaultsTest : public testing::Test {
     EXPECT_LT(run.counter("tasks_in_process"), (1.0 - kMost) * run.counter("tasks"));
   }
 
-  // A killed program leaves its part of /dev/shm behind, which would fill that of a container.
+  // A killed program leaves segments in /dev/shm, which would fill that of a container.
   const bool udp_only_ = (use_udp_only(), true);
   Scratch scratch_;
   Drive drive_{scratch_};
@@ -160,7 +160,7 @@ TEST_F(PoolFaultsTest, AWorkerStandsStillUntilItIsTakenToBeGone) {
   run.expect_same_results();
   run.report_recovery();
   EXPECT_EQ(run.counter("duplicate_differences"), 0.0);
-  // More than what it had in hand.
+  // More than it had in hand.
   EXPECT_TRUE(run.wait_until([&] { return run.tasks_done(*workers[0]) > done + 2; }));
 }
 
@@ -171,7 +171,7 @@ TEST_F(PoolFaultsTest, WorkersAnswerMalformedResults) {
   expect_excluded(run, "not_a_number");
   expect_excluded(run, "many_solutions");
   expect_excluded(run, "garbage");
-  // Nothing in these names the task that they answer.
+  // These answers name no task.
   expect_passed_over(run, "unknown_task");
   ASSERT_TRUE(run.finish()) << run.log();
   run.expect_same_results();
@@ -210,7 +210,7 @@ TEST_F(PoolFaultsTest, WorkersHaveTheSameNameOrId) {
 TEST_F(PoolFaultsTest, TwoRobotsOfOneNameShareTheWorkers) {
   ServiceRun first(scratch_, drive_, "first");
   ServiceRun second(scratch_, drive_, "second");
-  // Started by hand: for every run on the domain.
+  // Started by hand, it serves every run on the domain.
   const Program one(scratch_, "ga_worker", {"--domain", own_domain()});
   const Program other(scratch_, "ga_worker", {"--domain", own_domain()});
   ASSERT_TRUE(first.wait_for_workers(2) && second.wait_for_workers(2));
@@ -222,7 +222,7 @@ TEST_F(PoolFaultsTest, TwoRobotsOfOneNameShareTheWorkers) {
   ASSERT_TRUE(wait_for(
       "stops of two robots", [&] { return std::max(first.stops(), second.stops()) >= kFar; },
       step));
-  // Both have as many tasks for each stop, so stops show who was served how often.
+  // Both have as many tasks for each stop, so stops show how often each was served.
   const auto [slow, fast] = std::minmax({first.stops(), second.stops()});
   EXPECT_LE(fast, 2 * slow);
   std::cout << "stops while both ran: " << slow << " and " << fast << '\n';
@@ -269,7 +269,7 @@ TEST_F(PoolFaultsTest, AWorkerLeavesInOrder) {
   EXPECT_EQ(run.counter("workers_lost"), 0.0);
   EXPECT_THAT(workers[0]->err(), Not(HasSubstr("not finished")));
   expect_mostly_by_workers(run);
-  // On a machine so busy that workers miss their time, tasks are sent again for that reason.
+  // On a busy machine, tasks are also sent again because workers miss their time.
   if (run.log().find("stalled with") == std::string::npos) {
     EXPECT_EQ(run.counter("tasks_resent"), 0.0) << run.log();
   }

@@ -52,7 +52,7 @@ inline Maps maps_of_room() {
   return maps;
 }
 
-/// Tasks between each map and the ones just before it, round and round until there are `count`.
+/// Tasks between each map and the ones just before it, repeated until there are `count`.
 inline std::vector<localization::MatchTask> tasks_on(const Maps& maps, std::size_t count,
                                                      std::uint64_t first_id = 0) {
   std::vector<localization::MatchTask> tasks;
@@ -88,7 +88,7 @@ inline messaging::ParticipantOptions options_in(const std::string& partition) {
   return options;
 }
 
-/// A worker in the test's own process that does what the test orders.
+/// A worker in the test's own process that is controlled by the test.
 class FakeWorker {
  public:
   using OnTask = std::function<void(FakeWorker&, const msg::MatchTask&)>;
@@ -96,7 +96,7 @@ class FakeWorker {
 
   FakeWorker(const FakeWorker&) = delete;
   FakeWorker& operator=(const FakeWorker&) = delete;
-  /// `dress` changes its status, which otherwise is one that any client accepts.
+  /// `dress` changes its status, which is otherwise acceptable to any client.
   FakeWorker(const std::string& partition, messaging::EventLoop& loop, const std::string& worker_id,
              const OnTask& on_task, const Dress& dress = {})
       : loop_(loop),
@@ -128,12 +128,12 @@ class FakeWorker {
     announce();
   }
   void cease_to_announce() { loop_.cancel_timer(timer_); }
-  /// Announces that it leaves, as a worker that drains does.
+  /// Announces that it leaves, like a worker that drains.
   void leave() {
     cease_to_announce();
     statuses_.dispose(status_);
   }
-  /// Publishes from now on what `dress` makes of its status.
+  /// Publishes the status that `dress` returns from now on.
   void change(const Dress& dress) {
     dress(status_);
     announce();
@@ -166,7 +166,7 @@ class FakeWorker {
   }
 
   [[nodiscard]] const messaging::Participant& participant() const { return participant_; }
-  /// Who sent the last task.
+  /// The client of the last task.
   [[nodiscard]] const std::string& client_id() const { return client_id_; }
 
   int received = 0;
@@ -185,7 +185,7 @@ class FakeWorker {
   std::string client_id_;
 };
 
-/// Solves tasks as a worker does, or with other parameters of the search.
+/// Solves tasks like a worker, or with other search parameters.
 class Solver {
  public:
   explicit Solver(const Maps& maps) {
@@ -194,7 +194,7 @@ class Solver {
   localization::MatchResult solve(const msg::MatchTask& task) {
     return matcher_.solve(service::from_msg(task));
   }
-  /// Right, but of a search that gave up early.
+  /// A valid result of a search that stopped early.
   localization::MatchResult solve_poorly(const msg::MatchTask& task) {
     localization::MatchTask shorter = service::from_msg(task);
     shorter.genetic.generations = 1;
@@ -254,16 +254,16 @@ class PoolTest : public ::testing::Test {
     }
     EXPECT_GT(solved, expected.size() / 2) << "the tasks are not worth comparing";
   }
-  /// Does something once so many tasks are sent, while match() runs.
+  /// Runs `action` once so many tasks are sent, during match().
   void when_sent(std::uint64_t count, std::function<void()> action) {
     when([this, count] { return pool_->counts().sent >= count; }, std::move(action));
   }
-  /// Does something once a condition holds, while match() runs.
+  /// Runs `action` once a condition holds, during match().
   void when(std::function<bool()> condition, std::function<void()> action) {
     timer_ = loop_.add_timer(std::chrono::milliseconds(1),
                              [this, condition = std::move(condition), action = std::move(action)] {
                                if (!condition()) return;
-                               // It goes with its timer, and may set the next one.
+                               // It is destroyed with its timer, and may set the next one.
                                const std::function<void()> once = action;
                                loop_.cancel_timer(timer_);
                                once();
@@ -275,7 +275,7 @@ class PoolTest : public ::testing::Test {
   }
   bool wait_for_workers(std::size_t count) { return test::wait_for_workers(*pool_, count); }
 
-  // A killed program leaves a part of /dev/shm behind that others may still wait at.
+  // A killed program leaves segments in /dev/shm that others may still wait at.
   const bool udp_only_ = (use_udp_only(), true);
   std::string partition_ = random_partition();
   Scratch scratch_;
@@ -292,7 +292,7 @@ class PoolTest : public ::testing::Test {
   std::uint64_t timer_ = 0;
 
  private:
-  /// Nothing is taken from a slow worker on a busy machine, unless a test wants it.
+  /// Never drops a slow worker on a busy machine, unless a test wants it.
   static search_pool::BoardConfig patient() {
     search_pool::BoardConfig options;
     options.straggler_floor = hang_limit();

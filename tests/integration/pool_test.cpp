@@ -1,4 +1,4 @@
-// The search pool over DDS gives what the search in one process gives, whatever happens to workers.
+// The search pool over DDS gives the results of one process, whatever happens to workers.
 #include <algorithm>
 #include <csignal>
 
@@ -83,7 +83,7 @@ TEST_F(PlacesInPoolTest, AWorkerWithAWrongValueIsExcluded) {
   EXPECT_THAT(faults_, Contains("wrong match result"));
 }
 
-// All values are right, so only the search of the same part here shows it.
+// All values are right, so only a repeated search of the same part reveals the omission.
 TEST_F(PlacesInPoolTest, AWorkerThatLeavesOutTheBestPlaceIsExcluded) {
   FakeWorker lazy(partition_, loop_, "lazy", [&](FakeWorker& self, const msg::MatchTask& task) {
     localization::MatchResult result;
@@ -181,7 +181,7 @@ TEST_F(PoolTest, AWorkerWithoutMapsAsksForThem) {
 TEST_F(PoolTest, AMapThatNobodyKnowsIsNotSent) {
   FakeWorker asking(partition_, loop_, "asking", [&](FakeWorker& self, const msg::MatchTask& task) {
     self.request_map(9999, 1);
-    self.request_map(maps_[0]->id, 1);  // of another content
+    self.request_map(maps_[0]->id, 1);  // with different content
     self.answer(task, {}, msg::kMatchMapMissing);
   });
   ASSERT_TRUE(wait_for_workers(1));
@@ -240,7 +240,7 @@ TEST_F(PoolWithStragglersTest, AWorkerThatSleptIsTakenBack) {
   sleeper.send_signal(SIGCONT);
   ASSERT_TRUE(wait_until("the worker to be back", [&] { return pool_->workers() == 1; }));
   const std::uint64_t here = pool_->counts().in_process;
-  // It works again: on a busy machine not before its answers come in time.
+  // The worker is used again, but on a busy machine only once its answers come in time.
   std::uint64_t matched = 0;
   ASSERT_TRUE(wait_until("an answer of the worker", [&] {
     const std::vector<MatchTask> more = tasks_on(maps_, 30, 1000 + matched);

@@ -1,4 +1,4 @@
-// Workers that are not what they should be: of another build, wrong, worse, or two under one id.
+// Workers that cannot be trusted: of another build, wrong, worse, or two under one id.
 #include <limits>
 #include <optional>
 #include <utility>
@@ -15,26 +15,26 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// A short search often ends at the same pose as a long one, by another way.
+/// A short search often ends at the pose of a long one, but with another answer.
 const ::testing::Matcher<std::string> kWorse =
     ::testing::AnyOf("poorer match result", "different answers to a task");
 
 class PoolTrustTest : public PoolTest {
  protected:
-  /// A worker that solves every task as it should.
+  /// A worker that solves every task correctly.
   FakeWorker::OnTask honest() {
     return [this](FakeWorker& self, const msg::MatchTask& task) {
       self.answer(task, solver_.solve(task));
     };
   }
-  /// What the pool makes of a worker with this status: no task gets to it.
+  /// Expects that the pool refuses a worker with this status and sends it no task.
   void expect_refused(const FakeWorker::Dress& dress, const std::string& reason,
                       const std::string& detail) {
     FakeWorker other(partition_, loop_, "other", honest(), dress);
     ASSERT_TRUE(wait_until("a fault", [&] { return !faults_.empty(); }));
     const std::vector<MatchTask> tasks = tasks_on(maps_, 10);
     expect_same(tasks, pool_->match(tasks));
-    // It announces itself again, and the pool has read that before the loop gets to this one.
+    // The worker announces itself again, and the pool reads it before this loop does.
     const std::uint64_t seen = announced_;
     ASSERT_TRUE(
         wait_until("further statuses of the worker", [&] { return announced_ >= seen + 3; }));
@@ -44,7 +44,7 @@ class PoolTrustTest : public PoolTest {
     EXPECT_THAT(faults_, ElementsAre(reason)) << "once";
     EXPECT_THAT(details_[0], HasSubstr("worker other on host here: " + detail));
   }
-  /// What it makes of one that answers like this, next to an honest one.
+  /// Expects that the pool excludes a worker with these answers, next to an honest one.
   void expect_excluded(const FakeWorker::OnTask& on_task,
                        const ::testing::Matcher<std::string>& reason, const std::string& detail) {
     FakeWorker liar(partition_, loop_, "liar", on_task);
@@ -69,7 +69,7 @@ class PoolTrustTest : public PoolTest {
   }
 
   Solver solver_{maps_};
-  std::uint64_t announced_ = 0;  // statuses of workers
+  std::uint64_t announced_ = 0;  // number of workers' statuses
 
  private:
   void SetUp() override {
@@ -133,7 +133,7 @@ TEST_F(PoolTrustTest, AWrongAnswerIsRefused) {
   expect_excluded(
       [this](FakeWorker& self, const msg::MatchTask& task) {
         MatchResult result = solver_.solve(task);
-        if (self.received > 1) result.fitness += 1e-9;  // one before is right
+        if (self.received > 1) result.fitness += 1e-9;  // the first answer is right
         self.answer(task, result);
       },
       "wrong match result", "the fitness");
@@ -160,7 +160,7 @@ TEST_F(PoolTrustTest, AMalformedAnswerIsRefused) {
 }
 
 TEST_F(PoolTrustTest, AnAnswerOfAnotherSchemaIsRefused) {
-  // A writer that sends what the library does not.
+  // A writer without the library's checks.
   messaging::TopicInfo unchecked = messaging::TopicTraits<msg::MatchResults>::info();
   unchecked.find_defect = [](const void*) { return std::optional<std::string>(); };
   std::optional<messaging::detail::WriterCore> writer;
@@ -220,14 +220,14 @@ TEST_F(PoolAuditTest, AWorkerThatBecomesLazyLaterIsFoundAndItsAnswersAreDoneAgai
   EXPECT_GE(pool_->counts().audits, 4U);
 }
 
-/// Where answers are compared only because two workers give them.
+/// Answers are compared only when two workers give them.
 class PoolDuplicatesTest : public PoolTrustTest {
  protected:
   PoolDuplicatesTest() { board_options_.audit_every = 0; }
 };
 
-/// Where a task is done here though a worker has it. The worker gets no other one for it, however
-/// long this process takes.
+/// A task is done in this process though a worker has it. The worker gets no other task instead,
+/// however long this process takes.
 class PoolStragglerTest : public PoolDuplicatesTest {
  protected:
   PoolStragglerTest() {
@@ -254,9 +254,9 @@ TEST_F(PoolStragglerTest, LateAnswersAreCompared) {
   EXPECT_EQ(pool_->workers(), 0U) << "it is excluded";
 }
 
-// The first three answers of the fast one are compared anyway and honest, so that only the
-// duplicate shows what it does. The slow one then leaves with its tasks in hand, which go to the
-// fast one, and answers them all the same.
+// The first three answers of the fast worker are always compared, and honest, so that only the
+// duplicate reveals it. The slow worker then leaves with its tasks in hand, which go to the fast
+// one, and still answers them.
 TEST_F(PoolDuplicatesTest, WhenTwoWorkersDifferTheOneThatErredGoes) {
   std::vector<msg::MatchTask> held;
   bool left = false;
@@ -302,7 +302,7 @@ TEST_F(PoolTrustTest, OfTwoProcessesWithOneIdOnlyTheFirstCounts) {
     self.answer(task, result);
   });
   ASSERT_TRUE(wait_until("the second of one id to be reported", [&] { return !faults_.empty(); }));
-  // That its status arrives does not mean yet that tasks get to it.
+  // When its status has arrived, tasks may not reach it yet.
   std::uint64_t sent = 0;
   ASSERT_TRUE(wait_until("a task to get to the second", [&] {
     pool_->match(tasks_on(maps_, 1, 2000 + sent++));
@@ -310,7 +310,7 @@ TEST_F(PoolTrustTest, OfTwoProcessesWithOneIdOnlyTheFirstCounts) {
   }));
   ASSERT_TRUE(wait_until("the answers of the second to be ignored",
                          [&] { return pool_->counts().ignored == received_by(second); }));
-  // One of those before may still be on its way.
+  // An earlier answer may still be on its way.
   const std::uint64_t received_before = received_by(second);
   const std::vector<MatchTask> tasks = tasks_on(maps_, 30);
   expect_same(tasks, pool_->match(tasks));
@@ -329,7 +329,7 @@ TEST_F(PoolTrustTest, OfTwoProcessesWithOneIdOnlyTheFirstCounts) {
   EXPECT_EQ(pool_->counts().ignored, received);
 
   lies = false;
-  // The second is quiet until the first is gone, and what it has announced has arrived by then.
+  // The second stays silent until the first is gone and its own last statuses have arrived.
   second.cease_to_announce();
   const std::uint64_t seen = announced_;
   ASSERT_TRUE(wait_until("statuses of the first", [&] { return announced_ >= seen + 3; }));

@@ -38,10 +38,10 @@ std::string test_name() {
   return name;
 }
 
-// Tests run side by side, and a worker that serves every partition would serve a neighbour's. The
-// lock goes with the process, however that ends.
+// Tests run in parallel, and a worker that serves every partition would also serve another test.
+// The lock is released with the process, however it ends.
 int claim_domain() {
-  // The ports of higher domains overlap with those that the system gives to clients.
+  // The ports of higher domains overlap with the system's range for clients.
   constexpr std::size_t kDomains = 100;
   const std::size_t first = std::hash<std::string>{}(test_name()) % kDomains;
   for (std::size_t i = 0; i < kDomains; ++i) {
@@ -56,8 +56,8 @@ int claim_domain() {
   throw std::runtime_error("no free DDS domain from 1 to 100 for a test");
 }
 
-/// Copies regular files and folders. Others, such as sockets and links to serial lines, are of no
-/// use later.
+/// Copies regular files and folders. Others, such as sockets and links to serial lines, are useless
+/// later.
 void copy_tree(const std::filesystem::path& from, const std::filesystem::path& to) {
   std::error_code ignored;
   std::filesystem::create_directories(to, ignored);
@@ -72,7 +72,7 @@ void copy_tree(const std::filesystem::path& from, const std::filesystem::path& t
   }
 }
 
-/// Keeps the files of a failed test, logs of services included, where `./run test` looks for them.
+/// Keeps the files of a failed test, including logs of services, for `./run test`.
 void keep_files(const std::filesystem::path& folder) {
   const auto failed = std::filesystem::path(TOPOGEO_BIN).parent_path() / "tests" / "failed";
   const std::string name = std::string(::program_invocation_short_name) + "." + test_name();
@@ -94,7 +94,7 @@ Scratch::Scratch()
 }
 
 Scratch::~Scratch() {
-  // An exception that ends the test becomes a failure of it only after this.
+  // A thrown exception becomes a test failure only after this.
   if (testing::Test::HasFailure() || std::uncaught_exceptions() > 0) {
     try {
       keep_files(path_);

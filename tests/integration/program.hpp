@@ -1,4 +1,4 @@
-// Runs the project's executables from tests and watches what they do.
+// Runs the project's executables from tests and watches them.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ class Scratch {
   std::filesystem::path path_;
 };
 
-/// A started program whose output goes to files. Killed at the end of its life if it still runs.
+/// A started program whose output goes to files. Its destructor kills it if it still runs.
 class Program {
  public:
   /// `name` is an executable of build/bin, `scratch` takes its output.
@@ -39,7 +39,7 @@ class Program {
   ~Program();
 
   /// Exit code, or 128 + signal. Throws std::runtime_error when it does not end within
-  /// hang_limit(), as all waits here.
+  /// hang_limit(), like all waits here.
   int wait();
 
   bool ended();
@@ -47,7 +47,7 @@ class Program {
   /// Waits until its standard error contains `text`. Throws std::runtime_error when it ends before.
   void wait_for_error_text(const std::string& text);
 
-  /// The same for its progress bar: until that many per cent are done.
+  /// The same for its progress bar: waits until that many per cent are done.
   void wait_for_progress(int percent);
 
   void send_signal(int signal_number) const;
@@ -55,8 +55,8 @@ class Program {
   [[nodiscard]] std::string out() const;
   [[nodiscard]] std::string err() const;
 
-  /// Services of this `topogeo run`, by the partition in their command lines; all of them, or those
-  /// of one name.
+  /// Processes of this `topogeo run`, found by the partition in their command lines; all services,
+  /// or those of one name.
   [[nodiscard]] std::vector<pid_t> services(const std::string& name = {}) const;
 
  private:
@@ -70,27 +70,26 @@ class Program {
 
 std::string read_file(const std::filesystem::path& path);
 
-/// Prints the lines of a text that have `part` in them: figures of a test.
+/// Prints the lines of a text that contain `part`: measured values of a test.
 void print_lines_with(const std::string& part, const std::string& text);
 
-/// A DDS domain for the running test, so that tests that run at the same time do not see each
-/// other.
+/// A DDS domain for the running test, so that concurrent tests do not see each other.
 std::string own_domain();
 
-/// Programs started from here on use no shared memory. For tests that kill programs: what these
-/// leave in /dev/shm would fill that of a container.
+/// Programs started from here on use no shared memory. For tests that kill programs: their segments
+/// in /dev/shm would fill that of a container.
 void use_udp_only();
 
-/// Programs started from here on may stand still for so long; 0: for any time. Without this a
-/// service that a test stops for half a lease ends when it goes on.
+/// Programs started from here on may be frozen for so long; 0: without limit. Without this call a
+/// service that a test freezes for half a lease ends when it continues.
 void set_longest_freeze(unsigned seconds);
 
-/// Makes keys with deploy/security/make_keys; `what` follows `make_keys DIR issue`. False where
-/// there is no openssl. Throws std::runtime_error when it fails.
+/// Makes keys with deploy/security/make_keys; `what` follows `make_keys DIR issue`. False without
+/// openssl. Throws std::runtime_error when it fails.
 bool issue_keys(const std::filesystem::path& directory, const std::string& what);
 
 /// Writes the log of a drive through a world of tests/data, and its true poses if `truth` is named.
-/// The log states `stated` as the mounting of its laser, wherever options have the laser.
+/// The log states `stated` as the mounting of its laser, whatever the options say.
 void write_log(const std::string& world, const std::filesystem::path& log,
                const std::filesystem::path& truth = {},
                const simulation::SimulationOptions& options = {},

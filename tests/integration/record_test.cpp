@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 class Record : public testing::Test {
  protected:
-  /// Replays `log` and records what the gateway gives of it.
+  /// Replays `log` and records the gateway's output.
   void record(const fs::path& log, const fs::path& out) {
     const std::string domain = own_domain();
     Program recorder(
@@ -75,7 +75,7 @@ TEST_F(Record, MapOfARunIsTheMapOfItsRecord) {
   EXPECT_TRUE(read_file(scratch_ / "run" / "map.pb") == map_of(scratch_ / "run.clf.gz", "map"));
 }
 
-// Who reads or maps a log is killed, and the log read again: nothing is recorded twice.
+// The reader or mapper of a log is killed, so the log is read again: no scan is recorded twice.
 TEST_F(Record, ALogThatIsReadAgainIsRecordedOnce) {
   use_udp_only();
   const fs::path log = scratch_ / "log.clf";
@@ -89,7 +89,7 @@ TEST_F(Record, ALogThatIsReadAgainIsRecordedOnce) {
   const auto wait_until = [&run](const std::function<bool()>& is_so) {
     ASSERT_TRUE(wait_for("a service to start or end", is_so)) << run.err();
   };
-  // Between its end and its next start there is nothing to kill.
+  // A service that is being restarted cannot be killed.
   const auto is_there = [&run](const std::string& service) {
     return !run.services(service).empty();
   };
@@ -100,10 +100,10 @@ TEST_F(Record, ALogThatIsReadAgainIsRecordedOnce) {
     run.wait_for_error_text(service + " was killed by signal 9");
     wait_until([&] { return is_there(service); });
   }
-  // The map is not made yet when all scans are recorded and the recorder has ended.
+  // The map is unfinished when all scans are recorded and the recorder has ended.
   send("localizer", SIGSTOP);
   wait_until([&] { return !is_there("topogeo"); });
-  // The gateway may have been killed by the run then.
+  // The run itself may have killed the gateway by then.
   for (const std::string& service : mapper_and_gateway) {
     wait_until([&] { return is_there(service); });
     send(service, SIGKILL);
@@ -130,8 +130,8 @@ std::map<std::string, std::pair<int, std::int64_t>> topics_of(const fs::path& fi
   return topics;
 }
 
-// A replay without a rate is faster than the map is made: what it makes of the last scans is waited
-// for. Poses are of now, so that they are counted where time passes between them.
+// A replay without a rate is faster than mapping, so the recorder waits for the last results. It
+// records the present pose only, so many poses are expected at a real-time rate alone.
 TEST_F(Record, ARunsPosesGraphAndGridAreWhole) {
   const fs::path log = scratch_ / "log.clf";
   write_log("room", log);

@@ -1,5 +1,5 @@
-// Two map stores for one map or one robot, two localizers for one robot: of two the younger stops
-// and says why, and one that was killed keeps nobody from taking its place.
+// Two map stores for one map or one robot, two localizers for one robot: the younger stops and
+// gives the reason, and a killed one does not block its successor.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -56,7 +56,7 @@ class Rivals : public testing::Test {
       return now != nullptr && now->state() != msg::kServiceStarting;
     });
   }
-  /// `second` ends with a failure that names `first`, which goes on and reports `second` once.
+  /// Expects that `second` fails and names `first`, which continues and reports `second` once.
   void expect_refused(Program& second, const Program& first, const std::string& name) {
     EXPECT_EQ(second.wait(), 1) << second.err();
     EXPECT_THAT(second.err(), HasSubstr("another " + name + " works for robot 'robot': "));

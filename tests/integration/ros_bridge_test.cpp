@@ -1,4 +1,4 @@
-// A robot and its user that speak ROS 2, by Cyclone DDS, with our services behind ros_bridge.
+// A robot and its user on ROS 2, with Cyclone DDS, with our services behind ros_bridge.
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -32,7 +32,7 @@ using testing::Not;
 
 using Words = std::vector<std::string>;
 
-/// The last line that starts with `start`, without it; empty: there is none.
+/// The last line that starts with `start`, without that part; empty if there is none.
 std::string last_line(const std::string& text, const std::string& start) {
   std::istringstream lines(text);
   std::string found;
@@ -49,7 +49,7 @@ geometry::Pose2 pose_in(const std::string& text) {
   return pose;
 }
 
-/// Free floor in the last map that a user got; 0 before the first.
+/// Free area in a user's last map; 0 before the first.
 double free_m2(const Program& user) {
   std::istringstream map(last_line(user.out(), "map map "));
   int columns = 0;
@@ -73,23 +73,23 @@ class RosBridge : public testing::Test {
     words.insert(words.begin(), ros_domain());
     return *programs_.emplace_back(std::make_unique<Program>(scratch_, "../tests/ros_peer", words));
   }
-  /// ROS and we may share a domain: partitions keep them apart.
+  /// ROS and our services may share a domain, because partitions separate them.
   [[nodiscard]] std::string ros_domain() const { return domain_; }
 
-  /// Until a program has printed it.
+  /// Waits until a program has printed `text`.
   static bool says(const Program& program, const std::string& text) {
     return wait_for("a peer to print '" + text + "'",
                     [&] { return program.out().find(text) != std::string::npos; });
   }
 
-  /// What a test sends is to arrive.
+  /// Reliable topics, so that each message of a test arrives.
   void write_settings(const std::string& more = {}) {
     std::ofstream(scratch_ / "ros.yaml") << "qos:\n  scan: reliable\n  odometry: reliable\n"
                                             "odometry:\n  wait_s: 0.5\n"
                                          << more;
   }
 
-  /// All services by one command.
+  /// Starts all services with one command.
   Program& start_run(Words words) {
     const Words common = {"run",      "--ros",          "--ros-domain", ros_domain(),
                           "--out",    scratch_ / "run", "--workers",    "0",
@@ -118,7 +118,7 @@ TEST_F(RosBridge, MapsARobotOfRosAndShowsItsMapAndPose) {
   const Program& robot = start_peer({"replay", scratch_ / "room.clf"});
   ASSERT_TRUE(says(robot, "driven")) << robot.out() << programs_[4]->err();
 
-  // Where the drive has ended, seen from where it has begun, is where the user sees the robot.
+  // The user's pose of the robot must be the end of the true drive, relative to its start.
   const auto truth = storage::read_trajectory_tum(scratch_ / "truth.tum");
   const geometry::Pose2 end = geometry::between(truth.front().pose, truth.back().pose);
   const auto is_at_end = [&] {
@@ -131,16 +131,16 @@ TEST_F(RosBridge, MapsARobotOfRosAndShowsItsMapAndPose) {
   EXPECT_TRUE(says(user, "diagnostics topogeo: ros_bridge 0"));
   EXPECT_TRUE(wait_for("the graph", [&] { return !last_line(user.out(), "graph ").empty(); }));
 
-  // Who comes late gets the whole map.
+  // A late user gets the whole map.
   const Program& late = start_peer({"watch"});
-  // The room of 6 x 4 m, without the table and what is behind things.
+  // The room of 6 x 4 m, without the table and hidden areas.
   EXPECT_TRUE(wait_for("the whole map", [&] { return std::fabs(free_m2(late) - 22.0) < 3.0; }))
       << last_line(late.out(), "map map ");
   EXPECT_THAT(late.out(), HasSubstr(" whole\n"));
   EXPECT_TRUE(wait_for("the graph", [&] { return !last_line(late.out(), "graph ").empty(); }));
 }
 
-// What changes within a map that is there comes by itself.
+// Changes within an existing map are sent without a request.
 TEST_F(RosBridge, SendsTheChangesOfAMap) {
   start("map_store", {"--out", scratch_ / "out", "--new"});
   start("localizer", {"--wait-workers", "0"});
@@ -182,8 +182,8 @@ TEST_F(RosBridge, DrivesARobotOfRosToAGoal) {
   EXPECT_THAT(user.out(), HasSubstr("plan "));
 }
 
-// In a finished map, as docs/ros2.md has it: rooms of this floor look alike, so a robot that stands
-// has no pose until it is told or drives on.
+// In a finished map, as in docs/ros2.md: rooms of this floor look alike, so a standing robot has no
+// pose until one is set or it drives on.
 class FollowsInAFinishedMap : public RosBridge {
  protected:
   void SetUp() override {
@@ -209,7 +209,7 @@ class FollowsInAFinishedMap : public RosBridge {
     (void)shown.wait();
     return shown.out();
   }
-  /// The robot is where its user sees it.
+  /// Whether the user's pose of the robot is the true one.
   [[nodiscard]] bool agrees() const {
     const geometry::Pose2 apart = geometry::between(pose_in(last_line(robot_->out(), "truth ")),
                                                     pose_in(last_line(user_->out(), "pose map ")));
@@ -221,7 +221,7 @@ class FollowsInAFinishedMap : public RosBridge {
   const Program* user_ = nullptr;
 };
 
-// Rough as a click is; what the laser sees corrects it with the next stop.
+// The pose is as rough as a click; the laser corrects it at the next stop.
 TEST_F(FollowsInAFinishedMap, ARobotThatStandsTakesThePoseOfAUser) {
   Program& told = start_peer({"initialpose", "0.3", "-0.2", "0.15"});
   EXPECT_EQ(told.wait(), 0) << told.err();
@@ -247,7 +247,7 @@ TEST_F(FollowsInAFinishedMap, ARobotThatDrivesOnIsFound) {
       << last_line(user_->out(), "pose map ");
 }
 
-// `topogeo run --ros` alone: the robot is one of ROS, the laser where its transforms have it.
+// `topogeo run --ros` alone: a ROS robot, with the laser mounted as in its transforms.
 TEST_F(RosBridge, ARunMapsARobotOfRos) {
   write_log("room", scratch_ / "room.clf");
   write_settings();
@@ -261,7 +261,7 @@ TEST_F(RosBridge, ARunMapsARobotOfRos) {
   EXPECT_TRUE(std::filesystem::exists(scratch_ / "run/map.pb"));
 }
 
-// The other way round: nodes of ROS get the sensors and the time of a log.
+// The other direction: ROS nodes get the sensors and the time of a log.
 TEST_F(RosBridge, ARunGivesTheSensorsOfALogToRos) {
   write_log("room", scratch_ / "room.clf");
   const Program& node = start_peer({"listen"});
@@ -273,7 +273,7 @@ TEST_F(RosBridge, ARunGivesTheSensorsOfALogToRos) {
     EXPECT_TRUE(says(node, line)) << line << run.err();
   }
   EXPECT_TRUE(says(user, "pose map ")) << run.err();
-  // The time is that of the scans and the odometry.
+  // The clock shows the time of scans and odometry.
   const auto scan_has_its_time = [&] {
     const std::string scan = last_line(node.out(), "scan laser ");
     return node.out().find("clock " + scan.substr(scan.find(' ') + 1) + "\n") != std::string::npos;
@@ -286,7 +286,7 @@ TEST_F(RosBridge, ARunGivesTheSensorsOfALogToRos) {
 class SteeredByRos : public RosBridge, public testing::WithParamInterface<bool> {};
 INSTANTIATE_TEST_SUITE_P(Twists, SteeredByRos, testing::Bool());
 
-// Velocities of nodes, of either type, are those of the base.
+// Velocities of ROS nodes, of either type, reach the base.
 TEST_P(SteeredByRos, TheBaseGetsTheirVelocity) {
   const bool stamped = GetParam();
   write_settings("directions:\n  sensors: out\n  velocity: in\n" +
@@ -311,7 +311,7 @@ TEST_P(SteeredByRos, TheBaseGetsTheirVelocity) {
   EXPECT_GT(came, 0U);
 }
 
-// Our side is encrypted, that of ROS is not, and its scans come through.
+// Our side is encrypted, ROS is not, and its scans arrive.
 TEST_F(RosBridge, WithSecurityNodesOfRosStayPlainPeers) {
   Program keys(scratch_, "../../deploy/security/make_keys",
                {scratch_ / "keys", "issue", "--robot", "robot", "robot", "ros_bridge", "topogeo"});

@@ -20,7 +20,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using Bytes = std::vector<std::uint8_t>;
 
-/// Keeps what it receives and sends what the test puts there.
+/// Keeps received bytes and sends those that the test queues.
 class NotingDriver final : public devices::SerialDriver {
  public:
   void opened(std::int64_t now_ns) override {
@@ -78,7 +78,7 @@ class SerialLineTest : public testing::Test {
     return test::wait_in_loop(loop_, what, condition);
   }
 
-  /// What arrives at the far end, until it is as long as expected.
+  /// Receives bytes at the far end until there are as many as expected.
   Bytes arriving(std::size_t size) {
     Bytes bytes;
     EXPECT_TRUE(wait_for("bytes at the far end", [&] {
@@ -104,7 +104,7 @@ TEST_F(SerialLineTest, BytesGoBothWaysAndSettingsTakeEffect) {
   EXPECT_EQ(driver_.opened_, 1);
   EXPECT_TRUE(line_->is_open());
   EXPECT_EQ(terminal_.speed(), speed_t{B38400});
-  terminal_.send({0x00, 0x0D, 0x0A, 0x11, 0x13, 0x03, 0xFF});  // none of them means anything here
+  terminal_.send({0x00, 0x0D, 0x0A, 0x11, 0x13, 0x03, 0xFF});  // none is special here
   EXPECT_TRUE(wait_for("bytes of the far end", [&] { return driver_.received_.size() >= 7; }));
   EXPECT_THAT(driver_.received_, ElementsAre(0x00, 0x0D, 0x0A, 0x11, 0x13, 0x03, 0xFF));
   EXPECT_GE(calls_, 2);
@@ -118,31 +118,31 @@ TEST_F(SerialLineTest, OrdersAreCarriedOutInTheirOrder) {
   for (std::uint8_t i = 0; i < 200; ++i) {
     devices::LineOrder order;
     if (i % 3 == 0) order.settings = devices::LineSettings{i % 2 == 0 ? 500'000U : 9600U};
-    order.bytes.assign(i % 5, i);  // some orders have settings alone, some nothing at all
+    order.bytes.assign(i % 5, i);  // some orders have only settings, some nothing
     expected.insert(expected.end(), order.bytes.begin(), order.bytes.end());
     driver_.orders_.push_back(order);
   }
   line_->carry_out();
   EXPECT_EQ(arriving(expected.size()), expected);
   EXPECT_TRUE(line_->wait_written(test::hang_limit()));
-  EXPECT_EQ(terminal_.speed(), speed_t{B500000});  // of number 198
+  EXPECT_EQ(terminal_.speed(), speed_t{B500000});  // of order 198
 }
 
-// Else a device would be called silent because the gateway did not get to run.
+// Otherwise a device would be reported silent only because the gateway got no CPU time.
 TEST_F(SerialLineTest, AfterStandingStillReadsBeforeTimeIsUp) {
   terminal_.plug();
   start();
   ASSERT_EQ(arriving(2).size(), 2U);
   driver_.due_ns_ = steady_now_ns() + 10'000'000;
   line_->carry_out();
-  std::this_thread::sleep_for(milliseconds(100));  // the loop stands still, as on a busy machine
+  std::this_thread::sleep_for(milliseconds(100));  // blocks the loop, as on a busy machine
   const std::int64_t back_ns = steady_now_ns();
   ASSERT_TRUE(wait_for("the tick", [&] { return driver_.ticks_ > 0; }));
   EXPECT_GE(driver_.last_ns_ - back_ns, 10'000'000);
 }
 
 TEST_F(SerialLineTest, UnpluggedAndPluggedInAgainFiveTimes) {
-  start();  // before the port is there
+  start();  // before the port exists
   ASSERT_TRUE(wait_for("two attempts to open the port",
                        [&] { return line_->statistics().not_opened >= 2; }));
   EXPECT_THAT(line_->why_closed(),
@@ -162,7 +162,7 @@ TEST_F(SerialLineTest, UnpluggedAndPluggedInAgainFiveTimes) {
   EXPECT_EQ(line_->statistics().opened, 5U);
   EXPECT_EQ(line_->statistics().lost, 5U);
   driver_.orders_ = {{{}, {'n', 'o'}}};
-  line_->carry_out();  // to a port that is gone: dropped
+  line_->carry_out();  // to a missing port: dropped
   EXPECT_TRUE(line_->wait_written(test::hang_limit()));
 }
 
@@ -171,7 +171,7 @@ TEST_F(SerialLineTest, DriverIsCalledWhenItIsDue) {
   driver_.due_ns_ = steady_now_ns() + 3'000'000;
   line_->carry_out();
   EXPECT_TRUE(wait_for("the first tick", [&] { return driver_.ticks_ == 1; }));
-  driver_.due_ns_ = steady_now_ns() + 3'600'000'000'000;  // an hour, then sooner
+  driver_.due_ns_ = steady_now_ns() + 3'600'000'000'000;  // first in an hour, then sooner
   line_->carry_out();
   driver_.due_ns_ = steady_now_ns();
   line_->carry_out();

@@ -1,5 +1,5 @@
-// Two robots map one floor at a time into one map store, with one localizer for both: their maps
-// become one when they have seen the same place, or when somebody agrees; whatever is killed.
+// Two robots map one floor at the same time into one map store, with one localizer for both. Their
+// maps become one after they saw the same place or the operator agreed, whatever is killed.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -42,7 +42,7 @@ namespace {
 using geometry::Pose2;
 using testing::HasSubstr;
 
-/// The stops of a robot that drives through the floor, and its true poses.
+/// The stops of a robot's drive through the floor, and its true poses.
 struct FloorDrive {
   FloorDrive(const std::string& robot, const std::vector<Eigen::Vector2d>& tour_m) {
     world::World world = world::load_world(std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml");
@@ -98,7 +98,7 @@ class SharedMapServices : public testing::Test {
     std::ofstream(config) << "localizer:\n  merge: " << merge << '\n';
     return start("localizer", {"--config", config.string()});
   }
-  /// What `topogeo store ...` prints; it ends with that code.
+  /// Output of `topogeo store ...`, which must exit with `code`.
   std::string store_command(std::vector<std::string> words, int code = 0) const {
     words.insert(words.begin(), "store");
     Program program(scratch_, "topogeo", words);
@@ -120,7 +120,7 @@ class SharedMapServices : public testing::Test {
     return newest_[robot].session_stops() >= stops;
   }
 
-  /// The stops of both in turn, up to so many of each.
+  /// Sends the stops of both in turn, up to so many of each.
   void send(std::size_t stops) {
     for (; sent_ < stops; ++sent_) {
       for (const FloorDrive* drive : {&a_, &b_}) {
@@ -140,7 +140,7 @@ class SharedMapServices : public testing::Test {
       EXPECT_TRUE(ends_.write(end));
     }
   }
-  /// What the map store answers to a request, which is sent once.
+  /// The map store's answer to a request that is sent once.
   msg::ArchiveReply ask(msg::ArchiveAction action, const std::string& name) {
     msg::ArchiveRequest request;
     messaging::set_header(request, "a", 0, requests_sent_);
@@ -180,7 +180,7 @@ class SharedMapServices : public testing::Test {
   messaging::Reader<msg::StoredMap> stored_{participant_};
   messaging::EventLoop loop_;
   std::map<std::string, msg::StoredMap> newest_;  // by robot
-  std::uint64_t tasks_done_ = 0;                  // most of a worker
+  std::uint64_t tasks_done_ = 0;                  // of the busiest worker
   std::size_t withdrawn_ = 0;                     // maps of robots
   std::uint64_t requests_sent_ = 0;
   msg::ArchiveReply reply_;  // the newest
@@ -221,7 +221,7 @@ TEST_F(SharedMapServices, MakeOneMapWhateverIsKilledAndItIsSplitAgain) {
   }
   const std::string database = (scratch_ / "out" / "map.sqlite").string();
   EXPECT_THAT(store_command({"check", database}), HasSubstr("no fault found"));
-  // Was it wrong?
+  // The merge can be undone.
   const std::string split = (scratch_ / "split.pb").string();
   store_command({"remove-session", database, fmt::format("{:016x}", b_.stops.front().stop.session),
                  "--out", split});
@@ -238,7 +238,7 @@ TEST_F(SharedMapServices, MakeTheSameBytesWithAnyNumberOfWorkers) {
   }));
   store->send_signal(SIGTERM);
   EXPECT_EQ(store->wait(), 0) << store->err();
-  // All is there before the localizer is, so that no moment of arrival has an effect.
+  // All data is stored before the localizer starts, so that the order of arrival has no effect.
   const std::filesystem::path out = scratch_ / "out";
   std::filesystem::copy(out, scratch_ / "kept");
   std::vector<std::string> maps;
@@ -284,7 +284,7 @@ TEST_F(SharedMapServices, AskBeforeTheyMakeOneMap) {
     Program status(scratch_, "topogeo", {"status", "--domain", own_domain(), "--json"});
     return status.wait() == 0 && status.out().find("topogeo store accept 1") != std::string::npos;
   }));
-  // What nobody has answered is proposed again by a localizer that starts again.
+  // A restarted localizer proposes an open merge again.
   localizer->send_signal(SIGKILL);
   EXPECT_EQ(localizer->wait(), 128 + SIGKILL);
   localizer = start_localizer("ask");
@@ -295,7 +295,7 @@ TEST_F(SharedMapServices, AskBeforeTheyMakeOneMap) {
   EXPECT_THAT(merge_command({"refuse", "1"}, 1), HasSubstr("not open any more"));
 }
 
-// Refused 5 m after `b` came to where `a` began, when it has not been 10 m further by the restart.
+// Refused 5 m after `b` reached the start of `a`, and restarted less than 10 m further on.
 TEST_F(SharedMapServices, ARefusalIsHeededByALocalizerThatStartsAgain) {
   const auto store = start_store();
   auto localizer = start_localizer("ask");
@@ -303,7 +303,7 @@ TEST_F(SharedMapServices, ARefusalIsHeededByALocalizerThatStartsAgain) {
   std::size_t stops = 0;
   while (stops < b_.stops.size() && proposals().find("\"state\": \"open\"") == std::string::npos) {
     send(stops += 2);
-    // The localizer, too: what is stored may wait for it.
+    // Waits for the localizer, too, because stored stops may still be pending there.
     ASSERT_TRUE(eventually("the stops to be stored", [&] {
       return stored("b", std::min(stops, b_.stops.size())) &&
              stops_in_map() >= std::min(stops, a_.stops.size());
@@ -323,7 +323,7 @@ TEST_F(SharedMapServices, ARefusalIsHeededByALocalizerThatStartsAgain) {
   ASSERT_TRUE(eventually("the stops to be stored",
                          [&] { return stored("b", stops + 2) && stops_in_map() >= stops + 2; }));
   EXPECT_EQ(proposals(), "[]\n") << refused;
-  send_all();  // it comes to places further away
+  send_all();  // b reaches places further away
   EXPECT_TRUE(eventually("the merge to be proposed again", [&] {
     return proposals().find("\"state\": \"open\"") != std::string::npos;
   }));
@@ -356,7 +356,7 @@ TEST_F(SharedMapServices, BeginAnewWithASnapshotThatIsRestored) {
   const std::string database = (scratch_ / "out" / "map.sqlite").string();
   EXPECT_THAT(store_command({"snapshots", database}), HasSubstr("before-one"));
 
-  // Both robots go on in it.
+  // Both robots continue in it.
   send_all();
   store->wait_for_error_text("local maps, ");  // the final line
   const storage::MapDocument map = storage::read_map_file(scratch_ / "out" / "map.pb");

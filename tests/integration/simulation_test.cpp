@@ -26,7 +26,7 @@ class SimulationTest : public testing::Test {
             "0",   "--domain", own_domain(), "--speed", "0.6"};
   }
 
-  /// Seen from its start, the estimated pose is the true one.
+  /// Displacement from start to end, in the frame of the start.
   static Eigen::Vector2d way(const std::vector<topomap::StampedPose>& poses) {
     return geometry::between(poses.front().pose, poses.back().pose).position_m();
   }
@@ -57,7 +57,7 @@ class SimulationLivesTest : public SimulationTest,
 
 TEST_P(SimulationLivesTest, TheMapEndsCompleteAndRight) {
   Program run(scratch_, "topogeo", words(std::string(TOPOGEO_TEST_DATA) + "/short.world.yaml"));
-  run.wait_for_progress(25);  // the rest takes longer than a start does
+  run.wait_for_progress(25);  // the rest takes longer than a restart
   const std::vector<pid_t> service = run.services(GetParam());
   ASSERT_EQ(service.size(), 1U);
   ::kill(service[0], SIGKILL);

@@ -1,4 +1,4 @@
-// topogeo store: what maps hold, and maps in the forms of other programs.
+// topogeo store: contents of maps, and maps in the formats of other programs.
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -85,7 +85,7 @@ TEST_F(StoreTest, WhatWasExportedIsImported) {
     return read_file(file) == read_file(again);
   };
   EXPECT_TRUE(round_trip("graphml"));
-  // A grid: the image of the second export is that of the first.
+  // The export of a grid: the image of the second export equals the first.
   EXPECT_EQ(store({"export", map_, "--format", "pgm", "--out", path("g")}).code, 0);
   EXPECT_EQ(store({"import", path("g.yaml"), "--format", "pgm", "--out", path("g.pb")}).code, 0);
   EXPECT_EQ(store({"export", path("g.pb"), "--format", "pgm", "--out", path("h")}).code, 0);
@@ -125,7 +125,7 @@ TEST_F(StoreTest, ARoomThatLooksAlikeFromBothSidesIsNotAligned) {
   EXPECT_EQ(align.code, 1);
   EXPECT_THAT(align.err, HasSubstr("not aligned: ambiguous"));
   EXPECT_EQ(nlohmann::json::parse(align.out).at("found"), false);
-  // A second map of the same session is the first one at another time.
+  // A second map of the same session is an older or newer version of it.
   const StoreOutcome merge = store({"merge", map_, map_, "--out", path("twice.pb")});
   EXPECT_EQ(merge.code, 3);
   EXPECT_FALSE(std::filesystem::exists(path("twice.pb")));

@@ -1,4 +1,4 @@
-// A drive through a world, as a map store sees it: local mapper and localizer in one.
+// A drive through a world for tests of the map store: plays local mapper and localizer.
 #pragma once
 
 #include <chrono>
@@ -51,8 +51,8 @@ class StoredDrive {
                                   });
   }
 
-  /// Sends the stops up to a number, and a trajectory that has them. Its version is that number.
-  /// Each stop is turned by `bend_rad` against the one before, as a loop that closes may do.
+  /// Sends the stops up to a number, and a trajectory of them with that number as version. Each
+  /// stop is turned by `bend_rad` against the one before, like after a loop closure.
   void send(std::size_t stops, double bend_rad = 0.0) {
     for (; sent_ < stops; ++sent_) {
       EXPECT_TRUE(maps_.write(service::to_msg(as_sent(sent_))));
@@ -65,7 +65,7 @@ class StoredDrive {
       EXPECT_TRUE(segments_.write(segment));
     }
   }
-  /// All edges, once.
+  /// Sends all edges, once.
   void send_edges() {
     if (std::exchange(edges_sent_, true)) return;
     for (std::uint32_t i = 0; i < service::edge_segment_count(map_.edges.size()); ++i) {
@@ -118,7 +118,7 @@ class StoredDrive {
   }
 
   [[nodiscard]] topomap::LocalMap as_sent(std::size_t number) const {
-    return map_.local_maps[number];  // one session: they are numbered as they were sent
+    return map_.local_maps[number];  // one session: numbered in the order of sending
   }
   [[nodiscard]] const storage::MapDocument& map() const { return map_; }
   [[nodiscard]] std::uint32_t stops() const {

@@ -1,4 +1,4 @@
-// A running localizer that is ordered to leave its map as it is, and to go on with it.
+// A running localizer that is ordered to stop mapping, and to map again.
 #include <csignal>
 
 #include "topogeo/localization/session/mapping_session.hpp"
@@ -11,8 +11,8 @@
 namespace topogeo::test {
 namespace {
 
-/// Gives a localizer its local maps one by one, each after the one before was worked on, so that a
-/// command comes after a stop of the test's choice.
+/// Gives a localizer its local maps one by one, each after the previous one was processed, so that
+/// the test controls after which stop a command comes.
 class SwitchTest : public ::testing::Test {
  protected:
   SwitchTest() {
@@ -37,7 +37,7 @@ class SwitchTest : public ::testing::Test {
   bool wait_until(const std::string& what, const std::function<bool()>& condition) {
     return wait_in_loop(loop_, what, condition);
   }
-  /// The stops [from, to), each worked on before the next.
+  /// Sends the stops [from, to), each after the previous one was processed.
   void drive(std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
       ASSERT_TRUE(map_writer_.write(service::to_msg(*maps_.at(i))));
@@ -51,7 +51,7 @@ class SwitchTest : public ::testing::Test {
     ++requests_;
     return send_again(kind);
   }
-  /// The request of the last number.
+  /// Repeats the request with the last number.
   std::string send_again(msg::LocalizationCommandKind kind) {
     service::LocalizationCommand command;
     command.kind = kind;
@@ -77,7 +77,7 @@ class SwitchTest : public ::testing::Test {
   }
   [[nodiscard]] std::size_t stops_in_map() const { return assembly_.newest().stops.size(); }
 
-  // A killed program leaves a part of /dev/shm behind that others may still wait at.
+  // A killed program leaves segments in /dev/shm that others may still wait at.
   const bool udp_only_ = (use_udp_only(), true);
   std::string partition_ = random_partition();
   Scratch scratch_;
@@ -129,7 +129,7 @@ TEST_F(SwitchTest, TheMapStopsGrowingAndGoesOn) {
   end_stream(end);
   EXPECT_EQ(end_->count(), leave + (end - resume));
 
-  // The same turns after the same stops in one process.
+  // The same commands after the same stops in one process.
   localization::InProcessPool pool;
   localization::MappingSession session({}, pool);
   for (std::size_t i = 0; i < end; ++i) {

@@ -1,6 +1,5 @@
 // A serial port whose far end belongs to the test: a pseudo-terminal behind a link that keeps its
-// name when the terminal is replaced, as a device in /dev keeps its name when it is plugged in
-// again.
+// name when the terminal is replaced, like a device in /dev that is plugged in again.
 #pragma once
 
 #include <chrono>
@@ -48,7 +47,7 @@ class TestPort {
     }
   }
 
-  /// What the other side has written; empty when there is nothing.
+  /// Bytes written by the other side; empty without any.
   [[nodiscard]] std::vector<std::uint8_t> receive() const {
     std::vector<std::uint8_t> bytes(4096);
     const ssize_t got = ::read(fd_, bytes.data(), bytes.size());
@@ -56,7 +55,7 @@ class TestPort {
     return bytes;
   }
 
-  /// As the other side has set it, as a constant of termios.h.
+  /// Speed set by the other side, as a constant of termios.h.
   [[nodiscard]] speed_t speed() const {
     termios settings{};
     if (::tcgetattr(fd_, &settings) != 0) throw std::runtime_error("not a terminal");

@@ -109,7 +109,7 @@ TEST_F(TwoRobotsTest, GoOnInOneMapWhenALocalMapperIsKilled) {
   const std::uint32_t before = wait_for_stops("b", 6);
   ASSERT_GE(before, 6U) << mapper_b->err();
   const std::uint64_t session = newest_["b"].session();
-  // The robot waits: how far it would drive unseen depends on how busy the machine is.
+  // The robot waits, because its unseen path would depend on the machine's load.
   gateway_b->send_signal(SIGSTOP);
   mapper_b->send_signal(SIGKILL);
   EXPECT_EQ(mapper_b->wait(), 128 + SIGKILL);

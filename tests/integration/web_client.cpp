@@ -36,7 +36,7 @@ int connect_to(std::uint32_t port) {
   return fd;
 }
 
-/// Closed at the end.
+/// Closes its file descriptor.
 class Socket {
  public:
   explicit Socket(std::uint32_t port) : fd_(connect_to(port)) {}
@@ -53,12 +53,12 @@ void send_all(int fd, const std::string& bytes) {
   std::size_t sent = 0;
   while (sent < bytes.size()) {
     const ssize_t now = ::send(fd, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
-    if (now <= 0) return;  // the other side has closed: what it said is to be read
+    if (now <= 0) return;  // the other side has closed: its answer can still be read
     sent += static_cast<std::size_t>(now);
   }
 }
 
-/// False at the end of the connection, and when nothing comes in time.
+/// False at the end of the connection, and on a timeout.
 bool receive_some(int fd, std::string& buffer, Clock::time_point end, bool* ended = nullptr) {
   const auto left = std::chrono::duration_cast<milliseconds>(end - Clock::now());
   pollfd wanted{fd, POLLIN, 0};
@@ -207,7 +207,7 @@ void WebSocketClient::send_text(const std::string& text) {
   send_frame(kText, text);
 }
 
-// Masked with zeros, which is a mask like any other.
+// The mask is zero, which is valid.
 void WebSocketClient::send_frame(unsigned opcode, const std::string& payload) {
   constexpr std::size_t kShort = 126;
   std::string frame(1, static_cast<char>(0x80U | opcode));

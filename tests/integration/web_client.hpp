@@ -1,4 +1,4 @@
-// A client of the web service: requests, a WebSocket, and what a page holds of the channels.
+// A client of the web service: requests, a WebSocket, and a page's model of the channels.
 #pragma once
 
 #include <chrono>
@@ -21,21 +21,20 @@ struct HttpReply {
 
 using Headers = std::vector<std::pair<std::string, std::string>>;
 
-/// One request on a connection of its own to 127.0.0.1. Host is right unless `headers` has another
-/// one.
+/// Sends one request on a connection of its own to 127.0.0.1. The Host header is right unless
+/// `headers` has another one.
 HttpReply http_request(std::uint32_t port, const std::string& method, const std::string& target,
                        const Headers& headers = {}, const std::string& body = {});
 HttpReply http_get(std::uint32_t port, const std::string& target);
-/// With the token; empty: without one.
+/// Posts with the token; empty: without one.
 HttpReply http_post(std::uint32_t port, const std::string& target, const std::string& token,
                     const std::string& body = "{}");
 
-/// Bytes as they are, and what comes back until the other side closes or nothing has come for
-/// `quiet`.
+/// Sends raw bytes, and returns the answer until the other side closes or is silent for `quiet`.
 std::string exchange_bytes(std::uint32_t port, const std::string& bytes,
                            std::chrono::milliseconds quiet);
 
-/// A connection on which nothing is sent but what the test sends.
+/// A connection on which only the test sends.
 class RawConnection {
  public:
   explicit RawConnection(std::uint32_t port);
@@ -44,23 +43,23 @@ class RawConnection {
   ~RawConnection();
 
   void send(const std::string& bytes) const;
-  /// The bytes up to the end of the headers of an answer, or of the connection.
+  /// The bytes up to the end of an answer's headers, or of the connection.
   [[nodiscard]] std::string receive_head() const;
-  /// The service has closed it, now or within hang_limit().
+  /// Whether the service closes it within hang_limit().
   [[nodiscard]] bool ends() const;
 
  private:
   int socket_;
 };
 
-/// The time of a page, for orders to drive.
+/// A page's clock, for driving commands.
 inline double page_ms() {
   return std::chrono::duration<double, std::milli>(
              std::chrono::steady_clock::now().time_since_epoch())
       .count();
 }
 
-/// The header by which a page shows the token when it opens a WebSocket.
+/// The header with a page's token for opening a WebSocket.
 Headers token_header(const std::string& token);
 
 class WebSocketClient {
@@ -69,17 +68,17 @@ class WebSocketClient {
   explicit WebSocketClient(std::uint32_t port, const Headers& headers = {});
   WebSocketClient(const WebSocketClient&) = delete;
   WebSocketClient& operator=(const WebSocketClient&) = delete;
-  /// The connection drops, without a closing message.
+  /// Drops the connection, without a closing message.
   ~WebSocketClient();
 
   void send_text(const std::string& text);
   void send(const nlohmann::json& json) { send_text(json.dump()); }
-  /// The next message, text or binary; nothing when none comes in time or the connection has ended.
+  /// The next message, text or binary; empty on a timeout or when the connection has ended.
   std::optional<std::string> receive(std::chrono::milliseconds timeout);
   [[nodiscard]] bool ended() const { return ended_; }
-  /// The answer to it: status line and headers.
+  /// The server's handshake: status line and headers.
   [[nodiscard]] const std::string& handshake() const { return handshake_; }
-  /// Reads nothing with small buffers from here on: what a bad link looks like to the other side.
+  /// For tests that stop reading and shrink buffers, which looks like a bad link to the other side.
   [[nodiscard]] int socket() const { return socket_; }
 
  private:
@@ -89,14 +88,14 @@ class WebSocketClient {
   int socket_ = -1;
   std::string handshake_;
   std::string buffer_;
-  std::string message_;  // of which more is to come
+  std::string message_;  // unfinished
   bool ended_ = false;
 };
 
-/// What a page holds. Deltas on another version than the one held throw std::runtime_error.
+/// Data that a page holds. Deltas on a version other than the one held throw std::runtime_error.
 class PageModel {
  public:
-  /// Takes messages until `condition` holds; false when it does not in time.
+  /// Takes messages until `condition` holds; false on a timeout.
   template <class Condition>
   bool wait_for(WebSocketClient& socket, const Condition& condition,
                 std::chrono::milliseconds timeout) {

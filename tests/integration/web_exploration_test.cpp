@@ -1,4 +1,4 @@
-// An exploration ordered from the page, with a robot that the test plays.
+// An exploration ordered from the page, with a robot played by the test.
 #include <cstdint>
 #include <thread>
 
@@ -29,7 +29,7 @@ messaging::ParticipantOptions options_of_test() {
   return options;
 }
 
-/// It knows where it is, takes each goal, and gets to none. Lives in a thread of its own.
+/// It is localized, accepts each goal, and reaches none. Lives in a thread of its own.
 class RobotThatGetsNowhere {
  public:
   RobotThatGetsNowhere() : participant_(options_of_test()) {
@@ -74,13 +74,13 @@ class RobotThatGetsNowhere {
   std::thread thread_;
 };
 
-/// Most of the room has not been seen.
+/// Most of the room is unseen.
 class WebOnBeginning : public WebOnMap {
  protected:
   WebOnBeginning() : WebOnMap(30) {}
 };
 
-// The last target is given up without having been reached: the robot must not go on trying.
+// The last target is given up without being reached: the robot must not keep trying.
 TEST_F(WebOnBeginning, AnExplorationThatEndsTakesItsGoalBack) {
   const RobotThatGetsNowhere robot;
   PageModel page;

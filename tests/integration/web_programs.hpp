@@ -1,4 +1,4 @@
-// The web service and what it needs as programs.
+// The web service and the programs that it needs.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ namespace topogeo::test {
 inline const std::chrono::milliseconds kPagePatience = hang_limit();
 inline const std::string kToken = "token-of-this-test";
 
-/// Of the first link that a program prints.
+/// Port in the first link that a program prints.
 inline std::uint32_t port_in(const std::string& out) {
   const std::size_t begin = out.find("127.0.0.1:");
   if (begin == std::string::npos) return 0;
@@ -54,7 +54,7 @@ inline void keep_lines(const std::filesystem::path& file, std::size_t lines) {
 /// A map store that shows the map of a drive through a room, and a web service.
 class WebOnMap : public testing::Test {
  protected:
-  /// `lines`: of the log of the drive, from its beginning.
+  /// `lines`: number of lines of the drive's log to use.
   explicit WebOnMap(std::size_t lines = std::numeric_limits<std::size_t>::max()) {
     use_udp_only();
     write_log("room", scratch_ / "room.clf");
@@ -78,7 +78,7 @@ class WebOnMap : public testing::Test {
         std::vector<std::string>{"--domain", domain_, "--port", "0", "--token", kToken});
     port_ = wait_for_port(*web_);
   }
-  /// All of the map.
+  /// Whether the page has the whole map.
   static bool is_whole(PageModel& page) {
     return page.has("map") && page.has("tiles") && page.has("rooms") &&
            page.tables["graph"].contains("map");
@@ -108,7 +108,7 @@ class WebOnRobot : public testing::Test {
   bool wait_for(const Condition& condition, std::chrono::milliseconds patience = kPagePatience) {
     return page_.wait_for(*socket_, condition, patience);
   }
-  /// In the world.
+  /// True position of the robot, world frame.
   std::pair<double, double> truth() {
     return {page_.values["truth"]["x_m"], page_.values["truth"]["y_m"]};
   }

@@ -1,4 +1,4 @@
-// The web service as pages use it: on a stored map, and on a simulated robot.
+// The web service in the hands of pages: on a stored map, and on a simulated robot.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -50,7 +50,7 @@ TEST(WebOnLog, ThePageStaysWithTheMapUntilCtrlC) {
   EXPECT_EQ(run.wait(), 0) << run.err();
   EXPECT_THAT(run.out(), HasSubstr("results in " + out));
   EXPECT_TRUE(std::filesystem::exists(scratch / "out/report.json"));
-  // The token is in no log, and where it is its owner alone can read it.
+  // No log contains the token, and only the owner can read the file that does.
   for (const std::string& text : {run.out(), run.err(), read_file(scratch / "out/logs/web.log")}) {
     EXPECT_THAT(text, Not(HasSubstr(kToken)));
   }
@@ -75,7 +75,7 @@ TEST_F(WebOnMap, APageHasTheMapThroughRestartsOfBothSides) {
   EXPECT_GT(summary["nodes"], 3);
   const std::string life = page.others.at(0)["life"];
 
-  // The map store dies: what it has shown stays, and its row says so with what it reported last.
+  // The map store dies: its map stays, and its row shows that and its last report.
   const auto store_row = [&]() -> json {
     for (const auto& [id, row] : page.tables["services"]) {
       if (row["service"] == "map_store") return row;
@@ -92,7 +92,7 @@ TEST_F(WebOnMap, APageHasTheMapThroughRestartsOfBothSides) {
   EXPECT_EQ(store_row().size(), row.size()) << store_row();
   EXPECT_EQ(store_row()["version"], row["version"]);
 
-  // It comes again: the same map.
+  // It restarts with the same map.
   start_store();
   ASSERT_TRUE(page.wait_for(
       *socket,
@@ -105,7 +105,7 @@ TEST_F(WebOnMap, APageHasTheMapThroughRestartsOfBothSides) {
   EXPECT_EQ(late.tables["graph"], page.tables["graph"]);
   EXPECT_EQ(late.tables["rooms"], page.tables["rooms"]);
 
-  // The web service dies: a page that comes back with what it holds of another life gets all anew.
+  // The web service dies: a page that holds data of its previous life gets everything anew.
   web_->send_signal(SIGKILL);
   web_->wait();
   start_web();
@@ -210,7 +210,7 @@ TEST(WebCommand, ViewsAStoredMap) {
   EXPECT_EQ(view.wait(), 0) << view.err();
 }
 
-/// What `ps` shows of a process: its arguments, with a zero byte behind each.
+/// Arguments of a process as in `ps`, each with a terminating zero byte.
 std::string command_line_of(pid_t process) {
   return read_file("/proc/" + std::to_string(process) + "/cmdline");
 }
@@ -252,7 +252,7 @@ TEST(WebCommand, TakesTheTokenOfAFile) {
   }
 }
 
-// A browser that a command starts shows its arguments, too.
+// The browser's arguments are visible, too.
 TEST(WebCommand, OpensABrowserWithoutTheTokenInItsArguments) {
   use_udp_only();
   const Scratch scratch;
@@ -321,7 +321,7 @@ TEST_F(WebOnRobot, GoesToARoomByNameAndStopsWhenTheHandLetsGo) {
       start.second + std::sin(start_rad) * x_m + std::cos(start_rad) * y_m};
   EXPECT_LT(distance(truth(), goal), 0.3);
 
-  // By hand, turning, where nothing can be in the way; then the connection drops.
+  // Driven by hand, the robot turns, which nothing can obstruct; then the connection drops.
   const double before_rad = page_.values["truth"]["theta_rad"];
   {
     WebSocketClient hand(port_);
@@ -330,7 +330,7 @@ TEST_F(WebOnRobot, GoesToARoomByNameAndStopsWhenTheHandLetsGo) {
       return std::fabs(std::remainder(page_.values["truth"]["theta_rad"].get<double>() - before_rad,
                                       2.0 * std::numbers::pi)) > 0.3;
     };
-    // The hand is told of while its orders come in time, which a busy machine may miss once.
+    // The status shows it only while orders come in time, which a busy machine may miss once.
     bool held = false;
     EXPECT_TRUE(test::wait_for(
         "the robot to turn by hand", [&] { return turned() && held; },
@@ -339,7 +339,7 @@ TEST_F(WebOnRobot, GoesToARoomByNameAndStopsWhenTheHandLetsGo) {
                      {"linear_mps", 0.0},
                      {"angular_radps", 0.5},
                      {"page_ms", page_ms()}});
-          wait_for([] { return false; }, milliseconds(50));  // between two orders of a hand
+          wait_for([] { return false; }, milliseconds(50));  // between two commands by hand
           const json& drive = page_.values["drive"];
           held = held || (!drive.is_null() && drive["held"] == true);
         }));

@@ -1,5 +1,5 @@
 // A client of the search pool in the test's own process, for tests of real workers: it addresses
-// one worker after the other and records what comes.
+// one worker after the other and records their messages.
 #pragma once
 
 #include <cstdint>
@@ -78,10 +78,10 @@ class WorkerClient {
   bool wait_until(const std::string& what, const std::function<bool()>& condition) {
     return wait_for(what, condition, [&] { run_loop(); });
   }
-  /// Lets messages come in; ends with the first.
+  /// Receives messages for a short time.
   void run_loop() { loop_.run_for(std::chrono::milliseconds(2)); }
 
-  /// Ids of the workers of a name.
+  /// Ids of the workers with this name.
   std::vector<std::string> named(const std::string& name) const {
     std::vector<std::string> ids;
     for (const auto& [id, status] : workers) {
@@ -89,7 +89,7 @@ class WorkerClient {
     }
     return ids;
   }
-  /// The id of the only worker of a name, once it can be reached; empty: it did not come.
+  /// The id of the only worker with this name, once it can be reached; empty on a timeout.
   std::string find(const std::string& name) {
     const bool there =
         wait_until("worker " + name, [&] { return named(name).size() == 1; }) && reach(1);
@@ -106,7 +106,7 @@ class WorkerClient {
   void send(const std::string& worker_id, const localization::MatchTask& task) {
     send_together(worker_id, {task});
   }
-  /// In one message.
+  /// Sends the tasks in one message.
   void send_together(const std::string& worker_id,
                      const std::vector<localization::MatchTask>& tasks) {
     address.worker_id = worker_id;
@@ -122,7 +122,7 @@ class WorkerClient {
     copy.local_map(std::move(map));
     EXPECT_TRUE(copies_.write(copy));
   }
-  /// Sends each of these maps that the worker asks for.
+  /// Sends each of these maps that the worker requests.
   void answer_requests(const std::string& worker_id, std::vector<MapPointer> maps) {
     on_request = [this, worker_id, maps = std::move(maps)](const msg::MapRequest& request) {
       for (const MapPointer& map : maps) {
@@ -135,7 +135,7 @@ class WorkerClient {
   service::MatchAddress address;  ///< of the next task
   std::map<std::uint64_t, msg::MatchResult> results;
   std::map<std::uint64_t, std::string> answered_by;   ///< worker id
-  std::map<std::uint64_t, std::int64_t> answered_ns;  ///< when it was sent, by the wall clock
+  std::map<std::uint64_t, std::int64_t> answered_ns;  ///< when it was sent, wall clock
   std::vector<std::size_t> together;                  ///< results in each message
   std::vector<msg::MapRequest> requests;
   std::map<std::string, msg::WorkerStatus> workers;
@@ -162,7 +162,7 @@ class WorkerClient {
   messaging::Reader<msg::MapRequest> requests_;
   messaging::Reader<msg::WorkerStatus> statuses_;
   std::map<messaging::Handle, std::string> instances_;
-  messaging::EventLoop loop_;  // last: it goes before the readers
+  messaging::EventLoop loop_;  // last, because it must be destroyed before the readers
 };
 
 }  // namespace topogeo::test

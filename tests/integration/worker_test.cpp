@@ -1,5 +1,5 @@
-// Real search workers and clients that ask for what they want, each test in a domain of its own: a
-// worker serves every partition unless a flag restricts it.
+// Real search workers and clients with different requests, each test in a domain of its own,
+// because a worker serves every partition unless a flag restricts it.
 #include <algorithm>
 #include <csignal>
 #include <fstream>
@@ -33,7 +33,7 @@ class WorkerTest : public ::testing::Test {
     const std::string id = "client-" + name_ + "-" + std::to_string(++clients_);
     return std::make_unique<WorkerClient>(domain_, partition, id);
   }
-  /// The result is bit for bit what a matcher in this process makes of the task.
+  /// Expects that the result equals that of a matcher in this process, bit for bit.
   static void expect_right(WorkerClient& client, const MatchTask& task, const MapPointer& reference,
                            const MapPointer& query) {
     ASSERT_TRUE(
@@ -96,7 +96,7 @@ TEST_F(WorkerTest, HasTheLocalMapsOfBeforeItsTimeFromEveryPartition) {
     const auto process = start();
     const std::string worker = peer->find(name_);
     const MatchTask wanted = task(*zero_, *one_, 1);
-    // The status counts what it holds, so that this is not about who asks whom.
+    // Waits for the map count in the status, so that the requests do not matter here.
     ASSERT_TRUE(peer->wait_until("the worker to hold two maps",
                                  [&] { return peer->workers[worker].maps_held() == 2; }));
     peer->send(worker, wanted);
@@ -116,7 +116,7 @@ TEST_F(WorkerTest, ServesRunsWhoseRobotsAndMapsHaveTheSameNames) {
   ASSERT_EQ(run->find(name_), worker);
   const MapPointer other_zero = room(0, 0.1);
   const MapPointer other_one = room(1, 0.4);
-  // Of two maps of one key that come at once the worker may see the last one only, and asks.
+  // When two maps with one key arrive together, the worker may keep only the last, and asks.
   live->answer_requests(worker, {zero_, one_});
   run->answer_requests(worker, {other_zero, other_one});
   live->publish(zero_);
@@ -127,7 +127,7 @@ TEST_F(WorkerTest, ServesRunsWhoseRobotsAndMapsHaveTheSameNames) {
     live->send(worker, task(*zero_, *one_, id));
     run->send(worker, task(*other_zero, *other_one, id));
   }
-  // Both have to answer requests until both have their results.
+  // Both must answer requests until both have their results.
   ASSERT_TRUE(live->wait_until("the results of both clients", [&] {
     run->run_loop();
     return live->results.size() == 4 && run->results.size() == 4;
@@ -136,7 +136,7 @@ TEST_F(WorkerTest, ServesRunsWhoseRobotsAndMapsHaveTheSameNames) {
     expect_right(*live, task(*zero_, *one_, id), zero_, one_);
     expect_right(*run, task(*other_zero, *other_one, id), other_zero, other_one);
   }
-  // It counts the clients of the last seconds, so both keep asking.
+  // The worker counts the clients of the last seconds, so both keep sending.
   std::uint64_t asked = 4;
   EXPECT_TRUE(live->wait_until("a status with both clients", [&] {
     run->run_loop();
@@ -154,7 +154,7 @@ TEST_F(WorkerTest, APartitionRestrictsIt) {
   const auto mine = client("mine");
   const auto other = client("other");
   ASSERT_NE(mine->find(name_), "");
-  // One that serves every partition is found in the other one as well, and it comes later.
+  // A later worker that serves every partition is found in the other one, too.
   name_ = random_name();
   const auto everywhere = start();
   ASSERT_NE(other->find(name_), "");
@@ -166,14 +166,14 @@ TEST_F(WorkerTest, AsksForAMapThatItLacksUntilItHasTheRightOne) {
   const auto peer = client();
   const std::string worker = peer->find(name_);
   peer->publish(zero_);
-  peer->publish(room(1, 0.5));  // the id of the map that is meant, but another map
+  peer->publish(room(1, 0.5));  // the requested id, but another map
   int damaged = 0;
   peer->on_request = [&](const msg::MapRequest& request) {
     EXPECT_EQ(request.worker_id().to_string(), worker);
     EXPECT_EQ(request.content_hash(),
               topomap::content_hash(request.map_id() == 0 ? *zero_ : *one_));
     msg::LocalMap map = service::to_msg(request.map_id() == 0 ? *zero_ : *one_);
-    // A copy whose hash is wrong is not taken, and asked for again.
+    // The worker refuses a copy with a wrong hash and requests it again.
     if (request.map_id() == 1 && damaged++ == 0) map.points()[0].x_m(-1.0F);
     peer->send_copy(worker, map);
   };
@@ -207,7 +207,7 @@ TEST_F(WorkerTest, AsksAgainForAMapThatMadeRoomForOthers) {
   large.points.resize(2000, {1.0F, 1.0F});
   std::vector<MapPointer> maps;
   for (large.id = 1000; large.id < 1300; ++large.id) {
-    // No two alike: one that was published last is found by the number of the other.
+    // All contents differ, because equal maps would stand in for each other.
     large.points.back().x_m = 1.0F + 1e-3F * static_cast<float>(large.id);
     maps.push_back(std::make_shared<const topomap::LocalMap>(large));
     peer->publish(maps.back());
@@ -217,8 +217,8 @@ TEST_F(WorkerTest, AsksAgainForAMapThatMadeRoomForOthers) {
   peer->publish(one_);
   maps.push_back(one_);
   peer->answer_requests(worker, maps);
-  // Which of them made room depends on the order in which the worker took them; each is asked for
-  // once, as using it keeps it.
+  // The order of arrival at the worker decides which maps were dropped; each is requested only
+  // once, because using a map keeps it.
   std::uint32_t asked_for = 0;
   const auto lacks = [&] {
     return std::any_of(
@@ -246,7 +246,7 @@ TEST_F(WorkerTest, AClientWithALongQueueDoesNotKeepAnotherWaiting) {
   constexpr std::uint64_t kFew = 3;
   MatchTask long_task = task(*zero_, *one_, 0);
   long_task.genetic.generations = 500;  // sending takes less time than the work
-  // An attempt counts in which half of the queue is left when the other client has sent its tasks.
+  // An attempt counts when half of the queue is left after the other client has sent its tasks.
   std::uint64_t sent = 0;
   std::uint64_t done_before = 0;
   std::uint64_t done_meanwhile = 0;
@@ -344,15 +344,15 @@ TEST_F(WorkerTest, AnswersTasksOfOneMessage) {
   for (const MatchTask& one : tasks) expect_right(*peer, one, zero_, one_);
 }
 
-// Answers leave when they are as many as the tasks still in hand, or when they have waited long: so
-// never more together than half of what is still owed, which is five messages, and more of them
-// where the worker was kept from its work.
+// Answers are sent when they are as many as the tasks still in hand, or after a long wait: never
+// more together than half of the pending ones, which makes five messages, or more when the worker
+// was delayed.
 TEST_F(WorkerTest, AnswersToTasksOfOneMessageLeaveTogether) {
   const auto process = start();
   const auto peer = client();
   const std::string worker = peer->find(name_);
   peer->address.version = "0.0.1";
-  // Until the worker knows the reader of the answers they wait, and leave together.
+  // Answers wait until the worker knows their reader, and are then sent together.
   peer->send(worker, task(*zero_, *one_, 16));
   ASSERT_TRUE(peer->wait_until("the first result", [&] { return peer->results.size() == 1; }));
   peer->together.clear();
@@ -379,11 +379,11 @@ TEST_F(WorkerTest, AnAnswerDoesNotWaitForASearchThatTakesLong) {
   peer->together.clear();
   MatchTask long_task = short_task;
   long_task.genetic.individuals = 1000;
-  long_task.genetic.generations = 1000;         // as many evaluations as a search may have
+  long_task.genetic.generations = 1000;         // the most evaluations that a search may have
   long_task.genetic.finer_resolution_m = 0.01;  // and several searches
   long_task.genetic.finer_resolution_rad = 0.01;
   MatchTask between = long_task;
-  between.genetic.generations = 200;  // longer than answers wait for each other
+  between.genetic.generations = 200;  // longer than the waiting time of answers
   std::vector<MatchTask> tasks{short_task, between, short_task};
   tasks.insert(tasks.end(), 5, long_task);
   for (std::size_t i = 0; i < tasks.size(); ++i) tasks[i].task_id = 1 + i;
@@ -412,14 +412,14 @@ TEST_F(WorkerTest, TellsWhatItIsAndDoes) {
   double most_load = 0.0;
   double most_tasks_per_s = 0.0;
   std::uint32_t most_in_hand = 0;
-  std::uint32_t most_clients = 0;  // those of the last seconds, which the queue may outlast
+  std::uint32_t most_clients = 0;  // clients of the last seconds, which the queue may outlast
   peer->on_status = [&](const msg::WorkerStatus& status) {
     most_load = std::max(most_load, status.load());
     most_tasks_per_s = std::max(most_tasks_per_s, status.tasks_per_s());
     most_in_hand = std::max(most_in_hand, status.tasks_in_hand());
     most_clients = std::max(most_clients, status.clients());
   };
-  // A queue that lasts until a status has counted it, however fast the machine.
+  // The queue must last until a status has counted it, on a machine of any speed.
   MatchTask long_task = task(*zero_, *one_, 0);
   long_task.genetic.generations = 3000;
   constexpr std::uint64_t kQueue = 20;
@@ -487,7 +487,7 @@ TEST_F(WorkerTest, ASecondSignalEndsItAtOnce) {
 }
 
 TEST_F(WorkerTest, HasRoomForEverNewClients) {
-  // More than a writer has room for at a time (deploy/dds_profiles.xml, results).
+  // More than a writer can hold at once (deploy/dds_profiles.xml, results).
   constexpr int kAtATime = 10;
   const auto process = start();
   for (int i = 0; i < 7; ++i) {

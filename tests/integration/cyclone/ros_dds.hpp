@@ -1,5 +1,5 @@
-// Topics of ROS 2 by Cyclone DDS, as a node of rmw_cyclonedds has them: names, types and quality of
-// service of ROS, another implementation than ours.
+// Topics of ROS 2 on Cyclone DDS, like a node of rmw_cyclonedds: names, types and quality of
+// service of ROS, on a different DDS implementation from ours.
 #pragma once
 
 #include <cstdint>
@@ -72,7 +72,7 @@ inline bool has_reader(dds_entity_t writer) {
   return status.current_count > 0;
 }
 
-/// Hands over what came.
+/// Passes on received messages.
 template <class Message>
 void take(dds_entity_t reader, const std::function<void(const Message&)>& handler) {
   constexpr int kMost = 16;

@@ -1,4 +1,4 @@
-// Headers, stamps and headings of messages of ROS in Cyclone's C.
+// Headers, stamps and headings of ROS messages in Cyclone's C.
 #pragma once
 
 #include <cmath>

@@ -1,17 +1,17 @@
-// A robot and its user on ROS 2 topics, by Cyclone DDS.
+// A robot and its user on ROS 2 topics, with Cyclone DDS.
 //
 //   ros_peer DOMAIN replay LOG           the robot of a CARMEN log: stands until it is localized,
-//                                        then goes on as fast as its poses come back, then stands
+//                                        drives as fast as its poses come back, then stands again
 //   ros_peer DOMAIN drive WORLD          a simulated robot, in real time, driven by /cmd_vel
-//   ros_peer DOMAIN watch                prints what a user hears: map, tf, pose, plan, graph
-//   ros_peer DOMAIN listen               prints what it hears of a robot: scans, odometry, clock
+//   ros_peer DOMAIN watch                prints a user's data: map, tf, pose, plan, graph
+//   ros_peer DOMAIN listen               prints a robot's data: scans, odometry, clock
 //   ros_peer DOMAIN steer V W            sends velocities as Twist on /cmd_vel
 //   ros_peer DOMAIN steer-stamped V W    the same as TwistStamped
 //   ros_peer DOMAIN goal X Y YAW         sends a goal and ends when a plan has come
-//   ros_peer DOMAIN initialpose X Y YAW  sends where the robot is, ends when a pose has come
+//   ros_peer DOMAIN initialpose X Y YAW  sends the robot's pose, ends when a pose has come
 //
-// One line for each thing, until it is killed. Exit code 1 with a line on standard error when it
-// cannot.
+// Prints one line for each message, until it is killed. Exits with 1 and a line on standard error
+// when it cannot run.
 #include <chrono>
 #include <iostream>
 #include <optional>
@@ -57,7 +57,7 @@ int replay(std::uint32_t domain, const std::string& log) {
   for (auto next = reader.next(); next; next = reader.next()) {
     scan = next;
     send(robot, *scan, now_ns += kScan_ns);
-    // Odometry goes on while it waits, as poses come back for each.
+    // It keeps sending odometry while it waits, because each sample brings a pose back.
     for (std::int64_t waited = 1; robot.last_pose_ns() < now_ns - kAhead_ns; ++waited) {
       pause_ms(20);
       constexpr std::int64_t kMillisecond_ns = 1'000'000;
@@ -132,7 +132,7 @@ int send_goal(std::uint32_t domain, double x_m, double y_m, double yaw_rad) {
   goal.pose_.position_.x_ = x_m;
   goal.pose_.position_.y_ = y_m;
   goal.pose_.orientation_ = quaternion(yaw_rad);
-  // The plan may come before this reader is known: it is asked for again.
+  // The plan may be sent before this reader is matched, so the request is repeated.
   constexpr int kLooks = 100;
   for (bool planned = false; !planned;) {
     write(goals, goal);
@@ -147,7 +147,7 @@ int send_goal(std::uint32_t domain, double x_m, double y_m, double yaw_rad) {
   return 0;
 }
 
-/// With the covariance that RViz sends: half a metre, 15 degrees.
+/// Uses RViz's covariance: half a metre, 15 degrees.
 int send_initial_pose(std::uint32_t domain, double x_m, double y_m, double yaw_rad) {
   const RosPeer peer(domain);
   const dds_entity_t out = peer.writer(geometry_msgs_msg_dds__PoseWithCovarianceStamped__desc,

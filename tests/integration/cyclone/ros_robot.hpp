@@ -1,4 +1,4 @@
-// A robot on topics of ROS: scans, odometry, its laser at its middle; hears velocities.
+// A robot on ROS topics: sends scans and odometry, its laser at its middle; receives velocities.
 #pragma once
 
 #include <cstdint>
@@ -24,10 +24,10 @@ class RosRobot {
   void send_scan(std::int64_t at_ns, double angle_min_rad, double angle_step_rad,
                  std::vector<float> ranges_m) const;
 
-  /// Stamp of the newest pose that came back; 0 before the first.
+  /// Stamp of the newest received pose; 0 before the first.
   std::int64_t last_pose_ns();
 
-  /// The newest velocity that came since the last call.
+  /// The newest velocity received since the last call.
   std::optional<simulation::Velocity> velocity();
 
  private:

@@ -1,4 +1,4 @@
-// A user on topics of ROS: prints a line for each thing that it hears.
+// A user on ROS topics: prints a line for each received message.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ class Watcher {
  public:
   explicit Watcher(std::uint32_t domain);
 
-  /// What came since the last call.
+  /// Prints messages received since the last call.
   void print();
 
  private:
@@ -26,7 +26,7 @@ class Watcher {
   dds_entity_t diagnostics_;
 };
 
-/// Scans, odometry, transforms and time of a robot, until it is killed.
+/// Prints scans, odometry, transforms and time of a robot, until it is killed.
 [[noreturn]] void print_sensors(std::uint32_t domain);
 
 }  // namespace topogeo::test
