@@ -1,5 +1,5 @@
-// Replaces operator new of the program to count what is allocated. For one source file of a test
-// program that is made for it.
+// Replaces operator new of the program to count allocations. Include it in one source file of a
+// dedicated test program.
 #pragma once
 
 #include <atomic>
@@ -9,7 +9,7 @@
 
 namespace topogeo::test {
 
-/// Since the start of the program, in all threads.
+/// Allocations since the start of the program, in all threads.
 inline std::atomic<std::size_t> allocations{0};
 
 inline void* allocate_counted(std::size_t size) {

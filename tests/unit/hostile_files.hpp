@@ -1,4 +1,4 @@
-// Files that no reader may take, and files with a little damage.
+// Files that no reader may accept, and files with a little damage.
 #pragma once
 
 #include <cstdlib>
@@ -16,7 +16,7 @@
 
 namespace topogeo::test {
 
-/// What a reader throws; "" where it does not.
+/// Message of the exception that a reader throws; "" without one.
 inline std::string refusal_of(const std::function<void()>& read) {
   try {
     read();
@@ -26,17 +26,17 @@ inline std::string refusal_of(const std::function<void()>& read) {
   }
 }
 
-/// A FIFO without a writer: to open it the usual way waits for ever.
+/// A FIFO without a writer: opening it the usual way blocks forever.
 inline std::filesystem::path make_fifo(const std::filesystem::path& path) {
   std::filesystem::remove(path);
   if (::mkfifo(path.c_str(), 0600) != 0) throw std::runtime_error("no FIFO " + path.string());
   return path;
 }
 
-/// What stands where a file is expected.
+/// An object in place of a regular file.
 struct IrregularFile {
   std::filesystem::path path;
-  std::string kind;  ///< by which it is refused
+  std::string kind;  ///< named in the refusal
 };
 
 /// One of each kind, in an empty folder.
@@ -48,12 +48,12 @@ inline std::vector<IrregularFile> irregular_files(const std::filesystem::path& f
   return {{make_fifo(folder / ("fifo" + ending)), "a FIFO"}, {link, "a device"}};
 }
 
-/// How many damaged files are read: 100 and more by an environment variable.
+/// Number of damaged files to read: 100 and more by an environment variable.
 inline int damaged_files() {
   return std::getenv("TOPOGEO_ALL_FAULTS") != nullptr ? 400 : 25;
 }
 
-/// A copy with some bytes changed, taken out or repeated.
+/// A copy with some bytes changed, removed or repeated.
 inline std::string with_damage(std::string bytes, support::Random& random) {
   for (std::uint64_t i = 1 + random.below(4); i > 0 && !bytes.empty(); --i) {
     const auto at = static_cast<std::size_t>(random.below(bytes.size()));

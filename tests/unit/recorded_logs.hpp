@@ -1,5 +1,5 @@
-// Recorded logs for tests. They are not part of the project: they are looked for beside it in
-// ../shared/data, or in the folder that TOPOGEO_LOG_DIR names (*.clf, *.clf.gz).
+// Recorded logs for tests. They are not part of the project: they are searched in ../shared/data
+// beside it, or in the folder that TOPOGEO_LOG_DIR names (*.clf, *.clf.gz).
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace topogeo {
 
-/// Sorted by name; empty where there is no such folder.
+/// Sorted by name; empty without such a folder.
 inline std::vector<std::filesystem::path> recorded_logs() {
   std::vector<std::filesystem::path> paths;
   const char* named = std::getenv("TOPOGEO_LOG_DIR");

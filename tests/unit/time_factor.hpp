@@ -1,4 +1,4 @@
-// How many times longer tests may wait because of a sanitizer that is compiled in, see
+// How many times longer tests may wait because of a compiled-in sanitizer, see
 // cmake/TopogeoSanitizer.cmake.
 #pragma once
 

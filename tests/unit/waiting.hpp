@@ -1,4 +1,4 @@
-// How tests wait: for an event, however long it takes on a slow machine. No verdict depends on the
+// Waits of tests: for an event, however long it takes on a slow machine. No verdict depends on the
 // limit: it only ends a test that hangs.
 #pragma once
 
@@ -15,9 +15,9 @@
 
 namespace topogeo::test {
 
-/// A wait that lasts longer is a hang: five minutes, times TOPOGEO_TIME_FACTOR of the environment
-/// (how much slower this machine is than the one of docs, measured when CMake configures), times
-/// the factor of a sanitizer.
+/// A longer wait is a hang: five minutes, times TOPOGEO_TIME_FACTOR of the environment (how much
+/// slower this machine is than the reference machine, measured when CMake configures), times the
+/// factor of a sanitizer.
 inline std::chrono::seconds hang_limit() {
   const char* text =
       std::getenv("TOPOGEO_TIME_FACTOR");  // NOLINT(concurrency-mt-unsafe): never set here
@@ -25,12 +25,12 @@ inline std::chrono::seconds hang_limit() {
   return std::chrono::seconds(std::lround(300.0 * std::max(1.0, factor) * kTimeFactor));
 }
 
-/// One wait. Reports on standard error every ten seconds what it waits for.
+/// One wait. Reports every ten seconds on standard error what it waits for.
 class Wait {
  public:
   explicit Wait(std::string what) : what_(std::move(what)) {}
 
-  /// False when the wait has become a hang.
+  /// False once the wait is a hang.
   bool goes_on() {
     using std::chrono::steady_clock;
     const auto now = steady_clock::now();
@@ -57,7 +57,7 @@ class Wait {
   std::chrono::seconds limit_ = hang_limit();
 };
 
-/// Checks `condition` until it holds and calls `between` between two checks, for example one turn
+/// Checks `condition` until it holds, and calls `between` between two checks, for example one turn
 /// of an event loop. False: it did not hold within hang_limit(). `what` completes "waiting for
 /// ...".
 template <class Condition, class Between>
@@ -70,7 +70,7 @@ template <class Condition, class Between>
   return true;
 }
 
-/// The same where another thread or process makes the event: checks every few milliseconds.
+/// The same when another thread or process causes the event: checks every few milliseconds.
 template <class Condition>
 [[nodiscard]] bool wait_for(std::string what, const Condition& condition) {
   return wait_for(std::move(what), condition, [] {
@@ -85,8 +85,8 @@ template <class Loop, class Condition>
                   [&] { static_cast<void>(loop.run_for(std::chrono::milliseconds(5))); });
 }
 
-/// The same for a call that itself waits for at most the time that it is given: repeats it until it
-/// returns true.
+/// The same for a call that waits itself, at most for the given time: repeats it until it returns
+/// true.
 template <class Call>
 [[nodiscard]] bool wait_by(std::string what, const Call& call) {
   return wait_for(

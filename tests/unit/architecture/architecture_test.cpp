@@ -1,4 +1,4 @@
-// What may depend on what in this source tree (docs/architecture.md, "Rules").
+// The permitted dependencies in this source tree (docs/architecture.md, "Rules").
 #include <algorithm>
 
 #include <gmock/gmock.h>
@@ -17,8 +17,8 @@ const std::vector<Include>& project_includes() {
   return kIncludes;
 }
 
-/// Libraries that take seconds to compile or belong to one layer. Where a public header is named,
-/// it is the one door to the library.
+/// Libraries that take seconds to compile or belong to one layer. A public header in the list is
+/// the only access to the library.
 const std::vector<RestrictedLibrary>& restricted_libraries() {
   static const std::vector<RestrictedLibrary> kLibraries = {
       {"fastdds/",

@@ -54,13 +54,13 @@ std::vector<std::filesystem::path> sources_below(const std::filesystem::path& fo
   return files;
 }
 
-/// How a language sleeps and comments.
+/// Syntax of sleeps and comments in a language.
 struct Language {
   std::regex sleep;
   std::string comment;
 };
 
-/// Null for a file that is no source. A program without an extension is taken for a shell script.
+/// Null for a file that is no source. A program without an extension counts as a shell script.
 const Language* language_of(const std::filesystem::path& file) {
   static const Language kCpp = {
       std::regex(R"re((sleep_for|sleep_until|usleep|nanosleep|::sleep)\()re"), "//"};
@@ -165,7 +165,7 @@ std::vector<std::string> between_services(const std::filesystem::path& root,
     for (const auto& entry : std::filesystem::directory_iterator(services)) {
       const std::string other = entry.path().filename().string();
       if (other == user || other == "common" || !exists(entry.path() / include.header)) continue;
-      if (exists(services / user / include.header)) continue;  // its own of the same name
+      if (exists(services / user / include.header)) continue;  // its own header of that name
       const std::string header = "services/" + other + "/" + include.header;
       if (std::ranges::find(shared, header) == shared.end()) {
         found.push_back(place(include) + ", a header of services/" + other);
@@ -202,7 +202,7 @@ std::vector<std::string> sleeps_without_reason(const std::filesystem::path& root
     std::string text;
     for (int line = 1; std::getline(file, text); ++line, before = text) {
       if (text.find("leep") == std::string::npos && text.find("Timeout") == std::string::npos) {
-        continue;  // soon, most lines
+        continue;  // a fast check that excludes most lines
       }
       const std::string code = text.substr(0, text.find(language->comment));
       if (!std::regex_search(code, language->sleep)) continue;

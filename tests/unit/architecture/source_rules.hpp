@@ -9,31 +9,30 @@
 namespace topogeo::architecture {
 
 struct Include {
-  std::string file;  ///< from the root of the tree: libs/scan/src/scan.cpp
+  std::string file;  ///< relative to the root: libs/scan/src/scan.cpp
   int line = 0;
   std::string header;  ///< without brackets or quotes
 };
 
-/// Of all .hpp and .cpp files below the folders, in order of their paths. Throws std::runtime_error
+/// Includes of all .hpp and .cpp files below the folders, sorted by path. Throws std::runtime_error
 /// for a folder that does not exist.
 std::vector<Include> includes_below(const std::filesystem::path& root,
                                     const std::vector<std::string>& folders);
 
-/// The names in `foreach(lib ...)` of a CMakeLists.txt. Throws std::runtime_error when there are
-/// none.
+/// The names in `foreach(lib ...)` of a CMakeLists.txt. Throws std::runtime_error without any.
 std::vector<std::string> libraries_in_order(const std::filesystem::path& cmake_lists);
 
 /// A library that takes long to compile or belongs to one layer, and the places that may include
-/// it: files, or folders, which end in '/' and stand for what is not a public header in them. Of
-/// several libraries that begin a header's name the longest counts.
+/// it: files, or folders, which end in '/' and exclude the public headers in them. When several
+/// libraries match a header, the one with the longest prefix counts.
 struct RestrictedLibrary {
-  std::string_view headers;  ///< how their names begin
+  std::string_view headers;  ///< prefix of their names
   std::vector<std::string_view> places;
 };
 
 /// Each of these returns a line for each include that breaks the rule.
 
-/// A library includes headers of itself and of those before it; libs/messaging alone the messages.
+/// A library includes headers of itself and of those before it; only libs/messaging the messages.
 std::vector<std::string> against_order(const std::vector<Include>& includes,
                                        const std::vector<std::string>& libraries);
 
@@ -45,12 +44,12 @@ std::vector<std::string> between_services(const std::filesystem::path& root,
                                           const std::vector<Include>& includes,
                                           const std::vector<std::string_view>& shared);
 
-/// What holds settings, a *_config.hpp, includes no algorithm: settings, geometry and the
-/// declaration of settings alone.
+/// A header of settings, *_config.hpp, includes no algorithm: only settings, geometry and the
+/// declaration of settings.
 std::vector<std::string> algorithms_in_settings(const std::vector<Include>& includes);
 
 /// Lines of C++, Python, browser and shell sources below a folder that sleep for a time without a
-/// comment that gives the reason, beside it or in the line before: tests wait for events.
+/// comment with the reason, beside it or in the line before: tests wait for events.
 std::vector<std::string> sleeps_without_reason(const std::filesystem::path& root,
                                                const std::string& folder);
 

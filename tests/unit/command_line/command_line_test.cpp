@@ -17,7 +17,7 @@ std::optional<int> parse(Command& command, std::vector<const char*> words) {
   return command.parse(static_cast<int>(words.size()), words.data());
 }
 
-/// What is wrong with a command line; empty when nothing is.
+/// The error for a command line; empty when it is valid.
 std::string complaint(Command& command, const std::vector<const char*>& words) {
   try {
     EXPECT_FALSE(parse(command, words));
@@ -280,7 +280,7 @@ TEST(CommandLine, ReportsWrongUsageForProgramsWithoutExitCodes) {
             "The following argument was not expected: --other (see --help)\n");
 }
 
-/// What a program with these words prints.
+/// Output of a program with this argument.
 std::string printed(Command& command, const char* word) {
   testing::internal::CaptureStdout();
   EXPECT_EQ(parse(command, {word}), 0);
@@ -311,7 +311,7 @@ TEST(CommandLine, PrintsAManualPageOfItsOptions) {
   EXPECT_THAT(page, HasSubstr(".SS tool drive home\n"));
 }
 
-/// What bash offers for the words of a line, the last of which is not finished.
+/// Completions of bash for a line whose last word is unfinished.
 std::string completed(const std::string& script, const std::string& line) {
   const std::string file = testing::TempDir() + "completion.bash";
   std::ofstream(file) << script << "COMP_WORDS=(" << line

@@ -105,7 +105,7 @@ TEST_P(BaseDriverOn, AdvancesAndTurnsByAnAmount) {
   ASSERT_TRUE(all.pass_until(20 * kSecond, done));
   EXPECT_NEAR(all.base.mcp.T_start_robot().y_m, -0.5, 0.02);
   EXPECT_EQ(all.driver.status().state, BaseState::kReady);
-  // Two that are the same are two.
+  // Two equal ones are counted separately.
   ASSERT_TRUE(all.driver.advance(0.25, soon_ns(), all.line.now_ns()));
   ASSERT_TRUE(all.pass_until(20 * kSecond, done));
   ASSERT_TRUE(all.driver.advance(0.25, soon_ns(), all.line.now_ns()));
@@ -124,7 +124,7 @@ TEST_P(BaseDriverOn, AMoveEndsWhenItIsNoLongerValid) {
   EXPECT_LT(all.base.mcp.T_start_robot().x_m, 1.5);
 }
 
-/// The driver's own words do not reach the base, its reports do reach the driver.
+/// The driver's commands do not reach the base, but its reports reach the driver.
 TEST_P(BaseDriverOn, LimitsHoldAtOnceAndNeverExceedTheSettings) {
   BaseOnLine all(settings());
   ASSERT_TRUE(all.start());
@@ -150,7 +150,7 @@ TEST_P(BaseDriverOn, ARestartedBaseIsSetUpAgainAndThePoseGoesOn) {
   all.pass(kSecond);
   EXPECT_EQ(all.driver.status().state, BaseState::kOffline);
   const std::uint64_t odometries = all.odometries;
-  // Its start-up time of 2 s and another second.
+  // The start-up time of 2 s plus another second.
   EXPECT_TRUE(
       all.pass_until(2 * kSecond, [&] { return all.driver.status().state == BaseState::kReady; }));
   all.pass(kSecond);

@@ -14,8 +14,8 @@ namespace {
 
 using support::Random;
 
-/// What the wheels may turn on after something has stopped them, and still be called stopped: the
-/// time to halt from full speed.
+/// Time to halt from full speed. The wheels may turn for so long after a stop and still count as
+/// stopped.
 constexpr std::int64_t kHalting = 2 * kSecond;
 constexpr std::int64_t kLongestOff = 20 * kSecond;
 
@@ -39,7 +39,7 @@ struct Scene {
   }
 };
 
-/// Returns when the fault is over.
+/// Returns the time when the fault is over.
 using InjectInBase = std::int64_t (*)(Scene&);
 using BaseCount = std::uint64_t (*)(const BaseStatus&);
 
@@ -67,7 +67,7 @@ std::uint64_t expirations(const BaseStatus& status) {
 std::uint64_t echoes(const BaseStatus& status) {
   return status.echoes;
 }
-/// Faults of which the state speaks, see must_be().
+/// For faults that the state shows, see must_be().
 std::uint64_t anything_at_all(const BaseStatus& /*status*/) {
   static std::uint64_t calls = 0;
   return ++calls;
@@ -78,11 +78,11 @@ void must_be(BaseState state, Scene& scene) {
   if (scene.all.driver.status().state != state) ++scene.unsafe;
 }
 
-/// Until the base has sent what it was told to damage.
+/// Drives until the base has sent as many damaged reports as ordered.
 std::int64_t strike_base(Scene& scene, unsigned reports) {
   const std::uint64_t last = scene.all.base.mcp.reports() + reports;
   while (scene.all.base.mcp.reports() < last) scene.drive(10 * kMs);
-  // The last of them is on its way.
+  // The last report is still in transit.
   scene.drive(report_line_time_ns(scene.all.settings));
   return scene.all.line.now_ns();
 }
@@ -132,7 +132,7 @@ std::int64_t unplug_base(Scene& scene) {
 }
 
 std::int64_t restart_base(Scene& scene) {
-  // How far it goes on between its last report and the end of its power nobody knows.
+  // The distance between its last report and the loss of power is unknown.
   if (scene.random.below(2) == 0) scene.all.pass(kHalting);
   const geometry::Pose2 before = scene.all.T_odom_robot;
   scene.all.base.mcp.switch_off(scene.all.line.now_ns());
@@ -158,13 +158,13 @@ std::int64_t other_watchdog(Scene& scene) {
   std::vector<std::uint8_t> bytes;
   const McpOrder order{McpCommand::kWatchdog, 1};
   if (scene.all.settings.dialect == BaseDialect::kAscii) {
-    append_ascii({McpCommand::kTranslateWhere}, bytes);  // ends a line that may have begun
+    append_ascii({McpCommand::kTranslateWhere}, bytes);  // terminates a line that may have begun
     append_ascii(order, bytes);
   } else {
     const McpPacket packet = binary_packet(order);
     bytes.assign(packet.begin(), packet.end());
   }
-  // The driver may just refresh its own.
+  // The driver may be refreshing its own watchdog.
   const std::uint64_t before = scene.all.driver.status().watchdog_expirations;
   while (scene.all.driver.status().watchdog_expirations == before) {
     scene.all.base.receive(bytes, scene.all.settings.line, scene.all.line.now_ns());
@@ -216,7 +216,7 @@ std::int64_t joystick(Scene& scene) {
   }
   scene.all.base.mcp.take_joystick({});
   scene.all.drive(0.2, 0.0, kSecond);
-  scene.must_stand();  // until it has stood for a second
+  scene.must_stand();  // until it has stood still for a second
   return scene.all.line.now_ns();
 }
 
@@ -233,8 +233,8 @@ std::int64_t period_ns(const BaseFaultLine& line) {
 
 std::vector<BaseFault> base_faults(const BaseFaultLine& line) {
   const bool ascii = line.dialect == BaseDialect::kAscii;
-  // There is no checksum: for one report a wrong digit passes as far as the robot may have driven,
-  // and those after it are doubted first.
+  // Without a checksum, one report with a wrong digit is accepted up to the distance that the robot
+  // may have driven, and those after it are doubted first.
   std::vector<BaseFault> all{
       {"a bit of a report wrong", ascii ? "" : "drops", ascii ? anything_at_all : drops, corrupt,
        ascii ? 3 * period_ns(line) : 0, ascii ? 0.4 : 0.03},
@@ -243,7 +243,7 @@ std::vector<BaseFault> base_faults(const BaseFaultLine& line) {
       {"silence below the limit", "", anything_at_all, short_silence},
       {"silence of 1 to 10 s", "", anything_at_all, long_silence},
       {"port unplugged", "starts", starts, unplug_base, kSecond},
-      // It is looked for every twentieth of how long it has been silent.
+      // It is probed every twentieth of its silence so far.
       {"base restarts", "restarts", restarts, restart_base, kSecond + kLongestOff / 20},
       {"watchdog expires", "watchdog_expirations", expirations, other_watchdog},
       {"motion commands cease", "", anything_at_all, commands_cease},

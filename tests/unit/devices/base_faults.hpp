@@ -1,5 +1,5 @@
 // Faults of a base and its line, injected many times on a simulated clock while the robot drives
-// about, and what became of them.
+// about, and their outcome.
 #pragma once
 
 #include <cstddef>
@@ -13,19 +13,19 @@ namespace topogeo::devices {
 
 struct BaseFaultTest {
   std::string name;
-  std::string counted_as;       ///< the counters of which one must grow with every fault
+  std::string counted_as;       ///< counters, one of which must grow with every fault
   std::int64_t allowed_ns = 0;  ///< longest recovery
-  double right_m = 0.03;        ///< odometry that is farther off is wrong; the same in radians
+  double right_m = 0.03;        ///< limit of the odometry's error; the same in radians
 };
 
 struct BaseFaultResult {
   std::size_t times = 0;
-  std::size_t odometries = 0;  ///< handed on in all
-  std::size_t wrong = 0;  ///< of them, not where the wheels were at their stamps, or out of order
-  std::size_t uncounted = 0;  ///< faults after which no counter named in the test had grown
-  std::size_t late = 0;       ///< faults from which the recovery took longer than allowed
-  std::size_t unsafe = 0;     ///< times that the robot moved when it should not have
-  std::int64_t worst_recovery_ns = 0;  ///< from the fault's end to the next odometry handed on
+  std::size_t odometries = 0;          ///< published in all
+  std::size_t wrong = 0;               ///< with a wrong pose at their stamp, or out of order
+  std::size_t uncounted = 0;           ///< faults without growth of any named counter
+  std::size_t late = 0;                ///< faults with a recovery that took longer than allowed
+  std::size_t unsafe = 0;              ///< times that the robot moved when it must not
+  std::int64_t worst_recovery_ns = 0;  ///< from the fault's end to the next odometry
   double worst_m = 0.0;                ///< error of the odometry
   double worst_rad = 0.0;
 };
@@ -35,7 +35,7 @@ struct BaseFaultLine {
   std::uint32_t baud = 9600;
 };
 
-/// All that are known for such a line.
+/// All known faults of such a line.
 [[nodiscard]] std::vector<BaseFaultTest> base_fault_tests(const BaseFaultLine& line);
 
 /// Injects the fault `times` times. The same seed gives the same result.

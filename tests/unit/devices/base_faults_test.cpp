@@ -1,5 +1,5 @@
 // Every fault of the base a thousand times: no wrong odometry, recovery in time, every drop
-// counted, the robot at rest whenever it has to be.
+// counted, the robot at rest whenever it must be.
 #include "base_faults.hpp"
 
 #include <cctype>

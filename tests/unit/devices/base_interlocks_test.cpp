@@ -12,7 +12,7 @@ constexpr std::uint16_t kFirstBumper = 0xFFFE;
 
 class BaseInterlocksTest : public ::testing::Test {
  protected:
-  BaseInterlocks interlocks_{BaseSettings{}};  // commands hold for 0.5 s
+  BaseInterlocks interlocks_{BaseSettings{}};  // commands are valid for 0.5 s
 };
 
 TEST_F(BaseInterlocksTest, AStopHoldsUntilItIsReleased) {

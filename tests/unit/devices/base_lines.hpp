@@ -1,4 +1,4 @@
-// The lines that the driver of the base is tested on.
+// The line settings for tests of the base's driver.
 #pragma once
 
 #include <array>

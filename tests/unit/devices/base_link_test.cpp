@@ -12,12 +12,12 @@ using Change = BaseLink::Change;
 
 class BaseLinkTest : public ::testing::Test {
  protected:
-  /// Writes the start sequence and lets time pass until the first report is waited for.
+  /// Writes the start sequence and passes time until the first report is due.
   void write_start() {
     while (writer_.write_queued(now_ns_)) now_ns_ = writer_.free_ns();
     (void)link_.tick(now_ns_);
   }
-  /// To the next time that is due.
+  /// Advances to the next due time.
   Change pass() {
     now_ns_ = link_.due_ns();
     return link_.tick(now_ns_);
@@ -69,7 +69,7 @@ TEST_F(BaseLinkTest, SetsABaseUpThatWasSwitchedOnAnew) {
   EXPECT_EQ(receive("B"), Change::kNone);
   EXPECT_EQ(receive("V\r"), Change::kSetUp);  // cut anywhere
   EXPECT_EQ(link_.starts(), 2U);
-  // Of a base that restarted, the reports do not end the start sequence.
+  // Reports of a restarted base do not end the start sequence.
   EXPECT_EQ(link_.reported(true, now_ns_), Change::kNone);
   EXPECT_FALSE(link_.running());
 }

@@ -1,4 +1,4 @@
-// The clock of a device on ours, reports as one pose, and commands that are said only when they
+// A device's clock mapped to ours, reports as one pose, and commands that are sent only when they
 // change something.
 #include "topogeo/devices/base_odometer.hpp"
 
@@ -45,7 +45,7 @@ TEST(DeviceClock, StaysOrderedWhenTheDeviceStartsAnew) {
   EXPECT_EQ(clock.map(kSecond, 8 * kSecond), 8 * kSecond);
 }
 
-/// A base that stands at heading 0, `forward_m` ahead of where it was switched on.
+/// A base at heading 0, `forward_m` ahead of its pose at power-on.
 McpReport standing(std::uint32_t ticks, double forward_m) {
   const McpUnits units{McpCalibration{}};
   McpReport report{.mask = 0x000A0A7A};
@@ -79,7 +79,7 @@ TEST_F(BaseOdometerTest, DropsOneReportThatJumpsAndKeepsThePose) {
   EXPECT_NEAR(after.odometry.T_odom_robot.x_m, 0.0, 0.01);
 }
 
-/// A driver that is killed after 30 reports, 8 of them a second, and one that starts 2 s later.
+/// A driver that is killed after 30 reports, 8 a second, and one that starts 2 s later.
 class ResumedOdometerTest : public BaseOdometerTest {
  protected:
   ResumedOdometerTest() {
@@ -109,7 +109,7 @@ TEST_F(ResumedOdometerTest, OneWrongReportDoesNotCostIt) {
 }
 
 TEST_F(ResumedOdometerTest, BeginsAnewWithABaseThatWasSwitchedOffOrAnotherOne) {
-  // Clock and registers from their start; then a clock that fits with a place that is too far.
+  // Clock and registers from power-on; then a fitting clock with a position that is too far away.
   for (const auto& [ticks, forward_m] :
        std::vector<std::pair<std::uint32_t, double>>{{200, 0.0}, {1960 + 512, 12.0}}) {
     BaseOdometer other{BaseSettings{}};

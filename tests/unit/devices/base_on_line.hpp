@@ -1,5 +1,5 @@
 // A driver and an emulated base at the two ends of a simulated line, wheels on good ground between
-// them, and what the driver says of the way compared with where the wheels have been.
+// them, and the driver's odometry compared with the true path of the wheels.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace topogeo::devices {
 inline constexpr std::int64_t kMs = 1'000'000;
 inline constexpr std::int64_t kSecond = 1'000'000'000;
 
-/// The emulated base with wheels that do what the motors do, and a memory of where they were when.
+/// The emulated base with wheels that follow the motors, and a history of their poses.
 class RollingBase final : public simulation::SerialDevice {
  public:
   explicit RollingBase(const simulation::McpEmulatorSettings& settings) : mcp(settings) {}
@@ -42,7 +42,7 @@ class RollingBase final : public simulation::SerialDevice {
     return mcp.take_output(host, now_ns);
   }
 
-  /// Where the wheels were, between the two nearest times that are known.
+  /// True pose of the wheels, interpolated between the two nearest known times.
   [[nodiscard]] geometry::Pose2 at(std::int64_t stamp_ns) const {
     const auto after = std::ranges::lower_bound(way_, stamp_ns, {}, &Place::first);
     if (after == way_.begin()) return way_.front().second;
@@ -65,8 +65,7 @@ class RollingBase final : public simulation::SerialDevice {
     return velocity.linear_m_per_s == 0.0 && velocity.angular_rad_per_s == 0.0;
   }
 
-  /// What the encoders see beyond the motion, uniformly up to so much; as one that was published:
-  /// 256 counts/s (MIRO).
+  /// Uniform noise of the encoders up to these speeds; a published example: 256 counts/s (MIRO).
   void set_noise(double linear_mps, double angular_radps) {
     noise_mps_ = linear_mps;
     noise_radps_ = angular_radps;
@@ -115,7 +114,7 @@ struct BaseOnLine {
     return emulated;
   }
 
-  /// Lets time pass with commands as from a navigator, ten a second (none: silence), and compares.
+  /// Passes time with a navigator's commands, ten a second (none: silence), and compares.
   void drive(double linear_mps, double angular_radps, std::int64_t duration_ns) {
     for (std::int64_t end_ns = line.now_ns() + duration_ns; line.now_ns() < end_ns;) {
       (void)driver.command(linear_mps, angular_radps, line.now_ns() + kSecond / 2, line.now_ns());
@@ -146,7 +145,7 @@ struct BaseOnLine {
     });
   }
 
-  /// Takes the odometry and compares it with where the wheels were at its stamps.
+  /// Takes the odometry and compares it with the true poses at its stamps.
   void compare() {
     for (const BaseOdometry& odometry : driver.take_odometry()) {
       if (last_stamp_ns >= odometry.stamp_ns) ++stamps_back;
@@ -165,7 +164,7 @@ struct BaseOnLine {
     }
     base.trim();
   }
-  /// From here on compared with where the wheels are now: after motion that nobody could see.
+  /// Compares with the present pose from here on: after motion that the driver could not see.
   void compare_anew() {
     compare();
     odometries = 0;
@@ -180,7 +179,7 @@ struct BaseOnLine {
   std::uint64_t stamps_back = 0;
   std::uint64_t stamps_ahead = 0;
   std::int64_t last_stamp_ns = -1;
-  double right_m = 0.03;  ///< odometry that is farther off is wrong
+  double right_m = 0.03;  ///< odometry with a larger error is wrong
   double right_rad = 0.03;
   std::uint64_t wrong = 0;
   double worst_m = 0.0;

@@ -1,4 +1,4 @@
-// Everything that has to make the robot stand, and what is said of it.
+// All events that must stop the robot, and the status that they produce.
 #include <cstdint>
 #include <vector>
 
@@ -63,7 +63,7 @@ TEST_P(BaseSafetyOn, SaysThatTheWatchdogExpired) {
   ASSERT_TRUE(all.start());
   all.drive(0.3, 0.0, 2 * kSecond);
   all.base.mcp.receive({}, settings().line, all.line.now_ns());
-  // Somebody else at the line sets a watchdog that is too short.
+  // Another program on the line sets a watchdog that is too short.
   std::vector<std::uint8_t> bytes;
   const McpOrder order{McpCommand::kWatchdog, 2};
   if (GetParam().dialect == BaseDialect::kAscii) {
@@ -72,7 +72,7 @@ TEST_P(BaseSafetyOn, SaysThatTheWatchdogExpired) {
     const McpPacket packet = binary_packet(order);
     bytes.assign(packet.begin(), packet.end());
   }
-  // The driver may just refresh its own.
+  // The driver may be refreshing its own watchdog.
   while (all.driver.status().watchdog_expirations == 0) {
     all.base.mcp.receive(bytes, settings().line, all.line.now_ns());
     all.pass(50 * kMs);
@@ -89,7 +89,7 @@ TEST_P(BaseSafetyOn, SaysThatTheWatchdogExpired) {
   EXPECT_EQ(all.driver.status().watchdog_expirations, 1U);
 }
 
-/// The gateway gets no CPU for a while: the base must not stop for less than its watchdog allows.
+/// The gateway gets no CPU for a while: the base must not stop before its watchdog's time.
 TEST_P(BaseSafetyOn, ABusyHostLetsTheWatchdogExpireNoSoonerThanItMust) {
   BaseOnLine all(settings());
   ASSERT_TRUE(all.start());
@@ -131,7 +131,7 @@ TEST_P(BaseSafetyOn, AfterAFrozenHostItDrivesOnWithFreshCommandsAlone) {
     all.drive(0.3, 0.0, kSecond);
     EXPECT_EQ(all.driver.status().state, BaseState::kMoving);
   }
-  // Without any command the state passes by itself, so that nobody waits for ever.
+  // Without any command the state ends by itself, so that nothing waits forever.
   all.line.freeze_host(true);
   all.pass(400 * kMs);
   all.line.freeze_host(false);
@@ -145,7 +145,7 @@ TEST_P(BaseSafetyOn, TheEmergencyStopHaltsAndTheRobotDoesNotJumpWhenPowerReturns
   all.drive(0.4, 0.0, 3 * kSecond);
   all.base.mcp.forget_orders();
   all.base.mcp.press_emergency_stop();
-  all.drive(0.4, 0.0, 2 * kSecond);  // whoever commands goes on
+  all.drive(0.4, 0.0, 2 * kSecond);  // the sender keeps commanding
   EXPECT_EQ(all.driver.status().state, BaseState::kEmergencyStop);
   EXPECT_FALSE(all.driver.status().commands_taken);
   EXPECT_THAT(all.base.mcp.orders(), Contains(McpOrder{McpCommand::kTranslateHalt}));
@@ -180,7 +180,7 @@ TEST_P(BaseSafetyOn, TheJoystickTakesOverAndIsLeftAlone) {
   ASSERT_TRUE(all.start());
   all.drive(0.2, 0.0, 3 * kSecond);
   all.base.mcp.forget_orders();
-  for (int i = 0; i < 20; ++i) {  // held against whatever the base is told
+  for (int i = 0; i < 20; ++i) {  // held against any other command to the base
     all.base.mcp.take_joystick({-0.3, 0.4});
     all.drive(0.2, 0.0, kSecond / 10);
   }
@@ -270,7 +270,7 @@ TEST_P(BaseSafetyOn, AGuardHasTheLastWordOnVelocities) {
   share = 0.5;
   all.drive(0.4, 0.2, 2 * kSecond);
   EXPECT_NEAR(speed(), 0.2, 1e-3);
-  // While a command holds it is judged again and again.
+  // A valid command is checked again and again.
   (void)all.driver.command(0.4, 0.0, all.line.now_ns() + kSecond / 2, all.line.now_ns());
   share = 0.0;
   all.pass(150 * kMs);

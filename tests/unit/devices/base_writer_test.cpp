@@ -23,7 +23,7 @@ TEST(BaseWriter, WaitsForTheLineAndAtLeastForTheGap) {
   fast.open(0);
   fast.write({McpCommand::kTranslateHalt}, 0);
   EXPECT_EQ(fast.free_ns(), line_time_ns(3, settings.line));
-  fast.write({McpCommand::kRotateHalt}, 0);  // before the line is free: after it
+  fast.write({McpCommand::kRotateHalt}, 0);  // written before the line is free, sent after it
   EXPECT_EQ(fast.free_ns(), 2 * line_time_ns(3, settings.line));
   const auto orders = fast.take_orders();
   ASSERT_EQ(orders.size(), 2U);
@@ -59,7 +59,7 @@ TEST(BaseWriter, EntersTheBinaryDialectAndRestsThere) {
   EXPECT_TRUE(writer.write_queued(0));
   EXPECT_EQ(writer.free_ns(), 250'000'000);
   writer.queue({McpCommand::kTranslateHalt});
-  writer.queue_sync();  // goes first
+  writer.queue_sync();  // it is sent first
   while (writer.write_queued(writer.free_ns())) {
   }
   const auto orders = writer.take_orders();

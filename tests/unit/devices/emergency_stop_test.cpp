@@ -1,5 +1,5 @@
-// The emergency stop of a base that has no message for it: pressed at any moment of a drive, for
-// any time, on the clock of the emulated base. And ordinary drives, in which it is never noticed.
+// The emergency stop of a base without a message for it: pressed at any moment of a drive, for any
+// time, on the clock of the emulated base. Ordinary drives must never trigger it.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -13,8 +13,8 @@
 namespace topogeo::devices {
 namespace {
 
-// m/s and rad/s. Encoders of a base at rest: 256 counts/s of a B21 (MIRO), and three counts of the
-// rotation.
+// m/s and rad/s. Encoder noise of a base at rest: 256 counts/s of a B21 (MIRO), and three counts of
+// the rotation.
 constexpr double kLinearNoise = 0.009;
 constexpr double kAngularNoise = 0.018;
 
@@ -24,7 +24,7 @@ bool all_of_them() {
 
 class EmergencyStopOn : public BaseOnAnyLine {
  protected:
-  /// Commands for so long, as they come.
+  /// Executes the drive's commands for so long.
   static void follow(BaseOnLine& all, OrdinaryDrive& drive, std::int64_t duration_ns) {
     const std::int64_t end_ns = all.line.now_ns() + duration_ns;
     while (all.line.now_ns() < end_ns) {
@@ -53,7 +53,7 @@ TEST_P(EmergencyStopOn, IsNeverNoticedInOrdinaryDrives) {
   }
 }
 
-/// The gateway has to wait for a CPU, and so has the program that commands.
+/// The gateway waits for a CPU, and so does the commanding program.
 TEST_P(EmergencyStopOn, IsNeverNoticedWhereTheHostIsBusy) {
   BaseOnLine all(settings());
   all.base.set_noise(kLinearNoise, kAngularNoise);
@@ -69,7 +69,7 @@ TEST_P(EmergencyStopOn, IsNeverNoticedWhereTheHostIsBusy) {
   }
 }
 
-/// The gateway has time, and the thread that writes to its port has to wait for a CPU.
+/// The gateway has time, but the thread that writes to its port waits for a CPU.
 TEST_P(EmergencyStopOn, IsNeverNoticedWhereWhatIsCommandedIsWrittenLate) {
   BaseOnLine all(settings());
   all.base.set_noise(kLinearNoise, kAngularNoise);
@@ -85,7 +85,7 @@ TEST_P(EmergencyStopOn, IsNeverNoticedWhereWhatIsCommandedIsWrittenLate) {
   }
 }
 
-/// How the wheels turn with and without the emergency stop.
+/// Motion of the wheels with and without the emergency stop.
 struct TwinDrive {
   explicit TwinDrive(const BaseSettings& settings, std::uint64_t seed)
       : all(settings), drive(seed) {
@@ -111,10 +111,10 @@ TEST_P(EmergencyStopOn, HoldsTheRobotUntilResetHoweverShortItWas) {
     const std::int64_t into_ns = static_cast<std::int64_t>(random.below(50)) * kMs;
     stopped.all.pass(into_ns);
     twin.all.pass(into_ns);
-    // A tenth of a second to ten, short ones as often as long ones.
+    // A tenth of a second to ten, log-uniform.
     const std::int64_t pressed_ns = std::llround(1e8 * std::pow(100.0, random.uniform(0.0, 1.0)));
     stopped.all.base.mcp.press_emergency_stop();
-    double lost = 0.0;  // of what a motor would have given: 1 is what must be noticed
+    double lost = 0.0;  // missing speed relative to a working motor; from 1 on it must be noticed
     const auto compare = [&] {
       const geometry::Velocity now = stopped.all.base.mcp.commanded_velocity();
       const geometry::Velocity healthy = twin.all.base.mcp.commanded_velocity();

@@ -1,4 +1,4 @@
-// The byte vectors of the protocol's description, both ways, and streams with noise in them.
+// The byte vectors of the protocol's description, both directions, and streams with noise in them.
 #include <cstdint>
 #include <initializer_list>
 #include <random>
@@ -282,7 +282,7 @@ TEST(McpBinary, FindsTheNextFrameAfterOneThatEndsEarlyOrLate) {
   EXPECT_EQ(count_of(decoder.drops(), McpDrop::kLostEnd), 1U);
 }
 
-/// Random words, as different as values of fields can be.
+/// Random words, as varied as field values can be.
 McpReport random_report(std::uint32_t mask, std::mt19937_64& random) {
   McpReport report{.mask = mask};
   for (std::size_t i = 0; i < kMcpFields; ++i) {
@@ -294,7 +294,7 @@ McpReport random_report(std::uint32_t mask, std::mt19937_64& random) {
   return report;
 }
 
-/// Bytes that the protocol is made of more often than others.
+/// Random bytes, with a preference for those of the protocol.
 Bytes line_noise(std::span<const std::uint8_t> favourites, std::mt19937_64& random) {
   Bytes bytes(random() % 60);
   for (std::uint8_t& byte : bytes) {

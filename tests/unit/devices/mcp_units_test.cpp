@@ -59,7 +59,7 @@ TEST(McpUnits, RefusesCalibrationsThatCannotBe) {
 
 TEST(McpPoseTracker, LooksAheadAlongY) {
   McpPoseTracker tracker{McpUnits{{.position_units_per_m = 100.0}}};
-  // One metre to the base's right, two ahead, turned a quarter clockwise.
+  // One metre to the base's right, two ahead, turned clockwise by a quarter.
   const geometry::Pose2 pose = tracker.track(at(0x8000 + 100, 0x8000 + 200, 256));
   EXPECT_DOUBLE_EQ(pose.x_m, 2.0);
   EXPECT_DOUBLE_EQ(pose.y_m, -1.0);

@@ -12,7 +12,7 @@ class MotionMonitorTest : public ::testing::Test {
     monitor_.aim_at(motion_.aim(), motion_.limits(), now_ns_);
     monitor_.written(now_ns_);
   }
-  /// A report a tenth of a second after the one before.
+  /// A report a tenth of a second after the previous one.
   void report(double linear_mps, McpPhase phase) {
     McpReport report{.mask = settings_.report_mask};
     report.fields[static_cast<std::size_t>(McpField::kTranslateSpeed)] =

@@ -26,7 +26,7 @@ simulation::PlsEmulatorSettings lms() {
   return settings;
 }
 
-/// Wanted rate, rate of the sensor when the port is opened, and whether it is streaming.
+/// Desired rate, rate of the sensor when the port opens, and whether it is streaming.
 using StartUp = std::tuple<std::uint32_t, std::uint32_t, bool>;
 class PlsStartUp : public ::testing::TestWithParam<StartUp> {};
 
@@ -63,7 +63,7 @@ TEST(PlsDriver, HearsASensorAtOnceThatGoesOnSendingWhereItWasRemembered) {
   pls.emulator.set_up(500'000, true, 0);
   pls.driver.resume({500'000, Parity::kEven});
   pls.line.plug_in();
-  // The rest of a scan that was being sent, and a whole one.
+  // The rest of an ongoing scan, and a whole one.
   ASSERT_TRUE(pls.run_for_scans(1, 100 * kMillisecond_ns)) << pls.driver.status().reason;
   EXPECT_EQ(pls.driver.status().state, PlsState::kRunning);
   pls.run_for(kSecond_ns);
@@ -71,7 +71,7 @@ TEST(PlsDriver, HearsASensorAtOnceThatGoesOnSendingWhereItWasRemembered) {
   EXPECT_EQ(pls.driver.status().counters.unsolicited, 0U);
 }
 
-/// Where the sensor was remembered, and where it is.
+/// Remembered line settings, actual rate of the sensor, and whether it is streaming.
 using Remembered = std::tuple<LineSettings, std::uint32_t, bool>;
 class PlsElsewhere : public ::testing::TestWithParam<Remembered> {};
 
@@ -101,7 +101,7 @@ TEST(PlsDriver, SetsUpASensorThatWasSwitchedOffMeanwhile) {
   EXPECT_EQ(pls.driver.status().line.baud, 500'000U);
 }
 
-/// Rate of the line, time of a scan of 732 bytes of 11 bits.
+/// Line rate, and duration of a scan of 732 bytes of 11 bits.
 class PlsRate : public ::testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(PlsRate, IsThatOfTheLineOrOfTheMirror) {
@@ -134,7 +134,7 @@ TEST(PlsDriver, ScansSayWhereTheirBeamsAre) {
   }
 }
 
-// The world has returns from 0.1 to 10 m. Its distances stay what they are.
+// The world has returns from 0.1 to 10 m, at constant distances.
 TEST(PlsDriver, ScansSayWhatIsInTheFieldsOfTheSensor) {
   struct Fields {
     double protective_m, warning_m;
@@ -222,7 +222,7 @@ TEST(PlsDriver, ComesBackWhenTheSensorDoesNotFollow) {
   EXPECT_EQ(never.driver.status().state, PlsState::kRunning);
   EXPECT_THAT(never.driver.status().reason, HasSubstr("does not follow to 500000 baud"));
   EXPECT_EQ(never.driver.status().counters.switches_not_followed, 2U);
-  // After a restart it gets another chance.
+  // It gets another chance after a restart.
   never.emulator.inject(simulation::PlsFault::kIgnoreBaudSwitch, -998);
   never.emulator.switch_on(never.line.now_ns());
   never.scans.clear();

@@ -12,7 +12,7 @@ namespace {
 
 using simulation::PlsFault;
 
-/// Returns when the fault is over.
+/// Returns the time when the fault is over.
 using Inject = std::function<std::int64_t(PlsOnLine&, support::Random&)>;
 using Count = std::uint64_t (*)(const PlsStatus&);
 
@@ -29,7 +29,7 @@ std::int64_t between(support::Random& random, std::int64_t low_ns, std::int64_t 
          static_cast<std::int64_t>(random.below(static_cast<std::uint64_t>(high_ns - low_ns)));
 }
 
-/// Lets the fault strike some of the next telegrams.
+/// Applies the fault to some of the next telegrams.
 std::int64_t strike(PlsOnLine& pls, PlsFault fault, int count) {
   pls.emulator.inject(fault, count);
   const bool struck = pls.line.run_until(100 * kSecond_ns, [&] {
@@ -73,7 +73,7 @@ std::int64_t restart_without_following(PlsOnLine& pls, support::Random& random) 
   return restart(pls, random);
 }
 
-/// The replies while the sensor is set up are damaged, too.
+/// Damages the replies while the sensor is set up, too.
 std::int64_t restart_with_bad_replies(PlsOnLine& pls, support::Random& random) {
   constexpr std::array kFaults{PlsFault::kBadCrc, PlsFault::kTruncated, PlsFault::kGarbage};
   pls.emulator.switch_on(pls.line.now_ns());
@@ -82,7 +82,7 @@ std::int64_t restart_with_bad_replies(PlsOnLine& pls, support::Random& random) {
   return strike(pls, fault, 1 + static_cast<int>(random.below(4)));
 }
 
-/// A bit changes somewhere on the line, in the head of a telegram as well.
+/// Flips a bit anywhere on the line, also in the header of a telegram.
 std::int64_t flip_bit(PlsOnLine& pls, support::Random& random) {
   bool flipped = false;
   pls.run_for(between(random, 0, 40 * kMillisecond_ns));
@@ -122,7 +122,7 @@ std::uint64_t openings(const PlsStatus& status) {
 std::uint64_t switches(const PlsStatus& status) {
   return status.counters.switches_not_followed;
 }
-/// A silence shorter than the driver's patience drops nothing but what was cut when it began.
+/// A silence shorter than the timeout drops only the telegram that it interrupted.
 std::uint64_t anything(const PlsStatus& /*status*/) {
   static std::uint64_t calls = 0;
   return ++calls;
@@ -196,7 +196,7 @@ PlsFaultResult run_pls_fault(const PlsFaultTest& test, std::uint32_t baud, std::
     const std::int64_t recovery_ns = pls.line.now_ns() - end_ns;
     result.worst_recovery_ns = std::max(result.worst_recovery_ns, recovery_ns);
     if (recovery_ns > test.allowed_ns) ++result.late;
-    // What is dropped with a false start of a telegram is counted when that has ended.
+    // Bytes dropped with a false start of a telegram are counted at its end.
     pls.run_for(scan_period_ns(baud) * 2);
     if (fault->count(pls.driver.status()) == counted) ++result.uncounted;
     result.scans += pls.scans.size();

@@ -35,7 +35,7 @@ INSTANTIATE_TEST_SUITE_P(All, PlsFaults, ::testing::ValuesIn(pls_fault_tests(500
 TEST(PlsFaults, OfTheLineAtLowerRates) {
   for (const std::uint32_t baud : {9600U, 38400U}) {
     for (const PlsFaultTest& test : pls_fault_tests(baud)) {
-      // At its power-on rate a sensor has none to follow to.
+      // The power-on rate needs no switch that could fail.
       if (baud == 9600 && test.counted_as == "switches_not_followed") continue;
       const PlsFaultResult result = run_pls_fault(test, baud, 20, 2);
       EXPECT_EQ(result.wrong_scans, 0U) << test.name;

@@ -19,7 +19,7 @@ using ::testing::FloatEq;
 constexpr LineSettings kPls{500'000, Parity::kEven};
 constexpr LineSettings kLms{500'000, Parity::kNone};
 
-/// Keeps the bytes that its telegram refers to.
+/// Owns the bytes that its telegram refers to.
 class Received {
  public:
   explicit Received(const Bytes& bytes) {
@@ -142,10 +142,10 @@ TEST(PlsScan, HoldsMetresAndNoReturns) {
 TEST(PlsScan, IsStampedWithTheMiddleOfTheSweep) {
   const PlsSettings settings;
   PlsScanMaker maker(settings);
-  // 732 bytes of 11 bits take 16.104 ms at 500000 baud; the sweep was half over 10 ms before.
+  // 732 bytes of 11 bits take 16.104 ms at 500000 baud; the middle of the sweep was 10 ms earlier.
   EXPECT_EQ(scan_of(maker, std::vector<std::uint16_t>(361, 1))->stamp_ns,
             1'000'000'000 - 16'104'000 - 10'000'000);
-  // Another that seems to have arrived at the same time is later all the same.
+  // A second scan with the same arrival time still gets a later stamp.
   EXPECT_EQ(scan_of(maker, std::vector<std::uint16_t>(361, 2))->stamp_ns,
             1'000'000'000 - 26'104'000 + 1);
 }
@@ -159,7 +159,7 @@ TEST(PlsScan, OfAnLmsMayCountInMillimetres) {
   const auto values = pls_measured_values(millimetres.telegram);
   ASSERT_TRUE(values);
   EXPECT_THAT(maker.make(*values, millimetres.telegram, kLms)->ranges_m[0], FloatEq(1.0F));
-  // A PLS counts in centimetres only.
+  // A PLS always counts in centimetres.
   EXPECT_THAT(maker.make(*values, millimetres.telegram, kPls)->ranges_m[0], FloatEq(10.0F));
   data[1] = 0x08;
   const Received part(sick_reply(0xB0, data, 0));
@@ -192,7 +192,7 @@ TEST(PlsScan, IsDroppedForAReason) {
   other[180] = 8;
   EXPECT_TRUE(scan_of(maker, other));
   EXPECT_FALSE(maker.stuck());
-  // Where there is nothing to see, nothing changes.
+  // Without any return, nothing changes.
   for (int i = 0; i < 10; ++i) EXPECT_TRUE(scan_of(maker, std::vector<std::uint16_t>(361, 8191)));
 }
 

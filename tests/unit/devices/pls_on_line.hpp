@@ -1,5 +1,5 @@
 // A PLS driver and an emulated PLS on a simulated line, in a world that changes from one scan to
-// the next, with a check of every scan that the driver hands on.
+// the next, with a check of every scan of the driver.
 #pragma once
 
 #include <cmath>
@@ -32,7 +32,7 @@ class PlsOnLine {
         random_(sensor.seed),
         beams_(beams) {}
 
-  /// Takes the scans of the driver and counts those that the sensor did not measure then.
+  /// Takes the driver's scans and counts those that the sensor did not measure at their stamp.
   void collect() {
     for (PlsScan& scan : driver.take_scans()) {
       if (!was_measured(scan)) ++wrong_scans;
@@ -49,7 +49,7 @@ class PlsOnLine {
     collect();
   }
 
-  /// Lets time pass until the driver has handed on `count` scans more.
+  /// Passes time until the driver has delivered `count` more scans.
   bool run_for_scans(std::size_t count, std::int64_t limit_ns) {
     const std::size_t wanted = scans.size() + count;
     return line.run_until(limit_ns, [&] {
@@ -58,7 +58,7 @@ class PlsOnLine {
     });
   }
 
-  /// Starts up and runs until scans come; throws std::logic_error when they stay away.
+  /// Starts up and runs until scans come; throws std::logic_error without scans.
   void start() {
     line.plug_in();
     if (!run_for_scans(3, 30 * kSecond_ns)) throw std::logic_error(driver.status().reason);
@@ -69,14 +69,14 @@ class PlsOnLine {
   SimulatedLine line;
   std::vector<PlsScan> scans;
   std::size_t wrong_scans = 0;
-  std::int64_t scan_seen_ns = 0;  ///< when the last scan was handed on
+  std::int64_t scan_seen_ns = 0;  ///< when the last scan was delivered
   bool still = false;             ///< nothing changes in the world
 
  private:
-  /// The port hands bytes on when its time is over, so a stamp can be late by that.
+  /// The port delivers bytes at the end of its period, so a stamp can be late by that.
   static constexpr std::int64_t kStampError_ns = SimulatedLine::kReadPeriod_ns + 50'000;
 
-  /// Scans are handed on soon after they were measured, so older ones need not be remembered.
+  /// Scans are delivered soon after they are measured, so older ones are not kept.
   static constexpr std::size_t kRemembered = 500;
 
   std::vector<float> measure(std::int64_t now_ns) {
@@ -87,7 +87,7 @@ class PlsOnLine {
       return ranges_m;
     }
     for (std::size_t i = 0; i < beams_; ++i) {
-      // Also without a return, and at distances whose codes look like the start of a telegram.
+      // Includes missing returns, and distances whose codes look like the start of a telegram.
       const std::uint64_t code = random_.below(10) == 0 ? 0 : 10 + random_.below(1000);
       ranges_m.push_back(static_cast<float>(code) * 0.01F);
     }

@@ -9,7 +9,7 @@ namespace {
 
 class PlsSearchTest : public ::testing::Test {
  protected:
-  /// The lines that a search tries, asked or not, until it has failed.
+  /// The lines that a search tries, polled or not, until it has failed.
   std::vector<LineSettings> tried_lines(bool listen_first) {
     std::vector<LineSettings> tried;
     search_.start(listen_first, now_ns_);

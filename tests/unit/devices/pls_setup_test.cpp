@@ -18,7 +18,7 @@ class PlsSetupTest : public ::testing::Test {
     line_.heard();
     (void)line_.take_orders();
   }
-  /// The command that was written last.
+  /// The last written command.
   std::vector<std::uint8_t> written() {
     auto orders = line_.take_orders();
     return orders.empty() ? std::vector<std::uint8_t>{} : orders.back().bytes;
@@ -27,13 +27,13 @@ class PlsSetupTest : public ::testing::Test {
     exchange_.replied(reply);
     return setup_.go_on(0);
   }
-  /// All tries without an answer.
+  /// Lets all attempts time out.
   SetupResult stay_silent() {
     while (exchange_.open()) exchange_.tick(exchange_.due_ns());
     return setup_.go_on(0);
   }
 
-  PlsSettings settings_;  // 500,000 baud wanted, found at 9600
+  PlsSettings settings_;  // 500,000 baud desired, found at 9600
   PlsLine line_{settings_};
   SickExchange exchange_;
   PlsSetup setup_{settings_, line_, exchange_};

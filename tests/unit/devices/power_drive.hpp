@@ -1,4 +1,4 @@
-// Ordinary drives of a base on a simulated line, as a navigator commands them: starts, stops,
+// Ordinary drives of a base on a simulated line with a navigator's commands: starts, stops,
 // reversals, slow turns and speeds that change a little with every command.
 #pragma once
 
@@ -25,7 +25,7 @@ class OrdinaryDrive {
     } else {
       given_ = aim_;
     }
-    // A guard does so near obstacles, whose distance is measured with noise.
+    // A guard does so near obstacles, because measured distances are noisy.
     const double share = wavers_ ? random_.uniform(0.85, 1.0) : 1.0;
     return {share * given_.linear_mps, share * given_.angular_radps};
   }

@@ -20,13 +20,13 @@ class PowerWatchTest : public ::testing::Test {
     watch_.aim_at(speed, kAcceleration, now_ns_);
     watch_.written(now_ns_);
   }
-  /// The next report, a tenth of a second after the one before. True: power is lost.
+  /// The next report, a tenth of a second after the previous one. True: power is lost.
   bool report(double speed, McpPhase phase, double sign = 1.0) {
     now_ns_ += kReportPeriod_ns;
-    // The clock of the base counts from somewhere else.
+    // The base's clock has another origin.
     return watch_.take({now_ns_ - 123'456'789, now_ns_, speed, phase, sign});
   }
-  /// Gets to the speed as a motor with power, and stays there.
+  /// Accelerates to the speed like a motor with power, and holds it.
   void reach(double speed) {
     command(speed);
     for (double now = 0.05; now < speed; now += 0.05) {
@@ -80,7 +80,7 @@ TEST_F(PowerWatchTest, ASlowerCommandMayBeInForceForAWhile) {
   EXPECT_FALSE(report(0.3, McpPhase::kConstant));
 }
 
-// The thread that writes to the port has to wait for a CPU, while this one has time.
+// The thread that writes to the port waits for a CPU, while this one has time.
 TEST_F(PowerWatchTest, ACommandCountsOnceItIsWritten) {
   reach(0.3);
   command(0.0);
@@ -114,7 +114,7 @@ TEST_F(PowerWatchTest, RestThatNobodyHasCommandedIsNoticedAndAKnownReasonIsNone)
   EXPECT_FALSE(noticed) << "it brakes with power: a joystick may be at work";
   EXPECT_FALSE(report(0.0, McpPhase::kHalt));
   EXPECT_TRUE(report(0.0, McpPhase::kHalt));
-  watch_.forget();  // its watchdog, for example
+  watch_.forget();  // for example, after its watchdog
   for (int i = 0; i < 5; ++i) EXPECT_FALSE(report(0.0, McpPhase::kHalt));
 }
 
@@ -140,7 +140,7 @@ TEST_F(PowerWatchTest, AGapInTheReportsShowsNothingOfTheTimeInIt) {
   EXPECT_FALSE(report(0.2, McpPhase::kAccelerate));
 }
 
-// An emulated base stands still while its machine has no time for it, and its clock goes on.
+// An emulated base stands still while its process gets no CPU time, but its clock continues.
 TEST_F(PowerWatchTest, AClockThatGoesOnWhileTheAxisStandsStillIsNoLossOfPower) {
   constexpr double kFast = 1.5;
   watch_.aim_at(0.9, kFast, now_ns_);

@@ -1,4 +1,4 @@
-// Telegrams as manufacturers and drivers printed them, and some worked out with a separate script.
+// Telegrams printed by manufacturers and drivers, and some computed with a separate script.
 #include "topogeo/devices/sick_crc.hpp"
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Streams of valid telegrams with garbage between them give every one of the telegrams, whatever
-// the garbage is and however the stream is cut.
+// Streams of valid telegrams with garbage between them yield every one of the telegrams, with any
+// garbage and however the stream is split.
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -33,7 +33,7 @@ Bytes random_telegram(support::Random& random) {
   }
 }
 
-/// Random bytes, the start of a telegram, or one that was damaged.
+/// Random bytes, the start of a telegram, or a damaged telegram.
 Bytes random_garbage(support::Random& random) {
   Bytes bytes = random_telegram(random);
   switch (random.below(4)) {
@@ -65,7 +65,7 @@ TEST(SickDecoderProperty, EveryValidTelegramIsFoundBetweenGarbage) {
     if (random.below(2) == 0) append(stream, random_garbage(random));
     SickDecoder decoder(SickDecoder::Listener::kHost, kByteGap_ns);
     std::vector<Bytes> found = decode(decoder, stream, 1 + random.below(1000));
-    // Garbage may hold single bytes in the right place; nothing else may come of it.
+    // Garbage may contain valid single bytes; it must yield nothing else.
     std::erase_if(found, [](const Bytes& event) { return event.size() == 1; });
     ASSERT_EQ(found, sent) << "seed " << seed;
     ASSERT_EQ(decoder.counters().telegrams, sent.size());

@@ -17,7 +17,7 @@ using Result = SickExchange::Result;
 constexpr LineSettings kLine{9600, Parity::kEven};
 constexpr SickExchange::Limits kLimits{100, 1000, 30, 2, true};
 
-/// Asks for the status at the time 0.
+/// Requests the status at the time 0.
 class SickExchangeTest : public ::testing::Test {
  protected:
   SickExchangeTest() {
@@ -27,7 +27,7 @@ class SickExchangeTest : public ::testing::Test {
   }
 
   const std::vector<std::uint8_t> command = sick_command(pls_command::kRequestStatus);
-  /// When the command has left.
+  /// Time when the command has been sent.
   const std::int64_t left_ns = line_time_ns(command.size(), kLine);
   SickExchange exchange;
 };

@@ -1,5 +1,5 @@
-// Byte streams for the tests of the SICK telegrams: telegrams as printed by others, and all that a
-// decoder makes of a stream.
+// Byte streams for the tests of the SICK telegrams: telegrams printed by others, and a decoder's
+// events for a stream.
 #pragma once
 
 #include <algorithm>
@@ -42,7 +42,7 @@ inline void append(Bytes& stream, std::span<const std::uint8_t> bytes) {
   stream.insert(stream.end(), bytes.begin(), bytes.end());
 }
 
-/// All bytes of the telegram an event stands for, or the single byte.
+/// All bytes of an event's telegram, or its single byte.
 inline Bytes bytes_of(const SickEvent& event) {
   switch (event.kind) {
     case SickEvent::Kind::kAck:
@@ -61,7 +61,7 @@ inline void drain(SickDecoder& decoder, std::vector<Bytes>& found) {
   while (const auto event = decoder.next()) found.push_back(bytes_of(*event));
 }
 
-/// Everything in the stream, handed over in parts of at most `part` bytes without any gap.
+/// All events of the stream, passed in parts of at most `part` bytes without gaps.
 inline std::vector<Bytes> decode(SickDecoder& decoder, std::span<const std::uint8_t> stream,
                                  std::size_t part, std::int64_t now_ns = 0) {
   std::vector<Bytes> found;

@@ -121,7 +121,7 @@ TEST(SickDecoder, FindsATelegramWithFalseStartsInside) {
   for (const std::size_t part : {1U, 3U, 731U, 5000U}) {
     EXPECT_THAT(all(stream, part), ElementsAre(false_start, many)) << part;
   }
-  // Listening from anywhere in the first scan on, the second one is still found.
+  // When listening begins anywhere in the first scan, the second one is still found.
   for (std::size_t from = 1; from < many.size(); from += 5) {
     Bytes late(many.begin() + static_cast<std::ptrdiff_t>(from), many.end());
     append(late, many);
@@ -134,12 +134,12 @@ TEST(SickDecoder, GivesSingleBytesOnlyBetweenTelegrams) {
   append(stream, kOk);
   stream.push_back(kSickNak);
   EXPECT_THAT(all(stream), ElementsAre(kAck, kOk, kNak));
-  // Codes of 0615 hexadecimal are no single bytes, nor are they in the rest of a broken scan.
+  // Codes of 0615 hexadecimal are not single bytes, nor are they in the rest of a broken scan.
   Bytes scan = measured_values(std::vector<std::uint16_t>(181, 0x0615));
   EXPECT_THAT(all(scan), ElementsAre(scan));
   scan.erase(scan.begin());
   EXPECT_THAT(all(scan), IsEmpty());
-  // After a silence they count again.
+  // They count again after a silence.
   SickDecoder decoder = host();
   EXPECT_THAT(decode(decoder, scan, 100), IsEmpty());
   EXPECT_THAT(decode(decoder, Bytes{kSickAck}, 1, kByteGap_ns), ElementsAre(kAck));
@@ -173,7 +173,7 @@ TEST(SickDecoder, GivesUpAfterASilence) {
   EXPECT_EQ(decoder.counters().truncated, 1U);
   EXPECT_EQ(decoder.counters().noise_bytes, 0U);
   EXPECT_EQ(decoder.due_ns(), std::numeric_limits<std::int64_t>::max());
-  // The rest of the scan comes too late to be one with its start.
+  // The rest of the scan is too late to belong to its start.
   EXPECT_THAT(decode(decoder, std::span(scan).subspan(700), 5, 3 * kByteGap_ns), IsEmpty());
 }
 

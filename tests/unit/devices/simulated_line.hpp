@@ -1,5 +1,5 @@
 // A driver and an emulated device at the two ends of a serial line, on a clock of their own: time
-// jumps to whatever is due next, so that hours of faults pass in seconds, the same way every time.
+// jumps to the next due event, so that hours of faults pass in seconds, always in the same way.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace topogeo::devices {
 
 class SimulatedLine {
  public:
-  /// How long a port gathers bytes before it hands them on, as an adapter does.
+  /// Period in which a port collects bytes before it delivers them, like an adapter.
   static constexpr std::int64_t kReadPeriod_ns = 1'000'000;
 
   SimulatedLine(SerialDriver& driver, simulation::SerialDevice& device, std::int64_t start_ns = 0)
@@ -29,20 +29,20 @@ class SimulatedLine {
   [[nodiscard]] const LineSettings& host() const { return host_; }
   [[nodiscard]] bool plugged() const { return plugged_; }
 
-  /// What the device sent, on its way to the driver: may be changed. Line noise, for example.
+  /// Changes bytes from the device to the driver: line noise, for example.
   void set_filter(std::function<void(std::vector<std::uint8_t>&)> filter) {
     filter_ = std::move(filter);
   }
 
-  /// What the driver wrote, on its way to the device: may be changed.
+  /// Changes bytes from the driver to the device.
   void set_host_filter(std::function<void(std::vector<std::uint8_t>&)> filter) {
     host_filter_ = std::move(filter);
   }
 
-  /// Whether the line returns to the driver what it wrote, as some two-wire adapters do.
+  /// Whether the line echoes the driver's bytes, like some two-wire adapters.
   void set_echo(bool echo) { echo_ = echo; }
 
-  /// The port appears, with settings that nobody chose.
+  /// The port appears, with arbitrary settings.
   void plug_in() {
     if (plugged_) return;
     plugged_ = true;
@@ -52,7 +52,7 @@ class SimulatedLine {
     settle();
   }
 
-  /// The port disappears with all that was on its way. The device goes on.
+  /// The port disappears with all bytes in transit. The device keeps running.
   void unplug() {
     if (!plugged_) return;
     plugged_ = false;
@@ -62,12 +62,12 @@ class SimulatedLine {
     settle();
   }
 
-  /// The process of the driver is frozen: it gets no time and no bytes. What was written leaves,
-  /// and what comes waits in the port.
+  /// The driver's process is frozen: it gets no time and no bytes. Written bytes are sent, and
+  /// received ones wait in the port.
   void freeze_host(bool frozen) { frozen_ = frozen; }
 
-  /// Nothing is written, though the driver has time and what comes is read: the thread of the port
-  /// waits for a CPU.
+  /// Nothing is written, though the driver has time and reads received bytes: the thread of the
+  /// port waits for a CPU.
   void hold_orders(bool held) { held_ = held; }
 
   /// Lets `duration_ns` pass.
@@ -75,8 +75,8 @@ class SimulatedLine {
     run_until(duration_ns, [] { return false; });
   }
 
-  /// Lets time pass until `done` holds, looking after every step, or `limit_ns` are over. Returns
-  /// whether it holds.
+  /// Passes time until `done` holds, which is checked after every step, or `limit_ns` are over.
+  /// Returns whether it holds.
   template <typename Done>
   bool run_until(std::int64_t limit_ns, const Done& done) {
     const std::int64_t end_ns = now_ns_ + limit_ns;
@@ -117,7 +117,7 @@ class SimulatedLine {
     }
   }
 
-  /// Takes the driver's orders and carries out what of them is possible by now.
+  /// Takes the driver's orders and executes those that are possible by now.
   void settle() {
     if (!frozen_) take_orders();
     while (!orders_.empty() && !held_) {
@@ -140,7 +140,7 @@ class SimulatedLine {
       }
       if (orders_.empty()) unconfirmed_ = true;
     }
-    // A driver that is frozen hears of it later.
+    // A frozen driver is notified later.
     if (!frozen_ && orders_.empty() && std::exchange(unconfirmed_, false)) driver_.written(now_ns_);
   }
 
@@ -154,10 +154,10 @@ class SimulatedLine {
   bool plugged_ = false;
   bool frozen_ = false;
   bool held_ = false;
-  bool unconfirmed_ = false;  ///< the driver has not heard that all its orders were written
+  bool unconfirmed_ = false;  ///< the driver does not know yet that all its orders were written
   LineSettings host_;
   std::deque<LineOrder> orders_;
-  std::optional<std::int64_t> written_ns_;  ///< when the bytes of the first order have left
+  std::optional<std::int64_t> written_ns_;  ///< when the bytes of the first order were sent
 };
 
 }  // namespace topogeo::devices

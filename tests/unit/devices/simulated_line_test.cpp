@@ -16,7 +16,7 @@ using LineBytes = std::vector<std::uint8_t>;
 constexpr std::int64_t kMillisecond_ns = 1'000'000;
 constexpr LineSettings kFast{38400, Parity::kEven};
 
-/// Sends "abc" with new settings when it is opened and notes all that happens to it.
+/// Sends "abc" with new settings when it is opened and records all its events.
 class Caller final : public SerialDriver {
  public:
   void opened(std::int64_t now_ns) override {
@@ -47,7 +47,7 @@ class Caller final : public SerialDriver {
   std::vector<LineOrder> orders_;
 };
 
-/// Answers what it understands with the same bytes.
+/// Echoes the bytes that it understands.
 class Echo final : public simulation::SerialDevice {
  public:
   void receive(std::span<const std::uint8_t> bytes, const LineSettings& host,

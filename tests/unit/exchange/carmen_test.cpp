@@ -24,14 +24,14 @@ TEST_F(CarmenExport, ScansHaveTheBeamsOfTheLaser) {
   const scan::Scan& first = log.scans.front();
   EXPECT_EQ(first.ranges_m.size(), 181U);
   EXPECT_EQ(first.angle_min_rad, -std::numbers::pi / 2.0);
-  EXPECT_EQ(first.ranges_m[3], scan::Scan::kNoReturn);  // left out in the sample
+  EXPECT_EQ(first.ranges_m[3], scan::Scan::kNoReturn);  // missing in the sample
   EXPECT_NEAR(first.ranges_m[90], 9.0F, 1e-5F);
   EXPECT_NEAR(log.scans[3].ranges_m[90], 6.0F, 1e-5F);
 }
 
 TEST_F(CarmenExport, TheLogReadsBackPointByPoint) {
   storage::MapDocument document = sample_stops();
-  // A laser that is mounted off the middle and turned.
+  // A laser that is mounted off the centre and turned.
   const geometry::Pose2 T_robot_laser{0.2, -0.05, 0.3};
   for (topomap::LocalMap& map : document.local_maps) {
     map.T_robot_laser = T_robot_laser;

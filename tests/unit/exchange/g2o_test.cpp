@@ -20,10 +20,10 @@ using localization::PoseGraph;
 
 struct ReadGraph {
   PoseGraph graph;
-  std::map<std::uint32_t, std::uint32_t> index;  // in the graph by id in the file
+  std::map<std::uint32_t, std::uint32_t> index;  // index in the graph by id in the file
 };
 
-/// The text as our own solver takes it.
+/// The text as our own solver reads it.
 ReadGraph graph_of(const std::string& text, double stretch = 0.0) {
   ReadGraph out;
   std::istringstream lines(text);
@@ -61,7 +61,7 @@ ReadGraph graph_of(const std::string& text, double stretch = 0.0) {
 
 storage::MapDocument connected() {
   storage::MapDocument document = sample_stops();
-  // Joins the last stop, which follows one that is not located.
+  // Joins the last stop, which follows an unlocated one.
   document.loop_closures.push_back({1, 5, {0.0, 0.0, 0.0}});
   return document;
 }
@@ -69,7 +69,7 @@ storage::MapDocument connected() {
 class G2o : public ScratchTest {};
 
 TEST_F(G2o, KeepsTheRulesOfItsLoader) {
-  // Five located stops; three steps and two loops; the second drive's step is from nowhere.
+  // Five located stops; three steps and two loops; the second drive's step has no located start.
   EXPECT_EQ(run_reader({"g2o", write("graph.g2o", g2o_text(connected()))}), "5 5 1\n");
 }
 
@@ -85,7 +85,7 @@ TEST_F(G2o, OptimizingAgainMovesNothing) {
 }
 
 TEST_F(G2o, EdgesPullPosesBack) {
-  // Poses that were moved go back: the edges are what holds them.
+  // Displaced poses return, because the edges determine them.
   ReadGraph read = graph_of(g2o_text(connected()), 0.3);
   EXPECT_TRUE(read.graph.optimize().usable);
   EXPECT_NEAR(read.graph.poses()[read.index.at(3)].x_m, 3.0, 1e-3);

@@ -47,7 +47,7 @@ TEST_F(Geojson, IsReadByTheRulesOfNav2) {
 }
 
 TEST_F(Geojson, TheReaderOfTheTestsRefusesWhatNav2Does) {
-  // Of a good file with one thing changed; else the reader would prove nothing.
+  // A good file with one change each; without this test the reader would prove nothing.
   const auto broken = [&](const std::string& what, const std::string& by) {
     std::string text = sample_text();
     const std::size_t at = text.find(what);
@@ -103,7 +103,7 @@ TEST_F(Geojson, NamesWhatIsWrong) {
 
 TEST_F(Geojson, NodesWithLargeIdsGetOthersInTheFileAlone) {
   topomap::GlobalMap map = sample_graph();
-  // As virtual nodes have them.
+  // Ids of virtual nodes are this large.
   map.nodes.back().id = 2'147'483'650U;
   for (topomap::MapBranch& branch : map.branches) {
     if (branch.node_b == 12) branch.node_b = map.nodes.back().id;

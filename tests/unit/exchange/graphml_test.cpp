@@ -20,7 +20,7 @@ TEST_F(Graphml, ReadsBackToTheLastDigit) {
 }
 
 TEST_F(Graphml, IsReadByNetworkX) {
-  // Four nodes and five branches in one piece, two of them parallel; two places beside.
+  // Four nodes and five branches in one component, two of them parallel; two separate places.
   EXPECT_EQ(run_reader({"graphml", write("map.graphml",
                                          graphml_text(sample_graph(), sample_drawing().places))}),
             "4 5 2 3\nroom <A> & \"B\"\nKüche\n");

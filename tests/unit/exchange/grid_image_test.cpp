@@ -168,7 +168,7 @@ std::string little_endian(std::uint32_t value, int size) {
   return bytes;
 }
 
-/// Rows as they lie in the file, each filled up to four bytes.
+/// Rows in the order of the file, each padded to four bytes.
 std::string bmp_bytes(std::int32_t width, std::int32_t height, std::uint32_t bits,
                       const std::string& palette, const std::string& rows) {
   const auto begin = static_cast<std::uint32_t>(54 + palette.size());
@@ -185,7 +185,7 @@ TEST_F(GridImageFiles, PngAndBmpAreReadAsPgmIs) {
   EXPECT_EQ(read(yaml, png_bytes(2, 2, PNG_FORMAT_GRAY, {254, 0, 205, 100})).values, pgm.values);
   const std::vector<std::uint8_t> colours = {254, 255, 253, 0, 0, 0, 205, 205, 205, 90, 100, 110};
   EXPECT_EQ(read(yaml, png_bytes(2, 2, PNG_FORMAT_RGB, colours)).values, pgm.values);
-  // From below, blue first, rows of six bytes filled up to eight.
+  // Bottom row first, blue first, rows of six bytes padded to eight.
   const auto row = [](const std::vector<int>& bytes) {
     std::string text;
     for (const int byte : bytes) text += static_cast<char>(byte);

@@ -48,7 +48,7 @@ TEST(GridMap, BeamsEndInTheFirstOccupiedCell) {
   for (int i = 0; i < 720; ++i) {
     const double heading = (i + 0.37) * std::numbers::pi / 360.0;
     const float range_m = cast_beam(grid, from, heading, 30.0);
-    // A beam in small steps, which can only miss the corner of a cell.
+    // Follows a beam in small steps, which can only miss the corner of a cell.
     double stepped_m = 0.0;
     const Eigen::Vector2d along(std::cos(heading), std::sin(heading));
     while (grid.at(*grid.frame().cell_of(from + stepped_m * along)) == CellState::kFree) {
@@ -70,7 +70,7 @@ TEST(GridMap, AGridBecomesAGraphThroughItsDoors) {
   const storage::MapDocument map = small_map();
   ASSERT_FALSE(map.global_map.branches.empty());
   const planning::FreeSpace space(small_floor());
-  // All that is connected in the free space is in the graph: from the room to the niche.
+  // The graph covers all connected free space, from the room to the niche.
   std::map<std::uint32_t, std::uint32_t> part;
   for (const topomap::MapNode& node : map.global_map.nodes) part[node.id] = node.id;
   for (std::size_t round = 0; round < part.size(); ++round) {
@@ -104,7 +104,7 @@ TEST(GridMap, TheSameGridGivesTheSameBytes) {
 TEST(GridMap, ARobotIsFoundInIt) {
   const storage::MapDocument map = small_map();
   const localization::GlobalLocalizer localizer(map.local_maps, map.trajectory);
-  // A pose that is none of the stops'.
+  // A pose that differs from all stops.
   const geometry::Pose2 truth{0.3, 2.7, 0.7};
   std::vector<topomap::ScanPoint> points;
   for (int i = -180; i <= 180; ++i) {

@@ -1,4 +1,4 @@
-// Files that were made to keep an importer busy, to fill its memory or to crash it.
+// Malicious files that would keep an importer busy, fill its memory or crash it.
 #include "hostile_files.hpp"
 
 #include <string_view>
@@ -33,7 +33,7 @@ using test::refusal_of;
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// A kind of file: how it is read, and one that is good.
+/// A file format: its reader, and a valid file.
 struct Kind {
   std::string ending;
   std::function<void(const fs::path&)> read;
@@ -186,7 +186,7 @@ TEST(HostileLif, ManyStationsAreRefused) {
               HasSubstr("f: layouts[0].stations[4096]: expected at most 4096 stations"));
 }
 
-// Each point of a curve looks for its span, by halves.
+// Each point of a curve finds its span by bisection.
 TEST(HostileLif, LongCurvesHaveTheSpansOfShortOnes) {
   Nurbs curve;
   curve.degree = 2;
@@ -294,7 +294,7 @@ TEST(HostileGrid, LargeDrawnFloorsAreRefused) {
             "a grid of 4000 x 4001 cells, allowed are 16000000 in all");
 }
 
-// With stops every 0.2 m a floor of 30 m x 30 m would have some 20,000 of them.
+// A floor of 30 m x 30 m with stops every 0.2 m would have some 20,000 of them.
 TEST(HostileGrid, FloorsHaveSoManyStopsAlone) {
   planning::GridFrame frame;
   frame.columns = 300;

@@ -1,4 +1,4 @@
-// Aligning and merging maps of one floor that were driven apart from each other.
+// Aligning and merging maps of one floor from separate drives.
 #include <algorithm>
 #include <cmath>
 
@@ -79,7 +79,7 @@ TEST(Align, TwoPartsOfADriveFindEachOther) {
   const Alignment found = align(first_part().map, second_part().map);
   EXPECT_TRUE(found.found) << found.reason;
   const Pose2 truth = geometry::between(first_part().T_world_map, second_part().T_world_map);
-  // Both maps err by some centimetres themselves.
+  // Both maps have errors of some centimetres themselves.
   expect_near(found.T_map_foreign, truth, 0.15, 0.02);
   EXPECT_GT(found.confidence, 0.3);
   const Alignment back = align(second_part().map, first_part().map);
@@ -105,7 +105,7 @@ TEST(Align, ATurnedDrawingIsFound) {
   expect_near(found.T_map_foreign, T, 0.05, 0.01);
 }
 
-/// Rooms like an L of 8 x 5 m, side by side, without doors.
+/// L-shaped rooms of 8 x 5 m, side by side, without doors.
 planning::OccupancyGrid rooms(int count) {
   planning::GridFrame frame;
   frame.columns = 100 * count;
@@ -142,7 +142,7 @@ TEST(Align, MapsWithoutStopsAreNamed) {
   EXPECT_THROW(align(first_part().map, first_part().map, settings), std::invalid_argument);
 }
 
-/// Largest distance between stops of one name once the maps lie on each other by their first.
+/// Largest distance between equal stops, once the maps are aligned by the first one.
 double apart_m(const storage::MapDocument& a, const storage::MapDocument& b) {
   const auto pose_in = [](const storage::MapDocument& map, const topomap::StopId& stop) {
     const auto at = std::ranges::find(map.trajectory.stops, stop, &topomap::StopPose::stop);
@@ -159,7 +159,7 @@ double apart_m(const storage::MapDocument& a, const storage::MapDocument& b) {
   return most_m;
 }
 
-/// The two parts, each with something drawn on it.
+/// The two parts, each with a drawing.
 const MergedMap& merged_parts() {
   static const MergedMap kMerged = [] {
     storage::MapDocument a = first_part().map;
@@ -184,8 +184,7 @@ TEST(Merge, BothOrdersGiveTheSameMap) {
   const std::size_t stops = first_part().truth.size() + second_part().truth.size();
   EXPECT_EQ(ab.document.local_maps.size(), stops);
   EXPECT_LT(apart_m(ab.document, ba.document), 0.02);
-  // Each in the frame of its first map, whose own first stop is its origin but for what merging
-  // bent.
+  // Each result is in the frame of its first map, whose first stop stays at the origin.
   const auto first_of = [](const storage::MapDocument& merged, const PartOfDrive& part) {
     return std::ranges::find(merged.trajectory.stops, part.map.local_maps[0].stop,
                              &topomap::StopPose::stop)
@@ -204,7 +203,7 @@ TEST(Merge, BothOrdersGiveTheSameMap) {
 TEST(Merge, TheResultIsAsTrueAsItsParts) {
   const MergedMap& merged = merged_parts();
   ASSERT_TRUE(merged.merged);
-  // Stops of both by their session and number.
+  // Pairs the stops of both by session and number.
   std::vector<std::pair<Pose2, Pose2>> pairs;
   for (const PartOfDrive* part : {&first_part(), &second_part()}) {
     for (std::size_t i = 0; i < part->truth.size(); ++i) {

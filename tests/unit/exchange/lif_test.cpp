@@ -29,7 +29,7 @@ class Lif : public ScratchTest {
   }
 };
 
-/// What LIF keeps: no clearance, no count of observations, no version.
+/// The part of a map that LIF keeps: no clearance, no count of observations, no version.
 topomap::GlobalMap reduced(const std::vector<std::uint32_t>& branches) {
   topomap::GlobalMap map = sample_graph();
   map.version = 0;
@@ -50,7 +50,7 @@ topomap::GlobalMap reduced(const std::vector<std::uint32_t>& branches) {
 }
 
 TEST_F(Lif, ReadsBackToTheLastDigit) {
-  // Branch 6 is too narrow and 8 virtual. The lane leaves only the way back of 4.
+  // Branch 6 is too narrow and 8 is virtual. The lane leaves only the backward direction of 4.
   const MapGraph graph = parse_lif(sample_lif().text, "f");
   expect_same(graph.map, reduced({1, 3, 4}));
   expect_same_places(graph.drawing, sample_drawing());

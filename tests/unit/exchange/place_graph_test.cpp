@@ -33,7 +33,7 @@ TEST(PlaceGraph, EverythingMovesTogetherAndBack) {
   move(graph, T);
   EXPECT_LT((graph.map.nodes[1].position_m - T * Eigen::Vector2d(4.0, 0.5)).norm(), 1e-12);
   EXPECT_LT((graph.drawing.places[0].position_m - T * Eigen::Vector2d(0.0, -0.6)).norm(), 1e-12);
-  // The lane turns with it: 3 + 1.2 rad, wrapped.
+  // The lane rotates with the map: 3 + 1.2 rad, wrapped.
   EXPECT_NEAR(graph.drawing.zones[3].value, 4.2 - 2.0 * 3.14159265358979, 1e-12);
   EXPECT_EQ(graph.drawing.zones[2].value, 0.35);
   move(graph, geometry::inverse(T));

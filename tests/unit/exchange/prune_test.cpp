@@ -19,7 +19,7 @@ constexpr std::uint64_t kGivenUp = 0x11;  // three days before the newest stop
 constexpr std::uint64_t kYesterday = 0x22;
 constexpr std::uint64_t kNewest = 0x33;
 
-/// A map of one session, and stops of three others that wait.
+/// A map of one session, and pending stops of three others.
 class PruneTest : public testing::Test {
  protected:
   PruneTest() {

@@ -1,5 +1,5 @@
-// Readers that are not ours: Python programs that follow the rules of the programs that maps are
-// exported for.
+// Independent readers: Python programs that follow the rules of the programs for which maps are
+// exported.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace topogeo::exchange {
 
-/// Runs readers.py with these words; what it prints. Throws std::runtime_error with that when it
-/// fails.
+/// Runs readers.py with these words and returns its output. Throws std::runtime_error with the
+/// output when it fails.
 std::string run_reader(const std::vector<std::string>& words);
 
 /// Runs any program the same way.

@@ -62,7 +62,7 @@ TEST_F(Repair, OfAFileThatIsCutShortEverythingBeforeTheCutIsKept) {
     for (std::size_t i = 0; i < maps.size(); ++i) {
       EXPECT_EQ(maps[i].points.size(), whole.local_maps[i].points.size());
     }
-    // It can be written, read again and has no fault.
+    // It can be written and read again without a fault.
     const std::string again = storage::map_file_bytes(map.document);
     EXPECT_THAT(contradictions(storage::parse_map_file(again, "again")), IsEmpty()) << size;
   }
@@ -89,7 +89,7 @@ TEST_F(Repair, ADamagedLocalMapCostsItselfAlone) {
   // The number of scan points of the third local map no longer fits its length.
   const std::string points(reinterpret_cast<const char*>(whole.local_maps[2].points.data()), 64);
   std::size_t at = 0;
-  for (int i = 0; i < 3; ++i) at = bytes.find(points, at + 1);  // all see the same walls beside
+  for (int i = 0; i < 3; ++i) at = bytes.find(points, at + 1);  // all see the same walls
   ASSERT_NE(at, std::string::npos);
   bytes[at - 1] = '\x7f';
   bytes[at - 2] = '\x7f';
@@ -106,7 +106,7 @@ TEST_F(Repair, ADamagedLocalMapCostsItselfAlone) {
 TEST_F(Repair, WhereALengthIsDamagedReadingGoesOnBehind) {
   const storage::MapDocument whole = whole_map();
   std::string bytes = storage::map_file_bytes(whole);
-  // Local maps begin with their robot: tag, length in two bytes, then that.
+  // A local map begins with the robot's name: tag, length in two bytes, name.
   std::size_t at = 0;
   for (int i = 0; i < 3; ++i) at = bytes.find("\x0a\x07robot-1", at + 1);
   bytes[at - 1] = '\x7f';
@@ -141,7 +141,7 @@ TEST_F(Repair, ADamagedNumberOfAStopMovesNoOther) {
   std::size_t at = 0;
   for (int i = 0; i < 2; ++i) at = bytes.find("\x0a\x07robot-1\x10", at + 1);
   ASSERT_NE(at, std::string::npos);
-  bytes[at + 10] = '\x05';  // the number behind the robot's name was 2
+  bytes[at + 10] = '\x05';  // the number after the robot's name was 2
   const RepairedMap map = repaired(bytes);
   ASSERT_EQ(map.document.local_maps.size(), 6U);
   EXPECT_EQ(map.document.local_maps[2].stamp_ns, 3'000'000'000);
@@ -184,7 +184,7 @@ TEST_F(Repair, FlippedBitsNeverCostMoreThanTheyTouch) {
 TEST_F(Repair, ADamagedRoomCostsItselfAloneAndNoNumberIsGivenTwice) {
   StoredPieces pieces = pieces_of_map_file(storage::map_file_bytes(whole_map()), "f");
   ASSERT_EQ(pieces.rooms.size(), 2U);
-  pieces.rooms.push_back(pieces.rooms[1]);  // its number twice
+  pieces.rooms.push_back(pieces.rooms[1]);  // a duplicate number
   pieces.rooms[0] = "\x08";
   pieces.last_room = 0;
   const RepairedMap map = assemble(pieces, {}, "f");
@@ -203,7 +203,7 @@ TEST_F(Repair, WhatIsNoMapIsRefused) {
               HasSubstr("no.sqlite: nothing can be read"));
 }
 
-/// A database as the last program of a version wrote it, made by SQLite's own library.
+/// A database from the last program of a schema version, made with SQLite's own library.
 void make_database(const std::filesystem::path& file, const std::string& golden) {
   const std::string script =
       "import sqlite3,sys; d=sqlite3.connect(sys.argv[1]); "
@@ -247,7 +247,7 @@ TEST_F(Repair, ADatabaseWithDamagedPagesGivesTheOthers) {
       ++saved;
     });
     EXPECT_TRUE(error.empty() || error.find("damaged.sqlite") != std::string::npos) << error;
-    EXPECT_EQ(content(damaged), bad);  // the file itself stays as it is
+    EXPECT_EQ(content(damaged), bad);  // the file itself is unchanged
   }
   EXPECT_GE(saved, bytes.size() / kPage - 3);
 }

@@ -30,7 +30,7 @@ topomap::GlobalMap curve(double clearance_m) {
   return map;
 }
 
-/// Farthest that any point of the branch lies from the pieces.
+/// Largest distance of any point of the branch from the pieces.
 double farthest(const topomap::MapBranch& branch, const RouteNetwork& network) {
   double most_m = 0.0;
   for (const topomap::BranchPoint& p : branch.points) {
@@ -49,7 +49,7 @@ double farthest(const topomap::MapBranch& branch, const RouteNetwork& network) {
 TEST(RouteNetwork, LeavesOutBendsWithinTheTolerance) {
   const topomap::GlobalMap map = curve(2.0);
   const RouteNetwork network = route_network(map, {}, nullptr, {});
-  // A chord of a circle of 4 m stays within 0.1 m of it up to 0.45 rad: four at least.
+  // A chord of a circle of 4 m stays within 0.1 m of it up to 0.45 rad, so there are at least four.
   EXPECT_GE(network.pieces.size(), 4U);
   EXPECT_LE(network.pieces.size(), 8U);
   EXPECT_LE(farthest(map.branches[0], network), 0.1 + 1e-9);
@@ -69,7 +69,7 @@ TEST(RouteNetwork, StaysNearTheBranchWhereItIsNarrow) {
 
 TEST(RouteNetwork, LeavesOutWhatTheRobotIsTooWideForAndSaysSo) {
   const RouteNetwork network = route_network(sample_graph(), {}, nullptr, {});
-  // Node 12 hangs on a stretch beyond the narrow one; the virtual branch is not written.
+  // Node 12 is on a stretch beyond the narrow one; the virtual branch is not written.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> of_six;
   for (const NetworkPiece& piece : network.pieces) {
     EXPECT_GE(piece.clearance_m, 0.3);

@@ -1,4 +1,4 @@
-// A hand-made map, and helpers of the tests that write and read files.
+// A hand-made map, and helpers for tests that write and read files.
 #pragma once
 
 #include <filesystem>
@@ -46,7 +46,7 @@ inline topomap::GlobalMap sample_graph() {
 inline storage::MapDrawing sample_drawing() {
   storage::MapDrawing drawing;
   drawing.places = {{"room <A> & \"B\"", {0.0, -0.6}}, {"Küche", {8.0, 1.0 / 3.0}, -2.0 / 3.0}};
-  // The last two lie on the two parallel branches; the hall goes round clockwise.
+  // The last two are on the two parallel branches; the hall's corners are clockwise.
   using planning::ZoneKind;
   drawing.zones = {
       {"stairs", {{1.0, 1.0}, {3.0, 1.0}, {3.0, 2.0 / 3.0 + 2.0}}, ZoneKind::kNoGo, 0.0},
@@ -60,7 +60,7 @@ inline bool same(const topomap::BranchPoint& a, const topomap::BranchPoint& b) {
   return a.position_m == b.position_m && a.clearance_m == b.clearance_m;
 }
 
-/// To the last bit.
+/// Equal to the last bit.
 inline void expect_same(const topomap::GlobalMap& a, const topomap::GlobalMap& b) {
   EXPECT_EQ(a.version, b.version);
   ASSERT_EQ(a.nodes.size(), b.nodes.size());
@@ -140,7 +140,7 @@ class ScratchTest : public testing::Test {
   std::filesystem::path directory_;
 };
 
-/// What `call` throws says; "" when it throws nothing.
+/// Message of the exception that `call` throws; "" without one.
 template <typename Call>
 std::string error_of(const Call& call) {
   try {

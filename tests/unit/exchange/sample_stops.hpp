@@ -8,8 +8,8 @@
 
 namespace topogeo::exchange {
 
-/// Beams from -90 degrees on, a degree apart, in a room with walls at y = 1 and y = -1, x = 9 and
-/// x = -1; `x_m` is where the robot is.
+/// Beams from -90 degrees, a degree apart, in a room with walls at y = 1 and y = -1, x = 9 and x =
+/// -1; the robot is at `x_m`.
 inline std::vector<topomap::ScanPoint> corridor_points(double x_m) {
   std::vector<topomap::ScanPoint> points;
   for (int i = 0; i <= 180; ++i) {
@@ -26,7 +26,7 @@ inline std::vector<topomap::ScanPoint> corridor_points(double x_m) {
 }
 
 /// Four stops a metre apart, then two of a later drive; the loop between the first and the fourth
-/// agrees with the rest. The fifth is not located: nothing of its pose means anything.
+/// agrees with the rest. The fifth is not located: its pose has no meaning.
 inline storage::MapDocument sample_stops() {
   storage::MapDocument document;
   document.robot_id = "robot-1";
@@ -53,7 +53,7 @@ inline storage::MapDocument sample_stops() {
     stop.located = id != 4;
     document.trajectory.stops.push_back(stop);
   }
-  // Between them a scan that was no stop.
+  // Adds a scan between them that was no stop.
   document.local_maps[5].track = {{45, 5'500'000'000, {0.5, 0.0, 0.0}, {0.5, 0.0, 0.0}, true}};
   document.loop_closures = {{0, 3, {3.0, 0.0, 0.0}}};
   return document;

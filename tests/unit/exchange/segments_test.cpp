@@ -22,8 +22,8 @@ TEST(Segments, MeetAtCrossingsAndTouches) {
 TEST(Segments, PolygonsAreSimpleOrNot) {
   EXPECT_TRUE(is_simple(Polygon{{0, 0}, {4, 0}, {4, 3}}));
   EXPECT_TRUE(is_simple(Polygon{{0, 0}, {4, 0}, {4, 4}, {2, 1}, {0, 4}}));
-  EXPECT_FALSE(is_simple(Polygon{{0, 0}, {4, 4}, {4, 0}, {0, 4}}));          // a bow
-  EXPECT_FALSE(is_simple(Polygon{{0, 0}, {4, 0}, {4, 0}, {4, 4}}));          // a corner twice
+  EXPECT_FALSE(is_simple(Polygon{{0, 0}, {4, 4}, {4, 0}, {0, 4}}));          // crosses itself
+  EXPECT_FALSE(is_simple(Polygon{{0, 0}, {4, 0}, {4, 0}, {4, 4}}));          // a repeated corner
   EXPECT_FALSE(is_simple(Polygon{{0, 0}, {4, 0}, {2, 0}, {2, 4}}));          // back on itself
   EXPECT_FALSE(is_simple(Polygon{{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}}));  // touches itself
 }
@@ -50,7 +50,7 @@ TEST(Segments, TouchingAgreesWithSamplesOfTheSegment) {
     const Eigen::Vector2d b(coordinate(), coordinate());
     bool sampled = false;
     for (int k = 0; k <= 200 && !sampled; ++k) sampled = inside(shape, a + (b - a) * (k / 200.0));
-    // Samples can miss a corner that is only grazed.
+    // Samples can miss a corner that is only touched.
     const bool touches = segment_touches(shape, a, b);
     EXPECT_TRUE(touches || !sampled) << a << b;
     if (touches && !sampled) {

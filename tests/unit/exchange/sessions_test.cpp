@@ -17,8 +17,8 @@ using testing::HasSubstr;
 constexpr std::uint64_t kMonday = 0xaaULL;
 constexpr std::uint64_t kTuesday = 0xbbULL;
 
-/// Stops 0 to 2 of Monday, 3 and 4 of Tuesday and 5 of Monday once more; a measurement with Tuesday
-/// has pulled stop 5 half a metre away.
+/// Stops 0 to 2 of Monday, 3 and 4 of Tuesday and 5 of Monday again; a measurement with Tuesday has
+/// pulled stop 5 half a metre away.
 storage::MapDocument two_sessions() {
   storage::MapDocument document = sample_stops();
   const std::vector<std::uint64_t> sessions = {kMonday,  kMonday,  kMonday,
@@ -65,7 +65,7 @@ TEST(Sessions, OneThatIsRemovedLeavesNoTrace) {
   ASSERT_EQ(map.loop_closures.size(), 1U);
   EXPECT_EQ(map.loop_closures[0].later_id, 3U);
   ASSERT_EQ(map.edges.size(), 3U);
-  // The pose goes back to where the other measurements have it.
+  // The pose returns to the one of the other measurements.
   EXPECT_NEAR(map.trajectory.stops[3].T_map_robot.x_m, 5.0, 1e-3);
   EXPECT_EQ(map.trajectory.stops[0].T_map_robot, geometry::Pose2{});
   EXPECT_THAT(map.refused_merges,

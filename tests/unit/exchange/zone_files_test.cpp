@@ -28,7 +28,7 @@ TEST_F(ZoneFiles, AZoneSetReadsBackToTheLastDigit) {
   const ZoneSet set = parse_zone_set(sample_set(), "f");
   storage::MapDrawing expected = sample_drawing();
   expected.places.clear();
-  // Counter-clockwise, from the same corner on.
+  // Counter-clockwise, from the same corner.
   expected.zones[1].polygon_m = {{4.5, -2.0}, {9.5, -2.0}, {9.5, 2.0}, {4.5, 2.0}};
   storage::MapDrawing read;
   read.zones = set.zones;
@@ -118,7 +118,7 @@ TEST_F(ZoneFiles, MasksHaveTheCellsThatZonesTouch) {
             "0 0 0 0 29 29 0 0 0 0 0 50 0 0 0 0 0 50 0 0 0 0 0 0\n");
   EXPECT_THAT(content(directory_ / "floor_speed.yaml"),
               HasSubstr("# CostmapFilterInfo: type 2 (speed in m/s), base 0.0, multiplier 0.01\n"));
-  // Our reader takes them as they are.
+  // Our reader accepts them unchanged.
   EXPECT_EQ(read_grid_image(directory_ / "floor_keepout.yaml").values[7], 100);
 }
 

@@ -38,7 +38,7 @@ TEST(OdometryTrack, AfterTheLastSampleItsSpeedsGoOn) {
   const auto arc = track.at(1200 * kMs);
   ASSERT_TRUE(arc);
   EXPECT_NEAR(arc->T_odom_robot.theta_rad, 0.1, kTolerance);
-  // A circle of 1 m: half a millimetre's difference between arc and chord at most.
+  // A circle of 1 m: arc and chord differ by half a millimetre at most.
   EXPECT_NEAR(arc->T_odom_robot.x_m, std::sin(0.1), 5e-4);
   EXPECT_NEAR(arc->T_odom_robot.y_m, 1.0 - std::cos(0.1), 5e-4);
 }
@@ -51,7 +51,7 @@ TEST(OdometryTrack, WhatIsNotKnownIsNotAnswered) {
   EXPECT_FALSE(track.at(99 * kMs));
   EXPECT_TRUE(track.at(600 * kMs));
   EXPECT_FALSE(track.at(600 * kMs + 1));
-  EXPECT_FALSE(track.add({100 * kMs, {9.0, 9.0, 9.0}}));  // not after the one before
+  EXPECT_FALSE(track.add({100 * kMs, {9.0, 9.0, 9.0}}));  // not after the previous one
   EXPECT_EQ(track.at(100 * kMs)->T_odom_robot, Pose2{});
   track.add({100 * kMs + OdometryTrack::kKept_ns + 1, {}});
   EXPECT_FALSE(track.at(100 * kMs));  // forgotten

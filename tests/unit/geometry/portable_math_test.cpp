@@ -34,7 +34,7 @@ TEST(PortableMath, SineAndCosineFollowLibm) {
     for (int i = 0; i < 50000; ++i) {
       const double angle = uniform(-range, range);
       const SinCos r = sincos(angle);
-      // Relative to 1: beside a zero the absolute error is what a rotation sees.
+      // Relative to 1: near a zero a rotation depends on the absolute error.
       ASSERT_NEAR(r.sin, std::sin(angle), 4e-16) << angle;
       ASSERT_NEAR(r.cos, std::cos(angle), 4e-16) << angle;
     }
@@ -64,7 +64,7 @@ TEST(PortableMath, SineAndCosineOfQuarterTurns) {
   }
 }
 
-// Poses that strangers send may have such headings.
+// Strangers may send poses with such headings.
 TEST(PortableMath, SineAndCosineOfAnyNumberAreOnTheCircleOrNone) {
   for (const double angle : {1e9, -3e12, 2.3e180, -std::numeric_limits<double>::max()}) {
     const SinCos at = sincos(angle);
@@ -89,7 +89,7 @@ TEST(PortableMath, ArcTangentOnTheAxes) {
   EXPECT_EQ(atan2(0.0, 0.0), 0.0);
   EXPECT_EQ(atan2(0.0, 2.0), 0.0);
   EXPECT_EQ(atan2(0.0, -2.0), kPi);
-  EXPECT_EQ(atan2(-0.0, -2.0), kPi);  // (-pi, pi]: one name for the half turn
+  EXPECT_EQ(atan2(-0.0, -2.0), kPi);  // (-pi, pi]: the half turn has only one value
   EXPECT_EQ(atan2(3.0, 0.0), kPi / 2.0);
   EXPECT_EQ(atan2(-3.0, 0.0), -kPi / 2.0);
   EXPECT_NEAR(atan2(1.0, 1.0), kPi / 4.0, 2e-16);

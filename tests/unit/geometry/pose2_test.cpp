@@ -18,7 +18,7 @@ class RandomPoses {
   double uniform(double low, double high) {
     return low + (high - low) * (static_cast<double>(random_()) / 18446744073709551616.0);
   }
-  // Two draws by Box and Muller's method would share a call; one is enough here.
+  // Box and Muller's method gives two draws; one is enough here.
   double normal() {
     return std::sqrt(-2.0 * std::log(uniform(1e-12, 1.0))) *
            std::cos(uniform(0.0, 2.0 * kHalfTurn_rad));
@@ -71,7 +71,7 @@ TEST(WrapAngle, StaysInRangeAndKeepsTheDirection) {
 }
 
 TEST(Pose2, ComposesAQuarterTurnByHand) {
-  // One metre ahead of a robot at (2, 3) that looks along +y.
+  // One metre ahead of a robot at (2, 3) that faces +y.
   const Pose2 T_a_b{2, 3, kHalfTurn_rad / 2.0};
   expect_near(T_a_b * Pose2{1, 0, 0}, {2, 4, kHalfTurn_rad / 2.0}, 1e-15);
   EXPECT_NEAR((T_a_b * Eigen::Vector2d(0, 1)).x(), 1.0, 1e-15);
@@ -157,7 +157,7 @@ TEST(Covariance, OfAnInverseAgreesWithNumericDifferentiation) {
     const Eigen::Matrix3d j = differences([&](const auto& d) { return inverse(plus(a, d)); });
     const Eigen::Matrix3d expected = j * cov * j.transpose();
     EXPECT_LT((inverse_covariance(a, cov) - expected).norm(), 1e-7 * expected.norm());
-    // Turning it round twice gives it back.
+    // Inverting it twice restores it.
     const Eigen::Matrix3d twice = inverse_covariance(inverse(a), inverse_covariance(a, cov));
     EXPECT_LT((twice - cov).norm(), 1e-9 * cov.norm());
   }
@@ -188,7 +188,7 @@ TEST(Covariance, OfACompositionAgreesWithSampling) {
 TEST(Mahalanobis, IsTheSquaredLengthAfterWhitening) {
   RandomPoses random;
   for (int i = 0; i < 200; ++i) {
-    // Not nearly singular: there neither of the two is exact.
+    // Not nearly singular, because neither method is exact there.
     const Eigen::Matrix3d cov = random_covariance(random) + 0.01 * Eigen::Matrix3d::Identity();
     const Eigen::Vector3d d(random.normal(), random.normal(), random.normal());
     const Eigen::Vector3d white = Eigen::LLT<Eigen::Matrix3d>(cov).matrixL().solve(d);

@@ -1,4 +1,4 @@
-// Scans without noise of worlds made of a few lines, and branch samples by hand.
+// Noiseless scans of worlds made of a few lines, and hand-made branch samples.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace topogeo::localization::test {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// Part of a circle that a laser sees; beams from `first_deg`, in steps, to `last_deg`.
+/// A laser's part of a circle; beams from `first_deg`, in steps, to `last_deg`.
 struct Sweep {
   double first_deg = -180.0;
   double last_deg = 179.5;
@@ -71,7 +71,7 @@ inline world::World endless_corridor() {
   return lines({{{-40, -1}, {40, -1}}, {{-40, 1}, {40, 1}}});
 }
 
-/// The same corridor with a door 0.9 m wide in its left wall, shut, 0.08 m back, from x = 2 on.
+/// The same corridor with a shut door 0.9 m wide in its left wall, set back by 0.08 m, from x = 2.
 inline world::World corridor_with_shut_door() {
   return lines({{{-40, -1}, {40, -1}},
                 {{-40, 1}, {2, 1}},

@@ -25,7 +25,7 @@ inline world::World world(const std::string& name) {
                            (name + ".world.yaml"));
 }
 
-/// What the laser at the robot's origin reads at a true pose.
+/// Readings of a laser at the robot's origin for a true pose.
 inline scan::Scan scan_at(const world::World& world, const geometry::Pose2& T_world_robot,
                           std::uint64_t seed) {
   const simulation::BeamPattern beams;
@@ -38,7 +38,7 @@ inline scan::Scan scan_at(const world::World& world, const geometry::Pose2& T_wo
   return scan;
 }
 
-/// The local map of one stop at a true pose, which its odometry is, too.
+/// The local map of one stop at a true pose, with the same odometry.
 inline topomap::LocalMap map_at(const world::World& world, const geometry::Pose2& T_world_robot,
                                 std::uint32_t id) {
   const scan::Scan scan = scan_at(world, T_world_robot, 100 + id);
@@ -80,7 +80,7 @@ struct DrivenMaps {
   std::vector<geometry::Pose2> T_world_robot;  ///< index = local map id
 };
 
-/// Drives `tour_m` (the world's own tour when empty) with the simulation's usual drift.
+/// Drives `tour_m` (the world's own tour when empty) with the simulation's default drift.
 inline DrivenMaps drive(world::World world, const std::vector<Eigen::Vector2d>& tour_m,
                         double scan_step_m = 0.33) {
   if (!tour_m.empty()) world.tour_m = tour_m;
@@ -99,7 +99,7 @@ inline DrivenMaps drive(world::World world, const std::vector<Eigen::Vector2d>& 
   return driven;
 }
 
-/// Once round the floor and 10 m on: 110 m of corridors, of which the last see the first again.
+/// Once round the floor and 10 m on: 110 m of corridors; the last stops see the first places again.
 inline const DrivenMaps& round_trip() {
   static const DrivenMaps driven = drive(world("floor"), {{1.3, 1.2},
                                                           {15.0, 1.15},

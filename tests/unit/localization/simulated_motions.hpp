@@ -1,4 +1,4 @@
-// Motions of a robot by odometry and by a laser, whose noise is known because it was made here.
+// Motions of a robot by odometry and by a laser, with known, simulated noise.
 #pragma once
 
 #include <cmath>
@@ -18,22 +18,21 @@ using geometry::Pose2;
 inline constexpr OdometryNoise kTrue{0.002, 0.003, 0.0008, 0.0003, 0.001};
 inline constexpr OdometryNoise kFallback{0.11, 0.12, 0.13, 0.14, 0.15};
 
-/// How a drive is made up.
+/// Parameters of a drive.
 struct Drive {
   OdometryNoise noise = kTrue;
   std::uint32_t stops = 300;
   double path_m = 0.35;  // of a step, three to a stretch
   double turn_rad =
-      0.5;  // deviation of the turn of a step; every other stretch is straight, by chance
+      0.5;  // deviation of the turn of a step; a random half of the stretches is straight
   double stated_over_true = 1.0;  // deviations of the measurements
   double outlying = 0.0;          // share of measurements that are wrong by about a metre
   double too_long = 0.0;          // systematic errors
   double left_rad_per_m = 0.0;
   double turn_too_much = 0.0;
   geometry::Pose2 T_robot_laser;
-  geometry::Pose2
-      T_robot_assumed;  // where the laser was taken to be when its motions were measured
-  bool exact = false;   // the measurements have no error, whatever they state
+  geometry::Pose2 T_robot_assumed;  // mounting assumed when the laser's motions were measured
+  bool exact = false;  // the measurements have no error, whatever covariance they state
 };
 
 struct Motions {
@@ -53,7 +52,7 @@ inline Pose2 moved(const Pose2& pose, const Eigen::Vector3d& by) {
   return {pose.x_m + by.x(), pose.y_m + by.y(), geometry::wrap_angle(pose.theta_rad + by.z())};
 }
 
-/// What really happened while the odometry said `step`.
+/// The true motion for an odometry step of `step`.
 inline Pose2 true_step(support::Random& random, const Drive& drive, const Pose2& step) {
   const double path_m = std::sqrt(step.position_m().squaredNorm());
   const Pose2 random_part = moved(step, draw(random, advance({}, step, drive.noise).covariance));

@@ -14,7 +14,7 @@ using testing::SizeIs;
 constexpr Handle kFirst{1};
 constexpr Handle kSecond{2};
 
-/// As DDS does it: one handle for each kind and id.
+/// Instance handles like those of DDS: one for each kind and id.
 Handle instance_of(const msg::MapElement& element) {
   return {static_cast<std::uint8_t>(element.kind()), static_cast<std::uint8_t>(element.id())};
 }
@@ -92,7 +92,7 @@ TEST_F(Following, WhileAnUpdateComesTheMapBeforeStands) {
   EXPECT_EQ(kept->node_position().x_m(), 0.0) << "elements that are kept do not change";
 }
 
-// As many nodes and branches as the summary counts: only the samples tell.
+// The counts of nodes and branches match the summary: only the samples reveal the gap.
 TEST_F(Following, AMapWithAnOldSampleIsNotWhole) {
   put_first_map();
   const msg::MapElement lost = store_.node(1, 1.0);
@@ -125,7 +125,7 @@ TEST_F(Following, AnElementThatWasNeverReadMayBeDisposed) {
   EXPECT_THAT(follower_.map()->nodes, SizeIs(2));
 }
 
-// Elements went while nobody sent disposals: the store was dead.
+// Elements disappeared without disposals, because the store was dead.
 TEST_F(Following, OfAStoreThatStartsAgainNothingOldIsLeft) {
   put_first_map();
   EXPECT_FALSE(put(store_.node(1, 1.0))) << "killed in the middle of an update";
@@ -138,7 +138,7 @@ TEST_F(Following, OfAStoreThatStartsAgainNothingOldIsLeft) {
   EXPECT_THAT(follower_.map()->nodes, SizeIs(1));
   EXPECT_THAT(follower_.map()->branches, IsEmpty());
   EXPECT_TRUE(follower_.is_current());
-  // What is still under way of the first one disturbs nothing.
+  // Late samples of the first store have no effect.
   EXPECT_FALSE(remove(store_.dispose(msg::kElementNode, 2)));
   EXPECT_TRUE(follower_.is_current());
 }
@@ -172,10 +172,10 @@ TEST_F(Following, ChangesLeadFromOneMapToTheNextThatIsTaken) {
 
   put(store_.node(3, 1.0));
   put(store_.summary(11));
-  remove(store_.dispose(msg::kElementNode, 3));  // new and gone between two calls: no change
+  remove(store_.dispose(msg::kElementNode, 3));  // added and removed between two calls: no change
   remove(store_.dispose(msg::kElementBranch, 1));
   put(store_.node(1, 0.5));
-  put(store_.node(2, 5.0));  // sent again as it was: no change
+  put(store_.node(2, 5.0));  // sent again unchanged: no change
   put(store_.summary(12));
   changes = follower_.take_changes();
   ASSERT_THAT(changes, SizeIs(2));

@@ -1,4 +1,4 @@
-// The map over DDS, as a program of others reads it.
+// The map over DDS, read by a program outside the project.
 #include "topogeo/map_client/map_reader.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ class Reading : public testing::Test {
     send(store_.branch(1, 1, 2));
     send(store_.summary(10));
   }
-  /// Waits until the reader holds a version.
+  /// Waits until the reader has a version.
   static bool wait_for(MapReader& reader, std::uint64_t version) {
     return test::wait_for("version " + std::to_string(version) + " of the map", [&] {
       static_cast<void>(reader.wait(milliseconds(20)));
@@ -105,7 +105,7 @@ TEST_F(Reading, WhatStaysIncompleteIsReadAnew) {
   EXPECT_TRUE(wait_for(reader, 10));
 }
 
-// The program takes nothing until the other one has written.
+// The program reads nothing until the other writer has written.
 TEST_F(Reading, AnotherWriterOfAnElementTakesNothingFromTheStores) {
   MapReader reader(options_);
   messaging::Writer<msg::MapElement> stranger(participant_);

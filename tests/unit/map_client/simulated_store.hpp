@@ -1,4 +1,4 @@
-// What a map store sends of a map: each element numbered, then the summary of what was sent.
+// A map store's messages: each element with its number, then the summary of all sent elements.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ class SimulatedStore {
  public:
   explicit SimulatedStore(std::uint64_t map_id = 1) : map_id_(map_id) {}
 
-  /// A node, new or another than before.
+  /// A new or changed node.
   msg::MapElement node(std::uint32_t id, double x_m) {
     msg::MapElement out = element(msg::kElementNode, id);
     out.node_position().x_m(x_m);
@@ -28,7 +28,7 @@ class SimulatedStore {
     out.node_b(node_b);
     return sent(out);
   }
-  /// What was sent under this kind and id is gone.
+  /// Removes the element with this kind and id.
   msg::MapElement dispose(msg::MapElementKind kind, std::uint32_t id) {
     return sent_.extract({kind, id}).mapped();
   }
@@ -48,7 +48,7 @@ class SimulatedStore {
     summary_ = out;
     return out;
   }
-  /// What a late reader gets: the last sample of each instance.
+  /// The samples for a late reader: the last one of each instance.
   [[nodiscard]] std::vector<msg::MapElement> history() const {
     std::vector<msg::MapElement> out;
     for (const auto& [key, sample] : sent_) out.push_back(sample);

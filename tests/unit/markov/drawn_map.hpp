@@ -1,5 +1,5 @@
-// Worlds of the Markov tests: cells drawn in ASCII, and a room whose walls are known as lines so
-// that what a sensor really measures does not come from the cells under test.
+// Worlds of the Markov tests: cells drawn in ASCII, and a room whose walls are known as lines, so
+// that true readings are independent of the cells under test.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +20,8 @@ namespace topogeo::markov::test {
 
 inline constexpr double kQuarter_rad = 0.5 * std::numbers::pi;
 
-/// The upper line is the highest row; '#' is an obstacle. Cell (0, 0) is at the lower left, its
-/// outer corner at the origin of the map.
+/// The top line is the highest row; '#' is an obstacle. Cell (0, 0) is at the lower left, its outer
+/// corner at the origin of the map.
 inline ObstacleCells drawn(const std::vector<std::string>& lines, double cell_m = 0.1,
                            int cells_a_side = 1) {
   std::vector<std::uint8_t> cells;

@@ -33,10 +33,10 @@ TEST(MarkovLocalizer, BeginsAtTheBaseStationWithOnePerceptualUpdate) {
       localizer.initialize(base, room.measured(base, test::macondo_ring()));
   EXPECT_TRUE(report.possible);
   EXPECT_EQ(report.match.compared, 6);
-  EXPECT_EQ(report.match.reliability, 1.0);  // everything within 2.5 m
+  EXPECT_EQ(report.match.reliability, 1.0);  // everything is within 2.5 m
   EXPECT_DOUBLE_EQ(report.weight, 0.6);
   expect_probabilities(localizer.belief());
-  // 1 - 0.6 from the base station itself, the rest by the sensors.
+  // 1 - 0.6 from the base station itself, the rest from the sensors.
   EXPECT_GT(localizer.belief().at({0, 0}), 0.4);
   EXPECT_GT(localizer.belief().at({1, 0}), 0.0);
   EXPECT_GT(localizer.belief().at({0, 0}), localizer.belief().at({1, 0}) + 0.4);
@@ -120,7 +120,7 @@ TEST(MarkovLocalizer, EntropyAndSpreadOfThreeEqualCells) {
   localizer.move({MoveKind::kAdvance, 0.1});
   const std::optional<Estimate> estimate = localizer.estimate();
   ASSERT_TRUE(estimate);
-  EXPECT_EQ(estimate->offset, (Cell{0, 0}));  // of equals the nearest to the expected cell
+  EXPECT_EQ(estimate->offset, (Cell{0, 0}));  // nearest to the expected cell among equals
   EXPECT_NEAR(estimate->probability, 1.0 / 3.0, 1e-12);
   EXPECT_NEAR(estimate->entropy, std::log(3.0), 1e-12);
   EXPECT_NEAR(estimate->spread_m, 0.1 * std::sqrt(2.0 / 3.0), 1e-12);
@@ -167,7 +167,7 @@ TEST(MarkovLocalizer, OncePerPrimitiveIfTheStepIsZero) {
 }
 
 TEST(MarkovLocalizer, ProbabilityDoesNotLeaveACorridor) {
-  // Three cells wide: the walls on both sides keep zero however far the robot goes.
+  // Three cells wide: the walls on both sides keep zero however far the robot drives.
   const test::Room room{80, 3};
   MarkovLocalizer localizer{{}, room.cells(), test::macondo_ring()};
   localizer.initialize({0.55, 0.25, 0.0}, kNothing);
@@ -245,7 +245,7 @@ TEST(MarkovLocalizer, ReadingsCanBringARobotBackThatWasNowhere) {
   MarkovLocalizer localizer{{}, room.cells(), ring};
   localizer.initialize({1.85, 1.05, 0.0}, kNothing);
   EXPECT_FALSE(localizer.move({MoveKind::kAdvance, 0.6}).possible);
-  // It stands before the wall, six cells short of where it should be.
+  // The robot is in front of the wall, six cells short of its expected place.
   const PerceptionReport report = localizer.perceive(room.measured({1.85, 1.05, 0.0}, ring));
   ASSERT_TRUE(report.possible) << report.reason;
   EXPECT_GT(report.weight, 0.0);

@@ -1,5 +1,5 @@
-// A robot that is some cells off its route finds out and comes back: what Markov localization is
-// for. The readings come from the walls as lines, not from the cells that the localizer sees.
+// A robot some cells off its route notices it and returns, the purpose of Markov localization. The
+// readings come from the walls as lines, not from the localizer's cells.
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ struct Drive {
   std::vector<RangeSensor> ring = test::macondo_ring();
   MarkovLocalizer localizer{{}, room.cells(), ring};
 
-  /// From the base station 2.5 m along the corridor, to 2.3 m before its end.
+  /// Starts with the robot 2.5 m along the corridor from its base station, 2.3 m before its end.
   Drive() {
     const geometry::Pose2 base{1.35, 1.15, 0.0};
     localizer.initialize(base, room.measured(base, ring));
@@ -132,7 +132,7 @@ TEST(Relocalization, AnObstacleOnTheReturnPathIsReported) {
   localizer.initialize({0.25, 0.35, 0.0}, std::vector<float>(6, scan::Scan::kNoReturn));
   EXPECT_TRUE(localizer.relocalization_moves({0.65, 0.35, 0.0})->blocked);
   EXPECT_FALSE(localizer.relocalization_moves({0.25, 0.55, 0.0})->blocked);
-  EXPECT_TRUE(localizer.relocalization_moves({0.25, 0.95, 0.0})->blocked);  // out of the map
+  EXPECT_TRUE(localizer.relocalization_moves({0.25, 0.95, 0.0})->blocked);  // outside the map
 }
 
 TEST(Relocalization, AcceptingTheEstimateLeavesProbabilitiesInTheirPlaces) {

@@ -19,14 +19,14 @@ TEST(ConeRangesTable, AgreesWithRaysToTheWallsOfARoom) {
   ConeRanges ranges(cells, 15.0 * std::numbers::pi / 180.0, 5.0);
   support::Random random(3);
   for (int i = 0; i < 300; ++i) {
-    // In the middle of a square, along a bearing of the table.
+    // At the centre of a square, along a bearing of the table.
     const auto bearing = static_cast<double>(random.below(ConeRanges::kBearings));
     const geometry::Pose2 at{0.425 + 0.05 * static_cast<double>(random.below(68)),
                              0.425 + 0.05 * static_cast<double>(random.below(48)),
                              bearing * 2.0 * std::numbers::pi / ConeRanges::kBearings};
     const double exact_m =
         room.measured(at, {RangeSensor{{}, 15.0 * std::numbers::pi / 180.0}}).front();
-    // From the face of the wall to the middle of what the ray crosses of its cell.
+    // The table's range ends halfway through the wall cell, not at its face.
     const double behind_m = ranges.range_m(at.position_m(), at.theta_rad) - exact_m;
     EXPECT_GT(behind_m, -0.002) << i;
     EXPECT_LT(behind_m, 0.075) << i;
@@ -71,7 +71,7 @@ TEST(PoseGridTest, BlurAddsItsVarianceAndShiftMovesTheMean) {
   EXPECT_FALSE(grid.normalize());
 }
 
-/// A robot in a room of 4 x 3 m whose odometry errs; it reads the walls exactly.
+/// A robot with noisy odometry in a room of 4 x 3 m; it reads the walls exactly.
 class PoseLocalizerTest : public testing::Test {
  protected:
   void drive(const geometry::Pose2& step, const geometry::Pose2& measured) {
@@ -133,8 +133,8 @@ TEST_F(PoseLocalizerTest, ReadingsWithoutEchoTellNothing) {
   EXPECT_THROW(localizer.perceive(std::vector<float>(6, -1.0F)), std::invalid_argument);
 }
 
-/// Error along x, rms of several robots with a wall 4 m ahead as their only clue: of four readings
-/// one is exact and three are off by anything up to 0.3 m.
+/// RMS error along x of several robots with a wall 4 m ahead as their only clue: one of four
+/// readings is exact and three are off by up to 0.3 m.
 double off_by_far_readings_m(double far_off_share) {
   constexpr int kRobots = 6;
   const Room hall{60, 60};

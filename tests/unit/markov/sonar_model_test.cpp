@@ -28,8 +28,8 @@ std::vector<RangeSensor> six_at_the_edge() {
 }
 
 TEST(SonarModel, VirtualReadingsCountTheCellsAsInFigure8) {
-  // The robot covers the 3 x 3 cells drawn as _ and heads to the right. Between its edge and the
-  // nearest obstacle there are (3, 3, 4, 3, 2, 2) cells.
+  // The robot covers the 3 x 3 cells drawn as _ and faces right. Between its edge and the nearest
+  // obstacle there are (3, 3, 4, 3, 2, 2) cells.
   const ObstacleCells map = test::drawn({"....#.....",    // of sonar 2
                                          "..#.......",    // of sonar 3
                                          "..........",    //
@@ -49,7 +49,7 @@ TEST(SonarModel, VirtualReadingsCountTheCellsAsInFigure8) {
   }
 }
 
-/// Where a ray enters the nearest obstacle of all, by intersecting it with every one.
+/// Brute force: range at which a ray enters the nearest of all obstacles.
 double ray_m(const ObstacleCells& map, const Eigen::Vector2d& from_m, double bearing_rad) {
   double nearest_m = kInfinity;
   const double along[] = {std::cos(bearing_rad), std::sin(bearing_rad)};
@@ -73,7 +73,7 @@ double ray_m(const ObstacleCells& map, const Eigen::Vector2d& from_m, double bea
 
 void expect_as_ray_by_ray(const ObstacleCells& map, const geometry::Pose2& pose, int size) {
   std::vector<RangeSensor> sensors = test::macondo_ring();
-  sensors.push_back({.T_robot_sensor = {-0.05, 0.02, 2.5}});  // a beam of a laser
+  sensors.push_back({.T_robot_sensor = {-0.05, 0.02, 2.5}});  // a laser beam
   SonarModelConfig config;
   config.max_range_m = 3.0;
   config.bands = {{2.5, 1.0}};
@@ -149,14 +149,14 @@ TEST(SonarModel, ReliabilityByExpectedDistance) {
 
 TEST(SonarModel, ReliabilityOfTheVectorIsTheMean) {
   // A corridor 2 m wide and 7 m long, the robot 3.95 m before its end, lengthwise in the middle:
-  // the front ones expect some 3.8 m (25 %), those to the sides less than 1 m (100 %).
+  // the front sonars expect some 3.8 m (25 %), those to the sides less than 1 m (100 %).
   const test::Room room{70, 20};
   SonarModel sonar{six_at_the_edge(), {}};
   sonar.look_around(room.cells(), {3.15, 1.15, 0.0}, 21);
   std::vector<double> probabilities(kCells);
   std::vector<float> ranges_m = room.measured({3.15, 1.15, 0.0}, six_at_the_edge());
   EXPECT_NEAR(sonar.compare(ranges_m, probabilities).reliability, (2 * 0.25 + 4) / 6.0, 1e-12);
-  ranges_m[2] = scan::Scan::kNoReturn;  // counts as a reading without any
+  ranges_m[2] = scan::Scan::kNoReturn;  // counts as a reading without an echo
   const PerceptualMatch match = sonar.compare(ranges_m, probabilities);
   EXPECT_NEAR(match.reliability, (2 * 0.25 + 3) / 6.0, 1e-12);
   EXPECT_EQ(match.compared, 5);
@@ -172,7 +172,7 @@ TEST(SonarModel, TheSmallerTheDifferenceTheMoreProbable) {
     SonarModel sonar{sensors, config};
     const geometry::Pose2 expected{2.05, 1.15, 0.0};
     sonar.look_around(room.cells(), expected, 21);
-    // The robot really is three cells ahead and two to the left.
+    // The robot is three cells ahead and two to the left of its estimate.
     const std::vector<float> ranges_m = room.measured({2.35, 1.35, 0.0}, sensors);
     std::vector<double> probabilities(kCells);
     const PerceptualMatch match = sonar.compare(ranges_m, probabilities);
@@ -196,7 +196,7 @@ TEST(SonarModel, TheSmallerTheDifferenceTheMoreProbable) {
 }
 
 TEST(SonarModel, TheFormulasAsDocumented) {
-  // One sonar that looks at a wall: from cell to cell along it the difference grows by 0.1 m.
+  // One sonar that faces a wall: the difference grows by 0.1 m for each cell towards it.
   const test::Room room{30, 20};
   const std::vector<RangeSensor> front{{.T_robot_sensor = {}}};
   const geometry::Pose2 expected{2.05, 1.15, 0.0};
@@ -216,13 +216,13 @@ TEST(SonarModel, TheFormulasAsDocumented) {
   EXPECT_NEAR(ratio(PerceptualFormula::kInverse, 2), 1.0 / 1.8, 1e-6);
   EXPECT_NEAR(ratio(PerceptualFormula::kLinear, 2), 0.2, 1e-6);
   EXPECT_EQ(ratio(PerceptualFormula::kLinear, 3), 0.0);
-  // 0.6 and 0.9 m off are both as bad as the cap of 0.5 m.
+  // 0.6 and 0.9 m of difference both count as the cap of 0.5 m.
   EXPECT_NEAR(ratio(PerceptualFormula::kExponential, 6), std::exp(-2.0), 1e-6);
   EXPECT_NEAR(ratio(PerceptualFormula::kExponential, 9), std::exp(-2.0), 1e-6);
 }
 
 TEST(SonarModel, UnreliableReadingsMayBeLeftOutOfTheDifference) {
-  // 11 m long: the front sonar expects nothing, and what it reads is wrong.
+  // 11 m long: the front sonar expects no echo, so its reading is wrong.
   const test::Room room{110, 20};
   const std::vector<RangeSensor> sensors = six_at_the_edge();
   std::vector<float> ranges_m = room.measured({2.05, 1.15, 0.0}, sensors);

@@ -1,5 +1,5 @@
 // Whole tours with a base that slips: with Markov localization at the corners the robot ends within
-// a cell of where it should, without it it does not. MACONDO reached that in 90 % of its runs.
+// a cell of its goal, without it it does not. MACONDO reached the goal in 90 % of its runs.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -20,7 +20,7 @@ class Tour {
     localizer_.initialize(truth_, measure());
   }
 
-  /// Twice around a square of 2 m; returns how far the robot is from where it is expected.
+  /// Twice around a square of 2 m; returns the robot's offset from its expected place.
   Eigen::Vector2d drive() {
     for (int leg = 0; leg < 8; ++leg) {
       execute({MoveKind::kAdvance, 2.0});
@@ -41,7 +41,7 @@ class Tour {
     return ranges_m;
   }
 
-  /// The base goes up to 8 % too far or too short and up to 5 % to a side.
+  /// The base drives up to 8 % too far or too short and up to 5 % to a side.
   void execute(const Move& move) {
     if (move.kind == MoveKind::kAdvance) {
       truth_ = truth_ * geometry::Pose2{move.amount * (1.0 + uniform(0.08)),

@@ -41,8 +41,8 @@ Eigen::Vector2d mean_of(const std::vector<Tap>& taps) {
 }
 
 TEST(Transition, Figures4To7OfTheSource) {
-  // Fig. 4: one in the middle. Fig. 6: the matrix of an advance. Fig. 7: the state after it, in the
-  // window around the expected destination, as printed: five rows of seven.
+  // Fig. 4: all probability in the middle. Fig. 6: the matrix of an advance. Fig. 7: the state
+  // after it, in the window around the expected destination, as printed: five rows of seven.
   BeliefGrid grid{7};
   grid.set({0, 0}, 1.0);
   const double sum = spread(turned(macondo_advance(), ArrowSense::kRight, 0.0), all_free(7), grid);
@@ -65,14 +65,14 @@ TEST(Transition, ASecondAdvanceSpreadsEveryCellOfTheFirst) {
   const std::vector<Tap> taps = turned(macondo_advance(), ArrowSense::kRight, 0.0);
   spread(taps, all_free(7), grid);
   spread(taps, all_free(7), grid);
-  // The middle is only reached by staying twice; the sides cancel in three more ways.
+  // The middle is reached by staying twice, or by two opposite sideways steps.
   EXPECT_NEAR(grid.at({0, 0}), .7929 * .7929 + 2 * .0625 * .0625, 1e-15);
   EXPECT_NEAR(grid.at({1, 0}), 2 * .7929 * .0625 + 4 * .0625 * .0078, 1e-15);
   EXPECT_NEAR(grid.at({2, 2}), .0078 * .0078, 1e-15);
 }
 
 TEST(Transition, QuartersTurnTheMatrixExactly) {
-  // Heading up the map: what was ahead (right column) is above, what was left is to the left.
+  // Heading up the map: cells ahead (right column) move up, cells to the left move left.
   const TransitionMatrix matrix{3, 3, {.01, .02, .03, .04, .5, .06, .07, .08, .09}};
   const std::vector<Tap> up = turned(matrix, ArrowSense::kRight, test::kQuarter_rad);
   EXPECT_EQ(value_at(up, {0, 1}), .06);
@@ -95,7 +95,7 @@ TEST(Transition, TheArrowMayPointBack) {
   EXPECT_EQ(value_at(taps, {-1, 0}), .0625);
   EXPECT_EQ(value_at(taps, {1, 0}), 0.0);
   EXPECT_EQ(value_at(taps, {0, 0}), .7929);
-  // What is on the left of the robot stays on its left.
+  // Cells to the left of the robot stay on its left.
   const TransitionMatrix leftward{3, 1, {.3, .6, .1}};
   EXPECT_EQ(value_at(turned(leftward, ArrowSense::kLeft, 0.0), {0, 1}), .3);
 }
@@ -129,7 +129,7 @@ TEST(Transition, AtHalfARightAngleAValueIsSharedAmongFour) {
 }
 
 TEST(Transition, ObstaclesTakeNothingAndGiveNothing) {
-  // The cell ahead of the robot is an obstacle, so is the place where it cannot have come from.
+  // The cell ahead of the robot is an obstacle, and so is a cell that it cannot have come from.
   const ObstacleCells map = test::drawn({".....",  //
                                          ".....",  //
                                          "...#.",  //
@@ -145,8 +145,8 @@ TEST(Transition, ObstaclesTakeNothingAndGiveNothing) {
   EXPECT_NEAR(sum, .7929 + 2 * .0625 + 2 * .0078, 1e-15);
 }
 
-/// The rule of MACONDO, cell by cell: nothing from a cell with zero, else every value of the
-/// matrix times the probability is added where it belongs.
+/// The rule of MACONDO, cell by cell: cells with zero contribute nothing; each other cell adds its
+/// probability times every value of the matrix at the target cells.
 std::vector<double> cell_by_cell(const BeliefGrid& grid, const std::vector<Tap>& taps,
                                  const ObstacleCells& map) {
   const int half = grid.half();

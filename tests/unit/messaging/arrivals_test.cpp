@@ -1,4 +1,4 @@
-// What waits for a program that takes samples later than they come.
+// Samples that arrive before the program takes them.
 #include "arrivals.hpp"
 
 #include <chrono>
@@ -46,7 +46,7 @@ TEST(Arrivals, KeepAsManyAsTheReaderDoes) {
   EXPECT_EQ(take_all(arrivals), (Numbers{3, 4, 5}));
 }
 
-// The middleware hands over an instance's samples by their stamps, and clocks step.
+// The middleware orders an instance's samples by their stamps, and clocks step.
 TEST(Arrivals, OfOneWriterComeInTheOrderOfTheirNumbers) {
   Arrivals last(1, 100);
   last.put({arrival(1, 1, 2), arrival(1, 1, 1)});

@@ -1,4 +1,4 @@
-// Programs that read several topics of one writer, whose readers come one after the other.
+// Programs that read several topics of one writer, with readers that connect one after the other.
 #include "topogeo/messaging/connected_programs.hpp"
 
 #include <optional>
@@ -50,8 +50,8 @@ class ConnectedProgramsTest : public TwoParticipants {
   ConnectedPrograms programs_{scans_, odometry_};
 };
 
-// The second reader is made when the first is connected: the time between two announcements of
-// discovery, as long as a test wants it.
+// The second reader is created when the first is connected: the test controls the delay between two
+// announcements of discovery.
 TEST_F(ConnectedProgramsTest, AReaderIsNoneBeforeTheOtherOneIsConnected) {
   const Reader<msg::Scan> scans(receiver_, {.read_with = {kOdometry}});
   ASSERT_TRUE(connected(1));

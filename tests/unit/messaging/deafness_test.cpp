@@ -1,4 +1,4 @@
-// A navigator and the localizer whose poses it is to follow.
+// A navigator and the localizer whose poses it must receive.
 #include "topogeo/messaging/deafness.hpp"
 
 #include <array>
@@ -57,7 +57,7 @@ TEST_F(Deafness, IsSilenceWhileTheSenderSends) {
 TEST_F(Deafness, IsNoSilenceOfTheSender) {
   localizer_.traffic()[0].rate_per_s(0.0);  // the robot stands, or the sender is frozen
   EXPECT_EQ(found(), "");
-  localizer_.traffic()[0].rate_per_s(0.4);  // one may be on its way
+  localizer_.traffic()[0].rate_per_s(0.4);  // one may be in transit
   EXPECT_EQ(found(), "");
 }
 
@@ -107,7 +107,7 @@ TEST_F(Deafness, IsNotOfOneThatReadsWhatItSends) {
   EXPECT_EQ(found(), "");
 }
 
-// The rate of a sender that has just ceased is that of the seconds before.
+// The rate of a sender that has just stopped is still that of the seconds before.
 TEST_F(Deafness, IsNoSilenceThatHasBegunWithinTheWindowOfTheRate) {
   navigator_.input_age_s(5.4);
   EXPECT_EQ(found(), "");
@@ -136,12 +136,12 @@ TEST_F(Deafness, IsWhatTheServiceReports) {
   EXPECT_EQ(found(), "deaf: by its own report none of the pose that are sent arrives");
 }
 
-/// The navigator's own judgement: clocks of both go on by half a second, then it checks.
+/// The navigator's own verdict: both clocks advance by half a second, then it checks.
 class DeafnessProof : public Deafness {
  protected:
   DeafnessProof() { localizer_.traffic()[0].messages(1000); }
 
-  /// The localizer sends that many poses in half a second.
+  /// The localizer sends so many poses in half a second.
   std::string half_a_second(std::uint64_t poses) {
     now_ += std::chrono::milliseconds(500);
     navigator_.uptime_s(navigator_.uptime_s() + 0.5);
@@ -155,7 +155,7 @@ class DeafnessProof : public Deafness {
     watch_.hear(navigator_, now_);
     return watch_.check(navigator_, now_);
   }
-  /// The verdict after that many half seconds.
+  /// The verdict after so many half seconds.
   std::string after(int turns, std::uint64_t poses) {
     std::string why;
     for (int i = 0; i < turns; ++i) why = half_a_second(poses);
@@ -205,7 +205,7 @@ TEST_F(DeafnessProof, IsNoneWhileTheSenderIsFrozen) {
   EXPECT_TRUE(watch_.hears_sender(navigator_, now_));
 }
 
-// The statuses of a sender come in at once when a service goes on that stood still.
+// The sender's statuses arrive all at once when a frozen service continues.
 TEST_F(DeafnessProof, IsNoneInTheTimeThatTheServiceItselfStoodStill) {
   half_a_second(5);
   now_ += std::chrono::seconds(12);
@@ -218,8 +218,8 @@ TEST_F(DeafnessProof, IsNoneInTheTimeThatTheServiceItselfStoodStill) {
   EXPECT_NE(half_a_second(5), "") << "it has had 5 s to hear something";
 }
 
-// The loop of the service has handled a hundred poses at a stretch, and has had no time for its own
-// status. It hears of them from the sender first.
+// The service's loop has handled a hundred poses in a row without time for its own status, so the
+// sender's status is newer.
 TEST_F(DeafnessProof, IsNoneWhileItsOwnStatusIsOlderThanWhatItHears) {
   after(2, 0);
   for (int i = 0; i < 12; ++i) {

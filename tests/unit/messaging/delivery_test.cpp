@@ -1,4 +1,4 @@
-// What reaches whom: late readers, slow readers, disposals, addressees, partitions.
+// Delivery of samples: late readers, slow readers, disposals, addressees, partitions.
 #include <atomic>
 #include <chrono>
 #include <map>
@@ -94,7 +94,7 @@ TEST_F(Delivery, SlowReaderSlowsAReplayAndLosesNothing) {
       while (!writer.write(scan)) ++refused;
     }
   });
-  // Both histories are full then.
+  // Both histories are full by then.
   EXPECT_TRUE(test::wait_for("the reader to hold the writer back", [&] { return refused > 0; }));
   std::vector<std::uint64_t> sequence_numbers;
   EXPECT_TRUE(test::wait_for("all scans", [&] {
@@ -219,8 +219,7 @@ TEST_F(Delivery, TasksReachOnlyTheWorkerTheyAreAddressedTo) {
   EXPECT_TRUE(wait_for_acknowledgments(writer));
 }
 
-// What the filter of each reader says once stood in every message, which then fitted into no
-// packet.
+// The filter results of all readers once were in every message, which then exceeded a packet.
 TEST_F(Delivery, ATaskReachesOneOfVeryManyWorkers) {
   constexpr std::size_t kWorkers = 64;
   Writer<msg::MatchTasks> writer(sender_);
@@ -242,7 +241,7 @@ TEST_F(Delivery, ATaskReachesOneOfVeryManyWorkers) {
   EXPECT_EQ(taken, 1U);
 }
 
-/// Addressed messages reach whom they are for, however the fields before the address are aligned.
+/// Addressed messages reach their addressee for any alignment of the fields before the address.
 template <class T, class SetAddressee>
 void expect_addressed(const Participant& sender, const Participant& receiver,
                       const SetAddressee& set_addressee) {
@@ -317,8 +316,8 @@ TEST_F(Delivery, PartitionsDoNotSeeEachOtherButTheWildcardSeesAll) {
   EXPECT_EQ(other.take([](const msg::Goal&, const SampleInfo&) {}), 0U);
 }
 
-// Each sample is cut into packets, and a reader that comes late gets it under its own address: Fast
-// DDS counts neither that nor the key (libs/messaging/src/fast_dds/fragments.cpp).
+// Each sample is split into packets, and a late reader gets it with its own address, for which (and
+// for the key) Fast DDS reserves no space (libs/messaging/src/fast_dds/fragments.cpp).
 TEST(DeliveryInPackets, LargeSamplesReachALateReader) {
   constexpr std::uint32_t kMaps = 20;
   ParticipantOptions options = options_in(random_partition());

@@ -1,4 +1,4 @@
-// Which readers and writers of a domain do not fit, and how they are found.
+// Incompatible readers and writers of a domain, and how they are found.
 #include "topogeo/messaging/discovery.hpp"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ RemoteEndpoint endpoint(const std::string& participant, bool writer, const Offer
   return result;
 }
 
-/// What differs between a writer and a reader.
+/// QoS differences between a writer and a reader.
 std::vector<std::string> between(const OfferedQos& offered, const OfferedQos& requested) {
   const std::vector<RemoteEndpoint> both = {endpoint("w", true, offered),
                                             endpoint("r", false, requested)};
@@ -88,7 +88,7 @@ class Discovery : public testing::Test {
     options.observe = true;
     return options;
   }
-  /// Of this test's partition alone: others use the domain, too.
+  /// Endpoints of this test's partition only, because other tests use the domain, too.
   [[nodiscard]] std::vector<RemoteEndpoint> discovered() const {
     std::vector<RemoteEndpoint> own = observer_.discovered();
     std::erase_if(own, [&](const RemoteEndpoint& one) {

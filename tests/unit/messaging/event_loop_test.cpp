@@ -1,4 +1,4 @@
-// The loop calls handlers in its own thread, in order, and ends when told.
+// The loop calls handlers in its own thread, in order, and ends on request.
 #include <chrono>
 #include <csignal>
 #include <future>
@@ -46,8 +46,8 @@ TEST(EventLoop, StopsOnASignal) {
   EXPECT_EQ(SignalStop::received(), SIGTERM);
 }
 
-/// The order in which three timers run; empty when the machine paused for longer than their times
-/// are apart while they were set, so that the order says nothing.
+/// The order in which three timers run; empty when the machine paused, while they were set, for
+/// longer than their times are apart, because the order is then undefined.
 std::vector<int> order_of_timers() {
   EventLoop loop;
   std::vector<int> order;
@@ -160,7 +160,7 @@ TEST_F(LoopDelivery, HandlersGetSamplesAndDisposalsOfSeveralReaders) {
   EXPECT_EQ(seen, (std::vector<std::string>{"goal 8", "route", "goal gone"}));
 }
 
-// A stranger may have sent it.
+// A stranger may send such a message.
 TEST_F(LoopDelivery, AMessageThatItsHandlerRefusesIsAnEventAndTheNextOneComes) {
   Writer<msg::MatchTasks> writer(sender_);
   const Reader<msg::MatchTasks> reader(receiver_);

@@ -1,4 +1,4 @@
-// What is told about peers.
+// Events about peers.
 #include <algorithm>
 #include <csignal>
 #include <optional>
@@ -23,7 +23,7 @@ bool eventually_event(Endpoint& endpoint, EventKind kind, std::vector<Event>& al
 }
 
 TEST_F(Events, IncompatibleQosIsToldToBothSides) {
-  // Role command offers volatile durability, role state wants transient-local.
+  // Role command offers volatile durability, role state requests transient-local.
   Writer<msg::Goal> writer(sender_, "command");
   Reader<msg::Goal> reader(receiver_);
   std::vector<Event> at_reader;
@@ -94,7 +94,7 @@ class WorkerProcess {
 TEST(WorkerProcess, DISABLED_Main) {
   const char* partition = std::getenv("TOPOGEO_TEST_WORKER_PARTITION");
   if (partition == nullptr) GTEST_SKIP() << "started by the test below only";
-  // Ends by itself if the test that kills it is gone.
+  // Ends itself when the test that should kill it is gone.
   ::alarm(static_cast<unsigned>(test::hang_limit().count()));
   const Participant participant(options_in(partition));
   Writer<msg::WorkerStatus> writer(participant);

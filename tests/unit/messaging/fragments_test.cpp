@@ -1,4 +1,4 @@
-// Gaps in what a reader gets, and the reader's lock.
+// Gaps in a reader's samples, and the reader's lock.
 #include "fast_dds/fragments.hpp"
 
 #include <thread>
@@ -19,7 +19,7 @@ namespace {
 
 namespace rtps = eprosima::fastrtps::rtps;
 
-/// Gives the reader's lock away, as the middleware's listeners of discovery do to take their own.
+/// Releases the reader's lock, like the middleware's discovery listeners, to take their own.
 class GivingListener : public rtps::ReaderListener {
  public:
   void onNewCacheChangeAdded(rtps::RTPSReader* reader,
@@ -36,7 +36,7 @@ class GivingListener : public rtps::ReaderListener {
   bool given = false;
 };
 
-// Otherwise a thread that has discovery's lock and waits for the reader's waits for ever.
+// Otherwise a thread that holds discovery's lock and waits for the reader's lock would deadlock.
 TEST(Gaps, LeaveTheReadersLockToWhoIsToldOfTheNextMessage) {
   correct_fragments();
   rtps::RTPSParticipantAttributes attributes;

@@ -28,7 +28,7 @@ TEST(Standstill, CountsHalfOfTheTimeThatAThreadWaitsForACpu) {
   Standstill standstill({seconds(1000), seconds(3)});
   EXPECT_EQ(standstill.awake({seconds(1008), seconds(11)}), seconds(4));
   EXPECT_EQ(standstill.awake({seconds(1018), seconds(13)}), seconds(9)) << "frozen for 8 s of 10";
-  // A kernel that does not count them, and one that counts more than has passed.
+  // A kernel that does not count suspensions, and one that counts more than the time passed.
   Standstill uncounted({seconds(1000), seconds(0)});
   EXPECT_EQ(uncounted.awake({seconds(1006), seconds(0)}), seconds(6));
   EXPECT_EQ(uncounted.awake({seconds(1020), seconds(90)}), seconds(7));
@@ -37,7 +37,7 @@ TEST(Standstill, CountsHalfOfTheTimeThatAThreadWaitsForACpu) {
 TEST(FreezeWatch, NoticesThatItsProcessStoodStillForSoLong) {
   const FreezeWatch patient{std::chrono::hours(1)};
   const FreezeWatch watch{seconds(1)};
-  // It may not have begun to watch when the process is stopped for the first time.
+  // The watch may start only after the first stop of the process.
   const auto stand_still = [] {
     // NOLINTNEXTLINE(cert-env33-c,concurrency-mt-unsafe)
     ASSERT_EQ(std::system("kill -STOP $PPID; sleep 2; kill -CONT $PPID"), 0);

@@ -1,5 +1,5 @@
-// The certificates of a peer that is refused and tries again. The plug-in is that of the library,
-// called as the library calls it.
+// The certificates of a peer that is refused and retries. The plug-in is the library's, called as
+// the library calls it.
 #include "fast_dds/handshake_certificates.hpp"
 
 #include <cstdint>
@@ -36,7 +36,7 @@ namespace fs = std::filesystem;
 namespace rtps = eprosima::fastrtps::rtps;
 namespace security = rtps::security;
 
-int g_certificates = 0;  // that there are in this process
+int g_certificates = 0;  // live in this process
 
 void count_new(void* /*certificate*/, void* /*data*/, CRYPTO_EX_DATA* /*all*/, int /*index*/,
                long /*number*/, void* /*pointer*/) {
@@ -47,7 +47,7 @@ void count_free(void* /*certificate*/, void* /*data*/, CRYPTO_EX_DATA* /*all*/, 
   --g_certificates;
 }
 
-/// Somebody with a key and a certificate that he made himself.
+/// A stranger with a key and a self-signed certificate.
 class Somebody {
  public:
   explicit Somebody(const char* name)
@@ -116,7 +116,7 @@ class HandshakeCertificates : public testing::Test {
         << error_.what();
     rtps::IdentityToken* token = nullptr;
     EXPECT_TRUE(plugin_->get_identity_token(&token, *own_, error_));
-    // What it says of itself is not what it shows.
+    // The identity that a peer announces may differ from the certificate that it presents.
     plugin_->validate_remote_identity(&peer_, *own_, *token, guid(2), error_);
     plugin_->return_identity_token(token, error_);
   }
@@ -133,7 +133,7 @@ class HandshakeCertificates : public testing::Test {
     return result;
   }
 
-  /// A message of a handshake that shows the certificate of the stranger.
+  /// A handshake message with the stranger's certificate.
   [[nodiscard]] security::HandshakeMessageToken message(const char* kind) const {
     security::HandshakeMessageToken token;
     token.class_id(std::string("DDS:Auth:PKI-DH:1.0+") + kind);

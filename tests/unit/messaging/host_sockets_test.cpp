@@ -1,5 +1,5 @@
-// A host that takes nothing keeps no other waiting. In a network of its own, where an address on
-// the other side of a cable answers to nothing; skipped where none can be made.
+// A host that accepts no packets does not delay others. Runs in a network of its own, where an
+// address at the far end of a cable never answers; skipped when none can be created.
 #include "fast_dds/host_sockets.hpp"
 
 #include <array>
@@ -25,7 +25,7 @@ constexpr std::uint16_t kPort = 7999;
 constexpr std::chrono::milliseconds kPatienceOfSender{100};
 const std::vector<std::uint8_t> kPacket(1400, 7);
 
-/// A network of its own for this thread, as long as it lives.
+/// A separate network for this thread during its lifetime.
 class OwnNetwork {
  public:
   OwnNetwork() : machine_(::open("/proc/thread-self/ns/net", O_RDONLY | O_CLOEXEC)) {
@@ -75,7 +75,7 @@ TEST(HostSockets, AHostThatTakesNothingKeepsNoOtherWaiting) {
   if (!network.made()) GTEST_SKIP() << "no network can be made";
   Receiver receiver;
   ASSERT_TRUE(receiver.bound());
-  // Less than the kernel keeps while it asks for an address.
+  // Smaller than the kernel's queue during address resolution.
   HostSockets sockets({.most_hosts = 8, .queue_bytes = 20'000});
   int dropped = 0;
   for (int round = 0; round < 300; ++round) {

@@ -1,5 +1,5 @@
-// Packets of RTPS, built here by hand after DDSI-RTPS 2.3, chapter 9.4: those that are sent pass,
-// and each way to lead a parser astray is refused.
+// RTPS packets built by hand after DDSI-RTPS 2.3, chapter 9.4: packets that are really sent pass,
+// and each way to mislead a parser is refused.
 #include "fast_dds/packet_check.hpp"
 
 #include <algorithm>
@@ -127,7 +127,7 @@ TEST(PacketCheck, WhatIsSentPasses) {
   EXPECT_TRUE(valid({fragment(1, 1, 1000, 2500, 1000), fragment(3, 1, 1000, 2500, 500)}));
   EXPECT_TRUE(valid({gap(3, 4, 0, 0), gap(3, 9, 33, 2), acknack(0, 0, 0), acknack(7, 256, 8)}));
   EXPECT_TRUE(valid({nack_fragment(1, 32, 1)}));
-  // The invalidated time, padding, and a kind that is not known.
+  // An invalidated timestamp, padding, and an unknown kind.
   EXPECT_TRUE(valid({submessage(0x09, 3, {}), submessage(0x01, kLittle, {}),
                      submessage(0x7f, kLittle, Bytes(8, 0xff))}));
 }
@@ -154,7 +154,7 @@ TEST(PacketCheck, HeadersOfOthersAreRefused) {
 }
 
 TEST(PacketCheck, EveryPacketThatEndsEarlyIsRefused) {
-  // One with nothing optional at its end, so that no shorter one is a packet, too.
+  // A packet without optional parts at its end, so that no shorter one is valid.
   const Bytes good =
       packet({data(0x06, joined({parameter(0x70, Bytes(16, 1)), kEndOfList, kPayload}))});
   for (std::size_t size = 21; size < good.size(); ++size) {
@@ -201,7 +201,7 @@ TEST(PacketCheck, InlineParametersEndInTheirSubmessage) {
   EXPECT_FALSE(valid({data(0x02, joined({u16(0x70), u16(400), kEndOfList}))}));  // too long
   EXPECT_FALSE(valid({data(0x02, joined({parameter(0x70, Bytes(8, 1)), kEndOfList}))}));
   EXPECT_FALSE(valid({data(0x02, joined({parameter(0x71, Bytes(8, 1)), kEndOfList}))}));
-  // A million results of filters.
+  // A million filter results.
   EXPECT_FALSE(valid({data(
       0x02, joined({parameter(0x55, joined({u32(1'000'000), u32(0), u32(0)})), kEndOfList}))}));
 }
@@ -221,7 +221,7 @@ TEST(PacketCheck, StatisticsOfFastDdsAreAtTheEnd) {
   std::swap(big_endian[2], big_endian[3]);
   EXPECT_TRUE(valid({heartbeat(1, 1), big_endian}));
   EXPECT_FALSE(valid({big_endian, heartbeat(1, 1)}));
-  // Nor may an envelope hide them.
+  // An envelope must not hide them.
   EXPECT_FALSE(valid({submessage(0x33, kLittle, Bytes(16, 0)), big_endian, heartbeat(1, 1)}));
 }
 
@@ -236,12 +236,12 @@ TEST(PacketCheck, EnvelopesAreWholeAndSealed) {
   EXPECT_FALSE(valid({prefix, body}));
   EXPECT_FALSE(valid({prefix, body, body, postfix}));
   EXPECT_FALSE(valid({prefix, prefix, postfix}));
-  // Whatever stands beside an envelope is not inside.
+  // A submessage beside an envelope is not inside it.
   EXPECT_TRUE(unprotected({prefix, body, postfix, data(0x04, kPayload)}));
   EXPECT_TRUE(unprotected({data(0x04, kPayload), prefix, body, postfix}));
 }
 
-// No key is needed to write that all is in an envelope, and Fast DDS reads on behind it.
+// An envelope around a whole packet needs no key, and Fast DDS still parses its contents.
 TEST(PacketCheck, AnEnvelopeAroundTheWholePacketProtectsNothing) {
   const Bytes timestamp = submessage(0x09, kLittle, Bytes(8, 0));
   const Bytes prefix = submessage(0x33, kLittle, Bytes(20, 0));
@@ -255,7 +255,7 @@ TEST(PacketCheck, AnEnvelopeAroundTheWholePacketProtectsNothing) {
     EXPECT_TRUE(valid(packet));
     EXPECT_TRUE(unprotected(packet));
   }
-  // What stands in it is checked like the rest.
+  // Its contents are checked like any others.
   EXPECT_FALSE(valid({prefix, data(0x04, kPayload, 0)}));
   EXPECT_FALSE(valid({timestamp, prefix, gap(0, 4, 0, 0)}));
 }
@@ -314,7 +314,7 @@ TEST(ParameterCheck, WhatPeersSayOfThemselvesPasses) {
 }
 
 TEST(ParameterCheck, CountsAndLengthsStayInTheirParameter) {
-  // A partition whose length leads out of the packet, to what was a segmentation fault.
+  // A partition whose length points beyond the packet, which caused a segmentation fault.
   EXPECT_FALSE(parameters_pass({parameter(0x29, joined({u32(2), u32(0x40000000), text("x")}))}));
   EXPECT_FALSE(parameters_pass({parameter(0x29, joined({u32(0xffffffff), text("x")}))}));
   EXPECT_FALSE(parameters_pass({parameter(0x73, joined({u32(0x20000000), u32(0)}))}));

@@ -1,4 +1,4 @@
-// Hosts that TOPOGEO_PEERS names, where services do without multicast.
+// Hosts named by TOPOGEO_PEERS, for services without multicast.
 #include <cstdlib>
 #include <memory>
 #include <sstream>
@@ -18,11 +18,11 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-// The resolver refuses an empty label by itself, without a network.
+// The resolver refuses an empty label without a network.
 constexpr const char* kUnknownHost = "pc..9";
 
-// In a process of its own, as ctest runs each: the first 32 participants of a host are looked for,
-// and a process counts all that it ever had.
+// Needs a separate process, as ctest provides: only the first 32 participants of a host are tried,
+// and a process counts all participants that it ever had.
 class Peers : public testing::Test {
  protected:
   Peers() {
@@ -34,8 +34,8 @@ class Peers : public testing::Test {
     spdlog::set_default_logger(before_);
   }
 
-  // A peer without a port is looked for among the first participants of its host, and the
-  // middleware numbers those of a process on.
+  // Skips in a process with many tests: a peer without a port is tried among the first participants
+  // of its host only, and the middleware's numbers in a process only grow.
   void SetUp() override {
     constexpr int kFewTests = 10;
     if (testing::UnitTest::GetInstance()->test_to_run_count() > kFewTests) {
@@ -43,7 +43,7 @@ class Peers : public testing::Test {
     }
   }
 
-  /// Two participants with these peers hear each other.
+  /// Whether two participants with these peers discover each other.
   static bool hear_each_other(const std::string& peers) {
     ::setenv("TOPOGEO_PEERS", peers.c_str(), 1);
     const std::string partition = random_partition();

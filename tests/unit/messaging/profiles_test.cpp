@@ -58,9 +58,9 @@ TEST(Profiles, ParticipantsOfAllTransportsHearEachOther) {
   }
 }
 
-// Programs of several users, or that end soon, jam the shared memory of Fast DDS 2.9.1.
+// Programs of several users, or short-lived ones, block the shared memory of Fast DDS 2.9.1.
 TEST(Profiles, ByDefaultNothingIsPutIntoSharedMemory) {
-  // Of this process alone: other programs make segments at any time.
+  // Checks this process only, because other programs create segments at any time.
   const auto has_segments = [] {
     std::ifstream mapped("/proc/self/maps");
     for (std::string line; std::getline(mapped, line);)

@@ -1,4 +1,4 @@
-// What is read of a sequence that claims more elements than its bound allows.
+// Reading a sequence that claims more elements than its bound permits.
 #include "topogeo/msg/read_bounded.h"
 
 #include <cstring>

@@ -1,4 +1,4 @@
-// Readers of the middleware that end while a writer is found for them, or lost.
+// Readers of the middleware that are destroyed while a writer is matched or lost.
 #include "fast_dds/reader_end.hpp"
 
 #include <atomic>
@@ -33,14 +33,14 @@ namespace fastdds = eprosima::fastdds::dds;
 namespace fastrtps = eprosima::fastrtps;
 namespace rtps = eprosima::fastrtps::rtps;
 
-/// A reader and a writer of one participant. They stay: the processes of these tests end without.
+/// A reader and a writer of one participant. They are never removed: the test processes just exit.
 struct Endpoints {
   rtps::RTPSReader* reader;
   rtps::RTPSWriter* writer;
   rtps::WriterHistory* sent;
 };
 
-// Both have a lease that the writer has to renew by writing; 0: it need not.
+// Both have a lease that the writer must renew by writing; 0: none.
 Endpoints make_endpoints(rtps::ReaderListener& listener, double lease_s) {
   rtps::RTPSParticipantAttributes attributes;
   attributes.builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::SIMPLE;
@@ -78,8 +78,7 @@ Endpoints make_endpoints(rtps::ReaderListener& listener, double lease_s) {
   return {reader, writer, sent};
 }
 
-/// Goes when it is told of a match for the first time, as one of a reader that ends in another
-/// thread.
+/// Removes itself at the first match, like the listener of a reader that another thread destroys.
 class GoingListener : public rtps::ReaderListener {
  public:
   using ReaderListener::onReaderMatched;
@@ -102,14 +101,14 @@ TEST(ReaderEndDeathTest, AReaderWithoutListenerIsMatched) {
   EXPECT_EXIT(match_a_reader_that_ends(), ::testing::ExitedWithCode(0), "");
 }
 
-/// Takes its time when it is told that a writer is not alive any more.
+/// Is slow when a writer is no longer alive.
 class SlowListener : public rtps::ReaderListener {
  public:
   void on_liveliness_changed(rtps::RTPSReader* /*reader*/,
                              const fastdds::LivelinessChangedStatus& status) override {
     if (status.not_alive_count == 0) return;
     begun.set_value();
-    // Long enough that a removal which does not wait ends before; a slow machine hides it at worst.
+    // Longer than a removal that does not wait; a slow machine can only hide the error.
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     done = true;
   }

@@ -15,8 +15,8 @@
 namespace topogeo::messaging {
 namespace {
 
-/// The built-in profiles, but the thread of the flow controller sends all samples of a replay, as
-/// it otherwise does only with those that are sent again.
+/// The built-in profiles, except that the flow controller's thread sends all samples of a replay;
+/// otherwise it sends only repeated ones.
 std::string write_profiles_of_asynchronous_replay() {
   std::string text(built_in_profiles());
   const auto find = [&text](const std::string& what, std::size_t from) {
@@ -58,7 +58,7 @@ TEST(ReaderRemoval, AWriterGoesOnSendingWhenReadersLeave) {
   for (int i = 0; i < 100; ++i) {
     const Reader<msg::Scan> leaving(receiver, {.role = std::string(kReplayRole)});
     if (wait_for_peers(leaving) && wait_for_sent(10)) continue;
-    // Its locks are held for good, so that nothing of it can be destroyed.
+    // It holds its locks forever, so nothing of it can be destroyed.
     std::fprintf(stderr, "the writer stands still since reader %d left\n", i);
     std::_Exit(EXIT_FAILURE);
   }

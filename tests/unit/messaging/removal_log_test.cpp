@@ -17,8 +17,8 @@ RemovalLog::Peer peer(std::uint32_t number) {
   return peer;
 }
 
-/// The forged removals that the log finds when packets of the peer go on, five a second, from one
-/// time to another.
+/// Number of forged removals that the log finds when packets of the peer continue, five a second,
+/// between two times.
 std::uint64_t forged_between(RemovalLog& log, const RemovalLog::Peer& peer, RemovalLog::Time from,
                              RemovalLog::Time to) {
   std::uint64_t forged = 0;
@@ -41,7 +41,7 @@ TEST(RemovalLog, CountsRemovalsOfAPeerThatGoesOn) {
       << "each once";
 }
 
-// A frozen service that goes on ends itself, and its peers work off what waited in their sockets.
+// A frozen service ends when it continues, and its peers still read packets from their sockets.
 TEST(RemovalLog, PacketsOfAPeerThatIsAboutToEndProveNothing) {
   const RemovalLog::Time start{};
   RemovalLog log;

@@ -35,7 +35,7 @@ TEST_F(RevocationListTest, ReportsEachChangeOnce) {
   write(200);
   EXPECT_TRUE(list.take_change());
   EXPECT_FALSE(list.take_change());
-  // One that is copied may be older than what it replaces.
+  // A copied file may be older than the file that it replaces.
   write(150);
   EXPECT_TRUE(list.take_change());
 }

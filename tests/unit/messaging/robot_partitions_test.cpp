@@ -19,7 +19,7 @@ using testing::ThrowsMessage;
 
 using Names = std::vector<std::string>;
 
-/// The comparison of the middleware between the partitions of a writer and a reader.
+/// The middleware's comparison of a writer's and a reader's partitions.
 bool meet(const Names& a, const Names& b) {
   for (const std::string& one : a) {
     for (const std::string& other : b) {
@@ -65,7 +65,7 @@ TEST(RobotPartitions, OfKeysForEveryRobotMeetThoseOfEachRobot) {
   EXPECT_FALSE(meet(worker_of_bert, anna));
 }
 
-// Programs that know no partitions by robot, with older keys.
+// Older programs with older keys have no partitions by robot.
 TEST(RobotPartitions, OfKeysForEveryRobotMeetPlainOnes) {
   const Names plain = {"floor"};
   EXPECT_TRUE(meet(plain, partitions_by_robot("floor", kEvery, kAnna)));

@@ -1,4 +1,4 @@
-// Every type travels between two participants unchanged.
+// Every type passes between two participants unchanged.
 #include "fixture.hpp"
 
 namespace topogeo::messaging {
@@ -117,7 +117,7 @@ void fill(msg::RunSummary& summary) {
   summary.longest_recovery_ms(12.5);
 }
 
-/// As large as a crowded hall: several hundred kilobytes, so that it travels in fragments.
+/// A map of a crowded hall: several hundred kilobytes, so that it is sent in fragments.
 void fill(msg::LocalMap& map) {
   map.id(7);
   map.content_hash(0xFEDCBA9876543210ULL);
@@ -420,7 +420,7 @@ void fill(msg::MapCopy& copy) {
   fill(copy.local_map());
 }
 
-/// A type of which nothing but the header is set.
+/// A type of which only the header is set.
 template <class T>
 void fill(T& /*message*/) {}
 

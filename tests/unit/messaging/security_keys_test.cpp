@@ -1,4 +1,4 @@
-// Keys that a peer sends. Keys as Fast DDS writes them, with a length of the test.
+// Keys from a peer, in the format of Fast DDS, with a length chosen by the test.
 #include "fast_dds/security_keys.hpp"
 
 #include <cstdint>
@@ -31,7 +31,7 @@ void add_key(Bytes& bytes, std::uint8_t stated, std::size_t size) {
   bytes.insert(bytes.end(), size, 7);
 }
 
-/// Of kind AES256_GCM; the key of the sender as long as given.
+/// AES256_GCM keys; the sender's key has the given length.
 Bytes keys(std::uint8_t stated = 32, std::size_t size = 32, bool own_of_receiver = false) {
   Bytes bytes{0, 0, 0, 4};
   add_key(bytes, 32, 32);
@@ -54,7 +54,7 @@ TEST(SecurityKeys, LongerThanAKeyOrTheMessageCannotBeRead) {
   EXPECT_FALSE(check_key_material(keys(255, 255)));
   for (const bool own : {false, true}) {
     const Bytes whole = keys(32, 32, own);
-    // The length of no key for the receiver is not read.
+    // Without a receiver's key, the length of its missing key is not read.
     const std::size_t needed = whole.size() - (own ? 0 : 4);
     for (std::size_t size = 0; size < needed; ++size) {
       EXPECT_FALSE(check_key_material({whole.data(), size})) << size << " bytes";
@@ -81,7 +81,7 @@ TEST(SecurityKeys, ThatCannotBeReadAreRefusedAndCounted) {
     rtps::DataHolder token;
     token.class_id("DDS:Crypto:AES_GCM_GMAC");
     token.binary_properties().push_back(property);
-    rtps::security::NilHandle handle;  // which the library refuses in its turn
+    rtps::security::NilHandle handle;  // refused by the library, too
     rtps::security::SecurityException error;
     const std::uint64_t before = stranger_counts().invalid_packets;
     EXPECT_FALSE(set_keys(nullptr, handle, handle, {token}, error));

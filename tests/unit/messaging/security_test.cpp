@@ -1,4 +1,4 @@
-// How peers that security refuses are named.
+// Names of peers that security refuses.
 #include "security.hpp"
 
 #include <string>
@@ -29,7 +29,7 @@ rtps::GuidPrefix_t prefix_of_peer() {
 
 class Refusals : public testing::Test {
  protected:
-  Refusals() { listener_.take(); }  // of other tests of this process
+  Refusals() { listener_.take(); }  // entries of other tests in this process
 
   /// The peer is discovered, or leaves.
   void peer(const std::string& name, const std::string& subject,
@@ -67,7 +67,7 @@ TEST_F(Refusals, NameTheParticipantAndItsCertificate) {
 }
 
 TEST_F(Refusals, NameThePeerThatIsDeniedATopic) {
-  // A worker that takes the name of the map store; its certificate has that of the worker.
+  // A worker under the name of the map store, with its own certificate.
   peer("robot/map_store", "CN=ga_worker.pc1,O=topogeo");
   authenticate(rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
   note_denial({prefix_of_peer(), "topogeo/v16/map", true, false});

@@ -1,5 +1,5 @@
-// Several writers of one instance, as when a stranger writes what a peer writes: none takes from a
-// reader what another has sent.
+// Several writers of one instance, for example a stranger beside a peer: none may displace the
+// samples of another one in a reader.
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
@@ -23,7 +23,7 @@ class SeveralWriters : public TwoParticipants {
   static void write(Writer<T>& writer, std::uint64_t number) {
     ASSERT_TRUE(writer.write(message<T>(number)));
   }
-  /// Sequence numbers of the samples that wait, by writer in the order of their first sample.
+  /// Sequence numbers of the pending samples, by writer in the order of their first sample.
   template <class T>
   static std::vector<std::vector<std::uint64_t>> waiting(Reader<T>& reader) {
     std::map<Handle, std::size_t> writers;
@@ -35,7 +35,7 @@ class SeveralWriters : public TwoParticipants {
     });
     return numbers;
   }
-  /// Takes until there are events of this kind.
+  /// Takes samples until there are events of this kind.
   template <class T>
   static bool wait_for_event(Reader<T>& reader, EventKind kind) {
     bool seen = false;
@@ -45,8 +45,8 @@ class SeveralWriters : public TwoParticipants {
     });
   }
 
-  /// One sample of a peer, then as many of a stranger as the reader keeps of an instance, all of
-  /// them there before the program takes the first.
+  /// Writes one sample of a peer, then as many of a stranger as the reader keeps of an instance,
+  /// all before the program takes the first.
   template <class T>
   void expect_kept(std::uint64_t depth) {
     Reader<T> reader(receiver_);
@@ -107,7 +107,7 @@ TEST_F(SeveralWriters, APeersInstanceOutlivesAStrangerWhoWroteIt) {
   ASSERT_TRUE(stranger->wait_for_acknowledgments(test::hang_limit()));
   ASSERT_EQ(waiting(reader).size(), 2U);
 
-  stranger.reset();  // the last one who wrote it
+  stranger.reset();  // its last writer
   ASSERT_TRUE(wait_for_event(reader, EventKind::kUnmatched));
   reader.take([](const msg::GridTile&, const SampleInfo& info) {
     ADD_FAILURE() << "the peer still has it, state " << static_cast<int>(info.state);
@@ -152,7 +152,7 @@ TEST_F(SeveralWriters, WhoHadNothingAcceptedEndsNoInstance) {
   EXPECT_EQ(ends, std::vector<InstanceState>{InstanceState::kDisposed});
 }
 
-// A stranger who had nothing accepted does not stand in for the peer.
+// A stranger whose samples were all refused does not keep the instance alive.
 TEST_F(SeveralWriters, APeersInstanceEndsWithItBesideAStrangerWhoWasRefused) {
   Reader<msg::GridTile> reader(receiver_);
   std::optional<Writer<msg::GridTile>> peer(sender_);
@@ -180,7 +180,7 @@ TEST_F(SeveralWriters, APeersInstanceEndsWithItBesideAStrangerWhoWasRefused) {
   EXPECT_EQ(ends, std::vector<InstanceState>{InstanceState::kNoWriters});
 }
 
-// They share memory of the middleware, whose bound is the sum of theirs.
+// They share memory of the middleware, whose limit is the sum of theirs.
 TEST_F(SeveralWriters, AProgramMayHaveManyReadersOfATopic) {
   std::vector<Reader<msg::ServiceStatus>> readers;
   readers.reserve(60);
@@ -199,7 +199,7 @@ TEST_F(SeveralWriters, AProgramMayHaveManyReadersOfATopic) {
   }
 }
 
-// Samples are collected by threads of the middleware, which may be in the middle of it.
+// Threads of the middleware collect samples, and may be doing so at that moment.
 TEST_F(SeveralWriters, AReaderEndsWhileSamplesArrive) {
   Writer<msg::GridTile> peer(sender_);
   Writer<msg::GridTile> stranger(stranger_);

@@ -20,7 +20,7 @@ class SharedMemory : public testing::Test {
   SharedMemory() { fs::create_directory(folder_); }
   ~SharedMemory() override { fs::remove_all(folder_); }
 
-  /// A file and its lock, made `age` ago.
+  /// Makes a file and its lock, both of this age.
   void make(const std::string& name, std::chrono::seconds age = std::chrono::seconds(60)) {
     for (const std::string& file : {name, name + "_el"}) {
       std::ofstream(folder_ / file) << "x";

@@ -1,4 +1,4 @@
-// Peers get state, input, counters and faults of a service.
+// Peers receive state, input, counters and faults of a service.
 #include "topogeo/messaging/status_publisher.hpp"
 
 #include <map>
@@ -15,7 +15,7 @@ namespace {
 
 class Status : public TwoParticipants {
  protected:
-  /// Runs the service's loop until `condition` holds of the newest status seen.
+  /// Runs the service's loop until `condition` holds for the newest received status.
   bool eventually_seen(const std::function<bool(const msg::ServiceStatus&)>& condition) {
     return test::wait_for("that status", [&] {
       loop_.run_for(std::chrono::milliseconds(5));
@@ -60,7 +60,7 @@ TEST_F(Status, StateCountersAndFaultsArrive) {
   EXPECT_EQ(seen_.faults()[0].reason().to_string(), "nan_range");
   EXPECT_EQ(seen_.faults()[0].count(), 2U);
 
-  // Inputs of the last seconds: on a machine that stood still for a while there are none.
+  // Inputs of the last seconds: after a pause of the machine there are none.
   EXPECT_TRUE(eventually_seen([&](const auto& s) {
     status.count_input("scan");
     return s.input_rate_per_s() > 0.0;

@@ -1,4 +1,4 @@
-// The timers of the middleware stay in order, whichever of them have worked.
+// The timers of the middleware stay in order, whichever of them have run.
 #include <algorithm>
 #include <cstddef>
 #include <memory>
@@ -33,7 +33,7 @@ struct ServiceMembers {
     return service.*kActive;
   }
 };
-/// Those that wait for their time, in the order in which the library looks at them.
+/// Pending timers, in the order in which the library checks them.
 const std::vector<rtps::TimedEventImpl*>& active(const rtps::ResourceEvent& service);
 template struct ServiceMembers<&rtps::ResourceEvent::active_timers_>;
 
@@ -50,11 +50,11 @@ namespace topogeo::messaging {
 namespace {
 
 constexpr std::size_t kTimers = 200;
-// So far apart that the time between two looks at the clock does not count; all within the day
-// after which the library takes a timer for cancelled.
+// Far enough apart that the time between two readings of the clock does not matter; all are within
+// a day, after which the library considers a timer cancelled.
 constexpr double kApart_ms = 300e3;
 
-/// Timers of a participant whose thread is the test's own.
+/// Timers of a participant, run in the test's own thread.
 class Timers {
  public:
   /// Each is due at once and then after one of the multiples of kApart_ms.
@@ -80,7 +80,7 @@ class Timers {
 
   Timers(const Timers&) = delete;
   Timers& operator=(const Timers&) = delete;
-  /// Timers are taken away while the library's thread lets their lists be changed.
+  /// Removes timers while the library's thread permits changes of their lists.
   ~Timers() {
     service_.init_thread();
     timers_.clear();
@@ -115,7 +115,7 @@ class Timers {
 
 TEST(TimerOrder, IsThatOfTheirTimesWheneverSomeHaveWorked) {
   let_timers_end_alone();
-  // A thread of its own, as the library has: that of the tests stays one that runs no timers.
+  // A separate thread, as in the library, so that the tests' thread stays one that runs no timers.
   std::thread([] {
     Timers timers;
     for (std::size_t n = 0; n < 4 * kTimers && timers.worked() < kTimers; ++n) {

@@ -1,4 +1,4 @@
-// Timers of the middleware that are taken away while others are at work.
+// Timers of the middleware that are removed while others run.
 #include "fast_dds/timer_waits.hpp"
 
 #include <atomic>
@@ -34,7 +34,7 @@ class TimerWaits : public ::testing::Test {
   }
   ~TimerWaits() override { service_.stop_thread(); }
 
-  /// Runs `work` once, soon; the timer goes on when that is true.
+  /// Runs `work` once, soon; the timer continues when it returns true.
   std::unique_ptr<rtps::TimedEvent> start(const std::function<bool()>& work,
                                           double period_ms = kAtOnce_ms) {
     auto timer = std::make_unique<rtps::TimedEvent>(service_, work, period_ms);
@@ -45,8 +45,8 @@ class TimerWaits : public ::testing::Test {
   rtps::ResourceEvent service_;
 };
 
-/// Two threads that wait for each other never end: the middle of a test that could come to that
-/// runs in a process of its own, which exits with 0.
+/// A deadlock never ends, so the critical part of such a test runs in a process of its own, which
+/// exits with 0.
 class TimerWaitsDeathTest : public TimerWaits {
  protected:
   TimerWaitsDeathTest() { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
@@ -64,7 +64,7 @@ class TimerWaitsDeathTest : public TimerWaits {
       return false;
     });
     while (!at_work) std::this_thread::yield();
-    // As a writer is removed while the lock of discovery is held.
+    // A writer is removed alike, with the lock of discovery held.
     other->recreate_timer();
     const bool still = at_work;
     lock.unlock();
@@ -82,7 +82,7 @@ TEST_F(TimerWaits, OneThatIsAtWorkIsRemovedWhenItHasDoneItsWork) {
   std::atomic<bool> done = false;
   auto timer = start([&] {
     begun = true;
-    // Work that takes a while: a removal that does not wait for it is seen.
+    // Long enough to reveal a removal that does not wait for it.
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     done = true;
     return true;

@@ -1,4 +1,4 @@
-// How fast totals grow, at given times.
+// Growth rates of totals at given times.
 #include "topogeo/messaging/total_rate.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Writers of the middleware that end with messages which their readers have not confirmed.
+// Writers of the middleware that are destroyed with messages that their readers have not confirmed.
 #include "fast_dds/writer_end.hpp"
 
 #include <chrono>
@@ -30,10 +30,10 @@ namespace rtps = eprosima::fastrtps::rtps;
 constexpr int kMessages = 1'000;
 constexpr std::uint32_t kSize_bytes = 64;
 constexpr std::chrono::microseconds kGivingBack{100};
-/// One lock is given back and taken again some thousand times beside so many heartbeats.
+/// Many heartbeats happen while one lock is released and taken again some thousand times.
 constexpr std::uint32_t kHeartbeatPeriod_ns = 100'000;
 
-/// Payloads take a while to be given back.
+/// Releases payloads slowly.
 class SlowPool : public rtps::IPayloadPool {
  public:
   bool get_payload(std::uint32_t size, rtps::CacheChange_t& change) override {
@@ -53,7 +53,7 @@ class SlowPool : public rtps::IPayloadPool {
   }
 };
 
-/// Of nobody: its address takes no packets, so it confirms nothing.
+/// A reader that does not exist: its address accepts no packets, so it confirms nothing.
 rtps::ReaderProxyData silent_reader() {
   rtps::ReaderProxyData reader(1, 0);
   rtps::GUID_t guid;
@@ -95,7 +95,7 @@ rtps::ReaderProxyData silent_reader() {
   std::_Exit(removed ? 0 : 2);
 }
 
-/// One that never ends is ended by its alarm, in a process of its own.
+/// Runs in a process of its own, whose alarm ends a deadlock.
 TEST(WriterEndDeathTest, HeartbeatsLeaveMessagesAloneThatAreGivenBack) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(end_a_writer_with_messages_under_way(), ::testing::ExitedWithCode(0), "");

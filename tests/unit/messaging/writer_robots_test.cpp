@@ -44,7 +44,7 @@ TEST(WriterRobots, TakesTheLastPartitionsOfAWriter) {
   EXPECT_TRUE(robots.allows(handle(1, 1), "bert"));
 }
 
-/// Lets so many participants come and go.
+/// Lets so many participants join and leave.
 void pass(WriterRobots& robots, std::uint32_t count) {
   for (std::uint32_t i = 0; i < count; ++i) {
     robots.allow(handle(100 + i, 1), {"floor/anna"});
@@ -52,7 +52,7 @@ void pass(WriterRobots& robots, std::uint32_t count) {
   }
 }
 
-// The last messages of a peer that has left may wait to be handled.
+// The last messages of a peer that has left may still be pending.
 TEST(WriterRobots, RemembersThoseThatHaveJustLeft) {
   WriterRobots robots;
   robots.allow(handle(1, 1), {"floor/anna"});

@@ -47,7 +47,7 @@ TEST(ArcSweep, AgreesWithFineSteps) {
       if ((pose.position_m() - point_m).norm() < radius_m) break;
     }
     if (stepped_m < kLimit_m) ++met;
-    // A point that is only just touched may be missed between two steps.
+    // The steps may miss a point that is only touched.
     if (stepped_m < kLimit_m) {
       EXPECT_NEAR(length_m, stepped_m, 0.002) << "run " << run;
     }

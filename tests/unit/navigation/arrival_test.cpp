@@ -18,7 +18,7 @@ class ArrivalTest : public testing::Test {
     view.tracking = true;
   }
 
-  /// It stands until a pose of this place is there.
+  /// It stands until there is a pose from this place.
   ArrivalStep settle() {
     now_ns += kSecond_ns;
     arrival.begin(now_ns);
@@ -36,7 +36,7 @@ class ArrivalTest : public testing::Test {
 TEST_F(ArrivalTest, StandsUntilAPoseOfThisPlaceHasCome) {
   arrival.begin(0);
   EXPECT_TRUE(arrival.settling());
-  view.fix_ns = kSecond_ns / 10;  // made while it rolled out
+  view.fix_ns = kSecond_ns / 10;  // from before it stopped
   EXPECT_EQ(arrival.step(view, kSecond_ns / 4).kind, Kind::kStands);
   EXPECT_EQ(arrival.step(view, kSecond_ns).kind, Kind::kStands);
   view.fix_ns = kSecond_ns;

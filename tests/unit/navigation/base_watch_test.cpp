@@ -12,8 +12,8 @@ namespace {
 
 class BaseWatchTest : public testing::Test {
  protected:
-  /// Orders ten times a second, from one time to just before another; the odometry is of the
-  /// moment. The last answer of the watch.
+  /// Sends orders ten times a second, from one time to just before another, with current odometry.
+  /// Returns the watch's last answer.
   bool ordered(const geometry::Velocity& order, const geometry::Pose2& T_odom_robot, double from_s,
                double to_s) {
     bool stuck = false;
@@ -38,7 +38,7 @@ TEST_F(BaseWatchTest, NoticesABaseThatDoesNotMove) {
   EXPECT_TRUE(ordered({0.0, 0.5}, {0.1, 0.0, 0.0}, 11.0, 11.1));
 }
 
-// The base stops by itself when no order comes: no orders for 9 s are no orders that it disobeyed.
+// The base stops by itself without orders, so 9 s without orders are no disobeyed orders.
 TEST_F(BaseWatchTest, CountsAnewAfterAGapInTheOrders) {
   EXPECT_FALSE(ordered(ahead, {}, 0.0, 1.0));
   EXPECT_FALSE(ordered(ahead, {}, 10.0, 12.0));
@@ -46,7 +46,7 @@ TEST_F(BaseWatchTest, CountsAnewAfterAGapInTheOrders) {
 }
 
 TEST_F(BaseWatchTest, OdometryThatComesLateIsWaitedFor) {
-  // It comes 0.9 s late, and so does the order to the base: the robot is seen to move after 2.4 s.
+  // Odometry and orders are late by 0.9 s, so the robot's motion is visible after 2.4 s.
   constexpr std::int64_t kLate_ns = 9 * kSecond_ns / 10;
   for (std::int64_t now_ns = 0; now_ns < 24 * kSecond_ns / 10; now_ns += kSecond_ns / 10) {
     EXPECT_FALSE(watch.stuck(ahead, {}, now_ns - kLate_ns, now_ns)) << now_ns;

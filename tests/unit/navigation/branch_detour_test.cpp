@@ -1,4 +1,4 @@
-// Detours along the branches of one scan, from a robot at the origin that looks along x.
+// Detours along the branches of one scan, for a robot at the origin that faces x.
 #include "branch_detour.hpp"
 
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace topogeo::navigation {
 namespace {
 
-// What a laser of 181 beams over half a turn sees of rectangles.
+// Rectangles in the view of a laser with 181 beams over half a turn.
 struct Box {
   Eigen::Vector2d low_m;
   Eigen::Vector2d high_m;
@@ -60,7 +60,7 @@ planning::FreeSpace floor_with(const std::vector<planning::DrawnZone>& zones) {
 
 const std::vector<Eigen::Vector2d> kAhead{{0.0, 0.0}, {8.0, 0.0}};
 
-// Between two walls a box fills the right half and the middle of a corridor of 4 m.
+// A box fills the right half and the middle of a corridor of 4 m.
 TEST(BranchDetour, LeadsThroughTheMiddleOfTheGap) {
   const SeenScan seen =
       scan_of({{{-1.0, 2.0}, {9.0, 2.2}}, {{-1.0, -2.2}, {9.0, -2.0}}, {{3.0, -1.9}, {3.5, 0.4}}});
@@ -91,7 +91,7 @@ TEST(BranchDetour, KeepsOutOfNoGoZones) {
   EXPECT_FALSE(detour_along_branches(seen, kAhead, {0.0, 0.0}, {}, all, {}));
 }
 
-// The zone lies beside the route, in the gap.
+// The zone is beside the route, in the gap.
 TEST(BranchDetour, DrivesNoOneWayZoneAgainstItsHeading) {
   const SeenScan seen =
       scan_of({{{-1.0, 2.0}, {9.0, 2.2}}, {{-1.0, -2.2}, {9.0, -2.0}}, {{3.0, -1.9}, {3.5, 0.4}}});
@@ -105,7 +105,7 @@ TEST(BranchDetour, DrivesNoOneWayZoneAgainstItsHeading) {
   }
 }
 
-// Nothing is in sight: two lines beside the robot are taken for walls.
+// Nothing is in view: two lines beside the robot serve as walls.
 TEST(BranchDetour, FollowsAVirtualDiagramWhereNothingIsInSight) {
   const SeenScan seen = scan_of({});
   for (const topomap::MapBranch& branch : branches_of(seen, {}).branches) {
@@ -125,7 +125,7 @@ TEST(BranchDetour, FollowsAVirtualDiagramBesideOneGroup) {
   EXPECT_GT(least_distance_m(detour->points_m, {2.5, -0.1}), 0.3);
 }
 
-// The laser is mounted to the left and the robot stands elsewhere on the map.
+// The laser is mounted to the left, and the robot is elsewhere on the map.
 TEST(BranchDetour, BranchesAreInTheFrameOfTheMap) {
   SeenScan seen = scan_of({{{-1.0, 1.0}, {9.0, 1.2}}, {{-1.0, -1.2}, {9.0, -1.0}}});
   seen.T_robot_laser = {0.2, 0.0, 0.0};

@@ -29,7 +29,7 @@ SonarRound round_at(std::int64_t stamp_ns, const geometry::Pose2& T_robot_sonar,
   return {stamp_ns, {{T_robot_sonar, 0.2, range_m}}};
 }
 
-/// Driven at this speed from what the guard has seen until the base has braked.
+/// Distance driven at this speed from the guard's last scan until the base has braked.
 double stopping_m(double speed, double age_s, const GuardConfig& config) {
   return speed * (age_s + config.delay_s + config.runs_on_s) +
          speed * speed / (2.0 * config.deceleration_m_per_s2);
@@ -44,7 +44,7 @@ TEST(CollisionGuard, NothingNearChangesNothing) {
 }
 
 TEST(CollisionGuard, StraightAheadItStopsAtTheMargin) {
-  // 1 m to the middle: 0.733 m to the body, less the side margin that the body is grown by.
+  // 1 m to the middle: 0.733 m to the body, less the side margin around the body.
   const GuardConfig config;
   const auto verdict = guard_seeing({{1.0, 0.0}}).judge({2.0, 0.0}, kNow_ns);
   EXPECT_NEAR(verdict.free_m, 1.0 - config.radius_m - config.side_margin_m, 1e-9);
@@ -65,7 +65,7 @@ TEST(CollisionGuard, CountsTheAgeOfTheOdometry) {
   const double distance_m = 0.9 - config.radius_m - config.margin_m;
   EXPECT_NEAR(stopping_m(speed_at(kSecond_ns / 10), 0.0, config), distance_m, 1e-9);
   EXPECT_NEAR(stopping_m(speed_at(kSecond_ns / 2), 0.4, config), distance_m, 1e-9);
-  // Stamps that are ahead of the clock are no time in hand.
+  // Stamps ahead of the clock give no additional time.
   EXPECT_EQ(speed_at(0), speed_at(kSecond_ns / 10));
 }
 
@@ -119,7 +119,7 @@ TEST(CollisionGuard, ASonarSeesWhatTheLaserDoesNot) {
 }
 
 TEST(CollisionGuard, TheLaserKnowsBetterWhereAnEchoComesFrom) {
-  // The echo of a door post, which the sonar puts onto its axis.
+  // A door post whose echo the sonar places on its axis.
   CollisionGuard guard = guard_seeing({{0.75, 0.08}});
   guard.add(round_at(kNow_ns, {0.267, 0.0, 0.0}, 0.49F));
   const double free_m = guard.judge({0.1, 0.0}, kNow_ns).free_m;
@@ -179,7 +179,7 @@ TEST(CollisionGuard, SonarsWithNothingNearMayBeSilent) {
   EXPECT_EQ(guard.health(kNow_ns + kSecond_ns), HaltReason::kNone);
 }
 
-// Nothing is near by the scan: the fields alone decide.
+// Nothing is near in the scan: only the fields decide.
 TEST(CollisionGuard, ObeysTheFieldsOfTheLaser) {
   GuardConfig config;
   CollisionGuard guard = guard_seeing({{0.0, 3.0}});
@@ -193,7 +193,7 @@ TEST(CollisionGuard, ObeysTheFieldsOfTheLaser) {
   EXPECT_EQ(guard.judge({0.1, 0.0}, kNow_ns).allowed, geometry::Velocity{});
   EXPECT_EQ(guard.judge({0.1, 0.0}, kNow_ns).reason, HaltReason::kObstacle);
   EXPECT_EQ(guard.judge({0.0, 0.7}, kNow_ns).allowed, (geometry::Velocity{0.0, 0.7}));
-  guard.add(LaserFields{kNow_ns, false, false});  // older than the one before
+  guard.add(LaserFields{kNow_ns, false, false});  // older than the previous one
   EXPECT_EQ(guard.judge({0.1, 0.0}, kNow_ns).allowed, geometry::Velocity{});
   guard.add(LaserFields{kNow_ns + 2, false, false});
   EXPECT_EQ(guard.judge({0.8, 0.4}, kNow_ns).allowed, (geometry::Velocity{0.8, 0.4}));
@@ -218,8 +218,8 @@ TEST(CollisionGuard, SettingsOutOfRangeAreRefused) {
   EXPECT_THROW(CollisionGuard{config}, std::invalid_argument);
 }
 
-/// Drives on as allowed until the base brakes: the least distance of the points to the middle,
-/// in steps of a millimetre.
+/// Drives on as permitted until the base brakes; returns the least distance of the points to the
+/// middle, in steps of a millimetre.
 double nearest_m(const std::vector<Eigen::Vector2d>& points_m, const geometry::Velocity& allowed,
                  const GuardConfig& config) {
   const double stop_m = stopping_m(std::fabs(allowed.linear_m_per_s), 0.0, config);

@@ -17,7 +17,7 @@ TEST(CommandHistory, IsEmptyBeforeTheFirstCommand) {
   EXPECT_EQ(history.predicted({1.0, 2.0, 0.5}, kTenth_ns), (Pose2{1.0, 2.0, 0.5}));
 }
 
-// 0.2 m/s for a tenth, then 0.4 m/s for two tenths; the base obeys what is older than 0.2 s.
+// 0.2 m/s for a tenth, then 0.4 m/s for two tenths; the base has obeyed commands older than 0.2 s.
 TEST(CommandHistory, PredictsThePoseByTheCommandsThatAreNotObeyedYet) {
   CommandHistory history(0.2);
   history.add({0.2, 0.0}, 0);

@@ -13,7 +13,7 @@ TEST(ContactMemory, TheSameContactAgainPushesNoOtherOut) {
   for (std::int64_t i = 0; i < 50; ++i) contacts.add({2.0, 0.0005 * static_cast<double>(i)}, i);
   ASSERT_EQ(contacts.points_m(50).size(), 2U);
   EXPECT_EQ(contacts.points_m(50).front(), Eigen::Vector2d(1.0, 0.0));
-  // Twelve seconds after it was met last a contact counts no more.
+  // A contact expires twelve seconds after it was last met.
   EXPECT_EQ(contacts.points_m(12 * kSecond_ns).size(), 1U);
   EXPECT_TRUE(contacts.points_m(12 * kSecond_ns + 50).empty());
   for (int i = 0; i < 30; ++i) contacts.add({0.1 * i, 5.0}, 60);

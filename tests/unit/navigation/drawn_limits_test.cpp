@@ -1,4 +1,4 @@
-// The collision guard before drawn walls and no-go zones.
+// The collision guard in front of drawn walls and no-go zones.
 #include "topogeo/navigation/drawn_limits.hpp"
 
 #include <cmath>
@@ -46,7 +46,7 @@ TEST(DrawnLimits, ADrawnWallStopsLikeAWall) {
   const DrawnLimits limits(hall_with({}, kWall));
   const GuardConfig config;
   const GuardVerdict verdict = guard_at(limits, {}).judge({2.0, 0.0}, kDrivenAt_ns);
-  // To the middles of its cells, which lie 5 cm off the robot's line.
+  // The distance to the centres of the wall's cells, which are 5 cm off the robot's line.
   const double body_m = config.radius_m + config.side_margin_m;
   EXPECT_NEAR(verdict.free_m, 2.05 - std::sqrt(body_m * body_m - 0.05 * 0.05), 1e-9);
   EXPECT_TRUE(verdict.limited);
@@ -76,7 +76,7 @@ TEST(DrawnLimits, ANoGoZoneStopsFromOutsideAndLetsOut) {
   EXPECT_THAT(DrawnLimits().near_m({}), IsEmpty());
 }
 
-// However it is sent about, the body never comes into the zone or over the wall.
+// For any commands, the body never enters the zone or crosses the wall.
 TEST(DrawnLimits, NoDriveCrossesThem) {
   const planning::FreeSpace hall = hall_with(kPool, kWall);
   const DrawnLimits limits(hall);
@@ -125,7 +125,7 @@ TEST(DrawnLimits, OdometryCarriesThemOnForThreeMetres) {
   };
   const double at_first_m = free_after_m(0.0, kDrivenAt_ns + 1);
   EXPECT_NEAR(free_after_m(1.0, kDrivenAt_ns + 100'000'000), at_first_m - 1.0, 1e-9);
-  // Backwards, away from it, until nobody knows where it is.
+  // Backwards, away from the wall, until its place is no longer known.
   EXPECT_LT(free_after_m(-2.9, kDrivenAt_ns + 200'000'000), CollisionGuard::kFarthest_m);
   EXPECT_EQ(free_after_m(-3.1, kDrivenAt_ns + 300'000'000), CollisionGuard::kFarthest_m);
   EXPECT_NEAR(free_after_m(1.0, kDrivenAt_ns + 400'000'000), at_first_m - 1.0, 1e-9);

@@ -1,5 +1,5 @@
-// A robot without inertia in a floor of text, which sees all cells in plain sight: the tour takes
-// it everywhere.
+// A robot without inertia on a floor drawn in text, which sees all cells in plain sight: the tour
+// leads it everywhere.
 #include "topogeo/navigation/exploration_tour.hpp"
 
 #include <algorithm>
@@ -54,7 +54,7 @@ class TextRobot {
     look();
   }
 
-  /// Drives on toward the goal by a step of the planned route; reports what a navigator would.
+  /// Drives toward the goal by a step of the planned route; returns a navigator's status.
   NavigatorStatus step(const std::optional<TourGoal>& goal) {
     if (goal) {
       goal_ = goal;
@@ -82,7 +82,7 @@ class TextRobot {
     return map;
   }
 
-  /// Free cells that the robot does not know.
+  /// Number of free cells that the robot does not know.
   [[nodiscard]] std::size_t unknown() const {
     std::size_t count = 0;
     const auto& frame = truth_.frame();
@@ -239,7 +239,7 @@ TEST(ExplorationTour, WaitsForMapAndPose) {
   EXPECT_FALSE(tour.step({}, 0));
   TextRobot robot;
   tour.set_map(robot.map());
-  EXPECT_FALSE(tour.step({}, kTourStep_ns));  // it does not know where it is
+  EXPECT_FALSE(tour.step({}, kTourStep_ns));  // without a pose
   EXPECT_FALSE(tour.done());
   EXPECT_TRUE(tour.step(robot.step({}), 2 * kTourStep_ns));
 }

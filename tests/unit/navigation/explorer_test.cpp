@@ -1,4 +1,4 @@
-// Small floors in text, cells of 0.25 m, forbidden cells 1: what comes next to be explored.
+// Small floors in text, cells of 0.25 m, forbidden cells 1: the choice of the next target.
 #include "topogeo/navigation/explorer.hpp"
 
 #include <gmock/gmock.h>
@@ -26,7 +26,7 @@ planning::HybridMap drawn_map(const std::vector<std::string>& lines,
   return {std::move(space), std::move(cut)};
 }
 
-/// The middle of the cell that a line and column of the text name, counted from the last line.
+/// Centre of the cell at this line and column of the text, counted from the last line.
 Eigen::Vector2d explored_at(int column, int row) {
   return {kExplored_m * (column + 0.5), kExplored_m * (row + 0.5)};
 }
@@ -77,7 +77,7 @@ TEST(Explorer, GoesWhereTheKnownEnds) {
   ASSERT_TRUE(target);
   EXPECT_EQ(target->kind, TargetKind::kGap);
   EXPECT_NEAR(target->position_m.x(), explored_at(17, 3).x(), 0.01);
-  // It is looked at from the known side and toward the unknown.
+  // The view is from the known side toward the unknown.
   EXPECT_LT(target->T_map_view.x_m, target->position_m.x());
   EXPECT_NEAR(target->T_map_view.theta_rad, 0.0, 1.0);
   EXPECT_GT(target->distance_m, 1.0);
@@ -103,7 +103,7 @@ TEST(Explorer, NothingIsLeftOfAFloorThatIsKnown) {
 }
 
 TEST(Explorer, WhatCannotBeReachedIsNoTarget) {
-  // The right part is open to the unknown, but behind a wall.
+  // The right part borders the unknown, but behind a wall.
   const planning::HybridMap map = drawn_map({
       "#########################",
       "#.........#.........?????",
@@ -266,7 +266,7 @@ TEST(Explorer, ATargetIsClosedWhenTheMapShowsIt) {
 }
 
 TEST(Explorer, WhatShowsThroughAHoleTooSmallForTheRobotIsNoTarget) {
-  // The left wall has holes of one cell, behind which much is unknown.
+  // The left wall has holes of one cell, with much unknown area behind.
   const std::vector<std::string> lines = {
       "??????##################", "??????#................#", "????????...............#",
       "??????#................#", "??????#................#", "????????...............#",
@@ -312,8 +312,8 @@ TEST(Explorer, ALittleUnknownFloorIsNotGoneToFromFarAway) {
 }
 
 TEST(Explorer, TheFirstOfAShortTourComesNextAndNotTheNearest) {
-  // From the robot 3.5 m to the opening above, 5 m to the left end, 9 m to the right end: after the
-  // nearest one it would come back along the whole corridor.
+  // The opening above is 3.5 m from the robot, the left end 5 m, the right end 9 m: starting with
+  // the nearest, it would return along the whole corridor.
   std::vector<std::string> lines(7, "?" + std::string(54, '.') + "?");
   lines[0] = std::string(56, '?');
   lines[1] = std::string(33, '#') + "....." + std::string(18, '#');
@@ -355,7 +355,7 @@ TEST(Explorer, AnEntranceThatNoiseHasNarrowedIsLookedAtLast) {
   EXPECT_LT(target->T_map_view.x_m, explored_at(10, 4).x());
   EXPECT_TRUE(explorer.open(*target, map));
   EXPECT_FALSE(explorer.open(*target, drawn_map(lines)));
-  // What is unknown elsewhere comes first.
+  // Unknown area elsewhere comes first.
   filled[4][0] = filled[3][0] = filled[5][0] = '?';
   ExplorerConfig config = small();
   config.least_area_m2 = 0.01;
@@ -365,7 +365,7 @@ TEST(Explorer, AnEntranceThatNoiseHasNarrowedIsLookedAtLast) {
   const auto gap = next(other, drawn_map(filled), pose_at(4, 4));
   ASSERT_TRUE(gap);
   EXPECT_EQ(gap->kind, TargetKind::kGap);
-  // Nobody gets through a wall.
+  // A wall cannot be passed.
   std::vector<std::string> closed = lines;
   for (std::string& line : closed) line[10] = '#';
   EXPECT_FALSE(next(explorer, drawn_map(closed), pose_at(4, 4)));

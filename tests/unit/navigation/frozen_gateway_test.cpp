@@ -1,5 +1,5 @@
-// A gateway that freezes at any moment of a drive past obstacles: the base runs on with its last
-// command until its watchdog expires. What the guard allows must leave room for that.
+// A gateway that freezes at any moment of a drive past obstacles: the base continues with its last
+// command until its watchdog expires, and the guard must leave room for that.
 #include <cstdint>
 #include <cstdlib>
 
@@ -25,7 +25,7 @@ DriveGuard guarded_by(CollisionGuard& guard) {
     return DriveGuard::Answer{verdict.allowed, verdict.free_m};
   };
   drive.sensors = {30, 110};
-  drive.commands = {10, 150};  // until the next command another 50 ms pass
+  drive.commands = {10, 150};  // the next command takes another 50 ms
   return drive;
 }
 
@@ -34,7 +34,7 @@ struct FrozenDrives {
   double path_m = 0.0;
 };
 
-/// Drives each of their own, frozen at a moment of their own.
+/// Runs separate drives, each frozen at its own moment.
 FrozenDrives freeze_drives(int drives, const GuardConfig& config) {
   FrozenDrives outcome;
   support::Random random(5);

@@ -1,4 +1,4 @@
-// A base with a laser that looks at a post ahead.
+// A base with a laser that faces a post.
 #include "guarded_base.hpp"
 
 #include <string>
@@ -17,7 +17,7 @@ class GuardedBaseTest : public testing::Test {
     base.add(scan_of_post(post_m, stamp_ns));
   }
 
-  /// Ten orders a second from `from_ns` on that the base does not obey.
+  /// Ten orders a second from `from_ns` on, all disobeyed by the base.
   void order_for_2_s(std::int64_t from_ns) {
     for (int i = 0; i <= 20; ++i) {
       const std::int64_t now_ns = from_ns + i * kSecond_ns / 10;
@@ -53,7 +53,7 @@ TEST_F(GuardedBaseTest, IsHeldBeforeAnObstacleUntilItIsReleased) {
   const std::int64_t later_ns = kSecond_ns + kSecond_ns / 2;
   scan_at(0.3, later_ns);
   EXPECT_FALSE(base.command({0.3, 0.0}, geometry::Pose2{}, later_ns).newly_stopped);
-  // An order to stand does not end it, one that the guard allows does.
+  // An order to stand still does not end it; an order that the guard permits does.
   base.command({}, geometry::Pose2{}, later_ns);
   EXPECT_TRUE(base.held(2 * kSecond_ns));
   base.command({0.0, 0.5}, geometry::Pose2{}, later_ns);
@@ -87,7 +87,7 @@ TEST_F(GuardedBaseTest, ABaseThatGetsItsOrdersLateIsTriedAgainWhenThereIsTime) {
     base.set({}, now_ns + 2 * kSecond_ns);
     EXPECT_EQ(base.halted(now_ns + 2 * kSecond_ns, message), HaltReason::kNone);
   }
-  // Three times in vain: it waits for people.
+  // After three vain attempts it waits for people.
   base.set(busy, now_ns);
   order_for_2_s(now_ns);
   EXPECT_EQ(base.halted(now_ns + 2 * kSecond_ns, message), HaltReason::kBaseStuck);

@@ -1,4 +1,4 @@
-// Why a robot stands: an input has gone, or it comes late because a machine is too busy.
+// Why a robot stands still: an input has ended, or is late because a machine is too busy.
 #include "input_delays.hpp"
 
 #include <gmock/gmock.h>
@@ -39,7 +39,7 @@ TEST(InputDelays, ScansThatHaveGoneAreGone) {
   const InputDelays::Reason why = delays.explain(HaltReason::kNoScan, kOld, kNoon + 2 * kSecond);
   EXPECT_EQ(why.message, kOld);
   EXPECT_FALSE(why.busy_machine);
-  // The last ones came late, too, but none comes any more.
+  // The last ones were late, too, but no more are coming.
   delays.add(TimedInput::kScan, kNoon - 2 * kSecond, kNoon);
   EXPECT_EQ(delays.explain(HaltReason::kNoScan, kOld, kNoon + 2 * kSecond).message, kOld);
 }
@@ -68,8 +68,8 @@ TEST(InputDelays, APoseKeepsItsOwnReason) {
                     HasSubstr("poses arrive 4.0 s late")));
 }
 
-/// A drive whose scans come late for a while: it stops as soon as without a reason, names the
-/// machine, and goes on by itself as soon as they come in time.
+/// A drive whose scans are late for a while: it stops as fast as without a known cause, names the
+/// machine, and continues by itself once they are in time.
 TEST(InputDelays, ADriveStopsAndGoesOnByItself) {
   DriveSettings settings;
   settings.T_world_start = {1.0, 1.0, 0.0};

@@ -1,5 +1,5 @@
-// The fields that a laser watches by itself as the second line behind the guard's own distances: a
-// robot, its emulated laser on a line, driver and guard in a closed loop.
+// The fields that a laser monitors itself, as the second line of defence behind the guard's own
+// distances: a robot, its emulated laser on a line, driver and guard in a closed loop.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -35,7 +35,7 @@ simulation::PlsEmulatorSettings laser_with_fields() {
   return settings;
 }
 
-/// A guard that takes the laser for one that looks back, as after a slip in its mounting: by its
+/// Its guard assumes a laser that faces backwards, like a mounting that has slipped: by its
 /// distances nothing is ahead.
 class RobotBeforeAWall {
  public:
@@ -65,11 +65,11 @@ class RobotBeforeAWall {
     }
   }
 
-  /// From the laser, which is in the middle.
+  /// Distance from the laser, which is at the robot's centre.
   [[nodiscard]] double to_wall_m() const { return kWallX_m - robot_.T_world_robot().x_m; }
   [[nodiscard]] const simulation::SimulatedRobot& robot() const { return robot_; }
   [[nodiscard]] const GuardVerdict& verdict() const { return verdict_; }
-  /// Between the two fields.
+  /// Lowest speed between the two fields.
   [[nodiscard]] double slowest_m_per_s() const { return slowest_m_per_s_; }
 
  private:
@@ -121,11 +121,11 @@ TEST(LaserFields, SlowAndStopARobotThatTheGuardsDistancesLetGoOn) {
   EXPECT_EQ(drive.verdict().reason, HaltReason::kObstacle);
   EXPECT_EQ(drive.verdict().message, "something is in the protective field of the laser");
   EXPECT_NEAR(drive.slowest_m_per_s(), GuardConfig{}.warning_field_m_per_s, 0.01);
-  // Readings err by centimetres, and it rolls on for a scan and a step.
+  // Readings have errors of centimetres, and it rolls on for a scan and a step.
   EXPECT_NEAR(drive.to_wall_m(), kProtective_m, 0.1);
 }
 
-// Shows that the distances of this guard do not stop it.
+// Shows that this guard's distances do not stop it.
 TEST(LaserFields, LeftAloneLetItRunIntoTheWall) {
   RobotBeforeAWall drive(false);
   drive.drive(30.0);

@@ -108,7 +108,7 @@ TEST(LastGuard, TakesNothingFromALaserThatHangs) {
   EXPECT_EQ(guard.judge({0.2, 0.0}, kBrake, kGuarded_ns + 1'000'000'000).verdict, Verdict::kBlind);
 }
 
-/// A reckless program on the gateway's own sensors, which may freeze at any moment, too.
+/// A reckless program on the gateway's own sensors, which may also freeze at any moment.
 TEST(LastGuard, NoProgramDrivesIntoWhatTheLaserSees) {
   const int drives = std::getenv("TOPOGEO_ALL_FAULTS") != nullptr ? 200 : 40;
   std::uint64_t contacts = 0;
@@ -134,7 +134,7 @@ TEST(LastGuard, NoProgramDrivesIntoWhatTheLaserSees) {
   EXPECT_GT(path_m, 2.0 * drives);
 }
 
-/// What a collision guard lets pass, this one leaves alone, or the two would dispute.
+/// It must not slow down motion that a collision guard permits, or the two would conflict.
 TEST(LastGuard, HasNothingToAddToACollisionGuard) {
   int judged = 0;
   int slower = 0;

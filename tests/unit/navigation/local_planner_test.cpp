@@ -64,7 +64,7 @@ TEST_F(LocalPlannerTest, FindsTheFirstPlaceThatIsBlocked) {
   EXPECT_EQ(block->obstacle_m, obstacles_m[1]);
   EXPECT_NEAR(block->ahead_m, 2.0 - config.guard.radius_m, 0.06);
   EXPECT_FALSE(planner.blocked(path, 1.0, {2.0, 3.0}, obstacles_m, 1.0));  // beyond its reach
-  // What is beside the path far enough blocks nothing, nor what the robot only moves away from.
+  // Obstacles well beside the path do not block it, nor do those that the robot moves away from.
   EXPECT_FALSE(planner.blocked(path, 1.0, {2.0, 3.0}, {{{4.0, 3.5}}}, 5.0));
   EXPECT_FALSE(planner.blocked(path, 1.0, {2.0, 3.0}, {{{1.75, 3.0}}}, 5.0));
 }
@@ -74,7 +74,7 @@ TEST_F(LocalPlannerTest, ReportsAPathThroughAWallAsNotPassable) {
   EXPECT_TRUE(passable(space, straight_path(routes.route().points_m), 0.0));
   const std::vector<Eigen::Vector2d> out_m = {{6.0, 3.0}, {9.0, 3.0}};
   EXPECT_FALSE(passable(space, straight_path(out_m), 0.0));
-  EXPECT_TRUE(passable(space, straight_path(out_m), 2.7));  // no more than half a metre is left
+  EXPECT_TRUE(passable(space, straight_path(out_m), 2.7));  // at most half a metre is left
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ MarkovTrackerConfig positions() {
   return config;
 }
 
-/// A robot without noise in two rooms, whose odometry measures 3 % too little.
+/// A robot without noise in two rooms, with odometry that is 3 % short.
 class MarkovDrive : public testing::Test {
  protected:
   MarkovDrive() {
@@ -108,7 +108,7 @@ TEST_F(MarkovDrive, PerceivingBeforeTheStartIsAMistake) {
   EXPECT_THROW(tracker.perceive(sonars()), std::runtime_error);
 }
 
-/// Only the base station is given; then the robot finds the goal by itself.
+/// Only the base station is given; the robot finds the goal by itself.
 TEST(NavigatorMarkov, DrivesFromTheBaseStationThroughADoor) {
   for (const bool by_laser : {false, true}) {
     DriveSettings settings;
@@ -141,7 +141,7 @@ TEST(NavigatorMarkov, DrivesFromTheBaseStationThroughADoor) {
   }
 }
 
-/// Wheels of a recorded log, sonars as bad as published, no laser: it hears them while it drives.
+/// Wheels of a recorded log, sonars as bad as published, no laser; readings come while it drives.
 TEST(NavigatorMarkov, DrivesThroughADoorBySonarsAlone) {
   DriveSettings settings;
   settings.T_world_start = {1.25, 4.55, 0.0};
@@ -185,13 +185,13 @@ TEST(MarkovTrackerPoses, HearsOnTheWayAndWaitsForOdometry) {
   for (int i = 0; i < 60; ++i) {
     robot.step({0.1, 0.0}, 1.0);
     now_ns += 1'000'000;
-    tracker.hear(heard(now_ns));  // before its odometry has come
+    tracker.hear(heard(now_ns));  // before their odometry
     tracker.add(OdometrySample{now_ns, robot.T_odom_robot()});
   }
   const auto fix = tracker.fix();
   ASSERT_TRUE(fix);
   EXPECT_TRUE(fix->tracking);
-  // Odometry alone is 0.3 m off by now.
+  // Odometry alone is off by 0.3 m now.
   EXPECT_LT((fix->T_map_robot.position_m() - robot.T_world_robot().position_m()).norm(), 0.1);
   EXPECT_FALSE(tracker.return_moves({2.0, 1.5, 0.0}));
 }
@@ -204,7 +204,7 @@ TEST(NavigatorMarkov, AMapThatComesAgainBeforeTheStartLeavesTheBaseStation) {
     settings.navigator.markov.grid = MarkovGrid::kPositions;
     TestDrive drive(two_doors(), settings);
     drive.poses_come = station_first;
-    drive.sonars_come = false;  // so it does not start yet
+    drive.sonars_come = false;  // so that it does not start yet
     drive.step();
     drive.navigator.set_map(drive.map, ++drive.map_version);
     drive.poses_come = drive.sonars_come = true;
@@ -214,7 +214,7 @@ TEST(NavigatorMarkov, AMapThatComesAgainBeforeTheStartLeavesTheBaseStation) {
   }
 }
 
-/// No pose ever comes: the base station is a place of the map.
+/// No pose ever arrives: the base station is a place of the map.
 TEST(NavigatorMarkov, StartsAtTheBaseStationOfTheMap) {
   for (const std::string name : {"base station", "dock"}) {
     DriveSettings settings;
@@ -249,7 +249,7 @@ TEST(LaserRound, HasABeamForEveryStep) {
   EXPECT_EQ(round.stamp_ns, 7);
   EXPECT_EQ(round.readings[0].range_m, scan::Scan::kNoReturn);
   EXPECT_FLOAT_EQ(round.readings[2].range_m, 2.0F);
-  EXPECT_EQ(round.readings[3].range_m, scan::Scan::kNoReturn);  // a point 17 degrees off it
+  EXPECT_EQ(round.readings[3].range_m, scan::Scan::kNoReturn);  // a point 17 degrees off its axis
   EXPECT_FLOAT_EQ(round.readings[4].range_m, 1.5F);
   EXPECT_NEAR(round.readings[4].T_robot_sonar.theta_rad, 0.5 * std::numbers::pi, 1e-12);
   EXPECT_THROW(laser_round(scan, 0.0), std::invalid_argument);

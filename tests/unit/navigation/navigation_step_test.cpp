@@ -1,5 +1,5 @@
-// One step by itself: which reason not to move comes first, and that nothing passes but through the
-// guard. Whole drives: navigator_*_test.cpp.
+// One step by itself: the priority of the reasons not to move, and that no motion bypasses the
+// guard. navigator_*_test.cpp has whole drives.
 #include "navigation_step.hpp"
 
 #include <memory>
@@ -14,14 +14,14 @@ namespace {
 
 constexpr std::int64_t kStepTime_ns = 1'000'000'000;
 
-/// In the middle of the lower half of the room of 8 x 6 m, looking along x.
+/// In the middle of the lower half of the room of 8 x 6 m, facing x.
 const geometry::Pose2 kPose{4.0, 2.0, 0.0};
 
 class NavigationStepTest : public testing::Test {
  protected:
   static NavigatorConfig settings() { return {}; }
 
-  /// The reason that the step gives not to drive; it must not move.
+  /// The step's reason not to drive; it must not move.
   HaltReason halts() {
     EXPECT_EQ(step_.step(kStepTime_ns), geometry::Velocity{});
     return step_.status.reason;
@@ -43,7 +43,7 @@ class NavigationStepTest : public testing::Test {
     fix.tracking = fix.located = true;
     step_.poses.add(fix);
   }
-  /// Nothing within 2 m.
+  /// A scan with nothing within 2 m.
   void give_scan() {
     ScanPoints scan;
     scan.stamp_ns = kStepTime_ns;

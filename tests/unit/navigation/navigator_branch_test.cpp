@@ -1,4 +1,4 @@
-// Driving along branches: as they lead, without a grid, and where the grid is wrong.
+// Driving along branches: along their curves, without a grid, and with a wrong grid.
 #include <algorithm>
 #include <cmath>
 
@@ -23,7 +23,7 @@ std::shared_ptr<const topomap::GlobalMap> branch_through(
   return graph;
 }
 
-// The branch goes through the middle of the room and turns there; straight it would be 5.7 m.
+// The branch leads through the middle of the room and turns there; the straight line is 5.7 m.
 TEST(NavigatorBranch, FollowsTheBranchAndNotTheStraightLine) {
   DriveSettings settings;
   settings.T_world_start = {2.0, 1.0, 0.0};
@@ -67,7 +67,7 @@ TEST(NavigatorBranch, WithoutAGridItDrivesNoRouteOnAGrid) {
   EXPECT_TRUE(drive.halted(HaltReason::kNoMap));
 }
 
-// On the grid something stands in both doors that is not there, so that it has no way.
+// The grid has objects in both doors that are not there, so it has no route.
 TEST(NavigatorBranch, DrivesThroughADoorThatIsShutOnTheGridAlone) {
   DriveSettings settings;
   settings.T_world_start = {2.0, 1.5, 0.0};
@@ -83,7 +83,7 @@ TEST(NavigatorBranch, DrivesThroughADoorThatIsShutOnTheGridAlone) {
   EXPECT_GT(drive.shortest_clearance_m, 0.28);
 }
 
-// A virtual branch says nothing of the room beside it.
+// A virtual branch contains no information about the space beside it.
 TEST(NavigatorBranch, FollowsAVirtualBranch) {
   DriveSettings settings;
   settings.T_world_start = {2.0, 1.5, 0.0};
@@ -95,7 +95,7 @@ TEST(NavigatorBranch, FollowsAVirtualBranch) {
   EXPECT_EQ(drive.robot.collisions(), 0U);
 }
 
-// From one place to the other at every cell.
+// Adds points from one place to the other, one for each cell.
 void add_line(std::vector<Eigen::Vector2d>& points_m, const Eigen::Vector2d& from_m,
               const Eigen::Vector2d& to_m) {
   const int steps = static_cast<int>(std::lround((to_m - from_m).norm() / 0.1));
@@ -113,8 +113,8 @@ world::ChangingPart standing_box(const Eigen::Vector2d& low_m, const Eigen::Vect
   return part;
 }
 
-// A partition with an opening stood across the room when it was mapped and is gone; a box stands
-// before the opening now. On the grid there is no way round.
+// A partition with an opening crossed the room when it was mapped, and is gone; now a box is in
+// front of the opening. The grid has no way round.
 TEST(NavigatorBranch, ADetourFollowsTheBranchesOfTheScanWhereTheGridHasNone) {
   for (const bool has_local_map : {false, true}) {
     world::World world = room();
@@ -134,9 +134,9 @@ TEST(NavigatorBranch, ADetourFollowsTheBranchesOfTheScanWhereTheGridHasNone) {
   }
 }
 
-// A hall so large that its walls are out of sight, which was mapped with a partition on either side
-// of the way. They are gone; a box stands on the right of the way, all that the laser sees: one
-// group. Between it and the partition on the left of the grid is no room.
+// A hall whose walls are out of view, mapped with a partition on either side of the route. The
+// partitions are gone; the laser sees only a box on the right of the route: one group. The grid has
+// no room between the box and the left partition.
 TEST(NavigatorBranch, AVirtualDiagramLeadsRoundWhereOneGroupIsInSight) {
   for (const bool has_local_map : {false, true}) {
     world::World world = world::parse_world(R"(

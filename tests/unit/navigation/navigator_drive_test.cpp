@@ -49,7 +49,7 @@ TEST(NavigatorDrive, KeepsToTheSpeedOfASlowZoneAndOutOfANoGoZone) {
   DriveSettings settings = from(1.0, 3.0, 0.0);
   settings.noise = true;
   TestDrive drive(room(), settings);
-  // The slow one reaches from wall to wall.
+  // The slow zone reaches from wall to wall.
   const std::vector<planning::DrawnZone> zones = {
       {"ramp", {{3.0, -1.0}, {5.0, -1.0}, {5.0, 7.0}, {3.0, 7.0}}, ZoneKind::kSlow, 0.2},
       {"wet", {{5.6, 2.0}, {6.2, 2.0}, {6.2, 4.0}, {5.6, 4.0}}, ZoneKind::kNoGo, 0.0}};

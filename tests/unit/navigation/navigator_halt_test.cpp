@@ -1,4 +1,4 @@
-// Every reason to stand still: it stops in the same step, reports why, and drives on afterwards.
+// Every reason to stand still: it stops in the same step, reports the reason, and drives on later.
 #include <functional>
 #include <string>
 
@@ -29,7 +29,7 @@ class NavigatorHalt : public testing::Test {
     ASSERT_EQ(drive.status().reason, HaltReason::kNone);
   }
 
-  /// From the first step with that reason on nothing moves; afterwards it arrives.
+  /// Nothing moves from the first step with that reason on.
   void expect_halt(HaltReason reason, NavigatorState state, double within_s) {
     ASSERT_TRUE(drive.run_until([&] { return drive.halted(reason); }, within_s))
         << drive.status().message;
@@ -90,7 +90,7 @@ TEST_F(NavigatorHalt, RoutesOfOtherGoalsAreIgnored) {
 
 TEST_F(NavigatorHalt, ARouteOfAMapToComeWaitsForIt) {
   drive.go_to({6.5, 4.5});
-  drive.map_version = 2;  // the planner has it already
+  drive.map_version = 2;  // the planner already has it
   expect_halt(HaltReason::kWaitsForRoute, NavigatorState::kStopped, 0.1);
   drive.navigator.set_map(drive.map, 2);
   expect_arrival();
@@ -148,7 +148,7 @@ TEST_F(NavigatorHalt, PausedAndResumed) {
 TEST_F(NavigatorHalt, PoseLostIsZeroInTheSameStep) {
   drive_off();
   drive.tracking = false;
-  // Poses come every fourth step; the step that hears of it gives exactly zero.
+  // Poses come every fourth step; the step that receives it outputs exactly zero.
   while (drive.status().reason == HaltReason::kNone) drive.step();
   EXPECT_EQ(drive.command, geometry::Velocity{});
   EXPECT_FALSE(drive.status().T_map_robot);

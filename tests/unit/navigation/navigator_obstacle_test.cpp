@@ -1,4 +1,4 @@
-// What is not on the map: gone round, waited for, reported.
+// Unmapped obstacles: avoided, waited for, reported.
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -14,7 +14,7 @@ using testing::HasSubstr;
 DriveSettings starting_from(double x_m, double y_m, double heading_rad) {
   DriveSettings settings;
   settings.T_world_start = {x_m, y_m, heading_rad};
-  settings.navigator.detour.half_side_m = 2.0;  // the other door is not in sight
+  settings.navigator.detour.half_side_m = 2.0;  // the other door is out of view
   return settings;
 }
 
@@ -128,7 +128,7 @@ TEST(NavigatorObstacle, WhatOnlySonarsHearStopsItAndIsGoneRound) {
   EXPECT_GE(drive.status().detours, 1U);
 }
 
-/// Where the guard met something means nothing after the pose was wrong, or on another map.
+/// The place of a contact is meaningless after a wrong pose, or on another map.
 TEST(NavigatorObstacle, WhatTheGuardMetIsForgottenWithThePoseAndTheMap) {
   enum class Change { kMap, kJump, kLost };
   for (const Change change : {Change::kMap, Change::kJump, Change::kLost}) {
@@ -142,7 +142,7 @@ TEST(NavigatorObstacle, WhatTheGuardMetIsForgottenWithThePoseAndTheMap) {
     drive.go_to({7.0, 2.5});
     ASSERT_TRUE(drive.run_until([&] { return drive.status().guard_stops > 0; }, 20.0));
     drive.navigator.pause();
-    drive.sonars_hear = false;  // as if the glass had gone
+    drive.sonars_hear = false;  // as if the glass were gone
     for (int i = 0; i < 20; ++i) drive.step();
     if (change == Change::kMap) drive.navigator.set_map(drive.map, ++drive.map_version);
     if (change == Change::kJump) {

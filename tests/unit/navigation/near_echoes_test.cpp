@@ -1,4 +1,4 @@
-// A robot with MACONDO's six sonars (two ahead, two on each side) and things at their least range.
+// A robot with MACONDO's six sonars (two ahead, two on each side), and objects at minimum range.
 #include "near_echoes.hpp"
 
 #include <cstdint>
@@ -54,7 +54,7 @@ TEST_F(NearEchoesTest, CurvesAwayFromAWallBesideItAlone) {
   hear({}, {kNothing_m, kLeast_m, kNothing_m}, 1);
   EXPECT_LT(near.make_room(ahead, 1).angular_rad_per_s, -0.1);
   EXPECT_EQ(near.make_room(ahead, 1).linear_m_per_s, 0.3);
-  // In a narrow door it goes on straight.
+  // It drives straight through a narrow door.
   hear({}, {kNothing_m, kLeast_m, kLeast_m}, 2);
   EXPECT_EQ(near.make_room(ahead, 2), ahead);
   hear({}, {kNothing_m, kNothing_m, kLeast_m}, 3);
@@ -66,10 +66,10 @@ TEST_F(NearEchoesTest, MovesOffWhatIsAheadOrBehindWhileItTurns) {
   hear({}, {kLeast_m, kNothing_m, kNothing_m}, 0);
   EXPECT_LT(near.make_room(turn, 0).linear_m_per_s, 0.0);
   EXPECT_EQ(near.make_room(turn, 0).angular_rad_per_s, 0.6);
-  // No sonar looks back: what was ahead is remembered behind the robot after half a turn.
+  // No sonar faces backwards: after half a turn the obstacle is remembered behind the robot.
   hear({0.0, 0.0, 3.0}, {kNothing_m, kNothing_m, kNothing_m}, 3 * kSecond_ns);
   EXPECT_GT(near.make_room(turn, 3 * kSecond_ns).linear_m_per_s, 0.0);
-  // Off by a decimetre there is room, and after some seconds nobody knows where it is.
+  // A decimetre away there is room, and after some seconds its place is no longer known.
   near.add(OdometrySample{3 * kSecond_ns + 1, {-0.1, 0.0, 3.0}});
   EXPECT_EQ(near.make_room(turn, 3 * kSecond_ns + 1), turn);
   near.add(OdometrySample{5 * kSecond_ns, {0.0, 0.0, 3.0}});
@@ -99,7 +99,7 @@ TEST(GuardedBaseBySonars, TurnsWhereThereIsNoRoomToMoveOff) {
   base.add(round_of({kLeast_m, kNothing_m, kNothing_m}, 0));
   const geometry::Velocity turn{0.0, 0.6};
   EXPECT_LT(base.command(turn, geometry::Pose2{}, 0).verdict.allowed.linear_m_per_s, 0.0);
-  // A drawn wall just behind: it must not step back, and turns all the same.
+  // With a drawn wall just behind, it must not step back, and still turns.
   base.keep_off(0, {{-0.29, 0.0}});
   EXPECT_EQ(base.command(turn, geometry::Pose2{}, 0).verdict.allowed, turn);
 }

@@ -9,7 +9,7 @@ namespace {
 constexpr std::int64_t kDriveTick_ns = 10'000'000;
 constexpr double kFarAway_m = 5.0;
 
-/// Columns and walls, nowhere two of them so near that the robot cannot pass.
+/// Columns and walls, far enough apart for the robot to pass between any two.
 world::World hall_with_columns() {
   return world::parse_world(R"(
 name: hall
@@ -49,7 +49,7 @@ ObstacleDrive::ObstacleDrive(std::uint64_t seed, DriveGuard guard)
 
 void ObstacleDrive::tick() {
   constexpr std::int64_t kMeasureTicks = 10;  // the base reports ten times a second
-  constexpr std::int64_t kCommandTicks = 5;   // as the navigator
+  constexpr std::int64_t kCommandTicks = 5;   // like the navigator
   if (ticks_ % kMeasureTicks == 0) measure();
   deliver();
   if (ticks_ % kCommandTicks == 0) command();
@@ -65,7 +65,7 @@ void ObstacleDrive::freeze(double runs_on_s) {
   while (rolls()) move();
 }
 
-/// Full speed ahead; it turns away only where it cannot go on, or the drive would end there.
+/// Full speed ahead; it turns away only when it is stuck, because the drive would end there.
 geometry::Velocity ObstacleDrive::reckless() {
   constexpr double kNear_m = 0.1;
   if (turn_commands_-- <= 0) {

@@ -1,5 +1,5 @@
-// A base that somebody drives recklessly between obstacles: only a guard keeps it off them.
-// Measurements reach the guard late, commands reach the base late, and all may freeze.
+// A base that is driven recklessly between obstacles: only a guard prevents collisions.
+// Measurements reach the guard late, commands reach the base late, and everything may freeze.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,13 @@
 
 namespace topogeo::navigation {
 
-/// Each message has one between the two, at random; milliseconds.
+/// Each message gets a random delay between the two; milliseconds.
 struct DelayRange {
   std::uint64_t least_ms = 0;
   std::uint64_t most_ms = 0;
 };
 
-/// What guards the drive.
+/// Hooks for the guard of the drive.
 struct DriveGuard {
   std::function<void(const geometry::OdometrySample&)> add_odometry;
   std::function<void(const ScanPoints&)> add_scan;
@@ -31,20 +31,20 @@ struct DriveGuard {
     double free_m = 0.0;
   };
   std::function<Answer(const geometry::Velocity& wanted, std::int64_t now_ns)> judge;
-  DelayRange sensors;   ///< from a measurement until the guard has it
-  DelayRange commands;  ///< from its judgement until the base obeys
+  DelayRange sensors;   ///< from a measurement to the guard
+  DelayRange commands;  ///< from its verdict until the base obeys
 };
 
 class ObstacleDrive {
  public:
-  /// m/s^2; of the base.
+  /// m/s^2, of the base.
   static constexpr double kBrake = 0.5;
 
   ObstacleDrive(std::uint64_t seed, DriveGuard guard);
 
-  /// 10 ms with everything at work.
+  /// Passes 10 ms with everything running.
   void tick();
-  /// No measurement and no command passes until the base has run on for so long and stands.
+  /// Blocks measurements and commands until the base has run on for so long and stands still.
   void freeze(double runs_on_s);
 
   [[nodiscard]] std::uint64_t collisions() const { return robot_.collisions(); }
@@ -74,7 +74,7 @@ class ObstacleDrive {
   geometry::Velocity obeyed_;
   double free_m_;
   double turn_ = 0.0;
-  int turn_commands_ = 0;  // that it still goes on
+  int turn_commands_ = 0;  // number of commands for which it keeps turning
   std::int64_t now_ns_ = 1'000'000'000;
   std::int64_t ticks_ = 0;
 };

@@ -24,7 +24,7 @@ TEST(ObstacleMemory, KeepsWhatStandsAndForgetsWhatHasGone) {
   const geometry::Pose2 T_map_robot{2.0, 3.0, 0.0};
   std::int64_t now_ns = 0;
   memory.add(scan_of_post(2.0, now_ns), T_map_robot, map->space());
-  EXPECT_TRUE(memory.all().empty());  // seen once
+  EXPECT_TRUE(memory.all().empty());  // seen only once
   for (int i = 1; i < 10; ++i) {
     now_ns += kSecond_ns / 10;
     memory.add(scan_of_post(2.0, now_ns), T_map_robot, map->space());
@@ -34,7 +34,7 @@ TEST(ObstacleMemory, KeepsWhatStandsAndForgetsWhatHasGone) {
     EXPECT_NEAR(point_m.x(), 4.0, 0.05);
     EXPECT_NEAR(point_m.y(), 3.0, 0.15);
   }
-  // It looks away: what it saw stays. It looks again, and it has gone.
+  // The robot turns away: obstacles remain. It turns back, and they are gone.
   ScanPoints away = scan_of_post(6.0, now_ns + 1);
   memory.add(away, T_map_robot * geometry::Pose2{0.0, 0.0, 3.0}, map->space());
   EXPECT_FALSE(standing_m(memory).empty());

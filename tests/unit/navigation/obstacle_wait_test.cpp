@@ -13,7 +13,7 @@ TEST(ObstacleWait, WaitsThenReportsThenCallsThePlannerLate) {
   EXPECT_FALSE(wait.waits());
   EXPECT_FALSE(wait.over(100 * kSecond_ns));
   wait.begin(10 * kSecond_ns, 1.0);
-  wait.begin(13 * kSecond_ns, 1.0);  // it does already
+  wait.begin(13 * kSecond_ns, 1.0);  // it is waiting already
   EXPECT_TRUE(wait.waits());
   EXPECT_EQ(wait.reason(), HaltReason::kObstacle);
   EXPECT_EQ(wait.message("a box", 13 * kSecond_ns),

@@ -12,7 +12,7 @@ namespace {
 
 TEST(PathBand, KeepsOffWallsAndBendsGently) {
   const auto map = map_of(two_doors());
-  // Close round the door's posts, as a straightened path goes.
+  // Close round the door's posts, like a straightened path.
   const std::vector<Eigen::Vector2d> points_m = {
       {4.0, 3.5}, {4.65, 1.85}, {5.35, 1.85}, {6.0, 3.5}};
   const BandConfig config;

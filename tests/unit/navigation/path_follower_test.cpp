@@ -11,7 +11,7 @@
 namespace topogeo::navigation {
 namespace {
 
-/// A base that obeys late, exactly, and without limits of its own.
+/// A base that obeys late, exactly, and without limits.
 class Base {
  public:
   explicit Base(const geometry::Pose2& pose) : T_map_robot(pose) {}

@@ -23,7 +23,7 @@ TEST(PoseKeeper, CarriesAnOldFixOnByOdometry) {
   ASSERT_TRUE(pose);
   EXPECT_NEAR(pose->x_m, 10.0, 1e-9);
   EXPECT_NEAR(pose->y_m, 5.5, 1e-9);
-  // A fix that is newer than all odometry waits for it.
+  // A fix newer than all odometry waits for odometry.
   fix.stamp_ns = 3 * kSecond_ns;
   fix.T_map_robot = {0.0, 0.0, 0.0};
   keeper.add(fix);

@@ -67,7 +67,7 @@ TEST_F(MarkovPoseSources, TheFirstFixIsTheBaseStation) {
   EXPECT_LT((pose->position_m() - Eigen::Vector2d(2.0, 3.0)).norm(), 0.1);
 }
 
-// A robot with sonars alone: nobody else says where it stands.
+// A robot with sonars alone has no other source of its pose.
 TEST_F(MarkovPoseSources, TheMapsBaseStationNeedsNoFix) {
   const planning::HybridMap with_station(map->space(), map->zones(),
                                          {{"hall", {1.0, 1.0}}, {"dock", {2.0, 3.0}, 0.0}});
@@ -94,7 +94,7 @@ TEST_F(MarkovPoseSources, StandsAtNodesAndAtTheEndUntilItHasLooked) {
   EXPECT_FALSE(poses.must_stand(false, 1.0, 2 * kSecond_ns));
   EXPECT_TRUE(poses.must_stand(false, 2.1, 2 * kSecond_ns));
   EXPECT_TRUE(poses.must_stand(false, std::nullopt, 2 * kSecond_ns));
-  add_scan(2 * kSecond_ns + kSecond_ns / 10);  // it may roll still
+  add_scan(2 * kSecond_ns + kSecond_ns / 10);  // it may still be rolling
   EXPECT_FALSE(poses.update(false, 2 * kSecond_ns + kSecond_ns / 10));
   add_scan(3 * kSecond_ns);
   EXPECT_TRUE(poses.update(false, 3 * kSecond_ns));

@@ -1,4 +1,4 @@
-// A scan of a post in front of a wall, for tests of what is kept of obstacles.
+// A scan of a post in front of a wall, for tests of obstacle memories.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace topogeo::navigation {
 
 inline constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-/// A post of a tenth of a radian straight ahead of the robot at `x_m`; everything else is 6 m away.
+/// A post 0.1 rad wide straight ahead of the robot at `x_m`; everything else is 6 m away.
 inline ScanPoints scan_of_post(double x_m, std::int64_t stamp_ns) {
   ScanPoints scan;
   scan.stamp_ns = stamp_ns;

@@ -90,7 +90,7 @@ TEST_F(RouteDriverTest, IsAstrayFarOffItsPath) {
   EXPECT_TRUE(driver.astray({2.0, 4.0}));
   EXPECT_TRUE(driver.needs_path());
   driver.trust_route();
-  EXPECT_FALSE(driver.astray({2.0, 4.0}));  // it goes back to its route all the same
+  EXPECT_FALSE(driver.astray({2.0, 4.0}));  // it still returns to its route
 }
 
 }  // namespace

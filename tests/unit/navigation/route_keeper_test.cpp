@@ -1,4 +1,4 @@
-// Routes across a room of 8 x 6 m: offered, taken, refused, waited for.
+// Routes across a room of 8 x 6 m: offered, accepted, refused, waited for.
 #include "route_keeper.hpp"
 
 #include <vector>
@@ -22,7 +22,7 @@ RoutePlan route_across(double y_m, std::uint64_t map_version = 1) {
   return route;
 }
 
-/// The room with a wall across at x = 4 m that leaves 1 m free at its upper end.
+/// The room with a wall across it at x = 4 m that leaves 1 m free at its upper end.
 world::World walled_room() {
   world::World world = room();
   world.segments.push_back({{4.0, 0.0}, {4.0, 5.0}});
@@ -96,7 +96,7 @@ TEST(RouteKeeper, TheSameRouteAgainChangesNothingForARobotOnIt) {
   shorter.points_m.front().x() = 2.0;
   routes.offer(shorter);
   EXPECT_EQ(routes.take_offer(use), RouteAnswer::kKept);
-  EXPECT_EQ(routes.route().points_m.front().x(), 2.0);  // it is the one in hand all the same
+  EXPECT_EQ(routes.route().points_m.front().x(), 2.0);  // it is still the one in hand
   RoutePlan round = route_across(3.0);
   round.points_m.insert(round.points_m.begin() + 1, {4.0, 4.0});
   routes.offer(round);

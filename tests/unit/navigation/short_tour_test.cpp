@@ -13,7 +13,7 @@
 namespace topogeo::navigation {
 namespace {
 
-/// Places on a line, or anywhere.
+/// Distances between places on a line, or between any places.
 DistanceTable distances_of(double start, const std::vector<double>& places) {
   DistanceTable distances_m(places.size());
   for (std::size_t a = 0; a < places.size(); ++a) {
@@ -26,7 +26,7 @@ DistanceTable distances_of(double start, const std::vector<double>& places) {
 }
 
 TEST(ShortTour, DoesNotLeaveOnePlaceBehind) {
-  // Going on to the nearest: 1.0, 4, 9, then back to -1.1; 19.1 m. The short one takes 11.2 m.
+  // Nearest first: 1.0, 4, 9, then back to -1.1; 19.1 m. The short tour takes 11.2 m.
   const DistanceTable distances_m = distances_of(0.0, {1.0, 4.0, 9.0, -1.1});
   const std::vector<std::size_t> order = short_tour(distances_m);
   EXPECT_EQ(order, (std::vector<std::size_t>{3, 0, 1, 2}));

@@ -1,4 +1,4 @@
-// What is near a robot in a room of 8 x 6 m.
+// Obstacles near a robot in a room of 8 x 6 m.
 #include "surroundings.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A robot in a simulated floor that a Navigator drives, with a planner that answers at once.
+// A robot on a simulated floor, driven by a Navigator, with a planner that answers at once.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace topogeo::navigation {
 
 inline constexpr std::int64_t kStep_ns = 50'000'000;
 
-/// The hybrid map of a world's surfaces that never change, with zones by width.
+/// The hybrid map of a world's permanent surfaces, with zones by width.
 std::shared_ptr<const planning::HybridMap> map_of(
     const world::World& world, const std::vector<Eigen::Vector2d>& filled_m = {});
 
@@ -29,10 +29,10 @@ struct DriveSettings {
   std::uint64_t seed = 1;
   int delay_steps = 3;  ///< until the base obeys
   bool map_comes = true;
-  bool scans_whole = true;  ///< false: their points alone, so that there is no local map
-  /// The planner plans along its branches first, and on the map where these have no route.
+  bool scans_whole = true;  ///< false: only their points, so that there is no local map
+  /// The planner plans along its branches first, and on the grid when they have no route.
   std::shared_ptr<const topomap::GlobalMap> graph{};
-  /// Cells of the map that hold something which is not there.
+  /// Cells that the map shows as occupied although they are free.
   std::vector<Eigen::Vector2d> noise_m{};
 };
 
@@ -62,7 +62,7 @@ class TestDrive {
   std::int64_t now_ns = 1'000'000'000;
   geometry::Velocity command;
 
-  // What goes wrong.
+  // Faults.
   bool odometry_comes = true;
   bool scans_come = true;
   bool poses_come = true;
@@ -73,13 +73,13 @@ class TestDrive {
   bool base_obeys = true;
   bool planner_answers = true;
   double sigma_m = 0.02;
-  std::optional<world::Circle> glass{};  ///< the laser gets no echo of it
+  std::optional<world::Circle> glass{};  ///< invisible to the laser
 
   std::uint64_t goal_id = 0;
   Eigen::Vector2d goal_m = Eigen::Vector2d::Zero();
   std::optional<double> heading_rad;
   bool look_around = false;
-  double shortest_clearance_m = 1e9;  ///< that any step had, of the middle to a surface
+  double shortest_clearance_m = 1e9;  ///< least distance of the middle to a surface in any step
 
   void send_route();
 

@@ -49,7 +49,7 @@ TEST(UnknownFloor, IsCountedAsFarAsItLiesStraightAheadAndInSight) {
   std::vector<std::string> half = lines;
   for (std::string& line : half) std::fill_n(line.begin(), 20, '.');
   EXPECT_NEAR(unknown_of(half).ahead_m2(at(19, 20), 0.5, 2.0), 3.1416 * 2.0, 0.9);
-  // It begins too far away, or something is between.
+  // The unknown area begins too far away, or an obstacle is in between.
   EXPECT_EQ(unknown_of(half).ahead_m2(at(15, 20), 0.5, 2.0), 0.0);
   for (std::string& line : half) line[18] = '#';
   EXPECT_EQ(unknown_of(half).ahead_m2(at(15, 20), 1.5, 2.0), 0.0);

@@ -65,7 +65,7 @@ std::string part_of(const std::filesystem::path& page, const std::string& from,
   return all.substr(first, end - first);
 }
 
-// The blocks of a page that are indented by four blanks, each without them.
+// The blocks of a page that are indented by four blanks, without the indent.
 std::vector<std::string> indented_blocks(const std::filesystem::path& page) {
   std::ifstream file(page);
   std::vector<std::string> blocks;

@@ -111,7 +111,7 @@ TEST(HybridMapSource, AGridOfScansBeginsAtWholeTiles) {
   const planning::GridFrame frame = make_hybrid_map(parts_of(document), {}).frame();
   EXPECT_EQ(frame.T_map_grid.x_m, -64 * 0.1);
   EXPECT_EQ(frame.T_map_grid.y_m, -64 * 0.1);
-  // Half a metre further to the left, the cells that both have stay where they are.
+  // Half a metre further to the left, cells in both maps stay in place.
   storage::MapDocument grown = document;
   grown.trajectory.stops[0].T_map_robot.x_m -= 0.5;
   EXPECT_EQ(make_hybrid_map(parts_of(grown), {}).frame().T_map_grid, frame.T_map_grid);
@@ -128,7 +128,7 @@ TEST(HybridMapSource, ADrawingAloneMakesAMap) {
   EXPECT_NE(zone_at(map, 3.0, 2.0), planning::kNoZone);
 }
 
-// The drawing shows a yard that the robot did not see; its scans show the rooms.
+// The drawing shows a yard that the robot has not seen; its scans show the rooms.
 TEST(HybridMapSource, DrawingAndMapAreOneMap) {
   storage::MapDocument document = mapped_rooms();
   document.drawing.grid = drawn_grid(-8.0);

@@ -1,4 +1,4 @@
-// Which mounting of the laser holds: that of the configuration or that of the log.
+// The mounting of the laser that is in force: that of the configuration or that of the log.
 #include "topogeo/pipeline/laser_mounting.hpp"
 
 #include <filesystem>
@@ -46,7 +46,7 @@ TEST_F(LaserMountingTest, TheLogHoldsWhereTheConfigurationSetsNothing) {
             "laser 0.250 m ahead, -0.100 m to the left, 28.6 deg: from the log");
   EXPECT_EQ(config.config.local_mapper.T_robot_laser, (Pose2{0.25, -0.1, 0.5}));
   EXPECT_EQ(config.config.local_mapper.voronoi.forward_rad, -0.5);
-  // What is in force is as if it were configured.
+  // The effective configuration equals one in which the mounting is configured.
   const LoadedConfig same =
       load("stop: {distance_m: 0.5}\nlaser: {x_m: 0.25, y_m: -0.1, yaw_rad: 0.5}\n");
   EXPECT_EQ(config.effective.values, same.effective.values);

@@ -14,8 +14,8 @@ namespace {
 
 using geometry::Pose2;
 
-/// Noise-free scans of a room of 8 x 6 m with a column, taken at poses of the world, whose odometry
-/// is the truth.
+/// Noise-free scans of a room of 8 x 6 m with a column, taken at world poses; the odometry is the
+/// truth.
 class LocalMapperTest : public testing::Test {
  protected:
   scan::Scan scan_at(const Pose2& T_world_robot) {
@@ -33,7 +33,7 @@ class LocalMapperTest : public testing::Test {
     return scan;
   }
 
-  /// Sequences of the scans that became stops.
+  /// Sequence numbers of the scans that became stops.
   std::vector<std::uint64_t> stops(LocalMapper& mapper, const std::vector<Pose2>& poses) {
     std::vector<std::uint64_t> result;
     for (const Pose2& pose : poses) {
@@ -55,7 +55,7 @@ class LocalMapperTest : public testing::Test {
 
 TEST_F(LocalMapperTest, StopsByDistance) {
   LocalMapper mapper({}, "r");
-  // Steps of 0.25 m: the way and half a step more reach 1 m with the fourth.
+  // Steps of 0.25 m: the path and half a step more reach 1 m at the fourth.
   std::vector<Pose2> poses;
   for (int i = 0; i <= 8; ++i) poses.push_back({2.0 + 0.25 * i, 3.0, 0.0});
   EXPECT_EQ(stops(mapper, poses), (std::vector<std::uint64_t>{0, 4, 8}));
@@ -63,7 +63,7 @@ TEST_F(LocalMapperTest, StopsByDistance) {
 
 TEST_F(LocalMapperTest, StopsByTurn) {
   LocalMapper mapper({}, "r");
-  // Steps of 0.11 rad: 0.33 and half a step reach 0.35 with the third.
+  // Steps of 0.11 rad: 0.33 and half a step reach 0.35 at the third.
   std::vector<Pose2> poses;
   for (int i = 0; i <= 4; ++i) poses.push_back({3.0, 3.0, 0.11 * i});
   EXPECT_EQ(stops(mapper, poses), (std::vector<std::uint64_t>{0, 3}));
@@ -204,7 +204,7 @@ TEST_F(LocalMapperTest, ANewEpochElsewhereBeginsASession) {
   LocalMapper mapper({}, "r");
   const topomap::LocalMap first = *mapper.add(scan_at({2.0, 3.0, 0.0}));
   EXPECT_FALSE(mapper.add(scan_at({2.2, 3.0, 0.0})));
-  scan::Scan scan = scan_at({3.5, 1.2, 1.5});  // somebody has carried it
+  scan::Scan scan = scan_at({3.5, 1.2, 1.5});  // the robot was carried
   scan.odometry_epoch = 8;
   scan.T_odom_robot = {};
   const auto stop = mapper.add(scan);

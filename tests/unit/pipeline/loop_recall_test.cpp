@@ -34,7 +34,7 @@ const std::vector<Pose2>& path() {
   return kPath;
 }
 
-/// Local maps a second apart, without anything seen.
+/// Local maps a second apart, with empty scans.
 std::vector<topomap::LocalMap> maps_of(std::size_t count) {
   std::vector<topomap::LocalMap> maps(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -145,7 +145,7 @@ TEST(LoopRecallTest, ProbabilitiesOfAllMatchesAreComparedWithTheReference) {
 TEST(LoopRecallTest, ALoopOffTheReferenceIsWrongUnlessTheScansFitBetter) {
   namespace scenes = localization::test;
   // Stops 0 and 30 are in one room, half a metre apart. The reference is right in the first case;
-  // in the second it puts stop 30 1.5 m away from where the scan was taken.
+  // in the second it puts stop 30 1.5 m away from the true place.
   const Pose2 T_matched{0.5, 0.0, 0.0};
   const Pose2 T_other{0.5, 1.5, 0.0};
   std::vector<topomap::LocalMap> maps = maps_of(31);
@@ -169,7 +169,7 @@ TEST(LoopRecallTest, ALoopOffTheReferenceIsWrongUnlessTheScansFitBetter) {
   EXPECT_EQ(by_wrong_reference.wrong(), 0U);
 }
 
-// A wall beside stops 0 and 30, and one elsewhere for stop 31 of the same place as stop 1.
+// A wall beside stops 0 and 30, and another one elsewhere for stop 31, at the place of stop 1.
 TEST(LoopRecallTest, ARevisitIsInViewWhenHalfOfItsPointsAreThereForTheOlderStop) {
   std::vector<topomap::LocalMap> maps = maps_of(path().size());
   for (int i = 0; i < 40; ++i) {

@@ -17,8 +17,8 @@ namespace {
 
 using geometry::Pose2;
 
-/// A loop closure that errs by more takes one place for another. Along a corridor with little on
-/// its walls right ones err by some decimetres, and say so in their covariance.
+/// A loop closure with a larger error confuses two places. Along a corridor with few features,
+/// right ones err by some decimetres, which their covariance covers.
 constexpr double kFalseLoop_m = 0.6;
 
 struct Mapped {
@@ -54,7 +54,7 @@ Mapped map_world(const world::World& world, std::size_t wanderers) {
   return mapped;
 }
 
-/// Length of the branches that the map holds for real, metres.
+/// Total length of the real branches in the map, metres.
 double branch_length_m(const topomap::GlobalMap& map) {
   double length_m = 0.0;
   for (const topomap::MapBranch& branch : map.branches) {
@@ -86,13 +86,13 @@ TEST(ChangingWorldTest, PeopleWhoWalkAboutNeitherBendTheMapNorEnterIt) {
   EXPECT_LT(busy.error.rms_m, 1.5 * empty.error.rms_m + 0.02);
   EXPECT_GE(busy.document.loop_closures.size(), 5U);
   EXPECT_LT(busy.worst_loop_m, kFalseLoop_m);
-  // A person who stayed in the map would split a corridor into two ways round it.
+  // A person who remained in the map would split a corridor into two ways round them.
   const double length_m = branch_length_m(empty.document.global_map);
   EXPECT_NEAR(branch_length_m(busy.document.global_map), length_m, 0.1 * length_m);
 }
 
-// A corridor driven there and back twice (18 m each way), with a room behind a door in its
-// northern wall at x = 10.
+// A corridor driven back and forth twice (18 m each way), with a room behind a door in its northern
+// wall at x = 10.
 std::string corridor(const std::string& door) {
   return "name: corridor with a door\n"
          "walls:\n"
@@ -117,15 +117,15 @@ TEST(ChangingWorldTest, ADoorThatOpensLaterEntersTheMapAndDoesNotBendIt) {
     return map_world(world::parse_world(corridor(door), "test"), 0);
   };
   const Mapped shut = mapped("{at: 10, width: 1.0, open: []}");
-  // Shut on the first of the four passes: a branch needs 40 % of the votes, those of the newest
-  // views, and half of the passes is too near to that to be told from noise.
+  // Shut on the first of the four passes: a branch needs 40 % of the votes of the newest views, and
+  // half of the passes is too close to that to be distinguished from noise.
   const Mapped opened = mapped("{at: 10, width: 1.0, open: [[18, 200]]}");
   const Mapped open = mapped("{at: 10, width: 1.0}");
   for (const Mapped* m : {&shut, &opened, &open}) {
     EXPECT_LT(m->worst_loop_m, kFalseLoop_m);
   }
   EXPECT_LT(opened.error.rms_m, 1.5 * open.error.rms_m + 0.02);
-  // Where the way through the door leaves the corridor.
+  // Junction of the corridor and the path through the door.
   const Eigen::Vector2d junction_m(10.0, 1.1);
   EXPECT_EQ(nodes_near(shut, junction_m, 0.5), 0U);
   EXPECT_GT(nodes_near(open, junction_m, 0.5), 0U);

@@ -72,7 +72,7 @@ TEST(MappingRunTest, TheMapKeepsTheMeasurementsThatHoldItsPoses) {
   for (const topomap::LoopClosure& loop : document.loop_closures) {
     EXPECT_TRUE(is_there(Kind::kLoop, loop.earlier_id, loop.later_id));
   }
-  // Least squares finds the poses again, from where odometry alone would have them.
+  // Least squares recovers the poses, starting from those of odometry alone.
   localization::PoseGraph graph;
   const std::vector<topomap::StopPose>& stops = document.trajectory.stops;
   for (const topomap::LocalMap& map : document.local_maps) {
@@ -88,7 +88,7 @@ TEST(MappingRunTest, TheMapKeepsTheMeasurementsThatHoldItsPoses) {
     EXPECT_LT(apart.position_m().norm(), 0.005) << i;
     EXPECT_LT(std::abs(apart.theta_rad), 0.003) << i;
   }
-  // A map that is continued has them, too: those that there were and new ones.
+  // A continued map has them, too: the earlier ones and new ones.
   const auto stored = stored_map(document);
   EXPECT_EQ(map_edges(stored->edges), document.edges);
 }

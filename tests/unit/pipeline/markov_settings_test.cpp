@@ -1,4 +1,4 @@
-// Settings of Markov localization, from a configuration file to the pose that the navigator has.
+// Settings of Markov localization, from a configuration file to the navigator's pose.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -103,7 +103,7 @@ class MarkovSettings : public testing::Test {
     return points;
   }
 
-  /// By how much (map axes, metres) a look moves the pose after these motions, each a primitive.
+  /// Shift of the pose (map axes, metres) by a look after these motions, each a primitive.
   Eigen::Vector2d moved_by_look_m(const std::string& settings,
                                   const std::vector<simulation::Velocity>& motions) {
     navigation::MarkovTracker tracker(map.space().grid(), load(settings).markov);
@@ -119,7 +119,7 @@ class MarkovSettings : public testing::Test {
     return tracker.fix()->T_map_robot.position_m() - before_m;
   }
 
-  /// What the navigator has of its pose after each step of a short drive.
+  /// The navigator's pose values after each step of a short drive.
   std::vector<double> drive(const std::string& settings);
 
   const world::World world = floor_with_column();
@@ -163,7 +163,7 @@ std::vector<double> MarkovSettings::drive(const std::string& settings) {
   return trace;
 }
 
-// Another value of a key, and what has to be set besides for it to matter.
+// Another value of a key, and the other settings that it needs to have an effect.
 struct OtherValue {
   std::string value;
   std::string besides;
@@ -237,7 +237,7 @@ TEST_F(MarkovSettings, EachKeyOfTheSectionReachesThePoseOfTheNavigator) {
   }
 }
 
-// An advance of 0.5 m with a matrix by which the robot always goes a cell (0.1 m) too far.
+// An advance of 0.5 m with a matrix that always moves a cell (0.1 m) too far.
 TEST_F(MarkovSettings, TheMatrixOfAnAdvanceTakesThePoseAheadOrBehind) {
   const std::string far = "grid: positions, perceptual_weight: 0, advance_matrix: \"0 0 1\"";
   const auto after_advance = [&](const std::string& more) {
@@ -251,7 +251,7 @@ TEST_F(MarkovSettings, TheMatrixOfAnAdvanceTakesThePoseAheadOrBehind) {
   EXPECT_NEAR(after_advance(", advance_step_m: 0").x(), 0.1, 1e-9);
 }
 
-// A turn by which the robot always gets a cell to its left; the other matrix is not used.
+// A turn with a matrix that always shifts a cell to the left; the other matrix is not used.
 TEST_F(MarkovSettings, TheMatricesOfTurnsAreThoseOfTheirTurns) {
   const auto after_turn = [&](const std::string& matrix, double angle_rad) {
     put_at_start();
@@ -265,8 +265,8 @@ TEST_F(MarkovSettings, TheMatricesOfTurnsAreThoseOfTheirTurns) {
   EXPECT_NEAR(after_turn("turn_step_rad: 0.785, left" + to_the_left, kQuarter_rad).y(), 0.2, 1e-9);
 }
 
-// Odometry is 0.1 m short after 2 m. The movement knows nothing of that, so readings decide, as far
-// as they count.
+// Odometry is 0.1 m short after 2 m. The motion model does not know that, so readings decide by
+// their weight.
 TEST_F(MarkovSettings, BandsDecideHowMuchReadingsCount) {
   const auto after_drive_m = [&](const std::string& bands) {
     put_at_start();

@@ -33,7 +33,7 @@ TEST(ReliabilityTest, CountsByTenths) {
   EXPECT_EQ(reliability.tenths()[9].right, 1U);
 }
 
-// By hand: (0.2^2 + 0.6^2) / 2 and -(ln 0.8 + ln 0.4) / 2.
+// Computed by hand: (0.2^2 + 0.6^2) / 2 and -(ln 0.8 + ln 0.4) / 2.
 TEST(ReliabilityTest, ScoresAreThoseOfTheTruth) {
   Reliability reliability;
   reliability.add(0.8, true);

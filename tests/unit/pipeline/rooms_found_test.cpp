@@ -1,4 +1,4 @@
-// Whether the rooms that are found are those that people draw. Prints a table of their overlap.
+// Whether detected rooms are those that people draw. Prints a table of their overlap.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -28,8 +28,8 @@ using planning::ZoneMap;
 
 constexpr double kGoodOverlap = 0.95;
 
-/// Intersection over union of the cells of each drawn room and of the room found that overlaps it
-/// most; every room found counts once.
+/// Intersection over union of the cells of each drawn room and of the detected room with the
+/// largest overlap; every detected room counts once.
 std::map<std::string, double> overlaps(const FreeSpace& space, const ZoneMap& found,
                                        const std::vector<DrawnZone>& drawn) {
   planning::ZoneConfig config;
@@ -62,7 +62,7 @@ class OverlapRow {
                 100.0 * worst_, worst_room_.c_str());
   }
 
-  /// A floor: every room that is drawn is found, and no other.
+  /// A floor on which every drawn room is detected, and no other.
   void expect_rooms(const FreeSpace& space, const std::vector<DrawnZone>& drawn) {
     const ZoneMap found = planning::zones_of_rooms(space);
     for (const auto& [name, overlap] : overlaps(space, found, drawn)) {
@@ -86,7 +86,7 @@ class OverlapRow {
   std::string worst_room_ = "all alike";
 };
 
-/// A world file, turned, as a floor with its rooms.
+/// A world file, rotated, as a floor with its rooms.
 void expect_rooms_of_world(const std::string& name, double turned_rad) {
   char title[80];
   std::snprintf(title, sizeof title, "%s, turned by %.1f rad", name.c_str(), turned_rad);
@@ -114,13 +114,13 @@ TEST(RoomsFound, AreThoseOfTheOfficeFloor) {
     expect_rooms_of_world("floor", turned_rad);
 }
 
-// Racks that stand free make no rooms of the aisles between them.
+// Free-standing racks do not turn the aisles between them into rooms.
 TEST(RoomsFound, AreThoseOfTheWarehouse) {
   for (const double turned_rad : {0.0, 0.3, 0.5, 0.8, 1.2, 2.0, 2.9})
     expect_rooms_of_world("hall", turned_rad);
 }
 
-// Rooms with furniture whose doors are known.
+// Furnished rooms with known doors.
 TEST(RoomsFound, AreThoseOfRandomFloors) {
   OverlapRow row("20 random floors, rooms of 5 x 4 m");
   for (std::uint64_t seed = 0; seed < 20; ++seed) {

@@ -31,7 +31,7 @@ const storage::MapDocument& room_document() {
   return document;
 }
 
-// By the function of the thesis's definition 7.3.3.
+// Uses the function of the thesis's definition 7.3.3.
 std::vector<std::uint32_t> overlap_set_of(const storage::MapDocument& map, std::uint32_t stop) {
   const auto& poses = map.trajectory.stops;
   std::vector<localization::VisibleRectangle> views;
@@ -60,7 +60,7 @@ TEST(StopOverlapsTest, AreThoseOfTheFieldsOfViewAndTheMatchesOfTheMap) {
       ++searches;
     }
   }
-  EXPECT_GE(searches, found.size());  // each stop was matched with the one before
+  EXPECT_GE(searches, found.size());  // each stop was matched with the previous one
 }
 
 TEST(StopOverlapsTest, SearchesAreThoseOfTwoStops) {

@@ -1,5 +1,5 @@
 // The configurations of the thesis's algorithm on the replica of its first experiment: each form of
-// the fitness makes a map, and the one that is weighted keeps to the truth without scan points.
+// the fitness makes a map, and the weighted one stays near the truth without scan points.
 #include <cmath>
 #include <filesystem>
 #include <string>

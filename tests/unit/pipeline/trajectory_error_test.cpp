@@ -27,7 +27,7 @@ std::vector<StampedPose> poses(const std::vector<Pose2>& list) {
   return result;
 }
 
-// A cross around its own middle, so that a common shift or turn cannot make up for an error.
+// A cross around its own middle, so that a common shift or turn cannot hide an error.
 const std::vector<Pose2> kCross = {{1, 0, 0}, {0, 1, 0.5}, {-1, 0, 1}, {0, -1, -0.5}};
 
 TEST(TrajectoryErrorTest, TurnedAndShiftedTruthHasNone) {
@@ -45,7 +45,7 @@ TEST(TrajectoryErrorTest, TurnedAndShiftedTruthHasNone) {
 }
 
 TEST(TrajectoryErrorTest, ScaleIsNotForgiven) {
-  // Twice the size: every pose is 1 m too far out, whatever the alignment.
+  // Twice the size: every pose is 1 m too far out in any alignment.
   const auto estimate = poses({{2, 0, 0}, {0, 2, 0.5}, {-2, 0, 1}, {0, -2, -0.5}});
 
   const TrajectoryError error = trajectory_error(estimate, poses(kCross));
@@ -65,7 +65,7 @@ TEST(TrajectoryErrorTest, RmsAndLargestOfUnequalErrors) {
 }
 
 TEST(TrajectoryErrorTest, HeadingIsComparedAfterAlignmentAcrossPi) {
-  // Positions agree; headings are off by +0.2 and -0.1 about the jump at pi.
+  // Positions agree; headings are off by +0.2 and -0.1 across the jump at pi.
   const double pi = std::numbers::pi;
   const auto truth = poses({{1, 0, pi - 0.1}, {0, 1, -pi + 0.05}, {-1, 0, 0}, {0, -1, 0}});
   const auto estimate = poses({{1, 0, -pi + 0.1}, {0, 1, pi - 0.05}, {-1, 0, 0}, {0, -1, 0}});
@@ -75,7 +75,7 @@ TEST(TrajectoryErrorTest, HeadingIsComparedAfterAlignmentAcrossPi) {
 
 TEST(TrajectoryErrorTest, PairsByNearestTimeWithinTheLimit) {
   const auto truth = poses(kCross);
-  // A pose 40 ms late is the partner; an absurd one between the stamps is nobody's.
+  // A pose 40 ms late is the partner; an absurd one between the stamps has no partner.
   std::vector<StampedPose> estimate = poses(kCross);
   for (StampedPose& pose : estimate) pose.stamp_ns += 40'000'000;
   estimate.insert(estimate.begin() + 1, StampedPose{9, kSecond_ns / 2, {100, 100, 0}});
@@ -99,7 +99,7 @@ TEST(TrajectoryErrorTest, TheOrderOfThePosesDoesNotMatter) {
 }
 
 TEST(TrajectoryErrorTest, StepsEndAndShareOfAPathWorkedByHand) {
-  // Along x, 1 m a step; the estimate says 1.1 m in the first step and turns by 0.3 rad before the
+  // Along x, 1 m a step; the estimate has 1.1 m in the first step and turns by 0.3 rad before the
   // last, which therefore ends at (2.1 + cos 0.3, sin 0.3). The fifth pose has no partner.
   const auto truth = poses({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {9, 9, 0}});
   const double c = std::cos(0.3);
@@ -123,10 +123,10 @@ TEST(TrajectoryErrorTest, LoopsAreWhereThePathComesBackAfterTwentyMetres) {
   std::vector<Pose2> path;
   for (int i = 0; i <= 24; ++i) path.push_back({i <= 12 ? i : 24.0 - i, 0, 0});
   const auto truth = poses(path);
-  // Way apart j - i, distance |i - (24 - j)| = |i + j - 24|: over 20 and under 1.5 are
-  // (0,23), (0,24), (1,22), (1,23), (1,24), (2,23).
+  // Path distance j - i, distance |i - (24 - j)| = |i + j - 24|: over 20 and under 1.5 are (0,23),
+  // (0,24), (1,22), (1,23), (1,24), (2,23).
   const std::size_t expected = 6;
-  // The estimate is shifted by 0.2 m across from pose 20 on: every such pair errs by that.
+  // The estimate is shifted, from pose 20 on, sideways by 0.2 m, the error of every such pair.
   for (std::size_t i = 20; i < path.size(); ++i) path[i].y_m = 0.2;
 
   const TrajectoryError error = trajectory_error(poses(path), truth);
@@ -167,8 +167,8 @@ TEST(RelationsErrorTest, MeanAndDeviationOfAllAndOfThoseFarApart) {
   }
   const auto at = [](double seconds) { return static_cast<std::int64_t>(seconds * 1e9); };
   const std::vector<storage::Relation> relations = {
-      {at(0.0), at(20.0), {1.0, 0.1, 0.0}},       // errs by 0.1 m
-      {at(20.0), at(0.0), {-1.0, 0.0, 0.2}},      // backwards; errs by 0.2 rad
+      {at(0.0), at(20.0), {1.0, 0.1, 0.0}},       // error of 0.1 m
+      {at(20.0), at(0.0), {-1.0, 0.0, 0.2}},      // backwards; error of 0.2 rad
       {at(0.0), at(60.0005), {3.0, -0.5, -0.4}},  // half a millisecond off; 0.5 m, 0.4 rad; far
       {at(0.0), at(40.002), {7.0, 7.0, 0.0}},     // no pose within a millisecond
   };
@@ -195,7 +195,7 @@ TEST(RelationsErrorTest, WithoutUsableRelationsThereIsNoFigure) {
   EXPECT_EQ(relations_error(poses(kCross), {}).given, 0U);
 }
 
-// Python: l = list(range(10)); random.Random(0).shuffle(l)
+// Expected values from Python: l = list(range(10)); random.Random(0).shuffle(l)
 TEST(LoopPairsTest, ShufflesAsPythonDoes) {
   std::vector<IndexPair> pairs;
   for (std::size_t i = 0; i < 10; ++i) pairs.emplace_back(i, i);
@@ -206,7 +206,7 @@ TEST(LoopPairsTest, ShufflesAsPythonDoes) {
   EXPECT_EQ(order, (std::vector<std::size_t>{7, 8, 1, 5, 3, 4, 2, 0, 9, 6}));
 }
 
-// The same of range(5000): its first elements, after numbers of the generator's second block.
+// The same for range(5000): its first elements use numbers of the generator's second block.
 TEST(LoopPairsTest, ShufflesLongListsAsPythonDoes) {
   std::vector<IndexPair> pairs;
   for (std::size_t i = 0; i < 5000; ++i) pairs.emplace_back(i, i);
@@ -217,7 +217,7 @@ TEST(LoopPairsTest, ShufflesLongListsAsPythonDoes) {
 }
 
 TEST(LoopPairsTest, LongPathsAreThinnedOutAndAtMostTwoThousandPairsTaken) {
-  // On the spot, but for a walk of 30 m in the middle: every pose before with every one after.
+  // On the spot, except for a path of 30 m in the middle: pairs of every pose before and after it.
   std::vector<Pose2> path(400);
   path[200] = {15, 0, 0};
   EXPECT_EQ(loop_pairs(path).size(), 2000U);  // of 200 * 199

@@ -31,8 +31,7 @@ TEST(WorldGrid, IsFreeInsideAndUnknownBehindTheWalls) {
   EXPECT_EQ(at(-0.55, 2.05), CellState::kUnknown);
 }
 
-// Along the tour of the office floor there is a way between any two points, hardly longer than the
-// shortest one.
+// Any two points on the tour of the office floor have a route, hardly longer than the shortest one.
 TEST(WorldGrid, HasWaysBetweenAllPlacesOfATour) {
   const world::World world =
       world::load_world(std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml");

@@ -13,7 +13,7 @@ inline void add_map_node(topomap::GlobalMap& map, std::uint32_t id, double x_m, 
   map.nodes.push_back({id, topomap::NodeKind::kReal, {x_m, y_m}, 1.0, 1});
 }
 
-/// A branch from node a to node b through the points between, all of one clearance.
+/// A branch from node a to node b through the points between, all with the same clearance.
 inline void add_map_branch(topomap::GlobalMap& map, std::uint32_t id, std::uint32_t a,
                            std::uint32_t b, const std::vector<Eigen::Vector2d>& between_m = {},
                            double clearance_m = 1.0) {

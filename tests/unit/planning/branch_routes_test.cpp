@@ -1,4 +1,4 @@
-// Routes along branches with what closes them: no-go, slow and one-way zones, what is filled now,
+// Routes along branches with obstructions: no-go, slow and one-way zones, obstacles on them now,
 // obstacles of the grid beside them; and virtual branches.
 #include <cmath>
 #include <limits>
@@ -76,7 +76,7 @@ TEST(BranchRoutes, LeaveTheStretchBeforeABlockageToBothSides) {
   const std::vector<Eigen::Vector2d> filled_m{{10.05, 0.05}};
   PlanScene scene;
   scene.filled_m = filled_m;
-  // The robot has stopped so near to it that its place on the branch is closed.
+  // The robot has stopped so close to it that its place on the branch is blocked.
   const PlanResult back = plan(map, {9.8, 0.3}, {0, 5}, {}, scene);
   ASSERT_TRUE(back.found()) << back.reason;
   EXPECT_LT(back.start->nearest.position_m.x(), 9.8);
@@ -88,7 +88,7 @@ TEST(BranchRoutes, TakeASlowZoneOnlyWhereItIsFaster) {
   const GlobalMap map = square();
   std::vector<DrawnZone> ramp{rectangle(8, -1, 12, 1, ZoneKind::kSlow, 0.3)};
   EXPECT_NEAR(plan(map, {5, 0}, {15, 0}, {}, with_zones(ramp)).route.length_m, 10.0, 1e-9);
-  ramp[0].value = 0.03;  // twenty times as slow
+  ramp[0].value = 0.03;  // twenty times slower
   EXPECT_NEAR(plan(map, {5, 0}, {15, 0}, {}, with_zones(ramp)).route.length_m, 50.0, 1e-9);
 }
 
@@ -118,8 +118,8 @@ TEST(BranchRoutes, TakeAVirtualBranchAsTheLastResortAndSaySo) {
                                             RoutePart{PlannedOn::kVirtualBranch, 14, 1}));
 }
 
-// Two corridors one above the other with a wall between, y = 0 to 2 and y = 2.1 to 4.1; a way round
-// leads from one to the other at the right.
+// Two corridors, one above the other, with a wall between, y = 0 to 2 and y = 2.1 to 4.1; a passage
+// connects them on the right.
 TEST(BranchRoutes, GetOnWhereNoWallIsBetween) {
   GlobalMap map;
   add_map_node(map, 1, 1.05, 1.05);
@@ -143,7 +143,7 @@ TEST(BranchRoutes, GetOnWhereNoWallIsBetween) {
   ASSERT_TRUE(result.found()) << result.reason;
   EXPECT_EQ(result.goal->branch_id, 11U);
   EXPECT_GT(result.route.length_m, 20.0);
-  // In the wall there is no goal; beside it there is no room for the body.
+  // A goal in the wall is impossible; beside it there is no room for the body.
   EXPECT_EQ(plan(map, {5.05, 1.05}, {5.05, 2.05}, {}, scene).status, PlanStatus::kGoalShut);
   EXPECT_EQ(plan(map, {5.05, 1.05}, {5.05, 1.95}, {}, scene).status, PlanStatus::kGoalShut);
 }
@@ -157,7 +157,7 @@ TEST(BranchRoutes, OutvoteTheGridWhereTheClearanceOfABranchHasRoom) {
   frame.columns = 100;
   frame.rows = 21;
   OccupancyGrid grid(frame, CellState::kFree);
-  grid.set({60, 10}, CellState::kOccupied);  // somebody has stood there while it was mapped
+  grid.set({60, 10}, CellState::kOccupied);  // a person stood there during mapping
   const FreeSpace space(grid);
   PlanScene scene;
   scene.space = &space;
@@ -168,14 +168,14 @@ TEST(BranchRoutes, OutvoteTheGridWhereTheClearanceOfABranchHasRoom) {
       << "the obstacle itself";
 }
 
-// What a branch of the lattice below costs in either direction, by the rule that it has.
+// Cost of a branch of the lattice below in either direction, by its rule.
 struct BranchCost {
   double forth = 0.0;
   double back = 0.0;
 };
 
-// Against the cheapest of all paths by Floyd and Warshall's algorithm on 200 lattices of 3 x 3
-// nodes, 4 m apart, where a branch in two has a blockage, a slow or a one-way zone, or a bend.
+// The Floyd-Warshall algorithm gives the cheapest paths on 200 lattices of 3 x 3 nodes, 4 m
+// apart, where every second branch has a blockage, a slow or a one-way zone, or a bend.
 TEST(BranchRoutes, AreTheCheapestOfAllOnRandomLattices) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   std::mt19937 random(5);
@@ -207,7 +207,7 @@ TEST(BranchRoutes, AreTheCheapestOfAllOnRandomLattices) {
           branch = {kNever, kNever};
           break;
         case 1:
-          zone(ZoneKind::kSlow, 0.2);  // a metre of it three times as slow
+          zone(ZoneKind::kSlow, 0.2);  // a metre of it takes three times as long
           branch = {6.0, 6.0};
           break;
         case 2:
@@ -259,7 +259,7 @@ TEST(BranchRoutes, AreTheCheapestOfAllOnRandomLattices) {
           << round << ": " << a << " to " << b << " " << result.reason;
       result.found() ? ++found : ++missing;
       if (!result.found()) continue;
-      // The first and last node are passed only where the route gets on another branch of theirs.
+      // The first and last node are passed only when the route enters another of their branches.
       std::vector<int> nodes{a};
       for (const std::uint32_t node : result.route.node_ids) {
         if (static_cast<int>(node) != nodes.back()) nodes.push_back(static_cast<int>(node));

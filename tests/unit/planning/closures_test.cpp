@@ -1,4 +1,4 @@
-// Routes that avoid what is closed now.
+// Routes that avoid present obstructions.
 #include <algorithm>
 #include <limits>
 
@@ -27,7 +27,7 @@ struct Ring {
   [[nodiscard]] ZoneId zone_at(double x_m, double y_m) const {
     return map.zone_of(map.frame().cell_of({x_m, y_m}).value());
   }
-  // The cells of the walls in which the door of a node is.
+  // Cells of the walls that contain the door of a node.
   [[nodiscard]] std::vector<Cell> door(std::uint32_t node) const {
     std::vector<Cell> cells = map.nodes()[node].border[0];
     const auto& other = map.nodes()[node].border[1];
@@ -62,7 +62,7 @@ FreeSpace with_filled(const FreeSpace& space, const std::vector<Cell>& cells) {
   return FreeSpace(grid, space.inflation());
 }
 
-// The open cells that hang together with one, over the four sides.
+// The open cells that are connected to one across their sides.
 std::vector<bool> reached_from(const FreeSpace& space, const Cell& from) {
   std::vector<bool> reached(space.frame().size(), false);
   std::vector<Cell> open{from};
@@ -80,7 +80,7 @@ std::vector<bool> reached_from(const FreeSpace& space, const Cell& from) {
   return reached;
 }
 
-// Without planning again.
+// The planner of the publication, which does not plan again on the grid.
 HybridPlannerConfig as_the_source() {
   HybridPlannerConfig config;
   config.exact_window_cells = 0.0;
@@ -121,7 +121,7 @@ TEST(Closures, AllDoorsShutLeaveTheRobotInItsRoom) {
   EXPECT_TRUE(planner.plan(kRoom0_m, *none.nearest_reachable_m, shut).found());
 }
 
-// The whole route planned again on the grid is shorter through the closed edge.
+// When the whole route is planned again on the grid, the closed edge would be shorter.
 TEST(Closures, PlanningAgainDoesNotLeadBackThroughAClosedEdge) {
   const Ring floor = ring_with_door();
   const HybridPlanner planner(floor.map);
@@ -166,7 +166,7 @@ TEST(Closures, StraightLinesDoNotCutThroughAClosedBorder) {
   }
 }
 
-// A border of 4 m, of which something fills the middle.
+// A border of 4 m with an obstacle in its middle.
 TEST(Closures, AWideBorderIsCrossedWhereItIsOpen) {
   InflationConfig inflation;
   inflation.forbidden_cells = 1.0;
@@ -190,16 +190,16 @@ TEST(Closures, AWideBorderIsCrossedWhereItIsOpen) {
             RouteStatus::kUnreachable);
 }
 
-// Something across a whole room with two doors: from one part of it to the other round the ring.
+// An obstacle across a whole room with two doors: the route between its parts goes round the ring.
 TEST(Closures, AZoneThatIsCutInTwoIsLeftAndEnteredAgain) {
   const Ring floor = ring_with_door();
   const HybridPlanner planner(floor.map);
-  // Room 0 is 5 x 4 m; its doors are on the right and above.
+  // Room 0 is 5 x 4 m; its doors are on the right and at the top.
   const auto nodes = floor.map.nodes_of(floor.zone_at(kRoom0_m.x(), kRoom0_m.y()));
   ASSERT_THAT(nodes, SizeIs(2));
   Closures closed;
   for (std::int32_t k = 0; k < 60; ++k) {
-    closed.cells.push_back({k, 39 - k});  // from the left upper corner down to the right
+    closed.cells.push_back({k, 39 - k});  // from the upper left corner down to the right
     closed.cells.push_back({k + 1, 39 - k});
   }
   const Eigen::Vector2d low_m(0.75, 0.75);
@@ -297,7 +297,7 @@ double least_clearance_m(const FreeSpace& space, const HybridRoute& route) {
   return least_m;
 }
 
-// As if what is closed were drawn on the map, and the whole grid searched.
+// The oracle searches the whole grid with the obstructions as occupied cells.
 TEST(Closures, PlansAsTheGridWouldWithTheCellsOccupied) {
   int found = 0;
   int unreachable = 0;

@@ -1,4 +1,4 @@
-// Walls, openings and doors that people draw, against their definition cell by cell.
+// Drawn walls, openings and doors, against their definition cell by cell.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -49,7 +49,7 @@ bool reaches(const HybridMap& map, const Eigen::Vector2d& from_m, const Eigen::V
   return HybridPlanner(map, {}).plan(from_m, to_m).found();
 }
 
-/// Whether a segment comes into a square of side 1 at `low`, by clipping it to the square.
+/// Whether a segment touches a square of side 1 at `low`, by clipping it to the square.
 bool touches(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& low) {
   double from = 0.0;
   double to = 1.0;
@@ -162,13 +162,13 @@ TEST(DrawnLines, RoomsMeetAtADoor) {
     const GridFrame& frame = hall.frame();
     EXPECT_NE(parted.zone_of_cell[frame.index({10, 10})],
               parted.zone_of_cell[frame.index({34, 10})]);
-    // Everything left of the door is one room.
+    // Everything to the left of the door is one room.
     for (std::int32_t column = 3; column < 21; ++column) {
       EXPECT_EQ(parted.zone_of_cell[frame.index({column, 10})],
                 parted.zone_of_cell[frame.index({10, 10})]);
     }
   }
-  // A room that is drawn stays whole.
+  // A drawn room stays whole.
   const std::vector<DrawnZone> room{{"hall", {{0, 0}, {4.4, 0}, {4.4, 2.2}, {0, 2.2}}}};
   const FreeSpace space(hall, inflation, room, door);
   EXPECT_EQ(drawn_zones(space, room).zones.size(), 1U);
@@ -285,7 +285,7 @@ TEST(ZoneOutlines, JoinAndPartRooms) {
   EXPECT_NEAR(area_m2(outlines(left)[0]), 2.2 * 2.2, 0.3);
   ASSERT_EQ(outlines(both).size(), 1U);
   EXPECT_NEAR(area_m2(outlines(both)[0]), 4.4 * 2.2, 0.3);
-  // What is drawn by these outlines are the same rooms again.
+  // Drawing these outlines gives the same rooms again.
   const std::vector<DrawnZone> joined{{"one", outlines(both)[0]}};
   EXPECT_EQ(drawn_zones(space, joined).zones.size(), 1U);
   const auto parted =
@@ -293,15 +293,14 @@ TEST(ZoneOutlines, JoinAndPartRooms) {
   ASSERT_EQ(parted.size(), 2U);
   EXPECT_NEAR(area_m2(parted[0]) + area_m2(parted[1]), area_m2(outlines(left)[0]), 0.2);
   EXPECT_GT(std::min(area_m2(parted[0]), area_m2(parted[1])), 2.0);
-  // A line that ends in the middle parts nothing.
+  // A line that ends in the middle does not split the room.
   EXPECT_EQ(
       outlines(left, std::pair<Eigen::Vector2d, Eigen::Vector2d>({0.1, 1.0}, {0.6, 1.0})).size(),
       1U);
   EXPECT_TRUE(outlines(std::vector<ZoneId>{7}).empty());
 }
 
-// The zones meet on a line in a wide gap, which who draws does not see: a line to the gap ends
-// before it.
+// The zones meet on an invisible line in a wide gap: a line drawn to the gap ends before it.
 TEST(ZoneOutlines, ALineThatEndsInAGapParts) {
   constexpr double kThick_m = 1.4;
   GridFrame frame;  // two rooms of 4 x 4 m, cells of 0.1 m, and a gap of 2.4 m through a thick wall
@@ -323,10 +322,10 @@ TEST(ZoneOutlines, ALineThatEndsInAGapParts) {
   };
   EXPECT_EQ(parts({0.1, 2.1}, {4.2, 2.1}), 2U);  // straight, to where the wall begins
   EXPECT_EQ(parts({0.1, 1.0}, {4.2, 2.3}), 2U);  // askew
-  EXPECT_EQ(parts({4.2, 2.3}, {0.1, 1.0}), 2U);  // the other way round
+  EXPECT_EQ(parts({4.2, 2.3}, {0.1, 1.0}), 2U);  // in the other direction
   EXPECT_EQ(parts({3.0, 0.1}, {4.3, 2.9}), 2U);  // past the gap, against its far side
   EXPECT_EQ(parts({3.7, 0.1}, {3.7, 4.1}), 2U);  // from wall to wall beside the gap: no third part
-  EXPECT_EQ(parts({0.1, 2.1}, {3.0, 2.1}), 1U);  // ends too far before the gap
+  EXPECT_EQ(parts({0.1, 2.1}, {3.0, 2.1}), 1U);  // ends too far from the gap
   EXPECT_EQ(parts({0.1, 0.6}, {3.2, 0.6}), 1U);  // ends before a wall, with the other room behind
 }
 

@@ -1,4 +1,4 @@
-// What every route must keep to.
+// Conditions for every route.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 
 namespace topogeo::planning {
 
-/// Cells are passable neighbours and cut no corner; straight lines stay in passable cells, but for
-/// the first one of a robot that stands where it must not be.
+/// Cells are passable neighbours and cut no corner; straight lines stay in passable cells, except
+/// the first line of a robot that starts at a forbidden place.
 inline void expect_drivable(const FreeSpace& space, const HybridRoute& route) {
   for (const Cell& cell : route.cells) ASSERT_TRUE(space.passable(cell));
   for (std::size_t i = 1; i < route.cells.size(); ++i) {

@@ -1,4 +1,4 @@
-// Zones that forbid, slow down or direct those who drive, against searches by brute force.
+// Zones that forbid, slow down or direct traffic, against brute-force searches.
 #include "topogeo/planning/driving_rules.hpp"
 
 #include <cmath>
@@ -20,7 +20,7 @@ namespace {
 using testing::HasSubstr;
 using Polygon = std::vector<Eigen::Vector2d>;
 constexpr double kHalfTurn_rad = std::numbers::pi;
-constexpr InflationConfig kPoint{0.0, false};  // a robot of no size
+constexpr InflationConfig kPoint{0.0, false};  // a robot without size
 
 Polygon ruled_box(double x0, double y0, double x1, double y1) {
   return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
@@ -42,7 +42,7 @@ HybridMap map_with(const std::vector<DrawnZone>& zones, const std::vector<std::s
   return {std::move(space), std::move(parts)};
 }
 
-/// What a path costs by the definition of the rules; infinity for one that they forbid.
+/// Cost of a path by the definition of the rules; infinity for a forbidden one.
 double ruled_cost(const GridFrame& frame, const std::vector<DrawnZone>& zones,
                   std::span<const Cell> cells) {
   const auto slowness = [&](const Cell& cell) {
@@ -80,7 +80,7 @@ double ruled_cost(const GridFrame& frame, const std::vector<DrawnZone>& zones,
   return sum;
 }
 
-/// Least cost from one cell to another: every step is tried until nothing gets cheaper.
+/// Least cost from one cell to another: relaxes every step until nothing gets cheaper.
 double brute_force(const FreeSpace& space, const std::vector<DrawnZone>& zones, const Cell& from,
                    const Cell& to) {
   const GridFrame& frame = space.frame();
@@ -112,7 +112,7 @@ double brute_force(const FreeSpace& space, const std::vector<DrawnZone>& zones, 
 }
 
 TEST(DrivingRules, NoRobotEntersANoGoZone) {
-  // The robot keeps as far from it as from walls: one cell.
+  // The robot keeps one cell of distance from it, as from walls.
   const std::vector<DrawnZone> zones = {{"wet", ruled_box(5, 5, 7, 6), ZoneKind::kNoGo, 0.0}};
   const HybridMap map = map_with(zones, kRing);
   const HybridRoute round = HybridPlanner(map).plan({2.5, 5.5}, Eigen::Vector2d(10.5, 5.5));
@@ -144,7 +144,7 @@ TEST(DrivingRules, AOneWayZoneIsDrivenInItsDirectionAlone) {
   const HybridPlanner planner(map);
   EXPECT_LT(planner.plan({1.5, 5.5}, Eigen::Vector2d(11.5, 5.5)).length_m, 11.0);
   EXPECT_GT(planner.plan({11.5, 5.5}, Eigen::Vector2d(1.5, 5.5)).length_m, 17.0);
-  // Across is allowed, and nothing at all where the other path is shut.
+  // Crossing is permitted; driving against it is not, even when the other path is blocked.
   const std::vector<DrawnZone> north = {
       {"aisle", ruled_box(4, 5, 9, 6), ZoneKind::kOneWay, kHalfTurn_rad / 2}};
   EXPECT_LT(
@@ -195,7 +195,7 @@ TEST(DrivingRules, RoutesAreTheCheapestOfAllThatAreAllowed) {
     if (route.status != RouteStatus::kFound) continue;
     EXPECT_NEAR(ruled_cost(map.frame(), zones, route.cells), least, 1e-4) << floor;
     ruled += least > brute_force(map.space(), {}, from, to) + 0.1 ? 1 : 0;
-    // Straight lines go where the cells went.
+    // Straight lines follow the cells.
     for (std::size_t i = 1; i < route.points_m.size(); ++i) {
       const Eigen::Vector2d line = route.points_m[i] - route.points_m[i - 1];
       const Eigen::Vector2d middle = 0.5 * (route.points_m[i] + route.points_m[i - 1]);

@@ -11,7 +11,7 @@
 
 namespace topogeo::planning {
 
-/// '#' occupied, '?' unknown, anything else free; the first line is the farthest up.
+/// '#' occupied, '?' unknown, anything else free; the first line is the top row.
 inline OccupancyGrid grid_of_text(const std::vector<std::string>& lines,
                                   double resolution_m = 1.0) {
   GridFrame frame;
@@ -53,8 +53,8 @@ inline void fill_box(OccupancyGrid& grid, Cell low, Cell high, CellState state) 
   }
 }
 
-/// Rooms side by side. Each has a door to its left neighbour, those of the first column one to the
-/// room above, the others with even chance; so every room can be reached.
+/// Rooms side by side. Each has a door to its left neighbour; those of the first column have one to
+/// the room above, the others with even chance. So every room can be reached.
 inline BlockFloor block_floor(const BlockPlan& plan, std::uint64_t seed) {
   support::Random random(seed);
   const auto between = [&random](std::int32_t low, std::int32_t high) {
@@ -101,7 +101,7 @@ inline BlockFloor block_floor(const BlockPlan& plan, std::uint64_t seed) {
   return floor;
 }
 
-/// The middle of a passable cell.
+/// The centre of a random passable cell.
 inline Eigen::Vector2d random_free_point_m(const FreeSpace& space, support::Random& random) {
   while (true) {
     const Cell cell = space.frame().cell_at(random.below(space.frame().size()));

@@ -1,4 +1,4 @@
-// Which planner answers, and what the parts of a route are, on a floor of two rooms:
+// The planner that answers, and the parts of a route, on a floor of two rooms:
 //
 //   y = 4  #####################
 //          #         #         #      door at x = 5, y = 1.5 to 2.5, which a cell of the grid

@@ -29,7 +29,7 @@ class GridFile : public testing::Test {
     std::ofstream(folder_ / name, std::ios::binary) << content;
   }
 
-  // A good pair of files, with one line of the YAML replaced.
+  // Writes a valid pair of files, with one line of the YAML replaced.
   void write_pair(const std::string& key = "", const std::string& line = "") const {
     std::string yaml;
     for (const std::string& good :

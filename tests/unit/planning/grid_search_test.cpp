@@ -81,7 +81,7 @@ TEST(GridSearch, StaysInItsWindowAndOutOfWhatIsClosed) {
   EXPECT_DOUBLE_EQ(shortest_path(all, {0, 1}, {4, 1}).value().cost_cells, 6.0);
 }
 
-// Relaxes every step again and again until nothing changes.
+// Relaxes every step until nothing changes.
 std::vector<double> costs_by_relaxation(const FreeSpace& space, const Cell& from) {
   const GridFrame& frame = space.frame();
   std::vector<double> cost(frame.size(), std::numeric_limits<double>::infinity());

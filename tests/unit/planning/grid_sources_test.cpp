@@ -50,7 +50,7 @@ TEST(GridOfDrawing, KnowsNothingOfWhatCannotBeReached) {
   EXPECT_EQ(at(grid, -0.5, 1.0), CellState::kUnknown);
 }
 
-// A flood over the four sides must not get through, at whatever angle a wall stands.
+// A flood across cell sides must not get through a wall at any angle.
 TEST(GridOfDrawing, SlantingWallsHaveNoGaps) {
   for (int k = 0; k < 60; ++k) {
     const double angle_rad = 0.1047 * k;
@@ -79,7 +79,7 @@ TEST(GridOfDrawing, RefusesWhatItCannotDraw) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("columns is")));
 }
 
-// A robot at `stop` that sees the square room |x|, |y| <= 2 m.
+// A robot at `stop_m` that sees the square room |x|, |y| <= 2 m.
 topomap::LocalMap scan_of_room(const Eigen::Vector2d& stop_m) {
   topomap::LocalMap map;
   for (int k = -39; k <= 39; ++k) {
@@ -152,7 +152,7 @@ TEST(GridOfBoth, IsOccupiedWhereEitherSaysSo) {
   frame.rows = 40;
   frame.T_map_grid = {-2.0, -2.0, 0.0};
   OccupancyGrid drawn(frame, CellState::kFree);
-  drawn.set({10, 20}, CellState::kOccupied);  // the scan looks through it
+  drawn.set({10, 20}, CellState::kOccupied);  // the scan sees it free
   drawn.set({30, 30}, CellState::kUnknown);   // the scan sees it free
   const std::vector<topomap::LocalMap> maps{scan_of_room({0.0, 0.0})};
   const std::vector<topomap::StopPose> stops{stop_at(0.45, -0.35)};
@@ -196,7 +196,7 @@ TEST(GridOfBoth, WithoutScansIsTheDrawing) {
   EXPECT_TRUE(std::ranges::equal(grid_of_both(drawn, {}, {}).cells(), drawn.cells()));
 }
 
-// Scan points and robot lie on the rim of such a grid, where rounding decides on which side.
+// Scan points and robot are on the rim of such a grid, where rounding decides the side.
 TEST(GridFromScans, NeedsNoMargin) {
   ScanGridConfig config;
   config.margin_m = 0.0;

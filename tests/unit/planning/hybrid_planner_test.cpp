@@ -21,8 +21,8 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using testing::ThrowsMessage;
 
-// Three rooms of five columns, with doors of one cell: row 2 from A to B, row 1 from B to C.
-// Beyond C, a closet without a door.
+// Three rooms of five columns, with doors of one cell: row 2 from A to B, row 1 from B to C. Beyond
+// C is a closet without a door.
 HybridMap three_rooms() {
   InflationConfig inflation;
   inflation.forbidden_cells = 0.0;
@@ -56,8 +56,8 @@ TEST(HybridMap, HasANodeInEachDoorAndAnEdgeThroughTheRoomBetween) {
   EXPECT_DOUBLE_EQ(map.edges()[0].cost_m, 4.0 + std::numbers::sqrt2 + 1.0);
 }
 
-// Two rooms that noise has parted: the door between them is too narrow on the map. A robot in it
-// came from one of them, not from the one whose cells happen to be nearer.
+// Two rooms separated by noise: the door between them is too narrow on the map. A robot in the door
+// may have come from either room, whichever room's cells are nearer.
 TEST(HybridPlanner, FromADoorThatTheMapShowsTooNarrowItLeavesToEitherSide) {
   InflationConfig inflation;
   inflation.forbidden_cells = 1.0;
@@ -84,7 +84,7 @@ TEST(HybridPlanner, FromADoorThatTheMapShowsTooNarrowItLeavesToEitherSide) {
       EXPECT_TRUE(route.found()) << from_m << " to " << to_m << ": " << route.reason;
     }
   }
-  // From a room there is no path into the other one.
+  // There is no path from a room into the other one.
   const HybridRoute route = planner.plan({2.5 * 0.25, y_m}, Eigen::Vector2d(14.5 * 0.25, y_m));
   EXPECT_EQ(route.status, RouteStatus::kUnreachable);
 }
@@ -202,7 +202,7 @@ TEST(HybridPlanner, GetsARobotOutOfAForbiddenCell) {
             RouteStatus::kGoalOccupied);
 }
 
-// A ring of four rooms: when one door shuts, the route goes round the other side.
+// A ring of four rooms: when a door shuts, the route takes the other direction.
 TEST(HybridPlanner, AvoidsWhatIsClosedNow) {
   BlockPlan plan;
   plan.columns = 2;
@@ -266,7 +266,7 @@ PlannedFloor planned_floor(std::uint64_t seed) {
   return planned;
 }
 
-// The shortest paths over a whole grid take longest: they are the same for every planner.
+// Searches of whole grids take longest; their results are the same for every planner.
 const std::vector<PlannedFloor>& planned_floors() {
   static const std::vector<PlannedFloor> floors = [] {
     std::vector<PlannedFloor> made;
@@ -276,7 +276,7 @@ const std::vector<PlannedFloor>& planned_floors() {
   return floors;
 }
 
-// The shares by which routes are longer than the shortest paths, over floors and pairs of points.
+// Relative excess of the routes over the shortest paths, over floors and pairs of points.
 std::vector<double> detours(bool drawn, const HybridPlannerConfig& config) {
   std::vector<double> longer;
   for (const auto& [rooms, space, trips] : planned_floors()) {
@@ -326,7 +326,7 @@ TEST(HybridPlanner, IsNearlyAsGoodWithoutPlanningAgain) {
   EXPECT_GT(longer.back(), 0.05) << "planning again would be needless";
 }
 
-// Doors shut at random: a route never crosses one, and is unreachable exactly when the shut
+// Doors shut at random: a route never crosses a shut one, and is unreachable exactly when the shut
 // doors, as walls, leave no path.
 TEST(HybridPlanner, IsRightAboutDoorsThatShutAtRandom) {
   int unreachable = 0;

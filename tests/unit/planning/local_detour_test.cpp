@@ -53,7 +53,7 @@ TEST(LocalDetour, GoesRoundAnObstacleAndBackToTheRoute) {
       ASSERT_GT((space.frame().center_m(cell) - point_m).norm(), 0.25);
     }
   }
-  // The straightened path keeps away as well.
+  // The straightened path keeps its distance, too.
   for (std::size_t i = 1; i < detour.points_m.size(); ++i) {
     const Eigen::Vector2d step_m = detour.points_m[i] - detour.points_m[i - 1];
     for (int k = 0; k <= 200; ++k) {
@@ -80,7 +80,7 @@ TEST(LocalDetour, SaysWhenTheWholeWidthIsBlocked) {
   const HybridRoute route = plan_on_grid(space, kStart_m, kGoal_m);
   EXPECT_EQ(plan_detour(space, route.cells, kStart_m, kGoal_m, wall_m(2.0, 0.1, 2.9)).status,
             DetourStatus::kBlocked);
-  // The goal itself.
+  // The goal itself is blocked.
   const std::vector<Eigen::Vector2d> on_goal_m{kGoal_m};
   EXPECT_EQ(plan_detour(space, route.cells, {8.0, 1.5}, kGoal_m, on_goal_m).status,
             DetourStatus::kBlocked);
@@ -95,8 +95,8 @@ TEST(LocalDetour, KnowsWhenTheRobotIsLost) {
             DetourStatus::kLost);
 }
 
-// A thin wall between two corridors, the robot so near to it that it must snap: its own corridor
-// is open further off than the other one.
+// A thin wall between two corridors, with the robot so close to it that it must snap: the open
+// space of its own corridor is farther away than that of the other one.
 TEST(LocalDetour, StartsOnTheRobotsSideOfAWall) {
   std::vector<std::string> lines(41, std::string(60, '.'));
   lines[20].assign(60, '#');
@@ -105,7 +105,7 @@ TEST(LocalDetour, StartsOnTheRobotsSideOfAWall) {
   const FreeSpace space(grid_of_text(lines, 0.1), inflation);
   const std::vector<Cell> route{{30, 10}, {31, 10}, {32, 10}, {33, 10}, {34, 10}, {35, 10}};
   const Eigen::Vector2d robot_m(3.05, 1.95);  // just below the wall, in row 19
-  // Below the robot, so that no cell near it is open.
+  // Obstacles below the robot leave no open cell near it.
   std::vector<Eigen::Vector2d> seen_m(60);
   for (std::size_t i = 0; i < seen_m.size(); ++i) {
     seen_m[i] = {0.1 * static_cast<double>(i) + 0.05, 1.75};
@@ -117,7 +117,7 @@ TEST(LocalDetour, StartsOnTheRobotsSideOfAWall) {
   EXPECT_EQ(free.cells.front(), (Cell{30, 18}));
 }
 
-// The robot stands in a gap between two obstacles, nearer to the side that it comes from.
+// The robot is in a gap between two obstacles, closer to the side that it came from.
 TEST(LocalDetour, LeavesATightPlaceToTheSideOfTheRoute) {
   const FreeSpace space = corridor();
   const HybridRoute route = plan_on_grid(space, kStart_m, kGoal_m);

@@ -118,7 +118,7 @@ TEST(SmoothPath, StaysPassableAndWithinItsCurvatureOnRandomRoutes) {
       if (i == 0) continue;
       const PathSample& last = path[i - 1];
       ASSERT_LE(path[i].distance_m - last.distance_m, config.step_m + 1e-9);
-      // The heading changes by nothing but the curvature and turns on the spot.
+      // The heading changes only by the curvature and by turns on the spot.
       const double expected_rad = last.T_map_robot.theta_rad +
                                   last.curvature_per_m * (path[i].distance_m - last.distance_m) +
                                   path[i].turn_on_spot_rad;

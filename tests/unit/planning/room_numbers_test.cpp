@@ -7,8 +7,8 @@
 namespace topogeo::planning {
 namespace {
 
-// Three rooms in a row, of 8, 6 and 9 cells of 1 m, with doors of one cell; `moved` columns are
-// left free of anything on the left.
+// Three rooms in a row, of 8, 6 and 9 cells of 1 m, with doors of one cell, shifted to the right by
+// `moved` empty columns.
 FreeSpace row_of_rooms(std::size_t moved = 0, bool second_wall = true) {
   InflationConfig config;
   config.forbidden_cells = 0.0;
@@ -71,7 +71,7 @@ TEST(RoomNumbers, CountFromOneInTheOrderOfTheZones) {
   for (const Zone& zone : map.zones.zones) EXPECT_EQ(zone.room, zone.id + 1U);
 }
 
-// The map has moved by more than a room: what lies at the place of a room now is another one.
+// The map has moved by more than a room, so a room's old place is now in another room.
 TEST(RoomNumbers, MoveWithTheMap) {
   RoomNumbers numbers;
   const Numbered before = number(numbers, row_of_rooms(), 0.0);
@@ -92,7 +92,7 @@ TEST(RoomNumbers, OfTheLargerStaysWhenTwoAreJoinedAndComesBackToIt) {
   EXPECT_EQ(room_at(joined.space, joined.zones, {12, 3}), large);
   const Numbered parted = number(numbers, row_of_rooms(), 0.0);
   EXPECT_EQ(room_at(parted.space, parted.zones, {20, 3}), large);
-  EXPECT_EQ(room_at(parted.space, parted.zones, {12, 3}), 4U);  // a new one
+  EXPECT_EQ(room_at(parted.space, parted.zones, {12, 3}), 4U);  // a new room
 }
 
 TEST(RoomNumbers, KeepTheNameOfThePlaceInTheRoom) {
@@ -102,14 +102,14 @@ TEST(RoomNumbers, KeepTheNameOfThePlaceInTheRoom) {
   EXPECT_EQ(name_at(before.space, before.zones, {12, 3}), "kitchen");
   EXPECT_EQ(name_at(before.space, before.zones, {4, 3}), "room 1");
   EXPECT_EQ(before.places[0].position_m, places[0].position_m);
-  // Without being moved it would lie in the first room.
+  // Without the shift it would be in the first room.
   const Numbered after = number(numbers, row_of_rooms(9), 9.0, places);
   EXPECT_EQ(name_at(after.space, after.zones, {21, 3}), "kitchen");
   EXPECT_EQ(name_at(after.space, after.zones, {13, 3}), "room 1");
   EXPECT_NEAR(after.places[0].position_m.x(), 22.5, 1e-9);
 }
 
-// As over a restart: the second one knows what the first one remembered, and the map has moved.
+// Like a restart: the second object starts from the first one's memory, and the map has moved.
 TEST(RoomNumbers, GoOnFromWhatAnotherOneRemembered) {
   RoomNumbers before;
   const std::vector<Place> places{{"kitchen", {13.5, 2.5}, 0.5}};
@@ -127,7 +127,7 @@ TEST(RoomNumbers, GoOnFromWhatAnotherOneRemembered) {
   EXPECT_NE(room_at(other.space, other.zones, {21, 3}), 3U) << "else this shows nothing";
 }
 
-// The map has turned by a quarter around its origin: the arrow of a base station turns with it.
+// The map has rotated by a quarter turn around its origin, and a base station's heading with it.
 TEST(RoomNumbers, TurnTheBaseStationWithItsRoom) {
   const auto on_its_side = [](const FreeSpace& space) {
     const GridFrame& frame = space.frame();
@@ -161,7 +161,7 @@ TEST(RoomNumbers, TurnTheBaseStationWithItsRoom) {
   EXPECT_NEAR(*after[0].station_heading_rad, 1.0 + M_PI_2, 1e-9);
 }
 
-// Who puts it elsewhere by hand means that.
+// A place that is moved by hand stays where it was put.
 TEST(RoomNumbers, LeaveAPlaceThatWasDrawnAnew) {
   RoomNumbers numbers;
   static_cast<void>(number(numbers, row_of_rooms(), 0.0, {{"kitchen", {13.5, 2.5}}}));

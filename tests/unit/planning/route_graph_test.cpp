@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::ThrowsMessage;
 
-//  0 --1-- 1 --1-- 2 --1-- 3     and 0 --5-- 3, 1 --0.5-- 2 once more, 4 alone
+//  0 --1-- 1 --1-- 2 --1-- 3     and 0 --5-- 3, a second 1 --0.5-- 2, and 4 alone
 const std::vector<GraphEdge> kEdges{
     {0, 1, 1.0}, {1, 2, 1.0}, {2, 3, 1.0}, {0, 3, 5.0}, {2, 1, 0.5}};
 

@@ -75,7 +75,7 @@ TEST(Plan, GoesRoundWhereTheRobotDoesNotFit) {
 }
 
 TEST(Plan, GoesAlongAVirtualBranchWhateverItsClearance) {
-  // The robot drove from 2 to 7 and saw nothing meanwhile.
+  // The robot drove from 2 to 7 without seeing anything.
   GlobalMap map = ring();
   ASSERT_EQ(plan(map, {19, 0}, {35, 0}).status, PlanStatus::kNotConnected);
   add_map_branch(map, 15, 2, 7, {{25, 0}}, 0.0);
@@ -87,7 +87,7 @@ TEST(Plan, GoesAlongAVirtualBranchWhateverItsClearance) {
   EXPECT_THAT(result.route.branch_ids, ElementsAre(10, 15, 14));
   EXPECT_NEAR(result.route.length_m, 16.0, 1e-9);
   EXPECT_EQ(result.route.min_clearance_m, 0.0);
-  // The robot can also stand on it when it gets its goal.
+  // The robot may also be on it when it gets its goal.
   EXPECT_EQ(plan(map, {24, 1}, {35, 0}).start->branch_id, 15U);
   EXPECT_TRUE(plan_between_nodes(map, 1, 8).found());
 }

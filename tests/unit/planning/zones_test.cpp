@@ -39,7 +39,7 @@ ZoneId zone_at(const FreeSpace& space, const ZoneMap& map, Cell cell) {
   return map.zone_of_cell[space.frame().index(cell)];
 }
 
-// What all zones have in common, however they are made.
+// Invariants of all zones, however they are made.
 void expect_sound(const FreeSpace& space, const ZoneMap& map) {
   const GridFrame& frame = space.frame();
   std::vector<std::size_t> cells(map.zones.size(), 0);
@@ -52,7 +52,7 @@ void expect_sound(const FreeSpace& space, const ZoneMap& map) {
   }
   for (const Zone& zone : map.zones) {
     EXPECT_EQ(zone.cells, cells[zone.id]);
-    // From its first cell a search gets to all of them.
+    // A search from its first cell reaches all of them.
     const SearchWindow window(frame, zone.box, map.zone_of_cell, zone.id);
     std::vector<Cell> all;
     for (std::size_t i = 0; i < frame.size(); ++i) {
@@ -79,7 +79,7 @@ TEST(Zones, AreNotCutWhereAPassageMeetsNoWalls) {
             zones_of_rooms(space, {}, small_zones()).zone_of_cell);
 }
 
-// Two rooms of 9 x 9 cells of 0.25 m, the way between them 5 wide: 0.6 of their width.
+// Two rooms of 9 x 9 cells of 0.25 m; the passage between them is 5 wide, 0.6 of their width.
 TEST(Zones, MeetAtAWideDoorWhereTheMapHasOne) {
   InflationConfig config;
   config.forbidden_cells = 0.0;
@@ -95,7 +95,7 @@ TEST(Zones, MeetAtAWideDoorWhereTheMapHasOne) {
   expect_sound(space, map);
 }
 
-// A floor of 30 cells, and one of 5 behind a wall.
+// A floor of 30 cells, and a separate pocket of 5 behind a wall.
 TEST(Zones, PocketsThatNothingLeadsToAreNoFloor) {
   InflationConfig config;
   config.forbidden_cells = 0.0;
@@ -121,7 +121,7 @@ TEST(Zones, AreFoundByTheWidthOfTheFloor) {
 TEST(Zones, SmallOnesJoinTheNeighbourWithTheLongestBorder) {
   const FreeSpace space = two_rooms();
   ZoneConfig config = small_zones();
-  // The left room is 72 m2 and the door 3, the right one 81.
+  // The left room has 72 m2 and the door 3, the right room has 81.
   config.min_area_m2 = 75.0;
   EXPECT_EQ(zones_by_width(space, config).zones.size(), 2U);
   config.min_area_m2 = 80.0;
@@ -140,7 +140,7 @@ TEST(Zones, ThatAreDrawnKeepTheirNamesAndSizes) {
   ASSERT_EQ(map.zones.size(), 2U);
   EXPECT_EQ(map.zones[zone_at(space, map, {5, 2})].name, "west");
   EXPECT_EQ(map.zones[zone_at(space, map, {12, 2})].name, "both");
-  // What was not drawn is too small to be a zone of its own.
+  // The area left undrawn is too small to be a separate zone.
   EXPECT_EQ(map.zones[zone_at(space, map, {12, 8})].name, "both");
   expect_sound(space, map);
 }
@@ -166,7 +166,7 @@ TEST(Zones, ThatAreDrawnLeaveTheRoomsBesideThemAsTheyWereFound) {
     const auto same_name = [&](const Zone& zone) { return zone.name == one.front().name; };
     const auto drawn = std::find_if(map.zones.begin(), map.zones.end(), same_name);
     ASSERT_NE(drawn, map.zones.end());
-    // Of each zone that was found, by the cells that were not drawn: still one zone.
+    // The undrawn cells of each detected zone still form one zone.
     std::vector<std::vector<std::size_t>> cells(found.zones.size(),
                                                 std::vector<std::size_t>(map.zones.size()));
     for (std::size_t i = 0; i < found.zone_of_cell.size(); ++i) {

@@ -1,4 +1,4 @@
-// Our encoding of messages beside that of fastddsgen and Fast CDR, and by hand for ROS 1.
+// Our encoding of messages against that of fastddsgen and Fast CDR, and by hand for ROS 1.
 #include <gtest/gtest.h>
 
 #include "topogeo/recording/ros_codec.hpp"

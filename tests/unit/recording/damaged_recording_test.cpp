@@ -1,4 +1,4 @@
-// Recordings that were cut off, are damaged, or are none.
+// Recordings that are cut off or damaged, and files that are no recordings.
 #include <gmock/gmock.h>
 
 #include "recorded_drive.hpp"
@@ -76,7 +76,7 @@ TEST_P(DamagedRecording, IsNeverReadAsSomethingElse) {
   }
 }
 
-// A byte changed in a chunk of MCAP is found by its checksum.
+// The checksum reveals a changed byte in a chunk of MCAP.
 TEST_F(DamagedRecording, FailsItsChecksum) {
   std::string bytes = bytes_of(write_drive(path("a.mcap"), "none"));
   const std::size_t inside = bytes.find("base_link") + 2;
@@ -85,7 +85,7 @@ TEST_F(DamagedRecording, FailsItsChecksum) {
   EXPECT_THAT(open_error(path("b.mcap")), HasSubstr("expected laser scans"));
 }
 
-// Nothing is whole: the error says where the file ends to make sense.
+// Nothing is whole: the error gives the position where the file becomes invalid.
 TEST_P(DamagedRecording, WithoutAnythingWholeIsRefusedWithThePosition) {
   const std::string whole = bytes_of(write_drive(path(GetParam().first), GetParam().second));
   put_bytes(path("cut"), whole.substr(0, whole.size() / 8));
@@ -93,7 +93,7 @@ TEST_P(DamagedRecording, WithoutAnythingWholeIsRefusedWithThePosition) {
               AllOf(HasSubstr("expected laser scans"), HasSubstr("cut: byte ")));
 }
 
-// As a disk leaves it that was full, or a crash.
+// A full disk or a crash leaves such files.
 TEST_F(DamagedRecording, OfZerosIsRefusedWithThePosition) {
   const std::string head = bytes_of(write_drive(path("a.mcap"), "none")).substr(0, 8);
   put_bytes(path("zeros.mcap"), head + std::string(1000, '\0'));

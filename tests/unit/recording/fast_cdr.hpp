@@ -1,4 +1,4 @@
-// A message in bytes as the code of fastddsgen makes them, which is what goes over DDS.
+// A message encoded by the code of fastddsgen, which is the form sent over DDS.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace topogeo::recording {
 template <typename Message>
 std::vector<std::byte> by_fast_cdr(const Message& message,
                                    eprosima::fastcdr::Cdr::Endianness order) {
-  std::vector<char> zeros(4096);  // it leaves in the padding what stands there
+  std::vector<char> zeros(4096);  // it does not overwrite the padding
   eprosima::fastcdr::FastBuffer buffer(zeros.data(), zeros.size());
   eprosima::fastcdr::Cdr cdr(buffer, order, eprosima::fastcdr::Cdr::DDS_CDR);
   cdr.serialize_encapsulation();

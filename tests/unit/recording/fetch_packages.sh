@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# fetch_packages.sh FOLDER: the npm packages that the scripts beside this one need, once, into FOLDER. Exit code 77 where npm or the
-# network is missing.
+# fetch_packages.sh FOLDER: installs the npm packages for the scripts beside this one, once, into FOLDER. Exit code 77
+# without npm or the network.
 set -euo pipefail
 folder=$1
-done=$folder/done-2  # another number when the list changes
+done=$folder/done-2  # increase the number when the list changes
 [ -e "$done" ] && exit 0
 if ! command -v npm > /dev/null || ! command -v node > /dev/null; then
   echo "no node or npm"

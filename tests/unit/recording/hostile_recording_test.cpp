@@ -1,4 +1,4 @@
-// Recordings that were made to keep their reader busy, or to fill its memory.
+// Malicious recordings that would keep their reader busy, or fill its memory.
 #include <fstream>
 #include <memory>
 
@@ -21,7 +21,7 @@ using testing::HasSubstr;
 
 class HostileRecording : public RecordingFiles {
  protected:
-  /// A .db3 of these statements.
+  /// A .db3 made by these statements.
   std::filesystem::path database(const std::string& sql) const {
     std::filesystem::remove(path("a.db3"));
     sqlite3* raw = nullptr;
@@ -96,7 +96,7 @@ TEST_F(HostileRecording, UnpacksToSoMuchAlone) {
   budget.take(std::uint64_t{1} << 30U);
   budget.take(100'000);
   EXPECT_THROW(budget.take(1), FormatError);
-  // Blocks of zeros, each a thousandth of what it holds.
+  // Blocks of zeros, which compress to a thousandth of their size.
   const std::vector<std::byte> zeros(std::size_t{1} << 20U);
   const std::vector<std::byte> block = compress(zeros, Compression::kZstd);
   UnpackBudget small(0);

@@ -1,6 +1,6 @@
-// mcap_check.mjs PACKAGES FILE OUT: reads an MCAP file with @mcap/core, by its index and from front to back, decodes its
-// messages with @foxglove/rosmsg2-serialization by the definitions in it, and writes them into another. Exit code 77
-// where the packages are missing.
+// mcap_check.mjs PACKAGES FILE OUT: reads an MCAP file with @mcap/core, by its index and from front to back, decodes
+// its messages with @foxglove/rosmsg2-serialization by the definitions in it, and writes them into another. Exit code
+// 77 without the packages.
 import { createRequire } from "node:module";
 import { readFileSync, writeFileSync } from "node:fs";
 
@@ -85,7 +85,7 @@ assert(JSON.stringify(Object.entries(counts).sort()) === '[["/odom",20],["/scan"
   JSON.stringify(counts));
 writeFileSync(output, Buffer.concat(writable.parts));
 
-// From front to back too, with checksums of chunks.
+// Reads it from front to back, too, and validates the checksums of chunks.
 const stream = new mcap.McapStreamReader({ decompressHandlers, validateCrcs: true });
 stream.append(bytes);
 let messages = 0;

@@ -1,5 +1,5 @@
-// The index of an MCAP file: what is not wanted is passed over unread, and without it, or with one
-// that is damaged, the same scans come.
+// The index of an MCAP file: unwanted data is skipped unread, and without an index, or with a
+// damaged one, the scans are the same.
 #include <functional>
 
 #include <gmock/gmock.h>
@@ -13,8 +13,8 @@ constexpr int kScans = 60;
 constexpr std::int64_t kPeriod_ns = 100'000'000;
 constexpr std::int8_t kSecondMap = 77;
 
-/// A drive with two maps after every tenth scan, each larger than a chunk: the second of them, of
-/// cells that are all alike, is alone in its chunk.
+/// A drive with two maps after every tenth scan, each larger than a chunk: the second one, whose
+/// cells are all equal, is alone in its chunk.
 std::string drive_with_maps(const std::filesystem::path& file) {
   constexpr std::size_t kSide = 1100;
   LogWriter writer(file, kMounting, "none");
@@ -36,16 +36,16 @@ class McapIndex : public RecordingFiles {
  protected:
   McapIndex() : whole_(drive_with_maps(path("whole.mcap"))) {}
 
-  /// The file after a change of its bytes.
+  /// The file after a change to its bytes.
   std::filesystem::path changed(const std::function<void(std::string&)>& change) {
     std::string bytes = whole_;
     change(bytes);
     put_bytes(path("changed.mcap"), bytes);
     return path("changed.mcap");
   }
-  /// The checksum of the summary stands before the last 8 bytes, 0: there is none.
+  /// Clears the checksum of the summary, which is in front of the last 8 bytes; 0 means none.
   static void forget_checksum(std::string& bytes) { bytes.replace(bytes.size() - 12, 4, 4, '\0'); }
-  /// A byte of each second map.
+  /// Changes a byte of each second map.
   static void damage_maps(std::string& bytes) {
     const std::string cells(1000, static_cast<char>(kSecondMap));
     const std::size_t map = bytes.find(cells);
@@ -59,7 +59,7 @@ class McapIndex : public RecordingFiles {
 TEST_F(McapIndex, LeadsPastChunksOfOtherTopics) {
   const std::vector<scan::Scan> all = read_scans(path("whole.mcap"));
   ASSERT_EQ(all.size(), std::size_t{kScans});
-  // What is not read is not checked.
+  // Unread data is not checked.
   expect_same_scans(read_scans(changed(damage_maps)), all);
   const auto without = read_scans(changed([](std::string& bytes) {
     damage_maps(bytes);
@@ -71,7 +71,7 @@ TEST_F(McapIndex, LeadsPastChunksOfOtherTopics) {
 TEST_F(McapIndex, IsNotNeeded) {
   const std::vector<scan::Scan> all = read_scans(path("whole.mcap"));
   expect_same_scans(read_scans(changed(forget_checksum)), all);
-  // The footer: opcode, length, start of the summary, of its offsets, checksum, the magic.
+  // The footer: opcode, length, start of the summary, start of its offsets, checksum, the magic.
   constexpr std::size_t kSummaryStart = 8 + 4 + 8 + 8;
   expect_same_scans(read_scans(changed([](std::string& bytes) {
                       bytes.replace(bytes.size() - kSummaryStart, 20, 20, '\0');
@@ -83,7 +83,7 @@ TEST_F(McapIndex, IsNotNeeded) {
       all);
 }
 
-// Any byte of the summary changed: its checksum says so.
+// Any changed byte of the summary is found by its checksum.
 TEST_F(McapIndex, ThatIsDamagedIsNotUsed) {
   const std::vector<scan::Scan> all = read_scans(path("whole.mcap"));
   constexpr std::size_t kWithin = 900;  // the indexes of the last chunks, offsets, footer

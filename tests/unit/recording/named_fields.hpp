@@ -1,5 +1,4 @@
-// The fields of the messages of ROS by the names that they have there, to fill them and to say what
-// is in them.
+// The fields of ROS messages by their ROS names, to fill them and to list their values.
 #pragma once
 
 #include <array>
@@ -192,7 +191,7 @@ void for_each_field(auto&& visit, ros::Clock& message) {
 #undef TOPOGEO_FIELD
 // NOLINTEND(cppcoreguidelines-macro-usage)
 
-/// Gives each field another value, exact in single precision; sequences get two elements.
+/// Gives each field a different value, exact in single precision; sequences get two elements.
 class FieldFiller {
  public:
   template <typename Field>
@@ -228,7 +227,7 @@ class FieldFiller {
   int last_ = 0;
 };
 
-/// What a message holds, as JSON.
+/// Contents of a message as JSON.
 template <typename Field>
 nlohmann::json json_of(Field& field) {
   if constexpr (!std::is_class_v<Field> || std::same_as<Field, std::string>) {

@@ -1,5 +1,5 @@
-// What others make of our files, and we of theirs: rosbag (Debian's python3-rosbag), @mcap/core and
-// @foxglove/rosmsg2-serialization (npm). Each is skipped with a message where the program or the
+// Our files in other readers, and theirs in ours: rosbag (Debian's python3-rosbag), @mcap/core and
+// @foxglove/rosmsg2-serialization (npm). Each is skipped with a message when the program or the
 // network is missing.
 #include <cstdlib>
 
@@ -14,7 +14,7 @@ namespace {
 
 class OtherReaders : public RecordingFiles {
  protected:
-  /// Runs a script beside this file with the arguments; its exit code, 77 where something that it
+  /// Runs a script beside this file with the arguments; its exit code, 77 when something that it
   /// needs is missing.
   int run(const std::string& program, const std::string& script, const std::string& arguments) {
     const std::string command = "timeout 100 " + program +
@@ -33,7 +33,7 @@ class OtherReaders : public RecordingFiles {
 
 constexpr int kMissing = 77;
 
-/// A line for ros_definitions_check.mjs: a message with all fields filled, as it goes over DDS.
+/// A line for ros_definitions_check.mjs: a message with all fields filled, encoded as for DDS.
 template <typename Message>
 std::string filled_line(const std::string& type) {
   Message message;

@@ -1,5 +1,4 @@
-// Recordings of others, beside the project like the recorded logs; skipped where they are not
-// there.
+// Recordings from elsewhere, beside the project like the recorded logs; skipped without them.
 #include <cstdlib>
 #include <cstring>
 
@@ -34,8 +33,8 @@ class RealRecordings : public RecordingFiles {
   }
 };
 
-/// Headers of ROS 1 are numbered, ours are not: scans and odometry start with one, and each
-/// transform does.
+/// ROS 1 numbers its headers, our messages have zeros: clears the number at the start of scans and
+/// odometry, and of each transform.
 template <typename Message>
 void clear_numbers(std::vector<std::byte>& message) {
   constexpr std::size_t kNumber = sizeof(std::uint32_t);
@@ -51,7 +50,7 @@ void clear_numbers(std::vector<std::byte>& message) {
   std::size_t at = kNumber;
   for (std::uint32_t left = number_at(0); left > 0; --left) {
     std::fill_n(message.begin() + static_cast<std::ptrdiff_t>(at), kNumber, std::byte{0});
-    at += kNumber + 2 * kNumber;    // itself, the stamp
+    at += kNumber + 2 * kNumber;    // the number itself, the stamp
     at += kNumber + number_at(at);  // frame_id
     at += kNumber + number_at(at);  // child_frame_id
     constexpr std::size_t kTransform = 7 * sizeof(double);
@@ -65,7 +64,7 @@ void expect_same_bytes(const RawMessage& message, Encoding encoding) {
   encode(decode<Message>(message.data, encoding), encoding, bytes);
   std::vector<std::byte> given(message.data.begin(), message.data.end());
   if (encoding == Encoding::kRos1) clear_numbers<Message>(given);
-  // Writers may fill the last four bytes up.
+  // Writers may pad the last four bytes.
   if (encoding == Encoding::kCdr && given.size() > bytes.size()) {
     ASSERT_LT(given.size() - bytes.size(), 4U);
     given.resize(bytes.size());

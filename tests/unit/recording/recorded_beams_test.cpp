@@ -1,4 +1,4 @@
-// Beams of recordings: the motion of a sweep, numbers of beams that vary, other lasers on one
+// Beams of recordings: the motion during a sweep, varying numbers of beams, several lasers on one
 // topic.
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 class RecordedBeams : public RecordingFiles {
  protected:
-  /// An uncompressed bag, whose bytes can be found and changed.
+  /// An uncompressed bag, so that bytes can be found and changed.
   std::filesystem::path write(const std::vector<scan::Scan>& scans,
                               const geometry::Pose2& T_robot_laser = {}) {
     LogWriter writer(path("a.bag"), T_robot_laser, "none");
@@ -35,7 +35,7 @@ std::string bytes_of_floats(const std::vector<float>& values) {
   return bytes;
 }
 
-/// angle_min, angle_max and angle_increment, as they stand in a message.
+/// angle_min, angle_max and angle_increment, encoded as in a message.
 std::string angles_of(const scan::Scan& scan) {
   const auto min_rad = static_cast<float>(scan.angle_min_rad);
   const auto last = static_cast<double>(scan.ranges_m.size() - 1);
@@ -48,7 +48,7 @@ constexpr double kRayStep_rad = 2.0 * std::numbers::pi / kRays;
 constexpr double kSweep_s = 0.1;
 const geometry::Pose2 kOnRobot{0.2, 0.1, 0.5};
 
-/// From a pose to the walls of a square room of 8 m around the origin.
+/// Range from a pose to the walls of a square room of 8 m around the origin.
 double to_wall_m(const geometry::Pose2& pose, double angle_rad) {
   const double x = std::cos(pose.theta_rad + angle_rad);
   const double y = std::sin(pose.theta_rad + angle_rad);
@@ -56,12 +56,12 @@ double to_wall_m(const geometry::Pose2& pose, double angle_rad) {
                   (y > 0.0 ? 4.0 - pose.y_m : -4.0 - pose.y_m) / y);
 }
 
-/// 0.8 m/s and 1.2 rad/s, at so many seconds.
+/// Pose at this time when driving 0.8 m/s and 1.2 rad/s.
 geometry::Pose2 robot_at(double time_s) {
   return {0.8 * time_s - 0.4, 0.0, 1.2 * time_s - 0.6};
 }
 
-/// Each ray of a scan from where the laser is at its time, or all from where it is at the stamp.
+/// Scans whose rays start at the laser's pose at their own time, or all at that of the stamp.
 std::vector<scan::Scan> turning_drive(bool skewed) {
   std::vector<scan::Scan> scans;
   for (int i = 0; i < 10; ++i) {
@@ -106,7 +106,7 @@ TEST_F(RecordedBeams, AreThoseOfOneMoment) {
   ASSERT_EQ(found, 10);
   put_bytes(file, bytes);
 
-  EXPECT_EQ(read_scans(file).front().ranges_m, skewed.front().ranges_m);  // unless it is asked for
+  EXPECT_EQ(read_scans(file).front().ranges_m, skewed.front().ranges_m);  // only on request
   TopicChoice forward;
   forward.sweep = ros::SweepOrder::kForward;
   const std::vector<scan::Scan> scans = read_scans(file, forward);
@@ -116,7 +116,7 @@ TEST_F(RecordedBeams, AreThoseOfOneMoment) {
     EXPECT_LT(largest_error_m(scans[i], truth[i]), 0.06);
     EXPECT_LT(std::ranges::count(scans[i].ranges_m, scan::Scan::kNoReturn), 12);
   }
-  // Of the last sweep no odometry covers the end.
+  // No odometry covers the end of the last sweep.
   EXPECT_EQ(scans.back().ranges_m, skewed.back().ranges_m);
   ConvertOptions options;
   options.topics = forward;
@@ -128,7 +128,7 @@ TEST_F(RecordedBeams, AreThoseOfOneMoment) {
 
 TEST_F(RecordedBeams, ThatLackAreNoEchoes) {
   std::vector<scan::Scan> drive = short_drive();
-  drive[0].ranges_m.resize(5);  // of 7, also of the first scan
+  drive[0].ranges_m.resize(5);  // 5 instead of 7, also in the first scan
   drive[4].ranges_m.erase(drive[4].ranges_m.begin());
   drive[4].angle_min_rad += drive[4].angle_step_rad;
   const auto file = write(drive);
@@ -144,7 +144,7 @@ TEST_F(RecordedBeams, ThatLackAreNoEchoes) {
   EXPECT_EQ(scans[5].ranges_m, drive[5].ranges_m);
   EXPECT_THAT(mounting_in_log(file).notes,
               testing::Contains(HasSubstr("2 scans have other beams than 7 beams")));
-  EXPECT_GT(check_log(file).faults(), 0U);  // they are shown as they are
+  EXPECT_GT(check_log(file).faults(), 0U);  // reported unchanged
 }
 
 TEST_F(RecordedBeams, OfAnotherLaserAreLeftOut) {

@@ -1,4 +1,4 @@
-// A short drive as scans, and files of it made by tests, removed at their end.
+// A short drive as scans, and files with it, which are removed at the end of a test.
 #pragma once
 
 #include <cmath>
@@ -32,7 +32,7 @@ class RecordingFiles : public ::testing::Test {
 };
 
 /// A robot on an arc of 2 m radius, 20 scans of 7 beams a tenth of a second apart; the last beam
-/// meets nothing.
+/// has no return.
 inline std::vector<scan::Scan> short_drive() {
   std::vector<scan::Scan> scans;
   for (int i = 0; i < 20; ++i) {
@@ -79,7 +79,7 @@ inline void put_bytes(const std::filesystem::path& path, const std::string& byte
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-/// Of opening a log; empty when it opens.
+/// Error message of opening a log; empty when it opens.
 inline std::string open_error(const std::filesystem::path& path, const TopicChoice& topics = {}) {
   try {
     const LogReader reader(path, {}, topics);
@@ -89,7 +89,7 @@ inline std::string open_error(const std::filesystem::path& path, const TopicChoi
   return {};
 }
 
-/// Everything but the numbers that sources give.
+/// Compares everything except the sequence numbers, which depend on the source.
 inline void expect_same_scans(const std::vector<scan::Scan>& a, const std::vector<scan::Scan>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {

@@ -1,4 +1,4 @@
-// One drive in each format, and from each to each.
+// One drive in each format, and converted from each to each.
 #include "recorded_drive.hpp"
 
 #include <gmock/gmock.h>
@@ -41,7 +41,7 @@ TEST_P(RecordedDrive, ComesBackAsItWas) {
   EXPECT_EQ(count_scans(file), drive.size());
 }
 
-// What makes maps of all formats equal to the byte: the pipeline gets the same numbers.
+// The pipeline gets the same numbers, so maps of all formats are equal to the byte.
 TEST_P(RecordedDrive, GivesTheSameScansInEachFormatItIsConvertedTo) {
   const auto file = write_drive(path(GetParam().first), GetParam().second);
   const std::vector<scan::Scan> scans = read_scans(file);
@@ -78,7 +78,7 @@ TEST_F(RecordedDrive, IsReadFromAFolderOfSeveralFiles) {
   expect_same_scans(read_scans(path("bag")), read_scans(write_drive(path("whole.mcap"))));
 }
 
-// As `ros2 bag` has it: a folder whose name has no ending.
+// A folder without an ending in its name, like that of `ros2 bag`.
 TEST_F(RecordedDrive, IsWrittenAsAFolder) {
   for (const char* name : {"bag", "other/"}) {
     SCOPED_TRACE(name);
@@ -101,7 +101,7 @@ TEST_F(RecordedDrive, IsChosenByTopic) {
       open_error(file, {.scan = "/front", .odometry = {}}),
       testing::AllOf(HasSubstr("on /front"), HasSubstr("/scan (sensor_msgs/msg/LaserScan)")));
   EXPECT_THAT(open_error(file, {.scan = {}, .odometry = "/wheels"}), HasSubstr("on /wheels"));
-  // Transforms give the same poses as the odometry that they were written with.
+  // Transforms give the same poses as the odometry beside them.
   expect_same_scans(read_scans(file, {.scan = "/scan", .odometry = "/tf"}), read_scans(file));
 }
 
@@ -149,7 +149,7 @@ TEST_F(RecordedDrive, HoldsPosesAndTheGraph) {
     } else {
       const auto graph = decode<ros::MarkerArray>(message.data, topic.encoding);
       ASSERT_EQ(graph.markers_().size(), 3U);
-      EXPECT_EQ(graph.markers_()[0].action_(), 3);  // clears what was drawn before
+      EXPECT_EQ(graph.markers_()[0].action_(), 3);  // clears earlier markers
       EXPECT_EQ(graph.markers_()[1].pose_().position_().y_(), 2.0);
       EXPECT_EQ(graph.markers_()[2].points_().size(), 2U);
     }
@@ -157,7 +157,7 @@ TEST_F(RecordedDrive, HoldsPosesAndTheGraph) {
   EXPECT_EQ(counts["/pose"], 1);
   EXPECT_EQ(counts["/graph"], 1);
   EXPECT_EQ(counts["/map"], 1);
-  // T_map_odom takes the odometry of the scan to the pose in the map.
+  // T_map_odom maps the scan's odometry to the pose in the map.
   EXPECT_EQ(last.header_().frame_id_(), "map");
   const geometry::Pose2 T_map_odom = *ros::planar(last.transform_());
   const geometry::Pose2 back = T_map_odom * at.T_odom_robot;

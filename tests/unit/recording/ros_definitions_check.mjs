@@ -1,6 +1,6 @@
-// ros_definitions_check.mjs PACKAGES FILE: decodes messages with @foxglove/rosmsg2-serialization by the definitions of ROS
-// Humble and Jazzy (@foxglove/rosmsg-msgs-common) and compares each field with what was written. FILE has a line of JSON
-// for each: {type, bytes (hexadecimal), fields}. Prints the types that a package lacks. Exit code 77 without the packages.
+// ros_definitions_check.mjs PACKAGES FILE: decodes messages with @foxglove/rosmsg2-serialization by the definitions of
+// ROS Humble and Jazzy (@foxglove/rosmsg-msgs-common) and compares each field with the written one. FILE has one JSON
+// line each: {type, bytes (hexadecimal), fields}. Prints types that a package lacks. Exit code 77 without the packages.
 import { createRequire } from "node:module";
 import { readFileSync } from "node:fs";
 import { deepStrictEqual } from "node:assert";
@@ -16,7 +16,7 @@ try {
   process.exit(77);
 }
 
-// What the packages lack, as ros-planning/navigation_msgs has it.
+// Types that the packages lack, copied from ros-planning/navigation_msgs.
 const ADDED = {
   "map_msgs/OccupancyGridUpdate": {
     name: "map_msgs/OccupancyGridUpdate",
@@ -31,7 +31,7 @@ const ADDED = {
   },
 };
 
-// Times are {sec, nsec} there; numbers in typed arrays are numbers.
+// Converts decoded values: times are {sec, nsec}, and numbers may be in typed arrays.
 function plain(value) {
   if (ArrayBuffer.isView(value)) return Array.from(value);
   if (Array.isArray(value)) return value.map(plain);

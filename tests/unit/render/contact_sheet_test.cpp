@@ -19,7 +19,7 @@ TEST(ContactSheet, HasAThumbnailForEachScanInRows) {
   const Pixels two_rows(contact_sheet(seven, "hall", PictureFormat::kPng));
   EXPECT_EQ(row.width(), 1600);
   EXPECT_GT(two_rows.height(), row.height() + 150);
-  // Legend and title are there once.
+  // Legend and title appear once.
   const int thumbnail = two_rows.count(kBranch) - row.count(kBranch);
   EXPECT_GT(thumbnail, 50);
   EXPECT_NEAR(row.count(kBranch) - small.count(kBranch), 5 * thumbnail, 3 * thumbnail);

@@ -43,7 +43,7 @@ TEST(Layout, PutsTheLongSideAcrossAndKeepsTheAspect) {
   const Layout layout = make_layout(picture, outlines_in_map(picture), {});
   EXPECT_EQ(layout.width_px, 1600U);
   EXPECT_GT(layout.map_width_px, layout.map_height_px);
-  // Two walls at right angles in the map are level and upright in the picture, at one scale.
+  // Perpendicular walls of the map are horizontal and vertical in the picture, at one scale.
   const geometry::Pose2 T_map_floor{0.0, 0.0, 0.3};
   const Eigen::Vector2d origin = layout.to_px(T_map_floor * Eigen::Vector2d(0.0, 0.0));
   const Eigen::Vector2d along = layout.to_px(T_map_floor * Eigen::Vector2d(10.0, 0.0)) - origin;
@@ -73,7 +73,7 @@ TEST(Layout, IsNotBlownUpByLostOdometry) {
 }
 
 TEST(PointRaster, DrawsEachCellOnceAndJoinsNeighbours) {
-  Layout layout;  // not turned, corner at (0, 0)
+  Layout layout;  // not rotated, corner at (0, 0)
   const std::vector<ScanOutline> outlines{{{0.05, 0.05}, {0.15, 0.05}, {0.06, 0.04}},
                                           {{0.25, 0.02}, {0.55, 0.05}, {0.05, 0.15}}};
   const auto runs = raster_runs(outlines, layout, 0.1);

@@ -46,7 +46,7 @@ TEST_F(MatchPictureTest, ShowsBothMapsAndWhatWasSearched) {
 }
 
 TEST_F(MatchPictureTest, TheQueryLiesWhereItWasFound) {
-  // The red points move with the pose, the grey ones stay.
+  // The red points move with the pose, the grey ones do not.
   const std::string svg = match_picture(picture_, PictureFormat::kSvg);
   EXPECT_EQ(match_picture(picture_, PictureFormat::kSvg), svg);
   picture_.T_found.x_m += 0.3;

@@ -1,4 +1,4 @@
-// What a PNG shows.
+// Contents of a PNG.
 #pragma once
 
 #include <algorithm>
@@ -29,12 +29,12 @@ class Pixels {
   [[nodiscard]] int width() const { return cairo_image_surface_get_width(surface_.get()); }
   [[nodiscard]] int height() const { return cairo_image_surface_get_height(surface_.get()); }
 
-  /// Pixels of about this colour: smoothing mixes the edges of a line with what is below.
+  /// Pixels of about this colour: smoothing mixes the edges of a line with the background.
   [[nodiscard]] int count(const Colour& colour) const {
     return static_cast<int>(find(colour, {0.0, 0.0, double(width()), double(height())}).size());
   }
 
-  /// Places of the pixels of about this colour in a part of the picture.
+  /// Positions of the pixels of about this colour in a part of the picture.
   [[nodiscard]] std::vector<Eigen::Vector2d> find(const Colour& colour, const Rect& part) const {
     constexpr double kTolerance = 0.12;
     const auto is_near = [](std::uint32_t byte, double wanted) {

@@ -43,7 +43,7 @@ TEST(Labels, StandBesideTheirMarkAndKeepOffEachOther) {
   const auto first = alone.find(kInk, page);
   ASSERT_FALSE(first.empty());
   for (const Eigen::Vector2d& at : first) {
-    EXPECT_GT(at.x(), 54.0);  // right above the mark
+    EXPECT_GT(at.x(), 54.0);  // to the right above the mark
     EXPECT_LT(at.y(), 36.0);
   }
   const Pixels two = drawn([&](cairo_t* cr) {

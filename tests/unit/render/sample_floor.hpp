@@ -1,4 +1,4 @@
-// A made-up map: a robot in a ring corridor of 20 m x 12 m, turned by 0.3 rad in the map frame.
+// A made-up map: a robot in a ring corridor of 20 m x 12 m, rotated by 0.3 rad in the map frame.
 #pragma once
 
 #include <cmath>
@@ -22,7 +22,7 @@ struct SampleFloor {
   }
 };
 
-/// Point of the ring's middle line, 20 m x 12 m, after a way of `s_m` (64 m around).
+/// Point of the ring's middle line, 20 m x 12 m, after a path of `s_m` (64 m around).
 inline Eigen::Vector2d ring_point(double s_m) {
   s_m = std::fmod(s_m, 64.0);
   if (s_m < 20.0) return {s_m, 0.0};
@@ -55,7 +55,7 @@ inline SampleFloor sample_floor() {
   for (std::uint32_t id = 0; id < 33; ++id) {
     const double s_m = 2.0 * id;
     const Eigen::Vector2d at = ring_point(s_m);
-    // A little off the middle line, so that way and branches can be told apart.
+    // A little off the middle line, so that path and branches can be distinguished.
     const geometry::Pose2 T_floor_robot{at.x() + 0.3 * (id % 3), at.y() - 0.2 * (id % 4), 0.1 * id};
     const geometry::Pose2 T_map_robot = T_map_floor * T_floor_robot;
     topomap::LocalMap map;

@@ -20,8 +20,7 @@ inline scan::Scan blind_scan(std::size_t beams) {
   return scan;
 }
 
-/// 361 beams over 180 degrees, the farthest at 30 m; `with_left` and `with_right` say which wall is
-/// there.
+/// 361 beams over 180 degrees, the farthest at 30 m; `with_left` and `with_right` select the walls.
 inline scan::Scan corridor_scan(bool with_left, bool with_right) {
   scan::Scan scan = blind_scan(361);
   for (std::size_t i = 0; i < scan.ranges_m.size(); ++i) {
@@ -37,7 +36,7 @@ inline ScanView view_of(const scan::Scan& scan, const geometry::Pose2& T_robot_l
                         const voronoi::VoronoiConfig& config = {}) {
   voronoi::LocalVoronoi diagram_maker(config);
   topomap::LocalMapConfig local_map;
-  local_map.points_range_m = std::min(config.range_limit_m, 80.0);  // the largest that is allowed
+  local_map.points_range_m = std::min(config.range_limit_m, 80.0);  // the largest permitted value
   return make_scan_view(scan, diagram_maker, local_map, T_robot_laser);
 }
 

@@ -35,7 +35,7 @@ TEST(ScanPicture, ShowsTheWallsOnTheirSidesWithForwardUp) {
     ASSERT_GT(left_wall.size(), 100U);
     EXPECT_LT(mean_x(left_wall) + 100.0, mean_x(right_wall));
   }
-  // The robot looks up: it is below nearly all points of the plan, and between the walls.
+  // The robot faces up: it is below nearly all points of the plan, and between the walls.
   const Rect plan{860.0, 92.0, 720.0, half_px};
   const auto robot = pixels.find(kCorrected, plan);
   ASSERT_GT(robot.size(), 20U);
@@ -88,7 +88,7 @@ TEST(ScanPicture, MarksEveryKindOfNode) {
 TEST(ScanPicture, DrawsVirtualDiagramsAndScansWithNothingInThem) {
   const Pixels wall(scan_picture(view_of(corridor_scan(true, false)), "hall", PictureFormat::kPng));
   EXPECT_GT(wall.count(kVirtualBranch), 200);
-  // Of the local map, below and on the right: no branch that is not virtual.
+  // The local map at the lower right has only virtual branches.
   EXPECT_TRUE(wall.find(kBranch, {830.0, 0.5 * wall.height(), 770.0, 200.0}).empty());
   for (const std::size_t beams : {0U, 1U, 2U, 181U}) {
     EXPECT_THAT(scan_picture(view_of(blind_scan(beams)), "hall", PictureFormat::kSvg),
@@ -103,7 +103,7 @@ TEST(ScanPicture, DrawsVirtualDiagramsAndScansWithNothingInThem) {
 }
 
 TEST(ScanPicture, FollowsTheMountingOfTheLaser) {
-  // A laser that looks left sees what one that looks forward sees, all turned to the left.
+  // A laser that faces left has the same view as one that faces forward, turned to the left.
   const geometry::Pose2 left{0.2, 0.0, 0.5 * std::numbers::pi};
   const ScanView view = view_of(corridor_scan(true, true), left);
   const Extent extent = extent_of(view);

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kStraight_rad = std::numbers::pi;
 
-/// A robot in a square room of 6 m that turns and drives during a sweep: the range of a ray from a
-/// pose to the walls.
+/// The range of a ray from a pose to the walls, for a robot that turns and drives during a sweep in
+/// a square room of 6 m.
 double to_wall_m(const geometry::Pose2& pose, double angle_rad) {
   const double heading = pose.theta_rad + angle_rad;
   const double x = std::cos(heading);
@@ -55,7 +55,7 @@ TEST(Deskewing, TakesTheMotionOfTheSweepOut) {
     EXPECT_NEAR(static_cast<double>(straight_m[i]), truth_m, 0.06) << angle_rad;
   }
   EXPECT_GT(skewed_error_m, 0.2);
-  EXPECT_LT(none, 12);  // where the turn has moved the gap between last and first beam
+  EXPECT_LT(none, 12);  // when the turn has moved the gap between the last and the first beam
 }
 
 TEST(Deskewing, AStandingRobotsSweepStaysAsItIs) {
@@ -68,7 +68,7 @@ TEST(Deskewing, AStandingRobotsSweepStaysAsItIs) {
   EXPECT_EQ(same_m, sweep.ranges_m);
 }
 
-// A clockwise scanner measures its last beam first.
+// A clockwise scanner measures the last beam of its message first.
 TEST(Deskewing, OfAClockwiseScannerGoesTheOtherWay) {
   LaserScan message = laser_scan(0.5, -0.25, {2.0F, 2.0F, 2.0F, 2.0F, 2.0F});
   message.time_increment_(0.1F);
@@ -80,7 +80,7 @@ TEST(Deskewing, OfAClockwiseScannerGoesTheOtherWay) {
   EXPECT_EQ(none.farthest_s(), 0.0);
 }
 
-// As drivers of clockwise scanners have it that turn the ranges round: the first was measured last.
+// Some drivers of clockwise scanners reverse the ranges, so the first one was measured last.
 TEST(Deskewing, MayGoBackwardFromTheStamp) {
   LaserScan message = laser_scan(-0.5, 0.25, {2.0F, 2.0F, 2.0F, 2.0F, 2.0F});
   message.time_increment_(0.1F);
@@ -88,8 +88,8 @@ TEST(Deskewing, MayGoBackwardFromTheStamp) {
   EXPECT_EQ(sweep.first_beam_s, 0.0);
   EXPECT_NEAR(sweep.time_step_s, -0.1, 1e-6);
   EXPECT_NEAR(sweep.farthest_s(), -0.4, 1e-6);
-  // 1 m/s ahead: seen from where the robot is at the stamp the ray ahead (the third) met the wall
-  // 0.2 m nearer than it measured.
+  // 1 m/s ahead: seen from the pose at the stamp, the ray ahead (the third) met the wall 0.2 m
+  // nearer than measured.
   const std::vector<float> ranges_m = deskewed(sweep, [](double after_s) {
     return std::optional<geometry::Pose2>({after_s, 0.0, 0.0});
   });
@@ -111,7 +111,7 @@ TEST(Deskewing, WithoutPosesLeavesTheRanges) {
   EXPECT_NE(deskewed(sweep, poses_until(0.5)), sweep.ranges_m);
 }
 
-// Odometry of absurd numbers, whose differences are none.
+// Odometry with absurd numbers, whose differences are not finite.
 TEST(Deskewing, LeavesRangesAsMeasuredWherePosesAreNoNumbers) {
   constexpr std::size_t kBeams = 100;
   LaserScan message = laser_scan(-1.0, 0.02, std::vector<float>(kBeams, 2.0F));

@@ -51,7 +51,7 @@ TEST(FrameTree, ACircleEnds) {
   EXPECT_FALSE(tree.find("a", "c"));
 }
 
-// As recordings have it: the base hangs on odom twice, and names have slashes.
+// Recordings contain this: the base has two connections to odom, and names have slashes.
 TEST(FrameTree, FindsTheShortestPathBetweenFramesOfTwoParents) {
   TFMessage fixed;
   fixed.transforms_() = {transform_of("/base_link", "plate", {1.0, 0.0, kPi / 2.0}, 0),
@@ -63,7 +63,7 @@ TEST(FrameTree, FindsTheShortestPathBetweenFramesOfTwoParents) {
                           transform_of("odom", "base_footprint", {4.0, 0.0, 0.0}, 0)};
   tree.add(moving, false);
   moving.transforms_() = {transform_of("odom", "base_link", {9.0, 0.0, 0.0}, 0)};
-  tree.add(moving, false);  // the first holds
+  tree.add(moving, false);  // the first one remains
   EXPECT_EQ(found(tree, "base_link", "laser"), (geometry::Pose2{1.0, 2.0, 1.57080}));
   EXPECT_EQ(found(tree, "base_footprint", "laser"), (geometry::Pose2{2.0, 2.0, 1.57080}));
   EXPECT_FALSE(tree.find("base_link", "camera"));
@@ -74,7 +74,7 @@ TEST(FrameTree, FindsTheShortestPathBetweenFramesOfTwoParents) {
 TEST(FrameTree, PassesOverWhatIsNoTransform) {
   TFMessage message;
   message.transforms_() = {transform_of("a", "b", {}, 0), transform_of("a", "c", {}, 0)};
-  message.transforms_()[0].transform_().rotation_().w_(0.0);  // a quaternion of no length
+  message.transforms_()[0].transform_().rotation_().w_(0.0);  // a quaternion of zero length
   message.transforms_()[1].transform_().translation_().z_(std::numeric_limits<double>::quiet_NaN());
   FrameTree tree;
   tree.add(message, true);

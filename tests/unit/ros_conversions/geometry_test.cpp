@@ -40,7 +40,7 @@ TEST(FrameNames, LoseTheSlashOfRos1) {
 TEST(PlanarPose, IsSeenFromAbove) {
   Pose pose;
   pose.position_().x_(1.0);
-  EXPECT_FALSE(planar(pose));  // a quaternion of no length
+  EXPECT_FALSE(planar(pose));  // a quaternion of zero length
   const Eigen::Quaterniond q = Eigen::AngleAxisd(2.5, Eigen::Vector3d::UnitZ()) *
                                Eigen::AngleAxisd(0.05, Eigen::Vector3d::UnitY());
   pose.orientation_().x_(3.0 * q.x());

@@ -43,7 +43,7 @@ TEST(LaserScan, OfAClockwiseScannerIsTurnedRound) {
   EXPECT_THAT(sweep.ranges_m, ElementsAre(4.0F, 3.0F, 2.0F, 1.0F));
 }
 
-// Each beam's end must be where the transform in space takes it.
+// Each beam's end must agree with the spatial transform.
 TEST(LaserScan, OfALaserUpsideDownIsMirrored) {
   const Eigen::Isometry3d T_robot_laser = at(0.3, 0.1, 0.7, std::numbers::pi);
   const LaserMounting mounting = planar_mounting(T_robot_laser);
@@ -71,7 +71,7 @@ TEST(LaserScan, HasNoEchoesOutsideItsLimits) {
                    std::numeric_limits<float>::quiet_NaN(), -1.0F});
   EXPECT_THAT(to_sweep(message, false, kMost).ranges_m,
               ElementsAre(0.0F, 0.0F, 0.1F, 9.9F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F));
-  message.range_max_(0.0F);  // a driver that does not say it
+  message.range_max_(0.0F);  // a driver that leaves it unset
   std::vector<float> ranges_m = to_sweep(message, false, kMost).ranges_m;
   EXPECT_THAT(ranges_m, ElementsAre(0.0F, 0.0F, 0.1F, 9.9F, 10.0F, 0.0F, 0.0F, 0.0F, 0.0F));
   limit_ranges(ranges_m, 9.9);

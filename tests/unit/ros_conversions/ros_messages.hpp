@@ -12,7 +12,7 @@
 
 namespace topogeo::ros {
 
-/// Beams, at most, of scans that are not thinned out.
+/// Maximum number of beams of scans without thinning.
 inline constexpr std::size_t kMost = 2048;
 
 inline LaserScan laser_scan(double first_rad, double step_rad, std::vector<float> ranges_m,

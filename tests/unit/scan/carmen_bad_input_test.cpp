@@ -10,7 +10,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-// A log whose second line is bad: the first and third are still read, the bad one is explained.
+// A log with a bad second line: the first and third are still read, the bad one is explained.
 struct BadLine {
   const char* name;
   std::string line;
@@ -18,7 +18,7 @@ struct BadLine {
   const char* message;
 };
 
-// Shown by the test runner instead of the bytes.
+// Printed by the test runner instead of the bytes.
 std::ostream& operator<<(std::ostream& out, const BadLine& tested) {
   return out << tested.name;
 }
@@ -136,7 +136,7 @@ TEST_F(LogFiles, MessagesAreBoundedButAllSkipsAreCounted) {
   EXPECT_EQ(reader.statistics().messages.size(), CarmenLogStatistics::kMaxMessages);
 }
 
-// Lines that compress badly, so that a cut falls among many of them.
+// Lines that compress badly, so that a cut leaves many whole ones.
 std::string varied_log(int scans) {
   std::mt19937 random(7);
   std::string text;
@@ -198,8 +198,8 @@ void expect_valid(const std::vector<Scan>& scans) {
   }
 }
 
-// Bytes changed, dropped, doubled and put in at random: an error that names the file, or valid
-// scans and counts that add up.
+// Random changes, deletions, duplications and insertions of bytes: an error that names the file, or
+// valid scans and consistent counts.
 TEST_F(LogFiles, RandomDamageNeverGivesAnInvalidScan) {
   std::mt19937 random(11);
   std::string good;

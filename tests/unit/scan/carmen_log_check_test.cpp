@@ -15,7 +15,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// A FLASER line of three beams at a time and place.
+/// A FLASER line of three beams at this time and place.
 std::string line(const std::string& time, const std::string& x = "0",
                  const std::string& ranges = "3 1 2 3") {
   return "FLASER " + ranges + " 0 0 0 " + x + " 0 0 " + time + " host " + time + "\n";
@@ -27,7 +27,7 @@ class LogCheckTest : public LogFiles {
     std::ofstream(path("log.clf"), std::ios::binary) << text;
     return check_carmen_log(path("log.clf"), options);
   }
-  /// The one fault that the log has.
+  /// The only fault in the log.
   static LogFinding only(const LogCheck& check) {
     EXPECT_EQ(check.faults(), 1U);
     if (check.findings.size() != 1) return {};
@@ -112,14 +112,14 @@ TEST_F(LogCheckTest, StuckLaserIsFoundOnceAndEmptyViewIsNone) {
 }
 
 TEST_F(LogCheckTest, GapsAreMeasuredByTheLogItself) {
-  // A scan every 3 s: 15 s and less are no gap, by itself.
+  // A scan every 3 s: up to 15 s are no gap, relative to that period.
   const std::string slow = line("1") + line("4") + line("7") + line("10");
   EXPECT_EQ(check(slow + line("24")).faults(), 0U);
   EXPECT_EQ(only(check(slow + line("26") + line("29"))).line, 5U);
   LogCheckOptions options;
   options.longest_gap_s = 2.5;
   EXPECT_EQ(check(slow, options).count(LogFault::kGap), 3U);
-  // Findings come by line, whatever is found first.
+  // Findings are sorted by line, in whichever order they are found.
   const LogCheck mixed = check(slow + line("26") + "FLASER 3 1\n");
   ASSERT_EQ(mixed.findings.size(), 2U);
   EXPECT_EQ(mixed.findings[0].fault, LogFault::kGap);

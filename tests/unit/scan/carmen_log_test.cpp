@@ -135,7 +135,7 @@ struct RealLog {
   std::size_t beams;
 };
 
-// Shown by the test runner instead of the bytes.
+// Printed by the test runner instead of the bytes.
 std::ostream& operator<<(std::ostream& out, const RealLog& tested) {
   return out << tested.file;
 }

@@ -63,7 +63,7 @@ TEST_F(LogFiles, OtherBeamsThanThoseOfFlaserAreReadBackExactly) {
     std::size_t count;
   };
   const double degree_rad = std::numbers::pi / 180.0;
-  // 100 degrees of an LMS, 180 degrees a bit of rounding off FLASER's, a whole turn.
+  // 100 degrees of an LMS, 180 degrees slightly off FLASER's by rounding, a whole turn.
   for (const Beams& beams : {Beams{-50.0 * degree_rad, 0.25 * degree_rad, 401},
                              Beams{-90.0 * degree_rad, std::nextafter(0.5 * degree_rad, 1.0), 361},
                              Beams{-std::numbers::pi, degree_rad, 361}}) {
@@ -85,7 +85,7 @@ TEST_F(LogFiles, OtherBeamsThanThoseOfFlaserAreReadBackExactly) {
       EXPECT_EQ(scans[i].angle_min_rad, beams.angle_min_rad);
       EXPECT_EQ(scans[i].angle_step_rad, beams.angle_step_rad);
       EXPECT_EQ(scans[i].T_odom_robot, written[i].T_odom_robot);
-      // Up to the 49.9 m of the reader's options.
+      // Up to the limit of the reader's options, 49.9 m.
       for (std::size_t b = 0; b < beams.count; ++b) {
         const float range_m = written[i].ranges_m[b];
         EXPECT_EQ(scans[i].ranges_m[b], range_m >= 49.9F ? Scan::kNoReturn : range_m);

@@ -1,4 +1,4 @@
-// Where the laser sits, from the two poses of each line of a log.
+// The mounting of the laser, from the two poses of each line of a log.
 #include "topogeo/scan/laser_mounting.hpp"
 
 #include <cmath>
@@ -20,7 +20,7 @@ namespace {
 
 using geometry::Pose2;
 
-/// Where a robot that drives in circles is at its i-th scan.
+/// Pose at the i-th scan of a robot that drives in circles.
 Pose2 on_circle(int i) {
   const double turn_rad = 0.1 * i;
   return {3.0 * std::cos(turn_rad), 3.0 * std::sin(turn_rad), geometry::wrap_angle(turn_rad)};
@@ -44,7 +44,7 @@ std::string circle_log(int count, const std::function<Pose2(int)>& laser, int di
   return text;
 }
 
-/// The same with a laser that sits there.
+/// The same with this mounting of the laser.
 std::string circle_log(int count, const Pose2& T_robot_laser, int digits = 6) {
   return circle_log(
       count, [&](int i) { return on_circle(i) * T_robot_laser; }, digits);
@@ -92,7 +92,7 @@ TEST_F(LogFiles, DamagedLinesAndDamagedPosesAreLeftOut) {
 }
 
 TEST_F(LogFiles, PosesThatDifferByNoConstantStateNothing) {
-  // The first pose is of a trajectory in another frame, then of one that drifts apart.
+  // The first pose is from a trajectory in another frame, then from one that drifts away.
   const Pose2 T_map_odom{1.0, 2.0, 0.4};
   EXPECT_FALSE(
       mounting_in_log(plain(circle_log(100, [&](int i) { return T_map_odom * on_circle(i); }))));
@@ -117,7 +117,7 @@ TEST_F(LogFiles, NoRobotIsTenMetresLong) {
 
 TEST_F(LogFiles, WrittenLogsStateTheMountingAndKeepTheOdometry) {
   const Pose2 mounting{0.1234, -0.05, 1.5708};
-  for (const std::size_t beams : {180U, 100U}) {  // the latter as ROBOTLASER1 lines
+  for (const std::size_t beams : {180U, 100U}) {  // the latter become ROBOTLASER1 lines
     std::vector<Scan> written;
     CarmenLogWriter writer(path("w.clf"), mounting);
     for (int i = 0; i < 40; ++i) {

@@ -45,7 +45,7 @@ class LogFiles : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-/// A good FLASER line of four beams; its odometry x is the first digit of the stamp.
+/// A valid FLASER line of four beams; its odometry x is the first digit of the stamp.
 inline std::string flaser(const std::string& stamp,
                           const std::string& ranges = "1.00 2.00 3.00 4.00", int count = 4) {
   std::ostringstream line;
@@ -66,7 +66,7 @@ inline std::vector<Scan> read_all(CarmenLogReader& reader) {
   return scans;
 }
 
-/// The message of the error that opening the log throws; empty when it opens.
+/// Message of the exception on opening the log; empty when it opens.
 inline std::string open_error(const std::filesystem::path& path) {
   try {
     const CarmenLogReader reader(path);

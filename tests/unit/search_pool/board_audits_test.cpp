@@ -1,4 +1,4 @@
-// Answers that are compared with what this process makes of the task.
+// Answers that are compared with this process's own results.
 #include <string>
 #include <utility>
 #include <vector>
@@ -8,7 +8,7 @@
 namespace topogeo::search_pool {
 namespace {
 
-/// As answer_to, but another one.
+/// A wrong answer to the same task.
 MatchResult other_answer_to(std::uint64_t task_id) {
   MatchResult other = answer_to(task_id);
   other.covariance(2, 1) = 1e-300;
@@ -90,7 +90,7 @@ TEST_F(AuditTest, ADifferentAnswerCostsAWorkerAllThatItAnsweredInTheBatch) {
   EXPECT_EQ(board_.counts().audit_differences, 1U);
   EXPECT_EQ(board_.counts().redone, 2U) << "task 0 has the answer that was made here";
   EXPECT_EQ(wrong_answer("a", 4, milliseconds(2)), Reception::kUnknown);
-  // 2 and 3 were answered by a, 4 was in its hands.
+  // a had answered 2 and 3, and held 4.
   EXPECT_THAT(send_all(milliseconds(2)), ElementsAre(std::pair{2U, "b"}, std::pair{3U, "b"}));
   answer("b", 2, milliseconds(3));
   answer("b", 3, milliseconds(3));

@@ -80,7 +80,7 @@ TEST_F(TaskBoardTest, AWorkerThatNeverAnswersIsTriedEverMoreSeldom) {
   EXPECT_TRUE(tried_at(sent + seconds(2))) << "it has answered meanwhile";
 }
 
-// A robot that begins before its workers know where to send answers loses one of each of them.
+// If a robot begins before its workers can send answers, it loses one answer of each.
 TEST_F(TaskBoardTest, WorkersOfWhichEachOwesAnAnswerAreSoonUsedAgain) {
   constexpr std::size_t kWorkers = 64;
   for (std::size_t i = 0; i < kWorkers; ++i) up("worker" + std::to_string(i));
@@ -227,8 +227,8 @@ TEST_F(TaskBoardTest, MisuseIsAnError) {
   EXPECT_TRUE(board_.done());
 }
 
-// Whatever happens to workers, and with one in ten answers wrong, every task gets its one right
-// answer, in order.
+// Every task gets its single right answer, in order, under random failures of workers and with one
+// in ten answers wrong.
 TEST_F(TaskBoardTest, EveryBatchEndsUnderRandomFailures) {
   BoardConfig options;
   options.audit_every = 1;
@@ -241,7 +241,7 @@ TEST_F(TaskBoardTest, EveryBatchEndsUnderRandomFailures) {
   BoardTime now{0};
   std::vector<std::pair<std::string, std::uint64_t>> in_hand;
   std::map<std::string, int> lives;
-  // An excluded worker comes back under a new id.
+  // An excluded worker returns with a new id.
   const auto id_of = [&](const std::string& name) {
     while (board_.is_excluded(name + std::to_string(lives[name]))) ++lives[name];
     return name + std::to_string(lives[name]);

@@ -1,4 +1,4 @@
-// A board with tasks whose answers are known.
+// A board with tasks that have known answers.
 #pragma once
 
 #include <chrono>
@@ -28,7 +28,7 @@ inline std::vector<MatchTask> tasks(std::size_t count, std::uint64_t first_id = 
   return result;
 }
 
-/// What a matcher would answer: something that depends on the task alone.
+/// A matcher's answer, which depends on the task alone.
 inline MatchResult answer_to(std::uint64_t task_id) {
   MatchResult result;
   result.task_id = task_id;
@@ -57,7 +57,7 @@ class TaskBoardTest : public ::testing::Test {
     }
     return solved;
   }
-  /// Compares what is to be compared; the tasks and, in `differences_`, who erred.
+  /// Compares pending duplicates; returns the tasks, and the erring workers in `differences_`.
   std::vector<std::size_t> audit(BoardTime now) {
     std::vector<std::size_t> compared;
     while (const auto next = board_.next_audit()) {

@@ -1,4 +1,4 @@
-// How long it takes until others have answered the tasks of a worker that failed.
+// Time until other workers have answered the tasks of a failed one.
 #include <string>
 #include <utility>
 #include <vector>

@@ -1,4 +1,4 @@
-// Who a worker is and whom it works for.
+// Identity of a worker, and the clients that it serves.
 #include "topogeo/search_pool/client_registry.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// A worker that was asked to end, by a simulated clock.
+// A worker that was asked to end, on a simulated clock.
 #include "topogeo/search_pool/drain_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace topogeo::search_pool {
 namespace {
 
-/// Asks 128 times a second; returns how long the worker stays when so much is open after so long.
+/// Polls 128 times a second; returns how long the worker stays with `open` tasks at each time.
 template <class Open>
 double stay_s(const Open& open, bool busy = false) {
   constexpr double kStep_s = 1.0 / 128.0;
@@ -27,7 +27,7 @@ TEST(DrainWatch, AWorkerWithoutTasksLeavesSoon) {
 }
 
 TEST(DrainWatch, TasksAreFinishedHoweverLongThatTakes) {
-  // One task in nine seconds.
+  // One task every nine seconds.
   const auto open = [](double now_s) { return now_s < 900.0 ? 100 - int(now_s / 9.0) : 0; };
   EXPECT_NEAR(stay_s(open), 900.0 + DrainWatch::kQuiet_s, 0.02);
 }

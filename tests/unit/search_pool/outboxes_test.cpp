@@ -21,7 +21,7 @@ class OutboxesTest : public ::testing::Test {
 
   static constexpr Time at(int ms) { return Time{} + std::chrono::hours(1) + milliseconds(ms); }
 
-  /// All answers to tasks of a client that has sent so many, and how many of them left together.
+  /// Answers all tasks of a client that has sent so many; returns the answers of each message.
   std::vector<std::size_t> messages_of(std::size_t tasks) {
     boxes_.expect("one", tasks);
     std::vector<std::size_t> messages;
@@ -114,7 +114,7 @@ TEST_F(OutboxesTest, NothingChangesUntilSoManyAnswersMoreHaveCome) {
       const std::size_t until = boxes_.until_due();
       boxes_.add("one", 0, at(0));
       const bool due = boxes_.is_due("one", at(0));
-      // The first one may only begin to wait.
+      // The first one may only start the wait.
       EXPECT_EQ(due, until == 1 && (due || !first)) << i << " of " << tasks;
       if (due) take("one");
     }
@@ -137,8 +137,8 @@ TEST_F(OutboxesTest, WhatIsForAClientThatIsGoneIsDropped) {
   boxes_.add("gone", 1, at(0));
   EXPECT_EQ(boxes_.waiting(), 0U);
   EXPECT_EQ(boxes_.next_due(), std::nullopt);
-  // An answer of before, to one who has come back: the tasks in hand are miscounted, and all is
-  // seen.
+  // A late answer to a client that has returned: the count of tasks in hand is wrong, and all
+  // answers are noticed.
   boxes_.expect("gone", 1);
   boxes_.add("gone", 1, at(0));
   EXPECT_TRUE(boxes_.is_due("gone", at(0)));

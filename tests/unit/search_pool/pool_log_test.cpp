@@ -1,4 +1,4 @@
-// The lines of the log about workers that come and go.
+// Log lines about workers that join and leave.
 #include "topogeo/search_pool/pool_log.hpp"
 
 #include <chrono>

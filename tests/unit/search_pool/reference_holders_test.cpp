@@ -1,4 +1,4 @@
-// Tasks that search in one map go to the worker that has searched in it, if nobody waits for that.
+// Tasks that search in one map go to the worker that has searched in it, unless that delays them.
 #include "topogeo/search_pool/reference_holders.hpp"
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Who gets which task, and what comes of workers that leave.
+// Distribution of tasks, and the handling of workers that leave.
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,7 +26,7 @@ TEST_F(TaskBoardTest, SlotsAreRespectedAndTasksSpreadEvenly) {
   up("a", 1);
   up("b", 2);
   begin(8);
-  // Smallest load for the slots first: 2 tasks for one slot, 4 for two.
+  // The lowest load per slot first: 2 tasks for one slot, 4 for two.
   EXPECT_THAT(send_all(seconds(0)),
               ElementsAre(std::pair{0U, "a"}, std::pair{1U, "b"}, std::pair{2U, "b"},
                           std::pair{3U, "a"}, std::pair{4U, "b"}, std::pair{5U, "b"}));
@@ -35,7 +35,7 @@ TEST_F(TaskBoardTest, SlotsAreRespectedAndTasksSpreadEvenly) {
   EXPECT_THAT(send_all(milliseconds(2)), ElementsAre(std::pair{6U, "b"}));
 }
 
-/// So many tasks go out at once.
+/// Number of tasks that are sent at once.
 int sent_at_once(TaskBoard& board) {
   int count = 0;
   while (board.next_remote(seconds(0))) ++count;

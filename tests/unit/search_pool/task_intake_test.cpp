@@ -93,7 +93,7 @@ TEST_F(TaskIntakeTest, AMapThatIsNotTheNewestIsAskedForAtOnce) {
   EXPECT_EQ(intake_.next_check(), at(500));
   intake_.add(job(zero_, one_, 9), at(1));
   EXPECT_EQ(intake_.next_check(), at(500)) << "it was asked for";
-  // What may come for one task is old for another.
+  // A map that is new for one task is old for another.
   intake_.add(job(one_, two_, 2), at(100));
   EXPECT_THAT(intake_.check(at(100)).requests, IsEmpty());
   intake_.add(job(two_, room(3, 0.6), 3), at(110));
@@ -123,7 +123,7 @@ TEST_F(TaskIntakeTest, TimeMayBeginAnew) {
   EXPECT_EQ(intake_.next_check(), at(20)) << "it may be on its way";
 }
 
-// As a localizer does that follows a stored map.
+// A localizer that follows a stored map does so.
 TEST_F(TaskIntakeTest, FindsWhatWasPublishedWithAnotherNumber) {
   intake_.add_map(zero_);
   EXPECT_FALSE(intake_.add(job(zero_, one_, 1), at(0)));
@@ -134,7 +134,7 @@ TEST_F(TaskIntakeTest, FindsWhatWasPublishedWithAnotherNumber) {
   EXPECT_EQ(ready[0].reference, zero_);
   EXPECT_EQ(topomap::content_hash(*ready[0].query), topomap::content_hash(*one_));
   EXPECT_FALSE(intake_.next_check());
-  // The task may come after the map, and name it by any number.
+  // The task may arrive after the map, with any number for it.
   EXPECT_TRUE(intake_.add(job(zero_, one_, 2), at(1)));
   EXPECT_TRUE(intake_.add(job(room(9, 0.3), one_, 3), at(1)));
   EXPECT_EQ(intake_.waiting(), 0U);
@@ -172,7 +172,7 @@ TEST_F(TaskIntakeTest, GivesUpWhatDoesNotComeAndNamesIt) {
   EXPECT_FALSE(intake_.lacks(topomap::content_hash(*one_)));
   EXPECT_THAT(intake_.check(at(2700)).given_up, SizeIs(1));
   EXPECT_FALSE(intake_.next_check());
-  // A task that comes later starts over.
+  // A later task starts over.
   intake_.add(job(zero_, one_, 3), at(3000));
   EXPECT_EQ(intake_.next_check(), at(3020));
 }
@@ -186,7 +186,7 @@ TEST_F(TaskIntakeTest, AJobKeepsTheMapThatCameFirstEvenWithoutMemory) {
   EXPECT_THAT(intake.add_map(two_), IsEmpty());
   EXPECT_EQ(intake.maps().size(), 1U);
   EXPECT_THAT(intake.add_map(one_), SizeIs(1));
-  // What was dropped is asked for again.
+  // A dropped map is requested again.
   EXPECT_FALSE(intake.add(job(zero_, one_, 2), at(10)));
   EXPECT_THAT(intake.check(at(30)).requests, SizeIs(1));
 }

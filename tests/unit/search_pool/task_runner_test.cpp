@@ -47,7 +47,7 @@ class TaskRunnerTest : public ::testing::Test {
       return came_.wait_for(lock, at_most, [&] { return outcomes_.size() >= count; });
     });
   }
-  /// Slots that have solved a task stand still until release().
+  /// Slots that have solved a task pause until release().
   void hold() {
     release_ = {};
     hold_ = release_.get_future().share();
@@ -64,9 +64,9 @@ class TaskRunnerTest : public ::testing::Test {
   std::condition_variable came_;
   std::map<std::uint64_t, TaskRunner::Outcome> outcomes_;
   std::vector<std::uint64_t> order_;
-  std::set<int> policies_;  // of the threads that search
+  std::set<int> policies_;  // of the searching threads
   std::vector<MapPointer> maps_{room(0, 0.0), room(1, 0.2), room(2, 0.4)};
-  std::unique_ptr<TaskRunner> runner_;  // last: stops before what its threads use goes
+  std::unique_ptr<TaskRunner> runner_;  // last: its threads use the members before
 };
 
 TEST_F(TaskRunnerTest, SeveralSlotsGiveWhatOneMatcherGives) {
@@ -98,7 +98,7 @@ TEST_F(TaskRunnerTest, AClientWithALongQueueDoesNotKeepAnotherWaiting) {
   }
   release();
   ASSERT_TRUE(wait_for(23));
-  // Whatever the slot had begun before the second client came, then in turn.
+  // First any tasks begun before the second client came, then both in turn.
   const auto first = std::find(order_.begin(), order_.end(), 100U);
   ASSERT_LE(first - order_.begin(), 2);
   EXPECT_THAT(std::vector<std::uint64_t>(first, first + 5),

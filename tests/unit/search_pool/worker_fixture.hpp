@@ -48,7 +48,7 @@ inline localization::MatchTask task(const topomap::LocalMap& reference,
   return result;
 }
 
-/// The ticket is the id of the task.
+/// The id of the task serves as its ticket.
 inline MatchJob job(const MapPointer& reference, const MapPointer& query, std::uint64_t id,
                     const std::string& client_id = "client") {
   return {id, client_id, "robot", 0, task(*reference, *query, id)};
@@ -59,7 +59,7 @@ inline ReadyJob ready_job(const MapPointer& reference, const MapPointer& query, 
   return {job(reference, query, id, client_id), reference, query, {}};
 }
 
-/// A whole map of one square room and a row of free cells in its middle, which travels as two
+/// A whole map of one square room and a row of free cells in its middle, which is sent in two
 /// pieces.
 inline std::shared_ptr<const localization::PlaceField> place_field(double margin_m = 2.0) {
   std::vector<topomap::ScanPoint> walls;
@@ -77,7 +77,7 @@ inline std::shared_ptr<const localization::PlaceField> place_field(double margin
   return field;
 }
 
-/// A part of a search of it.
+/// A part of a search in it.
 inline MatchJob place_job(const localization::PlaceField& field, std::uint64_t id,
                           const std::string& client_id = "client") {
   MatchJob result{id, client_id, "robot", 0, {}};
@@ -91,7 +91,7 @@ inline bool same(const localization::MatchSolution& a, const localization::Match
   return a.T_reference_query == b.T_reference_query && a.fitness == b.fitness;
 }
 
-/// The same to the last bit.
+/// Equal to the last bit.
 inline bool same(const localization::MatchResult& a, const localization::MatchResult& b) {
   const auto solutions_are = [](const auto& x, const auto& y) { return same(x, y); };
   return a.task_id == b.task_id && a.status == b.status && a.seed == b.seed &&

@@ -1,4 +1,4 @@
-// What a worker keeps, and that it keeps no more than it may.
+// Contents of a worker's memory, and its limit.
 #include <string>
 
 #include <gtest/gtest.h>

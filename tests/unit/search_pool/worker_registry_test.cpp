@@ -1,4 +1,4 @@
-// Which workers are used: versions, fingerprints, ids that two processes share.
+// Selection of workers: versions, fingerprints, ids that two processes share.
 #include "topogeo/search_pool/worker_registry.hpp"
 
 #include <cstdint>

@@ -19,7 +19,7 @@ constexpr OdometryDrift kPerfect{.range_scale_error = 0.0,
 constexpr LaserNoise kExact{
     .sigma_m = 0.0, .bound_m = 0.0, .resolution_m = 0.0, .dropout_probability = 0.0};
 
-// A straight drive of 10 m between two walls 2 m apart; beam 180 of 361 looks straight ahead.
+// A straight drive of 10 m between two walls 2 m apart; beam 180 of 361 points straight ahead.
 constexpr const char* kCorridor =
     "walls:\n"
     "  - {from: [0, -1], to: [12, -1]}\n"
@@ -155,7 +155,7 @@ TEST(People, OneAheadIsSeenAtItsDistance) {
   world.people.push_back({.path_m = {{8, 0}}, .radius_m = 0.25});
   const SimulatedLog log = simulate_log(world, exact());
   EXPECT_NEAR(static_cast<double>(log.scans[0].ranges_m[kAhead]), 7.75, 1e-5);
-  // The robot drives on through; in the person's place only the end of the corridor is seen.
+  // The robot drives on past; at the person's place only the end of the corridor is visible.
   const auto inside =
       std::find_if(log.T_world_robot.begin(), log.T_world_robot.end(),
                    [](const auto& pose) { return std::fabs(pose.x_m - 8.0) < 0.2; });
@@ -223,7 +223,7 @@ TEST(Kidnapping, MovesTheRobotButNotItsOdometry) {
   }
   ASSERT_EQ(jumps_m.size(), 2U);
   EXPECT_NEAR(jumps_m[0], 4.0, 0.02);
-  EXPECT_NEAR(jumps_m[1], -8.0, 0.04);  // from 9 m, two metres after 7 m
+  EXPECT_NEAR(jumps_m[1], -8.0, 0.04);  // at 9 m, two metres after 7 m
   EXPECT_NEAR(log.T_world_robot.back().x_m, 10.0, 0.06);
   EXPECT_NEAR(log.scans.back().T_odom_robot.x_m, 14.0, 0.1);
 }
@@ -251,7 +251,7 @@ TEST(SimulateLog, TheLaserMayBeMountedAnywhere) {
   SimulationOptions options = exact();
   options.T_robot_laser = {0.3, 0.2, std::numbers::pi};
   const SimulatedLog log = simulate_log(world, options);
-  // The first beam points to robot's left then, the last to its right.
+  // Then the first beam points to the robot's left, the last to its right.
   EXPECT_NEAR(static_cast<double>(log.scans[0].ranges_m.front()), 0.8, 1e-5);
   EXPECT_NEAR(static_cast<double>(log.scans[0].ranges_m.back()), 1.2, 1e-5);
 }

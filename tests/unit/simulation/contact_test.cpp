@@ -52,12 +52,12 @@ TEST(FreePath, WhatIsTouchedLetsTheDiscGoAwayAndAlong) {
   EXPECT_EQ(free_path(wall, {0.5, 0}, {1, 0}, 1.0, 0.5).distance_m, 0.0);
   EXPECT_EQ(free_path(wall, {0.5, 0}, {0, 1}, 1.0, 0.5).distance_m, 1.0);
   EXPECT_EQ(free_path(wall, {0.5, 0}, {-1, 0}, 1.0, 0.5).distance_m, 1.0);
-  // A door that has shut on it.
+  // A door that has shut on the disc.
   EXPECT_EQ(free_path(wall, {0.8, 0}, {1, 0}, 1.0, 0.5).distance_m, 0.0);
   EXPECT_EQ(free_path(wall, {0.8, 0}, {-1, 0}, 1.0, 0.5).distance_m, 1.0);
 }
 
-// Against creeping forward in small steps.
+// Compared with moving forward in small steps.
 TEST(FreePath, IsThatOfADiscThatCreeps) {
   constexpr double kStep_m = 1e-3;
   support::Random random(5);
@@ -81,7 +81,7 @@ TEST(FreePath, IsThatOfADiscThatCreeps) {
     while (crept_m < 4.0 && clearance_m(world, from_m + crept_m * ahead) >= radius_m) {
       crept_m += kStep_m;
     }
-    // Where it only brushes past something the creeper may step over the contact.
+    // At a grazing contact the small steps may miss it.
     if (way.contact_m && crept_m > way.distance_m + 2.0 * kStep_m) {
       EXPECT_NEAR(clearance_m(world, from_m + way.distance_m * ahead), radius_m, 1e-9);
       continue;

@@ -18,7 +18,7 @@ world::World box_6x4() {
   return world::parse_world("boxes: [{from: [0, 0], to: [6, 4]}]", "box");
 }
 
-// Distance from inside the box to its border: the nearer of the two sides that a beam heads for.
+// Distance from inside the box to its border: the nearer of the two sides ahead of the beam.
 double box_oracle(double x, double y, double angle) {
   const double c = std::cos(angle);
   const double s = std::sin(angle);
@@ -46,7 +46,7 @@ TEST(Raycast, AgreesWithTheAnalyticBox) {
 
 TEST(Raycast, AgreesWithTheAnalyticBoxAllRoundAndMoreThanOnce) {
   const world::World world = box_6x4();
-  // One turn and a half, from an angle that is no multiple of the step.
+  // One and a half turns, from an angle that is no multiple of the step.
   const BeamPattern beams{.angle_min_rad = -4.4, .angle_step_rad = 0.0137, .count = 688};
   for (double theta = -3.1; theta < 3.1; theta += 0.37) {
     const auto ranges_m = raycast(world, {4.9, 0.2, theta}, beams);

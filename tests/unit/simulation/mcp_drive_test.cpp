@@ -1,4 +1,4 @@
-// The motors of the emulated base, their wheels free.
+// The motors of the emulated base, with free wheels.
 #include "topogeo/simulation/mcp_drive.hpp"
 
 #include <cmath>

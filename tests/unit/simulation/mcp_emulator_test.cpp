@@ -1,4 +1,4 @@
-// The emulated base by itself: what a terminal at its line would see, and how its wheels turn.
+// The emulated base by itself: its output on a terminal, and the motion of its wheels.
 #include "topogeo/simulation/mcp_emulator.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-/// On its own line settings, its wheels free.
+/// A terminal with the base's own line settings; the wheels are free.
 class Terminal {
  public:
   explicit Terminal(McpEmulatorSettings settings = {}) : line(settings.line), base(settings) {

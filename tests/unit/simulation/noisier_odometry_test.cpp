@@ -16,7 +16,7 @@ void expect_near(const Pose2& a, const Pose2& b) {
   EXPECT_NEAR(off.norm(), 0.0, 1e-12) << a.x_m << " " << a.y_m << " " << a.theta_rad;
 }
 
-// Steps of one metre that odometry takes for 1.1 m and 0.02 rad; the odometry frame is elsewhere.
+// Steps of one metre that odometry measures as 1.1 m and 0.02 rad; the odometry frame is elsewhere.
 const std::vector<Pose2> kTruth{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
 std::vector<Pose2> recorded() {
   std::vector<Pose2> odometry{{5.0, 6.0, 1.0}};
@@ -44,7 +44,7 @@ TEST(NoisierOdometry, EveryStepErrsTheFactorMore) {
 }
 
 TEST(NoisierOdometry, BetweenKnownPosesTheErrorGrowsWithTheWay) {
-  // Three steps of 1, 0 and 3 m by odometry; in truth 4.4 m. The first quarter of the way gets a
+  // Three steps of 1, 0 and 3 m by odometry; in truth 4.4 m. The first quarter of the path gets a
   // quarter of the 0.4 m, standing still gets nothing.
   const std::vector<Pose2> odometry{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {4, 0, 0}};
   const Known known{Pose2{}, std::nullopt, std::nullopt, Pose2{4.4, 0, 0}};

@@ -45,7 +45,7 @@ TEST(Odometry, SystematicErrorsFollowThePath) {
   EXPECT_NEAR(odometry.y_m, 100.0 * (1.0 - std::cos(0.1)), 0.01);
 }
 
-// The random walk must not depend on how often the odometry is read.
+// The random walk must not depend on how often odometry is read.
 TEST(Odometry, RandomHeadingGrowsWithTheRootOfThePath) {
   OdometryDrift drift = kPerfectWheels;
   drift.heading_sigma_rad_per_sqrt_m = 0.01;

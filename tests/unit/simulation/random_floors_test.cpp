@@ -19,7 +19,7 @@ struct Floor {
   double longest_m;
 };
 
-// Shown by the test runner instead of the bytes.
+// Printed by the test runner instead of the bytes.
 std::ostream& operator<<(std::ostream& out, const Floor& floor) {
   return out << floor.name;
 }
@@ -47,7 +47,7 @@ TEST_P(RandomFloors, TheTourKeepsClearOfEverythingWhateverTheSeed) {
   }
 }
 
-// No beam may leave the building: the walls are closed however the rooms fall.
+// No beam may leave the building: the walls are closed for any arrangement of rooms.
 TEST_P(RandomFloors, AreClosed) {
   const BeamPattern all_round{
       .angle_min_rad = -3.1, .angle_step_rad = 0.0155, .count = 400, .range_max_m = 200.0};

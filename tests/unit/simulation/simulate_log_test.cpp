@@ -12,7 +12,7 @@ world::World shipped(const char* name) {
   return world::load_world(std::string(TOPOGEO_TEST_DATA) + "/" + name);
 }
 
-// FNV-1a over everything that a log holds.
+// FNV-1a over the whole content of a log.
 std::uint64_t digest(const SimulatedLog& log) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
   const auto add = [&hash](const auto& value) {
@@ -68,7 +68,7 @@ TEST(SimulateLog, ASeedGivesTheSameBytesEverywhere) {
   const auto first = digest(simulate_log(world, {.seed = 7}));
   EXPECT_EQ(first, digest(simulate_log(world, {.seed = 7})));
   EXPECT_NE(first, digest(simulate_log(world, {.seed = 8})));
-  // The value itself, so that another compiler, library or machine is found out.
+  // The value itself, to detect differences of compilers, libraries or machines.
   EXPECT_EQ(first, 345217238399167202ULL);
 }
 
@@ -101,7 +101,7 @@ TEST(SimulateLog, OptionsOutOfRangeAreErrors) {
                std::invalid_argument);
 }
 
-// The floor that the demo maps.
+// The floor of the demo.
 TEST(Floor, TourKeepsClearOfEverythingAndIsLongEnough) {
   const world::World world = shipped("floor.world.yaml");
   double path_m = 0.0;
@@ -109,7 +109,7 @@ TEST(Floor, TourKeepsClearOfEverythingAndIsLongEnough) {
   for (std::size_t i = 1; i < poses.size(); ++i) {
     const Eigen::Vector2d here_m = poses[i].T_world_robot.position_m();
     path_m += (here_m - poses[i - 1].T_world_robot.position_m()).norm();
-    // Every 5 cm or less is enough to find a wall.
+    // Steps of up to 5 cm are enough to find a wall.
     if (i % 3 != 0) continue;
     ASSERT_GT(clearance_m(world, here_m), 0.3) << here_m.transpose();
   }
@@ -117,11 +117,11 @@ TEST(Floor, TourKeepsClearOfEverythingAndIsLongEnough) {
   EXPECT_LE(path_m, 200.0);
 }
 
-// Without drift there would be nothing to correct; with too much, nothing could.
+// Without drift there would be nothing to correct; too much could not be corrected.
 TEST(Floor, OdometryDriftsByMetresAndDegrees) {
   const world::World world = shipped("floor.world.yaml");
   SimulationOptions options;
-  options.beams.count = 2;  // the odometry alone matters here
+  options.beams.count = 2;  // only the odometry matters here
   const SimulatedLog log = simulate_log(world, options);
   double worst_m = 0.0;
   double worst_rad = 0.0;

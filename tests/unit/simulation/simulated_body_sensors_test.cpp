@@ -12,7 +12,7 @@ namespace {
 
 using devices::BodyReadings;
 
-// A wall along y at x = 3 m; the robot looks along x.
+// A wall along y at x = 3 m; the robot faces x.
 BodyReadings readings_at(double x_m, double sigma_m = 0.0) {
   world::World world;
   world.segments.push_back({{3.0, -20.0}, {3.0, 20.0}});
@@ -32,11 +32,11 @@ TEST(SimulatedBodySensors, SonarsMeasureWhatIsInTheirCones) {
   const BodyReadings readings = readings_at(0.0);
   EXPECT_EQ(readings.stamp_ns, 7);
   ASSERT_EQ(readings.sonar_m.size(), 24U);
-  // The edges of the first cones look straight ahead, from beside the foremost point of the body.
+  // The edges of the first cones point straight ahead, from beside the foremost point of the body.
   const double half_rad = 7.5 * std::numbers::pi / 180.0;
   EXPECT_NEAR(readings.sonar_m.front(), 3.0 - devices::kB21Radius_m * std::cos(half_rad), 0.006);
   EXPECT_FLOAT_EQ(readings.sonar_m.front(), readings.sonar_m.back());
-  EXPECT_EQ(readings.sonar_m[12], scan::Scan::kNoReturn);  // looks back
+  EXPECT_EQ(readings.sonar_m[12], scan::Scan::kNoReturn);  // faces backwards
 }
 
 TEST(SimulatedBodySensors, InfraredSeesHalfAMetre) {

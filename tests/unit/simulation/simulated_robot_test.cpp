@@ -36,7 +36,7 @@ TEST(SimulatedRobot, DrivesAsTold) {
   EXPECT_NEAR(ahead.forward_m, 0.5, 1e-12);
   EXPECT_NEAR(robot.T_world_robot().x_m, 1.5, 1e-12);
   EXPECT_NEAR(robot.time_s(), 1.0, 1e-12);
-  // A quarter of a circle of 0.5 m to the left.
+  // A quarter circle of 0.5 m to the left.
   robot.step({std::numbers::pi / 4.0, std::numbers::pi / 2.0}, 1.0);
   EXPECT_NEAR(robot.T_world_robot().x_m, 2.0, 1e-4);
   EXPECT_NEAR(robot.T_world_robot().y_m, 2.5, 1e-4);
@@ -67,7 +67,7 @@ TEST(SimulatedRobot, AContactStopsTheWayAheadAndNothingElse) {
   EXPECT_NEAR(*robot.bumped_rad(), 0.0, 1e-6);
   seen = robot.step({0.0, std::numbers::pi / 2.0}, 1.0);
   EXPECT_NEAR(robot.T_world_robot().theta_rad, std::numbers::pi / 2.0, 1e-9);
-  ASSERT_TRUE(robot.bumped_rad());  // it touches still, on its right side now
+  ASSERT_TRUE(robot.bumped_rad());  // it still touches, now on its right side
   EXPECT_NEAR(*robot.bumped_rad(), -std::numbers::pi / 2.0, 1e-6);
   robot.step({0.5, 0.0}, 1.0);  // along the box
   EXPECT_NEAR(robot.T_world_robot().y_m, 2.5, 1e-6);
@@ -75,8 +75,8 @@ TEST(SimulatedRobot, AContactStopsTheWayAheadAndNothingElse) {
   EXPECT_EQ(robot.run_into(), 0U);
 }
 
-// Driven at random in the rooms of the shipped floor, with slip, doors and people, it never gets
-// into anything; free_path is not asked here.
+// Driven at random in the rooms of the shipped floor, with slip, doors and people, it never enters
+// an obstacle; this test does not use free_path.
 TEST(SimulatedRobot, NeverGetsIntoAWall) {
   const world::World floor = shipped_world("floor.world.yaml");
   std::uint64_t collisions = 0;
@@ -134,7 +134,7 @@ TEST(SimulatedRobot, SlippingWheelsRollFartherThanTheRobotGoes) {
       {.odometry = kPerfectRobot, .slip = {.per_m = 1.0, .length_m = 0.2}});
   const EncoderStep rolled = robot.step({1.0, 0.0}, 80.0);
   EXPECT_NEAR(rolled.forward_m, 80.0, 1e-6);
-  // Of every 1.2 m, 0.2 are slippery and half of these lost.
+  // Every 1.2 m contain 0.2 slippery metres, and half of those are lost.
   EXPECT_NEAR(rolled.forward_m - robot.T_world_robot().x_m, 80.0 * 0.1 / 1.2, 2.0);
 }
 
@@ -180,10 +180,10 @@ TEST(SimulatedRobot, DoorsAndPeopleRunIntoIt) {
   SimulatedRobot robot(world::parse_world(corridor, "w"), {.odometry = kPerfectRobot});
   EXPECT_NEAR(robot.free_ahead_m(5.0), 1.0 - 0.267, 1e-9);
   robot.step({0.5, 0.0}, 2.5);
-  EXPECT_EQ(robot.collisions(), 1U);  // it was shut for two seconds
+  EXPECT_EQ(robot.collisions(), 1U);  // the door was shut for two seconds
   EXPECT_GT(robot.T_world_robot().x_m, 3.8);
   robot.step({0.0, 0.0}, 4.0);
-  EXPECT_EQ(robot.run_into(), 1U);  // and shuts on it
+  EXPECT_EQ(robot.run_into(), 1U);  // then it shuts on the robot
   ASSERT_TRUE(robot.bumped_rad());
   robot.step({-0.5, 0.0}, 1.0);
   EXPECT_FALSE(robot.bumped_rad());
@@ -235,7 +235,7 @@ TEST(SimulatedRobot, RefusesWhatMakesNoSense) {
   EXPECT_THROW(robot.step({}, -1.0), std::invalid_argument);
 }
 
-// A base that gains and loses speed slowly follows the tour of the demo by velocities alone.
+// A base that accelerates and brakes slowly follows the demo's tour by velocities alone.
 TEST(TourFollower, BringsARobotThroughTheFloorWithoutACollision) {
   RobotOptions options{.acceleration_m_per_s2 = 0.6, .angular_acceleration_rad_per_s2 = 3.0};
   SimulatedRobot robot(shipped_world("floor.world.yaml"), options);

@@ -23,14 +23,14 @@ world::World with_wall(std::vector<world::Segment> segments,
 
 TEST(Echo, ComesFromTheNearestPointInTheCone) {
   const geometry::Pose2 origin;
-  // A wall across the cone: its foot; one beside it: where the cone's edge meets it.
+  // A wall across the cone: its foot; a wall beside it: its intersection with the cone's edge.
   const Echo across = echo(with_wall({{{2, -5}, {2, 5}}}), origin, 30.0 * kDegree, 9.0);
   EXPECT_NEAR(across.range_m, 2.0, 1e-12);
   EXPECT_NEAR(across.incidence_rad, 0.0, 1e-12);
   const Echo beside = echo(with_wall({{{-5, 1}, {5, 1}}}), origin, 30.0 * kDegree, 9.0);
   EXPECT_NEAR(beside.range_m, 2.0, 1e-12);  // 1 / sin 30
   EXPECT_NEAR(beside.incidence_rad, 60.0 * kDegree, 1e-12);
-  // The end of a wall is an edge, which throws sound back into all directions.
+  // The end of a wall is an edge, which reflects sound in all directions.
   const Echo end = echo(with_wall({{{3, 0.5}, {3, 5}}}), origin, 30.0 * kDegree, 9.0);
   EXPECT_NEAR(end.range_m, std::hypot(3.0, 0.5), 1e-12);
   EXPECT_NEAR(end.incidence_rad, 0.0, 1e-12);
@@ -47,14 +47,14 @@ TEST(Echo, HearsNothingBehindBesideOrTooFar) {
 TEST(Echo, ComesFromColumns) {
   EXPECT_NEAR(echo(with_wall({}, {{{3, 0.2}, 0.5}}), {}, 0.3, 9.0).range_m,
               std::hypot(3.0, 0.2) - 0.5, 1e-12);
-  // Its near side lies outside of the cone: the cone's edge is a tangent at 60 degrees.
+  // Its near side is outside the cone: the cone's edge is a tangent at 60 degrees.
   const Echo brushed =
       echo(with_wall({}, {{{2.0 * std::cos(0.6), 2.0 * std::sin(0.6)}, 1.0}}), {}, 0.3, 9.0);
   EXPECT_NEAR(brushed.range_m,
               2.0 * std::cos(0.3) - std::sqrt(1.0 - std::pow(2.0 * std::sin(0.3), 2)), 1e-12);
 }
 
-// Against a fan of thousands of rays on the shipped floor.
+// Compared with a fan of thousands of rays on the shipped floor.
 TEST(Echo, IsTheNearestOfManyRays) {
   const world::World floor =
       world::load_world(std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml");
@@ -69,7 +69,7 @@ TEST(Echo, IsTheNearestOfManyRays) {
     const std::vector<double> rays_m = raycast(floor, pose, fan);
     const double nearest_m = *std::min_element(rays_m.begin(), rays_m.end());
     const Echo exact = echo(floor, pose, kHalf_rad, kMax_m);
-    // No ray is nearer; the nearest ray is as near as its distance to the next one lets it be.
+    // No ray is nearer; the nearest ray exceeds it at most by the spacing to the next ray.
     EXPECT_LE(exact.range_m, nearest_m + 1e-9) << round;
     if (std::isinf(nearest_m)) continue;
     EXPECT_NEAR(exact.range_m, nearest_m, 0.02) << round;

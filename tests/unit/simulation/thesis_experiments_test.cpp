@@ -1,4 +1,4 @@
-// The replicas of the thesis's experiments end as far off as printed (Thesis, 7.3.1.1 and 8.3).
+// The replicas of the thesis's experiments end with the printed errors (Thesis, 7.3.1.1 and 8.3).
 #include "topogeo/simulation/thesis_experiments.hpp"
 
 #include <cmath>
@@ -18,7 +18,7 @@ world::World thesis_world(const std::string& name) {
   return world::load_world(std::string(TOPOGEO_TEST_DATA) + "/thesis/" + name + ".world.yaml");
 }
 
-// The least room that the robot has on its drive, metres, with what is there at the start.
+// The least clearance of the robot on its drive, metres, among the objects present at the start.
 double least_room_m(const world::World& world, const SimulatedLog& log) {
   double least = 1e9;
   const world::World scene = world::scene_at(world, 0.0);

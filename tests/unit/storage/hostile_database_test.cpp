@@ -1,4 +1,4 @@
-// Map databases that were made to run what their makers wrote, or without end.
+// Malicious map databases that would run their authors' SQL, or run without end.
 #include <fstream>
 #include <memory>
 
@@ -38,7 +38,7 @@ class HostileDatabase : public ScratchDirectory {
  protected:
   [[nodiscard]] std::filesystem::path path() const { return directory_ / "map.sqlite"; }
 
-  /// A sound map whose schema has got more.
+  /// A valid map with additions to its schema.
   void make(const std::string& sql) const {
     for (const char* part : {"", "-wal", "-shm"}) std::filesystem::remove(path().string() + part);
     MapDatabase::open_or_create(path(), "robot-1", 1).put_document(sample_document(3));

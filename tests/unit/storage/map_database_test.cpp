@@ -126,7 +126,7 @@ TEST_F(MapDatabaseFile, GrowsAndChangesWithTheMap) {
   database.put_global_map(document.global_map);
 
   EXPECT_EQ(map_file_bytes(database.load()), map_file_bytes(document));
-  EXPECT_EQ(map_file_bytes(open().load()), map_file_bytes(document));  // beside the open one
+  EXPECT_EQ(map_file_bytes(open().load()), map_file_bytes(document));  // while it is open elsewhere
 }
 
 TEST_F(MapDatabaseFile, RefusesWhatDoesNotFitAndStaysAsItWas) {
@@ -241,7 +241,7 @@ TEST_F(MapDatabaseFile, TakesAFileThatWasJustBegunForReplaceable) {
   std::ofstream(path(), std::ios::binary) << "no database, but long enough to be looked into";
   EXPECT_THROW(MapDatabase::check_replaceable(path()), std::runtime_error);
   std::filesystem::remove(path());
-  // What SQLite writes first, before there is any table.
+  // SQLite's first page, before there is any table.
   std::string page(4096, '\0');
   page.replace(0, 16, std::string("SQLite format 3\0", 16));
   page.replace(16, 8, std::string("\x10\x00\x02\x02\x00\x40\x20\x20", 8));
@@ -287,7 +287,7 @@ TEST_F(MapDatabaseFile, RefusesDamagedContent) {
   }
 }
 
-/// Writes stop after stop for ever and reports each on `pipe` when it is stored.
+/// Writes stop after stop forever and reports each on `pipe` once it is stored.
 [[noreturn]] void write_until_killed(const std::filesystem::path& path, std::uint64_t seed,
                                      int pipe) {
   try {
@@ -335,7 +335,7 @@ TEST_F(MapDatabaseFile, KeepsAConsistentPrefixWhenItsProcessIsKilled) {
     ASSERT_GE(document.local_maps.size(), static_cast<std::size_t>(acknowledged));
     const std::uint64_t version = document.trajectory.version;
     ASSERT_GE(version + 1, static_cast<std::uint64_t>(acknowledged));
-    // All poses are of one version, not some of it.
+    // All poses have the same version.
     ASSERT_EQ(document.trajectory.stops.size(), version + 1);
     for (std::size_t i = 0; i < document.trajectory.stops.size(); ++i) {
       EXPECT_EQ(document.trajectory.stops[i].T_map_robot.x_m,

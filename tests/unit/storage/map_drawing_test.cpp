@@ -1,4 +1,4 @@
-// What people have drawn on a map, in the map file and in the database.
+// Drawings on a map, in the map file and in the database.
 #include "topogeo/storage/map_drawing.hpp"
 
 #include <limits>
@@ -189,13 +189,13 @@ TEST(MapDrawingFile, RefusesACorruptGrid) {
               HasSubstr("drawn grid: resolution_m is 0"));
   EXPECT_THAT(refusal([](proto::DrawnGrid& g) { g.mutable_t_map_grid()->set_x_m(1.0 / 0.0); }),
               HasSubstr("origin of the drawn grid is not a finite number"));
-  // A few bytes that claim to be a hundred million cells are refused before they get the memory.
+  // A few bytes that claim to be a hundred million cells are refused before memory is allocated.
   EXPECT_THAT(refusal([](proto::DrawnGrid& g) {
                 g.set_columns(10000);
                 g.set_rows(10000);
               }),
               HasSubstr("too few for 100000000 cells"));
-  for (const int more : {-1, 1}) {  // rows that the bytes do not have, or have too many of
+  for (const int more : {-1, 1}) {  // fewer or more rows than the bytes contain
     EXPECT_THAT(
         refusal([&](proto::DrawnGrid& g) { g.set_rows(static_cast<std::uint32_t>(70 + more)); }),
         HasSubstr("cells in the format of zlib"));
@@ -207,7 +207,7 @@ TEST(MapDrawingFile, RefusesACorruptGrid) {
   for (std::size_t size = 10; size < cells.size(); size += 7) {
     EXPECT_NE(refusal([&](proto::DrawnGrid& g) { g.set_cells(cells.substr(0, size)); }), "");
   }
-  for (std::size_t i = 0; i < cells.size(); ++i) {  // the checksum of zlib finds every one
+  for (std::size_t i = 0; i < cells.size(); ++i) {  // zlib's checksum finds every change
     std::string changed = cells;
     changed[i] = static_cast<char>(changed[i] ^ 0x04);
     EXPECT_NE(refusal([&](proto::DrawnGrid& g) { g.set_cells(changed); }), "") << i;

@@ -1,4 +1,4 @@
-// What a map database is after the power went, and what becomes of damaged copies.
+// Map databases after a power failure, and damaged copies of them.
 #include <cstdlib>
 #include <memory>
 
@@ -19,8 +19,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// How often a fault is injected: all of them take minutes, which the environment variable asks
-/// for.
+/// Number of injected faults: all of them take minutes, and run only when the environment variable
+/// is set.
 int fault_count(int usual, int all) {
   return std::getenv("TOPOGEO_ALL_FAULTS") != nullptr ? all : usual;
 }
@@ -33,7 +33,7 @@ class MapFaults : public ScratchDirectory {
   }
 };
 
-/// A stop with as many scan points as real ones have, so that the log grows past a checkpoint.
+/// A stop with a realistic number of scan points, so that the log grows past a checkpoint.
 topomap::LocalMap full_stop(std::uint32_t number) {
   topomap::LocalMap map = sample_stop_of(7, number);
   for (int i = 0; i < 360; ++i) {
@@ -44,7 +44,7 @@ topomap::LocalMap full_stop(std::uint32_t number) {
 
 struct Loss {
   PowerDisk::Files files;
-  std::uint32_t acknowledged = 0;  // stops, when the power went
+  std::uint32_t acknowledged = 0;  // stops, at the power failure
   std::uint64_t version = 0;       // of the trajectory
 };
 
@@ -56,7 +56,7 @@ TEST_F(MapFaults, PowerLossLeavesAnEarlierStateWithAllThatWasAcknowledged) {
   std::uint64_t version = 0;
   PowerDisk* disk = nullptr;
   const auto maybe_lose = [&] {
-    // Once in some thirty writes, as long as any are wanted.
+    // In about one of thirty writes, until there are enough.
     if (disk == nullptr || losses.size() >= losses_wanted || random.below(30) != 0) return;
     losses.push_back(
         {disk->after_power_loss(random, losses.size() % 2 == 1), acknowledged, version});
@@ -101,8 +101,8 @@ TEST_F(MapFaults, PowerLossLeavesAnEarlierStateWithAllThatWasAcknowledged) {
   }
 }
 
-/// Opens and reads a copy like a program that is given the file. A copy may still be whole for all
-/// that the file tells; else an error has to name it.
+/// Opens and reads a copy like a program that is given the file. A copy may still be valid as far
+/// as the file shows; otherwise an error must name it.
 void expect_map_or_error(const std::filesystem::path& path, const std::string& before) {
   const std::string error = error_of([&] { static_cast<void>(read_map(path)); });
   if (!error.empty()) {
@@ -137,7 +137,7 @@ TEST_F(MapFaults, DamagedCopiesAreReadOrRefusedByName) {
     forget_log();
     write(path(), copy);
     expect_map_or_error(path(), copy);
-    // Of the exchange file every flipped bit is noticed.
+    // Every flipped bit of the exchange file is noticed.
     std::string file = good_file;
     char& byte = file[position(file)];
     byte = static_cast<char>(byte ^ (1 << random.below(8)));
@@ -151,7 +151,7 @@ TEST_F(MapFaults, AFileThatMayNotBeWrittenIsRefusedAndCanBeRead) {
   const std::string before = content(path());
   std::filesystem::permissions(path(), std::filesystem::perms(0444));
   std::filesystem::permissions(directory_, std::filesystem::perms(0555));
-  // The administrator may write everything, so somebody else tries.
+  // Root may write everything, so an unprivileged process tries.
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
@@ -174,7 +174,7 @@ TEST_F(MapFaults, AFileThatMayNotBeWrittenIsRefusedAndCanBeRead) {
   EXPECT_TRUE(content(path()) == before);
 }
 
-// The numbers of a session are counted on whatever the order, gaps or losses.
+// The numbering of a session continues for any order, gaps or losses.
 TEST_F(MapFaults, SessionsAreCountedWithoutGaps) {
   MapDatabase database = MapDatabase::open_or_create(path(), "robot-1", 1);
   const auto put = [&](std::uint64_t session, std::uint32_t number) {

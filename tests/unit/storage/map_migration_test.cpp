@@ -1,4 +1,4 @@
-// Files that programs of earlier versions wrote, kept as they were then.
+// Files written by programs of earlier versions, kept unchanged.
 #include <gmock/gmock.h>
 #include <sqlite3.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// What the golden files hold.
+/// Content of the golden files.
 MapDocument golden_document() {
   MapDocument document = sample_document(5);
   document.local_maps[3].starts_drive = true;
@@ -32,7 +32,7 @@ MapDocument golden_document() {
   return document;
 }
 
-/// What is new in version 3.
+/// Additions of version 3.
 planning::RoomMemory numbered_rooms() {
   const topomap::StopId stop{0xfedcba9876543210U, 2};
   planning::RoomMemory rooms;
@@ -67,7 +67,7 @@ TEST_F(GoldenFile, DatabaseOfVersion1IsMigrated) {
   make("map_v1.sql");
   const MapDocument expected = identified(golden_document());
   EXPECT_EQ(map_file_bytes(MapDatabase::open_existing(path()).load()), map_file_bytes(expected));
-  // Once for all, and the map goes on.
+  // Migrates once for all, and the map can grow.
   MapDatabase database = MapDatabase::open_or_create(path(), "robot-1", expected.seed);
   EXPECT_EQ(map_file_bytes(database.load()), map_file_bytes(expected));
   EXPECT_EQ(database.map_id(), expected.map_id);
@@ -96,7 +96,7 @@ TEST_F(GoldenFile, DamagedDatabaseOfVersion1StaysAsItWas) {
   execute("SELECT count(*) FROM local_map");  // still there
 }
 
-// It has no numbers of rooms yet, and takes them then.
+// It has no numbers of rooms yet, and accepts them afterwards.
 TEST_F(GoldenFile, DatabaseOfVersion2TakesNumbersOfRooms) {
   make("map_v2.sql");
   const std::string before = content(path());
@@ -107,7 +107,7 @@ TEST_F(GoldenFile, DatabaseOfVersion2TakesNumbersOfRooms) {
   EXPECT_EQ(read_map(path()).rooms, rooms);
 }
 
-// It has no walls, openings and doors yet, and takes them then.
+// It has no walls, openings and doors yet, and accepts them afterwards.
 TEST_F(GoldenFile, DatabaseOfVersion3TakesDrawnLines) {
   make("map_v3.sql");
   const std::string before = content(path());
@@ -125,7 +125,7 @@ TEST_F(GoldenFile, DatabaseOfVersion3TakesDrawnLines) {
   EXPECT_TRUE(read.grid);
 }
 
-/// What the golden file of version 2 holds.
+/// Content of the golden file of version 2.
 MapDocument golden_document_2() {
   MapDocument expected = golden_document();
   for (topomap::LocalMap& map : expected.local_maps) {
@@ -164,7 +164,7 @@ TEST_F(GoldenFile, DatabaseOfVersion3IsRead) {
   expected.refused_merges = {{{0xfedcba9876543210U, 1}, {7, 2}}};
   EXPECT_EQ(map_file_bytes(read_map(path())), map_file_bytes(expected));
   EXPECT_EQ(content(path()), before) << "read alone, it stays as it is";
-  // The map goes on.
+  // The map can grow.
   MapDatabase database = MapDatabase::open_existing(path());
   EXPECT_EQ(map_file_bytes(database.load()), map_file_bytes(expected));
   planning::RoomMemory rooms = expected.rooms;

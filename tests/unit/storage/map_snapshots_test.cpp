@@ -1,4 +1,4 @@
-// Snapshots of a map database, and the faults that a copy and its way back must survive.
+// Snapshots of a map database, and the faults that taking and restoring one must survive.
 #include "topogeo/storage/map_snapshots.hpp"
 
 #include <array>
@@ -30,7 +30,7 @@ class MapSnapshots : public ScratchDirectory {
   [[nodiscard]] MapDatabase open() const {
     return MapDatabase::open_or_create(path(), "robot-1", sample_document(0).seed);
   }
-  /// Replaces what is there by a map of so many stops.
+  /// Replaces the present map by one of so many stops.
   void begin(std::uint32_t stops) const {
     for (const char* suffix : {"", "-wal", "-shm"}) fs::remove(path().string() + suffix);
     open().put_document(sample_document(stops));
@@ -74,7 +74,7 @@ TEST_F(MapSnapshots, GiveBackTheMapOfTheirTime) {
   EXPECT_EQ(bytes(former->path), bytes(7));
   EXPECT_EQ(bytes(path()), bytes(5));
   EXPECT_EQ(map_file_bytes(open().load()), bytes(5)) << "also for a map store";
-  // Back again: the name is taken.
+  // Restores the former map; its name is taken.
   EXPECT_EQ(restore_snapshot(path(), "before-five")->name, "before-before-five");
   EXPECT_EQ(restore_snapshot(path(), "five")->name, "before-five-2");
   EXPECT_EQ(snapshots_of(path()).size(), 4U);
@@ -127,7 +127,7 @@ TEST_F(MapSnapshots, AreWholeWhileAnotherProgramWrites) {
   if (writer == 0) {
     MapDatabase database = open();
     MapDocument document = sample_document(3);
-    for (std::uint64_t version = 10;; ++version) {  // all poses are of one version
+    for (std::uint64_t version = 10;; ++version) {  // all poses have one version
       for (topomap::StopPose& stop : document.trajectory.stops) {
         stop.T_map_robot.x_m = static_cast<double>(version);
       }
@@ -144,7 +144,7 @@ TEST_F(MapSnapshots, AreWholeWhileAnotherProgramWrites) {
       EXPECT_EQ(stop.T_map_robot.x_m, static_cast<double>(map.trajectory.version));
     }
     EXPECT_GE(map.trajectory.version, 10U + static_cast<unsigned>(i));
-    // The writer has it: it must not be replaced under it.
+    // The writer has it open: it must not be replaced meanwhile.
     EXPECT_THAT(error_of([&] { restore_snapshot(path(), "s0"); }), HasSubstr("has it open"));
   }
   ASSERT_EQ(::kill(writer, 0), 0) << "it goes on";
@@ -152,7 +152,7 @@ TEST_F(MapSnapshots, AreWholeWhileAnotherProgramWrites) {
   ::kill(writer, SIGKILL);
   int status = 0;
   ::waitpid(writer, &status, 0);
-  // Killed, it leaves a log.
+  // The killed writer leaves a log.
   EXPECT_TRUE(fs::exists(path().string() + "-wal"));
   restore_snapshot(path(), "s0");
   EXPECT_EQ(bytes(path()), bytes(folder() / "s0.sqlite"));
@@ -170,7 +170,7 @@ TEST_F(MapSnapshots, RestoringThatIsKilledLeavesOneMapOrTheOther) {
     }));
     EXPECT_EQ(bytes(path()), bytes(step == std::string("restored") ? 5 : 7)) << step;
   }
-  // Anywhere in between: each time a little later.
+  // Killed at any moment in between: each time a little later.
   int restored = 0;
   for (int delay_us = 0; restored < 3 && delay_us < 400'000; delay_us += 4000) {
     begin(7);
@@ -179,7 +179,7 @@ TEST_F(MapSnapshots, RestoringThatIsKilledLeavesOneMapOrTheOther) {
       restore_snapshot(path(), "five");
       ::_exit(0);
     }
-    // Each child is killed at another moment of its work, whichever that is.
+    // Each child is killed at a different moment of its work.
     ::usleep(static_cast<useconds_t>(delay_us));
     ::kill(child, SIGKILL);
     int status = 0;
@@ -251,7 +251,7 @@ TEST_F(MapSnapshots, TakeThePlaceOfADamagedMapWhichIsKept) {
     const auto former = restore_snapshot(path(), "five");
     ASSERT_TRUE(former);
     EXPECT_NE(former->damage, "");
-    // But for the page that says how the file is written.
+    // Except for the page with the format of the file.
     const std::string kept = content(former->path);
     EXPECT_EQ(kept.size(), damaged.size());
     EXPECT_TRUE(kept.substr(4096) == damaged.substr(4096));

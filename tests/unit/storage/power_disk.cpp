@@ -16,7 +16,7 @@ constexpr std::size_t kSector = 512;
 PowerDisk* running_disk = nullptr;
 sqlite3_vfs* real_vfs = nullptr;
 
-/// An open file: SQLite gives the memory, the file of the real file system stands behind it.
+/// An open file: SQLite provides the memory; the data is in a file of the real file system.
 struct PowerFile {
   sqlite3_file base;
   char path[1024];
@@ -74,7 +74,7 @@ const sqlite3_io_methods* methods() {
     return real(f)->pMethods->xFileControl(real(f), operation, argument);
   };
   all.xSectorSize = [](sqlite3_file* f) { return real(f)->pMethods->xSectorSize(real(f)); };
-  // A disk that promises nothing beyond what is forced to it.
+  // A disk without guarantees beyond forced writes.
   all.xDeviceCharacteristics = [](sqlite3_file*) { return 0; };
   all.xShmMap = [](sqlite3_file* f, int page, int size, int extend, void volatile** out) {
     return real(f)->pMethods->xShmMap(real(f), page, size, extend, out);
@@ -140,7 +140,7 @@ PowerDisk::Files PowerDisk::after_power_loss(support::Random& random,
   if (!some_later_writes) return left;
   for (auto& [path, bytes] : left) {
     const std::string now = content_of(path);
-    // A part of what was appended can be there, too.
+    // A part of the appended data may remain, too.
     const std::size_t size = std::max(bytes.size(), now.size());
     const std::size_t kept = bytes.size() + random.below(size - bytes.size() + 1);
     std::string mixed = bytes;

@@ -1,5 +1,5 @@
-// A disk that loses its power: an SQLite file system that remembers what was forced to the disk, so
-// that a test can look at what would be left.
+// A disk that loses its power: an SQLite file system that records forced writes, so that a test can
+// inspect the remaining files.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace topogeo::storage {
 
-/// While it lives all SQLite files that are opened go through it. One at a time.
+/// During its life all SQLite files that are opened go through it. Only one at a time.
 class PowerDisk {
  public:
   /// `before_write` is called before each change of a file.
@@ -23,8 +23,8 @@ class PowerDisk {
 
   /// Content of each file by path.
   using Files = std::map<std::string, std::string>;
-  /// What is left when the power goes now: what was forced to the disk, and of later writes, sector
-  /// by sector, what chance brings.
+  /// Files after a power failure now: everything forced to the disk, and a random selection, sector
+  /// by sector, of later writes.
   [[nodiscard]] Files after_power_loss(support::Random& random, bool some_later_writes) const;
 
   void synced(const std::string& path);

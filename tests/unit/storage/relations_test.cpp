@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 
 using Relations = ScratchDirectory;
 
-/// What reading such a text throws.
+/// Message of the exception on parsing this text.
 std::string complaint(const std::string& text) {
   try {
     (void)parse_relations(text, "r");
@@ -37,7 +37,7 @@ TEST_F(Relations, ReadsStampsAndTheParts) {
   EXPECT_EQ(read[0].stamp_a_ns, 1'134'864'643'333'190'000);
   EXPECT_EQ(read[0].stamp_b_ns, 1'134'864'643'553'180'001);
   EXPECT_EQ(read[0].T_a_b, (geometry::Pose2{0.09172, -2.0, 0.25}));
-  EXPECT_EQ(read[1].stamp_b_ns, 3'500'000'000);  // backwards in time is allowed
+  EXPECT_EQ(read[1].stamp_b_ns, 3'500'000'000);  // backwards in time is permitted
   EXPECT_DOUBLE_EQ(read[1].T_a_b.x_m, 10.0);
   EXPECT_NEAR(read[1].T_a_b.theta_rad, 3.5 - 2.0 * std::numbers::pi, 1e-12);
 }

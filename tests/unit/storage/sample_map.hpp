@@ -1,4 +1,4 @@
-// A made-up map with every field set to something of its own, and a scratch directory.
+// A made-up map with a distinct value in every field, and a scratch directory.
 #pragma once
 
 #include <cstdlib>
@@ -32,7 +32,7 @@ inline topomap::LocalMap sample_local_map(std::uint32_t id) {
   return map;
 }
 
-/// The same as a local mapper sends it.
+/// The same in the form of a local mapper.
 inline topomap::LocalMap sample_stop_of(std::uint64_t session, std::uint32_t number) {
   topomap::LocalMap map = sample_local_map(number);
   map.stop = {session, number};
@@ -65,7 +65,7 @@ inline MapDocument sample_document(std::uint32_t map_count) {
   }
   document.trajectory.version = 9;
   if (map_count > 2) {
-    // Not in the order of the ids: the order of the list is kept.
+    // Not sorted by ids, because the order of the list must be kept.
     document.loop_closures = {{1, 2, {0.1, 0.2, 0.3}}, {0, 2, {-0.1, 0.0, 3.0}}};
   }
   document.global_map = sample_global_map();
@@ -93,7 +93,7 @@ class ScratchDirectory : public ::testing::Test {
   std::filesystem::path directory_;
 };
 
-/// The message of the std::exception that `call` throws; "" if it throws none.
+/// Message of the std::exception from `call`; "" without one.
 template <typename Call>
 std::string error_of(const Call& call) {
   try {

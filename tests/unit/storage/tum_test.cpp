@@ -58,7 +58,7 @@ TEST_F(Tum, ReadsBackWhatItWrote) {
 }
 
 TEST_F(Tum, ReadsFilesOfOthers) {
-  // Comments, empty lines, Windows line ends, blanks, more or fewer decimals, exponents, a tilt.
+  // Comments, empty lines, Windows line ends, blanks, varying decimals, exponents, a tilt.
   const auto poses = parse_trajectory_tum(
       "# t x y z qx qy qz qw\n\n"
       "  12 1e0\t2 0.5 0 0 0 -1\r\n"

@@ -1,4 +1,4 @@
-// When a process that was asked to end hangs, and when it is only slow.
+// Whether a process that was asked to end hangs, or is only slow.
 #include "topogeo/supervision/end_watch.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 using EndVerdict = EndWatch::Verdict;
 
-/// The verdicts of a watch at each of so many seconds, one after the other.
+/// The verdicts of a watch at successive seconds.
 template <class ProgressAt>
 std::vector<EndVerdict> verdicts(int seconds, const ProgressAt& progress_at) {
   EndWatch watch(progress_at(0), 0.0);
@@ -44,7 +44,7 @@ TEST(EndWatch, OneThatWorksOrWaitsForACpuOrReportsIsWaitedFor) {
 }
 
 TEST(EndWatch, OneThatDoesNothingHangs) {
-  // The threads of the middleware go on.
+  // The threads of the middleware continue.
   const auto hangs = [](int second) { return Progress{0.001 * second, 0.001 * second, 7}; };
   const std::vector<EndVerdict> all = verdicts(20, hangs);
   EXPECT_EQ(all.back(), EndVerdict::kHangs);

@@ -1,4 +1,4 @@
-// A run that sends a robot somewhere, by a simulated clock.
+// A run that sends a robot to a goal, on a simulated clock.
 #include "topogeo/supervision/goto_phases.hpp"
 
 #include <gmock/gmock.h>
@@ -10,7 +10,7 @@ using testing::HasSubstr;
 
 class GotoPhasesTest : public testing::Test {
  protected:
-  /// Four calls a second for so long; the first action that is not kNone ends it.
+  /// Four calls a second for so long; ends early with the first action other than kNone.
   GotoAction pass(double duration_s, const GotoView& view) {
     for (int i = 0; i < static_cast<int>(4.0 * duration_s); ++i) {
       now_s_ += 0.25;

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 const ProcessGroup::Pause kSleep = [](std::chrono::milliseconds duration) {
-  std::this_thread::sleep_for(duration);  // as a program does between two checks
+  std::this_thread::sleep_for(duration);  // like a program between two checks
 };
 const auto kNever = [] { return false; };
 
@@ -30,7 +30,7 @@ class ProcessGroupTest : public testing::Test {
              Importance importance = Importance::kNeeded) {
     group_.start(name, "sh", {"-c", script}, importance);
   }
-  /// Runs until it is killed; does `on_term` when it is asked to end.
+  /// Runs until it is killed; executes `on_term` when it is asked to end.
   void start_endless(const std::string& name, const std::string& on_term) {
     start(name, "trap '" + on_term + "' TERM; echo ready; while :; do sleep 0.01; done");
     ASSERT_TRUE(test::wait_for(name + " to begin",
@@ -41,7 +41,7 @@ class ProcessGroupTest : public testing::Test {
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
-  /// Passes time in the group's clock, in which processes of the test do what `progress_` says.
+  /// Observes the test's processes: time is the group's clock, and `progress_` is their progress.
   [[nodiscard]] EndObserver observer() {
     EndObserver observer;
     observer.now_s = [this] { return hour_s_; };
@@ -53,7 +53,7 @@ class ProcessGroupTest : public testing::Test {
   std::filesystem::path logs_ =
       std::filesystem::temp_directory_path() / ("process_group_test_" + std::to_string(::getpid()));
   double hour_s_ = 3600.0;
-  std::map<pid_t, Progress> progress_;  // of each process; one that is not there hangs
+  std::map<pid_t, Progress> progress_;  // of each process; a missing one hangs
   std::vector<std::string> lines_;
   ProcessGroup group_{"/bin", logs_, observer()};
 };
@@ -199,7 +199,7 @@ TEST_F(ProcessGroupTest, OneThatIsSlowIsWaitedForAndOneThatHangsIsKilled) {
   start_endless("hung", "");
   const pid_t slow = group_.pid("slow");
   const double start_s = hour_s_;
-  // An hour passes, in which the slow one now works, now waits for a CPU.
+  // In an hour, the slow one alternately works and waits for a CPU.
   const auto pause = [&](std::chrono::milliseconds) {
     hour_s_ += 1.0;
     progress_[slow].ran_s += 0.04;

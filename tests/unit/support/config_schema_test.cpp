@@ -46,7 +46,7 @@ ConfigSchema declare(Values& v) {
   return schema;
 }
 
-/// The message of the error that the text causes; "" if it is accepted.
+/// The error message for the text; "" if it is accepted.
 std::string error_of(const std::string& text) {
   Values v;
   const ConfigSchema schema = declare(v);
@@ -177,7 +177,7 @@ TEST(ConfigSchema, ListsWhatIsInForceAndTellsConfigurationsApart) {
   EXPECT_EQ(effective(schema).fingerprint, before.fingerprint);
 }
 
-/// A point of the plane, which is one row of two numbers.
+/// A point of the plane, a row of two numbers.
 struct PlanePoint {
   double x = 0.5;
   double y = -1.0;

@@ -1,4 +1,4 @@
-// The CPU time of a process, from texts of /proc made for it, and when it is called short.
+// The CPU time of a process, from made-up texts of /proc, and when it is reported as short.
 #include "topogeo/support/cpu_shortage.hpp"
 
 #include <fstream>
@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// A process of /proc whose threads have the times that a test gives them.
+/// A process of /proc whose threads have times set by the test.
 class CpuMeterTest : public testing::Test {
  protected:
   void set_thread(long number, double ran_s, double waited_s) const {
@@ -56,7 +56,7 @@ TEST_F(CpuMeterTest, ThreadsComeAndGo) {
   ASSERT_TRUE(use);
   EXPECT_NEAR(use->ran_s, 0.5, 1e-6);
   EXPECT_NEAR(use->waited_s, 0.5, 1e-6);
-  set_thread(125, 0.1, 0.1);  // another one got the number
+  set_thread(125, 0.1, 0.1);  // another thread got the number
   use = meter_.take(102.0);
   EXPECT_EQ(use->ran_s, 0.0);
   EXPECT_EQ(use->waited_s, 0.0);
@@ -121,7 +121,7 @@ TEST(CpuShortage, DoesNotComeAndGoNearAThreshold) {
   add_times(shortage, CpuShortage::kBegins, kCrowded, kLateTimer_s);
   int changes = 0;
   for (int i = 0; i < 100; ++i) {
-    // A little below and a little above the threshold that begins one, now and then a good second.
+    // Slightly below and above the threshold of a shortage, with a good second now and then.
     if (shortage.add(kCrowded, CpuShortage::kLate_s + (i % 2 == 0 ? 0.01 : -0.01))) ++changes;
     if (i % 3 == 0 && shortage.add(kFree, 0.0)) ++changes;
   }

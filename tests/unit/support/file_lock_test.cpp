@@ -24,7 +24,7 @@ class FileLockTest : public testing::Test {
  protected:
   ~FileLockTest() override { std::filesystem::remove(path_); }
 
-  /// What refuses a second lock; empty: nothing does.
+  /// The error of a second lock; empty when it succeeds.
   std::string refusal() const {
     try {
       const FileLock second(path_);

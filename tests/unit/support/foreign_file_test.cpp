@@ -1,4 +1,4 @@
-// Files and texts of others that ask for too much.
+// Files and texts from elsewhere that demand too many resources.
 #include "topogeo/support/foreign_file.hpp"
 
 #include <fstream>
@@ -48,7 +48,7 @@ TEST_F(ForeignFile, IsReadUpToItsLimit) {
   EXPECT_EQ(first_bytes(written("ab"), 3), "ab");
 }
 
-// Half of a terabyte that takes no room on the disk, and must take none in memory.
+// Half a terabyte that takes no space on the disk, and must take none in memory.
 TEST_F(ForeignFile, SizeIsCheckedBeforeMemoryIsTaken) {
   std::filesystem::resize_file(written("x"), 500'000'000'000);
   EXPECT_THAT(refusal_of([&] { static_cast<void>(file_content(path("file"))); }),
@@ -144,7 +144,7 @@ TEST(YamlLimits, BytesAndValues) {
               HasSubstr("f:1: more than 1000000 values"));
 }
 
-// Nine levels of nine aliases each stand for 400 million values.
+// Nine levels of nine aliases each expand to 400 million values.
 TEST(YamlLimits, AliasesCountAsWhatTheyStandFor) {
   std::string text = "a0: &a0 [x, x]\n";
   for (int level = 1; level <= 9; ++level) {

@@ -1,4 +1,4 @@
-// The CPUs of a machine, from files of /proc and of control groups made for it.
+// The CPUs of a machine, from made-up files of /proc and of control groups.
 #include "topogeo/support/machine_cpu.hpp"
 
 #include <fstream>

@@ -1,4 +1,4 @@
-// Patience by simulated clocks, and by texts of /proc made for it.
+// Patience on simulated clocks, and with made-up texts of /proc.
 #include "topogeo/support/patience.hpp"
 
 #include <fstream>
@@ -65,10 +65,10 @@ TEST(PatienceWindow, ATimeThatDoesNotCountPutsTheMomentBack) {
   EXPECT_LE(*over, 61.0) << "a process that stood still has heard nothing";
 }
 
-/// A process of /proc whose thread runs and waits as a test says.
+/// A process of /proc whose thread runs and waits as the test sets.
 class PatienceTest : public testing::Test {
  protected:
-  /// The thread has worked `ran_s` and waited for a CPU `waited_s` more.
+  /// Adds `ran_s` of work and `waited_s` of waiting for a CPU to the thread.
   void work(double ran_s, double waited_s) {
     ran_s_ += ran_s;
     waited_s_ += waited_s;
@@ -78,7 +78,7 @@ class PatienceTest : public testing::Test {
     std::ofstream(thread / "schedstat") << static_cast<long>(ran_s_ * kSecond_ns) << ' '
                                         << static_cast<long>(waited_s_ * kSecond_ns) << " 17\n";
   }
-  /// Checks a patience of 4.9 s every half second until it is over; returns when that is.
+  /// Checks a patience of 4.9 s every half second until it is over; returns that time.
   double end_s(Patience& patience, double ran_s, double waited_s) {
     for (double now_s = 0.5; now_s < 1000.0; now_s += 0.5) {
       work(ran_s, waited_s);
@@ -96,7 +96,7 @@ class PatienceTest : public testing::Test {
 };
 
 TEST_F(PatienceTest, IsAsGivenWhereTheMachineIsFree) {
-  work(1.0, 9.0);  // of before
+  work(1.0, 9.0);  // earlier work
   Patience patience(4.9, 0.0, CpuMeter(process_));
   EXPECT_DOUBLE_EQ(end_s(patience, 0.01, 0.0), 5.0);
   EXPECT_EQ(patience.reason(), "");

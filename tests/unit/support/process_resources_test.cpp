@@ -1,4 +1,4 @@
-// What the system gives this process.
+// Resources of this process, as the system reports them.
 #include "topogeo/support/process_resources.hpp"
 
 #include <fstream>

@@ -35,7 +35,7 @@ TEST(Seed, DependsOnEveryPartAndItsPlace) {
 }
 
 TEST(Random, IsTheSameOnEveryMachine) {
-  // xoshiro256** from the state that splitmix64 makes of 0, as its authors' code gives it.
+  // xoshiro256** from the state that splitmix64 derives from 0, by its authors' code.
   Random random(0);
   EXPECT_EQ(random.next_u64(), 0x99ec5f36cb75f2b4ULL);
   EXPECT_EQ(random.next_u64(), 0xbf6e1f784956452aULL);
@@ -66,7 +66,7 @@ TEST(Random, BelowGivesEveryValueEquallyOften) {
   for (int i = 0; i < 70000; ++i) ++counts.at(random.below(7));
   for (const int count : counts) EXPECT_NEAR(count, 10000, 400);
   EXPECT_EQ(random.below(1), 0U);
-  // With 3 * 2^62 values a plain remainder would give the lowest third twice as often.
+  // With 3 * 2^62 values a plain remainder would return the lowest third twice as often.
   const std::uint64_t n = 3ULL << 62U;
   int low = 0;
   for (int i = 0; i < 30000; ++i) low += random.below(n) < n / 3 ? 1 : 0;

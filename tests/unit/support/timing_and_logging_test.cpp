@@ -17,7 +17,7 @@ TEST(StageTimes, SumsUpEachStageInOrderOfFirstEntry) {
   const double cpu_before_s = process_cpu_s();
   {
     const auto scope = times.measure("search");
-    // Until the CPU time itself says so: no assumption about the speed of the machine.
+    // Loops until the CPU time has passed, without assumptions about the machine's speed.
     while (process_cpu_s() < cpu_before_s + 0.01) continue;
   }
   { const auto scope = times.measure("tracking"); }

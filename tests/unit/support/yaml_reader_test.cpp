@@ -52,7 +52,7 @@ struct Wrong {
   const char* message;
 };
 
-// Shown by the test runner instead of the bytes.
+// Printed by the test runner instead of the bytes.
 std::ostream& operator<<(std::ostream& out, const Wrong& wrong) {
   return out << wrong.name;
 }

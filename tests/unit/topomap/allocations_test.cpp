@@ -1,4 +1,4 @@
-// Counts what a scan costs in allocations: this program replaces operator new.
+// Counts the allocations for a scan: this program replaces operator new.
 #include <cstddef>
 #include <cstdint>
 #include <vector>

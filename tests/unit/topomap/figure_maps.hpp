@@ -25,13 +25,13 @@ struct MapSeen : NamedNodes {         // names like "real A|B|C"
   std::vector<std::string> branches;  ///< sorted
 };
 
-/// Expects a well-formed map with nothing but virtual elements of a virtual diagram, and none else.
+/// Expects a well-formed map whose elements are all virtual for a virtual diagram, and else none.
 void expect_well_formed(const topomap::LocalMap& map, bool is_virtual);
 
 MapSeen describe(const topomap::LocalMap& map, const std::vector<std::string>& group_names);
 
-/// A diagram and the local map made of it, laser at the robot's origin unless `T_robot_laser` says
-/// otherwise.
+/// A diagram and the local map made of it, laser at the robot's origin unless `T_robot_laser` is
+/// given.
 struct Made {
   voronoi::LocalVoronoiDiagram diagram;
   topomap::LocalMap map;
@@ -39,7 +39,7 @@ struct Made {
 Made make_map(const scan::Scan& scan, const voronoi::VoronoiConfig& config,
               const topomap::LocalMapConfig& map_config, const geometry::Pose2& T_robot_laser = {});
 
-/// Local map of the scene from place `at`, in words.
+/// Local map of the scene from place `at`, as text.
 MapSeen see_map(const Scene& scene, const voronoi::VoronoiConfig& config,
                 const topomap::LocalMapConfig& map_config,
                 const simulation::BeamPattern& beams = half_turn(), std::size_t at = 0);

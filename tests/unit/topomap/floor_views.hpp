@@ -1,5 +1,5 @@
-// Local maps of a floor drawn by hand: walls for the scan, and the branches that a perfect diagram
-// would have, of which each view gets what it sees.
+// Local maps of a hand-drawn floor: walls for the scan, and the branches of a perfect diagram, of
+// which each view gets the visible parts.
 #pragma once
 
 #include <string>
@@ -45,15 +45,15 @@ Floor corridor(double length_m);
 /// -------------------
 Floor t_junction();
 
-/// A corridor with a room behind a door at x = 6: door post walls from y = 1 to 1.2, the branch
-/// goes through the doorway to the middle of the room.
+/// A corridor with a room behind a door at x = 6: walls of the door posts from y = 1 to 1.2; the
+/// branch goes through the doorway to the middle of the room.
 Floor room_behind_door(bool open);
 
-/// Outer wall 24 x 16 m, a block in it that leaves corridors 2 m wide all round.
+/// Outer wall 24 x 16 m, with a block in it that leaves corridors 2 m wide all round.
 Floor loop_of_corridors();
 
-/// What a laser with 361 beams over 180 degrees and 8 m of range sees of the floor from a pose; the
-/// local map is drawn as if the robot stood at `T_map_robot`.
+/// View of the floor from a pose, by a laser with 361 beams over 180 degrees and 8 m of range; the
+/// local map is drawn as if the robot were at `T_map_robot`.
 LocalMap view(const Floor& floor, const geometry::Pose2& T_map_robot);
 
 }  // namespace topogeo::topomap::test

@@ -44,7 +44,7 @@ std::vector<Pose2> round_trip() {
   return poses;
 }
 
-// Integrates what is seen from each pose, with poses known to `error_m` (and a tenth of it in rad).
+// Integrates the view from each pose, with poses known to `error_m` (and a tenth of it in rad).
 void explore(GlobalMapBuilder& builder, const Floor& floor, const std::vector<Pose2>& poses,
              double error_m = 0.0) {
   std::mt19937 random(7);
@@ -187,7 +187,7 @@ TEST(GlobalMapBuilder, JunctionIsOneRealNodeWithThreeBranches) {
 }
 
 TEST(GlobalMapBuilder, EquivalentNodesMergeToTheMeanOfPositionAndClearance) {
-  // The same junction seen three times, 0.1 m apart and with clearances 1.0, 1.1, 1.2.
+  // Three views of the same junction, 0.1 m apart and with clearances 1.0, 1.1, 1.2.
   GlobalMapBuilder builder;
   const Pose2 pose{8, 0, 0};
   for (const double shift : {0.0, 0.1, 0.2}) {
@@ -234,7 +234,7 @@ TEST(GlobalMapBuilder, DoorSeenOpenLaterAddsItsBranchAndNode) {
   ASSERT_EQ(closed.branches.size(), 1U);
   EXPECT_GT(distance_to_map_m(closed, {6, 2}), 1.5);
 
-  // Passing it once more and looking in; most views of the corridor before it were of a closed
+  // The robot passes it once more and looks in; most views of the corridor before showed a closed
   // door.
   explore(builder, room_behind_door(true), drive({1, 0}, 0.0, 4));
   explore(builder, room_behind_door(true), drive({6, 0}, kQuarter, 2, 0.5));
@@ -251,7 +251,7 @@ TEST(GlobalMapBuilder, DoorSeenOpenLaterAddsItsBranchAndNode) {
 }
 
 TEST(GlobalMapBuilder, FalseBranchSeenOnceIsOutvoted) {
-  // Fig. 8.8: someone stood in the corridor, one view has branches round him.
+  // Fig. 8.8: a person stood in the corridor; one view has branches round the person.
   Floor person = corridor(12);
   person.branches.push_back({{5, 0}, {6, 0.6}, 0.4});
   person.branches.push_back({{6, 0.6}, {7, 0}, 0.4});
@@ -265,7 +265,7 @@ TEST(GlobalMapBuilder, FalseBranchSeenOnceIsOutvoted) {
 }
 
 TEST(GlobalMapBuilder, BranchOutOfViewIsNotOutvoted) {
-  // Views that look away say nothing about the side corridor.
+  // Views in other directions contain no information about the side corridor.
   GlobalMapBuilder builder;
   explore(builder, t_junction(), {{10, 0, kQuarter}, {10, 0, 0}});
   explore(builder, t_junction(), drive({12, 0}, 0.0, 7, 0.25));

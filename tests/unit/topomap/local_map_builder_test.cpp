@@ -66,8 +66,8 @@ TEST(LocalMapBuilder, ADoorIsANodeWhereTheBranchIsNarrowest) {
                                            branch.node_b == doors[0].id;
                                   }),
             2);
-  // Behind it, as far from the door posts as from the wall: (x - 2)^2 + 0.45^2 = (4 - x)^2.
-  // The room behind is seen through the door alone: the walls beside the wedge can be anywhere.
+  // Behind it, at equal distance from the door posts and the wall: (x - 2)^2 + 0.45^2 = (4 - x)^2.
+  // The room behind is visible through the door only: the walls beside the wedge can be anywhere.
   EXPECT_TRUE(nodes_of(map, NodeKind::kReal).empty());
   const auto real =
       nodes_of(map_of(scan_of(kDoor, {0.7, 0.05, 0.0}), {}, all_confirmed()), NodeKind::kReal);
@@ -75,7 +75,7 @@ TEST(LocalMapBuilder, ADoorIsANodeWhereTheBranchIsNarrowest) {
   EXPECT_NEAR(real[0].position_m.x(), 2.949 - 0.7, 0.05);
 }
 
-// From the door itself the robot sees all of the circle round the place where the ways part.
+// The robot in the doorway sees the whole circle around the place where the branches part.
 TEST(LocalMapBuilder, WhatIsBehindADoorIsConfirmedOnceItIsSeen) {
   const World world{{-1, 2, 2, 2},     {2, 2, 2, 0.45}, {-1, -2, 2, -2},
                     {2, -2, 2, -0.45}, {4, -3, 4, 3},   {2, 3, 4, 3},
@@ -122,7 +122,7 @@ TEST(LocalMapBuilder, TheMouthOfACorridorIsAHallCorridorPassage) {
   EXPECT_TRUE(nodes_of(map, NodeKind::kNarrowing).empty());
 }
 
-// The corridor widens to 3 m and narrows again: a maximum, and no end of a corridor 1.5 m long.
+// The corridor widens to 3 m and narrows again: a maximum, but no end of a corridor 1.5 m long.
 TEST(LocalMapBuilder, AMaximumOfTheClearanceMakesNoNode) {
   const World world{{-1, 1, 0.5, 1},      {0.5, 1, 1.5, 1.5}, {1.5, 1.5, 2.5, 1},
                     {2.5, 1, 3.5, 1},     {-1, -1, 0.5, -1},  {0.5, -1, 1.5, -1.5},
@@ -134,7 +134,7 @@ TEST(LocalMapBuilder, AMaximumOfTheClearanceMakesNoNode) {
   }
 }
 
-// The far wall is beyond the range limit: it only shows that the corridor is free.
+// The far wall is beyond the range limit: it only proves that the corridor is free.
 TEST(LocalMapBuilder, ACorridorWithAnOpenEndHasTwoFictitiousNodesAndItsMouth) {
   const World corridor{{-3, 1, 5, 1}, {-3, -1, 5, -1}, {20, -9, 20, 9}};
   const LocalMap map = map_of(scan_of(corridor), {}, all_confirmed());
@@ -144,10 +144,10 @@ TEST(LocalMapBuilder, ACorridorWithAnOpenEndHasTwoFictitiousNodesAndItsMouth) {
   EXPECT_EQ(nodes_of(map, NodeKind::kFictitious).size(), 2U);
   const auto mouths = nodes_of(map, NodeKind::kHallCorridor);
   ASSERT_EQ(mouths.size(), 1U);
-  // So far off readings on the walls are 0.2 m apart, so the last may be as far from the corner.
+  // Readings on the walls are 0.2 m apart here, so the last may be that far from the corner.
   EXPECT_NEAR(mouths[0].position_m.x(), 5.0, 0.15);
-  // Without the wall the beams along the axis meet nothing, which proves nothing to be free: the
-  // way on is virtual.
+  // Without the wall the beams along the axis have no return, which proves no free space: the
+  // branch ahead is virtual.
   const LocalMap open = map_of(scan_of({corridor[0], corridor[1]}));
   EXPECT_FALSE(open.branches.empty());
   for (const LocalBranch& branch : open.branches) EXPECT_TRUE(branch.is_virtual);
@@ -212,7 +212,7 @@ TEST(LocalMapBuilder, WhatIsOffTheMainGraphIsKeptAndMarked) {
   EXPECT_EQ(map.branches[0].points.front().position_m, Eigen::Vector2d(0.0, 0.1));
 }
 
-// Built again and again into the same object, in another order, the maps are those built once.
+// Maps that are built repeatedly into the same object, in another order, equal those built once.
 TEST(LocalMapBuilder, AMapDoesNotDependOnWhatTheObjectsHeldBefore) {
   LocalMapBuilder builder{LocalMapConfig{}};
   LocalMap reused;

@@ -32,8 +32,8 @@ LocalMapConfig without_states() {
 }
 
 // Figure 5.1: node 1 of the objects 1, 2, 4 and node 2 of 2, 3, 4 share 2 and 4, so branch 3 joins
-// them; branches 1, 2 and 4 end at a fictitious node. The objects 1 to 4 are A to D. Node 1:
-// (1.1 - y)^2 + 0.45^2 = (y + 0.9)^2. Node 2 is as far from the end (1.3, 2.5) of C as from the
+// them; branches 1, 2 and 4 end at a fictitious node. The objects 1 to 4 are A to D. Node 1: (1.1 -
+// y)^2 + 0.45^2 = (y + 0.9)^2. Node 2 is equally far from the end (1.3, 2.5) of C and from the
 // jambs: (y - 1.1)^2 + 0.45^2 = (2.5 - y)^2 + 0.35^2.
 TEST(FiguresOfChapter5, Figure1NodesThatShareTwoGroupsAreJoinedByABranch) {
   const Scene scene = load_scene("5_01");
@@ -57,8 +57,8 @@ TEST(FiguresOfChapter5, Figure1NodesThatShareTwoGroupsAreJoinedByABranch) {
 }
 
 // Figure 5.2: the node of the objects 1, 3, 4, 5 with four branches is the main graph; the fifth
-// branch, of 1 and 2, is off it, and removed where 5.2.2 is followed to the letter. The objects 1
-// to 5 are AF, B, C, D, E. The jambs are equally far from (0.525, 0.1).
+// branch, of 1 and 2, is off it, and removed when 5.2.2 is followed literally. The objects 1 to 5
+// are AF, B, C, D, E. The jambs are equally far from (0.525, 0.1).
 TEST(FiguresOfChapter5, Figure2ABranchThatNothingJoinsIsOffTheMainGraph) {
   const Scene scene = load_scene("5_02");
   const auto diagram = see(scene, source_config());
@@ -79,7 +79,7 @@ TEST(FiguresOfChapter5, Figure2ABranchThatNothingJoinsIsOffTheMainGraph) {
 }
 
 // Figure 5.4: in the hall the clearance falls, sqrt((1.5 - x)^2 + 1) on the axis y = 0.1; in the
-// corridor it stays at 1. The passage is where the corridor begins, at x = 1.5.
+// corridor it stays at 1. The passage is at the start of the corridor, x = 1.5.
 TEST(FiguresOfChapter5, Figure4FromAHallIntoACorridorThereIsAStateAtTheMouth) {
   const Scene scene = load_scene("5_04");
   EXPECT_THAT(see(scene, source_config()).groups, ElementsAre("AEF", "BCD"));
@@ -95,11 +95,11 @@ TEST(FiguresOfChapter5, Figure4FromAHallIntoACorridorThereIsAStateAtTheMouth) {
                                          "AEF|BCD: hall-corridor AEF|BCD - fictitious AEF|BCD"));
 
   LocalMapConfig high = source_map_config();
-  high.hall_rise_m = 1.0;  // in the hall the clearance is 0.8 m more at most
+  high.hall_rise_m = 1.0;  // in the hall the clearance is at most 0.8 m larger
   EXPECT_EQ(see_map(scene, source_config(), high).branches, without.branches);
 }
 
-// Figure 5.4 with the distances as they are drawn: they fall up to the mouth and then stay.
+// Figure 5.4 with the distances as drawn: they fall up to the mouth and then stay constant.
 TEST(FiguresOfChapter5, Figure4ClearancesFallInTheHallAndStayInTheCorridor) {
   const Scene scene = load_scene("5_04");
   const LocalMap map = figure_scenes::make_map(figure_scenes::scan_of(scene.world, {}),
@@ -141,7 +141,7 @@ TEST(FiguresOfChapter5, Figure5TheMinimumOfTheClearanceIsADoor) {
   EXPECT_EQ(see_map(scene, source_config(), flat).node_names(), without.node_names());
 }
 
-// Figure 5.7: what lies beyond the gap in the branch ahead is cut off (5.5), and the narrowing
+// Figure 5.7: points beyond the gap in the branch ahead are cut off (5.5), and the narrowing
 // between the tip (1.6, 0.65) of the door leaf and the wall y = -0.9 is a state: (1.6, -0.125).
 TEST(FiguresOfChapter5, Figure7FarPointsAreCutAndTheNarrowingIsAState) {
   const Scene scene = load_scene("5_07");
@@ -171,7 +171,7 @@ TEST(FiguresOfChapter5, Figure7FarPointsAreCutAndTheNarrowingIsAState) {
                                          "CDE|F: real A|B|CDE|F - fictitious CDE|F"));
 }
 
-// Figures 4.7 as local maps: every node and branch is virtual.
+// Figure 4.7 as local maps: every node and branch is virtual.
 TEST(FiguresOfChapter5, WithoutTwoGroupsEverythingIsVirtual) {
   for (const std::string number : {"4_07a", "4_07b"}) {
     const LocalMap map =

@@ -13,7 +13,7 @@ namespace {
 using geometry::Pose2;
 
 struct DoorScene {
-  std::string text;  ///< as a world file
+  std::string text;  ///< in the format of world files
   Eigen::Vector2d laser_m;
   Eigen::Vector2d door_m;
 };

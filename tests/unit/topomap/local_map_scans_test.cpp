@@ -1,5 +1,5 @@
 // Scans of every length and content as local maps: few and many beams, nothing in range, readings
-// that are no numbers, readings on the sensor.
+// that are not finite, readings at the sensor.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -31,7 +31,7 @@ constexpr std::array<std::size_t, 7> kBeamCounts{1, 2, 180, 181, 360, 361, 1081}
 /// `count` beams evenly over a field of view around the forward direction.
 simulation::BeamPattern beams_over(double view_deg, std::size_t count) {
   const double view_rad = view_deg * std::numbers::pi / 180.0;
-  // A full turn has no beam twice.
+  // A full turn must not repeat a beam.
   const std::size_t steps = view_deg >= 360.0 ? count : std::max<std::size_t>(count, 2) - 1;
   return {.angle_min_rad = count > 1 ? -0.5 * view_rad : 0.0,
           .angle_step_rad = view_rad / static_cast<double>(steps),
@@ -50,7 +50,7 @@ TEST(ScansAsLocalMaps, AnyNumberOfBeamsGivesAWellFormedMap) {
         const Made made = make_map(scan, source_config(), source_map_config());
         expect_well_formed(made.map, made.diagram.is_virtual);
         EXPECT_LE(made.map.points.size(), count);
-        // One or two beams are small groups: nothing is left of them.
+        // One or two beams are small groups, which are all dropped.
         EXPECT_TRUE(count > 2 || made.diagram.is_virtual);
         const Made defaults = make_map(scan, {}, {});
         expect_well_formed(defaults.map, defaults.diagram.is_virtual);
@@ -59,7 +59,7 @@ TEST(ScansAsLocalMaps, AnyNumberOfBeamsGivesAWellFormedMap) {
   }
 }
 
-// Figure 5.5 with 180 to 1081 beams ahead: the same nodes, the positions better with more beams.
+// Figure 5.5 with 180 to 1081 beams ahead: the same nodes, with better positions for more beams.
 TEST(ScansAsLocalMaps, TheNumberOfBeamsDoesNotChangeWhatIsSeen) {
   const Scene scene = load_scene("5_05");
   for (const std::size_t count : {180U, 181U, 360U, 361U, 1081U}) {
@@ -98,7 +98,7 @@ TEST(ScansAsLocalMaps, WithoutAReadingInRangeTheMapIsVirtual) {
         EXPECT_TRUE(made.diagram.is_virtual);
         expect_well_formed(made.map, true);
         EXPECT_TRUE(made.map.points.empty());
-        // The way straight ahead, for navigation.
+        // The path straight ahead, for navigation.
         EXPECT_TRUE(count < 180 || made.map.branches.size() == 1);
       }
     }
@@ -112,7 +112,7 @@ TEST(ScansAsLocalMaps, NoBeamAtAllGivesAnEmptyMap) {
   EXPECT_TRUE(made.map.points.empty());
 }
 
-/// Every 37th beam from the tenth, away from the borders of groups.
+/// Changes every 37th beam from the tenth on, away from the borders of groups.
 void spoil(scan::Scan& scan, const std::vector<float>& with_m) {
   for (std::size_t i = 10, n = 0; i < scan.ranges_m.size(); i += 37, ++n) {
     scan.ranges_m[i] = with_m[n % with_m.size()];
@@ -132,9 +132,9 @@ TEST(ScansAsLocalMaps, BeamsWithoutANumberLeaveTheGroupsOfTheOthersAsTheyAre) {
     const Made from_good = make_map(good, source_config(), source_map_config());
     const Made from_bad = make_map(bad, source_config(), source_map_config());
     const Made from_missing = make_map(missing, source_config(), source_map_config());
-    // A beam without a number is a beam without an echo, bit for bit.
+    // A beam with NaN equals a beam without a return, bit for bit.
     EXPECT_EQ(content_hash(from_bad.map), content_hash(from_missing.map));
-    // The groups are those of the good scan less the spoilt beams.
+    // The groups are those of the good scan without the spoilt beams.
     const auto names = figure_scenes::group_names(from_good.diagram, scene.world, {});
     EXPECT_EQ(figure_scenes::group_names(from_bad.diagram, scene.world, {}), names);
     std::vector<std::uint32_t> expected;
@@ -146,7 +146,7 @@ TEST(ScansAsLocalMaps, BeamsWithoutANumberLeaveTheGroupsOfTheOthersAsTheyAre) {
       for (const auto& point : from_bad.diagram.groups.points) found.push_back(point.beam);
       EXPECT_EQ(found, expected);
     }
-    // Missing beams cut no branch: nodes and branches stay.
+    // Missing beams cut no branch: nodes and branches remain.
     EXPECT_EQ(describe(from_bad.map, names).branches, describe(from_good.map, names).branches);
   }
 }
@@ -166,7 +166,7 @@ TEST(ScansAsLocalMaps, AReadingOnTheSensorIsDroppedAsASmallGroup) {
     EXPECT_EQ(describe(from_bad.map, names).node_names(),
               describe(from_good.map, names).node_names());
 
-    // Kept, it is an object at the robot; the map stays well formed.
+    // When kept, it is an object at the robot; the map stays well-formed.
     voronoi::VoronoiConfig keep = source_config();
     keep.drop_small = false;
     const Made kept = make_map(bad, keep, source_map_config());

@@ -1,4 +1,4 @@
-// States and the main graph on branches made by hand: one along x through given clearances.
+// States and the main graph on hand-made branches: one along x with given clearances.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -51,8 +51,8 @@ std::vector<DiagramPoint> through_a_gap(double half_width_m) {
 }
 
 // Eq. 5.1 with 5.3 and 5.4, worked by hand: down to x = 0.5, up to x = 1, level from there on. A
-// single reading that is off at x = 0.2 does not turn the slope upwards, but the print lets the
-// return from it count.
+// single outlier at x = 0.2 does not turn the slope upwards, but by the printed rule the return
+// from it counts.
 TEST(LocalMapStates, EachConfirmedChangeOfSlopeIsAStateByTheRuleOfTheThesis) {
   LocalMapConfig config;
   config.state_rule = StateRule::kSlopes;
@@ -92,7 +92,7 @@ TEST(LocalMapStates, AGapThatIsTooNarrowForTheRobotIsNoDoor) {
   EXPECT_EQ(kind_of(0.25), NodeKind::kDoor);
 }
 
-/// A corridor 2 m wide up to x = 3.013, where both walls or one end; hidden from x = `seen_m` on.
+/// A corridor 2 m wide up to x = 3.013, where one or both walls end; hidden from x = `seen_m` on.
 std::vector<DiagramPoint> into_a_hall(double growth, double seen_m) {
   std::vector<DiagramPoint> points;
   for (int i = 0; i <= 90; ++i) {
@@ -105,7 +105,7 @@ std::vector<DiagramPoint> into_a_hall(double growth, double seen_m) {
 }
 
 TEST(LocalMapStates, TheMouthOfACorridorIsWhereItsWallsEnd) {
-  for (const double growth : {1.0, 0.5}) {  // both walls end, one does
+  for (const double growth : {1.0, 0.5}) {  // both walls end, or only one
     for (const bool reversed : {false, true}) {
       auto points = into_a_hall(growth, 10.0);
       if (reversed) std::ranges::reverse(points);
@@ -122,14 +122,14 @@ TEST(LocalMapStates, AHallIsNoneUntilTheRiseToItWasSeen) {
   LocalMapConfig config;
   config.hall_rise_m = 0.3;
   config.largest_hidden_share = 0.2;
-  // Behind the mouth the clearance is 1.3 m at x = 3.84.
+  // Behind the mouth the clearance reaches 1.3 m at x = 3.84.
   EXPECT_EQ(states_of(into_a_hall(1.0, 4.0), config).size(), 1U);
   EXPECT_TRUE(states_of(into_a_hall(1.0, 3.6), config).empty());
   config.largest_hidden_share = 1.0;  // everything counts as seen, as in the Thesis
   EXPECT_EQ(states_of(into_a_hall(1.0, 3.6), config).size(), 1U);
 }
 
-/// A straight branch of clearance 1 m.
+/// A straight branch with a clearance of 1 m.
 std::vector<DiagramPoint> level(double from_x_m, double to_x_m, double y_m) {
   std::vector<DiagramPoint> points;
   const int steps = static_cast<int>(std::lround((to_x_m - from_x_m) / 0.1));
@@ -152,16 +152,16 @@ TEST(MainGraph, AStubBesideTheRobotIsNotTheWayToGo) {
     return ids;
   };
   using Ids = std::vector<std::uint32_t>;
-  EXPECT_EQ(main_branches(), Ids{1});  // the nearest that is long enough
+  EXPECT_EQ(main_branches(), Ids{1});  // the nearest one of sufficient length
   config.min_main_graph_m = 0.5;
   EXPECT_EQ(main_branches(), Ids{0});
   config.min_main_graph_m = 0.0;
   EXPECT_EQ(main_branches(), Ids{0});
   config.min_main_graph_m = 2.0;
   EXPECT_EQ(main_branches(), Ids{2});
-  config.min_main_graph_m = 5.0;  // where none is long enough, the nearest of all
+  config.min_main_graph_m = 5.0;  // none is long enough: the nearest of all
   EXPECT_EQ(main_branches(), Ids{0});
-  // The length is that of all branches of the graph.
+  // The length includes all branches of the graph.
   add_traced_branch(diagram, level(1.0, 1.5, 0.2), {0, 1});
   config.min_main_graph_m = 1.0;
   EXPECT_EQ(main_branches(), (Ids{0, 3}));

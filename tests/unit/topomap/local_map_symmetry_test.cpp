@@ -1,6 +1,6 @@
-// Turning the laser on the robot, or mirroring scene and laser, turns and mirrors diagram and local
-// map: all scenes of the Thesis's figures, a field of view of 180 and of 360 degrees, with and
-// without the rule of hidden zones.
+// When the laser is turned on the robot, or scene and laser are mirrored, diagram and local map are
+// turned and mirrored alike: all scenes of the Thesis's figures, a field of view of 180 and of 360
+// degrees, with and without the rule of hidden zones.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -41,7 +41,7 @@ std::vector<View> all_views() {
         for (const bool hidden_zones : {false, true}) {
           View view{number + " from place " + std::to_string(at), number, scene, at, full_turn, {}};
           view.config = source_config();
-          // The window of 4.14 lies along the axes of the laser and does not turn with the walls.
+          // The window of 4.14 follows the axes of the laser and does not turn with the walls.
           view.config.window_of_groups = false;
           view.config.join_hidden_zones = hidden_zones;
           view.title += full_turn ? ", full turn" : ", half turn";
@@ -54,14 +54,14 @@ std::vector<View> all_views() {
   return views;
 }
 
-/// A local map in words and its branches, mirrored along x if `mirror` is -1.
+/// A local map as text and its branches, mirrored along x if `mirror` is -1.
 struct Picture {
   std::vector<std::string> groups;  ///< sorted
   MapSeen seen;
   std::vector<std::vector<Eigen::Vector2d>> curves_m;
 };
 
-/// The robot looks along x; the laser is turned by `turn_rad` on it and covers the same directions.
+/// The robot faces x; the laser is turned by `turn_rad` on it and covers the same directions.
 Picture picture_of(const View& view, double turn_rad, double mirror = 1.0) {
   const Scene scene = mirror < 0.0 ? figure_scenes::mirrored(view.scene) : view.scene;
   const Pose2 T_robot_laser{0.0, 0.0, geometry::wrap_angle(-turn_rad)};
@@ -89,7 +89,7 @@ Picture picture_of(const View& view, double turn_rad, double mirror = 1.0) {
   return picture;
 }
 
-/// How far a node of one picture may be from that of the other, metres, by the kind of node.
+/// Largest distance between equal nodes of two pictures, metres, by the kind of node.
 struct Tolerance {
   double real_m;
   double state_m;
@@ -133,7 +133,7 @@ double farthest_apart_m(const Picture& a, const Picture& b) {
   return farthest_m;
 }
 
-// The cells turn with the laser. Sites that are equally near a cell differ by less than a
+// The cells turn with the laser. Sites at nearly equal distance from a cell differ by less than a
 // millimetre.
 constexpr Tolerance kSameGrid{0.001, 0.001, 0.06};
 
@@ -163,11 +163,11 @@ TEST(SymmetryOfLocalMaps, TheMirrorImageOfASceneHasTheMirrorImageOfItsMap) {
   }
 }
 
-// A loose end lies in the last visible cells: up to the diagonal of one, 7.1 cm, apart.
+// A loose end is in the last visible cells: up to the diagonal of one, 7.1 cm, of difference.
 constexpr Tolerance kOtherGrid{0.01, 0.02, 0.071};
 // In figure 5.7 the shadow of the chair's leg is as thin as a cell, and the axis leaves it at an
-// angle of 3 degrees: the cells decide where the branch behind it begins, and whether as one piece
-// or as two of the same name.
+// angle of 3 degrees: the cells decide where the branch behind it begins, and whether it is one
+// piece or two of the same name.
 constexpr Tolerance kThinShadow{0.01, 0.02, 0.3};
 
 std::vector<std::string> once_if_off(std::vector<std::string> sorted) {

@@ -84,7 +84,7 @@ TEST(ContentHash, IsKnownOfTheMapWithAnotherNumber) {
 }
 
 TEST(ContentHash, TellsApartWhereOneListEndsAndTheNextBegins) {
-  // Two branches of two points against one of four with the same numbers in the same order.
+  // Two branches of two points, against one of four with the same numbers in the same order.
   LocalMap one;
   one.branches.resize(2);
   one.branches[0].points = {{{0, 0}, 0}, {{0, 0}, 0}};

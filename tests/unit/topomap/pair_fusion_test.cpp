@@ -1,4 +1,4 @@
-// Fusion as the thesis prints it (7.25-7.27), worked by hand: a corridor along x seen twice.
+// Fusion as printed in the thesis (7.25-7.27), worked by hand: a corridor along x seen twice.
 #include <algorithm>
 #include <cstdint>
 #include <set>
@@ -23,7 +23,7 @@ LocalMap corridor_view(std::uint32_t id, double length_m, double clearance_m) {
   map.nodes[1].kind = NodeKind::kDoor;
   map.nodes[1].position_m = {length_m, 0.0};
   map.nodes[1].clearance_m = clearance_m;
-  map.nodes[2].position_m = {0.0, 1.0};  // these two make the field of view 2 m wide
+  map.nodes[2].position_m = {0.0, 1.0};  // these two widen the field of view to 2 m
   map.nodes[3].position_m = {0.0, -1.0};
   LocalBranch branch;
   branch.node_b = 1;
@@ -49,7 +49,7 @@ TEST(PairFusion, EquivalentNodesBecomeTheMeanOfTheMapAndTheView) {
   const auto door = std::find_if(map.nodes.begin(), map.nodes.end(),
                                  [](const MapNode& n) { return n.kind == NodeKind::kDoor; });
   ASSERT_NE(door, map.nodes.end());
-  // 7.25 and 7.26 twice: not the mean of the three views, each later one counts half.
+  // 7.25 and 7.26 twice: not the mean of the three views, because each later one counts half.
   EXPECT_NEAR(door->position_m.x(), 0.5 * (0.5 * (4.0 + 4.2) + 4.2), 1e-9);
   EXPECT_NEAR(door->position_m.y(), 0.5 * (0.5 * (0.0 + 0.1) + 0.05), 1e-9);
   EXPECT_NEAR(door->clearance_m, 0.5 * (0.55 + 0.55), 1e-9);
@@ -85,7 +85,7 @@ TEST(PairFusion, WhatIsNotEquivalentIsAdded) {
   }
 }
 
-// The corridor and 0.3 m beyond its door, as long as what is near the end of the corridor.
+// The corridor and 0.3 m beyond its door, up to the length of objects near the corridor's end.
 LocalMap view_beyond_door() {
   LocalMap map = corridor_view(0, 4.0, 0.5);
   map.nodes.push_back(map.nodes[0]);

@@ -14,7 +14,7 @@ using geometry::Pose2;
 
 constexpr double kQuarterTurn = std::numbers::pi / 2.0;
 
-// Stop 0, two scans on the way, stop 1, one scan, stop 2; odometry drifts.
+// Stop 0, two scans on the path, stop 1, one scan, stop 2; odometry drifts.
 std::vector<LocalMap> three_stops() {
   std::vector<LocalMap> maps(3);
   for (std::uint32_t i = 0; i < 3; ++i) maps[i].id = i;

@@ -28,7 +28,7 @@ class LinkedDrive {
  public:
   explicit LinkedDrive(Floor floor) : floor_(std::move(floor)) {}
 
-  /// Drives straight to a stop and makes its map; one with nothing in it when the laser is covered.
+  /// Drives straight to a stop and makes its map; the map is empty when the laser is covered.
   void stop_at(const Pose2& pose, bool covered = false) {
     LocalMap map = covered ? LocalMap{} : view(floor_, pose);
     map.id = static_cast<std::uint32_t>(maps_.size());
@@ -47,7 +47,7 @@ class LinkedDrive {
     stops_.push_back({map.id, 0, pose, Eigen::Matrix3d::Zero()});
   }
 
-  /// Along y = 0, a stop each metre.
+  /// Drives along y = 0, with a stop each metre.
   void along_x(int from_m, int to_m, bool covered = false) {
     const int step = from_m <= to_m ? 1 : -1;
     const double heading_rad = step > 0 ? 0.0 : std::numbers::pi;
@@ -100,7 +100,7 @@ void expect_linked_well(const GlobalMap& map) {
   }
 }
 
-// The laser sees 8 m ahead: with the cover on from x = 4 to 21 nothing between 11 and 22 is seen.
+// The laser sees 8 m ahead: covered from x = 4 to 21, it sees nothing between 11 and 22.
 LinkedDrive covered_in_the_middle() {
   LinkedDrive drive(corridor(30));
   drive.along_x(0, 3);
@@ -114,7 +114,7 @@ TEST(VirtualLink, JoinsWhatACoveredLaserLeftApart) {
   expect_linked_well(map);
   ASSERT_EQ(links(map).size(), 1U);
   const MapBranch link = links(map)[0];
-  // Between the two ends of what was seen, along the way that was driven.
+  // Between the two ends of the seen parts, along the driven path.
   EXPECT_NEAR(node(map, link.node_a).position_m.x(), 11.0, 0.3);
   EXPECT_NEAR(node(map, link.node_b).position_m.x(), 22.0, 0.3);
   EXPECT_EQ(map.branches.size(), 3U);
@@ -122,12 +122,12 @@ TEST(VirtualLink, JoinsWhatACoveredLaserLeftApart) {
   EXPECT_EQ(link.observations, 0U);
   EXPECT_GE(link.id, 1U << 31U);
   for (const BranchPoint& p : link.points) EXPECT_NEAR(p.position_m.y(), 0.0, 0.1);
-  // The stops about the middle saw nothing.
+  // The stops near the middle saw nothing.
   EXPECT_EQ(link.points[link.points.size() / 2].clearance_m, 0.0);
 }
 
 TEST(VirtualLink, ClearanceIsToTheNearestPointThatEitherStopSaw) {
-  // Scan points without branches: the walls are known, yet nothing joins the parts.
+  // Scan points without branches: the walls are known, but nothing joins the parts.
   LinkedDrive drive(corridor(30));
   drive.along_x(0, 3);
   Floor bare = corridor(30);
@@ -145,7 +145,7 @@ TEST(VirtualLink, ClearanceIsToTheNearestPointThatEitherStopSaw) {
 }
 
 TEST(VirtualLink, FollowsTheDrivenWayAndMeetsTheMiddleOfABranch) {
-  // Out of a corridor by a side door with the cover on, round a corner, into another corridor.
+  // Out of a corridor by a side door with the laser covered, round a corner, into another corridor.
   //
   //   a |=======================|      y = 0, seen from x = 0 to 20
   //               :
@@ -174,7 +174,7 @@ TEST(VirtualLink, FollowsTheDrivenWayAndMeetsTheMiddleOfABranch) {
     const double from_along_m = std::fabs(p.position_m.y() + 10.0);
     EXPECT_LT(std::min(from_down_m, from_along_m), 0.3) << p.position_m.transpose();
   }
-  // The corridor is in two halves now, of which one keeps its name.
+  // The corridor is now in two halves, and one of them keeps its name.
   EXPECT_EQ(std::ranges::count_if(map.branches,
                                   [](const MapBranch& b) {
                                     return !b.is_virtual &&
@@ -189,7 +189,7 @@ TEST(VirtualLink, IsTakenByARouteThoughItsClearanceIsUnknown) {
   ASSERT_TRUE(result.found()) << result.reason;
   EXPECT_THAT(result.route.branch_ids, testing::Contains(links(map)[0].id));
   EXPECT_NEAR(result.route.length_m, 27.0, 0.5);
-  // From the middle of the gap, where the robot may stand when it gets its goal.
+  // A robot may start in the middle of the gap.
   EXPECT_TRUE(planning::plan(map, {16, 0}, {28, 0}).found());
 }
 
@@ -225,12 +225,12 @@ TEST(VirtualLink, IsMadeOnceHoweverOftenTheWayIsDriven) {
   const GlobalMap twice = drive.map();
   ASSERT_EQ(links(twice).size(), 1U);
   EXPECT_EQ(links(twice)[0].id, links(once)[0].id);
-  // On its way back the robot saw down to x = 14 before the cover came on.
+  // On its way back the robot saw down to x = 14 before the laser was covered.
   EXPECT_NEAR(node(twice, links(twice)[0].node_b).position_m.x(), 14.0, 0.3);
 }
 
 TEST(VirtualLink, NeedsStopsThatFollowEachOther) {
-  // Somebody carried the robot: the ids of the maps leave one out.
+  // The robot was carried: the ids of the maps have a gap.
   LinkedDrive drive(corridor(30));
   drive.along_x(0, 3);
   drive.along_x(22, 29);

@@ -11,8 +11,8 @@
 
 namespace topogeo::topomap::test {
 
-/// Expects what must hold of every local map: ids, ends of branches, finite coordinates, branches
-/// of two base groups of their nodes and on the main graph with them.
+/// Expects the invariants of every local map: ids, ends of branches, finite coordinates, branches
+/// with two base groups of their nodes and on the main graph with them.
 inline void expect_well_formed(const LocalMap& map) {
   for (std::size_t i = 0; i < map.nodes.size(); ++i) {
     const LocalNode& node = map.nodes[i];

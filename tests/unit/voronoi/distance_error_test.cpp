@@ -14,7 +14,7 @@ TEST(DistanceError, Table1OfChapter4) {
     double e_max_cm;
     double twice_e_max_cm;
   };
-  // The Thesis prints 3.53 for 5 cm, which is 3.5355 cut off and not rounded.
+  // The Thesis prints 3.53 for 5 cm, which is 3.5355 truncated instead of rounded.
   for (const Row& row : {Row{1, 0.71, 1.41}, Row{3, 2.12, 4.24}, Row{5, 3.535, 7.07},
                          Row{7, 4.95, 9.9}, Row{9, 6.36, 12.73}}) {
     const double e_max_cm = 100.0 * largest_distance_error_m(0.01 * row.resolution_cm);

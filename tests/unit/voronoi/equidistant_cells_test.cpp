@@ -1,12 +1,12 @@
-// The Thesis's own rule as brute force, against which the cracks are held: every cell whose
-// distances to its nearest groups differ by less than 2 E_max (4.18-4.22) belongs to the diagram,
-// cells with the same base groups to one branch or node (4.23, 4.24).
+// The Thesis's own rule by brute force, the reference for the cracks: every cell whose distances
+// to its nearest groups differ by less than 2 E_max (4.18-4.22) belongs to the diagram, cells with
+// the same base groups to one branch or node (4.23, 4.24).
 //
-// The two differ in wedges. Behind a gap between two groups distances to both grow almost alike:
-// whole areas pass the rule, and where the line of equal distance itself is hidden, or runs along
-// the edge of a shadow, all cells of such an area that are seen are nearer to the same group. There
-// is no branch there. What counts are the cells where the two groups meet: those with a neighbour
-// that is nearer to the other group.
+// The two differ in wedges. Behind a gap between two groups, distances to both grow almost alike:
+// whole areas pass the rule. When the line of equal distance itself is hidden, or runs along the
+// edge of a shadow, all visible cells of such an area are nearer to the same group, and there is
+// no branch. Therefore only cells where the two groups meet count: cells with a neighbour that is
+// nearer to the other group.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -31,7 +31,7 @@ namespace {
 using BaseGroups = std::vector<std::uint16_t>;
 
 struct Cell {
-  BaseGroups groups;  ///< CB; empty where the cell is not visible or belongs to one group
+  BaseGroups groups;  ///< CB; empty when the cell is invisible or belongs to one group
   std::uint16_t nearest = NearestSiteGrid::kNone;
 };
 
@@ -66,7 +66,7 @@ class EquidistantCells {
   [[nodiscard]] bool inside(int row, int col) const {
     return row >= 0 && col >= 0 && row < grid_.rows() && col < grid_.cols();
   }
-  /// Row and column of the cell that a point lies in.
+  /// Row and column of the cell that contains a point.
   [[nodiscard]] std::array<int, 2> cell_of(const Eigen::Vector2d& at_m) const {
     const Eigen::Vector2d from_first = (at_m - grid_.centre(0, 0)) / grid_.resolution_m();
     return {static_cast<int>(std::lround(from_first.x())),
@@ -90,7 +90,7 @@ class EquidistantCells {
 
 constexpr std::array<std::array<int, 2>, 4> kBeside{{{0, 1}, {1, 0}, {0, -1}, {-1, 0}}};
 
-/// Cells of one branch that hang together by their sides.
+/// Cells of one branch that are connected by their sides.
 struct Patch {
   BaseGroups groups;
   std::vector<std::array<int, 2>> cells;
@@ -106,7 +106,7 @@ struct Patch {
   }
 };
 
-/// True if the two base groups of a cell meet between it and a neighbour.
+/// True if the two base groups of a cell meet at one of its sides.
 bool groups_meet(EquidistantCells& cells, int row, int col) {
   const Cell& cell = cells.at(row, col);
   return std::ranges::any_of(kBeside, [&](const std::array<int, 2>& step) {
@@ -116,7 +116,7 @@ bool groups_meet(EquidistantCells& cells, int row, int col) {
   });
 }
 
-/// Takes all patches of branch cells out of the grid, or only of those where their groups meet.
+/// Removes all patches of branch cells from the grid, or only of those where their groups meet.
 std::vector<Patch> take_patches(EquidistantCells cells, int rows, int cols, bool only_meeting) {
   std::vector<Patch> patches;
   if (only_meeting) {
@@ -149,11 +149,11 @@ std::vector<Patch> take_patches(EquidistantCells cells, int rows, int cols, bool
 
 struct Tally {
   int points = 0;   ///< branch points, all inside their cells
-  int patches = 0;  ///< longer than four cells where their groups meet, followed all along
-  int areas = 0;    ///< longer than four cells, whether or not their groups meet
+  int patches = 0;  ///< longer than four cells where their groups meet, completely followed
+  int areas = 0;    ///< longer than four cells, even where their groups do not meet
 };
 
-/// Holds the diagram of one scan against the rule, both ways.
+/// Compares the diagram of one scan with the rule, in both directions.
 void expect_agreement(const scan::Scan& scan, const VoronoiConfig& config, const std::string& name,
                       Tally& tally) {
   LocalVoronoi voronoi{config};
@@ -166,7 +166,7 @@ void expect_agreement(const scan::Scan& scan, const VoronoiConfig& config, const
     for (std::size_t i = 0; i < points.size(); ++i) {
       const auto [row, col] = cells.cell_of(points[i].position_m);
       reached[{branch.base_groups[0], branch.base_groups[1]}].push_back({row, col});
-      // The ends can be those of a node that several corners were merged into.
+      // The ends may be a node merged from several corners.
       if (i == 0 || i + 1 == points.size()) continue;
       ASSERT_TRUE(cells.inside(row, col)) << name;
       const Cell& cell = cells.at(row, col);
@@ -198,7 +198,7 @@ void expect_agreement(const scan::Scan& scan, const VoronoiConfig& config, const
 TEST(EquidistantCells, HoldTheBranchesAndHaveNoOthersOnRandomScenes) {
   VoronoiConfig config;
   config.range_limit_m = 6.0;
-  config.min_branch_m = 0.0;  // the rule knows no crumbs; by default they are dropped
+  config.min_branch_m = 0.0;  // the rule has no minimum length
   Tally tally;
   for (std::uint32_t seed = 0; seed < 60; ++seed) {
     const test_world::Laser laser{.beams = seed % 2 == 0 ? 361U : 720U,
@@ -216,7 +216,7 @@ TEST(EquidistantCells, HoldTheBranchesAndHaveNoOthersOnRecordedScans) {
   if (recorded_logs().empty()) GTEST_SKIP() << "no logs in ../shared/data or TOPOGEO_LOG_DIR";
   VoronoiConfig config;
   config.range_limit_m = 6.0;
-  config.min_branch_m = 0.0;  // the rule knows no crumbs; by default they are dropped
+  config.min_branch_m = 0.0;  // the rule has no minimum length
   Tally tally;
   for (const auto& path : recorded_logs()) {
     scan::CarmenLogReader reader(path);

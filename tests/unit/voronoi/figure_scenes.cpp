@@ -11,7 +11,7 @@
 namespace topogeo::figure_scenes {
 namespace {
 
-/// Readings are stored as float: farther from a surface than this they are not on it.
+/// Readings are stored as float: points farther from a surface than this are not on it.
 constexpr double kOnSurface_m = 1e-4;
 
 double distance_m(const world::Segment& segment, const Eigen::Vector2d& point_m) {
@@ -20,7 +20,7 @@ double distance_m(const world::Segment& segment, const Eigen::Vector2d& point_m)
   return (segment.a_m + t * along - point_m).norm();
 }
 
-/// Letters of the surfaces that a point lies on: two in a corner.
+/// Letters of the surfaces that contain a point: two in a corner.
 std::string surfaces_at(const world::World& world, const Eigen::Vector2d& point_m) {
   std::string letters;
   for (std::size_t i = 0; i < world.segments.size(); ++i) {
@@ -155,7 +155,7 @@ Seen describe(const voronoi::LocalVoronoiDiagram& diagram, const world::World& w
   };
   for (const voronoi::DiagramBranch& branch : diagram.branches) {
     std::array ends{end_name(branch.node_a), end_name(branch.node_b)};
-    // A node before an open end, and nodes by name.
+    // A node goes before an open end, and nodes are sorted by name.
     if (ends[0] == "open" || (ends[1] != "open" && ends[1] < ends[0])) std::swap(ends[0], ends[1]);
     seen.branches.push_back(joined_names(branch.base_groups, seen.groups) + ": " + ends[0] + " - " +
                             ends[1]);

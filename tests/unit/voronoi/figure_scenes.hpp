@@ -1,9 +1,9 @@
-// The scenes of the Thesis's figures (tests/data/figures) and what a diagram of them says in words.
+// The scenes of the Thesis's figures (tests/data/figures) and a textual form of their diagrams.
 //
 // Walls have the letters A, B, C ... in the order of the scene file, columns a, b, c ... A group is
-// named by the letters of the surfaces that its points lie on ("BC"), a node and a branch by the
-// groups that they are equally far from ("A|BC|D"). So an expectation does not depend on the order
-// of groups and can be compared between turned and mirrored scenes.
+// named by the letters of the surfaces with its points ("BC"), a node and a branch by the groups at
+// equal distance ("A|BC|D"). So expectations do not depend on the order of groups and can be
+// compared between turned and mirrored scenes.
 #pragma once
 
 #include <cstddef>
@@ -25,15 +25,15 @@ namespace topogeo::figure_scenes {
 
 struct Scene {
   world::World world;
-  /// Where the laser stands: each point of the tour, looking along x.
+  /// Poses of the laser: each point of the tour, facing x.
   std::vector<geometry::Pose2> T_world_laser;
 };
 
 /// Scene of tests/data/figures/figure_<number>.world.yaml.
 Scene load_scene(const std::string& number);
-/// All of them.
+/// Numbers of all scenes.
 const std::vector<std::string>& scene_numbers();
-/// The scene as a mirror along the x axis shows it.
+/// The scene mirrored at the x axis.
 Scene mirrored(const Scene& scene);
 
 /// The laser of the Thesis: 361 beams over 180 degrees.
@@ -65,7 +65,7 @@ struct NamedNodes {
   std::vector<NamedNode> nodes;
 
   [[nodiscard]] std::vector<std::string> node_names() const;  ///< sorted
-  /// The node of that name; empty if there is none or more than one.
+  /// The node with that name; empty if there is none or more than one.
   [[nodiscard]] std::optional<NamedNode> node(std::string_view name) const;
 };
 
@@ -85,11 +85,11 @@ std::string joined_names(const Groups& groups, const std::vector<std::string>& n
 
 Seen describe(const voronoi::LocalVoronoiDiagram& diagram, const world::World& world,
               const geometry::Pose2& T_world_laser);
-/// Diagram of the scene from place `at`, in words.
+/// Diagram of the scene from place `at`, as text.
 Seen see(const Scene& scene, const voronoi::VoronoiConfig& config,
          const simulation::BeamPattern& beams = half_turn(), std::size_t at = 0);
 
-/// Expects one node of that name within 3 cm of `position_m`, worked out by hand for whole walls.
+/// Expects one node with that name within 3 cm of `position_m`, worked by hand for whole walls.
 void expect_node(const NamedNodes& seen, const std::string& name, const Eigen::Vector2d& position_m,
                  double tolerance_m = 0.03);
 

@@ -29,7 +29,7 @@ using figure_scenes::source_config;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-// 4.7(a): no group, so two virtual ones at 0.6 m to the right and left, along the motion.
+// 4.7(a): no group, so two virtual ones at 0.6 m to the right and left, parallel to the motion.
 TEST(FiguresOfChapter4, Figure7aNoGroupGivesTwoVirtualGroups) {
   const Scene scene = load_scene("4_07a");
   LocalVoronoi voronoi(source_config());
@@ -45,7 +45,7 @@ TEST(FiguresOfChapter4, Figure7aNoGroupGivesTwoVirtualGroups) {
   EXPECT_GT(diagram.points.back().position_m.x() - diagram.points.front().position_m.x(), 3.5);
 
   VoronoiConfig farther = source_config();
-  farther.range_limit_m = 10.0;  // the walls at 9 m are objects now
+  farther.range_limit_m = 10.0;  // the walls at 9 m are now objects
   const Seen seen = see(scene, farther);
   EXPECT_FALSE(seen.is_virtual);
   EXPECT_EQ(seen.groups.size(), 3U);
@@ -89,8 +89,8 @@ TEST(FiguresOfChapter4, Figure8SplitAtDiscontinuitiesTellsFourObjectsApart) {
   EXPECT_THAT(without.branches, ElementsAre("ABC|DEF: open - open"));
 }
 
-// Rule 4.8, "from 6 to 5": the branch between door leaf and wardrobe goes. Beside the door the
-// jambs and the right wall are equally far: (1.1 - y)^2 + 0.45^2 = (y + 0.9)^2.
+// Rule 4.8, "from 6 to 5": the branch between door leaf and wardrobe is removed. Beside the door
+// the jambs and the right wall are equally far: (1.1 - y)^2 + 0.45^2 = (y + 0.9)^2.
 TEST(FiguresOfChapter4, Figure10JoiningContiguousGroupsRemovesTheBranchOfANarrowGap) {
   const Scene scene = load_scene("4_10");
   const Seen without = see(scene, only_splitting());
@@ -116,8 +116,8 @@ TEST(FiguresOfChapter4, Figure10JoiningContiguousGroupsRemovesTheBranchOfANarrow
   EXPECT_EQ(see(scene, config).groups.size(), 6U);
 }
 
-// Rule 4.9, fewer than 6: A and C on either side of the slit are one object and what was seen
-// between them is dropped, with its branches. Nodes without the rule: before the slit
+// Rule 4.9, fewer than 6: A and C on either side of the slit are one object; readings between them
+// are dropped, with their branches. Nodes without the rule: before the slit
 // (1.1 - y)^2 = 0.225^2 + (y + 0.9)^2, behind it (y + 1.8)^2 = 0.225^2 + (y + 0.9)^2.
 TEST(FiguresOfChapter4, Figure11JoiningAlternateGroupsRemovesTheBranchThroughASlit) {
   const Scene scene = load_scene("4_11");
@@ -134,7 +134,7 @@ TEST(FiguresOfChapter4, Figure11JoiningAlternateGroupsRemovesTheBranchThroughASl
                           "DJ|EF: C|DJ|EF|G - open", "EF|G: C|DJ|EF|G - open"));
 
   config.join_alternate = true;
-  for (const bool behind_only : {false, true}) {  // what lies between is seen through the gap
+  for (const bool behind_only : {false, true}) {  // the part in between is seen through the gap
     config.alternate_behind_only = behind_only;
     const Seen with = see(scene, config);
     EXPECT_THAT(with.groups, ElementsAre("AC", "DJ", "EF", "G"));
@@ -148,9 +148,9 @@ TEST(FiguresOfChapter4, Figure11JoiningAlternateGroupsRemovesTheBranchThroughASl
   EXPECT_EQ(see(scene, config).groups.size(), 6U);
 }
 
-// Rule 4.10: the post is one reading. With it, its front (3.182, -0.2225) is as far as the corner
-// (1.2, 1.1) and one of the walls y = -0.9 and y = 2.2 from two nodes; without it the corner and
-// both walls are equally far from (1.2 + sqrt(1.55^2 - 0.45^2), 0.65).
+// Rule 4.10: the post is one reading. With it, its front (3.182, -0.2225), the corner (1.2, 1.1)
+// and one of the walls y = -0.9 and y = 2.2 are equally far from two nodes; without it, the corner
+// and both walls are equally far from (1.2 + sqrt(1.55^2 - 0.45^2), 0.65).
 TEST(FiguresOfChapter4, Figure12DroppingSmallGroupsMendsTheDiagram) {
   const Scene scene = load_scene("4_12");
   const Seen without = see(scene, only_splitting());
@@ -176,8 +176,8 @@ TEST(FiguresOfChapter4, Figure12DroppingSmallGroupsMendsTheDiagram) {
   EXPECT_EQ(see(scene, config).groups.size(), 4U);
 }
 
-// Rule 4.11: the walls A of the corridor and B of the hall are one object behind the corner. As far
-// from the corner (1.5, -0.9) as from y = 1.1 and y = -1.6: (1.5 + sqrt(1.35^2 - 0.65^2), -0.25).
+// Rule 4.11: the walls A of the corridor and B of the hall are one object behind the corner. Equal
+// distances to the corner (1.5, -0.9), y = 1.1 and y = -1.6: (1.5 + sqrt(1.35^2 - 0.65^2), -0.25).
 TEST(FiguresOfChapter4, Figure15AHiddenZoneOnTheRightJoinsTheWallsOfACorner) {
   const Scene scene = load_scene("4_15");
   VoronoiConfig config = source_config();
@@ -195,7 +195,7 @@ TEST(FiguresOfChapter4, Figure15AHiddenZoneOnTheRightJoinsTheWallsOfACorner) {
   EXPECT_THAT(with.branches, ElementsAre("AB|C: open - open"));
 }
 
-// Rule 4.12 is that of 4.11 for the left: the mirror image of figure 4.15.
+// Rule 4.12 is rule 4.11 for the left: the mirror image of figure 4.15.
 TEST(FiguresOfChapter4, Figure15MirroredAHiddenZoneOnTheLeftJoinsTheWallsOfACorner) {
   const Scene scene = figure_scenes::mirrored(load_scene("4_15"));
   VoronoiConfig config = source_config();
@@ -208,7 +208,7 @@ TEST(FiguresOfChapter4, Figure15MirroredAHiddenZoneOnTheLeftJoinsTheWallsOfACorn
   EXPECT_THAT(with.branches, ElementsAre("AB|C: open - open"));
 }
 
-// Rules 4.11 and 4.12 lose the side corridors from afar; near by they are seen again.
+// Rules 4.11 and 4.12 lose the side corridors from afar; nearby, they reappear.
 TEST(FiguresOfChapter4, Figure16HiddenZonesLoseOpeningsFromAfarButNotNearBy) {
   const Scene scene = load_scene("4_16");
   VoronoiConfig config = source_config();

@@ -16,7 +16,7 @@ namespace {
 using test_world::scan_of;
 using test_world::World;
 
-/// True if the scan proves a point to be free, from its definition.
+/// True if the scan proves a point to be free, by the definition.
 bool is_seen(const LocalVoronoi& voronoi, const scan::Scan& scan, const Eigen::Vector2d& at_m) {
   const double turn_rad = 2.0 * M_PI;
   const double offset_rad = std::atan2(at_m.y(), at_m.x()) - scan.angle_min_rad;
@@ -26,7 +26,7 @@ bool is_seen(const LocalVoronoi& voronoi, const scan::Scan& scan, const Eigen::V
   if (beam > last) return false;
   const auto before = static_cast<std::size_t>(beam);
   const std::size_t after = std::min(before + 1, scan.ranges_m.size() - 1);
-  // Between two beams as far as the line between their ends.
+  // Between two beams: up to the line between their ends.
   const auto end_m = [&](std::size_t i) {
     const double angle_rad = scan.angle_min_rad + static_cast<double>(i) * scan.angle_step_rad;
     return Eigen::Vector2d{voronoi.free_range_m()[i] * std::cos(angle_rad),
@@ -38,7 +38,7 @@ bool is_seen(const LocalVoronoi& voronoi, const scan::Scan& scan, const Eigen::V
   return before == after || along.x() * to.y() - along.y() * to.x() >= 0.0;
 }
 
-/// Of a scan that meets a wall in every direction, nearer than the range limit.
+/// Frontier of a scan whose beams all meet a wall nearer than the range limit.
 Frontier frontier_of(const scan::Scan& scan) {
   BeamDirections beams;
   beams.update(scan);
@@ -52,7 +52,7 @@ Frontier frontier_of(const scan::Scan& scan) {
   return frontier;
 }
 
-// The circle of the clearance of a branch point, sampled every 2 cm: how deep is it hidden?
+// The circle of a branch point's clearance, sampled every 2 cm: depth of its hidden part.
 TEST(Frontier, HiddenDepthsAreThoseOfTheCircleSampledPointByPoint) {
   constexpr double kStep_m = 0.02;
   int compared = 0;
@@ -88,7 +88,7 @@ TEST(Frontier, HiddenDepthsAreThoseOfTheCircleSampledPointByPoint) {
   EXPECT_LT(hidden, compared - 50);
 }
 
-// A room, the robot in the middle, everything in sight.
+// A room with the robot in the middle and everything in view.
 TEST(Frontier, AClosedRoomSeenAllRoundHasNone) {
   const World room{{-3, -2, 3, -2}, {3, -2, 3, 2}, {3, 2, -3, 2}, {-3, 2, -3, -2}};
   const scan::Scan scan = scan_of(room, {}, {.beams = 720, .field_of_view_deg = 360.0});
@@ -96,7 +96,7 @@ TEST(Frontier, AClosedRoomSeenAllRoundHasNone) {
   EXPECT_EQ(frontier.distance_m({1.0, 0.5}), std::numeric_limits<double>::infinity());
 }
 
-// The same with a laser that looks ahead: what is behind it was not seen.
+// The same with a laser that faces ahead: the part behind it is unseen.
 TEST(Frontier, AFieldOfViewEndsAtItsOuterBeams) {
   const World room{{-3, -2, 3, -2}, {3, -2, 3, 2}, {3, 2, -3, 2}, {-3, 2, -3, -2}};
   const scan::Scan scan = scan_of(room);
@@ -106,7 +106,7 @@ TEST(Frontier, AFieldOfViewEndsAtItsOuterBeams) {
   EXPECT_EQ(frontier.distance_m({1.2, 0.5}), std::numeric_limits<double>::infinity());
 }
 
-// Two walls, and nothing but the range limit between them ahead.
+// Two walls, with only the range limit between them ahead.
 TEST(Frontier, TheRangeLimitIsAnArc) {
   const World corridor{{-3, 1, 30, 1}, {-3, -1, 30, -1}, {31, -9, 31, 9}};
   VoronoiConfig config;

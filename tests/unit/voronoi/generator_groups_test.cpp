@@ -80,7 +80,7 @@ TEST(GeneratorGroups, ContiguousGroupsJoinWhenTheRobotDoesNotFitBetween) {
 }
 
 TEST(GeneratorGroups, AlternateGroupsJoinAndTheOneBetweenIsDropped) {
-  // Through a gap of 0.4 m a far wall is seen.
+  // A far wall is visible through a gap of 0.4 m.
   const World world{{1, -2, 1, -0.2}, {1, 0.2, 1, 2}, {4, -3, 4, 3}};
   VoronoiConfig config = nothing_on();
   const GeneratorGroups before = groups_of(scan_of(world), config);
@@ -113,8 +113,8 @@ TEST(GeneratorGroups, SmallGroupsGoUpToAndIncludingTheThreshold) {
   EXPECT_EQ(groups.points.front().beam, 3U);
 }
 
-// Two boards one metre ahead with a gap of 0.4 m. Through the gap nothing is seen but one stray
-// reading, 0.73 m before the edges of the boards.
+// Two boards one metre ahead with a gap of 0.4 m. Through the gap there is only one stray reading,
+// 0.73 m before the edges of the boards.
 TEST(GeneratorGroups, WhatAStrayReadingKeptApartIsJoinedOnceItIsGone) {
   scan::Scan scan = scan_of({{1, -2, 1, -0.2}, {1, 0.2, 1, 2}});
   ASSERT_EQ(scan.ranges_m[180], scan::Scan::kNoReturn);
@@ -126,12 +126,12 @@ TEST(GeneratorGroups, WhatAStrayReadingKeptApartIsJoinedOnceItIsGone) {
   const GeneratorGroups joined = groups_of(scan, config);
   ASSERT_EQ(joined.groups.size(), 1U);
   for (const GroupPoint& point : joined.points) EXPECT_GT(point.range_m, 0.9F);
-  // The stray reading stays where small groups do, and so does the gap.
+  // Without the removal of small groups, the stray reading and the gap remain.
   config.drop_small = false;
   EXPECT_EQ(groups_of(scan, config).groups.size(), 3U);
 }
 
-// A wall at 4 m and two stray readings 0.19 m apart at 1 m: between them the wall is seen.
+// A wall at 4 m and two stray readings 0.19 m apart at 1 m: between them the wall is visible.
 TEST(GeneratorGroups, StrayReadingsDoNotTakeAwayTheWallBehindThem) {
   std::vector<float> ranges_m(32, 4.0F);
   ranges_m[10] = ranges_m[21] = 1.0F;
@@ -141,7 +141,7 @@ TEST(GeneratorGroups, StrayReadingsDoNotTakeAwayTheWallBehindThem) {
   EXPECT_EQ(sizes(groups_of(scan, config)), (Sizes{30}));
   config.alternate_large_only = false;
   EXPECT_EQ(sizes(groups_of(scan, config)), (Sizes{10, 10}));
-  // Three readings are no stray: what stands 0.19 m apart is one object.
+  // Three readings are not stray: readings 0.19 m apart are one object.
   for (const std::size_t beam : {8U, 9U, 22U, 23U}) ranges_m[beam] = 1.0F;
   config.alternate_large_only = true;
   EXPECT_EQ(sizes(groups_of(scan_with(ranges_m, -16.0), config)), (Sizes{8, 6, 8}));
@@ -156,7 +156,7 @@ TEST(GeneratorGroups, HiddenZonesJoinOutwardJumpsOnTheRightAndInwardJumpsOnTheLe
   EXPECT_EQ(groups_of(scan_with(inward, -60.0), config).groups.size(), 2U);
   EXPECT_EQ(groups_of(scan_with(outward, 60.0), config).groups.size(), 2U);
   EXPECT_EQ(groups_of(scan_with(inward, 60.0), config).groups.size(), 1U);
-  // The same beams of a laser that is mounted turned to the left are on the right of the robot.
+  // The same beams of a laser mounted facing left are on the right of the robot.
   config.forward_rad = std::numbers::pi / 2.0;
   EXPECT_EQ(groups_of(scan_with(outward, 60.0), config).groups.size(), 1U);
 }

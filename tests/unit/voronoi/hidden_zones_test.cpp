@@ -1,5 +1,5 @@
-// Hidden zones (4.11, 4.12) for any field of view and mounting: which groups join depends on where
-// the robot moves to, not on where the laser looks. Behind the robot the rules are mirrored: rear
+// Hidden zones (4.11, 4.12) for any field of view and mounting: the direction of the robot's motion
+// decides which groups join, not that of the laser. Behind the robot the rules are mirrored: rear
 // right as ahead on the left, rear left as ahead on the right.
 #include <cstddef>
 #include <numbers>
@@ -20,8 +20,8 @@ using figure_scenes::source_config;
 using testing::ElementsAre;
 using testing::UnorderedElementsAre;
 
-/// Groups in beam order of a laser that looks `looks_deg` to the left of the robot's motion, which
-/// is along x. A full turn has 720 beams, else there is one for each half degree.
+/// Groups in beam order of a laser that faces `looks_deg` to the left of the robot's motion, which
+/// is along x. A full turn has 720 beams, otherwise there is one for each half degree.
 std::vector<std::string> groups_seen(const Scene& scene, double looks_deg, double view_deg,
                                      bool hidden_zones = true) {
   constexpr double kDegree = std::numbers::pi / 180.0;
@@ -53,14 +53,14 @@ TEST(HiddenZones, AQuadrantIsThatOfTheMotionForEveryFieldOfView) {
   const Scene scene = load_scene("4_14a");
   EXPECT_THAT(groups_seen(scene, 0.0, 180.0), ElementsAre("AB", "CD"));
   EXPECT_THAT(groups_seen(scene, 180.0, 180.0), ElementsAre("DE", "AF"));
-  // To the left: one group, so a virtual one comes after it.
+  // Facing left: one group, so a virtual one comes after it.
   EXPECT_THAT(groups_seen(scene, 90.0, 180.0), ElementsAre("CDE", "*"));
-  // 270 degrees to the left and to the right: what is seen last of the far side ahead and behind is
-  // two groups.
+  // 270 degrees, facing left: the last visible parts of the far side, ahead and behind, are two
+  // groups.
   EXPECT_THAT(groups_seen(scene, 90.0, 270.0), ElementsAre("AB", "CDE", "AF"));
   EXPECT_THAT(groups_seen(scene, -90.0, 270.0), ElementsAre("DE", "ABF", "CD"));
   EXPECT_THAT(groups_seen(scene, 180.0, 270.0), ElementsAre("DE", "AF"));
-  // 60 degrees ahead: the beams of the corners are at -31 and 36 degrees.
+  // 60 degrees, facing ahead: the beams of the corners are at -31 and 36 degrees.
   EXPECT_THAT(groups_seen(scene, 0.0, 60.0), ElementsAre("B", "C"));
 }
 

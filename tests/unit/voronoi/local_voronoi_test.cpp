@@ -36,7 +36,7 @@ double distance_to_group(std::span<const Site> sites, std::uint16_t group,
   return nearest_m;
 }
 
-/// Everything of a diagram as bytes, so that equality is bit for bit.
+/// A whole diagram as bytes, so that equality is bit for bit.
 std::string bytes_of(const LocalVoronoiDiagram& diagram) {
   std::string bytes;
   const auto add = [&](const auto& value) {
@@ -94,7 +94,7 @@ TEST(LocalVoronoi, ATJunctionIsOneNodeOfThreeBranches) {
   const LocalVoronoiDiagram diagram = diagram_of(scan_of(junction));
   ASSERT_EQ(diagram.nodes.size(), 1U);
   EXPECT_EQ(diagram.nodes[0].base_groups.size(), 3U);
-  // As far from the corners (2, +-1) as from the wall: (x - 2)^2 + 1 = (4 - x)^2.
+  // Equally far from the corners (2, +-1) and the wall: (x - 2)^2 + 1 = (4 - x)^2.
   EXPECT_NEAR(diagram.nodes[0].position_m.x(), 2.75, 0.05);
   EXPECT_NEAR(diagram.nodes[0].position_m.y(), 0.0, 0.05);
   EXPECT_NEAR(diagram.nodes[0].clearance_m, 1.25, 0.05);
@@ -111,7 +111,7 @@ TEST(LocalVoronoi, FourGroupsAtACrossingAreOneNode) {
                        {-3, -1, 2, -1},
                        {4, 1, 9, 1},
                        {4, -1, 9, -1},
-                       {12, -3, 12, 3}};  // beyond the range limit, but it shows what is free
+                       {12, -3, 12, 3}};  // beyond the range limit, but it proves free space
   const LocalVoronoiDiagram diagram = diagram_of(scan_of(crossing));
   ASSERT_EQ(diagram.nodes.size(), 1U);
   EXPECT_EQ(diagram.nodes[0].base_groups.size(), 4U);
@@ -150,7 +150,7 @@ TEST(LocalVoronoi, OneWallGivesAVirtualDiagramBesideTheRobot) {
   EXPECT_EQ(diagram.groups.groups.size(), 2U);
   ASSERT_EQ(diagram.branches.size(), 1U);
   for (const DiagramPoint& point : diagram.points_of(diagram.branches[0])) {
-    EXPECT_NEAR(point.position_m.y(), 0.0, 0.1);  // straight on, between the wall and its image
+    EXPECT_NEAR(point.position_m.y(), 0.0, 0.1);  // straight ahead, between the wall and its image
   }
 }
 
@@ -181,8 +181,8 @@ TEST(LocalVoronoi, ScansOfAnyLengthAndContentGiveADiagram) {
   }
   scan::Scan scan;
   scan.angle_step_rad = 0.01;
-  EXPECT_TRUE(diagram_of(scan).branches.empty());  // not a single beam
-  scan.ranges_m.assign(300, 0.001F);               // on the sensor
+  EXPECT_TRUE(diagram_of(scan).branches.empty());  // no beam at all
+  scan.ranges_m.assign(300, 0.001F);               // at the sensor
   EXPECT_TRUE(diagram_of(scan).nodes.empty());
   scan.ranges_m.assign(300, std::numeric_limits<float>::quiet_NaN());
   EXPECT_TRUE(diagram_of(scan).is_virtual);
@@ -275,7 +275,7 @@ TEST(LocalVoronoi, TurningTheLaserTurnsTheDiagram) {
   }
 }
 
-/// The beams of each group, counted from beam `first` of a full turn, in an order of their own.
+/// The beams of each group, counted from beam `first` of a full turn, in canonical order.
 std::vector<std::vector<std::size_t>> beams_of_groups(const LocalVoronoiDiagram& diagram,
                                                       std::size_t first, std::size_t count) {
   std::vector<std::vector<std::size_t>> groups;
@@ -298,7 +298,7 @@ TEST(LocalVoronoi, GroupsAndFreeSpaceOfAFullTurnDoNotDependOnItsFirstBeam) {
   VoronoiConfig hidden_zones;
   hidden_zones.join_hidden_zones = true;
   for (VoronoiConfig config : {VoronoiConfig{}, as_in_the_source, hidden_zones}) {
-    config.resolution_m = 0.2;  // groups do not depend on it
+    config.resolution_m = 0.2;  // groups are independent of it
     for (std::uint32_t seed = 0; seed < 60; ++seed) {
       scan::Scan scan =
           scan_of(random_world(seed), {}, {.beams = kBeams, .field_of_view_deg = 360.0});
@@ -315,7 +315,7 @@ TEST(LocalVoronoi, GroupsAndFreeSpaceOfAFullTurnDoNotDependOnItsFirstBeam) {
         LocalVoronoi other{config};
         const LocalVoronoiDiagram again = other.compute(turned);
         ASSERT_EQ(again.is_virtual, diagram.is_virtual) << "seed " << seed;
-        if (diagram.is_virtual) continue;  // its points stand on the beams nearest to a line
+        if (diagram.is_virtual) continue;  // its points are on the beams nearest to a line
         EXPECT_EQ(beams_of_groups(again, first, kBeams), beams_of_groups(diagram, 0, kBeams))
             << "seed " << seed;
         for (std::size_t i = 0; i < kBeams; ++i) {

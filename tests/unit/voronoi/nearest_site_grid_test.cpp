@@ -27,7 +27,7 @@ void expect_equal_to_brute_force(const LocalVoronoi& voronoi, const scan::Scan& 
                           M_PI;
       const auto index = static_cast<std::size_t>(beam / scan.angle_step_rad);
       const double free_m = index < scan.ranges_m.size() ? voronoi.free_range_m()[index] : 0.0;
-      // Cells on the very border may fall to either side of a rounding.
+      // Rounding may assign cells on the border to either side.
       const double in_beam = beam / scan.angle_step_rad - static_cast<double>(index);
       if (in_beam < 1e-6 || in_beam > 1.0 - 1e-6 || std::abs(centre.norm() - free_m) < 1e-9)
         continue;
@@ -81,7 +81,7 @@ TEST(NearestSiteGrid, SitesInOneColumnAndAtOnePlaceAreNoTrouble) {
   grid.compute(sites, free_range_m);
   ASSERT_GT(grid.rows(), 38);
   ASSERT_EQ(grid.cols(), 1);
-  EXPECT_EQ(grid.group(39, 0), 1);  // x = 1.975: the first of two sites at one place
+  EXPECT_EQ(grid.group(39, 0), 1);  // x = 1.975: the first of two sites at the same place
   EXPECT_EQ(grid.group(22, 0), 0);  // x = 1.125
 }
 

@@ -1,8 +1,8 @@
-// Positions of branch points and nodes between the cells: better than 2 cm on a grid of 5 cm where
+// Positions of branch points and nodes between the cells: better than 2 cm on a grid of 5 cm when
 // successive readings on a wall are less than 5 cm apart.
 //
-// A found point is compared with the locus of the true walls, to first order: where the distances
-// to two walls are d_a and d_b and u_a, u_b point away from them, the locus is |d_a - d_b| / |u_a -
+// A found point is compared with the locus of the true walls, to first order: with distances d_a
+// and d_b to two walls, and unit vectors u_a, u_b away from them, the locus is |d_a - d_b| / |u_a -
 // u_b| away. For straight walls, wall and corner, and corners this is the axis, the bisector, the
 // parabola and so on, without a formula for each.
 #include <algorithm>
@@ -31,7 +31,7 @@ constexpr double kDense_m = 0.05;
 
 struct PositionScene {
   std::string name;
-  std::string text;  ///< as a world file
+  std::string text;  ///< in the format of world files
   Eigen::Vector2d laser_m;
   bool has_nodes;
 };
@@ -100,14 +100,14 @@ Foot foot_on(const world::World& world, const std::string& walls, const Eigen::V
   return best;
 }
 
-/// One diagram with what is needed to judge it, in the world frame.
+/// One diagram with the data for its evaluation, in the world frame.
 struct Judge {
   world::World world;
   Pose2 T_world_laser;
   LocalVoronoiDiagram diagram;
   std::vector<std::string> names;
 
-  /// The foot of a group, if the readings around it are less than 5 cm apart.
+  /// The foot on a group, if the readings around it are less than 5 cm apart.
   [[nodiscard]] std::optional<Foot> dense_foot(std::uint16_t group,
                                                const Eigen::Vector2d& p_m) const {
     const Foot foot = foot_on(world, names[group], p_m);
@@ -125,7 +125,7 @@ struct Judge {
     return foot;
   }
 
-  /// Distance of a branch point from the true locus; nothing where readings are farther apart.
+  /// Distance of a branch point from the true locus; empty when readings are farther apart.
   [[nodiscard]] std::optional<double> error_m(const DiagramBranch& branch,
                                               const DiagramPoint& point) const {
     const Eigen::Vector2d p_m = T_world_laser * point.position_m;
@@ -137,7 +137,7 @@ struct Judge {
     return std::abs(a->distance_m - b->distance_m) / gradient.norm();
   }
 
-  /// Distance of a node of three groups from where the true walls have it, by Newton's method.
+  /// Distance of a node of three groups from its true position, by Newton's method.
   [[nodiscard]] std::optional<double> error_m(const DiagramNode& node) const {
     const std::span<const std::uint16_t> groups = diagram.groups_of(node);
     if (groups.size() != 3) return std::nullopt;

@@ -1,4 +1,4 @@
-// Small worlds of line segments and the scan that a laser in them makes.
+// Small worlds of line segments and scans of a laser in them.
 #pragma once
 
 #include <algorithm>
@@ -49,7 +49,7 @@ inline scan::Scan scan_of(const World& world, const geometry::Pose2& T_world_las
                           const Laser& laser = {}) {
   scan::Scan scan;
   const double view_rad = laser.field_of_view_deg * std::numbers::pi / 180.0;
-  // A full turn has no beam twice.
+  // A full turn must not repeat a beam.
   const bool closed = laser.field_of_view_deg >= 360.0;
   const auto steps = static_cast<double>(closed ? laser.beams : laser.beams - 1);
   scan.angle_step_rad = steps > 0.0 ? view_rad / steps : view_rad;
@@ -63,7 +63,7 @@ inline scan::Scan scan_of(const World& world, const geometry::Pose2& T_world_las
   return scan;
 }
 
-/// A closed room with boxes and single walls in it; the laser stands free at the origin.
+/// A closed room with boxes and single walls; the laser is in free space at the origin.
 inline World random_world(std::uint32_t seed) {
   std::mt19937 random(seed);
   const auto uniform = [&](double low, double high) {

@@ -1,5 +1,5 @@
 // The line of a virtual diagram (4.2.1) in a dead end, which is one group: the line stops at
-// readings and hides what lies behind it.
+// readings and hides everything behind it.
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -25,10 +25,10 @@ const World kDeadEnd{{-6, 0.8, 4, 0.8}, {4, 0.8, 4, -0.8}, {4, -0.8, -6, -0.8}};
 
 struct SeenDiagram {
   LocalVoronoiDiagram diagram;
-  double line_y_m = 0.0;  ///< of the virtual group, which comes last; laser frame
+  double line_y_m = 0.0;  ///< of the virtual group, which is the last one; laser frame
 };
 
-/// What the robot sees `y_m` beside the axis, turned by `heading_rad`.
+/// View of the robot `y_m` beside the axis, turned by `heading_rad`.
 SeenDiagram seen_from(double y_m, double heading_rad) {
   LocalVoronoi voronoi{VoronoiConfig{}};
   SeenDiagram seen_diagram{voronoi.compute(scan_of(kDeadEnd, {0.0, y_m, heading_rad}))};
@@ -59,7 +59,7 @@ TEST(VirtualDiagram, TheLineStopsAtReadings) {
   }
 }
 
-// A stub 0.12 m long at x = 2 crosses the line; behind its shadow the line could be seen again.
+// A stub 0.12 m long at x = 2 crosses the line, which would be visible again behind its shadow.
 TEST(VirtualDiagram, TheLineDoesNotGoOnBehindAnObstacle) {
   World world = kDeadEnd;
   world.push_back({2, -0.8, 2, -0.68});
@@ -92,7 +92,7 @@ TEST(VirtualDiagram, NoBranchIsBeyondTheLineOrTooNarrowForTheRobot) {
   }
 }
 
-// A dead end 0.5 m wide: all of the way is narrower than the robot, which is in it all the same.
+// A dead end 0.5 m wide: the whole branch is narrower than the robot, which is still in it.
 TEST(VirtualDiagram, AWayThatIsNarrowAllAlongStays) {
   const World narrow{{-6, 0.25, 4, 0.25}, {4, 0.25, 4, -0.25}, {4, -0.25, -6, -0.25}};
   const auto diagram = LocalVoronoi(VoronoiConfig{}).compute(scan_of(narrow));

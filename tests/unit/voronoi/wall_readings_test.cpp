@@ -1,5 +1,5 @@
-// Which successive readings are of one wall (on_wall_m), and the sites put between them
-// (site_spacing_m). Beams of half a degree: at grazing incidence the readings of a wall 1 m beside
+// Successive readings of one wall (on_wall_m), and the sites added between them (site_spacing_m).
+// Beams of half a degree: at grazing incidence the readings of a wall 1 m beside
 // the laser are 0.55 m apart at 8 m, more than the threshold of 4.7.
 #include <algorithm>
 #include <cmath>
@@ -42,7 +42,7 @@ std::vector<std::uint32_t> group_sizes(const scan::Scan& scan, const VoronoiConf
   return sizes;
 }
 
-/// Number of groups of a world and of its mirror image, which must be the same groups backwards.
+/// Number of groups of a world, whose mirror image must have the same groups in reverse.
 std::size_t group_count(const World& world, const VoronoiConfig& config) {
   World mirror = world;
   for (test_world::Segment& wall : mirror) {
@@ -70,15 +70,15 @@ TEST(WallReadings, ADoorInTheLineOfTheWallSplitsIt) {
   const auto scan = scan_of(world);
   const auto in_the_door = std::ranges::count_if(
       scan.ranges_m, [](float range_m) { return range_m > 15.0F && range_m < 19.0F; });
-  ASSERT_GE(in_the_door, 3);  // the beams that go through it
+  ASSERT_GE(in_the_door, 3);  // beams through the door
   EXPECT_EQ(group_count(world, only_splitting(0.05)), 2U);
   VoronoiConfig far = only_splitting(0.05);
-  far.range_limit_m = 20.0;  // the wall behind the door has readings too
+  far.range_limit_m = 20.0;  // now the wall behind the door also has readings
   EXPECT_EQ(group_count(world, far), 3U);
 }
 
-// The next reading on the second wall is 1.2 m on, about twice as far as the two before it are
-// apart: only that it is 0.08 m off their line tells the walls apart.
+// The next reading on the second wall is 1.2 m on, about twice the spacing of the two before it:
+// only its offset of 0.08 m from their line separates the walls.
 TEST(WallReadings, ParallelWallsThatAreOffsetAreTwoGroups) {
   const World world{{-3, 1, 8, 1}, {8, 1.08, 30, 1.08}};
   EXPECT_EQ(group_count(world, only_splitting(0.05)), 2U);
@@ -86,7 +86,7 @@ TEST(WallReadings, ParallelWallsThatAreOffsetAreTwoGroups) {
 }
 
 // A wall 0.1 m beside the laser, one degree between beams: at 3, 2 and 1 degrees the readings are
-// 1.91, 2.87 and 5.73 m away. The first two, 0.96 m apart, do not say what is 2.87 m on.
+// 1.91, 2.87 and 5.73 m away. The first two, 0.96 m apart, do not determine the wall 2.87 m on.
 TEST(WallReadings, TwoReadingsDoNotSayWhereAWallGoesFarBeyondThem) {
   scan::Scan scan;
   scan.angle_step_rad = std::numbers::pi / 180.0;
@@ -107,8 +107,8 @@ double widest_gap_m(std::span<const Site> sites) {
   return widest_m;
 }
 
-/// How far the points of a diagram's branches are off the line y = 0.2 at most, metres. Ahead of
-/// x = 9 the last readings on the walls are the nearest, which are not opposite each other.
+/// Largest distance of the branch points from the line y = 0.2, metres. Ignores those with x > 9,
+/// where the nearest readings are the last ones on the walls, which are not opposite each other.
 double farthest_off_axis_m(const LocalVoronoiDiagram& diagram) {
   double farthest_m = 0.0;
   for (const DiagramPoint& point : diagram.points) {
@@ -118,7 +118,7 @@ double farthest_off_axis_m(const LocalVoronoiDiagram& diagram) {
   return farthest_m;
 }
 
-// The far wall only shows that the corridor is free.
+// The far wall only proves that the corridor is free.
 TEST(SiteSpacing, SitesBetweenReadingsOfAWallKeepTheBranchOnTheAxis) {
   const World corridor{{-3, 1.2, 30, 1.2}, {-3, -0.8, 30, -0.8}, {30, -3, 30, 3}};
   VoronoiConfig config;
@@ -139,7 +139,7 @@ TEST(SiteSpacing, SitesBetweenReadingsOfAWallKeepTheBranchOnTheAxis) {
   EXPECT_GT(farthest_off_axis_m(without), 0.02);
 }
 
-// Two boards one metre ahead with a gap of 0.4 m are one group by 4.8, but there is no wall between
+// Two boards one metre ahead with a gap of 0.4 m are one group by 4.8, but have no wall between
 // them.
 TEST(SiteSpacing, NoSiteIsPutBetweenReadingsThatAreNotOfOneWall) {
   VoronoiConfig config;
@@ -148,14 +148,14 @@ TEST(SiteSpacing, NoSiteIsPutBetweenReadingsThatAreNotOfOneWall) {
   config.contiguous_m = 0.55;
   LocalVoronoi voronoi(config);
   const auto diagram = voronoi.compute(scan_of({{1, -4, 1, -0.2}, {1, 0.2, 1, 4}}));
-  ASSERT_TRUE(diagram.is_virtual);  // one group, and the virtual one after it
+  ASSERT_TRUE(diagram.is_virtual);  // one group, followed by the virtual one
   EXPECT_GT(voronoi.sites().size(), diagram.groups.points.size());
   for (const Site& site : voronoi.sites()) {
     EXPECT_TRUE(site.group != 0 || std::abs(site.position_m.y()) > 0.2 - 1e-6);
   }
 }
 
-// A room of 80 m of wall: as many sites as asked for would be more than the grid can tell apart.
+// A room with 80 m of wall: the configured spacing would give more sites than the grid can number.
 TEST(WallReadings, SitesAreFartherApartWhereThereWouldBeTooMany) {
   const test_world::World room{
       {-9, -9, 9, -9}, {9, -9, 9, 9}, {9, 9, -9, 9}, {-9, 9, -9, -9}, {3, -1, 3, 1}};

@@ -1,4 +1,4 @@
-// A map that is sent to a map store which is connected after other readers of such pieces.
+// Sending a map to a map store that connects after other readers of such pieces.
 #include "history/archive_requests.hpp"
 
 #include <chrono>
@@ -45,7 +45,7 @@ class ArchiveRequestsTest : public testing::Test {
 };
 
 TEST_F(ArchiveRequestsTest, AMapReachesAStoreThatComesLate) {
-  // As a localizer, which wants snapshots, and no map that becomes one.
+  // A localizer reads pieces of snapshots, but not of a map that is imported.
   const messaging::Reader<msg::SnapshotPiece> localizer(peers_, {.addressee = "localizer-1"});
   ASSERT_TRUE(run_until("the writer of pieces", [&] { return localizer.matched() > 0; }));
   const std::string map_file(std::size_t{3} * msg::kMaxPieceBytes, 'm');

@@ -99,7 +99,7 @@ TEST(Board, KeysAreTextsOfAnyKind) {
   EXPECT_EQ(message(board, Channel::kPlaces, 0)["set"].size(), 1U);
 }
 
-/// A viewer who looks now and then, whenever that is, holds the same as the table.
+/// A viewer that reads now and then, at any times, has the same content as the table.
 TEST(Board, ViewersWhoLookNowAndThenAreExact) {
   Board board;
   std::map<std::string, std::string> truth;

@@ -1,4 +1,4 @@
-// Drawings as the page sends and gets them.
+// Drawings in the page's format, in both directions.
 #include "orders/drawing_text.hpp"
 
 #include <limits>

@@ -1,4 +1,4 @@
-// A corridor of which the right half is not known yet.
+// A corridor whose right half is still unknown.
 #include "orders/exploration.hpp"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ navigation::NavigatorStatus standing() {
   return status;
 }
 
-/// Steps until there is a goal, for a minute of the robot's time at most.
+/// Steps until there is a goal, for at most a minute of the robot's time.
 std::optional<ExplorationGoal> first_goal(Exploration& exploration, const ExploredFloor& floor) {
   for (int i = 0; i < 300; ++i) {
     if (auto goal = exploration.step(floor, standing(), false, kPeriod)) return goal;
@@ -93,7 +93,7 @@ TEST(Exploration, EndsWhenNothingIsLeft) {
   EXPECT_FALSE(exploration.done()) << "from the beginning";
 }
 
-// A target is given up by time: it must not run out while an operator has paused the goal.
+// Targets have a time limit, which must not expire while an operator has paused the goal.
 TEST(Exploration, NoTimePassesWhileItsGoalIsPaused) {
   const ExploredFloor floor = floor_of(kHalfKnown);
   const auto given_up_after = [&](navigation::HaltReason reason) {

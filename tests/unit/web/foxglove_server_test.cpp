@@ -1,4 +1,4 @@
-// The server with a client of Foxglove's protocol.
+// The server with a client that uses Foxglove's protocol.
 #include <chrono>
 #include <cstdint>
 #include <cstring>
@@ -53,7 +53,7 @@ class FoxgloveServer : public testing::Test {
     return std::make_unique<WebSocketClient>(server_->port(),
                                              test::Headers{{"Sec-WebSocket-Protocol", offered}});
   }
-  /// The next text with an operation.
+  /// The next text message with an operation.
   static json next_text(WebSocketClient& client) {
     while (const auto text = client.receive(kFoxglovePatience)) {
       if (text->starts_with('{')) return json::parse(*text);
@@ -117,7 +117,7 @@ TEST_F(FoxgloveServer, ALateSubscriberGetsTheNewest) {
   ASSERT_TRUE(message);
   EXPECT_EQ(message->subscription, 3U);
   EXPECT_EQ(message->content["entities"][0]["texts"][0]["text"], "hall");
-  // And what changes; of a topic that nobody wants any more nothing.
+  // Later changes arrive, too, but none of a topic after its last unsubscription.
   client->send({{"op", "unsubscribe"}, {"subscriptionIds", {17}}});
   client->send(
       {{"op", "subscribe"}, {"subscriptions", json::array({{{"id", 4}, {"channelId", 2}}})}});
@@ -143,7 +143,7 @@ TEST_F(FoxgloveServer, WhatItDoesNotOfferIsAnsweredByAStatus) {
     EXPECT_EQ(answer["level"], 2) << text;
     EXPECT_FALSE(answer["message"].get<std::string>().empty());
   }
-  // One subscription for each channel, and each with its own id.
+  // One subscription for each channel, and each with a unique id.
   for (const auto& [id, channel] : {std::pair{1, 1}, {1, 2}, {2, 1}}) {
     subscribe(*client, static_cast<std::uint32_t>(id), static_cast<std::uint32_t>(channel));
   }

@@ -27,7 +27,7 @@ using testing::SizeIs;
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-/// Of plain base64 with padding.
+/// Decodes plain base64 with padding.
 std::string decoded(const std::string& text) {
   const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string bytes;
@@ -48,7 +48,7 @@ json schema_of(const json& channel) {
   return json::parse(channel["schema"].get<std::string>());
 }
 
-/// Whether a message has the members that a schema knows, no others, and of its types.
+/// Expects that a message has only members of the schema, with its types.
 void expect_fits(const json& message, const json& schema, const std::string& where) {
   const std::string type = schema.value("type", "");
   if (type == "object") {
@@ -275,7 +275,7 @@ TEST(FoxgloveView, FramesLeadFromTheMapToTheLaser) {
   view.take(scan);
   EXPECT_THAT(transforms(), SizeIs(2)) << "nobody knows where the robot is";
 
-  // The robot has gone on when the pose of its scan comes.
+  // The robot has moved on when the pose of its scan arrives.
   msg::Odometry odometry;
   odometry.stamp_ns(6 * kSecond_ns);
   odometry.T_odom_robot().x_m(1.0);
@@ -301,7 +301,7 @@ TEST(FoxgloveView, FramesLeadFromTheMapToTheLaser) {
   expect_fits(pose, "foxglove.PoseInFrame");
   EXPECT_EQ(json::parse(pose)["pose"]["position"]["x"], 4.0);
 
-  // Lost: no pose is invented.
+  // Lost: no pose is published.
   const std::uint64_t poses = feed.version(LiveTopic::kPose);
   view.take(live_pose(7 * kSecond_ns, msg::kStateLost, T_map_robot));
   odometry.stamp_ns(8 * kSecond_ns);
@@ -309,7 +309,7 @@ TEST(FoxgloveView, FramesLeadFromTheMapToTheLaser) {
   EXPECT_THAT(transforms(), SizeIs(2));
   EXPECT_EQ(feed.version(LiveTopic::kPose), poses);
 
-  // A source that begins anew.
+  // A restarted source.
   scan.stamp_ns = 0;
   view.take(scan);
   EXPECT_EQ(transforms()[0]["timestamp"]["sec"], 0);

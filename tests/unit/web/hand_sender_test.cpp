@@ -1,5 +1,5 @@
-// The operator's stop where the base of another robot is connected before that of the own one, and
-// orders to drive by hand.
+// The operator's stop when the base of another robot is connected before the robot's own, and
+// manual driving commands.
 #include "orders/hand_sender.hpp"
 
 #include <chrono>
@@ -83,7 +83,7 @@ TEST_F(HandSenderTest, AnOrderThatWaitedIsRefused) {
 
 TEST_F(HandSenderTest, NothingMovesBeforeItIsKnownWhereItMayNot) {
   const auto shown = [&] { return *board_.update(Channel::kDrive, 0).text; };
-  // One order after the other: a machine that is slow takes the first ones for late.
+  // Commands are repeated, because a slow machine considers the first ones late.
   ASSERT_TRUE(run_until("somebody drives", [&] {
     hand_.drive(1, {0.3, 0.0}, now_ns());
     return first_ > 0;

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-/// A guard that sees a free floor at the time given.
+/// A guard that sees a free floor at this time.
 navigation::CollisionGuard guard_at(std::int64_t now_ns) {
   navigation::CollisionGuard guard{navigation::GuardConfig{}};
   guard.add(navigation::OdometrySample{now_ns, {}});

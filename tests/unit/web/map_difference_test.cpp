@@ -14,7 +14,7 @@ using planning::CellState;
 using planning::GridFrame;
 using planning::OccupancyGrid;
 
-/// '#' occupied, '.' free, ' ' unknown; the first line is the upper row.
+/// '#' occupied, '.' free, ' ' unknown; the first line is the top row.
 OccupancyGrid drawn(const std::vector<std::string>& lines, double x_m = 0.0, double y_m = 0.0) {
   GridFrame frame;
   frame.columns = static_cast<std::int32_t>(lines.front().size());
@@ -49,9 +49,9 @@ TEST(MapDifference, NamesWhatIsGoneNewSeenAndLost) {
 
   const MapDifference made = difference(before, after);
 
-  EXPECT_EQ(at(made, 0.25, 0.75), CellChange::kLost);  // left of the second grid
+  EXPECT_EQ(at(made, 0.25, 0.75), CellChange::kLost);  // to the left of the second grid
   EXPECT_EQ(at(made, 0.25, 0.25), CellChange::kLost);
-  EXPECT_EQ(at(made, 3.75, 0.75), CellChange::kSeen);  // right of the first
+  EXPECT_EQ(at(made, 3.75, 0.75), CellChange::kSeen);  // to the right of the first
   EXPECT_EQ(at(made, 1.25, 0.25), CellChange::kSame);
   EXPECT_DOUBLE_EQ(area_m2(made, CellChange::kLost), 0.5);
   EXPECT_DOUBLE_EQ(area_m2(made, CellChange::kSeen), 0.5);

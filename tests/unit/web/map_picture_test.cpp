@@ -15,7 +15,7 @@ namespace {
 using planning::Cell;
 using planning::CellState;
 
-/// A floor of 100 x 70 cells, of which all is unknown but what a test sets.
+/// A floor of 100 x 70 cells, all unknown except those that a test sets.
 class Floor {
  public:
   Floor() {
@@ -53,7 +53,7 @@ class Floor {
   std::vector<GridSquare> squares_;
 };
 
-/// Red, green, blue and alpha of a pixel, from the upper left.
+/// Red, green, blue and alpha of a pixel, counted from the upper left.
 std::uint32_t pixel(const std::string& png, std::uint32_t column, std::uint32_t row) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
@@ -122,7 +122,7 @@ TEST(MapPicture, WhereNothingIsKnownThereIsNoPicture) {
   EXPECT_FALSE(picture.png({Layer::kGrid, 0, 4'000'000'000U, 4'000'000'000U}));
 }
 
-/// Every cell of a random floor, against the cells themselves.
+/// Compares every cell of a random floor with the cells themselves.
 TEST(MapPicture, EachLevelJoinsTheCellsBelowIt) {
   Floor floor;
   std::vector<CellState> cells(std::size_t{100} * 70);

@@ -1,4 +1,4 @@
-// Requests without a reply, by a simulated clock.
+// Requests without a reply, on a simulated clock.
 #include "orders/request_table.hpp"
 
 #include <vector>
@@ -20,7 +20,7 @@ class RequestTableTest : public testing::Test {
     table_.begin([this](const Answer& answer) { answers_.push_back(answer); },
                  [this](std::uint64_t id) { sent_.push_back(id); }, std::move(heard), now_s_);
   }
-  /// Eight calls a second, about as many as in the service: their times are exact numbers.
+  /// Eight calls a second, about as many as in the service: their times are exact in binary.
   void pass(double duration_s, const std::string& busy = {}) {
     for (int i = 0; i < static_cast<int>(8.0 * duration_s); ++i) {
       now_s_ += 0.125;

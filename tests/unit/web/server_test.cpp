@@ -1,4 +1,4 @@
-// The server alone, with a board and a backend of the test.
+// The server alone, with the test's own board and backend.
 #include "server/server.hpp"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ using testing::Not;
 const milliseconds kPatience = test::hang_limit();
 const std::string kToken = "0123456789abcdef";
 
-/// Echoes what it is asked, and counts who drives.
+/// Echoes its requests, and counts driving commands.
 class EchoBackend : public Backend {
  public:
   ~EchoBackend() override { free(); }
@@ -65,7 +65,7 @@ class EchoBackend : public Backend {
   std::atomic<int> releases = 0;
   std::atomic<int> stops = 0;
 
-  /// No request is answered until free().
+  /// Blocks all requests until free().
   void hold() { held_ = std::unique_lock(busy_); }
   void free() {
     if (held_.owns_lock()) held_.unlock();
@@ -83,7 +83,7 @@ class WebServer : public testing::Test {
     config_.life = "life1";
     config_.robot_id = "robot";
     config_.hosts = {"desk"};
-    config_.clock_s = [] { return 1.0; };  // stands still: limits of rates do not fill up again
+    config_.clock_s = [] { return 1.0; };  // stopped: rate limits do not refill
     start();
   }
   void start() {
@@ -147,7 +147,7 @@ TEST_F(WebServer, ForeignPagesAndNamesAreRefused) {
   EXPECT_EQ(http_request(port(), "GET", "/", {{"Host", "desk:1"}}).status, 200);
 }
 
-// The proxy hands on its own name as Host, the browser sends the site's.
+// The proxy sends its own name as Host, the browser sends the site's as Origin.
 TEST_F(WebServer, PagesOfAProxyThatIsNamedMayUseIt) {
   const Headers headers = {{"Authorization", "Bearer " + kToken},
                            {"Host", "127.0.0.1:9"},
@@ -210,7 +210,7 @@ TEST_F(WebServer, AStopByTheWebSocketNeedsTheToken) {
   backend_.free();
 }
 
-// The clock stands still: what strangers use up does not come back.
+// The clock is stopped: the strangers' quota does not refill.
 TEST_F(WebServer, StrangersUseUpNothingOfTheOperators) {
   const std::string request = "GET /api/x HTTP/1.1\r\nHost: 127.0.0.1\r\n";
   std::string requests;
@@ -269,7 +269,7 @@ TEST_F(WebServer, BodiesComeOnlyWhereAnOrderTakesOne) {
   const std::string counted =
       "GET /api/merge_map HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 2\r\n\r\nab";
   EXPECT_THAT(test::exchange_bytes(port(), counted, kPatience), HasSubstr(" 413 "));
-  // An order without the token is refused before its body has come.
+  // An order without the token is refused before its body arrives.
   test::RawConnection waits(port());
   waits.send("POST /api/goal HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 60000\r\n\r\n");
   EXPECT_THAT(waits.receive_head(), HasSubstr(" 401 "));
@@ -284,7 +284,7 @@ TEST_F(WebServer, WhatIsTooMuchOrNoHttpIsRefused) {
               HasSubstr("400"));
   EXPECT_EQ(refused("no HTTP"), 1U);
   EXPECT_EQ(http_request(port(), "DELETE", "/").status, 405);
-  // Many on one connection, while the clock stands still.
+  // Many on one connection, while the clock is stopped.
   const std::string order = "POST /x HTTP/1.1\r\nHost: 127.0.0.1\r\nAuthorization: Bearer " +
                             kToken + "\r\nContent-Length: 0\r\n";
   std::string orders;
@@ -366,7 +366,7 @@ TEST_F(WebServer, ASlowViewerHoldsNobodyUpAndEndsExact) {
   PageModel fast_page;
   const std::string filler(20'000, 'x');
   constexpr int kChanges = 2000;  // 40 MB, more than buffers hold
-  // Nobody reads meanwhile: a board that waited for a viewer would never get to the end.
+  // Viewers read nothing meanwhile: a board that waited for them would never finish.
   for (int i = 1; i <= kChanges; ++i) {
     board_.set(Channel::kScan, "\"" + filler + std::to_string(i) + "\"");
     board_.edit(Channel::kGraph, {{"n" + std::to_string(i % 50), std::to_string(i)}});
@@ -415,7 +415,7 @@ TEST_F(WebServer, OrdersThatQueuedUpAreNotObeyed) {
     page.send(
         {{"op", "drive"}, {"linear_mps", linear_mps}, {"angular_radps", 0}, {"page_ms", page_ms}});
   };
-  // The clock of the service stands still: all of it came at once.
+  // The service's clock is stopped, so all commands arrive at once.
   drive(0.1, 7000.0);
   drive(0.2, 6800.0);
   drive(0.3, 1000.0);

@@ -1,4 +1,4 @@
-// The operator's stop while the loop of the service is held up, and among hostile connections.
+// The operator's stop while the service's loop is blocked, and among hostile connections.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -41,7 +41,7 @@ ServerConfig stop_config() {
   return config;
 }
 
-/// The service beside a base; its loop runs only where a test lets it.
+/// The service beside a base; its loop runs only when a test lets it.
 class WebStop : public testing::Test {
  protected:
   WebStop() {
@@ -53,7 +53,7 @@ class WebStop : public testing::Test {
     EXPECT_TRUE(test::wait_for("the first halt", [&] { return orders(msg::kBaseHalt) > 0; }));
   }
   [[nodiscard]] int stop() const { return http_post(web_.port(), "/api/stop", kStopToken).status; }
-  /// So many have come to the base.
+  /// Number of such orders received by the base.
   int orders(msg::BaseCommandKind kind) {
     commands_.take([&](const msg::BaseCommand& command, const messaging::SampleInfo& info) {
       if (info.valid) ++(command.kind() == msg::kBaseHalt ? halts_ : resets_);
@@ -90,14 +90,14 @@ TEST_F(WebStop, IsReleasedAfterTheGoalsOfBeforeAreCancelled) {
   EXPECT_TRUE(test::wait_for("the reset", [&] { return orders(msg::kBaseReset) == 1; }));
 }
 
-/// A body of many keys.
+/// A body with many keys.
 std::string many_keys(int keys) {
   std::string body = R"({"zones":[0])";
   for (int i = 1; i < keys; ++i) body += ",\"k" + std::to_string(i) + "\":0";
   return body + "}";
 }
 
-/// Asks without the token, again and again, until `done`.
+/// Sends requests without the token until `done`.
 void attack(std::uint32_t port, const std::atomic<bool>& done) {
   const std::string body = many_keys(5000);
   while (!done) {
@@ -106,7 +106,7 @@ void attack(std::uint32_t port, const std::atomic<bool>& done) {
       WebSocketClient spectator(port);
       for (int i = 0; i < 10; ++i) spectator.send_text(many_keys(290));
     } catch (const std::runtime_error&) {
-      continue;  // it is refused, or gives way to another one
+      continue;  // refused, or displaced by another connection
     }
   }
 }

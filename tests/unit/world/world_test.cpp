@@ -48,7 +48,7 @@ struct BadWorld {
   const char* message;
 };
 
-// Shown by the test runner instead of the bytes.
+// Printed by the test runner instead of the bytes.
 std::ostream& operator<<(std::ostream& out, const BadWorld& tested) {
   return out << tested.name;
 }

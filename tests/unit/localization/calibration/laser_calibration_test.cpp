@@ -1,4 +1,4 @@
-// calibrate_laser on motions of a robot and of a laser that sits in a known place on it.
+// calibrate_laser on motions of a robot and of a laser with a known mounting.
 #include "topogeo/localization/calibration/laser_calibration.hpp"
 
 #include <cmath>
@@ -19,7 +19,7 @@ using test::kTrue;
 using test::Motions;
 using test::Pose2;
 
-/// Ten times better than kTrue: that of a good robot.
+/// Ten times smaller than kTrue: the noise of a good robot.
 OdometryNoise small_noise() {
   OdometryNoise noise = kTrue;
   for (const NoiseParameter& parameter : kOdometryParameters) noise.*parameter.field *= 0.1;
@@ -36,7 +36,7 @@ LaserCalibration calibrate_mounting(const Drive& drive, std::uint64_t seed) {
   return calibrate_mounting(drive, test::simulate(drive, seed));
 }
 
-// Places of lasers: in front, in a corner and turned, looking to the side, looking backwards.
+// Mountings of lasers: in front, in a corner and turned, facing sideways, facing backwards.
 const std::vector<Pose2> kMountings = {
     {0.1, 0.0, 0.0}, {0.31, -0.12, 0.2}, {0.05, 0.2, std::numbers::pi / 2}, {-0.25, 0.03, 3.0}};
 
@@ -76,7 +76,7 @@ TEST(LaserCalibrationTest, NoisyMotionsGiveItWithinTheSpreadThatIsStated) {
         const double error = geometry::wrap_angle(part.value - truth);
         EXPECT_TRUE(part.known);
         EXPECT_LT(std::fabs(error), 4.0 * part.spread);
-        EXPECT_LT(part.spread, largest);  // so that it says something
+        EXPECT_LT(part.spread, largest);  // narrow enough to be useful
         squared += error * error / (part.spread * part.spread);
         ++count;
       };
@@ -99,7 +99,7 @@ TEST(LaserCalibrationTest, WithoutTurnsOnlyTheYawIsKnown) {
   const LaserCalibration found = calibrate_mounting(drive, 3);
   EXPECT_FALSE(found.x_m.known);
   EXPECT_FALSE(found.y_m.known);
-  EXPECT_EQ(found.x_m.value, 0.05);  // as it was
+  EXPECT_EQ(found.x_m.value, 0.05);  // unchanged
   EXPECT_EQ(found.y_m.value, 0.0);
   EXPECT_EQ(found.with_turn, 0U);
   EXPECT_TRUE(found.yaw_rad.known);
@@ -116,7 +116,7 @@ TEST(LaserCalibrationTest, OnTheSpotOnlyThePositionIsKnown) {
   EXPECT_FALSE(found.yaw_rad.known);
   EXPECT_EQ(found.yaw_rad.value, 0.0);
   EXPECT_EQ(found.with_path, 0U);
-  // What is known is where the robot turns, seen from the laser: with a laser that is taken to look
+  // Only the centre of rotation relative to the laser is known: if the laser is assumed to face
   // forward, that is (0.2, 0.1) turned back by the yaw.
   const Eigen::Vector2d place = Pose2{0.0, 0.0, -0.1} * Eigen::Vector2d(0.2, 0.1);
   EXPECT_TRUE(found.x_m.known && found.y_m.known);

@@ -1,4 +1,4 @@
-// What motions of a log are measured as, by matches and by a reference trajectory.
+// The measured motions of a log, from matches and from a reference trajectory.
 #include "topogeo/localization/calibration/odometry_calibration_samples.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ using geometry::Pose2;
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-// Stops a second apart, one metre on, with one scan between each two half way between them.
+// Stops a second apart, one metre on, with one scan halfway between each two.
 LocalMaps straight_maps(std::uint32_t stops) {
   LocalMaps maps;
   for (std::uint32_t i = 0; i < stops; ++i) {
@@ -79,7 +79,7 @@ TEST(ReferenceMotionsTest, StopsBetweenTwoPosesAreInterpolatedAndOthersLeftOut) 
   EXPECT_TRUE(motions_from_reference(straight_maps(5), {}, 10.0).empty());
 }
 
-/// The room driven through, and the accepted matches of a localizer.
+/// A drive through the room, and a localizer's accepted matches.
 class MatchedMotionsTest : public testing::Test {
  protected:
   MatchedMotionsTest()
@@ -115,7 +115,7 @@ TEST_F(MatchedMotionsTest, AreRightWithoutTheOdometry) {
     const Eigen::Vector3d error =
         geometry::difference(motion.T_first_last, truth(motion.first, motion.last));
     errors_m.push_back(error.head<2>().norm());
-    // Stated generously, so no error is far outside.
+    // The covariances are generous, so no error is far outside.
     EXPECT_LT(error.dot(motion.covariance.inverse() * error), 16.0)
         << motion.first << " to " << motion.last;
   }
@@ -127,7 +127,7 @@ TEST_F(MatchedMotionsTest, AreRightWithoutTheOdometry) {
 TEST_F(MatchedMotionsTest, AMatchAgainstAllOthersIsLeftOut) {
   const MatchedMotions before =
       motions_from_matches(driven_.maps, pool_.accepted(), localizer_.trajectory());
-  // Bend the trajectory at one stop: now the matches of that stop stand against it.
+  // Bends the trajectory at one stop, so that the matches of that stop contradict it.
   topomap::Trajectory bent = localizer_.trajectory();
   bent.stops[2].T_map_robot.theta_rad += 0.5;
   const MatchedMotions after = motions_from_matches(driven_.maps, pool_.accepted(), bent);

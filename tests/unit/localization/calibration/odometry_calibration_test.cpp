@@ -1,4 +1,4 @@
-// calibrate_odometry on motions whose noise is known because it was made here.
+// calibrate_odometry on motions with known, simulated noise.
 #include "topogeo/localization/calibration/odometry_calibration.hpp"
 
 #include <cmath>
@@ -45,7 +45,7 @@ TEST(OdometryCalibrationTest, FindsTheNoiseWithinTheSpreadThatItStates) {
       EXPECT_TRUE(estimate.known);
       const double error = estimate.as_is.value - truth(kTrue, p);
       EXPECT_LT(std::fabs(error), 4.0 * estimate.as_is.spread);
-      EXPECT_LT(estimate.as_is.spread, 0.5 * truth(kTrue, p));  // so that it says something
+      EXPECT_LT(estimate.as_is.spread, 0.5 * truth(kTrue, p));  // narrow enough to be useful
       if (!estimate.as_is.at_most) {
         squared += error * error / (estimate.as_is.spread * estimate.as_is.spread);
         ++count;
@@ -54,8 +54,8 @@ TEST(OdometryCalibrationTest, FindsTheNoiseWithinTheSpreadThatItStates) {
     }
     scale += found.measurement_scale / kSeeds;
   }
-  EXPECT_NEAR(scale, 1.0, 0.25);  // little of it is seen under so much more noise of the odometry
-  // Errors of the size of the spread, neither much smaller nor much larger.
+  EXPECT_NEAR(scale, 1.0, 0.25);  // the odometry's larger noise hides most of it
+  // Errors are about as large as the spread.
   EXPECT_GT(squared / count, 0.3);
   EXPECT_LT(squared / count, 2.5);
 }
@@ -126,7 +126,7 @@ TEST(OdometryCalibrationTest, FindsSystematicErrorsAndTakesThemOut) {
     EXPECT_NEAR(corrected.value, truth(kTrue, p), 4.0 * corrected.spread)
         << kOdometryParameters[p].key;
   }
-  // As it is, the drift to the left must be expected as noise of the heading.
+  // Uncorrected, the drift to the left must be expected as noise of the heading.
   EXPECT_GT(found.noise.heading_rad2_per_m, 3.0 * kTrue.heading_rad2_per_m);
 }
 

@@ -18,8 +18,8 @@ std::vector<std::uint32_t> ids(const std::vector<MatchCandidate>& candidates) {
   return found;
 }
 
-/// The l-shaped room seen from its middle, and from there at other poses: the further off, the less
-/// of it is in view.
+/// The L-shaped room seen from its middle, and placed at other poses from there: the farther away,
+/// the less of it is in view.
 class CandidateChoiceTest : public ::testing::Test {
  protected:
   void consider(CandidateChoice& choice, std::uint32_t id, double x_m) const {

@@ -1,4 +1,4 @@
-// Matches with errors of a known size: what triangles of them say.
+// Matches with errors of a known size, and the calibration from triangles of them.
 #include "topogeo/localization/mapping/covariance_calibration.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -12,12 +12,12 @@ namespace {
 
 using geometry::Pose2;
 
-/// As of match_covariance: the floor, and five times as much beyond it.
+/// A covariance of match_covariance: its floor plus five times as much.
 Eigen::Matrix3d stated() {
   return 6.0 * match_covariance_floor();
 }
 
-/// Triangles of matches that are off by so many of their calibrated deviations.
+/// Triangles of matches with errors of so many calibrated deviations.
 CovarianceCalibration after(int triangles, double deviations) {
   support::Random random(5);
   const Eigen::Matrix3d usual = CovarianceCalibration().of_match(stated());

@@ -25,7 +25,7 @@ PoseGraph map_along_x() {
   return graph;
 }
 
-// A drive along y in odometry that starts at (5, 5) and looks along y.
+// A drive along y in odometry that starts at (5, 5), facing y.
 DriveMaps drive_along_y(std::uint32_t stops) {
   DriveMaps drive;
   for (std::uint32_t i = 0; i < stops; ++i) {
@@ -36,8 +36,8 @@ DriveMaps drive_along_y(std::uint32_t stops) {
   return drive;
 }
 
-// The drive's last stop, 2 m on from its first, stands 1 m to the left of stop 0 of the map and
-// looks along x: its first stop is at (-2, 1), which is (-4, 1) seen from stop 2.
+// The drive's last stop, 2 m on from its first, is 1 m to the left of stop 0 of the map and faces
+// x. Its first stop is therefore at (-2, 1), which is (-4, 1) seen from stop 2.
 TEST(DriveJoin, ItsFirstStopFollowsFromTheMatchOfItsLast) {
   const std::vector<StoredMatch> matches{{0, {{0.0, 1.0, 0.0}, known_to(0.02)}, 0.9}};
   const UncertainPose first = first_stop_of_drive(map_along_x(), drive_along_y(3), matches, {});
@@ -51,7 +51,7 @@ TEST(DriveJoin, TheSurestMatchCounts) {
   const std::vector<StoredMatch> matches{{2, {{0.3, 0.0, 0.0}, known_to(0.5)}, 0.9},
                                          {1, {{1.0, 0.0, 0.0}, known_to(0.02)}, 0.7}};
   const UncertainPose first = first_stop_of_drive(map_along_x(), drive_along_y(1), matches, {});
-  EXPECT_NEAR(first.T_a_b.x_m, 0.0, 1e-9);  // stop 1 + 1 m is where stop 2 is
+  EXPECT_NEAR(first.T_a_b.x_m, 0.0, 1e-9);  // 1 m on from stop 1 is stop 2
 }
 
 TEST(DriveJoin, RefusesWhatDoesNotJoin) {

@@ -16,8 +16,8 @@ Eigen::Matrix3d diagonal_of(double sigma_m, double sigma_rad) {
   return sigma.cwiseAbs2().asDiagonal();
 }
 
-// Out and back along a line. Odometry stretches every step by 2 %, so that the way back ends 20 cm
-// beside the start only because of the loop; a second loop is wrong by metres.
+// Out and back along a line. Odometry is 2 % too long out and 2 % too short back, which loops
+// between the two correct; an additional loop is wrong by metres.
 GraphProblem line(bool with_wrong_loop) {
   GraphProblem problem;
   problem.whole = true;
@@ -75,7 +75,7 @@ TEST(GraphOptimizationTest, AHeldStopKeepsItsPlaceAndFeelsTheStrain) {
   EXPECT_EQ(solution.T_map_robot[9], problem.T_map_robot[9]);
   EXPECT_TRUE(solution.strained);
   EXPECT_EQ(solution.stops, problem.stops);
-  // Where nothing wants to move there is no strain.
+  // A problem at rest has no strain.
   problem.edges.resize(10);
   EXPECT_FALSE(solve(problem).strained);
 }
@@ -103,7 +103,7 @@ TEST(GraphOptimizationTest, MovesWhatCameMeanwhileWithTheLastOfTheProblem) {
   EXPECT_THROW(graph.move(std::vector<std::uint32_t>{4}, {solved.data(), 1}),
                std::invalid_argument);
   EXPECT_THROW(graph.move(first_two, {solved.data(), 1}), std::invalid_argument);
-  // One in the middle alone moves nothing else.
+  // A single free stop in the middle moves nothing else.
   const Pose2 last = graph.poses()[3];
   graph.move(std::vector<std::uint32_t>{1, 3}, std::vector<Pose2>{{5, 5, 0}, last});
   EXPECT_EQ(graph.poses()[1].x_m, 5.0);

@@ -81,8 +81,8 @@ void expect_same(const Outcome& a, const Outcome& b) {
   EXPECT_EQ(a.counts.reasons, b.counts.reasons);
 }
 
-/// Expects the last stop of a drive through the room where it is, though odometry has an error in
-/// the step to it that nobody mapped; returns what the localizer says of it.
+/// Expects the last stop of a drive through the room at its true place, though odometry errs in the
+/// unmapped step to it; returns the localizer's status.
 LocalizationStatus expect_placed(const std::vector<Pose2>& truth, const Pose2& odometry_error) {
   const world::World room = test::world("room");
   InProcessPool pool;
@@ -99,8 +99,8 @@ LocalizationStatus expect_placed(const std::vector<Pose2>& truth, const Pose2& o
   return localizer.status();
 }
 
-// A robot turns where it arrived and drives back while nobody maps: its next view shows little that
-// the last ones have shown, and a quarter turn away a corner of the room looks alike.
+// The robot turns at its destination and drives back unmapped: its next view shares little with the
+// last ones, and a corner of the room looks alike after a quarter turn.
 TEST(LocalizerTest, ALookAlikeFarFromGoodOdometryDoesNotCount) {
   for (double back_m = 0.6; back_m <= 1.81; back_m += 0.1) {
     SCOPED_TRACE(back_m);
@@ -118,8 +118,8 @@ TEST(LocalizerTest, ALookAlikeFarFromGoodOdometryDoesNotCount) {
 
 constexpr Pose2 kOdometryError{0.1, -0.1, 0.1};
 
-// A robot turns where the drive began, then drives on while nobody maps: where it stands, the stop
-// before shows little, the first ones much.
+// The robot turns where the drive began, then drives on unmapped: at its new place the previous
+// stop shows little, the first ones much.
 TEST(LocalizerTest, AfterALongStepThatNobodyMappedThePlaceIsKnownByStopsBefore) {
   for (double last_rad = -2.0; last_rad >= -3.05; last_rad -= 0.15) {
     std::vector<Pose2> truth;
@@ -133,8 +133,8 @@ TEST(LocalizerTest, AfterALongStepThatNobodyMappedThePlaceIsKnownByStopsBefore) 
   }
 }
 
-// The same where the stops that show the place are further back than those that each is compared
-// with: the robot was there, turned, drove back, and comes again while nobody maps.
+// The same with the stops that show the place further back than those that each stop is compared
+// with: the robot was there, turned, drove back, and returns unmapped.
 TEST(LocalizerTest, AfterALongStepThatNobodyMappedThePlaceIsKnownByAnEarlierVisit) {
   for (double last_rad = -0.3; last_rad <= 0.31; last_rad += 0.1) {
     std::vector<Pose2> truth = {{1.0, 1.0, 0.0}, {2.0, 1.0, -0.05}, {3.0, 0.93, 0.0}};
@@ -184,7 +184,7 @@ TEST(LocalizerTest, ClosesTheLoopOfTheSimulatedFloor) {
   EXPECT_EQ(outcome.trajectory.stops[0].T_map_robot, Pose2{});
 }
 
-// While the first steps were driven nothing was known of the scale of odometry.
+// The scale of odometry was still unknown on the first steps.
 TEST(LocalizerTest, InTheEndAllStepsHaveTheScaleThatWasLearnedOnTheDrive) {
   const test::Maps& maps = round_trip().maps;
   InProcessPool pool;
@@ -234,7 +234,7 @@ TEST(LocalizerTest, AStepWithoutALoopTouchesNothingOld) {
   EXPECT_GT(untouched, 60);
 }
 
-// Has solved the job at once, in a thread of its own, or only when the solution is fetched.
+// Solves the job at once, in a thread of its own, or only when the solution is fetched.
 class LateOptimizer : public GraphOptimizer {
  public:
   void start(GraphProblem problem) override {
@@ -293,7 +293,7 @@ TEST(LocalizerTest, EveryLoopIsExplained) {
   EXPECT_EQ(standing, closed);
 }
 
-// Answers every batch backwards, each task on one of two matchers that take turns.
+// Answers every batch backwards, each task on one of two alternating matchers.
 class TwoWorkersBackwards : public MatchPool {
  public:
   void add_map(std::shared_ptr<const topomap::LocalMap> map) override {
@@ -364,8 +364,8 @@ TEST(LocalizerTest, TheVersionGrowsWithEveryStep) {
   }
 }
 
-// The robot goes round the first half of the floor and back, then its scans come from a closed room
-// of another building while its odometry says that it drives the first corridor again.
+// The robot drives round the first half of the floor and back; then its scans come from a closed
+// room of another building while its odometry follows the first corridor again.
 TEST(LocalizerTest, ScansOfAnotherWorldCloseNoLoop) {
   const DrivenMaps floor = test::drive(
       test::world("floor"), {{1.3, 1.2}, {15.0, 1.15}, {16.0, 1.2}, {15.0, 1.15}, {1.3, 1.2}});
@@ -387,7 +387,7 @@ TEST(LocalizerTest, ScansOfAnotherWorldCloseNoLoop) {
     EXPECT_FALSE(loop.earlier_id < first_of_room && loop.later_id >= first_of_room)
         << loop.earlier_id << " - " << loop.later_id;
   }
-  // The way there and back is closed all the same.
+  // The path there and back is still closed.
   EXPECT_FALSE(outcome.closures.empty());
 }
 

@@ -1,5 +1,5 @@
 // Straight stops 1 m apart. Matches of stops from 30 on with stops from 0 on: those that agree put
-// the robot to one place, those of a look-alike to another.
+// the robot at one place, those of a look-alike at another.
 #include "topogeo/localization/mapping/loop_agreement.hpp"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ class LoopAgreementTest : public testing::Test {
     }
   }
 
-  /// Doubtful, and puts the later stop `off_m` aside of where it is.
+  /// A doubtful match that puts the later stop `off_m` to the side of its place.
   static StopMatch match(std::uint32_t from, std::uint32_t to, double off_m) {
     StopMatch match;
     match.edge = {
@@ -52,7 +52,7 @@ TEST_F(LoopAgreementTest, TheWayRoundTwoLoopsMeasuresTheirDisagreement) {
   const PoseGraphEdge a = match(0, 30, 1.0).edge;
   EXPECT_NEAR(disagreement(graph_, a, match(4, 33, 1.0).edge, path_m_, 25.0), 0.0, 1e-9);
   EXPECT_GT(disagreement(graph_, a, match(4, 33, 2.0).edge, path_m_, 25.0), 20.0);
-  // Nothing is said of loops whose ends lie far apart.
+  // Loops whose ends lie far apart cannot be compared.
   EXPECT_EQ(disagreement(graph_, a, match(4, 60, 1.0).edge, path_m_, 25.0),
             std::numeric_limits<double>::infinity());
 }
@@ -68,7 +68,7 @@ TEST_F(LoopAgreementTest, SeveralStopsThatAgreeAreAcceptedTogether) {
   EXPECT_TRUE(accepted().empty());
   for (std::uint32_t i = 2; i < 6; ++i) add(i, 30 + i, 1.0);
   EXPECT_EQ(accepted().size(), 6U);
-  EXPECT_TRUE(accepted().empty());  // each once
+  EXPECT_TRUE(accepted().empty());  // each only once
 }
 
 TEST_F(LoopAgreementTest, ManyMatchesOfOneStopAreOnePieceOfEvidence) {
@@ -89,7 +89,7 @@ TEST_F(LoopAgreementTest, TwoPlacesThatLookAlikeAreLeftOpen) {
   EXPECT_TRUE(alike.accepted(graph_, path_m_).empty());
 }
 
-// Earlier ends 35 m of path apart, which the graph knows to decimetres.
+// The earlier ends are 35 m of path apart, and the graph knows their relation to decimetres.
 TEST_F(LoopAgreementTest, LoopsWithAnotherVisitOfThePlaceAreNoRivals) {
   for (std::uint32_t i = 0; i < 6; ++i) {
     add(i, 70 + i, 1.0);
@@ -98,7 +98,7 @@ TEST_F(LoopAgreementTest, LoopsWithAnotherVisitOfThePlaceAreNoRivals) {
   EXPECT_EQ(accepted().size(), 12U);
 }
 
-// Two stops each with two visits of the place, 35 m of path apart: too few with either alone.
+// Two stops match each of two visits of the place, 35 m of path apart: too few for one visit alone.
 TEST_F(LoopAgreementTest, VisitsWhoseRelationIsKnownSpeakTogether) {
   const auto add_visits = [&](LoopAgreement& agreement, double second_off_m) {
     agreement.add(match(0, 70, 1.0), path_m_);
@@ -136,8 +136,8 @@ TEST_F(LoopAgreementTest, LoopsWithALookAlikeFarAwayAreRivals) {
   EXPECT_TRUE(accepted().empty());
 }
 
-// The robot has drifted by 1.2 m since the first visit, far more than the graph says; what it saw
-// shortly before lies where the graph has it.
+// The robot has drifted by 1.2 m since the first visit, far more than the graph's covariance; its
+// most recent matches agree with the graph.
 TEST_F(LoopAgreementTest, LoopsThatDriftedAlongAreNoRivals) {
   const auto predicted = [](StopMatch match) {
     match.predicted = {{match.edge.T_from_to.x_m, 0.0, 0.0}, spread_of(0.25, 0.05)};
@@ -153,7 +153,7 @@ TEST_F(LoopAgreementTest, LoopsThatDriftedAlongAreNoRivals) {
             8);
 }
 
-// Three stops of a sparse log see as much as five of a dense one.
+// Three stops of a sparse log are as much evidence as five of a dense one.
 TEST_F(LoopAgreementTest, StopsFarApartCountMore) {
   LoopAgreement dense;
   std::vector<double> half_m = path_m_;
@@ -172,12 +172,12 @@ TEST_F(LoopAgreementTest, AFewThatContradictAreOutvoted) {
   const std::vector<StopMatch> all = accepted();
   EXPECT_EQ(all.size(), 7U);
   for (const StopMatch& one : all) EXPECT_EQ(one.edge.T_from_to.y_m, 1.0);
-  EXPECT_EQ(agreement_.waiting(), 7U);  // the accepted ones stay as support, the other is gone
+  EXPECT_EQ(agreement_.waiting(), 7U);  // the accepted ones remain as support, the other is removed
   EXPECT_GE(all.front().agreement, 2.0 * all.front().rival_agreement);
   EXPECT_EQ(all.front().rival_agreement, 1.0);  // one doubtful match
 }
 
-// Half a metre along the corridor against a prediction that all others agree with.
+// Half a metre off a prediction that all others agree with.
 TEST_F(LoopAgreementTest, WhatAloneContradictsThePredictionIsLeftOut) {
   const auto predicted = [](StopMatch match, double off_m) {
     match.predicted = {{match.edge.T_from_to.x_m, match.edge.T_from_to.y_m - off_m, 0.0},
@@ -193,7 +193,7 @@ TEST_F(LoopAgreementTest, WhatAloneContradictsThePredictionIsLeftOut) {
   for (const StopMatch& one : all) EXPECT_NE(one.edge.from, 6U);
 }
 
-// 0.35 m along the corridor, which the prediction does not exclude: its inliers decide.
+// 0.35 m off, which the prediction does not exclude: its inliers decide.
 TEST_F(LoopAgreementTest, WhatIsImprobableAmongOthersIsLeftOut) {
   for (const double inliers : {0.0, 0.9}) {
     LoopAgreement agreement;
@@ -207,7 +207,7 @@ TEST_F(LoopAgreementTest, WhatIsImprobableAmongOthersIsLeftOut) {
   }
 }
 
-// Of a place where the robot is expected stops measure better.
+// At a place where the robot is expected, matches of stops are more accurate than windows.
 TEST_F(LoopAgreementTest, WindowsAreTakenOnlyWhereTheySurprise) {
   for (const bool surprising : {false, true}) {
     LoopAgreement agreement;
@@ -224,7 +224,7 @@ TEST_F(LoopAgreementTest, WindowsAreTakenOnlyWhereTheySurprise) {
   }
 }
 
-// Windows of 5 m that end 1 m apart hold nearly the same; five of them hold no more than 9 m.
+// Windows of 5 m that end 1 m apart are nearly the same; five of them span no more than 9 m.
 TEST_F(LoopAgreementTest, WindowsCountByThePathThatNoOtherHolds) {
   const auto windows = [&](std::uint32_t first, std::uint32_t count, std::uint32_t apart) {
     LoopAgreement agreement;
@@ -238,7 +238,7 @@ TEST_F(LoopAgreementTest, WindowsCountByThePathThatNoOtherHolds) {
     return agreement.accepted(graph_, path_m_).size();
   };
   EXPECT_EQ(windows(30, 7, 1), 0U);
-  EXPECT_EQ(windows(30, 4, 5), 4U);    // 20 m, none twice
+  EXPECT_EQ(windows(30, 4, 5), 4U);    // 20 m without overlap
   EXPECT_EQ(windows(30, 16, 1), 16U);  // the same 20 m
 }
 

@@ -17,7 +17,7 @@ Eigen::Matrix3d spread(double sigma_m, double sigma_rad) {
   return Eigen::Vector3d(sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad).asDiagonal();
 }
 
-/// Straight stops 1 m apart, each known from the one before to 0.2 m.
+/// Straight stops 1 m apart, each known to 0.2 m from the previous one.
 PoseGraph straight(std::uint32_t stops) {
   PoseGraph graph;
   graph.add_pose({});
@@ -28,7 +28,7 @@ PoseGraph straight(std::uint32_t stops) {
   return graph;
 }
 
-/// A match that puts stop `to` aside by `off_m` from where it is.
+/// A match that puts stop `to` `off_m` to the side of its place.
 StopMatch loop(std::uint32_t from, std::uint32_t to, double off_m, double fitness = 0.9) {
   StopMatch match;
   match.edge = {from, to, EdgeKind::kRevisit, {1.0 * (to - from), off_m, 0.0}, spread(0.02, 0.005)};
@@ -38,7 +38,7 @@ StopMatch loop(std::uint32_t from, std::uint32_t to, double off_m, double fitnes
   return match;
 }
 
-/// The same, where the robot was expected on its straight path to this deviation.
+/// The same with the robot expected on its straight path with this deviation.
 StopMatch predicted(StopMatch match, double sigma_m) {
   match.predicted = {{1.0 * (match.edge.to - match.edge.from), 0.0, 0.0}, spread(sigma_m, 0.05)};
   return match;
@@ -48,7 +48,7 @@ TEST(LoopClosing, ASmallCorrectionIsAcceptedAtOnce) {
   const PoseGraph graph = straight(12);
   LoopClosing loops({});
   EXPECT_EQ(loops.consider(graph, loop(0, 11, 0.05)), LoopVerdict::kAgrees);
-  EXPECT_TRUE(loops.waiting().empty());  // the caller adds it
+  EXPECT_TRUE(loops.waiting().empty());  // adding it is up to the caller
   EXPECT_EQ(loops.consider(graph, loop(1, 11, 0.3, 0.8)), LoopVerdict::kMoves);
   ASSERT_EQ(loops.waiting().size(), 1U);
   EXPECT_EQ(loops.waiting()[0].from, 1U);
@@ -71,11 +71,11 @@ TEST(LoopClosing, AFarCorrectionWaitsForAnotherStopThatAgrees) {
   EXPECT_EQ(loops.consider(graph, loop(0, 10, 1.0)), LoopVerdict::kPending);
   EXPECT_TRUE(loops.waiting().empty());
   EXPECT_EQ(loops.unconfirmed(), 1U);
-  // The same stop again proves nothing, nor does another one that moves the robot elsewhere.
+  // The same stop again is no proof, nor is another one that moves the robot elsewhere.
   EXPECT_EQ(loops.consider(graph, loop(1, 10, 1.0)), LoopVerdict::kPending);
   EXPECT_EQ(loops.consider(graph, loop(1, 11, -1.0)), LoopVerdict::kPending);
   EXPECT_EQ(loops.consider(graph, loop(2, 11, 1.1)), LoopVerdict::kMoves);
-  ASSERT_EQ(loops.waiting().size(), 3U);  // both loops of stop 10 with it
+  ASSERT_EQ(loops.waiting().size(), 3U);  // including both loops of stop 10
   EXPECT_EQ(loops.waiting()[0].from, 0U);
   EXPECT_EQ(loops.waiting()[1].from, 1U);
   EXPECT_EQ(loops.waiting()[2].from, 2U);

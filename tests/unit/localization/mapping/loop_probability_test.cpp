@@ -37,7 +37,7 @@ LoopEvidence window() {
 }
 
 TEST(LoopProbability, IsTheLogisticFunctionOfItsTerms) {
-  // By hand: 2 (doubtful) + 1 * 0.8 - 3 * 0.5 - 1 * ln 4 = -0.0863.
+  // Computed by hand: 2 (doubtful) + 1 * 0.8 - 3 * 0.5 - 1 * ln 4 = -0.0863.
   const LoopTerms coefficients{9.0, 2.0, 9.0, 9.0, 1.0, -3.0, 9.0, -1.0, 0.0, 0.0, 0.0, 0.0};
   EXPECT_NEAR(loop_probability(doubtful(), coefficients),
               1.0 / (1.0 + std::exp(-(2.0 + 0.8 - 1.5 - std::log(4.0)))), 1e-12);

@@ -1,5 +1,5 @@
-// The search on chains along x whose answer is worked out by hand; with constraints and against all
-// combinations it is tested as the backward correction of the thesis.
+// The search on chains along x with results worked by hand. The backward correction of the thesis
+// tests it with constraints and against all combinations.
 #include "topogeo/localization/mapping/loop_search.hpp"
 
 #include <cmath>
@@ -19,7 +19,7 @@ RelativeSolution step_of(double x_m, double fitness) {
   return {{x_m, 0.0, 0.0}, deviations(0.05, 0.01), fitness};
 }
 
-// Poses 1 m apart, which are known to `sigma_m`.
+// Poses 1 m apart, each known to `sigma_m`.
 std::vector<LoopPose> chain(std::size_t poses, double sigma_m) {
   std::vector<LoopPose> loop(poses);
   for (std::size_t k = 1; k < poses; ++k) {
@@ -55,7 +55,7 @@ TEST(LoopSearch, SumsTheFitnessOfCandidateAndSteps) {
 
 TEST(LoopSearch, TakesTheCandidateThatSumsUpToMore) {
   std::vector<LoopPose> loop = chain(3, 1.0);
-  // From 2.4 only the poor step of 1.4 leads back near the first pose.
+  // Starting at 2.4, only the poor step of 1.4 leads back near the first pose.
   loop[2].steps.push_back(step_of(1.4, 0.2));
   const std::vector candidates{candidate_at(2.4, 0.9), candidate_at(2.0, 0.7)};
   const LoopSearchResult found = search_loop(loop, candidates, exact());
@@ -79,7 +79,7 @@ class NotBelow : public LoopConstraint {
  public:
   explicit NotBelow(double x_m) : x_m_(x_m) {}
   [[nodiscard]] bool allows(std::uint32_t pose, const LoopNode& node) const override {
-    // The path behind the pose reaches to the last one.
+    // The path from this pose must reach the last one.
     std::uint32_t last = pose;
     for (const LoopNode* behind = node.next; behind != nullptr; behind = behind->next) ++last;
     EXPECT_EQ(last, 3U);

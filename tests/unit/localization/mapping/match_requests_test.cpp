@@ -13,7 +13,7 @@ namespace {
 
 using MapPointer = std::shared_ptr<const topomap::LocalMap>;
 
-// Keeps what it is given and answers with the number of the task.
+// Records its tasks and answers with the number of the task.
 class RequestedPool : public MatchPool {
  public:
   void add_map(MapPointer map) override { maps.push_back(std::move(map)); }

@@ -14,7 +14,7 @@ Eigen::Matrix3d variances(double position_m2, double heading_rad2) {
 const Eigen::Matrix3d kOdometry = variances(0.01, 0.0025);  // 10 cm, 2.9 degrees
 const Eigen::Matrix3d kMatch = variances(1e-4, 1e-5);
 
-// Steps of one metre, the odometry off by so many of its deviations.
+// Steps of one metre with odometry errors of so many deviations.
 OdometryMonitor watch(int steps, double times_position, double times_heading,
                       const Eigen::Matrix3d& match_covariance = kMatch) {
   support::Random random(3);
@@ -37,7 +37,7 @@ TEST(OdometryMonitorTest, StartsAsConfigured) {
 
 TEST(OdometryMonitorTest, ExpectsLessWhereOdometryIsBetterThanConfigured) {
   const OdometryMonitor good = watch(400, 0.1, 0.1);
-  EXPECT_EQ(good.widened(kOdometry), kOdometry);  // for weighing the configuration is a floor
+  EXPECT_EQ(good.widened(kOdometry), kOdometry);  // for weighting, the configuration is a floor
   EXPECT_LT(good.expected(kOdometry)(0, 0), 0.2 * kOdometry(0, 0));
   EXPECT_LT(good.expected(kOdometry)(2, 2), 0.2 * kOdometry(2, 2));
   EXPECT_GT(good.expected(kOdometry)(0, 0), 0.01 * kOdometry(0, 0));

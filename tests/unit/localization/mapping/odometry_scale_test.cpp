@@ -13,7 +13,7 @@ UncertainPose match_of(const Pose2& T, double sigma_along_m) {
   return {T, Eigen::Vector3d(sigma_along_m * sigma_along_m, 1e-4, 1e-5).asDiagonal()};
 }
 
-// Steps of a metre by an odometry of that scale.
+// Steps of a metre with odometry of this scale.
 OdometryScale learned(int steps, double scale, double odometry_sigma_m, double match_sigma_m) {
   support::Random random(5);
   OdometryScale learned;
@@ -43,7 +43,7 @@ TEST(OdometryScaleTest, FindsWaysThatAreTooLongOrTooShort) {
 }
 
 TEST(OdometryScaleTest, TheNoiseOfOdometryIsNoScale) {
-  // A regression on the ways of odometry would say 0.9936.
+  // A regression on odometry's distances would give 0.9936.
   EXPECT_NEAR(learned(2000, 1.0, 0.08, 0.02).factor(), 1.0, 0.004);
 }
 
@@ -64,7 +64,7 @@ TEST(OdometryScaleTest, LearnsOnlyFromMatchesThatKnowTheWay) {
 }
 
 TEST(OdometryScaleTest, TheWayCountsWhereverItLeads) {
-  // The robot drives to its left; the match knows only that direction.
+  // The robot drives to its left; the match constrains only that direction.
   OdometryScale scale;
   for (int i = 0; i < 500; ++i) {
     scale.add({0.0, 1.02, 0.0}, {{0.3, 1.0, 0.0}, Eigen::Vector3d(1.0, 1e-4, 1e-5).asDiagonal()});

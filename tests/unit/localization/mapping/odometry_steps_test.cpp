@@ -13,7 +13,7 @@ const Eigen::Matrix3d kConfiguredStep = Eigen::Vector3d(0.01, 0.01, 0.0025).asDi
 const Eigen::Matrix3d kMatchOfStep = Eigen::Vector3d(1e-6, 1e-6, 1e-6).asDiagonal();
 const UncertainPose kMetre{Pose2{1.0, 0.0, 0.0}, kConfiguredStep};
 
-// So many steps of a metre that were longer than odometry says by this factor.
+// Steps of a metre that are longer than odometry by this factor.
 OdometrySteps drive_metres(int steps, double factor) {
   OdometrySteps driven;
   driven.add_none();
@@ -52,7 +52,7 @@ TEST(OdometryStepsTest, AllowsAMatchWhereTheStepsMayHaveBroughtTheRobot) {
   OdometrySteps steps;
   steps.add_none();
   for (int i = 0; i < 4; ++i) steps.add(kMetre);
-  // Four steps of 0.1 m across each, and of 0.05 rad that turn the ways after them.
+  // Four steps with 0.1 m of lateral error each, and 0.05 rad that turn the later steps.
   EXPECT_TRUE(steps.allow(match_of_stops(0, 4, Pose2{4.2, 0.3, 0.1}), 4.0));
   EXPECT_FALSE(steps.allow(match_of_stops(0, 4, Pose2{4.0, 0.0, 1.57}), 4.0));
   EXPECT_FALSE(steps.allow(match_of_stops(0, 4, Pose2{2.0, 0.0, 0.0}), 4.0));

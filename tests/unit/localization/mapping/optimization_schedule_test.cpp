@@ -9,7 +9,7 @@ namespace {
 
 using geometry::Pose2;
 
-// Records its problems; every result is unusable or usable as it is told.
+// Records its problems; a flag decides whether results are usable.
 class FakeOptimizer : public GraphOptimizer {
  public:
   void start(GraphProblem problem) override { problems.push_back(std::move(problem)); }
@@ -54,7 +54,7 @@ TEST(OptimizationSchedule, AResultIsDueSoManyStepsAfterItsStart) {
   schedule.start(5, two_stops(), loops);
   ASSERT_EQ(optimizer.problems.size(), 1U);
   EXPECT_EQ(optimizer.problems[0].T_map_robot.size(), 2U);
-  ASSERT_EQ(optimizer.problems[0].edges.size(), 2U);  // of the graph, then the loop
+  ASSERT_EQ(optimizer.problems[0].edges.size(), 2U);  // one of the graph, then the loop
   EXPECT_EQ(optimizer.problems[0].edges[1].kind, EdgeKind::kRevisit);
   EXPECT_FALSE(schedule.fetch(6));
   EXPECT_EQ(optimizer.fetched, 0);
@@ -91,7 +91,7 @@ TEST(OptimizationSchedule, TenSmallLoopsAreWorthOne) {
   schedule.start(1, two_stops(), {});
   EXPECT_EQ(optimizer.problems.size(), 1U);
   EXPECT_TRUE(schedule.fetch(1));
-  schedule.count_loop(kLoop);  // counted anew
+  schedule.count_loop(kLoop);  // counting starts again
   schedule.start(2, two_stops(), {});
   EXPECT_EQ(optimizer.problems.size(), 1U);
 }
@@ -134,7 +134,7 @@ TEST(OptimizationSchedule, AfterAStrainedResultMoreStopsAreFree) {
   optimizer.strained = false;
   schedule.fetch(0);
   schedule.start(1, graph, {});
-  ASSERT_EQ(optimizer.problems.size(), 1U);  // not strained: nothing more is wanted
+  ASSERT_EQ(optimizer.problems.size(), 1U);  // no strain: nothing more is needed
   optimizer.strained = true;
   schedule.want();
   schedule.start(2, graph, {&loop, 1});
@@ -147,7 +147,7 @@ TEST(OptimizationSchedule, AfterAStrainedResultMoreStopsAreFree) {
   EXPECT_TRUE(optimizer.problems.back().whole);
   optimizer.strained = false;
   schedule.fetch(4);
-  // The next loop begins with few again.
+  // The next loop starts with few stops again.
   schedule.want();
   schedule.start(5, graph, {&loop, 1});
   EXPECT_EQ(optimizer.problems.back().stops.size(), first);

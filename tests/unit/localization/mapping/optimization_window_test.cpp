@@ -18,9 +18,9 @@ Eigen::Matrix3d variances_of(double sigma_m, double sigma_rad) {
   return sigma.cwiseAbs2().asDiagonal();
 }
 
-// Rounds through a square of 50 m about, a stop each metre, with measured steps that err; from the
-// second round on each stop is matched with that of the round before. The poses are those of the
-// true path, so that a graph with all loops is nearly at rest.
+// Rounds through a square of about 50 m, a stop each metre, with noisy measured steps; from the
+// second round on each stop is matched with that of the previous round. The poses are the true
+// ones, so that a graph with all loops is nearly at rest.
 struct Rounds {
   PoseGraph graph;
   std::vector<Pose2> truth;
@@ -70,7 +70,7 @@ double largest_distance_m(const PoseGraph& a, const PoseGraph& b) {
 TEST(OptimizationWindow, OfALocalLoopMovesStopsAsTheWholeGraphDoes) {
   PoseGraph graph = rounds_of(600).graph;
   apply(graph, solve(whole_problem(graph, {})));
-  // The last stop was placed 15 cm beside; a loop shows that.
+  // A loop shows that the last stop was placed 15 cm to the side.
   const PoseGraphEdge loop{500, 599, EdgeKind::kRevisit,
                            geometry::between(graph.poses()[500], graph.poses()[599]),
                            variances_of(0.02, 0.004)};
@@ -88,7 +88,7 @@ TEST(OptimizationWindow, OfALocalLoopMovesStopsAsTheWholeGraphDoes) {
   EXPECT_LT(largest_distance_m(graph, whole), 0.005);
 }
 
-// One round of 300 stops that drifts off, then closes.
+// One round of 300 stops with drift, closed at its end.
 TEST(OptimizationWindow, HoldsTheRoundThatALoopCloses) {
   constexpr std::uint32_t kCorridor = 1700;
   constexpr std::uint32_t kStops = 2000;
@@ -118,8 +118,8 @@ TEST(OptimizationWindow, HoldsTheRoundThatALoopCloses) {
   }
   apply(graph, solve(problem));
   apply(whole, solve(whole_problem(whole, {&loop, 1})));
-  // How the round lies in itself: as a whole it hangs on the corridor, whose steps are free to
-  // turn.
+  // Compares the shape of the round: as a whole it is attached to the corridor, whose steps are
+  // free to turn.
   for (std::uint32_t stop = kCorridor; stop < kStops; ++stop) {
     const auto in_round = [&](const PoseGraph& g) {
       return geometry::between(g.poses()[kCorridor], g.poses()[stop]);
@@ -136,7 +136,7 @@ TEST(OptimizationWindow, OfMostStopsIsTheWholeGraph) {
   EXPECT_TRUE(window_problem(graph, {}, {}, 70).whole);
   const GraphProblem part = window_problem(graph, {}, {}, 20);
   EXPECT_FALSE(part.whole);
-  // Each edge has at least one free end, and each edge of a free stop is there once.
+  // Each edge has at least one free end, and each edge of a free stop appears once.
   std::size_t expected = 0;
   const auto is_free = [&](std::uint32_t stop) {
     const auto found = std::lower_bound(part.stops.begin(), part.stops.end(), stop);

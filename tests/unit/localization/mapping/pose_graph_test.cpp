@@ -48,7 +48,7 @@ TEST(PoseGraphTest, DisagreementIsTheSquaredMahalanobisDistance) {
   EXPECT_NEAR(graph.disagreement(edge), 9.0 + 4.0, 1e-9);
 }
 
-// Laps of a round of 100 stops, more than are factorized, each shifted by what odometry adds up to.
+// Rounds of 100 stops, more than are factorized, each shifted by the accumulated odometry error.
 TEST(PoseGraphTest, AStepOfOdometryIsCorrectedAndNothingElse) {
   PoseGraph graph;
   for (int i = 0; i < 3; ++i) graph.add_pose({1.0 * i, 0, 0});
@@ -63,7 +63,7 @@ TEST(PoseGraphTest, AStepOfOdometryIsCorrectedAndNothingElse) {
   EXPECT_EQ(graph.edges()[2].T_from_to, (Pose2{1, 0, 0}));
   EXPECT_EQ(graph.edges()[0].covariance, diagonal(0.1, 0.1));
   ASSERT_TRUE(graph.optimize().usable);
-  // Between the two, which count the same but for the loss of the match.
+  // Between the two, which have equal weight except for the loss of the match.
   EXPECT_NEAR(graph.poses()[1].x_m, 1.15, 0.003);
   EXPECT_NEAR(graph.poses()[2].x_m, 1.15 + 1.05, 0.006);
 }
@@ -126,7 +126,7 @@ TEST(PoseGraphTest, NothingToOptimizeIsNoError) {
 }
 
 // Four sides of 4 m with left turns; odometry turns 2 degrees too far at each corner, so the square
-// stays open by half a metre until the robot recognises where it started.
+// stays open by half a metre until the robot recognizes its start.
 TEST(PoseGraphTest, ASquareClosesWithItsClosingEdge) {
   PoseGraph graph;
   const Pose2 odometry{4.0, 0.0, 92 * kDegree};
@@ -142,7 +142,7 @@ TEST(PoseGraphTest, ASquareClosesWithItsClosingEdge) {
   EXPECT_LT(summary.final_cost, summary.initial_cost);
   EXPECT_LT(test::distance_m(graph.poses()[4], {}), 0.01);
   EXPECT_LT(test::turn_rad(graph.poses()[4], {}), 0.3 * kDegree);
-  // The error is spread: every corner is nearly a corner of the square, none takes all of it.
+  // The error is spread over all corners of the square.
   const std::vector<Pose2> square{
       {0, 0, 0}, {4, 0, 90 * kDegree}, {4, 4, 180 * kDegree}, {0, 4, -90 * kDegree}};
   EXPECT_EQ(graph.poses()[0], square[0]);
@@ -152,13 +152,13 @@ TEST(PoseGraphTest, ASquareClosesWithItsClosingEdge) {
   }
 }
 
-// Pose i of a vector of all poses but the first.
+// Pose i in a vector of all poses but the first.
 Pose2 pose_in(const Eigen::VectorXd& x, std::uint32_t i) {
   const Eigen::Index row = 3 * (Eigen::Index{i} - 1);
   return {x(row), x(row + 1), x(row + 2)};
 }
 
-// Dense Gauss-Newton with numeric derivatives, without loss function.
+// Dense Gauss-Newton with numeric derivatives, without a loss function.
 class DenseOracle {
  public:
   explicit DenseOracle(const PoseGraph& graph) : graph_(graph) {}
@@ -203,7 +203,7 @@ class DenseOracle {
   }
 
  private:
-  PoseGraph graph_;  // as it was before optimisation
+  PoseGraph graph_;  // before optimization
 };
 
 TEST(PoseGraphTest, FindsTheSameOptimumAsADenseSolver) {
@@ -216,7 +216,7 @@ TEST(PoseGraphTest, FindsTheSameOptimumAsADenseSolver) {
       return Pose2{T.x_m + 0.05 * random.normal(), T.y_m + 0.05 * random.normal(),
                    geometry::wrap_angle(T.theta_rad + 0.03 * random.normal())};
     };
-    // Any valid covariance, correlated as well.
+    // Any valid covariance, including correlated ones.
     const auto covariance = [&] {
       Eigen::Matrix3d root = diagonal(0.2, 0.17);
       root(1, 0) = random.uniform(-0.02, 0.02);
@@ -252,7 +252,7 @@ TEST(PoseGraphTest, FindsTheSameOptimumAsADenseSolver) {
   }
 }
 
-// There and back along a line; every stop of the way back sees its partner of the way there.
+// Out and back along a line; every stop on the way back sees its partner on the way out.
 PoseGraph line_there_and_back() {
   PoseGraph graph;
   graph.add_pose({});
@@ -288,7 +288,7 @@ TEST(PoseGraphTest, OneWrongLoopAmongManyBendsTheMapALittle) {
   graph.add_edge(wrong);
   graph.optimize();
   EXPECT_LT(largest_shift_m(graph, truth), 0.06);
-  // Without the loss function, as an odometry edge, the same edge does harm.
+  // Without the loss function, as an odometry edge, the same edge is harmful.
   PoseGraph plain = truth;
   wrong.kind = EdgeKind::kOdometry;
   plain.add_edge(wrong);
@@ -312,7 +312,7 @@ TEST(PoseGraphTest, RemovesEdgesAndWhatTheyAddedToTheirLinks) {
   EXPECT_TRUE(graph.relative_to(0)[20].covariance.isApprox(as_before));
   graph.remove_edges(one);
   EXPECT_EQ(graph.edges().size(), truth.edges().size());
-  // Without any loop the last stop is known by odometry alone.
+  // Without any loop, only odometry constrains the last stop.
   std::vector<PoseGraphEdge> loops;
   for (const PoseGraphEdge& edge : truth.edges()) {
     if (edge.kind == EdgeKind::kRevisit) loops.push_back(edge);

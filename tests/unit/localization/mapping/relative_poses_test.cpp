@@ -1,4 +1,4 @@
-// PoseGraph::relative_to: what one stop knows of all others.
+// PoseGraph::relative_to: poses and covariances of all stops relative to one.
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
@@ -52,7 +52,7 @@ TEST(RelativePosesTest, AChainIsComposedByHand) {
   EXPECT_TRUE(relative[2].covariance.isApprox(expected, 1e-9)) << relative[2].covariance;
   const Pose2 T = kFirstStep * kSecondStep;
   EXPECT_LT(test::distance_m(relative[2].T_a_b, T), 1e-12);
-  // And backwards, where every edge is passed against its direction.
+  // Backwards, every edge is traversed against its direction.
   const auto back = chain().relative_to(2);
   EXPECT_TRUE(back[0].covariance.isApprox(geometry::inverse_covariance(T, expected), 1e-9));
   EXPECT_LT(test::distance_m(back[0].T_a_b, geometry::inverse(T)), 1e-12);
@@ -71,12 +71,12 @@ TEST(RelativePosesTest, TheShorterOfTwoPathsCounts) {
   shortcut.add_edge({0, 2, EdgeKind::kRevisit, T_0_2, better});
   const auto relative = shortcut.relative_to(0);
   EXPECT_TRUE(relative[2].covariance.isApprox(better, 1e-9));
-  // Still the direct edge for the first step: the way round by stop 2 is longer.
+  // The direct edge for the first step remains: the detour by stop 2 is longer.
   EXPECT_TRUE(relative[1].covariance.isApprox(variances_of_edge(0.01, 0.02, 0.003), 1e-9));
 }
 
 TEST(RelativePosesTest, ParallelEdgesCountTogether) {
-  // Odometry knows the way along a corridor, the match the way across.
+  // Odometry constrains the direction along a corridor, the match the direction across.
   PoseGraph graph;
   graph.add_pose({});
   graph.add_pose({1, 0, 0});
@@ -127,7 +127,7 @@ TEST(RelativePoses, PredictionsVisitTheNearestByCostAtMostSoMany) {
     for (const RelativePoses::Stop& stop : found.stops()) ids.push_back(stop.id);
     return ids;
   };
-  // Itself first, then 5 by the loop, 1 and 4 by a step each, 2 and 3 by two.
+  // Itself first, then 5 by the loop, 1 and 4 by one step each, 2 and 3 by two.
   EXPECT_EQ(reached(1), std::vector<std::uint32_t>{});
   EXPECT_EQ(reached(2), std::vector<std::uint32_t>{5});
   EXPECT_EQ(reached(4), (std::vector<std::uint32_t>{1, 5}));
@@ -136,7 +136,7 @@ TEST(RelativePoses, PredictionsVisitTheNearestByCostAtMostSoMany) {
 
 TEST(RelativePoses, AlongThePathIsWhatTheStepsComposeTo) {
   PoseGraph graph = chain();
-  // What else is known of the two ends does not count.
+  // Other edges between the two ends do not count.
   graph.add_edge(
       {0, 2, EdgeKind::kRevisit, kFirstStep * kSecondStep, variances_of_edge(1e-4, 1e-4, 1e-5)});
   for (const auto& [from, to] : {std::pair{0U, 2U}, std::pair{2U, 0U}, std::pair{1U, 2U}}) {
@@ -145,7 +145,7 @@ TEST(RelativePoses, AlongThePathIsWhatTheStepsComposeTo) {
     EXPECT_NEAR(path.T_a_b.x_m, composed.T_a_b.x_m, 1e-12);
     EXPECT_TRUE(path.covariance.isApprox(composed.covariance, 1e-9)) << from << " " << to;
   }
-  // Also after the poses have moved, and for a stop that came later.
+  // This holds after the poses have moved, and for a later stop.
   const std::vector<geometry::Pose2> moved{{0, 0, 0}, {2, 1, 0.5}};
   graph.move(std::vector<std::uint32_t>{0, 1}, moved);
   const UncertainPose first = graph.along_path(0, 1);
@@ -153,7 +153,7 @@ TEST(RelativePoses, AlongThePathIsWhatTheStepsComposeTo) {
   EXPECT_TRUE(first.covariance.isApprox(variances_of_edge(0.01, 0.02, 0.003), 1e-9));
 }
 
-// A path of 100 stops on a circle, the last of which were matched with the first.
+// A path of 100 stops on a circle, the last of which match the first.
 PoseGraph circle() {
   PoseGraph graph;
   const Pose2 step{0.5, 0.01, 0.0628};
@@ -250,7 +250,7 @@ TEST(RelativePoses, AlongThePathHoldsOverBlocksOfStopsAndAfterChanges) {
     check(from, to);
     EXPECT_TRUE(graph.along_path(from, from).covariance.isZero(1e-12));
   }
-  // A stop at the border of two blocks moves, and a step becomes better known.
+  // A stop at the border of two blocks moves, and the covariance of a step shrinks.
   graph.move(std::vector<std::uint32_t>{31, 98}, std::vector<Pose2>{{3, 4, 1}, graph.poses()[98]});
   check(5, 89);
   check(30, 40);

@@ -13,7 +13,7 @@ UncertainPose predicted(double sigma_m, double sigma_rad) {
       Eigen::Vector3d(sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad).asDiagonal()};
 }
 
-// 95 % of a circular error lies within 2.4477 deviations; of the heading 3 are searched.
+// 95 % of a circular error lies within 2.4477 deviations; the heading is searched to 3 deviations.
 TEST(SearchSpace, IsTheRectangleOfTheErrorEllipse) {
   const MatchTask task = match_task({}, predicted(0.5, 0.1));
   EXPECT_NEAR(task.half_width.x(), 0.5 * 2.4477, 1e-3);

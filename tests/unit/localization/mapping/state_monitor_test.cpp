@@ -43,7 +43,7 @@ StepEvidence step(std::vector<StepMatch> matches, double variance_m2 = 0.001) {
   return evidence;
 }
 
-/// A robot that maps: so many stops, each matched with the two before it.
+/// A robot that maps so many stops, each matched with the two before it.
 void drive(StateMonitor& monitor, std::size_t stops) {
   for (std::size_t i = 0; i < stops; ++i) {
     std::vector<StepMatch> matches;
@@ -66,14 +66,14 @@ TEST(StateMonitor, AKidnappedRobotIsLostWithinThreeStopsAndStaysSo) {
   drive(monitor, 20);
   monitor.add(step({refuted(19), refuted(18), refuted(17)}));
   EXPECT_NE(monitor.status().state, LocalizationState::kTracking);
-  // The stops of the new place fit each other perfectly.
+  // The stops of the new place match each other perfectly.
   monitor.add(step({good(20), refuted(19), refuted(18)}));
   monitor.add(step({good(21), good(20), refuted(19)}));
   EXPECT_EQ(monitor.status().state, LocalizationState::kLost);
   drive(monitor, 50);
   EXPECT_EQ(monitor.status().state, LocalizationState::kLost);
   EXPECT_LT(monitor.status().confidence, 0.25);
-  // Until it recognises a place of before.
+  // The state lasts until it recognizes an earlier place.
   monitor.add(step({good(monitor.steps() - 1), good(5)}));
   EXPECT_EQ(monitor.status().state, LocalizationState::kTracking);
 }
@@ -147,7 +147,7 @@ TEST(StateMonitor, AnInitialPoseRestartsIt) {
   monitor.add(step({}));
   EXPECT_EQ(monitor.status().state, LocalizationState::kTracking);
   EXPECT_NEAR(monitor.status().confidence, 0.9, 0.05);
-  // A pose that the scan contradicts is not taken on trust.
+  // A pose that the scan contradicts is not accepted.
   monitor.restart(0.9);
   for (int i = 0; i < 2; ++i) monitor.add(step({refuted(std::nullopt), refuted(std::nullopt)}));
   EXPECT_EQ(monitor.status().state, LocalizationState::kLost);
@@ -175,14 +175,14 @@ TEST(CovarianceConfidence, IsTheShareWithinTheLimits) {
   EXPECT_NEAR(covariance_confidence(Eigen::Matrix3d::Zero()), 1.0, 1e-3);
 }
 
-// Its own stops hand on where it is, the map says something else: that outweighs them in a few
-// stops, a changed corner of the map does not.
+// The drive's own stops confirm the pose, but the map contradicts it: the map outweighs them in a
+// few stops; a changed corner of the map does not.
 TEST(StateMonitor, AMapThatContradictsOutweighsTheStopsOfADrive) {
   StateMonitor monitor;
   monitor.add(step({good(std::nullopt)}));
   const auto follow = [&](const StepMatch& with_map) {
     StepMatch own = good(monitor.steps() - 1);
-    own.expected_overlap = 0.0;  // foreseen in any case
+    own.expected_overlap = 0.0;  // always a match to expect
     monitor.add(step({own, with_map}));
   };
   follow(refuted(std::nullopt));

@@ -24,7 +24,7 @@ TEST(StopComparisons, ARejectedPairIsWorthAnotherWhenThePredictionHasMoved) {
   EXPECT_TRUE(comparisons.worth(0, 1, {1.31, 2.0, 3.1}));
   EXPECT_FALSE(comparisons.worth(0, 1, {1.0, 2.0, 3.14}));
   EXPECT_TRUE(comparisons.worth(0, 1, {1.0, 2.0, 3.04}));
-  // Across the turn of the angle: 3.1 and -3.14 are 0.043 apart.
+  // Across the seam of the angle: 3.1 and -3.14 are 0.043 apart.
   EXPECT_FALSE(comparisons.worth(0, 1, {1.0, 2.0, -3.14}));
   EXPECT_TRUE(comparisons.worth(0, 1, {1.0, 2.0, -3.13}));
 }

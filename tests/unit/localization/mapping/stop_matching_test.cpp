@@ -1,5 +1,5 @@
-// Stops without scans, so that no overlap is foreseen; which tasks are made and what becomes of
-// their results shows in a pool that answers as it is told. Drives with scans: localizer_test.
+// Stops without scans, so that no overlap is predicted; a pool with scripted answers shows the
+// tasks and the handling of their results. localizer_test.cpp has drives with scans.
 #include "topogeo/localization/mapping/stop_matching.hpp"
 
 #include <functional>
@@ -85,7 +85,7 @@ TEST_F(StopMatchingTest, TheStopBeforeIsMatchedInAnyCase) {
   ASSERT_EQ(pool_.asked.size(), 1U);
   EXPECT_EQ(pool_.asked[0].reference_map_id, 1U);
   EXPECT_NEAR(pool_.asked[0].T_reference_query.x_m, -1.0, 1e-12);
-  EXPECT_EQ(pool_.asked[0].initial_individuals.size(), 1U);  // by the scan tracker
+  EXPECT_EQ(pool_.asked[0].initial_individuals.size(), 1U);  // from the scan tracker
 }
 
 TEST_F(StopMatchingTest, WithoutSuccessItSearchesOnceMoreInAWiderSpace) {
@@ -111,7 +111,7 @@ TEST_F(StopMatchingTest, TheNextSearchStartsFromTheSolutionsOfTheLast) {
   add_stop();
   pool_.asked.clear();
   matching_.match_recent(graph_);
-  // Only the stop before is compared, against which nothing was solved yet.
+  // Only the previous stop is compared, for which nothing was solved yet.
   ASSERT_FALSE(pool_.asked.empty());
   EXPECT_EQ(pool_.asked[0].query_map_id, 1U);
   EXPECT_EQ(pool_.asked[0].initial_individuals.size(), 1U);

@@ -1,4 +1,4 @@
-// Branches by hand between walls that are known.
+// Hand-made branches between known walls.
 #include "topogeo/localization/matching/branch_walls.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using geometry::Pose2;
 using topomap::LocalMap;
 using topomap::ScanPoint;
 
-// A branch along x from 0 to 4 m, every 4 cm; `clearance_m` of x.
+// A branch along x from 0 to 4 m, every 4 cm; `clearance_m` is a function of x.
 template <typename Clearance>
 LocalMap map_with_branch(const Clearance& clearance_m) {
   LocalMap map;
@@ -37,8 +37,8 @@ TEST(BranchWallsTest, LieAtTheClearanceToBothSidesInACorridor) {
             101);
 }
 
-// Two walls that part by 2 x 20 degrees: the clearance rises by the sine of 20 degrees, the walls
-// are the lines y = +-tan(20 degrees) x.
+// Two walls that diverge by 2 x 20 degrees: the clearance rises by the sine of 20 degrees, the
+// walls are the lines y = +-tan(20 degrees) x.
 TEST(BranchWallsTest, LieOnWallsThatPart) {
   const double half_rad = 20.0 * 3.14159265358979 / 180.0;
   const BranchWalls walls =
@@ -49,8 +49,8 @@ TEST(BranchWallsTest, LieOnWallsThatPart) {
   }
 }
 
-// Between two posts at (2, +-0.5): every circle goes through both of them. The change of clearance
-// is that of the chord over 0.4 m, off by up to 0.06 here: 3 cm at half a metre.
+// Between two posts at (2, +-0.5): every circle touches both of them. The slope of the clearance is
+// that of the chord over 0.4 m, off by up to 0.06 here: 3 cm at half a metre.
 TEST(BranchWallsTest, AreThePostsOfADoor) {
   const BranchWalls walls =
       walls_of_branches(map_with_branch([](double x) { return std::hypot(x - 2.0, 0.5); }));
@@ -85,7 +85,7 @@ TEST(BranchWallsTest, NothingComesOfVirtualBranchesAndOfNone) {
   EXPECT_TRUE(walls_of_branches(map).points.empty());
 }
 
-// The scan is the oracle: the walls lie where it saw something, and it plays no part in them.
+// The scan is the oracle: it plays no part in the walls, which must lie on its surfaces.
 TEST(BranchWallsTest, LieOnTheScanOfAFloor) {
   LocalMap map = test::map_at(test::world("floor"), {8.6, 1.2, 0.1}, 0);
   const std::vector<ScanPoint> scan = std::move(map.points);

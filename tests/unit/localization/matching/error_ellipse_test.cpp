@@ -23,7 +23,7 @@ Eigen::Matrix2d covariance(double xx, double xy, double yy) {
   return c;
 }
 
-/// R diag(a^2, b^2) R^T: the covariance whose axes are given.
+/// R diag(a^2, b^2) R^T: the covariance with these axes.
 Eigen::Matrix2d turned(double a_m, double b_m, double direction_rad) {
   Eigen::Matrix2d r;
   r << std::cos(direction_rad), -std::sin(direction_rad), std::sin(direction_rad),
@@ -52,7 +52,7 @@ TEST(ErrorEllipseTest, AxesAlongXAndYByHand) {
   EXPECT_DOUBLE_EQ(along_x.semi_major_m, 3.0);
   EXPECT_DOUBLE_EQ(along_x.semi_minor_m, 2.0);
   EXPECT_DOUBLE_EQ(along_x.direction_rad, 0.0);
-  // 6.18 as printed gives 0 here too, the minor axis.
+  // Eq. 6.18 as printed gives 0 here too, the minor axis.
   const ErrorEllipse along_y = error_ellipse(covariance(4.0, 0.0, 9.0), 4.0);
   EXPECT_DOUBLE_EQ(along_y.semi_major_m, 6.0);
   EXPECT_DOUBLE_EQ(along_y.semi_minor_m, 4.0);

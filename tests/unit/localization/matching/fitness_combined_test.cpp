@@ -15,7 +15,7 @@ namespace {
 
 using geometry::Pose2;
 
-constexpr double kFloat = 1e-6;  // what single precision leaves
+constexpr double kFloat = 1e-6;  // tolerance of single precision
 
 MatchTask wide_task() {
   MatchTask task;
@@ -78,7 +78,7 @@ TEST(ScanFitnessTest, ByHand) {
   // 0.15 m up: distances 0.15, 0.3, 0, 0.46 and 5.15 m.
   EXPECT_NEAR(fitness({0.0, 0.15, 0.0}), (0.75 * 0.75 + 1.0) / 5.0, kFloat);
   EXPECT_NEAR(fitness({0.0, 0.0, std::numbers::pi / 2}), 0.0, kFloat);
-  // The second point's wall seen from the other side is another face.
+  // The wall of the second point, seen from the other side, is another face.
   query.coarse[1].normal = {0.0, -1.0};
   EXPECT_NEAR(ScanFitness(reference, query)({}), (1.0 + 0.75 * 0.75) / 5.0, kFloat);
 }
@@ -138,7 +138,7 @@ TEST(CombinedFitnessTest, WeighsMapsAndScan) {
       1e-12);
 }
 
-// Bound again, a form forgets the maps before.
+// When a form is bound again, it forgets the previous maps.
 TEST(CombinedFitnessTest, CanBeBoundAgain) {
   const world::World floor = test::world("floor");
   const MatchFeatures large = extract_features(test::map_at(floor, {8.6, 1.2, 0.1}, 0));

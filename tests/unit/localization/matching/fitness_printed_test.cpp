@@ -17,7 +17,7 @@ namespace {
 using geometry::Pose2;
 using test::kDegree;
 
-// A straight branch of points a quarter of its length apart.
+// A straight branch with points at quarters of its length.
 BranchCurve curve(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                   double clearance_m = 1.0) {
   BranchCurve branch;
@@ -63,10 +63,10 @@ MatchFeatures crossing() {
 TEST(PrintedFitnessTest, OneBranchByHand) {
   EXPECT_NEAR(fitness_of(upright(), crossing()), 1.0 / (1.0 + kCrossing_m), 1e-6);
   EXPECT_NEAR(fitness_of(crossing(), upright()), 1.0 / (1.0 + kCrossing_m), 1e-6);
-  // Which end is first says nothing.
+  // The order of a branch's ends does not matter.
   EXPECT_NEAR(fitness_of(branches({curve({0, 4}, {0, 0})}), crossing()), 1.0 / (1.0 + kCrossing_m),
               1e-6);
-  // Nor does the frame of the query map.
+  // The frame of the query map does not matter either.
   const Pose2 T{0.7, -1.1, 0.4};
   const Pose2 back = geometry::inverse(T);
   const MatchFeatures moved =
@@ -74,9 +74,9 @@ TEST(PrintedFitnessTest, OneBranchByHand) {
   EXPECT_NEAR(fitness_of(upright(), moved, T), 1.0 / (1.0 + kCrossing_m), 1e-6);
 }
 
-// From (0.3, 0) to (0.5, 4): the first end projects, 0.3 m away, and of the upper ends, which both
-// project, the nearer counts: 0.5 m (proposition 6.2.3). 6.35: sqrt(0.09 + 0.25) / 2 = 0.291548;
-// angles pi / 2 and atan(4 / 0.2) = 1.520838, factor 0.049958 / 3.091634 = 0.016159.
+// The branch from (0.3, 0) to (0.5, 4): its first end projects, 0.3 m away, and of the upper ends,
+// which both project, the nearer counts: 0.5 m (proposition 6.2.3). 6.35: sqrt(0.09 + 0.25) / 2 =
+// 0.291548; angles pi / 2 and atan(4 / 0.2) = 1.520838, factor 0.049958 / 3.091634 = 0.016159.
 TEST(PrintedFitnessTest, OfTwoEndsBesideEachOtherTheNearerCounts) {
   EXPECT_NEAR(fitness_of(upright(), branches({curve({0.3, 0}, {0.5, 4})})),
               1.0 / (1.0 + 0.291548 * 0.016159), 1e-6);
@@ -91,7 +91,7 @@ TEST(PrintedFitnessTest, NodesAndBranchesAreOneMean) {
   EXPECT_NEAR(fitness_of(reference, query), 1.0 / (1.0 + (0.5 + kCrossing_m) / 2.0), 1e-6);
 }
 
-// One branch equivalent to two: the mean of both distances is its distance. The second reference is
+// One branch equivalent to two: its distance is the mean of both distances. The second reference is
 // the query itself: 0.
 TEST(PrintedFitnessTest, SeveralEquivalentBranchesAreAveraged) {
   MatchFeatures reference = upright();
@@ -99,7 +99,7 @@ TEST(PrintedFitnessTest, SeveralEquivalentBranchesAreAveraged) {
   EXPECT_NEAR(fitness_of(reference, crossing()), 1.0 / (1.0 + kCrossing_m / 2.0), 1e-6);
 }
 
-// What is wrong with the printed form, and what the errata say of it.
+// Errors of the printed form, which the errata describe.
 TEST(PrintedFitnessTest, AParallelBranchBesideScoresAsIfItLayOnIt) {
   EXPECT_DOUBLE_EQ(fitness_of(upright(), branches({curve({0.4, 0}, {0.4, 4})})), 1.0);
 }

@@ -14,7 +14,7 @@ namespace {
 
 using geometry::Pose2;
 
-constexpr double kSinglePrecision = 1e-6;  // what single precision leaves
+constexpr double kSinglePrecision = 1e-6;  // tolerance of single precision
 
 TEST(TopologicalFitnessTest, DirectionOfBranchesCountsWithoutSign) {
   MatchFeatures features;
@@ -29,8 +29,8 @@ TEST(TopologicalFitnessTest, DirectionOfBranchesCountsWithoutSign) {
   }
 }
 
-// A parallel branch beside the other one must not score like one that lies on it, which it does
-// with the orientation factor as printed in 6.36.
+// A parallel branch beside the other one must not score like one that lies on it. With the
+// orientation factor as printed in 6.36 it does.
 TEST(TopologicalFitnessTest, AParallelBranchBesideScoresByItsDistance) {
   MatchFeatures features;
   for (int i = 0; i < 20; ++i) features.branches.push_back(test::sample(0.2 * i, 0, 0, 1.0));
@@ -51,7 +51,7 @@ TEST(TopologicalFitnessTest, AnElementWithoutPartnerCountsAgainstThePose) {
   const Reference half = make_reference(one);
   EXPECT_NEAR(TopologicalFitness(all, both)({}), 1.0, kSinglePrecision);
   EXPECT_NEAR(TopologicalFitness(half, both)({}), 0.5, kSinglePrecision);
-  // What the reference has beside is no fault: the query may have seen less.
+  // Additional branches of the reference do not count, because the query may have seen less.
   EXPECT_NEAR(TopologicalFitness(all, one)({}), 1.0, kSinglePrecision);
 }
 
@@ -79,7 +79,7 @@ TEST(TopologicalFitnessTest, ANodeWeighsThreeSamples) {
   EXPECT_NEAR(fitness({-10, 0, 0}), 0.0, kSinglePrecision);
 }
 
-// Branch by branch and sample by sample with double precision, from the words of the header.
+// Brute force over all branches and samples with double precision, from the header's definition.
 double by_hand(const MatchFeatures& reference, const MatchFeatures& query, const Pose2& T) {
   const auto kernel = [](double distance, double width) {
     const double u = 1.0 - std::min(1.0, distance * distance / (width * width));
@@ -115,7 +115,7 @@ double by_hand(const MatchFeatures& reference, const MatchFeatures& query, const
                 static_cast<double>(query.branches.size()));
 }
 
-// Only near the middle between two samples may the grid take the other one of them.
+// The grid may take the other sample only near the middle between two.
 TEST(TopologicalFitnessTest, IsWhatAPlainComparisonOfAllElementsGives) {
   const world::World floor = test::world("floor");
   const MatchFeatures query = extract_features(test::map_at(floor, {9.0, 1.2, 0.4}, 1));

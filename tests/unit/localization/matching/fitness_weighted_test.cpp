@@ -30,13 +30,13 @@ TEST(WeightedFitnessTest, CountsElementsByTheirWeight) {
   MatchFeatures known = query;
   known.branches = {query.branches[1]};
   known.branches[0].position_m.x() = 0.2;
-  query.branches[0].position_m.x() = 5.0;  // has no partner
+  query.branches[0].position_m.x() = 5.0;  // no partner there
   const Reference reference = make_reference(known);
   const WeightedFitness fitness(reference, query, task_at_origin());
   EXPECT_NEAR(fitness.of_maps({}, geometry::sincos(0.0)), 1.0 / 1.2, 1e-9);
 }
 
-// Where branches are the evidence the walls that they imply count as well.
+// When branches are the evidence, the walls that they imply count as well.
 TEST(WeightedFitnessTest, CountsWallsWhereBranchesAreTheEvidence) {
   MatchFeatures features = straight_branch();
   for (int i = 0; i < 20; ++i) {
@@ -49,12 +49,12 @@ TEST(WeightedFitnessTest, CountsWallsWhereBranchesAreTheEvidence) {
   task.evidence = MatchEvidence::kBranches;
   MatchFeatures query = features;
   EXPECT_NEAR(WeightedFitness(reference, query, task).of_maps({}, ahead), 1.0, 1e-6);
-  for (SurfacePoint& wall : query.coarse) wall.position_m.y() = 4.0;  // where there is none
+  for (SurfacePoint& wall : query.coarse) wall.position_m.y() = 4.0;  // no wall there
   EXPECT_NEAR(WeightedFitness(reference, query, task).of_maps({}, ahead), 0.3, 1e-6);
   task.evidence = MatchEvidence::kFitness;
   EXPECT_NEAR(WeightedFitness(reference, query, task).of_maps({}, ahead), 1.0, 1e-6);
   query = features;
-  query.branches.clear();  // nothing but walls, as where no branch is confirmed
+  query.branches.clear();  // only walls, as when no branch is confirmed
   task.evidence = MatchEvidence::kBranches;
   EXPECT_NEAR(WeightedFitness(reference, query, task).of_maps({}, ahead), 1.0, 1e-6);
 }
@@ -70,7 +70,7 @@ TEST(WeightedFitnessTest, FallsFasterThanTheTopologicalFormWithTheDistanceAcross
   EXPECT_NEAR(fitness.of_maps({0, 0.45, 0}, ahead), 0.0, 1e-9);
 }
 
-// Along a branch of one clearance nothing but odometry tells the places apart.
+// Along a branch of constant clearance only odometry distinguishes the places.
 TEST(WeightedFitnessTest, OdometryDecidesAlongABareCorridor) {
   MatchFeatures known = straight_branch();
   for (int i = -10; i < 0; ++i) known.branches.push_back(test::sample(0.2 * i, 0, 0, 1.0));
@@ -83,7 +83,7 @@ TEST(WeightedFitnessTest, OdometryDecidesAlongABareCorridor) {
   EXPECT_LT(bound({1.0, 0, 0}), 0.5 * bound({}));
 }
 
-// Where the clearance changes it tells them apart.
+// A change of the clearance distinguishes them.
 TEST(WeightedFitnessTest, ClearanceDecidesTowardsADoor) {
   MatchFeatures features = straight_branch();
   for (BranchSample& sample : features.branches) {

@@ -31,8 +31,8 @@ MatchTask widest_task() {
   return task;
 }
 
-// A corridor along x that grows wider, with a branch off to the left at x = 4; the query sees it
-// from a place that is 2 m on, 1 m aside and turned.
+// A corridor along x that widens, with a branch to the left at x = 4; the query sees it from a
+// place 2 m on, 1 m aside and turned.
 MatchFeatures junction(const Pose2& T_map_robot) {
   MatchFeatures features;
   const Pose2 T_robot_map = geometry::inverse(T_map_robot);

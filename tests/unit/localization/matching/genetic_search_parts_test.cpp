@@ -42,7 +42,7 @@ TEST(GeneBitsTest, AreOneToTwentyFour) {
   EXPECT_EQ(gene_bits(task), 24U);
 }
 
-// With headings from a table, and without.
+// The coarse resolution takes headings from a table, the fine one does not.
 TEST(GeneCodingTest, GenesAndPosesAreEachOthersInverse) {
   for (const double resolution_m : {0.15, 0.001}) {
     MatchTask task;
@@ -105,8 +105,8 @@ TEST(FitnessTableTest, AsksOnceAndForgetsAtTheNextStart) {
   EXPECT_EQ(asked, 4);
 }
 
-// More chromosomes than slots, genes of every length, start after start: an answer may be asked for
-// again, but it is never that of another chromosome.
+// More chromosomes than slots, genes of every length, several starts: an answer may be lost and
+// requested again, but it is never that of another chromosome.
 TEST(FitnessTableTest, NeverMixesUpChromosomes) {
   FitnessTable table;
   support::Random random(9);
@@ -166,7 +166,7 @@ TEST(CrossTest, ExchangesTheLowBitsOfEveryGeneAtOnePlace) {
     Chromosome b{0x00, 0xf0, 0xff};
     cross(a, b, 8, random);
     for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(a[k] ^ b[k], 0xffU);
-    const int cut = std::countr_zero(a[0]);  // zeros came from b
+    const int cut = std::countr_zero(a[0]);  // the trailing zeros came from b
     ASSERT_GE(cut, 1);
     ASSERT_LE(cut, 7);
     EXPECT_EQ(a[2], 0xffU >> (8 - cut));
@@ -191,7 +191,7 @@ TEST(MutationTest, FlipsEveryBitWithTheSameProbability) {
     support::Random random(7);
     constexpr int kRuns = 40000;
     std::array<int, 18> flips{};
-    int pairs = 0;  // the first two bits at once
+    int pairs = 0;  // the first two bits together
     for (int i = 0; i < kRuns; ++i) {
       Chromosome genes{};
       mutation(genes, random);

@@ -24,7 +24,7 @@ struct SearchOutcome {
   std::uint32_t evaluations = 0;
 };
 
-// The l-shaped room from two places; the search starts with a prediction well off the truth.
+// The L-shaped room from two places; the search starts with a prediction well off the truth.
 class GeneticSearchTest : public testing::Test {
  protected:
   GeneticSearchTest()
@@ -51,7 +51,7 @@ class GeneticSearchTest : public testing::Test {
         outcome.solutions);
     return outcome;
   }
-  // All poses that a search met.
+  // All poses that a search evaluated.
   std::vector<MatchSolution> met() const {
     GeneticSearch search;
     search.run(task_, CombinedFitness(reference_, query_, task_), {});
@@ -140,7 +140,7 @@ TEST_F(GeneticSearchTest, StartsFromThePosesItIsGiven) {
   task_.genetic.generations = 1;
   task_.initial_individuals = {kTruth};
   const MatchSolution best = search().solutions.front();
-  // The genes have at least the precision asked for.
+  // The genes have at least the required precision.
   EXPECT_LT(test::distance_m(best.T_reference_query, kTruth), task_.genetic.resolution_m);
   EXPECT_LT(test::turn_rad(best.T_reference_query, kTruth), task_.genetic.resolution_rad);
 }
@@ -150,12 +150,12 @@ TEST_F(GeneticSearchTest, StartsFromHypothesesAfterThem) {
   task_.genetic.generations = 1;
   const std::vector<Pose2> hypotheses{kTruth};
   EXPECT_LT(test::distance_m(search(hypotheses).solutions.front().T_reference_query, kTruth), 0.15);
-  // There is room for the prediction and three more.
+  // The population has room for the prediction and three more.
   task_.initial_individuals = {{0.9, 0.9, 0.5}, {0.9, -0.9, 0.5}, {-0.9, 0.9, 0.5}};
   EXPECT_GT(test::distance_m(search(hypotheses).solutions.front().T_reference_query, kTruth), 0.15);
 }
 
-// Without crossover and mutation nobody is born who was not there.
+// Without crossover and mutation no new individual appears.
 TEST_F(GeneticSearchTest, HonoursTheRatesOfCrossoverAndMutation) {
   task_.genetic.mutation_rate = 0.0;
   task_.genetic.crossover_rate = 0.0;
@@ -170,7 +170,7 @@ TEST_F(GeneticSearchTest, HonoursTheRatesOfCrossoverAndMutation) {
   EXPECT_GT(met().size(), 500U);
 }
 
-// A population of which all but one live on has no more than one child in each generation.
+// If all but one individual are elite, each generation has at most one child.
 TEST_F(GeneticSearchTest, HonoursTheElite) {
   task_.genetic.elite = 99;
   EXPECT_EQ(search().evaluations, 100U + 49U);
@@ -179,7 +179,7 @@ TEST_F(GeneticSearchTest, HonoursTheElite) {
 }
 
 TEST_F(GeneticSearchTest, TheElitesFitnessNeverFalls) {
-  task_.genetic.mutation_rate = 0.5;  // nothing but the elite would keep what was found
+  task_.genetic.mutation_rate = 0.5;  // only the elite would keep a good solution
   double before = 0.0;
   for (task_.genetic.generations = 1; task_.genetic.generations < 60;
        task_.genetic.generations += 7) {
@@ -189,7 +189,7 @@ TEST_F(GeneticSearchTest, TheElitesFitnessNeverFalls) {
   }
 }
 
-// What one object did before makes no difference.
+// Earlier searches of an object make no difference.
 TEST_F(GeneticSearchTest, AnObjectRemembersNothing) {
   GeneticSearch used;
   MatchTask other = task_;
@@ -227,7 +227,7 @@ TEST_F(GeneticSearchTest, TheBestDistinctAreTheBestOfAllThatWereMet) {
 }
 
 TEST_F(GeneticSearchTest, HeadingMayCrossTheSeamOfTheAngle) {
-  // The same room with the reference turned by half a turn: the answer lies beyond +pi.
+  // The same room with the reference turned by half a turn: the answer is beyond +pi.
   const MatchFeatures turned = test::features_at(test::l_room(), {0.3, 0.2, 179.0 * kDegree});
   task_.T_reference_query = {0.2, 0.1, 3.0};
   const SearchOutcome outcome = search(CombinedFitness(reference_, turned, task_));

@@ -27,7 +27,7 @@ TEST(MatchFeaturesTest, PointsAreThinnedToTheirSpacing) {
     EXPECT_GE((features.coarse[i].position_m - features.coarse[i - 1].position_m).norm(),
               MatchFeatures::kCoarseSpacing_m - 1e-9);
   }
-  // No point was dropped further from a kept one than the spacing.
+  // Every dropped point is within the spacing of a kept one.
   for (const auto& p : points) {
     double nearest_m = 1e9;
     for (const SurfacePoint& kept : features.coarse) {
@@ -38,7 +38,7 @@ TEST(MatchFeaturesTest, PointsAreThinnedToTheirSpacing) {
 }
 
 TEST(MatchFeaturesTest, NormalsStandOnTheWalls) {
-  // The l-shaped room again: away from its corners every wall is along x or along y.
+  // The L-shaped room again: away from its corners every wall is along x or along y.
   const MatchFeatures features = test::features_at(test::l_room(), {});
   const std::vector<Eigen::Vector2d> corners{{-2, -2}, {2, -2}, {2, 0}, {4, 0}, {4, 3}, {-2, 3}};
   int checked = 0;
@@ -71,7 +71,7 @@ TEST(MatchFeaturesTest, NormalsOfASlantingWall) {
   }
 }
 
-// One side of a corridor by beams one degree apart: gaps grow with the range.
+// One side of a corridor with beams one degree apart: gaps grow with the range.
 TEST(MatchFeaturesTest, AWallThatACoarseLaserSeesAtAFlatAngleIsALine) {
   std::vector<topomap::ScanPoint> points;
   for (int degree = 90; degree >= 7; --degree) {
@@ -163,7 +163,7 @@ TEST(MatchFeaturesTest, CurvesRunFromEndToEnd) {
   }
 }
 
-// The last element is what a place without a neighbour finds: nothing may be near it.
+// Places without a neighbour refer to the last element: nothing may be near it.
 TEST(MatchFeaturesTest, TheArraysOfAReferenceAreItsFeaturesAndOneFarAway) {
   MatchFeatures features = test::features_at(test::l_room(), {});
   features.branches = {test::sample(1.0, 2.0, 0.5, 0.7)};

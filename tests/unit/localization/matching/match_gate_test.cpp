@@ -80,7 +80,7 @@ TEST_F(MatchGateTest, AllowsLessDoubtForAWiderSearch) {
   result_.violations = 0.06;
   result_.inliers = 0.82;
   result_.residual_rms_m = 0.04;
-  result_.scan_fitness = 0.40;  // doubt 2.0; 2.2 - 0.25 per metre of half-width is allowed
+  result_.scan_fitness = 0.40;  // doubt 2.0; 2.2 - 0.25 per metre of half-width is permitted
   task_.half_width.x() = 0.7;
   EXPECT_EQ(reason(), Reason::kNone);
   task_.half_width.y() = 0.9;
@@ -152,9 +152,9 @@ TEST_F(MatchGateTest, CovarianceHasAFloorForThePerfectMatch) {
 TEST_F(MatchGateTest, CovarianceByHand) {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   information.diagonal() << 99.75, 0.0, 399.75;
-  const Eigen::Matrix3d covariance = match_covariance(information, 0.5);  // deviation as it is
+  const Eigen::Matrix3d covariance = match_covariance(information, 0.5);  // unscaled deviation
   EXPECT_NEAR(covariance(0, 0), 0.01 + 0.0004, 1e-9);
-  EXPECT_NEAR(covariance(1, 1), 4.0 + 0.0004, 1e-9);  // nothing known along it: 2 m, not infinite
+  EXPECT_NEAR(covariance(1, 1), 4.0 + 0.0004, 1e-9);  // unknown along it: 2 m, not infinite
   EXPECT_NEAR(covariance(2, 2), 0.0025 + 0.0052 * 0.0052, 1e-9);
   EXPECT_NEAR(match_covariance(information, 1.5)(0, 0), 0.04 + 0.0004, 1e-9);  // twice as wide
 }

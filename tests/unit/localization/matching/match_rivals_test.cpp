@@ -1,4 +1,4 @@
-// The second solution of a match: another place that the maps allow as well.
+// The second solution of a match: another place that the maps also support.
 #include <cmath>
 #include <cstdint>
 
@@ -23,7 +23,7 @@ topomap::LocalMap map_seen_from(const world::World& world, const Pose2& T_world_
   return map;
 }
 
-/// Pillars 2 m apart along one wall of a corridor without an end.
+/// Pillars 2 m apart along one wall of an endless corridor.
 ///
 ///   ------------------------------
 ///        robot ->
@@ -70,7 +70,7 @@ TEST(MatchRivalsTest, APillarFartherOnIsNoneWhereOdometryRulesItOut) {
 }
 
 TEST(MatchRivalsTest, APredictionOnePillarOffIsAmbiguous) {
-  // 2.2 m of search to both sides of the next pillar, which odometry speaks for.
+  // 2.2 m of search on both sides of the next pillar, which odometry predicts.
   const auto [off, rivalry] = match(colonnade(), {2.4, 0.1, 0.1}, 0.9);
   EXPECT_NEAR(off.T_reference_query.x_m, 2.4, 0.1);
   EXPECT_NEAR(off.second.T_reference_query.x_m, 0.4, 0.15) << "the truth";

@@ -1,4 +1,4 @@
-// Counts what a match costs in allocations: this program replaces operator new.
+// Counts the allocations of a match: this program replaces operator new.
 #include <cstddef>
 #include <vector>
 

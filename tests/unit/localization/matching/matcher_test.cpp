@@ -48,8 +48,8 @@ struct Pair {
   std::string world;
   Pose2 T_world_reference;
   Pose2 T_world_query;
-  double error_m;     ///< allowed; in a bare corridor what the prediction leaves
-  bool bare = false;  ///< a bare corridor: half a metre on it looks the same
+  double error_m;     ///< limit; in a bare corridor the width of the prediction
+  bool bare = false;  ///< a bare corridor: it looks the same half a metre on
 };
 
 std::ostream& operator<<(std::ostream& out, const Pair& pair) {
@@ -83,7 +83,7 @@ TEST_P(TrueRelativePoseTest, IsFoundFromAPredictionThatIsOff) {
     const Pose2& T = result.T_reference_query;
     const Eigen::Vector3d error(T.x_m - truth.x_m, T.y_m - truth.y_m,
                                 geometry::wrap_angle(T.theta_rad - truth.theta_rad));
-    // The covariance covers the error, also along the corridor.
+    // The covariance must cover the error, also along the corridor.
     EXPECT_LT(error.dot(result.covariance.inverse() * error), 11.3);
     EXPECT_EQ(result.task_id, task.task_id);
     EXPECT_EQ(result.evaluations, 50U + 29U * 48U);

@@ -29,7 +29,7 @@ double next(double value) {
   return std::nextafter(value, kInfinite);
 }
 
-// A corridor with pillars, each like the next, so that there is always a second place that fits.
+// A corridor with equal pillars, so that a second place always fits.
 world::World two_colonnades() {
   world::World world = test::endless_corridor();
   for (int i = -12; i <= 12; ++i) {
@@ -134,7 +134,7 @@ TEST_F(MatcherVerifyTest, FindsNothingWrongWithNothingInCommon) {
   EXPECT_NE(client_.verify(task_, wrong), "");
 }
 
-// Every number by the smallest step there is, up and in sign, and every other field.
+// Every number by the smallest possible step, up and in sign, and every other field.
 TEST_F(MatcherVerifyTest, FindsEverySingleFieldThatIsChanged) {
   task_.seed = 0;
   while (worker_.solve(task_).second.fitness <= 0.0) ASSERT_LT(++task_.seed, 50U);
@@ -182,7 +182,7 @@ TEST_F(MatcherVerifyTest, FindsEverySingleFieldThatIsChanged) {
   expect_found(faults);
 }
 
-// Poses are what the rest follows from: another pose, however near, has another evidence.
+// The rest follows from the poses: any other pose, however near, has other evidence.
 TEST_F(MatcherVerifyTest, FindsPosesThatAreNotThoseOfTheEvidence) {
   task_.seed = 0;
   while (worker_.solve(task_).second.fitness <= 0.0) ASSERT_LT(++task_.seed, 50U);
@@ -223,7 +223,7 @@ TEST_F(MatcherVerifyTest, FindsSolutionsThatSolveWouldNotChoose) {
   expect_found(faults);
 }
 
-// With right numbers for a place out of reach: only the space gives it away.
+// Right numbers for a place out of reach: only the search space reveals it.
 TEST_F(MatcherVerifyTest, FindsSolutionsOutsideOfTheSearchSpace) {
   MatchTask wider = task_;
   wider.half_width *= 1.5;
@@ -233,7 +233,7 @@ TEST_F(MatcherVerifyTest, FindsSolutionsOutsideOfTheSearchSpace) {
   EXPECT_NE(client_.verify(task_, outside).find("search space"), std::string::npos);
 }
 
-// A result of another task, of other maps, of another form: right in itself, and wrong here.
+// A result of another task, of other maps, of another form: valid there, and wrong here.
 TEST_F(MatcherVerifyTest, FindsTheResultOfAnotherTask) {
   const MatchResult result = worker_.solve(task_);
   const std::vector<std::pair<std::string, std::function<void(MatchTask&)>>> changes{

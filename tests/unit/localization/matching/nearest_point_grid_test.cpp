@@ -52,7 +52,7 @@ TEST_P(NearestPointGridTest, IsNearlyAsGoodAsComparingWithEveryPoint) {
     if (nearest_m <= reach_m) {
       ++near;
       ASSERT_NE(found, NearestPointGrid::kNone) << place.transpose() << ": " << nearest_m;
-      // The point nearest to the centre of the cell, which is half a diagonal away at most.
+      // The point nearest to the centre of the cell, which is at most half a diagonal away.
       const double found_m = (points[static_cast<std::size_t>(found)] - place).norm();
       ASSERT_LE(found_m, nearest_m + std::numbers::sqrt2 * cell_m + 1e-9) << place.transpose();
     }
@@ -86,7 +86,7 @@ TEST_P(NearestPointGridTest, EachCellHasThePointNearestToItsCentre) {
   const double margin_m = (std::ceil(reach_m / cell_m) + 2.0) * cell_m;
   const Eigen::Vector2d first_centre = low.array() - margin_m + 0.5 * cell_m;
   const int cells = static_cast<int>((8.0 + 2.0 * margin_m) / cell_m);
-  const double slack_m = 1e-4 * cell_m;  // of single precision
+  const double slack_m = 1e-4 * cell_m;  // for single precision
   int with_point = 0;
   for (int row = 0; row < cells; ++row) {
     for (int column = 0; column < cells; ++column) {
@@ -94,7 +94,7 @@ TEST_P(NearestPointGridTest, EachCellHasThePointNearestToItsCentre) {
       double nearest_m = std::numeric_limits<double>::max();
       for (const auto& p : points) nearest_m = std::min(nearest_m, (p - centre).norm());
       const std::int32_t found = grid.find(centre.x(), centre.y());
-      // Further away it is found in the corners of the square around a point alone.
+      // Points farther away are found only in the corners of the square around them.
       if (nearest_m > reach_m) continue;
       ASSERT_NE(found, NearestPointGrid::kNone) << centre.transpose();
       ++with_point;
@@ -105,7 +105,7 @@ TEST_P(NearestPointGridTest, EachCellHasThePointNearestToItsCentre) {
   EXPECT_GT(with_point, 200);
 }
 
-// Single precision may put a place on a border into the cell beside.
+// Single precision may put a place on a border into the neighbouring cell.
 TEST_P(NearestPointGridTest, FourAtOnceAreTheSame) {
   const auto [cell_m, reach_m] = GetParam();
   support::Random random(5);

@@ -29,7 +29,7 @@ TEST(OdometryModelTest, HasTheModelOfTheSourceAsASpecialCase) {
   const double k11 = 0.01;
   const double k33 = 0.03;
   const OdometryNoise source{k11, 0.0, 0.0, 0.0, k33};
-  // 6.4 to 6.8 along the x axis, where the axes of 6.8 are those of the step.
+  // Eqs. 6.4 to 6.8 along the x axis, where the axes of 6.8 are those of the step.
   const std::vector<std::pair<double, double>> steps{{1.0, 0.0}, {2.0, 0.0}, {0.5, 0.4}};
   Eigen::Matrix3d expected = Eigen::Matrix3d::Zero();
   UncertainPose found;
@@ -81,7 +81,7 @@ TEST(OdometryModelTest, DoesNotDependOnHowAStraightWayIsCut) {
     const Eigen::Matrix3d cut = drive_straight(distance_m, steps, noise).covariance;
     EXPECT_TRUE(cut.isApprox(fine, 1e-9)) << steps << "\n" << cut;
   }
-  // The limit: lateral noise, and heading noise q per metre that leaves q L^3 / 3 across.
+  // The limit: lateral noise, and heading noise q per metre, which adds q L^3 / 3 laterally.
   const double limit_m2 = noise.lateral_m2_per_m * distance_m +
                           noise.heading_rad2_per_m * distance_m * distance_m * distance_m / 3.0;
   EXPECT_NEAR(fine(1, 1) / limit_m2, 1.0, 1e-9);
@@ -115,7 +115,7 @@ TEST(OdometryModelTest, AgreesWithRandomDrives) {
                                 geometry::wrap_angle(pose.theta_rad - expected.T_a_b.theta_rad));
     sum += error * error.transpose() / kDrives;
   }
-  // Whitened by what is expected, the sample covariance must be the identity.
+  // Whitened by the expected covariance, the sample covariance must be the identity.
   const Eigen::Matrix3d root = expected.covariance.llt().matrixL();
   const Eigen::Matrix3d whitened =
       root.triangularView<Eigen::Lower>().solve(sum) * root.inverse().transpose();
@@ -141,7 +141,7 @@ TEST(OdometryModelTest, BetweenStopsGoesThroughTheScansBetween) {
   EXPECT_NEAR(found.T_a_b.y_m, expected.T_a_b.y_m, 1e-12);
   EXPECT_NEAR(found.T_a_b.theta_rad, 0.4, 1e-12);
   EXPECT_TRUE(found.covariance.isApprox(expected.covariance, 1e-9));
-  // The way back and forth of the heading counts, which one step from stop to stop would not see.
+  // The heading's motion back and forth counts, which one step from stop to stop would miss.
   map.track.clear();
   EXPECT_GT(found.covariance(2, 2),
             odometry_between_stops(T_odom_previous, map, {}).covariance(2, 2) + 0.005);

@@ -42,7 +42,7 @@ TEST(RangeProfileTest, TellsTheFaceThatItSawFromTheOneBehind) {
   EXPECT_FALSE(profile.turned_away({2.0, 0.5}, near));
   EXPECT_TRUE(profile.turned_away({2.0, 0.5}, far));
   EXPECT_FALSE(profile.turned_away({2.0, 0.5}, Eigen::Vector2d::Zero())) << "of no side";
-  // Nine and eleven degrees behind the edge of the wall's plane.
+  // Nine and eleven degrees behind the plane of the wall.
   EXPECT_FALSE(profile.turned_away({2.0, 0.0}, {std::sin(9 * kDegree), std::cos(9 * kDegree)}));
   EXPECT_TRUE(profile.turned_away({2.0, 0.0}, {std::sin(11 * kDegree), std::cos(11 * kDegree)}));
   EXPECT_EQ(profile.view_of_face({2.1, 0.5}, near, 0.2), View::kSurface);
@@ -58,14 +58,14 @@ TEST(RangeProfileTest, SmallGapsBetweenBeamsBelongToTheNearerReading) {
     const Eigen::Vector2d toward(std::cos(angle * kDegree), std::sin(angle * kDegree));
     EXPECT_EQ(coarse.view(toward, 0.1), View::kFree) << angle;
   }
-  // Twenty degrees without reading are no gap between beams.
+  // Twenty degrees without readings are more than a gap between beams.
   auto points = test::exact_points(wall, {}, {-45, -10, 0.5, 8});
   for (const auto& p : test::exact_points(wall, {}, {10, 45, 0.5, 8})) points.push_back(p);
   EXPECT_EQ(RangeProfile(points, {}).view({1.0, 0.0}, 0.1), View::kUnknown);
 }
 
 TEST(RangeProfileTest, LooksFromWhereTheLaserIsMounted) {
-  // The laser sits 1 m ahead of the robot's origin and looks left; it sees a wall 2 m before it.
+  // The laser is mounted 1 m ahead of the robot's origin and faces left; it sees a wall at 2 m.
   const Pose2 T_robot_laser{1.0, 0.0, 90.0 * kDegree};
   std::vector<topomap::ScanPoint> points;
   for (double x = 0.0; x <= 2.0; x += 0.02) points.push_back({static_cast<float>(x), 2.0F});
@@ -74,7 +74,7 @@ TEST(RangeProfileTest, LooksFromWhereTheLaserIsMounted) {
   EXPECT_EQ(profile.view({1.0, 2.0}, 0.1), View::kSurface);
   EXPECT_EQ(profile.view({1.0, 2.5}, 0.1), View::kHidden);
   EXPECT_EQ(profile.view({1.0, -1.0}, 0.1), View::kUnknown);
-  // From the robot's origin this place is seen free, from the laser it lies outside the wall seen.
+  // The robot's origin would see this place free, but it is outside the laser's view of the wall.
   EXPECT_EQ(profile.view({0.0, 0.5}, 0.1), View::kUnknown);
 }
 

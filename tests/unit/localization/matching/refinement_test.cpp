@@ -51,7 +51,7 @@ TEST(RefinementTest, AShutDoorTellsWhereInACorridor) {
     EXPECT_TRUE(found.converged);
     EXPECT_NEAR(found.T_reference_query.x_m, truth.x_m, 0.02);
     EXPECT_NEAR(found.T_reference_query.y_m, truth.y_m, 0.01);
-    // Known to a decimetre, not as well as the way across.
+    // Known to a decimetre, less well than the direction across.
     EXPECT_LT(1.0 / std::sqrt(found.information(0, 0)), 0.12);
     EXPECT_LT(found.information(0, 0), 0.1 * found.information(1, 1));
   }
@@ -67,7 +67,7 @@ TEST(RefinementTest, AlongABareCorridorThePriorStands) {
   EXPECT_NEAR(found.T_reference_query.x_m, 0.3, 0.01);  // the prior, not the truth at 0.5
   EXPECT_NEAR(found.T_reference_query.y_m, 0.1, 0.01);
   EXPECT_NEAR(found.T_reference_query.theta_rad, 0.1, 0.2 * kDegree);
-  // The evidence says so, too: it knows the way across a thousand times better than along.
+  // The evidence agrees: the direction across is known a thousand times better than along.
   EXPECT_LT(found.information(0, 0), 1e-3 * found.information(1, 1));
 
   const Refinement free = refine(reference, query, {0.3, 0.0, 0.05}, no_prior());
@@ -75,8 +75,8 @@ TEST(RefinementTest, AlongABareCorridorThePriorStands) {
   EXPECT_NEAR(free.T_reference_query.y_m, 0.1, 0.01);
 }
 
-// A rack of 0.4 m across the way, seen from both ends of a hall: its two long faces, and the walls
-// at the sides. Laid on each other, the faces would put the robot 0.4 m wrong.
+// A rack of 0.4 m across the hall, seen from both of its ends: its two long faces, and the walls at
+// the sides. If the faces were aligned, the robot would be 0.4 m off.
 TEST(RefinementTest, TheTwoFacesOfARackAreNotLaidOnEachOther) {
   const world::World hall = test::lines({{{-8, -3}, {8, -3}},
                                          {{-8, 3}, {8, 3}},
@@ -94,7 +94,7 @@ TEST(RefinementTest, TheTwoFacesOfARackAreNotLaidOnEachOther) {
   const Eigen::Matrix3d weak = Eigen::Matrix3d::Identity();
   const Refinement wrong = refine(reference, query, laid_on_each_other, {laid_on_each_other, weak});
   const Refinement right = refine(reference, query, truth, {truth, weak});
-  // Nothing says where along the hall it is: neither pose draws, and no face counts as in common.
+  // The position along the hall is unknown: neither pose attracts, and no face counts as shared.
   EXPECT_LT(wrong.information(0, 0), 0.02 * wrong.information(1, 1));
   EXPECT_LT(right.information(0, 0), 0.02 * right.information(1, 1));
   EXPECT_LT(test::distance_m(right.T_reference_query, truth), 0.05);
@@ -134,7 +134,7 @@ TEST(RefinementTest, NothingInViewLeavesThePoseAndSaysSo) {
   EXPECT_FALSE(refine(make_reference({}), room, {}, no_prior()).converged);
 }
 
-// A wall of the reference in what the query saw free, and the other way round.
+// A wall of the reference in the query's free space, and the reverse.
 TEST(RefinementTest, SeesWallsWhereTheOtherMapSawFreeSpace) {
   world::World with_wall = test::l_room();
   with_wall.segments.push_back({{-1.0, 0.8}, {1.0, 0.8}});
@@ -165,7 +165,7 @@ std::vector<double> residuals(const Reference& reference, const MatchFeatures& q
 }
 
 TEST(RefinementTest, TakesThePullOfThePriorOutAgain) {
-  // Scans that want z, a prior that wants p: where they balance, H (T - z) + P (T - p) = 0.
+  // Scans with optimum z, a prior with optimum p: they balance at H (T - z) + P (T - p) = 0.
   Eigen::Matrix3d H;
   H << 900, 40, -15, 40, 400, 30, -15, 30, 2500;
   const Eigen::Matrix3d P = Eigen::Vector3d(200, 300, 800).asDiagonal();
@@ -207,9 +207,9 @@ TEST(RefinementTest, WithoutPriorComesBackToWhatTheScansSay) {
             0.5 * test::distance_m(pulled.T_reference_query, truth));
 }
 
-// Along a corridor the scans say next to nothing: what they "want" there must not count.
+// Along a corridor the scans contain almost no information: their optimum there must not count.
 TEST(RefinementTest, WithoutPriorStaysAlongWhatTheScansHardlyKnow) {
-  // Along a corridor that runs at 30 degrees the scans know the way to 1 m, across to 2 cm.
+  // In a corridor that runs at 30 degrees the scans know the position along to 1 m, across to 2 cm.
   const double angle = 30.0 * kDegree;
   const Eigen::Vector3d along(std::cos(angle), std::sin(angle), 0.0);
   const Eigen::Vector3d across(-std::sin(angle), std::cos(angle), 0.0);
@@ -231,8 +231,8 @@ TEST(RefinementTest, WithoutPriorDoesNotGoFar) {
   EXPECT_EQ(without_prior(aligned, covariance, prior), aligned);
 }
 
-// The Hessian of the data term against numeric derivatives of the residuals: in a scene without
-// noise all weights are 1 / sigma^2 at the optimum.
+// The Hessian of the data term against numeric derivatives of the residuals: in a noiseless scene
+// all weights are 1 / sigma^2 at the optimum.
 TEST(RefinementTest, InformationIsThatOfNumericDerivatives) {
   const Reference reference = make_reference(test::features_at(test::l_room(), {}));
   const Pose2 truth{0.3, 0.2, 0.15};

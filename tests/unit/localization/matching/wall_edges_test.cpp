@@ -1,4 +1,4 @@
-// Edges of walls, found through the features of a scan.
+// Edges of walls, found from the features of a scan.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,7 +20,7 @@ using geometry::Pose2;
 constexpr double kDoorFrom_m = 2.0;
 constexpr double kDoorTo_m = 2.9;
 
-// What a laser with centimetres of noise measures there; in the frame of the robot.
+// Edges measured by a laser with centimetres of noise; in the frame of the robot.
 std::vector<WallEdge> noisy_edges(const world::World& world, const Pose2& T_world_robot,
                                   support::Random& random) {
   constexpr double kNoise_m = 0.02;
@@ -36,7 +36,7 @@ std::vector<WallEdge> noisy_edges(const world::World& world, const Pose2& T_worl
 }
 
 TEST(WallEdgesTest, ArePutWhereTheDoorIsFromBothSides) {
-  // Errors along the corridor by the edge and by the side from which it is seen.
+  // Errors along the corridor by the edge and by the side of the viewer.
   std::array<std::array<std::vector<double>, 2>, 2> errors_m;
   support::Random random(7);
   for (double x_m = -1.0; x_m <= 6.0; x_m += 0.02) {
@@ -62,7 +62,7 @@ TEST(WallEdgesTest, ArePutWhereTheDoorIsFromBothSides) {
         squares_m2 += error_m * error_m;
       }
       const auto count = static_cast<double>(errors.size());
-      // An edge that moved with the robot would shorten the map.
+      // An edge that moves with the robot would shorten the map.
       EXPECT_LT(std::fabs(sum_m / count), 0.006);
       EXPECT_LT(std::sqrt(squares_m2 / count), 0.03);
     }

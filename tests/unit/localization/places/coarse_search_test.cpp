@@ -17,7 +17,7 @@ namespace {
 using geometry::Pose2;
 using Points = std::vector<Eigen::Vector2d>;
 
-/// An L of two walls with a column before them: no two poses look alike.
+/// An L of two walls with a column in front: no two poses look alike.
 Points room() {
   Points points_m;
   for (int i = 0; i <= 60; ++i) points_m.emplace_back(0.1 * i, 0.0);
@@ -26,7 +26,7 @@ Points room() {
   return points_m;
 }
 
-/// The points as they are seen from a pose of the map.
+/// The points as seen from a pose of the map.
 Points points_seen_from(const Pose2& T_map_robot, const Points& points_m) {
   const Pose2 T_robot_map = geometry::inverse(T_map_robot);
   Points seen;
@@ -95,7 +95,7 @@ TEST(CoarseSearchTest, MissesNothingThatTryingAllFinds) {
   }
   const auto found = search_coarsely(map, points_m, window, 0.1, 1);
   ASSERT_EQ(found.size(), 1U);
-  EXPECT_NEAR(found[0].score, best, 0.02);  // cells of points are cut before the offset here
+  EXPECT_NEAR(found[0].score, best, 0.02);  // the search first rounds points to cells
 }
 
 TEST(CoarseSearchTest, FindsNothingThatIsTooUnlike) {

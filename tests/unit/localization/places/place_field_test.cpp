@@ -1,4 +1,4 @@
-// Places are where the points were seen, whoever searches; what is found from pieces is the same.
+// Found places are the true ones for any searcher; searches in pieces give the same results.
 #include "topogeo/localization/places/place_field.hpp"
 
 #include <algorithm>
@@ -115,8 +115,8 @@ TEST_F(PlaceFieldTest, ThePartsTogetherSearchAllHeadings) {
   EXPECT_EQ(first, PlaceField::kHeadings);
 }
 
-// The oracle tries every cell in every heading by itself, and takes the best one and what does not
-// touch it until there are enough.
+// The oracle tries every cell with every heading separately, and takes the best one and those that
+// do not touch a better one until there are enough.
 TEST_F(PlaceFieldTest, PosesClimbFromTheBestCellsThatDoNotTouch) {
   struct Start {
     int score = 0;
@@ -172,7 +172,7 @@ TEST_F(PlaceFieldTest, OfManyPointsEachSecondSearchesAndAllClimb) {
   PlaceQuestion half = many;
   for (std::size_t i = 0; i < 64; ++i) half.points[i] = many.points[2 * i];
   half.points.resize(64);
-  // The points come in pairs, so both halves are the same, and so are their values.
+  // The points come in pairs, so both halves, and their values, are equal.
   const auto close = [](const MatchSolution& a, const MatchSolution& b) {
     return (a.T_reference_query.position_m() - b.T_reference_query.position_m()).norm() < 1e-9 &&
            std::abs(a.fitness - b.fitness) < 1e-9;

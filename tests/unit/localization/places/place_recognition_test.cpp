@@ -1,5 +1,5 @@
-// A robot that drives along a corridor with niches and comes back to its beginning with a drifted
-// pose: is the place proposed?
+// A robot drives along a corridor with niches and returns to its beginning with a drifted pose: is
+// the place proposed?
 #include "topogeo/localization/places/place_recognition.hpp"
 
 #include <cmath>
@@ -15,12 +15,12 @@ namespace {
 
 using geometry::Pose2;
 
-/// Rays against the corridor y = -1 ... 1 whose left wall has niches that are all different.
+/// Rays in the corridor y = -1 ... 1 whose left wall has niches that are all different.
 bool niche(double x_m) {
   return std::fmod(std::fabs(x_m), 3.7) < 0.9 + 0.03 * x_m;
 }
 
-/// Two metres apart, all alike but the one before 9 m, which is wider.
+/// Niches two metres apart, all equal but the one before 9 m, which is wider.
 bool niche_of_many(double x_m) {
   return std::fmod(std::fabs(x_m), 2.0) < 0.7 || (x_m > 8.0 && x_m < 9.0);
 }
@@ -44,8 +44,8 @@ topomap::LocalMap scan_at(const Pose2& T_world_robot, bool (*has_niche)(double x
 
 class PlaceRecognitionTest : public testing::Test {
  protected:
-  /// The robot is at `truth`, the graph estimates it at `estimate`; the step there is known that
-  /// well.
+  /// Adds a stop with the robot at `truth`, estimated by the graph at `estimate`; `step_sigma` is
+  /// the deviation of the step there.
   void stop(const Pose2& truth, const Pose2& estimate, double path_m, double step_sigma = 0.01) {
     const topomap::LocalMap map = scan_at(truth, has_niche_);
     places_.add(std::make_shared<const StopView>(
@@ -76,8 +76,8 @@ class PlaceRecognitionTest : public testing::Test {
   std::uint32_t stops_ = 0;
 };
 
-// Out along the corridor to 25 m; from there it was carried back to `again_m`, unnoticed but for
-// the uncertainty, and drove on.
+// Out along the corridor to 25 m; from there the robot was carried back to `again_m`, visible only
+// in the uncertainty, and drove on.
 TEST_F(PlaceRecognitionTest, ProposesTheStretchThatTheRobotIsBackOn) {
   for (int i = 0; i <= 36; ++i) stop({0.7 * i, 0.0, 0.0}, {0.7 * i, 0.0, 0.0}, 0.7 * i);
   const double off_m = 2.0;
@@ -119,8 +119,7 @@ TEST_F(PlaceRecognitionTest, ProposesAllPlacesOfASubmapThatLookAlike) {
   EXPECT_TRUE(right_among_others);
 }
 
-// What was seen before a step that is hardly known would be found where it was, whatever the robot
-// did then.
+// Views from before a very uncertain step would be found at their old place, whatever the step was.
 TEST_F(PlaceRecognitionTest, SearchesWithNothingFromBeforeAStepThatIsHardlyKnown) {
   for (int i = 0; i <= 36; ++i) stop({0.7 * i, 0.0, 0.0}, {0.7 * i, 0.0, 0.0}, 0.7 * i);
   for (int i = 0; i < 9; ++i) {

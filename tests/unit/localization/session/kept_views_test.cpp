@@ -17,7 +17,7 @@ constexpr std::int64_t kHour_ns = 3'600'000'000'000;
 constexpr std::int64_t kDay_ns = 24 * kHour_ns;
 constexpr std::uint32_t kStops = 11;  // of a drive
 
-/// A hall of 12 x 3 m with things at its walls. Every drive goes along it, a stop each metre.
+/// A hall of 12 x 3 m with objects at its walls. Every drive goes along it, a stop each metre.
 class KeptViewsTest : public testing::Test {
  protected:
   static world::World hall(const std::string& more = "") {
@@ -60,7 +60,7 @@ class KeptViewsTest : public testing::Test {
   [[nodiscard]] KeptViews keep(std::size_t untouched = 0) const {
     return {map_.maps, map_.trajectory.stops, kKeptTimes, untouched};
   }
-  /// At the front of the cupboard. The first stop is kept whatever it saw.
+  /// Points on the front of the cupboard. The first stop is always kept.
   static std::size_t points_on_cupboard(const StoredMap& map) {
     std::size_t count = 0;
     for (std::size_t i = 1; i < map.maps.size(); ++i) {
@@ -87,7 +87,7 @@ TEST_F(KeptViewsTest, KeepsTheOldestViewOfAPlaceAndThoseOfTheLastTimes) {
   const KeptViews kept = keep();
   EXPECT_EQ(kept_of_drive(kept, 1), kStops);
   for (const int drive : {6, 7, 8}) EXPECT_EQ(kept_of_drive(kept, drive), kStops) << drive;
-  // At the end of the hall views differ more.
+  // At the end of the hall, views differ more.
   for (const int drive : {2, 3, 4, 5}) EXPECT_LE(kept_of_drive(kept, drive), 1U) << drive;
 }
 
@@ -124,7 +124,7 @@ TEST_F(KeptViewsTest, ViewsOfWhatIsGoneAgeOut) {
   for (int day = 0; day < 4; ++day) drive(with_cupboard, day * kDay_ns);
   for (int day = 4; day < 8; ++day) drive(hall(), day * kDay_ns);
   const KeptViews kept = keep();
-  // Seen from the first metres the cupboard is in front of the wall; behind it it is not seen.
+  // Only stops in front of the cupboard see it.
   std::size_t outdated = 0;
   for (std::uint32_t stop = 1; stop < kStops; ++stop) outdated += kept.outdated(stop) ? 1 : 0;
   EXPECT_GE(outdated, 4U);
@@ -159,7 +159,7 @@ TEST_F(KeptViewsTest, WhatIsDroppedLeavesItsViewsAndLoopsBehind) {
     views += after.trajectory.stops[i].views;
   }
   EXPECT_EQ(views, 8 * kStops + 9);
-  // The oldest views were seen again on the days of those that were dropped.
+  // The oldest views were seen again on the days of the dropped views.
   EXPECT_GE(after.trajectory.stops[1].last_seen_ns(), 4 * kDay_ns);
 
   std::vector<std::uint32_t> loops_to_oldest(kStops);
@@ -171,7 +171,7 @@ TEST_F(KeptViewsTest, WhatIsDroppedLeavesItsViewsAndLoopsBehind) {
     EXPECT_LT(geometry::difference(apart, loop.T_earlier_later).norm(), 1e-9);
     if (loop.earlier_id < kStops && loop.later_id >= kStops) ++loops_to_oldest[loop.earlier_id];
   }
-  // At the end of the hall views of the days between are kept, too.
+  // At the end of the hall, views of the days between are kept, too.
   for (std::uint32_t i = 1; i + 1 < kStops; ++i) EXPECT_GE(loops_to_oldest[i], 1U) << i;
 }
 

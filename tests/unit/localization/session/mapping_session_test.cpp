@@ -16,7 +16,7 @@ namespace {
 using geometry::Pose2;
 using test::Maps;
 
-/// Stops [begin, end) of a drive as a drive of their own, whose odometry starts anywhere.
+/// Stops [begin, end) of a drive as a separate drive, with arbitrary odometry start.
 Maps part(const Maps& maps, std::size_t begin, std::size_t end) {
   Maps out;
   for (std::size_t i = begin; i < end; ++i) {
@@ -36,7 +36,7 @@ Maps part(const Maps& maps, std::size_t begin, std::size_t end) {
   return out;
 }
 
-/// The floor, mapped as far as the first drive goes; a second one begins where that ended.
+/// The floor, mapped up to the end of the first drive; a second one begins there.
 class MappingSessionTest : public ::testing::Test {
  protected:
   static constexpr std::size_t kFirst = 60;   // stops of the first drive
@@ -248,8 +248,8 @@ TEST_F(MappingSessionTest, AnotherSessionIsAnotherDriveThatFindsItsPlace) {
   EXPECT_LT(largest_error_m(after), 0.25);
 }
 
-// The second drive begins in a part of the floor that the map has not, 40 m before it comes to
-// where the first one began. By odometry its first stops lie across other corridors.
+// The second drive begins in an unmapped part of the floor, 40 m before it reaches the start of the
+// first one. Its first stops lie across other corridors by odometry.
 TEST_F(MappingSessionTest, ADriveThatMeetsTheMapLateIsComparedWithItOnceItHasItsPlace) {
   MappingSession session({}, pool_);
   for (const auto& given : test::one_after_the_other(test::drive_a().maps, test::drive_b().maps)) {
@@ -293,7 +293,7 @@ TEST_F(MappingSessionTest, TheMapOfAPatrolStopsGrowing) {
   EXPECT_EQ(session.added_stops(), 7 * kStopsOfDay);
   EXPECT_EQ(renewals, 2U) << "when the sixth and the seventh drive joined";
   EXPECT_LE(numbered_since, session.trajectory().version);
-  // The last drive lies where the first did.
+  // The last drive coincides with the first.
   const topomap::Trajectory trajectory = session.trajectory();
   for (std::size_t i = 0; i < kStopsOfDay; ++i) {
     const Pose2 truth = geometry::between(driven_->T_world_robot[0], driven_->T_world_robot[i]);
@@ -325,7 +325,7 @@ TEST_F(MappingSessionTest, TheMapOfADriveWithoutEndStopsGrowing) {
       map.stop = {7, number++};
       map.stamp_ns =
           static_cast<std::int64_t>(way) * kOfWay_ns + 1'000'000'000 * static_cast<std::int64_t>(k);
-      // What is on the way between two stops was on the way there, not back.
+      // Scans between stops exist only in the forward direction.
       map.track.clear();
       map.T_previous_robot = geometry::between(T_odom_last, map.T_odom_robot);
       T_odom_last = map.T_odom_robot;
@@ -348,7 +348,7 @@ TEST_F(MappingSessionTest, TheMapOfADriveWithoutEndStopsGrowing) {
   EXPECT_EQ(session.unmapped_stops(), 0U);
   EXPECT_EQ(session.added_stops(), kWays * kWay);
   EXPECT_GE(renewals, 2U);
-  // The oldest views, those of the last three times, and what has come since the last renewal.
+  // The oldest views, those of the last three times, and the stops since the last renewal.
   EXPECT_LE(most, (1 + kKeptTimes) * limits.stops_of_drive + limits.stops / 2);
   const topomap::Trajectory trajectory = session.trajectory();
   for (std::size_t i = 0; i < trajectory.stops.size(); ++i) {

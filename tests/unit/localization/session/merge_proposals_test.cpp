@@ -10,7 +10,7 @@ namespace {
 
 using State = MergeProposal::State;
 
-/// Stops of session s lie in map s, stop n at x = n metres.
+/// Stops of session s are in map s, stop n at x = n metres.
 struct MergeProposalsTest : ::testing::Test {
   MergeProposals::Find find = [this](const topomap::StopId& stop) {
     const auto map = maps.find(stop.session);

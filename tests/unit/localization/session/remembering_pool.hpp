@@ -1,4 +1,4 @@
-// A pool that works on a task once, however many cases of a test program ask for it.
+// A pool that solves a task once, however many cases of a test program request it.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace topogeo::localization::test {
 
-/// Everything in a task that its answer depends on.
+/// All fields of a task that determine its answer.
 class TaskKey {
  public:
   explicit TaskKey(const MatchTask& task) {
@@ -50,7 +50,7 @@ class TaskKey {
     }
   }
   void add_match(const MatchTask& task) {
-    // No bytes between the members, which could have any value.
+    // No padding between the members, which could have any value.
     static_assert(sizeof(GeneticParameters) == 4 * sizeof(std::uint32_t) + 6 * sizeof(double));
     static_assert(sizeof(GateConfig) == 6 * sizeof(double));
     add(task.reference_hash);
@@ -68,7 +68,7 @@ class TaskKey {
   std::string text_;
 };
 
-/// Solves here what none of its kind has solved before: an answer depends on its task alone
+/// Solves only tasks that no pool of this class has solved: an answer depends on its task alone
 /// (match.hpp), which cases with an InProcessPool check.
 class RememberingPool : public MatchPool {
  public:

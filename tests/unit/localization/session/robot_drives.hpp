@@ -1,4 +1,4 @@
-// Two drives on one floor, whose odometry starts anywhere: parts of a map that meet late.
+// Two drives on one floor with arbitrary odometry starts: parts of a map that meet late.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace topogeo::localization::test {
 
-/// A drive as one of a robot, whose odometry starts anywhere.
+/// A drive of one robot, with arbitrary odometry start.
 struct RobotDrive {
   Maps maps;
   std::vector<geometry::Pose2> T_world_robot;
@@ -38,7 +38,7 @@ inline RobotDrive robot_drive(const DrivenMaps& driven, const std::string& robot
 }
 
 /// The floor: `a` drives east along the south corridor, up the east one and back along the north
-/// one; `b` begins in the north west, comes down the west corridor to where `a` began, and follows
+/// one; `b` begins in the north west, comes down the west corridor to the start of `a`, and follows
 /// it along the south corridor.
 inline const RobotDrive& drive_a() {
   static const RobotDrive out = robot_drive(
@@ -59,7 +59,7 @@ inline geometry::Pose2 truth(const topomap::StopId& stop) {
   return (stop.session == 21 ? drive_a() : drive_b()).T_world_robot[stop.number];
 }
 
-/// Largest distance of a stop from its true place, with the first one of the map at its true one.
+/// Largest distance of a stop from its true place, with the map's first one at its true place.
 inline double largest_error_m(const topomap::Trajectory& trajectory) {
   double largest_m = 0.0;
   const topomap::StopPose& first = trajectory.stops.front();

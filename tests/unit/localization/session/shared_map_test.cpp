@@ -35,7 +35,7 @@ const RobotDrive& b() {
   return test::drive_b();
 }
 
-/// Stops of both in turn, as long as each has some: `first` is one ahead.
+/// Stops of both in turn, as long as each has some; `first` is one ahead.
 Maps in_turn(const Maps& first, const Maps& second) {
   Maps out;
   for (std::size_t i = 0; i < std::max(first.size(), second.size()); ++i) {
@@ -45,7 +45,7 @@ Maps in_turn(const Maps& first, const Maps& second) {
   return out;
 }
 
-/// Largest distance between the places of one stop in two maps, the first stop of `a` in one place.
+/// Largest distance between the places of a stop in two maps, aligned at the first stop of `a`.
 double largest_difference_m(const topomap::Trajectory& one, const topomap::Trajectory& other) {
   const auto pose = [](const topomap::Trajectory& trajectory, const topomap::StopId& stop) {
     return std::ranges::find(trajectory.stops, stop, &topomap::StopPose::stop)->T_map_robot;
@@ -69,7 +69,7 @@ topomap::Trajectory mapped(const Maps& stops) {
   return shared.trajectory();
 }
 
-/// Both drive at a time, `a` one stop ahead.
+/// Both drive at the same time, `a` one stop ahead.
 const topomap::Trajectory& both() {
   static const topomap::Trajectory trajectory = mapped(in_turn(a().maps, b().maps));
   return trajectory;
@@ -103,7 +103,7 @@ TEST(SharedMap, JoinsTheMapsAsSoonAsARobotComesToWhereTheOtherWas) {
   }
   ASSERT_TRUE(joined_at.has_value());
   EXPECT_EQ(joined_at->session, 22U);
-  // It turned into the corridor at (1.3, 1.2), where `a` had begun.
+  // It turned into the corridor at (1.3, 1.2), the start of `a`.
   EXPECT_GT(truth(*joined_at).x_m, 2.0);
   EXPECT_LT(truth(*joined_at).x_m, 8.0);
   EXPECT_EQ(shared.stops_apart(), 0U);
@@ -142,8 +142,8 @@ TEST(SharedMap, IsWithinTwoCentimetresOfAnyOtherOrderOfArrival) {
   EXPECT_LT(largest_difference_m(both(), mapped(one_after_the_other(b().maps, a().maps))), 0.02);
 }
 
-// At its end `a` sees from behind, 7 m ahead, where `b` began: without that loop the heading of its
-// part is a third of a degree off, and its end 0.2 m.
+// At its end `a` sees the start of `b` from behind, 7 m ahead: without that loop the heading of its
+// part is off by a third of a degree, and its end by 0.2 m.
 TEST(SharedMap, IsWithinFourCentimetresOfTheMapOfOneRobotThatDroveBoth) {
   RememberingPool pool;
   MappingSession one({}, pool);
@@ -173,7 +173,7 @@ TEST(SharedMap, AsksBeforeItJoins) {
   ASSERT_EQ(shared.proposals().size(), 1U);
   const MergeProposal proposal = shared.proposals().front();
   EXPECT_EQ(proposal.state, MergeProposal::State::kOpen);
-  EXPECT_GT(proposal.distance_m, 10.0);  // all that was seen since it was found
+  EXPECT_GT(proposal.distance_m, 10.0);  // driven since it was found
   const Pose2 T_true = geometry::between(truth({21, 0}), truth({22, 0}));
   EXPECT_LT(geometry::between(T_true, proposal.T_other_own).position_m().norm(), 0.5);
   EXPECT_THROW(shared.accept(2), std::invalid_argument);
@@ -229,7 +229,7 @@ TEST(SharedMap, GoesOnWithAStoredMapAndTheSessionsThatAreOnInIt) {
   RememberingPool pool;
   SharedMap before({}, pool);
   for (std::size_t i = 0; i < half; ++i) before.add(all[i]);
-  before.finish();  // all of them have numbers
+  before.finish();  // all of them are numbered
   ASSERT_TRUE(before.joined("b"));
   RememberingPool other_pool;
   SharedMap after({}, other_pool, std::make_shared<const StoredMap>(before.map()));
@@ -283,7 +283,7 @@ TEST(SharedMap, StopsGrowingWhenTheRobotsDriveTheSameWayEachDay) {
   shared.finish();
   const StoredMap map = shared.map();
   EXPECT_NO_THROW(check(map));
-  // The oldest view, those of three times, and the drives of both that are on: as of one robot.
+  // The oldest view, those of three times, and both present drives: as for one robot.
   EXPECT_LE(largest, 6 * kPatrolStops + kPatrolStops / 2);
   std::uint32_t views = 0;
   double largest_m = 0.0;
@@ -309,7 +309,7 @@ TEST(SharedMap, RefusesStopsOutOfTurnAndTheModeOfTheThesis) {
   EXPECT_THROW(SharedMap(thesis, pool), std::invalid_argument);
 }
 
-// Each stop keeps its number until numbered_since says otherwise.
+// Each stop keeps its number until numbered_since changes.
 TEST(SharedMap, NumbersOnlyChangeWithTheVersionThatSaysSo) {
   RememberingPool pool;
   SharedMap shared({}, pool);

@@ -13,7 +13,7 @@ namespace {
 
 using geometry::Pose2;
 
-/// Counts what it is given.
+/// Counts its maps.
 class CountingPool : public InProcessPool {
  public:
   void add_map(std::shared_ptr<const topomap::LocalMap> map) override {
@@ -59,7 +59,7 @@ TEST(SharedPool, TwoMapsWithTheSameNumbersGetTheAnswersOfAPoolOfTheirOwn) {
   }
   EXPECT_EQ(pool.ids.size(), 4U);
   EXPECT_EQ(pool.tasks.size(), 2U) << "no number twice";
-  east->add_map(map_of(2.0, 1, 0));  // as its own stop 0
+  east->add_map(map_of(2.0, 1, 0));  // the same stop as its own stop 0
   EXPECT_EQ(pool.added, 4U) << "the stop is there already";
 }
 

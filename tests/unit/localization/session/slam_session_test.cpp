@@ -16,7 +16,7 @@ namespace {
 using geometry::Pose2;
 using Use = MapToUse::Use;
 
-// A drive through the room, and the map that a session made of it.
+// A drive through the room, and a session's map of it.
 class SlamSessionTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {

@@ -18,7 +18,7 @@ namespace {
 using geometry::Pose2;
 using test::covariance_of;
 
-// --- the oracle: every combination of candidate and stored solutions, as the thesis words it
+// --- the oracle: every combination of candidate and stored solutions, as the thesis defines it
 
 struct OracleWay {
   double fitness = -1.0;
@@ -141,7 +141,7 @@ TEST(BackwardCorrection, FindsTheWinnerOfAllCombinations) {
       greedy += loop.solutions.find(k - 1, k)[0].fitness;
     not_greedy += expected.fitness < greedy - 0.2 ? 1 : 0;
   }
-  // All three cases must have come up, or this proves little.
+  // All three cases must occur, or this test proves little.
   EXPECT_GT(closed, 10);
   EXPECT_GT(refused, 5);
   EXPECT_GT(not_greedy, 5);
@@ -153,7 +153,7 @@ struct Line {
   BackwardProblem problem;
   SolutionStore solutions;
 
-  // sigma_m[k]: how well the forward correction knows pose k + 1.
+  // sigma_m[k]: uncertainty of pose k + 1 in the forward correction.
   explicit Line(const std::vector<double>& sigma_m) {
     problem.poses.resize(sigma_m.size() + 1);
     for (std::uint32_t k = 0; k < problem.poses.size(); ++k) {
@@ -179,8 +179,8 @@ struct Line {
 };
 
 TEST(BackwardCorrection, TurnsBackFromADeadEnd) {
-  // The last pose must be 3.6 m on. The fitter solution of the last step, 1 m, leaves pose 2 at
-  // 2.6 m, from where no solution leads to pose 1 near 1 m; the poorer one, 1.6 m, does.
+  // The last pose must be 3.6 m on. The fitter solution of the last step, 1 m, leaves pose 2 at 2.6
+  // m, and no solution leads from there to pose 1 near 1 m; the poorer one, 1.6 m, does.
   Line line({0.02, 1.0, 1.0});
   line.add(1, {{1.0, 0.9}});
   line.add(2, {{1.0, 0.9}});
@@ -196,7 +196,7 @@ TEST(BackwardCorrection, TurnsBackFromADeadEnd) {
   EXPECT_NEAR(found.paths.front().T_first_pose[2].x_m, 2.0, 1e-12);
   EXPECT_NEAR(found.paths.front().T_first_pose[1].x_m, 1.0, 1e-12);
 
-  config.waiting = 0;  // nothing to turn back to
+  config.waiting = 0;  // no backtracking
   const BackwardResult lost = correct_backward(line.problem, line.solutions, config);
   EXPECT_EQ(lost.outcome, LoopSearchOutcome::kDeadEnd);
   EXPECT_EQ(lost.nearest_id, 2U);
@@ -215,14 +215,14 @@ TEST(BackwardCorrection, SpreadsAGapThatNoStoredSolutionCloses) {
   config.draw = true;
   const BackwardResult found = correct_backward(line.problem, line.solutions, config);
   ASSERT_EQ(found.outcome, LoopSearchOutcome::kClosed);
-  // Five equal links, the closing among them, share 0.2 m.
+  // Five equal links, including the closing one, share 0.2 m.
   for (std::uint32_t k = 1; k <= 4; ++k) {
     EXPECT_NEAR(found.paths.front().T_first_pose[k].x_m, 1.04 * k, 0.01) << k;
   }
 }
 
 TEST(BackwardCorrection, RefusesPosesFromWhichTheMapsDoNotOverlapAnyMore) {
-  // Pose 2 may lie anywhere by its uncertainty, but 3 saw the map of 1 and cannot from 9 m on.
+  // The uncertainty would permit any pose 2, but pose 3 saw the map of 1 and cannot from 9 m on.
   Line line({0.05, 5.0, 5.0, 5.0});
   for (std::uint32_t k = 1; k <= 4; ++k) line.add(k, {{1.0, 0.5}});
   line.add(3, {{7.0, 0.9}, {1.0, 0.5}});

@@ -16,7 +16,7 @@ inline Eigen::Matrix3d covariance_of(double sigma_m, double sigma_rad) {
   return Eigen::Vector3d(sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad).asDiagonal();
 }
 
-/// A loop of poses with what the forward correction made of it.
+/// A loop of poses with the result of the forward correction.
 struct Loop {
   BackwardProblem problem;
   SolutionStore solutions{40};
@@ -33,9 +33,9 @@ struct LoopOptions {
   std::uint32_t candidates = 40;  ///< of the last pose; the first one is right
 };
 
-/// Round a circle and back to its first pose. The best stored solution of a step is the truth with
-/// noise and a bias of the heading, the others lie a resolution of the genetic search off; all
-/// candidates but one are wrong by 4 m to 12 m, and half of them fitter.
+/// A circle back to its first pose. The best stored solution of a step is the truth with noise and
+/// a bias of the heading, the others are off by a resolution of the genetic search; all candidates
+/// but one are wrong by 4 m to 12 m, and half of them are fitter.
 inline Loop circle(const LoopOptions& options, std::uint64_t seed) {
   support::Random random(seed);
   Loop loop;

@@ -1,5 +1,5 @@
-// The steps that the backward correction may take from a pose to the one before it: matches (eqs.
-// 7.22 to 7.24 of the thesis), odometry, the grid.
+// The steps of the backward correction from a pose to the previous one: matches (eqs. 7.22 to 7.24
+// of the thesis), odometry, the grid.
 #include <cmath>
 #include <vector>
 
@@ -39,7 +39,7 @@ TEST(StepOptions, AreTheStoredSolutionsOfBothMaps) {
 }
 
 TEST(StepOptions, GoThroughAnIntermediateMap) {
-  // Seen from map 11, map 12 lies 2 m to the left and map 13 3 m ahead, turned to the left.
+  // Seen from map 11, map 12 is 2 m to the left and map 13 is 3 m ahead, turned to the left.
   SolutionStore solutions;
   solutions.put(11, 13, {{{3.0, 0.0, std::numbers::pi / 2}, covariance_of(0.1, 0.02), 0.8}});
   solutions.put(11, 12, {{{0.0, 2.0, 0.0}, covariance_of(0.2, 0.02), 0.6}});

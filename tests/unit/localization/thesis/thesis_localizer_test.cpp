@@ -90,7 +90,7 @@ TEST(ThesisLocalizer, GivesTheSameBitsAgain) {
   }
 }
 
-// A blind laser: nothing to match, so odometry stands.
+// A blind laser: nothing to match, so odometry remains.
 TEST(ThesisLocalizer, GoesByOdometryWhereNothingMatches) {
   test::Maps maps;
   for (std::uint32_t id = 0; id < 3; ++id) {

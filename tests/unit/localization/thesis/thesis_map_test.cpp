@@ -1,4 +1,4 @@
-// Stops without scans whose nodes alone say what they see: a rectangle of 4 m by 2 m ahead.
+// Stops without scans, whose view is defined by nodes alone: a rectangle of 4 m by 2 m ahead.
 #include "topogeo/localization/thesis/thesis_map.hpp"
 
 #include <memory>
@@ -69,7 +69,7 @@ TEST(ThesisMap, MapsOverlapWhereTheirRectanglesDo) {
   EXPECT_FALSE(map.overlap_now(0, 5));
 }
 
-// Without scan points no overlap is foreseen: only the stop before is worth a match.
+// Without scan points no overlap is predicted: only the previous stop is worth a match.
 TEST(ThesisMap, TheStopBeforeIsANeighbourInAnyCase) {
   const ThesisMap map = along_x(4);
   const auto neighbours = map.neighbours(3, map.poses()[3], map.relative_to(3));
@@ -82,7 +82,7 @@ TEST(ThesisMap, KeepsTheRefinedSolutionAndThoseElsewhere) {
   ThesisMap map = along_x(2);
   map.store(1, match_with(0, {-1.0, 0.0, 0.0}));
   const auto solutions = map.solutions().find(0, 1);
-  ASSERT_EQ(solutions.size(), 2U);  // the first of the search is the refined one
+  ASSERT_EQ(solutions.size(), 2U);  // the first one is the refined one
   EXPECT_NEAR(solutions[0].T_earlier_later.x_m, 1.0, 1e-12);
   EXPECT_EQ(solutions[0].fitness, 0.7);
   EXPECT_NEAR(solutions[1].T_earlier_later.x_m, 0.0, 1e-12);
@@ -99,7 +99,7 @@ TEST(ThesisMap, MovesAllPosesAndCountsTheVersion) {
   map.move(poses);
   EXPECT_EQ(map.poses()[2].y_m, 0.5);
   EXPECT_EQ(map.version(), version + 1);
-  EXPECT_LT(map.stop(2).covariance(0, 0), before);  // the closure knows it better
+  EXPECT_LT(map.stop(2).covariance(0, 0), before);  // the closure constrains it
 }
 
 TEST(ThesisMap, RefusesAStopOutOfTurnOrOfAnotherRobot) {

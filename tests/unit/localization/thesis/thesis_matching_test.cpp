@@ -10,7 +10,7 @@ namespace {
 
 using geometry::Pose2;
 
-/// Finds every pair where it is predicted.
+/// Matches every pair at its predicted pose.
 class AgreeingPool : public MatchPool {
  public:
   void add_map(std::shared_ptr<const topomap::LocalMap> map) override { known.push_back(map->id); }

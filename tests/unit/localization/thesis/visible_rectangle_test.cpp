@@ -54,7 +54,7 @@ TEST(VisibleRectangle, OfAnEmptyMapIsTheRobot) {
 }
 
 TEST(VisibleRectangle, SeenFromElsewhereIsMovedAndTurned) {
-  // 4 m forward and 1 m to both sides, a robot that looks left at (10, 5).
+  // 4 m forward and 1 m to both sides, for a robot that faces left at (10, 5).
   const VisibleRectangle view{{0.0, -1.0}, {4.0, 1.0}};
   expect_view(seen_from(view, {10.0, 5.0, kHalfTurn_rad / 2.0}, {0.0, 0.0, 0.0}), 9.0, 5.0, 11.0,
               9.0);
@@ -63,19 +63,19 @@ TEST(VisibleRectangle, SeenFromElsewhereIsMovedAndTurned) {
 }
 
 TEST(VisibleRectangle, SwingsOutBetweenTheExtremeHeadings) {
-  // The corners of the rectangle at 3, 4 m lie 5 m away; turned by up to half a turn to both sides
-  // each of them comes to lie ahead.
+  // The corners of the rectangle at 3, 4 m are 5 m away; each of them may be ahead when the
+  // heading is uncertain by up to half a turn to both sides.
   const VisibleRectangle view{{0.0, -4.0}, {3.0, 4.0}};
   expect_view(seen_from(view, {}, {0.0, 0.0, kHalfTurn_rad}), -5.0, -5.0, 5.0, 5.0);
   expect_view(seen_from(view, {}, {0.0, 0.0, 100.0}), -5.0, -5.0, 5.0, 5.0);
-  // By 60 degrees: the front corners, 53 degrees off, pass straight ahead; (0, 4) and (0, -4) turn
-  // backward by 4 sin 60.
+  // Uncertain by 60 degrees: the front corners, 53 degrees off, pass straight ahead; (0, 4) and (0,
+  // -4) turn backward by 4 sin 60.
   const VisibleRectangle turned = seen_from(view, {}, {0.0, 0.0, kHalfTurn_rad / 3.0});
   EXPECT_NEAR(turned.high_m.x(), 5.0, 1e-12);
   EXPECT_NEAR(turned.low_m.x(), -4.0 * std::sqrt(0.75), 1e-12);
 }
 
-// Whatever pose of the search space is the right one, the envelope covers what is seen from there.
+// The envelope covers the view from every pose of the search space.
 TEST(VisibleRectangle, EnvelopeContainsEveryPoseOfTheSearchSpace) {
   support::Random random(3);
   for (int round = 0; round < 200; ++round) {
@@ -145,7 +145,7 @@ TEST(OverlapSet, GrowsWithTheUncertainty) {
   EXPECT_THROW(overlap_set(view, earlier, places), std::invalid_argument);
 }
 
-// The Thesis's own: MS_44 = {42, 43}; at 45 the robot turns round and sees 33 to 42 and 44.
+// The thesis's example: MS_44 = {42, 43}; at 45 the robot turns round and sees 33 to 42 and 44.
 TEST(NewlySeen, AreTheMapsOutsideOfTheLastSetAndTheLastMap) {
   const std::vector<std::uint32_t> before{42, 43};
   const std::vector<std::uint32_t> turned{33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 44};

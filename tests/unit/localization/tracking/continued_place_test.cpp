@@ -19,7 +19,7 @@ DriveStep step(bool matched) {
   return step;
 }
 
-/// A step whose match its gate did not let pass for this reason.
+/// A step whose match was rejected by the gate for this reason.
 DriveStep unmatched(Reason reason) {
   DriveStep without = step(false);
   MatchTask task;
@@ -55,7 +55,7 @@ TEST(ContinuedPlace, GoesOnByMatchedSteps) {
   EXPECT_NEAR(place.pose()->T_a_b.x_m, 6.0, 1e-12);
   EXPECT_TRUE(place.leads_to({{6.3, 3.2, 0.05}, step_spread(0.1, 0.02)}));
   EXPECT_FALSE(place.leads_to({{6.0, 9.0, 0.0}, step_spread(0.1, 0.02)}));   // the next office
-  EXPECT_FALSE(place.leads_to({{6.0, 3.0, 1.57}, step_spread(0.1, 0.02)}));  // looks elsewhere
+  EXPECT_FALSE(place.leads_to({{6.0, 3.0, 1.57}, step_spread(0.1, 0.02)}));  // other heading
 }
 
 TEST(ContinuedPlace, KnowsTheLessTheFurtherItWent) {
@@ -98,7 +98,7 @@ TEST(ContinuedPlace, WantsTwiceAsMuchOfWhatItContradicts) {
   EXPECT_EQ(place.wanted_m(elsewhere), 40.0);
   place.move(step(false));
   EXPECT_EQ(place.wanted_m(elsewhere), 0.0);
-  place.track(kTracked, 1.0);  // it was there all the time
+  place.track(kTracked, 1.0);  // the true place all along
   EXPECT_EQ(place.wanted_m(elsewhere), 40.0);
   place.forget();
   place.track(kTracked, 1.0);
@@ -114,8 +114,7 @@ TEST(ContinuedPlace, EndsWhereTheMapContradictsWhatIsSeen) {
   EXPECT_FALSE(place.pose());
 }
 
-/// Whether a place is still known when as many scans, each so far after the last, were seen like
-/// that.
+/// Whether a place is still known after so many scans with this view, each so far after the last.
 bool goes_on(const KnownView& view, double distance_m, int scans) {
   ContinuedPlace place;
   place.track(kTracked, 1.0);

@@ -5,7 +5,7 @@
 namespace topogeo::localization {
 namespace {
 
-/// So many stops in a row, each matched where it was expected.
+/// So many successive stops, each matched at its expected pose.
 DriveAgreement agreed(int stops, double step_m, bool accepted, double confidence = 1.0) {
   DriveAgreement agreement;
   for (int i = 0; i < stops; ++i) {

@@ -15,7 +15,7 @@ namespace {
 
 using geometry::Pose2;
 
-/// A drive across the room, half a metre a stop.
+/// A drive across the room, a stop every half metre.
 class DriveWindowTest : public ::testing::Test {
  protected:
   DriveStep stop(const Pose2& truth, const std::optional<UncertainPose>& odometry) {

@@ -44,7 +44,7 @@ TEST(GlobalLocalizer, FindsScansThatAreNotInTheMapAndAcceptsNoWrongPlace) {
   int right = 0;
   int accepted = 0;
   for (std::size_t i = 0; i + 1 < map.trajectory.stops.size(); i += 12) {
-    // Beside the way, looking elsewhere.
+    // Beside the path, with another heading.
     const Pose2 T = map.trajectory.stops[i].T_map_robot * Pose2{0.15, 0.1, 0.12};
     const GlobalAnswer answer = localizer.find(points_at(world, T), {});
     ASSERT_FALSE(answer.poses.empty());
@@ -99,8 +99,8 @@ TEST(GlobalLocalizer, AMapWithoutStopsOrPointsIsAnError) {
   EXPECT_THROW(GlobalLocalizer(blind, trajectory), std::invalid_argument);
 }
 
-// The oracle: at its true pose the map has what a scan shows, in a wrong one it has seen past it,
-// and beyond its walls it knows nothing.
+// The oracle: at its true pose the map contains the scan's view; at a wrong one it has seen free
+// space there, and beyond its walls it knows nothing.
 TEST(GlobalLocalizer, KnowsWhatAScanShowsAndContradictsItElsewhere) {
   const FinishedMap map("floor");
   const GlobalLocalizer localizer(map.maps, map.trajectory);

@@ -31,7 +31,7 @@ std::shared_ptr<const StoredMap> stored(const test::DrivenMaps& driven) {
   return map;
 }
 
-/// The floor as one drive saw it, with its true poses, and another drive through it.
+/// The floor mapped by one drive, with true poses, and another drive through it.
 class MapLocalizerTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -46,7 +46,7 @@ class MapLocalizerTest : public ::testing::Test {
 
   MapLocalizer make() { return MapLocalizer({}, stored_, pool_); }
 
-  /// The drive's stop, said to be the `id`th; odometry says that it is `T_step` from the last one.
+  /// Adds the drive's stop as the `id`th; by odometry it is at `T_step` from the last one.
   void add(MapLocalizer& localizer, std::size_t stop, const Pose2& T_step) {
     topomap::LocalMap map = *drive_->maps[stop];
     map.id = localizer.added_stops();
@@ -93,7 +93,7 @@ TEST_F(MapLocalizerTest, FollowsAnotherDriveFromAnInitialPose) {
   EXPECT_EQ(localizer.searches(), 0U);
 }
 
-// What was predicted is a measurement of its own to whoever uses them.
+// Users of these matches treat the prediction as a separate measurement.
 TEST_F(MapLocalizerTest, MatchesByTheScansAloneDoNotDependOnWhatWasPredicted) {
   const Eigen::Matrix3d surely = Eigen::Vector3d(0.0025, 0.0025, 0.0004).asDiagonal();
   double largest_m = 0.0;
@@ -136,7 +136,7 @@ TEST_F(MapLocalizerTest, ACarriedRobotIsLostWithinThreeStopsAndFindsItself) {
   follow(localizer, 0, 12);
   ASSERT_EQ(localizer.status().state, LocalizationState::kTracking);
   const std::size_t elsewhere = 60;
-  add(localizer, elsewhere, {1.0, 0.0, 0.0});  // odometry noticed nothing
+  add(localizer, elsewhere, {1.0, 0.0, 0.0});  // unnoticed by odometry
   follow(localizer, elsewhere + 1, elsewhere + 3);
   bool lost = false;
   for (std::size_t i = 12; i < 15; ++i) {
@@ -200,7 +200,7 @@ TEST_F(MapLocalizerTest, SearchesOnDemandAndTakesAPoseAtAnyTime) {
   EXPECT_TRUE(right(localizer, 6));
 }
 
-// A service follows for weeks: what it keeps has to end somewhere, what it counts has not.
+// A service follows for weeks: its memory must be bounded, its counters need not.
 TEST_F(MapLocalizerTest, ForgetsOldStopsAndNumbersTheOthersAnew) {
   MapLocalizer localizer = make();
   localizer.set_pose(drive_->T_world_robot[0], kKnown);
@@ -248,7 +248,7 @@ TEST_F(MapLocalizerTest, AnotherSessionIsSearchedFor) {
       << "numbered as the trajectory is, whatever the sessions";
 }
 
-// A local mapper that is started again: the robot stands still or has driven on meanwhile.
+// A restarted local mapper: the robot stood still or drove on in the meantime.
 TEST_F(MapLocalizerTest, AnotherSessionOfTheSameOdometryGoesOn) {
   for (const std::size_t stop : {7U, 9U}) {
     MapLocalizer localizer = make();
@@ -284,7 +284,7 @@ TEST_F(MapLocalizerTest, APoseThatIsSetBeforeAnotherSessionHolds) {
   EXPECT_TRUE(right(localizer, 30));
 }
 
-// A localizer that is started again.
+// A restarted localizer.
 TEST_F(MapLocalizerTest, GoesOnAfterTheLastPlaceOfAnotherProcess) {
   constexpr std::uint64_t kEpoch = 5;
   for (const std::uint64_t epoch : {kEpoch, kEpoch + 1}) {
@@ -301,8 +301,8 @@ TEST_F(MapLocalizerTest, GoesOnAfterTheLastPlaceOfAnotherProcess) {
   }
 }
 
-// Two wings that are copies of each other. The map has the first one; the robot goes through that
-// and on to the second, with every step matched.
+// Two identical wings. The map has only the first one; the robot drives through it and on to the
+// second, with every step matched.
 TEST(MapLocalizer, ALookAlikeBeyondTheMapIsNotTaken) {
   const world::World world = simulation::symmetric_building(1);
   const auto& tour_m = world.tour_m;

@@ -14,7 +14,7 @@ using geometry::Pose2;
 
 const Eigen::Matrix3d kSharp = Eigen::Vector3d(1e-4, 1e-4, 1e-5).asDiagonal();
 
-/// One stop: places are proposed, each hypothesis is measured where it is or missed, and weighed.
+/// One stop: places are proposed, each hypothesis is measured at its place or missed, and weighted.
 void stop(PlaceSearch& search, const std::vector<Pose2>& places, const std::vector<bool>& seen,
           const std::vector<double>& fitness, double step_m = 1.0) {
   search.move({{step_m, 0.0, 0.0}, 1e-4 * Eigen::Matrix3d::Identity()}, step_m);
@@ -42,8 +42,8 @@ TEST(PlaceSearch, BeginsWithoutAnything) {
   EXPECT_TRUE(search.hypotheses().empty());
 }
 
-// New places weigh 0.05 each, elsewhere what is left of 0.5; a fitness of 0.7 against 0.6 elsewhere
-// is worth e^2.5.
+// New places weigh 0.05 each, elsewhere the rest of 0.5; a fitness of 0.7 against 0.6 elsewhere is
+// worth e^2.5.
 TEST(PlaceSearch, WeighsPlacesAgainstElsewhere) {
   PlaceSearch search;
   stop(search, {{0.0, 0.0, 0.0}, {10.0, 0.0, 0.0}}, {true, true}, {0.7, 0.6});
@@ -58,7 +58,7 @@ TEST(PlaceSearch, WeighsPlacesAgainstElsewhere) {
 TEST(PlaceSearch, APlaceNearAHypothesisIsNoNewOne) {
   PlaceSearch search;
   search.propose(std::vector<Pose2>{{0.0, 0.0, 0.0}, {0.5, 0.0, 0.2}, {0.0, 0.0, 0.4}});
-  EXPECT_EQ(search.hypotheses().size(), 2U);  // the third looks elsewhere
+  EXPECT_EQ(search.hypotheses().size(), 2U);  // the third has another heading
 }
 
 TEST(PlaceSearch, HypothesesMoveWithTheRobot) {
@@ -78,16 +78,16 @@ TEST(PlaceSearch, IsDoneWhenOnePlaceIsSeenOftenEnoughAndFarEnoughApart) {
   stop(search, {{0.0, 0.0, 0.0}}, {true}, {0.9});
   ASSERT_TRUE(search.best());
   EXPECT_GT(search.best()->weight, 0.95);
-  EXPECT_FALSE(PlaceSearch::found(*search.best()));  // one look is not enough
+  EXPECT_FALSE(PlaceSearch::found(*search.best()));  // one view is not enough
   PlaceSearch standing = search;
   stop(standing, {}, {true}, {0.9}, 0.1);
-  EXPECT_FALSE(PlaceSearch::found(*standing.best()));  // nor two from the same place
+  EXPECT_FALSE(PlaceSearch::found(*standing.best()));  // nor are two from the same place
   stop(search, {}, {true}, {0.9});
   EXPECT_EQ(search.best()->accepted, 2U);
   EXPECT_TRUE(PlaceSearch::found(*search.best()));
 }
 
-// Two looks are enough where the robot can be; where something would have had to carry it there,
+// Two views are enough at a reachable place; a place that the robot must have been carried to needs
 // ten over 15 m.
 TEST(PlaceSearch, APlaceToWhichTheDriveDoesNotLeadMustBeSeenOverALongPath) {
   PlaceSearch search;
@@ -112,7 +112,7 @@ TEST(PlaceSearch, TheExpectedPlaceNeedsTwoLooksWheneverItComesUp) {
   EXPECT_EQ(search.hypotheses()[2].wanted, 2U);
 }
 
-// No match passes its gate, but stop after stop lies where it should.
+// No match passes its gate, but each stop is at its expected place.
 TEST(PlaceSearch, StopsThatAgreeProveAPlaceThatNoneProvesAlone) {
   const auto search_with = [](double fitness) {
     PlaceSearch search;
@@ -128,11 +128,11 @@ TEST(PlaceSearch, StopsThatAgreeProveAPlaceThatNoneProvesAlone) {
     return search;
   };
   EXPECT_EQ(search_with(0.85).best()->accepted, 0U);
-  // Too little of what is seen is there: a look-alike, however often it is seen.
+  // Too little of the scan is in the map: a look-alike, however often it is seen.
   EXPECT_FALSE(PlaceSearch::found(*search_with(0.66).best()));
 }
 
-// A robot that stands sees the same again: that is no further evidence.
+// A standing robot sees the same again, which is no further evidence.
 TEST(PlaceSearch, StandingStillSharpensNothing) {
   PlaceSearch search;
   search.begin();

@@ -13,8 +13,8 @@ namespace {
 using geometry::Pose2;
 using test::kDegree;
 
-// A drive of 1.6 m along the south corridor past a junction, whose odometry measures 8 % too much
-// and creeps 3 degrees per metre to the left.
+// A drive of 1.6 m along the south corridor past a junction, with odometry that measures 8 % too
+// much and drifts 3 degrees per metre to the left.
 class ScanTrackerTest : public testing::Test {
  protected:
   ScanTrackerTest() : floor_(test::world("floor")) {

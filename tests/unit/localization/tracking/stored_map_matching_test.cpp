@@ -14,7 +14,7 @@ namespace {
 
 using geometry::Pose2;
 
-/// The room as two stops saw it, in the frame of the world.
+/// The room seen from two stops, in the frame of the world.
 class StoredMapMatchingTest : public ::testing::Test {
  protected:
   static std::shared_ptr<const StoredMap> room() {

@@ -193,7 +193,7 @@ TEST_P(Conversions, EdgesAreExactInSegmentsOfAnyOrder) {
     EXPECT_EQ(assembly.whole(5), edges);
     EXPECT_EQ(assembly.newest(), edges);
     EXPECT_FALSE(assembly.whole(6).has_value());
-    // One more comes, then two of the last go: only the last segment is sent again.
+    // One edge is added, then two segments' last edges go: only the last segment is sent again.
     edges.push_back({1, 2, any_pose(random_), any_matrix(random_), storage::MapEdge::Kind::kLoop});
     const auto last = edge_segment_count(edges.size()) - 1;
     assembly.add(to_segment(edges, last, 6, "robot", 6, 9));
@@ -313,7 +313,7 @@ TEST_P(Conversions, GlobalMapIsExactInAnyOrderOfItsElements) {
   EXPECT_THROW(from_elements(parts), std::invalid_argument);
 }
 
-/// The text of the std::invalid_argument that `call` throws.
+/// Message of the std::invalid_argument from `call`.
 template <class Call>
 std::string refusal(const Call& call) {
   try {

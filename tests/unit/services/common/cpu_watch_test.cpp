@@ -1,5 +1,5 @@
-// The counters of a service whose CPU is short, by a simulated clock and texts of /proc made for
-// it.
+// The counters of a service that lacks CPU time, on a simulated clock and with made-up texts of
+// /proc.
 #include "topogeo/service/cpu_watch.hpp"
 
 #include <fstream>
@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 class CpuWatchTest : public testing::Test {
  protected:
-  /// `seconds` in which the process runs and waits for so much of each, and its timers fire late.
+  /// Passes `seconds`, in each of which the process runs and waits for so long, with late timers.
   void pass(int seconds, double ran_s, double waited_s, double timer_delay_s) {
     for (int i = 0; i < 4 * seconds; ++i) {  // about as often as in the service, at exact times
       now_s_ += 0.25;

@@ -1,4 +1,4 @@
-// What a scrape of a service gets, over HTTP.
+// Metrics of a service over HTTP.
 #include "topogeo/service/metrics_endpoint.hpp"
 
 #include <stdexcept>
@@ -17,7 +17,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// The answer to a request, head and body; empty when nobody listens.
+/// The answer to a request, head and body; empty when the port is closed.
 std::string ask(std::uint32_t port, const std::string& request) {
   const support::FileDescriptor line(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_in peer{};

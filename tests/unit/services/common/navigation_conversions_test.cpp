@@ -77,7 +77,7 @@ TEST(NavigationConversions, BeamsEndWhereTheLaserSitsOnTheRobot) {
   scan.angle_min_rad = 0.0;
   scan.angle_step_rad = std::numbers::pi / 2.0;
   scan.ranges_m = {2.0F, scan::Scan::kNoReturn, 1.0F};
-  // 0.1 m ahead of the middle of the robot, looking to the left.
+  // 0.1 m ahead of the robot's centre, facing left.
   const navigation::ScanPoints points = to_scan_points(scan, {0.1, 0.0, std::numbers::pi / 2.0});
   ASSERT_EQ(points.points_m.size(), 2U);
   EXPECT_LT((points.points_m[0] - Eigen::Vector2d(0.1, 2.0)).norm(), 1e-12);

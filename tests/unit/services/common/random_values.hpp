@@ -1,4 +1,4 @@
-// Values of every type that travels, with all fields random, and equality to the last bit.
+// Random values of every type in messages, with all fields set, and equality to the last bit.
 #pragma once
 
 #include <bit>
@@ -150,7 +150,7 @@ inline topomap::GlobalMap any_global_map(support::Random& random) {
 
 }  // namespace topogeo
 
-// Equality of the types that have none of their own, for tests alone.
+// Equality for types that lack it, for tests only.
 namespace topogeo::topomap {
 
 inline bool operator==(const BranchPoint& a, const BranchPoint& b) {

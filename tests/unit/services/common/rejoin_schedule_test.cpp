@@ -1,4 +1,4 @@
-// When a deaf service listens, reports and ends. The tests pass the time.
+// When a deaf service listens, reports and ends. The tests advance the time.
 #include "topogeo/service/rejoin_schedule.hpp"
 
 #include <vector>
@@ -14,7 +14,7 @@ constexpr double kTick_s = 0.2;
 
 class RejoinScheduleTest : public ::testing::Test {
  protected:
-  /// The next tick, in a silence that goes on.
+  /// The next tick of a continuing silence.
   RejoinStep tick() {
     now_s_ += kTick_s;
     input_.silence_s += kTick_s;
@@ -77,7 +77,7 @@ TEST_F(RejoinScheduleTest, ReportsOnceAMinuteWhileItWaits) {
   EXPECT_LE(reports, 11);
 }
 
-// A service that nothing outlives must not be started again and again.
+// A service without persistent memory must not be restarted again and again.
 TEST_F(RejoinScheduleTest, WithoutAMemoryOneThatIsDeafFromItsStartWaits) {
   input_ = {.silence_s = 10.0, .ever_came = false, .hears_sender = true, .deaf = true};
   const double silence_s = silence_until([](const RejoinStep& step) { return step.end; });
@@ -95,7 +95,7 @@ TEST_F(RejoinScheduleTest, ForgetsTheLivesBeforeWhenItsInputHasCome) {
   EXPECT_EQ(schedule_.deaf_lives(), 0U);
 }
 
-// Each pause is as long as the silence before: no deafness outlasts its interruption by much more.
+// Each pause is as long as the silence before it, so no deafness outlasts its cause by much more.
 TEST_F(RejoinScheduleTest, ProbesLessOftenTheLongerTheSenderIsNotHeard) {
   input_.hears_sender = false;
   std::vector<double> starts_s;

@@ -18,7 +18,7 @@ struct Outcome {
   int code = -1;
   bool ran = false;
   Setup setup;
-  std::string told;  // on stderr
+  std::string told;  // stderr
 };
 
 Outcome run(

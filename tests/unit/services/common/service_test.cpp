@@ -1,4 +1,4 @@
-// What a service takes from its topics: messages of its robot that its handlers can use.
+// Messages that a service accepts: those of its robot that its handlers can use.
 #include "topogeo/service/service.hpp"
 
 #include <vector>
@@ -51,7 +51,7 @@ class ServiceTest : public ::testing::Test {
   msg::ServiceStatus status_;
 };
 
-// A gateway would wait for ever for a program that announces more than it reads.
+// A gateway would wait forever for a program that announces more topics than it reads.
 TEST_F(ServiceTest, SubscribesToWhatItAnnouncesToRead) {
   service_.subscribe<msg::Scan>([](const msg::Scan&) {}, {.read_with = {messaging::kOdometry}});
   EXPECT_THROW(service_.run(), std::logic_error);
@@ -167,13 +167,13 @@ TEST_F(ServiceTest, AdvertisedWriterReachesAPeerAndItsEventsAreWatched) {
   EXPECT_TRUE(service_.send(writer, message_of<msg::Route>("robot"), "route"));
 
   const messaging::Writer<msg::Goal> odd = service_.advertise<msg::Goal>("command");
-  const messaging::Reader<msg::Goal> strict(peer_);  // wants what role command does not offer
+  const messaging::Reader<msg::Goal> strict(peer_);  // requests more than role command offers
   EXPECT_TRUE(
       run_until("incompatible settings to be a fault", [&] { return status_.fault_count() > 0; }));
   EXPECT_EQ(status_.faults()[0].reason().to_string(), "incompatible_qos");
 }
 
-/// Another service of the same name for the same robot, whose clock is far off.
+/// Another service with the same name and robot, whose clock is far off.
 msg::ServiceStatus rival_of(const msg::ServiceStatus& own, msg::ServiceState state) {
   msg::ServiceStatus rival = own;
   messaging::set_service(rival, own.service().to_string(), "elsewhere-1");
@@ -187,7 +187,7 @@ TEST_F(ServiceTest, WhoStartsStopsForOneThatWorks) {
   ASSERT_TRUE(writer.write(rival_of(service_.status().message(), msg::kServiceRunning)));
   try {
     const SoleService sole(service_);
-    service_.run();  // on a busy machine the status comes only now, when the younger one stops
+    service_.run();  // on a busy machine the status comes only now, and the younger one stops then
     FAIL() << "two of them work";
   } catch (const std::runtime_error& error) {
     EXPECT_STREQ(error.what(),

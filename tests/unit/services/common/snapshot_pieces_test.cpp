@@ -27,7 +27,7 @@ TEST(SnapshotPieces, AreTheSameBytesInAnyOrder) {
     for (const msg::SnapshotPiece& piece : pieces) {
       EXPECT_FALSE(assembly.complete());
       assembly.add(piece);
-      assembly.add(piece);  // once more
+      assembly.add(piece);  // a second time
     }
     ASSERT_TRUE(assembly.complete()) << size;
     EXPECT_TRUE(assembly.take() == bytes) << size;

@@ -24,7 +24,7 @@ TEST(SoleService, TheOneThatStartedFirstStays) {
   EXPECT_FALSE(has_precedence(map_store("b", 2), map_store("a", 1)));
 }
 
-// A clock that is wrong makes nobody stop who works already.
+// A wrong clock must not stop a service that already works.
 TEST(SoleService, WhoWorksIsOlderThanWhoStarts) {
   const msg::ServiceStatus starting = map_store("a", 1, msg::kServiceStarting);
   for (const msg::ServiceState state :

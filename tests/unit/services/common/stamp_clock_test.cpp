@@ -25,7 +25,7 @@ TEST(StampClock, FollowsTheStampsAndTheSteadyClockBetweenThem) {
 TEST(StampClock, WhatWaitedOnTheWayLooksAsOldAsItIs) {
   StampClock clock(0);
   clock.observe(70 * kSecond_ns, 10 * kSecond_ns);
-  // A stall: two seconds of messages come at once.
+  // A stall: two seconds of messages arrive at once.
   clock.observe(70 * kSecond_ns + 1, 12 * kSecond_ns);
   EXPECT_EQ(clock.now_ns(12 * kSecond_ns), 72 * kSecond_ns);
 }
@@ -33,7 +33,7 @@ TEST(StampClock, WhatWaitedOnTheWayLooksAsOldAsItIs) {
 TEST(StampClock, FollowsAClockThatRunsSlower) {
   StampClock clock(0);
   std::int64_t largest_age_ns = 0;
-  for (std::int64_t i = 0; i <= 100; ++i) {  // a millisecond a second
+  for (std::int64_t i = 0; i <= 100; ++i) {  // drifts by a millisecond a second
     const std::int64_t steady_ns = i * kSecond_ns;
     const std::int64_t stamp_ns = 50 * kSecond_ns + i * (kSecond_ns - 1'000'000);
     clock.observe(stamp_ns, steady_ns);
@@ -47,7 +47,7 @@ TEST(StampClock, SaysOnceThatTheStampsHaveGoneBack) {
   StampClock clock(0);
   clock.observe(70 * kSecond_ns, 0);
   EXPECT_EQ(clock.now_ns(0), 70 * kSecond_ns);
-  // A gateway that was started again with its clock set right: an hour less.
+  // A restarted gateway with a corrected clock: an hour less.
   for (std::int64_t second = 1; second <= 11; ++second) {
     clock.observe(-3530 * kSecond_ns + second * kSecond_ns, second * kSecond_ns);
     clock.now_ns(second * kSecond_ns);
@@ -61,7 +61,7 @@ TEST(StampClock, NeverGoesBackALittle) {
   StampClock clock(0);
   clock.observe(70 * kSecond_ns, 0);
   std::int64_t last_ns = clock.now_ns(0);
-  for (std::int64_t second = 1; second <= 20; ++second) {  // half a second less from now on
+  for (std::int64_t second = 1; second <= 20; ++second) {  // half a second less from here on
     clock.observe(70 * kSecond_ns + second * kSecond_ns - kSecond_ns / 2, second * kSecond_ns);
     const std::int64_t now_ns = clock.now_ns(second * kSecond_ns);
     EXPECT_GE(now_ns, last_ns);

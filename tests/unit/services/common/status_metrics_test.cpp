@@ -1,4 +1,4 @@
-// The numbers of a status as metrics, and the files that name these metrics.
+// The values of a status as metrics, and the files that name these metrics.
 #include "topogeo/service/status_metrics.hpp"
 
 #include <fstream>

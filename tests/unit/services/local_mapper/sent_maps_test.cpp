@@ -15,7 +15,7 @@ using Stop = topomap::StopId;
 constexpr std::uint64_t kDrive = 71;
 constexpr std::uint64_t kDriveAfter = 5;
 
-/// Two are kept of those that are stored, five in any case.
+/// Keeps two of the stored maps, and at least five in all.
 SentMaps sent(std::uint32_t stops) {
   SentMaps maps({.stored = 2, .unstored = 5});
   for (std::uint32_t i = 0; i < stops; ++i) maps.add({kDrive, i});

@@ -12,7 +12,7 @@ using geometry::Pose2;
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::uint64_t kEpoch = 5;
 
-/// A stop at a second with 10 m of odometry behind it.
+/// A stop at one second, after 10 m of odometry.
 std::shared_ptr<const topomap::LocalMap> stop_at_10_m(std::uint32_t id) {
   auto map = std::make_shared<topomap::LocalMap>();
   map->id = id;
@@ -24,7 +24,7 @@ std::shared_ptr<const topomap::LocalMap> stop_at_10_m(std::uint32_t id) {
   return map;
 }
 
-/// The stop lies at (2, 3) of the map, where the robot looks along y.
+/// The stop is at (2, 3) of the map, and the robot faces y.
 topomap::StopPose corrected() {
   topomap::StopPose pose;
   pose.T_map_robot = {2.0, 3.0, 0.5 * 3.141592653589793};
@@ -51,7 +51,7 @@ TEST_F(LivePose, IsUnknownBeforeTheFirstStop) {
   EXPECT_EQ(live_.T_stop_robot(), Pose2{});
 }
 
-// A log that is read again brings readings once more.
+// When a log is read again, its readings come again.
 TEST_F(LivePose, KnowsWhichReadingsAreOld) {
   EXPECT_FALSE(live_.has_newer(0, kEpoch));
   live_.set_odometry(kSecond_ns, 1, {1.0, 0.0, 0.0}, kEpoch);
@@ -88,7 +88,7 @@ TEST_F(LivePose, IsUnknownFromANewEpochOfTheOdometryToTheNextStop) {
 
 TEST_F(LivePose, NewerOdometryThanThatOfTheStopStays) {
   live_.set_odometry(2 * kSecond_ns, 9, {10.5, 0.0, 0.0}, kEpoch);
-  live_.set_stop(stop_at_10_m(0));  // took a second to be matched
+  live_.set_stop(stop_at_10_m(0));  // its match took a second
   live_.correct(corrected());
   expect_at(2.0, 3.5);
 }
@@ -98,10 +98,10 @@ TEST_F(LivePose, AScanMatchedWithTheLastStopReplacesItsOdometry) {
   live_.correct(corrected());
   topomap::TrackedScan scan;
   scan.T_odom_robot = {10.5, 0.0, 0.0};
-  scan.T_stop_robot = {0.4, 0.0, 0.0};  // the odometry was 0.1 m off
+  scan.T_stop_robot = {0.4, 0.0, 0.0};  // the odometry was off by 0.1 m
   scan.matched = true;
   live_.set_odometry(2 * kSecond_ns, 9, {10.6, 0.0, 0.0}, kEpoch);
-  live_.set_tracked({1, 3}, scan);  // of the stop before
+  live_.set_tracked({1, 3}, scan);  // relative to the previous stop
   expect_at(2.0, 3.6);
   live_.set_tracked({1, 4}, scan);
   expect_at(2.0, 3.5);

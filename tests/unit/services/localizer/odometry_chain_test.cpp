@@ -45,7 +45,7 @@ TEST(OdometryChain, GoesOnAfterAStopOfAStoredMap) {
   expect_at(chain.add(stop(1, 7, 9, {0.0, 0.0, 0.0}, {0.5, 0.0, 0.0})), {5.5, 6.0, 0.0});
 }
 
-// A local mapper that was started again begins another session; the base counts on or begins anew.
+// A restarted local mapper begins another session; the base's odometry continues or starts anew.
 TEST(OdometryChain, AnotherSessionGoesOnInTheSameEpochOnly) {
   for (const std::uint64_t epoch : {9U, 7U}) {
     OdometryChain chain;

@@ -57,7 +57,7 @@ TEST_F(StopTableTest, TheLastStopIsWrittenWithThePoseThatItHasAtTheEnd) {
   StopTable table(file_);
   auto drive = stops(0, 3);
   table.add({drive, 3});
-  drive[2].T_map_robot.x_m = 7.5;  // somebody has set the pose
+  drive[2].T_map_robot.x_m = 7.5;  // the pose was set by hand
   table.finish({drive, 3});
   EXPECT_EQ(text_in(file_), pipeline::localization_csv(drive));
 }

@@ -31,7 +31,7 @@ TEST(WatchedPool, ShowsTheSpaceOfASearchAndWhatCameOfIt) {
   EXPECT_EQ(search.tasks(), 3U);
   EXPECT_TRUE(search.running());
   EXPECT_FALSE(search.whole_map());
-  ASSERT_EQ(search.matches().size(), 2U);  // stop 99 is not known
+  ASSERT_EQ(search.matches().size(), 2U);  // stop 99 is unknown
   EXPECT_EQ(search.matches()[0].base().number(), 30U);
   EXPECT_EQ(search.matches()[0].stop().number(), 40U);
   EXPECT_DOUBLE_EQ(search.matches()[0].half_width_x_m(), 0.6);

@@ -36,7 +36,7 @@ TEST_F(DiskRoom, IsThereOrNot) {
   EXPECT_TRUE(fs::is_empty(path("made/of/it"))) << "it leaves nothing";
 }
 
-// Waiting does not help there.
+// Waiting cannot cure other faults.
 TEST_F(DiskRoom, IsNotTheMatterOfOtherFaults) {
   std::ofstream(path("file")) << "x";
   EXPECT_TRUE(have(path("file")));

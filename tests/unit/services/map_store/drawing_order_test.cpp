@@ -1,4 +1,4 @@
-// What orders make of the drawing of a map.
+// Effects of orders on the drawing of a map.
 #include "map_store/drawing_order.hpp"
 
 #include <limits>
@@ -123,7 +123,7 @@ TEST(DrawingOrder, AFloorBecomesTheGrid) {
   EXPECT_EQ(carry_out(order, with_grid(7), 0.1).result, msg::kDrawingInvalid);
 }
 
-/// 40 x `rows` cubicles of 4 m with two walls each, the first of them with a door to the left.
+/// 40 x `rows` cubicles of 4 m with two walls each; the first ones have a door to the left.
 storage::MapDrawing office(int rows, int doors) {
   storage::MapDrawing drawing;
   for (int i = 0; i < 40 * rows; ++i) {

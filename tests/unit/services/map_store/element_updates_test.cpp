@@ -1,4 +1,4 @@
-// The map on its way: what map_store sends, and what a reader makes of it.
+// The map in transit: messages of map_store, and a reader's map from them.
 #include "map_store/element_updates.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace topogeo {
 namespace {
 
-/// As DDS does it: one handle for each kind and id.
+/// Instance handles like those of DDS: one for each kind and id.
 map_client::Handle handle_of(const msg::MapElement& element) {
   return {static_cast<std::uint8_t>(element.kind()), static_cast<std::uint8_t>(element.id())};
 }
@@ -70,7 +70,7 @@ TEST_F(Elements, OnlyChangesTravel) {
   EXPECT_EQ(update.gone[0].kind(), msg::kElementBranch);
   expect_shown(map_);
 
-  map_.nodes[4].position_m.x() = 2.5;  // under the same version
+  map_.nodes[4].position_m.x() = 2.5;  // with an unchanged version
   update = send(map_);
   ASSERT_EQ(update.changed.size(), 2U);
   expect_shown(map_);

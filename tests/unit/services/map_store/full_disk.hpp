@@ -1,4 +1,4 @@
-// A disk that is full as far as a test needs it.
+// A simulated full disk for tests.
 #pragma once
 
 #include <csignal>
@@ -8,7 +8,7 @@
 
 namespace topogeo::map_store {
 
-/// No file of this process grows beyond so many bytes: a full disk.
+/// No file of this process can grow beyond so many bytes: a full disk.
 class FullDisk {
  public:
   explicit FullDisk(std::uintmax_t bytes) {

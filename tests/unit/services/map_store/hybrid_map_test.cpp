@@ -1,4 +1,4 @@
-// The hybrid map on its way: what map_store sends, and what a reader makes of it.
+// The hybrid map in transit: messages of map_store, and a reader's map from them.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -23,7 +23,7 @@ using testing::ThrowsMessage;
 
 constexpr std::uint64_t kVersion = 100;
 
-/// As DDS does it: one handle for each key.
+/// Instance handles like those of DDS: one for each key.
 messaging::Handle handle_of(const msg::GridTile& tile) {
   messaging::Handle handle;
   handle.bytes[0] = static_cast<std::uint8_t>(tile.tile());
@@ -121,7 +121,7 @@ TEST(HybridMapMessages, AMapComesBackToTheLastBit) {
   EXPECT_EQ(mirror.version(), kVersion);
 }
 
-// A wall cuts the drawn zone in two, and its name is as long as a name may be.
+// A wall splits the drawn zone, whose name has the maximum length.
 TEST(HybridMapMessages, ThePartsOfAZoneWithALongNameHaveRoomForTheirNumber) {
   planning::GridFrame frame;
   frame.columns = 100;
@@ -160,7 +160,7 @@ TEST(HybridMapMessages, CellsBeyondTheGridAreUnknown) {
   EXPECT_EQ(messages.tiles[2].states()[7 * 64 + 10], 2) << "row 71, beyond";
 }
 
-// Four tiles and the summary, in all 120 orders: there is a map with the last of them, never
+// Four tiles and the summary, in all 120 orders: the map is complete with the last of them, never
 // before.
 TEST(HybridMapMirror, TakesThePartsInAnyOrder) {
   const planning::HybridMap map = two_rooms({20, 20});
@@ -190,11 +190,11 @@ TEST(HybridMapMirror, BuildsOncePerChange) {
   put_all(mirror, messages);
   const auto first = mirror.map();
   EXPECT_EQ(mirror.map(), first);
-  mirror.put(messages.summary);  // the same again
+  mirror.put(messages.summary);  // repeated
   EXPECT_NE(mirror.map(), nullptr);
 }
 
-// While an update comes in, in whatever order, the map before it stays whole.
+// While an update arrives, in any order, the previous map stays whole.
 TEST(HybridMapMirror, KeepsTheOldMapWhileTheNextComes) {
   map_store::HybridUpdates updates("robot", kVersion);
   const planning::HybridMap before = two_rooms({20, 20});
@@ -225,7 +225,7 @@ TEST(HybridMapMirror, KeepsTheOldMapWhileTheNextComes) {
     ASSERT_NE(got, old);
     EXPECT_EQ(mirror.version(), kVersion + 2);
     EXPECT_TRUE(std::ranges::equal(got->space().grid().cells(), after.space().grid().cells()));
-    // Whoever still plans on the old one can.
+    // A planner that still uses the old map can continue.
     EXPECT_TRUE(std::ranges::equal(old->space().grid().cells(), before.space().grid().cells()));
   } while (std::ranges::next_permutation(order).found);
 }
@@ -265,7 +265,7 @@ TEST(HybridMapMirror, WithoutATileOrASummaryThereIsNoNewMap) {
   put_all(mirror, messages);
   mirror.remove(handle_of(messages.tiles[3]));
   EXPECT_EQ(mirror.map(), nullptr);
-  mirror.remove(handle_of(messages.tiles[3]));  // again: no error
+  mirror.remove(handle_of(messages.tiles[3]));  // repeated: no error
   mirror.put(messages.tiles[3], handle_of(messages.tiles[3]));
   EXPECT_NE(mirror.map(), nullptr);
   mirror.remove_summary();
@@ -321,7 +321,7 @@ TEST(HybridMapMirror, RefusesNonsenseAndStaysAsItWas) {
   EXPECT_EQ(mirror.map(), map);
 }
 
-// Parts that are fine by themselves and do not fit each other.
+// Parts that are valid alone but contradict each other.
 TEST(HybridMapMirror, RefusesOnceAWholeMapThatContradictsItself) {
   const auto good = service::to_messages(two_rooms({20, 20}), "robot", 0, kVersion);
   service::HybridMapMirror mirror;
@@ -382,7 +382,7 @@ TEST(HybridUpdates, WhatWasSentInPartIsNeverTakenForTheNext) {
     updates.sent(tile);
     mirror.put(tile, handle_of(tile));
   }
-  // The summary could not be sent, and the map goes on.
+  // The summary could not be sent, and the map has changed since.
   const auto second = updates.update_to(two_rooms({21, 20}), 1);
   ASSERT_EQ(second.changed.size(), 1U);
   mirror.put(*second.summary);

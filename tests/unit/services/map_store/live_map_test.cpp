@@ -8,7 +8,7 @@
 namespace topogeo::map_store {
 namespace {
 
-/// A corridor 2 m wide and 6 m to each side, its middle line the only branch.
+/// A corridor 2 m wide, 6 m in each direction, with its middle line as the only branch.
 topomap::LocalMap corridor(std::uint32_t id) {
   topomap::LocalMap map;
   map.id = id;
@@ -38,7 +38,7 @@ class Live : public testing::Test {
     while (live.step(maps_, stops_)) {
     }
   }
-  /// What all maps at once give.
+  /// The map built from all local maps at once.
   [[nodiscard]] topomap::GlobalMap fused() const {
     topomap::GlobalMapBuilder builder;
     builder.rebuild(maps_, stops_);
@@ -109,7 +109,7 @@ TEST_F(Live, NewStartIsFinishedBeforeTheNext) {
 }
 
 TEST_F(Live, MapThatCannotBeFusedIsLeftOut) {
-  stops_[1].T_map_robot.x_m = 1e6;  // over the 5 km of the builder
+  stops_[1].T_map_robot.x_m = 1e6;  // beyond the builder's 5 km
   ASSERT_TRUE(live_.step(maps_, stops_));
   EXPECT_THROW(live_.step(maps_, stops_), std::invalid_argument);
   while (live_.step(maps_, stops_)) {

@@ -1,4 +1,4 @@
-// The faults that a disk and its users have in store, each injected while a map comes in.
+// Faults of a disk and of its users, each injected while a map arrives.
 #include "map_store/map_archive.hpp"
 
 #include <fstream>
@@ -54,7 +54,7 @@ class Archive : public testing::Test {
     }
     return "";
   }
-  /// What another program finds in the file now.
+  /// Number of stops that another program finds in the file now.
   [[nodiscard]] std::uint32_t stored() const {
     const auto sessions = storage::MapDatabase::open_read_only(path_).sessions();
     return sessions.empty() ? 0 : sessions[0].stops;
@@ -74,7 +74,7 @@ TEST_F(Archive, StoresWhatComesOnceAndInAnyOrder) {
   EXPECT_TRUE(archive_->has_batch());
   EXPECT_THAT(archive_->flush(), IsEmpty());
   EXPECT_EQ(stored(), 0U) << "the first one is missing";
-  add(0, 100);  // again
+  add(0, 100);  // repeated
   EXPECT_EQ(archive_->queued(), 1U);
   EXPECT_THAT(archive_->flush(), IsEmpty());
   EXPECT_EQ(stored(), 100U);
@@ -102,7 +102,7 @@ TEST_F(Archive, StoresWhatTheTrajectoryNames) {
               ElementsAre(topomap::StopId{kArchivedSession, 1}));
 }
 
-// Segments of one trajectory come one after the other: each has the version, and brings poses.
+// Segments of one trajectory arrive one by one: all have its version, and each brings poses.
 TEST_F(Archive, StoresOtherPosesOfTheSameVersion) {
   add(0, 1);
   EXPECT_THAT(archive_->flush(), IsEmpty());
@@ -141,7 +141,7 @@ TEST_F(Archive, StopsThatLeaveTheMapLeaveTheFile) {
   EXPECT_EQ(stored(), 5U);
   archive_->add(maps_[1]);
   EXPECT_EQ(archive_->queued(), 0U);
-  // Poses go on as usual.
+  // Poses are stored as usual afterwards.
   trajectory.version = 6;
   trajectory.stops[2].T_map_robot.x_m = 3.0;
   archive_->put(joined, trajectory, {});

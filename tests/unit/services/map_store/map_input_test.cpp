@@ -15,7 +15,7 @@ namespace {
 using Arrival = MapInput::Arrival;
 
 constexpr std::uint64_t kSession = 11;
-constexpr std::uint64_t kOther = 5;  // came later, though its number is smaller
+constexpr std::uint64_t kOther = 5;  // later, though its number is smaller
 
 class Input : public testing::Test {
  protected:
@@ -77,13 +77,13 @@ TEST_F(Input, SecondMapOfAnIdIsKnownOrDifferent) {
 
 TEST_F(Input, TakesInWhatTheTrajectoryNamesAndNumbersItAsThatDoes) {
   trajectory_.stops.resize(2);
-  trajectory_.stops[1].stop = {kSession, 2};  // the stop between is in no map
+  trajectory_.stops[1].stop = {kSession, 2};  // the stop in between is in no map
   for (const auto& map : maps_) input_.add(map);
   EXPECT_TRUE(input_.local_maps().empty());
   input_.add(service::to_segment(trajectory_, 0, "robot", 0));
   ASSERT_EQ(input_.local_maps().size(), 2U);
   EXPECT_TRUE(input_.local_maps()[1] == topomap::numbered(maps_[2], 1, true));
-  // The one between is of no use any more, however often it comes.
+  // The one in between is never used again, however often it arrives.
   EXPECT_EQ(input_.waiting(), 0U);
   EXPECT_EQ(input_.add(maps_[1]), Arrival::kKnown);
   EXPECT_EQ(input_.waiting(), 0U);
@@ -91,7 +91,7 @@ TEST_F(Input, TakesInWhatTheTrajectoryNamesAndNumbersItAsThatDoes) {
   EXPECT_FALSE(input_.lost());
 }
 
-// A robot that is followed in its map for days makes stops that join nothing.
+// A robot that is followed in its map for days makes stops that do not join it.
 TEST_F(Input, SoManyMapsWaitAndNoMore) {
   const auto most = static_cast<std::uint32_t>(MapInput::kMostWaiting);
   topomap::LocalMap map = maps_[0];
@@ -153,8 +153,8 @@ class RenewedInput : public Input {
     trajectory_.stops[2].stop = joins_.stop;
   }
 
-  /// Numbered anew as well; its first stop is the last stored one, the others are of the other
-  /// drive.
+  /// A renumbered trajectory, too; its first stop is the last stored one, the others are from the
+  /// other drive.
   topomap::Trajectory of_two_segments() {
     topomap::Trajectory large = any_trajectory(random_, msg::kSegmentStops + 2);
     large.version = large.numbered_since = 20;
@@ -310,7 +310,7 @@ TEST_F(Input, OlderPartsDoNotCompleteIt) {
   input_.add(service::to_segment(trajectory_, 0, "robot", 0));
   EXPECT_FALSE(input_.final_trajectory().has_value());
   input_.add(closures(8));
-  input_.add(closures(7));  // late: passed over
+  input_.add(closures(7));  // late: ignored
   EXPECT_FALSE(input_.final_trajectory().has_value());
   input_.add(edges(8));
   input_.add(edges(7));

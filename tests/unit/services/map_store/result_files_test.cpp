@@ -63,7 +63,7 @@ TEST_F(Files, DatabaseBeginsWithTheMapThatItExtends) {
   topomap::LocalMap next = first_map();
   next.stop = {6, 0};
   EXPECT_TRUE(database.put_stops({&next, 1}).empty());
-  begin_with(database, map);  // after a new start
+  begin_with(database, map);  // after a restart
   EXPECT_EQ(database.sessions().size(), 2U);
   map.local_maps[0].stop.session = 9;
   EXPECT_THROW(begin_with(database, map), service::BadInputError);

@@ -1,4 +1,4 @@
-// What the planner answers on a floor of two rooms with a door between them, 10 x 4 m:
+// The planner's answers on a floor of two rooms with a door between them, 10 x 4 m:
 //
 //   y = 4  #####################
 //          #   room A  #room B #
@@ -46,7 +46,7 @@ planning::HybridMap floor_map() {
           {{"Desk", {1.55, 2.05}}, {"window", {9.05, 2.05}}, {"wall", {6.05, 0.5}}}};
 }
 
-// All that fills the door.
+// Points that fill the door.
 std::vector<Eigen::Vector2d> shut_door_m() {
   std::vector<Eigen::Vector2d> points_m(10);
   for (std::size_t k = 0; k < points_m.size(); ++k) {
@@ -253,7 +253,7 @@ TEST(Answer, ADoorThatIsShutNowCutsTheOtherRoomOff) {
   ASSERT_TRUE(shut.has_nearest_reachable());
   EXPECT_LT(shut.nearest_reachable().x_m(), 6.0);
   EXPECT_GT(shut.nearest_reachable().x_m(), 5.5);
-  // Before the door, the robot still gets away.
+  // In front of the door, the robot can still drive away.
   EXPECT_EQ(answer(goal_place("Desk"), {&map, nullptr}, pose_at(5.85, 2.05), blocked_m).status(),
             msg::kRouteFound);
 }

@@ -1,5 +1,5 @@
-// Every experiment is run where that takes no drive; what it measures is compared with what is
-// published, and the page and its JSON have its row.
+// Runs every experiment that needs no drive, compares its measurements with the publication, and
+// checks its row on the page and in its JSON.
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -29,7 +29,7 @@ const Experiment& experiment_named(const std::string& name) {
   return *at;
 }
 
-/// Each experiment runs once for all tests: it depends on nothing but its name.
+/// Each experiment runs once for all tests, because it depends on its name alone.
 class ExperimentRuns : public testing::Test {
  protected:
   static void SetUpTestSuite() { done_ = std::make_unique<Done>(); }
@@ -100,7 +100,7 @@ TEST_F(ExperimentRuns, DrivesCompareAndDraw) {
   }
 }
 
-// What is published exactly comes out exactly.
+// Exact published values are reproduced exactly.
 TEST_F(ExperimentRuns, TablesAndMatricesAgree) {
   for (const std::string name :
        {"table-4.1", "table-6.1", "table-6.2", "table-6.4", "macondo-figure-4", "macondo-figure-6",
@@ -110,7 +110,7 @@ TEST_F(ExperimentRuns, TablesAndMatricesAgree) {
   }
 }
 
-// The rules of chapters 4 and 5 are reproduced without a difference, but for times.
+// The rules of chapters 4 and 5 are reproduced without differences, except for times.
 TEST_F(ExperimentRuns, FiguresOfScenesAgree) {
   for (const Experiment& experiment : experiments()) {
     const bool scene = experiment.number.find(" 4.") != std::string::npos ||

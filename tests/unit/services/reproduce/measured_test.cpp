@@ -1,4 +1,4 @@
-// Verdicts follow from values alone.
+// Verdicts depend on values alone.
 #include "reproduce/measured.hpp"
 
 #include <cmath>

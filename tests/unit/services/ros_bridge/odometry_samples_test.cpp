@@ -35,7 +35,7 @@ TEST(OdometrySamples, HavePoseAndSpeedsOfTheMessage) {
   EXPECT_EQ(sent.angular_radps(), -0.2);
 }
 
-// Finite numbers, but the pose half a second later would not be one.
+// Finite numbers whose extrapolation by half a second is not finite.
 TEST(OdometrySamples, AreOfARobot) {
   for (const double speed : {1e308, -101.0, static_cast<double>(NAN)}) {
     ros::Odometry message = odometry();
@@ -61,7 +61,7 @@ TEST(OdometrySamples, OfTransformsHaveTheSpeedsSinceTheLast) {
   ASSERT_TRUE(second);
   EXPECT_NEAR(second->linear_mps, 1.0, 1e-12);
   EXPECT_NEAR(second->angular_radps, 0.2, 1e-12);
-  // A nanosecond after it, as two publishers would send them.
+  // A nanosecond later, as from two publishers.
   const auto jumped = to_sample(at(0.6, 0.1, 1'500'000'001), second);
   ASSERT_TRUE(jumped);
   EXPECT_NEAR(jumped->T_odom_robot.x_m, 0.6, 1e-12);

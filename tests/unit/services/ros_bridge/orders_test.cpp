@@ -40,7 +40,7 @@ TEST(RosOrders, AQuaternionOfNoLengthIsNoHeading) {
   EXPECT_THROW(to_goal(message, {}, {}, {}), std::invalid_argument);
 }
 
-// What is finite in its frame need not be in that of the map.
+// A goal that is finite in its own frame may be infinite in the map frame.
 TEST(RosOrders, AGoalIsNotFartherThanAnyRobotGets) {
   EXPECT_THROW(
       to_goal(pose_in("odom", {1.7e308, 1.7e308, 0.0}), {}, geometry::Pose2{0.0, 0.0, 0.8}, {}),

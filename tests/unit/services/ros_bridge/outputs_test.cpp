@@ -19,7 +19,7 @@ using testing::SizeIs;
 
 constexpr double kPi = std::numbers::pi;
 
-// REP 105: map -> odom after odom -> robot is the pose on the map.
+// REP 105: map -> odom composed with odom -> robot is the pose on the map.
 TEST(RosOutputs, TheCorrectionTimesTheOdometryIsThePose) {
   const geometry::Pose2 T_map_robot{2.0, -1.0, 2.5};
   const geometry::Pose2 T_odom_robot{0.5, 3.0, -1.2};
@@ -116,7 +116,7 @@ TEST(RosOutputs, AServiceThatWaitsIsAWarning) {
   EXPECT_EQ(to_ros(status).level_(), 2);
 }
 
-/// A grid of 70 x 65 cells, four tiles of 64 x 64, of which the first is drawn.
+/// A grid of 70 x 65 cells, four tiles of 64 x 64; the first one is drawn.
 class GridMirrorTest : public testing::Test {
  protected:
   static msg::GridTile tile(std::uint32_t number, std::uint64_t version, std::uint8_t state) {

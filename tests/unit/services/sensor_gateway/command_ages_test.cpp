@@ -8,7 +8,7 @@ namespace topogeo::sensor_gateway {
 namespace {
 
 constexpr std::int64_t kMilli_ns = 1'000'000;
-/// The time from the steady clock to the one of the gateway's stamps.
+/// Offset from the steady clock to the clock of the gateway's stamps.
 constexpr std::int64_t kOwnClock_ns = 1'700'000'000'000'000'000;
 
 messaging::Handle handle(std::uint8_t number) {
@@ -17,10 +17,10 @@ messaging::Handle handle(std::uint8_t number) {
   return handle;
 }
 
-/// A program that commands twenty times a second by a clock of its own.
+/// A program that commands twenty times a second on its own clock.
 class CommandAgesTest : public ::testing::Test {
  protected:
-  /// A command that was made `late_ms` ago comes now.
+  /// Age of a command that arrives now and was made `late_ms` ago.
   std::optional<std::int64_t> age_ms(std::int64_t late_ms, std::int64_t clock_ns = kOwnClock_ns,
                                      std::uint8_t sender = 1) {
     const auto age_ns = ages_.age_ns(handle(sender), now_ns_ - late_ms * kMilli_ns + clock_ns,

@@ -85,8 +85,8 @@ TEST(DeviceConfig, PrintedFileReadsBackToTheSame) {
             support::effective(describe(file)).fingerprint);
 }
 
-/// A change of a key, its default or its reason changes the example, too:
-/// topogeo config --devices --config deploy/devices.example.yaml
+/// When a key, its default or its reason changes, renew the example: topogeo config --devices
+/// --config deploy/devices.example.yaml
 TEST(DeviceConfig, ExampleNamesEveryKeyWithItsDefault) {
   DeviceFile file;
   const support::ConfigSchema schema = describe(file);

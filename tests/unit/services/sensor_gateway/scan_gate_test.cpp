@@ -17,7 +17,7 @@ devices::PlsScan scan_at(std::int64_t stamp_ns, std::size_t beams = 3) {
   scan.stamp_ns = stamp_ns;
   scan.angle_min_rad = -1.0;
   scan.angle_step_rad = 0.1;
-  // No two are alike, as with a real laser.
+  // All scans differ, as with a real laser.
   scan.ranges_m.assign(beams, 2.0F + static_cast<float>(stamp_ns) * 1e-9F);
   return scan;
 }
@@ -35,7 +35,7 @@ TEST(ScanGate, ScansAreNumberedFromWhenSomebodyReads) {
   EXPECT_EQ(scans[0].scan.sequence, 0U);
   EXPECT_EQ(scans[1].scan.sequence, 1U);
   EXPECT_EQ(scans[1].scan.stamp_ns, 3);
-  EXPECT_EQ(scans[1].scan.T_odom_robot, geometry::Pose2{});  // there is no base
+  EXPECT_EQ(scans[1].scan.T_odom_robot, geometry::Pose2{});  // no base
 }
 
 TEST(ScanGate, TimeAndBeamsMustFit) {
@@ -90,13 +90,13 @@ TEST(ScanGate, OldReadingsOfAMovingRobotAreDropped) {
     return gate.take(stamp_ns).size() == 1;
   };
   EXPECT_TRUE(published(10 * kMs, {1, 2, 3}, {}));
-  EXPECT_TRUE(published(20 * kMs, {1, 2, 3}, {}));  // it stands
+  EXPECT_TRUE(published(20 * kMs, {1, 2, 3}, {}));  // the robot stands
   EXPECT_TRUE(published(30 * kMs, {1, 2, 3}, {0.009, 0, 0}));
-  EXPECT_FALSE(published(40 * kMs, {1, 2, 3}, {0.018, 0, 0}));  // by small steps, too
+  EXPECT_FALSE(published(40 * kMs, {1, 2, 3}, {0.018, 0, 0}));  // by small steps as well
   EXPECT_FALSE(published(50 * kMs, {1, 2, 3}, {0, 0, 0.006}));
   EXPECT_TRUE(published(60 * kMs, {1, 2, 4}, {0.1, 0, 0}));
   EXPECT_TRUE(published(70 * kMs, {0, 0, 0}, {0.1, 0, 0}));
-  EXPECT_TRUE(published(80 * kMs, {0, 0, 0}, {0.5, 0, 0}));  // there is nothing to see
+  EXPECT_TRUE(published(80 * kMs, {0, 0, 0}, {0.5, 0, 0}));  // no return at all
   EXPECT_EQ(gate.dropped(ScanDrop::kRepeated), 2U);
 }
 
@@ -108,7 +108,7 @@ TEST(ScanGate, WaitsForOdometryAsLongAsItMay) {
   gate.add(scan_at(50 * kMs), 60 * kMs);
   EXPECT_TRUE(gate.take(60 * kMs).empty());
   EXPECT_EQ(gate.due_ns(), 160 * kMs);
-  gate.add({100 * kMs, {0.2, 0.0, 0.0}, 1.0, 0.0});  // faster than its speed said
+  gate.add({100 * kMs, {0.2, 0.0, 0.0}, 1.0, 0.0});  // faster than its reported speed
   ASSERT_EQ(gate.due_ns(), 160 * kMs);
   const auto bracketed = gate.take(101 * kMs);
   ASSERT_EQ(bracketed.size(), 1U);
@@ -117,7 +117,7 @@ TEST(ScanGate, WaitsForOdometryAsLongAsItMay) {
   EXPECT_EQ(gate.extrapolated(), 0U);
   gate.add(scan_at(150 * kMs), 160 * kMs);
   EXPECT_TRUE(gate.take(259 * kMs).empty());
-  const auto late = gate.take(260 * kMs);  // no odometry came
+  const auto late = gate.take(260 * kMs);  // no odometry arrived
   ASSERT_EQ(late.size(), 1U);
   EXPECT_EQ(late[0].arrival_ns, 160 * kMs);
   EXPECT_NEAR(late[0].scan.T_odom_robot.x_m, 0.25, kTolerance);

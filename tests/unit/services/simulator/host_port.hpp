@@ -1,4 +1,4 @@
-// The end of a serial port that belongs to a program, and a name for its link.
+// A program's end of a serial port, and a name for its link.
 #pragma once
 
 #include <array>
@@ -42,7 +42,7 @@ class HostPort {
       throw std::runtime_error("the port takes no bytes");
     }
   }
-  /// What there is now.
+  /// Returns the bytes available now.
   [[nodiscard]] std::string read() const {
     std::string all;
     std::array<char, 4096> part{};

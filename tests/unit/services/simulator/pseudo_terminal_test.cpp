@@ -33,7 +33,7 @@ TEST(PseudoTerminal, HandsOverAllThatWasWritten) {
   terminal.plug();
   const HostPort host(terminal.link());
   constexpr std::size_t kWrites = 6;
-  const std::string part(1500, 'x');  // together more than a terminal hands over at once
+  const std::string part(1500, 'x');  // together more than a terminal delivers at once
   for (std::size_t i = 0; i < kWrites; ++i) host.write(part);
   EXPECT_EQ(terminal.receive().size(), kWrites * part.size());
 }

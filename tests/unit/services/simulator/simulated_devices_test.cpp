@@ -1,4 +1,4 @@
-// The devices on their ports, on a clock of the test's own.
+// The devices on their ports, on the test's own clock.
 #include "simulator/simulated_devices.hpp"
 
 #include <cmath>
@@ -19,7 +19,7 @@ using testing::Not;
 using testing::StartsWith;
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-// The base understands nothing in its first two seconds.
+// The base ignores commands in its first two seconds.
 constexpr std::int64_t kReady_ns = 3 * kSecond_ns;
 constexpr const char* kCorridor =
     "walls: [{from: [0, -1], to: [20, -1]}, {from: [0, 1], to: [20, 1]}]\n"
@@ -167,7 +167,7 @@ TEST_F(SimulatedDevicesTest, ASilentBaseSaysNothingUntilItsTimeIsOver) {
   faults_.begin(silence);
   run_with_faults(0.3);
   static_cast<void>(base_.read());
-  faults_.begin(silence);  // once more: longer
+  faults_.begin(silence);  // again: for longer
   run_with_faults(0.9);
   EXPECT_EQ(base_.read(), "");
   EXPECT_EQ(faults_.active(), 1U);
@@ -189,7 +189,7 @@ TEST_F(SimulatedDevicesTest, ABaseWithoutPowerStandsAndComesBackAsNew) {
   EXPECT_EQ(base_.read(), "");
   EXPECT_EQ(path_m(), off_m);
 
-  run_with_faults(3.0);  // on again, and the time to start up
+  run_with_faults(3.0);  // power on again, and the start-up time
   EXPECT_EQ(base_.read(), "");
   base_.write("TW\r");
   run_for(0.5);
@@ -211,7 +211,7 @@ TEST(FaultFromMsg, RefusesWhatMakesNoSense) {
   command.fault(msg::kSimulatedEcho);
   command.device(msg::kSimulatedLaser);
   command.duration_s(2.0);
-  EXPECT_EQ(fault_from_msg(command).device, Device::kBase);  // only the base has one
+  EXPECT_EQ(fault_from_msg(command).device, Device::kBase);  // only the base has this fault
   EXPECT_EQ(describe(fault_from_msg(command)), "echo of the base for 2 s");
   command.duration_s(0.0);
   EXPECT_THROW(fault_from_msg(command), std::invalid_argument);

@@ -1,4 +1,4 @@
-// How long a table of services is collected, by a simulated clock.
+// Duration of collecting a table of services, on a simulated clock.
 #include "topogeo/collect_window.hpp"
 
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 namespace topogeo::cli {
 namespace {
 
-/// The wait after which a window of 3.2 s ends, asked every 0.1 s, when the services are heard
-/// after these waits.
+/// End of a window of 3.2 s, polled every 0.1 s, when the services are first received at these
+/// times.
 double end_s(std::initializer_list<double> heard_s) {
   CollectWindow window(3.2);
   for (int tick = 1; tick < 100; ++tick) {

@@ -1,4 +1,4 @@
-// Each fault between services that `topogeo doctor` has to find.
+// Each fault between services that `topogeo doctor` must find.
 #include "topogeo/domain_checks.hpp"
 
 #include <set>
@@ -247,7 +247,7 @@ TEST(DomainChecks, TopicsOfOthersAreNotOurs) {
 
 TEST(ClockLag, TheTimeAMessageTakesDoesNotCount) {
   ClockLag clock;
-  clock.add(0, 700'000'000);  // an old one, as a late reader gets it
+  clock.add(0, 700'000'000);  // an old one, which a late reader receives
   clock.add(kSecond_ns, kSecond_ns + 1'000'000);
   clock.add(2 * kSecond_ns, 2 * kSecond_ns + 40'000'000);
   EXPECT_DOUBLE_EQ(clock.lag_s(), 0.001);

@@ -23,7 +23,7 @@ class HostProcesses : public testing::Test {
   static void write(const std::filesystem::path& file, const std::string& text) {
     std::ofstream(file, std::ios::binary) << text;
   }
-  /// A process in that state that was started `age_s` ago.
+  /// Adds a process in that state that was started `age_s` ago.
   void add(int pid, const std::vector<std::string>& words, char state = 'S', double age_s = 60.0) {
     const std::filesystem::path folder = proc_ / std::to_string(pid);
     std::filesystem::create_directories(folder);

@@ -1,4 +1,4 @@
-// Each fault of a machine that `topogeo doctor` has to find, injected into its facts.
+// Each fault of a machine that `topogeo doctor` must find, injected into its facts.
 #include "topogeo/machine_checks.hpp"
 
 #include <set>
@@ -40,7 +40,7 @@ MachineFacts healthy() {
   return facts;
 }
 
-/// Those that are not good.
+/// Findings that are not good.
 std::vector<Finding> found_in(const MachineFacts& facts) {
   std::vector<Finding> findings = run_checks(machine_checks(), facts);
   std::erase_if(findings, [](const Finding& f) { return f.severity == Severity::kGood; });
@@ -51,8 +51,8 @@ struct MachineFault {
   const char* name;
   const char* check;
   Severity severity;
-  const char* what;    ///< is in the text
-  const char* remedy;  ///< is in what to do
+  const char* what;    ///< part of the message
+  const char* remedy;  ///< part of the remedy
   void (*inject)(MachineFacts& facts);
 };
 
@@ -192,10 +192,10 @@ TEST(MachineChecks, EachHasAFaultThatIsInjected) {
 
 TEST(MachineChecks, ALoadThatIsOverAndAQuotaThatSufficesAreNoFault) {
   MachineFacts facts = healthy();
-  facts.cpu.load = 8.0;  // of the last minute; hardly a thread waits now
+  facts.cpu.load = 8.0;  // load of the last minute; now hardly a thread waits
   facts.cpu.quota = 1.5;
   facts.cpu.quota_periods = 1000;
-  facts.cpu.throttled_periods = 30;  // its start
+  facts.cpu.throttled_periods = 30;  // from its start
   EXPECT_THAT(found_in(facts), IsEmpty());
 }
 

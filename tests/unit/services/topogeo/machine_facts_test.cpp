@@ -1,4 +1,4 @@
-// What `topogeo doctor` asks the system, with faults made for it.
+// Queries of `topogeo doctor` to the system, with injected faults.
 #include "topogeo/machine_facts.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-/// A UDP socket at any free port, which others may not share.
+/// A UDP socket at any free port, which cannot be shared.
 class TakenPort {
  public:
   TakenPort() : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
@@ -165,7 +165,7 @@ TEST_F(MachineFactsTest, FolderOfTheMapThatOthersMayNotLookInto) {
   fs::create_directories(folder_ / "state/map/of/one");
   fs::permissions(folder_ / "state", fs::perms::none);
   questions_.map_folder = folder_ / "state/map/of/one";
-  // Root looks into any folder.
+  // Root can read any folder.
   const bool root = ::geteuid() == 0;
   constexpr uid_t kNobody = 65534;
   if (root) {

@@ -1,4 +1,4 @@
-// What `topogeo top` shows of the statuses that come in.
+// Output of `topogeo top` for given statuses.
 #include "topogeo/pool_table.hpp"
 
 #include <sstream>

@@ -1,4 +1,4 @@
-// A command for the base of one robot where another robot is connected first.
+// A command for the base of one robot while another robot is connected first.
 #include "topogeo/program_connection.hpp"
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// Services that die and are started again, by a simulated clock.
+// Services that die and are restarted, on a simulated clock.
 #include "topogeo/restart_log.hpp"
 
 #include <gmock/gmock.h>

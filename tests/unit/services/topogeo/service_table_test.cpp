@@ -21,7 +21,7 @@ messaging::SampleInfo sample(std::uint8_t key) {
   return info;
 }
 
-// The status of a service that was killed stays for a while beside that of its next life.
+// The status of a killed service remains for a while beside that of its next life.
 TEST(ServiceTable, FindsTheOneThatStartedLast) {
   ServiceTable table;
   EXPECT_EQ(table.find("local_mapper"), nullptr);

@@ -1,4 +1,4 @@
-// The table of `topogeo status` from statuses and times, without DDS.
+// The table of `topogeo status` for given statuses and times, without DDS.
 #include "topogeo/status_table.hpp"
 
 #include <sstream>
@@ -265,7 +265,7 @@ TEST(StatusTable, DetailsNameInputFaultsAndCounters) {
   EXPECT_THAT(table.details(kNow), Not(HasSubstr("localizer")));
 }
 
-/// With everything that a status can report.
+/// A status with every possible report.
 msg::ServiceStatus eventful() {
   msg::ServiceStatus status = status_of("planner", msg::kServiceRunning);
   messaging::set_text(status.waits_for(), "a map", "waits_for");
@@ -357,7 +357,7 @@ TEST(StatusTable, JsonHasTheFieldsOfTheMessage) {
   EXPECT_EQ(StatusTable().json(kNow), "[]\n");
 }
 
-// The judgement itself: deafness_test.cpp of messaging.
+// deafness_test.cpp of messaging tests the verdict itself.
 TEST(StatusTable, OneThatIsDeafIsUnwell) {
   const auto with_traffic = [](msg::ServiceStatus status, bool sent, double rate_per_s) {
     msg::TopicTraffic traffic;

@@ -1,4 +1,4 @@
-// A frozen planner, and what is heard beside it. The tests pass the time.
+// A frozen planner, and statuses received beside it. The tests advance the time.
 #include "topogeo/unheard_services.hpp"
 
 #include <string>

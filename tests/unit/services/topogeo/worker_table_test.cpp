@@ -1,4 +1,4 @@
-// What `topogeo workers` shows of the statuses that come in.
+// Output of `topogeo workers` for given statuses.
 #include "topogeo/worker_table.hpp"
 
 #include <sstream>
