@@ -11,7 +11,7 @@ import os
 import re
 import subprocess
 
-# What any target may depend on without that it shows.
+# Files on which any target may depend without CMake knowing.
 ALL = re.compile(r"(CMakeLists\.txt|CMakePresets\.json|tests/CMakeLists\.txt|cmake/.*|idl/.*|tests/data/.*)$")
 RUNNER = re.compile(r"(run|\.ci/.*|\.github/.*|tests/runner/.*|tests/costs\.txt|deploy/packages\.txt)$")
 QUERY = ".cmake/api/v1/query/codemodel-v2"  # with this file in the build folder CMake describes the targets
@@ -122,7 +122,7 @@ def reached_tests(files, targets, compiled_by, tests, root, readers=frozenset())
             direct |= targets.of_folders(path) | readers
             folders.add(os.path.dirname(path))
     reached = targets.with_users(direct)
-    # All scripts share tests/container/common.sh; those of containers take the files of deploy/.
+    # All scripts share tests/container/common.sh; tests of containers use the files of deploy/.
     all_scripts = bool(targets.in_services(reached)) or "tests/container/common.sh" in files
     deployed = any(path.startswith("deploy/") for path in files)
     names = set()

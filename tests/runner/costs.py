@@ -1,8 +1,8 @@
-"""What tests take, for the order in which ctest starts them: tests/costs.txt, which CMake reads."""
+"""Durations of tests, by which ctest orders them: tests/costs.txt, which CMake reads."""
 
-HEADER = """# What each test takes: seconds, name. The longest start first, so that none runs alone at the end. A test with a
-# lock counts with all that wait for the same lock. What is not here takes less than a second, or is new: ctest orders
-# that by its own measurements. `./run test --save-costs` writes this file.
+HEADER = """# Duration of each test: seconds, name. The longest start first, so that none runs alone at the end. A test with a
+# lock counts with all that wait for the same lock. A test that is missing here takes less than a second or is new:
+# ctest orders it by its own measurements. `./run test --save-costs` writes this file.
 """
 
 

@@ -106,7 +106,7 @@ class Group:
         end = time.monotonic() + 10
         while self.processes() and time.monotonic() < end:
             time.sleep(0.1)  # between two checks
-        # Whoever outlives the tests must not be slow for ever.
+        # Processes that outlive the tests must not stay slow.
         for process in self.processes():
             self._move(process, self._parent)
         removed = subprocess.run(self._root + ["rmdir", self.folder], capture_output=True, text=True, check=False)
@@ -139,7 +139,7 @@ def _loop(busy_share, core, niceness):
     """Busy for that share of each period, never returns."""
     parent_death_signal = 1
     ctypes.CDLL(None).prctl(parent_death_signal, signal.SIGKILL)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends it
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent handles it
     if core is not None:
         os.sched_setaffinity(0, [core])
     try:
@@ -152,7 +152,7 @@ def _loop(busy_share, core, niceness):
         while time.monotonic() < start + busy_share * period:
             pass
         if busy_share < 1.0:
-            # The rest of the period is left to others.
+            # The rest of the period is left to other processes.
             time.sleep(max(0.0, start + period - time.monotonic()))
 
 
@@ -165,4 +165,4 @@ def take_all_but(cpus, loops):
 
 
 def be_nice():
-    os.setpriority(os.PRIO_PROCESS, 0, 15)  # weighs a thirtieth of a loop
+    os.setpriority(os.PRIO_PROCESS, 0, 15)  # has a thirtieth of a loop's weight

@@ -48,7 +48,7 @@ WITH_VALUE = {
     "--fixture-exclude-cleanup", "--timeout", "--stop-time", "--resource-spec-file", "--test-load", "-j",
     "--parallel", "-O", "--output-log", "--output-junit", "--test-output-size-passed", "--test-output-size-failed",
     "--test-output-truncation", "-C", "--build-config"}
-# These print something and run no test.
+# These print a list and run no test.
 LISTING = {"-N", "--print-labels", "--show-only", "--help-full"}
 
 
@@ -152,7 +152,7 @@ class Runner:
         return ["-R", "|".join(f"({pattern})" for pattern in patterns)] if patterns else []
 
     def _command(self, selection):
-        # All output of a test: reasons of skipped parts stand in that of passed ones.
+        # Prints the output of all tests, because passed ones may have skipped parts with a reason.
         command = ["ctest", *self._preset, f"-j{jobs(self._options.cpus)}", "--output-on-failure", "--no-tests=error",
                    "--output-junit", self._junit, "--output-log", self._log,
                    "--test-output-size-passed", "1000000", "--test-output-size-failed", "4000000"]
@@ -194,7 +194,7 @@ class Runner:
             with contextlib.suppress(FileNotFoundError):
                 os.remove(path)
         os.makedirs(os.path.dirname(self._junit), exist_ok=True)
-        # A process group of its own: who stops this program alone stops the tests, too.
+        # A process group of its own, so that stopping this program alone can stop all tests.
         with subprocess.Popen(command, cwd=ROOT, stdin=subprocess.DEVNULL, preexec_fn=self._join,
                               process_group=0) as ctest:
             try:

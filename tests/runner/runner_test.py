@@ -184,7 +184,7 @@ class QuotaTest(RunnerTest):
                 runner = project.start("--cpus", "0.8", "--beside", "2", "slow", start_new_session=True)
                 while not os.path.exists(started) and runner.poll() is None:
                     time.sleep(0.05)  # between two checks
-                # As the terminal does by Ctrl-C; SIGTERM to the runner alone.
+                # Like Ctrl-C in a terminal, which signals all; SIGTERM goes to the runner alone.
                 if signal_number == signal.SIGINT:
                     os.killpg(runner.pid, signal_number)
                 else:
@@ -269,7 +269,7 @@ class SummaryTest(unittest.TestCase):
 
 
 class ChangedTest(RunnerTest):
-    # planning is used by the planner and by its unit test; web by nothing but its service.
+    # The planner and its unit test use planning; only its own service uses web.
     ENTRIES = [
         {"id": "1", "name": "topogeo_planning", "type": "STATIC_LIBRARY", "paths": {"source": "libs/planning"}},
         {"id": "2", "name": "unit_planning", "type": "EXECUTABLE", "paths": {"source": "tests/unit/planning"},
@@ -300,7 +300,7 @@ class ChangedTest(RunnerTest):
         return changed.reached_tests(files, targets, compiled_by, self.TESTS, "/r", {"unit_scan"})
 
     def test_a_library_reaches_its_test_its_users_and_what_starts_services(self):
-        # A header that nothing includes yet.
+        # A header without includes so far.
         self.assertEqual(self.reached("libs/planning/include/topogeo/planning/new.hpp") - {"unit_scan.Scan"},
                          {"unit_planning.Route", "integration_topogeo.A.b", "container.drive", "browser.page"})
 
@@ -381,7 +381,7 @@ class TimeLeftTest(RunnerTest):
         # One core, 10 of 40.5 done in 60 s.
         left = time_left.seconds_left(self.PLAN, "0\t60000\t1\ta.o\thash\n", 60, 1)
         self.assertAlmostEqual(left, 60 * 40.5 / 10 - 60)
-        # Half of the steps by number, of the weight a quarter.
+        # Half of the steps by number, a quarter by weight.
         log = "0\t59000\t1\ta.o\thash\n59000\t60000\t1\tgenerated.h\tother\n"
         self.assertAlmostEqual(time_left.seconds_left(self.PLAN, log, 60, 1), 60 * 40.5 / 10.5 - 60)
 

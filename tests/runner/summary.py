@@ -16,20 +16,20 @@ class Test:
     seconds: float
     state: str  # passed, failed, skipped
     output: str
-    reasons: list = field(default_factory=list)  # why it, or parts of it, were skipped
+    reasons: list = field(default_factory=list)  # why it, or a part of it, was skipped
 
 
 def read_junit(path):
     """All tests of a file that `ctest --output-junit` wrote."""
     tests = []
     for case in xml.parse(path).getroot().iter("testcase"):
-        # Another test starts it as a program of its own.
+        # Another test starts it as a separate program.
         if case.get("status") == "disabled":
             continue
         output = case.findtext("system-out") or ""
         skipped = case.find("skipped")
         state = {"run": "passed", "fail": "failed"}.get(case.get("status"), "failed")
-        # "notrun" is also a program that is not there, which is a failure.
+        # "notrun" also stands for a missing program, which is a failure.
         if skipped is not None and skipped.get("message", "").startswith("SKIP_"):
             state = "skipped"
         reasons = skip_reasons(output)
@@ -65,12 +65,12 @@ def read_packages(path):
     return stages
 
 
-# Programs whose package has another name, and modules of Python.
+# Programs and Python modules whose package has another name.
 PACKAGE_OF = {
     "docker": "docker.io", "dpkg-shlibdeps": "dpkg-dev", "fastdds": "fastdds-tools", "ip": "iproute2", "node": "nodejs",
     "nsenter": "util-linux", "promtool": "prometheus", "rosbag": "python3-rosbag", "setpriv": "util-linux",
     "systemd-analyze": "systemd", "tsc": "node-typescript", "unshare": "util-linux", "wg": "wireguard-tools"}
-# Of no stage: nearly every machine has them.
+# In no stage, because nearly every machine has them.
 ELSEWHERE = {"curl", "prometheus", "util-linux"}
 SUDO = "" if os.geteuid() == 0 else "sudo "
 

@@ -1,6 +1,6 @@
-// Linked into programs with the thread sanitizer, which in GCC 12 does not know
-// pthread_mutex_clocklock: mutexes that Fast DDS locks by it would seem never to be locked, and all
-// that they guard to race.
+// Linked into programs with the thread sanitizer. GCC 12's does not know pthread_mutex_clocklock,
+// with which Fast DDS locks: it would take these mutexes as never locked, and report races on all
+// that they guard.
 #include <ctime>
 
 #include <pthread.h>
