@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # base-image.sh [NAME]: makes the base image (default debian:bookworm) with debootstrap from the package mirror
-# of this machine, where no image can be pulled. Needs root, debootstrap and a running docker.
+# of this machine, if no image can be pulled. Needs root, debootstrap and a running docker.
 set -euo pipefail
 
 name=${1:-debian:bookworm}
@@ -14,7 +14,7 @@ log=$folder/log
 root=$folder/root
 debootstrap --variant=minbase bookworm "$root" "${mirror:-http://deb.debian.org/debian}" > "$log" 2>&1 ||
   { tail -n 20 "$log" >&2; exit 1; }
-# The image installs from where this machine does, through the same proxies.
+# The image installs from the same sources as this machine, through the same proxies.
 rm -f "$root/etc/apt/sources.list"
 for file in /etc/apt/sources.list /etc/apt/sources.list.d/*.sources /etc/apt/sources.list.d/*.list; do
   [ ! -e "$file" ] || cp "$file" "$root$file"
