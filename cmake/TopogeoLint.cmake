@@ -1,13 +1,14 @@
-# What ./run lint checks with clang-tidy (preset lint). Nearly all of its time goes into the headers of the
-# standard library, Eigen and Boost, once for every unit: so many targets are checked as one unit. Which units
-# are checked again follows from what they include, as when they are compiled.
+# Targets of ./run lint, which checks with clang-tidy (preset lint). Nearly all of its time goes into the headers of the
+# standard library, Eigen and Boost, once for every unit: therefore many targets are checked as one unit. A unit is
+# checked again when a file that it includes changes, as in a compilation.
 #
 #   lint           all files of the project's targets
-#   lint_changed   those of TOPOGEO_LINT_CHANGED; headers stand for the source of their name, or themselves
+#   lint_changed   files in TOPOGEO_LINT_CHANGED; a header is replaced by its source, if any. The compiler also checks
+#                  the whole unit of each file, where a name may be defined twice
 
 set(TOPOGEO_LINT_CHANGED "" CACHE STRING "Files that the target lint_changed checks, relative to the source folder")
 
-# Units, each with a regular expression for the folders of its sources: the first that fits counts.
+# Units, each with a regular expression for the folders of its sources: the first match counts.
 set(TOPOGEO_LINT_UNITS
   foundation  "^libs/(geometry|scan|support|voronoi|topomap|localization|search_pool)(/|$)"
   libraries   "^libs/"
@@ -17,7 +18,7 @@ set(TOPOGEO_LINT_UNITS
   integration "^tests/(container|integration|faults|fuzz|sanitizers)"
   bench       "^tests/bench")
 
-# Call it when all targets exist. Generated files and files of no unit are left out.
+# Call this when all targets exist. Generated files and files outside the units are skipped.
 function(topogeo_add_lint)
   find_program(CLANG_TIDY clang-tidy REQUIRED)
   get_property(targets GLOBAL PROPERTY TOPOGEO_TARGETS)
@@ -31,7 +32,7 @@ function(topogeo_add_lint)
       cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${folder} NORMALIZE)
       cmake_path(IS_PREFIX PROJECT_BINARY_DIR ${source} generated)
       if(unit AND NOT generated AND source MATCHES "\\.cpp$")
-        # Sources that several targets share are checked in the unit of their folder.
+        # A source that several targets share is checked in the unit of its folder.
         cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE name)
         topogeo_find_lint_unit(${name} home)
         list(APPEND sources_of_${home} ${source})
@@ -43,6 +44,7 @@ function(topogeo_add_lint)
   set(all_sources "")
   set(stamps "")
   set(changed_stamps "")
+  set(whole_units "")
   list(LENGTH TOPOGEO_LINT_UNITS last)
   math(EXPR last "${last} - 1")
   foreach(i RANGE 0 ${last} 2)
@@ -75,12 +77,16 @@ function(topogeo_add_lint)
     if(changed_of_${unit})
       list(REMOVE_DUPLICATES changed_of_${unit})
       topogeo_add_lint_unit(changed_${unit} changed_stamps "${targets_of_${unit}}" ${changed_of_${unit}})
+      list(APPEND whole_units lint_${unit})
     endif()
   endforeach()
   add_custom_target(lint DEPENDS ${stamps})
   add_custom_target(lint_changed DEPENDS ${changed_stamps})
+  if(whole_units)
+    add_dependencies(lint_changed ${whole_units})
+  endif()
 
-  # Every source belongs to a target, or nothing would compile or check it.
+  # A source without a target would be neither compiled nor checked.
   list(JOIN all_sources "\n" listing)
   string(REPLACE "${PROJECT_SOURCE_DIR}/" "" listing "${listing}")
   file(WRITE ${PROJECT_BINARY_DIR}/lint/sources.txt "${listing}\n")
@@ -101,22 +107,23 @@ function(topogeo_find_lint_unit path result)
   endforeach()
 endfunction()
 
-# Adds what checks `sources` as one unit, compiled as the targets are, and appends its stamp to the list named `result`.
+# Adds the check of sources as one unit, compiled like the targets, and appends its stamp to the list named `result`.
 function(topogeo_add_lint_unit name result targets)
   set(file ${PROJECT_BINARY_DIR}/lint/${name}.cpp)
   set(stamp ${PROJECT_BINARY_DIR}/lint/${name}.stamp)
   set(content "")
   set(count 0)
   foreach(source IN LISTS ARGN)
-    # Each program has a main(), each fuzzer its entry.
+    # Renamed, because each program has a main() and each fuzzer its entry points.
     string(APPEND content "#define main main_${count}\n#define LLVMFuzzerTestOneInput fuzz_${count}\n#define LLVMFuzzerInitialize fuzz_start_${count}\n"
                           "#include \"${source}\"\n#undef main\n#undef LLVMFuzzerTestOneInput\n#undef LLVMFuzzerInitialize\n")
     math(EXPR count "${count} + 1")
   endforeach()
   file(CONFIGURE OUTPUT ${file} CONTENT "${content}" @ONLY)
 
-  # Never compiled: it stands for the unit's command in compile_commands.json.
+  # Puts the unit's command into compile_commands.json; produces no object.
   add_library(lint_${name} OBJECT EXCLUDE_FROM_ALL ${file})
+  target_compile_options(lint_${name} PRIVATE -fsyntax-only)
   set(precompiled topogeo_precompiled)
   if(name MATCHES "localizing|units|integration|bench")
     set(precompiled topogeo_precompiled_tests)
