@@ -1,12 +1,13 @@
-# cmake -DOUTPUT=bounds.h -DFILES="a.idl;b.idl" -DSTAGING=folder -P IdlBounds.cmake: has the code of fastddsgen in
-# that folder, a.cxx and b.cxx, read no more elements of a sequence than its bound (read_bounded.h), and writes a header
-# with the bounds of all structs, for the checks of what was read or is to be sent:
+# cmake -DOUTPUT=bounds.h -DFILES="a.idl;b.idl" -DSTAGING=folder -P IdlBounds.cmake: changes the code of fastddsgen in
+# that folder, a.cxx and b.cxx, to read no more elements of a sequence than its bound (read_bounded.h), and writes a
+# header with the bounds of all structs, for checks of received messages and of those to be sent:
 #
 #   template <class Check> void visit_bounds(const LocalMap& message, Check& check);
 #
 # calls check.schema(version) for a top-level message, check.size(field, size, bound) for each sequence,
-# check.value(field, value, last) for each enumeration and check.key(field, key, text) for each <text>_key
-# after a string <text> or <text>_id, inside check.inside(field, body) for those of members. Files come after those that they include; a member stands on one line.
+# check.value(field, value, last) for each enumeration and check.key(field, key, text) for each <text>_key after a
+# string <text> or <text>_id, with check.inside(field, body) around the calls for members. Files must come after those
+# that they include, and a member must be on one line.
 
 cmake_minimum_required(VERSION 3.25)
 
@@ -21,7 +22,7 @@ function(fail file struct line)
   message(FATAL_ERROR "${file}: ${struct}: expected a member 'type name' with a known type: '${line}'")
 endfunction()
 
-# Has `source` of the caller, the code of fastddsgen, read at most `bound` elements into member `name` of `struct`.
+# Changes `source` of the caller, the code of fastddsgen, to read at most `bound` elements into `name` of `struct`.
 function(bound_reading struct name bound)
   set(read "dcdr >> m_${name};")
   string(FIND "${source}" "void topogeo::msg::${struct}::deserialize(" begin)

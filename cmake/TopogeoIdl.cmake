@@ -6,15 +6,15 @@ find_program(FASTDDSGEN fastddsgen REQUIRED)
 
 # topogeo_add_idl(NAME idl FILES a.idl ... [FOLDER topogeo/msg] [UNBOUNDED]): library topogeo_<name>, alias
 # topogeo::<name>, headers <folder>/<file>.h, all of them in <folder>/types.h, the type supports of Fast DDS in
-# <folder>/type_supports.h, the bounds of sequences and enumerations in <folder>/bounds.h (not with UNBOUNDED).
-# Files come after those that they include.
+# <folder>/type_supports.h, the bounds of sequences and enumerations in <folder>/bounds.h (not with UNBOUNDED). Files
+# must come after those that they include.
 #
-# One call for all files, because the generator also writes the outputs of every included file and
-# takes most of its time to start. It writes into a staging folder and only what changed is copied,
-# so a changed file does not recompile the others.
+# One call for all files, because the generator also writes the outputs of every included file and takes most of its
+# time to start. It writes into a staging folder, and only changed files are copied, so that a changed file does not
+# recompile the others.
 #
-# sed takes out addresses in comments that differ from run to run, and has the buffer of a key cleared
-# before each use: what an earlier, longer key left in the padding would give one instance two handles.
+# sed removes addresses in comments, which differ from run to run, and clears the buffer of a key before each use: the
+# rest of an earlier, longer key in the padding would give one instance two handles.
 function(topogeo_add_idl)
   cmake_parse_arguments(ARG "UNBOUNDED" "NAME;FOLDER" "FILES" ${ARGN})
   if(NOT ARG_FOLDER)
@@ -23,7 +23,7 @@ function(topogeo_add_idl)
   set(staging ${CMAKE_CURRENT_BINARY_DIR}/staging)
   set(include_dir ${CMAKE_CURRENT_BINARY_DIR}/include)
   set(generated ${include_dir}/${ARG_FOLDER})
-  file(MAKE_DIRECTORY ${staging} ${generated})  # the generator does not make its output folder
+  file(MAKE_DIRECTORY ${staging} ${generated})  # the generator does not create its output folder
 
   set(staged "")
   set(staged_types "")
@@ -63,7 +63,7 @@ function(topogeo_add_idl)
 
   add_custom_command(
     OUTPUT ${outputs}
-    # -t: by default all runs on a machine share their temporary files, named as the IDL files are.
+    # -t: by default all runs on a machine share temporary files named after the IDL files.
     COMMAND ${FASTDDSGEN} -replace -cs -t ${staging} -d ${staging} ${ARG_FILES} > ${staging}/log.txt
             || ${CMAKE_COMMAND} -E env sh -c "cat '${staging}/log.txt'; exit 1"
     COMMAND sed -i -E -e "s/TypeCode@[0-9a-f]+/TypeCode/" ${staged_types}
@@ -80,7 +80,7 @@ function(topogeo_add_idl)
   set(target topogeo_${ARG_NAME})
   add_library(${target} STATIC ${sources})
   add_library(topogeo::${ARG_NAME} ALIAS ${target})
-  # SYSTEM: generated headers do not follow our warnings.
+  # SYSTEM: generated headers do not satisfy our warnings.
   target_include_directories(${target} SYSTEM PUBLIC $<BUILD_INTERFACE:${include_dir}>
                                                      $<INSTALL_INTERFACE:include>)
   target_link_libraries(${target} PUBLIC fastcdr fastrtps)

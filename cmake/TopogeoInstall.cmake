@@ -1,7 +1,7 @@
-# What is installed where, and the Debian packages of it. Three components, a package each:
+# Installed files, and the Debian packages of them. Three components, a package each:
 #   topogeo          the command line, the services of a robot, documents and examples
-#   topogeo-workers  the search worker, what both need, and the unit of discovery servers; alone on a machine off the
-#                    robot
+#   topogeo-workers  the search worker, files that both need, and the unit of discovery servers; alone on a machine off
+#                    the robot
 #   topogeo-dev      IDL, headers and libraries for programs that read and write our topics
 # The programs are in libexec/topogeo, where `topogeo run` finds them beside itself; bin has links.
 
@@ -13,8 +13,8 @@ set(robot_services sensor_gateway local_mapper localizer map_store planner navig
 set(generated ${CMAKE_BINARY_DIR}/package)
 file(MAKE_DIRECTORY ${generated})
 
-# topogeo_install_program(TARGET COMMAND COMPONENT): the program, a link of this name in bin, and its manual
-# page and completion, which the program itself prints.
+# topogeo_install_program(TARGET COMMAND COMPONENT): the program, a link with this name in bin, and its manual page and
+# completion, which the program itself prints.
 function(topogeo_install_program target command component)
   install(TARGETS ${target} RUNTIME DESTINATION ${programs} COMPONENT ${component})
   file(RELATIVE_PATH path /${CMAKE_INSTALL_BINDIR} /${programs}/${target})
@@ -37,7 +37,7 @@ foreach(service IN LISTS robot_services)
 endforeach()
 topogeo_install_program(ga_worker ga_worker topogeo-workers)
 get_property(manuals GLOBAL PROPERTY TOPOGEO_MANUALS)
-# What plain builds make, too, so that cmake --install finds it.
+# Also part of plain builds, so that cmake --install finds them.
 add_custom_target(manuals ALL DEPENDS ${manuals})
 
 set(data ${CMAKE_INSTALL_DATADIR}/topogeo)
@@ -111,7 +111,7 @@ set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# xz makes packages a third smaller and takes ten times as long.
+# xz makes packages a third smaller but takes ten times as long.
 set(CPACK_DEBIAN_COMPRESSION_TYPE gzip)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
@@ -140,7 +140,7 @@ topogeo_describe_package(topogeo-dev DEV libdevel
 writes them.")
 set(CPACK_DEBIAN_TOPOGEO_PACKAGE_RECOMMENDS "fastdds-tools, openssl")
 set(CPACK_DEBIAN_TOPOGEO-WORKERS_PACKAGE_SUGGESTS "fastdds-tools")
-# The unit of discovery servers was in topogeo.
+# topogeo once had the unit of discovery servers.
 set(CPACK_DEBIAN_TOPOGEO-WORKERS_PACKAGE_REPLACES "topogeo (<= 0.1.0)")
 foreach(component TOPOGEO TOPOGEO-WORKERS)
   string(TOLOWER ${component} package)

@@ -1,4 +1,4 @@
-# Sanitizers compiled in (presets asan and tsan, ./run test --sanitize), and how much more time tests have then:
+# Compiled-in sanitizers (presets asan and tsan, ./run test --sanitize), and the additional time of tests with them:
 # TOPOGEO_SANITIZER_FACTOR, for TopogeoTimeFactor.cmake and as the macro TOPOGEO_TIME_FACTOR for the tests' own limits
 # (tests/unit/time_factor.hpp).
 

@@ -1,8 +1,7 @@
-# Functions that every target of the project goes through, so that warnings and floating-point rules
-# are the same everywhere.
+# Functions for all targets of the project, so that warnings and floating-point rules are the same everywhere.
 
-# Warnings of our own code; errors when TOPOGEO_WERROR is on.
-# -ffp-contract=off: results must not depend on whether a compiler fuses multiply and add.
+# Warnings of our own code; errors when TOPOGEO_WERROR is on. -ffp-contract=off: results must not depend on whether a
+# compiler fuses multiply and add.
 function(topogeo_compile_options target)
   set_property(GLOBAL APPEND PROPERTY TOPOGEO_TARGETS ${target})
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off)
@@ -15,15 +14,15 @@ function(topogeo_compile_options target)
   endif()
 endfunction()
 
-# For code without hot loops, services and tests: a quarter to a half less time to compile than with all
-# optimisation, at the price of GCC warnings that are false with less of it. Goes with TOPOGEO_PRECOMPILED_COLD.
+# For code without hot loops, services and tests: compiles in a quarter to a half less time than with full optimisation,
+# but GCC then has false warnings. Used with TOPOGEO_PRECOMPILED_COLD.
 function(topogeo_compile_cold target)
   target_compile_options(${target} PRIVATE ${TOPOGEO_COLD_OPTIMIZATION}
     $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds;-Wno-maybe-uninitialized;-Wno-mismatched-new-delete;-Wno-stringop-overflow>)
 endfunction()
 
-# Headers that most files include, parsed once for each set of options: GCC compiles with the optimisation that
-# the precompiled header had, whatever the command line says. Tests add GoogleMock.
+# Headers that most files include, parsed once for each set of options: GCC compiles with the optimisation of the
+# precompiled header, whatever the command line says. Tests add GoogleMock.
 function(topogeo_add_precompiled_headers)
   topogeo_add_precompiled(topogeo_precompiled)
   set(TOPOGEO_PRECOMPILED_COLD topogeo_precompiled PARENT_SCOPE)
@@ -39,7 +38,7 @@ function(topogeo_add_precompiled_headers)
   endif()
 endfunction()
 
-# topogeo_add_precompiled(NAME HEADERS...): the headers that all have in common, and HEADERS.
+# topogeo_add_precompiled(NAME HEADERS...): the common headers and HEADERS.
 function(topogeo_add_precompiled name)
   set(empty ${CMAKE_CURRENT_BINARY_DIR}/precompiled.cpp)
   file(CONFIGURE OUTPUT ${empty} CONTENT "// Compiled for its precompiled header alone.\n")
@@ -52,14 +51,14 @@ function(topogeo_add_precompiled name)
   topogeo_compile_options(${name})
 endfunction()
 
-# How fast a target is built: precompiled headers of `precompiled`, and its sources in units of several
-# files (presets say how many; names in anonymous namespaces are therefore unique within a target).
+# Speeds up the build of a target: precompiled headers of `precompiled`, and its sources in units of several files
+# (presets set how many; names in anonymous namespaces are therefore unique within a target).
 function(topogeo_build_fast target precompiled)
   target_precompile_headers(${target} REUSE_FROM ${precompiled})
-  # Sources keep their names in messages and databases, yet share what they include.
+  # Sources have their own names in messages and databases, but share included headers.
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${TOPOGEO_UNITY}
                                              UNITY_BUILD_BATCH_SIZE ${TOPOGEO_UNITY_FILES})
-  # What GCC says of classes with parts in anonymous namespaces is meant for headers.
+  # GCC's warning about classes with parts in anonymous namespaces is meant for headers.
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endfunction()
 
@@ -94,10 +93,10 @@ function(topogeo_add_service)
   topogeo_build_fast(${ARG_NAME} ${TOPOGEO_PRECOMPILED_COLD})
 endfunction()
 
-# topogeo_add_test(NAME unit_geometry SOURCES ... DEPENDS targets... [LABELS ...] [PROCESSES]): one test program.
-# Each suite in it is one ctest test; with PROCESSES each case is, for programs that start others or join DDS
-# domains. TOPOGEO_TEST_DATA names tests/data, TOPOGEO_BIN build/bin. Helpers that several programs share are
-# included from tests/unit: "localization/simulated_maps.hpp".
+# topogeo_add_test(NAME unit_geometry SOURCES ... DEPENDS targets... [LABELS ...] [PROCESSES]): one test program. Each
+# suite in it is one ctest test; with PROCESSES each case is, for programs that start others or join DDS domains.
+# TOPOGEO_TEST_DATA names tests/data, TOPOGEO_BIN build/bin. Shared helpers are included from tests/unit:
+# "localization/simulated_maps.hpp".
 function(topogeo_add_test)
   cmake_parse_arguments(ARG "PROCESSES" "NAME" "SOURCES;DEPENDS;LABELS" ${ARGN})
   topogeo_refuse_time_limit(${ARG_NAME} ${ARGN})
@@ -123,9 +122,9 @@ function(topogeo_add_test)
 endfunction()
 include(GoogleTest)
 
-# topogeo_add_script_test(container.hosts hosts_test.sh [arguments]): the test of the given name is a script of this
-# folder, or with a path, that is given the build folder first. Its label is what stands before the dot. It exits
-# with 77, and a message, where the machine has not what it needs: skipped.
+# topogeo_add_script_test(container.hosts hosts_test.sh [arguments]): a test with this name is a script of this folder,
+# or with a path, that gets the build folder as its first argument. Its label is the part before the dot. The script
+# exits with 77, and a message, when the machine lacks something that it needs: skipped.
 function(topogeo_add_script_test name script)
   topogeo_refuse_time_limit(${name} ${script})
   cmake_path(ABSOLUTE_PATH script NORMALIZE)
@@ -135,22 +134,22 @@ function(topogeo_add_script_test name script)
   set_tests_properties(${name} PROPERTIES LABELS ${label} SKIP_RETURN_CODE 77)
 endfunction()
 
-# topogeo_set_limit(NAME): the time limit of all tests (TopogeoTimeFactor.cmake), for one that add_test() made. Its
-# TOPOGEO_TIME_FACTOR has the sanitizer's factor, which no script has compiled in.
+# topogeo_set_limit(NAME): sets the time limit of all tests (TopogeoTimeFactor.cmake) for a test of add_test(). Its
+# TOPOGEO_TIME_FACTOR includes the sanitizer's factor, which scripts do not have compiled in.
 function(topogeo_set_limit name)
   math(EXPR factor "${TOPOGEO_MACHINE_FACTOR} * ${TOPOGEO_SANITIZER_FACTOR}")
   set_tests_properties(${name} PROPERTIES TIMEOUT ${TOPOGEO_TEST_LIMIT_S}
     ENVIRONMENT "TOPOGEO_TIME_FACTOR=${factor};TOPOGEO_TEST_NAME=${name}")
 endfunction()
 
-# A test with a limit of its own passes on one machine and fails on another.
+# A test with its own limit would pass on one machine and fail on another.
 function(topogeo_refuse_time_limit name)
   if("TIMEOUT" IN_LIST ARGN OR "${ARGV1}" MATCHES "^[0-9]+$")
     message(FATAL_ERROR "${name}: tests have no time limits of their own, see cmake/TopogeoTimeFactor.cmake")
   endif()
 endfunction()
 
-# Registers each test suite of a program under <program>.<suite>, listed anew whenever it was built. Labels and limits
+# Registers each test suite of a program as <program>.<suite>; the list is renewed after each build. Labels and limits
 # are added when ctest reads the list: in the command that makes it they would link the program again.
 function(topogeo_discover_suites target labels)
   set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake)
@@ -159,7 +158,7 @@ function(topogeo_discover_suites target labels)
             -P ${PROJECT_SOURCE_DIR}/cmake/ListTestSuites.cmake
     BYPRODUCTS ${list}
     VERBATIM)
-  # Programs that are not built have no tests, rather than none being found at all.
+  # A program that is not built has no tests, instead of an error for all.
   set(include_file ${CMAKE_CURRENT_BINARY_DIR}/${target}_include.cmake)
   file(CONFIGURE OUTPUT ${include_file} @ONLY CONTENT
 "set(suites \"\")
@@ -172,9 +171,9 @@ endforeach()
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${include_file})
 endfunction()
 
-# topogeo_set_costs(FILE): has ctest start tests in the order of what they take, as FILE says ("seconds name" a line),
-# also where it has not run them before. Call it in the folder that is added last: ctest must know the tests by then.
-# Names of tests that are not there do no harm.
+# topogeo_set_costs(FILE): makes ctest start tests in the order of their durations in FILE ("seconds name" a line), even
+# before their first run. Call it in the folder that is added last, because ctest must know the tests by then. Names of
+# missing tests are harmless.
 function(topogeo_set_costs file)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
   file(STRINGS ${file} lines REGEX "^[^#]")

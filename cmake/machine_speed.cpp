@@ -1,5 +1,5 @@
-// Prints how many microseconds a fixed piece of work takes on this machine: the best of several
-// runs, because other programs can only add to it. cmake/TopogeoTimeFactor.cmake compares it with
+// Prints how many microseconds a fixed amount of work takes on this machine: the best of several
+// runs, because other programs can only add time. cmake/TopogeoTimeFactor.cmake compares it with
 // the reference machine.
 
 #include <chrono>
@@ -10,7 +10,7 @@
 
 namespace {
 
-// Floating-point work with branches, and a walk through memory that leaves the first cache.
+// Floating-point work with branches, and memory accesses beyond the first cache.
 double work(std::vector<std::uint32_t>& next) {
   double sum = 0.0;
   std::uint32_t place = 1;
@@ -41,5 +41,5 @@ int main() {
   }
   const auto us = std::chrono::duration_cast<std::chrono::microseconds>(best).count();
   std::printf("%lld\n", static_cast<long long>(us));
-  return std::isfinite(sum) ? 0 : 1;  // The sum is used, or the compiler would leave out the work.
+  return std::isfinite(sum) ? 0 : 1;  // An unused result would let the compiler drop the work.
 }

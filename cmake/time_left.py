@@ -41,7 +41,7 @@ def weight(build, output):
 
 def plan(build, targets):
     """Lines "weight output" of what Ninja is going to do; first the length of its log, which then grows."""
-    # By its own name Ninja would first make build.ninja anew, and show nothing else.
+    # With the original name, Ninja would first remake build.ninja and show nothing else.
     manifest = os.path.join(build, ".time_left.ninja")
     shutil.copyfile(os.path.join(build, "build.ninja"), manifest)
     steps = subprocess.run(["ninja", "-C", build, "-f", os.path.basename(manifest), "-n", *targets], capture_output=True, text=True,
@@ -70,7 +70,7 @@ def seconds_left(plan_lines, log, elapsed_s, jobs):
     steps = set()
     for line in log.splitlines():
         fields = line.split("\t")
-        # One command may make several files: they have the same times and the same hash.
+        # One command may make several files, which have the same times and hash.
         if len(fields) != 5 or (fields[0], fields[4]) in steps:
             continue
         steps.add((fields[0], fields[4]))
@@ -78,7 +78,7 @@ def seconds_left(plan_lines, log, elapsed_s, jobs):
         spent_s += (int(fields[1]) - int(fields[0])) / 1000
     if done <= 0.0 or elapsed_s < 60:
         return None
-    # Steps that run now are in no log: what all steps take, less the time that has passed.
+    # Running steps are in no log: the total of all steps, less the time that has passed.
     side_by_side = max(1.0, min(jobs, spent_s / elapsed_s * 1.25))
     return max(0.0, total * spent_s / done / side_by_side - elapsed_s)
 
