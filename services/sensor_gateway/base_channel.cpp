@@ -57,17 +57,19 @@ msg::BaseState to_msg(devices::BaseState state) {
 
 BaseChannel::BaseChannel(service::Service& service, const DeviceConfig& config,
                          const HostTime& time, const std::optional<RememberedOdometry>& remembered,
-                         Hooks hooks)
+                         const std::filesystem::path& stop_memory, Hooks hooks)
     : service_(service),
       time_(time),
       remembered_(remembered),
       hooks_(std::move(hooks)),
       driver_(config.base),
+      stop_memory_(stop_memory),
       odometry_(service.advertise<msg::Odometry>()),
       statuses_(service.advertise<msg::BaseStatus>()),
       line_(service.loop(), driver_, PortOptions{config.base_port},
             [this](std::int64_t now_ns) { after_driver(now_ns); }) {
   if (remembered_) driver_.resume_odometry(remembered_->state);
+  resume_stops();
   if (!config.laser_port.empty()) {
     guard_.emplace(service.setup().config.config.navigator.guard, config.base.watchdog_s);
     driver_.guard_velocities([this](const devices::BaseVelocity& wanted,
@@ -97,6 +99,17 @@ BaseChannel::~BaseChannel() {
   }
 }
 
+void BaseChannel::resume_stops() {
+  const devices::HeldStops& held = stop_memory_.held();
+  if (stop_memory_.damaged()) {
+    service_.status().fault("damaged stop memory", "the base is halted until a reset");
+  } else if (held.emergency_stop || held.halt) {
+    spdlog::warn("{} of before this start: the base moves after a reset",
+                 held.emergency_stop ? "emergency stop" : "halt");
+  }
+  driver_.hold_stops(held);
+}
+
 void BaseChannel::begin_epoch(std::int64_t stamp_ns) {
   // If the system's clock was set back meanwhile, others would reject new messages as old.
   const bool resumed =
@@ -107,6 +120,8 @@ void BaseChannel::begin_epoch(std::int64_t stamp_ns) {
 }
 
 void BaseChannel::after_driver(std::int64_t) {
+  // The halt of an ending gateway is no order of a person.
+  if (!stopped_) stop_memory_.store(driver_.held_stops());
   for (const devices::BaseOdometry& sample : driver_.take_odometry()) {
     if (!odometry_epoch_) begin_epoch(time_.stamp_ns(sample.stamp_ns));
     msg::Odometry message;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 
@@ -19,6 +20,7 @@
 #include "host_time.hpp"
 #include "odometry_memory.hpp"
 #include "serial_line.hpp"
+#include "stop_memory.hpp"
 
 namespace topogeo::sensor_gateway {
 
@@ -32,8 +34,10 @@ class BaseChannel {
     std::function<void(std::uint64_t epoch, bool resumed)> on_epoch;
     std::function<void(const geometry::OdometrySample&)> on_odometry;
   };
+  /// Halt and emergency stop are kept in the file `stop_memory`.
   BaseChannel(service::Service& service, const DeviceConfig& config, const HostTime& time,
-              const std::optional<RememberedOdometry>& remembered, Hooks hooks);
+              const std::optional<RememberedOdometry>& remembered,
+              const std::filesystem::path& stop_memory, Hooks hooks);
   BaseChannel(const BaseChannel&) = delete;
   BaseChannel& operator=(const BaseChannel&) = delete;
   BaseChannel(BaseChannel&&) = delete;
@@ -64,6 +68,8 @@ class BaseChannel {
 
  private:
   void after_driver(std::int64_t now_ns);
+  /// The stops that an earlier gateway has left hold on.
+  void resume_stops();
   /// Decides whether the odometry continues or begins a new epoch.
   void begin_epoch(std::int64_t stamp_ns);
   void on_command(const msg::MotionCommand& command, const messaging::SampleInfo& info);
@@ -81,6 +87,7 @@ class BaseChannel {
   Hooks hooks_;
   std::optional<std::uint64_t> odometry_epoch_;
   devices::BaseDriver driver_;
+  StopMemory stop_memory_;
   std::optional<navigation::LastGuard> guard_;  ///< only with a laser
   navigation::LastGuard::Verdict verdict_ = navigation::LastGuard::Verdict::kAsWanted;
   std::uint64_t guard_stops_ = 0;

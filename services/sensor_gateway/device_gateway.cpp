@@ -35,6 +35,11 @@ ScanGateOptions gate_options(const service::Service& service, const DeviceConfig
   return options;
 }
 
+/// Empty like `memory`.
+std::filesystem::path beside(const std::filesystem::path& memory, const char* ending) {
+  return memory.empty() ? memory : std::filesystem::path(memory.string() + ending);
+}
+
 }  // namespace
 
 DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& config, int readers,
@@ -60,14 +65,12 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
       release(steady_now_ns());
       remember();
     };
-    base_.emplace(service_, config, time_, remembered, std::move(hooks));
+    base_.emplace(service_, config, time_, remembered, beside(memory, ".stops"), std::move(hooks));
     compare_watchdog(config.base.watchdog_s);
   }
   if (!config.laser_port.empty()) {
-    const std::filesystem::path laser_memory =
-        memory.empty() ? memory : std::filesystem::path(memory.string() + ".laser");
     laser_.emplace(
-        service_, config, time_, gate_, laser_memory,
+        service_, config, time_, gate_, beside(memory, ".laser"),
         [this](const devices::PlsScan& scan) { show_base(scan); },
         [this](std::int64_t arrival_ns) { release(arrival_ns); });
   }

@@ -95,7 +95,7 @@ void add_options_to(command_line::Command& app, Options& options) {
   app.add_option("--memory", options.memory,
                  "file that keeps where the odometry is, so that it goes on when the gateway is "
                  "started again; best in /run, as it is written all the time. FILE.laser keeps the "
-                 "rate of the laser")
+                 "rate of the laser, FILE.stops a halt and an emergency stop until the reset")
       ->needs(devices)
       ->type_name("FILE");
 }

@@ -65,10 +65,10 @@ void GatewayOnDevices::start_gateway(const std::string& keys) {
                       << "\nbase.port: " << (scratch_ / "base.port").string()
                       << "\nbase.baud: 38400\n"
                       << keys;
-  gateway_ = std::make_unique<Program>(
-      scratch_, "sensor_gateway",
-      std::vector<std::string>{"--domain", domain_, "--partition", kPartition, "--devices",
-                               file.string(), "--readers", "1"});
+  std::vector<std::string> words{"--domain",  domain_,       "--partition", kPartition,
+                                 "--devices", file.string(), "--readers",   "1"};
+  if (!memory_.empty()) words.insert(words.end(), {"--memory", memory_.string()});
+  gateway_ = std::make_unique<Program>(scratch_, "sensor_gateway", words);
 }
 
 void GatewayOnDevices::start(std::size_t scans) {

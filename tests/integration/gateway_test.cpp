@@ -111,6 +111,14 @@ class GatewayInEmergency : public GatewayOnDevices {
     tell_base(msg::kBaseReset);
     ASSERT_TRUE(drive_until(0.0, 0.5, [&] { return truth_->angular_radps() > 0.3; }));
   }
+
+  void restart_gateway(int signal_number) {
+    gateway_->send_signal(signal_number);
+    static_cast<void>(gateway_->wait());
+    base_status_.reset();
+    gateway_.reset();
+    start_gateway();
+  }
 };
 
 TEST_F(GatewayInEmergency, EmergencyStopHoldsUntilResetFiveTimes) {
@@ -124,6 +132,34 @@ TEST_F(GatewayInEmergency, EmergencyStopHoldsUntilResetFiveTimes) {
     EXPECT_FALSE(base_status_->commands_taken());
     ASSERT_NO_FATAL_FAILURE(expect_held_until_reset()) << i;
   }
+}
+
+TEST_F(GatewayInEmergency, StopsHoldOverRestartsOfTheGateway) {
+  memory_ = scratch_ / "memory";
+  start();
+  ASSERT_TRUE(drive_until(0.0, 0.5, [&] { return truth_->angular_radps() > 0.3; }));
+  tell_base(msg::kBaseHalt);
+  ASSERT_TRUE(drive_until(0.0, 0.5, [&] { return base_is(msg::kBaseHalted); }));
+  for (const int number : {SIGKILL, SIGTERM}) {
+    restart_gateway(number);
+    ASSERT_TRUE(drive_until(0.0, 0.5, [&] { return base_is(msg::kBaseHalted); })) << number;
+    EXPECT_FALSE(base_status_->commands_taken());
+    const double later_s = truth_->time_s() + 1.0;
+    ASSERT_TRUE(drive_until(0.0, 0.5, [&] { return truth_->time_s() > later_s; }));
+    EXPECT_EQ(truth_->angular_radps(), 0.0);
+  }
+  // The killed gateway may still count as a reader, so one reset may be lost.
+  auto next = std::chrono::steady_clock::now();
+  ASSERT_TRUE(drive_until(0.0, 0.5, [&] {
+    if (base_is(msg::kBaseHalted) && std::chrono::steady_clock::now() >= next) {
+      tell_base(msg::kBaseReset);
+      next = std::chrono::steady_clock::now() + std::chrono::milliseconds(500);
+    }
+    return truth_->angular_radps() > 0.3;
+  }));
+  // The gateway halts the base when it ends, which is no stop that holds.
+  restart_gateway(SIGTERM);
+  ASSERT_TRUE(wait_for([&] { return base_is(msg::kBaseReady); })) << gateway_->err();
 }
 
 /// The robot is still moving: power is back before its wheels have stopped.

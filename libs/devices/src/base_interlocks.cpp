@@ -62,6 +62,11 @@ void BaseInterlocks::release() {
   stopped_ = false;
 }
 
+void BaseInterlocks::hold(const HeldStops& stops) {
+  halted_ = halted_ || stops.halt;
+  stopped_ = stopped_ || stops.emergency_stop;
+}
+
 bool BaseInterlocks::joystick(bool moves) {
   const bool moved = std::exchange(joystick_, moves);
   return moves && !moved;

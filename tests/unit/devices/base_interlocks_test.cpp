@@ -71,6 +71,20 @@ TEST_F(BaseInterlocksTest, ACommandToStandEndsABumpAndMotionEndsAFault) {
   EXPECT_EQ(interlocks_.motor_fault(), "");
 }
 
+TEST_F(BaseInterlocksTest, StopsOfAnEarlierProcessHoldUntilTheRelease) {
+  interlocks_.hold({});
+  EXPECT_FALSE(interlocks_.engaged());
+  interlocks_.hold({true, false});
+  EXPECT_EQ(interlocks_.state(), BaseState::kEmergencyStop);
+  interlocks_.hold({false, true});
+  EXPECT_EQ(interlocks_.held(), (HeldStops{true, true}));
+  interlocks_.offline();
+  EXPECT_TRUE(interlocks_.engaged());
+  interlocks_.release();
+  EXPECT_FALSE(interlocks_.engaged());
+  EXPECT_EQ(interlocks_.held(), (HeldStops{false, false}));
+}
+
 TEST_F(BaseInterlocksTest, OnlyEventsOfTheMotorsAreFaults) {
   EXPECT_FALSE(interlocks_.motor_event(McpEventKind::kBatteryLow));
   EXPECT_TRUE(interlocks_.motor_event(McpEventKind::kTranslateError));

@@ -70,6 +70,13 @@ class BaseDriver final : public SerialDriver {
   /// An operator permits motion again after halt() or an emergency stop. The base does not move
   /// before the next command.
   void reset_stop(std::int64_t now_ns);
+  /// Stops that only reset_stop() ends. They belong to the robot and not to this process: the
+  /// caller stores them for the next driver, which adds them by hold_stops().
+  [[nodiscard]] HeldStops held_stops() const { return interlocks_.held(); }
+  void hold_stops(const HeldStops& stops) {
+    interlocks_.hold(stops);
+    update_status();
+  }
   /// Each > 0 and never above those of the settings; effective at once. Throws
   /// std::invalid_argument for limits that are not finite and positive.
   void set_limits(const BaseLimits& limits, std::int64_t now_ns);

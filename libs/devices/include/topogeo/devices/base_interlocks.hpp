@@ -12,6 +12,14 @@
 
 namespace topogeo::devices {
 
+/// Stops that hold until an operator releases them.
+struct HeldStops {
+  bool emergency_stop = false;
+  bool halt = false;
+
+  friend bool operator==(const HeldStops&, const HeldStops&) = default;
+};
+
 class BaseInterlocks {
  public:
   explicit BaseInterlocks(const BaseSettings& settings);
@@ -34,6 +42,9 @@ class BaseInterlocks {
   bool emergency_stop();
   /// An operator releases halt and emergency stop.
   void release();
+  [[nodiscard]] HeldStops held() const { return {stopped_, halted_}; }
+  /// Adds stops that an earlier process has left.
+  void hold(const HeldStops& stops);
 
   /// The base stopped by itself while it was driven. That is no emergency stop: the state lasts
   /// until the next command, or for kWatchdogShown_ns without one.

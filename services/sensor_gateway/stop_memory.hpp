@@ -1,0 +1,38 @@
+// Remembers halt and emergency stop in a small file, so that no restart of the gateway releases
+// them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "topogeo/devices/base_interlocks.hpp"
+#include "topogeo/support/record_file.hpp"
+
+namespace topogeo::sensor_gateway {
+
+class StopMemory {
+ public:
+  /// With an empty path nothing is kept. Throws std::runtime_error naming the file if it cannot be
+  /// opened or created.
+  explicit StopMemory(const std::filesystem::path& path);
+
+  /// The stops that hold. A damaged file counts as a halt, because a stop may have been in it.
+  [[nodiscard]] const devices::HeldStops& held() const { return held_; }
+  /// True if the file was damaged.
+  [[nodiscard]] bool damaged() const { return damaged_; }
+  /// Writes changes only.
+  void store(const devices::HeldStops& held);
+
+ private:
+  struct Record {
+    std::uint64_t emergency_stop = 0;
+    std::uint64_t halt = 0;
+  };
+
+  bool damaged_;  // judged before the file is created
+  support::RecordFile<Record> file_;
+  devices::HeldStops held_;
+};
+
+}  // namespace topogeo::sensor_gateway
