@@ -18,27 +18,41 @@ std::optional<std::int64_t> CommandAges::age_ns(const messaging::Handle& handle,
   const std::int64_t offset_ns = now_ns - stamp_ns;
   Sender& sender = sender_of(handle, offset_ns, now_ns);
   note(sender, offset_ns, now_ns);
+  const std::int64_t own_age_ns = own_ns - stamp_ns;
+  const bool fresh = own_age_ns >= -kOldest_ns && own_age_ns <= kOldest_ns;
+  const bool delayed = own_age_ns > kOldest_ns && own_age_ns <= kLongestDelay_ns;
+  sender.own_clock = fresh || (sender.own_clock && delayed);
   if (now_ns - sender.first_ns < kKnown_ns) {
-    const std::int64_t own_age_ns = own_ns - stamp_ns;
-    if (own_age_ns < -kOldest_ns || own_age_ns > kOldest_ns) return std::nullopt;
+    if (!fresh) return std::nullopt;
     return std::max<std::int64_t>(0, own_age_ns);
   }
-  const std::int64_t age_ns = offset_ns - std::min(sender.least_ns, sender.before_ns);
-  if (set_back(sender, age_ns > kOldest_ns, offset_ns, now_ns)) senders_.erase(handle);
+  std::int64_t age_ns = offset_ns - std::min(sender.least_ns, sender.before_ns);
+  if (sender.own_clock) age_ns = std::max(age_ns, own_age_ns);
+  if (set_back(sender, age_ns > kOldest_ns, offset_ns, now_ns)) begin(sender, offset_ns, now_ns);
   return age_ns;
+}
+
+void CommandAges::begin(Sender& sender, std::int64_t offset_ns, std::int64_t now_ns) {
+  sender =
+      Sender{now_ns, now_ns, now_ns, offset_ns, offset_ns, std::nullopt, 0, 0, sender.own_clock};
 }
 
 CommandAges::Sender& CommandAges::sender_of(const messaging::Handle& handle, std::int64_t offset_ns,
                                             std::int64_t now_ns) {
   const auto known = senders_.find(handle);
   if (known != senders_.end() && now_ns - known->second.last_ns <= kPause_ns) return known->second;
-  if (known == senders_.end() && senders_.size() >= kMostSenders) {
+  if (known != senders_.end()) {
+    begin(known->second, offset_ns, now_ns);
+    return known->second;
+  }
+  if (senders_.size() >= kMostSenders) {
     senders_.erase(std::min_element(
         senders_.begin(), senders_.end(),
         [](const auto& a, const auto& b) { return a.second.last_ns < b.second.last_ns; }));
   }
-  return senders_[handle] =
-             Sender{now_ns, now_ns, now_ns, offset_ns, offset_ns, std::nullopt, 0, 0};
+  Sender& sender = senders_[handle];
+  begin(sender, offset_ns, now_ns);
+  return sender;
 }
 
 void CommandAges::note(Sender& sender, std::int64_t offset_ns, std::int64_t now_ns) {

@@ -5,7 +5,9 @@
 // gateway's own clock as they follow it (service/stamp_clock.hpp), so a command of a new sender is
 // fresh if it is fresh by that clock. For a sender with another clock the age is unknown at first.
 // Once the sender has been heard for a while, its fastest message gives the offset between the
-// clocks, and later messages are as old as they are slower than that one.
+// clocks, and later messages are as old as they are slower than that one. A sender that was fresh
+// by the gateway's clock is judged by that clock as well, because a steady delay of the network
+// would otherwise count as a difference of the clocks.
 #pragma once
 
 #include <cstdint>
@@ -26,6 +28,8 @@ class CommandAges {
   static constexpr std::int64_t kPause_ns = 1'000'000'000;
   /// If all messages of a sender are equally late for so long, its clock was set back.
   static constexpr std::int64_t kSetBack_ns = 2'000'000'000;
+  /// No message is under way for longer: a stamp that is older shows another clock.
+  static constexpr std::int64_t kLongestDelay_ns = 10'000'000'000;
   /// More senders than any robot has; further ones replace those silent for longest.
   static constexpr std::size_t kMostSenders = 32;
 
@@ -46,9 +50,12 @@ class CommandAges {
     std::optional<std::int64_t> old_since_ns{};  ///< since when all messages are old
     std::int64_t old_least_ns = 0;               ///< shortest delay since then
     std::int64_t old_most_ns = 0;                ///< longest delay since then
+    bool own_clock = false;                      ///< stamps by the gateway's clock
   };
 
   Sender& sender_of(const messaging::Handle& handle, std::int64_t offset_ns, std::int64_t now_ns);
+  /// Forgets all but whose clock it uses.
+  static void begin(Sender& sender, std::int64_t offset_ns, std::int64_t now_ns);
   static void note(Sender& sender, std::int64_t offset_ns, std::int64_t now_ns);
   static bool set_back(Sender& sender, bool old, std::int64_t offset_ns, std::int64_t now_ns);
 

@@ -75,10 +75,11 @@ void GuardedBase::watch_motion(const geometry::Velocity& ordered,
   judge_try(now_ns);
 }
 
-// Load is measured over whole spans, so it may be known only after the base is stuck.
+// Load is measured over spans of a second, so it may be known only after the base is stuck.
 void GuardedBase::judge_try(std::int64_t now_ns) {
-  if (elapsed_s(stuck_ns_, now_ns) > stuck_s_ || tries_ >= kTries || !busy_ns_) return;
-  tries_again_ = tries_again_ || elapsed_s(*busy_ns_, now_ns) <= stuck_s_;
+  constexpr double kSpan_s = 1.2;  // with the delay of its timer
+  if (elapsed_s(stuck_ns_, now_ns) > kSpan_s || tries_ >= kTries || !busy_ns_) return;
+  tries_again_ = tries_again_ || elapsed_s(*busy_ns_, stuck_ns_) <= stuck_s_;
 }
 
 bool GuardedBase::held(std::int64_t now_ns) const {

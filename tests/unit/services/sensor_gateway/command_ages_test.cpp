@@ -100,6 +100,32 @@ TEST_F(CommandAgesTest, AClockThatIsSetIsLearntAgain) {
   EXPECT_EQ(age_ms(1, set_back_ns), 0);
 }
 
+TEST_F(CommandAgesTest, ASteadyDelayIsNoOtherClock) {
+  command_for_ms(1000, kOwnClock_ns);
+  for (int i = 0; i < 200; ++i) {
+    const auto age = age_ms(800 + 50 * (i % 4));
+    EXPECT_TRUE(!age || *age > 300) << i;
+    pass_ms(50);
+  }
+  pass_ms(3000);  // it is no other sender after a pause
+  for (int i = 0; i < 200; ++i) {
+    const auto age = age_ms(800 + 50 * (i % 4));
+    EXPECT_TRUE(!age || *age > 300) << i;
+    pass_ms(50);
+  }
+  EXPECT_EQ(age_ms(1), 1) << "and fresh again without the delay";
+}
+
+TEST_F(CommandAgesTest, AClockThatIsSetFarFromTheGatewaysIsLearntAgain) {
+  for (const std::int64_t set_ns : {-3'600'000'000'000, 3'600'000'000'000, 2'000'000'000}) {
+    CommandAges fresh;
+    std::swap(ages_, fresh);
+    command_for_ms(1000, kOwnClock_ns);
+    command_for_ms(3000, kOwnClock_ns + set_ns);
+    EXPECT_LE(age_ms(1, kOwnClock_ns + set_ns).value_or(1000), 1) << set_ns;
+  }
+}
+
 TEST_F(CommandAgesTest, AStampThatStandsStillIsNeverFresh) {
   for (int i = 0; i < 200; ++i) {
     const auto age = ages_.age_ns(handle(1), 0, now_ns_, now_ns_ + kOwnClock_ns);
