@@ -159,7 +159,7 @@ bool run_all(const LoadOptions& options) {
     workers.start_stubs(flags, count, std::chrono::microseconds(options.cost_us));
     left -= count;
   }
-  const Clock::time_point end = Clock::now() + 10 * bench::kPatience;
+  const Clock::time_point end = Clock::now() + bench::kPatience;
   while (done.workers() < options.workers && Clock::now() < end) {
     done.run_for(std::chrono::milliseconds(100));
   }

@@ -77,7 +77,6 @@ secured "$keys/robot" "$bin/topogeo" run --log "$work/log.clf" --robot $robot --
   > "$work/run.log" 2>&1 ||
   { cat "$work/run.log"; fail "the secured run"; }
 same_results "$work/run" "$work/alone"
-grep -q ' 0 sent to workers' "$work/run.log" && fail "the workers had no work"
 
 # Packets of the services themselves must not look like those of a stranger.
 drops_unprotected() { status "$keys/robot" planner | grep unprotected_packet; }

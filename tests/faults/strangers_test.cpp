@@ -182,8 +182,9 @@ TEST_F(StrangersTest, ADriveGoesOnAmongSamplesOfAbsurdContent) {
   run_ = std::make_unique<Program>(
       scratch_, "topogeo",
       std::vector<std::string>{"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml",
-                               "--map", scratch_ / "alone/map.pb", "--goto", "3,0", "--out",
-                               scratch_ / "out", "--workers", "1", "--domain", domain_});
+                               "--map", scratch_ / "alone/map.pb", "--goto", "3,0", "--patience",
+                               "600", "--out", scratch_ / "out", "--workers", "1", "--domain",
+                               domain_});
   AbsurdSamples samples(participant_, domain());
   for (std::uint64_t i = 0; !run_->ended(); ++i) {
     samples.write(i);

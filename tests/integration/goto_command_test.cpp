@@ -18,8 +18,8 @@ const Eigen::Vector2d kNorthGoal_m(3.5, 1.0);  // the robot starts at (1, 1), he
 class GotoCommand : public NavigatorOnRobot {
  protected:
   std::vector<std::string> words(const std::string& target) {
-    return {"goto",        target,     "--domain",       domain_,
-            "--partition", kPartition, "--wait-seconds", "600"};
+    return {"goto",     target,           "--domain", domain_,      "--partition",
+            kPartition, "--wait-seconds", "600",      "--patience", "600"};
   }
 };
 

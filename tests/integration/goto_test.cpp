@@ -33,8 +33,8 @@ TEST(Goto, ASimulatedRobotIsSentToAPointOfAStoredMap) {
   // The map's origin is the start of the tour, at (1, 1); the robot heads along the wall.
   Program run(scratch, "topogeo",
               {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml", "--map",
-               scratch / "map/map.pb", "--goto", "3,0", "--heading", "90", "--out", out,
-               "--workers", "0", "--domain", own_domain()});
+               scratch / "map/map.pb", "--goto", "3,0", "--patience", "600", "--heading", "90",
+               "--out", out, "--workers", "0", "--domain", own_domain()});
   ASSERT_EQ(run.wait(), 0) << run.err();
   EXPECT_THAT(run.out(), HasSubstr("arrived at 3,0"));
   EXPECT_THAT(run.out(), HasSubstr(" 0 collisions"));
@@ -56,8 +56,8 @@ TEST_P(GotoLives, TheRobotIsFoundWhereItIsAndDrivesOn) {
   const std::string out = scratch / "out";
   Program run(scratch, "topogeo",
               {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml", "--map",
-               scratch / "map/map.pb", "--goto", "2.5,0", "--out", out, "--workers", "0",
-               "--domain", own_domain()});
+               scratch / "map/map.pb", "--goto", "2.5,0", "--patience", "600", "--out", out,
+               "--workers", "0", "--domain", own_domain()});
   run.wait_for_error_text("driving [");
   for (const std::string& name : GetParam()) {
     const std::vector<pid_t> service = run.services(name);
@@ -95,8 +95,9 @@ TEST(Goto, AlongBranchesWhereTheConfigurationSaysSo) {
   std::ofstream(scratch / "graph.yaml") << "planner:\n  on: graph\n";
   Program run(scratch, "topogeo",
               {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml", "--map",
-               scratch / "map/map.pb", "--goto", "2.5,0", "--config", scratch / "graph.yaml",
-               "--out", scratch / "out", "--workers", "0", "--domain", own_domain()});
+               scratch / "map/map.pb", "--goto", "2.5,0", "--patience", "600", "--config",
+               scratch / "graph.yaml", "--out", scratch / "out", "--workers", "0", "--domain",
+               own_domain()});
   ASSERT_EQ(run.wait(), 0) << run.err();
   EXPECT_THAT(run.err(), HasSubstr("m of it along branches"));
   EXPECT_THAT(run.out(), HasSubstr(" 0 collisions"));
@@ -136,11 +137,11 @@ TEST(Goto, ARobotWithSonarsAloneIsSentFromItsBaseStationToARoom) {
   Program import(scratch, "topogeo",
                  {"store", "import", world, "--format", "drawing", "--out", scratch / "map.pb"});
   ASSERT_EQ(import.wait(), 0) << import.err();
-  Program run(
-      scratch, "topogeo",
-      {"run", "--sim", world, "--no-laser", "--map", scratch / "map.pb", "--goto", "workroom",
-       "--config", std::string(TOPOGEO_TEST_DATA) + "/../../deploy/sonar_robot.example.yaml",
-       "--out", scratch / "out", "--workers", "0", "--domain", own_domain()});
+  Program run(scratch, "topogeo",
+              {"run", "--sim", world, "--no-laser", "--map", scratch / "map.pb", "--goto",
+               "workroom", "--patience", "600", "--config",
+               std::string(TOPOGEO_TEST_DATA) + "/../../deploy/sonar_robot.example.yaml", "--out",
+               scratch / "out", "--workers", "0", "--domain", own_domain()});
   ASSERT_EQ(run.wait(), 0) << run.err();
   EXPECT_THAT(run.out(), HasSubstr("arrived at workroom"));
   EXPECT_THAT(run.out(), HasSubstr(" 0 collisions"));

@@ -275,7 +275,8 @@ TEST_F(HealthTest, TopShowsThePool) {
   }));
   out = run_until({"top", "--once"}, 0, "ROBOT");
   EXPECT_THAT(out, AllOf(HasSubstr("1 worker, 3 slots"), HasSubstr("pc-2")));
-  const auto pool = nlohmann::json::parse(run_until({"top", "--once", "--json"}, 0, "robots"));
+  const auto pool =
+      nlohmann::json::parse(run_until({"top", "--once", "--json"}, 0, "\"robot_id\""));
   EXPECT_EQ(pool["workers"][0]["name"], "pc-2");
   EXPECT_EQ(pool["workers"][0]["fault_count"], 0);
   EXPECT_EQ(pool["robots"][0]["workers"], 1.0);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -11,6 +12,8 @@
 #include <regex>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
+#include <thread>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -126,7 +129,17 @@ Program::Program(const Scratch& scratch, const std::string& name,
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out_.c_str(), kFlags, 0644);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err_.c_str(), kFlags, 0644);
-  const int error = posix_spawn(&pid_, pointers[0], &actions, nullptr, pointers.data(), environ);
+  std::string freeze = "TOPOGEO_LONGEST_FREEZE_S=0";
+  std::vector<char*> variables;
+  bool decided = name == "topogeo";  // which starts services again
+  for (char** one = environ; *one != nullptr; ++one) {
+    variables.push_back(*one);
+    decided = decided || std::string_view(*one).starts_with("TOPOGEO_LONGEST_FREEZE_S=");
+  }
+  if (!decided) variables.push_back(freeze.data());
+  variables.push_back(nullptr);
+  const int error =
+      posix_spawn(&pid_, pointers[0], &actions, nullptr, pointers.data(), variables.data());
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) throw std::runtime_error("cannot start " + all[0]);
 }
@@ -142,8 +155,23 @@ bool Program::ended() {
   return ended_;
 }
 
+template <class Condition>
+bool Program::wait_while_it_works(const std::string& what, const Condition& condition) {
+  Wait wait(what);
+  std::uintmax_t printed_bytes = 0;
+  while (!condition()) {
+    if (!wait.goes_on()) return false;
+    const std::uintmax_t now_bytes =
+        std::filesystem::file_size(out_) + std::filesystem::file_size(err_);
+    if (now_bytes != printed_bytes) wait.renew();
+    printed_bytes = now_bytes;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));  // between two checks
+  }
+  return true;
+}
+
 int Program::wait() {
-  if (!wait_for("the end of " + name_, [this] { return ended(); })) {
+  if (!wait_while_it_works("the end of " + name_, [this] { return ended(); })) {
     throw std::runtime_error(name_ + " does not end; its stderr: " + err());
   }
   return WIFSIGNALED(status_) ? kSignalBase + WTERMSIG(status_) : WEXITSTATUS(status_);
@@ -152,7 +180,7 @@ int Program::wait() {
 void Program::wait_for_error_text(const std::string& text) {
   const auto printed = [&] { return err().find(text) != std::string::npos; };
   const bool there =
-      wait_for(name_ + " to print '" + text + "'", [&] { return printed() || ended(); });
+      wait_while_it_works(name_ + " to print '" + text + "'", [&] { return printed() || ended(); });
   if (!there || !printed()) {
     throw std::runtime_error(name_ + " never printed '" + text + "', its stderr: " + err());
   }
@@ -168,7 +196,8 @@ void Program::wait_for_progress(int percent) {
                        [&](const std::smatch& found) { return std::stoi(found[1]) >= percent; });
   };
   const std::string goal = std::to_string(percent) + " %";
-  const bool there = wait_for(name_ + " to do " + goal, [&] { return reached() || ended(); });
+  const bool there =
+      wait_while_it_works(name_ + " to do " + goal, [&] { return reached() || ended(); });
   if (!there || !reached()) {
     throw std::runtime_error(name_ + " never did " + goal + ", its stderr: " + err());
   }

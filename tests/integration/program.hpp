@@ -32,14 +32,16 @@ class Scratch {
 /// A started program whose output goes to files. Its destructor kills it if it still runs.
 class Program {
  public:
-  /// `name` is an executable of build/bin, `scratch` takes its output.
+  /// `name` is an executable of build/bin, `scratch` takes its output. A service that is started so
+  /// has nobody who starts it again: it may stand still for ever, unless set_longest_freeze() says
+  /// otherwise.
   Program(const Scratch& scratch, const std::string& name, const std::vector<std::string>& words);
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
   ~Program();
 
-  /// Exit code, or 128 + signal. Throws std::runtime_error when it does not end within
-  /// hang_limit(), like all waits here.
+  /// Exit code, or 128 + signal. Throws std::runtime_error when it neither ends nor prints anything
+  /// within hang_limit(), like all waits here.
   int wait();
 
   bool ended();
@@ -60,6 +62,10 @@ class Program {
   [[nodiscard]] std::vector<pid_t> services(const std::string& name = {}) const;
 
  private:
+  /// Whether `condition` held before a hang.
+  template <class Condition>
+  bool wait_while_it_works(const std::string& what, const Condition& condition);
+
   std::string name_;
   pid_t pid_ = -1;
   int status_ = 0;

@@ -106,7 +106,7 @@ class SharedMapServices : public testing::Test {
     return program.out() + program.err();
   }
   std::string merge_command(std::vector<std::string> words, int code = 0) const {
-    words.insert(words.end(), {"--robot-id", "a"});
+    words.insert(words.end(), {"--robot-id", "a", "--wait-seconds", "600"});
     for (const std::string& word : domain()) words.push_back(word);
     return store_command(std::move(words), code);
   }

@@ -35,7 +35,7 @@ class Wait {
     using std::chrono::steady_clock;
     const auto now = steady_clock::now();
     const auto passed_s = std::chrono::floor<std::chrono::seconds>(now - start_).count();
-    if (now >= start_ + limit_) {
+    if (now >= limit_start_ + limit_) {
       std::fprintf(stderr, "gave up after %lld s: %s\n", static_cast<long long>(passed_s),
                    what_.c_str());
       return false;
@@ -47,12 +47,15 @@ class Wait {
     }
     return true;
   }
+  /// There was progress: the limit counts from now on.
+  void renew() { limit_start_ = std::chrono::steady_clock::now(); }
 
  private:
   static constexpr std::chrono::seconds kReportEvery{10};
 
   std::string what_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point limit_start_ = start_;
   std::chrono::steady_clock::time_point report_at_ = start_ + kReportEvery;
   std::chrono::seconds limit_ = hang_limit();
 };
