@@ -1,10 +1,13 @@
 #include "web_service.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -127,9 +130,10 @@ void WebService::stop(Respond respond) {
   post([this] { cancel(); });
 }
 
-// Queued after earlier orders, so that a released robot has no goal from before its stop.
+// Queued after earlier orders, so that a released robot has no goal from before its stop. The body
+// is the number of stops that it releases.
 void WebService::release_stop(Respond respond) {
-  hand_over({true, "/api/release", {}, {}, true}, std::move(respond));
+  hand_over({true, "/api/release", {}, std::to_string(hand_.stops()), true}, std::move(respond));
 }
 
 void WebService::drive(std::uint64_t viewer, double linear_mps, double angular_radps) {
@@ -168,12 +172,21 @@ void WebService::show_limits(bool anew) {
   if (anew) hand_.keep_off(limits_);
 }
 
+// Requests with the token come first. Between two without it the loop does everything else, so that
+// strangers hold up neither orders nor the watchdog.
 void WebService::work_off_requests() {
   std::deque<std::pair<Request, Respond>> requests;
+  bool more = false;
   {
     const std::scoped_lock lock(mutex_);
-    requests.swap(requests_);
+    const auto strangers = std::stable_partition(
+        requests_.begin(), requests_.end(), [](const auto& one) { return one.first.authorized; });
+    const auto end = strangers == requests_.end() ? strangers : std::next(strangers);
+    requests.assign(std::move_iterator(requests_.begin()), std::move_iterator(end));
+    requests_.erase(requests_.begin(), end);
+    more = !requests_.empty();
   }
+  if (more) post([this] { work_off_requests(); });
   for (const auto& [request, respond] : requests) {
     try {
       answer(request, respond);
@@ -212,7 +225,8 @@ void WebService::obey(const Request& request, const Respond& respond) {
          check_plain(body);
          respond(exploration_.start());
        }},
-      {"/api/release", [&](const std::string&) { hand_.release_stop(respond); }},
+      {"/api/release",
+       [&](const std::string& stops) { hand_.release_stop(std::stoull(stops), respond); }},
       {"/api/return",
        [&](const std::string& body) {
          check_plain(body);

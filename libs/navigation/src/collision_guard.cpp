@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kStanding_m_s = 1e-6;  // slower motion counts as none
 constexpr double kNsToSeconds = 1e-9;
+constexpr double kLargestLead_s = 1.0;  // of a stamp: more than clocks of one robot differ
 
 bool has_echo(const SonarReading& reading) {
   return reading.range_m > scan::Scan::kNoReturn;
@@ -114,7 +115,9 @@ bool CollisionGuard::laser_sees(const SonarReading& reading, double up_to_m) con
 }
 
 bool CollisionGuard::fresh(std::int64_t stamp_ns, std::int64_t now_ns) const {
-  return static_cast<double>(now_ns - stamp_ns) * kNsToSeconds <= config_.oldest_scan_s;
+  const double age_s = static_cast<double>(now_ns - stamp_ns) * kNsToSeconds;
+  // A measurement from the future belongs to a clock that was set back since.
+  return age_s <= config_.oldest_scan_s && age_s >= -kLargestLead_s;
 }
 
 HaltReason CollisionGuard::health(std::int64_t now_ns, std::string* message) const {

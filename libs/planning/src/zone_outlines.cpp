@@ -31,10 +31,12 @@ std::vector<bool> cells_of(const GridFrame& frame, const ZoneMap& zones,
                            std::span<const ZoneId> ids) {
   constexpr double kToWalls_m = 0.3;
   std::vector<bool> in(frame.size(), false);
+  std::vector<bool> wanted(zones.zones.size(), false);
+  for (const ZoneId id : ids) wanted.at(id) = true;
   std::vector<std::size_t> front;
   for (std::size_t i = 0; i < in.size(); ++i) {
     const ZoneId zone = zones.zone_of_cell[i];
-    if (zone == kNoZone || std::ranges::find(ids, zone) == ids.end()) continue;
+    if (zone == kNoZone || !wanted[zone]) continue;
     in[i] = true;
     front.push_back(i);
   }

@@ -65,7 +65,7 @@ void HandSender::listen() {
   subscribe<msg::LaserStatus>(
       [this](const msg::LaserStatus& laser, const Info&) { on_laser(laser); });
   subscribe<msg::BaseStatus>(
-      [this](const msg::BaseStatus&, const Info& info) { base_ = info.writer; });
+      [this](const msg::BaseStatus& base, const Info& info) { on_base(base, info.writer); });
 }
 
 HandSender::~HandSender() {
@@ -101,6 +101,19 @@ void HandSender::on_scan(const msg::Scan& message) {
 void HandSender::on_laser(const msg::LaserStatus& laser) {
   guard_.add(
       navigation::LaserFields{laser.stamp_ns(), laser.warning_field(), laser.protective_field()});
+}
+
+void HandSender::on_base(const msg::BaseStatus& base, const messaging::Handle& writer) {
+  base_ = writer;
+  if (!stop_wanted_) return;
+  if (base.state() == msg::kBaseHalted || base.state() == msg::kBaseEmergencyStop) {
+    stopped_base_ = writer;
+  } else if (stopped_base_ == writer) {
+    stop_wanted_ = false;  // another operator has released it
+  } else {
+    // The halt went to a gateway that died, or is still on its way: a second one does no harm.
+    static_cast<void>(order(msg::kBaseHalt));
+  }
 }
 
 void HandSender::keep_off(std::shared_ptr<const navigation::DrawnLimits> limits) {
@@ -142,6 +155,11 @@ void HandSender::tick() {
   if (stop_unheard_ && base_hears()) stop_unheard_ = !order(msg::kBaseHalt);
   const std::int64_t now_ns = steady_ns();
   const std::int64_t stamp_ns = clock_.now_ns(now_ns);
+  // Earlier measurements would count as fresh until the clock reaches their stamps again.
+  if (clock_.take_set_back()) {
+    guard_ = navigation::CollisionGuard(service_.setup().config.config.navigator.guard);
+    pose_.reset();
+  }
   held_ = drive_.held(now_ns);
   if (held_) keep_off_drawn();
   auto verdict = drive_.step(guard_, now_ns, stamp_ns);
@@ -178,6 +196,8 @@ bool HandSender::stop() {
   drive_ = ManualDrive(service_.setup().config.config.navigator.follower);
   const bool heard = order(msg::kBaseHalt);
   stop_unheard_ = !heard;
+  stop_wanted_ = true;
+  stopped_base_.reset();
   events_.add(EventLog::Level::kWarning, "web",
               heard ? "stopped by the operator" : "the operator's stop is heard by no base");
   return heard;
@@ -185,6 +205,7 @@ bool HandSender::stop() {
 
 bool HandSender::release_stop() {
   stop_unheard_ = false;
+  stop_wanted_ = false;
   const bool heard = order(msg::kBaseReset);
   if (heard) events_.add(EventLog::Level::kInfo, "web", "the operator lets it move again");
   return heard;

@@ -52,8 +52,9 @@ class HandSender {
   void release(std::uint64_t viewer);
   /// Sets the drawn walls and no-go zones. Until they are known, the robot does not move.
   void keep_off(std::shared_ptr<const navigation::DrawnLimits> limits);
-  /// Halts the base until release_stop(). Returns false when no base hears it; a base that connects
-  /// before release_stop() is then halted, too.
+  /// Halts the base until release_stop(). Returns false when no base hears it. A base that connects
+  /// or starts again before release_stop() is then halted, too, unless another operator has
+  /// released it.
   [[nodiscard]] bool stop();
   /// Returns false when no base hears it.
   [[nodiscard]] bool release_stop();
@@ -66,6 +67,7 @@ class HandSender {
   void on_odometry(const msg::Odometry& odometry);
   void on_scan(const msg::Scan& scan);
   void on_laser(const msg::LaserStatus& laser);
+  void on_base(const msg::BaseStatus& base, const messaging::Handle& writer);
   void tick();
   void keep_off_drawn();
   void command(const geometry::Velocity& velocity, std::int64_t stamp_ns);
@@ -97,6 +99,8 @@ class HandSender {
   messaging::Writer<msg::BaseCommand> orders_;
   std::optional<messaging::Handle> base_;  // writer of the base's status
   bool stop_unheard_ = false;
+  bool stop_wanted_ = false;                       // from stop() to release_stop()
+  std::optional<messaging::Handle> stopped_base_;  // writer that has reported the stop since then
 };
 
 }  // namespace topogeo::web

@@ -57,11 +57,12 @@ void HandThread::keep_off(std::shared_ptr<const navigation::DrawnLimits> limits)
 }
 
 void HandThread::stop(Respond respond) {
-  take({true, std::move(respond)});
+  ++stops_;
+  take({std::nullopt, std::move(respond)});
 }
 
-void HandThread::release_stop(Respond respond) {
-  take({false, std::move(respond)});
+void HandThread::release_stop(std::uint64_t stops, Respond respond) {
+  take({stops, std::move(respond)});
 }
 
 void HandThread::take(Order order) {
@@ -79,10 +80,15 @@ void HandThread::work_off_orders() {
     const std::scoped_lock lock(mutex_);
     orders.swap(orders_);
   }
-  for (const Order& order : orders) {
-    order.respond(order.stop ? answer_of(hand_.stop(), "stops")
-                             : answer_of(hand_.release_stop(), "is released"));
+  for (const Order& order : orders) order.respond(carry_out(order));
+}
+
+Answer HandThread::carry_out(const Order& order) {
+  if (!order.release) return answer_of(hand_.stop(), "stops");
+  if (*order.release != stops_) {
+    return error_answer(409, "stopped again since: nothing is released");
   }
+  return answer_of(hand_.release_stop(), "is released");
 }
 
 }  // namespace topogeo::web

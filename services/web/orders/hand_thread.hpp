@@ -2,11 +2,13 @@
 // map nor many requests of pages delay them.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "topogeo/messaging/event_loop.hpp"
@@ -30,7 +32,10 @@ class HandThread {
   void drive(std::uint64_t viewer, const geometry::Velocity& wanted);
   void release(std::uint64_t viewer);
   void stop(Respond respond);
-  void release_stop(Respond respond);
+  /// Number of calls of stop() so far.
+  [[nodiscard]] std::uint64_t stops() const { return stops_; }
+  /// Refused (409) if there was a stop after `stops`: a release that waited must not undo it.
+  void release_stop(std::uint64_t stops, Respond respond);
   void keep_off(std::shared_ptr<const navigation::DrawnLimits> limits);
   [[nodiscard]] bool is_held() const { return hand_.is_held(); }
 
@@ -39,9 +44,10 @@ class HandThread {
 
  private:
   struct Order {
-    bool stop = false;  ///< otherwise release
+    std::optional<std::uint64_t> release;  ///< stops() when it was given; empty: stop
     Respond respond;
   };
+  [[nodiscard]] Answer carry_out(const Order& order);
   void run();
   void take(Order order);
   void work_off_orders();
@@ -52,6 +58,7 @@ class HandThread {
   std::mutex mutex_;
   std::deque<Order> orders_;  // here and not in the loop, because they hold connections
   bool ended_ = false;
+  std::atomic<std::uint64_t> stops_ = 0;
   std::thread thread_;
 };
 

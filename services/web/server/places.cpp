@@ -34,10 +34,9 @@ void Places::leave(Guest& guest) {
 Places::Guest& Places::dispensable() const {
   std::map<std::string_view, std::size_t> places;
   for (const Guest* guest : guests_) ++places[guest->address()];
-  const auto most =
-      std::ranges::max_element(places, {}, [](const auto& address) { return address.second; });
-  return **std::ranges::find_if(
-      guests_, [&](const Guest* guest) { return guest->address() == most->first; });
+  // Of several addresses with the most places, the one that was silent longest: the first listed.
+  return **std::ranges::max_element(guests_, {},
+                                    [&](const Guest* guest) { return places[guest->address()]; });
 }
 
 }  // namespace topogeo::web

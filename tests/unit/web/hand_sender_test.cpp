@@ -3,6 +3,8 @@
 #include "orders/hand_sender.hpp"
 
 #include <chrono>
+#include <cstdint>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +16,7 @@
 
 #include "channels/event_log.hpp"
 #include "messaging/fixture.hpp"
+#include "orders/hand_thread.hpp"
 #include "waiting.hpp"
 
 namespace topogeo::web {
@@ -67,6 +70,93 @@ TEST_F(HandSenderTest, AStopReachesABaseThatIsConnectedLate) {
   }));
   EXPECT_EQ(kind, msg::kBaseHalt);
   EXPECT_TRUE(hand_.stop());
+}
+
+/// A base with a writer of its own, as each start of a gateway has one.
+class LivingBase {
+ public:
+  explicit LivingBase(const std::string& partition)
+      : participant_(messaging::options_in(partition)),
+        commands_(participant_),
+        statuses_(participant_) {}
+
+  [[nodiscard]] bool connected() const {
+    return commands_.matched() > 0 && statuses_.matched() > 0;
+  }
+  void report(msg::BaseState state) {
+    auto status = messaging::message<msg::BaseStatus>();
+    status.state(state);
+    static_cast<void>(statuses_.write(status));
+  }
+  int halts() {
+    commands_.take([&](const msg::BaseCommand& command, const messaging::SampleInfo& info) {
+      if (info.valid && command.kind() == msg::kBaseHalt) ++halts_;
+    });
+    return halts_;
+  }
+
+ private:
+  messaging::Participant participant_;
+  messaging::Reader<msg::BaseCommand> commands_;
+  messaging::Writer<msg::BaseStatus> statuses_;
+  int halts_ = 0;
+};
+
+TEST_F(HandSenderTest, AStopHoldsForAGatewayThatStartsAgain) {
+  {
+    LivingBase base(partition_);
+    ASSERT_TRUE(run_until("a base", [&] { return base.connected(); }));
+    ASSERT_TRUE(run_until("the stop at the base", [&] {
+      base.report(msg::kBaseMoving);
+      return base_noted_ && hand_.stop() && base.halts() > 0;
+    }));
+    base.report(msg::kBaseHalted);
+  }
+  LivingBase again(partition_);
+  ASSERT_TRUE(run_until("the gateway that has started again", [&] { return again.connected(); }));
+  EXPECT_TRUE(run_until("the stop at its base", [&] {
+    again.report(msg::kBaseReady);
+    return again.halts() > 0;
+  }));
+}
+
+TEST_F(HandSenderTest, AStopThatAnotherOperatorHasReleasedIsOver) {
+  LivingBase base(partition_);
+  ASSERT_TRUE(run_until("a base", [&] { return base.connected(); }));
+  ASSERT_TRUE(run_until("the stop at the base", [&] {
+    base.report(msg::kBaseMoving);
+    return base_noted_ && hand_.stop() && base.halts() > 0;
+  }));
+  base.report(msg::kBaseHalted);
+  base.report(msg::kBaseReady);
+  const auto noted = [&] {
+    base_noted_ = false;
+    base.report(msg::kBaseReady);
+    return run_until("a later status", [&] { return base_noted_; });
+  };
+  ASSERT_TRUE(noted() && noted() && noted());
+  const int halts = base.halts();
+  ASSERT_TRUE(noted() && noted());
+  EXPECT_EQ(base.halts(), halts);
+}
+
+TEST(HandThread, AReleaseThatWaitedDoesNotUndoALaterStop) {
+  service::Service service(page_setup(messaging::random_partition()));
+  Board board;
+  EventLog events(board);
+  Tally tally;
+  HandThread hand(service, board, events, tally, {[] {}, [](const char*) {}});
+  std::promise<unsigned> stopped;
+  std::promise<unsigned> waited;
+  std::promise<unsigned> released;
+  const std::uint64_t before = hand.stops();
+  // 503: no base is connected, but the order was carried out.
+  hand.stop([&](const Answer& answer) { stopped.set_value(answer.status); });
+  EXPECT_EQ(stopped.get_future().get(), 503U);
+  hand.release_stop(before, [&](const Answer& answer) { waited.set_value(answer.status); });
+  EXPECT_EQ(waited.get_future().get(), 409U);
+  hand.release_stop(hand.stops(), [&](const Answer& answer) { released.set_value(answer.status); });
+  EXPECT_EQ(released.get_future().get(), 503U);
 }
 
 std::int64_t now_ns() {

@@ -48,6 +48,18 @@ TEST(Places, AnAddressWithManyGivesWayBeforeOneWithFew) {
   EXPECT_EQ(places.size(), 4U);
 }
 
+TEST(Places, OfAddressesWithAsManyTheSilentOneGivesWay) {
+  Places places(2);
+  Visitor quiet("z");
+  Visitor busy("a");
+  Visitor third("m");
+  places.enter(quiet);
+  places.enter(busy);
+  places.enter(third);
+  EXPECT_TRUE(quiet.gone);
+  EXPECT_FALSE(busy.gone);
+}
+
 TEST(Places, AGuestHasOnePlace) {
   Places strangers(1);
   Places operators(1);
