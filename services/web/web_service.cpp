@@ -1,10 +1,9 @@
 #include "web_service.hpp"
 
-#include <algorithm>
 #include <array>
 #include <chrono>
+#include <deque>
 #include <functional>
-#include <iterator>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -118,10 +117,7 @@ Answer WebService::info(const Request& request) const {
 }
 
 void WebService::hand_over(Request request, Respond respond) {
-  {
-    const std::scoped_lock lock(mutex_);
-    requests_.emplace_back(std::move(request), std::move(respond));
-  }
+  requests_.push(std::move(request), std::move(respond));
   post([this] { work_off_requests(); });
 }
 
@@ -172,21 +168,9 @@ void WebService::show_limits(bool anew) {
   if (anew) hand_.keep_off(limits_);
 }
 
-// Requests with the token come first. Between two without it the loop does everything else, so that
-// strangers hold up neither orders nor the watchdog.
 void WebService::work_off_requests() {
-  std::deque<std::pair<Request, Respond>> requests;
-  bool more = false;
-  {
-    const std::scoped_lock lock(mutex_);
-    const auto strangers = std::stable_partition(
-        requests_.begin(), requests_.end(), [](const auto& one) { return one.first.authorized; });
-    const auto end = strangers == requests_.end() ? strangers : std::next(strangers);
-    requests.assign(std::move_iterator(requests_.begin()), std::move_iterator(end));
-    requests_.erase(requests_.begin(), end);
-    more = !requests_.empty();
-  }
-  if (more) post([this] { work_off_requests(); });
+  const std::deque<RequestQueue::Entry> requests = requests_.take();
+  if (!requests_.empty()) post([this] { work_off_requests(); });
   for (const auto& [request, respond] : requests) {
     try {
       answer(request, respond);

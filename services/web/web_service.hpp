@@ -7,10 +7,7 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <memory>
-#include <mutex>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -33,6 +30,7 @@
 #include "orders/localizer_requests.hpp"
 #include "server/board.hpp"
 #include "server/page_files.hpp"
+#include "server/request_queue.hpp"
 #include "server/server.hpp"
 #include "server/tally.hpp"
 #include "server/web_types.hpp"
@@ -106,8 +104,7 @@ class WebService : private Backend {
   // Below the server, because a pending answer holds a connection.
   History history_{service_, drive_};
   LocalizerRequests localizer_;
-  std::mutex mutex_;
-  std::deque<std::pair<Request, Respond>> requests_;
+  RequestQueue requests_;
 };
 
 }  // namespace topogeo::web
