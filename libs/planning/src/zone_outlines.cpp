@@ -32,11 +32,13 @@ std::vector<bool> cells_of(const GridFrame& frame, const ZoneMap& zones,
   constexpr double kToWalls_m = 0.3;
   std::vector<bool> in(frame.size(), false);
   std::vector<bool> wanted(zones.zones.size(), false);
-  for (const ZoneId id : ids) wanted.at(id) = true;
+  for (const ZoneId id : ids) {
+    if (id < wanted.size()) wanted[id] = true;
+  }
   std::vector<std::size_t> front;
   for (std::size_t i = 0; i < in.size(); ++i) {
     const ZoneId zone = zones.zone_of_cell[i];
-    if (zone == kNoZone || !wanted[zone]) continue;
+    if (zone == kNoZone || zone >= wanted.size() || !wanted[zone]) continue;
     in[i] = true;
     front.push_back(i);
   }
