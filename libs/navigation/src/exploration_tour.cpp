@@ -55,7 +55,17 @@ void ExplorationTour::judge(const NavigatorStatus& navigator, std::int64_t now_n
     target_.reset();
     return;
   }
-  if (navigator.goal_id != goal_->goal_id) return;  // it has not received the goal yet
+  const bool waited =
+      static_cast<double>(now_ns - nearest_ns_) > kNanosecondsPerSecond * config_.patience_s;
+  if (navigator.goal_id != goal_->goal_id) {
+    // A navigator that starts just now does not get the goal.
+    if (!received_ && waited) {
+      explorer_.put_off(*target_);
+      target_.reset();
+    }
+    return;
+  }
+  received_ = true;
   switch (navigator.state) {
     case NavigatorState::kArrived:
       // The map may not contain its last scan yet.
@@ -81,8 +91,7 @@ void ExplorationTour::judge(const NavigatorStatus& navigator, std::int64_t now_n
   if (distance_m < nearest_m_ - kNearer_m || navigator.state == NavigatorState::kRelocalizing) {
     nearest_m_ = distance_m;
     nearest_ns_ = now_ns;
-  } else if (static_cast<double>(now_ns - nearest_ns_) >
-             kNanosecondsPerSecond * config_.patience_s) {
+  } else if (waited) {
     explorer_.give_up(*target_);
     target_.reset();
   }
@@ -127,6 +136,7 @@ std::optional<TourGoal> ExplorationTour::choose(const geometry::Pose2& T_map_rob
 
 TourGoal ExplorationTour::give(const geometry::Pose2& T_map_goal) {
   goal_ = TourGoal{next_goal_id_++, T_map_goal};
+  received_ = false;
   return *goal_;
 }
 

@@ -234,6 +234,31 @@ TEST(ExplorationTour, ATargetWithoutProgressIsGivenUp) {
   EXPECT_GT(other->goal_id, goal->goal_id);
 }
 
+// A navigator that starts just then does not get the goal.
+TEST(ExplorationTour, AGoalThatIsNotReceivedIsGivenAnew) {
+  TextRobot robot;
+  TourConfig patient = config();
+  patient.patience_s = 5.0;
+  ExplorationTour tour(patient);
+  tour.set_map(robot.map());
+  const auto goal = tour.step(robot.step({}), 0);
+  ASSERT_TRUE(goal);
+  NavigatorStatus idle;
+  idle.T_map_robot = geometry::Pose2{0.25 * 5.5, 0.25 * 10.5, 0.0};
+  EXPECT_FALSE(tour.step(idle, 4 * kTourStep_ns));
+  tour.set_map(robot.map());
+  const auto other = tour.step(idle, 60 * kTourStep_ns);
+  ASSERT_TRUE(other);
+  EXPECT_GT(other->goal_id, goal->goal_id);
+  EXPECT_EQ(tour.given_up(), 0U);
+  // Another client has replaced a goal that was received: it is not taken away from that client.
+  NavigatorStatus drives = idle;
+  drives.state = NavigatorState::kDriving;
+  drives.goal_id = other->goal_id;
+  EXPECT_FALSE(tour.step(drives, 61 * kTourStep_ns));
+  EXPECT_FALSE(tour.step(idle, 200 * kTourStep_ns));
+}
+
 TEST(ExplorationTour, WaitsForMapAndPose) {
   ExplorationTour tour(config());
   EXPECT_FALSE(tour.step({}, 0));

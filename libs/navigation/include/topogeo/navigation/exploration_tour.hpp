@@ -72,6 +72,7 @@ class ExplorationTour {
   std::uint64_t next_goal_id_;
   std::optional<ExplorationTarget> target_;
   std::optional<TourGoal> goal_;
+  bool received_ = false;          // goal_, by the navigator
   std::optional<TourGoal> again_;  // next goal: the same target with another heading
   std::uint64_t judged_version_ = 0;
   std::uint64_t chosen_version_ = 0;
