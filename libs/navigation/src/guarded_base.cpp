@@ -92,6 +92,12 @@ void GuardedBase::retry() {
   retry_now();
 }
 
+void GuardedBase::stay_stuck() {
+  stuck_ = true;
+  tries_again_ = false;
+  tries_ = kTries;
+}
+
 void GuardedBase::retry_now() {
   stuck_ = false;
   tries_again_ = false;

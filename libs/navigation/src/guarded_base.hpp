@@ -58,6 +58,10 @@ class GuardedBase {
   void release() { stopped_ns_.reset(); }
   /// Allows another try of a base that was stuck.
   void retry();
+  /// The base is stuck and stands until retry().
+  [[nodiscard]] bool is_stuck() const { return stuck_ && !tries_again_; }
+  /// Stands until retry(), like a base that was found stuck and is not tried again.
+  void stay_stuck();
 
   [[nodiscard]] const CollisionGuard& guard() const { return guard_; }
 

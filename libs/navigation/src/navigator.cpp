@@ -75,6 +75,14 @@ void Navigator::resume() {
   state_->base.retry();
 }
 
+bool Navigator::is_stuck() const {
+  return state_->base.is_stuck();
+}
+
+void Navigator::stay_stuck() {
+  state_->base.stay_stuck();
+}
+
 void Navigator::add(const PoseFix& pose) {
   state_->poses.add(pose);
 }

@@ -74,6 +74,20 @@ TEST_F(GuardedBaseTest, ABaseThatDoesNotMoveIsStuckUntilItMayTryAgain) {
   EXPECT_EQ(base.halted(2 * kSecond_ns, message), HaltReason::kNone);
 }
 
+TEST_F(GuardedBaseTest, AStuckBaseStaysSoInTheNextLife) {
+  EXPECT_FALSE(base.is_stuck());
+  order_for_2_s(0);
+  EXPECT_TRUE(base.is_stuck());
+  GuardedBase next{GuardConfig{}, 2.0};
+  next.stay_stuck();
+  next.set({true, 0.4}, kSecond_ns / 10);  // a busy machine must not make it try again
+  next.set({}, kSecond_ns);
+  EXPECT_TRUE(next.is_stuck());
+  EXPECT_EQ(next.halted(kSecond_ns, message), HaltReason::kBaseStuck);
+  next.retry();
+  EXPECT_FALSE(next.is_stuck());
+}
+
 TEST_F(GuardedBaseTest, ABaseThatGetsItsOrdersLateIsTriedAgainWhenThereIsTime) {
   const MachineLoad busy{true, 0.4};
   std::int64_t now_ns = 0;

@@ -236,6 +236,16 @@ TEST_F(NavigatorHalt, BaseThatDoesNotMoveStaysStoppedUntilResumed) {
   expect_arrival();
 }
 
+TEST_F(NavigatorHalt, BaseThatWasStuckInAnEarlierLifeStaysStoppedUntilResumed) {
+  drive.go_to({6.5, 4.5});
+  drive.navigator.stay_stuck();
+  EXPECT_TRUE(drive.navigator.is_stuck());
+  EXPECT_FALSE(drive.run_until([&] { return drive.command != geometry::Velocity{}; }, 5.0));
+  EXPECT_EQ(drive.status().reason, HaltReason::kBaseStuck);
+  drive.navigator.resume();
+  expect_arrival();
+}
+
 TEST_F(NavigatorHalt, OutsideOfTheMap) {
   drive.go_to({6.5, 4.5});
   drive.robot.carry({30.0, 30.0, 0.0});

@@ -44,6 +44,10 @@ class Navigator {
   void cancel();
   void pause();
   void resume();
+  /// The base did not move when ordered to: stands until a resume or another goal.
+  [[nodiscard]] bool is_stuck() const;
+  /// Restores that state, so that another navigator does not push against what holds the base.
+  void stay_stuck();
 
   // Sensors, in any relative order; each in time order.
   void add(const PoseFix& pose);
