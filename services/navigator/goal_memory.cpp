@@ -4,7 +4,7 @@ namespace topogeo::navigator {
 
 namespace {
 
-constexpr std::uint64_t kFormat = 0x314C414F47475054;  // "TPGGOAL1": the layout of Record
+constexpr std::uint64_t kFormat = 0x324C414F47475054;  // "TPGGOAL2": the layout of Record
 
 }  // namespace
 
@@ -13,13 +13,15 @@ GoalMemory::GoalMemory(const std::filesystem::path& path) : file_(path, kFormat)
 std::optional<RememberedGoal> GoalMemory::load() const {
   const std::optional<Record> record = file_.load();
   if (!record || record->goal_id == 0) return std::nullopt;
-  return RememberedGoal{{record->goal_id, record->look_around != 0}, record->paused != 0};
+  return RememberedGoal{
+      {record->goal_id, record->look_around != 0}, record->paused != 0, record->stuck != 0};
 }
 
 void GoalMemory::store(const std::optional<RememberedGoal>& goal) {
   Record record;
   if (goal) {
-    record = {goal->order.goal_id, goal->order.look_around ? 1U : 0U, goal->paused ? 1U : 0U};
+    record = {goal->order.goal_id, goal->order.look_around ? 1U : 0U, goal->paused ? 1U : 0U,
+              goal->stuck ? 1U : 0U};
   }
   if (stored_ == record) return;
   file_.store(record);

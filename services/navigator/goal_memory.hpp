@@ -14,6 +14,7 @@ namespace topogeo::navigator {
 struct RememberedGoal {
   navigation::GoalOrder order;
   bool paused = false;
+  bool stuck = false;  ///< the base did not move when ordered to: it stands until a resume
 };
 
 class GoalMemory {
@@ -32,6 +33,7 @@ class GoalMemory {
     std::uint64_t goal_id = 0;  // 0: none
     std::uint32_t look_around = 0;
     std::uint32_t paused = 0;
+    std::uint64_t stuck = 0;
     bool operator==(const Record&) const = default;
   };
 

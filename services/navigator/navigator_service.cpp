@@ -89,15 +89,20 @@ NavigatorService::~NavigatorService() {
 void NavigatorService::resume() {
   const std::optional<RememberedGoal> goal = memory_.load();
   if (!goal) return;
-  spdlog::info("goes on with goal {}{}", goal->order.goal_id, goal->paused ? ", paused" : "");
+  spdlog::info("goes on with goal {}{}{}", goal->order.goal_id, goal->paused ? ", paused" : "",
+               goal->stuck ? ", stuck" : "");
   goal_ = goal->order;
   paused_ = goal->paused;
   navigator_.set_goal(*goal_);
   if (paused_) navigator_.pause();
+  if (goal->stuck) navigator_.stay_stuck();
 }
 
 void NavigatorService::listen_to_orders() {
-  service_.subscribe<msg::Goal>([this](const msg::Goal& goal) { on_goal(goal); });
+  // Orders are of the moment: a volatile reader gets none that a client gave before it was
+  // connected with this process, so no ended goal comes back and no old resume undoes a pause.
+  service_.subscribe<msg::Goal>([this](const msg::Goal& goal) { on_goal(goal); },
+                                {.role = "request"});
   service_.subscribe<msg::Route>([this](const msg::Route& route) { on_route(route); });
 }
 
@@ -247,7 +252,8 @@ void NavigatorService::tick() {
 }
 
 void NavigatorService::remember() {
-  memory_.store(goal_ ? std::optional(RememberedGoal{*goal_, paused_}) : std::nullopt);
+  memory_.store(goal_ ? std::optional(RememberedGoal{*goal_, paused_, navigator_.is_stuck()})
+                      : std::nullopt);
 }
 
 void NavigatorService::publish_pose() {
@@ -265,12 +271,14 @@ void NavigatorService::publish_pose() {
 
 void NavigatorService::begin_again() {
   last_ns_.fill(std::nullopt);
+  const bool stuck = navigator_.is_stuck();
   navigator_ = navigation::Navigator(service_.setup().config.config.navigator);
   if (map_) navigator_.set_map(map_, live_map_.version());
   if (!goal_) return;
   service_.status().fault("time set back", "the sensors' stamps are older than before");
   navigator_.set_goal(*goal_);
   if (paused_) navigator_.pause();
+  if (stuck) navigator_.stay_stuck();
   if (route_ && route_->goal_id() == goal_->goal_id) {
     const msg::Route route = *route_;
     on_route(route);

@@ -4,7 +4,8 @@
 // Time is that of the sensors' stamps, see StampClock. Commands go out twenty times a second while
 // the robot drives to a goal, and zeros for a second after that; then nothing, so that others may
 // drive. A goal belongs to the robot and not to the client that gave it: it survives the client
-// until it is reached, cancelled or replaced.
+// until it is reached, cancelled or replaced. A goal that has ended, or that was given before the
+// navigator was connected with its client, is not driven unless it is ordered anew.
 #pragma once
 
 #include <array>

@@ -1,6 +1,7 @@
 #include "navigator_fixture.hpp"
 
 #include <algorithm>
+#include <csignal>
 #include <future>
 #include <variant>
 
@@ -71,8 +72,11 @@ NavigatorOnRobot::NavigatorOnRobot()
                                   ++commands_;
                                   command_end_ = Clock::now() + std::chrono::milliseconds(300);
                                 });
-  loop_.add<msg::NavigatorStatus>(status_reader_, [this](const msg::NavigatorStatus& status,
-                                                         const Info&) { status_ = status; });
+  loop_.add<msg::NavigatorStatus>(status_reader_,
+                                  [this](const msg::NavigatorStatus& status, const Info& info) {
+                                    status_ = status;
+                                    navigator_writer_ = info.writer;
+                                  });
   loop_.add<msg::ServiceStatus>(service_reader_,
                                 [this](const msg::ServiceStatus& status, const Info&) {
                                   if (status.service() == "navigator") service_status_ = status;
@@ -88,13 +92,14 @@ void NavigatorOnRobot::start() {
   ASSERT_TRUE(maps_.write(messages.summary));
   status_.reset();
   service_status_.reset();
+  const messaging::Handle previous = navigator_writer_;
   std::vector<std::string> words = {"--domain", domain_, "--partition", kPartition};
   if (!memory_.empty()) words.insert(words.end(), {"--memory", memory_.string()});
   navigator_ = std::make_unique<Program>(scratch_, "navigator", words);
-  ASSERT_TRUE(wait_for("the navigator to have map and sensors", [this] {
-    return status_ && scans_.matched() > 0 && poses_.matched() > 0 &&
-           (!goals_ || goals_->matched() > 1) && routes_.matched() > 0 &&
-           counter("map_version") == static_cast<double>(kMapVersion);
+  ASSERT_TRUE(wait_for("the navigator to have map and sensors", [&] {
+    return status_ && navigator_writer_ != previous && scans_.matched() > 0 &&
+           poses_.matched() > 0 && (!goals_ || goals_->connected_with(navigator_writer_)) &&
+           routes_.matched() > 0 && counter("map_version") == static_cast<double>(kMapVersion);
   })) << navigator_->err();
 }
 
@@ -180,12 +185,26 @@ void NavigatorOnRobot::send_goal(std::uint64_t id, const Eigen::Vector2d& target
   ASSERT_TRUE(goals_->write(service::to_msg(goal, "robot", stamp_ns(), sent_++)));
 }
 
-void NavigatorOnRobot::send_order(msg::GoalKind kind, std::uint64_t id) {
+void NavigatorOnRobot::send_order(messaging::Writer<msg::Goal>& client, msg::GoalKind kind,
+                                  std::uint64_t id) {
   service::Goal order;
   order.goal_id = id;
   order.client_id = "test";
   order.kind = kind;
-  ASSERT_TRUE(goals_->write(service::to_msg(order, "robot", stamp_ns(), sent_++)));
+  ASSERT_TRUE(client.write(service::to_msg(order, "robot", stamp_ns(), sent_++)));
+}
+
+void NavigatorOnRobot::restart() {
+  navigator_->send_signal(SIGKILL);
+  ASSERT_EQ(wait_for_end(*navigator_), 128 + SIGKILL);
+  start();
+}
+
+void NavigatorOnRobot::expect_silence() {
+  constexpr std::uint64_t kNoGoal = 99;
+  const std::uint64_t before = drops("other goal");
+  send_order(msg::kGoalCancel, kNoGoal);
+  ASSERT_TRUE(wait_for("the order to be dropped", [&] { return drops("other goal") > before; }));
 }
 
 int NavigatorOnRobot::wait_for_end(Program& program) {

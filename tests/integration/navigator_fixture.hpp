@@ -42,7 +42,14 @@ class NavigatorOnRobot : public testing::Test {
   void start();
   /// Sends a goal at a point of the map frame, which is that of the world.
   void send_goal(std::uint64_t id, const Eigen::Vector2d& target_m);
-  void send_order(msg::GoalKind kind, std::uint64_t id = 0);
+  void send_order(msg::GoalKind kind, std::uint64_t id = 0) { send_order(*goals_, kind, id); }
+  /// The same from another client.
+  void send_order(messaging::Writer<msg::Goal>& client, msg::GoalKind kind, std::uint64_t id = 0);
+  /// Kills the navigator and starts the next one beside the living clients.
+  void restart();
+  /// Sends an order that the navigator drops, and waits until it has. Everything that the client
+  /// sent before has arrived by then.
+  void expect_silence();
   /// Ends the client that sent the goal.
   void lose_client() { goals_.reset(); }
   /// Makes this process publish as a planner, too.
@@ -87,7 +94,8 @@ class NavigatorOnRobot : public testing::Test {
   std::optional<msg::NavigatorStatus> status_;
   std::optional<msg::ServiceStatus> service_status_;
   std::unique_ptr<Program> navigator_;
-  std::filesystem::path memory_;  // of the navigator; empty: none
+  messaging::Handle navigator_writer_;  // of the newest status
+  std::filesystem::path memory_;        // of the navigator; empty: none
 
  private:
   void move();

@@ -2,9 +2,12 @@
 #include <chrono>
 #include <csignal>
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 
 #include "topogeo/service/conversions.hpp"
 
+#include "join.hpp"
 #include "navigator_fixture.hpp"
 
 namespace topogeo::test {
@@ -83,6 +86,89 @@ TEST_F(NavigatorOnRobot, DrivesOnToAGoalWhoseClientIsGoneInItsNextLife) {
   ASSERT_EQ(wait_for_end(*navigator_), 128 + SIGKILL);
   start();
   EXPECT_TRUE(is(msg::kNavigatorIdle)) << "the goal has been reached";
+}
+
+/// The page, which gave the goal, lives on; a terminal ends once its order is carried out.
+class NavigatorBesideClients : public NavigatorOnRobot {
+ protected:
+  NavigatorBesideClients() { memory_ = scratch_ / "goal"; }
+
+  void set_out() {
+    start();
+    connect_terminal();
+    send_goal(7, {4.5, 1.0});
+    ASSERT_TRUE(wait_for("the robot to drive", [&] { return rolls(); })) << navigator_->err();
+  }
+  void connect_terminal() {
+    if (!terminal_) terminal_.emplace(terminal_participant_);
+    ASSERT_TRUE(wait_for("the terminal to be connected",
+                         [&] { return terminal_->connected_with(navigator_writer_); }));
+  }
+  void order_from_terminal(msg::GoalKind kind) {
+    connect_terminal();
+    send_order(*terminal_, kind);
+  }
+  void pause_from_terminal() {
+    order_from_terminal(msg::kGoalPause);
+    ASSERT_TRUE(wait_for("the robot to pause",
+                         [&] { return halted(msg::kHaltPaused) && told_to_stand() && stands(); }));
+    terminal_.reset();
+  }
+
+  messaging::Participant terminal_participant_ = join(domain_, kPartition);
+  std::optional<messaging::Writer<msg::Goal>> terminal_;
+};
+
+TEST_F(NavigatorBesideClients, APauseOutlivesTheNavigatorBesideTheClientOfTheGoal) {
+  set_out();
+  pause_from_terminal();
+  restart();
+  expect_silence();
+  EXPECT_TRUE(halted(msg::kHaltPaused)) << status_->message();
+  EXPECT_EQ(status_->goal_id(), 7U);
+  EXPECT_TRUE(stands());
+  order_from_terminal(msg::kGoalResume);
+  EXPECT_TRUE(wait_for("the arrival", [&] { return is(msg::kNavigatorArrived); }))
+      << status_->message();
+}
+
+TEST_F(NavigatorBesideClients, AnOldResumeDoesNotUndoALaterPause) {
+  set_out();
+  pause_from_terminal();
+  connect_terminal();
+  send_order(msg::kGoalResume);
+  ASSERT_TRUE(wait_for("the robot to drive on", [&] { return rolls(); })) << status_->message();
+  pause_from_terminal();
+  restart();
+  expect_silence();
+  EXPECT_TRUE(halted(msg::kHaltPaused)) << status_->message();
+}
+
+TEST_F(NavigatorBesideClients, ACancelledGoalStaysCancelledInTheNextLife) {
+  set_out();
+  order_from_terminal(msg::kGoalCancel);
+  ASSERT_TRUE(wait_for("the robot to stand",
+                       [&] { return is(msg::kNavigatorIdle) && told_to_stand() && stands(); }));
+  terminal_.reset();
+  restart();
+  expect_silence();
+  EXPECT_TRUE(is(msg::kNavigatorIdle)) << status_->message();
+  EXPECT_EQ(status_->goal_id(), 0U);
+  EXPECT_TRUE(stands());
+}
+
+// After a reboot of the robot's computer there is no memory, but the client on another one lives.
+TEST_F(NavigatorBesideClients, AGoalFromBeforeAColdStartIsDrivenOnlyIfItIsGivenAnew) {
+  set_out();
+  std::filesystem::remove(memory_);
+  restart();
+  expect_silence();
+  EXPECT_TRUE(is(msg::kNavigatorIdle)) << status_->message();
+  ASSERT_TRUE(wait_for("the robot to stand", [&] { return stands(); }));
+  send_goal(8, kGoal_m);
+  EXPECT_TRUE(wait_for("the arrival", [&] { return is(msg::kNavigatorArrived); }))
+      << status_->message();
+  EXPECT_EQ(status_->goal_id(), 8U);
 }
 
 TEST_F(NavigatorOnRobot, ItsLastCommandIsToStand) {

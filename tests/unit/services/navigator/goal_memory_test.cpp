@@ -19,30 +19,31 @@ class GoalMemoryTest : public testing::Test {
 
 TEST_F(GoalMemoryTest, GivesTheNextNavigatorTheGoal) {
   EXPECT_FALSE(GoalMemory(path_).load());
-  GoalMemory(path_).store(RememberedGoal{{0xfedcba9876543210ULL, true}, true});
+  GoalMemory(path_).store(RememberedGoal{{0xfedcba9876543210ULL, true}, true, true});
   const auto read = GoalMemory(path_).load();
   ASSERT_TRUE(read);
   EXPECT_EQ(read->order.goal_id, 0xfedcba9876543210ULL);
   EXPECT_TRUE(read->order.look_around);
   EXPECT_TRUE(read->paused);
+  EXPECT_TRUE(read->stuck);
 }
 
 TEST_F(GoalMemoryTest, AGoalThatHasEndedIsNone) {
   GoalMemory memory(path_);
-  memory.store(RememberedGoal{{7, false}, false});
+  memory.store(RememberedGoal{{7, false}, false, false});
   memory.store(std::nullopt);
   EXPECT_FALSE(GoalMemory(path_).load());
 }
 
 TEST_F(GoalMemoryTest, ADamagedFileHasNone) {
-  GoalMemory(path_).store(RememberedGoal{{7, false}, false});
+  GoalMemory(path_).store(RememberedGoal{{7, false}, false, false});
   std::filesystem::resize_file(path_, std::filesystem::file_size(path_) - 1);
   EXPECT_FALSE(GoalMemory(path_).load());
 }
 
 TEST_F(GoalMemoryTest, WithoutAFileNothingIsKept) {
   GoalMemory memory({});
-  memory.store(RememberedGoal{{7, false}, false});
+  memory.store(RememberedGoal{{7, false}, false, false});
   EXPECT_FALSE(memory.load());
 }
 
