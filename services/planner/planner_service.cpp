@@ -38,6 +38,9 @@ PlannerService::PlannerService(service::Service& service)
                                    {.main_input = true});
   service.subscribe<msg::Blockages>([this](const msg::Blockages& report) { on_blockages(report); });
   service.subscribe<msg::Goal>([this](const msg::Goal& goal) { on_goal(goal); });
+  service.subscribe<msg::NavigatorStatus>([this](const msg::NavigatorStatus& status) {
+    if (goal_.take(status)) begin();
+  });
   service.loop().add_timer(kMapPeriod, [this] { take_maps(); });
   for (const char* counter :
        {"goals", "routes_found", "routes_on_branches", "routes_refused", "map_version"}) {
@@ -76,7 +79,7 @@ void PlannerService::on_blockages(const msg::Blockages& message) {
 void PlannerService::on_goal(const msg::Goal& message) {
   if (message.kind() == msg::kGoalPause || message.kind() == msg::kGoalResume) return;
   if (message.kind() == msg::kGoalCancel) {
-    if (goal_ && (message.goal_id() == 0 || message.goal_id() == goal_->goal_id())) goal_.reset();
+    goal_.cancel(message);
     return;
   }
   // A goal that the navigator refuses is answered, but the robot continues to its previous goal.
@@ -86,9 +89,13 @@ void PlannerService::on_goal(const msg::Goal& message) {
     throw std::invalid_argument(refusal.message().to_string());
   }
   service_.status().add_to_counter("goals");
-  goal_.reset();  // the previous goal needs no answer on a newer map
-  take_maps();
-  goal_ = message;
+  if (goal_.add(message)) begin();
+}
+
+void PlannerService::begin() {
+  take_map();
+  take_graph();
+  note_what_is_missing();
   plan();
 }
 
@@ -134,11 +141,12 @@ bool PlannerService::take_map() {
 }
 
 void PlannerService::plan() {
-  if (!goal_) return;
+  if (!goal_.chosen()) return;
+  const msg::Goal& goal = *goal_.chosen();
   msg::Route route;
   try {
     const pipeline::Config& config = service_.setup().config.config;
-    route = answer(*goal_, {map_.get(), graph_.get()}, pose_, blockages_.points_m,
+    route = answer(goal, {map_.get(), graph_.get()}, pose_, blockages_.points_m,
                    {config.planner, config.hybrid_planner, config.planning});
   } catch (const std::invalid_argument& error) {
     service_.status().fault("route not sent", error.what());
@@ -147,10 +155,10 @@ void PlannerService::plan() {
   const bool found = route.status() == msg::kRouteFound;
   refused_at_.reset();
   if (!found && pose_) refused_at_ = pose_->T_map_robot;
-  if (!send(*goal_, route)) return;
+  if (!send(goal, route)) return;
   on_branches_ = is_on_branches(route);
   if (on_branches_) service_.status().add_to_counter("routes_on_branches");
-  spdlog::debug("goal {}: {}", goal_->goal_id(),
+  spdlog::debug("goal {}: {}", goal.goal_id(),
                 found ? std::to_string(route.length_m()) + " m" : route.message().to_string());
 }
 

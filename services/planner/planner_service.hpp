@@ -1,5 +1,6 @@
 // Answers goals with routes on the live map, its grid and zones or its nodes and branches; answers
-// again when the map or the blockages change, or when the pose becomes known.
+// again when the map or the blockages change, or when the pose becomes known. Plans for the goal
+// that the navigator has (GoalChoice).
 #pragma once
 
 #include <cstdint>
@@ -16,6 +17,8 @@
 #include "topogeo/service/live_hybrid_map.hpp"
 #include "topogeo/service/service.hpp"
 
+#include "goal_choice.hpp"
+
 namespace topogeo::planner {
 
 /// Lives in the loop of its service.
@@ -26,6 +29,8 @@ class PlannerService {
  private:
   void on_pose(const msg::LivePose& message);
   void on_goal(const msg::Goal& message);
+  /// Plans for a goal that has just become the chosen one.
+  void begin();
   void on_blockages(const msg::Blockages& message);
   /// Takes changed complete maps from the mirrors and plans again.
   void take_maps();
@@ -43,8 +48,8 @@ class PlannerService {
   std::shared_ptr<const topomap::GlobalMap> graph_;
   std::optional<service::LivePose> pose_;
   navigation::BlockageReport blockages_;
-  bool on_branches_ = false;                   // the last answer
-  std::optional<msg::Goal> goal_;              // active
+  bool on_branches_ = false;  // the last answer
+  GoalChoice goal_;
   std::optional<geometry::Pose2> refused_at_;  // place of the last refusal
   std::uint64_t sent_ = 0;
 
