@@ -11,13 +11,17 @@ OrderInput::OrderInput(RosSide& ros, const PoseOutput& pose)
     : ros_(ros),
       pose_(pose),
       client_id_("ros_bridge-" + std::to_string(support::unrepeatable_u64())),
-      goals_(ros.service().advertise<msg::Goal>()),
+      goals_(ros.service()),
       commands_(ros.service().advertise<msg::LocalizationCommand>()) {
   const Settings& settings = ros.settings();
   if (settings.directions.goal) {
     ros.subscribe<ros::PoseStamped>(settings.topics.goal, ros::Qos::kReliable,
                                     [this](const ros::PoseStamped& message,
                                            const messaging::SampleInfo&) { on_goal(message); });
+    ros.service().subscribe<msg::NavigatorStatus>(
+        [this](const msg::NavigatorStatus&, const messaging::SampleInfo& info) {
+          goals_.note_navigator(info);
+        });
   }
   if (settings.directions.initial_pose) {
     ros.subscribe<ros::PoseWithCovarianceStamped>(
@@ -41,10 +45,8 @@ void OrderInput::on_goal(const ros::PoseStamped& message) {
   goal.goal_id = support::unrepeatable_u64() | 1U;
   goal.client_id = client_id_;
   service::Service& service = ros_.service();
-  if (!service.send(goals_, service::to_msg(goal, service.robot_id(), ros_.now_ns(), sent_++),
-                    "goal")) {
-    return;
-  }
+  if (!goals_.send(service::to_msg(goal, service.robot_id(), ros_.now_ns(), sent_++))) return;
+  if (!goals_.knows_navigator()) ros_.complain("goal not driven", "there is no navigator");
   const auto& target = std::get<Eigen::Vector2d>(goal.target);
   spdlog::info("goal {:.2f}, {:.2f}", target.x(), target.y());
   service.status().add_to_counter("goals");

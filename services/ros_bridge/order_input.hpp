@@ -7,6 +7,7 @@
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/planning.h"
 #include "topogeo/msg/trajectory.h"
+#include "topogeo/service/goal_outbox.hpp"
 
 #include "orders.hpp"
 #include "pose_output.hpp"
@@ -26,7 +27,7 @@ class OrderInput {
   RosSide& ros_;
   const PoseOutput& pose_;
   std::string client_id_;
-  messaging::Writer<msg::Goal> goals_;
+  service::GoalOutbox goals_;
   messaging::Writer<msg::LocalizationCommand> commands_;
   std::uint64_t sent_ = 0;
 };

@@ -1,0 +1,104 @@
+// Orders on their way to a navigator that is heard before it is connected, and to its next life.
+#include "topogeo/service/goal_outbox.hpp"
+
+#include <optional>
+#include <vector>
+
+#include "messaging/fixture.hpp"
+
+namespace topogeo::service {
+namespace {
+
+Setup outbox_setup(const std::string& partition) {
+  Setup setup;
+  setup.name = "web";
+  setup.options.partition = partition;
+  return setup;
+}
+
+msg::Goal order(std::uint64_t id) {
+  auto message = messaging::message<msg::Goal>();
+  message.goal_id(id);
+  return message;
+}
+
+/// A navigator takes orders as the real one does: none from before it was connected.
+struct StandInNavigator {
+  explicit StandInNavigator(const std::string& partition)
+      : participant(messaging::options_in(partition)), statuses(participant) {}
+
+  void listen() { goals.emplace(participant, messaging::ReaderOptions{.role = "request"}); }
+  std::vector<std::uint64_t> take() {
+    goals->take([this](const msg::Goal& goal, const messaging::SampleInfo& info) {
+      if (info.valid) taken.push_back(goal.goal_id());
+    });
+    return taken;
+  }
+
+  messaging::Participant participant;
+  messaging::Writer<msg::NavigatorStatus> statuses;
+  std::optional<messaging::Reader<msg::Goal>> goals;
+  std::vector<std::uint64_t> taken;
+};
+
+class GoalOutboxTest : public testing::Test {
+ protected:
+  GoalOutboxTest() {
+    service_.subscribe<msg::NavigatorStatus>(
+        [this](const msg::NavigatorStatus&, const messaging::SampleInfo& info) {
+          heard_ = info.writer;
+          outbox_.note_navigator(info);
+        },
+        {.any_robot = true});
+  }
+  bool run_until(const std::string& what, const std::function<bool()>& condition) {
+    return test::wait_in_loop(service_.loop(), what, condition);
+  }
+  /// Waits until the outbox hears another navigator than before.
+  void hear(StandInNavigator& navigator) {
+    const auto before = heard_;
+    ASSERT_TRUE(run_until("a status", [&] {
+      return navigator.statuses.write(messaging::message<msg::NavigatorStatus>()) &&
+             heard_ != before;
+    }));
+  }
+
+  std::string partition_ = messaging::random_partition();
+  Service service_{outbox_setup(partition_)};
+  GoalOutbox outbox_{service_};
+  std::optional<messaging::Handle> heard_;
+};
+
+TEST_F(GoalOutboxTest, WaitsUntilTheNavigatorIsConnected) {
+  StandInNavigator navigator(partition_);
+  EXPECT_FALSE(outbox_.knows_navigator());
+  hear(navigator);
+  EXPECT_TRUE(outbox_.knows_navigator());
+  EXPECT_TRUE(outbox_.send(order(1)));
+  EXPECT_TRUE(outbox_.send(order(2)));
+  navigator.listen();
+  EXPECT_TRUE(run_until("the newest goal", [&] {
+    return navigator.statuses.write(messaging::message<msg::NavigatorStatus>()) &&
+           !navigator.take().empty();
+  }));
+  EXPECT_EQ(navigator.taken, std::vector<std::uint64_t>{2});
+}
+
+TEST_F(GoalOutboxTest, TheNextNavigatorGetsNoOrderOfBefore) {
+  {
+    StandInNavigator gone(partition_);
+    hear(gone);
+    EXPECT_TRUE(outbox_.send(order(1)));
+  }
+  StandInNavigator next(partition_);
+  next.listen();
+  hear(next);
+  EXPECT_TRUE(outbox_.send(order(2)));
+  EXPECT_TRUE(run_until("the order to the next one", [&] {
+    return next.statuses.write(messaging::message<msg::NavigatorStatus>()) && !next.take().empty();
+  }));
+  EXPECT_EQ(next.taken, std::vector<std::uint64_t>{2});
+}
+
+}  // namespace
+}  // namespace topogeo::service
