@@ -51,8 +51,8 @@ WebService::WebService(service::Service& service, const ServerConfig& config, Pa
       robot_(service, board_, events_,
              {[this](const navigation::ScanPoints& scan) { foxglove_.take(scan); },
               [this](const msg::LivePose& pose) { foxglove_.take(pose); },
-              [this](const msg::NavigatorStatus& status) {
-                exploration_.take(status, goals_.take(status));
+              [this](const msg::NavigatorStatus& status, const messaging::SampleInfo& info) {
+                exploration_.take(status, goals_.take(status, info));
               }}),
       drive_(service, board_, events_),
       exploration_(service, goals_, events_, robot_, [this] { return explored_floor(); }),
@@ -255,12 +255,15 @@ ExploredFloor WebService::explored_floor() {
 }
 
 Answer WebService::give_goals(const std::string& body) {
-  const GoalOrders orders = parse_goals(body);
+  return give(parse_goals(body));
+}
+
+Answer WebService::give(const GoalOrders& orders) {
   std::uint64_t id = 0;
   try {
     id = goals_.add(orders);
     exploration_.stop();
-  } catch (const std::invalid_argument& error) {  // an unknown name
+  } catch (const std::invalid_argument& error) {  // an unknown name, or no navigator
     return error_answer(409, error.what());
   }
   return {202, text_of(Json{{"goal_id", std::to_string(id)}, {"waiting", goals_.waiting()}})};
@@ -272,9 +275,7 @@ Answer WebService::go_back() {
     if (const auto found = map_.find(name); found && found->place) goal.name = found->name;
   }
   if (goal.name.empty()) goal.point_m = Eigen::Vector2d(0.0, 0.0);  // the origin of the map
-  exploration_.stop();
-  const std::uint64_t id = goals_.add({{goal}, false});
-  return {202, text_of(Json{{"goal_id", std::to_string(id)}, {"waiting", 0}})};
+  return give(GoalOrders{{goal}, false});
 }
 
 Answer WebService::preview(const std::string& body) {

@@ -66,6 +66,7 @@ class WebService : private Backend {
   void answer(const Request& request, const Respond& respond);
   void obey(const Request& request, const Respond& respond);
   [[nodiscard]] Answer give_goals(const std::string& body);
+  [[nodiscard]] Answer give(const GoalOrders& orders);
   [[nodiscard]] Answer preview(const std::string& body);
   [[nodiscard]] Answer go_back();
   void cancel();

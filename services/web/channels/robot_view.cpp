@@ -38,7 +38,9 @@ RobotView::RobotView(service::Service& service, Board& board, EventLog& events, 
       {.main_input = true});
   service.subscribe<msg::Scan>([this](const msg::Scan& scan) { on_scan(scan); });
   service.subscribe<msg::NavigatorStatus>(
-      [this](const msg::NavigatorStatus& status) { on_navigator(status); });
+      [this](const msg::NavigatorStatus& status, const messaging::SampleInfo& info) {
+        on_navigator(status, info);
+      });
   service.subscribe<msg::Route>([this](const msg::Route& route) { on_route(route); });
   service.subscribe<msg::BaseStatus>([this](const msg::BaseStatus& base) { on_base(base); });
   service.subscribe<msg::LaserStatus>([this](const msg::LaserStatus& laser) { on_laser(laser); });
@@ -98,8 +100,9 @@ void RobotView::show_scan() {
   scan_.reset();
 }
 
-void RobotView::on_navigator(const msg::NavigatorStatus& status) {
-  if (hooks_.on_navigator) hooks_.on_navigator(status);
+void RobotView::on_navigator(const msg::NavigatorStatus& status,
+                             const messaging::SampleInfo& info) {
+  if (hooks_.on_navigator) hooks_.on_navigator(status, info);
   const std::string message = text_of_message(status.message());
   if (navigator_state_ != status.state()) {
     if (navigator_state_) {

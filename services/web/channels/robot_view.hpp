@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 
+#include "topogeo/messaging/events.hpp"
 #include "topogeo/msg/planning.h"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/simulation.h"
@@ -22,7 +23,7 @@ class EventLog;
 struct RobotHooks {
   std::function<void(const navigation::ScanPoints&)> on_scan;
   std::function<void(const msg::LivePose&)> on_pose;
-  std::function<void(const msg::NavigatorStatus&)> on_navigator;
+  std::function<void(const msg::NavigatorStatus&, const messaging::SampleInfo&)> on_navigator;
 };
 
 /// Lives in the loop of its service.
@@ -39,7 +40,7 @@ class RobotView {
   void on_scan(const msg::Scan& message);
   /// Shows the scan with its own pose, or without one when none has arrived in time.
   void show_scan();
-  void on_navigator(const msg::NavigatorStatus& status);
+  void on_navigator(const msg::NavigatorStatus& status, const messaging::SampleInfo& info);
   void on_route(const msg::Route& route);
   void on_base(const msg::BaseStatus& status);
   void on_laser(const msg::LaserStatus& status);

@@ -11,6 +11,7 @@ bool GoalList::add(std::deque<Goal> goals, bool append) {
   current_ = std::move(waiting_.front());
   waiting_.pop_front();
   taken_ = false;
+  missed_ = 0;
   return true;
 }
 
@@ -35,9 +36,10 @@ std::optional<GoalList::End> GoalList::take(const msg::NavigatorStatus& status) 
     return End::kArrived;
   }
   // Until the navigator takes the goal, its status refers to the previous one.
-  if (!taken_) return std::nullopt;
+  if (!taken_ && ++missed_ < kPatience) return std::nullopt;
+  const End end = taken_ ? End::kTakenOver : End::kNotTaken;
   clear();
-  return End::kTakenOver;
+  return end;
 }
 
 }  // namespace topogeo::web

@@ -19,23 +19,27 @@ struct Goal {
 
 class GoalList {
  public:
-  enum class End : std::uint8_t { kArrived, kTakenOver };
+  enum class End : std::uint8_t { kArrived, kTakenOver, kNotTaken };
 
   /// Replaces all goals, or appends to them. True when current() has changed and must be sent.
   bool add(std::deque<Goal> goals, bool append);
   void clear();
 
   /// Takes a navigator status. Returns how the current goal ended, if it did. After kArrived the
-  /// next goal is current() and must be sent; after kTakenOver, because another client gave or
-  /// cancelled a goal, none is left.
+  /// next goal is current() and must be sent. None is left after kTakenOver, because another client
+  /// gave or cancelled a goal, and after kNotTaken, because many statuses did not name it: the
+  /// navigator, or its connection, began just when the goal was sent.
   std::optional<End> take(const msg::NavigatorStatus& status);
 
   [[nodiscard]] const std::optional<Goal>& current() const { return current_; }
   [[nodiscard]] const std::deque<Goal>& waiting() const { return waiting_; }
 
  private:
+  static constexpr int kPatience = 50;  // statuses: a navigator sends at least 5 a second
+
   std::optional<Goal> current_;
   bool taken_ = false;  // by the navigator
+  int missed_ = 0;      // statuses since it was sent that do not name it
   std::deque<Goal> waiting_;
 };
 

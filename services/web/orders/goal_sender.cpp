@@ -39,7 +39,7 @@ GoalSender::GoalSender(service::Service& service, Board& board, const MapView& m
       map_(map),
       events_(events),
       client_id_(support::process_name()),
-      goals_(service.advertise<msg::Goal>()) {
+      goals_(service) {
   show();
 }
 
@@ -73,6 +73,8 @@ Goal GoalSender::make(const WantedGoal& wanted) {
 std::uint64_t GoalSender::add(const GoalOrders& orders) {
   std::deque<Goal> goals;
   for (const WantedGoal& wanted : orders.goals) goals.push_back(make(wanted));
+  if (!goals_.knows_navigator())
+    throw std::invalid_argument("no navigator is there to take the goal");
   const std::uint64_t first = goals.front().id;
   if (list_.add(std::move(goals), orders.append)) send_current();
   show();
@@ -100,36 +102,47 @@ void GoalSender::set_exploring(bool exploring) {
 void GoalSender::send_current() {
   const Goal& goal = *list_.current();
   events_.add(EventLog::Level::kInfo, "web", "goal: " + goal.text);
+  unconfirmed_.end();
   send(goal.message);
 }
 
-void GoalSender::order(msg::GoalKind kind) {
+void GoalSender::order(msg::GoalKind kind, std::uint64_t goal_id) {
   service::Goal order;
   order.client_id = client_id_;
   order.kind = kind;
+  order.goal_id = goal_id;
   send(service::to_msg(order, service_.robot_id(), 0, 0));
 }
 
 void GoalSender::send(msg::Goal message) {
   messaging::set_header(message, service_.robot_id(), support::wall_clock_ns(), sent_++);
-  service_.send(goals_, message, "goal");
+  static_cast<void>(goals_.send(message));
+}
+
+void GoalSender::insist(msg::GoalKind kind) {
+  unconfirmed_.begin(kind, list_.current() ? list_.current()->id : 0);
+  order(kind);
 }
 
 void GoalSender::pause() {
-  order(msg::kGoalPause);
+  insist(msg::kGoalPause);
 }
 
 void GoalSender::resume() {
+  unconfirmed_.end();
   order(msg::kGoalResume);
 }
 
 void GoalSender::cancel() {
+  insist(msg::kGoalCancel);
   list_.clear();
-  order(msg::kGoalCancel);
   show();
 }
 
-std::optional<GoalList::End> GoalSender::take(const msg::NavigatorStatus& status) {
+std::optional<GoalList::End> GoalSender::take(const msg::NavigatorStatus& status,
+                                              const messaging::SampleInfo& info) {
+  goals_.note_navigator(info);
+  if (const auto repeat = unconfirmed_.take(status)) order(repeat->kind, repeat->goal_id);
   const std::string text = list_.current() ? list_.current()->text : std::string();
   const auto end = list_.take(status);
   if (!end) return std::nullopt;
@@ -138,7 +151,9 @@ std::optional<GoalList::End> GoalSender::take(const msg::NavigatorStatus& status
     if (list_.current()) send_current();
   } else {
     events_.add(EventLog::Level::kWarning, "web",
-                "another client has taken the goal " + text + " away");
+                *end == GoalList::End::kNotTaken
+                    ? "the navigator has not received the goal " + text + ": give it again"
+                    : "another client has taken the goal " + text + " away");
   }
   show();
   return end;

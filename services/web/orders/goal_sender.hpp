@@ -5,13 +5,15 @@
 #include <optional>
 #include <string>
 
-#include "topogeo/messaging/writer.hpp"
+#include "topogeo/messaging/events.hpp"
 #include "topogeo/msg/planning.h"
+#include "topogeo/service/goal_outbox.hpp"
 #include "topogeo/service/service.hpp"
 
 #include "channels/map_view.hpp"
 #include "orders/goal_list.hpp"
 #include "orders/order_text.hpp"
+#include "orders/unconfirmed_order.hpp"
 #include "server/board.hpp"
 
 namespace topogeo::web {
@@ -24,15 +26,17 @@ class GoalSender {
   GoalSender(service::Service& service, Board& board, const MapView& map, EventLog& events);
 
   /// Returns the id of the first of these goals. Throws std::invalid_argument naming an unknown
-  /// place; nothing has changed then.
+  /// place, or if no navigator was heard; nothing has changed then.
   std::uint64_t add(const GoalOrders& orders);
   /// Replaces all goals by one goal of an exploration; returns its id.
   std::uint64_t send_to(const geometry::Pose2& T_map_goal, const std::string& text);
   void pause();
   void resume();
   void cancel();
-  /// How the current goal ended, if it did; the next one has then been sent.
-  std::optional<GoalList::End> take(const msg::NavigatorStatus& status);
+  /// How the current goal ended, if it did; the next one has then been sent. Sends again what the
+  /// navigator has not received.
+  std::optional<GoalList::End> take(const msg::NavigatorStatus& status,
+                                    const messaging::SampleInfo& info);
   /// Whether goals come from an exploration.
   void set_exploring(bool exploring);
 
@@ -45,7 +49,9 @@ class GoalSender {
  private:
   [[nodiscard]] Goal make(const WantedGoal& wanted);
   void send_current();
-  void order(msg::GoalKind kind);
+  void order(msg::GoalKind kind, std::uint64_t goal_id = 0);
+  /// Orders a cancel or a pause, and repeats it until the navigator has carried it out.
+  void insist(msg::GoalKind kind);
   void send(msg::Goal message);
   void show();
 
@@ -55,9 +61,10 @@ class GoalSender {
   EventLog& events_;
   std::string client_id_;
   GoalList list_;
+  UnconfirmedOrder unconfirmed_;
   bool exploring_ = false;
   std::uint64_t sent_ = 0;
-  messaging::Writer<msg::Goal> goals_;
+  service::GoalOutbox goals_;
 };
 
 }  // namespace topogeo::web

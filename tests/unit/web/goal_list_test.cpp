@@ -60,6 +60,18 @@ TEST(GoalList, AGoalThatIsCancelledElsewhereEndsAll) {
   EXPECT_TRUE(list.waiting().empty());
 }
 
+TEST(GoalList, AGoalThatTheNavigatorNeverTakesEndsAll) {
+  GoalList list;
+  list.add(goals({1, 2}), false);
+  std::optional<GoalList::End> end;
+  int statuses = 0;
+  while (!end && ++statuses < 1000) end = list.take(status(9, msg::kNavigatorDriving));
+  EXPECT_EQ(end, GoalList::End::kNotTaken);
+  EXPECT_GT(statuses, 25) << "the first ones may be older than the goal";
+  EXPECT_FALSE(list.current());
+  EXPECT_TRUE(list.waiting().empty());
+}
+
 TEST(GoalList, ABlockedGoalStays) {
   GoalList list;
   list.add(goals({1}), false);

@@ -1,0 +1,30 @@
+#include "orders/unconfirmed_order.hpp"
+
+namespace topogeo::web {
+
+void UnconfirmedOrder::begin(msg::GoalKind kind, std::uint64_t own_goal) {
+  kind_ = kind;
+  missed_ = 0;
+  goals_.clear();
+  if (own_goal != 0) goals_.insert(own_goal);
+  if (in_hand_) goals_.insert(*in_hand_);
+}
+
+std::optional<UnconfirmedOrder::Repeat> UnconfirmedOrder::take(const msg::NavigatorStatus& status) {
+  const bool known = in_hand_.has_value();
+  const bool ended =
+      status.state() == msg::kNavigatorIdle || status.state() == msg::kNavigatorArrived;
+  in_hand_ = ended ? 0 : status.goal_id();
+  if (!kind_) return std::nullopt;
+  if (!known) goals_.insert(*in_hand_);
+  const bool carried_out = *in_hand_ == 0 || !goals_.contains(*in_hand_) ||
+                           (kind_ == msg::kGoalPause && status.reason() == msg::kHaltPaused);
+  if (carried_out) {
+    kind_.reset();
+    return std::nullopt;
+  }
+  if (++missed_ % kStatuses != 0) return std::nullopt;
+  return Repeat{*kind_, *in_hand_};
+}
+
+}  // namespace topogeo::web

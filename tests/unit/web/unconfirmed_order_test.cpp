@@ -1,0 +1,87 @@
+#include "orders/unconfirmed_order.hpp"
+
+#include <gtest/gtest.h>
+
+namespace topogeo::web {
+namespace {
+
+msg::NavigatorStatus driving(std::uint64_t goal) {
+  msg::NavigatorStatus status;
+  status.goal_id(goal);
+  status.state(msg::kNavigatorDriving);
+  return status;
+}
+
+msg::NavigatorStatus idle(std::uint64_t goal = 0) {
+  msg::NavigatorStatus status;
+  status.goal_id(goal);
+  status.state(msg::kNavigatorIdle);
+  status.reason(goal == 0 ? msg::kHaltNone : msg::kHaltCancelled);
+  return status;
+}
+
+msg::NavigatorStatus paused(std::uint64_t goal) {
+  msg::NavigatorStatus status = driving(goal);
+  status.state(msg::kNavigatorStopped);
+  status.reason(msg::kHaltPaused);
+  return status;
+}
+
+/// The repeat that follows from ten such statuses, if there is one.
+std::optional<UnconfirmedOrder::Repeat> repeat_at(UnconfirmedOrder& order,
+                                                  const msg::NavigatorStatus& status) {
+  for (int i = 0; i < 10; ++i) {
+    if (const auto repeat = order.take(status)) return repeat;
+  }
+  return std::nullopt;
+}
+
+TEST(UnconfirmedOrder, ACancelIsRepeatedUntilTheGoalIsGone) {
+  UnconfirmedOrder order;
+  EXPECT_FALSE(repeat_at(order, driving(7))) << "nothing is ordered";
+  order.begin(msg::kGoalCancel, 0);
+  for (int i = 0; i < 3; ++i) {
+    const auto repeat = repeat_at(order, driving(7));
+    ASSERT_TRUE(repeat);
+    EXPECT_EQ(repeat->kind, msg::kGoalCancel);
+    EXPECT_EQ(repeat->goal_id, 7U);
+  }
+  EXPECT_FALSE(repeat_at(order, idle(7)));
+  EXPECT_FALSE(repeat_at(order, driving(7))) << "it was carried out";
+}
+
+TEST(UnconfirmedOrder, AStatusFromBeforeTheOrderNeedsNoRepeat) {
+  UnconfirmedOrder order;
+  order.begin(msg::kGoalCancel, 0);
+  EXPECT_FALSE(order.take(driving(7)));
+  EXPECT_FALSE(order.take(idle(7)));
+}
+
+TEST(UnconfirmedOrder, APauseIsRepeatedUntilTheRobotIsPaused) {
+  UnconfirmedOrder order;
+  order.begin(msg::kGoalPause, 7);
+  const auto repeat = repeat_at(order, driving(7));
+  ASSERT_TRUE(repeat);
+  EXPECT_EQ(repeat->kind, msg::kGoalPause);
+  EXPECT_FALSE(repeat_at(order, paused(7)));
+  EXPECT_FALSE(repeat_at(order, driving(7))) << "somebody has resumed";
+}
+
+TEST(UnconfirmedOrder, AnotherClientsNewerGoalIsLeftAlone) {
+  UnconfirmedOrder order;
+  static_cast<void>(order.take(driving(7)));
+  order.begin(msg::kGoalCancel, 8);
+  EXPECT_TRUE(repeat_at(order, driving(8))) << "sent before the order, taken after it";
+  EXPECT_FALSE(repeat_at(order, driving(9)));
+  EXPECT_FALSE(repeat_at(order, driving(8)));
+}
+
+TEST(UnconfirmedOrder, AGoalOrAResumeEndsIt) {
+  UnconfirmedOrder order;
+  order.begin(msg::kGoalPause, 7);
+  order.end();
+  EXPECT_FALSE(repeat_at(order, driving(7)));
+}
+
+}  // namespace
+}  // namespace topogeo::web
