@@ -105,7 +105,14 @@ void ExploreSession::record_path() {
 void ExploreSession::tick() {
   take_map();
   record_path();
-  const auto goal = tour_.step(navigator(), monotonic_ns());
+  const std::int64_t now_ns = monotonic_ns();
+  const std::int64_t last_ns = std::exchange(ticked_ns_, now_ns);
+  if (paused()) {
+    if (last_ns != 0) paused_ns_ += now_ns - last_ns;
+    progress_.show(*client_.status(), support::monotonic_s());
+    return;
+  }
+  const auto goal = tour_.step(navigator(), now_ns - paused_ns_);
   if (goal) {
     goal_id_ = goal->goal_id;
     service::Goal order;

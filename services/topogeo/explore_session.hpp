@@ -52,6 +52,10 @@ class ExploreSession {
   void take_map();
   void record_path();
   [[nodiscard]] navigation::NavigatorStatus navigator() const;
+  /// Whether somebody has paused the goal: the next one would drive on.
+  [[nodiscard]] bool paused() const {
+    return client_.taken() && client_.status()->reason == navigation::HaltReason::kPaused;
+  }
   [[nodiscard]] bool is_own(const auto& message) const {
     return message.robot_id() == robot_id_.c_str();
   }
@@ -66,6 +70,8 @@ class ExploreSession {
   std::shared_ptr<const topomap::GlobalMap> graph_;
   std::shared_ptr<const planning::HybridMap> map_;
   std::uint64_t goal_id_ = 0;  // number given by the tour
+  std::int64_t ticked_ns_ = 0;
+  std::int64_t paused_ns_ = 0;  // time that does not count
   std::optional<msg::LivePose> pose_;
   std::vector<Eigen::Vector2d> path_m_;  // map frame
   double driven_m_ = 0.0;

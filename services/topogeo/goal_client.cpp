@@ -66,6 +66,7 @@ void GoalClient::listen() {
       [this](const msg::ServiceStatus& status, const SampleInfo& info) {
         if (is_own(status) && status.state() != msg::kServiceStopped) {
           services_.update(status, info);
+          programs_[status.service().to_string()] = info.writer;
           note_busy();
         }
       },
@@ -106,7 +107,7 @@ std::string GoalClient::too_busy() const {
 std::string GoalClient::missing() const {
   std::string names;
   for (const char* name : {"planner", "navigator"}) {
-    if (services_.find(name) == nullptr)
+    if (services_.find(name) == nullptr || !goals_.connected_with(programs_.at(name)))
       names += (names.empty() ? "" : " and no ") + std::string(name);
   }
   return names;

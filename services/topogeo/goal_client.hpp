@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -29,7 +30,8 @@ class GoalClient {
   GoalClient(const GoalClient&) = delete;
   GoalClient& operator=(const GoalClient&) = delete;
 
-  /// The missing ones of the robot's planner and navigator; empty: both are there.
+  /// The missing ones of the robot's planner and navigator; empty: both are there and get what is
+  /// sent. A navigator takes no order from before it was connected.
   [[nodiscard]] std::string missing() const;
 
   /// "the robot's machine is too busy: the CPU is short for navigator" during that; else empty.
@@ -72,6 +74,7 @@ class GoalClient {
   std::optional<navigation::NavigatorStatus> status_;
   std::optional<msg::Route> route_;
   ServiceTable services_;
+  std::map<std::string, messaging::Handle> programs_;  // of these services, by their names
 
   messaging::EventLoop& loop_;
   messaging::Writer<msg::Goal> goals_;
