@@ -199,7 +199,7 @@ void BaseDriver::take(const McpEvent& event, std::int64_t now_ns) {
 
 /// A pressed bumper has stopped the base, which has not lost its power.
 void BaseDriver::bump(std::uint16_t active_low, std::int64_t now_ns) {
-  if (!interlocks_.bumpers(active_low, now_ns)) return;
+  if (!interlocks_.bumpers(active_low, motion_.aim().linear_mps, now_ns)) return;
   monitor_.forget_power();
   stand_again(now_ns);
 }
@@ -241,7 +241,7 @@ bool BaseDriver::command(double linear_mps, double angular_radps, std::int64_t v
   finite("linear_mps", linear_mps);
   finite("angular_radps", angular_radps);
   if (linear_mps != 0.0 || angular_radps != 0.0) {
-    if (!accept_motion(now_ns)) return false;
+    if (interlocks_.pushes(linear_mps) || !accept_motion(now_ns)) return false;
     term_.start_velocity(valid_until_ns, now_ns);
   } else {
     interlocks_.standing_taken();
@@ -272,7 +272,7 @@ void BaseDriver::judge_again(std::int64_t now_ns) {
 
 bool BaseDriver::advance(double distance_m, std::int64_t valid_until_ns, std::int64_t now_ns) {
   finite("distance_m", distance_m);
-  if (!accept_motion(now_ns)) return false;
+  if (interlocks_.pushes(distance_m) || !accept_motion(now_ns)) return false;
   motion_.want_distance(distance_m);
   start_relative(valid_until_ns, now_ns);
   return true;

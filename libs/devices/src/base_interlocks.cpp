@@ -72,12 +72,13 @@ bool BaseInterlocks::joystick(bool moves) {
   return moves && !moved;
 }
 
-bool BaseInterlocks::bumpers(std::uint16_t active_low, std::int64_t now_ns) {
+bool BaseInterlocks::bumpers(std::uint16_t active_low, double linear_mps, std::int64_t now_ns) {
   const auto pressed = static_cast<std::uint16_t>(~active_low);
   const bool more = (pressed & ~pressed_) != 0;
   pressed_ = pressed;
   if (!more) return false;
   bump_latched_ = true;
+  bump_mps_ = linear_mps;
   last_motion_command_ns_ = now_ns;
   return true;
 }

@@ -30,9 +30,9 @@ TEST_F(BaseInterlocksTest, AStopHoldsUntilItIsReleased) {
 }
 
 TEST_F(BaseInterlocksTest, ABumpHoldsAsLongAsTheCommandsThatLedToIt) {
-  EXPECT_FALSE(interlocks_.bumpers(kNoBumper, 0));
-  EXPECT_TRUE(interlocks_.bumpers(kFirstBumper, 0));
-  EXPECT_FALSE(interlocks_.bumpers(kFirstBumper, 0)) << "the same switch again";
+  EXPECT_FALSE(interlocks_.bumpers(kNoBumper, 0.3, 0));
+  EXPECT_TRUE(interlocks_.bumpers(kFirstBumper, 0.3, 0));
+  EXPECT_FALSE(interlocks_.bumpers(kFirstBumper, 0.3, 0)) << "the same switch again";
   EXPECT_EQ(interlocks_.pressed(), 1U);
   interlocks_.motion_commanded(300'000'000);
   interlocks_.tick(500'000'000);
@@ -41,7 +41,7 @@ TEST_F(BaseInterlocksTest, ABumpHoldsAsLongAsTheCommandsThatLedToIt) {
   interlocks_.tick(800'000'000);
   EXPECT_FALSE(interlocks_.engaged()) << "backing off is free";
   EXPECT_EQ(interlocks_.state(), BaseState::kBumped) << "a switch is pressed";
-  EXPECT_FALSE(interlocks_.bumpers(kNoBumper, 0));
+  EXPECT_FALSE(interlocks_.bumpers(kNoBumper, 0.3, 0));
   EXPECT_EQ(interlocks_.state(), std::nullopt);
   EXPECT_EQ(interlocks_.due_ns(), std::numeric_limits<std::int64_t>::max());
 }
@@ -62,7 +62,7 @@ TEST_F(BaseInterlocksTest, AnExpiryOfTheWatchdogHoldsNothingAndPasses) {
 }
 
 TEST_F(BaseInterlocksTest, ACommandToStandEndsABumpAndMotionEndsAFault) {
-  EXPECT_TRUE(interlocks_.bumpers(kFirstBumper, 0));
+  EXPECT_TRUE(interlocks_.bumpers(kFirstBumper, 0.3, 0));
   interlocks_.standing_taken();
   EXPECT_FALSE(interlocks_.engaged());
   EXPECT_TRUE(interlocks_.motor_event(McpEventKind::kRotateCurrent));
@@ -83,6 +83,22 @@ TEST_F(BaseInterlocksTest, StopsOfAnEarlierProcessHoldUntilTheRelease) {
   interlocks_.release();
   EXPECT_FALSE(interlocks_.engaged());
   EXPECT_EQ(interlocks_.held(), (HeldStops{false, false}));
+}
+
+TEST_F(BaseInterlocksTest, NothingPushesWhileABumperIsPressed) {
+  EXPECT_TRUE(interlocks_.bumpers(kFirstBumper, 0.3, 0));
+  interlocks_.standing_taken();
+  EXPECT_TRUE(interlocks_.pushes(0.1));
+  EXPECT_FALSE(interlocks_.pushes(-0.1));
+  EXPECT_FALSE(interlocks_.pushes(0.0)) << "a turn on the spot";
+  interlocks_.bumpers(kNoBumper, 0.0, 1);
+  EXPECT_FALSE(interlocks_.pushes(0.1));
+  EXPECT_TRUE(interlocks_.bumpers(kFirstBumper, -0.2, 2));
+  EXPECT_TRUE(interlocks_.pushes(-0.1));
+  EXPECT_FALSE(interlocks_.pushes(0.1));
+  interlocks_.bumpers(kNoBumper, 0.0, 3);
+  EXPECT_TRUE(interlocks_.bumpers(kFirstBumper, 0.0, 4)) << "pressed while it stands";
+  EXPECT_FALSE(interlocks_.pushes(0.1));
 }
 
 TEST_F(BaseInterlocksTest, OnlyEventsOfTheMotorsAreFaults) {

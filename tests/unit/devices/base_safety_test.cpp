@@ -220,6 +220,8 @@ TEST_P(BaseSafetyOn, ABumpStopsAndTheWayBackIsFreeToWhoeverNoticed) {
   EXPECT_TRUE(all.base.stands());
   all.drive(0.0, 0.0, kSecond);
   EXPECT_TRUE(all.driver.status().commands_taken);
+  all.drive(0.2, 0.0, kSecond);
+  EXPECT_TRUE(all.base.stands()) << "it would push";
   all.drive(-0.2, 0.0, kSecond);
   EXPECT_LT(all.base.mcp.commanded_velocity().linear_m_per_s, -0.1);
   EXPECT_EQ(all.driver.status().state, BaseState::kBumped);

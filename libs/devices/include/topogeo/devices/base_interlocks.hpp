@@ -56,7 +56,13 @@ class BaseInterlocks {
   /// Bumpers of a report or an event, 0 if pressed. True if one more is pressed than before: then
   /// the base has to stop, because going on would push. After a pause in the commands it may move
   /// again, for example to back off.
-  bool bumpers(std::uint16_t active_low, std::int64_t now_ns);
+  /// `linear_mps`: the motion at that moment. Going on in its direction stays refused while a
+  /// bumper is pressed, see pushes().
+  bool bumpers(std::uint16_t active_low, double linear_mps, std::int64_t now_ns);
+  /// Motion with this velocity would push against what presses the bumper.
+  [[nodiscard]] bool pushes(double linear_mps) const {
+    return pressed_ != 0 && linear_mps * bump_mps_ > 0.0;
+  }
   /// A bit for each switch that is pressed.
   [[nodiscard]] std::uint16_t pressed() const { return pressed_; }
 
@@ -80,6 +86,7 @@ class BaseInterlocks {
   bool bump_latched_ = false;
   bool joystick_ = false;
   std::uint16_t pressed_ = 0;
+  double bump_mps_ = 0.0;  // when the last bumper was pressed
   std::int64_t last_motion_command_ns_ = 0;
   std::string_view motor_fault_{};
 };
