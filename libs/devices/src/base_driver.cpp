@@ -228,9 +228,9 @@ bool BaseDriver::commands_taken() const {
   return link_.running() && !interlocks_.engaged() && !monitor_.joystick();
 }
 
-bool BaseDriver::accept_motion(std::int64_t now_ns) {
+bool BaseDriver::accept_motion(double linear_mps, std::int64_t now_ns) {
   interlocks_.motion_commanded(now_ns);
-  if (!commands_taken()) return false;
+  if (!commands_taken() || interlocks_.pushes(linear_mps)) return false;
   interlocks_.motion_taken();
   term_.clear();
   return true;
@@ -241,7 +241,7 @@ bool BaseDriver::command(double linear_mps, double angular_radps, std::int64_t v
   finite("linear_mps", linear_mps);
   finite("angular_radps", angular_radps);
   if (linear_mps != 0.0 || angular_radps != 0.0) {
-    if (interlocks_.pushes(linear_mps) || !accept_motion(now_ns)) return false;
+    if (!accept_motion(linear_mps, now_ns)) return false;
     term_.start_velocity(valid_until_ns, now_ns);
   } else {
     interlocks_.standing_taken();
@@ -272,7 +272,7 @@ void BaseDriver::judge_again(std::int64_t now_ns) {
 
 bool BaseDriver::advance(double distance_m, std::int64_t valid_until_ns, std::int64_t now_ns) {
   finite("distance_m", distance_m);
-  if (interlocks_.pushes(distance_m) || !accept_motion(now_ns)) return false;
+  if (!accept_motion(distance_m, now_ns)) return false;
   motion_.want_distance(distance_m);
   start_relative(valid_until_ns, now_ns);
   return true;
@@ -280,7 +280,7 @@ bool BaseDriver::advance(double distance_m, std::int64_t valid_until_ns, std::in
 
 bool BaseDriver::turn(double angle_rad, std::int64_t valid_until_ns, std::int64_t now_ns) {
   finite("angle_rad", angle_rad);
-  if (!accept_motion(now_ns)) return false;
+  if (!accept_motion(0.0, now_ns)) return false;
   motion_.want_turn(angle_rad);
   start_relative(valid_until_ns, now_ns);
   return true;

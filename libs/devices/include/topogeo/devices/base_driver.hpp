@@ -99,7 +99,7 @@ class BaseDriver final : public SerialDriver {
   void check_motion(std::int64_t now_ns);
 
   [[nodiscard]] bool commands_taken() const;
-  [[nodiscard]] bool accept_motion(std::int64_t now_ns);
+  [[nodiscard]] bool accept_motion(double linear_mps, std::int64_t now_ns);
   void start_relative(std::int64_t valid_until_ns, std::int64_t now_ns);
   void aim_changed(std::int64_t now_ns);
   [[nodiscard]] BaseVelocity guarded(std::int64_t now_ns);
