@@ -34,7 +34,11 @@ geometry::Velocity NavigationStep::step(std::int64_t at_ns) {
   status.busy_machine = false;
   locate();
   surroundings.update(status.T_map_robot ? routes.space() : nullptr, poses.keeper(), now_ns);
-  if (goal.arrived()) return stop(NavigatorState::kArrived, HaltReason::kNone, status.message);
+  if (goal.arrived()) {
+    // A list of goals or an exploration goes on after a resume.
+    return stop(NavigatorState::kArrived, goal.paused() ? HaltReason::kPaused : HaltReason::kNone,
+                status.message);
+  }
   if (!goal.order()) {
     return goal.cancelled() ? stop(NavigatorState::kIdle, HaltReason::kCancelled, "cancelled")
                             : stop(NavigatorState::kIdle, HaltReason::kNone, "no goal");

@@ -30,6 +30,7 @@ std::optional<GoalList::End> GoalList::take(const msg::NavigatorStatus& status) 
       return End::kTakenOver;
     }
     if (status.state() != msg::kNavigatorArrived) return std::nullopt;
+    if (status.reason() == msg::kHaltPaused && !waiting_.empty()) return std::nullopt;
     current_.reset();
     taken_ = false;
     static_cast<void>(add({}, true));

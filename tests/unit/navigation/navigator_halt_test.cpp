@@ -145,10 +145,24 @@ TEST_F(NavigatorHalt, PausedAndResumed) {
   expect_arrival();
 }
 
+TEST_F(NavigatorHalt, APauseAtTheGoalIsReported) {
+  drive_off();
+  expect_arrival();
+  EXPECT_EQ(drive.status().reason, HaltReason::kNone);
+  drive.navigator.pause();
+  drive.step();
+  EXPECT_EQ(drive.status().state, NavigatorState::kArrived);
+  EXPECT_EQ(drive.status().reason, HaltReason::kPaused);
+  drive.navigator.resume();
+  drive.step();
+  EXPECT_EQ(drive.status().state, NavigatorState::kArrived);
+  EXPECT_EQ(drive.status().reason, HaltReason::kNone);
+}
+
 TEST_F(NavigatorHalt, PoseLostIsZeroInTheSameStep) {
   drive_off();
   drive.tracking = false;
-  // Poses come every fourth step; the step that receives it outputs exactly zero.
+  // Poses come every fourth step; the step that receives the lost one commands exactly zero.
   while (drive.status().reason == HaltReason::kNone) drive.step();
   EXPECT_EQ(drive.command, geometry::Velocity{});
   EXPECT_FALSE(drive.status().T_map_robot);

@@ -34,6 +34,17 @@ TEST(GoalList, GoesFromOneToTheNext) {
   EXPECT_FALSE(list.current());
 }
 
+TEST(GoalList, APauseAtAGoalHoldsTheNextOneBack) {
+  GoalList list;
+  list.add(goals({1, 2}), false);
+  EXPECT_EQ(list.take(status(1, msg::kNavigatorArrived, msg::kHaltPaused)), std::nullopt);
+  EXPECT_EQ(list.current()->id, 1U);
+  EXPECT_EQ(list.take(status(1, msg::kNavigatorArrived)), GoalList::End::kArrived) << "resumed";
+  EXPECT_EQ(list.current()->id, 2U);
+  EXPECT_EQ(list.take(status(2, msg::kNavigatorArrived, msg::kHaltPaused)), GoalList::End::kArrived)
+      << "nothing waits";
+}
+
 TEST(GoalList, ANewGoalTakesThePlaceOfAll) {
   GoalList list;
   list.add(goals({1, 2}), false);
