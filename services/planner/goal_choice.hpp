@@ -23,6 +23,9 @@ class GoalChoice {
   /// Takes the navigator's status. True: another goal is the chosen one, and needs a route.
   bool take(const msg::NavigatorStatus& status);
 
+  /// There is no navigator any more: the newest goal counts again.
+  void lose_navigator() { in_hand_.reset(); }
+
   /// Empty: no route is needed.
   [[nodiscard]] const std::optional<msg::Goal>& chosen() const { return chosen_; }
 

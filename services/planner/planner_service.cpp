@@ -38,9 +38,11 @@ PlannerService::PlannerService(service::Service& service)
                                    {.main_input = true});
   service.subscribe<msg::Blockages>([this](const msg::Blockages& report) { on_blockages(report); });
   service.subscribe<msg::Goal>([this](const msg::Goal& goal) { on_goal(goal); });
-  service.subscribe<msg::NavigatorStatus>([this](const msg::NavigatorStatus& status) {
-    if (goal_.take(status)) begin();
-  });
+  service.subscribe<msg::NavigatorStatus>(
+      [this](const msg::NavigatorStatus& status) {
+        if (goal_.take(status)) begin();
+      },
+      {}, [this](const messaging::SampleInfo&) { goal_.lose_navigator(); });
   service.loop().add_timer(kMapPeriod, [this] { take_maps(); });
   for (const char* counter :
        {"goals", "routes_found", "routes_on_branches", "routes_refused", "map_version"}) {

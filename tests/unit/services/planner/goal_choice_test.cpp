@@ -81,6 +81,16 @@ TEST(GoalChoice, AGoalThatOnlyTheNavigatorKnowsNeedsItsClient) {
   EXPECT_TRUE(choice.add(goal(9)));
 }
 
+TEST(GoalChoice, TheNewestGoalCountsAgainWhenTheNavigatorIsGone) {
+  GoalChoice choice;
+  choice.add(goal(1));
+  choice.take(navigator(1, msg::kNavigatorDriving));
+  EXPECT_FALSE(choice.add(goal(2)));
+  choice.lose_navigator();
+  EXPECT_TRUE(choice.add(goal(3)));
+  EXPECT_EQ(chosen(choice), 3U);
+}
+
 TEST(GoalChoice, KeepsTheNewestGoals) {
   GoalChoice choice;
   choice.take(navigator(0, msg::kNavigatorIdle));
