@@ -45,6 +45,10 @@ void OrderInput::on_goal(const ros::PoseStamped& message) {
   goal.goal_id = support::unrepeatable_u64() | 1U;
   goal.client_id = client_id_;
   service::Service& service = ros_.service();
+  if (goals_.knows_navigator() && !goals_.has_navigator()) {
+    ros_.complain("goal not driven", "the navigator is gone");
+    return;
+  }
   if (!goals_.send(service::to_msg(goal, service.robot_id(), ros_.now_ns(), sent_++))) return;
   if (!goals_.knows_navigator()) ros_.complain("goal not driven", "there is no navigator");
   const auto& target = std::get<Eigen::Vector2d>(goal.target);

@@ -117,16 +117,17 @@ Answer WebService::info(const Request& request) const {
 }
 
 void WebService::hand_over(Request request, Respond respond) {
-  requests_.push(std::move(request), std::move(respond));
-  post([this] { work_off_requests(); });
+  if (requests_.push(std::move(request), std::move(respond))) {
+    post([this] { work_off_requests(); });
+  }
 }
 
 void WebService::stop(Respond respond) {
   hand_.stop(std::move(respond));
-  post([this] { cancel(); });
+  hand_over({true, "/api/cancel", {}, "{}", true}, [](const Answer&) {});
 }
 
-// Queued after earlier orders, so that a released robot has no goal from before its stop. The body
+// Queued after the cancel of its stop, so that a released robot has no goal from before. The body
 // is the number of stops that it releases.
 void WebService::release_stop(Respond respond) {
   hand_over({true, "/api/release", {}, std::to_string(hand_.stops()), true}, std::move(respond));
@@ -169,9 +170,9 @@ void WebService::show_limits(bool anew) {
 }
 
 void WebService::work_off_requests() {
-  const std::deque<RequestQueue::Entry> requests = requests_.take();
-  if (!requests_.empty()) post([this] { work_off_requests(); });
-  for (const auto& [request, respond] : requests) {
+  const RequestQueue::Turn turn = requests_.take();
+  if (turn.more) post([this] { work_off_requests(); });
+  for (const auto& [request, respond] : turn.requests) {
     try {
       answer(request, respond);
     } catch (const std::invalid_argument& error) {

@@ -14,8 +14,12 @@ bool GoalOutbox::send(const msg::Goal& message) {
 }
 
 void GoalOutbox::note_navigator(const messaging::SampleInfo& status) {
-  if (navigator_ && *navigator_ != status.writer) waiting_.clear();
+  if (navigator_ && *navigator_ != status.writer) {
+    waiting_.clear();
+    was_connected_ = false;
+  }
   navigator_ = status.writer;
+  was_connected_ = was_connected_ || goals_.connected_with(status.writer);
   static_cast<void>(flush());
 }
 

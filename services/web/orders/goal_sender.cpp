@@ -73,7 +73,7 @@ Goal GoalSender::make(const WantedGoal& wanted) {
 std::uint64_t GoalSender::add(const GoalOrders& orders) {
   std::deque<Goal> goals;
   for (const WantedGoal& wanted : orders.goals) goals.push_back(make(wanted));
-  if (!goals_.knows_navigator())
+  if (!goals_.has_navigator())
     throw std::invalid_argument("no navigator is there to take the goal");
   const std::uint64_t first = goals.front().id;
   if (list_.add(std::move(goals), orders.append)) send_current();
@@ -144,12 +144,15 @@ std::optional<GoalList::End> GoalSender::take(const msg::NavigatorStatus& status
   goals_.note_navigator(info);
   if (const auto repeat = unconfirmed_.take(status)) order(repeat->kind, repeat->goal_id);
   const std::string text = list_.current() ? list_.current()->text : std::string();
+  const std::uint64_t id = list_.current() ? list_.current()->id : 0;
   const auto end = list_.take(status);
   if (!end) return std::nullopt;
   if (*end == GoalList::End::kArrived) {
     events_.add(EventLog::Level::kInfo, "web", "arrived: " + text);
     if (list_.current()) send_current();
   } else {
+    // It may still be on its way.
+    if (*end == GoalList::End::kNotTaken) order(msg::kGoalCancel, id);
     events_.add(EventLog::Level::kWarning, "web",
                 *end == GoalList::End::kNotTaken
                     ? "the navigator has not received the goal " + text + ": give it again"

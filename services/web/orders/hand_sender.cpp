@@ -108,6 +108,8 @@ void HandSender::on_base(const msg::BaseStatus& base, const messaging::Handle& w
   if (!stop_wanted_) return;
   if (base.state() == msg::kBaseHalted || base.state() == msg::kBaseEmergencyStop) {
     stopped_base_ = writer;
+  } else if (base.state() == msg::kBaseOffline || base.state() == msg::kBaseStarting) {
+    return;  // its stop is not reported meanwhile
   } else if (stopped_base_ == writer) {
     stop_wanted_ = false;  // another operator has released it
   } else {

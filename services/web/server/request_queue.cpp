@@ -2,25 +2,23 @@
 
 namespace topogeo::web {
 
-void RequestQueue::push(Request request, Respond respond) {
+bool RequestQueue::push(Request request, Respond respond) {
   const std::scoped_lock lock(mutex_);
+  const bool was_empty = authorized_.empty() && others_.empty();
   std::deque<Entry>& queue = request.authorized ? authorized_ : others_;
   queue.emplace_back(std::move(request), std::move(respond));
+  return was_empty;
 }
 
-std::deque<RequestQueue::Entry> RequestQueue::take() {
+RequestQueue::Turn RequestQueue::take() {
   const std::scoped_lock lock(mutex_);
-  std::deque<Entry> taken = std::exchange(authorized_, {});
+  Turn turn{std::exchange(authorized_, {})};
   if (!others_.empty()) {
-    taken.push_back(std::move(others_.front()));
+    turn.requests.push_back(std::move(others_.front()));
     others_.pop_front();
   }
-  return taken;
-}
-
-bool RequestQueue::empty() const {
-  const std::scoped_lock lock(mutex_);
-  return authorized_.empty() && others_.empty();
+  turn.more = !others_.empty();
+  return turn;
 }
 
 }  // namespace topogeo::web

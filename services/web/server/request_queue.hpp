@@ -9,20 +9,25 @@
 
 namespace topogeo::web {
 
-/// Requests with the operator's token come first, in their order. The others come one at a time, so
-/// that between two of them the loop does everything else: strangers hold up neither orders nor the
+/// Requests with the operator's token come first, in their order. The others come one in each turn
+/// of the loop, which does everything else in between: strangers hold up neither orders nor the
 /// watchdog. Thread-safe.
 class RequestQueue {
  public:
   using Entry = std::pair<Request, Respond>;
 
-  void push(Request request, Respond respond);
+  struct Turn {
+    std::deque<Entry> requests;
+    bool more = false;  ///< take() has to be called once more
+  };
+
+  /// True if the queue was empty: take() has to be called.
+  [[nodiscard]] bool push(Request request, Respond respond);
   /// All requests with the token and at most one without it.
-  [[nodiscard]] std::deque<Entry> take();
-  [[nodiscard]] bool empty() const;
+  [[nodiscard]] Turn take();
 
  private:
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   std::deque<Entry> authorized_;
   std::deque<Entry> others_;
 };

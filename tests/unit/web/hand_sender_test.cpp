@@ -111,6 +111,9 @@ TEST_F(HandSenderTest, AStopHoldsForAGatewayThatStartsAgain) {
       return base_noted_ && hand_.stop() && base.halts() > 0;
     }));
     base.report(msg::kBaseHalted);
+    base.report(msg::kBaseOffline);
+    base_noted_ = false;
+    ASSERT_TRUE(run_until("the last status", [&] { return base_noted_; }));
   }
   LivingBase again(partition_);
   ASSERT_TRUE(run_until("the gateway that has started again", [&] { return again.connected(); }));

@@ -17,27 +17,30 @@ Request request(const std::string& path, bool authorized) {
   return request;
 }
 
-std::vector<std::string> paths_of(RequestQueue& queue) {
+bool push(RequestQueue& queue, const std::string& path, bool authorized) {
+  return queue.push(request(path, authorized), [](const Answer&) {});
+}
+
+std::vector<std::string> paths_of(const RequestQueue::Turn& turn) {
   std::vector<std::string> paths;
-  for (const auto& [one, respond] : queue.take()) paths.push_back(one.path);
+  for (const auto& [one, respond] : turn.requests) paths.push_back(one.path);
   return paths;
 }
 
-TEST(RequestQueue, StrangersWaitForOrdersAndComeOneAtATime) {
+TEST(RequestQueue, StrangersWaitForOrdersAndComeOneAtATurn) {
   RequestQueue queue;
-  EXPECT_TRUE(queue.empty());
-  for (const char* path : {"shapes 1", "shapes 2", "shapes 3"}) {
-    queue.push(request(path, false), [](const Answer&) {});
-  }
-  queue.push(request("goal", true), [](const Answer&) {});
-  queue.push(request("release", true), [](const Answer&) {});
-  EXPECT_THAT(paths_of(queue), ElementsAre("goal", "release", "shapes 1"));
-  EXPECT_FALSE(queue.empty());
-  EXPECT_THAT(paths_of(queue), ElementsAre("shapes 2"));
-  queue.push(request("pause", true), [](const Answer&) {});
-  EXPECT_THAT(paths_of(queue), ElementsAre("pause", "shapes 3"));
-  EXPECT_TRUE(queue.empty());
-  EXPECT_THAT(paths_of(queue), ElementsAre());
+  EXPECT_TRUE(push(queue, "shapes 1", false)) << "the first one wakes the loop";
+  EXPECT_FALSE(push(queue, "shapes 2", false));
+  EXPECT_FALSE(push(queue, "goal", true));
+  EXPECT_FALSE(push(queue, "release", true));
+  RequestQueue::Turn turn = queue.take();
+  EXPECT_THAT(paths_of(turn), ElementsAre("goal", "release", "shapes 1"));
+  EXPECT_TRUE(turn.more);
+  EXPECT_FALSE(push(queue, "pause", true)) << "another turn is to come";
+  turn = queue.take();
+  EXPECT_THAT(paths_of(turn), ElementsAre("pause", "shapes 2"));
+  EXPECT_FALSE(turn.more);
+  EXPECT_TRUE(push(queue, "shapes 3", false));
 }
 
 }  // namespace

@@ -74,6 +74,7 @@ TEST_F(GoalOutboxTest, WaitsUntilTheNavigatorIsConnected) {
   EXPECT_FALSE(outbox_.knows_navigator());
   hear(navigator);
   EXPECT_TRUE(outbox_.knows_navigator());
+  EXPECT_TRUE(outbox_.has_navigator()) << "about to be connected";
   EXPECT_TRUE(outbox_.send(order(1)));
   EXPECT_TRUE(outbox_.send(order(2)));
   navigator.listen();
@@ -81,6 +82,7 @@ TEST_F(GoalOutboxTest, WaitsUntilTheNavigatorIsConnected) {
     return navigator.statuses.write(messaging::message<msg::NavigatorStatus>()) &&
            !navigator.take().empty();
   }));
+  EXPECT_TRUE(outbox_.has_navigator());
   EXPECT_EQ(navigator.taken, std::vector<std::uint64_t>{2});
 }
 

@@ -26,8 +26,12 @@ class GoalOutbox {
   /// Takes the information of each status of the navigator.
   void note_navigator(const messaging::SampleInfo& status);
 
-  /// Whether a navigator was heard.
+  /// Whether a navigator was heard, which may be gone since.
   [[nodiscard]] bool knows_navigator() const { return navigator_.has_value(); }
+  /// Whether it gets what is sent now: it is connected, or was heard and is about to be.
+  [[nodiscard]] bool has_navigator() const {
+    return navigator_ && (!was_connected_ || goals_.connected_with(*navigator_));
+  }
 
  private:
   bool flush();
@@ -35,7 +39,8 @@ class GoalOutbox {
   Service& service_;
   messaging::Writer<msg::Goal> goals_;
   std::optional<messaging::Handle> navigator_;  // the writer of its newest status
-  std::deque<msg::Goal> waiting_;               // for its connection
+  bool was_connected_ = false;
+  std::deque<msg::Goal> waiting_;  // for its connection
 };
 
 }  // namespace topogeo::service
