@@ -58,9 +58,10 @@ void RecordFileBytes::store(std::span<const std::byte> bytes) const {
   if (!file_.is_open()) return;
   const std::string out =
       framed(format_, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
-  if (::pwrite(file_.get(), out.data(), out.size(), 0) != static_cast<ssize_t>(out.size())) {
-    static_cast<void>(::ftruncate(file_.get(), 0));  // a partial record must not remain
-  }
+  const ssize_t written = ::pwrite(file_.get(), out.data(), out.size(), 0);
+  // Neither a partial record nor the end of a longer file may remain.
+  const bool whole = written == static_cast<ssize_t>(out.size());
+  static_cast<void>(::ftruncate(file_.get(), whole ? written : 0));
 }
 
 }  // namespace topogeo::support
