@@ -122,9 +122,9 @@ TEST_F(TwoRobotsTest, GoOnInOneMapWhenALocalMapperIsKilled) {
   const storage::MapDocument map = stored_map();
   EXPECT_EQ(map.trajectory.stops.size(), map.local_maps.size());
   for (const std::string robot : {"a", "b"}) {
+    const auto stops = std::ranges::count(map.local_maps, robot, &topomap::LocalMap::robot_id);
     // The other robot may have come to its end before.
-    EXPECT_GE(std::ranges::count(map.local_maps, robot, &topomap::LocalMap::robot_id),
-              newest_[robot].session_stops());
+    EXPECT_GE(stops, newest_[robot].session_stops() + (robot == "b" ? 1 : 0));
   }
   EXPECT_LT(error_m(map), 0.3);
 }
