@@ -29,7 +29,7 @@ std::vector<Eigen::Vector2d> widened(std::span<const Eigen::Vector2d> obstacles_
   return points_m;
 }
 
-/// The robot, and the rest of a line behind the place nearest to it plus `ahead_m`; always contains
+/// The robot, and the rest of a line from `ahead_m` after the place nearest to it; always contains
 /// the end.
 std::vector<Eigen::Vector2d> rest_of(std::span<const Eigen::Vector2d> points_m,
                                      const Eigen::Vector2d& robot_m, double ahead_m) {

@@ -53,7 +53,8 @@ struct BranchNetwork::State {
   Graph graph{};
   std::vector<Piece> pieces{};
 
-  // Adds a vertex for each place, in the same order, after those of the nodes.
+  // Builds the graph anew. Returns the vertices of the places, in their order; those of the nodes
+  // come before.
   std::vector<Vertex> connect(std::span<const BranchPlace> places) {
     graph.clear();
     for (std::size_t i = 0; i < map.nodes.size(); ++i) add_vertex(graph);

@@ -9,8 +9,8 @@ using navigation::NavigatorStatus;
 
 /// A navigator publishes its status five times a second, so fifty are missing by then.
 constexpr double kSilent_s = 10.0;
-/// A restarted navigator has no goal until it receives the last one. After this time, the goal was
-/// cancelled.
+/// A restarted navigator has no goal until it has read its memory file. After this time, the goal
+/// was cancelled.
 constexpr double kStartsAgain_s = 5.0;
 
 std::string text_of(const NavigatorStatus& status) {

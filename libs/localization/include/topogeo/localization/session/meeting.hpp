@@ -32,7 +32,8 @@ class Meeting {
 
   Meeting(const LocalizerConfig& config, std::unique_ptr<MatchPool> pool);
 
-  /// True if it needs a copy of their map: at first, and when the map has grown noticeably.
+  /// True if it needs a copy of their map: at first, and when the map has grown
+  /// noticeably or has lost stops.
   [[nodiscard]] bool wants_map(std::size_t stops) const;
   /// Stops have left their map, so a new copy is needed.
   void renew() { renew_at_ = 0; }
