@@ -31,7 +31,8 @@ run_service() {
       run robot sensor_gateway --devices /exchange/devices.yaml --laser-port /exchange/laser \
         --base-port /exchange/base --memory /exchange/odometry
       ;;
-    local_mapper | navigator) run robot "$1" ;;
+    local_mapper) run robot local_mapper ;;
+    navigator) run robot navigator --memory /exchange/goal ;;
     map_store) run pc1 map_store --out /exchange/map --places /exchange/places.yaml ;;
     ga_worker) run pc2 ga_worker --name pc2 ;;
     *) metrics=9464 run pc1 "$1" ;;
