@@ -34,7 +34,7 @@ void Places::leave(Guest& guest) {
 Places::Guest& Places::dispensable() const {
   std::map<std::string_view, std::size_t> places;
   for (const Guest* guest : guests_) ++places[guest->address()];
-  // Of several addresses with the most places, the one that was silent longest: the first listed.
+  // The first one listed was silent longest. It gives way if several addresses have the most.
   return **std::ranges::max_element(guests_, {},
                                     [&](const Guest* guest) { return places[guest->address()]; });
 }
