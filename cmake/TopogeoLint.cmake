@@ -77,7 +77,7 @@ function(topogeo_add_lint)
     if(changed_of_${unit})
       list(REMOVE_DUPLICATES changed_of_${unit})
       topogeo_add_lint_unit(changed_${unit} changed_stamps "${targets_of_${unit}}" ${changed_of_${unit}})
-      list(APPEND whole_units lint_${unit})
+      list(APPEND whole_units lint_names_${unit})
     endif()
   endforeach()
   add_custom_target(lint DEPENDS ${stamps})
@@ -123,7 +123,6 @@ function(topogeo_add_lint_unit name result targets)
 
   # Puts the unit's command into compile_commands.json; produces no object.
   add_library(lint_${name} OBJECT EXCLUDE_FROM_ALL ${file})
-  target_compile_options(lint_${name} PRIVATE -fsyntax-only)
   set(precompiled topogeo_precompiled)
   if(name MATCHES "localizing|units|integration|bench")
     set(precompiled topogeo_precompiled_tests)
@@ -153,6 +152,13 @@ function(topogeo_add_lint_unit name result targets)
             $<TARGET_OBJECTS:${precompiled}>
     DEPFILE ${stamp}.d
     COMMENT "clang-tidy: ${name}"
+    COMMAND_EXPAND_LISTS VERBATIM)
+  # A name that stands twice in a unit is found by the compiler in a fraction of the time of clang-tidy.
+  add_custom_target(lint_names_${name}
+    COMMAND ${CMAKE_CXX_COMPILER} -std=c++20 -fsyntax-only -w
+            "-I$<JOIN:$<TARGET_PROPERTY:lint_${name},INCLUDE_DIRECTORIES>,;-I>"
+            "-D$<JOIN:$<TARGET_PROPERTY:lint_${name},COMPILE_DEFINITIONS>,;-D>" ${file}
+    COMMENT "names: ${name}"
     COMMAND_EXPAND_LISTS VERBATIM)
   set(${result} ${${result}} ${stamp} PARENT_SCOPE)
 endfunction()
