@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <fstream>
-#include <iterator>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -22,7 +21,9 @@ constexpr std::string_view kPackagePrefix = "topogeo-";
 
 std::string content(const std::filesystem::path& file) {
   std::ifstream input(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(input), {}};
+  std::ostringstream content;
+  content << input.rdbuf();  // notes the end of a process as a failure, where an iterator throws
+  return content.str();
 }
 
 /// Strings that each end with a zero byte.

@@ -1,14 +1,17 @@
 #include "topogeo/support/process_stat.hpp"
 
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <string>
 
 namespace topogeo::support {
 
 std::istringstream process_stat(const std::filesystem::path& process) {
   std::ifstream file(process / "stat", std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  // Reading fails if the process ends meanwhile. A stream notes that; an iterator would throw.
+  std::ostringstream content;
+  content << file.rdbuf();
+  const std::string text = content.str();
   const std::size_t name_end = text.rfind(')');  // a name may contain brackets and line ends
   return std::istringstream(name_end == std::string::npos ? "" : text.substr(name_end + 1));
 }
