@@ -24,13 +24,13 @@ StopMemory::StopMemory(const std::filesystem::path& path)
   }
   held_.halt = damaged_;
   // Takes the room in the file now: a later stop overwrites it, on a full disk too.
-  file_.store({std::uint64_t{held_.emergency_stop}, std::uint64_t{held_.halt}});
+  write();
 }
 
 void StopMemory::store(const devices::HeldStops& held) {
   if (held == held_) return;
   held_ = held;
-  file_.store({std::uint64_t{held.emergency_stop}, std::uint64_t{held.halt}});
+  write();
 }
 
 }  // namespace topogeo::sensor_gateway

@@ -29,6 +29,7 @@ class StopMemory {
     std::uint64_t emergency_stop = 0;
     std::uint64_t halt = 0;
   };
+  void write() { file_.store({std::uint64_t{held_.emergency_stop}, std::uint64_t{held_.halt}}); }
 
   bool damaged_;  // judged before the file is created
   support::RecordFile<Record> file_;

@@ -36,8 +36,8 @@ BaseInterlocks::BaseInterlocks(const BaseSettings& settings)
     : command_timeout_ns_(static_cast<std::int64_t>(settings.command_timeout_s * 1e9)) {}
 
 std::optional<BaseState> BaseInterlocks::state() const {
-  if (stopped_) return BaseState::kEmergencyStop;
-  if (halted_) return BaseState::kHalted;
+  if (held_.emergency_stop) return BaseState::kEmergencyStop;
+  if (held_.halt) return BaseState::kHalted;
   if (watchdog_until_ns_) return BaseState::kWatchdogExpired;
   if (bump_latched_ || pressed_ != 0) return BaseState::kBumped;
   return std::nullopt;
@@ -54,17 +54,16 @@ void BaseInterlocks::standing_taken() {
 }
 
 bool BaseInterlocks::emergency_stop() {
-  return !std::exchange(stopped_, true);
+  return !std::exchange(held_.emergency_stop, true);
 }
 
 void BaseInterlocks::release() {
-  halted_ = false;
-  stopped_ = false;
+  held_ = {};
 }
 
 void BaseInterlocks::hold(const HeldStops& stops) {
-  halted_ = halted_ || stops.halt;
-  stopped_ = stopped_ || stops.emergency_stop;
+  held_.halt = held_.halt || stops.halt;
+  held_.emergency_stop = held_.emergency_stop || stops.emergency_stop;
 }
 
 bool BaseInterlocks::joystick(bool moves) {

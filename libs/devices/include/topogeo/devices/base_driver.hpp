@@ -72,7 +72,7 @@ class BaseDriver final : public SerialDriver {
   void reset_stop(std::int64_t now_ns);
   /// Stops that only reset_stop() ends. They belong to the robot and not to this process: the
   /// caller stores them for the next driver, which adds them by hold_stops().
-  [[nodiscard]] HeldStops held_stops() const { return interlocks_.held(); }
+  [[nodiscard]] const HeldStops& held_stops() const { return interlocks_.held(); }
   void hold_stops(const HeldStops& stops) {
     interlocks_.hold(stops);
     update_status();

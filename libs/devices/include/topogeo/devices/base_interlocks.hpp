@@ -25,7 +25,7 @@ class BaseInterlocks {
   explicit BaseInterlocks(const BaseSettings& settings);
 
   /// Motion commands are refused.
-  [[nodiscard]] bool engaged() const { return stopped_ || halted_ || bump_latched_; }
+  [[nodiscard]] bool engaged() const { return held_.emergency_stop || held_.halt || bump_latched_; }
   /// The resulting state; nothing while the base may move.
   [[nodiscard]] std::optional<BaseState> state() const;
 
@@ -37,12 +37,12 @@ class BaseInterlocks {
   /// A command to stand was accepted, which is always allowed.
   void standing_taken();
 
-  void halt() { halted_ = true; }
+  void halt() { held_.halt = true; }
   /// The base does not move as commanded. False if it was already stopped for that.
   bool emergency_stop();
   /// An operator releases halt and emergency stop.
   void release();
-  [[nodiscard]] HeldStops held() const { return {stopped_, halted_}; }
+  [[nodiscard]] const HeldStops& held() const { return held_; }
   /// Adds stops that an earlier process has left.
   void hold(const HeldStops& stops);
 
@@ -80,8 +80,7 @@ class BaseInterlocks {
   [[nodiscard]] std::int64_t bump_until_ns() const;
 
   std::int64_t command_timeout_ns_;
-  bool stopped_ = false;
-  bool halted_ = false;
+  HeldStops held_;
   std::optional<std::int64_t> watchdog_until_ns_{};
   bool bump_latched_ = false;
   bool joystick_ = false;

@@ -38,8 +38,8 @@ inline constexpr std::size_t kB21BasePanels = 32;
 struct BodyReadings {
   std::int64_t stamp_ns = 0;
   std::vector<float> sonar_m;  ///< by mount; scan::Scan::kNoReturn if no echo
-  /// By mount as well. Reflections depend on colour and texture, so a range is rough, and a missing
-  /// one does not prove free space.
+  /// Infrared ranges have the order of the mounts, too. Reflections depend on colour and texture,
+  /// so a range is rough, and a missing one does not prove free space.
   std::vector<float> body_infrared_m;
   std::vector<float> base_infrared_m;
   std::bitset<kB21BodyPanels> body_pressed;  ///< tactile panels, counter-clockwise, first ahead
