@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/geometry/reaction_times.hpp"
 #include "topogeo/geometry/velocity.hpp"
 
 namespace topogeo::navigation {
@@ -48,7 +49,7 @@ class BaseWatch {
   void reset() { T_odom_then_.reset(); }
 
  private:
-  static constexpr std::int64_t kLongestGap_ns = 300'000'000;  // validity of an order
+  static constexpr auto kLongestGap_ns = static_cast<std::int64_t>(geometry::kCommandValid_s * 1e9);
 
   std::int64_t stuck_ns_;
   std::int64_t ordered_ns_ = 0;  ///< time of the last order

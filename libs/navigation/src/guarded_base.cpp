@@ -23,7 +23,7 @@ void GuardedBase::add(const SonarRound& sonar) {
 void GuardedBase::set(const MachineLoad& load, std::int64_t now_ns) {
   if (load.busy) {
     busy_ns_ = now_ns;
-    if (stuck_) judge_try(now_ns);
+    if (stuck_ns_) judge_try(now_ns);
   } else if (tries_again_) {
     ++tries_;
     retry_now();
@@ -35,7 +35,7 @@ HaltReason GuardedBase::halted(std::int64_t now_ns, std::string& message) const 
     message = "the base takes no commands: " + base_->reason;
     return HaltReason::kBaseNotReady;
   }
-  if (stuck_) {
+  if (stuck_ns_) {
     message = fmt::format(
         "ordered to move for {:.1f} s, the base did not; {}", stuck_s_,
         tries_again_ ? "tries again when this machine has time" : "drives on after a resume");
@@ -68,8 +68,8 @@ void GuardedBase::watch_motion(const geometry::Velocity& ordered,
                                const geometry::Pose2& T_odom_robot, std::int64_t now_ns) {
   constexpr double kMoved_m = 0.05;  // more than the play of the wheels
   if (tries_ > 0 && between(T_odom_stuck_, T_odom_robot).position_m().norm() > kMoved_m) tries_ = 0;
-  stuck_ = watch_.stuck(ordered, T_odom_robot, odometry_ns_, now_ns);
-  if (!stuck_) return;
+  stuck_ns_.reset();
+  if (!watch_.stuck(ordered, T_odom_robot, odometry_ns_, now_ns)) return;
   T_odom_stuck_ = T_odom_robot;
   stuck_ns_ = now_ns;
   judge_try(now_ns);
@@ -78,8 +78,8 @@ void GuardedBase::watch_motion(const geometry::Velocity& ordered,
 // Load is measured over spans of a second, so it may be known only after the base is stuck.
 void GuardedBase::judge_try(std::int64_t now_ns) {
   constexpr double kSpan_s = 1.2;  // with the delay of its timer
-  if (elapsed_s(stuck_ns_, now_ns) > kSpan_s || tries_ >= kTries || !busy_ns_) return;
-  tries_again_ = tries_again_ || elapsed_s(*busy_ns_, stuck_ns_) <= stuck_s_;
+  if (elapsed_s(*stuck_ns_, now_ns) > kSpan_s || tries_ >= kTries || !busy_ns_) return;
+  tries_again_ = tries_again_ || elapsed_s(*busy_ns_, *stuck_ns_) <= stuck_s_;
 }
 
 bool GuardedBase::held(std::int64_t now_ns) const {
@@ -93,13 +93,13 @@ void GuardedBase::retry() {
 }
 
 void GuardedBase::stay_stuck() {
-  stuck_ = true;
+  stuck_ns_ = 0;
   tries_again_ = false;
   tries_ = kTries;
 }
 
 void GuardedBase::retry_now() {
-  stuck_ = false;
+  stuck_ns_.reset();
   tries_again_ = false;
   watch_.reset();
 }

@@ -59,7 +59,7 @@ class GuardedBase {
   /// Allows another try of a base that was stuck.
   void retry();
   /// The base is stuck and stands until retry().
-  [[nodiscard]] bool is_stuck() const { return stuck_ && !tries_again_; }
+  [[nodiscard]] bool is_stuck() const { return stuck_ns_ && !tries_again_; }
   /// Stands until retry(), like a base that was found stuck and is not tried again.
   void stay_stuck();
 
@@ -78,9 +78,8 @@ class GuardedBase {
   NearEchoes near_;
   BaseWatch watch_;
   std::optional<BaseCondition> base_;
-  std::int64_t odometry_ns_ = 0;  ///< stamp of the newest
-  bool stuck_ = false;
-  std::int64_t stuck_ns_ = 0;               ///< last detection
+  std::int64_t odometry_ns_ = 0;            ///< stamp of the newest
+  std::optional<std::int64_t> stuck_ns_;    ///< last detection; empty: not stuck
   std::optional<std::int64_t> busy_ns_;     ///< when the machine was last busy
   bool tries_again_ = false;                ///< stuck, but maybe for lack of CPU time
   int tries_ = 0;                           ///< since the last motion
