@@ -33,19 +33,19 @@ std::optional<std::int64_t> CommandAges::age_ns(const messaging::Handle& handle,
 }
 
 void CommandAges::begin(Sender& sender, std::int64_t offset_ns, std::int64_t now_ns) {
-  sender =
-      Sender{now_ns, now_ns, now_ns, offset_ns, offset_ns, std::nullopt, 0, 0, sender.own_clock};
+  sender = Sender{.first_ns = now_ns,
+                  .last_ns = now_ns,
+                  .window_ns = now_ns,
+                  .least_ns = offset_ns,
+                  .before_ns = offset_ns,
+                  .own_clock = sender.own_clock};
 }
 
 CommandAges::Sender& CommandAges::sender_of(const messaging::Handle& handle, std::int64_t offset_ns,
                                             std::int64_t now_ns) {
   const auto known = senders_.find(handle);
   if (known != senders_.end() && now_ns - known->second.last_ns <= kPause_ns) return known->second;
-  if (known != senders_.end()) {
-    begin(known->second, offset_ns, now_ns);
-    return known->second;
-  }
-  if (senders_.size() >= kMostSenders) {
+  if (known == senders_.end() && senders_.size() >= kMostSenders) {
     senders_.erase(std::min_element(
         senders_.begin(), senders_.end(),
         [](const auto& a, const auto& b) { return a.second.last_ns < b.second.last_ns; }));
