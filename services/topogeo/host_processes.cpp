@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -18,13 +17,6 @@ namespace topogeo::cli {
 namespace {
 
 constexpr std::string_view kPackagePrefix = "topogeo-";
-
-std::string content(const std::filesystem::path& file) {
-  std::ifstream input(file, std::ios::binary);
-  std::ostringstream content;
-  content << input.rdbuf();  // notes the end of a process as a failure, where an iterator throws
-  return content.str();
-}
 
 /// Strings that each end with a zero byte.
 std::vector<std::string> strings(const std::string& bytes) {
@@ -60,7 +52,7 @@ std::uint32_t domain_of(const std::vector<std::string>& words,
   constexpr std::string_view kVariable = "TOPOGEO_DOMAIN=";
   std::string text = option(words, "--domain").value_or("");
   if (text.empty()) {
-    for (const std::string& variable : strings(content(process / "environ"))) {
+    for (const std::string& variable : strings(support::process_file(process / "environ"))) {
       if (variable.starts_with(kVariable)) text = variable.substr(kVariable.size());
     }
   }
@@ -98,14 +90,14 @@ bool in_this_network(const std::filesystem::path& proc, const std::filesystem::p
 std::vector<HostProcess> host_processes(const std::filesystem::path& proc) {
   std::vector<HostProcess> found;
   double up_s = 0.0;
-  std::istringstream(content(proc / "uptime")) >> up_s;
+  std::istringstream(support::process_file(proc / "uptime")) >> up_s;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(proc, error)) {
     const std::string name = entry.path().filename().string();
     HostProcess process;
     const auto [end, number] = std::from_chars(name.data(), name.data() + name.size(), process.pid);
     if (number != std::errc() || end != name.data() + name.size()) continue;
-    const std::vector<std::string> words = strings(content(entry.path() / "cmdline"));
+    const std::vector<std::string> words = strings(support::process_file(entry.path() / "cmdline"));
     if (words.empty()) continue;
     process.service = service_of(words[0]);
     if (process.service.empty() || !read_stat(process, entry.path(), up_s) ||

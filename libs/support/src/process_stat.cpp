@@ -6,12 +6,16 @@
 
 namespace topogeo::support {
 
-std::istringstream process_stat(const std::filesystem::path& process) {
-  std::ifstream file(process / "stat", std::ios::binary);
+std::string process_file(const std::filesystem::path& file) {
+  const std::ifstream input(file, std::ios::binary);
   // Reading fails if the process ends meanwhile. A stream notes that; an iterator would throw.
   std::ostringstream content;
-  content << file.rdbuf();
-  const std::string text = content.str();
+  content << input.rdbuf();
+  return content.str();
+}
+
+std::istringstream process_stat(const std::filesystem::path& process) {
+  const std::string text = process_file(process / "stat");
   const std::size_t name_end = text.rfind(')');  // a name may contain brackets and line ends
   return std::istringstream(name_end == std::string::npos ? "" : text.substr(name_end + 1));
 }

@@ -1,10 +1,14 @@
-// The kernel's statistics of a process or a thread.
+// The kernel's files about processes.
 #pragma once
 
 #include <filesystem>
 #include <sstream>
+#include <string>
 
 namespace topogeo::support {
+
+/// The content of a file of /proc; empty if its process ends before it is read.
+std::string process_file(const std::filesystem::path& file);
 
 /// The fields of proc(5), /proc/PID/stat, after the name: the state, then numbers from the parent
 /// (field 4) on. `process`: a folder of /proc, of a process or of one of its threads. Empty if it
