@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "topogeo/service/navigation_conversions.hpp"
+
 namespace topogeo::planner {
 
 bool GoalChoice::add(const msg::Goal& goal) {
@@ -19,9 +21,7 @@ void GoalChoice::cancel(const msg::Goal& order) {
 }
 
 bool GoalChoice::take(const msg::NavigatorStatus& status) {
-  const bool ended =
-      status.state() == msg::kNavigatorIdle || status.state() == msg::kNavigatorArrived;
-  in_hand_ = ended ? 0 : status.goal_id();
+  in_hand_ = service::goal_has_ended(status) ? 0 : status.goal_id();
   if (chosen_ && chosen_->goal_id() == *in_hand_) return false;
   chosen_.reset();
   const auto found = std::ranges::find_if(

@@ -122,6 +122,10 @@ msg::NavigatorStatus to_msg(const navigation::NavigatorStatus& status, std::stri
   return out;
 }
 
+bool goal_has_ended(const msg::NavigatorStatus& message) {
+  return message.state() == msg::kNavigatorIdle || message.state() == msg::kNavigatorArrived;
+}
+
 navigation::NavigatorStatus from_msg(const msg::NavigatorStatus& message) {
   check(message.state() <= msg::kNavigatorStopped, "state", "0 to 5");
   check(message.reason() <= msg::kHaltBaseStuck, "reason", "0 to 13");

@@ -6,6 +6,7 @@
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/navigation_conversions.hpp"
 #include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/host.hpp"
 
 #include "channels/event_log.hpp"
 #include "channels/protocol_names.hpp"
@@ -114,9 +115,7 @@ void RobotView::on_navigator(const msg::NavigatorStatus& status,
     }
     navigator_state_ = status.state();
   }
-  const bool ended =
-      status.state() == msg::kNavigatorIdle || status.state() == msg::kNavigatorArrived;
-  if (ended) board_.set(Channel::kRoute, "null");
+  if (service::goal_has_ended(status)) board_.set(Channel::kRoute, "null");
   const Json json = {{"state", name_of(status.state())},
                      {"reason", name_of(status.reason())},
                      {"message", message},

@@ -1,5 +1,7 @@
 #include "orders/unconfirmed_order.hpp"
 
+#include "topogeo/service/navigation_conversions.hpp"
+
 namespace topogeo::web {
 
 void UnconfirmedOrder::begin(msg::GoalKind kind, std::uint64_t own_goal) {
@@ -12,9 +14,7 @@ void UnconfirmedOrder::begin(msg::GoalKind kind, std::uint64_t own_goal) {
 
 std::optional<UnconfirmedOrder::Repeat> UnconfirmedOrder::take(const msg::NavigatorStatus& status) {
   const bool known = in_hand_.has_value();
-  const bool ended =
-      status.state() == msg::kNavigatorIdle || status.state() == msg::kNavigatorArrived;
-  in_hand_ = ended ? 0 : status.goal_id();
+  in_hand_ = service::goal_has_ended(status) ? 0 : status.goal_id();
   if (!kind_) return std::nullopt;
   if (!known) goals_.insert(*in_hand_);
   const bool carried_out = *in_hand_ == 0 || !goals_.contains(*in_hand_) ||

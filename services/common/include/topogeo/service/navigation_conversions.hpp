@@ -30,6 +30,8 @@ msg::NavigatorStatus to_msg(const navigation::NavigatorStatus& status, std::stri
                             std::int64_t stamp_ns, std::uint64_t sequence_number);
 /// Commands the speeds `linear_mps` and `angular_radps`.
 navigation::NavigatorStatus from_msg(const msg::NavigatorStatus& message);
+/// The goal of the status, if any, was reached or cancelled: no route to it is needed any more.
+bool goal_has_ended(const msg::NavigatorStatus& message);
 
 /// Throws std::invalid_argument when there are more points than a message holds (4,096).
 msg::Blockages to_msg(const navigation::BlockageReport& report, std::string_view robot_id,
