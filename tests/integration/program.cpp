@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <string_view>
 #include <thread>
+#include <utility>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -159,15 +160,12 @@ template <class Condition>
 bool Program::wait_while_it_works(const std::string& what, const Condition& condition) {
   Wait wait(what);
   std::uintmax_t printed_bytes = 0;
-  while (!condition()) {
-    if (!wait.goes_on()) return false;
+  return wait_for(wait, condition, [&] {
     const std::uintmax_t now_bytes =
         std::filesystem::file_size(out_) + std::filesystem::file_size(err_);
-    if (now_bytes != printed_bytes) wait.renew();
-    printed_bytes = now_bytes;
+    if (std::exchange(printed_bytes, now_bytes) != now_bytes) wait.renew();
     std::this_thread::sleep_for(std::chrono::milliseconds(10));  // between two checks
-  }
-  return true;
+  });
 }
 
 int Program::wait() {

@@ -61,16 +61,21 @@ class Wait {
 };
 
 /// Checks `condition` until it holds, and calls `between` between two checks, for example one turn
-/// of an event loop. False: it did not hold within hang_limit(). `what` completes "waiting for
-/// ...".
+/// of an event loop; `between` may renew the wait. False: it did not hold before a hang.
 template <class Condition, class Between>
-[[nodiscard]] bool wait_for(std::string what, const Condition& condition, const Between& between) {
-  Wait wait(std::move(what));
+[[nodiscard]] bool wait_for(Wait& wait, const Condition& condition, const Between& between) {
   while (!condition()) {
     if (!wait.goes_on()) return false;
     between();
   }
   return true;
+}
+
+/// The same within hang_limit(). `what` completes "waiting for ...".
+template <class Condition, class Between>
+[[nodiscard]] bool wait_for(std::string what, const Condition& condition, const Between& between) {
+  Wait wait(std::move(what));
+  return wait_for(wait, condition, between);
 }
 
 /// The same when another thread or process causes the event: checks every few milliseconds.

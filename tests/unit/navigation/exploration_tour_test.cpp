@@ -213,11 +213,15 @@ TEST(ExplorationTour, WhereThereWasNoPathAtFirstItGoesLater) {
   EXPECT_EQ(robot.unknown(), 0U);
 }
 
+TourConfig impatient() {
+  TourConfig impatient = config();
+  impatient.patience_s = 5.0;
+  return impatient;
+}
+
 TEST(ExplorationTour, ATargetWithoutProgressIsGivenUp) {
   TextRobot robot;
-  TourConfig patient = config();
-  patient.patience_s = 5.0;
-  ExplorationTour tour(patient);
+  ExplorationTour tour(impatient());
   tour.set_map(robot.map());
   const auto goal = tour.step(robot.step({}), 0);
   ASSERT_TRUE(goal);
@@ -237,9 +241,7 @@ TEST(ExplorationTour, ATargetWithoutProgressIsGivenUp) {
 // A navigator that starts just then does not get the goal.
 TEST(ExplorationTour, AGoalThatIsNotReceivedIsGivenAnew) {
   TextRobot robot;
-  TourConfig patient = config();
-  patient.patience_s = 5.0;
-  ExplorationTour tour(patient);
+  ExplorationTour tour(impatient());
   tour.set_map(robot.map());
   const auto goal = tour.step(robot.step({}), 0);
   ASSERT_TRUE(goal);

@@ -102,14 +102,22 @@ class LivingBase {
   int halts_ = 0;
 };
 
-TEST_F(HandSenderTest, AStopHoldsForAGatewayThatStartsAgain) {
+class HandSenderStop : public HandSenderTest {
+ protected:
+  /// Stops the base while it moves.
+  [[nodiscard]] bool stop(LivingBase& base) {
+    return run_until("a base", [&] { return base.connected(); }) &&
+           run_until("the stop at the base", [&] {
+             base.report(msg::kBaseMoving);
+             return base_noted_ && hand_.stop() && base.halts() > 0;
+           });
+  }
+};
+
+TEST_F(HandSenderStop, HoldsForAGatewayThatStartsAgain) {
   {
     LivingBase base(partition_);
-    ASSERT_TRUE(run_until("a base", [&] { return base.connected(); }));
-    ASSERT_TRUE(run_until("the stop at the base", [&] {
-      base.report(msg::kBaseMoving);
-      return base_noted_ && hand_.stop() && base.halts() > 0;
-    }));
+    ASSERT_TRUE(stop(base));
     base.report(msg::kBaseHalted);
     base.report(msg::kBaseOffline);
     base_noted_ = false;
@@ -123,13 +131,9 @@ TEST_F(HandSenderTest, AStopHoldsForAGatewayThatStartsAgain) {
   }));
 }
 
-TEST_F(HandSenderTest, AStopThatAnotherOperatorHasReleasedIsOver) {
+TEST_F(HandSenderStop, ThatAnotherOperatorHasReleasedIsOver) {
   LivingBase base(partition_);
-  ASSERT_TRUE(run_until("a base", [&] { return base.connected(); }));
-  ASSERT_TRUE(run_until("the stop at the base", [&] {
-    base.report(msg::kBaseMoving);
-    return base_noted_ && hand_.stop() && base.halts() > 0;
-  }));
+  ASSERT_TRUE(stop(base));
   base.report(msg::kBaseHalted);
   base.report(msg::kBaseReady);
   const auto noted = [&] {
