@@ -141,10 +141,10 @@ function(topogeo_add_lint_unit name result targets)
     target_link_libraries(lint_${name} PRIVATE ${LINK_LIBRARIES})
   endforeach()
 
+  set(includes "-I$<JOIN:$<TARGET_PROPERTY:lint_${name},INCLUDE_DIRECTORIES>,;-I>")
+  set(definitions "-D$<JOIN:$<TARGET_PROPERTY:lint_${name},COMPILE_DEFINITIONS>,;-D>")
   add_custom_command(OUTPUT ${stamp}
-    COMMAND ${CMAKE_CXX_COMPILER} -std=c++20 -M -MT ${stamp} -MF ${stamp}.d
-            "-I$<JOIN:$<TARGET_PROPERTY:lint_${name},INCLUDE_DIRECTORIES>,;-I>"
-            "-D$<JOIN:$<TARGET_PROPERTY:lint_${name},COMPILE_DEFINITIONS>,;-D>" ${file}
+    COMMAND ${CMAKE_CXX_COMPILER} -std=c++20 -M -MT ${stamp} -MF ${stamp}.d "${includes}" "${definitions}" ${file}
     COMMAND ${CMAKE_COMMAND} -D TIDY=${CLANG_TIDY} -D BUILD=${PROJECT_BINARY_DIR} -D UNIT=${file}
             -D FOLDER=${PROJECT_SOURCE_DIR} -P ${PROJECT_SOURCE_DIR}/cmake/RunClangTidy.cmake
     COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
@@ -155,9 +155,7 @@ function(topogeo_add_lint_unit name result targets)
     COMMAND_EXPAND_LISTS VERBATIM)
   # A name that stands twice in a unit is found by the compiler in a fraction of the time of clang-tidy.
   add_custom_target(lint_names_${name}
-    COMMAND ${CMAKE_CXX_COMPILER} -std=c++20 -fsyntax-only -w
-            "-I$<JOIN:$<TARGET_PROPERTY:lint_${name},INCLUDE_DIRECTORIES>,;-I>"
-            "-D$<JOIN:$<TARGET_PROPERTY:lint_${name},COMPILE_DEFINITIONS>,;-D>" ${file}
+    COMMAND ${CMAKE_CXX_COMPILER} -std=c++20 -fsyntax-only -w "${includes}" "${definitions}" ${file}
     COMMENT "names: ${name}"
     COMMAND_EXPAND_LISTS VERBATIM)
   set(${result} ${${result}} ${stamp} PARENT_SCOPE)
