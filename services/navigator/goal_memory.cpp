@@ -4,15 +4,16 @@ namespace topogeo::navigator {
 
 namespace {
 
-constexpr std::uint64_t kFormat = 0x324C414F47475054;  // "TPGGOAL2": the layout of Record
+constexpr std::uint64_t kFormat = 0x334C414F47475054;  // "TPGGOAL3": the layout of Record
 
 }  // namespace
 
-GoalMemory::GoalMemory(const std::filesystem::path& path) : file_(path, kFormat) {}
+GoalMemory::GoalMemory(const std::filesystem::path& path, std::uint64_t boot)
+    : file_(path, kFormat), boot_(boot) {}
 
 std::optional<RememberedGoal> GoalMemory::load() const {
   const std::optional<Record> record = file_.load();
-  if (!record || record->goal_id == 0) return std::nullopt;
+  if (!record || record->goal_id == 0 || record->boot != boot_) return std::nullopt;
   return RememberedGoal{
       {record->goal_id, record->look_around != 0}, record->paused != 0, record->stuck != 0};
 }
@@ -21,10 +22,10 @@ void GoalMemory::store(const std::optional<RememberedGoal>& goal) {
   Record record;
   if (goal) {
     record = {goal->order.goal_id, goal->order.look_around ? 1U : 0U, goal->paused ? 1U : 0U,
-              goal->stuck ? 1U : 0U};
+              goal->stuck ? 1U : 0U, boot_};
   }
   if (stored_ == record) return;
-  file_.store(record);
+  static_cast<void>(file_.store(record));
   stored_ = record;
 }
 

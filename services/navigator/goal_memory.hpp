@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "topogeo/navigation/navigator_inputs.hpp"
+#include "topogeo/support/host.hpp"
 #include "topogeo/support/record_file.hpp"
 
 namespace topogeo::navigator {
@@ -21,9 +22,10 @@ class GoalMemory {
  public:
   /// With an empty path nothing is kept. Throws std::runtime_error naming the file when it cannot
   /// be opened or made.
-  explicit GoalMemory(const std::filesystem::path& path);
+  explicit GoalMemory(const std::filesystem::path& path, std::uint64_t boot = support::this_boot());
 
-  /// The goal stored last; empty when there is none.
+  /// The goal stored last since the machine was started; empty when there is none. A robot that is
+  /// switched on stands.
   [[nodiscard]] std::optional<RememberedGoal> load() const;
   /// Writes only changes. Empty: the robot has no goal.
   void store(const std::optional<RememberedGoal>& goal);
@@ -34,10 +36,12 @@ class GoalMemory {
     std::uint32_t look_around = 0;
     std::uint32_t paused = 0;
     std::uint64_t stuck = 0;
+    std::uint64_t boot = 0;
     bool operator==(const Record&) const = default;
   };
 
   support::RecordFile<Record> file_;
+  std::uint64_t boot_;            // of the machine
   std::optional<Record> stored_;  // by this process
 };
 

@@ -2,20 +2,12 @@
 
 #include <array>
 
-#include "topogeo/support/file_content.hpp"
-#include "topogeo/support/hash.hpp"
+#include "topogeo/support/host.hpp"
 
 namespace topogeo::sensor_gateway {
 namespace {
 
 constexpr std::uint64_t kFormat = 0x324D4F4745475054;  // "TPGEGOM2": the layout of OdometryRecord
-
-/// The steady clock restarts with the machine.
-std::uint64_t this_boot() {
-  static const std::uint64_t boot =
-      support::fnv1a(support::file_content("/proc/sys/kernel/random/boot_id"));
-  return boot;
-}
 
 }  // namespace
 
@@ -23,7 +15,7 @@ OdometryMemory::OdometryMemory(const std::filesystem::path& path) : file_(path, 
 
 std::optional<RememberedOdometry> OdometryMemory::load() const {
   const std::optional<OdometryRecord> record = file_.load();
-  if (!record || record->boot != this_boot()) return std::nullopt;
+  if (!record || record->boot != support::this_boot()) return std::nullopt;
   RememberedOdometry odometry;
   odometry.state.report.mask = static_cast<std::uint32_t>(record->mask);
   odometry.state.report.fields = record->fields;
@@ -37,7 +29,7 @@ std::optional<RememberedOdometry> OdometryMemory::load() const {
 
 void OdometryMemory::store(const RememberedOdometry& odometry) const {
   OdometryRecord record;
-  record.boot = this_boot();
+  record.boot = support::this_boot();
   record.mask = odometry.state.report.mask;
   record.fields = odometry.state.report.fields;
   record.arrival_ns = odometry.state.arrival_ns;
@@ -47,7 +39,7 @@ void OdometryMemory::store(const RememberedOdometry& odometry) const {
   record.epoch = odometry.epoch;
   record.next_sequence = odometry.next_sequence;
   record.last_stamp_ns = odometry.last_stamp_ns;
-  file_.store(record);
+  static_cast<void>(file_.store(record));
 }
 
 }  // namespace topogeo::sensor_gateway

@@ -5,6 +5,9 @@
 
 #include <unistd.h>
 
+#include "topogeo/support/file_content.hpp"
+#include "topogeo/support/hash.hpp"
+
 namespace topogeo::support {
 
 std::string host_name() {
@@ -16,6 +19,11 @@ std::string host_name() {
 std::string process_name() {
   constexpr std::size_t kLongestHost = 32;
   return host_name().substr(0, kLongestHost) + "-" + std::to_string(::getpid());
+}
+
+std::uint64_t this_boot() {
+  static const std::uint64_t boot = fnv1a(file_content("/proc/sys/kernel/random/boot_id"));
+  return boot;
 }
 
 std::int64_t wall_clock_ns() {

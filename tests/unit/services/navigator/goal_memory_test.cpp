@@ -35,6 +35,14 @@ TEST_F(GoalMemoryTest, AGoalThatHasEndedIsNone) {
   EXPECT_FALSE(GoalMemory(path_).load());
 }
 
+// A robot that is switched on stands.
+TEST_F(GoalMemoryTest, AGoalOfBeforeARestartOfTheMachineIsNone) {
+  constexpr std::uint64_t kBefore = 1;
+  GoalMemory(path_, kBefore).store(RememberedGoal{{7, false}, false, false});
+  EXPECT_TRUE(GoalMemory(path_, kBefore).load());
+  EXPECT_FALSE(GoalMemory(path_).load());
+}
+
 TEST_F(GoalMemoryTest, ADamagedFileHasNone) {
   GoalMemory(path_).store(RememberedGoal{{7, false}, false, false});
   std::filesystem::resize_file(path_, std::filesystem::file_size(path_) - 1);

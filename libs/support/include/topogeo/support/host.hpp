@@ -12,6 +12,9 @@ std::string host_name();
 /// "<host>-<process id>", at most 40 bytes: identifies this process for users and other processes.
 std::string process_name();
 
+/// Identifies the time since the machine was started: files and clocks of before do not count.
+std::uint64_t this_boot();
+
 /// Time since 1970. For display only: no result may depend on it.
 std::int64_t wall_clock_ns();
 
