@@ -62,7 +62,7 @@ void PoseMemory::store(const RememberedPlace& remembered) const {
   record.T_odom_robot = numbers_of(remembered.place.T_odom_robot);
   record.T_map_robot = numbers_of(remembered.place.T_map_robot.T_a_b);
   std::ranges::copy(remembered.place.T_map_robot.covariance.reshaped(), record.covariance.begin());
-  file_.store(record);
+  static_cast<void>(file_.store(record));
 }
 
 }  // namespace topogeo::localizer

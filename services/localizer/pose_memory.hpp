@@ -29,7 +29,7 @@ class PoseMemory {
   [[nodiscard]] std::optional<RememberedPlace> load() const;
   void store(const RememberedPlace& remembered) const;
   /// The robot's place is no longer known.
-  void forget() const { file_.store(Record{}); }
+  void forget() const { static_cast<void>(file_.store(Record{})); }
 
  private:
   /// Layout of the file, for this machine alone. All zeros: no place.

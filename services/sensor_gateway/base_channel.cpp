@@ -121,7 +121,9 @@ void BaseChannel::begin_epoch(std::int64_t stamp_ns) {
 
 void BaseChannel::after_driver(std::int64_t) {
   // The halt of an ending gateway is no order of a person.
-  if (!stopped_) stop_memory_.store(driver_.held_stops());
+  if (!stopped_ && !stop_memory_.store(driver_.held_stops())) {
+    service_.status().fault("stop not stored", "a restarted gateway halts the base");
+  }
   for (const devices::BaseOdometry& sample : driver_.take_odometry()) {
     if (!odometry_epoch_) begin_epoch(time_.stamp_ns(sample.stamp_ns));
     msg::Odometry message;

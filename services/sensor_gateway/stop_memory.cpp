@@ -24,13 +24,14 @@ StopMemory::StopMemory(const std::filesystem::path& path)
   }
   held_.halt = damaged_;
   // Takes the room in the file now: a later stop overwrites it, on a full disk too.
-  write();
+  written_ = write(held_);
 }
 
-void StopMemory::store(const devices::HeldStops& held) {
-  if (held == held_) return;
-  held_ = held;
-  write();
+bool StopMemory::store(const devices::HeldStops& held) {
+  if (written_ && held == held_) return true;
+  written_ = write(held);
+  if (written_) held_ = held;
+  return written_;
 }
 
 }  // namespace topogeo::sensor_gateway

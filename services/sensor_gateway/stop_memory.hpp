@@ -21,19 +21,23 @@ class StopMemory {
   [[nodiscard]] const devices::HeldStops& held() const { return held_; }
   /// True if the file was damaged.
   [[nodiscard]] bool damaged() const { return damaged_; }
-  /// Writes changes only.
-  void store(const devices::HeldStops& held);
+  /// Writes changes only. False if the file cannot be written: it is damaged then, and the next
+  /// call tries again.
+  [[nodiscard]] bool store(const devices::HeldStops& held);
 
  private:
   struct Record {
     std::uint64_t emergency_stop = 0;
     std::uint64_t halt = 0;
   };
-  void write() { file_.store({std::uint64_t{held_.emergency_stop}, std::uint64_t{held_.halt}}); }
+  [[nodiscard]] bool write(const devices::HeldStops& held) const {
+    return file_.store({std::uint64_t{held.emergency_stop}, std::uint64_t{held.halt}});
+  }
 
   bool damaged_;  // judged before the file is created
   support::RecordFile<Record> file_;
   devices::HeldStops held_;
+  bool written_ = true;  // what the file has is held_
 };
 
 }  // namespace topogeo::sensor_gateway

@@ -18,7 +18,7 @@ constexpr std::size_t kNumber_bytes = sizeof(std::uint64_t);
 
 FileDescriptor open_record(const std::filesystem::path& path) {
   if (path.empty()) return FileDescriptor();
-  FileDescriptor file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
+  FileDescriptor file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644));
   if (!file.is_open()) {
     throw std::runtime_error(path.string() +
                              ": cannot be opened: " + std::generic_category().message(errno));
@@ -54,14 +54,16 @@ bool RecordFileBytes::load(std::span<std::byte> bytes) const {
   return true;
 }
 
-void RecordFileBytes::store(std::span<const std::byte> bytes) const {
-  if (!file_.is_open()) return;
+bool RecordFileBytes::store(std::span<const std::byte> bytes) const {
+  if (!file_.is_open()) return true;
   const std::string out =
       framed(format_, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
   const ssize_t written = ::pwrite(file_.get(), out.data(), out.size(), 0);
-  // Neither a partial record nor the end of a longer file may remain.
+  // Neither the previous record nor the end of a longer file may remain. One byte is damaged, where
+  // no byte would be a file without a record.
   const bool whole = written == static_cast<ssize_t>(out.size());
-  static_cast<void>(::ftruncate(file_.get(), whole ? written : 0));
+  static_cast<void>(::ftruncate(file_.get(), whole ? written : 1));
+  return whole;
 }
 
 }  // namespace topogeo::support

@@ -8,7 +8,7 @@
 
 #include "topogeo/support/temporary_folder.hpp"
 
-#include "services/map_store/full_disk.hpp"
+#include "full_disk.hpp"
 
 namespace topogeo::map_store {
 namespace {
@@ -29,7 +29,7 @@ class DiskRoom : public testing::Test {
 TEST_F(DiskRoom, IsThereOrNot) {
   EXPECT_TRUE(have(path("made/of/it")));
   {
-    const FullDisk full(10'000);
+    const test::FullDisk full(10'000);
     EXPECT_FALSE(have(path("made")));
   }
   EXPECT_TRUE(have(path("made")));

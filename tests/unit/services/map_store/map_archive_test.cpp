@@ -10,8 +10,8 @@
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/storage/read_map.hpp"
 
+#include "full_disk.hpp"
 #include "services/common/random_values.hpp"
-#include "services/map_store/full_disk.hpp"
 
 namespace topogeo::map_store {
 namespace {
@@ -171,7 +171,7 @@ TEST_F(Archive, FullDisk) {
   EXPECT_THAT(archive_->flush(), IsEmpty());
   add(100, 300);
   {
-    const FullDisk full(fs::file_size(path_.string() + "-wal") + 20000);
+    const test::FullDisk full(fs::file_size(path_.string() + "-wal") + 20000);
     EXPECT_THAT(flush_error(), HasSubstr("map.sqlite: cannot be read or written"));
     EXPECT_EQ(stored(), archive_->database().sessions()[0].stops);
     EXPECT_GE(stored(), 100U);
@@ -218,7 +218,7 @@ TEST_F(Archive, RemovedFileOnAFullDiskStaysInMemory) {
   fs::remove(path_);
   add(50, 60);
   {
-    const FullDisk full(10000);
+    const test::FullDisk full(10000);
     EXPECT_THAT(flush_error(), HasSubstr("map.sqlite.again: "));
   }
   EXPECT_EQ(flush_error(), "");

@@ -27,8 +27,9 @@ class RecordFileBytes {
   /// Fills `bytes` with the last stored record. False if there is none, or if it is damaged or of
   /// another size or format.
   [[nodiscard]] bool load(std::span<std::byte> bytes) const;
-  /// If a record cannot be written, it is lost, and the previous one with it.
-  void store(std::span<const std::byte> bytes) const;
+  /// False if the record cannot be written: the previous one is lost with it, and the file is
+  /// damaged. True without a file.
+  [[nodiscard]] bool store(std::span<const std::byte> bytes) const;
 
  private:
   FileDescriptor file_;
@@ -50,7 +51,9 @@ class RecordFile {
     std::memcpy(&record, bytes.data(), bytes.size());
     return record;
   }
-  void store(const T& record) const { file_.store(std::as_bytes(std::span(&record, 1))); }
+  [[nodiscard]] bool store(const T& record) const {
+    return file_.store(std::as_bytes(std::span(&record, 1)));
+  }
 
  private:
   RecordFileBytes file_;

@@ -6,7 +6,7 @@
 
 #include <sys/resource.h>
 
-namespace topogeo::map_store {
+namespace topogeo::test {
 
 /// No file of this process can grow beyond so many bytes: a full disk.
 class FullDisk {
@@ -30,4 +30,4 @@ class FullDisk {
   void (*handler_)(int) = nullptr;
 };
 
-}  // namespace topogeo::map_store
+}  // namespace topogeo::test
