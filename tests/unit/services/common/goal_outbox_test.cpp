@@ -4,6 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include <gmock/gmock.h>
+
 #include "messaging/fixture.hpp"
 
 namespace topogeo::service {
@@ -100,6 +102,31 @@ TEST_F(GoalOutboxTest, TheNextNavigatorGetsNoOrderOfBefore) {
     return next.statuses.write(messaging::message<msg::NavigatorStatus>()) && !next.take().empty();
   }));
   EXPECT_EQ(next.taken, std::vector<std::uint64_t>{2});
+}
+
+// A planner that starts again meanwhile needs the goal, for the way after the pause.
+TEST_F(GoalOutboxTest, AGoalStaysStoredBehindAnOrderToPause) {
+  StandInNavigator navigator(partition_);
+  navigator.listen();
+  hear(navigator);
+  EXPECT_TRUE(outbox_.send(order(1)));
+  msg::Goal pause = order(0);
+  pause.kind(msg::kGoalPause);
+  EXPECT_TRUE(outbox_.send(pause));
+  EXPECT_TRUE(run_until("goal and pause", [&] {
+    return navigator.statuses.write(messaging::message<msg::NavigatorStatus>()) &&
+           navigator.take().size() == 2;
+  }));
+  const messaging::Participant planner(messaging::options_in(partition_));
+  messaging::Reader<msg::Goal> goals(planner);
+  std::vector<std::uint64_t> stored;
+  EXPECT_TRUE(run_until("the stored orders", [&] {
+    goals.take([&](const msg::Goal& goal, const messaging::SampleInfo& info) {
+      if (info.valid) stored.push_back(goal.goal_id());
+    });
+    return stored.size() == 2;
+  }));
+  EXPECT_THAT(stored, testing::UnorderedElementsAre(1U, 0U));
 }
 
 }  // namespace

@@ -3,6 +3,9 @@
 // The navigator takes an order only if it is sent while it is connected (docs/navigation.md,
 // "Orders are of the moment"). A navigator may be heard before it is connected with this writer:
 // its orders wait for that. Orders for a navigator that is gone are never sent to the next one.
+//
+// A planner that starts again gets the goal under way from here. Orders to pause and to resume
+// therefore have a writer of their own, which leaves the goal stored.
 #pragma once
 
 #include <deque>
@@ -30,14 +33,18 @@ class GoalOutbox {
   [[nodiscard]] bool knows_navigator() const { return navigator_.has_value(); }
   /// Whether it gets what is sent now: it is connected, or was heard and is about to be.
   [[nodiscard]] bool has_navigator() const {
-    return navigator_ && (!was_connected_ || goals_.connected_with(*navigator_));
+    return navigator_ && (!was_connected_ || is_connected());
   }
 
  private:
   bool flush();
+  [[nodiscard]] bool is_connected() const {
+    return goals_.connected_with(*navigator_) && changes_.connected_with(*navigator_);
+  }
 
   Service& service_;
-  messaging::Writer<msg::Goal> goals_;
+  messaging::Writer<msg::Goal> goals_;          // with orders to cancel
+  messaging::Writer<msg::Goal> changes_;        // orders to pause and to resume
   std::optional<messaging::Handle> navigator_;  // the writer of its newest status
   bool was_connected_ = false;
   std::deque<msg::Goal> waiting_;  // for its connection
