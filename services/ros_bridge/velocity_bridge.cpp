@@ -14,7 +14,8 @@
 #include "outputs.hpp"
 
 namespace topogeo::ros_bridge {
-VelocityBridge::VelocityBridge(RosSide& ros) : ros_(ros) {
+VelocityBridge::VelocityBridge(RosSide& ros)
+    : ros_(ros), clock_(support::wall_clock_ns() - steady_now_ns()) {
   ros.service().status().set_counter("velocities", 0.0);
   if (ros.settings().directions.velocity == Direction::kOut) give();
   if (ros.settings().directions.velocity == Direction::kIn) take();
@@ -44,6 +45,9 @@ void VelocityBridge::give() {
 void VelocityBridge::take() {
   const Settings& settings = ros_.settings();
   commands_ = ros_.service().advertise<msg::MotionCommand>();
+  ros_.service().subscribe<msg::Odometry>([this](const msg::Odometry& odometry) {
+    clock_.observe(odometry.stamp_ns(), steady_now_ns());
+  });
   if (settings.stamped_velocity) {
     ros_.subscribe<ros::TwistStamped>(
         settings.topics.velocity, settings.qos.velocity,
@@ -91,7 +95,7 @@ void VelocityBridge::send(double linear_mps, double angular_radps) {
 void VelocityBridge::on_twist(const ros::Twist& twist) {
   msg::MotionCommand command = to_motion(twist);
   // Stamped when made, not with the last sensor time: the gateway rejects old commands.
-  messaging::set_header(command, ros_.service().robot_id(), support::wall_clock_ns(), sent_);
+  messaging::set_header(command, ros_.service().robot_id(), clock_.now_ns(steady_now_ns()), sent_);
   if (!commands_->write(command)) {
     ros_.service().status().fault("send blocked", "motion command");
     return;

@@ -7,6 +7,7 @@
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/motion.h"
 #include "topogeo/ros_conversions/messages.hpp"
+#include "topogeo/service/stamp_clock.hpp"
 
 #include "ros_side.hpp"
 
@@ -33,6 +34,7 @@ class VelocityBridge {
   std::optional<messaging::Writer<ros::Twist>> twists_;
   std::optional<messaging::Writer<ros::TwistStamped>> stamped_;
   std::optional<messaging::Writer<msg::MotionCommand>> commands_;
+  service::StampClock clock_;  // of the gateway, by its odometry
   bool moving_ = false;
   std::uint64_t sent_ = 0;
   std::uint64_t timer_ = 0;

@@ -15,8 +15,10 @@
 #include <gtest/gtest.h>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/motion.h"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/storage/tum.hpp"
@@ -309,6 +311,34 @@ TEST_P(SteeredByRos, TheBaseGetsTheirVelocity) {
     EXPECT_GT(command.valid_for_s(), 0.0);
   });
   EXPECT_GT(came, 0U);
+}
+
+// The gateway may run on a host with another clock, and the bridge's own may be set at any time.
+TEST_F(RosBridge, StampsVelocitiesByTheClockOfTheGateway) {
+  write_settings("directions:\n  sensors: out\n  velocity: in\n");
+  start("ros_bridge", {"--ros", scratch_ / "ros.yaml", "--ros-domain", ros_domain()});
+  start_peer({"steer", "0.25", "-0.5"});
+  messaging::ParticipantOptions options;
+  options.domain = static_cast<std::uint32_t>(std::stoul(domain_));
+  options.partition = "ros-test";
+  const messaging::Participant participant(options);
+  messaging::Writer<msg::Odometry> gateway(participant);
+  messaging::Reader<msg::MotionCommand> commands(participant);
+  constexpr std::int64_t kStart_ns = 1'000'000'000'000;  // some minutes after 1970
+  std::uint64_t sent = 0;
+  std::int64_t newest_ns = 0;
+  EXPECT_TRUE(wait_for("a command by that clock", [&] {
+    msg::Odometry odometry;
+    const std::int64_t stamp_ns = kStart_ns + static_cast<std::int64_t>(sent) * 10'000'000;
+    messaging::set_header(odometry, "robot", stamp_ns, sent++);
+    odometry.odometry_epoch(1);
+    EXPECT_TRUE(gateway.write(odometry));
+    commands.take([&](const msg::MotionCommand& command, const messaging::SampleInfo& info) {
+      if (info.valid) newest_ns = command.stamp_ns();
+    });
+    return newest_ns != 0 && newest_ns < 2 * kStart_ns;
+  }));
+  EXPECT_GE(newest_ns, kStart_ns);
 }
 
 // Our side is encrypted, ROS is not, and its scans arrive.
