@@ -72,7 +72,8 @@ void add_explore_command(command_line::Command& app, int& exit_code) {
   add_robot_options(*command, options->robot);
   command->footer(
       "Needs the services of a mapping robot, planner and navigator among them. Ctrl-C "
-      "stops the robot; the map stays.");
+      "stops the robot; the map stays. Another program that replaces or cancels the goal ends "
+      "the exploration.");
   command->callback([options, &exit_code] { exit_code = explore(*options); });
 }
 

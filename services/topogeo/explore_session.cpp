@@ -105,6 +105,8 @@ void ExploreSession::record_path() {
 void ExploreSession::tick() {
   take_map();
   record_path();
+  // Whoever took the robot must not lose it to the next target.
+  if (!trouble().empty()) return;
   const std::int64_t now_ns = monotonic_ns();
   const std::int64_t last_ns = std::exchange(ticked_ns_, now_ns);
   if (paused()) {
@@ -129,6 +131,7 @@ std::string ExploreSession::trouble() const {
   if (pose_ && pose_->mode() == msg::kModeLocalization) {
     return "the localizer does not map: topogeo localizer mode mapping";
   }
+  if (client_.was_taken_away()) return "another program replaced or cancelled the robot's goal";
   return {};
 }
 

@@ -48,6 +48,8 @@ class GoalClient {
 
   /// End of the goal sent; nothing while it may still be reached.
   [[nodiscard]] std::optional<supervision::GoalEnd> end();
+  /// Whether another program replaced or cancelled the goal sent.
+  [[nodiscard]] bool was_taken_away() const { return watch_ && watch_->was_taken_away(); }
   [[nodiscard]] const std::optional<navigation::NavigatorStatus>& status() const { return status_; }
   /// The first route found for the goal sent.
   [[nodiscard]] const std::optional<msg::Route>& route() const { return route_; }

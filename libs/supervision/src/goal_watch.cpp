@@ -17,7 +17,16 @@ std::string text_of(const NavigatorStatus& status) {
   return status.message.empty() ? "the navigator gave no reason" : status.message;
 }
 
+bool is_cancelled(const NavigatorStatus& status) {
+  return status.state == NavigatorState::kIdle ||
+         (status.state == NavigatorState::kStopped && status.reason == HaltReason::kCancelled);
+}
+
 }  // namespace
+
+bool GoalWatch::was_taken_away() const {
+  return replaced_ || (status_ && is_cancelled(*status_));
+}
 
 void GoalWatch::add(const RouteAnswer& answer) {
   if (answer.goal_id == goal_id_) answer_ = answer;
@@ -64,10 +73,9 @@ std::optional<GoalEnd> GoalWatch::check(double now_s) {
 
 std::optional<GoalEnd> GoalWatch::judge(const NavigatorStatus& status) const {
   if (status.state == NavigatorState::kArrived) return GoalEnd{true, ""};
-  if (status.state == NavigatorState::kIdle) return GoalEnd{false, "the goal was cancelled"};
-  if (status.state != NavigatorState::kStopped) return std::nullopt;
-  if (status.reason == HaltReason::kCancelled) return GoalEnd{false, "the goal was cancelled"};
-  if (status.reason == HaltReason::kNoRoute && answer_.refused) {
+  if (is_cancelled(status)) return GoalEnd{false, "the goal was cancelled"};
+  if (status.state == NavigatorState::kStopped && status.reason == HaltReason::kNoRoute &&
+      answer_.refused) {
     return GoalEnd{false,
                    "no route: " + (answer_.reason.empty() ? text_of(status) : answer_.reason)};
   }

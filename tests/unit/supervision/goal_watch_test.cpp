@@ -76,6 +76,32 @@ TEST(GoalWatch, SeesThatAnotherGoalCameOrTheNavigatorWent) {
   EXPECT_THAT(watch.check(13.0)->reason, HasSubstr("another goal"));
 }
 
+TEST(GoalWatch, TellsAGoalThatWasTakenAwayFromOneThatEnded) {
+  GoalWatch replaced(7, 60.0, 0.0);
+  replaced.add(status(NavigatorState::kDriving), 1.0);
+  EXPECT_FALSE(replaced.was_taken_away());
+  replaced.add(status(NavigatorState::kDriving, HaltReason::kNone, "", 8), 2.0);
+  EXPECT_TRUE(replaced.was_taken_away());
+
+  GoalWatch cancelled(7, 60.0, 0.0);
+  cancelled.add(status(NavigatorState::kStopped, HaltReason::kCancelled, "", 6), 1.0);
+  EXPECT_FALSE(cancelled.was_taken_away()) << "the goal before";
+  cancelled.add(status(NavigatorState::kStopped, HaltReason::kCancelled), 2.0);
+  EXPECT_TRUE(cancelled.was_taken_away());
+
+  GoalWatch lost(7, 60.0, 0.0);
+  lost.add(status(NavigatorState::kDriving), 1.0);
+  lost.add(status(NavigatorState::kIdle, HaltReason::kNone, "", 0), 2.0);
+  EXPECT_FALSE(lost.was_taken_away()) << "the navigator may have started again";
+  lost.add(status(NavigatorState::kIdle, HaltReason::kNone, "", 0), 8.0);
+  EXPECT_TRUE(lost.was_taken_away());
+
+  GoalWatch arrived(7, 60.0, 0.0);
+  arrived.add(status(NavigatorState::kArrived), 1.0);
+  arrived.add(status(NavigatorState::kStopped, HaltReason::kNoRoute), 2.0);
+  EXPECT_FALSE(arrived.was_taken_away());
+}
+
 TEST(GoalWatch, ASpanInWhichThisProgramDidNotRunIsNoSilenceOfTheNavigator) {
   GoalWatch watch(7, 60.0, 0.0);
   watch.add(status(NavigatorState::kDriving), 1.0);

@@ -35,6 +35,9 @@ class GoalWatch {
   void add(const navigation::NavigatorStatus& status, double now_s);
   /// Empty as long as the robot may still arrive.
   [[nodiscard]] std::optional<GoalEnd> check(double now_s);
+  /// Whether another program replaced or cancelled the goal. A navigator that started again without
+  /// the goal counts after some seconds.
+  [[nodiscard]] bool was_taken_away() const;
   /// Whether the services of the robot are short of CPU time from now on.
   void set_busy(bool busy, double now_s);
 
