@@ -36,6 +36,7 @@ Answer ExplorationSender::start() {
         "the robot only follows its pose in a map that stays as it is; to explore, let it "
         "map (“Map from now on”, in the view Correct)");
   }
+  if (!goals_.has_navigator()) return error_answer(409, "no navigator is there to take the goals");
   exploration_.start(service_.setup().config.config.exploration);
   goal_id_ = 0;
   goals_.set_exploring(true);
@@ -65,7 +66,8 @@ void ExplorationSender::take(const msg::NavigatorStatus& status,
 }
 
 void ExplorationSender::step() {
-  if (!exploration_.running()) return;
+  // A target without a navigator is not out of reach.
+  if (!exploration_.running() || !goals_.has_navigator()) return;
   try {
     newest_ = floor_();
   } catch (const std::invalid_argument&) {  // an incomplete map: the previous one stays

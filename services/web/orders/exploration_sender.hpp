@@ -27,7 +27,7 @@ class ExplorationSender {
   ExplorationSender& operator=(const ExplorationSender&) = delete;
   ~ExplorationSender();
 
-  /// Refused (409) for a robot that is not mapping.
+  /// Refused (409) for a robot that is not mapping or has no navigator.
   Answer start();
   /// The robot's current goal stays.
   void stop();

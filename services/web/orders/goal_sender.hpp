@@ -42,6 +42,8 @@ class GoalSender {
 
   /// Whether there is a goal that has not ended.
   [[nodiscard]] bool under_way() const { return list_.current().has_value(); }
+  /// Whether a navigator gets what is sent now.
+  [[nodiscard]] bool has_navigator() const { return goals_.has_navigator(); }
   [[nodiscard]] std::size_t waiting() const { return list_.waiting().size(); }
   /// Position of a goal on the current map.
   [[nodiscard]] Eigen::Vector2d position_of(const WantedGoal& goal) const;
