@@ -91,7 +91,7 @@ BaseChannel::~BaseChannel() {
   // After an exception the loop no longer runs, so the base gets only what the line takes at once.
   // Its watchdog does the rest.
   try {
-    driver_.halt(line_.now_ns());
+    driver_.end(line_.now_ns());
     line_.carry_out();
     static_cast<void>(line_.wait_written(kLongestStop));
   } catch (const std::exception& error) {
@@ -120,8 +120,7 @@ void BaseChannel::begin_epoch(std::int64_t stamp_ns) {
 }
 
 void BaseChannel::after_driver(std::int64_t) {
-  // The halt of an ending gateway is no order of a person.
-  if (!stopped_ && !stop_memory_.store(driver_.held_stops())) {
+  if (!stop_memory_.store(driver_.held_stops())) {
     service_.status().fault("stop not stored", "a restarted gateway halts the base");
   }
   for (const devices::BaseOdometry& sample : driver_.take_odometry()) {
@@ -276,9 +275,11 @@ void BaseChannel::count() {
 }
 
 void BaseChannel::stop() {
-  if (std::exchange(stopped_, true) || !line_.is_open()) return;
-  driver_.halt(line_.now_ns());
+  if (std::exchange(stopped_, true)) return;
+  driver_.end(line_.now_ns());
   line_.carry_out();
+  after_driver(line_.now_ns());
+  if (!line_.is_open()) return;
   const auto end = std::chrono::steady_clock::now() + kLongestStop;
   while (line_.is_open() && !driver_.stands() && std::chrono::steady_clock::now() < end) {
     service_.loop().run_for(kStopPoll);

@@ -42,7 +42,7 @@ class BaseChannel {
   BaseChannel& operator=(const BaseChannel&) = delete;
   BaseChannel(BaseChannel&&) = delete;
   BaseChannel& operator=(BaseChannel&&) = delete;
-  /// Halts the base, unless stop() has done so.
+  /// Stops the base, unless stop() has done so.
   ~BaseChannel();
 
   /// Takes the laser's view, stamped by the steady clock: the base stops before obstacles, whatever
@@ -62,8 +62,9 @@ class BaseChannel {
 
   [[nodiscard]] messaging::Writer<msg::Odometry>& odometry() { return odometry_; }
 
-  /// Halts the base and waits until it stands, at most half a second. The base's own watchdog stops
-  /// it if this command does not arrive.
+  /// Stops the base for good and waits until it stands, at most half a second. The base's own
+  /// watchdog stops it if this command does not arrive. A halt or a reset that comes later is
+  /// stored for the next gateway.
   void stop();
 
  private:

@@ -23,6 +23,7 @@ namespace {
 constexpr milliseconds kStatePeriod{250};    // twice per status, so that it is up to date
 constexpr milliseconds kBodyPeriod{100};     // period of a ring of sonars that fire in turns
 constexpr milliseconds kLastDelivery{2000};  // time for readers to receive published data
+constexpr milliseconds kDeliveryPoll{10};
 
 ScanGateOptions gate_options(const service::Service& service, const DeviceConfig& config,
                              std::uint64_t odometry_epoch) {
@@ -107,6 +108,7 @@ void DeviceGateway::show_base(const devices::PlsScan& scan) {
 }
 
 void DeviceGateway::release(std::int64_t now_ns) {
+  if (ended_) return;  // the end of the stream gives the number of scans
   for (const ScanGate::Leaving& leaving : gate_.take(now_ns)) {
     if (!publish(leaving.scan)) continue;
     wait_ns_ = now_ns - leaving.arrival_ns;
@@ -183,15 +185,26 @@ void DeviceGateway::publish_state() {
   status.set_waits_for(missing);
 }
 
+template <class T>
+bool DeviceGateway::deliver(messaging::Writer<T>& writer, std::chrono::nanoseconds timeout) {
+  const auto end = std::chrono::steady_clock::now() + timeout;
+  while (!writer.wait_for_acknowledgments(kDeliveryPoll)) {
+    if (std::chrono::steady_clock::now() >= end) return false;
+    static_cast<void>(service_.loop().run_for(kDeliveryPoll));
+  }
+  return true;
+}
+
 void DeviceGateway::finish() {
   if (base_) base_->stop();
+  ended_ = true;
   publish_state();
   const auto end_ns = steady_now_ns() + std::chrono::nanoseconds(kLastDelivery).count();
-  if (!scans_.wait_for_acknowledgments(kLastDelivery)) {
+  if (!deliver(scans_, kLastDelivery)) {
     service_.status().fault("readers lack scans", "at the end");
   }
   const std::chrono::nanoseconds left(std::max<std::int64_t>(0, end_ns - steady_now_ns()));
-  if (base_ && !base_->odometry().wait_for_acknowledgments(left)) {
+  if (base_ && !deliver(base_->odometry(), left)) {
     service_.status().fault("readers lack odometry", "at the end");
   }
   msg::StreamEnd end;
@@ -199,8 +212,11 @@ void DeviceGateway::finish() {
   end.stage(msg::kStageGateway);
   end.count(gate_.scans());
   end.last_id(gate_.scans() == 0 ? 0 : gate_.scans() - 1);
-  if (!stream_end_.write(end) || !stream_end_.wait_for_acknowledgments(kLastDelivery)) {
+  if (!stream_end_.write(end) || !deliver(stream_end_, kLastDelivery)) {
     service_.status().fault("readers lack the stream end", "at the end");
+  }
+  // The sender of a halt that has arrived takes it for delivered. A signal ends the first turn.
+  while (service_.loop().run_for(milliseconds::zero())) {
   }
   spdlog::info("{} scans published", sent_);
 }

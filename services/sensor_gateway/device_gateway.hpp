@@ -1,6 +1,7 @@
 // Publishes the scans, odometry and states of real devices, and drives the base.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -38,8 +39,9 @@ class DeviceGateway {
   DeviceGateway& operator=(DeviceGateway&&) = delete;
   ~DeviceGateway();
 
-  /// Call it after the loop: halts the base, waits until the readers have all published data and
-  /// announces the end of the stream.
+  /// Call it after the loop: stops the base, waits until the readers have all published data and
+  /// announces the end of the stream. Runs the loop meanwhile, so that the base's halt and reset
+  /// are stored for the next gateway.
   void finish();
 
  private:
@@ -48,12 +50,15 @@ class DeviceGateway {
   void compare_watchdog(double watchdog_s);
   /// Shows the laser's view to the base at once, which stops before obstacles.
   void show_base(const devices::PlsScan& scan);
-  /// Publishes the scans that are ready.
+  /// Publishes the scans that are ready, until finish().
   void release(std::int64_t now_ns);
   /// False, with a fault, when the scan cannot be sent.
   bool publish(const scan::Scan& scan);
   void publish_state();
   void read_body();
+  /// Runs the loop until the readers have all data of the writer; false after `timeout`.
+  template <class T>
+  [[nodiscard]] bool deliver(messaging::Writer<T>& writer, std::chrono::nanoseconds timeout);
 
   service::Service& service_;
   HostTime time_;
@@ -64,6 +69,7 @@ class DeviceGateway {
   messaging::Writer<msg::StreamEnd> stream_end_;
   std::int64_t last_stamp_ns_ = 0;
   std::uint64_t sent_ = 0;
+  bool ended_ = false;  // by finish()
   // Time between reading the last bytes of a scan from the port and publishing it.
   std::int64_t latency_ns_ = 0;          // of the last scan
   std::int64_t largest_latency_ns_ = 0;  // of all scans

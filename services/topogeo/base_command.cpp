@@ -21,6 +21,7 @@
 #include "topogeo/support/host.hpp"
 #include "topogeo/support/patience.hpp"
 
+#include "base_confirmation.hpp"
 #include "commands.hpp"
 #include "domain_view.hpp"
 #include "program_connection.hpp"
@@ -120,11 +121,8 @@ int send_base_command(BaseRequest request) {
   support::Patience patience(request.wait_s, support::monotonic_s());
   send_with(writer, request.command, patience);
   const msg::BaseCommandKind kind = request.command.kind();
-  const auto status = next_status(reader, request, patience, [&](const msg::BaseStatus& now) {
-    if (kind == msg::kBaseHalt) return !now.commands_taken();
-    return kind != msg::kBaseReset ||
-           (now.state() != msg::kBaseHalted && now.state() != msg::kBaseEmergencyStop);
-  });
+  const auto status = next_status(reader, request, patience,
+                                  [&](const msg::BaseStatus& now) { return confirms(now, kind); });
   if (!status) {
     throw std::runtime_error(fmt::format("robot '{}' did not do it within {:.0f} ms{}",
                                          request.robot_id, 1000.0 * request.wait_s,

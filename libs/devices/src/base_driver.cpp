@@ -387,7 +387,7 @@ BaseState BaseDriver::state() const {
 
 std::string BaseDriver::reason() const {
   const BaseState state = status_.state;
-  if (state == BaseState::kOffline) return link_.reason();
+  if (state == BaseState::kOffline) return link_.offline() ? link_.reason() : "the gateway ends";
   if (state == BaseState::kBumped && status_.bumpers != 0) return "a bumper is pressed";
   const bool motors = state == BaseState::kMotorsOff || state == BaseState::kEmergencyStop;
   if (motors && !interlocks_.motor_fault().empty()) {

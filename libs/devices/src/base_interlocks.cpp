@@ -38,6 +38,7 @@ BaseInterlocks::BaseInterlocks(const BaseSettings& settings)
 std::optional<BaseState> BaseInterlocks::state() const {
   if (held_.emergency_stop) return BaseState::kEmergencyStop;
   if (held_.halt) return BaseState::kHalted;
+  if (ended_) return BaseState::kOffline;
   if (watchdog_until_ns_) return BaseState::kWatchdogExpired;
   if (bump_latched_ || pressed_ != 0) return BaseState::kBumped;
   return std::nullopt;

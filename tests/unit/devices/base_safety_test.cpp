@@ -243,6 +243,25 @@ TEST_P(BaseSafetyOn, HaltHoldsUntilReset) {
   EXPECT_EQ(all.driver.status().state, BaseState::kMoving);
 }
 
+TEST_P(BaseSafetyOn, TheEndOfTheDriverIsNoHalt) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  all.drive(0.3, 0.0, 2 * kSecond);
+  all.driver.end(all.line.now_ns());
+  all.drive(0.3, 0.0, 2 * kSecond);
+  EXPECT_TRUE(all.base.stands());
+  EXPECT_EQ(all.driver.status().state, BaseState::kOffline);
+  EXPECT_EQ(all.driver.status().reason, "the gateway ends");
+  EXPECT_EQ(all.driver.held_stops(), HeldStops{});
+  all.driver.halt(all.line.now_ns());
+  EXPECT_EQ(all.driver.status().state, BaseState::kHalted);
+  EXPECT_TRUE(all.driver.held_stops().halt);
+  all.driver.reset_stop(all.line.now_ns());
+  EXPECT_EQ(all.driver.held_stops(), HeldStops{});
+  all.drive(0.3, 0.0, 2 * kSecond);
+  EXPECT_TRUE(all.base.stands());
+}
+
 TEST_P(BaseSafetyOn, AHaltIsOverWhenBothAxesStand) {
   BaseOnLine all(settings());
   ASSERT_TRUE(all.start());

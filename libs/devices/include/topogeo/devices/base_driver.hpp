@@ -65,6 +65,13 @@ class BaseDriver final : public SerialDriver {
 
   /// Stops now and refuses motion commands until reset_stop().
   void halt(std::int64_t now_ns);
+  /// Stops for good, because the program ends: no command moves the base any more. That is no halt:
+  /// held_stops() has only stops by others, also those that come later.
+  void end(std::int64_t now_ns) {
+    interlocks_.end();
+    stand_again(now_ns);
+    tick(now_ns);
+  }
   /// Both axes were sent a halt, and the base has since reported standstill.
   [[nodiscard]] bool stands() const;
   /// An operator permits motion again after halt() or an emergency stop. The base does not move

@@ -25,7 +25,9 @@ class BaseInterlocks {
   explicit BaseInterlocks(const BaseSettings& settings);
 
   /// Motion commands are refused.
-  [[nodiscard]] bool engaged() const { return held_.emergency_stop || held_.halt || bump_latched_; }
+  [[nodiscard]] bool engaged() const {
+    return ended_ || held_.emergency_stop || held_.halt || bump_latched_;
+  }
   /// The resulting state; nothing while the base may move.
   [[nodiscard]] std::optional<BaseState> state() const;
 
@@ -38,6 +40,8 @@ class BaseInterlocks {
   void standing_taken();
 
   void halt() { held_.halt = true; }
+  /// The program that drives the base ends. Nothing releases this, and it is no stop that holds.
+  void end() { ended_ = true; }
   /// The base does not move as commanded. False if it was already stopped for that.
   bool emergency_stop();
   /// An operator releases halt and emergency stop.
@@ -82,6 +86,7 @@ class BaseInterlocks {
   std::int64_t command_timeout_ns_;
   HeldStops held_;
   std::optional<std::int64_t> watchdog_until_ns_{};
+  bool ended_ = false;
   bool bump_latched_ = false;
   bool joystick_ = false;
   std::uint16_t pressed_ = 0;

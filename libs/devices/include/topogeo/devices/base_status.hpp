@@ -13,7 +13,7 @@ namespace topogeo::devices {
 enum class BaseState : std::uint8_t {
   kReady,            ///< accepts motion commands and stands still
   kMoving,           ///< moves as commanded
-  kOffline,          ///< the line is closed, or the base does not answer
+  kOffline,          ///< the line is closed, the base does not answer, or end() was called
   kStarting,         ///< is being set up
   kEmergencyStop,    ///< the motors have no power to follow a motion command; until reset_stop()
   kHalted,           ///< by halt(); until reset_stop()

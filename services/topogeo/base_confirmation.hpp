@@ -1,0 +1,21 @@
+// Checks by the status of a base whether it has carried out an operator's command.
+#pragma once
+
+#include "topogeo/msg/motion.h"
+#include "topogeo/msg/sensor.h"
+
+namespace topogeo::cli {
+
+/// The base refuses motion commands until a reset.
+inline bool holds(const msg::BaseStatus& status) {
+  return status.state() == msg::kBaseHalted || status.state() == msg::kBaseEmergencyStop;
+}
+
+/// Whether a status that follows the command confirms it. A base that refuses motion commands for
+/// another reason, for example because its gateway ends, does not confirm a halt.
+inline bool confirms(const msg::BaseStatus& status, msg::BaseCommandKind kind) {
+  if (kind == msg::kBaseHalt) return holds(status);
+  return kind != msg::kBaseReset || !holds(status);
+}
+
+}  // namespace topogeo::cli

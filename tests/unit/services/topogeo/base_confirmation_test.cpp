@@ -1,0 +1,29 @@
+#include "topogeo/base_confirmation.hpp"
+
+#include <gtest/gtest.h>
+
+namespace topogeo::cli {
+namespace {
+
+msg::BaseStatus base_in(msg::BaseState state) {
+  msg::BaseStatus status;
+  status.state(state);
+  return status;
+}
+
+TEST(BaseConfirmation, OnlyAStopThatHoldsConfirmsAHalt) {
+  for (const auto state : {msg::kBaseHalted, msg::kBaseEmergencyStop}) {
+    EXPECT_TRUE(confirms(base_in(state), msg::kBaseHalt)) << state;
+    EXPECT_FALSE(confirms(base_in(state), msg::kBaseReset)) << state;
+  }
+  // All these refuse motion commands, too.
+  for (const auto state : {msg::kBaseOffline, msg::kBaseStarting, msg::kBaseWatchdogExpired,
+                           msg::kBaseBumped, msg::kBaseJoystick, msg::kBaseMotorsOff}) {
+    EXPECT_FALSE(confirms(base_in(state), msg::kBaseHalt)) << state;
+    EXPECT_TRUE(confirms(base_in(state), msg::kBaseReset)) << state;
+  }
+  EXPECT_TRUE(confirms(base_in(msg::kBaseMoving), msg::kBaseSetLimits));
+}
+
+}  // namespace
+}  // namespace topogeo::cli
