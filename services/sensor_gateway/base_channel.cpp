@@ -64,6 +64,7 @@ BaseChannel::BaseChannel(service::Service& service, const DeviceConfig& config,
       hooks_(std::move(hooks)),
       driver_(config.base),
       stop_memory_(stop_memory),
+      stop_count_(1 + support::unrepeatable_u64() / 2),
       odometry_(service.advertise<msg::Odometry>()),
       statuses_(service.advertise<msg::BaseStatus>()),
       line_(service.loop(), driver_, PortOptions{config.base_port},
@@ -81,7 +82,9 @@ BaseChannel::BaseChannel(service::Service& service, const DeviceConfig& config,
         on_command(command, info);
       });
   service.subscribe<msg::BaseCommand>(
-      [this](const msg::BaseCommand& command) { on_command(command); });
+      [this](const msg::BaseCommand& command, const messaging::SampleInfo& info) {
+        on_command(command, info);
+      });
   timer_ = service.loop().add_timer(kStatusPeriod, [this] { publish_status(); });
 }
 
@@ -120,6 +123,7 @@ void BaseChannel::begin_epoch(std::int64_t stamp_ns) {
 }
 
 void BaseChannel::after_driver(std::int64_t) {
+  stop_count_.emergency_stop(driver_.held_stops().emergency_stop);
   if (!stop_memory_.store(driver_.held_stops())) {
     service_.status().fault("stop not stored", "a restarted gateway halts the base");
   }
@@ -142,7 +146,7 @@ void BaseChannel::after_driver(std::int64_t) {
     if (guard_) guard_->add(odometry);
     hooks_.on_odometry(odometry);
   }
-  if (driver_.status().state != published_state_ || ready() != published_ready_) publish_status();
+  if (shown() != published_) publish_status();
 }
 
 void BaseChannel::see(const navigation::ScanPoints& scan) {
@@ -199,17 +203,17 @@ void BaseChannel::on_command(const msg::MotionCommand& command, const messaging:
   after_driver(now_ns);
 }
 
-void BaseChannel::on_command(const msg::BaseCommand& command) {
+void BaseChannel::on_command(const msg::BaseCommand& command, const messaging::SampleInfo& info) {
   const std::int64_t now_ns = line_.now_ns();
   const std::string client = command.client_id().c_str();
   switch (command.kind()) {
     case msg::kBaseHalt:
       spdlog::warn("halted by {}", client);
       driver_.halt(now_ns);
+      stop_count_.halt(info.writer);
       break;
     case msg::kBaseReset:
-      spdlog::warn("{} allows the base to move again", client);
-      driver_.reset_stop(now_ns);
+      reset_stop(command, info.writer, now_ns);
       break;
     case msg::kBaseSetLimits:
       try {
@@ -226,6 +230,19 @@ void BaseChannel::on_command(const msg::BaseCommand& command) {
   after_driver(now_ns);
 }
 
+void BaseChannel::reset_stop(const msg::BaseCommand& command, const messaging::Handle& writer,
+                             std::int64_t now_ns) {
+  if (stop_count_.may_release(writer, command.stop_count())) {
+    spdlog::warn("{} allows the base to move again", command.client_id().c_str());
+    driver_.reset_stop(now_ns);
+    return;
+  }
+  service_.status().add_drops("old reset");
+  spdlog::warn("reset of {} refused: the base was stopped again since",
+               command.client_id().c_str());
+  publish_status();
+}
+
 std::string BaseChannel::describe() const {
   const devices::BaseStatus& status = driver_.status();
   const std::string name(devices::base_state_name(status.state));
@@ -235,8 +252,7 @@ std::string BaseChannel::describe() const {
 
 void BaseChannel::publish_status() {
   const devices::BaseStatus& status = driver_.status();
-  published_state_ = status.state;
-  published_ready_ = ready();
+  published_ = shown();
   msg::BaseStatus message;
   messaging::set_header(message, service_.robot_id(), time_.stamp_ns(line_.now_ns()),
                         statuses_sent_);
@@ -247,6 +263,7 @@ void BaseChannel::publish_status() {
   message.battery_v(static_cast<float>(status.battery_v));
   message.battery_low(status.battery_low);
   message.bumpers(status.bumpers);
+  message.stop_count(published_.stop_count);
   if (statuses_.write(message)) {
     ++statuses_sent_;
   } else {

@@ -20,6 +20,7 @@
 #include "host_time.hpp"
 #include "odometry_memory.hpp"
 #include "serial_line.hpp"
+#include "stop_count.hpp"
 #include "stop_memory.hpp"
 
 namespace topogeo::sensor_gateway {
@@ -79,7 +80,20 @@ class BaseChannel {
                                      const messaging::SampleInfo& info, std::int64_t now_ns);
   [[nodiscard]] devices::BaseVelocity guarded(const devices::BaseVelocity& wanted,
                                               std::int64_t now_ns);
-  void on_command(const msg::BaseCommand& command);
+  void on_command(const msg::BaseCommand& command, const messaging::SampleInfo& info);
+  void reset_stop(const msg::BaseCommand& command, const messaging::Handle& writer,
+                  std::int64_t now_ns);
+  /// A change of it is published at once.
+  struct Shown {
+    devices::BaseState state = devices::BaseState::kOffline;
+    bool ready = false;
+    std::uint64_t stop_count = 0;
+
+    friend bool operator==(const Shown&, const Shown&) = default;
+  };
+  [[nodiscard]] Shown shown() const {
+    return {driver_.status().state, ready(), stop_count_.number()};
+  }
   void publish_status();
 
   service::Service& service_;
@@ -89,6 +103,7 @@ class BaseChannel {
   std::optional<std::uint64_t> odometry_epoch_;
   devices::BaseDriver driver_;
   StopMemory stop_memory_;
+  StopCount stop_count_;
   std::optional<navigation::LastGuard> guard_;  ///< only with a laser
   navigation::LastGuard::Verdict verdict_ = navigation::LastGuard::Verdict::kAsWanted;
   std::uint64_t guard_stops_ = 0;
@@ -99,8 +114,7 @@ class BaseChannel {
   std::uint64_t statuses_sent_ = 0;
   std::uint64_t commands_ = 0;
   std::uint64_t refused_ = 0;
-  devices::BaseState published_state_ = devices::BaseState::kOffline;
-  bool published_ready_ = false;
+  Shown published_;
   bool stopped_ = false;
   std::uint64_t timer_ = 0;
   SerialLine line_;

@@ -111,7 +111,9 @@ int send_base_command(BaseRequest request) {
   messaging::Writer<msg::BaseCommand> writer(participant);
   support::Patience connecting(request.wait_s, support::monotonic_s());
   const auto of_robot = [&](const msg::BaseStatus& status) {
-    return status.robot_id() == request.robot_id.c_str();
+    if (status.robot_id() != request.robot_id.c_str()) return false;
+    request.command.stop_count(status.stop_count());  // the newest stop that a reset releases
+    return true;
   };
   if (!connect_with_program(reader, writer, connecting, of_robot)) {
     throw std::runtime_error(nothing_alive(request.view, "base") + connecting.reason());
@@ -121,15 +123,18 @@ int send_base_command(BaseRequest request) {
   support::Patience patience(request.wait_s, support::monotonic_s());
   send_with(writer, request.command, patience);
   const msg::BaseCommandKind kind = request.command.kind();
-  const auto status = next_status(reader, request, patience,
-                                  [&](const msg::BaseStatus& now) { return confirms(now, kind); });
+  const auto status = next_status(reader, request, patience, [&](const msg::BaseStatus& now) {
+    return confirms(now, kind) || refuses(now, request.command);
+  });
   if (!status) {
     throw std::runtime_error(fmt::format("robot '{}' did not do it within {:.0f} ms{}",
                                          request.robot_id, 1000.0 * request.wait_s,
                                          patience.reason()));
   }
   print_base(*status);
-  return service::kOk;
+  if (confirms(*status, kind)) return service::kOk;
+  throw std::runtime_error(fmt::format(
+      "robot '{}' was stopped again meanwhile: repeat the reset to release it", request.robot_id));
 }
 
 void add_base_options(command_line::Command& app, BaseRequest& request) {

@@ -18,4 +18,11 @@ inline bool confirms(const msg::BaseStatus& status, msg::BaseCommandKind kind) {
   return kind != msg::kBaseReset || !holds(status);
 }
 
+/// Whether a status that follows a reset shows a later stop than the one that the reset names: the
+/// gateway refuses that reset.
+inline bool refuses(const msg::BaseStatus& status, const msg::BaseCommand& command) {
+  return command.kind() == msg::kBaseReset && holds(status) &&
+         status.stop_count() != command.stop_count();
+}
+
 }  // namespace topogeo::cli

@@ -96,6 +96,7 @@ void GatewayOnDevices::tell_base(msg::BaseCommandKind kind) {
   messaging::set_header(message, "robot", 0, commands_++);
   messaging::set_client_id(message, "test");
   message.kind(kind);
+  if (base_status_) message.stop_count(base_status_->stop_count());
   ASSERT_TRUE(base_.write(message));
 }
 

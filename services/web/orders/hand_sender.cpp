@@ -105,6 +105,7 @@ void HandSender::on_laser(const msg::LaserStatus& laser) {
 
 void HandSender::on_base(const msg::BaseStatus& base, const messaging::Handle& writer) {
   base_ = writer;
+  stop_count_ = base.stop_count();
   if (!stop_wanted_) return;
   if (base.state() == msg::kBaseHalted || base.state() == msg::kBaseEmergencyStop) {
     stopped_base_ = writer;
@@ -218,6 +219,7 @@ bool HandSender::order(msg::BaseCommandKind kind) {
   messaging::set_header(message, service_.robot_id(), support::wall_clock_ns(), orders_sent_++);
   messaging::set_client_id(message, client_id_);
   message.kind(kind);
+  message.stop_count(stop_count_);
   const bool heard = base_hears();  // before sending: a later base may miss it
   if (orders_.write(message)) return heard;
   hooks_.on_blocked("base command");

@@ -98,6 +98,7 @@ class HandSender {
   messaging::Writer<msg::MotionCommand> commands_;
   messaging::Writer<msg::BaseCommand> orders_;
   std::optional<messaging::Handle> base_;  // writer of the base's status
+  std::uint64_t stop_count_ = 0;           // of the base's newest status; 0: none
   bool stop_unheard_ = false;
   bool stop_wanted_ = false;                       // from stop() to release_stop()
   std::optional<messaging::Handle> stopped_base_;  // writer that has reported the stop since then

@@ -14,7 +14,7 @@ RemoteEndpoint endpoint(const std::string& participant, bool writer, const Offer
                         std::vector<std::string> partitions = {"run"}) {
   RemoteEndpoint result;
   result.participant = participant;
-  result.topic = "topogeo/v16/scan";
+  result.topic = "topogeo/v17/scan";
   result.type = "topogeo::msg::Scan";
   result.writer = writer;
   result.partitions = std::move(partitions);
@@ -54,7 +54,7 @@ TEST(Mismatches, OnlyOfThoseThatMeet) {
   EXPECT_THAT(find_mismatches(endpoints), IsEmpty()) << "other partition";
   endpoints[1].partitions = {"run-*"};
   EXPECT_EQ(find_mismatches(endpoints).size(), 1U);
-  endpoints[1].topic = "topogeo/v16/sonar";
+  endpoints[1].topic = "topogeo/v17/sonar";
   EXPECT_THAT(find_mismatches(endpoints), IsEmpty()) << "other topic";
   endpoints[1] = endpoint("r", true, reliable, {"run-1"});
   EXPECT_THAT(find_mismatches(endpoints), IsEmpty()) << "two writers";

@@ -62,6 +62,7 @@ void fill(msg::BaseStatus& status) {
   status.battery_v(47.5F);
   status.battery_low(true);
   status.bumpers(0x8001);
+  status.stop_count(~0ULL);
   set_text(status.reason(), "bumper pressed", "reason");
 }
 
@@ -402,6 +403,7 @@ void fill(msg::MotionCommand& command) {
 
 void fill(msg::BaseCommand& command) {
   command.kind(msg::kBaseSetLimits);
+  command.stop_count(~0ULL);
   command.largest_linear_mps(0.5);
   command.angular_acceleration_radps2(1.5);
   set_client_id(command, "operator");

@@ -70,13 +70,13 @@ TEST_F(Refusals, NameThePeerThatIsDeniedATopic) {
   // A worker under the name of the map store, with its own certificate.
   peer("robot/map_store", "CN=ga_worker.pc1,O=topogeo");
   authenticate(rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
-  note_denial({prefix_of_peer(), "topogeo/v16/map", true, false});
-  note_denial({prefix_of_peer(), "topogeo/v16/scan", false, true});
+  note_denial({prefix_of_peer(), "topogeo/v17/map", true, false});
+  note_denial({prefix_of_peer(), "topogeo/v17/scan", false, true});
   const std::string who =
       "'robot/map_store' (CN=ga_worker.pc1,O=topogeo; " + std::string(kGuid) + ") ";
   EXPECT_THAT(listener_.take(),
-              ElementsAre(who + "is denied to write topogeo/v16/map",
-                          who + "is denied to read topogeo/v16/scan: its governance is another "
+              ElementsAre(who + "is denied to write topogeo/v17/map",
+                          who + "is denied to read topogeo/v17/scan: its governance is another "
                                 "one"));
   EXPECT_THAT(listener_.take(), IsEmpty()) << "each once";
 }
@@ -86,10 +86,10 @@ TEST_F(Refusals, NameTheCertificateThatThePeerHasShown) {
   peer("robot/map_store", "/O=topogeo/CN=map_store.robot");
   note_subject(prefix_of_peer(), "/O=topogeo/CN=ga_worker.pc1");
   authenticate(rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
-  note_denial({prefix_of_peer(), "topogeo/v16/map", true, false});
+  note_denial({prefix_of_peer(), "topogeo/v17/map", true, false});
   EXPECT_THAT(listener_.take(),
               ElementsAre("'robot/map_store' (/O=topogeo/CN=ga_worker.pc1; " + std::string(kGuid) +
-                          ") is denied to write topogeo/v16/map"));
+                          ") is denied to write topogeo/v17/map"));
   peer("", "", Info::REMOVED_PARTICIPANT);
   peer("robot/map_store", "/O=topogeo/CN=map_store.robot");
   authenticate(rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT);
@@ -100,21 +100,21 @@ TEST_F(Refusals, NameTheCertificateThatThePeerHasShown) {
 TEST_F(Refusals, NameTheRobotOfASampleThatIsDenied) {
   peer("anna/sensor_gateway", "/O=topogeo/OU=anna/CN=sensor_gateway.anna");
   authenticate(rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
-  note_denial({prefix_of_peer(), "topogeo/v16/scan", true, false, "bert\n"});
+  note_denial({prefix_of_peer(), "topogeo/v17/scan", true, false, "bert\n"});
   EXPECT_THAT(
       listener_.take(),
       ElementsAre("'anna/sensor_gateway' (/O=topogeo/OU=anna/CN=sensor_gateway.anna; " +
-                  std::string(kGuid) + ") is denied to write topogeo/v16/scan for robot 'bert?'"));
+                  std::string(kGuid) + ") is denied to write topogeo/v17/scan for robot 'bert?'"));
 }
 
 TEST_F(Refusals, NameAPeerThatHasLeft) {
   peer("robot/map_store", "CN=ga_worker.pc1,O=topogeo");
   authenticate(rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
-  note_denial({prefix_of_peer(), "topogeo/v16/map", true, false});
+  note_denial({prefix_of_peer(), "topogeo/v17/map", true, false});
   peer("", "", Info::REMOVED_PARTICIPANT);
   EXPECT_THAT(listener_.take(),
               ElementsAre("'robot/map_store' (CN=ga_worker.pc1,O=topogeo; " + std::string(kGuid) +
-                          ") is denied to write topogeo/v16/map"));
+                          ") is denied to write topogeo/v17/map"));
 }
 
 TEST_F(Refusals, AreOneShortLineEach) {
@@ -126,12 +126,12 @@ TEST_F(Refusals, AreOneShortLineEach) {
 
 TEST_F(Refusals, AreBounded) {
   for (int i = 0; i < 1'000; ++i) {
-    note_denial({prefix_of_peer(), "topogeo/v16/topic" + std::to_string(i), true, false});
+    note_denial({prefix_of_peer(), "topogeo/v17/topic" + std::to_string(i), true, false});
   }
   const std::vector<std::string> lines = listener_.take();
   ASSERT_EQ(lines.size(), 256U);
   EXPECT_EQ(lines.back(),
-            "'unnamed' (" + std::string(kGuid) + ") is denied to write topogeo/v16/topic999");
+            "'unnamed' (" + std::string(kGuid) + ") is denied to write topogeo/v17/topic999");
 }
 
 }  // namespace

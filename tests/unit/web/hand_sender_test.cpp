@@ -83,16 +83,23 @@ class LivingBase {
   [[nodiscard]] bool connected() const {
     return commands_.matched() > 0 && statuses_.matched() > 0;
   }
-  void report(msg::BaseState state) {
+  void report(msg::BaseState state, std::uint64_t stop_count = 1) {
     auto status = messaging::message<msg::BaseStatus>();
     status.state(state);
+    status.stop_count(stop_count);
     static_cast<void>(statuses_.write(status));
   }
   int halts() {
     commands_.take([&](const msg::BaseCommand& command, const messaging::SampleInfo& info) {
       if (info.valid && command.kind() == msg::kBaseHalt) ++halts_;
+      if (info.valid && command.kind() == msg::kBaseReset) released_ = command.stop_count();
     });
     return halts_;
+  }
+  /// The stop that the last reset names; 0: none.
+  std::uint64_t released() {
+    static_cast<void>(halts());
+    return released_;
   }
 
  private:
@@ -100,6 +107,7 @@ class LivingBase {
   messaging::Reader<msg::BaseCommand> commands_;
   messaging::Writer<msg::BaseStatus> statuses_;
   int halts_ = 0;
+  std::uint64_t released_ = 0;
 };
 
 class HandSenderStop : public HandSenderTest {
@@ -145,6 +153,17 @@ TEST_F(HandSenderStop, ThatAnotherOperatorHasReleasedIsOver) {
   const int halts = base.halts();
   ASSERT_TRUE(noted() && noted());
   EXPECT_EQ(base.halts(), halts);
+}
+
+TEST_F(HandSenderStop, IsNamedByTheRelease) {
+  constexpr std::uint64_t kStop = 7;
+  LivingBase base(partition_);
+  ASSERT_TRUE(stop(base));
+  EXPECT_TRUE(run_until("a release after the report of the stop", [&] {
+    base.report(msg::kBaseHalted, kStop);
+    static_cast<void>(hand_.release_stop());
+    return base.released() == kStop;
+  }));
 }
 
 TEST(HandThread, AReleaseThatWaitedDoesNotUndoALaterStop) {

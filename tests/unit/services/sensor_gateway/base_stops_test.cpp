@@ -1,5 +1,6 @@
 // Halts and resets of a gateway, also while it ends: the next gateway obeys them.
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -7,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "topogeo/msg/motion.h"
+#include "topogeo/msg/sensor.h"
 
 #include "messaging/fixture.hpp"
 #include "sensor_gateway/device_gateway.hpp"
@@ -42,11 +44,28 @@ class BaseStops : public testing::Test {
   }
 
   /// Returns when the middleware of the gateway has the command; no handler has run.
-  void send(msg::BaseCommandKind kind) {
+  void send(msg::BaseCommandKind kind) { send(commands_, kind, 0); }
+  static void send(messaging::Writer<msg::BaseCommand>& writer, msg::BaseCommandKind kind,
+                   std::uint64_t stop_count) {
     auto command = messaging::message<msg::BaseCommand>();
     command.kind(kind);
-    ASSERT_TRUE(messaging::wait_for_peers(commands_) && commands_.write(command) &&
-                messaging::wait_for_acknowledgments(commands_));
+    command.stop_count(stop_count);
+    ASSERT_TRUE(messaging::wait_for_peers(writer) && writer.write(command) &&
+                messaging::wait_for_acknowledgments(writer));
+  }
+  /// Runs the gateway until its status names another stop than `previous`, and returns its number.
+  std::uint64_t next_stop_count(std::uint64_t previous) {
+    std::uint64_t count = previous;
+    EXPECT_TRUE(test::wait_in_loop(service_.loop(), "a status after the next stop", [&] {
+      statuses_.take([&](const msg::BaseStatus& status, const messaging::SampleInfo& info) {
+        if (info.valid) count = status.stop_count();
+      });
+      return count != previous;
+    }));
+    return count;
+  }
+  void run_gateway() {
+    static_cast<void>(service_.loop().run_for(std::chrono::milliseconds::zero()));
   }
   [[nodiscard]] bool next_gateway_is_halted() const {
     return StopMemory(folder_ / "memory.stops").held().halt;
@@ -58,6 +77,7 @@ class BaseStops : public testing::Test {
   std::optional<DeviceGateway> gateway_;
   messaging::Participant operator_{messaging::options_in(partition_)};
   messaging::Writer<msg::BaseCommand> commands_{operator_};
+  messaging::Reader<msg::BaseStatus> statuses_{operator_};
 };
 
 TEST_F(BaseStops, TheEndOfTheGatewayIsNoHalt) {
@@ -74,8 +94,27 @@ TEST_F(BaseStops, AHaltThatArrivesWhileTheGatewayEndsHolds) {
 TEST_F(BaseStops, AHaltThatIsHandledAfterTheEndHolds) {
   gateway_->finish();
   send(msg::kBaseHalt);
-  static_cast<void>(service_.loop().run_for(std::chrono::milliseconds::zero()));
+  run_gateway();
   EXPECT_TRUE(next_gateway_is_halted());
+}
+
+// A cut link delivers the reset seconds after it was sent, and the other operator's halt at once.
+TEST_F(BaseStops, AResetThatWasSentBeforeAHaltDoesNotReleaseIt) {
+  const std::uint64_t none = next_stop_count(0);
+  send(msg::kBaseHalt);
+  const std::uint64_t first = next_stop_count(none);
+  messaging::Writer<msg::BaseCommand> late(operator_);
+  ASSERT_TRUE(messaging::wait_for_peers(late));
+  send(msg::kBaseHalt);
+  const std::uint64_t second = next_stop_count(first);
+  for (const std::uint64_t seen : {std::uint64_t{0}, first}) {
+    send(late, msg::kBaseReset, seen);
+    run_gateway();
+    EXPECT_TRUE(next_gateway_is_halted()) << seen;
+  }
+  send(late, msg::kBaseReset, second);
+  run_gateway();
+  EXPECT_FALSE(next_gateway_is_halted());
 }
 
 }  // namespace

@@ -25,5 +25,21 @@ TEST(BaseConfirmation, OnlyAStopThatHoldsConfirmsAHalt) {
   EXPECT_TRUE(confirms(base_in(msg::kBaseMoving), msg::kBaseSetLimits));
 }
 
+TEST(BaseConfirmation, AResetIsRefusedIfTheBaseWasStoppedSince) {
+  msg::BaseCommand reset;
+  reset.kind(msg::kBaseReset);
+  reset.stop_count(7);
+  msg::BaseStatus status = base_in(msg::kBaseHalted);
+  status.stop_count(7);
+  EXPECT_FALSE(refuses(status, reset)) << "the gateway may still release it";
+  status.stop_count(8);
+  EXPECT_TRUE(refuses(status, reset));
+  status.state(msg::kBaseReady);
+  EXPECT_FALSE(refuses(status, reset));
+  reset.kind(msg::kBaseHalt);
+  status.state(msg::kBaseHalted);
+  EXPECT_FALSE(refuses(status, reset));
+}
+
 }  // namespace
 }  // namespace topogeo::cli

@@ -43,7 +43,7 @@ struct Mismatch {
 /// All mismatches, one for each topic, pair of participants and policy.
 std::vector<Mismatch> find_mismatches(std::span<const RemoteEndpoint> endpoints);
 
-/// The version of the wire contract in a topic's name: 16 for "topogeo/v16/scan"; 0 for foreign
+/// The version of the wire contract in a topic's name: 17 for "topogeo/v17/scan"; 0 for foreign
 /// topics.
 std::uint32_t wire_version(const std::string& topic);
 
