@@ -260,6 +260,7 @@ void BaseChannel::publish_status() {
   messaging::set_text_cut(message.reason(),
                           !line_.why_closed().empty() ? line_.why_closed() : status.reason);
   message.commands_taken(status.commands_taken);
+  message.stands(status.stands);
   message.battery_v(static_cast<float>(status.battery_v));
   message.battery_low(status.battery_low);
   message.bumpers(status.bumpers);

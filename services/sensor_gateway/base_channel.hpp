@@ -87,12 +87,13 @@ class BaseChannel {
   struct Shown {
     devices::BaseState state = devices::BaseState::kOffline;
     bool ready = false;
+    bool stands = false;
     std::uint64_t stop_count = 0;
 
     friend bool operator==(const Shown&, const Shown&) = default;
   };
   [[nodiscard]] Shown shown() const {
-    return {driver_.status().state, ready(), stop_count_.number()};
+    return {driver_.status().state, ready(), driver_.status().stands, stop_count_.number()};
   }
   void publish_status();
 

@@ -11,10 +11,11 @@ inline bool holds(const msg::BaseStatus& status) {
   return status.state() == msg::kBaseHalted || status.state() == msg::kBaseEmergencyStop;
 }
 
-/// Whether a status that follows the command confirms it. A base that refuses motion commands for
-/// another reason, for example because its gateway ends, does not confirm a halt.
+/// Whether a status that follows the command confirms it. A base that still moves does not confirm
+/// a halt, nor does one that refuses motion commands for another reason, for example because its
+/// gateway ends.
 inline bool confirms(const msg::BaseStatus& status, msg::BaseCommandKind kind) {
-  if (kind == msg::kBaseHalt) return holds(status);
+  if (kind == msg::kBaseHalt) return holds(status) && status.stands();
   return kind != msg::kBaseReset || !holds(status);
 }
 

@@ -11,6 +11,7 @@ const format = await load("format");
 const { navigator_text, pose_of_now, robot_state } = await load("robot_state");
 const { agreement, apart, compose } = await load("map/match_layer");
 const { Film } = await load("map/film");
+const { Stopping } = await load("stopping");
 
 const delta = (from, version, set, gone = []) => ({ channel: "events", from, version, set, gone });
 
@@ -295,6 +296,31 @@ test("the first value of a connection is as old as the service says, the next on
   tell("time", { time_s: 3, ages_s: { pose: 60 } });
   tell("pose", pose);
   assert.equal(robot_state(channels, rights).name, "silent");
+});
+
+test("a stop is done when the base is held and stands", async (t) => {
+  const channels = new Channels();
+  let now_ms = 5000;
+  t.mock.method(performance, "now", () => now_ms);
+  let done = 0;
+  const api = { post: () => Promise.resolve() };
+  const stopping = new Stopping(channels, { may_write: true }, api, () => {}, () => ++done);
+  const tell = (state, stands) => {
+    now_ms += 100;
+    channels.apply({ channel: "base", version: 1, value: { state, stands } });
+  };
+  tell("halted", true);
+  now_ms += 100;
+  await stopping.stop(() => {});
+  assert.match(stopping.text(), /^Stop sent/, "the report is from before the stop");
+  tell("moving", false);
+  assert.match(stopping.text(), /^Stop sent/);
+  tell("halted", false);
+  assert.match(stopping.text(), /^Stopping: the base still moves/);
+  assert.equal(done, 0);
+  tell("halted", true);
+  assert.equal(stopping.text(), null);
+  assert.equal(done, 1);
 });
 
 test("a map that is shown alone has no robot, one whose localizer has not spoken yet has", () => {

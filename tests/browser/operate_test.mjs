@@ -154,27 +154,30 @@ test("while it explores, what is left is that to the next point", async () => {
   await end(opened);
 });
 
-const kBase = { reason: "", battery_v: 12, battery_low: false, commands_taken: true };
+const kBase = { reason: "", battery_v: 12, battery_low: false, commands_taken: true, stands: true };
 
 /** Shows the banners, which the stub hides so that the map keeps its size. */
 const show_banners = (page) => page.addStyleTag({ content: ".banners { display: block !important }" });
 
-test("a stop is not done before the base itself reports it", async () => {
+test("a stop is not done before the base itself reports that it stands", async () => {
   const opened = await open();
   const { page, service } = opened;
   await show_banners(page);
   service.show("base", { ...kBase, state: "halted" });
   await text(page, ".banner", /The robot is held/);
-  service.show("base", { ...kBase, state: "moving" });
+  service.show("base", { ...kBase, state: "moving", stands: false });
   await page.click("#stop");
   await text(page, "#stop-sent", /^Stop sent, the base has not confirmed/);
   await wait_for("both orders", () => service.orders.includes("stop") && service.ops.includes("stop"));
-  service.show("base", { ...kBase, state: "moving" });
+  service.show("base", { ...kBase, state: "moving", stands: false });
   service.show("pose", kPose);
   await after_in_page(page, 100); // two frames, time for a wrong change
   assert.equal(await page.locator("#stop-sent").isVisible(), true);
   assert.equal(await page.getByText("The robot is stopped and held").count(), 0);
   await assert_accessible(page, "a stop that is not confirmed");
+  service.show("base", { ...kBase, state: "halted", stands: false });
+  await text(page, "#stop-sent", /^Stopping: the base still moves/);
+  assert.equal(await page.getByText("The robot is stopped and held").count(), 0);
   service.show("base", { ...kBase, state: "halted" });
   await text(page, ".notice", /The robot is stopped and held/);
   await wait_for("the banner goes", async () => !(await page.locator("#stop-sent").isVisible()));
@@ -272,7 +275,7 @@ test("a page that is opened on old inputs shows how old they are", async () => {
   service.ages_s = { pose: 125, base: 125, laser: 125, navigator: 125 };
   await service.serve_with(browser, async (page) => {
     service.show("pose", kPose);
-    service.show("base", { ...kBase, state: "moving" });
+    service.show("base", { ...kBase, state: "moving", stands: false });
     service.show("laser", { state: "running", reason: "", scans_per_s: 10 });
     service.show("navigator", { state: "driving", reason: "none", message: "drives", linear_mps: 0.4 });
     await text(page, ".facts dd", /^0\.40 m\/s \(2 min \d+ s old\)$/);

@@ -95,6 +95,7 @@ TEST_F(GatewayOnDevices, HaltHoldsUntilReset) {
   ASSERT_TRUE(drive_until(
       0.2, 0.0, [&] { return truth_->linear_mps() == 0.0 && base_is(msg::kBaseHalted); }));
   EXPECT_FALSE(base_status_->commands_taken());
+  EXPECT_TRUE(wait_for([&] { return base_status_->stands(); }));
   tell_base(msg::kBaseReset);
   EXPECT_TRUE(drive_until(0.2, 0.0, [&] { return truth_->linear_mps() > 0.15; }));
 }

@@ -159,6 +159,7 @@ void NavigatorOnRobot::sense() {
   messaging::set_header(base, robot_id_, moved_ns_, sent_);
   base.state(rolls() ? msg::kBaseMoving : msg::kBaseReady);
   base.commands_taken(true);
+  base.stands(!rolls());
   static_cast<void>(bases_.write(base));
 }
 

@@ -364,6 +364,7 @@ void BaseDriver::update_status() {
   } else if (!reports_at_halt_) {
     reports_at_halt_ = status_.reports;
   }
+  status_.stands = link_.running() && stands();
   status_.bumpers = interlocks_.pressed();
   status_.starts = link_.starts();
   status_.state = state();

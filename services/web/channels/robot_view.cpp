@@ -168,6 +168,7 @@ void RobotView::on_base(const msg::BaseStatus& status) {
   board_.set(Channel::kBase, text_of(Json{{"state", name_of(status.state())},
                                           {"reason", reason},
                                           {"commands_taken", status.commands_taken()},
+                                          {"stands", status.stands()},
                                           {"battery_v", rounded(status.battery_v())},
                                           {"battery_low", status.battery_low()}}));
 }

@@ -270,11 +270,34 @@ TEST_P(BaseSafetyOn, AHaltIsOverWhenBothAxesStand) {
   all.base.mcp.forget_orders();
   all.driver.halt(all.line.now_ns());
   EXPECT_FALSE(all.driver.stands());
+  EXPECT_EQ(all.driver.status().state, BaseState::kHalted);
+  EXPECT_FALSE(all.driver.status().stands) << "it brakes";
   for (int i = 0; i < 200 && !all.driver.stands(); ++i) all.pass(10 * kMs);
   EXPECT_TRUE(all.driver.stands());
+  EXPECT_TRUE(all.driver.status().stands);
   EXPECT_TRUE(all.base.stands());
   EXPECT_THAT(all.base.mcp.orders(), Contains(McpOrder{McpCommand::kTranslateHalt, 0}));
   EXPECT_THAT(all.base.mcp.orders(), Contains(McpOrder{McpCommand::kRotateHalt, 0}));
+}
+
+TEST_P(BaseSafetyOn, AHaltedBaseThatAJoystickMovesDoesNotStand) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  all.driver.halt(all.line.now_ns());
+  all.pass(kSecond);
+  EXPECT_TRUE(all.driver.status().stands);
+  for (int i = 0; i < 20; ++i) {  // held against any other command to the base
+    all.base.mcp.take_joystick({-0.3, 0.4});
+    all.pass(kSecond / 10);
+  }
+  EXPECT_EQ(all.driver.status().state, BaseState::kHalted);
+  EXPECT_FALSE(all.driver.status().stands);
+  all.base.mcp.take_joystick({});
+  all.pass(3 * kSecond);
+  EXPECT_TRUE(all.driver.status().stands);
+  all.line.unplug();
+  all.pass(kSecond);
+  EXPECT_FALSE(all.driver.status().stands) << "it is not heard";
 }
 
 TEST_P(BaseSafetyOn, AGuardHasTheLastWordOnVelocities) {

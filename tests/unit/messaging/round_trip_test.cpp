@@ -59,6 +59,7 @@ void fill(msg::BodySensors& body) {
 
 void fill(msg::BaseStatus& status) {
   status.state(msg::kBaseBumped);
+  status.stands(true);
   status.battery_v(47.5F);
   status.battery_low(true);
   status.bumpers(0x8001);

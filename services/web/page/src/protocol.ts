@@ -71,6 +71,7 @@ export interface Drive {
 export interface Base {
   state: string;
   reason: string;
+  stands: boolean;
   battery_v: number | null;
   battery_low: boolean;
 }

@@ -1,4 +1,4 @@
-// A stop order counts as pending until the base itself confirms it.
+// A stop order counts as pending until the base itself confirms it: it is held, and it stands.
 import { Api } from "./api";
 import { Rights } from "./app";
 import { Channels } from "./channels";
@@ -46,16 +46,21 @@ export class Stopping {
   /** Text shown until the base confirms the stop; null when none is pending. */
   text(): string | null {
     if (this.sent_ms === null) return null;
+    if (this.is_held()) return texts.stop_moves;
     return this.refused ? texts.stop_failed(this.refused) : texts.stop_sent;
   }
 
-  // A report from before the stop order cannot confirm it.
   private check(): void {
-    if (this.sent_ms === null) return;
-    const age_ms = this.channels.age_ms("base");
-    const heard_since = age_ms !== null && age_ms < performance.now() - this.sent_ms;
-    if (!heard_since || held_text(this.channels) === null) return;
+    if (!this.is_held()) return;
+    if (!this.channels.value("base")?.stands) return this.on_change();
     this.forget();
     this.on_held();
+  }
+
+  // A report from before the stop order cannot confirm it.
+  private is_held(): boolean {
+    const age_ms = this.channels.age_ms("base");
+    if (this.sent_ms === null || age_ms === null) return false;
+    return age_ms < performance.now() - this.sent_ms && held_text(this.channels) !== null;
   }
 }

@@ -45,6 +45,7 @@ export const texts = {
   held_with_goal: (goal: string) =>
     `The robot is held. It has a goal, ${goal}: as soon as it is released it drives there.`,
   stop_sent: "Stop sent, the base has not confirmed. The robot may still move.",
+  stop_moves: "Stopping: the base still moves.",
   stop_failed: (why: string) => `Stop was not taken: ${why} The robot may still move.`,
   release_asks: (goal: string) => `Released, the robot drives at once: ${goal}.`,
   release_and_drive: "Release and drive",

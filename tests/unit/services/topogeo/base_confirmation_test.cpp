@@ -8,6 +8,7 @@ namespace {
 msg::BaseStatus base_in(msg::BaseState state) {
   msg::BaseStatus status;
   status.state(state);
+  status.stands(true);
   return status;
 }
 
@@ -23,6 +24,13 @@ TEST(BaseConfirmation, OnlyAStopThatHoldsConfirmsAHalt) {
     EXPECT_TRUE(confirms(base_in(state), msg::kBaseReset)) << state;
   }
   EXPECT_TRUE(confirms(base_in(msg::kBaseMoving), msg::kBaseSetLimits));
+}
+
+TEST(BaseConfirmation, ABaseThatStillMovesConfirmsNoHalt) {
+  msg::BaseStatus brakes = base_in(msg::kBaseHalted);
+  brakes.stands(false);
+  EXPECT_FALSE(confirms(brakes, msg::kBaseHalt));
+  EXPECT_FALSE(confirms(brakes, msg::kBaseReset)) << "it is held all the same";
 }
 
 TEST(BaseConfirmation, AResetIsRefusedIfTheBaseWasStoppedSince) {

@@ -30,6 +30,7 @@ struct BaseStatus {
   BaseState state = BaseState::kOffline;
   std::string reason;           ///< for people; empty when ready or moving
   bool commands_taken = false;  ///< false: motion commands are refused, see state
+  bool stands = false;          ///< see BaseDriver::stands(); false while the base is not heard
   double battery_v = 0.0;       ///< 0 until the base reports it
   bool battery_low = false;
   std::uint16_t bumpers = 0;  ///< a bit for each switch that is pressed
