@@ -196,7 +196,10 @@ void Program::wait_for_progress(int percent) {
   const std::string goal = std::to_string(percent) + " %";
   const bool there =
       wait_while_it_works(name_ + " to do " + goal, [&] { return reached() || ended(); });
-  if (!there || !reached()) {
+  const auto ended_well = [&] {
+    return ended() && WIFEXITED(status_) && WEXITSTATUS(status_) == 0;
+  };
+  if (!there || (!reached() && !ended_well())) {
     throw std::runtime_error(name_ + " never did " + goal + ", its stderr: " + err());
   }
 }

@@ -49,7 +49,8 @@ class Program {
   /// Waits until its standard error contains `text`. Throws std::runtime_error when it ends before.
   void wait_for_error_text(const std::string& text);
 
-  /// The same for its progress bar: waits until that many per cent are done.
+  /// The same for its progress bar: waits until that many per cent are done. All is done when the
+  /// program has ended without an error, which a bar that is seldom drawn may not show.
   void wait_for_progress(int percent);
 
   void send_signal(int signal_number) const;
