@@ -62,7 +62,7 @@ TEST_F(LocalizeTest, CommandsAreAcceptedOrRefusedWithTheReason) {
   Program localizer(scratch_, "localizer", {"--domain", domain, "--map", map_});
   const auto ask = [&](std::vector<std::string> words) {
     words.insert(words.begin(), "localizer");
-    words.insert(words.end(), {"--domain", domain, "--wait-seconds", "20"});
+    words.insert(words.end(), {"--domain", domain, "--wait-seconds", "600"});
     return words;
   };
   Program set_pose(scratch_, "topogeo", ask({"set-pose", "1.5,0,90"}));

@@ -235,7 +235,8 @@ TEST_F(FollowsInAFinishedMap, ARobotThatStandsTakesThePoseOfAUser) {
   EXPECT_TRUE(wait_for("the transform of the odometry",
                        [&] { return !last_line(user_->out(), "tf map odom ").empty(); }));
   EXPECT_TRUE(wait_for("the localizer to need nothing", [&] {
-    return status().find(kNeeds) == std::string::npos;
+    const std::string shown = status();
+    return shown.find("localizer ") != std::string::npos && shown.find(kNeeds) == std::string::npos;
   })) << status();
   start_peer({"steer", "0.3", "0"});
   EXPECT_TRUE(wait_for("the pose that is true", [&] { return agrees(); }))
