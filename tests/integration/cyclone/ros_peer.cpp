@@ -12,7 +12,9 @@
 //
 // Prints one line for each message, until it is killed. Exits with 1 and a line on standard error
 // when it cannot run.
+#include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <iostream>
 #include <optional>
 #include <string>
@@ -73,6 +75,11 @@ int replay(std::uint32_t domain, const std::string& log) {
 int drive(std::uint32_t domain, const std::string& world) {
   constexpr int kStep_ms = 20;
   constexpr int kStepsOfScan = 5;
+  // Like the base of a robot, it stops soon after the last velocity.
+  constexpr std::int64_t kValid_ns = 500'000'000;
+  // When a busy machine gives this process no time for longer, the robot does not move for the
+  // rest, because a robot that runs on blindly would hit something.
+  constexpr std::int64_t kLongestMotion_ns = 200'000'000;
   simulation::RobotOptions options;
   options.acceleration_m_per_s2 = 1.5;
   options.angular_acceleration_rad_per_s2 = 4.0;
@@ -82,14 +89,19 @@ int drive(std::uint32_t domain, const std::string& world) {
   simulation::Velocity velocity;
   auto last = Clock::now();
   std::int64_t now_ns = kStart_ns;
+  std::int64_t valid_until_ns = kStart_ns;
   for (int step = 0;; ++step) {
     pause_ms(kStep_ms);
-    if (const auto told = robot.velocity()) velocity = *told;
     const auto now = Clock::now();
     const std::int64_t passed_ns = std::chrono::nanoseconds(now - last).count();
     last = now;
     now_ns += passed_ns;
-    simulated.step(velocity, static_cast<double>(passed_ns) * 1e-9);
+    if (const auto received = robot.velocity()) {
+      velocity = *received;
+      valid_until_ns = now_ns + kValid_ns;
+    }
+    if (now_ns > valid_until_ns) velocity = {};
+    simulated.step(velocity, static_cast<double>(std::min(passed_ns, kLongestMotion_ns)) * 1e-9);
     robot.send_odometry(now_ns, simulated.T_odom_robot(), simulated.velocity().linear_m_per_s,
                         simulated.velocity().angular_rad_per_s);
     if (step % kStepsOfScan != 0) continue;
