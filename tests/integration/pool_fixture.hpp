@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <random>
@@ -228,6 +231,9 @@ class PoolTest : public ::testing::Test {
                     details_.emplace_back(detail);
                   });
     for (const auto& map : maps_) pool_->add_map(map);
+    loop_.add<msg::WorkerStatus>(worker_statuses_, [this](const auto& status, const auto&) {
+      maps_held_[status.worker_id().to_string()] = status.maps_held();
+    });
   }
   void TearDown() override { workers_.clear(); }
 
@@ -240,6 +246,31 @@ class PoolTest : public ::testing::Test {
   }
   void publish_maps() {
     for (const auto& map : maps_) ASSERT_TRUE(map_writer_.write(service::to_msg(*map)));
+  }
+  /// Waits until all started workers hold the published maps. A worker waits two seconds for a map
+  /// that a task names, and then gives the task back.
+  bool wait_for_maps() {
+    return wait_until("the maps at the workers", [this] {
+      const auto holders = std::ranges::count_if(
+          maps_held_, [this](const auto& worker) { return worker.second >= maps_.size(); });
+      return static_cast<std::size_t>(holders) >= workers_.size();
+    });
+  }
+  /// Repeats `attempt` until no map reaches a worker too late in it, which the time of this process
+  /// decides.
+  bool wait_for_maps_in_time(const std::function<void()>& attempt) {
+    return test::wait_for("an attempt in which all maps come in time", [&] {
+      const std::uint64_t missing = pool_->counts().map_missing;
+      attempt();
+      return HasFailure() || pool_->counts().map_missing == missing;
+    });
+  }
+  /// Ends the last worker, and waits until the pool has none.
+  void end_worker() {
+    workers_.back()->send_signal(SIGTERM);
+    EXPECT_EQ(workers_.back()->wait(), 0);
+    workers_.pop_back();
+    EXPECT_TRUE(wait_until("the worker to be gone", [this] { return pool_->workers() == 0; }));
   }
   void expect_same(const std::vector<localization::MatchTask>& tasks,
                    const std::vector<localization::MatchResult>& results) {
@@ -282,6 +313,7 @@ class PoolTest : public ::testing::Test {
   Maps maps_ = maps_of_room();
   messaging::Participant participant_{options_in(partition_)};
   messaging::Writer<msg::LocalMap> map_writer_{participant_};
+  messaging::Reader<msg::WorkerStatus> worker_statuses_{participant_};
   messaging::EventLoop loop_;
   search_pool::BoardConfig board_options_ = patient();
   std::vector<std::string> faults_;
@@ -289,6 +321,7 @@ class PoolTest : public ::testing::Test {
   std::vector<std::string> lines_;
   std::optional<localizer::RemotePool> pool_;
   std::vector<std::unique_ptr<Program>> workers_;
+  std::map<std::string, std::size_t> maps_held_;  // by worker
   std::uint64_t timer_ = 0;
 
  private:

@@ -23,7 +23,7 @@ TEST_F(PoolTest, TwoWorkersGiveWhatOneProcessGives) {
   publish_maps();
   start_worker("w1");
   start_worker("w2");
-  ASSERT_TRUE(wait_for_workers(2));
+  ASSERT_TRUE(wait_for_workers(2) && wait_for_maps());
   const std::vector<MatchTask> tasks = tasks_on(maps_, 60);
   expect_same(tasks, pool_->match(tasks));
   EXPECT_EQ(pool_->counts().sent, 60U);
@@ -107,7 +107,7 @@ TEST_F(PoolTest, AKilledWorkerChangesNothing) {
   publish_maps();
   start_worker("w1");
   Program& killed = start_worker("w2");
-  ASSERT_TRUE(wait_for_workers(2));
+  ASSERT_TRUE(wait_for_workers(2) && wait_for_maps());
   const std::vector<MatchTask> tasks = tasks_on(maps_, 400);
   when_sent(100, [&] { killed.send_signal(SIGKILL); });
   expect_same(tasks, pool_->match(tasks));
@@ -134,7 +134,7 @@ TEST_F(PoolTest, AStoppedWorkerFinishesWhatItHasInHand) {
   publish_maps();
   Program& stopped = start_worker("w1");
   start_worker("w2");
-  ASSERT_TRUE(wait_for_workers(2));
+  ASSERT_TRUE(wait_for_workers(2) && wait_for_maps());
   const std::vector<MatchTask> tasks = tasks_on(maps_, 400);
   when_sent(100, [&] { stopped.send_signal(SIGTERM); });
   expect_same(tasks, pool_->match(tasks));
@@ -144,37 +144,66 @@ TEST_F(PoolTest, AStoppedWorkerFinishesWhatItHasInHand) {
 
 TEST_F(PoolTest, ALateWorkerGetsTheTasksThatAnotherHasNoRoomFor) {
   publish_maps();
-  FakeWorker hanging(partition_, loop_, "hanging", [](FakeWorker&, const msg::MatchTask&) {});
-  ASSERT_TRUE(wait_for_workers(1));
-  when_sent(2, [&] {
-    start_worker("late");
-    when_sent(40, [&] { hanging.leave(); });
-  });
-  const std::vector<MatchTask> tasks = tasks_on(maps_, 40);
-  expect_same(tasks, pool_->match(tasks));
-  EXPECT_EQ(hanging.received, 2);
-  EXPECT_EQ(pool_->counts().sent, 42U);
-  EXPECT_EQ(pool_->counts().in_process, 0U);
+  std::uint64_t first_id = 0;
+  int received = 0;
+  search_pool::BoardCounts before;
+  ASSERT_TRUE(wait_for_maps_in_time([&] {
+    before = pool_->counts();
+    FakeWorker hanging(partition_, loop_, "hanging" + std::to_string(first_id),
+                       [](FakeWorker&, const msg::MatchTask&) {});
+    ASSERT_TRUE(wait_for_workers(1));
+    when_sent(before.sent + 2, [&] {
+      start_worker("late");
+      const auto is_all_sent = [&] {
+        return pool_->counts().sent >= before.sent + 40 ||
+               pool_->counts().map_missing > before.map_missing;
+      };
+      when(is_all_sent, [&] { hanging.leave(); });
+    });
+    const std::vector<MatchTask> tasks = tasks_on(maps_, 40, first_id);
+    first_id += 40;
+    expect_same(tasks, pool_->match(tasks));
+    received = hanging.received;
+    end_worker();
+  }));
+  EXPECT_EQ(received, 2);
+  EXPECT_EQ(pool_->counts().sent - before.sent, 42U);
+  EXPECT_EQ(pool_->counts().in_process, before.in_process);
 }
 
 TEST_F(PoolTest, TasksWaitForMapsThatComeLate) {
-  start_worker("w1");
-  ASSERT_TRUE(wait_for_workers(1));
-  when_sent(1, [&] { publish_maps(); });
-  const std::vector<MatchTask> tasks = tasks_on(maps_, 30);
-  expect_same(tasks, pool_->match(tasks));
-  EXPECT_EQ(pool_->counts().map_missing, 0U);
-  EXPECT_EQ(pool_->counts().in_process, 0U);
+  std::uint64_t first_id = 0;
+  search_pool::BoardCounts before;
+  ASSERT_TRUE(wait_for_maps_in_time([&] {
+    before = pool_->counts();
+    for (const auto& map : maps_) map_writer_.dispose(service::to_msg(*map));  // of an attempt
+    start_worker("w1");
+    ASSERT_TRUE(wait_for_workers(1));
+    when_sent(before.sent + 1, [&] { publish_maps(); });
+    const std::vector<MatchTask> tasks = tasks_on(maps_, 30, first_id);
+    first_id += 30;
+    expect_same(tasks, pool_->match(tasks));
+    end_worker();
+  }));
+  EXPECT_EQ(pool_->counts().in_process, before.in_process);
 }
 
 TEST_F(PoolTest, AWorkerWithoutMapsAsksForThem) {
-  start_worker("w1");
-  ASSERT_TRUE(wait_for_workers(1));
-  const std::vector<MatchTask> tasks = tasks_on(maps_, 60);
-  expect_same(tasks, pool_->match(tasks));
-  EXPECT_EQ(pool_->counts().map_missing, 0U);
-  EXPECT_EQ(pool_->counts().in_process, 0U);
-  EXPECT_GE(pool_->maps_sent(), 2U);
+  std::uint64_t first_id = 0;
+  std::uint64_t maps_sent = 0;
+  search_pool::BoardCounts before;
+  ASSERT_TRUE(wait_for_maps_in_time([&] {
+    before = pool_->counts();
+    maps_sent = pool_->maps_sent();
+    start_worker("w1");
+    ASSERT_TRUE(wait_for_workers(1));
+    const std::vector<MatchTask> tasks = tasks_on(maps_, 60, first_id);
+    first_id += 60;
+    expect_same(tasks, pool_->match(tasks));
+    end_worker();
+  }));
+  EXPECT_EQ(pool_->counts().in_process, before.in_process);
+  EXPECT_GE(pool_->maps_sent(), maps_sent + 2);
   EXPECT_THAT(faults_, IsEmpty());
 }
 
@@ -263,7 +292,7 @@ TEST_F(PoolTest, AStopEndsTheWait) {
 TEST_F(PoolTest, ATaskThatNobodyCanSolveIsAnError) {
   publish_maps();
   start_worker("w1");
-  ASSERT_TRUE(wait_for_workers(1));
+  ASSERT_TRUE(wait_for_workers(1) && wait_for_maps());
   std::vector<MatchTask> tasks = tasks_on(maps_, 3);
   tasks[1].half_width.setZero();
   EXPECT_THROW(pool_->match(tasks), std::invalid_argument);
