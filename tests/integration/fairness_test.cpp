@@ -1,6 +1,9 @@
 // One pool of workers serves several robots: a robot that floods it does not delay the others, and
 // maps with the same id stay separate.
+#include <algorithm>
 #include <atomic>
+#include <cstddef>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -28,7 +31,13 @@ Maps seen_by_another(const Maps& maps) {
 class Robot {
  public:
   Robot(const std::string& name, Maps maps)
-      : maps_(std::move(maps)), participant_(options_in(random_partition())) {
+      : maps_(std::move(maps)),
+        participant_(options_in(random_partition())),
+        map_writer_(participant_),
+        worker_statuses_(participant_) {
+    loop_.add<msg::WorkerStatus>(worker_statuses_, [this](const auto& status, const auto&) {
+      maps_held_[status.worker_id().to_string()] = status.maps_held();
+    });
     localizer::RemotePoolOptions options;
     options.robot_id = name;
     options.client_id = "client-" + name + "-" + std::to_string(std::random_device{}());
@@ -47,6 +56,18 @@ class Robot {
     for (const auto& map : maps_) in_process.add_map(map);
     return in_process.match(tasks);
   }
+  /// Publishes the maps and waits until so many workers hold them. A worker waits two seconds for a
+  /// map that a task names, and then gives the task back.
+  bool give_maps(std::ptrdiff_t workers) {
+    for (const auto& map : maps_) {
+      if (!map_writer_.write(service::to_msg(*map))) return false;
+    }
+    return wait_in_loop(loop_, "the maps at the workers", [&] {
+      return std::ranges::count_if(maps_held_, [this](const auto& worker) {
+               return worker.second >= maps_.size();
+             }) >= workers;
+    });
+  }
   localizer::RemotePool& pool() { return *pool_; }
   [[nodiscard]] const Maps& maps() const { return maps_; }
 
@@ -55,6 +76,9 @@ class Robot {
  private:
   Maps maps_;
   messaging::Participant participant_;
+  messaging::Writer<msg::LocalMap> map_writer_;
+  messaging::Reader<msg::WorkerStatus> worker_statuses_;
+  std::map<std::string, std::size_t> maps_held_;  // by worker
   messaging::EventLoop loop_;
   std::optional<localizer::RemotePool> pool_;
 };
@@ -107,7 +131,7 @@ TEST_F(FairnessTest, ARobotThatFloodsThePoolStarvesNoOther) {
   std::atomic<std::uint64_t> flood_searched_here{1};
   std::thread flood([&] {
     const auto robot = make_robot("greedy", maps);
-    if (!wait_for_workers(robot->pool(), 2)) {
+    if (!wait_for_workers(robot->pool(), 2) || !robot->give_maps(2)) {
       flood_ended = true;
       return;
     }
