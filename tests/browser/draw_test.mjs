@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { kPictures, open_page, text, WatchedRobot } from "./page.mjs";
+import { kPictures, notice, open_page, WatchedRobot } from "./page.mjs";
 import { wait_for, SimulatedRun } from "./robot.mjs";
 
 const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source } = process.env;
@@ -78,7 +78,7 @@ async function route_length(goal) {
 
 async function save() {
   await page.getByRole("button", { name: "Save", exact: true }).click();
-  await text(page, ".notice", /drawing is saved/);
+  await notice(page, /drawing is saved/);
 }
 
 async function is_at(what, x_m, y_m) {
@@ -146,7 +146,7 @@ test("a floor of two rooms is drawn, loaded into the simulator, and driven in", 
   await page.screenshot({ path: join(kPictures, "draw-floor-light.png") });
   await page.getByRole("button", { name: "Load into the simulator" }).click();
   await page.getByRole("button", { name: "Yes, load it" }).click();
-  await text(page, ".notice", /floor is loaded/);
+  await notice(page, /floor is loaded/);
   // A new map, which begins at the base station, with the x axis ahead.
   await wait_for(
     "the robot stands in the new floor",

@@ -7,7 +7,7 @@ import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { drive_log } from "./drive_log.mjs";
-import { assert_accessible, close, kPictures, launch, new_context } from "./page.mjs";
+import { assert_accessible, close, kPictures, launch, new_context, notice, open_page } from "./page.mjs";
 import { wait_for, Robot } from "./robot.mjs";
 import { kAddress, StandIn } from "./stand_in.mjs";
 
@@ -53,11 +53,7 @@ async function open(address = robot.address, service = null) {
     bypassCSP: true,
   });
   await service?.serve(context);
-  const opened = await context.newPage();
-  opened.faults = [];
-  opened.on("pageerror", (error) => opened.faults.push(error.stack));
-  await opened.goto(`${address}/#token=${robot.token}`);
-  return opened;
+  return open_page(context, `${address}/#token=${robot.token}`);
 }
 
 /** Waits until a selector has a text, and returns it. */
@@ -221,7 +217,7 @@ test("snapshots are made, compared and restored", async () => {
   const row = page.locator(".snapshots li", { has: page.getByRole("heading", { name: "half", exact: true }) });
   await row.getByRole("button", { name: "Restore" }).click();
   await row.getByRole("button", { name: "Restore it" }).click();
-  await text(".notice", /becomes that of snapshot half/);
+  await notice(page, /becomes that of snapshot half/);
   // The question is gone, and so are the differences from the previous map.
   assert.equal(await page.getByRole("button", { name: "Restore it" }).isVisible(), false);
   assert.equal(await page.getByText("Seen since").first().isVisible(), false);
@@ -270,14 +266,14 @@ test("another map of the place is merged once the operator has seen and accepted
   await text(".merge-result dt", /Seen since/);
   await picture("time-merge");
   await page.getByRole("button", { name: "Discard it" }).click();
-  await text(".notice", /The map stays as it is/);
+  await notice(page, /The map stays as it is/);
   assert.equal(JSON.parse((await get("/api/drive")).bytes).total, total);
 
   const shown = await offer(file("evening/map.pb"), /map\.pb joins the map/);
   const joined = Number(/(\d+) stops of the smaller map/.exec(shown)[1]);
   assert.ok(joined > total / 2, shown); // the map of the morning is the smaller one
   await page.getByRole("button", { name: "Make it the map" }).click();
-  await text(".notice", /becomes that of snapshot merged-/);
+  await notice(page, /becomes that of snapshot merged-/);
   await wait_for("the merged map", async () => {
     const { status, bytes } = await get("/api/drive");
     return status === 200 && JSON.parse(bytes).total === facts("evening").stops + joined;

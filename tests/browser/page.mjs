@@ -85,9 +85,24 @@ export class WatchedRobot {
   }
 }
 
+/** Records in the page the texts of its notices, which vanish after some seconds. */
+function record_notices() {
+  window.notices = [];
+  window.notices_seen = 0;
+  const recorded = new WeakMap();
+  new MutationObserver(() => {
+    for (const words of document.querySelectorAll(".notice > span")) {
+      if (recorded.get(words) === words.textContent) continue;
+      recorded.set(words, words.textContent);
+      window.notices.push(words.textContent);
+    }
+  }).observe(document, { childList: true, subtree: true, characterData: true });
+}
+
 /** A page that collects its errors. */
 export async function open_page(context, address) {
   const page = await context.newPage();
+  await page.addInitScript(record_notices);
   page.faults = [];
   page.on("pageerror", (error) => page.faults.push(error.stack));
   await page.goto(address);
@@ -105,6 +120,21 @@ export async function text(page, selector, pattern) {
   } catch (error) {
     throw new Error(`${error.message}; there is ${JSON.stringify(found)}`);
   }
+}
+
+/**
+ * Waits for a notice with a text: one that is shown, or that was since the last such wait, because a busy machine may
+ * be slower than a notice vanishes.
+ */
+export async function notice(page, pattern) {
+  const was_shown = ([source, flags]) => {
+    const expected = new RegExp(source, flags);
+    const at = window.notices.slice(window.notices_seen).findIndex((entry) => expected.test(entry));
+    if (at >= 0) window.notices_seen += at + 1;
+    const words = [...document.querySelectorAll(".notice > span")];
+    return at >= 0 || words.some(({ textContent }) => expected.test(textContent));
+  };
+  await wait_for(`a notice with ${pattern}`, () => page.evaluate(was_shown, [pattern.source, pattern.flags]));
 }
 
 /** The rules of axe-core that check colours. */

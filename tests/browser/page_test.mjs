@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { kSizes, new_context, open_page, text, WatchedRobot } from "./page.mjs";
+import { kSizes, new_context, notice, open_page, text, WatchedRobot } from "./page.mjs";
 import { hold_key, wait_for, Robot } from "./robot.mjs";
 
 const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source } = process.env;
@@ -127,7 +127,7 @@ test("Stop holds the robot until it is released", async () => {
   await page.click("#go");
   await wait_for("the robot drives", async () => !(await stands()));
   await page.click("#stop");
-  await text(page, ".notice", /The robot is stopped and held/);
+  await notice(page, /The robot is stopped and held/);
   await wait_for("the robot stands", stands);
   await text(page, ".banner", /The robot is held: it does not move/); // its goal is cancelled
   await page.getByRole("button", { name: "Release" }).click();
@@ -234,7 +234,7 @@ test("the pose is set by dragging, in a map that stays as it is", async () => {
   await page.fill("#pose-theta", ((at.theta_rad * 180) / Math.PI).toFixed(3));
   await page.selectOption("#pose-sure", "exact");
   await page.getByRole("button", { name: "Apply" }).click();
-  await text(page, ".notice", /goes on from there/i);
+  await notice(page, /goes on from there/i);
   assert.equal(await page.getByRole("button", { name: "Apply" }).isVisible(), false);
   await page.getByRole("button", { name: "Map from now on" }).click();
   await text(page, "button", /Leave the map as it is/);
