@@ -30,6 +30,7 @@ export class StandIn {
     1: { name: "right room", area_m2: 16, x_m: 2, y_m: 0, color: 1 },
   };
   sockets = new Set();
+  shown = new Map(); // messages for a page that connects again, by channel
 
   /** page_files: folder of the built page. */
   constructor(page_files) {
@@ -52,6 +53,7 @@ export class StandIn {
   /** Ends all connections; pages cannot reconnect before `reachable` is set. */
   cut() {
     this.reachable = false;
+    this.shown.clear();
     for (const socket of this.sockets) socket.close();
     this.sockets.clear();
   }
@@ -82,6 +84,7 @@ export class StandIn {
       table("rules", {});
       send({ channel: "drawing", version: 1, value: { version: String(this.version) } });
       send({ channel: "navigator", version: 1, value: { state: "idle", reason: "none", message: "" } });
+      for (const repeated of this.shown.values()) send(repeated);
       const beat = setInterval(() => {
         if (!this.sockets.has(socket)) return clearInterval(beat);
         time();
