@@ -22,6 +22,7 @@ using Clock = std::chrono::steady_clock;
 using Info = messaging::SampleInfo;
 
 constexpr std::chrono::milliseconds kMove{20};
+constexpr std::int64_t kLongestMotion_ns = 200'000'000;
 constexpr std::int64_t kScanPeriod_ns = 100'000'000;
 constexpr std::uint64_t kMapVersion = 3;
 
@@ -115,7 +116,8 @@ std::int64_t NavigatorOnRobot::stamp_ns() const {
   return kSomeDay_ns + std::chrono::nanoseconds(Clock::now() - start_).count();
 }
 
-/// Moves the world by the time passed, so it is as late as this process.
+/// Moves the world by the time passed, so it is as late as this process. After a longer pause of
+/// this process the robot has stood still for the rest: the commands in between were not obeyed.
 void NavigatorOnRobot::move() {
   const std::int64_t now_ns = stamp_ns();
   if (moved_ns_ == 0) moved_ns_ = now_ns;
@@ -123,7 +125,8 @@ void NavigatorOnRobot::move() {
   if (command_ && Clock::now() < command_end_) {
     velocity = {command_->linear_mps(), command_->angular_radps()};
   }
-  robot_.step(velocity, static_cast<double>(now_ns - moved_ns_) * 1e-9);
+  robot_.step(velocity,
+              static_cast<double>(std::min(now_ns - moved_ns_, kLongestMotion_ns)) * 1e-9);
   moved_ns_ = now_ns;
   msg::Odometry odometry;
   messaging::set_header(odometry, robot_id_, now_ns, sent_++);

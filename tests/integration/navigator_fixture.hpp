@@ -60,8 +60,6 @@ class NavigatorOnRobot : public testing::Test {
   bool wait_for(const std::string& what, const Condition& condition) {
     return wait_in_loop(loop_, what, condition);
   }
-  /// Runs the world for that long.
-  void pass(std::chrono::milliseconds duration) { loop_.run_for(duration); }
   /// Runs the world until the program ends; returns its exit code.
   int wait_for_end(Program& program);
 

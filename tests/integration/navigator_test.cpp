@@ -1,5 +1,4 @@
 // The navigator as a process: its motion commands, and when it sends none.
-#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <filesystem>
@@ -27,12 +26,12 @@ TEST_F(NavigatorOnRobot, DrivesToTheGoalThenLeavesTheBaseToOthers) {
   EXPECT_EQ(robot_.collisions(), 0U);
   EXPECT_NEAR(status_->driven_m(), 2.5, 0.3);
   ASSERT_TRUE(wait_for("the robot to stand", [&] { return told_to_stand() && stands(); }));
-  // The event is the end of the commands: none for much longer than their period.
-  std::uint64_t before = 0;
+  // The event is the end of the commands: none while five statuses come, in 20 times their period.
   ASSERT_TRUE(wait_for("the commands to end", [&] {
-    before = commands_;
-    pass(std::chrono::milliseconds(1000));
-    return commands_ == before;
+    const std::uint64_t before = commands_;
+    const std::uint64_t last = status_->sequence_number();
+    return wait_for("five statuses", [&] { return status_->sequence_number() >= last + 5; }) &&
+           commands_ == before;
   }));
   EXPECT_TRUE(told_to_stand());
   EXPECT_TRUE(stands());
