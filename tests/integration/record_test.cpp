@@ -95,13 +95,13 @@ TEST_F(Record, ALogThatIsReadAgainIsRecordedOnce) {
   };
   const std::vector<std::string> mapper_and_gateway = {"local_mapper", "sensor_gateway"};
   run.wait_for_progress(30);
+  // The map is unfinished when all scans are recorded and the recorder has ended.
+  send("localizer", SIGSTOP);
   for (const std::string& service : mapper_and_gateway) {
     send(service, SIGKILL);
     run.wait_for_error_text(service + " was killed by signal 9");
     wait_until([&] { return is_there(service); });
   }
-  // The map is unfinished when all scans are recorded and the recorder has ended.
-  send("localizer", SIGSTOP);
   wait_until([&] { return !is_there("topogeo"); });
   // The run itself may have killed the gateway by then.
   for (const std::string& service : mapper_and_gateway) {
