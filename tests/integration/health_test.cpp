@@ -313,10 +313,14 @@ TEST_F(HealthTest, DoctorHasNothingToSayOfServicesThatFit) {
   ASSERT_TRUE(eventually_in_state("planner", msg::kServiceRunning));
   ASSERT_TRUE(eventually_in_state("local_mapper", msg::kServiceWaiting));
   std::string out;
-  run({"doctor", "--json"}, out);
-  for (const char* check : {"wire contract", "versions", "configuration", "QoS", "clocks"}) {
-    EXPECT_THAT(problems_of(out, check), IsEmpty()) << check;
-  }
+  // A status that a busy machine delivers late looks like that of a clock that is behind.
+  EXPECT_TRUE(wait_for("statuses that arrive in time", [&] {
+    run({"doctor", "--json"}, out);
+    for (const char* check : {"wire contract", "versions", "configuration", "QoS"}) {
+      EXPECT_THAT(problems_of(out, check), IsEmpty()) << check;
+    }
+    return HasFailure() || problems_of(out, "clocks").empty();
+  })) << out;
 }
 
 TEST_F(HealthTest, DoctorFindsOtherConfigurations) {
