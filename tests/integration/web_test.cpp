@@ -345,9 +345,20 @@ TEST_F(WebOnRobot, GoesToARoomByNameAndStopsWhenTheHandLetsGo) {
         }));
   }
   ASSERT_TRUE(wait_for([&] { return page_.values["drive"].is_null(); }));
-  const double stood_rad = page_.values["truth"]["theta_rad"];
-  wait_for([] { return false; }, milliseconds(1000));
-  EXPECT_NEAR(page_.values["truth"]["theta_rad"].get<double>(), stood_rad, 0.02);
+  // The robot stands: for a second of its own time its heading stays the same.
+  const auto heading_rad = [&] { return page_.values["truth"]["theta_rad"].get<double>(); };
+  const auto time_s = [&] { return page_.values["pose"]["stamp_s"].get<double>(); };
+  ASSERT_TRUE(wait_for([&] { return page_.values["pose"].is_object(); }));
+  double stood_rad = heading_rad();
+  double since_s = time_s();
+  ASSERT_TRUE(wait_for([&] {
+    if (!page_.values["pose"].is_object()) return false;
+    if (std::fabs(heading_rad() - stood_rad) > 1e-9) {
+      stood_rad = heading_rad();
+      since_s = time_s();
+    }
+    return time_s() >= since_s + 1.0;
+  }));
   EXPECT_EQ(page_.values["truth"]["collisions"], 0);
 
   // The stop button holds the base until it is released.
