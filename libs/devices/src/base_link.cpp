@@ -109,7 +109,7 @@ BaseLink::Change BaseLink::tick(std::int64_t now_ns) {
   }
   if (phase_ == Phase::kRunning && now_ns >= heard_ns_ + silence_ns_) {
     writer_.clear_queue();
-    reason_ = "the base has stopped to report";
+    reason_ = "the base stopped reporting";
     probe(now_ns);
     return Change::kOffline;
   }

@@ -54,7 +54,7 @@ void check(const BaseSettings& settings) {
   in_range("battery_period_s", settings.battery_period_s, 0, kLargest);
   if ((settings.report_mask & kNeededFields) != kNeededFields) {
     throw std::invalid_argument("base settings: report_mask is " +
-                                std::to_string(settings.report_mask) + ", which lacks fields of " +
+                                std::to_string(settings.report_mask) + ", expected all bits of " +
                                 std::to_string(kNeededFields));
   }
 }

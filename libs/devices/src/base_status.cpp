@@ -15,14 +15,13 @@ struct StateText {
 constexpr std::array<StateText, 10> kStateTexts{{
     {"ready", ""},
     {"moving", ""},
-    {"offline", "no line to the base"},
+    {"offline", "no connection to the base"},
     {"starting", "the base is being set up"},
     {"emergency stop",
-     "motion was commanded and did not come about: emergency stop, or the wheels are held; the "
-     "base "
-     "reports neither, so a person has to say when it may move"},
+     "the base did not move as commanded: emergency stop or blocked wheels; the base reports "
+     "neither, so a person must release it"},
     {"halted", "halted on demand"},
-    {"watchdog expired", "the base had heard nothing for too long and stopped"},
+    {"watchdog expired", "the base stopped: it received no command for too long"},
     {"bumped", "a bumper was pressed"},
     {"joystick", "the base moves without a command"},
     {"motors off", "the motors are limp"},

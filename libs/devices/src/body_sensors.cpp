@@ -40,8 +40,8 @@ std::optional<BodyReadings> MspBodySensors::read(std::int64_t /*now_ns*/) {
 }
 
 std::string MspBodySensors::fault() const {
-  return "sonars, infrared and tactile sensors of a B21 are not read: no source documents the bus "
-         "of its sensor processors";
+  return "sonars, infrared and tactile sensors of a B21 are not read: the bus of its sensor "
+         "processors is undocumented";
 }
 
 }  // namespace topogeo::devices

@@ -66,8 +66,8 @@ void PlsDriver::tick(std::int64_t now_ns) {
   }
   if (phase_ == Phase::kSearch && !search_.tick(now_ns)) {
     ++status_.counters.searches;
-    rest("no answer at any rate, the last was " + line_name(line_.settings()), search_.failures(),
-         now_ns);
+    rest("no answer at any baud rate, last tried " + line_name(line_.settings()),
+         search_.failures(), now_ns);
   }
   if (phase_ == Phase::kRun) supervise(now_ns);
   if (phase_ == Phase::kRest && now_ns >= search_.rested_ns()) {
@@ -110,7 +110,7 @@ PlsStatus PlsDriver::status() const {
   status.lms = line_.lms();
   status.stuck = maker_.stuck();
   if (status.state == PlsState::kRunning) {
-    status.reason = status.stuck ? "the same scan comes again and again" : setup_.fallback();
+    status.reason = status.stuck ? "the sensor repeats the same scan" : setup_.fallback();
   }
   status.counters.line = line_.decoder().counters();
   status.counters.scan_drops = maker_.drops();

@@ -11,7 +11,7 @@ namespace {
 void require(bool holds, const char* name, const std::string& value, const char* allowed) {
   if (holds) return;
   throw std::invalid_argument(std::string("laser setting ") + name + " is " + value +
-                              ", allowed is " + allowed);
+                              ", expected " + allowed);
 }
 
 void require_rate(const char* name, std::uint32_t baud) {

@@ -18,21 +18,21 @@ std::string PlsSetup::name(Step step) const {
     case Step::kStop:
       return "stops the stream";
     case Step::kInstall:
-      return "asks for installation mode";
+      return "requests installation mode";
     case Step::kRate:
-      return "asks for " + std::to_string(settings_.baud) + " baud";
+      return "requests " + std::to_string(settings_.baud) + " baud";
     case Step::kSettle:
-      return "rests after the change to " + std::to_string(settings_.baud) + " baud";
+      return "waits after the change to " + std::to_string(settings_.baud) + " baud";
     case Step::kProve:
-      return "asks for an answer at " + std::to_string(line_.settings().baud) + " baud";
+      return "checks the line at " + std::to_string(line_.settings().baud) + " baud";
     case Step::kStatus:
-      return "asks for the status";
+      return "requests the status";
     case Step::kErrors:
-      return "asks for the errors";
+      return "requests the errors";
     case Step::kMonitor:
       break;
   }
-  return "asks for scans";
+  return "requests scans";
 }
 
 std::vector<std::uint8_t> PlsSetup::command(Step step) const {
@@ -104,7 +104,7 @@ PlsSetup::Result PlsSetup::after_stop(std::int64_t now_ns) {
   if (wanted_rate || !fallback_.empty()) {
     begin(Step::kStatus, now_ns);
   } else if (failed_switches_ >= settings_.baud_switch_tries) {
-    return fall_back("the sensor does not follow to " + std::to_string(settings_.baud) + " baud",
+    return fall_back("the sensor does not switch to " + std::to_string(settings_.baud) + " baud",
                      now_ns);
   } else {
     // An LMS changes its rate in any mode.
@@ -114,7 +114,7 @@ PlsSetup::Result PlsSetup::after_stop(std::int64_t now_ns) {
 }
 
 PlsSetup::Result PlsSetup::after_install(std::int64_t now_ns) {
-  if (!replied()) return fail("no answer to the call for installation mode");
+  if (!replied()) return fail("no answer to the request for installation mode");
   if (exchange_.mode_reply() != PlsModeReply::kDone) {
     return fall_back("the password is refused", now_ns);
   }
@@ -140,7 +140,7 @@ PlsSetup::Result PlsSetup::after_rate(std::int64_t now_ns) {
 PlsSetup::Result PlsSetup::after_prove(std::int64_t now_ns) {
   if (!replied()) {
     ++failed_switches_;
-    reason_ = "the sensor did not follow to " + std::to_string(settings_.baud) + " baud";
+    reason_ = "the sensor did not switch to " + std::to_string(settings_.baud) + " baud";
     return Result::kNotFollowed;
   }
   line_.heard();

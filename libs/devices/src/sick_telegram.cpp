@@ -29,8 +29,8 @@ std::vector<std::uint8_t> frame(std::uint8_t address, std::uint8_t code,
                                 std::optional<std::uint8_t> status, std::size_t longest) {
   const std::size_t length = 1 + data.size() + (status ? 1 : 0);
   if (length > longest) {
-    throw std::invalid_argument("a telegram of " + std::to_string(length) + " bytes, at most are " +
-                                std::to_string(longest));
+    throw std::invalid_argument("a telegram of " + std::to_string(length) +
+                                " bytes, expected at most " + std::to_string(longest));
   }
   std::vector<std::uint8_t> bytes;
   bytes.reserve(length + kSickFrame_bytes);
@@ -55,7 +55,7 @@ std::vector<std::uint8_t> sick_reply(std::uint8_t code, std::span<const std::uin
                                      std::uint8_t status, std::uint8_t address) {
   if ((address & kFromSensor) == 0) {
     throw std::invalid_argument("the address of a sensor's telegram is " + std::to_string(address) +
-                                ", at least is 128");
+                                ", expected at least 128");
   }
   return frame(address, code, data, status, kSickLongestReply_bytes);
 }

@@ -41,7 +41,7 @@ class BaseLinkTest : public ::testing::Test {
 TEST_F(BaseLinkTest, IsOfflineUntilAPortIsOpenedAndRunsFromTheFirstReportOn) {
   EXPECT_TRUE(link_.closed());
   EXPECT_TRUE(link_.offline());
-  EXPECT_EQ(link_.reason(), "no line to the base");
+  EXPECT_EQ(link_.reason(), "no connection to the base");
   EXPECT_EQ(link_.due_ns(), std::numeric_limits<std::int64_t>::max());
   link_.open(now_ns_);
   EXPECT_FALSE(link_.offline());
@@ -55,7 +55,7 @@ TEST_F(BaseLinkTest, IsOfflineUntilAPortIsOpenedAndRunsFromTheFirstReportOn) {
 TEST_F(BaseLinkTest, AsksASilentBaseAndGoesOnWithOneThatReportsAgain) {
   start();
   EXPECT_EQ(pass(), Change::kOffline);
-  EXPECT_EQ(link_.reason(), "the base has stopped to report");
+  EXPECT_EQ(link_.reason(), "the base stopped reporting");
   EXPECT_EQ(now_ns_ - 1'000'000'000 > 500'000'000, true);
   EXPECT_EQ(writer_.take_orders().back().bytes, (std::vector<std::uint8_t>{'\r', 'B', 'V', '\r'}));
   EXPECT_EQ(link_.reported(false, now_ns_), Change::kResumed);

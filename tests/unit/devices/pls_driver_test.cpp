@@ -220,7 +220,7 @@ TEST(PlsDriver, ComesBackWhenTheSensorDoesNotFollow) {
   never.start();
   EXPECT_EQ(never.driver.status().line.baud, 9600U);
   EXPECT_EQ(never.driver.status().state, PlsState::kRunning);
-  EXPECT_THAT(never.driver.status().reason, HasSubstr("does not follow to 500000 baud"));
+  EXPECT_THAT(never.driver.status().reason, HasSubstr("does not switch to 500000 baud"));
   EXPECT_EQ(never.driver.status().counters.switches_not_followed, 2U);
   // It gets another chance after a restart.
   never.emulator.inject(simulation::PlsFault::kIgnoreBaudSwitch, -998);
@@ -241,7 +241,7 @@ TEST(PlsDriver, WithholdsAScanThatComesAgainAndAgain) {
   pls.run_for(kSecond_ns);
   const std::size_t before = pls.scans.size();
   EXPECT_TRUE(pls.driver.status().stuck);
-  EXPECT_THAT(pls.driver.status().reason, HasSubstr("again and again"));
+  EXPECT_THAT(pls.driver.status().reason, HasSubstr("repeats the same scan"));
   pls.run_for(kSecond_ns);
   EXPECT_EQ(pls.scans.size(), before);
   EXPECT_EQ(pls.driver.status().state, PlsState::kRunning);

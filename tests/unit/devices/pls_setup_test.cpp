@@ -48,7 +48,7 @@ TEST_F(PlsSetupTest, StopsInstallsChangesTheRateProvesItAsksAndStarts) {
   EXPECT_EQ(written(), pls_baud_command(500'000).value());
   EXPECT_EQ(reply(), SetupResult::kGoesOn);
   EXPECT_EQ(line_.settings().baud, 500'000U);
-  EXPECT_EQ(setup_.reason(), "rests after the change to 500000 baud");
+  EXPECT_EQ(setup_.reason(), "waits after the change to 500000 baud");
   EXPECT_EQ(setup_.due_ns(), settings_.settle_ns);
   EXPECT_TRUE(written().empty());
   setup_.tick(settings_.settle_ns);
@@ -85,7 +85,7 @@ TEST_F(PlsSetupTest, GivesTheRateUpWhenTheSensorDoesNotFollowTwice) {
   }
   line_.set({9600, Parity::kEven});
   setup_.start_stopped(0);
-  EXPECT_EQ(setup_.fallback(), "runs at 9600 baud: the sensor does not follow to 500000 baud");
+  EXPECT_EQ(setup_.fallback(), "runs at 9600 baud: the sensor does not switch to 500000 baud");
   setup_.retry_rate();
   EXPECT_EQ(setup_.fallback(), "");
 }
