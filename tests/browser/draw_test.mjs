@@ -37,7 +37,7 @@ test("the robot explores its room by itself", async () => {
   // It explores until all is seen, including the far side of the room behind the table.
   await text(page, ".section h3", /has no goal/);
   await page.click("#tab-understand");
-  await text(page, ".events .text", /explored: .*nothing is left/);
+  await text(page, ".events .text", /explored: .*no reachable target is left/);
 });
 
 /** Maps points of the map frame to the screen, in the view Draw, from two positions of the cursor. */

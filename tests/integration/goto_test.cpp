@@ -204,7 +204,7 @@ TEST(Explore, ASimulatedRobotMapsARoomByItself) {
               {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml", "--explore",
                "--out", out, "--workers", "0", "--domain", own_domain()});
   ASSERT_EQ(run.wait(), 0) << run.err();
-  EXPECT_THAT(run.err(), HasSubstr("nothing is left that can be reached"));
+  EXPECT_THAT(run.err(), HasSubstr("no reachable target is left"));
   EXPECT_THAT(run.out(), Not(HasSubstr("collisions")));
   EXPECT_TRUE(std::filesystem::exists(out + "/map.pb"));
 }

@@ -128,28 +128,25 @@ HaltReason CollisionGuard::health(std::int64_t now_ns, std::string* message) con
   const auto age_s = [&](std::int64_t stamp_ns) {
     return static_cast<double>(now_ns - stamp_ns) * kNsToSeconds;
   };
-  if (config_.needs_scan && !scan_) return because(HaltReason::kNoScan, "no scan has come yet");
+  if (config_.needs_scan && !scan_) return because(HaltReason::kNoScan, "no scan received yet");
   if (config_.needs_scan && !fresh(scan_->stamp_ns, now_ns)) {
     return because(HaltReason::kNoScan,
                    fmt::format("the last scan is {:.1f} s old", age_s(scan_->stamp_ns)));
   }
   const bool needs_sonar = config_.needs_sonar || !config_.needs_scan;
   if (needs_sonar && (!sonar_ || sonar_->readings.empty())) {
-    return because(HaltReason::kSonarSilent, "no reading of the sonars has come yet");
+    return because(HaltReason::kSonarSilent, "no sonar reading received yet");
   }
   if (needs_sonar && age_s(sonar_->stamp_ns) > std::max(config_.silent_s, config_.oldest_scan_s)) {
-    return because(
-        HaltReason::kSonarSilent,
-        fmt::format("the last reading of the sonars is {:.1f} s old", age_s(sonar_->stamp_ns)));
+    return because(HaltReason::kSonarSilent,
+                   fmt::format("the last sonar reading is {:.1f} s old", age_s(sonar_->stamp_ns)));
   }
   if (silent_since_ns_ && age_s(sonar_->stamp_ns) <= config_.silent_s &&
       static_cast<double>(sonar_->stamp_ns - *silent_since_ns_) * kNsToSeconds >=
           config_.silent_s) {
-    return because(
-        HaltReason::kSonarSilent,
-        fmt::format("no sonar has had an echo for {:.1f} s, though the laser sees something "
-                    "near",
-                    age_s(*silent_since_ns_)));
+    return because(HaltReason::kSonarSilent,
+                   fmt::format("no sonar echo for {:.1f} s, though the laser sees something near",
+                               age_s(*silent_since_ns_)));
   }
   return HaltReason::kNone;
 }
@@ -247,7 +244,7 @@ GuardVerdict CollisionGuard::judge_by_distances(const geometry::Velocity& wanted
     verdict.allowed = {};
     verdict.limited = true;
     verdict.reason = HaltReason::kSonarSilent;
-    verdict.message = "no sonar looks backwards";
+    verdict.message = "backward motion needs a fresh sonar reading";
     return verdict;
   }
   const double late_s = reaction_s(now_ns);

@@ -141,7 +141,7 @@ TourGoal ExplorationTour::give(const geometry::Pose2& T_map_goal) {
 }
 
 std::string ExplorationTour::message() const {
-  if (done_) return "nothing is left that can be reached";
+  if (done_) return "no reachable target is left";
   if (!planner_) return "waits for a map";
   if (!target_) return "looks for a target";
   return "to a " + std::string(describe(target_->kind)) + ", " +

@@ -37,8 +37,8 @@ HaltReason GuardedBase::halted(std::int64_t now_ns, std::string& message) const 
   }
   if (stuck_ns_) {
     message = fmt::format(
-        "ordered to move for {:.1f} s, the base did not; {}", stuck_s_,
-        tries_again_ ? "tries again when this machine has time" : "drives on after a resume");
+        "no motion after {:.1f} s of commands; {}", stuck_s_,
+        tries_again_ ? "tries again when this machine is less busy" : "drives on after a resume");
     return HaltReason::kBaseStuck;
   }
   return guard_.health(now_ns, &message);

@@ -49,13 +49,12 @@ geometry::Velocity NavigationStep::step(std::int64_t at_ns) {
   if (!status.T_map_robot) return relocalize();
   if (routes.map() == nullptr) take_route();
   if (routes.space() == nullptr) {
-    return stop(NavigatorState::kStopped, HaltReason::kNoMap, "no map has come yet");
+    return stop(NavigatorState::kStopped, HaltReason::kNoMap, "no map received yet");
   }
   const geometry::Pose2 pose = *status.T_map_robot;
   if (!routes.space()->frame().cell_of(pose.position_m())) {
-    return stop(
-        NavigatorState::kStopped, HaltReason::kOutsideMap,
-        fmt::format("the robot is at {:.2f}, {:.2f}, which is not on the map", pose.x_m, pose.y_m));
+    return stop(NavigatorState::kStopped, HaltReason::kOutsideMap,
+                fmt::format("the robot is at {:.2f}, {:.2f}, outside the map", pose.x_m, pose.y_m));
   }
   take_route();
   if (!routes.has_route()) return wait_for_route();
@@ -165,13 +164,13 @@ geometry::Velocity NavigationStep::drive(const geometry::Pose2& T_map_robot) {
     progress_m = driver.follower().progress_m();
   }
   if (poses.must_stand(arrival.needs_look(), progress_m, now_ns)) {
-    return stop(NavigatorState::kRelocalizing, HaltReason::kNone, "stands and looks where it is");
+    return stop(NavigatorState::kRelocalizing, HaltReason::kNone, "stops to measure its pose");
   }
   if (arrival.settling()) return settle(T_map_robot);
   // Far from its route it waits for one from its place; if none comes, it returns to the old one.
   if (driver.astray(T_map_robot.position_m()) && routes.wait_s(now_ns) < config.route_wait_s) {
     return stop(NavigatorState::kRelocalizing, HaltReason::kWaitsForRoute,
-                "is not on its route; waits for another one");
+                "off its route; waits for a new one");
   }
   return follow(T_map_robot);
 }
@@ -284,7 +283,7 @@ geometry::Velocity NavigationStep::settle_here() {
   wait.end();
   driver.follower().follow({}, routes.route().heading_rad);
   return stop(NavigatorState::kDriving, HaltReason::kNone,
-              "gets no nearer to the goal; turns to its heading");
+              "cannot get nearer to the goal; turns to the goal heading");
 }
 
 geometry::Velocity NavigationStep::stop(NavigatorState state, HaltReason reason,

@@ -48,7 +48,7 @@ std::string ObstacleWait::message(const std::string& what, std::int64_t now_ns) 
                        std::max(0.0, config_.move_away_s - waited_s));
   }
   const double waited_s = elapsed_s(reported_ns_, now_ns);
-  if (waited_s < config_.answer_s) return what + "; asks for another route";
+  if (waited_s < config_.answer_s) return what + "; requests another route";
   return fmt::format("{}; the planner has not answered for {:.0f} s", what, waited_s);
 }
 

@@ -107,7 +107,7 @@ std::optional<geometry::Pose2> PoseKeeper::good_pose(std::int64_t now_ns) const 
 }
 
 std::string PoseKeeper::why_not(std::int64_t now_ns) const {
-  if (!fix_) return "no pose has come yet";
+  if (!fix_) return "no pose received yet";
   if (!usable()) {
     return fmt::format("the localizer does not track the pose: {}",
                        fix_->state_text.empty() ? "no reason given" : fix_->state_text);
@@ -116,7 +116,7 @@ std::string PoseKeeper::why_not(std::int64_t now_ns) const {
     return fmt::format("the last pose is {:.1f} s old", seconds(now_ns - fix_->stamp_ns));
   }
   if (!(sigma_m() <= config_.largest_sigma_m)) {
-    return fmt::format("the pose is only known to {:.2f} m, {:.2f} m are allowed", sigma_m(),
+    return fmt::format("the pose is uncertain by {:.2f} m, expected at most {:.2f} m", sigma_m(),
                        config_.largest_sigma_m);
   }
   return "no odometry";

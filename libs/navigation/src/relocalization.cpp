@@ -18,8 +18,8 @@ Relocalization::Step Relocalization::step(const Lost& lost, const CollisionGuard
   const bool may_move = lost.may_look_around || (lost.doubtful && !look_around_.been_round());
   if (!may_move || farthest_m_ <= 0.0 || !lost.T_odom_robot) return {std::nullopt, lost.why};
   if (look_around_.finished()) {
-    return {std::nullopt,
-            fmt::format("{}; looked around on {:.1f} m in vain", lost.why, look_around_.gone_m())};
+    return {std::nullopt, fmt::format("{}; looked around over {:.1f} m without finding the pose",
+                                      lost.why, look_around_.gone_m())};
   }
   if (elapsed_s(lost_ns_, now_ns) < kStandsFirst_s) return {std::nullopt, lost.why};
   std::string message = fmt::format("{}; looks around, {:.1f} of {:.1f} m", lost.why,

@@ -218,7 +218,7 @@ TEST_F(NavigatorHalt, SonarsHearNothing) {
   drive_off();
   drive.sonars_hear = false;
   expect_halt(HaltReason::kSonarSilent, NavigatorState::kStopped, 20.0);
-  EXPECT_THAT(drive.status().message, HasSubstr("no sonar has had an echo"));
+  EXPECT_THAT(drive.status().message, HasSubstr("no sonar echo"));
   drive.sonars_hear = true;
   expect_arrival();
 }
@@ -319,7 +319,7 @@ TEST_F(NavigatorHalt, LooksAroundWhereItMay) {
       },
       180.0);
   EXPECT_EQ(drive.status().state, NavigatorState::kRelocalizing);
-  EXPECT_THAT(drive.status().message, HasSubstr("in vain"));
+  EXPECT_THAT(drive.status().message, HasSubstr("without finding the pose"));
   EXPECT_GT(turned_rad, 30.0);
   EXPECT_GT(gone_m, 3.0);
   EXPECT_LT(gone_m, 5.2);

@@ -25,7 +25,7 @@ TEST(ObstacleWait, WaitsThenReportsThenCallsThePlannerLate) {
   wait.set_reported(15 * kSecond_ns);
   EXPECT_FALSE(wait.report_due(16 * kSecond_ns));
   EXPECT_EQ(wait.reason(), HaltReason::kWaitsForRoute);
-  EXPECT_EQ(wait.message("a box", 16 * kSecond_ns), "a box; asks for another route");
+  EXPECT_EQ(wait.message("a box", 16 * kSecond_ns), "a box; requests another route");
   EXPECT_EQ(wait.message("a box", 22 * kSecond_ns), "a box; the planner has not answered for 7 s");
 }
 

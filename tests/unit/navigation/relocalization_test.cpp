@@ -18,7 +18,7 @@ class RelocalizationTest : public testing::Test {
     guard.add(scan_of_post(5.0, 0));
   }
 
-  Relocalization::Lost lost{"no pose has come yet", true, false, geometry::Pose2{}};
+  Relocalization::Lost lost{"no pose received yet", true, false, geometry::Pose2{}};
   CollisionGuard guard{GuardConfig{}};
 };
 
@@ -27,7 +27,7 @@ TEST_F(RelocalizationTest, StandsFirstAndThenLooksAround) {
   relocalization.begin(0);
   const auto first = relocalization.step(lost, guard, kSecond_ns / 2);
   EXPECT_FALSE(first.wanted);
-  EXPECT_EQ(first.message, "no pose has come yet");
+  EXPECT_EQ(first.message, "no pose received yet");
   const auto second = relocalization.step(lost, guard, 2 * kSecond_ns);
   ASSERT_TRUE(second.wanted);
   EXPECT_EQ(second.wanted->linear_m_per_s, 0.0);
