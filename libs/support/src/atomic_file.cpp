@@ -75,7 +75,7 @@ void write_with_mode(const fs::path& path, std::string_view content, mode_t mode
   TemporaryFile temporary(temporary_path);
 
   if (const int error = write_all(file.get(), content)) fail(path, "cannot be written", error);
-  if (::fsync(file.get()) != 0) fail(path, "cannot be forced to disk", errno);
+  if (::fsync(file.get()) != 0) fail(path, "cannot be synced to disk", errno);
   if (!file.close()) fail(path, "cannot be written", errno);
   if (::rename(temporary_path.c_str(), path.c_str()) != 0) fail(path, "cannot be replaced", errno);
   temporary.keep();

@@ -46,8 +46,8 @@ bool CpuShortage::add(const CpuUse& use, double timer_delay_s) {
 
 std::string CpuShortage::text() const {
   return fmt::format(
-      "the CPU is short: timers fire up to {:.1f} s late, {:.0f} % of its working time it waits "
-      "for a CPU",
+      "the CPU is short: timers fire up to {:.1f} s late, {:.0f} % of the working time is "
+      "waiting for a CPU",
       timer_delay_s_, 100.0 * use_.wait_share());
 }
 

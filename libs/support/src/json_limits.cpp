@@ -33,7 +33,7 @@ class LimitCheck final : public nlohmann::json_sax<Json> {
   bool end_array() override { return leave(); }
   bool key(std::string&) override {
     if (++keys_.back() > limits_.keys) {
-      return refuse(fmt::format("more than {} keys of one object", limits_.keys));
+      return refuse(fmt::format("more than {} keys in one object", limits_.keys));
     }
     return value();
   }

@@ -49,13 +49,13 @@ int line_of(int mark_line) {
 
 [[noreturn]] void fail_levels(const std::string& source, int line) {
   fail_at(source, line,
-          "more than " + std::to_string(kMostLevels) + " levels of lists and maps in each other");
+          "more than " + std::to_string(kMostLevels) + " levels of nested lists and maps");
 }
 
 [[noreturn]] void fail_values(const std::string& source, int line) {
   fail_at(source, line,
           "more than " + std::to_string(kMostYamlValues) +
-              " values, where an alias counts as all that it stands for");
+              " values, where an alias counts with everything it refers to");
 }
 
 /// Builds nothing, and throws if a text has more values or levels than allowed: a node of yaml-cpp

@@ -167,7 +167,7 @@ TEST(HostileJson, ObjectsOfManyKeysAreRefused) {
   std::string text = R"({"features":[],"layouts":[],"zones":[])";
   for (int i = 0; i < 300'000; ++i) text += ",\"k" + std::to_string(i) + "\":0";
   for (const ParseJson& parse : json_parsers()) {
-    EXPECT_EQ(refusal_of([&] { parse(text + "}"); }), "f: more than 128 keys of one object");
+    EXPECT_EQ(refusal_of([&] { parse(text + "}"); }), "f: more than 128 keys in one object");
   }
 }
 

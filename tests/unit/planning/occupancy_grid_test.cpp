@@ -58,7 +58,7 @@ TEST(OccupancyGrid, RefusesSizesOutOfRange) {
   EXPECT_THAT(make(frame_of(20000, 20000)),
               ThrowsMessage<std::invalid_argument>(HasSubstr("columns x rows is 400000000")));
   EXPECT_THAT(make(frame_of(5, 5, 0.001)),
-              ThrowsMessage<std::invalid_argument>(HasSubstr("allowed are 0.01 to 1 m")));
+              ThrowsMessage<std::invalid_argument>(HasSubstr("expected 0.01 to 1 m")));
 }
 
 TEST(FreeSpace, ForbidsThreeCellsRoundAnObstacle) {

@@ -182,7 +182,7 @@ TEST(MapDrawingFile, RefusesACorruptGrid) {
   };
   const std::string cells = good.grid().cells();
   EXPECT_THAT(refusal([](proto::DrawnGrid& g) { g.set_columns(0); }),
-              HasSubstr("drawn grid: columns is 0, allowed are 1 to 20000"));
+              HasSubstr("drawn grid: columns is 0, expected 1 to 20000"));
   EXPECT_THAT(refusal([](proto::DrawnGrid& g) { g.set_rows(0xffffffffU); }),
               HasSubstr("drawn grid: rows is"));
   EXPECT_THAT(refusal([](proto::DrawnGrid& g) { g.set_resolution_m(0.0); }),

@@ -114,7 +114,7 @@ TEST(JsonLimits, LevelsKeysAndValues) {
   EXPECT_EQ(beyond_limits("[" + object_of_keys(kMostKeys) + "," + object_of_keys(kMostKeys) + "]"),
             "");
   EXPECT_EQ(beyond_limits("[[" + object_of_keys(300'000) + "]]"),
-            "more than 128 keys of one object");
+            "more than 128 keys in one object");
   EXPECT_EQ(beyond_limits("[1,2,{\"a\":true}]", {.values = 6}), "");
   EXPECT_EQ(beyond_limits("[1,2,{\"a\":true}]", {.values = 5}), "more than 5 values");
 }

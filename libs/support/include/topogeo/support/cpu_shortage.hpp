@@ -67,8 +67,8 @@ class CpuShortage {
     return timer_delay_s_ >= kLate_s && use_.wait_share() >= kWaitShare;
   }
   [[nodiscard]] double timer_delay_s() const { return timer_delay_s_; }
-  /// Describes the last span: "the CPU is short: timers fire up to 0.4 s late, 71 % of its working
-  /// time it waits for a CPU".
+  /// Describes the last span: "the CPU is short: timers fire up to 0.4 s late, 71 % of the working
+  /// time is waiting for a CPU".
   [[nodiscard]] std::string text() const;
 
  private:
