@@ -248,7 +248,7 @@ test("what is no map, or of another place, is not merged and says why", async ()
   writeFileSync(file("cut.pb"), bytes.subarray(0, bytes.length / 2));
   assert.match(await offer(file("cut.pb"), /was not merged/), /The file: /);
   assert.match(await offer(file("elsewhere/map.pb"), /was not merged/), /The maps do not join/);
-  assert.match(await offer(file("morning/map.pb"), /was not merged/), /one of them is the other at another time/);
+  assert.match(await offer(file("morning/map.pb"), /was not merged/), /one is an earlier state of the other/);
   assert.equal(await robot.post("merge_map", {}, "wrong"), 401);
   assert.equal(await robot.post("merge_map_answer", { number: 1, accept: true }), 409);
   await page.setInputFiles("#merge-file", {

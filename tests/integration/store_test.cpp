@@ -138,7 +138,7 @@ TEST_F(StoreTest, SessionsAreNamedAndTheOnlyOneStays) {
   const std::string session = info.substr(at + 11, 16);
   const StoreOutcome removed = store({"remove-session", map_, session, "--out", path("none.pb")});
   EXPECT_EQ(removed.code, 3);
-  EXPECT_THAT(removed.err, HasSubstr("all stops are of it"));
+  EXPECT_THAT(removed.err, HasSubstr("all stops belong to it"));
   EXPECT_EQ(store({"remove-session", map_, "monday", "--out", path("none.pb")}).code, 2);
   EXPECT_FALSE(std::filesystem::exists(path("none.pb")));
 }

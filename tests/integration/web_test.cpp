@@ -176,13 +176,14 @@ TEST_F(WebOnMap, OneMapIsMergedAtATime) {
       const HttpReply reply = one.get();
       EXPECT_EQ(reply.status, 409) << reply.body;
       if (reply.body.find("another merge is worked on") != std::string::npos) ++busy;
-      if (reply.body.find("one of them is the other") != std::string::npos) ++worked_on;
+      if (reply.body.find("one is an earlier state of the other") != std::string::npos) ++worked_on;
     }
   };
   ASSERT_TRUE(test::wait_for(
       "two offers to meet", [&] { return busy > 0; }, offer_at_once));
   EXPECT_GE(worked_on, 1U);
-  EXPECT_THAT(offer().body, HasSubstr("one of them is the other")) << "it is free again";
+  EXPECT_THAT(offer().body, HasSubstr("one is an earlier state of the other"))
+      << "it is free again";
 }
 
 /// Makes room/map.pb.

@@ -41,8 +41,8 @@ storage::MapDocument usable_part(const storage::MapDocument& document, const cha
     part.local_maps.back().id = part.trajectory.stops.back().local_map_id = id;
   }
   if (part.local_maps.empty()) {
-    throw std::invalid_argument(fmt::format(
-        "{}: expected a map with stops that have poses and scan points, it has none", what));
+    throw std::invalid_argument(
+        fmt::format("{}: expected stops with poses and scan points, got none", what));
   }
   return part;
 }
@@ -78,7 +78,7 @@ class Aligner {
       }
     }
     if (hypotheses.empty()) {
-      out.reason = "no stop of the foreign map was found anywhere";
+      out.reason = "no stop of the foreign map matches the map";
       return out;
     }
     std::vector<double> support;
@@ -224,7 +224,7 @@ class Aligner {
       out.reason = fmt::format("ambiguous: another pose has {:.0f} % of the support of the best",
                                100.0 * out.rivalry);
     } else if (share < settings_.least_share) {
-      out.reason = fmt::format("{} of {} stops that the map should show do not fit there",
+      out.reason = fmt::format("{} of {} stops in the mapped area do not fit the map",
                                out.expected - out.fitting, out.expected);
     }
     out.found = out.reason.empty();

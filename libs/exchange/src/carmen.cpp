@@ -56,7 +56,7 @@ Beams beams_of(const std::vector<std::vector<Reading>>& stops) {
       if (step_rad > 0.0) steps.push_back(step_rad);
     }
   }
-  if (steps.empty()) throw std::invalid_argument("the map has no scan points to make a log of");
+  if (steps.empty()) throw std::invalid_argument("the map has no scan points for a log");
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::ranges::nth_element(steps, middle);
   Beams beams;

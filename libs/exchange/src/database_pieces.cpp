@@ -30,8 +30,8 @@ class DatabaseReader {
         pieces_.graph_incomplete = true;
       }
       if (!table.complete) {
-        pieces_.damage.push_back(
-            fmt::format("table {}: pages cannot be read, {} rows can", name, table.rows.size()));
+        pieces_.damage.push_back(fmt::format("table {}: damaged pages, only {} rows are readable",
+                                             name, table.rows.size()));
       }
       if (table.damaged_blobs > 0) {
         pieces_.damage.push_back(

@@ -171,8 +171,7 @@ class GeojsonReader {
     }
     if (!edges_.empty()) {
       graph_.notes.push_back(
-          fmt::format("{} branches are straight, driven both ways and without clearance, as the "
-                      "file has none",
+          fmt::format("{} branches are straight, two-way and without clearance: the file has none",
                       edges_.size()));
     }
   }

@@ -26,7 +26,7 @@ void settle(MapGraph& graph, const std::string& name) {
     for (const std::uint32_t id : {branch.node_a, branch.node_b}) {
       if (std::ranges::binary_search(graph.map.nodes, id, {}, &topomap::MapNode::id)) continue;
       throw std::runtime_error(
-          fmt::format("{}: branch {} ends at node {}, which is not there", name, branch.id, id));
+          fmt::format("{}: branch {} ends at node {}, which does not exist", name, branch.id, id));
     }
   }
   try {

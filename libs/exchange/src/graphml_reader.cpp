@@ -32,7 +32,7 @@ class GraphmlReader {
     pugi::xml_document document;
     const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size());
     if (!result) {
-      fail(fmt::format("expected XML, at byte {} it is none ({})", result.offset,
+      fail(fmt::format("expected XML, invalid at byte {} ({})", result.offset,
                        result.description()));
     }
     const pugi::xml_node top = document.child("graphml");

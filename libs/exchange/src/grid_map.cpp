@@ -195,7 +195,7 @@ float cast_beam(const planning::OccupancyGrid& grid, const Eigen::Vector2d& from
 
 void check_grid_size(const planning::GridFrame& frame) {
   if (frame.size() <= support::kMostPixels) return;
-  throw std::runtime_error(fmt::format("a grid of {} x {} cells, allowed are {} in all",
+  throw std::runtime_error(fmt::format("a grid of {} x {} cells, expected at most {} in all",
                                        frame.columns, frame.rows, support::kMostPixels));
 }
 

@@ -169,7 +169,8 @@ void check_stops(const storage::MapDocument& document, Findings& findings) {
       findings.add("stop {}: at ({:g}, {:g}) m, expected at most 1,000 km", id,
                    stop.T_map_robot.x_m, stop.T_map_robot.y_m);
     }
-    if (!is_covariance(stop.covariance)) findings.add("stop {}: its covariance is none", id);
+    if (!is_covariance(stop.covariance))
+      findings.add("stop {}: its covariance is not positive semidefinite", id);
   }
   const auto located = [&](std::uint32_t id) {
     return id < document.trajectory.stops.size() && document.trajectory.stops[id].located;

@@ -123,7 +123,7 @@ nlohmann::ordered_json parse_json(std::string_view text, const std::string& name
     return nlohmann::ordered_json::parse(text);
   } catch (const nlohmann::ordered_json::parse_error& error) {
     throw std::runtime_error(
-        fmt::format("{}: expected JSON, at byte {} it is none", name, error.byte));
+        fmt::format("{}: expected JSON, invalid at byte {}", name, error.byte));
   }
 }
 

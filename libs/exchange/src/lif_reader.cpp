@@ -38,7 +38,7 @@ class LifReader {
       for (const JsonValue& station : layout.at("stations").items()) add_station(station);
     }
     if (!graph_.map.branches.empty()) {
-      graph_.notes.push_back("LIF knows no clearance: branches have 0");
+      graph_.notes.push_back("LIF holds no clearance: branches get 0");
     }
     settle(graph_, name);
     return std::move(graph_);

@@ -120,8 +120,7 @@ class LifWriter {
       }
     }
     if (nearest == nullptr) {
-      out_.notes.push_back(
-          fmt::format("place '{}' left out: no node with an edge to reach it from", place.name));
+      out_.notes.push_back(fmt::format("place '{}' left out: no node has an edge", place.name));
       return;
     }
     const double heading_rad = place.station_heading_rad.value_or(0.0);

@@ -143,7 +143,7 @@ ExportedMap export_map(const storage::MapDocument& map, std::string_view format,
                        const fs::path& path, const ExportSettings& settings) {
   const auto form = forms().find(format);
   if (form == forms().end()) {
-    throw std::invalid_argument("there is no format '" + std::string(format) + "'");
+    throw std::invalid_argument("unknown format '" + std::string(format) + "'");
   }
   MapExport maker(map, path, settings);
   (maker.*form->second)();

@@ -43,7 +43,7 @@ class MapFileReader {
       pieces_.damage.push_back(fmt::format("bytes {} to {} cannot be read: {}", before, at - 1,
                                            at == bytes_.size()
                                                ? "the file is cut short or damaged to its end"
-                                               : "what they hold is lost"));
+                                               : "their content is lost"));
     }
     return std::move(pieces_);
   }
@@ -184,7 +184,7 @@ StoredPieces pieces_of_map_file(std::string_view bytes, const std::string& name)
   StoredPieces pieces = MapFileReader(bytes).read();
   if (!has_right_checksum(bytes) && pieces.damage.empty()) {
     pieces.damage.emplace_back(
-        "the checksum of the file is wrong: digits of what can be read may be damaged");
+        "the checksum of the file is wrong: values that can be read may be damaged");
   }
   return pieces;
 }

@@ -77,7 +77,7 @@ MaskFiles mask_files(const std::filesystem::path& path, const GridFrame& turned,
     if (zone.kind == ZoneKind::kNoGo || zone.kind == ZoneKind::kSlow) {
       if (reaches_out(zone, frame)) {
         out.notes.push_back(
-            fmt::format("zone '{}' reaches out of the grid and is cut there", zone.name));
+            fmt::format("zone '{}' reaches beyond the grid and is clipped", zone.name));
       }
     } else if (zone.kind == ZoneKind::kOneWay) {
       out.notes.push_back(fmt::format("zone '{}': masks have no directions", zone.name));

@@ -45,8 +45,7 @@ void check_sessions(const storage::MapDocument& a, const storage::MapDocument& b
   for (const LocalMap& map : b.local_maps) {
     if (!sessions.contains(map.stop.session)) continue;
     throw std::invalid_argument(
-        fmt::format("both maps have stops of session {:016x}: one of them is the other at another "
-                    "time",
+        fmt::format("both maps have stops of session {:016x}: one is an earlier state of the other",
                     map.stop.session));
   }
 }
@@ -125,7 +124,8 @@ class Merger {
       return out;
     }
     if (out.left_out > 0) {
-      out.notes.push_back(fmt::format("{} stops found no place and are left out", out.left_out));
+      out.notes.push_back(
+          fmt::format("{} stops were not localized and are left out", out.left_out));
     }
     return out;
   }

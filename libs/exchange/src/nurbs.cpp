@@ -7,10 +7,10 @@ namespace topogeo::exchange {
 std::string Nurbs::fault() const {
   if (points.size() < degree + 1) return "more control points than the degree";
   if (knots.size() != points.size() + degree + 1) {
-    return "a knotVector of as many numbers as control points, degree and one more";
+    return "a knotVector of control points + degree + 1 numbers";
   }
-  if (!std::ranges::is_sorted(knots)) return "a knotVector that does not fall";
-  if (!(knots[degree] < knots[points.size()])) return "a knotVector that rises";
+  if (!std::ranges::is_sorted(knots)) return "a knotVector that never decreases";
+  if (!(knots[degree] < knots[points.size()])) return "a knotVector that increases";
   const auto positive = [](double weight) { return weight > 0.0; };
   if (!std::ranges::all_of(weights, positive)) return "weights above 0";
   return "";

@@ -27,8 +27,9 @@ constexpr int kOpaque = 255;
 void check_size(std::int64_t width, std::int64_t height, const std::string& source) {
   if (width < 1 || height < 1 || width > kMostAlong || height > kMostAlong ||
       width * height > kMostPixels) {
-    fail_raster(source, fmt::format("{} x {} pixels, allowed are 1 to {} along, {} in all", width,
-                                    height, kMostAlong, kMostPixels));
+    fail_raster(source,
+                fmt::format("{} x {} pixels, expected 1 to {} on each side, at most {} in all",
+                            width, height, kMostAlong, kMostPixels));
   }
 }
 

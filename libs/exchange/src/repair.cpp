@@ -76,7 +76,7 @@ class Assembler {
     out_.document.rooms = repaired_rooms(pieces_, robot_, out_.lost);
     if (out_.document.local_maps.empty() && out_.document.drawing.empty() &&
         out_.document.global_map.nodes.empty()) {
-      throw std::runtime_error(name + ": nothing in it can be saved");
+      throw std::runtime_error(name + ": nothing can be recovered");
     }
     return std::move(out_);
   }
@@ -137,8 +137,7 @@ class Assembler {
     }
     name_stops();
     if (!missing_.empty()) {
-      lose("{} stops have nothing of what they saw, the first of them {}", missing_.size(),
-           missing_.front());
+      lose("{} stops have no local map, the first is stop {}", missing_.size(), missing_.front());
     }
   }
 
@@ -358,9 +357,9 @@ class Assembler {
     if (!std::ranges::any_of(document.trajectory.stops, located)) return;
     try {
       out_.document.global_map = pipeline::fuse(config_, document.local_maps, document.trajectory);
-      lose("nodes and branches are made anew, with ids of their own");
+      lose("nodes and branches are rebuilt with new ids");
     } catch (const std::invalid_argument& error) {
-      lose("nodes and branches cannot be made anew: {}", error.what());
+      lose("nodes and branches cannot be rebuilt: {}", error.what());
     }
   }
 

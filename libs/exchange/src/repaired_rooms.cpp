@@ -30,7 +30,7 @@ planning::RoomMemory repaired_rooms(const StoredPieces& pieces, const std::strin
     const auto at =
         std::ranges::lower_bound(rooms.rooms, room.number, {}, &planning::RememberedRoom::number);
     if (at != rooms.rooms.end() && at->number == room.number) {
-      throw std::runtime_error("a number that comes twice");
+      throw std::runtime_error("a duplicate number");
     }
     rooms.last = std::max(rooms.last, room.number);
     rooms.rooms.insert(at, std::move(room));

@@ -161,7 +161,7 @@ class Builder {
       return;
     }
     network_.notes.push_back(fmt::format(
-        "place '{}': no way to a branch that is free on the grid, left without edges", place.name));
+        "place '{}': no free path on the grid to a branch, left without edges", place.name));
     add_node({place.position_m, 0.0, std::nullopt, index});
   }
 
@@ -246,8 +246,8 @@ class Builder {
     if (blocked == 0) return;
     if (settings_.only_free) std::erase_if(network_.pieces, is_blocked);
     network_.notes.push_back(fmt::format(
-        "{} of {} edges pass nearer to obstacles of the grid, or to what is unknown, than its "
-        "forbidden distance{}",
+        "{} of {} edges pass obstacles or unknown cells within the forbidden distance of the "
+        "grid{}",
         blocked, all, settings_.only_free ? ", left out" : ""));
   }
 

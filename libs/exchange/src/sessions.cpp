@@ -101,8 +101,8 @@ storage::MapDocument without_session(const storage::MapDocument& document, std::
   }
   if (out.local_maps.size() == document.local_maps.size() || out.local_maps.empty()) {
     throw std::invalid_argument(
-        fmt::format("session {}: expected one of several of the map, {}", session_text(session),
-                    out.local_maps.empty() ? "all stops are of it" : "no stop is of it"));
+        fmt::format("session {}: expected one of several in the map, {}", session_text(session),
+                    out.local_maps.empty() ? "all stops belong to it" : "no stop belongs to it"));
   }
   out.loop_closures = kept_pairs(document.loop_closures, new_ids);
   out.edges = kept_pairs(document.edges, new_ids);

@@ -96,7 +96,7 @@ class ZoneSetReader {
       zone.value = in.required("direction").number();
     } else if (type != "ACTION") {
       set_.notes.push_back(
-          fmt::format("zone '{}' left out: no zone here is like {}", zone.name, type));
+          fmt::format("zone '{}' left out: no zone kind corresponds to {}", zone.name, type));
       return;
     } else if (has_actions(in)) {
       set_.notes.push_back(fmt::format("zone '{}': its actions are left out", zone.name));

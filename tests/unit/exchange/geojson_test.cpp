@@ -84,7 +84,7 @@ TEST_F(Geojson, NamesWhatIsWrong) {
   const auto error = [](const std::string& text) {
     return error_of([&] { parse_geojson(text, "f.geojson"); });
   };
-  EXPECT_EQ(error("{"), "f.geojson: expected JSON, at byte 2 it is none");
+  EXPECT_EQ(error("{"), "f.geojson: expected JSON, invalid at byte 2");
   EXPECT_EQ(error("{}"), "f.geojson: features: expected a value, got nothing");
   EXPECT_EQ(
       error(
@@ -98,7 +98,7 @@ TEST_F(Geojson, NamesWhatIsWrong) {
   EXPECT_EQ(
       error(
           R"({"features":[{"geometry":{"type":"LineString"},"properties":{"id":1,"startid":5,"endid":6}}]})"),
-      "f.geojson: branch 1 ends at node 5, which is not there");
+      "f.geojson: branch 1 ends at node 5, which does not exist");
 }
 
 TEST_F(Geojson, NodesWithLargeIdsGetOthersInTheFileAlone) {

@@ -52,7 +52,7 @@ TEST_F(Graphml, NamesWhatIsWrong) {
     });
   };
   EXPECT_THAT(error_of([] { parse_graphml("<graphml><no>", "f"); }),
-              HasSubstr("f: expected XML, at byte"));
+              HasSubstr("f: expected XML, invalid at byte"));
   EXPECT_EQ(error_of([] { parse_graphml("<html/>", "f"); }),
             "f: expected an element graphml at the top");
   EXPECT_EQ(error("<node id='a'/>"), "f: node 'a': expected a number 'x', got nothing");

@@ -291,7 +291,7 @@ TEST(HostileGrid, LargeDrawnFloorsAreRefused) {
   EXPECT_EQ(refusal_of([&] { check_grid_size(frame); }), "");
   frame.rows = 4001;
   EXPECT_EQ(refusal_of([&] { check_grid_size(frame); }),
-            "a grid of 4000 x 4001 cells, allowed are 16000000 in all");
+            "a grid of 4000 x 4001 cells, expected at most 16000000 in all");
 }
 
 // A floor of 30 m x 30 m with stops every 0.2 m would have some 20,000 of them.

@@ -66,9 +66,9 @@ TEST(Inspect, FindsEachContradictionAndNothingInAGoodMap) {
   EXPECT_THAT(found([](auto& d) { d.trajectory.stops[1].T_map_robot.x_m = 1e9; }),
               HasSubstr("stop 1: at (1e+09"));
   EXPECT_THAT(found([](auto& d) { d.trajectory.stops[1].covariance(0, 0) = -1.0; }),
-              HasSubstr("stop 1: its covariance is none"));
+              HasSubstr("stop 1: its covariance is not positive semidefinite"));
   EXPECT_THAT(found([](auto& d) { d.trajectory.stops[1].covariance(0, 1) = 3.0; }),
-              HasSubstr("stop 1: its covariance is none"));
+              HasSubstr("stop 1: its covariance is not positive semidefinite"));
   EXPECT_THAT(found([](auto& d) { d.trajectory.stops[3].located = false; }),
               HasSubstr("loop closure 0-3: stop 3 has no pose"));
   EXPECT_THAT(found([](auto& d) { d.global_map.branches[1].points.back().position_m.x() += 0.1; }),

@@ -120,8 +120,8 @@ TEST(NurbsTest, AQuarterOfACircleIsExact) {
 
 TEST(NurbsTest, FaultsAreNamed) {
   EXPECT_THAT((Nurbs{1, {0, 0, 1}, {{0, 0}, {1, 0}}, {1, 1}}).fault(), HasSubstr("knotVector"));
-  EXPECT_THAT((Nurbs{1, {0, 1, 0, 1}, {{0, 0}, {1, 0}}, {1, 1}}).fault(), HasSubstr("fall"));
-  EXPECT_THAT((Nurbs{1, {0, 0, 0, 1}, {{0, 0}, {1, 0}}, {1, 1}}).fault(), HasSubstr("rises"));
+  EXPECT_THAT((Nurbs{1, {0, 1, 0, 1}, {{0, 0}, {1, 0}}, {1, 1}}).fault(), HasSubstr("decreases"));
+  EXPECT_THAT((Nurbs{1, {0, 0, 0, 1}, {{0, 0}, {1, 0}}, {1, 1}}).fault(), HasSubstr("increases"));
   EXPECT_THAT((Nurbs{1, {0, 0, 1, 1}, {{0, 0}, {1, 0}}, {1, 0}}).fault(), HasSubstr("weights"));
 }
 

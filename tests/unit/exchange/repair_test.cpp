@@ -100,7 +100,7 @@ TEST_F(Repair, ADamagedLocalMapCostsItselfAlone) {
   EXPECT_EQ(map.document.trajectory.stops[2].T_map_robot, whole.trajectory.stops[2].T_map_robot);
   EXPECT_EQ(map.document.loop_closures.size(), 1U);
   EXPECT_EQ(map.document.global_map.branches.size(), whole.global_map.branches.size());
-  EXPECT_THAT(map.lost, Contains("1 stops have nothing of what they saw, the first of them 2"));
+  EXPECT_THAT(map.lost, Contains("1 stops have no local map, the first is stop 2"));
 }
 
 TEST_F(Repair, WhereALengthIsDamagedReadingGoesOnBehind) {
@@ -198,7 +198,7 @@ TEST_F(Repair, ADamagedRoomCostsItselfAloneAndNoNumberIsGivenTwice) {
 TEST_F(Repair, WhatIsNoMapIsRefused) {
   EXPECT_EQ(error_of([] { repaired("hello"); }),
             "f: not a topogeo map (no 'topogeo-map' at its beginning)");
-  EXPECT_EQ(error_of([] { repaired("\x0a\x0btopogeo-map"); }), "f: nothing in it can be saved");
+  EXPECT_EQ(error_of([] { repaired("\x0a\x0btopogeo-map"); }), "f: nothing can be recovered");
   EXPECT_THAT(error_of([&] { pieces_of_database(write("no.sqlite", "SQLite format 3")); }),
               HasSubstr("no.sqlite: nothing can be read"));
 }

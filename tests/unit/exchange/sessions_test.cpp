@@ -83,7 +83,7 @@ TEST(Sessions, WithoutMeasurementsPosesStay) {
 
 TEST(Sessions, TheLastOneAndUnknownOnesAreRefused) {
   EXPECT_THAT(error_of([] { without_session(two_sessions(), 7, {}); }),
-              HasSubstr("session 0000000000000007: expected one of several of the map, no stop"));
+              HasSubstr("session 0000000000000007: expected one of several in the map, no stop"));
   const storage::MapDocument monday = without_session(two_sessions(), kTuesday, {});
   EXPECT_THAT(error_of([&] { without_session(monday, kMonday, {}); }), HasSubstr("all stops"));
 }

@@ -75,7 +75,7 @@ TEST_F(ZoneFiles, ForeignZonesOfOtherTypesAreLeftOutWithANote) {
                                      "f");
   ASSERT_EQ(set.zones.size(), 2U);
   EXPECT_EQ(set.zones[1].name, "z3");  // the name was taken
-  EXPECT_THAT(set.notes, Contains("zone 'z1' left out: no zone here is like PENALTY"));
+  EXPECT_THAT(set.notes, Contains("zone 'z1' left out: no zone kind corresponds to PENALTY"));
   EXPECT_THAT(set.notes, Contains("zone 'z2': its actions are left out"));
 }
 
@@ -139,7 +139,7 @@ TEST_F(ZoneFiles, ZonesBeyondTheGridAndDirectionsAreNoted) {
       {"yard", {{1, 1}, {9, 1}, {9, 2}}, ZoneKind::kNoGo, 0.0},
       {"lane", {{0, 0}, {1, 0}, {1, 1}}, ZoneKind::kOneWay, 0.0}};
   const MaskFiles masks = mask_files("m", mask_frame(), zones);
-  EXPECT_THAT(masks.notes, Contains("zone 'yard' reaches out of the grid and is cut there"));
+  EXPECT_THAT(masks.notes, Contains("zone 'yard' reaches beyond the grid and is clipped"));
   EXPECT_THAT(masks.notes, Contains("zone 'lane': masks have no directions"));
 }
 
