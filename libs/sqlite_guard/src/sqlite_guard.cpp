@@ -30,7 +30,7 @@ std::string first_row(sqlite3* database, const char* sql) {
 
 }  // namespace
 
-const char* const kTooMuchWork = "takes more work than a sound file of its size";
+const char* const kTooMuchWork = "takes more work than an intact file of its size";
 
 void refuse_irregular(const std::filesystem::path& path) {
   for (const char* part : {"", "-wal", "-shm", "-journal"}) {

@@ -27,8 +27,8 @@ void check_sessions(const std::vector<topomap::LocalMap>& maps) {
   for (const topomap::LocalMap& map : maps) {
     const std::uint64_t session = map.stop.session;
     if ((session == 0) == (maps.front().stop.session == 0)) continue;
-    fail("local map {} is of session {:016x}: expected one for all local maps or for none", map.id,
-         session);
+    fail("local map {} is of session {:016x}: expected a session for every local map or for none",
+         map.id, session);
   }
 }
 
@@ -42,7 +42,7 @@ void check_global_map(const topomap::GlobalMap& map) {
   };
   for (const topomap::MapBranch& branch : map.branches) {
     for (const std::uint32_t node : {branch.node_a, branch.node_b}) {
-      if (!is_known(node)) fail("branch {} ends at node {}, which is not there", branch.id, node);
+      if (!is_known(node)) fail("branch {} ends at node {}, which does not exist", branch.id, node);
     }
   }
 }
@@ -59,15 +59,15 @@ void check_document(const MapDocument& document) {
   const std::size_t map_count = document.local_maps.size();
   for (std::size_t i = 0; i < map_count; ++i) {
     const topomap::LocalMap& map = document.local_maps[i];
-    if (map.id != i) fail("local map {} stands at place {}", map.id, i);
-    if (map.robot_id.empty()) fail("local map {} is of no robot", i);
+    if (map.id != i) fail("local map {} is at index {}", map.id, i);
+    if (map.robot_id.empty()) fail("local map {} has no robot", i);
   }
   const auto& stops = document.trajectory.stops;
   if (stops.size() > map_count) {
     fail("{} stops: expected at most one for each of the {} local maps", stops.size(), map_count);
   }
   for (std::size_t i = 0; i < stops.size(); ++i) {
-    if (stops[i].local_map_id != i) fail("stop {} stands at place {}", stops[i].local_map_id, i);
+    if (stops[i].local_map_id != i) fail("stop {} is at index {}", stops[i].local_map_id, i);
   }
   for (const topomap::LoopClosure& closure : document.loop_closures) {
     if (closure.earlier_id >= closure.later_id || closure.later_id >= map_count) {

@@ -157,7 +157,7 @@ std::vector<topomap::StopId> MapDatabase::write_stops(std::span<const topomap::L
   for (const topomap::LocalMap& map : stops) {
     if (!map.robot_id.empty() && map.stop.session != 0) continue;
     throw std::invalid_argument(
-        fmt::format("{}: stop {} of session {:016x} of robot '{}', expected a session of a robot",
+        fmt::format("{}: stop {} of session {:016x} of robot '{}', expected a session and a robot",
                     name_, map.stop.number, map.stop.session, map.robot_id));
   }
   std::vector<topomap::StopId> different = stops_->put(stops, false);
@@ -237,9 +237,9 @@ void MapDatabase::put_document(const MapDocument& document) {
 
 void MapDatabase::write_document(const MapDocument& document) {
   if (document.robot_id != robot_id_ || !stops_->sessions().empty()) {
-    throw std::invalid_argument(
-        fmt::format("{}: expected no stops and the map of robot '{}', got that of robot '{}'",
-                    name_, robot_id_, document.robot_id));
+    throw std::invalid_argument(fmt::format(
+        "{}: expected an empty database and a map of robot '{}', got a map of robot '{}'", name_,
+        robot_id_, document.robot_id));
   }
   std::vector<JoinedStop> joined;
   for (const topomap::LocalMap& map : document.local_maps) {

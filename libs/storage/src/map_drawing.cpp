@@ -42,7 +42,7 @@ bool is_printable(const std::string& text) {
 }
 
 void check_name(const char* what, const std::string& name, std::set<std::string>& taken) {
-  require_drawing(is_printable(name), "{} with a name that is no printable UTF-8", what);
+  require_drawing(is_printable(name), "{}: expected a name in printable UTF-8", what);
   require_drawing(!name.empty() && name.size() <= kMaxNameBytes,
                   "{} '{}': expected a name of 1 to {} bytes", what, name, kMaxNameBytes);
   require_drawing(taken.insert(name).second, "{} '{}': the name is taken", what, name);
@@ -52,7 +52,7 @@ void check_point(const char* what, const std::string& name, const Eigen::Vector2
   for (const double value : {point_m.x(), point_m.y()}) {
     // Also false for NaN.
     require_drawing(std::fabs(value) <= kMaxCoordinate_m,
-                    "{} '{}': coordinate {}, allowed are {} to {} m", what, name, value,
+                    "{} '{}': coordinate {}, expected {} to {} m", what, name, value,
                     -kMaxCoordinate_m, kMaxCoordinate_m);
   }
 }
@@ -62,13 +62,13 @@ void check_place(const planning::Place& place, std::set<std::string>& taken) {
   check_point("place", place.name, place.position_m);
   const double heading_rad = place.station_heading_rad.value_or(0.0);
   require_drawing(std::fabs(heading_rad) <= std::numbers::pi,
-                  "place '{}': heading {}, allowed are -pi to pi", place.name, heading_rad);
+                  "place '{}': heading {}, expected -pi to pi", place.name, heading_rad);
 }
 
 void check_zone(const planning::DrawnZone& zone, std::set<std::string>& taken) {
   check_name("zone", zone.name, taken);
   require_drawing(zone.polygon_m.size() >= kLeastCorners && zone.polygon_m.size() <= kMaxCorners,
-                  "zone '{}': {} corners, allowed are {} to {}", zone.name, zone.polygon_m.size(),
+                  "zone '{}': {} corners, expected {} to {}", zone.name, zone.polygon_m.size(),
                   kLeastCorners, kMaxCorners);
   for (const Eigen::Vector2d& corner : zone.polygon_m) check_point("zone", zone.name, corner);
   require_drawing(std::isfinite(zone.value), "zone '{}': its value is not a finite number",
@@ -85,7 +85,7 @@ void check_line(const planning::DrawnLine& line, std::set<std::string>& taken) {
   for (const Eigen::Vector2d& point_m : points_m) check_point(what, line.name, point_m);
   if (line.kind == planning::LineKind::kWall) {
     require_drawing(points_m.size() >= kLeastPoints && points_m.size() <= kMaxCorners,
-                    "wall '{}': {} points, allowed are {} to {}", line.name, points_m.size(),
+                    "wall '{}': {} points, expected {} to {}", line.name, points_m.size(),
                     kLeastPoints, kMaxCorners);
     return;
   }
@@ -157,12 +157,12 @@ planning::OccupancyGrid grid_from_proto(const proto::DrawnGrid& in) {
 }  // namespace
 
 void check(const MapDrawing& drawing) {
-  require_drawing(drawing.places.size() <= kMaxPlaces, "{} places, allowed are {}",
+  require_drawing(drawing.places.size() <= kMaxPlaces, "{} places, expected at most {}",
                   drawing.places.size(), kMaxPlaces);
-  require_drawing(drawing.zones.size() <= kMaxDrawnZones, "{} zones, allowed are {}",
+  require_drawing(drawing.zones.size() <= kMaxDrawnZones, "{} zones, expected at most {}",
                   drawing.zones.size(), kMaxDrawnZones);
   require_drawing(drawing.lines.size() <= kMaxDrawnLines,
-                  "{} walls, openings and doors, allowed are {}", drawing.lines.size(),
+                  "{} walls, openings and doors, expected at most {}", drawing.lines.size(),
                   kMaxDrawnLines);
   std::set<std::string> taken;
   for (std::size_t i = 0; i < drawing.places.size(); ++i) {

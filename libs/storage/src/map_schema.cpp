@@ -163,7 +163,7 @@ std::unique_ptr<SQLite::Database> open_map_database(const std::filesystem::path&
   if (const std::string refused = sqlite_guard::refused_schema(database->getHandle());
       !refused.empty()) {
     throw std::runtime_error(path.string() + ": has " + refused +
-                             ", expected the tables of a map alone");
+                             ", expected only the tables of a map");
   }
   database->exec("PRAGMA cell_size_check=ON; PRAGMA foreign_keys=ON");
   if (access != Access::kReadOnly) {

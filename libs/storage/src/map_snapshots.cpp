@@ -58,7 +58,7 @@ void sync(const fs::path& path) {
   const support::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (!file.is_open() || ::fsync(file.get()) != 0) {
     throw std::runtime_error(
-        path.string() + ": cannot be forced to disk: " + std::generic_category().message(errno));
+        path.string() + ": cannot be synced to disk: " + std::generic_category().message(errno));
   }
 }
 
@@ -91,7 +91,7 @@ MapSnapshot write_snapshot(SQLite::Database& from, const fs::path& path) {
     throw std::runtime_error(path.parent_path().string() +
                              ": cannot be locked: " + std::generic_category().message(errno));
   }
-  if (fs::exists(path)) throw std::runtime_error(path.string() + ": there is such a snapshot");
+  if (fs::exists(path)) throw std::runtime_error(path.string() + ": this snapshot exists already");
   const fs::path unfinished = path.parent_path() / ".unfinished.sqlite";
   remove_with_logs(unfinished);
   try {
@@ -293,7 +293,7 @@ std::optional<MapSnapshot> restore_snapshot(
     former = set_aside(database, kept);
     after("former map set aside");
     target = open_alone(database);
-    if (!target) throw std::runtime_error(database.string() + ": cannot be made anew");
+    if (!target) throw std::runtime_error(database.string() + ": cannot be created again");
   } else if (has_content(*target)) {
     former = write_snapshot(*target, kept);
     after("former map kept");

@@ -143,7 +143,7 @@ void StopTables::join(std::span<const JoinedStop> stops) {
     if (held == sessions_.end() || held->second.waiting.erase(stop.number) == 0) {
       throw std::invalid_argument(
           fmt::format("{}: stop {} of session {:016x} cannot join the map: it is not stored, or "
-                      "is in the map",
+                      "it joined already",
                       file_, stop.number, stop.session));
     }
     insert.reset();

@@ -272,10 +272,10 @@ TEST_F(MapDatabaseFile, RefusesDamagedContent) {
            {"UPDATE stop SET blob = zeroblob(length(blob)) WHERE number = 1",
             "stop 1 is damaged (its hash is wrong)"},
            {"DELETE FROM stop WHERE number = 1", "is missing)"},
-           {"DELETE FROM map_stop WHERE id = 1", "damaged (local map 2 stands at place 1)"},
+           {"DELETE FROM map_stop WHERE id = 1", "damaged (local map 2 is at index 1)"},
            {"DELETE FROM session", "a stop of a session that is not there"},
            {"UPDATE stop SET number = -1 WHERE number = 1", "damaged (stop number -1)"},
-           {"DELETE FROM map_node WHERE id = 7", "ends at node 7, which is not there"},
+           {"DELETE FROM map_node WHERE id = 7", "ends at node 7, which does not exist"},
            {"UPDATE map_node SET blob = 'text'", "column blob has the wrong type"},
            {"UPDATE meta SET value = '12x' WHERE key = 'seed'", "seed is '12x'"},
            {"DELETE FROM meta WHERE key = 'robot_id'", "no 'robot_id'"}}) {

@@ -93,7 +93,7 @@ TEST_F(MapSnapshots, AMapFromElsewhereBecomesOne) {
   EXPECT_EQ(open().local_map_count(), 5U) << "the map store goes on with it";
 
   EXPECT_THAT(error_of([&] { import_snapshot(path(), "merged", sample_document(5)); }),
-              HasSubstr("there is such a snapshot"));
+              HasSubstr("this snapshot exists already"));
   MapDocument foreign = sample_document(5);
   foreign.robot_id = "robot-2";
   EXPECT_THAT(error_of([&] { import_snapshot(path(), "foreign", foreign); }),
@@ -108,7 +108,8 @@ TEST_F(MapSnapshots, AMapFromElsewhereBecomesOne) {
 TEST_F(MapSnapshots, RefuseNamesThatAreWrongOrTaken) {
   begin(2);
   take_snapshot(path(), "a");
-  EXPECT_THAT(error_of([&] { take_snapshot(path(), "a"); }), HasSubstr("there is such a snapshot"));
+  EXPECT_THAT(error_of([&] { take_snapshot(path(), "a"); }),
+              HasSubstr("this snapshot exists already"));
   for (const char* name : {"", ".a", "a/b", "../a", "a b"}) {
     EXPECT_THAT(error_of([&] { take_snapshot(path(), name); }), HasSubstr("snapshot name")) << name;
   }

@@ -49,7 +49,7 @@ class WorkLimit {
   std::uint64_t steps_left_;  // of kInstructions each
 };
 
-/// "takes more work than a sound file of its size".
+/// "takes more work than an intact file of its size".
 extern const char* const kTooMuchWork;
 
 }  // namespace topogeo::sqlite_guard
