@@ -12,12 +12,12 @@ namespace topogeo::localizer {
 class BackgroundOptimizer : public localization::GraphOptimizer {
  public:
   void start(localization::GraphProblem problem) override {
-    if (job_.valid()) throw std::logic_error("optimizer: the job before was not fetched");
+    if (job_.valid()) throw std::logic_error("optimizer: the previous job was not fetched");
     job_ = std::async(std::launch::async,
                       [problem = std::move(problem)] { return localization::solve(problem); });
   }
   localization::GraphSolution fetch() override {
-    if (!job_.valid()) throw std::logic_error("optimizer: nothing was started");
+    if (!job_.valid()) throw std::logic_error("optimizer: no job was started");
     return job_.get();
   }
 

@@ -136,7 +136,7 @@ TEST_F(CalibrateOdometryTest, ALogThatIsTooShortIsToldWithNumbers) {
   write_log("room", log);
   const int code = run({log});
   ASSERT_EQ(code, 3) << out_;
-  EXPECT_THAT(err_, HasSubstr("log.clf.gz: too little motion: of "));
+  EXPECT_THAT(err_, HasSubstr("log.clf.gz: too little motion: "));
   EXPECT_THAT(err_, HasSubstr("expected at least 20"));
 }
 

@@ -278,7 +278,7 @@ TEST_F(SharedMapServices, AskBeforeTheyMakeOneMap) {
   ASSERT_TRUE(eventually("the stops of robot b to be stored",
                          [&] { return stored("b", b_.stops.size()); }));
   EXPECT_LE(stops_in_map(), a_.stops.size());
-  EXPECT_THAT(merge_command({"accept", "7"}, 1), HasSubstr("no merge 7 was proposed"));
+  EXPECT_THAT(merge_command({"accept", "7"}, 1), HasSubstr("merge 7 does not exist"));
   EXPECT_THAT(merge_command({"merges"}), HasSubstr("1  open: stop "));
   EXPECT_TRUE(eventually("the status to name the command that accepts the merge", [&] {
     Program status(scratch_, "topogeo", {"status", "--domain", own_domain(), "--json"});
@@ -292,7 +292,7 @@ TEST_F(SharedMapServices, AskBeforeTheyMakeOneMap) {
   EXPECT_THAT(merge_command({"accept", "1"}), HasSubstr("the maps are one"));
   EXPECT_TRUE(eventually("the maps to be one", [&] { return stops_in_map() > a_.stops.size(); }));
   EXPECT_TRUE(shows("\"state\": \"accepted\""));
-  EXPECT_THAT(merge_command({"refuse", "1"}, 1), HasSubstr("not open any more"));
+  EXPECT_THAT(merge_command({"refuse", "1"}, 1), HasSubstr("no longer open"));
 }
 
 // Refused 5 m after `b` reached the start of `a`, and restarted less than 10 m further on.

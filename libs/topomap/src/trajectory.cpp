@@ -9,7 +9,9 @@ namespace {
 
 void check_sizes(const Trajectory& trajectory, std::span<const LocalMap> maps, const char* who) {
   if (trajectory.stops.size() != maps.size()) {
-    throw std::invalid_argument(std::string(who) + ": as many stops as local maps are needed");
+    throw std::invalid_argument(std::string(who) + ": expected one stop for each local map, got " +
+                                std::to_string(trajectory.stops.size()) + " for " +
+                                std::to_string(maps.size()));
   }
 }
 

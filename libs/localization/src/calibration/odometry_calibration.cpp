@@ -38,7 +38,8 @@ void check_measurements(std::span<const OdometryStretch> stretches,
     const std::string name = "calibrate_odometry: motion " + std::to_string(i);
     if (motion.first >= motion.last || motion.last > stretches.size()) {
       throw std::invalid_argument(name + " leads from stop " + std::to_string(motion.first) +
-                                  " to " + std::to_string(motion.last) + ", there are " +
+                                  " to " + std::to_string(motion.last) +
+                                  ", expected ascending stops below " +
                                   std::to_string(stretches.size() + 1));
     }
     if (!geometry::difference(motion.T_first_last, {}).allFinite() ||
@@ -195,10 +196,10 @@ OdometryCalibration calibrate_odometry(
   const bool turn = covered.with_turn >= kFewestStretches;
   if (!path && !turn) {
     throw std::runtime_error(
-        "too little motion: of " + std::to_string(covered.stretches) +
-        " measured stretches between stops " + std::to_string(covered.with_path) +
-        " are 0.2 m long and " + std::to_string(covered.with_turn) +
-        " have 0.2 rad of turn, expected at least " + std::to_string(kFewestStretches));
+        "too little motion: " + std::to_string(covered.stretches) +
+        " measured stretches between stops, " + std::to_string(covered.with_path) +
+        " of them 0.2 m long and " + std::to_string(covered.with_turn) +
+        " with a turn of 0.2 rad, expected at least " + std::to_string(kFewestStretches));
   }
 
   FitModel model;

@@ -11,7 +11,8 @@ UncertainPose first_stop_of_drive(const PoseGraph& map,
                                   std::span<const StoredMatch> matches_of_last,
                                   const OdometryNoise& noise) {
   if (drive.empty() || matches_of_last.empty() || map.poses().empty()) {
-    throw std::invalid_argument("localizer: a drive joins a map by its stops and their matches");
+    throw std::invalid_argument(
+        "localizer: a drive joins a map by at least one stop and one match");
   }
   UncertainPose T_first_last;
   for (std::size_t i = 1; i < drive.size(); ++i) {

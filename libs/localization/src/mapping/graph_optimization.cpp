@@ -65,12 +65,12 @@ GraphSolution solve(const GraphProblem& problem) {
 }
 
 void InPlaceOptimizer::start(GraphProblem problem) {
-  if (problem_) throw std::logic_error("optimizer: the job before was not fetched");
+  if (problem_) throw std::logic_error("optimizer: the previous job was not fetched");
   problem_ = std::move(problem);
 }
 
 GraphSolution InPlaceOptimizer::fetch() {
-  if (!problem_) throw std::logic_error("optimizer: nothing was started");
+  if (!problem_) throw std::logic_error("optimizer: no job was started");
   return solve(*std::exchange(problem_, std::nullopt));
 }
 

@@ -47,7 +47,7 @@ void check_loop(std::span<const LoopPose> poses, std::span<const LoopCandidate> 
     refuse_loop("resolutions must be positive");
   }
   if (poses.size() < 2) {
-    refuse_loop("a loop has at least two poses, got " + std::to_string(poses.size()));
+    refuse_loop("expected a loop of at least two poses, got " + std::to_string(poses.size()));
   }
   for (std::size_t k = 1; k < poses.size(); ++k) {
     check_covariance(poses[k].T_first_this.covariance, "pose " + std::to_string(k));

@@ -7,8 +7,8 @@ namespace topogeo::localization {
 
 void check_next(const topomap::LocalMap& map, std::size_t next_id, const topomap::LocalMap* first) {
   if (map.id != next_id) {
-    throw std::invalid_argument("localizer: local map " + std::to_string(map.id) +
-                                " came, expected " + std::to_string(next_id));
+    throw std::invalid_argument("localizer: got local map " + std::to_string(map.id) +
+                                ", expected " + std::to_string(next_id));
   }
   if (first != nullptr) check_robot(map, *first);
 }
@@ -21,8 +21,8 @@ void check_robot(const topomap::LocalMap& map, const topomap::LocalMap& first) {
 
 void check_follows(const topomap::StopId& stop, const topomap::StopId& last) {
   if (stop == last.next()) return;
-  throw std::invalid_argument("localizer: stop " + std::to_string(stop.number) +
-                              " came, expected " + std::to_string(last.next().number));
+  throw std::invalid_argument("localizer: got stop " + std::to_string(stop.number) + ", expected " +
+                              std::to_string(last.next().number));
 }
 
 }  // namespace topogeo::localization

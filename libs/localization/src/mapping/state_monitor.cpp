@@ -143,7 +143,7 @@ LocalizationStatus StateMonitor::add(const StepEvidence& evidence) {
   for (const StepMatch& match : evidence.matches) {
     if (match.matched_step && *match.matched_step >= confidence_.size()) {
       throw std::invalid_argument("state monitor: match with step " +
-                                  std::to_string(*match.matched_step) + ", there are " +
+                                  std::to_string(*match.matched_step) + ", expected less than " +
                                   std::to_string(confidence_.size()));
     }
     if (match.verdict != Verdict::kAccepted && !is_doubtful(match)) continue;

@@ -30,7 +30,7 @@ void check(const StoredMap& map) {
   if (!map.maps.empty() && map.maps.size() == map.trajectory.stops.size()) return;
   throw std::invalid_argument("localizer: a stored map of " + std::to_string(map.maps.size()) +
                               " local maps and " + std::to_string(map.trajectory.stops.size()) +
-                              " stops, expected as many, at least one");
+                              " stops, expected equal numbers, at least one");
 }
 
 std::vector<PoseGraphEdge> edges_of(const StoredMap& map) {

@@ -36,7 +36,7 @@ class Checker {
   void range(const char* name, double value, double low, double high) const {
     if (value >= low && value <= high) return;
     char text[160];
-    std::snprintf(text, sizeof text, "%s is %g, allowed are %g to %g", name, value, low, high);
+    std::snprintf(text, sizeof text, "%s is %g, expected %g to %g", name, value, low, high);
     fail(text);
   }
   void pose(const char* name, const Pose2& T) const {
@@ -45,7 +45,7 @@ class Checker {
       return;
     }
     char text[200];
-    std::snprintf(text, sizeof text, "%s is (%g m, %g m, %g rad), allowed are %g m and %g rad",
+    std::snprintf(text, sizeof text, "%s is (%g m, %g m, %g rad), expected at most %g m and %g rad",
                   name, T.x_m, T.y_m, T.theta_rad, kUnreachable_m, kMostTurned_rad);
     fail(text);
   }

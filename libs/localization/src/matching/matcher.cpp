@@ -104,7 +104,7 @@ Matcher::KnownMap& Matcher::known(std::uint32_t id, std::uint64_t hash) {
     throw std::out_of_range("local map " + std::to_string(id) + " is not known");
   if (found->second.hash != hash) {
     throw std::out_of_range("local map " + std::to_string(id) +
-                            " has another content than the task means");
+                            " differs from the one of the task");
   }
   return found->second;
 }
@@ -152,7 +152,8 @@ bool Matcher::has_field(std::uint64_t hash) const {
 }
 
 const PlaceField& Matcher::field(const PlaceQuestion& question) const {
-  if (!has_field(question.field_hash)) throw std::out_of_range("the whole map is not known");
+  if (!has_field(question.field_hash))
+    throw std::out_of_range("the place field of the map is not known");
   return *field_;
 }
 

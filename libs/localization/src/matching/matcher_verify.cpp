@@ -24,7 +24,7 @@ bool sane(const Pose2& T) {
 
 std::string differs(const std::string& name, double stated, double right) {
   char text[160];
-  std::snprintf(text, sizeof text, " is stated as %.17g and is %.17g", stated, right);
+  std::snprintf(text, sizeof text, " is %.17g, expected %.17g", stated, right);
   return name + text;
 }
 
@@ -38,14 +38,14 @@ std::string faults_of_form(const MatchTask& task, const MatchResult& result) {
   if (result.seed != task.seed) return "the seed is not that of the task";
   if (result.solutions.empty()) return "there is no solution";
   if (result.solutions.size() > task.solutions_wanted) {
-    return std::to_string(result.solutions.size()) + " solutions, wanted were " +
+    return std::to_string(result.solutions.size()) + " solutions, expected at most " +
            std::to_string(task.solutions_wanted);
   }
   const std::uint64_t searches = task.genetic.finer_resolution_m > 0.0 ? 1 + kRefined : 1;
   const std::uint64_t most =
       searches * std::uint64_t{task.genetic.individuals} * std::uint64_t{task.genetic.generations};
   if (result.evaluations < task.genetic.individuals || result.evaluations > most) {
-    return std::to_string(result.evaluations) + " evaluations, possible are " +
+    return std::to_string(result.evaluations) + " evaluations, expected " +
            std::to_string(task.genetic.individuals) + " to " + std::to_string(most);
   }
   for (std::size_t i = 0; i < result.solutions.size(); ++i) {
@@ -53,12 +53,12 @@ std::string faults_of_form(const MatchTask& task, const MatchResult& result) {
     if (!sane(T) || !in_search_space(task, T)) return nth(i) + " is outside of the search space";
     for (std::size_t k = 0; k < i; ++k) {
       if (same_solution(task, T, result.solutions[k].T_reference_query)) {
-        return nth(k) + " and " + nth(i) + " are one";
+        return nth(k) + " and " + nth(i) + " are the same";
       }
     }
   }
-  if (!sane(result.T_reference_query)) return "the refined pose is none";
-  if (!sane(result.second.T_reference_query)) return "the pose of the second is none";
+  if (!sane(result.T_reference_query)) return "the refined pose is invalid";
+  if (!sane(result.second.T_reference_query)) return "the pose of the second is invalid";
   return {};
 }
 
@@ -115,7 +115,7 @@ std::string faults_of_choice(const MatchResult& right) {
   // The second is the best other pose by the maps, so with odometry it may be the better one.
   if (right.second.fitness == 0.0) return {};
   if (same_place(right.second.T_reference_query, right.T_reference_query)) {
-    return "the second is the best one again";
+    return "the second is the same as the best";
   }
   return {};
 }

@@ -142,7 +142,7 @@ void NearestPointGrid::build(const std::vector<Eigen::Vector2d>& points_m, doubl
   if (points_m.empty()) return;
   if (points_m.size() > kMostPoints) {
     throw std::invalid_argument("nearest-point grid: " + std::to_string(points_m.size()) +
-                                " points, allowed are " + std::to_string(kMostPoints));
+                                " points, expected at most " + std::to_string(kMostPoints));
   }
   Eigen::Vector2d low = points_m.front();
   Eigen::Vector2d high = low;

@@ -155,7 +155,8 @@ CoarseMap::CoarseMap(std::span<const Eigen::Vector2d> points_m) {
   }
   if (!((high - low).maxCoeff() <= kWidestMap_m)) {
     throw std::invalid_argument("coarse map: points spread over " +
-                                std::to_string((high - low).maxCoeff()) + " m, at most 250");
+                                std::to_string((high - low).maxCoeff()) +
+                                " m, expected at most 250");
   }
   origin_m_ = low.array() - (kKernel_m + kCell_m);
   Level first;

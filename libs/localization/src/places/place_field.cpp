@@ -89,7 +89,8 @@ PlaceField::PlaceField(std::span<const std::shared_ptr<const topomap::LocalMap>>
   const std::vector<topomap::ScanPoint> ends =
       points_of_pieces(pieces.subspan(std::min<std::size_t>(question.wall_pieces, pieces.size())));
   if (walls_.empty() || ends.size() % 2 != 0) {
-    throw std::invalid_argument("place field: its pieces have no wall or half a run of cells");
+    throw std::invalid_argument(
+        "place field: its pieces have no wall or an incomplete run of cells");
   }
   for (std::size_t i = 0; i < ends.size(); i += 2) {
     const int first = grid_.column(ends[i].x_m);
@@ -103,7 +104,7 @@ PlaceField::PlaceField(std::span<const std::shared_ptr<const topomap::LocalMap>>
   }
   make_pieces();
   if (hash_ != question.field_hash) {
-    throw std::invalid_argument("place field: its pieces are those of another one");
+    throw std::invalid_argument("place field: its pieces belong to another field");
   }
   pieces_.clear();
 }
@@ -322,8 +323,8 @@ std::string PlaceField::verify(const PlaceQuestion& question,
                                std::span<const MatchSolution> places) const {
   check(question);
   if (places.size() > kTaskPoses) {
-    return std::to_string(places.size()) + " places, at most " + std::to_string(kTaskPoses) +
-           " are asked for";
+    return std::to_string(places.size()) + " places, expected at most " +
+           std::to_string(kTaskPoses);
   }
   const std::vector<Eigen::Vector2d> points_m = in_metres(question.points);
   const double middle_rad =
@@ -339,8 +340,8 @@ std::string PlaceField::verify(const PlaceQuestion& question,
     }
     const double value = mean_kernel(fine_, points_m, T);
     if (!identical(value, places[i].fitness)) {
-      return "the value of " + name + " is stated as " + std::to_string(places[i].fitness) +
-             " and is " + std::to_string(value);
+      return "the value of " + name + " is " + std::to_string(places[i].fitness) + ", expected " +
+             std::to_string(value);
     }
   }
   return {};

@@ -60,7 +60,7 @@ bool MappingSession::add(MapPointer map) {
   const auto is_of_robot = [&](const MapPointer& held) { return held->robot_id == map->robot_id; };
   if (!maps_.empty() && std::ranges::none_of(maps_, is_of_robot)) {
     throw std::invalid_argument("localizer: a stop of robot '" + map->robot_id +
-                                "', of which the map has none");
+                                "', expected a robot that has stops in the map");
   }
   if (last_id_ && !same_session) begin_drive(*map);
   last_id_ = map->stop;
@@ -183,7 +183,7 @@ void MappingSession::finish() {
 // --- switching between mapping and localizing
 
 void MappingSession::stop_mapping() {
-  if (!mapping_) throw std::logic_error("the map stays as it is already");
+  if (!mapping_) throw std::logic_error("mapping is already stopped");
   if (maps_.empty()) throw std::logic_error("there is no map yet");
   if (!follower_) {
     std::shared_ptr<const StoredMap> stored = map_so_far();
@@ -196,7 +196,7 @@ void MappingSession::stop_mapping() {
 }
 
 void MappingSession::resume_mapping() {
-  if (mapping_) throw std::logic_error("the map grows already");
+  if (mapping_) throw std::logic_error("mapping is already active");
   if (localizer_ == nullptr) {
     throw std::invalid_argument("localizer.mode: a finished map is continued in mode graph only");
   }

@@ -89,10 +89,10 @@ bool MergeProposals::offer(MergeProposal found, const Find& find) {
 MergeProposal MergeProposals::decide(std::uint32_t number, State state) {
   const auto found = std::ranges::find(proposals_, number, &MergeProposal::number);
   if (found == proposals_.end()) {
-    throw std::invalid_argument("no merge " + std::to_string(number) + " was proposed");
+    throw std::invalid_argument("merge " + std::to_string(number) + " does not exist");
   }
   if (found->state != State::kOpen) {
-    throw std::invalid_argument("merge " + std::to_string(number) + " is not open any more");
+    throw std::invalid_argument("merge " + std::to_string(number) + " is no longer open");
   }
   found->state = state;
   return *found;

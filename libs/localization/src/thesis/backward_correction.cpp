@@ -23,7 +23,7 @@ void check_backward(const BackwardProblem& problem, const BackwardConfig& config
   }
   const std::size_t poses = problem.poses.size();
   if (poses < 2) {
-    refuse_backward("a loop has at least two poses, got " + std::to_string(poses));
+    refuse_backward("expected a loop of at least two poses, got " + std::to_string(poses));
   }
   for (std::size_t k = 1; k < poses; ++k) {
     const std::uint64_t id = problem.first_id + k;
@@ -36,14 +36,14 @@ void check_backward(const BackwardProblem& problem, const BackwardConfig& config
     for (const std::uint32_t earlier : problem.poses[k].overlaps) {
       if (earlier >= id) {
         refuse_backward(name + " overlaps with " + std::to_string(earlier) +
-                        ", which is not earlier");
+                        ", expected an earlier one");
       }
     }
   }
   for (const BackwardCandidate& candidate : problem.candidates) {
     if (candidate.via < problem.first_id || candidate.via >= problem.first_id + poses - 1) {
-      refuse_backward("a candidate comes via map " + std::to_string(candidate.via) +
-                      ", which is not an earlier one of the loop");
+      refuse_backward("a candidate leads through map " + std::to_string(candidate.via) +
+                      ", expected an earlier one of the loop");
     }
   }
 }

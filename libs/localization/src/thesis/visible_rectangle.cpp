@@ -85,7 +85,7 @@ std::vector<std::uint32_t> overlap_set(const VisibleRectangle& view,
                                        std::span<const VisibleRectangle> earlier,
                                        std::span<const PlacedView> places) {
   if (earlier.size() != places.size()) {
-    throw std::invalid_argument("overlap_set: as many places as earlier maps are needed");
+    throw std::invalid_argument("overlap_set: expected one place for each earlier map");
   }
   std::vector<std::uint32_t> found;
   for (std::uint32_t i = 0; i < earlier.size(); ++i) {

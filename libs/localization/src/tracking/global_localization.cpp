@@ -151,7 +151,7 @@ GlobalLocalizer::GlobalLocalizer(std::span<const topomap::LocalMap> maps,
   }
   const std::vector<Eigen::Vector2d> points_m = thinned(map_points(maps, trajectory));
   if (points_m.empty()) {
-    throw std::invalid_argument("global localization: no stop of the map saw anything");
+    throw std::invalid_argument("global localization: no stop of the map has scan points");
   }
   // The margin is the longest range in the map.
   double longest_m = 0.0;
