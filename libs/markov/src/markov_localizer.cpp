@@ -65,7 +65,8 @@ void MarkovLocalizer::require_initialized(const char* call) const {
 }
 
 std::string MarkovLocalizer::nowhere() const {
-  return "no free cell of the window around " + cell_text(belief_.centre()) + " is possible";
+  return "every free cell of the window around " + cell_text(belief_.centre()) +
+         " has probability 0";
 }
 
 PerceptionReport MarkovLocalizer::initialize(const geometry::Pose2& T_map_base_station,

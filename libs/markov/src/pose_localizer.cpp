@@ -55,7 +55,7 @@ PoseLocalizer::PoseLocalizer(const PoseGridConfig& config, ObstacleCells map,
   }
   for (const double angle_rad : angles) cones_.emplace_back(map_, angle_rad, max_range_m_);
   if (!map_.free(map_.cell_of(T_map_station.position_m()))) {
-    reason_ = fmt::format("the base station at {:.2f}, {:.2f} is no free cell of the map",
+    reason_ = fmt::format("the base station at {:.2f}, {:.2f} is not in a free cell of the map",
                           T_map_station.x_m, T_map_station.y_m);
   }
   grid_.set_normal(config_.station_sigma_m, config_.station_sigma_rad);
@@ -91,7 +91,7 @@ void PoseLocalizer::keep_free_cells() {
     }
   }
   if (grid_.normalize()) return;
-  reason_ = "no free cell of the window is possible";
+  reason_ = "every free cell of the window has probability 0";
   grid_.set_uniform();
 }
 

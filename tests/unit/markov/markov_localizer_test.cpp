@@ -228,7 +228,7 @@ TEST(MarkovLocalizer, ARobotInAnImpossiblePlaceIsReported) {
   const MovementReport moved = localizer.move({MoveKind::kAdvance, 3.0});
   EXPECT_FALSE(moved.possible);
   EXPECT_EQ(moved.kept_share, 0.0);
-  EXPECT_THAT(moved.reason, testing::HasSubstr("no free cell of the window"));
+  EXPECT_THAT(moved.reason, testing::HasSubstr("every free cell of the window"));
   for (const double probability : localizer.belief().current()) EXPECT_EQ(probability, 0.0);
   EXPECT_FALSE(localizer.estimate());
   EXPECT_FALSE(localizer.relocalization_moves());

@@ -171,7 +171,7 @@ TEST(PoseLocalizerStart, AStationInAWallIsNamed) {
   const PoseLocalizer localizer(PoseGridConfig{}, Room{40, 30}.cells(), macondo_ring(), 5.0,
                                 {0.02, 1.0, 0.0});
   EXPECT_FALSE(localizer.located());
-  EXPECT_NE(localizer.reason().find("no free cell"), std::string::npos);
+  EXPECT_NE(localizer.reason().find("not in a free cell"), std::string::npos);
 }
 
 TEST(PoseLocalizerStart, SettingsThatDoNotFitAreRefused) {
