@@ -164,7 +164,7 @@ believes() { grep -q 'waiting: for scans' "$work/local_mapper.log"; }
 # denies SERVICE NAME WHAT: whether the service has refused the worker under this name.
 denies() {
   ask "$1" && grep -q '^  fault .* peer refused' "$work/$1.status" &&
-    grep -q "refused: 'robot/$2' (/O=topogeo/CN=ga_worker.pc1; [0-9a-f.]*) is denied to $3" "$work/$1.log"
+    grep -q "refused: 'robot/$2' (/O=topogeo/CN=ga_worker.pc1; [0-9a-f.]*) may not $3" "$work/$1.log"
 }
 
 "$bin/topogeo" config --devices > "$work/devices.yaml"
@@ -216,7 +216,7 @@ for service in map_store navigator; do
   openssl smime -sign -text -in "$work/governance.xml" -out "$work/thief/$service/governance.p7s" \
     -signer "$keys/ca/permissions_ca.pem" -inkey "$keys/ca/permissions_ca.key"
 done
-why=".*: its governance is another one"
+why=".*: its governance differs"
 steal "changed governance"
 
 write_commands "$keys/robot"

@@ -235,9 +235,8 @@ TEST_F(RobotPermissionsTest, AWriterInThePartitionOfAnotherRobotIsDenied) {
     });
     static_cast<void>(reader.wait_for_data(std::chrono::milliseconds(5)));
   });
-  ASSERT_TRUE(wait("the thief to be denied and bert's own scans", [&] {
-    return has_refused(mapper, "is denied to write ") && robots.size() >= 10;
-  }));
+  ASSERT_TRUE(wait("the thief to be denied and bert's own scans",
+                   [&] { return has_refused(mapper, "may not write ") && robots.size() >= 10; }));
   EXPECT_LT(highest, 1'000'000U);
   EXPECT_EQ(reader.matched(), 1);
 }
@@ -254,9 +253,8 @@ TEST_F(RobotPermissionsTest, AReaderInThePartitionOfAnotherRobotIsDenied) {
   write_for(writer, "bert");
   read_to(robots, reader);
   read_to(stolen, spy);
-  ASSERT_TRUE(wait("the thief to be denied and bert's own scans", [&] {
-    return has_refused(gateway, "is denied to read ") && robots.size() >= 10;
-  }));
+  ASSERT_TRUE(wait("the thief to be denied and bert's own scans",
+                   [&] { return has_refused(gateway, "may not read ") && robots.size() >= 10; }));
   EXPECT_TRUE(stolen.empty());
   EXPECT_EQ(writer.matched(), 1);
 }

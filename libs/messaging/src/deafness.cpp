@@ -100,7 +100,7 @@ std::string deafness(const HeardStatus& service, std::span<const HeardStatus> al
   const Status& status = *service.status;
   const std::string topic = status.input().to_string();
   if (reports_deafness(status)) {
-    return fmt::format("deaf: by its own report none of the {} that are sent arrives", topic);
+    return fmt::format("deaf: its own status reports that no {} arrives", topic);
   }
   const double silence_s = input_silence_s(status);
   if (silence_s < kLeastSilence_s || !is_alone(status, all) ||

@@ -189,7 +189,7 @@ void EventLoop::on_event(EventHandler handler) {
 std::uint64_t EventLoop::add_timer(std::chrono::nanoseconds period, std::function<void()> handler) {
   if (period.count() <= 0) {
     throw std::invalid_argument("timer period: " + std::to_string(period.count()) +
-                                " ns, allowed is more than 0");
+                                " ns, expected more than 0");
   }
   const std::uint64_t timer = ++impl_->timers_made;
   impl_->timers.emplace(std::pair{Clock::now() + period, timer}, Timer{period, std::move(handler)});

@@ -70,7 +70,7 @@ std::chrono::nanoseconds longest_freeze(std::chrono::nanoseconds lease, const st
   const auto [after, error] = std::from_chars(text.data(), end, seconds);
   if (error != std::errc() || after != end || seconds > kMost_s) {
     throw std::runtime_error("TOPOGEO_LONGEST_FREEZE_S: '" + text +
-                             "', allowed are whole seconds from 0 (any time) to 1000000");
+                             "': expected whole seconds from 0 (any time) to 1000000");
   }
   return seconds == 0 ? std::chrono::nanoseconds::max() : std::chrono::seconds(seconds);
 }

@@ -63,7 +63,7 @@ void load_profiles(const std::filesystem::path& requested) {
   if (loaded) {
     if (*loaded != file) {
       throw std::runtime_error("DDS profiles: '" + file.string() +
-                               "' asked for, but this process uses '" + loaded->string() + "'");
+                               "' requested, but this process uses '" + loaded->string() + "'");
     }
     return;
   }
@@ -173,7 +173,7 @@ std::vector<std::string> secured_partitions(const ParticipantOptions& options,
 ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
   if (options.domain > kMaxDomain) {
     throw std::invalid_argument("DDS domain: " + std::to_string(options.domain) +
-                                ", allowed is 0 to 232");
+                                ", expected 0 to 232");
   }
   correct_fragments();
   keep_filter_info_out();

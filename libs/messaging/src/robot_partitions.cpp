@@ -27,9 +27,8 @@ std::vector<std::string> robots_of_keys(const std::filesystem::path& folder) {
   std::error_code unknown;
   if (!std::filesystem::exists(path, unknown) && !unknown) {
     spdlog::warn(
-        "DDS security: the keys in '{}' are from before keys named robots and hold for all of "
-        "them; "
-        "make_keys renews them with --robot",
+        "DDS security: the keys in '{}' name no robots and hold for every robot; renew them with "
+        "make_keys and --robot",
         folder.string());
     return {std::string(kEveryRobot)};
   }
@@ -54,7 +53,7 @@ std::vector<std::string> partitions_by_robot(const std::string& partition,
   for (const std::string& robot : robots) {
     if (!every && std::ranges::find(key_robots, robot) == key_robots.end()) {
       throw std::runtime_error("the keys are for " + joined(key_robots) + ", not for '" + robot +
-                               "'; make_keys renews them with --robot");
+                               "'; renew them with make_keys and --robot");
     }
   }
   const auto add = [&](const std::string& robot) {

@@ -215,7 +215,7 @@ void RefusalListener::on_participant_discovery(dds::DomainParticipant* /*partici
     writer_robots().depart(detail::to_handle(rtps::InstanceHandle_t(info.info.m_guid)));
     if (known == peers_.end()) return;
     report_denials();  // while the name is still known
-    if (!known->second.settled) report(prefix, "left before it had shown who it is");
+    if (!known->second.settled) report(prefix, "left before its authentication");
     peers_.erase(known);
     forget_subject(prefix);
   } else if (known == peers_.end() && peers_.size() < kMaxPeers) {
@@ -229,7 +229,7 @@ void RefusalListener::onParticipantAuthentication(dds::DomainParticipant* /*part
   const rtps::GuidPrefix_t& prefix = info.guid.guidPrefix;
   const std::lock_guard lock(mutex_);
   if (info.status == rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT) {
-    report(prefix, "has not shown who it is");
+    report(prefix, "fails authentication");
   }
   if (const auto known = peers_.find(prefix); known != peers_.end()) known->second.settled = true;
 }
@@ -254,11 +254,11 @@ void RefusalListener::report_denials() {
     denials.swap(errors.denials);
   }
   for (const Denial& denial : denials) {
-    std::string what = denial.writer ? "is denied to write " : "is denied to read ";
+    std::string what = denial.writer ? "may not write " : "may not read ";
     what.append(line_of(denial.topic));
     if (!denial.robot.empty())
       what.append(" for robot '").append(line_of(denial.robot)).append("'");
-    if (denial.other_governance) what.append(": its governance is another one");
+    if (denial.other_governance) what.append(": its governance differs");
     report(denial.peer, what);
   }
 }

@@ -45,7 +45,7 @@ void forward(int read_end, const std::function<void(int)>& on_signal) {
 }  // namespace
 
 SignalStop::SignalStop(std::function<void(int)> on_signal) {
-  if (exists.exchange(true)) throw std::logic_error("SignalStop: there is one already");
+  if (exists.exchange(true)) throw std::logic_error("SignalStop: another one exists");
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
     exists = false;

@@ -231,7 +231,7 @@ void StatusPublisher::fill_counts() {
   set_drops("unknown_topic", strangers.unknown_topics);
   const auto forged = drops_.find(kForgedRemovals);
   if (strangers.forged_removals > (forged == drops_.end() ? 0 : forged->second)) {
-    fault("forged removal", "a stranger reported in the name of a peer that it had left");
+    fault("forged removal", "a stranger reported the departure of a peer in its name");
   }
   set_drops(kForgedRemovals, strangers.forged_removals);
   status_.counters().clear();

@@ -88,7 +88,7 @@ eprosima::fastdds::dds::TopicDataType* make_ros_type() {
 template <class T>
 std::optional<std::string> find_unreadable(const void* message) {
   if (static_cast<const Received<T>*>(message)->readable) return std::nullopt;
-  return "a payload that is no message of its type";
+  return "the payload is not a message of its type";
 }
 
 std::optional<std::string> no_defect(const void* /*message*/) {

@@ -133,7 +133,7 @@ TEST_F(Deafness, IsWhatTheServiceReports) {
   navigator_.counters().push_back(counter);
   EXPECT_EQ(found(), "");
   navigator_.counters()[0].value(1.0);
-  EXPECT_EQ(found(), "deaf: by its own report none of the pose that are sent arrives");
+  EXPECT_EQ(found(), "deaf: its own status reports that no pose arrives");
 }
 
 /// The navigator's own verdict: both clocks advance by half a second, then it checks.

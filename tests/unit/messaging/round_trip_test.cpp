@@ -489,21 +489,21 @@ TEST_F(TwoParticipants, WriteChecksEnumerationsAndMembers) {
   };
   Writer<msg::MapCopy> copies(sender_);
   auto copy = message<msg::MapCopy>();
-  expect_refused(copies, copy, "local_map.schema_version 0, allowed is");
+  expect_refused(copies, copy, "local_map.schema_version 0, expected");
   copy.local_map(message<msg::LocalMap>());
   copy.local_map().nodes().resize(2);
   copy.local_map().nodes().back().kind(static_cast<msg::NodeKind>(77));
-  expect_refused(copies, copy, "local_map.nodes.kind is 77, allowed is 0 to 5");
+  expect_refused(copies, copy, "local_map.nodes.kind is 77, expected 0 to 5");
   copy.local_map().nodes().back().kind(msg::kNodeHallCorridor);
   EXPECT_TRUE(copies.write(copy));
 
   copy.worker_key(key_of("another"));
-  expect_refused(copies, copy, ": worker_key is not that of ''");
+  expect_refused(copies, copy, ": worker_key does not match ''");
 
   Writer<msg::Goal> goals(sender_);
   auto goal = message<msg::Goal>();
   goal.robot_key(0);
-  expect_refused(goals, goal, ": robot_key is not that of '");
+  expect_refused(goals, goal, ": robot_key does not match '");
   set_robot_id(goal, "robot");
   goal.kind(static_cast<msg::GoalKind>(msg::kGoalResume + 1));
   expect_refused(goals, goal, ": kind is ");

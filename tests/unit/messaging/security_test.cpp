@@ -62,7 +62,7 @@ TEST_F(Refusals, NameTheParticipantAndItsCertificate) {
   peer("robot/ga_worker", "CN=ga_worker.pc1,O=topogeo");
   authenticate(rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT);
   EXPECT_THAT(listener_.take(), ElementsAre("'robot/ga_worker' (CN=ga_worker.pc1,O=topogeo; " +
-                                            std::string(kGuid) + ") has not shown who it is"));
+                                            std::string(kGuid) + ") fails authentication"));
   EXPECT_THAT(listener_.take(), IsEmpty()) << "each once";
 }
 
@@ -75,9 +75,8 @@ TEST_F(Refusals, NameThePeerThatIsDeniedATopic) {
   const std::string who =
       "'robot/map_store' (CN=ga_worker.pc1,O=topogeo; " + std::string(kGuid) + ") ";
   EXPECT_THAT(listener_.take(),
-              ElementsAre(who + "is denied to write topogeo/v17/map",
-                          who + "is denied to read topogeo/v17/scan: its governance is another "
-                                "one"));
+              ElementsAre(who + "may not write topogeo/v17/map",
+                          who + "may not read topogeo/v17/scan: its governance differs"));
   EXPECT_THAT(listener_.take(), IsEmpty()) << "each once";
 }
 
@@ -89,7 +88,7 @@ TEST_F(Refusals, NameTheCertificateThatThePeerHasShown) {
   note_denial({prefix_of_peer(), "topogeo/v17/map", true, false});
   EXPECT_THAT(listener_.take(),
               ElementsAre("'robot/map_store' (/O=topogeo/CN=ga_worker.pc1; " + std::string(kGuid) +
-                          ") is denied to write topogeo/v17/map"));
+                          ") may not write topogeo/v17/map"));
   peer("", "", Info::REMOVED_PARTICIPANT);
   peer("robot/map_store", "/O=topogeo/CN=map_store.robot");
   authenticate(rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT);
@@ -104,7 +103,7 @@ TEST_F(Refusals, NameTheRobotOfASampleThatIsDenied) {
   EXPECT_THAT(
       listener_.take(),
       ElementsAre("'anna/sensor_gateway' (/O=topogeo/OU=anna/CN=sensor_gateway.anna; " +
-                  std::string(kGuid) + ") is denied to write topogeo/v17/scan for robot 'bert?'"));
+                  std::string(kGuid) + ") may not write topogeo/v17/scan for robot 'bert?'"));
 }
 
 TEST_F(Refusals, NameAPeerThatHasLeft) {
@@ -114,14 +113,14 @@ TEST_F(Refusals, NameAPeerThatHasLeft) {
   peer("", "", Info::REMOVED_PARTICIPANT);
   EXPECT_THAT(listener_.take(),
               ElementsAre("'robot/map_store' (CN=ga_worker.pc1,O=topogeo; " + std::string(kGuid) +
-                          ") is denied to write topogeo/v17/map"));
+                          ") may not write topogeo/v17/map"));
 }
 
 TEST_F(Refusals, AreOneShortLineEach) {
   peer("line\nof a log\x1b[2J", std::string(10'000, 'x'));
   authenticate(rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT);
   EXPECT_THAT(listener_.take(), ElementsAre("'line?of a log?[2J' (" + std::string(128, 'x') + "; " +
-                                            kGuid + ") has not shown who it is"));
+                                            kGuid + ") fails authentication"));
 }
 
 TEST_F(Refusals, AreBounded) {
@@ -131,7 +130,7 @@ TEST_F(Refusals, AreBounded) {
   const std::vector<std::string> lines = listener_.take();
   ASSERT_EQ(lines.size(), 256U);
   EXPECT_EQ(lines.back(),
-            "'unnamed' (" + std::string(kGuid) + ") is denied to write topogeo/v17/topic999");
+            "'unnamed' (" + std::string(kGuid) + ") may not write topogeo/v17/topic999");
 }
 
 }  // namespace

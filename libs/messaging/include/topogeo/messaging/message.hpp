@@ -19,8 +19,8 @@ template <class BoundedString>
 void set_text(BoundedString& field, std::string_view text, const char* field_name) {
   if (text.size() > BoundedString::max_size || text.find('\0') != std::string_view::npos) {
     throw std::invalid_argument(std::string(field_name) + ": '" + std::string(text) +
-                                "' does not fit, allowed are " +
-                                std::to_string(BoundedString::max_size) + " bytes, none zero");
+                                "': expected at most " + std::to_string(BoundedString::max_size) +
+                                " bytes, none of them zero");
   }
   field = std::string(text);
 }
