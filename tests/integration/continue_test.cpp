@@ -122,8 +122,8 @@ TEST_F(ContinueTest, WhereTheRobotIsNotFoundTheMapIsAsItWas) {
   ASSERT_EQ(alone.code, 0) << alone.err;
   ASSERT_EQ(run.code, 0) << run.err;
   for (const Outcome& outcome : {alone, run}) {
-    EXPECT_THAT(outcome.err, HasSubstr("the robot did not find its place in the map ("));
-    EXPECT_THAT(outcome.err, HasSubstr("the map is as it was"));
+    EXPECT_THAT(outcome.err, HasSubstr("the robot was not localized in the map ("));
+    EXPECT_THAT(outcome.err, HasSubstr("the map is unchanged"));
   }
   for (const char* out : {"alone", "run"}) {
     EXPECT_TRUE(read_file(scratch_ / out / "map.pb") == read_file(map_)) << out;

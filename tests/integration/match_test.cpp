@@ -50,9 +50,9 @@ TEST_F(MatchTest, WrongStopsFilesAndNamesAreOneLineErrors) {
   EXPECT_EQ(run({log_, "--stops", "1"}), 2);
   EXPECT_THAT(err_, HasSubstr("expected two numbers, like 12,80"));
   EXPECT_EQ(run({log_, "--stops", "1,9999"}), 2);
-  EXPECT_THAT(err_, HasSubstr("there is no stop 9999"));
+  EXPECT_THAT(err_, HasSubstr("stop 9999 does not exist"));
   EXPECT_EQ(run({log_, "--stops", "2,2"}), 2);
-  EXPECT_THAT(err_, HasSubstr("a stop is not searched in itself"));
+  EXPECT_THAT(err_, HasSubstr("a stop cannot be matched with itself"));
   EXPECT_EQ(run({log_, "--stops", "1,3", "--out", scratch_ / "match.gif"}), 2);
   EXPECT_THAT(err_, HasSubstr(".png or .svg"));
   EXPECT_EQ(run({log_, "--stops", "1,3", "--prediction", "map"}), 2);

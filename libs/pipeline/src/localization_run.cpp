@@ -34,14 +34,14 @@ storage::MapDocument load_usable_map(const std::filesystem::path& file) {
   document.local_maps.resize(document.trajectory.stops.size());
   for (const topomap::StopPose& stop : document.trajectory.stops) {
     if (stop.located) continue;
-    throw std::runtime_error(fmt::format(
-        "{}: stop {} has no place in the map; expected a map, not a drive localized in one",
-        file.string(), stop.local_map_id));
+    throw std::runtime_error(
+        fmt::format("{}: stop {} has no pose: expected a map, got a drive localized in a map",
+                    file.string(), stop.local_map_id));
   }
   for (const topomap::LocalMap& local_map : document.local_maps) {
     if (!local_map.points.empty()) return document;
   }
-  throw std::runtime_error(file.string() + ": the map has no stop that saw anything");
+  throw std::runtime_error(file.string() + ": no stop of the map has scan points");
 }
 
 localization::EdgeKind kind_of(storage::MapEdge::Kind kind) {
@@ -138,9 +138,9 @@ std::string continuation_message(const localization::MappingSession& session) {
   const std::size_t waiting = session.waiting_stops();
   if (waiting == 0) return {};
   const bool grew = session.added_stops() > 0;
-  return fmt::format("the robot did not find its place in the map ({}): {} stops are not mapped{}",
+  return fmt::format("the robot was not localized in the map ({}): {} stops are not mapped{}",
                      localization::to_string(session.status().state), waiting,
-                     grew ? "" : ", the map is as it was");
+                     grew ? "" : ", the map is unchanged");
 }
 
 std::string localization_csv_header() {

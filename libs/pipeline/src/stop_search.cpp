@@ -29,10 +29,10 @@ localization::MatchFeatures features_for(const topomap::LocalMap& map,
 void check_stops(std::size_t stops, std::size_t reference, std::size_t query) {
   for (const std::size_t stop : {reference, query}) {
     if (stop < stops) continue;
-    throw std::invalid_argument("there is no stop " + std::to_string(stop) + ", only " +
-                                std::to_string(stops));
+    throw std::invalid_argument("stop " + std::to_string(stop) + " does not exist: the map has " +
+                                std::to_string(stops) + " stops");
   }
-  if (reference == query) throw std::invalid_argument("a stop is not searched in itself");
+  if (reference == query) throw std::invalid_argument("a stop cannot be matched with itself");
 }
 
 UncertainPose predict_by_odometry(std::span<const topomap::LocalMap> stops, std::size_t reference,
@@ -42,7 +42,7 @@ UncertainPose predict_by_odometry(std::span<const topomap::LocalMap> stops, std:
   const std::size_t first = std::min(reference, query);
   for (std::size_t i = first + 1; i <= std::max(reference, query); ++i) {
     if (stops[i].starts_drive || stops[i].odometry_epoch != stops[i - 1].odometry_epoch) {
-      throw std::invalid_argument("no odometry leads from stop " + std::to_string(i - 1) +
+      throw std::invalid_argument("no odometry connects stop " + std::to_string(i - 1) +
                                   " to stop " + std::to_string(i));
     }
     T_first_last =
