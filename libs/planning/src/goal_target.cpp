@@ -14,7 +14,7 @@ std::string no_such_place(const std::vector<Place>& places, const std::string& n
   std::string reason = "no place has the name '" + name + "'";
   if (places.empty()) return reason + ", the map has none";
   constexpr std::size_t kMostNames = 5;
-  reason += places.size() > kMostNames ? "; similar are" : "; there are";
+  reason += places.size() > kMostNames ? "; similar names:" : "; the places are";
   const char* before = " '";
   for (const std::string& similar : similar_names(places, name, kMostNames)) {
     reason += before + similar + "'";
@@ -36,9 +36,9 @@ GoalTarget resolve(const HybridMap* map, const Target& to) {
       // Its position is on the border; the cell on one side is always passable.
       goal.point_m = map->frame().center_m(map->nodes()[node->id].cells[0]);
     } else {
-      goal.failure =
-          no_route(RouteStatus::kUnknownNode, "no node has the number " + std::to_string(node->id) +
-                                                  ", there are " + std::to_string(nodes));
+      goal.failure = no_route(RouteStatus::kUnknownNode,
+                              "no node has the number " + std::to_string(node->id) +
+                                  ", the map has " + std::to_string(nodes) + " nodes");
     }
   } else {
     static const std::vector<Place> kNone;

@@ -289,7 +289,7 @@ OccupancyGrid grid_of_floor(std::span<const DrawnLine> lines, const Eigen::Vecto
   OccupancyGrid grid = grid_of({.lines = open_walls(lines)}, resolution_m, margin_m);
   const auto inside = grid.frame().cell_of(inside_m);
   if (!inside || grid.at(*inside) != CellState::kFree) {
-    throw std::invalid_argument("floor: the point that is to lie in it is in a wall or outside");
+    throw std::invalid_argument("floor: the point inside it is in a wall or outside");
   }
   keep_reached(grid, {inside_m});
   return grid;

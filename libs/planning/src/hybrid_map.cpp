@@ -86,7 +86,7 @@ void check_zones(const FreeSpace& space, const ZoneMap& zones) {
       continue;
     }
     throw std::invalid_argument("hybrid map: cell " + std::to_string(i) +
-                                " is passable and in no zone, or the other way round");
+                                " is passable without a zone, or in a zone and not passable");
   }
 }
 
@@ -156,7 +156,7 @@ void HybridMap::find_edges() {
       for (std::size_t k = 0; k < others.size(); ++k) {
         if (!paths[k]) {
           throw std::invalid_argument("hybrid map: zone " + std::to_string(zone.id) +
-                                      " does not hang together");
+                                      " is not connected");
         }
         // Adds half of the step across the border at either end.
         const double cost_m = (paths[k]->cost_cells + 1.0) * frame().resolution_m;

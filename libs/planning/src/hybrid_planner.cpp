@@ -105,9 +105,9 @@ HybridRoute HybridPlanner::plan(const Eigen::Vector2d& from_m, const Target& to,
     route = no_route(RouteStatus::kUnreachable,
                      "no path leads from " + shown(from_m) + " to " + shown(goal.point_m));
     if (!closed.nodes.empty() || !closed.edges.empty() || !cells.empty()) {
-      route.reason += " with what is closed now";
+      route.reason += " with the parts that are closed now";
     } else if (map_.space().rules().guides()) {
-      route.reason += " as one-way zones allow";
+      route.reason += " in the direction of the one-way zones";
     }
   }
   const std::vector<bool> reachable = query.within_reach(*start_cell);

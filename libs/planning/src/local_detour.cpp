@@ -159,7 +159,7 @@ Detour plan_detour(const FreeSpace& space, std::span<const Cell> route,
   std::size_t behind = end;
   while (behind > from && window.open(route[behind - 1])) --behind;
   if (behind == end) {
-    return failure(DetourStatus::kBlocked, "the route is blocked as far as the window goes");
+    return failure(DetourStatus::kBlocked, "the route is blocked up to the edge of the window");
   }
   const std::span<const Cell> candidates = route.subspan(behind, end - behind);
   auto paths = shortest_paths(window, *start, candidates);
@@ -172,7 +172,7 @@ Detour plan_detour(const FreeSpace& space, std::span<const Cell> route,
       best = cheapest(paths, candidates);
     }
   }
-  if (!best) return failure(DetourStatus::kBlocked, "no path leads round within the window");
+  if (!best) return failure(DetourStatus::kBlocked, "no path leads around within the window");
   Detour detour;
   detour.status = behind == from ? DetourStatus::kClear : DetourStatus::kFound;
   detour.rejoins = behind + *best;

@@ -22,11 +22,11 @@ class PgmParser {
     PgmImage image;
     image.width = number("width", 1, kMostAlong);
     image.height = number("height", 1, kMostAlong);
-    image.depth = number("value of white", 1, kMostDepth);
+    image.depth = number("maximum value", 1, kMostDepth);
     const auto count =
         static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     if (count > support::kMostPixels) {
-      fail("has " + std::to_string(count) + " pixels, allowed are " +
+      fail("has " + std::to_string(count) + " pixels, expected at most " +
            std::to_string(support::kMostPixels));
     }
     if (magic == "P2") {
@@ -83,7 +83,7 @@ class PgmParser {
 
   void read_bytes(PgmImage& image, std::size_t count) {
     if (at_ >= bytes_.size() || std::isspace(static_cast<unsigned char>(bytes_[at_])) == 0) {
-      fail("expected a blank between the value of white and the pixels");
+      fail("expected a blank between the maximum value and the pixels");
     }
     ++at_;
     if (bytes_.size() - at_ < count) fail_short(count);
@@ -92,7 +92,7 @@ class PgmParser {
     for (std::size_t i = 0; i < count; ++i) {
       if (image.pixels[i] <= image.depth) continue;
       fail("pixel " + std::to_string(i) + " is " + std::to_string(image.pixels[i]) +
-           ", allowed are 0 to " + std::to_string(image.depth));
+           ", expected 0 to " + std::to_string(image.depth));
     }
   }
 

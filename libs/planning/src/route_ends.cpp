@@ -39,7 +39,7 @@ std::optional<Cell> EndFinder::find(const std::string& what, const Eigen::Vector
   }
   const CellState state = space_.grid().at(*cell);
   if (state == CellState::kUnknown) {
-    failure = no_route(outside, what + " is where nothing is known");
+    failure = no_route(outside, what + " is in unknown space");
   } else if (state == CellState::kOccupied) {
     failure = no_route(occupied, what + " is in an obstacle");
   } else if (cells_.filled(*cell)) {

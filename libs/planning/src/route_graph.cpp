@@ -36,7 +36,7 @@ void check_index(const char* what, std::uint32_t index, std::size_t count) {
 void check_cost(const char* what, double cost) {
   if (std::isfinite(cost) && cost >= 0.0) return;
   throw std::invalid_argument("route graph: the cost of " + std::string(what) + " is " +
-                              std::to_string(cost) + ", allowed are finite values from 0");
+                              std::to_string(cost) + ", expected a finite number of 0 or more");
 }
 
 // Ends the search: Boost.Graph offers no other way.

@@ -32,7 +32,8 @@ void set_too_far(PlanResult& result, PlanStatus status, const char* what, const 
                  const PlanningConfig& config) {
   result.status = status;
   result.reason = fmt::format(
-      "{} is {:.2f} m from the nearest passable branch at ({:.2f}, {:.2f}), allowed are {:.2f} m",
+      "{} is {:.2f} m from the nearest passable branch at ({:.2f}, {:.2f}), expected at most "
+      "{:.2f} m",
       what, snap.distance_m, snap.nearest.position_m.x(), snap.nearest.position_m.y(),
       config.max_snap_m);
 }
@@ -79,11 +80,11 @@ void set_apart(PlanResult& result, bool reachable_when_narrow, const PlanningCon
   if (reachable_when_narrow) {
     result.status = PlanStatus::kTooNarrow;
     result.reason = fmt::format(
-        "every path from start to goal is narrower than the clearance of {:.2f} m that is needed",
+        "every path from start to goal is narrower than the required clearance of {:.2f} m",
         config.min_clearance_m);
   } else {
     result.status = PlanStatus::kNotConnected;
-    result.reason = "start and goal lie on parts of the map that are not connected";
+    result.reason = "start and goal lie on disconnected parts of the map";
   }
 }
 
@@ -136,9 +137,9 @@ class RouteSearch {
 
   void set_shut(PlanResult& result, PlanStatus status, const char* what) const {
     result.status = status;
-    result.reason = fmt::format(
-        "no straight line that is free leads from the {} to a passable branch within {:.2f} m",
-        what, config_.max_snap_m);
+    result.reason =
+        fmt::format("no free straight line leads from the {} to a passable branch within {:.2f} m",
+                    what, config_.max_snap_m);
   }
 
   // Sets whether the width, closed parts or the map separate start and goal.
@@ -148,7 +149,7 @@ class RouteSearch {
     if (!rules_.empty() &&
         BranchNetwork(map_, config_.min_clearance_m, nothing).cheapest(entries, exits)) {
       result.status = PlanStatus::kClosed;
-      result.reason = "every path along branches leads through what is closed now or by a zone";
+      result.reason = "every path along branches is closed now or by a zone";
       return;
     }
     const bool when_narrow = BranchNetwork(map_, 0.0, nothing).cheapest(entries, exits).has_value();
@@ -203,9 +204,9 @@ PlanResult plan(const GlobalMap& map, const Eigen::Vector2d& from_m, const Eigen
   const auto start = nearest_place(map, from_m, config.min_clearance_m);
   const auto goal = nearest_place(map, to_m, config.min_clearance_m);
   if (!start || !goal) {
-    return no_route(PlanStatus::kTooNarrow,
-                    fmt::format("no branch has the clearance of {:.2f} m that is needed",
-                                config.min_clearance_m));
+    return no_route(
+        PlanStatus::kTooNarrow,
+        fmt::format("no branch has the required clearance of {:.2f} m", config.min_clearance_m));
   }
   PlanResult result;
   result.start = to_snap(map, *start);

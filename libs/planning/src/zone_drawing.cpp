@@ -21,7 +21,7 @@ constexpr double kMaxDrawn_m = 1e6;
 
 std::string new_name(const YamlNode& node, std::set<std::string>& taken) {
   std::string name = node.text();
-  if (name.empty()) node.fail("a text that is not empty");
+  if (name.empty()) node.fail("a non-empty text");
   if (!taken.insert(name).second) node.fail("each name once");
   return name;
 }

@@ -120,7 +120,7 @@ TEST_F(GridFile, NamesWhatIsWrongWithAnImage) {
   write("floor.pgm", "P2\n3 0\n255\n1 2 3");
   expect_message("floor.pgm", "height is not a whole number from 1 to 20000");
   write("floor.pgm", "P5\n3 2\n65535\n");
-  expect_message("floor.pgm", "value of white is not a whole number from 1 to 255");
+  expect_message("floor.pgm", "maximum value is not a whole number from 1 to 255");
   write("floor.pgm", "P5\n3 2\n255\nabc");
   expect_message("floor.pgm", "cut short: expected 6 pixels");
   write("floor.pgm", "P2\n3 2\n255\n1 2 3 4 5");

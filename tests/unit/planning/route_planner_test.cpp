@@ -152,7 +152,7 @@ TEST(Plan, SaysWhyThereIsNoRoute) {
   result = plan(map, {5, 5}, {1, 0});
   EXPECT_EQ(result.status, PlanStatus::kStartTooFar);
   EXPECT_THAT(result.reason, HasSubstr("start is 5.00 m"));
-  EXPECT_THAT(result.reason, HasSubstr("allowed are 3.00 m"));
+  EXPECT_THAT(result.reason, HasSubstr("expected at most 3.00 m"));
   EXPECT_NEAR(result.start->distance_m, 5.0, 1e-12);
 
   result = plan(map, {1, 0}, {1, -4});

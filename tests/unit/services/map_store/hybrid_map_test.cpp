@@ -335,7 +335,7 @@ TEST(HybridMapMirror, RefusesOnceAWholeMapThatContradictsItself) {
     EXPECT_EQ(mirror.map(), map) << "the one before stays";
   };
   refused([](std::uint16_t& zone) { zone = 7; }, "zone of a cell: expected less than 2");
-  refused([](std::uint16_t& zone) { zone = msg::kNoZone; }, "is passable and in no zone");
+  refused([](std::uint16_t& zone) { zone = msg::kNoZone; }, "is passable without a zone");
   mirror.put(good.tiles[0], handle_of(good.tiles[0]));
   EXPECT_NE(mirror.map(), nullptr);
 }
