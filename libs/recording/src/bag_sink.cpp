@@ -80,7 +80,7 @@ std::uint32_t BagSink::connection_of(const OutputMessage& message) {
   if (known != connections_.end()) return known->second;
   const RosDefinition* definition = find_definition(message.type);
   if (definition == nullptr || definition->ros1_md5.empty()) {
-    throw std::runtime_error(message.topic + ": expected a type that ROS 1 has, got " +
+    throw std::runtime_error(message.topic + ": expected a message type of ROS 1, got " +
                              std::string(message.type));
   }
   const auto id = static_cast<std::uint32_t>(connections_.size());

@@ -124,7 +124,7 @@ Conversion convert(const std::filesystem::path& in, const std::filesystem::path&
                    const ConvertOptions& options) {
   std::error_code ignored;
   if (std::filesystem::equivalent(in, out, ignored)) {
-    throw std::runtime_error(out.string() + ": expected another file than the one that is read");
+    throw std::runtime_error(out.string() + ": expected a file other than the input");
   }
   if (!is_recording_name(out) || !is_recording(in)) return convert_scans(in, out, options);
   const std::unique_ptr<MessageSource> source =

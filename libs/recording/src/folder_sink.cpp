@@ -20,7 +20,7 @@ std::filesystem::path folder_name(const std::filesystem::path& folder) {
 std::filesystem::path made(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw std::runtime_error(folder.string() + ": cannot be made: " + error.message());
+  if (error) throw std::runtime_error(folder.string() + ": cannot be created: " + error.message());
   if (!std::filesystem::is_empty(folder, error) || error) {
     throw std::runtime_error(folder.string() + ": expected a folder that is new or empty");
   }

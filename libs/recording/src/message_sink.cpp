@@ -33,7 +33,8 @@ std::unique_ptr<MessageSink> create_sink(const std::filesystem::path& path,
   const std::string ending = path.extension().string();
   if (ending == ".mcap") {
     if (wanted == Compression::kBz2) {
-      throw std::invalid_argument("--compression: an .mcap has none, lz4 or zstd, got bz2");
+      throw std::invalid_argument(
+          "--compression: expected none, lz4 or zstd for an .mcap, got bz2");
     }
     return std::make_unique<McapSink>(path, wanted);
   }

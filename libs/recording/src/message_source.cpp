@@ -57,7 +57,7 @@ std::unique_ptr<MessageSource> open_messages(const std::filesystem::path& path,
       break;
   }
   if (!std::filesystem::exists(path)) {
-    throw std::runtime_error(path.string() + ": expected a file, got nothing of that name");
+    throw std::runtime_error(path.string() + ": expected a file, found none");
   }
   support::refuse_irregular(path);
   throw std::runtime_error(

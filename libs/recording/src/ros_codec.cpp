@@ -188,7 +188,7 @@ Message decode(std::span<const std::byte> bytes, Encoding encoding) {
       return message;
     }
   }
-  throw DecodeError("byte 0: expected an encoding that is read here");
+  throw DecodeError("byte 0: expected an encoding supported for this message");
 }
 
 template <typename Message>
@@ -205,7 +205,7 @@ void encode(const Message& message, Encoding encoding, std::vector<std::byte>& b
       return;
     }
   }
-  throw std::invalid_argument("encode: expected an encoding that this message is written in");
+  throw std::invalid_argument("encode: expected an encoding supported for this message");
 }
 
 #define TOPOGEO_ROS_CODEC(Message)                                              \

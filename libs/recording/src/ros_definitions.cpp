@@ -72,8 +72,7 @@ constexpr std::array kDefinitions = {
 const RosDefinition& known(std::string_view type) {
   const RosDefinition* definition = find_definition(type);
   if (definition == nullptr) {
-    throw std::invalid_argument("expected a type of message that is known here, got " +
-                                std::string(type));
+    throw std::invalid_argument("expected a known message type, got " + std::string(type));
   }
   return *definition;
 }

@@ -150,8 +150,8 @@ void RosScans::take_scan(const RawMessage& message, const Topic& topic) {
                  ros::to_sweep(laser, survey_.mounting && survey_.mounting->upside_down,
                                scan::CarmenLogReader::kMaxBeams, sweep_)};
     if (beams_ == Beams::kOnePattern && !ros::alike(scan.sweep.pattern, *survey_.beams)) {
-      throw std::invalid_argument("expected " + text_of(*survey_.beams) + " as most scans, got " +
-                                  text_of(scan.sweep.pattern));
+      throw std::invalid_argument("expected " + text_of(*survey_.beams) +
+                                  " as in most scans, got " + text_of(scan.sweep.pattern));
     }
     if (!is_usable(scan.stamp_ns)) {
       skip_(SkipReason::kStamp, scans_, "expected a time since 1970, got another");

@@ -74,7 +74,7 @@ void SqliteSource::open() {
     }
     const std::string refused = sqlite_guard::refused_schema(raw);
     if (refused.empty()) return;
-    throw std::runtime_error(name_ + ": has " + refused + ", expected the tables of rosbag2 alone");
+    throw std::runtime_error(name_ + ": has " + refused + ", expected only the tables of rosbag2");
   }
   fail("cannot be opened");
 }

@@ -216,7 +216,7 @@ void Surveyor::find_mounting() {
   }
   const auto T_robot_laser = transforms_.find(survey_.robot_frame, survey_.laser_frame);
   if (!T_robot_laser) {
-    survey_.notes.push_back("no transforms " + frames + ": the laser's mounting is not known");
+    survey_.notes.push_back("no transforms " + frames + ": the mounting of the laser is unknown");
     return;
   }
   survey_.mounting = ros::planar_mounting(*T_robot_laser);
@@ -225,7 +225,7 @@ void Surveyor::find_mounting() {
     survey_.notes.push_back(
         "the laser is tilted by " +
         std::to_string(std::lround(survey_.mounting->tilt_rad * 180.0 / std::numbers::pi)) +
-        " degrees (" + frames + "): its ranges are taken as if it were level");
+        " degrees (" + frames + "): its ranges are used as if it were level");
   }
 }
 

@@ -93,11 +93,11 @@ void ScanCheck::compare_time(const Scan& scan) {
   const std::int64_t period_ns = scan.stamp_ns - last_->stamp_ns;
   const double period_s = static_cast<double>(period_ns) * 1e-9;
   if (period_ns < 0) {
-    found_here(LogFault::kReversal, text_of(-period_s, 6) + " s before the scan before");
+    found_here(LogFault::kReversal, text_of(-period_s, 6) + " s before the previous scan");
   } else if (period_ns == 0) {
     found_here(LogFault::kDuplicate, scan.ranges_m == last_->ranges_m
-                                         ? "same time and same readings as the scan before"
-                                         : "same time as the scan before, other readings");
+                                         ? "same time and same readings as the previous scan"
+                                         : "same time as the previous scan, other readings");
   } else {
     periods_ns_.push_back(period_ns);
     check_.longest_period_s = std::max(check_.longest_period_s, period_s);
@@ -116,7 +116,7 @@ void ScanCheck::compare_geometry(const Scan& scan) {
     return std::to_string(s.ranges_m.size()) + " beams from " + text_of(s.angle_min_rad, 4) +
            " rad by " + text_of(s.angle_step_rad, 5) + " rad";
   };
-  found_here(LogFault::kGeometry, beams(scan) + ", the scan before has " + beams(*last_));
+  found_here(LogFault::kGeometry, beams(scan) + ", the previous scan has " + beams(*last_));
 }
 
 void ScanCheck::compare_odometry(const Scan& scan) {

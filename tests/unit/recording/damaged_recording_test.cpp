@@ -115,7 +115,8 @@ TEST_F(DamagedRecording, IsNoneByItsFirstBytes) {
   for (const char* name : {"a.mcap", "a.db3", "a.bag"}) {
     put_bytes(path(name), "FLASER 2 1 1 0 0 0 0 0 0 1.0 h 1.0\n");
     EXPECT_THAT(open_error(path(name)), AllOf(HasSubstr(name), HasSubstr("byte 0: expected")));
-    EXPECT_THAT(open_error(path(std::string("no_") + name)), HasSubstr("nothing of that name"));
+    EXPECT_THAT(open_error(path(std::string("no_") + name)),
+                HasSubstr("expected a file, found none"));
   }
   put_bytes(path("v1.bag"), "#ROSBAG V1.2\n");
   EXPECT_THAT(open_error(path("v1.bag")), HasSubstr("version 2.0"));

@@ -158,8 +158,8 @@ TEST_F(RecordedBeams, OfAnotherLaserAreLeftOut) {
   }
   EXPECT_EQ(reader.statistics().skipped_total(), 1U);
   EXPECT_THAT(reader.statistics().messages.front(),
-              HasSubstr("scan 4: expected 7 beams from -0.7500 rad by 0.25000 rad as most scans, "
-                        "got 7 beams from 2.0000 rad"));
+              HasSubstr("scan 4: expected 7 beams from -0.7500 rad by 0.25000 rad as in most "
+                        "scans, got 7 beams from 2.0000 rad"));
 }
 
 TEST_F(RecordedBeams, OfAnotherFrameAreLeftOut) {
