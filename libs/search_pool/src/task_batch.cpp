@@ -11,7 +11,7 @@ void TaskBatch::begin(std::span<const localization::MatchTask> tasks) {
     if (!index_.emplace(tasks[i].task_id, i).second) {
       clear();
       throw std::logic_error("task board: task " + std::to_string(tasks[i].task_id) +
-                             " is twice in a batch");
+                             " occurs twice in a batch");
     }
     tasks_[i].task = tasks[i];
     put_on_list(i);

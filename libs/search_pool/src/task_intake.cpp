@@ -162,7 +162,7 @@ TaskIntake::Due TaskIntake::check(Time now) {
     for_each_lack(job, [&](const Lack& lack, std::uint32_t map_id) {
       missing += fmt::format("{}{} ({:016x})", missing.empty() ? "" : " and ", map_id, lack.second);
     });
-    due.given_up.push_back({std::move(job.job), "local map " + missing + " did not come"});
+    due.given_up.push_back({std::move(job.job), "local map " + missing + " did not arrive"});
     waiting_.pop_front();
   }
   if (!due.given_up.empty()) forget_requests();

@@ -25,7 +25,7 @@ TaskRunner::TaskRunner(std::size_t slots, std::size_t bytes_per_slot, SlotSchedu
       scheduling_(scheduling),
       on_outcome_(std::move(on_outcome)),
       started_(slots) {
-  if (slots == 0) throw std::invalid_argument("slots: 0, allowed is 1 or more");
+  if (slots == 0) throw std::invalid_argument("slots: 0, expected 1 or more");
   threads_.reserve(slots);
   for (std::size_t i = 0; i < slots; ++i) threads_.emplace_back([this, i] { work(i); });
 }

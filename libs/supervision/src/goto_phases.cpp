@@ -27,8 +27,7 @@ GotoAction GotoPhases::wait_for_start(double now_s, const GotoView& view) {
   }
   if (clock_.time_s() < kStart_s) return GotoAction::kNone;
   phase_ = Phase::kEnded;
-  failure_ =
-      fmt::format("{:.0f} s have passed, and it still waits for {}", kStart_s, view.waits_for);
+  failure_ = fmt::format("still waits for {} after {:.0f} s", view.waits_for, kStart_s);
   return GotoAction::kFail;
 }
 

@@ -192,7 +192,7 @@ class WorldParser {
     const std::string name = node.required("name").text();
     const auto has_name = [&](const NamedPlace& place) { return place.name == name; };
     if (name.empty() || std::ranges::any_of(world_.places, has_name)) {
-      node.at("name").fail("a name that is not empty, each once");
+      node.at("name").fail("a non-empty name that is not taken");
     }
     NamedPlace place{name, point_of(node.required("at"))};
     if (const YamlNode heading = node.at("heading"); heading.exists()) {
@@ -206,7 +206,7 @@ class WorldParser {
     Room room{node.required("name").text(), {}};
     const auto has_name = [&](const Room& other) { return other.name == room.name; };
     if (room.name.empty() || std::ranges::any_of(world_.rooms, has_name)) {
-      node.at("name").fail("a name that is not empty, each once");
+      node.at("name").fail("a non-empty name that is not taken");
     }
     for (const YamlNode& corner : node.required("polygon").items()) {
       room.polygon_m.push_back(point_of(corner));

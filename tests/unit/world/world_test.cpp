@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadWorld{"place_with_a_taken_name",
                  "segments: [[0, 0, 1, 1]]\nplaces:\n  - {name: a, at: [1, 2]}\n"
                  "  - {name: a, at: [1, 3]}\n",
-                 ":4: name: expected a name that is not empty, each once, got 'a'"},
+                 ":4: name: expected a non-empty name that is not taken, got 'a'"},
         BadWorld{"place_nowhere", "segments: [[0, 0, 1, 1]]\nplaces:\n  - {name: a, at: [1]}\n",
                  ":3: at: expected 2 coordinates"}),
     [](const auto& tested) { return std::string(tested.param.name); });
