@@ -164,7 +164,7 @@ test("a restored map stays without what the drive under way has mapped since", a
   await go_to("room A");
   await wait_for("stops of the tour", async () => (await stops_stored()) > before + 1);
   assert.equal(await robot.post("restore", { name: "before-the-tour" }), 200);
-  await wait_for("the localizer begins anew", () => robot.has_logged("localizer", "begins anew with it"));
+  await wait_for("the localizer to restart", () => robot.has_logged("localizer", "restarting with the new map"));
   const begun_s = Date.now() / 1000; // earlier poses are those of the previous localizer
   await wait_for(
     "the robot knows where it is",

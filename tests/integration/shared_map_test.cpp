@@ -351,7 +351,7 @@ TEST_F(SharedMapServices, BeginAnewWithASnapshotThatIsRestored) {
       eventually("the maps of both robots to be withdrawn", [&] { return withdrawn_ == 2; }))
       << withdrawn_ << ": what makes the mappers of both robots begin anew";
   store->wait_for_error_text("the map is that of snapshot one");
-  localizer->wait_for_error_text("begins anew with it");
+  localizer->wait_for_error_text("restarting with the new map");
   localizer->wait_for_error_text(fmt::format("goes on with a map of {} stops", stops));
   const std::string database = (scratch_ / "out" / "map.sqlite").string();
   EXPECT_THAT(store_command({"snapshots", database}), HasSubstr("before-one"));

@@ -225,12 +225,12 @@ TEST(WebCommand, HidesATokenOfTheCommandLine) {
   EXPECT_THAT(web.out(), HasSubstr(kToken));
   EXPECT_THAT(command_line_of(web.pid()),
               testing::AllOf(HasSubstr("--token"), Not(HasSubstr(kToken))));
-  EXPECT_THAT(web.err(), HasSubstr("give it by --token-file or TOPOGEO_WEB_TOKEN"));
+  EXPECT_THAT(web.err(), HasSubstr("use --token-file or TOPOGEO_WEB_TOKEN"));
   Program command(scratch, "topogeo",
                   {"web", "--domain", domain, "--port", "0", "--token", kToken});
   wait_for_port(command);
   EXPECT_THAT(command_line_of(command.pid()), Not(HasSubstr(kToken)));
-  EXPECT_THAT(command.err(), HasSubstr("give it by --token-file or TOPOGEO_WEB_TOKEN"));
+  EXPECT_THAT(command.err(), HasSubstr("use --token-file or TOPOGEO_WEB_TOKEN"));
 }
 
 TEST(WebCommand, TakesTheTokenOfAFile) {

@@ -34,7 +34,7 @@ void CpuWatch::tick(double now_s) {
   if (lasts()) {
     spdlog::warn("{} ({})", shortage_.text(), describe(support::read_machine_cpu()));
   } else {
-    spdlog::info("the CPU is not short any more");
+    spdlog::info("the CPU shortage is over");
   }
 }
 

@@ -50,8 +50,7 @@ void DeafnessGuard::tick() {
   if (step.report) status_.fault(kFault, why);
   if (!step.end) return;
   memory_.store(schedule_.deaf_lives());
-  throw Deaf(std::string(kFault) + ": " + why +
-             "; it meets the sender anew when it is started again");
+  throw Deaf(std::string(kFault) + ": " + why + "; a restart reconnects it to the sender");
 }
 
 void DeafnessGuard::listen() {

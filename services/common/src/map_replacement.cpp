@@ -31,7 +31,7 @@ bool run_with_one_map(Service& service) {
   });
   service.run();
   if (!replaced || Service::stopping()) return false;
-  spdlog::info("the map was replaced by another one: begins anew with it");
+  spdlog::info("the map was replaced: restarting with the new map");
   return true;
 }
 

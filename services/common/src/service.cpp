@@ -74,7 +74,7 @@ void Service::check_subscriptions() const {
   for (const std::string_view topic : announced_) {
     if (subscribed_.contains(topic)) continue;
     throw std::logic_error("topic " + std::string(topic) +
-                           ": announced to be read with others, but not subscribed to");
+                           ": read_with names it, but the service does not subscribe to it");
   }
 }
 
@@ -104,8 +104,7 @@ void Service::tick() {
     throw StoodStill(
         "stood still for " +
         std::to_string(std::chrono::floor<std::chrono::seconds>(*still).count()) +
-        " s: peers may have forgotten it, and it would not notice; it meets them again when it is "
-        "started again");
+        " s: peers may have dropped the connection unnoticed; a restart reconnects it");
   }
   deafness_->tick();
   for (const std::string& refusal : participant_.take_refusals()) {
@@ -113,7 +112,7 @@ void Service::tick() {
   }
   if (messaging::take_new_revocations(participant_)) {
     status_->fault("new revocations",
-                   "restart: what they revoke is refused from the next start on");
+                   "restart the service: revocations take effect at its next start");
   }
 }
 

@@ -65,7 +65,7 @@ void add_domain_option(command_line::Command& app, std::uint32_t& domain) {
 void add_service_options(command_line::Command& app, ServiceOptions& options) {
   add_domain_option(app, options.domain);
   app.add_option("--partition", options.partition,
-                 "only services of one partition meet, * meets all")
+                 "DDS partition: only services of the same one connect, * connects to all")
       ->capture_default_str();
   app.add_option("--robot,--robot-id", options.robot_id, "name of the robot, up to 32 bytes")
       ->check([](const std::string& id) {
@@ -74,22 +74,23 @@ void add_service_options(command_line::Command& app, ServiceOptions& options) {
       ->capture_default_str();
   app.add_option("--config", options.config, "configuration file (YAML)");
   app.add_option("--laser", options.laser,
-                 "mounting of the laser, m and rad, in place of the configured one")
+                 "mounting of the laser, m and rad; overrides the configured one")
       ->type_name("X,Y,YAW");
-  app.add_option("--profiles", options.profiles_file, "file of QoS profiles, instead of built in");
+  app.add_option("--profiles", options.profiles_file,
+                 "file of QoS profiles; replaces the built-in ones");
   constexpr std::uint32_t kLargestPort = 65535;
   app.add_option("--metrics-port", options.metrics_port,
-                 "gives its figures to Prometheus at this HTTP port, 0: any that is free; default: "
-                 "what TOPOGEO_METRICS_PORT of the environment or `metrics.port` of the "
-                 "configuration says, else none")
+                 "HTTP port that serves metrics to Prometheus, 0: any free one; default: "
+                 "TOPOGEO_METRICS_PORT of the environment, else `metrics.port` of the "
+                 "configuration, else none")
       ->check(command_line::range(0U, kLargestPort))
       ->type_name("PORT");
   app.add_option("--metrics-address", options.metrics_address,
-                 "address it listens on there (default: 127.0.0.1; others have neither password "
+                 "listen address of the metrics (default: 127.0.0.1; others have neither password "
                  "nor encryption)")
       ->type_name("ADDRESS");
   app.add_option("--log-level", options.log_level,
-                 "least severe messages that are logged to stderr")
+                 "log messages of this severity and above to stderr")
       ->check(command_line::one_of({"trace", "debug", "info", "warning", "error", "off"}))
       ->capture_default_str();
 }

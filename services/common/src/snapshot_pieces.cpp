@@ -25,12 +25,12 @@ void PieceAssembly::add(const msg::SnapshotPiece& piece) {
   const bool other_answer = !pieces_.empty() && piece.pieces() != pieces_.size();
   if (piece.pieces() > most_ || other_answer) {
     throw std::invalid_argument(fmt::format(
-        "it is one of {}, expected {}", piece.pieces(),
+        "{} pieces, expected {}", piece.pieces(),
         other_answer ? std::to_string(pieces_.size()) : fmt::format("at most {}", most_)));
   }
   if (piece.piece() >= piece.pieces()) {
     throw std::invalid_argument(
-        fmt::format("it is number {} of {}", piece.piece(), piece.pieces()));
+        fmt::format("number {} of {} pieces", piece.piece(), piece.pieces()));
   }
   pieces_.resize(piece.pieces());
   pieces_[piece.piece()] = std::string(piece.bytes().begin(), piece.bytes().end());

@@ -61,12 +61,12 @@ void SoleService::compare(const msg::ServiceStatus& received) {
       return count.reason() == fault.c_str();
     });
   } else if (has_precedence(other, own)) {
-    refused_ = fmt::format("another {} works for robot '{}': {}; this one stops",
+    refused_ = fmt::format("another {} already runs for robot '{}': {}; this one stops",
                            own.service().c_str(), own.robot_id().c_str(), other.instance().c_str());
     service_.status().set_state(msg::kServiceFailed, refused_);
     if (!listening_) throw std::runtime_error(refused_);
   } else if (reported_.insert(other.instance().to_string()).second) {
-    service_.status().fault(fault, fmt::format("{} was started for the same robot; it has to stop",
+    service_.status().fault(fault, fmt::format("{} was started for the same robot and must stop",
                                                other.instance().c_str()));
   }
 }

@@ -90,9 +90,10 @@ constexpr auto kFieldMetrics = std::to_array<FieldMetric>({
                  {"config", fmt::format("{:016x}", s.config_fingerprint())}},
                 1.0}};
      }},
-    {"topogeo_service_state", MetricKind::kGauge, "1 for the state that the service is in, else 0",
+    {"topogeo_service_state", MetricKind::kGauge, "1 for the current state of the service, else 0",
      of_states},
-    {"topogeo_service_waiting", MetricKind::kGauge, "1 while the service needs something to go on",
+    {"topogeo_service_waiting", MetricKind::kGauge,
+     "1 while the service waits for something it needs",
      [](const Status& s) { return of_one(s.waits_for().size() > 0 ? 1.0 : 0.0); }},
     {"topogeo_service_start_time_seconds", MetricKind::kGauge, "start of the service, since 1970",
      [](const Status& s) { return of_one(static_cast<double>(s.started_ns()) * kNano); }},
@@ -108,7 +109,7 @@ constexpr auto kFieldMetrics = std::to_array<FieldMetric>({
                   ? Samples{}
                   : of_one(static_cast<double>(s.stamp_ns()) * kNano - s.last_error_age_s());
      }},
-    {"topogeo_drops_total", MetricKind::kTotal, "what came and was not worked on, by reason",
+    {"topogeo_drops_total", MetricKind::kTotal, "dropped inputs by reason",
      [](const Status& s) { return of_reasons(s.drops()); }},
     {"topogeo_messages_total", MetricKind::kTotal, "messages by topic and direction",
      [](const Status& s) {
@@ -118,7 +119,7 @@ constexpr auto kFieldMetrics = std::to_array<FieldMetric>({
      of_waiting},
     {"topogeo_queue_depth", MetricKind::kGauge, "work that waits in the service",
      [](const Status& s) { return of_queues(s, false); }},
-    {"topogeo_queue_capacity", MetricKind::kGauge, "of the queues that have a fixed one",
+    {"topogeo_queue_capacity", MetricKind::kGauge, "capacity of queues that have a fixed one",
      [](const Status& s) { return of_queues(s, true); }},
 });
 

@@ -27,8 +27,8 @@ bool is_loopback(const std::string& address) {
 
 void warn_of_shown_token() {
   spdlog::warn(
-      "--token: `ps` has shown the token to all users of this machine; give it by --token-file "
-      "or TOPOGEO_WEB_TOKEN");
+      "--token: `ps` shows the token to all users of this machine; use --token-file or "
+      "TOPOGEO_WEB_TOKEN");
 }
 
 std::string read_web_token(const std::filesystem::path& file) {
@@ -47,7 +47,7 @@ void check_web_token(const std::string& token) {
   });
   if (token.size() < kShortestToken || !plain) {
     throw command_line::UsageError(
-        "--token: expected 16 letters, digits, '-', '_' or '.' or more; see --help");
+        "--token: expected at least 16 letters, digits, '-', '_' or '.'; see --help");
   }
 }
 
@@ -75,7 +75,8 @@ void check_web_port(const std::string& address, std::uint32_t port) {
   acceptor.bind(endpoint, error);
   if (error != asio::error::address_in_use) return;
   throw std::runtime_error(fmt::format(
-      "another program listens at {} port {}: give --port, 0 for any that is free", address, port));
+      "another program listens at {} port {}: choose another --port, 0 for any free one", address,
+      port));
 }
 
 }  // namespace topogeo::service
