@@ -53,7 +53,7 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
       stream_end_(service.advertise<msg::StreamEnd>()) {
   service_.status().set_counter("scans_sent", 0.0);
   if (config.base_port.empty()) {
-    spdlog::warn("there is no base: by the odometry the robot stands still");
+    spdlog::warn("no base configured: odometry reports a standing robot");
   } else {
     const std::optional<RememberedOdometry> remembered = memory_.load();
     BaseChannel::Hooks hooks;
@@ -86,7 +86,7 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
   if (base_) connected.include(base_->odometry());
   reader_wait_.emplace(service_.loop(),
                        std::vector<ReaderWait::Wanted>{{"scans", readers, connected}});
-  reader_wait_->start([](const std::string& what) { spdlog::info("waits for {}", what); },
+  reader_wait_->start([](const std::string& what) { spdlog::info("waiting for {}", what); },
                       [this] { gate_.open(); });
 }
 
@@ -128,7 +128,8 @@ void DeviceGateway::compare_watchdog(double watchdog_s) {
   if (watchdog_s <= counted_s) return;
   service_.status().fault(
       "watchdog longer than the guards count",
-      fmt::format("base.watchdog_s is {:g} s, guard.runs_on_s {:g} s", watchdog_s, counted_s));
+      fmt::format("base.watchdog_s is {:g} s, expected at most guard.runs_on_s, {:g} s", watchdog_s,
+                  counted_s));
 }
 
 void DeviceGateway::remember() {
@@ -201,11 +202,11 @@ void DeviceGateway::finish() {
   publish_state();
   const auto end_ns = steady_now_ns() + std::chrono::nanoseconds(kLastDelivery).count();
   if (!deliver(scans_, kLastDelivery)) {
-    service_.status().fault("readers lack scans", "at the end");
+    service_.status().fault("readers missed scans", "at the end");
   }
   const std::chrono::nanoseconds left(std::max<std::int64_t>(0, end_ns - steady_now_ns()));
   if (base_ && !deliver(base_->odometry(), left)) {
-    service_.status().fault("readers lack odometry", "at the end");
+    service_.status().fault("readers missed odometry", "at the end");
   }
   msg::StreamEnd end;
   messaging::set_header(end, service_.robot_id(), last_stamp_ns_, 0);
@@ -213,7 +214,7 @@ void DeviceGateway::finish() {
   end.count(gate_.scans());
   end.last_id(gate_.scans() == 0 ? 0 : gate_.scans() - 1);
   if (!stream_end_.write(end) || !deliver(stream_end_, kLastDelivery)) {
-    service_.status().fault("readers lack the stream end", "at the end");
+    service_.status().fault("readers missed the stream end", "at the end");
   }
   // The sender of a halt that has arrived takes it for delivered. A signal ends the first turn.
   while (service_.loop().run_for(milliseconds::zero())) {

@@ -119,8 +119,8 @@ msg::LaserState LaserChannel::state(const devices::PlsStatus& status) const {
 std::string LaserChannel::reason(const devices::PlsStatus& status) const {
   if (!line_.why_closed().empty()) return line_.why_closed();
   if (status.state != devices::PlsState::kRunning) return status.reason;
-  if (status.stuck) return "the same scan again and again";
-  if (status.health.implausible) return "the laser calls its measurements implausible";
+  if (status.stuck) return "the laser repeats the same scan";
+  if (status.health.implausible) return "the laser reports implausible measurements";
   if (status.health.severity >= devices::PlsSeverity::kError) return "the laser reports an error";
   return {};
 }

@@ -92,11 +92,13 @@ void LogGateway::go_back_to(std::uint64_t number) {
   double after_s = 0.0;
   for (std::uint64_t i = 0; i < number; ++i) {
     const std::optional<scan::Scan> scan = reader.next();
-    if (!scan) throw std::runtime_error(options_.log.string() + " has become shorter");
+    if (!scan) {
+      throw std::runtime_error(options_.log.string() + ": fewer scans than at the first reading");
+    }
     after_s = pace.next(scan->stamp_ns).after_s;
     last = odometry_of(*scan, service_.robot_id(), last);
   }
-  spdlog::info("sends the scans from number {} on once more", number);
+  spdlog::info("resending the scans from number {}", number);
   reader_ = std::move(reader);
   pace_ = pace;
   last_odometry_ = last;

@@ -61,7 +61,8 @@ void add_options_to(command_line::Command& app, Options& options) {
   app.add_option_function(
          "--rate",
          [&](const std::string& text) { options.replay.rate = service::parse_rate(text); },
-         "of a log: realtime, lossless (as fast as the readers take it) or a factor of real time")
+         "replay rate of a log: realtime, lossless (as fast as its readers) or a factor of real "
+         "time")
       ->needs(log)
       ->default_str("lossless");
   app.add_option_function(
@@ -69,33 +70,35 @@ void add_options_to(command_line::Command& app, Options& options) {
          [&topics = options.replay.topics](const std::string& order) {
            topics.sweep = ros::sweep_order(order);
          },
-         "motion during a scan of such a recording, see topogeo map --help")
+         "correction of motion during a scan of a ROS recording, see topogeo map --help")
       ->check(command_line::one_of({"none", "forward", "backward"}));
-  app.add_option("--scan-topic", options.replay.topics.scan, "laser scans of a recording of ROS")
+  app.add_option("--scan-topic", options.replay.topics.scan,
+                 "topic of the laser scans in a ROS recording")
       ->needs(log)
       ->type_name("TOPIC");
-  app.add_option("--odometry-topic", options.replay.topics.odometry, "its odometry or transforms")
+  app.add_option("--odometry-topic", options.replay.topics.odometry,
+                 "topic of the odometry or transforms in a ROS recording")
       ->needs(log)
       ->type_name("TOPIC");
   app.add_option("--readers", options.replay.readers,
-                 "programs to wait for that read scans; 0: do not wait")
+                 "number of scan readers to wait for; 0: do not wait")
       ->check(command_line::range(0, 100))
       ->default_str("1 for a log, 0 for devices");
   app.add_option("--odometry-readers", options.replay.odometry_readers,
-                 "programs to wait for that read odometry")
+                 "number of odometry readers to wait for")
       ->check(command_line::range(0, 100))
       ->needs(log)
       ->capture_default_str();
-  app.add_flag("--exit-at-end", options.replay.exit_at_end, "end when the log has ended")
+  app.add_flag("--exit-at-end", options.replay.exit_at_end, "exit at the end of the log")
       ->needs(log);
-  app.add_option("--laser-port", options.laser_port, "instead of the one in the file")
+  app.add_option("--laser-port", options.laser_port, "serial port of the laser; overrides the file")
       ->needs(devices);
-  app.add_option("--base-port", options.base_port, "instead of the one in the file")
+  app.add_option("--base-port", options.base_port, "serial port of the base; overrides the file")
       ->needs(devices);
   app.add_option("--memory", options.memory,
-                 "file that keeps where the odometry is, so that it goes on when the gateway is "
-                 "started again; best in /run, as it is written all the time. FILE.laser keeps the "
-                 "rate of the laser, FILE.stops a halt and an emergency stop until the reset")
+                 "file with the state of the odometry, from which a restarted gateway resumes; "
+                 "best in /run, because it is written constantly. FILE.laser has the baud rate of "
+                 "the laser, FILE.stops a halt or an emergency stop until the reset")
       ->needs(devices)
       ->type_name("FILE");
 }

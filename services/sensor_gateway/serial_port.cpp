@@ -150,7 +150,7 @@ void SerialPort::Impl::open() {
     // Asio returns the error of tcgetattr for a file that is no terminal.
     const bool is_other = error == error_code(ENOTTY, boost::system::system_category());
     notify(PortEvent::Kind::kNotOpened,
-           options_.path + ": cannot open: " + (is_other ? "no serial port" : error.message()));
+           options_.path + ": cannot open: " + (is_other ? "not a serial port" : error.message()));
     try_later();
     return;
   }
@@ -220,7 +220,7 @@ void SerialPort::Impl::carry_out() {
                       });
   }
   if (writing_ || waiters_.empty()) return;
-  if (port_.is_open() && !drain()) lose("takes no bytes");
+  if (port_.is_open() && !drain()) lose("accepts no data");
   for (const auto& waiter : std::exchange(waiters_, {})) waiter->set_value();
 }
 
@@ -232,7 +232,7 @@ void SerialPort::Impl::finish_order() {
 
 void SerialPort::Impl::change(const devices::LineSettings& settings) {
   if (!drain()) {
-    lose("takes no bytes");
+    lose("accepts no data");
     return;
   }
   error_code error;
