@@ -249,7 +249,7 @@ void GaWorkerService::forget(const std::vector<search_pool::ClientRegistry::Entr
   for (const search_pool::ClientRegistry::Entry& entry : gone) {
     const std::string& client_id = entry.first;
     const search_pool::ClientRegistry::Client& client = entry.second;
-    spdlog::info("client {}, robot {}, is gone after {} answers", client_id, client.robot_id,
+    spdlog::info("client {}, robot {}, disconnected after {} answers", client_id, client.robot_id,
                  client.answered);
     runner_->remove(client_id);
     intake_.remove(client_id);

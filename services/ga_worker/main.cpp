@@ -30,28 +30,27 @@ int main(int argc, char** argv) {
   defaults.partition = messaging::kAnyPartition;
   return service::run_service(
       argc, argv, "ga_worker",
-      "Works on the match tasks of any robot and run on the domain. One partition restricts it to "
-      "the runs of that, a configuration file to clients of the same configuration.",
+      "Solves the match tasks of every robot and run on the domain. --partition restricts it to "
+      "the runs of one partition, --config to clients with the same configuration.",
       [&](command_line::Command& app) {
         constexpr std::uint32_t kMostSlots = 256;
         constexpr std::uint32_t kLeastMemory_mb = 8;
         constexpr std::uint32_t kMostMemory_mb = 65536;
         app.add_option("--slots", options.slots,
-                       "tasks that it works on at the same time, one for each CPU that it may use")
+                       "tasks that are solved in parallel; default: one for each usable CPU")
             ->check(command_line::range(std::uint32_t{1}, kMostSlots))
             ->capture_default_str();
-        app.add_option("--name", options.name,
-                       "for people; others may have the same, up to 24 bytes")
+        app.add_option("--name", options.name, "display name, up to 24 bytes; need not be unique")
             ->check(search_pool::check_name)
             ->capture_default_str();
-        app.add_option("--memory-mb", options.memory_mb,
-                       "for local maps and what is made of them, 4 MB for each slot at least")
+        app.add_option(
+               "--memory-mb", options.memory_mb,
+               "memory for local maps and data derived from them, at least 4 MB for each slot")
             ->check(command_line::range(kLeastMemory_mb, kMostMemory_mb))
             ->capture_default_str();
-        app.add_option(
-               "--scheduling", scheduling,
-               "of its searches beside other programs: as any of them (normal); not interrupting "
-               "them (batch); only while none of them wants the CPU (idle)")
+        app.add_option("--scheduling", scheduling,
+                       "CPU scheduling of the searches: like other programs (normal), without "
+                       "interrupting them (batch), only on an idle CPU (idle)")
             ->check(command_line::one_of({"normal", "batch", "idle"}))
             ->capture_default_str();
       },

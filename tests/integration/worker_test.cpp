@@ -519,7 +519,7 @@ TEST_F(WorkerTest, HasRoomForEverNewClients) {
   }
   process->send_signal(SIGTERM);
   EXPECT_EQ(process->wait(), 0);
-  EXPECT_THAT(process->err(), HasSubstr("is gone after 1 answers"));
+  EXPECT_THAT(process->err(), HasSubstr("disconnected after 1 answers"));
   EXPECT_THAT(process->err(), HasSubstr("70 tasks done for 70 clients"));
 }
 
