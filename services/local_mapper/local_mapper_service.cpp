@@ -66,13 +66,13 @@ void LocalMapperService::on_last_stop(const service::StoreClient::Answer& answer
     if (!answer.bytes) throw std::invalid_argument(answer.why);
     const std::vector<topomap::LocalMap> stops =
         storage::parse_local_maps(*answer.bytes, "snapshot");
-    if (stops.empty()) throw std::invalid_argument("no stop came");
+    if (stops.empty()) throw std::invalid_argument("the snapshot has no stops");
     mapper_.resume(stops.back());
     resumed_ = {stops.back().odometry_epoch, stops.back().sequence};
-    spdlog::info("goes on after stop {}", stops.back().stop.number);
+    spdlog::info("resuming after stop {}", stops.back().stop.number);
   } catch (const std::exception& error) {
     service_.status().fault("no snapshot", error.what());
-    spdlog::warn("the session cannot go on, another one begins: {}", error.what());
+    spdlog::warn("cannot resume the session, beginning a new one: {}", error.what());
   }
   begin();
 }
@@ -225,8 +225,8 @@ bool LocalMapperService::want_rest() {
   const std::uint64_t epoch = continues ? resumed_->first : odometry_epoch_.value_or(0);
   const std::uint64_t first = continues ? resumed_->second + 1 : next_sequence_;
   if (missing_->want(epoch, first)) return true;
-  service_.status().fault("scans missing",
-                          "the last ones of the log, from " + std::to_string(first) + " on");
+  service_.status().fault(
+      "scans missing", "the last scans of the log, from number " + std::to_string(first) + " on");
   next_sequence_ = *scans_in_stream_;
   finish_if_complete();
   return false;
@@ -245,7 +245,7 @@ void LocalMapperService::finish_if_complete() {
   end.count(stops);
   end.last_id(stops == 0 ? 0 : stops - 1);
   if (!service_.send(ends_out_, end, "stream end")) return;
-  spdlog::info("{} local maps of {} scans", maps_, scans_used_);
+  spdlog::info("{} local maps from {} scans", maps_, scans_used_);
   service_.status().set_state(msg::kServiceFinished);
 }
 

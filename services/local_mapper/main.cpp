@@ -14,10 +14,11 @@ int main(int argc, char** argv) {
   return service::run_service(
       argc, argv, "local_mapper", "Makes local topo-geometric maps of laser scans.",
       [&](command_line::Command& app) {
-        app.add_flag("--replay", replay, "the scans come from a log: slow it down, lose none");
-        app.add_flag("--standalone", standalone,
-                     "there is no map store: begin a new session at once instead of asking for "
-                     "the last one");
+        app.add_flag("--replay", replay,
+                     "the scans come from a log: slow down the replay instead of losing scans");
+        app.add_flag(
+            "--standalone", standalone,
+            "run without a map store: begin a new session instead of resuming the last one");
       },
       [&](const service::Setup& setup) {
         const auto work = [&] {

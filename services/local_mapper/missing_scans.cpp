@@ -32,8 +32,8 @@ bool MissingScans::want(std::uint64_t odometry_epoch, std::uint64_t first) {
     wanted_->odometry_epoch(odometry_epoch);
     wanted_->first_scan(first);
     since_ = matched_ = Clock::now();
-    service_.status().set_waits_for(fmt::format("scan {} of the log once more", first));
-    spdlog::info("asks for the scans of the log from number {} on", first);
+    service_.status().set_waits_for(fmt::format("a resend of scan {} of the log", first));
+    spdlog::info("requesting the scans of the log from number {}", first);
     ask();
   }
   const Clock::time_point now = Clock::now();

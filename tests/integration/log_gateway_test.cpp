@@ -321,7 +321,7 @@ TEST(LocalMapperOfALog, GoesOnWithoutTheScansThatNobodySendsAgain) {
     if (scans.write(scan)) ++sent;
   });
   EXPECT_TRUE(wait_in(loop, [&] { return used > 0.0; })) << mapper.err();
-  EXPECT_THAT(waits_for, testing::HasSubstr("scan 0 of the log once more"));
+  EXPECT_THAT(waits_for, testing::HasSubstr("a resend of scan 0 of the log"));
   EXPECT_TRUE(wait_in(loop, [&] { return !faults.empty(); }));
   EXPECT_THAT(faults, testing::Each("scans missing"));
 }

@@ -114,7 +114,7 @@ TEST_F(TwoRobotsTest, GoOnInOneMapWhenALocalMapperIsKilled) {
   mapper_b->send_signal(SIGKILL);
   EXPECT_EQ(mapper_b->wait(), 128 + SIGKILL);
   mapper_b = start_mapper("b");
-  mapper_b->wait_for_error_text("goes on after stop ");
+  mapper_b->wait_for_error_text("resuming after stop ");
   gateway_b->send_signal(SIGCONT);
   EXPECT_GT(wait_for_stops("b", newest_["b"].session_stops() + 3), before);
   EXPECT_EQ(newest_["b"].session(), session);
