@@ -9,7 +9,7 @@ namespace topogeo::localizer {
 namespace {
 
 CommandAnswer stop_mapping(const CommandMoment& now, localization::SlamSession& slam) {
-  if (!slam.mapping()) return {false, "it localizes in a finished map already"};
+  if (!slam.mapping()) return {false, "it already localizes in a finished map"};
   if (now.finished) return {false, "the log has ended"};
   if (now.stops_in_map == 0) return {false, "there is no map yet"};
   try {
@@ -17,13 +17,13 @@ CommandAnswer stop_mapping(const CommandMoment& now, localization::SlamSession& 
   } catch (const std::exception& error) {
     return {false, error.what()};
   }
-  return {true, "the map of " + std::to_string(now.stops_in_map) + " stops stays as it is"};
+  return {true, "the map of " + std::to_string(now.stops_in_map) + " stops stays unchanged"};
 }
 
 CommandAnswer resume_mapping(const CommandMoment& now, localization::SlamSession& slam) {
-  if (slam.mapping()) return {false, "it makes a map already"};
+  if (slam.mapping()) return {false, "it already extends a map"};
   if (slam.mapping_session() == nullptr) {
-    return {false, "the map was given with --map to stay as it is; start with --continue"};
+    return {false, "--map gives a read-only map; start with --continue to extend it"};
   }
   if (now.finished) return {false, "the log has ended"};
   try {
@@ -41,13 +41,13 @@ CommandAnswer carry_out(const service::LocalizationCommand& command, const Comma
   const bool maps = slam.follower() == nullptr;
   switch (command.kind) {
     case msg::kCommandSetPose:
-      if (maps) return {false, "it makes a map, in which its pose is not to be chosen"};
+      if (maps) return {false, "the pose cannot be set while a map is made"};
       slam.follower()->set_pose(stop_pose(command, now), command.covariance);
-      return {true, "goes on from there"};
+      return {true, "localization continues from this pose"};
     case msg::kCommandSearch:
-      if (maps) return {false, "it makes a map: there is no finished one to search"};
+      if (maps) return {false, "a search needs a finished map; this one is being made"};
       slam.follower()->search();
-      return {true, "searches the whole map from the next stop on"};
+      return {true, "the whole map is searched from the next stop on"};
     case msg::kCommandSwitchToLocalization:
       return stop_mapping(now, slam);
     case msg::kCommandSwitchToMapping:

@@ -120,10 +120,10 @@ void LocalizerService::resume(ResumeFrom from) {
       live_.set_stop(std::make_shared<const topomap::LocalMap>(last));
       live_.correct(from.map->trajectory.stops.back());
     }
-    spdlog::info("goes on with a map of {} stops", from.map->maps.size());
+    spdlog::info("resuming with a map of {} stops", from.map->maps.size());
   } else if (!from.stops.empty()) {
     known_stops_ = from.stops.size();
-    spdlog::info("adds {} stops again", known_stops_);
+    spdlog::info("adding {} stops again", known_stops_);
   }
   for (StopQueue::MapPointer& map : from.stops) queue_.add(std::move(map));
   ready_ = true;
@@ -202,7 +202,7 @@ void LocalizerService::wait_for_workers() {
       options_.wait_workers, std::chrono::duration_cast<std::chrono::nanoseconds>(
                                  std::chrono::duration<double>(options_.wait_s)));
   if (workers < options_.wait_workers) {
-    spdlog::warn("{} of {} workers came within {} s, going on with them", workers,
+    spdlog::warn("{} of {} workers joined within {} s, continuing with them", workers,
                  options_.wait_workers, options_.wait_s);
   }
   service_.status().wait_for("local maps");
@@ -233,7 +233,7 @@ void LocalizerService::recall() {
   slam_->follower()->start_after(last->place);
   // Match that stop once more, if the local mapper still has it.
   if (last->stop.number > 0) queue_.start_after({last->stop.session, last->stop.number - 1});
-  spdlog::info("goes on at stop {}, where the robot was last", last->stop.number);
+  spdlog::info("resuming at stop {}, the last known place of the robot", last->stop.number);
 }
 
 void LocalizerService::remember() const {

@@ -25,34 +25,33 @@ int main(int argc, char** argv) {
                        "search workers to wait for before the first step")
             ->capture_default_str();
         constexpr double kLongestWait_s = 3600.0;
-        app.add_option("--wait-seconds", options.wait_s, "how long to wait for them at most")
+        app.add_option("--wait-seconds", options.wait_s, "longest wait for these workers")
             ->check(command_line::range(0.0, kLongestWait_s))
             ->capture_default_str();
         command_line::Option* map =
-            app.add_option("--map", options.map, "map.pb to localize in, which stays as it is")
+            app.add_option("--map", options.map, "map.pb to localize in, read-only")
                 ->type_name("FILE");
-        map->excludes(
-            app.add_option("--continue", options.continued,
-                           "map.pb to extend: the robot finds its place in it, then maps on")
-                ->type_name("FILE"));
+        map->excludes(app.add_option("--continue", options.continued,
+                                     "map.pb to extend: the robot is localized in it, then maps on")
+                          ->type_name("FILE"));
         app.add_option("--initial-pose", initial_pose,
-                       "where the robot is in it, m and degrees (default: it is searched for)")
+                       "initial pose of the robot in the map, m and degrees (default: search the "
+                       "whole map)")
             ->type_name("X,Y,DEG");
-        app.add_flag("--standalone", options.standalone,
-                     "there is no map store: begin a new map at once instead of waiting for what "
-                     "it has");
+        app.add_flag(
+            "--standalone", options.standalone,
+            "run without a map store: begin a new map instead of waiting for the stored one");
         service::add_robots_option(app, robots);
         app.add_flag("--replay", options.replay,
-                     "the stops come from a log: after a restart add all of them again, so that "
-                     "the map is the same");
+                     "the stops come from a log: after a restart, add all of them again to get the "
+                     "same map");
         app.add_option("--csv", options.csv,
-                       "pose and state of each stop; it has that name at the end")
+                       "file for the pose and state of each stop; complete when the localizer ends")
             ->needs(map)
             ->type_name("FILE");
-        app.add_option(
-               "--memory", options.memory,
-               "keeps where the robot is, so that a localizer that is started again goes on "
-               "there; best in /run, as it is written at each stop")
+        app.add_option("--memory", options.memory,
+                       "file with the pose of the robot, from which a restarted localizer resumes; "
+                       "best in /run, because it is written at each stop")
             ->needs(map)
             ->type_name("FILE");
       },
@@ -68,8 +67,8 @@ int main(int argc, char** argv) {
         if (!robots.empty()) {
           if (options.map || options.continued || options.replay || options.wait_workers > 0) {
             throw service::UsageError(
-                "--with-robots goes on with the map of the map store: --map, --continue, --replay "
-                "and --wait-workers do not go with it");
+                "--with-robots resumes the map of the map store: expected no --map, --continue, "
+                "--replay or --wait-workers");
           }
         }
         const auto work = [&] {

@@ -55,7 +55,7 @@ bool MapSender::answer(const Pending& pending) {
   if (map == nullptr || hashes_.at(map->id) != request.content_hash()) {
     on_fault_("unknown map requested", "worker " + request.worker_id().to_string() + ": map " +
                                            std::to_string(request.map_id()) +
-                                           (map == nullptr ? "" : " of another content"));
+                                           (map == nullptr ? "" : " with other content"));
     return true;
   }
   // A copy to a worker whose reader is not connected yet would be lost.

@@ -21,7 +21,7 @@ MergeChannel::MergeChannel(service::Service& service, std::function<void()> on_a
   service.subscribe<msg::LocalizationCommand>([this](const msg::LocalizationCommand& command) {
     if (replies_.came_before(command.request_id(), command.client_id().to_string())) return;
     replies_.reply(command.request_id(), command.client_id().to_string(),
-                   {false, "it maps for several robots, which takes no such command"}, 0);
+                   {false, "a localizer of several robots does not support this command"}, 0);
   });
 }
 

@@ -28,7 +28,7 @@ void MissingStops::check() {
   }
   if (!store_) store_.emplace(service_, [](const msg::StoredMap&) {});
   asking_ = true;
-  spdlog::info("asks the map store for the stops from {} on", missing_->number);
+  spdlog::info("requesting the stops from number {} on from the map store", missing_->number);
   store_->request(msg::kSnapshotLocalMaps, missing_->session, missing_->number,
                   [this](const auto& answer) { on_answer(answer); });
 }
@@ -59,14 +59,16 @@ void MissingStops::skip() {
   const topomap::StopId missing = *missing_;
   missing_.reset();
   if (missing.number > 0) {
-    service_.status().fault("local maps missing",
-                            fmt::format("stop {}: the session cannot go on", missing.number));
+    service_.status().fault(
+        "local maps missing",
+        fmt::format("stop {} is missing: the session cannot continue", missing.number));
     return;
   }
   const topomap::StopId first = queue_.begin_late(missing.session);
   if (ask_) {
-    service_.status().fault("local maps missing",
-                            fmt::format("stops 0 to {}: begins after them", first.number - 1));
+    service_.status().fault(
+        "local maps missing",
+        fmt::format("stops 0 to {} are missing: beginning after them", first.number - 1));
   }
   on_change_();
 }

@@ -200,7 +200,7 @@ bool RemotePool::send(std::span<const TaskBoard::Assignment> of_one_worker) {
     const topomap::LocalMap* query = maps_.find(task.query_map_id);
     if (query == nullptr) {
       throw std::out_of_range("match task " + std::to_string(task.task_id) + ": local map " +
-                              std::to_string(task.query_map_id) + " is not known");
+                              std::to_string(task.query_map_id) + " is unknown");
     }
     const topomap::LocalMap* other = task.places ? query : maps_.find(task.reference_map_id);
     const std::int64_t newer_ns = std::max(query->stamp_ns, (other ? other : query)->stamp_ns);
@@ -252,12 +252,12 @@ void RemotePool::blame(const MatchTask& task, const TaskBoard::Difference& diffe
     reason = "wrong match result";
   } else {
     if (difference.answer.fitness < truth.fitness) reason = "poorer match result";
-    what = fmt::format("its answer is valid, of fitness {:.6f}; searched here, fitness {:.6f}",
+    what = fmt::format("valid answer with fitness {:.6f}; an own search found {:.6f}",
                        difference.answer.fitness, truth.fitness);
   }
   if (difference.unchecked > 0) {
-    what +=
-        fmt::format("; {} earlier answers of it were not compared and stand", difference.unchecked);
+    what += fmt::format("; {} earlier answers of this worker were accepted unchecked",
+                        difference.unchecked);
   }
   on_fault_(reason, fmt::format("{}, task {}: {}", registry_.name(difference.worker_id),
                                 task.task_id, what));

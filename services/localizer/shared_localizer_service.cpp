@@ -88,9 +88,9 @@ void SharedLocalizerService::resume(SharedResumeFrom from) {
       robot->second.queue.start_after(last.stop);
       robot->second.odometry.start_after(last);
     }
-    spdlog::info("goes on with a map of {} stops", from.map->maps.size());
+    spdlog::info("resuming with a map of {} stops", from.map->maps.size());
   }
-  if (!from.stops.empty()) spdlog::info("adds {} stops again", from.stops.size());
+  if (!from.stops.empty()) spdlog::info("adding {} stops again", from.stops.size());
   std::set<std::uint64_t> begun;
   for (StopQueue::MapPointer& map : from.stops) {
     const auto robot = robots_.find(map->robot_id);
@@ -191,7 +191,7 @@ void SharedLocalizerService::answer_merges() {
         }
         publish(false);
         count();
-        return {true, accepted ? "the maps are one" : "the maps stay apart"};
+        return {true, accepted ? "the maps are merged" : "the maps stay separate"};
       },
       stamp_ns_);
 }

@@ -234,7 +234,7 @@ test("the pose is set by dragging, in a map that stays as it is", async () => {
   await page.fill("#pose-theta", ((at.theta_rad * 180) / Math.PI).toFixed(3));
   await page.selectOption("#pose-sure", "exact");
   await page.getByRole("button", { name: "Apply" }).click();
-  await notice(page, /goes on from there/i);
+  await notice(page, /continues from this pose/i);
   assert.equal(await page.getByRole("button", { name: "Apply" }).isVisible(), false);
   await page.getByRole("button", { name: "Map from now on" }).click();
   await text(page, "button", /Leave the map as it is/);

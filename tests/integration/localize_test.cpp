@@ -67,12 +67,12 @@ TEST_F(LocalizeTest, CommandsAreAcceptedOrRefusedWithTheReason) {
   };
   Program set_pose(scratch_, "topogeo", ask({"set-pose", "1.5,0,90"}));
   EXPECT_EQ(set_pose.wait(), 0) << set_pose.err();
-  EXPECT_THAT(set_pose.out(), HasSubstr("accepted: goes on from there"));
+  EXPECT_THAT(set_pose.out(), HasSubstr("accepted: localization continues from this pose"));
   Program search(scratch_, "topogeo", ask({"search"}));
   EXPECT_EQ(search.wait(), 0) << search.err();
   Program mapping(scratch_, "topogeo", ask({"mode", "mapping"}));
   EXPECT_EQ(mapping.wait(), 1);
-  EXPECT_THAT(mapping.err(), HasSubstr("refused: the map was given with --map to stay as it is"));
+  EXPECT_THAT(mapping.err(), HasSubstr("refused: --map gives a read-only map"));
 }
 
 TEST_F(LocalizeTest, AWrongFileAPoseThatIsNoneAndNobodyThereAreOneLineErrors) {

@@ -140,7 +140,7 @@ TEST_F(LocalizerTest, WithoutTheWorkersItGoesOnAfterAWhile) {
   end_stream();
   ASSERT_TRUE(wait_until("the end of the stream", [&] { return end_.has_value(); }));
   expect_result_of_one_process();
-  EXPECT_THAT(localizer->err(), ::testing::HasSubstr("0 of 3 workers came within 0.2 s"));
+  EXPECT_THAT(localizer->err(), ::testing::HasSubstr("0 of 3 workers joined within 0.2 s"));
 }
 
 // Odometry has ended by then.

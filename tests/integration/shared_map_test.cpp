@@ -204,7 +204,7 @@ TEST_F(SharedMapServices, MakeOneMapWhateverIsKilledAndItIsSplitAgain) {
   EXPECT_EQ(store->wait(), 128 + SIGKILL);
   localizer = start_localizer();  // waits for the store
   store = start_store();
-  localizer->wait_for_error_text("goes on with a map of ");
+  localizer->wait_for_error_text("resuming with a map of ");
   send_all();
   store->wait_for_error_text("local maps, ");  // the final line
   const storage::MapDocument map = storage::read_map_file(scratch_ / "out" / "map.pb");
@@ -289,7 +289,7 @@ TEST_F(SharedMapServices, AskBeforeTheyMakeOneMap) {
   EXPECT_EQ(localizer->wait(), 128 + SIGKILL);
   localizer = start_localizer("ask");
   ASSERT_TRUE(shows("\"state\": \"open\""));
-  EXPECT_THAT(merge_command({"accept", "1"}), HasSubstr("the maps are one"));
+  EXPECT_THAT(merge_command({"accept", "1"}), HasSubstr("the maps are merged"));
   EXPECT_TRUE(eventually("the maps to be one", [&] { return stops_in_map() > a_.stops.size(); }));
   EXPECT_TRUE(shows("\"state\": \"accepted\""));
   EXPECT_THAT(merge_command({"refuse", "1"}, 1), HasSubstr("no longer open"));
@@ -310,7 +310,7 @@ TEST_F(SharedMapServices, ARefusalIsHeededByALocalizerThatStartsAgain) {
     }));
   }
   ASSERT_LT(stops + 4, b_.stops.size());
-  EXPECT_THAT(merge_command({"refuse", "1"}), HasSubstr("the maps stay apart"));
+  EXPECT_THAT(merge_command({"refuse", "1"}), HasSubstr("the maps stay separate"));
   const std::string refused = proposals();
   const std::string database = (scratch_ / "out" / "map.sqlite").string();
   ASSERT_TRUE(eventually("the refusal to be stored",
@@ -352,7 +352,7 @@ TEST_F(SharedMapServices, BeginAnewWithASnapshotThatIsRestored) {
       << withdrawn_ << ": what makes the mappers of both robots begin anew";
   store->wait_for_error_text("the map is that of snapshot one");
   localizer->wait_for_error_text("restarting with the new map");
-  localizer->wait_for_error_text(fmt::format("goes on with a map of {} stops", stops));
+  localizer->wait_for_error_text(fmt::format("resuming with a map of {} stops", stops));
   const std::string database = (scratch_ / "out" / "map.sqlite").string();
   EXPECT_THAT(store_command({"snapshots", database}), HasSubstr("before-one"));
 

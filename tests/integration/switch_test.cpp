@@ -105,13 +105,13 @@ TEST_F(SwitchTest, TheMapStopsGrowingAndGoesOn) {
   const std::size_t resume = leave + 4;
   ASSERT_GT(end, resume + 4);
   start();
-  EXPECT_EQ(send_command(msg::kCommandSwitchToMapping), "refused: it makes a map already");
+  EXPECT_EQ(send_command(msg::kCommandSwitchToMapping), "refused: it already extends a map");
   EXPECT_EQ(send_command(msg::kCommandSwitchToLocalization), "refused: there is no map yet");
   drive(0, leave);
   EXPECT_EQ(send_command(msg::kCommandSwitchToLocalization),
-            "accepted: the map of " + std::to_string(leave) + " stops stays as it is");
+            "accepted: the map of " + std::to_string(leave) + " stops stays unchanged");
   EXPECT_EQ(send_again(msg::kCommandSwitchToLocalization),
-            "accepted: the map of " + std::to_string(leave) + " stops stays as it is")
+            "accepted: the map of " + std::to_string(leave) + " stops stays unchanged")
       << "carried out once, told as often as it is asked for";
   ASSERT_TRUE(wait_until("the map to stay as it is", [&] { return stops_in_map() == leave; }));
   const std::uint64_t version = assembly_.version();
@@ -121,7 +121,7 @@ TEST_F(SwitchTest, TheMapStopsGrowingAndGoesOn) {
   EXPECT_EQ(stops_in_map(), leave);
   EXPECT_EQ(assembly_.version(), version);
   EXPECT_EQ(send_command(msg::kCommandSwitchToLocalization),
-            "refused: it localizes in a finished map already");
+            "refused: it already localizes in a finished map");
   EXPECT_EQ(send_command(msg::kCommandSwitchToMapping),
             "accepted: new stops extend the map of " + std::to_string(leave) + " stops");
   drive(resume, end);

@@ -45,13 +45,13 @@ TEST_F(LocalizerCommands, WhileMappingThereIsNoPoseToSetAndNothingToSearch) {
   EXPECT_FALSE(send(msg::kCommandSearch).accepted);
   const CommandAnswer again = send(msg::kCommandSwitchToMapping);
   EXPECT_FALSE(again.accepted);
-  EXPECT_EQ(again.message, "it makes a map already");
+  EXPECT_EQ(again.message, "it already extends a map");
 }
 
 TEST_F(LocalizerCommands, SwitchesToLocalizationAndBack) {
   const CommandAnswer left = send(msg::kCommandSwitchToLocalization);
   EXPECT_TRUE(left.accepted);
-  EXPECT_EQ(left.message, "the map of 1 stops stays as it is");
+  EXPECT_EQ(left.message, "the map of 1 stops stays unchanged");
   EXPECT_FALSE(slam_.mapping());
   EXPECT_FALSE(send(msg::kCommandSwitchToLocalization).accepted);
   EXPECT_TRUE(send(msg::kCommandSearch).accepted);
