@@ -72,7 +72,7 @@ std::filesystem::path ArchiveChannel::path_of(std::uint64_t name_key) const {
   for (const storage::MapSnapshot& snapshot : storage::snapshots_of(database_)) {
     if (messaging::key_of(snapshot.name) == name_key) return snapshot.path;
   }
-  throw std::runtime_error("there is no such snapshot");
+  throw std::runtime_error("no such snapshot");
 }
 
 void ArchiveChannel::on_request(const msg::ArchiveRequest& request) {
@@ -114,13 +114,13 @@ std::string ArchiveChannel::carry_out(const msg::ArchiveRequest& request) {
     case msg::kArchiveTake: {
       store_();
       const storage::MapSnapshot taken = storage::take_snapshot(database_, name);
-      spdlog::info("made snapshot {}", taken.path.string());
+      spdlog::info("stored snapshot {}", taken.path.string());
       return fmt::format("snapshot {} has {} stops", name, taken.stops);
     }
     case msg::kArchiveImport: {
       const storage::MapSnapshot made = storage::import_snapshot(
-          database_, name, storage::parse_map_file(imported_.take(), "the map that was sent"));
-      spdlog::info("took a map in as snapshot {}", made.path.string());
+          database_, name, storage::parse_map_file(imported_.take(), "the uploaded map"));
+      spdlog::info("stored the uploaded map as snapshot {}", made.path.string());
       return fmt::format("snapshot {} has {} stops", name, made.stops);
     }
     case msg::kArchiveRestore: {
@@ -129,7 +129,7 @@ std::string ArchiveChannel::carry_out(const msg::ArchiveRequest& request) {
       const auto found = std::ranges::find(known, name, &storage::MapSnapshot::name);
       if (found == known.end()) throw std::runtime_error("there is no snapshot " + name);
       if (!found->damage.empty()) throw std::runtime_error(found->damage);
-      return fmt::format("the map becomes that of snapshot {}; that of now is kept as before-{}",
+      return fmt::format("restoring snapshot {}; the current map is kept as snapshot before-{}",
                          name, name);
     }
     default:

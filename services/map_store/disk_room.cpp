@@ -59,7 +59,7 @@ bool have_room(std::span<const std::filesystem::path> directories) {
 bool wait_for_room(const service::Setup& setup, std::span<const std::filesystem::path> directories,
                    const std::string& why) {
   service::Service service(setup);
-  const std::string reason = "waits for room on the disk: " + why;
+  const std::string reason = "waiting for disk space: " + why;
   service.status().fault("disk full", why);
   service.status().set_state(msg::kServiceFailed, reason);
   bool room = false;
@@ -72,7 +72,7 @@ bool wait_for_room(const service::Setup& setup, std::span<const std::filesystem:
     }
   });
   service.run();
-  if (room) spdlog::info("there is room on the disk again");
+  if (room) spdlog::info("disk space is available again");
   return room && !service::Service::stopping();
 }
 

@@ -56,8 +56,8 @@ void DrawingChannel::on_order(const msg::DrawingOrder& order) {
       take_(std::move(*outcome.drawing));
       if (!is_stored_)
         outcome.message =
-            "in effect until the services end; this map was given to stay as it is, so its "
-            "file does not keep the drawing";
+            "in effect until the services end: the map is read-only, so its file does not store "
+            "the drawing";
     } catch (const std::exception& error) {
       outcome.result = msg::kDrawingNotDone;
       outcome.message = error.what();

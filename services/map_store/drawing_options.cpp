@@ -31,7 +31,7 @@ void add_drawing_options(command_line::Command& app, DrawingOptions& options) {
                  "zones and places of the drawing (YAML), in its own frame")
       ->type_name("FILE");
   app.add_option("--drawing-pose", options.pose,
-                 "where the origin of the drawing is in the map; default: 0,0,0")
+                 "pose of the drawing's origin in the map; default: 0,0,0")
       ->type_name("X,Y,DEG");
   app.add_option("--places", options.places, "places and zones (YAML) in the map frame")
       ->type_name("FILE");
@@ -39,7 +39,7 @@ void add_drawing_options(command_line::Command& app, DrawingOptions& options) {
 
 storage::MapDrawing read_drawing(const DrawingOptions& options, double resolution_m) {
   if (!options.drawing && (options.zones || options.pose)) {
-    throw service::UsageError("--zones and --drawing-pose go with a --drawing (see --help)");
+    throw service::UsageError("--zones and --drawing-pose need --drawing (see --help)");
   }
   const geometry::Pose2 T_map_drawing = pose_of(options);
   try {

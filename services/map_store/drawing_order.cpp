@@ -26,10 +26,12 @@ void make_floor(storage::MapDrawing& drawing, const msg::Point2& inside, double 
 DrawingOutcome carry_out(const msg::DrawingOrder& order, const storage::MapDrawing& now,
                          double resolution_m) {
   if (order.version() != now.version) {
-    return {msg::kDrawingOtherVersion,
-            fmt::format("somebody else has saved meanwhile: version {} was edited, this is {}",
-                        order.version(), now.version),
-            {}};
+    return {
+        msg::kDrawingOtherVersion,
+        fmt::format(
+            "another client saved in the meantime: version {} was edited, the current one is {}",
+            order.version(), now.version),
+        {}};
   }
   try {
     storage::MapDrawing drawing = service::from_msg(order.content());

@@ -53,7 +53,7 @@ std::vector<support::FileLock> lock(const map_store::MapStoreOptions& store) {
   try {
     for (const std::filesystem::path& path : paths) locks.emplace_back(path, kPatience);
   } catch (const std::exception& error) {
-    throw service::BadInputError(std::string(error.what()) + ", another map store?");
+    throw service::BadInputError(std::string(error.what()) + "; is another map store running?");
   }
   return locks;
 }
@@ -82,20 +82,22 @@ struct StoreOptions {
 
 void add_options(command_line::Command& app, StoreOptions& options) {
   map_store::MapStoreOptions& store = options.store;
-  app.add_option("--out", store.directory,
-                 "directory of the results, made if missing; needed unless a map is only shown");
+  app.add_option(
+      "--out", store.directory,
+      "directory of the results, created if missing; required without --map and --drawing");
   app.add_option("--database", store.database,
-                 "map database, with which the map store goes on; default: map.sqlite there");
+                 "map database to resume or create; default: map.sqlite in --out");
   app.add_flag("--new", options.anew,
-               "begin a new map; the database that is there is kept once, as NAME.previous.sqlite");
+               "begin a new map; the existing database is kept as NAME.previous.sqlite, which "
+               "replaces an older one");
   app.add_option("--continue", options.continued,
-                 "map (map.pb or map.sqlite) that a new map extends, as given to the localizer; it "
-                 "stays as it is")
+                 "map (map.pb or map.sqlite) that the new map extends, the same as for the "
+                 "localizer; the file is not changed")
       ->type_name("FILE");
   app.add_option("--title", store.title, "title of the pictures; default: the robot's name");
   app.add_option("--map", options.map,
-                 "map (map.pb or map.sqlite) that is shown as it is; nothing is taken in and "
-                 "nothing written")
+                 "map (map.pb or map.sqlite) to publish read-only: no input is processed, no "
+                 "result written")
       ->type_name("FILE");
   add_drawing_options(app, options.drawing);
   service::add_robots_option(app, options.robots);
@@ -105,7 +107,7 @@ void add_options(command_line::Command& app, StoreOptions& options) {
 void serve(const service::Setup& setup, const StoreOptions& options) {
   if (options.continued || options.anew || !options.store.directory.empty()) {
     throw service::UsageError(
-        "--map shows a map as it is: --out, --new and --continue do not go with it");
+        "--map publishes a read-only map: expected no --out, --new or --continue");
   }
   const pipeline::HybridMapConfig& config = setup.config.config.hybrid_map;
   storage::MapDrawing drawing = read_drawing(options.drawing, config.grid.resolution_m);
@@ -150,7 +152,7 @@ void keep_in_directory(const service::Setup& setup, StoreOptions& options) {
   const std::vector<support::FileLock> locks = lock(store);
   while (const auto snapshot = keep_until_restored(setup, options)) {
     storage::restore_snapshot(store.database, *snapshot);
-    spdlog::info("the map is that of snapshot {}", *snapshot);
+    spdlog::info("restored snapshot {}", *snapshot);
     store.continued.reset();
   }
 }

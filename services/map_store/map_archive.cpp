@@ -143,11 +143,12 @@ void MapArchive::check_file() {
   const std::uint64_t there = file_number(path_);
   if (there == file_) return;
   if (there != 0) {
-    throw std::runtime_error(path_.string() +
-                             ": another file has taken its place; stop the map store before you "
-                             "put a file there, or move it away");
+    throw std::runtime_error(
+        path_.string() +
+        ": another file has replaced the open database; move that file away, or stop "
+        "the map store before you put a file there");
   }
-  spdlog::warn("{} was removed: it is written again", path_.string());
+  spdlog::warn("{} was removed: writing it again", path_.string());
   std::filesystem::path again = path_;
   again += ".again";
   for (const char* part : {"", "-wal", "-shm"}) std::filesystem::remove(again.string() + part);

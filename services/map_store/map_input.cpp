@@ -75,10 +75,10 @@ void MapInput::check_stops(const msg::TrajectorySegment& message) const {
     const topomap::StopId named = service::from_msg(stop.stop());
     const topomap::StopId held = local_maps_[stop.local_map_id()].stop;
     if (named == held) continue;
-    throw std::invalid_argument(fmt::format(
-        "stop {} is stop {} of session {:016x}, in this map it is stop {} of session {:016x}: the "
-        "localizer does not go on with this map",
-        stop.local_map_id(), named.number, named.session, held.number, held.session));
+    throw std::invalid_argument(
+        fmt::format("stop {} of the localizer is stop {} of session {:016x}, but stop {} of "
+                    "session {:016x} in this map: the localizer does not extend this map",
+                    stop.local_map_id(), named.number, named.session, held.number, held.session));
   }
 }
 
@@ -113,10 +113,10 @@ void MapInput::renew() {
   const topomap::StopId first = trajectory.stops.front().stop;
   if (!before.empty() && !before.contains(first)) {
     renewal_.reset();
-    throw std::invalid_argument(fmt::format(
-        "stop {} of session {:016x} is the first one of a trajectory that is numbered anew, but "
-        "not in this map: the localizer does not go on with this map",
-        first.number, first.session));
+    throw std::invalid_argument(
+        fmt::format("the renumbered trajectory begins with stop {} of session {:016x}, which is "
+                    "not in this map: the localizer does not extend this map",
+                    first.number, first.session));
   }
   // A late stop must not remove anything from the map.
   bool late = false;

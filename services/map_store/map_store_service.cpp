@@ -157,7 +157,7 @@ bool MapStoreService::store(bool all) {
     }
     acknowledged_.publish(archive_.database());
     if (storing_fails_) {
-      spdlog::info("the map is stored again");
+      spdlog::info("storing the map works again");
       status.set_state(msg::kServiceRunning);
     }
     storing_fails_ = false;
@@ -331,7 +331,7 @@ void MapStoreService::end() {
   store(true);
   const storage::MapDocument document = final_document(input_.newest_trajectory(), hybrid_.rooms());
   write_results(options_.directory, document, options_.title);
-  spdlog::info("stopped: the map so far, {} local maps, {} nodes and {} branches, in {}",
+  spdlog::info("stopped: the map so far has {} local maps, {} nodes and {} branches, in {}",
                document.local_maps.size(), document.global_map.nodes.size(),
                document.global_map.branches.size(), options_.directory.string());
   keep(document.global_map);
@@ -339,12 +339,12 @@ void MapStoreService::end() {
 }
 
 void MapStoreService::finish(const topomap::Trajectory& trajectory) {
-  if (!store(true)) throw std::runtime_error("the map file could not be brought up to date");
+  if (!store(true)) throw std::runtime_error("cannot update the map file");
   // Same as a run in one process: room numbers of intermediate maps depend on their timing.
   const auto& before = options_.continued;
   const storage::MapDocument document =
       final_document(trajectory, before ? before->rooms : planning::RoomMemory{});
-  if (!publish(document.global_map)) throw std::runtime_error("the map could not be sent");
+  if (!publish(document.global_map)) throw std::runtime_error("cannot send the map");
   archive_.put(document.global_map);
   archive_.put(document.rooms);
   hybrid_.remember(document.rooms);
@@ -371,7 +371,7 @@ void MapStoreService::report_losses() {
   const std::optional<topomap::StopId> lost = input_.lost();
   if (!lost || service_.status().state() == msg::kServiceFailed) return;
   const std::string what = "local map " + std::to_string(lost->number) +
-                           " had to be dropped before the trajectory named it: the map ends there";
+                           " was dropped before the trajectory contained it: the map ends there";
   service_.status().fault("local map lost", what);
   service_.status().set_state(msg::kServiceFailed, what);
 }

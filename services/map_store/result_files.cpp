@@ -51,8 +51,8 @@ void begin_with(storage::MapDatabase& database, const storage::MapDocument& cont
   const std::uint64_t expected = storage::identified(continued).map_id;
   if (database.map_id() == expected) return;
   throw service::BadInputError(fmt::format(
-      "the map database holds map {:016x} and not {:016x}, which is to be continued; "
-      "leave out --continue to go on with it, or start once with --new, which sets it aside",
+      "the map database holds map {:016x}, expected {:016x} of --continue; omit --continue to "
+      "resume the database, or start once with --new, which sets it aside",
       database.map_id(), expected));
 }
 

@@ -36,7 +36,7 @@ void SnapshotQueue::make_next(Clock::time_point now) {
   if (!refused_requests_.empty()) {
     answer_->request = refused_requests_.front();
     refused_requests_.pop_front();
-    answer_->message = "too many requests wait, ask again later";
+    answer_->message = "too many requests are waiting, try again later";
     return;
   }
   answer_->request = waiting_.front();

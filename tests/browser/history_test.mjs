@@ -217,7 +217,7 @@ test("snapshots are made, compared and restored", async () => {
   const row = page.locator(".snapshots li", { has: page.getByRole("heading", { name: "half", exact: true }) });
   await row.getByRole("button", { name: "Restore" }).click();
   await row.getByRole("button", { name: "Restore it" }).click();
-  await notice(page, /becomes that of snapshot half/);
+  await notice(page, /restoring snapshot half/i);
   // The question is gone, and so are the differences from the previous map.
   assert.equal(await page.getByRole("button", { name: "Restore it" }).isVisible(), false);
   assert.equal(await page.getByText("Seen since").first().isVisible(), false);
@@ -273,7 +273,7 @@ test("another map of the place is merged once the operator has seen and accepted
   const joined = Number(/(\d+) stops of the smaller map/.exec(shown)[1]);
   assert.ok(joined > total / 2, shown); // the map of the morning is the smaller one
   await page.getByRole("button", { name: "Make it the map" }).click();
-  await notice(page, /becomes that of snapshot merged-/);
+  await notice(page, /restoring snapshot merged-/i);
   await wait_for("the merged map", async () => {
     const { status, bytes } = await get("/api/drive");
     return status === 200 && JSON.parse(bytes).total === facts("evening").stops + joined;

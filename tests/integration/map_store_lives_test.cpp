@@ -206,7 +206,7 @@ TEST_F(MapStoreLives, OnAFullDiskTheMapGoesOnInMemory) {
   store.wait_for_error_text("map.sqlite: cannot be read or written");
   EXPECT_LT(drive_.stored().session_stops(), drive_.stops() - 1);
   ASSERT_EQ(::prlimit(store.pid(), RLIMIT_FSIZE, &before, nullptr), 0);
-  store.wait_for_error_text("the map is stored again");
+  store.wait_for_error_text("storing the map works again");
   EXPECT_TRUE(drive_.wait_for_stored(drive_.stops() - 1));
   drive_.finish();
   store.wait_for_error_text("local maps, ");
@@ -256,11 +256,11 @@ TEST_F(MapStoreLives, StartedOnAFullDiskItWaitsForRoom) {
     Program status(scratch_, "topogeo",
                    {"status", "--domain", own_domain(), "--partition", partition_});
     const int code = status.wait();
-    return code != 0 && status.out().find("waits for room on the disk") != std::string::npos;
+    return code != 0 && status.out().find("waiting for disk space") != std::string::npos;
   }));
   EXPECT_FALSE(store->ended());
   ASSERT_EQ(::prlimit(store->pid(), RLIMIT_FSIZE, &before, nullptr), 0);
-  store->wait_for_error_text("there is room on the disk again");
+  store->wait_for_error_text("disk space is available again");
   drive_.finish();
   store->wait_for_error_text("local maps, ");
   EXPECT_TRUE(storage::map_file_bytes(drive_.map()) == read_file(file("map.pb")));

@@ -248,9 +248,9 @@ TEST_F(MapStoreShows, NothingOfWhatIsNoMap) {
   storage::write_map_file(scratch_ / "blind.pb", blind);
   expect({"--map", (scratch_ / "blind.pb").string()}, 3, "no stop with scan points");
   expect({"--map", write_map().string(), "--out", (scratch_ / "out").string()}, 2,
-         "--out, --new and --continue do not go with it");
+         "expected no --out, --new or --continue");
   expect({"--drawing", write("bad.world.yaml", "walls: 3").string()}, 3, "bad.world.yaml:1: walls");
-  expect({"--map", write_map().string(), "--drawing-pose", "1,2,3"}, 2, "go with a --drawing");
+  expect({"--map", write_map().string(), "--drawing-pose", "1,2,3"}, 2, "need --drawing");
   expect({"--drawing", write("a.world.yaml", kWorld).string(), "--drawing-pose", "1,2"}, 2,
          "--drawing-pose: ");
   expect({}, 2, "--out is required");

@@ -350,7 +350,7 @@ TEST_F(SharedMapServices, BeginAnewWithASnapshotThatIsRestored) {
   ASSERT_TRUE(
       eventually("the maps of both robots to be withdrawn", [&] { return withdrawn_ == 2; }))
       << withdrawn_ << ": what makes the mappers of both robots begin anew";
-  store->wait_for_error_text("the map is that of snapshot one");
+  store->wait_for_error_text("restored snapshot one");
   localizer->wait_for_error_text("restarting with the new map");
   localizer->wait_for_error_text(fmt::format("resuming with a map of {} stops", stops));
   const std::string database = (scratch_ / "out" / "map.sqlite").string();

@@ -86,7 +86,7 @@ TEST(DrawingOrder, AnotherVersionIsRefused) {
   for (const std::uint64_t version : {6U, 8U}) {
     const DrawingOutcome outcome = carry_out(order_of(drawn(), version), with_grid(7), 0.1);
     EXPECT_EQ(outcome.result, msg::kDrawingOtherVersion);
-    EXPECT_THAT(outcome.message, HasSubstr("somebody else"));
+    EXPECT_THAT(outcome.message, HasSubstr("another client saved"));
     EXPECT_FALSE(outcome.drawing);
   }
 }

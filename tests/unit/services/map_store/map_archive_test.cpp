@@ -231,7 +231,7 @@ TEST_F(Archive, AnotherFileInItsPlaceIsLeftAlone) {
   fs::rename(path_, directory_ / "moved.sqlite");
   std::ofstream(path_) << "something else";
   add(5, 10);
-  EXPECT_THAT(flush_error(), HasSubstr("another file has taken its place"));
+  EXPECT_THAT(flush_error(), HasSubstr("another file has replaced the open database"));
   std::ifstream in(path_);
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), "something else");
   fs::remove(path_);
