@@ -16,8 +16,8 @@ int main(int argc, char** argv) {
       [&](command_line::Command& app) {
         service::add_map_option(app, map_robot);
         app.add_option("--memory", memory,
-                       "keeps the goal, so that a navigator that is started again drives on to it "
-                       "though its client is gone; best in /run")
+                       "file with the goal, to which a restarted navigator drives on, even without "
+                       "its client; best in /run")
             ->type_name("FILE");
       },
       [&](const service::Setup& setup) {

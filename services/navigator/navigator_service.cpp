@@ -89,7 +89,7 @@ NavigatorService::~NavigatorService() {
 void NavigatorService::resume() {
   const std::optional<RememberedGoal> goal = memory_.load();
   if (!goal) return;
-  spdlog::info("goes on with goal {}{}{}", goal->order.goal_id, goal->paused ? ", paused" : "",
+  spdlog::info("resuming goal {}{}{}", goal->order.goal_id, goal->paused ? ", paused" : "",
                goal->stuck ? ", stuck" : "");
   goal_ = goal->order;
   paused_ = goal->paused;

@@ -41,8 +41,8 @@ msg::Route answer(const msg::Goal& goal, const planning::PlanningMaps& maps,
   if (!maps.any()) {
     return no_route(msg::kRouteNoMap,
                     maps.graph == nullptr
-                        ? "the map has no zone: nowhere on it is room for the robot"
-                        : "the map has no zone and no branch: nowhere on it is room for the robot");
+                        ? "the map has no zone: the robot fits nowhere on it"
+                        : "the map has no zone and no branch: the robot fits nowhere on it");
   }
   if (!pose) return no_route(msg::kRouteNoPose, "the robot has no pose yet");
   if (!localization::located(pose->status.state)) {
