@@ -48,20 +48,21 @@ std::uint32_t domain_of_environment(std::uint32_t otherwise) {
 }
 
 void add_bridge_options(command_line::Command& app, BridgeOptions& options) {
-  app.add_option("--ros", options.settings.file,
-                 "names, frames, directions and quality of service (YAML), as --print-settings has "
-                 "them")
+  app.add_option(
+         "--ros", options.settings.file,
+         "settings (YAML): names, frames, directions and quality of service; see --print-settings")
       ->type_name("FILE");
   app.add_option("-r,--remap", options.settings.remaps,
-                 "a topic of ROS by another name, as ROS has it: /scan:=/front/scan; __ns:=/robot1")
+                 "rename a ROS topic, with the syntax of ROS: /scan:=/front/scan; __ns:=/robot1")
       ->allow_extra_args(false)
       ->type_name("FROM:=TO");
   app.add_option("--namespace", options.settings.ros_namespace,
-                 "of the ROS topics whose names do not begin with '/'")
+                 "namespace of the ROS topics whose names do not begin with '/'")
       ->type_name("NAME");
   app.add_flag("--print-settings", options.print_settings,
-               "print the settings with every key documented, those of --ros if given, and end");
-  app.add_flag("--ros-args", options.ros_arguments, "does nothing: what follows may be pasted");
+               "print the settings, by default or of --ros, with every key documented, and exit");
+  app.add_flag("--ros-args", options.ros_arguments,
+               "ignored, so that arguments of ROS can be pasted");
   app.add_option("--ros-domain", options.ros_domain,
                  "DDS domain of the ROS nodes (default: ROS_DOMAIN_ID, else --domain)")
       ->check(command_line::range(0U, 232U));
@@ -72,14 +73,13 @@ void add_bridge_options(command_line::Command& app, BridgeOptions& options) {
                              : direction == "out" ? ros_bridge::Direction::kOut
                                                   : ros_bridge::Direction::kOff;
          },
-         "directions.sensors, whatever the file has; with out no velocity goes out")
+         "overrides directions.sensors; out also disables velocities to ROS")
       ->check(command_line::one_of({"in", "out", "off"}));
-  app.add_flag("--clock", options.clock, "directions.clock: true, whatever the file has");
-  app.add_flag("--replay", options.replay, "with sensors out: the scans are those of a log");
-  app.add_option(
-         "--show-mounting", options.show_mounting_s,
-         "print where the frames of ROS have the laser, as --laser takes it, and end; waits "
-         "so long for a scan")
+  app.add_flag("--clock", options.clock, "overrides directions.clock with true");
+  app.add_flag("--replay", options.replay, "with sensors out: the scans come from a log");
+  app.add_option("--show-mounting", options.show_mounting_s,
+                 "print the mounting of the laser by the transforms of ROS, in the form of "
+                 "--laser, and exit; longest wait for a scan")
       ->check(command_line::range(0.0, 3600.0))
       ->type_name("SECONDS");
   service::add_map_option(app, options.map_robot);
@@ -129,7 +129,7 @@ void show_mounting(service::Setup setup, ros_bridge::Settings settings, std::uin
   const auto mounting = bridge.mounting();
   if (!mounting) {
     throw std::runtime_error(fmt::format(
-        "no scan within {:.0f} s whose frame the transforms join with that of the robot", wait_s));
+        "no scan within {:.0f} s whose frame has a transform to the frame of the robot", wait_s));
   }
   std::cout << pipeline::mounting_argument(mounting->T_robot_laser) << '\n';
 }
@@ -140,8 +140,8 @@ int main(int argc, char** argv) {
   BridgeOptions options;
   return service::run_service(
       argc, argv, "ros_bridge",
-      "Joins a robot that speaks ROS 2: takes its scans, odometry, transforms and goals, gives it "
-      "map, pose, route and velocities.",
+      "Connects a ROS 2 robot: receives its scans, odometry, transforms and goals, publishes map, "
+      "pose, route and velocities.",
       [&](command_line::Command& app) { add_bridge_options(app, options); },
       [&](const service::Setup& setup) {
         if (options.print_settings) {

@@ -80,7 +80,7 @@ msg::MotionCommand to_motion(const ros::Twist& twist) {
   for (const double other :
        {twist.linear_().y_(), twist.linear_().z_(), twist.angular_().x_(), twist.angular_().y_()}) {
     if (!(std::fabs(other) < kNothing)) {
-      throw std::invalid_argument("expected speeds along x and about z alone");
+      throw std::invalid_argument("expected only linear.x and angular.z");
     }
   }
   msg::MotionCommand command;

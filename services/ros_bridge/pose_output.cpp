@@ -94,8 +94,8 @@ void PoseOutput::check_foreign(const std::string& parent, const std::string& chi
   if (std::ranges::find(sent_ns_, stamp_ns) != sent_ns_.end()) return;
   ros_.complain("second publisher of map -> odom",
                 parent + " -> " + child +
-                    " comes from another program, AMCL or slam_toolbox: end "
-                    "it, or set directions.map_to_odom: false");
+                    " is published by another program, for example AMCL or slam_toolbox: end it, "
+                    "or set directions.map_to_odom: false");
 }
 
 }  // namespace topogeo::ros_bridge

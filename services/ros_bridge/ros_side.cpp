@@ -30,7 +30,7 @@ void RosSide::say_once(const std::string& reason, const std::string& detail) {
   constexpr std::size_t kLongestDetail = 512;  // the names in it are as long as a peer chooses
   last_complaint_ = reason + (detail.empty() ? "" : ": " + detail.substr(0, kLongestDetail));
   if (said_.insert(reason).second) {
-    spdlog::warn("{} (said once, counted in the status)", last_complaint_);
+    spdlog::warn("{} (logged once, counted in the status)", last_complaint_);
   }
 }
 

@@ -119,7 +119,8 @@ bool ScanIntake::find_mounting(const std::string& laser_frame) {
   }
   const ros::LaserMounting mounting = ros::planar_mounting(*T_robot_laser);
   if (mounting.tilt_rad > ros::kLargestTilt_rad) {
-    count(IntakeDrop::kTilted, laser_frame + " does not look along the floor of " + robot_frame_);
+    count(IntakeDrop::kTilted,
+          laser_frame + " does not scan parallel to the floor of " + robot_frame_);
     return false;
   }
   mounting_ = mounting;

@@ -98,7 +98,7 @@ void SensorInput::on_odometry(const ros::Odometry& message, const messaging::Sam
   }
   const auto sample = to_sample(message);
   if (!sample) {
-    intake_.count(IntakeDrop::kInvalidOdometry, "a pose or a speed that no robot has");
+    intake_.count(IntakeDrop::kInvalidOdometry, "implausible pose or speed");
     return;
   }
   if (std::fabs(message.twist_().twist_().linear_().y_()) > kSidewaysMps) {
@@ -146,7 +146,7 @@ void SensorInput::on_odometry_transform(const ros::TransformStamped& message,
   }
   const auto sample = to_sample(message, last_transform_);
   if (!sample) {
-    intake_.count(IntakeDrop::kInvalidOdometry, "a transform that no robot has");
+    intake_.count(IntakeDrop::kInvalidOdometry, "implausible transform");
     return;
   }
   last_transform_ = sample;
@@ -231,7 +231,7 @@ void SensorInput::publish_state() {
 
 void SensorInput::finish() {
   if (!scans_.wait_for_acknowledgments(kLastDelivery)) {
-    ros_.service().status().fault("readers lack scans", "at the end");
+    ros_.service().status().fault("readers missed scans", "at the end");
   }
   msg::StreamEnd end;
   messaging::set_header(end, ros_.service().robot_id(), last_scan_ns_, 0);
@@ -239,7 +239,7 @@ void SensorInput::finish() {
   end.count(intake_.scans());
   end.last_id(intake_.scans() == 0 ? 0 : intake_.scans() - 1);
   if (!stream_end_.write(end) || !stream_end_.wait_for_acknowledgments(kLastDelivery)) {
-    ros_.service().status().fault("readers lack the stream end", "at the end");
+    ros_.service().status().fault("readers missed the stream end", "at the end");
   }
   spdlog::info("{} scans published", scans_sent_);
 }
