@@ -38,45 +38,47 @@ void add_options(command_line::Command& app, Arguments& arguments) {
   simulation::RobotOptions& robot = arguments.options.devices.robot;
   app.add_option("--world", arguments.world, "world file")->required()->type_name("FILE");
   app.add_option("--laser-port", arguments.options.devices.laser_port,
-                 "link to make to the laser's port")
+                 "path of the link to the laser's port")
       ->required();
   app.add_option("--base-port", arguments.options.devices.base_port,
-                 "link to make to the base's port")
+                 "path of the link to the base's port")
       ->required();
-  app.add_option("--base-baud", arguments.options.devices.base_baud, "rate of the base's line")
+  app.add_option("--base-baud", arguments.options.devices.base_baud, "baud rate of the base's line")
       ->check(command_line::one_of({1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200}))
       ->capture_default_str();
   // A person sets this with the manufacturer's program on a real laser.
   app.add_option("--protective-field", arguments.options.devices.protective_field_m,
-                 "radius of the field of the laser in which nothing may be ahead, metres; 0: none")
+                 "radius of the laser's protective field, which stops the robot, metres; 0: none")
       ->check(command_line::range(0.0, 4.0))
       ->capture_default_str();
   app.add_option("--warning-field", arguments.options.devices.warning_field_m,
-                 "radius of the field in which the robot goes slowly, metres; 0: none")
+                 "radius of the laser's warning field, which slows the robot down, metres; 0: none")
       ->check(command_line::range(0.0, 15.0))
       ->capture_default_str();
-  app.add_option("--seed", robot.seed, "of noise, drift, slip, doors and people")
+  app.add_option("--seed", robot.seed, "seed of noise, drift, slip, doors and people")
       ->capture_default_str();
   app.add_option("--odometry", arguments.odometry,
-                 "how the wheels err: mild, b21 (as one in a recorded log) or none")
+                 "errors of the odometry: mild, b21 (as in a recorded log) or none")
       ->check(command_line::one_of({"mild", "b21", "none"}))
       ->capture_default_str();
-  app.add_option("--sonars", arguments.sonars, "24 as a B21 has them, or the 6 of MACONDO")
+  app.add_option("--sonars", arguments.sonars,
+                 "number of sonars: 24 as on a B21, or 6 as on MACONDO")
       ->check(command_line::one_of({6, 24}))
       ->capture_default_str();
   app.add_option("--sonar-noise", arguments.sonar_noise,
-                 "how the sonars err: mild, or macondo (0.3 m and missing echoes beyond 2.5 m)")
+                 "errors of the sonars: mild, or macondo (0.3 m and missing echoes beyond 2.5 m)")
       ->check(command_line::one_of({"mild", "macondo"}))
       ->capture_default_str();
-  app.add_option("--slip", robot.slip.per_m, "slippery places in a metre")
+  app.add_option("--slip", robot.slip.per_m, "slippery places per metre")
       ->check(command_line::range(0.0, 10.0))
       ->capture_default_str();
-  app.add_option("--people", robot.wanderers, "who walk about, besides those of the world file")
+  app.add_option("--people", robot.wanderers,
+                 "number of people who walk about, besides those of the world file")
       ->check(command_line::range(0, 1000))
       ->capture_default_str();
   app.add_option("--time-factor", arguments.options.time_factor,
-                 "world time over real time; lines and devices are faster with it, so other than 1 "
-                 "is for programs whose clocks are, too")
+                 "world time over real time; devices and their lines speed up with it, so values "
+                 "other than 1 need programs whose clocks do, too")
       ->check(command_line::range(0.01, 100.0))
       ->capture_default_str();
 }
@@ -96,7 +98,7 @@ bool run(const service::Setup& setup, simulator::SimulatedWorld& world) {
   try {
     service.run();
   } catch (const service::StoodStill& error) {
-    spdlog::warn("{}: it meets its peers anew", error.what());
+    spdlog::warn("{}; connecting to the peers again", error.what());
     return service::Service::stopping();
   }
   return true;
@@ -107,7 +109,7 @@ bool run(const service::Setup& setup, simulator::SimulatedWorld& world) {
 int main(int argc, char** argv) {
   Arguments arguments;
   return service::run_service(
-      argc, argv, "simulator", "Emulates a laser and a base on serial ports, with a world behind.",
+      argc, argv, "simulator", "Emulates a laser and a base on serial ports in a simulated world.",
       [&](command_line::Command& app) { add_options(app, arguments); },
       [&](const service::Setup& setup) {
         simulation::RobotOptions& robot = arguments.options.devices.robot;

@@ -64,7 +64,7 @@ void PseudoTerminal::plug() {
   }
   support::FileDescriptor host_end(::open(name.data(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (!host_end.is_open() || !make_raw(host_end.get())) {
-    throw failure(link_, "cannot set a pseudo-terminal");
+    throw failure(link_, "cannot configure the pseudo-terminal");
   }
   std::error_code error;
   std::filesystem::create_symlink(name.data(), link_, error);

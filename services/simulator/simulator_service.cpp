@@ -115,7 +115,7 @@ void SimulatorService::publish_state() {
 
 void SimulatorService::on_command(const msg::SimulatorCommand& command) {
   const Fault fault = fault_from_msg(command);
-  spdlog::info("{}, as {} wants it", describe(fault), command.client_id().c_str());
+  spdlog::info("{}, requested by {}", describe(fault), command.client_id().c_str());
   world_.faults.begin(fault);
   service_.status().add_to_counter("faults_made");
 }

@@ -117,7 +117,7 @@ bool GatewayOnDevices::wait_for_begin() {
   return wait_for([&] {
     const std::string log = simulator_->err();
     int begun = 0;
-    for (std::size_t at = 0; (at = log.find("as test wants it", at)) != std::string::npos; ++at) {
+    for (std::size_t at = 0; (at = log.find("requested by test", at)) != std::string::npos; ++at) {
       ++begun;
     }
     return begun == strikes_;

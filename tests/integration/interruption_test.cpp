@@ -114,7 +114,7 @@ TEST_F(InterruptionTest, ASimulatorThatWasFrozenGoesOn) {
   ASSERT_THAT(simulator, SizeIs(1));
   const auto freeze = [&] { freeze_for_2_s(simulator[0]); };
   const auto met_anew = [&] {
-    return read_file(out_ + "/logs/simulator.log").find("meets its peers anew") !=
+    return read_file(out_ + "/logs/simulator.log").find("connecting to the peers again") !=
            std::string::npos;
   };
   ASSERT_TRUE(wait_for(
