@@ -127,9 +127,9 @@ int send_base_command(BaseRequest request) {
     return confirms(now, kind) || refuses(now, request.command);
   });
   if (!status) {
-    throw std::runtime_error(fmt::format("robot '{}' did not do it within {:.0f} ms{}",
-                                         request.robot_id, 1000.0 * request.wait_s,
-                                         patience.reason()));
+    throw std::runtime_error(
+        fmt::format("robot '{}' did not carry out the command within {:.0f} ms{}", request.robot_id,
+                    1000.0 * request.wait_s, patience.reason()));
   }
   print_base(*status);
   if (confirms(*status, kind)) return service::kOk;
@@ -156,7 +156,7 @@ void add_limits(command_line::Command& group, const std::shared_ptr<BaseRequest>
   limits->add_option("angular", (*values)[1], "rad/s")->required()->check(range);
   limits->add_option("linear-acceleration", (*values)[2], "m/s^2")->required()->check(range);
   limits->add_option("angular-acceleration", (*values)[3], "rad/s^2")->required()->check(range);
-  limits->footer("Never over those of the gateway's file of devices.");
+  limits->footer("Values above those of the gateway's device file are reduced to them.");
   add_base_options(*limits, *request);
   limits->callback([request, values, &exit_code] {
     request->command.kind(msg::kBaseSetLimits);
@@ -172,10 +172,10 @@ void add_limits(command_line::Command& group, const std::shared_ptr<BaseRequest>
 
 void add_base_command(command_line::Command& app, int& exit_code) {
   command_line::Command* group =
-      app.add_subcommand("base", "Show the base of a robot, halt it, let it go again");
+      app.add_subcommand("base", "Show, halt or release the base of a robot");
   group->require_subcommand(1);
   auto request = std::make_shared<BaseRequest>();
-  command_line::Command* status = group->add_subcommand("status", "What state it is in");
+  command_line::Command* status = group->add_subcommand("status", "Show its state");
   add_base_options(*status, *request);
   status->callback([request, &exit_code] { exit_code = show(*request); });
   command_line::Command* halt =
@@ -186,7 +186,7 @@ void add_base_command(command_line::Command& app, int& exit_code) {
     exit_code = send_base_command(*request);
   });
   command_line::Command* reset =
-      group->add_subcommand("reset", "It may move again, after a halt or an emergency stop");
+      group->add_subcommand("reset", "Let it move again after a halt or an emergency stop");
   add_base_options(*reset, *request);
   reset->callback([request, &exit_code] {
     request->command.kind(msg::kBaseReset);

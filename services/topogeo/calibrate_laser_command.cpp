@@ -155,18 +155,19 @@ int calibrate_laser_log(const CalibrateLaserOptions& options) {
 
 void add_calibrate_laser_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command = app.add_subcommand(
-      "calibrate-laser", "Estimate from a log where the laser sits on its robot");
+      "calibrate-laser", "Estimate the mounting of the laser on its robot from a log");
   auto options = std::make_shared<CalibrateLaserOptions>();
   add_topic_options(*command, options->topics);
   command->add_option("LOG", options->log, recording::kLogFormats)->required()->type_name("FILE");
   command
-      ->add_option(
-          "--config", options->config,
-          "configuration (YAML); its laser section, else the log, is where the search starts")
+      ->add_option("--config", options->config,
+                   "configuration (YAML); the search starts at its laser section, without it at "
+                   "that of the log")
       ->type_name("FILE");
   command
-      ->add_option("--out", options->out,
-                   "configuration to write with the values found; with --config all of its values")
+      ->add_option(
+          "--out", options->out,
+          "configuration to write: the values found and, with --config, all of its other values")
       ->type_name("FILE");
   command->footer(
       "Turns show x and y, straight paths show yaw: drive some minutes with both, turning to both\n"

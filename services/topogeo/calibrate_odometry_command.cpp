@@ -214,18 +214,20 @@ int calibrate_log(const CalibrateOptions& options) {
 
 void add_calibrate_odometry_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command = app.add_subcommand(
-      "calibrate-odometry", "Estimate from a log how wrong the odometry of its robot is");
+      "calibrate-odometry", "Estimate the odometry errors of a robot from a log");
   auto options = std::make_shared<CalibrateOptions>();
   add_topic_options(*command, options->topics);
   command->add_option("LOG", options->log, recording::kLogFormats)->required()->type_name("FILE");
   command
-      ->add_option("--reference", options->reference,
-                   "true trajectory of the robot (TUM) to measure by; without it scans are matched")
+      ->add_option(
+          "--reference", options->reference,
+          "true trajectory of the robot (TUM) as the reference; without it, scans are matched")
       ->type_name("FILE");
   add_config_option(*command, options->config);
   command
-      ->add_option("--out", options->out,
-                   "configuration to write with the values found; with --config all of its values")
+      ->add_option(
+          "--out", options->out,
+          "configuration to write: the values found and, with --config, all of its other values")
       ->type_name("FILE");
   command->footer(
       "Drive some minutes with turns to both sides, through rooms rather than one long corridor.\n"

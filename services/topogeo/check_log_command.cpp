@@ -136,27 +136,24 @@ void add_check_log_command(command_line::Command& app, int& exit_code) {
   command->add_flag("--json", request->json, "print everything as JSON");
   command
       ->add_option("--gap", request->options.longest_gap_s,
-                   "seconds between two scans that are too long")
+                   "report longer pauses between two scans, seconds")
       ->check(command_line::range(1e-3, kMost))
       ->default_str("five times the median, at least 2");
   command
-      ->add_option("--speed", request->options.largest_mps,
-                   "faster odometry is a jump, metres a second")
+      ->add_option("--speed", request->options.largest_mps, "report faster odometry as a jump, m/s")
       ->check(command_line::range(1e-3, kMost))
       ->capture_default_str();
-  command
-      ->add_option("--turn", request->options.largest_radps,
-                   "the same for rotation, radians a second")
+  command->add_option("--turn", request->options.largest_radps, "the same for rotation, rad/s")
       ->check(command_line::range(1e-3, kMost))
       ->capture_default_str();
   command
       ->add_option("--stuck", request->options.stuck_scans,
-                   "so many identical scans in a row are a fault")
+                   "report this many identical scans in a row")
       ->check(command_line::range(2U, 1'000'000U))
       ->capture_default_str();
   command
       ->add_option("--findings", request->options.findings,
-                   "how many of each kind to show; all are counted")
+                   "faults of each kind to show; all are counted")
       ->check(command_line::range(std::size_t{1}, std::size_t{1'000'000}))
       ->capture_default_str();
   command->footer("Exit codes: 0 no fault, 1 faults found, 2 not a log that can be read.");

@@ -151,10 +151,10 @@ void print_errors_json(const Figures& figures) {
 
 void check_options(const CompareOptions& options) {
   if (options.loops) {
-    if (options.relations) throw service::UsageError("--relations compares no --loops");
+    if (options.relations) throw service::UsageError("--relations excludes --loops");
     return;
   }
-  if (options.report) throw service::UsageError("--report belongs to --loops");
+  if (options.report) throw service::UsageError("--report needs --loops");
   if (options.estimate.extension() == ".pb") {
     throw service::UsageError(fmt::format(
         "{} is a map, expected a trajectory (TUM) such as trajectory.tum; --loops compares the "
@@ -208,7 +208,8 @@ void add_compare_command(command_line::Command& app, int& exit_code) {
           "--config", options->config,
           "configuration (YAML) with the place of the laser: the reference is of the laser")
       ->type_name("FILE");
-  command->add_flag("--loops", options->loops, "which revisits of the map ESTIMATE became loops");
+  command->add_flag("--loops", options->loops,
+                    "compare the loop closures of the map ESTIMATE with its revisits");
   command
       ->add_option("--report", options->report,
                    "report of the run that made the map; default: report.json beside it")

@@ -55,7 +55,7 @@ void add_config_command(command_line::Command& app, int& exit_code) {
                    "take the values of this file instead of the defaults")
       ->type_name("FILE");
   command->add_flag("--devices", options->devices,
-                    "the file of a robot's devices instead, for --devices of other commands");
+                    "print the device file instead, for --devices of other commands");
   command->add_flag("--markdown", options->markdown,
                     "tables of keys, defaults and ranges instead of YAML");
   command->callback([options, &exit_code] {

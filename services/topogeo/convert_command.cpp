@@ -54,7 +54,7 @@ void add_convert_command(command_line::Command& app, int& exit_code) {
       ->type_name("OUT");
   command
       ->add_option("--compression", request->options.compression,
-                   "of an .mcap none, lz4 or zstd; of a .bag none, lz4 or bz2")
+                   "compression: none, lz4 or zstd for .mcap; none, lz4 or bz2 for .bag")
       ->default_str("zstd; none for a .bag")
       ->type_name("NAME");
   add_topic_options(*command, request->options.topics);

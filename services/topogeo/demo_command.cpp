@@ -164,7 +164,7 @@ void add_demo_command(command_line::Command& app, int& exit_code) {
   auto web = std::make_shared<WebOptions>();
   auto with_web = std::make_shared<bool>(false);
   command_line::Option* page = command->add_flag(
-      "--web", *with_web, "a page in the browser to send a simulated robot from, up to Ctrl-C");
+      "--web", *with_web, "open a page in the browser to send a simulated robot, until Ctrl-C");
   page->excludes(sim)->excludes(command->get_option("--goto"));
   add_web_options(*command, *web, page);
   command->callback([options, web, with_web, &exit_code] {

@@ -88,7 +88,7 @@ std::vector<Finding> examine_domain(const DomainView& view) {
     return {{"domain", Severity::kProblem,
              "this program cannot join the domain: " + std::string(error.what()),
              "services would fail in the same way",
-             "mend what is found above, or the file it names"}};
+             "fix the problems above, or the file that the message names"}};
   }
 }
 
@@ -107,7 +107,7 @@ int examine(const DoctorOptions& options) {
 
 void add_doctor_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command = app.add_subcommand(
-      "doctor", "Find what is wrong on this machine and between the services on the network");
+      "doctor", "Check this machine and the services on the network for problems");
   auto options = std::make_shared<DoctorOptions>();
   add_domain_options(*command, options->view);
   command
@@ -121,7 +121,7 @@ void add_doctor_command(command_line::Command& app, int& exit_code) {
       ->type_name("FILE");
   command->add_flag("--alone", options->alone, "this machine only: join no domain");
   command->add_flag("--json", options->json,
-                    "for programs: severity, what, why and remedy of each");
+                    "for programs: severity, problem, reason and remedy of each");
   command->footer(
       "Run it as the user that the services run as, with their environment and options:\n"
       "  sudo -u topogeo topogeo doctor\n"

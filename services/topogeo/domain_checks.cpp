@@ -54,7 +54,7 @@ Findings check_units(const DomainFacts& facts) {
            fmt::format("{} of this host {} and none is found on domain {}",
                        facts.units == 1 ? "1 unit" : fmt::format("{} units", facts.units),
                        facts.units == 1 ? "runs" : "run", facts.domain),
-           "this command looks elsewhere, or the services cannot be heard",
+           "this command uses other settings, or the services are not reachable",
            "use the environment of the services: TOPOGEO_DOMAIN, TOPOGEO_SECURITY and the others "
            "of /etc/topogeo/topogeo.env (a PC with workers: worker.env)"}};
 }
@@ -76,13 +76,13 @@ Findings check_cpu(const DomainFacts& facts) {
   }
   Findings found;
   for (const auto& [host, names] : services) {
-    found.push_back(
-        {"", kHint,
-         fmt::format("the CPU of {} is short: timers fire up to {:.1f} s late ({})", host,
-                     delay_s[host], joined(names)),
-         "scans and poses come late, and a robot that has only late ones stands",
-         "run less there: workers (ga_worker), map store and page on another machine, fewer "
-         "--workers or --slots; give it more: CPUQuota= of the unit, --cpus of the container"});
+    found.push_back({"", kHint,
+                     fmt::format("the CPU of {} is short: timers fire up to {:.1f} s late ({})",
+                                 host, delay_s[host], joined(names)),
+                     "scans and poses arrive late, and a robot that gets only late ones stops",
+                     "reduce its load: workers (ga_worker), map store and page on another machine, "
+                     "fewer --workers or --slots; or raise its limit: CPUQuota= of the unit, "
+                     "--cpus of the container"});
   }
   return found;
 }
@@ -198,7 +198,7 @@ Findings check_configurations(const DomainFacts& facts) {
       what += fmt::format(" {:016x} ({});", fingerprint, joined(services));
     }
     what.pop_back();
-    found.push_back({"", kProblem, what, "one of them works with settings that another contradicts",
+    found.push_back({"", kProblem, what, "the services of a robot must use the same settings",
                      "give all the same --config, then restart them"});
   }
   return found;
@@ -219,15 +219,15 @@ Findings check_qos(const DomainFacts& facts) {
     found.push_back({"", kProblem,
                      fmt::format("{}: writer {} and reader {} differ in {}", mismatch.writer.topic,
                                  name_of(mismatch.writer), name_of(mismatch.reader), mismatch.what),
-                     "nothing of this topic gets from one to the other", remedy});
+                     "no message of this topic gets from one to the other", remedy});
   }
   for (const msg::ServiceStatus& status : facts.services) {
     for (const msg::FaultCount& fault : status.faults()) {
       if (fault.reason() != "incompatible_qos") continue;
       found.push_back({"", kProblem,
-                       fmt::format("{} has met {} peers that it cannot be connected with",
-                                   name_of(status), fault.count()),
-                       "nothing gets from one to the other", remedy});
+                       fmt::format("{} found {} peers that it cannot connect to", name_of(status),
+                                   fault.count()),
+                       "no message gets from one to the other", remedy});
     }
   }
   return found;
@@ -248,7 +248,7 @@ Findings check_clocks(const DomainFacts& facts) {
         {"", off_s < kWrongClock_s ? kHint : kProblem,
          fmt::format("the clock of {} is {:.2f} s {} of this one", host, off_s,
                      clock.lag_s() > 0.0 ? "behind" : "ahead"),
-         "certificates, logs and `topogeo status` go by it",
+         "certificates, logs and `topogeo status` depend on it",
          "run chrony on both, with one of them as the server where there is no internet"});
   }
   return found;
@@ -273,17 +273,17 @@ Findings check_inputs(const DomainFacts& facts) {
       const msg::ServiceStatus* const service = heard.status;
       const std::string why = messaging::deafness(heard, services);
       if (why.empty()) continue;
-      found.push_back({"", kProblem, name_of(*service) + " is " + why,
-                       "one of the two has forgotten the other, after an interruption that the "
-                       "other has not noticed",
-                       "restart " + service->service().to_string()});
+      found.push_back(
+          {"", kProblem, name_of(*service) + " is " + why,
+           "after an interruption, one of the two dropped the connection unnoticed by the other",
+           "restart " + service->service().to_string()});
     }
   }
   return found;
 }
 
 std::string good_inputs(const DomainFacts& /*facts*/) {
-  return "what is sent to the services arrives";
+  return "messages to the services arrive";
 }
 
 // --- strangers
@@ -310,9 +310,9 @@ Findings check_strangers(const DomainFacts& facts) {
   }
   if (services.empty()) return {};
   return {{"", kHint, fmt::format("{} forged messages to {} were refused", sum, joined(services)),
-           "somebody on the network takes the name of a service",
+           "a program on the network impersonates a service",
            "find the sender (tcpdump udp portrange 7400-7999) and keep it off the network; without "
-           "TOPOGEO_SECURITY it can speak as any service"}};
+           "TOPOGEO_SECURITY it can impersonate any service"}};
 }
 
 std::string good_strangers(const DomainFacts& /*facts*/) {

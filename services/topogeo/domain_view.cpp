@@ -38,7 +38,7 @@ void add_robot_option(command_line::Command& app, std::string& robot_id, const c
 
 void add_domain_options(command_line::Command& app, DomainView& view) {
   service::add_domain_option(app, view.domain);
-  app.add_option("--partition", view.partition, "only what lives in this partition; *: all")
+  app.add_option("--partition", view.partition, "only services in this partition; *: all")
       ->capture_default_str();
   app.add_option("--profiles", view.profiles_file, "QoS profiles instead of the built-in ones")
       ->type_name("FILE");
@@ -46,9 +46,9 @@ void add_domain_options(command_line::Command& app, DomainView& view) {
 
 void add_view_options(command_line::Command& app, DomainView& view) {
   add_domain_options(app, view);
-  app.add_flag("--watch", view.watch, "again twice a second until Ctrl-C");
+  app.add_flag("--watch", view.watch, "refresh twice a second until Ctrl-C");
   app.add_option("--wait-seconds", view.wait_s,
-                 "how long to wait while none is found, and for those that are found late")
+                 "how long to wait for the first one, and for late ones")
       ->check(command_line::range(0.1, kLongestWait_s))
       ->capture_default_str();
 }

@@ -57,7 +57,7 @@ int show(const DrawOptions& options) {
   storage::MapDrawing drawing = service::from_msg(state.content());
   std::cout << fmt::format("# version {}{}{}\n", state.version(),
                            state.has_grid() ? ", over a drawn grid" : "",
-                           state.is_stored() ? "" : ", not stored: the map is only shown")
+                           state.is_stored() ? "" : ", not stored: the map is read-only")
             << planning::zone_drawing_text(
                    {std::move(drawing.zones), std::move(drawing.places), std::move(drawing.lines)});
   return service::kOk;
@@ -93,7 +93,7 @@ int replace(const DrawOptions& options) {
 
 void add_draw_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command =
-      app.add_subcommand("draw", "Show what is drawn on the live map, or replace it by a file");
+      app.add_subcommand("draw", "Show the drawing of the live map, or replace it by a file");
   auto options = std::make_shared<DrawOptions>();
   command
       ->add_option("file", options->file,
@@ -101,7 +101,7 @@ void add_draw_command(command_line::Command& app, int& exit_code) {
       ->type_name("FILE");
   command
       ->add_option("--if-version", options->version,
-                   "refuse it when the drawing has another version by now")
+                   "refuse the file unless this is still the version of the drawing")
       ->needs(command->get_option("file"));
   add_robot_option(*command, options->robot_id, "whose live map");
   add_domain_options(*command, options->view);

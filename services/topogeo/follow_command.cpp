@@ -150,7 +150,7 @@ class Follower {
  private:
   void say_waiting() const {
     std::cerr << fmt::format(
-        "topogeo: waits for a map store of robot '{}' on domain {}, partition '{}'\n",
+        "topogeo: waiting for a map store of robot '{}' on domain {}, partition '{}'\n",
         request_.robot_id, request_.view.domain, request_.view.partition);
   }
 
@@ -188,17 +188,17 @@ void add_follow_command(command_line::Command& app, int& exit_code) {
   request->view.partition = messaging::kDefaultPartition;
   add_robot_option(*command, request->robot_id, "whose map");
   add_domain_options(*command, request->view);
-  command->add_flag("--once", request->once, "show the map that there is and end");
+  command->add_flag("--once", request->once, "show the current map and exit");
   command->add_flag("--json", request->json, "for programs: one JSON object on each line");
   command
       ->add_option(
           "--out", request->out,
-          "keep the map in this file, too: .graphml or .geojson, as `topogeo store export`")
+          "also write the map to this file (.graphml or .geojson), like `topogeo store export`")
       ->type_name("FILE");
   command->footer(
       "Lines begin with + (new), ~ (changed) or - (gone); an update ends with the line of the "
       "map.\n"
-      "Shown are whole maps only, whatever was missed. Without a map store the last map stands.\n"
+      "Only complete maps are shown. Without a map store the last map remains.\n"
       "Ends with Ctrl-C, or with --once when there is a map. docs/follow_map.md: the same in C++.");
   command->callback([request, &exit_code] {
     check_out(request->out);

@@ -54,14 +54,13 @@ void add_goal_options(command_line::Command& app, GoalOptions& options) {
       ->check(command_line::range(-360.0, 360.0))
       ->type_name("DEG");
   app.add_flag("--look-around", options.look_around,
-               "without a pose it may turn and move a little to find one");
+               "let a robot without a pose turn and move a little to find one");
   app.add_option("--picture", options.picture, "draw the route on the map as .png or .svg")
       ->type_name("FILE");
   constexpr double kLongest_s = 86400.0;
-  app.add_option(
-         "--patience", options.patience_s,
-         "give the goal up when the robot has not driven for so many seconds; time in which its "
-         "services are short of CPU does not count")
+  app.add_option("--patience", options.patience_s,
+                 "give the goal up when the robot has not moved for this many seconds, without the "
+                 "time in which its services are short of CPU")
       ->check(command_line::range(1.0, kLongest_s))
       ->capture_default_str();
 }

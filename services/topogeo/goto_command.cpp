@@ -58,7 +58,7 @@ int send_order(const GotoOptions& options) {
   });
   std::cout << supervision::progress_line(*client.status()) << '\n';
   if (done) return service::kOk;
-  throw std::runtime_error(fmt::format("robot '{}' did not do it within {:.0f} s{}",
+  throw std::runtime_error(fmt::format("robot '{}' did not carry out the order within {:.0f} s{}",
                                        options.robot.robot_id, options.robot.wait_s,
                                        patience.reason()));
 }
@@ -86,7 +86,7 @@ int go_there(const GotoOptions& options) {
     session.tick();
     if (const std::string busy = session.client().too_busy(); !busy.empty() && !busy_reported) {
       busy_reported = true;
-      session.progress().print(busy + "; what it does takes longer");
+      session.progress().print(busy + "; the drive takes longer");
     }
   }
   session.progress().finish();
@@ -111,9 +111,9 @@ void add_goto_command(command_line::Command& app, int& exit_code) {
       command->add_option("target", options->goal.target, "where to: a point, a node or a place")
           ->type_name("PLACE|X,Y|#NODE");
   add_goal_options(*command, options->goal);
-  command->add_flag("--no-wait", options->no_wait, "do not wait until it is there");
+  command->add_flag("--no-wait", options->no_wait, "do not wait for the arrival");
   command_line::Option* cancel =
-      command->add_flag("--cancel", options->cancel, "stop and forget the goal that it has");
+      command->add_flag("--cancel", options->cancel, "stop and drop the current goal");
   command_line::Option* pause =
       command->add_flag("--pause", options->pause, "stop and keep the goal");
   command_line::Option* resume =
@@ -123,7 +123,7 @@ void add_goto_command(command_line::Command& app, int& exit_code) {
   resume->excludes(target);
   add_robot_options(*command, options->robot);
   command->footer(
-      "Ctrl-C stops the robot. Where this program is killed the robot drives on to its goal.");
+      "Ctrl-C stops the robot. If this program is killed, the robot drives on to its goal.");
   command->callback([options, target, &exit_code] {
     if (!options->is_order() && target->count() == 0) {
       throw service::UsageError(

@@ -57,8 +57,8 @@ void take_installed_settings() {
   std::error_code error;
   if (!file && std::filesystem::exists(kSettings, error)) {
     std::cerr << "topogeo: " << kSettings
-              << " cannot be read by this user: its domain, robot and security are not taken from "
-                 "there; root and members of the group topogeo can\n";
+              << " cannot be read by this user: its domain, robot and security settings are not "
+                 "used; root and members of the group topogeo can read it\n";
   }
   const std::map<std::string, std::string> variables = environment_in(file);
   for (const char* const name : kOfCommands) {

@@ -75,7 +75,7 @@ void add_config_option(command_line::Command& app, std::optional<std::filesystem
 }
 
 void add_width_option(command_line::Command& app, std::uint32_t& width_px) {
-  app.add_option("--width", width_px, "of the picture, pixels")
+  app.add_option("--width", width_px, "width of the picture, pixels")
       ->check(command_line::range(400U, 16384U))
       ->type_name("PX")
       ->capture_default_str();
@@ -94,23 +94,23 @@ void add_common_options(command_line::Command& app, JobOptions& options) {
 void add_topic_options(command_line::Command& app, recording::TopicChoice& topics) {
   app.add_option_function(
          "--sweep", [&topics](const std::string& order) { topics.sweep = ros::sweep_order(order); },
-         "of a recording of ROS: take the motion during a scan out by time_increment, whose rays "
-         "come one after the other (forward) or, as of many clockwise scanners, the last first "
-         "(backward)")
+         "for a ROS recording: correct the motion during a scan by time_increment, with the first "
+         "ray first (forward) or, as in many clockwise scanners, the last ray first (backward)")
       ->check(command_line::one_of({"none", "forward", "backward"}));
   app.add_option("--scan-topic", topics.scan,
-                 "laser scans of a recording (default: /scan, else the one with most messages)")
+                 "topic of the laser scans in a recording (default: /scan, else the one with most "
+                 "messages)")
       ->type_name("TOPIC");
   app.add_option("--odometry-topic", topics.odometry,
-                 "its odometry, or its transforms (default: /odom, else the one with most "
-                 "messages, else odom -> base_link of /tf)")
+                 "topic of the odometry or transforms in a recording (default: /odom, else the one "
+                 "with most messages, else odom -> base_link of /tf)")
       ->type_name("TOPIC");
 }
 
 void add_log_options(command_line::Command& app, JobOptions& options) {
   app.add_option("--log", options.log, recording::kLogFormats)->required()->type_name("FILE");
   add_topic_options(app, options.topics);
-  app.add_option("--out", options.out, "directory for the results; made if it does not exist")
+  app.add_option("--out", options.out, "directory for the results; created if missing")
       ->required()
       ->type_name("DIR");
   add_common_options(app, options);
@@ -121,8 +121,8 @@ void add_log_options(command_line::Command& app, JobOptions& options) {
 
 void add_overlaps_option(command_line::Command& app, JobOptions& options) {
   app.add_flag("--overlaps", options.overlaps,
-               "report.json also holds for each stop the earlier ones that see the same, and the "
-               "solutions of a search in each that it was matched with");
+               "add to report.json, for each stop, the earlier stops with the same view, and the "
+               "solutions of a search in each stop that it was matched with");
 }
 
 void add_overlaps(storage::Report& report, const JobOptions& options,
@@ -136,20 +136,21 @@ void add_overlaps(storage::Report& report, const JobOptions& options,
 void add_map_options(command_line::Command& app, JobOptions& options, StoredMapUse use) {
   command_line::Option* map = nullptr;
   if (use != StoredMapUse::kContinue) {
-    map = app.add_option("--map", options.map, "map.pb to localize in, which stays as it is")
-              ->type_name("FILE");
+    map =
+        app.add_option("--map", options.map, "map.pb to localize in, read-only")->type_name("FILE");
   }
   if (use == StoredMapUse::kLocalize) map->required();
   if (use != StoredMapUse::kLocalize) {
     command_line::Option* continued =
         app.add_option("--continue", options.continued,
-                       "map.pb to extend: the robot finds its place in it, then maps on; the file "
-                       "stays as it is, the whole map is in --out")
+                       "map.pb to extend: the robot is localized in it, then maps on; the file is "
+                       "not changed, the whole map is written to --out")
             ->type_name("FILE");
     if (map != nullptr) map->excludes(continued);
   }
-  app.add_option("--initial-pose", options.initial_pose,
-                 "where in that map the log starts, m and degrees (default: it is searched for)")
+  app.add_option(
+         "--initial-pose", options.initial_pose,
+         "initial pose of the log in that map, m and degrees (default: search the whole map)")
       ->check([](const std::string& text) -> std::string {
         try {
           static_cast<void>(pipeline::parse_pose(text));

@@ -52,7 +52,7 @@ void add_localizer_command(command_line::Command& app, int& exit_code) {
   group->require_subcommand(1);
   auto request = std::make_shared<LocalizerRequest>();
 
-  command_line::Command* set_pose = group->add_subcommand("set-pose", "The robot is there");
+  command_line::Command* set_pose = group->add_subcommand("set-pose", "Set the pose of the robot");
   set_pose->add_option("pose", request->pose, "x,y,degrees in the map")->required();
   add_request_options(*set_pose, *request);
   set_pose->callback([request, &exit_code] {
@@ -77,7 +77,7 @@ void add_localizer_command(command_line::Command& app, int& exit_code) {
   });
 
   command_line::Command* mode =
-      group->add_subcommand("mode", "Map, or localize in the map as it is");
+      group->add_subcommand("mode", "Extend the map, or localize in it without changes");
   mode->add_option("mode", request->mode, "mapping or localization")
       ->required()
       ->check(command_line::one_of({"mapping", "localization"}));

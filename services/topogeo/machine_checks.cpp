@@ -62,7 +62,7 @@ Findings check_ports(const MachineFacts& facts) {
     found.push_back(problem(
         fmt::format("UDP port {} of domain {} cannot be opened: {}{}", facts.discovery_port,
                     facts.domain, facts.discovery_port_error, owner),
-        "services hear of each other there",
+        "services discover each other there",
         fmt::format("end that program (`ss -ulnp sport = :{}` as root names it), or use another "
                     "--domain everywhere",
                     facts.discovery_port)));
@@ -134,7 +134,7 @@ Findings check_route(const MachineFacts& facts) {
   if (!facts.found_by.empty() || facts.multicast_route) return {};
   const std::string interface = facts.multicast.empty() ? "lo" : facts.multicast[0].interface;
   return {problem(fmt::format("no route leads to {}", kDiscoveryGroup),
-                  "the system may refuse to send what services announce themselves with",
+                  "the system may refuse to send the announcements of services",
                   fmt::format("`ip route add 239.255.0.0/16 dev {}`", interface))};
 }
 
@@ -178,14 +178,14 @@ Findings check_shared_memory(const MachineFacts& facts) {
     found.push_back(problem(
         fmt::format("{} segments ({}) of programs that were killed", facts.dead_segments,
                     mega(facts.dead_bytes)),
-        "they fill /dev/shm, and others may wait for the dead",
+        "they fill /dev/shm, and other programs may wait for them",
         "any service that starts removes those of its user; others: `rm /dev/shm/fastrtps_*` while "
         "no service runs"));
   }
   if (facts.shared_memory_free_bytes < kLeastSharedMemory_bytes) {
     found.push_back(
         problem(fmt::format("{} are free", mega(facts.shared_memory_free_bytes)),
-                "a service takes 4 MB there and ends without them",
+                "a service needs 4 MB there and fails without them",
                 "`mount -o remount,size=256M /dev/shm` (containers: --shm-size), " + without));
   } else if (facts.shared_memory_free_bytes < kGoodSharedMemory_bytes) {
     found.push_back(hint(fmt::format("{} are free", mega(facts.shared_memory_free_bytes)),
@@ -205,7 +205,7 @@ std::string good_shared_memory(const MachineFacts& facts) {
 Findings check_serial_ports(const MachineFacts& facts) {
   if (!facts.devices_error.empty()) {
     return {problem(facts.devices_error, "the sensor gateway would not start",
-                    "mend the file; `topogeo config --devices` prints a new one")};
+                    "fix the file; `topogeo config --devices` prints a new one")};
   }
   Findings found;
   for (const SerialPortFacts& port : facts.serial_ports) {
@@ -280,14 +280,14 @@ Findings check_cpu_time(const MachineFacts& facts) {
     found.push_back(hint(
         fmt::format("a quota of {:.2g} CPUs has stopped programs here in {:.0f} % of its periods",
                     *cpu.quota, 100.0 * stopped / static_cast<double>(cpu.quota_periods)),
-        "what is stopped comes late, though the machine may have CPUs free", remedy));
+        "stopped programs are late, even if the machine has idle CPUs", remedy));
   }
   const double threads = cpu.load / cpu.processors;
   const bool waits = !cpu.pressure_share || *cpu.pressure_share >= kMuchPressure;
   if (threads >= kCrowded && waits) {
     found.push_back(hint(
         fmt::format("the CPU is short: {:.1f} threads for each CPU ({})", threads, describe(cpu)),
-        "scans and poses come late, and a robot that has only late ones stands", remedy));
+        "scans and poses arrive late, and a robot that gets only late ones stops", remedy));
   }
   return found;
 }
@@ -308,7 +308,7 @@ Findings check_memory(const MachineFacts& facts) {
   }
   if (facts.memory_available_bytes < kLeastMemory_bytes) {
     found.push_back(problem(fmt::format("{} are free", mega(facts.memory_available_bytes)),
-                            "the system ends a service when nothing is left",
+                            "the kernel kills a service when no memory is left",
                             "end other programs, or move workers and map store to a PC"));
   } else if (facts.memory_available_bytes < kGoodMemory_bytes) {
     found.push_back(hint(fmt::format("{} are free", mega(facts.memory_available_bytes)),

@@ -195,7 +195,7 @@ std::shared_ptr<const planning::HybridMap> live_map(const PlacesOptions& options
 int places(const PlacesOptions& options) {
   if (!options.added.empty() || !options.removed.empty()) edit(options);
   if (options.source == kLive) {
-    if (options.zones) throw service::UsageError("--zones goes with a file");
+    if (options.zones) throw service::UsageError("--zones needs a file, not the live map");
     print_places(*live_map(options));
   } else {
     print_file(options);
@@ -216,10 +216,9 @@ void add_places_command(command_line::Command& app, int& exit_code) {
       ->type_name("FILE|live");
   command
       ->add_option("--add", options->added,
-                   "put a place into a map file, or move it there; with a heading it is a "
-                   "base station")
+                   "add a place to a map file, or move it; with a heading it is a base station")
       ->type_name("NAME=X,Y[,DEG]");
-  command->add_option("--remove", options->removed, "take a place out of a map file")
+  command->add_option("--remove", options->removed, "remove a place from a map file")
       ->type_name("NAME");
   command->add_option("--zones", options->zones, "drawn zones and places (YAML) beside a file")
       ->type_name("FILE");

@@ -167,8 +167,7 @@ void add_plan_command(command_line::Command& app, int& exit_code) {
   command->add_option("--config", options->config, "configuration (YAML), for its planning section")
       ->type_name("FILE");
   command
-      ->add_option("--block", options->blocks,
-                   "something stands there that is not on the map; can be given again")
+      ->add_option("--block", options->blocks, "obstacle that is not on the map; may be repeated")
       ->type_name("X,Y")
       ->allow_extra_args(false);
   command->add_option("--picture", options->picture, "write the route on the map as .png or .svg")

@@ -33,8 +33,8 @@ void record(const RecordRequest& request) {
 void add_record_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command =
       app.add_subcommand("record",
-                         "Write the scans that a sensor gateway gives as a log, with poses, graph "
-                         "and grid if it holds them");
+                         "Record the scans of a sensor gateway as a log, with poses, graph and "
+                         "grid if its format has them");
   auto request = std::make_shared<RecordRequest>();
   request->view.partition = messaging::kDefaultPartition;
   command
@@ -47,7 +47,7 @@ void add_record_command(command_line::Command& app, int& exit_code) {
   add_robot_option(*command, request->robot_id, "whose scans");
   command
       ->add_option("--laser", request->laser,
-                   "mounting of the laser, m and rad, which the log is to state (default: 0,0,0)")
+                   "mounting of the laser to write into the log, m and rad (default: 0,0,0)")
       ->type_name("X,Y,YAW");
   add_domain_options(*command, request->view);
   command->footer(

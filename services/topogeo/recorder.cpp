@@ -118,7 +118,7 @@ void Recorder::run() {
   std::uint64_t missing = missing_;
   if (expected_ && *expected_ > next_) missing += *expected_ - next_;
   if (missing > 0) throw std::runtime_error(std::to_string(missing) + " scans are missing");
-  if (recorded_ == 0) throw std::runtime_error("no scan came");
+  if (recorded_ == 0) throw std::runtime_error("received no scan");
 }
 
 void Recorder::report() {
@@ -130,16 +130,16 @@ void Recorder::report() {
   std::cerr << " recorded in " << request_.out.string() << '\n';
   if (first_ > 0) {
     std::cerr << "topogeo: the first of them is number " << first_
-              << " of its source: the recording was started after it\n";
+              << " of its source: the recording started late\n";
   }
   if (poses_came_ > 0 && next_pose_ < next_) {
-    std::cerr << "topogeo: of the last " << next_ - next_pose_ << " scans no pose came\n";
+    std::cerr << "topogeo: received no pose of the last " << next_ - next_pose_ << " scans\n";
   }
   if (log_.holds_poses() && mapped_ && !has_graph()) {
-    std::cerr << "topogeo: the finished graph did not come\n";
+    std::cerr << "topogeo: received no finished graph\n";
   }
   if (log_.holds_poses() && mapped_ && !has_grid()) {
-    std::cerr << "topogeo: the finished grid did not come\n";
+    std::cerr << "topogeo: received no finished grid\n";
   }
 }
 
@@ -151,7 +151,7 @@ void Recorder::take(const msg::Scan& message) {
     if (message.odometry_epoch() == odometry_epoch_ && message.stamp_ns() <= last_stamp_ns_) return;
     throw std::runtime_error("scan " + std::to_string(number) + " came after scan " +
                              std::to_string(next_ - 1) +
-                             ": another source has begun, or there are two of them");
+                             ": the source has changed, or there are two sources");
   }
   odometry_epoch_ = message.odometry_epoch();
   if (recorded_ == 0) first_ = number;

@@ -15,14 +15,14 @@ void add_ros_options(command_line::Command& app, RosOptions& options,
                      "see topogeo-ros-bridge --print-settings)")
           ->type_name("FILE"),
       app.add_option("--remap", options.remaps,
-                     "a topic of ROS by another name: /scan:=/front/scan; __ns:=/robot1")
+                     "rename a ROS topic: /scan:=/front/scan; __ns:=/robot1")
           ->allow_extra_args(false)
           ->type_name("FROM:=TO"),
       app.add_option("--ros-domain", options.domain,
                      "DDS domain of the ROS nodes (default: ROS_DOMAIN_ID, else --domain)")
           ->check(command_line::range(0U, 232U)),
       app.add_option("--ros-wait", options.wait_s,
-                     "with --ros alone: s to wait for the first scan and its transforms")
+                     "with --ros alone: how long to wait for the first scan and its transforms")
           ->check(command_line::range(0.0, 3600.0))
           ->capture_default_str()};
   for (command_line::Option* option : added) option->needs(needed);

@@ -123,16 +123,16 @@ void add_run_options(command_line::Command& app, RunOptions& options) {
       ->check(command_line::range(0U, 1024U));
   service::add_domain_option(app, options.domain);
   app.add_option("--rate", options.rate,
-                 "lossless (as fast as it goes), realtime or a factor of real time")
+                 "replay rate of the log: lossless (as fast as possible), realtime or a factor of "
+                 "real time")
       ->check(check_rate)
       ->type_name("RATE")
       ->capture_default_str();
   app.add_option("--profiles", options.profiles_file, "QoS profiles instead of the built-in ones")
       ->type_name("FILE");
-  app.add_option(
-         "--record", options.record,
-         "also write the scans that are mapped as a log, which gives the same map (.mcap, .db3, "
-         ".bag, else CARMEN)")
+  app.add_option("--record", options.record,
+                 "also record the mapped scans as a log that gives the same map (.mcap, .db3, "
+                 ".bag, else CARMEN)")
       ->type_name("FILE");
 }
 
@@ -186,23 +186,22 @@ void add_run_command(command_line::Command& app, int& exit_code) {
   add_simulation_options(*command, *simulation, sim);
   command_line::Option* explore =
       command
-          ->add_flag(
-              "--explore", options->explore,
-              "with --sim or --devices: drive where the robot has not been until nothing is left")
+          ->add_flag("--explore", options->explore,
+                     "with --sim or --devices: explore until nothing is left to map")
           ->excludes(log)
           ->excludes(command->get_option("--map"));
   auto web = std::make_shared<WebOptions>();
   auto with_web = std::make_shared<bool>(false);
-  command_line::Option* page = command->add_flag(
-      "--web", *with_web,
-      "a page in the browser, up to Ctrl-C; with --sim the robot stands until the page sends it");
+  command_line::Option* page = command->add_flag("--web", *with_web,
+                                                 "open a page in the browser, until Ctrl-C; with "
+                                                 "--sim the robot stands until the page sends it");
   add_web_options(*command, *web, page);
   auto ros = std::make_shared<RosOptions>();
   auto joins_ros = std::make_shared<bool>(false);
   command_line::Option* with_ros =
       command->add_flag("--ros", *joins_ros,
-                        "join nodes of ROS 2: alone it maps their robot, up to Ctrl-C; with --log, "
-                        "--devices or --sim they get its scans, odometry, map and pose");
+                        "connect ROS 2 nodes: alone, map their robot until Ctrl-C; with --log, "
+                        "--devices or --sim, publish scans, odometry, map and pose to them");
   add_ros_options(*command, *ros, with_ros);
   auto goal = std::make_shared<GoalOptions>();
   auto unknown_start = std::make_shared<bool>(false);

@@ -124,18 +124,18 @@ void prepare_simulation(RunOptions& options) {
 void add_simulation_options(command_line::Command& app, SimulatorOptions& options,
                             command_line::Option* simulation) {
   const std::vector<command_line::Option*> added = {
-      app.add_option("--seed", options.seed, "of a simulation: of noise, drift, doors and people"),
-      app.add_option("--baud", options.laser_baud, "of a simulation: of the laser's line")
+      app.add_option("--seed", options.seed, "simulation: seed of noise, drift, doors and people"),
+      app.add_option("--baud", options.laser_baud, "simulation: baud rate of the laser's line")
           ->check(command_line::one_of({9600, 19200, 38400, 500000})),
-      app.add_option("--odometry", options.odometry, "of a simulation: how the wheels err")
+      app.add_option("--odometry", options.odometry, "simulation: errors of the odometry")
           ->check(command_line::one_of({"mild", "b21", "none"})),
-      app.add_option("--speed", options.speed_m_per_s, "of a simulation: of the drive, m/s")
+      app.add_option("--speed", options.speed_m_per_s, "simulation: speed of the drive, m/s")
           ->check(command_line::range(0.05, 2.0)),
-      app.add_option("--people", options.people, "of a simulation: who walk about")
+      app.add_option("--people", options.people, "simulation: number of people who walk about")
           ->check(command_line::range(0, 100))};
   app.add_flag("--no-laser", options.no_laser,
-               "of a simulation with --goto: the robot has sonars alone; it stands on the base "
-               "station of the map, from which Markov localization follows it")
+               "simulation with --goto: the robot has only sonars, starts at the base station of "
+               "the map and is tracked by Markov localization")
       ->needs(simulation);
   for (command_line::Option* option : added) option->needs(simulation)->capture_default_str();
 }

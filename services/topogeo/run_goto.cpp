@@ -47,16 +47,16 @@ void print_arrival(const RunOptions& options, const GotoResult& result) {
                            status.detours);
   if (!result.goal_m || result.truth.empty()) return;
   const geometry::Pose2& truth = result.truth.back().pose;
-  std::string text = fmt::format("it stands {:.3f} m from the goal by the truth",
+  std::string text = fmt::format("by ground truth it is {:.3f} m from the goal",
                                  (truth.position_m() - *result.goal_m).norm());
   if (options.goal->heading_deg) {
     constexpr double kDegrees = 180.0 / std::numbers::pi;
     const double off_rad =
         geometry::wrap_angle(truth.theta_rad - *options.goal->heading_deg / kDegrees);
-    text += fmt::format(" and points {:.1f} degrees off", std::fabs(off_rad) * kDegrees);
+    text += fmt::format(" with {:.1f} degrees of heading error", std::fabs(off_rad) * kDegrees);
   }
   if (status.T_map_robot) {
-    text += fmt::format(", {:.3f} m by its own pose",
+    text += fmt::format("; by its own pose {:.3f} m",
                         (status.T_map_robot->position_m() - *result.goal_m).norm());
   }
   std::cout << text << '\n';
@@ -112,12 +112,13 @@ int run_goto(RunOptions options) {
 void add_goal_run_options(command_line::Command& app, GoalOptions& options, bool& unknown_start,
                           command_line::Option* needed) {
   command_line::Option* target =
-      app.add_option("--goto", options.target, "send the simulated robot there, in the map given")
+      app.add_option("--goto", options.target,
+                     "send the simulated robot to this goal in the given map")
           ->type_name("PLACE|X,Y|#NODE");
   if (needed != nullptr) target->needs(needed);
   add_goal_options(app, options);
   app.add_flag("--unknown-start", unknown_start,
-               "the robot gets no initial pose: it has to find its place in the map");
+               "give the robot no initial pose: it searches the whole map");
   for (const char* name :
        {"--heading", "--look-around", "--picture", "--patience", "--unknown-start"}) {
     app.get_option(name)->needs(target);

@@ -198,7 +198,7 @@ void RunSupervisor::wait_for_summary() {
     const Verdict verdict = stall.check(
         fmt::format("{} {}", summary_came_, decisions_.all().size()), support::monotonic_s());
     if (verdict == Verdict::kGiveUp) break;
-    if (verdict == Verdict::kReport) print("still waits for the summary of the localizer");
+    if (verdict == Verdict::kReport) print("still waiting for the summary of the localizer");
     if (run_.loop().run_for(milliseconds(5))) break;  // a signal
   }
   result_.loop_decisions = decisions_.all();
@@ -214,7 +214,7 @@ void RunSupervisor::wait_for_summary() {
 void RunSupervisor::stay_for_page() {
   if (run_.signal_number() != 0) return;
   print("the map is finished and in " + options_.job.out.string() +
-        "; the page stays until Ctrl-C, the report comes then");
+        "; the page runs until Ctrl-C, then the report is written");
   const double since_s = support::monotonic_s();
   run_.stay();
   result_.stayed_s = support::monotonic_s() - since_s;
@@ -223,7 +223,7 @@ void RunSupervisor::stay_for_page() {
 // Data published last still has to be written.
 void RunSupervisor::wait_for_recorder() {
   if (!run_.wait_for_end(kRecorder)) {
-    print("the recording is not complete: its program has not ended by itself");
+    print("the recording is incomplete: its program did not end by itself");
   }
   std::ifstream log(options_.job.out / "logs" / (std::string(kRecorder) + ".log"));
   for (std::string line; std::getline(log, line);) {

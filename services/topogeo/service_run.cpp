@@ -188,7 +188,7 @@ void ServiceRun::note_cpu(const msg::ServiceStatus& status) {
     return;
   }
   short_of_cpu_.insert(service);
-  if (!std::exchange(busy_logged_, true)) hooks_.log(too_busy() + "; what it does takes longer");
+  if (!std::exchange(busy_logged_, true)) hooks_.log(too_busy() + "; the run takes longer");
 }
 
 std::string ServiceRun::too_busy() const {
@@ -236,7 +236,7 @@ std::vector<support::StageTime> ServiceRun::stop(bool source_first) {
   const auto at_once = [this, came] { return signals_came_.load() > came; };
   const auto killed = processes_.stop(pause, at_once, source_first ? source_ : "");
   for (const std::string& name : killed) {
-    if (at_once()) hooks_.log(name + " is killed: another signal came before it had ended");
+    if (at_once()) hooks_.log(name + " was killed: a second signal arrived before it ended");
   }
   loop_.run_for(std::chrono::milliseconds(20));
   return by_stage(processes_.wait());

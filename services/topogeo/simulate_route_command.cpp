@@ -63,7 +63,7 @@ Blocks blocks_of(const std::vector<std::string>& texts, const planning::GridFram
     blocks.points_m.push_back(point_for("--block", text));
     const auto cell = frame.cell_of(blocks.points_m.back());
     if (!cell) {
-      throw service::UsageError(fmt::format("--block = '{}': is outside of the map", text));
+      throw service::UsageError(fmt::format("--block = '{}': outside of the map", text));
     }
     blocks.cells.push_back(*cell);
   }
@@ -174,8 +174,7 @@ void add_simulate_route_command(command_line::Command& app, int& exit_code) {
       ->check(command_line::range(-360.0, 360.0))
       ->type_name("DEG");
   command
-      ->add_option("--block", options->blocks,
-                   "something stands there that is not on the map; can be given again")
+      ->add_option("--block", options->blocks, "obstacle that is not on the map; may be repeated")
       ->type_name("X,Y")
       ->allow_extra_args(false);
   command

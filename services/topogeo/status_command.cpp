@@ -143,10 +143,9 @@ void add_status_command(command_line::Command& app, int& exit_code) {
       "one\n"
       "that ended without an order is lost, one that gets nothing of an input that another one "
       "sends\n"
-      "is deaf. One that is discovered, or runs on this host, and is not heard is silent, too. "
-      "What\n"
-      "was dead before is not known, unless it is expected or a unit of systemd on this host, of\n"
-      "which those are listed that do not run.\n"
+      "is deaf. One that is discovered, or runs on this host, but sends no status is silent, too.\n"
+      "Services that ended earlier are listed only if they are expected or are systemd units of\n"
+      "this host.\n"
       "Exit code: 0 all services are well, 1 some are failed, lost, silent, deaf, missing or not\n"
       "running, or there are none.");
   command->callback([options, &exit_code] { exit_code = show_status(*options); });

@@ -144,7 +144,7 @@ std::string StatusTable::reason(const Row& row, Clock::time_point now) const {
   const std::string age = age_text(std::chrono::duration<double>(now - row.received).count());
   std::string why;
   if (row.lost) {
-    why = "ended without a word " + age + " ago";
+    why = "ended without notice " + age + " ago";
   } else if (now - row.received > kSilent) {
     why = "no status for " + age;
   } else {
@@ -252,8 +252,7 @@ std::string StatusTable::sums(Clock::time_point now) const {
   const std::size_t missing = this->missing().size();
   std::string busy;
   for (const std::string& host : busy_hosts) {
-    busy += fmt::format("the CPU of {} is short: topogeo doctor has what to do\n",
-                        support::printable(host));
+    busy += fmt::format("the CPU of {} is short: see topogeo doctor\n", support::printable(host));
   }
   return fmt::format("{} service{}, {}{}{} failed, lost, silent or deaf, {} fault{}\n{}",
                      rows_.size() + unheard_.size(), rows_.size() + unheard_.size() == 1 ? "" : "s",

@@ -59,11 +59,11 @@ void add_store_export_command(command_line::Command& store, int& exit_code) {
       store.add_subcommand("export", "Write a map in the form of another program");
   auto options = std::make_shared<ExportOptions>();
   command->add_option("file", options->file, "map file or database")->required()->type_name("FILE");
-  command->add_option("--format", options->format, "what to write, see below")
+  command->add_option("--format", options->format, "format to write, see below")
       ->required()
       ->check(command_line::one_of(format_names()))
       ->type_name("FORMAT");
-  command->add_option("--out", options->out, "file to write, or the name that several begin with")
+  command->add_option("--out", options->out, "file to write, or the common prefix of several")
       ->required()
       ->type_name("PATH");
   command
@@ -72,33 +72,33 @@ void add_store_export_command(command_line::Command& store, int& exit_code) {
   constexpr double kWidest_m = 10.0;
   command
       ->add_option("--robot-radius", options->settings.robot_radius_m,
-                   "of graphs: where the robot is wider than the way, edges are left out, metres; "
-                   "default: what the configuration forbids around obstacles")
+                   "for graphs: leave out edges too narrow for this radius, metres; default: the "
+                   "forbidden distance to obstacles of the configuration")
       ->check(command_line::range(0.0, kWidest_m))
       ->type_name("M");
   command
       ->add_option("--tolerance", options->settings.network.tolerance_m,
-                   "of graphs: how far a straight edge may pass from the branch, metres")
+                   "for graphs: largest distance of a straight edge from its branch, metres")
       ->check(command_line::range(0.0, 1.0))
       ->capture_default_str()
       ->type_name("M");
   command->add_flag("--with-virtual", options->settings.network.with_virtual,
-                    "of graphs: also branches that no scan has seen");
+                    "for graphs: include branches that no scan has seen");
   command->add_flag("--only-free", options->settings.network.only_free,
-                    "of graphs: leave out edges that the grid forbids");
+                    "for graphs: leave out edges that the grid forbids");
   command
       ->add_option("--map-id", options->settings.header.map_id,
-                   "of lif, zones and rmf: how robots and fleet managers call the map")
+                   "for lif, zones and rmf: name of the map for robots and fleet managers")
       ->capture_default_str()
       ->type_name("NAME");
   command
       ->add_option("--level", options->settings.header.level,
-                   "of lif and rmf: level of the building")
+                   "for lif and rmf: level of the building")
       ->capture_default_str()
       ->type_name("NAME");
   command
       ->add_option("--manufacturer", options->settings.header.manufacturer,
-                   "of lif and zones: who made it")
+                   "for lif and zones: author of the file")
       ->capture_default_str()
       ->type_name("NAME");
   command->footer(

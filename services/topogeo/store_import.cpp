@@ -143,10 +143,10 @@ int store_import(const ImportOptions& options) {
 
 void add_store_import_command(command_line::Command& store, int& exit_code) {
   command_line::Command* command =
-      store.add_subcommand("import", "Make a map file of what another program wrote");
+      store.add_subcommand("import", "Make a map file of a file of another program");
   auto options = std::make_shared<ImportOptions>();
-  command->add_option("file", options->file, "what to read")->required()->type_name("FILE");
-  command->add_option("--format", options->format, "what it is, see below")
+  command->add_option("file", options->file, "file to read")->required()->type_name("FILE");
+  command->add_option("--format", options->format, "format of the file, see below")
       ->required()
       ->check(command_line::one_of({"pgm", "geojson", "lif", "zones", "graphml", "drawing"}))
       ->type_name("FORMAT");
@@ -155,31 +155,30 @@ void add_store_import_command(command_line::Command& store, int& exit_code) {
       ->type_name("MAP");
   command
       ->add_option("--into", options->into,
-                   "map to lay it over: its grid, and places and zones of the same names, are "
-                   "replaced; it stays as it is unless it is --out as well")
+                   "map to merge the file into: its grid, and places and zones of the same names, "
+                   "are replaced; not changed unless it is also --out")
       ->type_name("MAP");
   command
       ->add_option("--pose", options->pose,
-                   "where the origin of the file is in the map; default: 0,0,0")
+                   "pose of the origin of the file in the map; default: 0,0,0")
       ->type_name("X,Y,DEG");
   add_config_option(*command, options->config);
-  command->add_option("--robot,--robot-id", options->robot_id, "of a map without --into")
+  command->add_option("--robot,--robot-id", options->robot_id, "robot of a map without --into")
       ->capture_default_str();
   command->add_flag("--with-stops", options->with_stops,
-                    "of grids: keep the stops that the graph is made from, so that robots can be "
-                    "found in the map (topogeo localize --map)");
+                    "for grids: keep the stops that the graph is made from, so that robots can "
+                    "localize in the map (topogeo localize --map)");
   constexpr double kMost_m = 100.0;
   command
-      ->add_option(
-          "--spacing", options->grid.spacing_m,
-          "of grids: metres between the places from which the graph is made; more, where it is not "
-          "given and there would be more than 3,000 of them")
+      ->add_option("--spacing", options->grid.spacing_m,
+                   "for grids: distance between the places that the graph is made from, metres; "
+                   "the default grows with grids of more than 3,000 places")
       ->check(command_line::range(0.2, kMost_m))
       ->capture_default_str()
       ->type_name("M");
   command
       ->add_option("--range", options->grid.range_m,
-                   "of grids: range of the laser that looks around there, metres")
+                   "for grids: range of the virtual laser at these places, metres")
       ->check(command_line::range(1.0, kMost_m))
       ->capture_default_str()
       ->type_name("M");

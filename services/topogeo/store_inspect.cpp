@@ -118,7 +118,7 @@ int store_repair(const RepairOptions& options) {
 }  // namespace
 
 void add_store_inspect_commands(command_line::Command& store, int& exit_code) {
-  command_line::Command* info = store.add_subcommand("info", "What is in a map");
+  command_line::Command* info = store.add_subcommand("info", "Show the content of a map");
   auto shown = std::make_shared<InspectOptions>();
   info->add_option("file", shown->file, "map file or database")->required()->type_name("FILE");
   info->add_flag("--json", shown->json, "print all numbers as JSON");
@@ -152,7 +152,8 @@ void add_store_inspect_commands(command_line::Command& store, int& exit_code) {
       "are made anew from the stops.");
   repair->callback([damaged, &exit_code] { exit_code = store_repair(*damaged); });
 
-  command_line::Command* list = store.add_subcommand("list", "The maps in a folder and below");
+  command_line::Command* list =
+      store.add_subcommand("list", "List the maps in a folder and its subfolders");
   auto directory = std::make_shared<fs::path>(".");
   list->add_option("directory", *directory, "folder")->capture_default_str()->type_name("DIR");
   list->callback([directory, &exit_code] { exit_code = store_list(*directory); });

@@ -169,7 +169,7 @@ int store_remove_session(const RemoveOptions& options) {
 
 void add_store_join_commands(command_line::Command& store, int& exit_code) {
   command_line::Command* command =
-      store.add_subcommand("align", "Find where another map or drawing lies in a map");
+      store.add_subcommand("align", "Find the pose of another map or drawing in a map");
   auto options = std::make_shared<AlignOptions>();
   constexpr const char* kWhat = "map file or database, world (.world.yaml), or grid (.yaml)";
   command->add_option("map", options->map, kWhat)->required()->type_name("MAP");
@@ -181,7 +181,7 @@ void add_store_join_commands(command_line::Command& store, int& exit_code) {
       "Exit codes: 0 found, 1 ambiguous or not found, 3 unusable input.");
   command->callback([options, &exit_code] { exit_code = store_align(*options); });
 
-  command_line::Command* merge = store.add_subcommand("merge", "Make one map of two of one place");
+  command_line::Command* merge = store.add_subcommand("merge", "Merge two maps of one place");
   auto maps = std::make_shared<MergeOptions>();
   merge->add_option("a", maps->a, "map file or database; the result is in its frame")
       ->required()

@@ -97,8 +97,8 @@ void add_merge_options(command_line::Command& app, MergeRequest& request) {
 
 void add_store_merge_commands(command_line::Command& store, int& exit_code) {
   auto request = std::make_shared<MergeRequest>();
-  command_line::Command* list = store.add_subcommand(
-      "merges", "Which maps of robots that map one floor seem to show one place");
+  command_line::Command* list =
+      store.add_subcommand("merges", "List the proposed merges of maps of one floor");
   add_merge_options(*list, *request);
   list->add_flag("--json", request->json, "print JSON");
   list->footer(
@@ -107,9 +107,9 @@ void add_store_merge_commands(command_line::Command& store, int& exit_code) {
   list->callback([request, &exit_code] { exit_code = list_merges(*request); });
   for (const bool accepted : {true, false}) {
     command_line::Command* answer =
-        accepted ? store.add_subcommand("accept", "The two maps of a proposed merge become one")
-                 : store.add_subcommand("refuse", "They stay apart");
-    answer->add_option("number", request->number, "of the proposal, as merges shows it")
+        accepted ? store.add_subcommand("accept", "Merge the two maps of a proposal")
+                 : store.add_subcommand("refuse", "Keep the two maps of a proposal separate");
+    answer->add_option("number", request->number, "number of the proposal, as shown by merges")
         ->required()
         ->type_name("NUMBER");
     add_merge_options(*answer, *request);

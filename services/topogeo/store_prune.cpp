@@ -82,25 +82,26 @@ void add_store_prune_command(command_line::Command& store, int& exit_code) {
   constexpr double kMostTimes = 1000.0;
   constexpr double kMostDays = 36500.0;
   command_line::Command* command =
-      store.add_subcommand("prune", "Drop what never joined a map, and views that others show");
+      store.add_subcommand("prune", "Remove stops that never joined a map, and redundant views");
   auto options = std::make_shared<PruneOptions>();
   command->add_option("file", options->file, "map database, or map file with --keep and --out")
       ->required()
       ->type_name("FILE");
-  command->add_option("--keep", options->keep, "times that are kept of each place; default: all")
+  command
+      ->add_option("--keep", options->keep, "number of views to keep of each place; default: all")
       ->check(command_line::range(1.0, kMostTimes))
       ->type_name("N");
   command
       ->add_option(
           "--older-than", options->older_than_days,
-          "sessions that ended so long before the newest stop; default: all but the newest")
+          "only sessions that ended this long before the newest stop; default: all but the newest")
       ->check(command_line::range(0.0, kMostDays))
       ->type_name("DAYS");
-  command->add_flag("--dry-run", options->dry_run, "print what would go, change nothing");
+  command->add_flag("--dry-run", options->dry_run, "print what would be removed, change nothing");
   command->add_option("--out", options->out, "map file to write (map.pb)")->type_name("MAP");
   add_config_option(*command, options->config);
   command->footer(
-      "Stop the map store before its database is pruned: it goes on with what it had.\n"
+      "Stop the map store before its database is pruned: a running one keeps the old content.\n"
       "Exit codes: 0 done, 3 unusable input.");
   command->callback([options, &exit_code] { exit_code = store_prune(*options); });
 }

@@ -78,7 +78,7 @@ int store_restore(const SnapshotOptions& options) {
   const std::optional<storage::MapSnapshot> former =
       storage::restore_snapshot(database, options.name);
   std::cout << fmt::format("{}: restored from snapshot {}\n", database.string(), options.name);
-  if (former) std::cout << "the map of before: " << snapshot_line(*former) << '\n';
+  if (former) std::cout << "the previous map: " << snapshot_line(*former) << '\n';
   return service::kOk;
 }
 
@@ -87,8 +87,8 @@ int store_restore(const SnapshotOptions& options) {
 void add_store_snapshot_commands(command_line::Command& store, int& exit_code) {
   constexpr const char* kMap = "directory of a map store (its --out), or the map database";
   constexpr const char* kName = "letters, digits, '.', '-' and '_'";
-  command_line::Command* take =
-      store.add_subcommand("snapshot", "Keep a copy of a map database, also while it is written");
+  command_line::Command* take = store.add_subcommand(
+      "snapshot", "Copy a map database as a snapshot, even while it is written");
   auto taken = std::make_shared<SnapshotOptions>();
   take->add_option("map", taken->map, kMap)->required()->type_name("DIR");
   take->add_option("name", taken->name, kName)->required()->type_name("NAME");
@@ -97,20 +97,20 @@ void add_store_snapshot_commands(command_line::Command& store, int& exit_code) {
   take->callback([taken, &exit_code] { exit_code = store_snapshot(*taken); });
 
   command_line::Command* list =
-      store.add_subcommand("snapshots", "The snapshots of a map database, by time");
+      store.add_subcommand("snapshots", "List the snapshots of a map database by time");
   auto listed = std::make_shared<fs::path>();
   list->add_option("map", *listed, kMap)->required()->type_name("DIR");
   list->callback([listed, &exit_code] { exit_code = list_snapshots(*listed); });
 
   command_line::Command* restore =
-      store.add_subcommand("restore", "Make a map database what a snapshot of it is");
+      store.add_subcommand("restore", "Restore a map database from one of its snapshots");
   auto restored = std::make_shared<SnapshotOptions>();
   restore->add_option("map", restored->map, kMap)->required()->type_name("DIR");
   restore->add_option("name", restored->name, "snapshot")->required()->type_name("NAME");
   restore->footer(
-      "Refused while a map store runs on it: stop it before. The map of before is kept as the\n"
-      "snapshot before-NAME. map.pb and pictures in DIR stay as they are until the map store that\n"
-      "is started next writes them.");
+      "Refused while a map store uses the database: stop it first. The previous map is kept as\n"
+      "snapshot before-NAME. map.pb and pictures in DIR are updated when the next map store "
+      "starts.");
   restore->callback([restored, &exit_code] { exit_code = store_restore(*restored); });
 }
 

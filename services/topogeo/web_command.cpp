@@ -80,7 +80,7 @@ int view(const ViewCommand& command) {
 
 void add_web_command(command_line::Command& app, int&) {
   command_line::Command* web =
-      app.add_subcommand("web", "A page for a robot that runs: see, send, drive, correct");
+      app.add_subcommand("web", "Serve a page to watch, send, drive and correct a running robot");
   auto options = std::make_shared<WebCommand>();
   add_web_options(*web, options->web);
   service::add_domain_option(*web, options->domain);
@@ -95,13 +95,13 @@ void add_web_command(command_line::Command& app, int&) {
 
 void add_view_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command =
-      app.add_subcommand("view", "Look at a stored map in the browser, without a robot");
+      app.add_subcommand("view", "Show a stored map in the browser, without a robot");
   auto options = std::make_shared<ViewCommand>();
   command->add_option("map", options->map, "map file: map.pb or map.sqlite")
       ->required()
       ->type_name("MAP");
   add_web_options(*command, options->web);
-  command->add_flag("--no-browser", options->no_browser, "print the link and open nothing");
+  command->add_flag("--no-browser", options->no_browser, "print the link, do not open a browser");
   service::add_domain_option(*command, options->domain);
   command->callback([options, &exit_code] { exit_code = view(*options); });
 }

@@ -44,25 +44,25 @@ void add_web_options(command_line::Command& app, WebOptions& options,
                      command_line::Option* needed) {
   constexpr std::uint32_t kLargestPort = 65535;
   const std::vector<command_line::Option*> added = {
-      app.add_option("--port", options.port,
-                     "port of the page (default: 8080), 0: any that is free")
+      app.add_option("--port", options.port, "port of the page (default: 8080), 0: any free one")
           ->check(command_line::range(0U, kLargestPort)),
       app.add_option("--bind", options.bind,
                      "address of the page (default: 127.0.0.1); others than those of this machine "
                      "alone need --certificate")
           ->type_name("ADDRESS"),
       app.add_option(service::kTokenOption, options.token,
-                     "who has it may send the robot; without one it is made and printed. `ps` "
-                     "shows it: better --token-file")
+                     "operator token, which permits to send the robot; default: a new one, which "
+                     "is printed. `ps` shows it: prefer --token-file")
           ->type_name("TEXT"),
       app.add_option("--token-file", options.token_file,
                      "file with the token, which `ps` does not show")
           ->type_name("FILE"),
       app.add_option("--certificate", options.certificate, "certificate of the page (PEM)")
           ->type_name("FILE"),
-      app.add_option("--key", options.key, "its key (PEM)")->type_name("FILE"),
-      app.add_flag("--without-tls", options.without_tls,
-                   "listen at --bind although everybody on the network can read the token"),
+      app.add_option("--key", options.key, "key of the certificate (PEM)")->type_name("FILE"),
+      app.add_flag(
+          "--without-tls", options.without_tls,
+          "listen at --bind without TLS, although any program on the network can read the token"),
       app.add_option("--host", options.hosts,
                      "name under which pages reach this machine or the proxy before it; may be "
                      "repeated")

@@ -210,7 +210,7 @@ TEST_F(MapFollowers, WithoutAStoreTheCommandWaitsUntilItIsStopped) {
   for (const bool once : {false, true}) {
     const auto waiting =
         follow(once ? std::vector<std::string>{"--once"} : std::vector<std::string>{});
-    waiting->wait_for_error_text("waits for a map store of robot 'robot'");
+    waiting->wait_for_error_text("waiting for a map store of robot 'robot'");
     waiting->send_signal(SIGINT);
     EXPECT_EQ(waiting->wait(), once ? 128 + SIGINT : 0) << waiting->err();
     EXPECT_EQ(waiting->out(), "");

@@ -38,7 +38,7 @@ TEST(WebOnLog, ThePageStaysWithTheMapUntilCtrlC) {
   Program run(scratch, "topogeo",
               {"run", "--log", (scratch / "room.clf").string(), "--out", out, "--workers", "1",
                "--domain", own_domain(), "--web", "--port", "0", "--token", kToken});
-  run.wait_for_error_text("the page stays until Ctrl-C");
+  run.wait_for_error_text("the page runs until Ctrl-C");
   ASSERT_TRUE(std::filesystem::exists(scratch / "out/map.pb"));
   const std::uint32_t port = port_in(run.err());
   WebSocketClient socket(port);

@@ -72,7 +72,7 @@ TEST(StatusTable, NamesWhoIsShortOfCpuAndWhere) {
   table.update(navigator, info_of(1), kNow);
   const std::string text = table.text(kNow, 200);
   EXPECT_THAT(text, HasSubstr("idle: no goal; the CPU is short: timers fire up to 0.4 s late\n"));
-  EXPECT_THAT(text, HasSubstr("the CPU of pc is short: topogeo doctor has what to do\n"));
+  EXPECT_THAT(text, HasSubstr("the CPU of pc is short: see topogeo doctor\n"));
   EXPECT_TRUE(table.healthy(kNow)) << "it works, though late";
 }
 
