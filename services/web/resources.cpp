@@ -84,7 +84,7 @@ Answer tile_answer(const Request& request, const ShownMap* map) {
   if (map == nullptr || parts[2] != map->frame)
     return error_answer(404, "another map is shown now");
   std::optional<std::string> png = map->picture->png(*place);
-  if (!png) return error_answer(404, "nothing is known there");
+  if (!png) return error_answer(404, "no data at this tile");
   Answer answer;
   answer.body = std::move(*png);
   answer.content_type = "image/png";

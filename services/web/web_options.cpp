@@ -32,7 +32,7 @@ void check_origins(const std::vector<std::string>& origins) {
 
 void add_web_options(command_line::Command& app, WebOptions& options) {
   constexpr std::uint32_t kLargestPort = 65535;
-  app.add_option("--port", options.port, "port to listen at, 0: any that is free")
+  app.add_option("--port", options.port, "port to listen at, 0: any free one")
       ->check(command_line::range(0U, kLargestPort))
       ->capture_default_str();
   app.add_option("--bind", options.bind,
@@ -40,25 +40,24 @@ void add_web_options(command_line::Command& app, WebOptions& options) {
       ->type_name("ADDRESS")
       ->capture_default_str();
   app.add_option(service::kTokenOption, options.token,
-                 "who has it may send the robot; without one it is made and printed. `ps` shows "
-                 "it: better --token-file")
+                 "operator token, which permits to send the robot; default: a new one, which is "
+                 "printed. `ps` shows it: prefer --token-file")
       ->environment("TOPOGEO_WEB_TOKEN")
       ->type_name("TEXT");
   app.add_option("--token-file", options.token_file,
                  "file with the token, which `ps` does not show")
       ->type_name("FILE");
   app.add_option("--link-file", options.link_file,
-                 "file of mode 0600 for the operator's link, which holds the token and is not "
-                 "printed then: logs and journals are read by others")
+                 "write the operator's link, which holds the token, to this file of mode 0600 "
+                 "instead of printing it to logs that others can read")
       ->type_name("FILE");
   app.add_option("--certificate", options.certificate,
                  "certificate of the server with its chain (PEM)")
       ->type_name("FILE");
-  app.add_option("--key", options.key, "its key (PEM)")->type_name("FILE");
-  app.add_flag(
-      "--without-tls", options.without_tls,
-      "listen at --bind although everybody on the network can read the token: behind a proxy "
-      "or in a network that is closed");
+  app.add_option("--key", options.key, "key of the certificate (PEM)")->type_name("FILE");
+  app.add_flag("--without-tls", options.without_tls,
+               "listen at --bind without TLS, although any program on the network can read the "
+               "token: behind a proxy or in a closed network");
   app.add_option(
          "--host", options.hosts,
          "name under which pages reach this machine, in addition to its own; may be repeated")
@@ -69,9 +68,9 @@ void add_web_options(command_line::Command& app, WebOptions& options) {
          "site whose pages may use the service too, as https://desk.example; may be repeated")
       ->type_name("ORIGIN")
       ->allow_extra_args(false);
-  app.add_option("--page", options.page, "folder of the page, in place of the installed one")
+  app.add_option("--page", options.page, "folder of the page; replaces the installed one")
       ->type_name("DIR");
-  app.add_option("--viewers", options.most_viewers, "pages at the same time, at most")
+  app.add_option("--viewers", options.most_viewers, "largest number of simultaneous pages")
       ->check(command_line::range(1U, 1000U))
       ->capture_default_str();
   service::add_map_option(app, options.map_robot);

@@ -175,7 +175,7 @@ TEST_F(WebOnMap, OneMapIsMergedAtATime) {
     for (std::future<HttpReply>& one : offers) {
       const HttpReply reply = one.get();
       EXPECT_EQ(reply.status, 409) << reply.body;
-      if (reply.body.find("another merge is worked on") != std::string::npos) ++busy;
+      if (reply.body.find("another merge is in progress") != std::string::npos) ++busy;
       if (reply.body.find("one is an earlier state of the other") != std::string::npos) ++worked_on;
     }
   };

@@ -74,7 +74,7 @@ void ArchiveRequests::restore(const std::string& name, Respond respond) {
 
 void ArchiveRequests::import(const std::string& name, std::string map_file, Respond respond) {
   if (timer_) {
-    respond(error_answer(503, "another map is sent to the map store, try again later"));
+    respond(error_answer(503, "another upload to the map store is in progress, try again later"));
     return;
   }
   storage::check_snapshot_name(name);

@@ -112,7 +112,7 @@ void History::answer_later(Make make, const Respond& respond) {
         }
         return [] {};
       });
-  if (!taken) respond(error_answer(503, "too much is worked on, try again later"));
+  if (!taken) respond(error_answer(503, "too many requests in progress, try again later"));
 }
 
 bool History::is_of_now(const storage::MapDocument& map) const {
@@ -179,7 +179,7 @@ void History::compare(const std::string& query, const Respond& respond) {
             return [respond, answer = error_answer(409, error.what())] { respond(answer); };
           }
         });
-    if (!taken) respond(error_answer(503, "too much is worked on, try again later"));
+    if (!taken) respond(error_answer(503, "too many requests in progress, try again later"));
   };
   copies_->get(before, good,
                [this, after, good, with_both, respond](const MapCopies::Document& a,
@@ -196,7 +196,7 @@ void History::compare(const std::string& query, const Respond& respond) {
 
 void History::picture(const std::string& query, const Respond& respond) const {
   if (compared_ == 0 || query_value(query, "v") != std::to_string(compared_)) {
-    return respond(error_answer(404, "another comparison was made since"));
+    return respond(error_answer(404, "another comparison was made in the meantime"));
   }
   Answer answer;
   answer.body = difference_png_;

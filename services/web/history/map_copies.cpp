@@ -45,7 +45,7 @@ void MapCopies::get(const std::string& snapshot, const Check& good, Handler hand
   if (const Document map = find(snapshot, good)) {
     handler(map, {});
   } else if (waiting_.size() >= kMostWaiting) {
-    handler(nullptr, "too many maps are asked for, try again later");
+    handler(nullptr, "too many map requests, try again later");
   } else {
     waiting_.push_back({snapshot, good, std::move(handler)});
     if (!fetching_) fetch_next();
@@ -79,7 +79,7 @@ void MapCopies::take(const std::string& snapshot, std::string bytes) {
       return [this, snapshot, why = std::string(error.what())] { give(snapshot, nullptr, why); };
     }
   });
-  if (!taken) give(snapshot, nullptr, "too much is worked on, try again later");
+  if (!taken) give(snapshot, nullptr, "too many requests in progress, try again later");
 }
 
 void MapCopies::give(const std::string& snapshot, const Document& map, const std::string& why) {

@@ -53,7 +53,7 @@ MapMerge::MapMerge(service::Service& service, const DriveView& drive, MapCopies&
 
 void MapMerge::offer(std::string map_file, const Respond& respond) {
   if (busy_)
-    return respond(error_answer(409, "another merge is worked on: try again when it is done"));
+    return respond(error_answer(409, "another merge is in progress: try again when it is done"));
   busy_ = true;
   proposal_.reset();
   const auto file = std::make_shared<const std::string>(std::move(map_file));
@@ -85,7 +85,7 @@ void MapMerge::merge(const MapCopies::Document& now, const std::shared_ptr<const
       respond({200, text_of(json)});
     };
   });
-  if (!taken) respond(error_answer(503, "too much is worked on, try again later"));
+  if (!taken) respond(error_answer(503, "too many requests in progress, try again later"));
 }
 
 MapMerge::Result MapMerge::merged(const MapCopies::Document& now, const std::string& file,

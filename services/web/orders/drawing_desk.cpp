@@ -22,8 +22,7 @@ DrawingDesk::DrawingDesk(service::Service& service, Board& board, EventLog& even
       board_(board),
       events_(events),
       client_id_(support::process_name()),
-      pending_(std::in_place, service,
-               "nobody has answered: the map store or the simulator does not run",
+      pending_(std::in_place, service, "no answer: the map store or the simulator does not run",
                kDrawingPatience_s),
       orders_(service.advertise<msg::DrawingOrder>()),
       floors_(service.advertise<msg::FloorOrder>()) {
@@ -101,7 +100,8 @@ void DrawingDesk::load_into_map(const FloorText& floor, const Respond& respond) 
 
 void DrawingDesk::load_into_simulator(const FloorText& floor, const Respond& respond) {
   if (!takes_floors()) {
-    respond(error_answer(409, "the robot is not simulated, or its simulator takes no floors"));
+    respond(
+        error_answer(409, "the robot is not simulated, or its simulator does not accept floors"));
     return;
   }
   msg::FloorOrder order;

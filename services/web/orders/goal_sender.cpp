@@ -73,8 +73,7 @@ Goal GoalSender::make(const WantedGoal& wanted) {
 std::uint64_t GoalSender::add(const GoalOrders& orders) {
   std::deque<Goal> goals;
   for (const WantedGoal& wanted : orders.goals) goals.push_back(make(wanted));
-  if (!goals_.has_navigator())
-    throw std::invalid_argument("no navigator is there to take the goal");
+  if (!goals_.has_navigator()) throw std::invalid_argument("no navigator is connected");
   const std::uint64_t first = goals.front().id;
   if (list_.add(std::move(goals), orders.append)) send_current();
   show();
@@ -155,7 +154,7 @@ std::optional<GoalList::End> GoalSender::take(const msg::NavigatorStatus& status
     if (*end == GoalList::End::kNotTaken) order(msg::kGoalCancel, id);
     events_.add(EventLog::Level::kWarning, "web",
                 *end == GoalList::End::kNotTaken
-                    ? "the navigator has not received the goal " + text + ": give it again"
+                    ? "the navigator has not received the goal " + text + ": send it again"
                     : "another client has taken the goal " + text + " away");
   }
   show();

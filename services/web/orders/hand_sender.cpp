@@ -173,7 +173,7 @@ void HandSender::tick() {
   }
   if (held_ && !limits_) {
     verdict->allowed = {};
-    verdict->message = "what is drawn on the map is read first";
+    verdict->message = "waiting for the drawing of the map";
   }
   commanding_ = true;
   command(verdict->allowed, stamp_ns);
@@ -202,7 +202,7 @@ bool HandSender::stop() {
   stop_wanted_ = true;
   stopped_base_.reset();
   events_.add(EventLog::Level::kWarning, "web",
-              heard ? "stopped by the operator" : "the operator's stop is heard by no base");
+              heard ? "stopped by the operator" : "no base received the operator's stop");
   return heard;
 }
 
@@ -210,7 +210,7 @@ bool HandSender::release_stop() {
   stop_unheard_ = false;
   stop_wanted_ = false;
   const bool heard = order(msg::kBaseReset);
-  if (heard) events_.add(EventLog::Level::kInfo, "web", "the operator lets it move again");
+  if (heard) events_.add(EventLog::Level::kInfo, "web", "released by the operator");
   return heard;
 }
 

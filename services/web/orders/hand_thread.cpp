@@ -10,7 +10,7 @@ namespace {
 
 Answer answer_of(bool heard, const char* effect) {
   if (heard) return {202, "{}"};
-  return error_answer(503, std::string("no base is heard: nothing ") + effect);
+  return error_answer(503, std::string("no base is connected: nothing ") + effect);
 }
 
 }  // namespace
@@ -86,7 +86,7 @@ void HandThread::work_off_orders() {
 Answer HandThread::carry_out(const Order& order) {
   if (!order.release) return answer_of(hand_.stop(), "stops");
   if (*order.release != stops_) {
-    return error_answer(409, "stopped again since: nothing is released");
+    return error_answer(409, "stopped again in the meantime: nothing is released");
   }
   return answer_of(hand_.release_stop(), "is released");
 }

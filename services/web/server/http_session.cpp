@@ -178,7 +178,8 @@ void HttpSession::answer_read_error(beast::error_code error) {
   state_.refuse(large ? "too large" : "no HTTP");
   auto response = std::make_shared<Response>();
   response->result(large ? http::status::payload_too_large : http::status::bad_request);
-  response->body() = error_answer(0, large ? "the request is too large" : "this is no HTTP").body;
+  response->body() =
+      error_answer(0, large ? "the request is too large" : "this is not an HTTP request").body;
   response->keep_alive(false);
   send(response);
 }
@@ -202,7 +203,7 @@ std::optional<Answer> HttpSession::refusal_of_sender() {
   const auto& request = parser_->get();
   const std::string host = header(http::field::host);
   if (!is_own_host(host, state_.config.hosts)) {
-    return refuse(403, "foreign host", "this is not the host '" + host + "'; see --host");
+    return refuse(403, "foreign host", "unknown host '" + host + "'; see --host");
   }
   const std::string origin = header(http::field::origin);
   if (!is_own_origin(origin, host, state_.config.origins)) {

@@ -130,7 +130,7 @@ void Viewer::drive(const ViewerMessage& message, double late_s) {
     control(text_of(Json{{"op", "refused"},
                          {"what", "drive"},
                          {"late_s", rounded(late_s)},
-                         {"error", "the order to drive came too late"}}));
+                         {"error", "the drive order arrived too late"}}));
   } else {
     state().backend.drive(number_, message.linear_mps, message.angular_radps);
   }

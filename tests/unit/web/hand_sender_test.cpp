@@ -204,12 +204,12 @@ TEST_F(HandSenderTest, NothingMovesBeforeItIsKnownWhereItMayNot) {
     hand_.drive(1, {0.3, 0.0}, now_ns());
     return first_ > 0;
   }));
-  EXPECT_THAT(shown(), testing::HasSubstr("is read first"));
+  EXPECT_THAT(shown(), testing::HasSubstr("waiting for the drawing"));
   ASSERT_TRUE(run_until("the guard alone decides", [&] {
     hand_.drive(1, {0.3, 0.0}, now_ns());
     hand_.keep_off(std::make_shared<const navigation::DrawnLimits>());
     hand_.drive(1, {0.3, 0.0}, now_ns());
-    return shown().find("is read first") == std::string::npos;
+    return shown().find("waiting for the drawing") == std::string::npos;
   }));
 }
 
