@@ -25,7 +25,7 @@ inline constexpr std::uint32_t kMostSegments = 32'768;
 inline void check_bound(std::string_view field, std::size_t size, std::size_t bound) {
   if (size <= bound) return;
   throw std::invalid_argument(std::string(field) + " has " + std::to_string(size) +
-                              " entries, allowed are " + std::to_string(bound));
+                              " entries, expected at most " + std::to_string(bound));
 }
 
 /// Throws std::invalid_argument unless `condition`; `expected` is its text.

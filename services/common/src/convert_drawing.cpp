@@ -50,16 +50,16 @@ void require(bool condition, const char* list, std::size_t index, const std::str
 
 void check_live_zone(const planning::DrawnZone& zone, std::size_t index) {
   require(zone.polygon_m.size() <= msg::kMaxDrawnPoints, "zones", index,
-          fmt::format("zone '{}': {} corners, allowed are {}", zone.name, zone.polygon_m.size(),
-                      msg::kMaxDrawnPoints));
+          fmt::format("zone '{}': {} corners, expected at most {}", zone.name,
+                      zone.polygon_m.size(), msg::kMaxDrawnPoints));
   if (zone.kind == planning::ZoneKind::kSlow) {
     require(zone.value >= kSlowestMps && zone.value <= kFastestMps, "zones", index,
-            fmt::format("zone '{}': {} m/s, allowed are {} to {}", zone.name, zone.value,
-                        kSlowestMps, kFastestMps));
+            fmt::format("zone '{}': {} m/s, expected {} to {}", zone.name, zone.value, kSlowestMps,
+                        kFastestMps));
   }
   if (zone.kind == planning::ZoneKind::kOneWay) {
     require(std::fabs(zone.value) <= std::numbers::pi, "zones", index,
-            fmt::format("zone '{}': heading {}, allowed are -pi to pi", zone.name, zone.value));
+            fmt::format("zone '{}': heading {}, expected -pi to pi", zone.name, zone.value));
   }
 }
 
@@ -68,8 +68,9 @@ void check_live(const storage::MapDrawing& drawing) {
   std::array<std::size_t, planning::kLineKinds> counts{};
   for (const planning::DrawnLine& line : drawing.lines) {
     const std::size_t index = counts.at(static_cast<std::size_t>(line.kind))++;
-    require(line.points_m.size() <= msg::kMaxDrawnPoints, storage::list_of(line.kind), index,
-            fmt::format("{} points, allowed are {}", line.points_m.size(), msg::kMaxDrawnPoints));
+    require(
+        line.points_m.size() <= msg::kMaxDrawnPoints, storage::list_of(line.kind), index,
+        fmt::format("{} points, expected at most {}", line.points_m.size(), msg::kMaxDrawnPoints));
   }
 }
 
@@ -149,7 +150,7 @@ void check_rules(const storage::MapDrawing& drawing) {
   const std::size_t rules = drawing.lines.size() + static_cast<std::size_t>(zones);
   if (rules <= msg::kMaxRules) return;
   throw std::invalid_argument(fmt::format(
-      "{} no-go, slow and one-way zones, walls, openings and doors over a map, allowed are {}",
+      "{} no-go, slow and one-way zones, walls, openings and doors over a map, expected at most {}",
       rules, msg::kMaxRules));
 }
 

@@ -329,7 +329,7 @@ TEST(ConversionBounds, WhatDoesNotFitIsRefusedByName) {
   scan::Scan scan = any_scan(random);
   scan.ranges_m.resize(2049);
   EXPECT_THAT(refusal([&] { to_msg(scan, "robot"); }),
-              "ranges_m has 2049 entries, allowed are 2048");
+              "ranges_m has 2049 entries, expected at most 2048");
   EXPECT_THAT(refusal([&] { to_msg(any_scan(random), std::string(33, 'r')); }),
               HasSubstr("robot_id"));
   topomap::LocalMap map = any_local_map(random);
