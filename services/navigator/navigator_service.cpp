@@ -4,6 +4,7 @@
 #include <exception>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "topogeo/geometry/reaction_times.hpp"
 #include "topogeo/messaging/message.hpp"
@@ -117,6 +118,7 @@ void NavigatorService::listen_to_sensors() {
       },
       {.main_input = true});
   service_.subscribe<msg::Odometry>([this](const msg::Odometry& odometry) {
+    if (!is_of_epoch(odometry.odometry_epoch())) return;
     const navigation::OdometrySample sample = service::odometry_from_msg(odometry);
     note_stamp(sample.stamp_ns);
     note_arrival(navigation::TimedInput::kOdometry, sample.stamp_ns);
@@ -137,6 +139,18 @@ void NavigatorService::listen_to_sensors() {
     navigator_.add(
         navigation::LaserFields{laser.stamp_ns(), laser.warning_field(), laser.protective_field()});
   });
+}
+
+bool NavigatorService::is_of_epoch(std::uint64_t epoch) {
+  if (epoch == epoch_) return true;
+  if (epoch == previous_epoch_) {
+    service_.status().add_drops("odometry of before");
+    return false;
+  }
+  previous_epoch_ = std::exchange(epoch_, epoch);
+  // The first epoch of this process ends nothing.
+  if (previous_epoch_) begin_again("odometry restarted", "waiting for a pose");
+  return true;
 }
 
 bool NavigatorService::is_newer(Source source, std::int64_t stamp_ns) {
@@ -169,6 +183,7 @@ void NavigatorService::note_arrival(navigation::TimedInput input, std::int64_t s
 }
 
 void NavigatorService::on_scan(const msg::Scan& message) {
+  if (!is_of_epoch(message.odometry_epoch())) return;
   const navigation::ScanPoints points = service::to_scan_points(
       service::from_msg(message), service_.setup().config.config.local_mapper.T_robot_laser);
   note_stamp(points.stamp_ns);
@@ -241,7 +256,9 @@ void NavigatorService::take_map() {
 
 void NavigatorService::tick() {
   const std::int64_t now_ns = clock_.now_ns(steady_now_ns());
-  if (clock_.take_set_back()) begin_again();
+  if (clock_.take_set_back()) {
+    begin_again("time set back", "the sensors' stamps are older than before");
+  }
   navigator_.set_machine({service_.cpu().is_short_now(), service_.cpu().timer_delay_s()});
   const geometry::Velocity velocity = navigator_.step(now_ns);
   command(velocity, now_ns);
@@ -269,13 +286,13 @@ void NavigatorService::publish_pose() {
   }
 }
 
-void NavigatorService::begin_again() {
+void NavigatorService::begin_again(const std::string& fault, const std::string& detail) {
   last_ns_.fill(std::nullopt);
   const bool stuck = navigator_.is_stuck();
   navigator_ = navigation::Navigator(service_.setup().config.config.navigator);
   if (map_) navigator_.set_map(map_, live_map_.version());
   if (!goal_) return;
-  service_.status().fault("time set back", "the sensors' stamps are older than before");
+  service_.status().fault(fault, detail);
   navigator_.set_goal(*goal_);
   if (paused_) navigator_.pause();
   if (stuck) navigator_.stay_stuck();

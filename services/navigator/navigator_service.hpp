@@ -53,6 +53,9 @@ class NavigatorService {
   /// False, and counted, for a message that is not newer than the one before or that is ahead of
   /// the clock, which scans and odometry set.
   bool is_newer(Source source, std::int64_t stamp_ns);
+  /// False for late messages of the previous odometry epoch. Another epoch starts the navigator
+  /// over, because poses carried on by the previous odometry are wrong.
+  bool is_of_epoch(std::uint64_t epoch);
   /// Notes the delay of a message, for the reason of a halt.
   void note_arrival(navigation::TimedInput input, std::int64_t stamp_ns);
   /// Sets the clock by a message that has just arrived.
@@ -62,8 +65,8 @@ class NavigatorService {
   void resume();
   void remember();
   void tick();
-  /// Starts over with the current goal, because the sensors' time has gone back.
-  void begin_again();
+  /// Starts over with the current goal, because the inputs so far do not fit the new ones.
+  void begin_again(const std::string& fault, const std::string& detail);
   void command(const geometry::Velocity& velocity, std::int64_t now_ns);
   void send_command(const geometry::Velocity& velocity, std::int64_t now_ns);
   /// Publishes the pose of Markov localization, the only one that planner and people have then.
@@ -81,6 +84,8 @@ class NavigatorService {
   GoalMemory memory_;
   std::optional<msg::Route> route_;  // the newest one
   std::array<std::optional<std::int64_t>, kSources> last_ns_;
+  std::optional<std::uint64_t> epoch_;           // of the odometry
+  std::optional<std::uint64_t> previous_epoch_;  // the one before
 
   std::int64_t command_until_ns_ = 0;  // by the steady clock: zeros are sent until then
   bool moving_ = false;                // the last command was not a standstill

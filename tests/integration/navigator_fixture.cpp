@@ -49,6 +49,13 @@ planning::HybridMap make_map() {
   return {space, planning::zones_by_width(space), {}};
 }
 
+std::uint64_t count_of(std::string_view reason, const std::vector<msg::FaultCount>& counts) {
+  for (const msg::FaultCount& one : counts) {
+    if (reason == one.reason().c_str()) return one.count();
+  }
+  return 0;
+}
+
 }  // namespace
 
 NavigatorOnRobot::NavigatorOnRobot()
@@ -130,7 +137,8 @@ void NavigatorOnRobot::move() {
   moved_ns_ = now_ns;
   msg::Odometry odometry;
   messaging::set_header(odometry, robot_id_, now_ns, sent_++);
-  odometry.T_odom_robot(service::to_msg(robot_.T_odom_robot()));
+  odometry.T_odom_robot(service::to_msg(between(T_odom_start_, robot_.T_odom_robot())));
+  odometry.odometry_epoch(odometry_epoch_);
   odometry.linear_mps(robot_.velocity().linear_m_per_s);
   odometry.angular_radps(robot_.velocity().angular_rad_per_s);
   static_cast<void>(odometry_.write(odometry));
@@ -147,7 +155,8 @@ void NavigatorOnRobot::sense() {
   scan.angle_min_rad = beams.angle_min_rad;
   scan.angle_step_rad = beams.angle_step_rad;
   scan.ranges_m = robot_.scan();
-  scan.T_odom_robot = robot_.T_odom_robot();
+  scan.T_odom_robot = between(T_odom_start_, robot_.T_odom_robot());
+  scan.odometry_epoch = odometry_epoch_;
   static_cast<void>(scans_.write(service::to_msg(scan, robot_id_)));
 
   service::LivePose pose;
@@ -156,7 +165,7 @@ void NavigatorOnRobot::sense() {
   pose.status = {static_cast<localization::LocalizationState>(pose_state_), 0.9};
   pose.T_map_robot = robot_.T_world_robot();
   pose.covariance = 1e-4 * Eigen::Matrix3d::Identity();
-  static_cast<void>(poses_.write(service::to_msg(pose, robot_id_)));
+  if (poses_come_) static_cast<void>(poses_.write(service::to_msg(pose, robot_id_)));
 
   msg::BaseStatus base;
   messaging::set_header(base, robot_id_, moved_ns_, sent_);
@@ -220,11 +229,11 @@ int NavigatorOnRobot::wait_for_end(Program& program) {
 }
 
 std::uint64_t NavigatorOnRobot::drops(std::string_view reason) const {
-  if (!service_status_) return 0;
-  for (const msg::FaultCount& drop : service_status_->drops()) {
-    if (reason == drop.reason().c_str()) return drop.count();
-  }
-  return 0;
+  return service_status_ ? count_of(reason, service_status_->drops()) : 0;
+}
+
+std::uint64_t NavigatorOnRobot::faults(std::string_view reason) const {
+  return service_status_ ? count_of(reason, service_status_->faults()) : 0;
 }
 
 double NavigatorOnRobot::counter(std::string_view name) const {

@@ -78,6 +78,7 @@ class NavigatorOnRobot : public testing::Test {
   /// A counter of the navigator's status; 0 if it has none of that name.
   [[nodiscard]] double counter(std::string_view name) const;
   [[nodiscard]] std::uint64_t drops(std::string_view reason) const;
+  [[nodiscard]] std::uint64_t faults(std::string_view reason) const;
 
   // A killed program leaves segments in /dev/shm that others may still wait at.
   const bool udp_only_ = (use_udp_only(), true);
@@ -86,6 +87,9 @@ class NavigatorOnRobot : public testing::Test {
   simulation::SimulatedRobot robot_;
   planning::HybridMap map_;
   msg::LocalizationState pose_state_ = msg::kStateTracking;
+  bool poses_come_ = true;
+  std::uint64_t odometry_epoch_ = 0;
+  geometry::Pose2 T_odom_start_;    // where the odometry epoch began
   std::string robot_id_ = "robot";  // of what is published
   std::optional<msg::MotionCommand> command_;
   std::uint64_t commands_ = 0;

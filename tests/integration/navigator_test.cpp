@@ -51,6 +51,23 @@ TEST_F(NavigatorOnRobot, StopsWhileThePoseIsLost) {
   })) << status_->message();
 }
 
+// The pose carried on by the previous odometry would be wrong.
+TEST_F(NavigatorOnRobot, StandsWhenTheOdometryRestartsUntilANewPose) {
+  start();
+  send_goal(1, {4.5, 1.0});
+  ASSERT_TRUE(wait_for("the robot to drive", [&] { return rolls(); })) << navigator_->err();
+  poses_come_ = false;
+  ++odometry_epoch_;
+  T_odom_start_ = robot_.T_odom_robot();
+  ASSERT_TRUE(wait_for("the robot to halt as its pose is lost", [&] {
+    return faults("odometry restarted") > 0 && halted(msg::kHaltPoseLost) && stands();
+  })) << status_->message();
+  poses_come_ = true;
+  EXPECT_TRUE(wait_for("the arrival", [&] { return is(msg::kNavigatorArrived); }))
+      << status_->message();
+  EXPECT_EQ(faults("odometry restarted"), 1U);
+}
+
 TEST_F(NavigatorOnRobot, PausesResumesAndCancels) {
   start();
   send_goal(5, {4.5, 1.0});
