@@ -76,6 +76,8 @@ void RosBridgeService::publish_diagnostics() {
 }
 
 void RosBridgeService::finish() {
+  // First, because scan readers may take seconds to answer while the base drives on.
+  velocity_.stop();
   if (sensors_in_) sensors_in_->finish();
 }
 

@@ -14,6 +14,12 @@
 #include "outputs.hpp"
 
 namespace topogeo::ros_bridge {
+namespace {
+
+constexpr std::chrono::milliseconds kLastVelocity{200};  // time for the base to get the last one
+
+}  // namespace
+
 VelocityBridge::VelocityBridge(RosSide& ros)
     : ros_(ros), clock_(support::wall_clock_ns() - steady_now_ns()) {
   ros.service().status().set_counter("velocities", 0.0);
@@ -22,13 +28,19 @@ VelocityBridge::VelocityBridge(RosSide& ros)
 }
 
 VelocityBridge::~VelocityBridge() {
-  ros_.service().loop().cancel_timer(timer_);
-  if (!moving_) return;
   try {
-    send(0.0, 0.0);
+    stop();
   } catch (const std::exception& error) {
     spdlog::error("the last velocity was not sent: {}", error.what());
   }
+}
+
+void VelocityBridge::stop() {
+  ros_.service().loop().cancel_timer(timer_);
+  if (!moving_) return;
+  send(0.0, 0.0);
+  if (stamped_) static_cast<void>(stamped_->wait_for_acknowledgments(kLastVelocity));
+  if (twists_) static_cast<void>(twists_->wait_for_acknowledgments(kLastVelocity));
 }
 
 void VelocityBridge::give() {

@@ -20,8 +20,12 @@ class VelocityBridge {
   explicit VelocityBridge(RosSide& ros);
   VelocityBridge(const VelocityBridge&) = delete;
   VelocityBridge& operator=(const VelocityBridge&) = delete;
-  /// Stops a base that is moving.
+  /// The same as stop().
   ~VelocityBridge();
+
+  /// Call it after the loop: stops a base of ROS that is moving, and waits a moment until it has
+  /// the order.
+  void stop();
 
  private:
   void give();
