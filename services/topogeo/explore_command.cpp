@@ -47,9 +47,10 @@ int explore(const ExploreOptions& options) {
     if (loop.run_for(kRobotTick)) break;
     session.tick();
   }
-  call_off(loop, session.client());
+  const bool called_off = call_off(loop, session.client());
   std::cerr << '\n';
   if (options.picture) session.write_picture(*options.picture);
+  if (!called_off) throw std::runtime_error(kNotCalledOff);
   if (messaging::SignalStop::received() != 0) {
     std::cerr << "topogeo: stopped; " << session.summary() << '\n';
     return interrupted();

@@ -92,6 +92,7 @@ void GoalClient::take_status(const msg::NavigatorStatus& status) {
   } catch (const std::invalid_argument&) {
     return;
   }
+  ++statuses_received_;
   if (watch_) watch_->add(*status_, support::monotonic_s());
 }
 

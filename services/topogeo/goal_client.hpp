@@ -48,6 +48,12 @@ class GoalClient {
 
   /// End of the goal sent; nothing while it may still be reached.
   [[nodiscard]] std::optional<supervision::GoalEnd> end();
+  /// Whether the navigator has the goal sent and has not ended it, by its newest status.
+  [[nodiscard]] bool in_hand() const { return watch_ && watch_->in_hand(); }
+  /// Whether a goal was sent.
+  [[nodiscard]] bool has_sent() const { return goal_id_ != 0; }
+  /// Number of the navigator's statuses so far.
+  [[nodiscard]] std::uint64_t statuses() const { return statuses_received_; }
   /// Whether another program replaced or cancelled the goal sent.
   [[nodiscard]] bool was_taken_away() const { return watch_ && watch_->was_taken_away(); }
   [[nodiscard]] const std::optional<navigation::NavigatorStatus>& status() const { return status_; }
@@ -72,6 +78,7 @@ class GoalClient {
   std::string client_id_;
   std::uint64_t goal_id_ = 0;  // 0: none sent
   std::uint64_t sent_ = 0;
+  std::uint64_t statuses_received_ = 0;
   std::optional<supervision::GoalWatch> watch_;
   std::optional<navigation::NavigatorStatus> status_;
   std::optional<msg::Route> route_;

@@ -91,14 +91,15 @@ int go_there(const GotoOptions& options) {
   }
   session.progress().finish();
   if (messaging::SignalStop::received() != 0) {
-    call_off(loop, session.client());
+    if (!call_off(loop, session.client())) throw std::runtime_error(kNotCalledOff);
     std::cerr << "topogeo: stopped, the goal is cancelled\n";
     return interrupted();
   }
   const supervision::GoalEnd end = *session.end();
   if (end.arrived) return service::kOk;
-  call_off(loop, session.client());  // it must not set out when nobody waits for it any more
-  throw std::runtime_error(end.reason);
+  // It must not set out when nobody waits for it any more.
+  const bool called_off = call_off(loop, session.client());
+  throw std::runtime_error(called_off ? end.reason : end.reason + "; " + kNotCalledOff);
 }
 
 }  // namespace

@@ -32,13 +32,20 @@ void wait_for_services(messaging::EventLoop& loop, const RobotInDomain& robot,
                            patience.reason());
 }
 
-void call_off(messaging::EventLoop& loop, GoalClient& client) {
-  constexpr double kLastWord_s = 5.0;  // time for the robot to get the order and to stop
+bool call_off(messaging::EventLoop& loop, GoalClient& client) {
+  constexpr double kLastWord_s = 5.0;     // time for the robot to get the order and to stop
+  constexpr std::uint64_t kStatuses = 3;  // between repeats: some may be older than the order
+  if (!client.has_sent()) return true;
   client.cancel();
   support::Patience patience(kLastWord_s, support::monotonic_s());
-  static_cast<void>(client.delivered(patience));
-  patience.begin_again(support::monotonic_s());
-  static_cast<void>(wait_for(loop, patience, [&] { return client.stands(); }));
+  std::uint64_t before = client.statuses();
+  return wait_for(loop, patience, [&] {
+    if (client.in_hand() && client.statuses() >= before + kStatuses) {
+      client.cancel();
+      before = client.statuses();
+    }
+    return client.statuses() > before && !client.in_hand() && (!client.taken() || client.stands());
+  });
 }
 
 int interrupted() {

@@ -40,8 +40,14 @@ bool wait_for(messaging::EventLoop& loop, support::Patience& patience, const Con
 void wait_for_services(messaging::EventLoop& loop, const RobotInDomain& robot,
                        const GoalClient& client);
 
-/// Makes the robot stop and drop the goal that was sent.
-void call_off(messaging::EventLoop& loop, GoalClient& client);
+/// Makes the robot stop and drop the goal that was sent. Repeats the order while the navigator
+/// still has the goal: one that starts just then does not get it and drives on. False if the
+/// navigator does not confirm it.
+[[nodiscard]] bool call_off(messaging::EventLoop& loop, GoalClient& client);
+
+/// The error after a call_off() that failed.
+inline constexpr const char* kNotCalledOff =
+    "the goal could not be cancelled: the robot may drive on";
 
 /// Exit code after a signal.
 int interrupted();

@@ -28,6 +28,11 @@ bool GoalWatch::was_taken_away() const {
   return replaced_ || (status_ && is_cancelled(*status_));
 }
 
+bool GoalWatch::in_hand() const {
+  return status_ && !without_s_ && status_->state != NavigatorState::kArrived &&
+         !is_cancelled(*status_);
+}
+
 void GoalWatch::add(const RouteAnswer& answer) {
   if (answer.goal_id == goal_id_) answer_ = answer;
 }

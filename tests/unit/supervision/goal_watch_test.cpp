@@ -102,6 +102,23 @@ TEST(GoalWatch, TellsAGoalThatWasTakenAwayFromOneThatEnded) {
   EXPECT_FALSE(arrived.was_taken_away());
 }
 
+TEST(GoalWatch, KnowsWhetherTheNavigatorHasTheGoal) {
+  GoalWatch watch(7, 60.0, 0.0);
+  EXPECT_FALSE(watch.in_hand());
+  watch.add(status(NavigatorState::kDriving, HaltReason::kNone, "", 6), 0.1);  // the goal before
+  EXPECT_FALSE(watch.in_hand());
+  watch.add(status(NavigatorState::kDriving), 1.0);
+  EXPECT_TRUE(watch.in_hand());
+  watch.add(status(NavigatorState::kStopped, HaltReason::kPaused), 2.0);
+  EXPECT_TRUE(watch.in_hand()) << "a resume drives on";
+  watch.add(status(NavigatorState::kIdle, HaltReason::kNone, "", 0), 3.0);
+  EXPECT_FALSE(watch.in_hand());
+  watch.add(status(NavigatorState::kDriving), 4.0);
+  EXPECT_TRUE(watch.in_hand()) << "the navigator started again";
+  watch.add(status(NavigatorState::kStopped, HaltReason::kCancelled), 5.0);
+  EXPECT_FALSE(watch.in_hand());
+}
+
 TEST(GoalWatch, ASpanInWhichThisProgramDidNotRunIsNoSilenceOfTheNavigator) {
   GoalWatch watch(7, 60.0, 0.0);
   watch.add(status(NavigatorState::kDriving), 1.0);

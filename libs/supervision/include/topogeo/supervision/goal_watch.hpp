@@ -38,6 +38,8 @@ class GoalWatch {
   /// Whether another program replaced or cancelled the goal. A navigator that started again without
   /// the goal counts after some seconds.
   [[nodiscard]] bool was_taken_away() const;
+  /// Whether the navigator has the goal and has not ended it, by its newest status.
+  [[nodiscard]] bool in_hand() const;
   /// Whether the services of the robot are short of CPU time from now on.
   void set_busy(bool busy, double now_s);
 
