@@ -196,13 +196,14 @@ bool HandSender::base_hears() const {
 }
 
 bool HandSender::stop() {
-  drive_ = ManualDrive(service_.setup().config.config.navigator.follower);
+  drive_.let_go(steady_ns());
   const bool heard = order(msg::kBaseHalt);
   stop_unheard_ = !heard;
   stop_wanted_ = true;
   stopped_base_.reset();
   events_.add(EventLog::Level::kWarning, "web",
               heard ? "stopped by the operator" : "no base received the operator's stop");
+  tick();  // zeros stop a base of ROS, which takes no order to halt
   return heard;
 }
 

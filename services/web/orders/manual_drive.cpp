@@ -21,6 +21,7 @@ void ManualDrive::release(std::uint64_t viewer, std::int64_t steady_ns) {
 }
 
 void ManualDrive::let_go(std::int64_t steady_ns) {
+  if (!holder_) return;
   holder_.reset();
   zeros_until_ns_ = steady_ns + kStopTail_ns;
 }
@@ -32,7 +33,7 @@ bool ManualDrive::held(std::int64_t steady_ns) const {
 std::optional<navigation::GuardVerdict> ManualDrive::step(const navigation::CollisionGuard& guard,
                                                           std::int64_t steady_ns,
                                                           std::int64_t sensors_ns) {
-  if (holder_ && !held(steady_ns)) let_go(steady_ns);
+  if (!held(steady_ns)) let_go(steady_ns);
   if (holder_) return guard.judge(wanted_, sensors_ns);
   if (steady_ns < zeros_until_ns_) return navigation::GuardVerdict{};
   return std::nullopt;

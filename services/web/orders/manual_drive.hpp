@@ -23,6 +23,8 @@ class ManualDrive {
   bool hold(std::uint64_t viewer, const geometry::Velocity& wanted, std::int64_t steady_ns);
   /// Releases the handle; does nothing for a viewer without it.
   void release(std::uint64_t viewer, std::int64_t steady_ns);
+  /// Releases the handle for any viewer that holds it.
+  void let_go(std::int64_t steady_ns);
 
   /// Whether a viewer holds the handle.
   [[nodiscard]] bool held(std::int64_t steady_ns) const;
@@ -33,8 +35,6 @@ class ManualDrive {
                                                std::int64_t steady_ns, std::int64_t sensors_ns);
 
  private:
-  void let_go(std::int64_t steady_ns);
-
   navigation::FollowerConfig limits_;
   std::optional<std::uint64_t> holder_;
   geometry::Velocity wanted_;

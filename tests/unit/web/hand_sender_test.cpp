@@ -197,6 +197,18 @@ TEST_F(HandSenderTest, AnOrderThatWaitedIsRefused) {
   EXPECT_EQ(tally_.counts().at("refused: late"), 1U);
 }
 
+TEST_F(HandSenderTest, AStopSendsZerosAtOnce) {
+  // Commands are repeated, because a slow machine considers the first ones late.
+  ASSERT_TRUE(run_until("somebody drives", [&] {
+    hand_.drive(1, {0.3, 0.0}, now_ns());
+    return first_ > 0;
+  }));
+  const std::uint64_t commands = tally_.counts().at("commands");
+  EXPECT_FALSE(hand_.stop()) << "no base hears it";
+  EXPECT_FALSE(hand_.is_held());
+  EXPECT_EQ(tally_.counts().at("commands"), commands + 1);
+}
+
 TEST_F(HandSenderTest, NothingMovesBeforeItIsKnownWhereItMayNot) {
   const auto shown = [&] { return *board_.update(Channel::kDrive, 0).text; };
   // Commands are repeated, because a slow machine considers the first ones late.

@@ -49,6 +49,17 @@ TEST_F(Hand, LettingGoStopsAtOnce) {
   EXPECT_EQ(step(1030 * kMs)->allowed, geometry::Velocity{});
 }
 
+TEST_F(Hand, AStopLetsGoForWhoeverDrives) {
+  drive_.let_go(900 * kMs);
+  EXPECT_FALSE(step(910 * kMs)) << "the base is left alone";
+  drive_.hold(1, {0.3, 0.0}, 1000 * kMs);
+  EXPECT_GT(step(1010 * kMs)->allowed.linear_m_per_s, 0.1);
+  drive_.let_go(1020 * kMs);
+  const auto stopped = step(1030 * kMs);
+  ASSERT_TRUE(stopped) << "a base that takes no order to halt would drive on";
+  EXPECT_EQ(stopped->allowed, geometry::Velocity{});
+}
+
 TEST_F(Hand, OneDrivesAtATime) {
   EXPECT_TRUE(drive_.hold(1, {0.3, 0.0}, 1000 * kMs));
   EXPECT_FALSE(drive_.hold(2, {-0.3, 0.0}, 1100 * kMs));
