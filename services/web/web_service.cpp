@@ -1,5 +1,6 @@
 #include "web_service.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <deque>
@@ -31,6 +32,10 @@ constexpr std::array<std::string_view, 18> kOffers = {
     "goal",    "preview",  "pause",   "resume",  "cancel",      "stop",
     "release", "return",   "pose",    "search",  "mode",        "merge",
     "explore", "snapshot", "restore", "drawing", "room_shapes", "merge_map"};
+
+/// POST paths after which the robot may drive.
+constexpr std::array<std::string_view, 4> kDrives = {"/api/goal", "/api/explore", "/api/resume",
+                                                     "/api/return"};
 
 Answer accepted() {
   return {202, "{}"};
@@ -124,13 +129,12 @@ void WebService::hand_over(Request request, Respond respond) {
 
 void WebService::stop(Respond respond) {
   hand_.stop(std::move(respond));
-  hand_over({true, "/api/cancel", {}, "{}", true}, [](const Answer&) {});
+  hand_over({true, "/api/cancel", {}, "{}", true, stops()}, [](const Answer&) {});
 }
 
-// Queued after the cancel of its stop, so that a released robot has no goal from before. The body
-// is the number of stops that it releases.
+// Queued after the cancel of its stop, so that a released robot has no goal from before.
 void WebService::release_stop(Respond respond) {
-  hand_over({true, "/api/release", {}, std::to_string(hand_.stops()), true}, std::move(respond));
+  hand_over({true, "/api/release", {}, "{}", true, stops()}, std::move(respond));
 }
 
 void WebService::drive(std::uint64_t viewer, double linear_mps, double angular_radps) {
@@ -210,8 +214,7 @@ void WebService::obey(const Request& request, const Respond& respond) {
          check_plain(body);
          respond(exploration_.start());
        }},
-      {"/api/release",
-       [&](const std::string& stops) { hand_.release_stop(std::stoull(stops), respond); }},
+      {"/api/release", [&](const std::string&) { hand_.release_stop(request.stops, respond); }},
       {"/api/return",
        [&](const std::string& body) {
          check_plain(body);
@@ -240,6 +243,11 @@ void WebService::obey(const Request& request, const Respond& respond) {
   const auto order = orders.find(request.path);
   if (order == orders.end()) {
     respond(error_answer(404, "there is no " + request.path));
+    return;
+  }
+  // The cancel of the stop may have overtaken it.
+  if (request.stops != stops() && std::ranges::find(kDrives, request.path) != kDrives.end()) {
+    respond(error_answer(409, "the robot was stopped meanwhile"));
     return;
   }
   tally_.add("orders");

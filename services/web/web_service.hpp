@@ -53,6 +53,7 @@ class WebService : private Backend {
   void handle(const Request& request, Respond respond) override;
   void stop(Respond respond) override;
   void release_stop(Respond respond) override;
+  [[nodiscard]] std::uint64_t stops() const override { return hand_.stops(); }
   void drive(std::uint64_t viewer, double linear_mps, double angular_radps) override;
   void release(std::uint64_t viewer) override;
   void hand_over(Request request, Respond respond);

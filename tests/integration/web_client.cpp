@@ -155,6 +155,14 @@ std::string RawConnection::receive_head() const {
   return text;
 }
 
+std::string RawConnection::receive_all() const {
+  std::string text;
+  const Clock::time_point end = Clock::now() + hang_limit();
+  while (receive_some(socket_, text, end)) {
+  }
+  return text;
+}
+
 bool RawConnection::ends() const {
   std::string text;
   bool ended = false;

@@ -45,6 +45,8 @@ class RawConnection {
   void send(const std::string& bytes) const;
   /// The bytes up to the end of an answer's headers, or of the connection.
   [[nodiscard]] std::string receive_head() const;
+  /// The bytes up to the end of the connection.
+  [[nodiscard]] std::string receive_all() const;
   /// Whether the service closes it within hang_limit().
   [[nodiscard]] bool ends() const;
 

@@ -116,6 +116,7 @@ void HttpSession::on_header(beast::error_code error) {
     return;
   }
   state_.tally.add("requests");
+  stops_ = state_.backend.stops();
   note_token(shows_token(header(http::field::authorization),
                          header(http::field::sec_websocket_protocol), state_.config.token));
   if (const auto refused = refusal()) {
@@ -281,6 +282,7 @@ void HttpSession::route() {
   out.path = target.substr(0, question);
   if (question != std::string::npos) out.query = target.substr(question + 1);
   out.authorized = authorized_;
+  out.stops = stops_;
   if (!out.post) {
     if (const PageFile* file = state_.files.find(out.path)) {
       send_file(*file);

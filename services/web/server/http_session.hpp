@@ -2,6 +2,7 @@
 // request decides its sender and rights: a body is read only where one is expected.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -71,6 +72,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession>, private Pl
   std::optional<Parser> parser_;
   bool authorized_ = false;  // for this request
   bool too_often_ = false;   // for this request
+  std::uint64_t stops_ = 0;  // before this request
   int drained_ = 0;
 };
 

@@ -20,6 +20,7 @@ struct Request {
   std::string query;        ///< part after the question mark, unchanged
   std::string body;         ///< POST only
   bool authorized = false;  ///< has the operator's token; always true for a POST that writes
+  std::uint64_t stops = 0;  ///< Backend::stops() when its header was read
 };
 
 struct Answer {
@@ -48,6 +49,8 @@ class Backend {
   /// POST /api/stop and /api/release, with the token. Their answers wait for no other request.
   virtual void stop(Respond respond) = 0;
   virtual void release_stop(Respond respond) = 0;
+  /// Number of calls of stop() so far.
+  [[nodiscard]] virtual std::uint64_t stops() const = 0;
   /// An operator holds a key or a button. `viewer` is a unique number.
   virtual void drive(std::uint64_t viewer, double linear_mps, double angular_radps) = 0;
   /// The viewer let go or is gone; also called for one that has never driven.

@@ -32,6 +32,7 @@ class NoBackend : public Backend {
   void handle(const Request&, Respond respond) override { respond(error_answer(404, "none")); }
   void stop(Respond respond) override { respond(error_answer(404, "none")); }
   void release_stop(Respond respond) override { respond(error_answer(404, "none")); }
+  [[nodiscard]] std::uint64_t stops() const override { return 0; }
   void drive(std::uint64_t, double, double) override {}
   void release(std::uint64_t) override {}
 };

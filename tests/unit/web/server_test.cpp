@@ -47,10 +47,13 @@ class EchoBackend : public Backend {
     respond(answer);
   }
   void stop(Respond respond) override {
-    ++stops;
+    ++stopped;
     respond({202, "{}"});
   }
   void release_stop(Respond respond) override { respond({202, "{}"}); }
+  [[nodiscard]] std::uint64_t stops() const override {
+    return static_cast<std::uint64_t>(stopped.load());
+  }
   void drive(std::uint64_t viewer, double linear_mps, double) override {
     driver = viewer;
     speed_mps = linear_mps;
@@ -63,7 +66,7 @@ class EchoBackend : public Backend {
   std::atomic<double> speed_mps = 0.0;
   std::atomic<int> drives = 0;
   std::atomic<int> releases = 0;
-  std::atomic<int> stops = 0;
+  std::atomic<int> stopped = 0;
 
   /// Blocks all requests until free().
   void hold() { held_ = std::unique_lock(busy_); }
@@ -183,7 +186,7 @@ TEST_F(WebServer, StopIsAnsweredWhileNothingElseIs) {
     ASSERT_EQ(http_post(port(), "/api/stop", kToken).status, 202);
     ASSERT_EQ(http_post(port(), "/api/release", kToken).status, 202);
   }
-  EXPECT_EQ(backend_.stops, 40);
+  EXPECT_EQ(backend_.stopped, 40);
   EXPECT_EQ(slow.wait_for(milliseconds(0)), std::future_status::timeout);
   backend_.free();
   EXPECT_EQ(slow.get(), 200);
@@ -201,12 +204,12 @@ TEST_F(WebServer, AStopByTheWebSocketNeedsTheToken) {
   WebSocketClient watcher(port());
   watcher.send({{"op", "stop"}});
   EXPECT_TRUE(answered(watcher, "refused"));
-  EXPECT_EQ(backend_.stops, 0);
+  EXPECT_EQ(backend_.stopped, 0);
   backend_.hold();
   WebSocketClient page(port(), test::token_header(kToken));
   page.send({{"op", "stop"}});
   EXPECT_TRUE(answered(page, "stopped"));
-  EXPECT_EQ(backend_.stops, 1);
+  EXPECT_EQ(backend_.stopped, 1);
   backend_.free();
 }
 

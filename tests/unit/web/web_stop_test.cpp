@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "topogeo/msg/motion.h"
 #include "topogeo/msg/sensor.h"
@@ -88,6 +88,49 @@ TEST_F(WebStop, IsReleasedAfterTheGoalsOfBeforeAreCancelled) {
   EXPECT_EQ(released.get(), 202);
   EXPECT_TRUE(test::wait_for("the reset", [&] { return orders(msg::kBaseReset) == 1; }));
 }
+
+/// Orders after which the robot may drive.
+class WebStopDuringOrder : public WebStop, public testing::WithParamInterface<const char*> {
+ protected:
+  /// The result of `call`, made in another thread while the loop of the service runs.
+  template <class Call>
+  auto in_loop(const Call& call) {
+    auto result = std::async(std::launch::async, call);
+    EXPECT_TRUE(test::wait_in_loop(service_.loop(), "an answer", [&] {
+      return result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    }));
+    return result.get();
+  }
+  /// The answer to an order of now.
+  std::string answer_now() {
+    return in_loop([this] { return http_post(web_.port(), GetParam(), kStopToken, body_).body; });
+  }
+  /// The answer when the robot was stopped and released between header and body.
+  std::string answer_after_stop() {
+    const test::RawConnection order(web_.port());
+    order.send(std::string("POST ") + GetParam() + " HTTP/1.1\r\nHost: 127.0.0.1\r\n" +
+               "Authorization: Bearer " + kStopToken + "\r\nConnection: close\r\n" +
+               "Content-Length: " + std::to_string(body_.size()) + "\r\n\r\n");
+    // The connection thread reads the header before it accepts a later connection.
+    EXPECT_EQ(test::http_get(web_.port(), "/api/info").status, 200);
+    EXPECT_EQ(stop(), 202);
+    EXPECT_EQ(in_loop([this] { return http_post(web_.port(), "/api/release", kStopToken).status; }),
+              202);
+    order.send(body_);
+    return in_loop([&order] { return order.receive_all(); });
+  }
+
+  std::string body_ = GetParam() == std::string("/api/goal") ? R"({"x_m":1,"y_m":0})" : "{}";
+};
+
+TEST_P(WebStopDuringOrder, IsNotUndoneByIt) {
+  EXPECT_THAT(answer_after_stop(), testing::HasSubstr("the robot was stopped meanwhile"));
+  EXPECT_THAT(answer_now(), testing::Not(testing::HasSubstr("stopped meanwhile")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Orders, WebStopDuringOrder,
+                         testing::Values("/api/goal", "/api/explore", "/api/resume",
+                                         "/api/return"));
 
 /// A body with many keys.
 std::string many_keys(int keys) {
