@@ -20,6 +20,8 @@ struct Goal {
 class GoalList {
  public:
   enum class End : std::uint8_t { kArrived, kTakenOver, kNotTaken };
+  /// Statuses without a goal after which it counts as lost: a navigator sends at least 5 a second.
+  static constexpr int kPatience = 50;
 
   /// Replaces all goals, or appends to them. True when current() has changed and must be sent.
   bool add(std::deque<Goal> goals, bool append);
@@ -35,8 +37,6 @@ class GoalList {
   [[nodiscard]] const std::deque<Goal>& waiting() const { return waiting_; }
 
  private:
-  static constexpr int kPatience = 50;  // statuses: a navigator sends at least 5 a second
-
   std::optional<Goal> current_;
   bool taken_ = false;  // by the navigator
   int missed_ = 0;      // statuses since it was sent that do not name it

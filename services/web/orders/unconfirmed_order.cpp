@@ -2,11 +2,15 @@
 
 #include "topogeo/service/navigation_conversions.hpp"
 
+#include "orders/goal_list.hpp"
+
 namespace topogeo::web {
 
 void UnconfirmedOrder::begin(msg::GoalKind kind, std::uint64_t own_goal) {
   kind_ = kind;
   missed_ = 0;
+  unseen_ = 0;
+  awaited_ = in_hand_ == own_goal ? 0 : own_goal;
   goals_.clear();
   if (own_goal != 0) goals_.insert(own_goal);
   if (in_hand_) goals_.insert(*in_hand_);
@@ -17,10 +21,11 @@ std::optional<UnconfirmedOrder::Repeat> UnconfirmedOrder::take(const msg::Naviga
   in_hand_ = service::goal_has_ended(status) ? 0 : status.goal_id();
   if (!kind_) return std::nullopt;
   if (!known) goals_.insert(*in_hand_);
+  if (status.goal_id() == awaited_ || ++unseen_ >= GoalList::kPatience) awaited_ = 0;
   const bool carried_out = *in_hand_ == 0 || !goals_.contains(*in_hand_) ||
                            (kind_ == msg::kGoalPause && status.reason() == msg::kHaltPaused);
   if (carried_out) {
-    kind_.reset();
+    if (awaited_ == 0) kind_.reset();
     return std::nullopt;
   }
   if (++missed_ % kStatuses != 0) return std::nullopt;

@@ -19,7 +19,7 @@ class UnconfirmedOrder {
   };
 
   /// An order of kind kGoalCancel or kGoalPause was sent. It refers to the goal of the newest
-  /// status and to `own_goal`, which was sent before it (0: none).
+  /// status and to `own_goal`, which was sent before it (0: none) and may arrive after it.
   void begin(msg::GoalKind kind, std::uint64_t own_goal);
   /// A goal or an order to resume was sent.
   void end() { kind_.reset(); }
@@ -32,7 +32,9 @@ class UnconfirmedOrder {
   std::optional<msg::GoalKind> kind_;
   std::optional<std::uint64_t> in_hand_;  // the navigator's goal, 0: none; empty: not known yet
   std::set<std::uint64_t> goals_;         // to which the order refers
-  int missed_ = 0;                        // statuses without its effect
+  std::uint64_t awaited_ = 0;             // of these, the one that may still arrive; 0: none
+  int unseen_ = 0;                        // statuses that do not name it
+  int missed_ = 0;                        // statuses without the order's effect
 };
 
 }  // namespace topogeo::web

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "orders/goal_list.hpp"
+
 namespace topogeo::web {
 namespace {
 
@@ -65,6 +67,42 @@ TEST(UnconfirmedOrder, APauseIsRepeatedUntilTheRobotIsPaused) {
   EXPECT_EQ(repeat->kind, msg::kGoalPause);
   EXPECT_FALSE(repeat_at(order, paused(7)));
   EXPECT_FALSE(repeat_at(order, driving(7))) << "somebody has resumed";
+}
+
+// Two writers send goals and pauses, so a goal that is lost and sent again arrives after its pause.
+TEST(UnconfirmedOrder, AStatusFromBeforeTheGoalConfirmsNothing) {
+  for (const msg::GoalKind kind : {msg::kGoalPause, msg::kGoalCancel}) {
+    for (const msg::NavigatorStatus& before : {idle(), idle(6), paused(6), driving(6)}) {
+      UnconfirmedOrder order;
+      static_cast<void>(order.take(before));
+      order.begin(kind, 7);
+      EXPECT_FALSE(order.take(before));
+      EXPECT_FALSE(order.take(idle()));
+      EXPECT_FALSE(order.take(driving(9))) << "of another client, before goal 7";
+      const auto repeat = repeat_at(order, driving(7));
+      ASSERT_TRUE(repeat);
+      EXPECT_EQ(repeat->kind, kind);
+      EXPECT_EQ(repeat->goal_id, 7U);
+    }
+  }
+}
+
+TEST(UnconfirmedOrder, AfterThreeStatusesItIsRepeatedForAGoalThatCameLate) {
+  UnconfirmedOrder order;
+  order.begin(msg::kGoalPause, 7);
+  for (int i = 0; i < 2; ++i) EXPECT_FALSE(order.take(idle()));
+  for (int i = 0; i < 2; ++i) EXPECT_FALSE(order.take(driving(7)));
+  const auto repeat = order.take(driving(7));
+  ASSERT_TRUE(repeat);
+  EXPECT_EQ(repeat->kind, msg::kGoalPause);
+  EXPECT_EQ(repeat->goal_id, 7U);
+}
+
+TEST(UnconfirmedOrder, AGoalThatNeverArrivesCountsAsLost) {
+  UnconfirmedOrder order;
+  order.begin(msg::kGoalCancel, 7);
+  for (int i = 0; i < GoalList::kPatience; ++i) EXPECT_FALSE(order.take(idle()));
+  EXPECT_FALSE(repeat_at(order, driving(7)));
 }
 
 TEST(UnconfirmedOrder, AnotherClientsNewerGoalIsLeftAlone) {
