@@ -66,8 +66,8 @@ void ExplorationSender::take(const msg::NavigatorStatus& status,
 }
 
 void ExplorationSender::step() {
-  // A target without a navigator is not out of reach.
-  if (!exploration_.running() || !goals_.has_navigator()) return;
+  // A target without a navigator, or during a pause, is not out of reach.
+  if (!exploration_.running() || !goals_.has_navigator() || goals_.is_pausing()) return;
   try {
     newest_ = floor_();
   } catch (const std::invalid_argument&) {  // an incomplete map: the previous one stays

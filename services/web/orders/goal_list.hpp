@@ -31,7 +31,10 @@ class GoalList {
   /// next goal is current() and must be sent. None is left after kTakenOver, because another client
   /// gave or cancelled a goal, and after kNotTaken, because many statuses did not name it: the
   /// navigator, or its connection, began just when the goal was sent.
-  std::optional<End> take(const msg::NavigatorStatus& status);
+  ///
+  /// A pause holds the next goal back, also one that the status does not show yet (`pausing`): the
+  /// goal reached stays current() until a resume.
+  std::optional<End> take(const msg::NavigatorStatus& status, bool pausing = false);
 
   [[nodiscard]] const std::optional<Goal>& current() const { return current_; }
   [[nodiscard]] const std::deque<Goal>& waiting() const { return waiting_; }

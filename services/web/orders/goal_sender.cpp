@@ -75,7 +75,10 @@ std::uint64_t GoalSender::add(const GoalOrders& orders) {
   for (const WantedGoal& wanted : orders.goals) goals.push_back(make(wanted));
   if (!goals_.has_navigator()) throw std::invalid_argument("no navigator is connected");
   const std::uint64_t first = goals.front().id;
-  if (list_.add(std::move(goals), orders.append)) send_current();
+  if (list_.add(std::move(goals), orders.append)) {
+    unconfirmed_.end();
+    send_current();
+  }
   show();
   return first;
 }
@@ -95,13 +98,13 @@ std::uint64_t GoalSender::send_to(const geometry::Pose2& T_map_goal, const std::
 }
 
 void GoalSender::set_exploring(bool exploring) {
+  if (exploring && is_pausing()) unconfirmed_.end();
   if (std::exchange(exploring_, exploring) != exploring) show();
 }
 
 void GoalSender::send_current() {
   const Goal& goal = *list_.current();
   events_.add(EventLog::Level::kInfo, "web", "goal: " + goal.text);
-  unconfirmed_.end();
   send(goal.message);
 }
 
@@ -144,7 +147,7 @@ std::optional<GoalList::End> GoalSender::take(const msg::NavigatorStatus& status
   if (const auto repeat = unconfirmed_.take(status)) order(repeat->kind, repeat->goal_id);
   const std::string text = list_.current() ? list_.current()->text : std::string();
   const std::uint64_t id = list_.current() ? list_.current()->id : 0;
-  const auto end = list_.take(status);
+  const auto end = list_.take(status, is_pausing());
   if (!end) return std::nullopt;
   if (*end == GoalList::End::kArrived) {
     events_.add(EventLog::Level::kInfo, "web", "arrived: " + text);

@@ -25,23 +25,27 @@ class GoalSender {
  public:
   GoalSender(service::Service& service, Board& board, const MapView& map, EventLog& events);
 
-  /// Returns the id of the first of these goals. Throws std::invalid_argument naming an unknown
-  /// place, or if no navigator was heard; nothing has changed then.
+  /// Returns the id of the first of these goals. Ends a pause, unless they only wait. Throws
+  /// std::invalid_argument naming an unknown place, or if no navigator was heard; nothing has
+  /// changed then.
   std::uint64_t add(const GoalOrders& orders);
-  /// Replaces all goals by one goal of an exploration; returns its id.
+  /// Replaces all goals by one goal of an exploration; returns its id. Not while is_pausing(): it
+  /// would undo the pause.
   std::uint64_t send_to(const geometry::Pose2& T_map_goal, const std::string& text);
   void pause();
   void resume();
   void cancel();
-  /// How the current goal ended, if it did; the next one has then been sent. Sends again what the
-  /// navigator has not received.
+  /// How the current goal ended, if it did; the next one has then been sent. A pause holds it back
+  /// until a resume. Sends again what the navigator has not received.
   std::optional<GoalList::End> take(const msg::NavigatorStatus& status,
                                     const messaging::SampleInfo& info);
-  /// Whether goals come from an exploration.
+  /// Whether goals come from an exploration. One that begins ends a pause, as a goal does.
   void set_exploring(bool exploring);
 
   /// Whether there is a goal that has not ended.
   [[nodiscard]] bool under_way() const { return list_.current().has_value(); }
+  /// Whether a pause was ordered that the navigator does not show yet.
+  [[nodiscard]] bool is_pausing() const { return unconfirmed_.is_pause(); }
   /// Whether a navigator gets what is sent now.
   [[nodiscard]] bool has_navigator() const { return goals_.has_navigator(); }
   [[nodiscard]] std::size_t waiting() const { return list_.waiting().size(); }

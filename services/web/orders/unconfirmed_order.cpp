@@ -22,10 +22,10 @@ std::optional<UnconfirmedOrder::Repeat> UnconfirmedOrder::take(const msg::Naviga
   if (!kind_) return std::nullopt;
   if (!known) goals_.insert(*in_hand_);
   if (status.goal_id() == awaited_ || ++unseen_ >= GoalList::kPatience) awaited_ = 0;
-  const bool carried_out = *in_hand_ == 0 || !goals_.contains(*in_hand_) ||
-                           (kind_ == msg::kGoalPause && status.reason() == msg::kHaltPaused);
-  if (carried_out) {
-    if (awaited_ == 0) kind_.reset();
+  const bool paused = is_pause() && status.reason() == msg::kHaltPaused;
+  if (*in_hand_ == 0 || !goals_.contains(*in_hand_) || paused) {
+    const bool confirmed = paused || *in_hand_ != 0 || !is_pause();
+    if (confirmed && awaited_ == 0) kind_.reset();
     return std::nullopt;
   }
   if (++missed_ % kStatuses != 0) return std::nullopt;

@@ -21,8 +21,11 @@ class UnconfirmedOrder {
   /// An order of kind kGoalCancel or kGoalPause was sent. It refers to the goal of the newest
   /// status and to `own_goal`, which was sent before it (0: none) and may arrive after it.
   void begin(msg::GoalKind kind, std::uint64_t own_goal);
-  /// A goal or an order to resume was sent.
+  /// An operator's goal or an order to resume was sent.
   void end() { kind_.reset(); }
+  /// Whether it is a pause. The end of the goal does not confirm it, because the next goal of a
+  /// list or an exploration would undo it.
+  [[nodiscard]] bool is_pause() const { return kind_ == msg::kGoalPause; }
   /// Takes each navigator status. Returns the order if it must be sent again.
   std::optional<Repeat> take(const msg::NavigatorStatus& status);
 

@@ -45,6 +45,18 @@ TEST(GoalList, APauseAtAGoalHoldsTheNextOneBack) {
       << "nothing waits";
 }
 
+TEST(GoalList, APauseThatTheStatusDoesNotShowYetHoldsTheNextOneBack) {
+  GoalList list;
+  list.add(goals({1, 2}), false);
+  EXPECT_EQ(list.take(status(1, msg::kNavigatorDriving), true), std::nullopt);
+  EXPECT_EQ(list.take(status(1, msg::kNavigatorArrived), true), std::nullopt);
+  EXPECT_EQ(list.current()->id, 1U);
+  EXPECT_EQ(list.take(status(1, msg::kNavigatorArrived), false), GoalList::End::kArrived);
+  EXPECT_EQ(list.current()->id, 2U);
+  EXPECT_EQ(list.take(status(2, msg::kNavigatorArrived), true), GoalList::End::kArrived)
+      << "nothing waits";
+}
+
 TEST(GoalList, ANewGoalTakesThePlaceOfAll) {
   GoalList list;
   list.add(goals({1, 2}), false);

@@ -1,5 +1,7 @@
 #include "orders/unconfirmed_order.hpp"
 
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "orders/goal_list.hpp"
@@ -26,6 +28,13 @@ msg::NavigatorStatus paused(std::uint64_t goal) {
   msg::NavigatorStatus status = driving(goal);
   status.state(msg::kNavigatorStopped);
   status.reason(msg::kHaltPaused);
+  return status;
+}
+
+msg::NavigatorStatus arrived(std::uint64_t goal, msg::HaltReason reason = msg::kHaltNone) {
+  msg::NavigatorStatus status = driving(goal);
+  status.state(msg::kNavigatorArrived);
+  status.reason(reason);
   return status;
 }
 
@@ -67,6 +76,22 @@ TEST(UnconfirmedOrder, APauseIsRepeatedUntilTheRobotIsPaused) {
   EXPECT_EQ(repeat->kind, msg::kGoalPause);
   EXPECT_FALSE(repeat_at(order, paused(7)));
   EXPECT_FALSE(repeat_at(order, driving(7))) << "somebody has resumed";
+}
+
+TEST(UnconfirmedOrder, APauseOutlivesTheEndOfItsGoal) {
+  for (const auto& [end, confirms] :
+       {std::pair{arrived(7, msg::kHaltPaused), true}, std::pair{driving(9), true},
+        std::pair{arrived(7), false}, std::pair{idle(), false}}) {
+    UnconfirmedOrder order;
+    static_cast<void>(order.take(driving(7)));
+    order.begin(msg::kGoalPause, 7);
+    EXPECT_FALSE(repeat_at(order, arrived(7))) << "it stands";
+    EXPECT_TRUE(order.is_pause()) << "the next goal of a list would undo it";
+    EXPECT_FALSE(order.take(end));
+    EXPECT_EQ(order.is_pause(), !confirms) << end.state() << " at goal " << end.goal_id();
+    order.end();
+    EXPECT_FALSE(order.is_pause());
+  }
 }
 
 // Two writers send goals and pauses, so a goal that is lost and sent again arrives after its pause.

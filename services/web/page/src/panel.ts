@@ -122,8 +122,7 @@ class Panel {
   }
 
   private is_paused(): boolean {
-    const navigator = this.channels.value("navigator");
-    return navigator?.state === "stopped" && navigator.reason === "paused";
+    return this.channels.value("navigator")?.reason === "paused";
   }
 
   private toggle_pause(): Promise<void> {
@@ -155,7 +154,7 @@ class Panel {
     set_text(this.line, to + navigator_text(this.channels, this.rights));
     this.go.disabled = !chosen || !this.rights.can("goal");
     set_text(this.pause, this.is_paused() ? words.resume : words.pause);
-    this.pause.disabled = !current || !this.rights.can("pause");
+    this.pause.disabled = !(current || goals_now?.exploring) || !this.rights.can("pause");
     this.cancel.disabled = !(current || goals_now?.exploring) || !this.rights.can("cancel");
     this.home.disabled = !this.rights.can("return");
     const list = [...goals];

@@ -95,7 +95,8 @@ export class Underway {
     show(this.waiting, waiting.length > 0);
     set_text(this.waiting, waiting.length > 0 ? words.waiting(waiting.join(", ")) : "");
 
-    const paused = navigator?.state === "stopped" && navigator.reason === "paused";
+    // Also at a goal that was reached: the next one waits for a resume.
+    const paused = navigator?.reason === "paused";
     const driving = moving && !arrived && navigator.reason !== "cancelled";
     const under_way = exploring || driving;
     show(this.buttons.pause, rights.can("pause") && driving && !paused);

@@ -1,0 +1,189 @@
+// Pauses of a list of goals and of an exploration, with a navigator played by the test.
+#include "orders/goal_sender.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <set>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "topogeo/msg/planning.h"
+#include "topogeo/msg/trajectory.h"
+
+#include "channels/event_log.hpp"
+#include "messaging/fixture.hpp"
+#include "orders/exploration_sender.hpp"
+#include "waiting.hpp"
+
+namespace topogeo::web {
+namespace {
+
+service::Setup goals_setup(const std::string& partition) {
+  service::Setup setup;
+  setup.name = "web";
+  setup.options.partition = partition;
+  return setup;
+}
+
+/// Goals and orders received, and statuses that the test sends.
+class PlayedNavigator {
+ public:
+  explicit PlayedNavigator(const std::string& partition)
+      : participant_(messaging::options_in(partition)),
+        goals_(participant_, {.role = "request"}),
+        statuses_(participant_) {}
+
+  /// Returns the sequence number of the status.
+  std::uint64_t report(std::uint64_t goal, msg::NavigatorState state,
+                       msg::HaltReason reason = msg::kHaltNone) {
+    auto status = messaging::message<msg::NavigatorStatus>(++sent_);
+    status.goal_id(goal);
+    status.state(state);
+    status.reason(reason);
+    EXPECT_TRUE(statuses_.write(status));
+    return sent_;
+  }
+  bool has_goal(std::uint64_t goal) {
+    take();
+    return goals_taken_.contains(goal);
+  }
+  bool has_order(msg::GoalKind kind) {
+    take();
+    return orders_taken_.contains(kind);
+  }
+
+ private:
+  void take() {
+    goals_.take([&](const msg::Goal& goal, const messaging::SampleInfo& info) {
+      if (!info.valid) return;
+      orders_taken_.insert(goal.kind());
+      if (goal.kind() == msg::kGoalPosition) goals_taken_.insert(goal.goal_id());
+    });
+  }
+
+  messaging::Participant participant_;
+  messaging::Reader<msg::Goal> goals_;
+  messaging::Writer<msg::NavigatorStatus> statuses_;
+  std::uint64_t sent_ = 0;
+  std::set<std::uint64_t> goals_taken_;
+  std::set<msg::GoalKind> orders_taken_;
+};
+
+class GoalSenderTest : public testing::Test {
+ protected:
+  GoalSenderTest() {
+    service_.subscribe<msg::NavigatorStatus>(
+        [this](const msg::NavigatorStatus& status, const messaging::SampleInfo& info) {
+          exploration_.take(status, goals_.take(status, info));
+          taken_ = status.sequence_number();
+        });
+    // Goals and orders to cancel have another writer than orders to pause and to resume.
+    EXPECT_TRUE(run_until(
+        "the navigator to get an order to cancel",
+        [&] { return taken_ > 0 && navigator_.has_order(msg::kGoalCancel); },
+        [&] {
+          navigator_.report(0, msg::kNavigatorIdle);
+          goals_.cancel();
+        }));
+    EXPECT_TRUE(run_until(
+        "the navigator to get an order to resume",
+        [&] { return navigator_.has_order(msg::kGoalResume); }, [&] { goals_.resume(); }));
+  }
+  [[nodiscard]] bool run_until(
+      const std::string& what, const std::function<bool()>& condition,
+      const std::function<void()>& between = [] {}) {
+    return test::wait_for(what, condition, [&] {
+      between();
+      service_.loop().run_for(std::chrono::milliseconds(5));
+    });
+  }
+  /// The status has been taken.
+  [[nodiscard]] bool report(std::uint64_t goal, msg::NavigatorState state,
+                            msg::HaltReason reason = msg::kHaltNone) {
+    const std::uint64_t sent = navigator_.report(goal, state, reason);
+    return run_until("a status", [&] { return taken_ == sent; });
+  }
+  /// Two points in a row; the robot drives to the first, whose id is returned.
+  std::uint64_t drive_to_first_of_two() {
+    WantedGoal first;
+    first.point_m = Eigen::Vector2d(1.0, 0.0);
+    WantedGoal second;
+    second.point_m = Eigen::Vector2d(2.0, 0.0);
+    const std::uint64_t id = goals_.add({{first, second}, false});
+    EXPECT_TRUE(run_until("the first goal", [&] { return navigator_.has_goal(id); }));
+    EXPECT_TRUE(report(id, msg::kNavigatorDriving));
+    return id;
+  }
+
+  std::string partition_ = messaging::random_partition();
+  service::Service service_{goals_setup(partition_)};
+  Board board_;
+  EventLog events_{board_};
+  MapView map_{service_, board_};
+  GoalSender goals_{service_, board_, map_, events_};
+  RobotView robot_{service_, board_, events_};
+  int floors_ = 0;  // asked for by the exploration
+  ExplorationSender exploration_{service_, goals_, events_, robot_, [this] {
+                                   ++floors_;
+                                   return ExploredFloor{};
+                                 }};
+  std::uint64_t taken_ = 0;  // sequence number of the last status taken
+  PlayedNavigator navigator_{partition_};
+};
+
+// The status of the arrival was sent before the navigator got the pause.
+TEST_F(GoalSenderTest, APauseHoldsTheNextGoalOfAListBack) {
+  const std::uint64_t first = drive_to_first_of_two();
+  goals_.pause();
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(report(first, msg::kNavigatorArrived));
+  EXPECT_EQ(goals_.waiting(), 1U) << "the second goal would undo the pause";
+  EXPECT_TRUE(goals_.is_pausing());
+  ASSERT_TRUE(report(first, msg::kNavigatorArrived, msg::kHaltPaused));
+  EXPECT_FALSE(goals_.is_pausing());
+  EXPECT_EQ(goals_.waiting(), 1U);
+  goals_.resume();
+  ASSERT_TRUE(report(first, msg::kNavigatorArrived));
+  EXPECT_EQ(goals_.waiting(), 0U) << "it is sent";
+}
+
+TEST_F(GoalSenderTest, AnOperatorsGoalOrAResumeEndsAPause) {
+  const std::uint64_t first = drive_to_first_of_two();
+  goals_.pause();
+  goals_.resume();
+  EXPECT_FALSE(goals_.is_pausing());
+  ASSERT_TRUE(report(first, msg::kNavigatorArrived));
+  EXPECT_EQ(goals_.waiting(), 0U);
+  goals_.pause();
+  EXPECT_TRUE(goals_.is_pausing());
+  static_cast<void>(drive_to_first_of_two());
+  EXPECT_FALSE(goals_.is_pausing());
+}
+
+TEST_F(GoalSenderTest, AnExplorationWaitsDuringAPause) {
+  messaging::Participant localizer(messaging::options_in(partition_));
+  messaging::Writer<msg::LivePose> poses(localizer);
+  auto pose = messaging::message<msg::LivePose>();
+  pose.state(msg::kStateTracking);
+  pose.mode(msg::kModeMapping);
+  ASSERT_TRUE(run_until(
+      "a pose", [&] { return robot_.pose().has_value(); },
+      [&] { static_cast<void>(poses.write(pose)); }));
+  goals_.pause();
+  ASSERT_EQ(exploration_.start().status, 202U);
+  EXPECT_FALSE(goals_.is_pausing()) << "the pause of before";
+  ASSERT_TRUE(run_until("a step of the exploration", [&] { return floors_ > 0; }));
+  goals_.pause();
+  const int before = floors_;
+  int periods = 0;
+  const auto timer = service_.loop().add_timer(std::chrono::milliseconds(200), [&] { ++periods; });
+  ASSERT_TRUE(run_until("steps of the exploration", [&] { return periods > 3; }));
+  service_.loop().cancel_timer(timer);
+  EXPECT_EQ(floors_, before);
+  goals_.resume();
+  EXPECT_TRUE(run_until("the exploration to go on", [&] { return floors_ > before; }));
+}
+
+}  // namespace
+}  // namespace topogeo::web
