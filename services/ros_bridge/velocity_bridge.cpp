@@ -63,13 +63,15 @@ void VelocityBridge::take() {
   if (settings.stamped_velocity) {
     ros_.subscribe<ros::TwistStamped>(
         settings.topics.velocity, settings.qos.velocity,
-        [this](const ros::TwistStamped& message, const messaging::SampleInfo&) {
-          on_twist(message.twist_());
+        [this](const ros::TwistStamped& message, const messaging::SampleInfo& info) {
+          on_twist(message.twist_(), info);
         });
   } else {
     ros_.subscribe<ros::Twist>(
         settings.topics.velocity, settings.qos.velocity,
-        [this](const ros::Twist& message, const messaging::SampleInfo&) { on_twist(message); });
+        [this](const ros::Twist& message, const messaging::SampleInfo& info) {
+          on_twist(message, info);
+        });
   }
 }
 
@@ -104,8 +106,22 @@ void VelocityBridge::send(double linear_mps, double angular_radps) {
   ros_.service().status().set_counter("velocities", static_cast<double>(++sent_));
 }
 
-void VelocityBridge::on_twist(const ros::Twist& twist) {
+bool VelocityBridge::is_of_the_moment(const messaging::SampleInfo& info) {
+  if (info.stamp_ns <= 0) return true;  // this implementation of DDS sends no time
+  const auto age_ns =
+      ages_.age_ns(info.writer, info.stamp_ns, steady_now_ns(), support::wall_clock_ns());
+  if (age_ns && *age_ns <= service::CommandAges::kOldest_ns) return true;
+  ros_.complain(age_ns ? "old velocity" : "velocity of unknown age",
+                "the base does not move by it");
+  return false;
+}
+
+void VelocityBridge::on_twist(const ros::Twist& twist, const messaging::SampleInfo& info) {
   msg::MotionCommand command = to_motion(twist);
+  const bool of_the_moment = is_of_the_moment(info);
+  // An order to stand is always obeyed.
+  const bool stands = command.linear_mps() == 0.0 && command.angular_radps() == 0.0;
+  if (!of_the_moment && !stands) return;
   // Stamped when made, not with the last sensor time: the gateway rejects old commands.
   messaging::set_header(command, ros_.service().robot_id(), clock_.now_ns(steady_now_ns()), sent_);
   if (!commands_->write(command)) {

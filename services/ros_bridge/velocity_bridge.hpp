@@ -7,6 +7,7 @@
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/motion.h"
 #include "topogeo/ros_conversions/messages.hpp"
+#include "topogeo/service/command_ages.hpp"
 #include "topogeo/service/stamp_clock.hpp"
 
 #include "ros_side.hpp"
@@ -31,7 +32,9 @@ class VelocityBridge {
   void give();
   void take();
   void on_command(const msg::MotionCommand& command);
-  void on_twist(const ros::Twist& twist);
+  void on_twist(const ros::Twist& twist, const messaging::SampleInfo& info);
+  /// Whether a velocity has just been sent; an older one is counted as dropped.
+  bool is_of_the_moment(const messaging::SampleInfo& info);
   void send(double linear_mps, double angular_radps);
 
   RosSide& ros_;
@@ -39,6 +42,7 @@ class VelocityBridge {
   std::optional<messaging::Writer<ros::TwistStamped>> stamped_;
   std::optional<messaging::Writer<msg::MotionCommand>> commands_;
   service::StampClock clock_;  // of the gateway, by its odometry
+  service::CommandAges ages_;  // of velocities of ROS
   bool moving_ = false;
   std::uint64_t sent_ = 0;
   std::uint64_t timer_ = 0;

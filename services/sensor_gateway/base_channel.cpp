@@ -177,7 +177,7 @@ std::optional<std::int64_t> BaseChannel::age_of(const msg::MotionCommand& comman
       ages_.age_ns(info.writer, command.stamp_ns(), now_ns, time_.stamp_ns(now_ns));
   // A command to stand still is never refused.
   if (command.linear_mps() == 0.0 && command.angular_radps() == 0.0) return 0;
-  if (age_ns && *age_ns <= CommandAges::kOldest_ns) return age_ns;
+  if (age_ns && *age_ns <= service::CommandAges::kOldest_ns) return age_ns;
   service_.status().add_drops(age_ns ? "old command" : "command of unknown age");
   return std::nullopt;
 }

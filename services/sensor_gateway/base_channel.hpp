@@ -13,9 +13,9 @@
 #include "topogeo/msg/motion.h"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/navigation/last_guard.hpp"
+#include "topogeo/service/command_ages.hpp"
 #include "topogeo/service/service.hpp"
 
-#include "command_ages.hpp"
 #include "device_config.hpp"
 #include "host_time.hpp"
 #include "odometry_memory.hpp"
@@ -108,7 +108,7 @@ class BaseChannel {
   std::optional<navigation::LastGuard> guard_;  ///< only with a laser
   navigation::LastGuard::Verdict verdict_ = navigation::LastGuard::Verdict::kAsWanted;
   std::uint64_t guard_stops_ = 0;
-  CommandAges ages_;
+  service::CommandAges ages_;
   messaging::Writer<msg::Odometry> odometry_;
   messaging::Writer<msg::BaseStatus> statuses_;
   std::uint64_t odometry_sent_ = 0;

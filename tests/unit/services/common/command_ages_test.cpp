@@ -1,10 +1,10 @@
-#include "sensor_gateway/command_ages.hpp"
+#include "topogeo/service/command_ages.hpp"
 
 #include <optional>
 
 #include <gtest/gtest.h>
 
-namespace topogeo::sensor_gateway {
+namespace topogeo::service {
 namespace {
 
 constexpr std::int64_t kMilli_ns = 1'000'000;
@@ -147,4 +147,4 @@ TEST_F(CommandAgesTest, SendersAreKeptApartAndTheirNumberIsBounded) {
 }
 
 }  // namespace
-}  // namespace topogeo::sensor_gateway
+}  // namespace topogeo::service

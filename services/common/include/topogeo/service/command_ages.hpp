@@ -1,5 +1,5 @@
-// Ages of motion commands on arrival, from their stamps. After a frozen gateway or a cut link,
-// commands from long before arrive: the base must not drive by them.
+// Ages of motion commands on arrival, from their stamps. After a frozen gateway or bridge, or a cut
+// link, commands from long before arrive: the base must not drive by them.
 //
 // Senders may have clocks of other hosts that are not synchronized. Navigator and page stamp by the
 // gateway's own clock as they follow it (service/stamp_clock.hpp), so a command of a new sender is
@@ -16,7 +16,7 @@
 
 #include "topogeo/messaging/events.hpp"
 
-namespace topogeo::sensor_gateway {
+namespace topogeo::service {
 
 class CommandAges {
  public:
@@ -62,4 +62,4 @@ class CommandAges {
   std::map<messaging::Handle, Sender> senders_;
 };
 
-}  // namespace topogeo::sensor_gateway
+}  // namespace topogeo::service

@@ -1,9 +1,9 @@
-#include "command_ages.hpp"
+#include "topogeo/service/command_ages.hpp"
 
 #include <algorithm>
 #include <utility>
 
-namespace topogeo::sensor_gateway {
+namespace topogeo::service {
 namespace {
 
 /// Clocks drift apart by about a millisecond in it, and a longer stall of a queue is noticed
@@ -81,4 +81,4 @@ bool CommandAges::set_back(Sender& sender, bool old, std::int64_t offset_ns, std
   return equally;
 }
 
-}  // namespace topogeo::sensor_gateway
+}  // namespace topogeo::service
