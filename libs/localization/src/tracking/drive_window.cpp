@@ -34,16 +34,18 @@ DriveStep DriveWindow::add(std::shared_ptr<const topomap::LocalMap> map,
     stops_.push_back({std::move(map), std::move(view), Pose2{}, 0.0});
     return step;
   }
-  const UncertainPose predicted{odometry->T_a_b,
-                                invertible(monitor_.widened(odometry->covariance))};
-  std::optional<UncertainPose> matched = match(*map, predicted, 1.0, step);
-  if (!matched) matched = match(*map, predicted, kStepWidening, step);
+  const UncertainPose expected{odometry->T_a_b,
+                               invertible(monitor_.expected(odometry->covariance))};
+  UncertainPose predicted{odometry->T_a_b, invertible(monitor_.widened(odometry->covariance))};
+  if (heading_is_lost(predicted)) predicted = expected;
+  std::optional<UncertainPose> matched;
+  if (!heading_is_lost(predicted)) matched = match_near(*map, predicted, step);
   if (matched) {
     monitor_.add(*odometry, *matched);
     step.T_before_now = *matched;
     step.matched = true;
   } else {
-    step.T_before_now = {odometry->T_a_b, invertible(monitor_.expected(odometry->covariance))};
+    step.T_before_now = expected;
   }
   step.distance_m = std::sqrt(step.T_before_now.T_a_b.position_m().squaredNorm());
   const Stop before = stops_.back();
@@ -55,6 +57,23 @@ DriveStep DriveWindow::add(std::shared_ptr<const topomap::LocalMap> map,
                     before.path_m + step.distance_m});
   while (stops_.back().path_m - stops_.front().path_m > kKept_m) stops_.pop_front();
   return step;
+}
+
+// T_before_now by matches with the last stops within two deviations of odometry: right ones are,
+// most look-alikes are not (tests/bench/RESULTS.md, "Steps in doubt").
+std::optional<UncertainPose> DriveWindow::match_near(const topomap::LocalMap& map,
+                                                     const UncertainPose& odometry,
+                                                     DriveStep& step) {
+  constexpr double kNear2 = 4.0;
+  std::optional<UncertainPose> matched = match(map, odometry, 1.0, step);
+  if (!matched) matched = match(map, odometry, kStepWidening, step);
+  if (matched &&
+      geometry::squared_mahalanobis(geometry::difference(matched->T_a_b, odometry.T_a_b),
+                                    odometry.covariance + matched->covariance) > kNear2) {
+    step.match.reset();
+    return std::nullopt;
+  }
+  return matched;
 }
 
 // T_before_now by accepted matches with the last stops.

@@ -24,6 +24,24 @@ constexpr std::size_t kPlaces = 8;           // compared at one stop; each costs
 constexpr std::size_t kFewestSearched = 25;  // thinned points of a scan; fewer prove nothing
 constexpr double kLeastConformity = 0.3;     // some points through walls do not refute a place
 
+// Selects those of the chosen matches that lead to one place. With a lost heading a match alone
+// proves nothing.
+std::vector<bool> consistent(const std::vector<UncertainPose>& T_map_robot,
+                             const std::vector<bool>& chosen, bool heading_lost) {
+  std::vector<Pose2> poses;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (chosen[i]) poses.push_back(T_map_robot[i].T_a_b);
+  }
+  const std::vector<bool> there = of_one_place(poses);
+  const bool enough = std::ranges::count(there, true) >= (heading_lost ? 2 : 1);
+  std::vector<bool> out(chosen.size());
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (chosen[i]) out[i] = there[next++] && enough;
+  }
+  return out;
+}
+
 // Whether a match lies at its predicted pose.
 bool agree(const UncertainPose& predicted, const UncertainPose& measured) {
   return geometry::squared_mahalanobis(geometry::difference(measured.T_a_b, predicted.T_a_b),
@@ -106,20 +124,26 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
     // Expected overlap 0: a failed match with the previous stop counts as no contradiction.
     step.evidence.matches.push_back(step_match(task, result, 0.0, monitor_.steps() - 1));
   }
-  const std::vector<bool> right = agreeing(tasks, results, stored);
+  std::vector<UncertainPose> measured;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    measured.push_back(matching_.measured(stored[i].id, results[i]));
+  }
+  const bool heading_lost = heading_is_lost(pose_);
+  const std::vector<bool> right =
+      consistent(measured, agreeing(tasks, results, measured), heading_lost);
   bool sure = false;
   std::vector<UncertainPose> accepted{pose_};
-  std::vector<UncertainPose> uncertain{pose_};
+  std::vector<bool> doubtful(results.size());
   for (std::size_t i = 0; i < results.size(); ++i) {
     const MatchResult& result = results[i];
-    const UncertainPose measured = matching_.measured(stored[i].id, result);
     step.evidence.matches.push_back(step_match(tasks[i], result, stored[i].overlap, std::nullopt));
-    step.measured.push_back(measured.T_a_b);
+    StepMatch& evidence = step.evidence.matches.back();
+    step.measured.push_back(measured[i].T_a_b);
     if (right[i]) {
-      step.evidence.matches.back().verdict = Verdict::kAccepted;
-      step.evidence.matches.back().reason = Reason::kNone;
+      evidence.verdict = Verdict::kAccepted;
+      evidence.reason = Reason::kNone;
       sure |= doubt(result) < kHardlyDoubtful || result.verdict != Verdict::kAccepted;
-      accepted.push_back(measured);
+      accepted.push_back(measured[i]);
       step.accepted.push_back({stored[i].id,
                                inverse(UncertainPose{result.T_reference_query, result.covariance}),
                                result.fitness});
@@ -127,12 +151,23 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
           without_prior(result.T_reference_query, data_covariance(result),
                         weak_prior({tasks[i].T_reference_query, tasks[i].covariance.inverse()}));
       step.scans_alone.push_back(inverse(UncertainPose{T_scans, result.covariance}));
-    } else if (result.reason == Reason::kDoubtful || result.reason == Reason::kSecondSolution) {
-      uncertain.push_back(measured);
+      continue;
+    }
+    if (result.verdict == Verdict::kAccepted) {  // other matches lead to another place
+      evidence.verdict = Verdict::kAmbiguous;
+      evidence.reason = Reason::kSecondSolution;
+    }
+    doubtful[i] =
+        evidence.reason == Reason::kDoubtful || evidence.reason == Reason::kSecondSolution;
+  }
+  if (step.accepted.empty()) {
+    ++steps_in_doubt_;
+    doubtful = consistent(measured, doubtful, heading_lost);
+    for (std::size_t i = 0; i < doubtful.size(); ++i) {
+      if (doubtful[i]) accepted.push_back(measured[i]);
     }
   }
-  if (step.accepted.empty()) ++steps_in_doubt_;
-  pose_ = fused(step.accepted.empty() ? uncertain : accepted);
+  pose_ = fused(accepted);
   step.evidence.covariance = pose_.covariance;
   if (!sure) step.evidence.better_elsewhere = better_elsewhere(stop);
   status_ = monitor_.add(step.evidence);
@@ -153,15 +188,14 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
 // this stop and the previous ones in the map agree with each other.
 std::vector<bool> MapLocalizer::agreeing(std::span<const MatchTask> tasks,
                                          std::span<const MatchResult> results,
-                                         std::span<const MatchCandidate> stored) {
+                                         std::span<const UncertainPose> measured) {
   std::vector<bool> right(results.size());
   std::vector<bool> agreed(results.size());
   bool any_accepted = false;
   double agreeing = 0.0;  // confidence of the most confident one
   for (std::size_t i = 0; i < results.size(); ++i) {
     right[i] = results[i].verdict == Verdict::kAccepted;
-    agreed[i] = plausible(tasks[i], results[i]) &&
-                agree(pose_, matching_.measured(stored[i].id, results[i]));
+    agreed[i] = plausible(tasks[i], results[i]) && agree(pose_, measured[i]);
     any_accepted |= right[i] && agreed[i];
     if (!agreed[i]) continue;
     const StepMatch match = step_match(tasks[i], results[i], 0.0, std::nullopt);

@@ -1,6 +1,12 @@
 #include "topogeo/localization/tracking/pose_fusion.hpp"
 
+#include <algorithm>
+#include <iterator>
+#include <numbers>
+
 #include <Eigen/LU>
+
+#include "topogeo/localization/tracking/global_localization.hpp"
 
 namespace topogeo::localization {
 
@@ -22,6 +28,22 @@ UncertainPose fused(const std::vector<UncertainPose>& measurements) {
                   geometry::wrap_angle(best.T_a_b.theta_rad + step.z())};
   }
   return best;
+}
+
+bool heading_is_lost(const UncertainPose& pose) {
+  constexpr double kEighth_rad = 0.25 * std::numbers::pi;
+  return pose.covariance(2, 2) > kEighth_rad * kEighth_rad;
+}
+
+std::vector<bool> of_one_place(const std::vector<geometry::Pose2>& T_map_robot) {
+  for (const geometry::Pose2& place : T_map_robot) {
+    std::vector<bool> there;
+    for (const geometry::Pose2& other : T_map_robot) {
+      there.push_back(same_global_place(place, other));
+    }
+    if (2 * std::ranges::count(there, true) > std::ssize(there)) return there;
+  }
+  return std::vector<bool>(T_map_robot.size());
 }
 
 }  // namespace topogeo::localization

@@ -26,5 +26,25 @@ TEST(Fused, HeadingsMeetAcrossTheTurn) {
   EXPECT_NEAR(std::fabs(mean.T_a_b.theta_rad), 3.14159265358979, 1e-9);
 }
 
+TEST(OfOnePlace, SelectsTheMajority) {
+  const geometry::Pose2 here{0.5, 1.8, -2.4};
+  const geometry::Pose2 beside{0.6, 1.7, -2.3};
+  const geometry::Pose2 turned{1.8, 1.5, 2.3};
+  EXPECT_EQ(of_one_place({turned, here, beside}), (std::vector<bool>{false, true, true}));
+  EXPECT_EQ(of_one_place({here}), std::vector<bool>{true});
+  EXPECT_EQ(of_one_place({here, turned}), (std::vector<bool>{false, false}));
+  EXPECT_TRUE(of_one_place({}).empty());
+  // The heading counts as well.
+  EXPECT_EQ(of_one_place({here, {0.5, 1.8, -2.0}}), (std::vector<bool>{false, false}));
+}
+
+TEST(HeadingIsLost, WhenAQuarterTurnIsWithinTwoDeviations) {
+  const auto known_to = [](double sigma_rad) {
+    return UncertainPose{{}, Eigen::Vector3d(0.1, 0.1, sigma_rad * sigma_rad).asDiagonal()};
+  };
+  EXPECT_FALSE(heading_is_lost(known_to(0.7)));
+  EXPECT_TRUE(heading_is_lost(known_to(0.8)));
+}
+
 }  // namespace
 }  // namespace topogeo::localization

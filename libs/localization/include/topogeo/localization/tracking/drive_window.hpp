@@ -52,6 +52,8 @@ class DriveWindow {
     geometry::Pose2 T_window_robot;
     double path_m = 0.0;
   };
+  std::optional<UncertainPose> match_near(const topomap::LocalMap& map,
+                                          const UncertainPose& odometry, DriveStep& step);
   std::optional<UncertainPose> match(const topomap::LocalMap& map, const UncertainPose& odometry,
                                      double widening, DriveStep& step);
 

@@ -128,7 +128,7 @@ class MapLocalizer : public Slam {
   std::vector<MatchTask> tracking_tasks(const DriveStop& stop,
                                         std::span<const MatchCandidate> stored);
   std::vector<bool> agreeing(std::span<const MatchTask> tasks, std::span<const MatchResult> results,
-                             std::span<const MatchCandidate> stored);
+                             std::span<const UncertainPose> measured);
   [[nodiscard]] double better_elsewhere(const DriveStop& stop) const;
   void compare_continued(const DriveStop& stop);
   void begin_search();
