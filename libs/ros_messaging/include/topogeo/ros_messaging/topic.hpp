@@ -89,6 +89,10 @@ class Writer<T> {
   /// fails.
   [[nodiscard]] bool write(const T& message) { return core_->write(&message); }
   [[nodiscard]] int matched() const { return core_->matched(); }
+  /// True as soon as every connected reader has all written messages, false after `timeout`.
+  [[nodiscard]] bool wait_for_acknowledgments(std::chrono::nanoseconds timeout) {
+    return core_->wait_for_acknowledgments(timeout);
+  }
   [[nodiscard]] const std::shared_ptr<detail::WriterCore>& core() const { return core_; }
 
  private:
