@@ -118,8 +118,8 @@ void NavigatorService::listen_to_sensors() {
       },
       {.main_input = true});
   service_.subscribe<msg::Odometry>([this](const msg::Odometry& odometry) {
-    if (!is_of_epoch(odometry.odometry_epoch())) return;
     const navigation::OdometrySample sample = service::odometry_from_msg(odometry);
+    if (!is_of_epoch(odometry.odometry_epoch())) return;
     note_stamp(sample.stamp_ns);
     note_arrival(navigation::TimedInput::kOdometry, sample.stamp_ns);
     if (is_newer(Source::kOdometry, sample.stamp_ns)) navigator_.add(sample);
@@ -142,12 +142,17 @@ void NavigatorService::listen_to_sensors() {
 }
 
 bool NavigatorService::is_of_epoch(std::uint64_t epoch) {
+  // Longer than any message is under way. Afterwards its source speaks again, and the other one was
+  // a stranger.
+  constexpr std::int64_t kLate_ns = 2'000'000'000;
   if (epoch == epoch_) return true;
-  if (epoch == previous_epoch_) {
+  const std::int64_t now_ns = steady_now_ns();
+  if (epoch == previous_epoch_ && now_ns - epoch_since_ns_ < kLate_ns) {
     service_.status().add_drops("odometry of before");
     return false;
   }
   previous_epoch_ = std::exchange(epoch_, epoch);
+  epoch_since_ns_ = now_ns;
   // The first epoch of this process ends nothing.
   if (previous_epoch_) begin_again("odometry restarted", "waiting for a pose");
   return true;
@@ -183,9 +188,9 @@ void NavigatorService::note_arrival(navigation::TimedInput input, std::int64_t s
 }
 
 void NavigatorService::on_scan(const msg::Scan& message) {
-  if (!is_of_epoch(message.odometry_epoch())) return;
   const navigation::ScanPoints points = service::to_scan_points(
       service::from_msg(message), service_.setup().config.config.local_mapper.T_robot_laser);
+  if (!is_of_epoch(message.odometry_epoch())) return;
   note_stamp(points.stamp_ns);
   note_arrival(navigation::TimedInput::kScan, points.stamp_ns);
   if (!is_newer(Source::kScan, points.stamp_ns)) return;
@@ -289,7 +294,10 @@ void NavigatorService::publish_pose() {
 void NavigatorService::begin_again(const std::string& fault, const std::string& detail) {
   last_ns_.fill(std::nullopt);
   const bool stuck = navigator_.is_stuck();
+  // The pose by Markov localization is the navigator's own: the base station is not where it is.
+  const std::optional<navigation::PoseFix> place = navigator_.markov_pose();
   navigator_ = navigation::Navigator(service_.setup().config.config.navigator);
+  if (place && place->tracking) navigator_.add(*place);
   if (map_) navigator_.set_map(map_, live_map_.version());
   if (!goal_) return;
   service_.status().fault(fault, detail);

@@ -86,6 +86,7 @@ class NavigatorService {
   std::array<std::optional<std::int64_t>, kSources> last_ns_;
   std::optional<std::uint64_t> epoch_;           // of the odometry
   std::optional<std::uint64_t> previous_epoch_;  // the one before
+  std::int64_t epoch_since_ns_ = 0;              // by the steady clock
 
   std::int64_t command_until_ns_ = 0;  // by the steady clock: zeros are sent until then
   bool moving_ = false;                // the last command was not a standstill

@@ -68,6 +68,18 @@ TEST_F(NavigatorOnRobot, StandsWhenTheOdometryRestartsUntilANewPose) {
   EXPECT_EQ(faults("odometry restarted"), 1U);
 }
 
+// The odometry of before is of the robot after all.
+TEST_F(NavigatorOnRobot, OdometryOfAStrangerStopsItForMomentsOnly) {
+  start();
+  send_goal(1, {4.5, 1.0});
+  ASSERT_TRUE(wait_for("the robot to drive", [&] { return rolls(); })) << navigator_->err();
+  odometry_epoch_ = 7;
+  ASSERT_TRUE(wait_for("the restart", [&] { return faults("odometry restarted") > 0; }));
+  odometry_epoch_ = 0;
+  EXPECT_TRUE(wait_for("the arrival", [&] { return is(msg::kNavigatorArrived); }))
+      << status_->message();
+}
+
 TEST_F(NavigatorOnRobot, PausesResumesAndCancels) {
   start();
   send_goal(5, {4.5, 1.0});
