@@ -39,13 +39,15 @@ bool call_off(messaging::EventLoop& loop, GoalClient& client) {
   client.cancel();
   support::Patience patience(kLastWord_s, support::monotonic_s());
   std::uint64_t before = client.statuses();
-  return wait_for(loop, patience, [&] {
+  const bool ended = wait_for(loop, patience, [&] {
     if (client.in_hand() && client.statuses() >= before + kStatuses) {
       client.cancel();
       before = client.statuses();
     }
     return client.statuses() > before && !client.in_hand() && (!client.taken() || client.stands());
   });
+  // The goal itself may still be under way to the navigator, with the cancel behind it.
+  return client.delivered(patience) && ended;
 }
 
 int interrupted() {
