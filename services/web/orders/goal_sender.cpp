@@ -99,7 +99,8 @@ std::uint64_t GoalSender::send_to(const geometry::Pose2& T_map_goal, const std::
 
 void GoalSender::set_exploring(bool exploring) {
   if (exploring && is_pausing()) unconfirmed_.end();
-  if (std::exchange(exploring_, exploring) != exploring) show();
+  exploring_ = exploring;
+  show();
 }
 
 void GoalSender::send_current() {
@@ -128,11 +129,13 @@ void GoalSender::insist(msg::GoalKind kind) {
 
 void GoalSender::pause() {
   insist(msg::kGoalPause);
+  show();
 }
 
 void GoalSender::resume() {
   unconfirmed_.end();
   order(msg::kGoalResume);
+  show();
 }
 
 void GoalSender::cancel() {
@@ -144,11 +147,15 @@ void GoalSender::cancel() {
 std::optional<GoalList::End> GoalSender::take(const msg::NavigatorStatus& status,
                                               const messaging::SampleInfo& info) {
   goals_.note_navigator(info);
+  const bool pausing = is_pausing();
   if (const auto repeat = unconfirmed_.take(status)) order(repeat->kind, repeat->goal_id);
   const std::string text = list_.current() ? list_.current()->text : std::string();
   const std::uint64_t id = list_.current() ? list_.current()->id : 0;
   const auto end = list_.take(status, is_pausing());
-  if (!end) return std::nullopt;
+  if (!end) {
+    if (is_pausing() != pausing) show();
+    return std::nullopt;
+  }
   if (*end == GoalList::End::kArrived) {
     events_.add(EventLog::Level::kInfo, "web", "arrived: " + text);
     if (list_.current()) send_current();
@@ -167,7 +174,10 @@ std::optional<GoalList::End> GoalSender::take(const msg::NavigatorStatus& status
 void GoalSender::show() {
   Json waiting = Json::array();
   for (const Goal& goal : list_.waiting()) waiting.push_back(goal_json(goal));
-  Json json = {{"current", nullptr}, {"waiting", std::move(waiting)}, {"exploring", exploring_}};
+  Json json = {{"current", nullptr},
+               {"waiting", std::move(waiting)},
+               {"exploring", exploring_},
+               {"pausing", is_pausing()}};
   if (list_.current()) json["current"] = goal_json(*list_.current());
   board_.set(Channel::kGoals, text_of(json));
 }

@@ -4,7 +4,7 @@ import { Rights } from "./app";
 import { Channels } from "./channels";
 import { Connection } from "./connection";
 import { Destination, destinations, numbered } from "./destinations";
-import { navigator_text } from "./robot_state";
+import { is_paused, navigator_text } from "./robot_state";
 import { texts } from "./texts";
 import { button, h, set_attribute, set_text, show } from "./ui/dom";
 import { Header } from "./ui/header";
@@ -122,7 +122,7 @@ class Panel {
   }
 
   private is_paused(): boolean {
-    return this.channels.value("navigator")?.reason === "paused";
+    return is_paused(this.channels);
   }
 
   private toggle_pause(): Promise<void> {

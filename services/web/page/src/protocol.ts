@@ -58,6 +58,7 @@ export interface Goals {
   current: { goal_id: string; text: string; x_m?: number; y_m?: number } | null;
   waiting: { text: string }[];
   exploring: boolean;
+  pausing?: boolean; // ordered, and not reported by the navigator
 }
 
 export interface Drive {

@@ -82,6 +82,11 @@ export function has_foreign_goal(channels: Channels): boolean {
   return navigator.state !== "idle" && navigator.state !== "arrived";
 }
 
+/** Whether the robot waits for a resume, also with an ordered pause that nothing has confirmed yet. */
+export function is_paused(channels: Channels): boolean {
+  return channels.value("navigator")?.reason === "paused" || channels.value("goals")?.pausing === true;
+}
+
 /** The navigator's activity as a sentence. */
 export function navigator_text(channels: Channels, rights: Rights): string {
   if (!rights.connected) return texts.send.not_heard;

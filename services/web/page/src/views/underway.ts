@@ -1,6 +1,6 @@
 // The robot's goal, its progress and obstacles; pause, resume, cancel.
 import { App } from "../app";
-import { has_foreign_goal, navigator_text } from "../robot_state";
+import { has_foreign_goal, is_paused, navigator_text } from "../robot_state";
 import { texts } from "../texts";
 import { button, h, set_attribute, set_text, show } from "../ui/dom";
 import { once_a_frame } from "../ui/schedule";
@@ -96,7 +96,7 @@ export class Underway {
     set_text(this.waiting, waiting.length > 0 ? words.waiting(waiting.join(", ")) : "");
 
     // Also at a goal that was reached: the next one waits for a resume.
-    const paused = navigator?.reason === "paused";
+    const paused = is_paused(channels);
     const driving = moving && !arrived && navigator.reason !== "cancelled";
     const under_way = exploring || driving;
     show(this.buttons.pause, rights.can("pause") && driving && !paused);
