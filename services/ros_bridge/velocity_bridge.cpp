@@ -112,7 +112,8 @@ bool VelocityBridge::is_of_the_moment(const messaging::SampleInfo& info) {
       ages_.age_ns(info.writer, info.stamp_ns, steady_now_ns(), support::wall_clock_ns());
   if (age_ns && *age_ns <= service::CommandAges::kOldest_ns) return true;
   ros_.complain(age_ns ? "old velocity" : "velocity of unknown age",
-                "the base does not move by it");
+                age_ns ? "the base does not move by it"
+                       : "the clocks of the hosts differ; a velocity repeated for 0.3 s is obeyed");
   return false;
 }
 
