@@ -179,8 +179,7 @@ void HttpSession::answer_read_error(beast::error_code error) {
   state_.refuse(large ? "too large" : "no HTTP");
   auto response = std::make_shared<Response>();
   response->result(large ? http::status::payload_too_large : http::status::bad_request);
-  response->body() =
-      error_answer(0, large ? "the request is too large" : "this is not an HTTP request").body;
+  response->body() = error_answer(0, large ? "the request is too large" : "no HTTP request").body;
   response->keep_alive(false);
   send(response);
 }

@@ -24,24 +24,6 @@ constexpr std::size_t kPlaces = 8;           // compared at one stop; each costs
 constexpr std::size_t kFewestSearched = 25;  // thinned points of a scan; fewer prove nothing
 constexpr double kLeastConformity = 0.3;     // some points through walls do not refute a place
 
-// Selects those of the chosen matches that lead to one place. With a lost heading a match alone
-// proves nothing.
-std::vector<bool> consistent(const std::vector<UncertainPose>& T_map_robot,
-                             const std::vector<bool>& chosen, bool heading_lost) {
-  std::vector<Pose2> poses;
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    if (chosen[i]) poses.push_back(T_map_robot[i].T_a_b);
-  }
-  const std::vector<bool> there = of_one_place(poses);
-  const bool enough = std::ranges::count(there, true) >= (heading_lost ? 2 : 1);
-  std::vector<bool> out(chosen.size());
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    if (chosen[i]) out[i] = there[next++] && enough;
-  }
-  return out;
-}
-
 // Whether a match lies at its predicted pose.
 bool agree(const UncertainPose& predicted, const UncertainPose& measured) {
   return geometry::squared_mahalanobis(geometry::difference(measured.T_a_b, predicted.T_a_b),
@@ -128,9 +110,10 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     measured.push_back(matching_.measured(stored[i].id, results[i]));
   }
-  const bool heading_lost = heading_is_lost(pose_);
+  // With a lost heading, a match alone proves nothing.
+  const int fewest = heading_is_lost(pose_) ? 2 : 1;
   const std::vector<bool> right =
-      consistent(measured, agreeing(tasks, results, measured), heading_lost);
+      of_one_place(measured, agreeing(tasks, results, measured), fewest);
   bool sure = false;
   std::vector<UncertainPose> accepted{pose_};
   std::vector<bool> doubtful(results.size());
@@ -162,7 +145,7 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
   }
   if (step.accepted.empty()) {
     ++steps_in_doubt_;
-    doubtful = consistent(measured, doubtful, heading_lost);
+    doubtful = of_one_place(measured, doubtful, fewest);
     for (std::size_t i = 0; i < doubtful.size(); ++i) {
       if (doubtful[i]) accepted.push_back(measured[i]);
     }

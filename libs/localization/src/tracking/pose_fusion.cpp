@@ -1,7 +1,6 @@
 #include "topogeo/localization/tracking/pose_fusion.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <numbers>
 
 #include <Eigen/LU>
@@ -35,15 +34,19 @@ bool heading_is_lost(const UncertainPose& pose) {
   return pose.covariance(2, 2) > kEighth_rad * kEighth_rad;
 }
 
-std::vector<bool> of_one_place(const std::vector<geometry::Pose2>& T_map_robot) {
-  for (const geometry::Pose2& place : T_map_robot) {
-    std::vector<bool> there;
-    for (const geometry::Pose2& other : T_map_robot) {
-      there.push_back(same_global_place(place, other));
+std::vector<bool> of_one_place(const std::vector<UncertainPose>& T_map_robot,
+                               const std::vector<bool>& chosen, int fewest) {
+  const auto all = std::ranges::count(chosen, true);
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (!chosen[i]) continue;
+    std::vector<bool> there(chosen.size());
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      there[k] = chosen[k] && same_global_place(T_map_robot[i].T_a_b, T_map_robot[k].T_a_b);
     }
-    if (2 * std::ranges::count(there, true) > std::ssize(there)) return there;
+    const auto count = std::ranges::count(there, true);
+    if (2 * count > all && count >= fewest) return there;
   }
-  return std::vector<bool>(T_map_robot.size());
+  return std::vector<bool>(chosen.size());
 }
 
 }  // namespace topogeo::localization

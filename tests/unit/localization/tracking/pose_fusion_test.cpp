@@ -27,15 +27,18 @@ TEST(Fused, HeadingsMeetAcrossTheTurn) {
 }
 
 TEST(OfOnePlace, SelectsTheMajority) {
-  const geometry::Pose2 here{0.5, 1.8, -2.4};
-  const geometry::Pose2 beside{0.6, 1.7, -2.3};
-  const geometry::Pose2 turned{1.8, 1.5, 2.3};
-  EXPECT_EQ(of_one_place({turned, here, beside}), (std::vector<bool>{false, true, true}));
-  EXPECT_EQ(of_one_place({here}), std::vector<bool>{true});
-  EXPECT_EQ(of_one_place({here, turned}), (std::vector<bool>{false, false}));
-  EXPECT_TRUE(of_one_place({}).empty());
-  // The heading counts as well.
-  EXPECT_EQ(of_one_place({here, {0.5, 1.8, -2.0}}), (std::vector<bool>{false, false}));
+  const UncertainPose here{{0.5, 1.8, -2.4}, Eigen::Matrix3d::Identity()};
+  const UncertainPose beside{{0.6, 1.7, -2.3}, Eigen::Matrix3d::Identity()};
+  const UncertainPose turned{{0.5, 1.8, -2.0}, Eigen::Matrix3d::Identity()};
+  using Chosen = std::vector<bool>;
+  EXPECT_EQ(of_one_place({turned, here, beside}, {true, true, true}, 1),
+            (Chosen{false, true, true}));
+  EXPECT_EQ(of_one_place({turned, here, beside}, {true, false, false}, 1),
+            (Chosen{true, false, false}));
+  EXPECT_EQ(of_one_place({here, turned}, {true, true}, 1), (Chosen{false, false}));
+  EXPECT_EQ(of_one_place({here, beside}, {true, true}, 2), (Chosen{true, true}));
+  EXPECT_EQ(of_one_place({here, beside}, {false, true}, 2), (Chosen{false, false}));
+  EXPECT_TRUE(of_one_place({}, {}, 1).empty());
 }
 
 TEST(HeadingIsLost, WhenAQuarterTurnIsWithinTwoDeviations) {

@@ -11,13 +11,14 @@ namespace topogeo::localization {
 /// covariances must be positive definite.
 UncertainPose fused(const std::vector<UncertainPose>& measurements);
 
-/// Whether a quarter turn is within two deviations. A room looks alike after a quarter turn, so one
-/// match proves no heading then. Such is a step of metres that nothing mapped, by odometry that few
-/// matches have confirmed.
+/// Whether a quarter turn is within two deviations, as after metres that nothing mapped, by odometry
+/// that few matches have confirmed. A room looks alike after a quarter turn, so one match then proves
+/// no heading.
 bool heading_is_lost(const UncertainPose& pose);
 
-/// Selects the poses of the place that most of them lead to, within half a metre and 15 degrees;
-/// none if there is no place with more than half of them.
-std::vector<bool> of_one_place(const std::vector<geometry::Pose2>& T_map_robot);
+/// Selects those of the `chosen` poses that lead to the place of most of them, within half a metre
+/// and 15 degrees; none if there is no place with more than half of them, or fewer than `fewest`.
+std::vector<bool> of_one_place(const std::vector<UncertainPose>& T_map_robot,
+                               const std::vector<bool>& chosen, int fewest);
 
 }  // namespace topogeo::localization
