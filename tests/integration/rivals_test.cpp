@@ -59,7 +59,7 @@ class Rivals : public testing::Test {
   /// Expects that `second` fails and names `first`, which continues and reports `second` once.
   void expect_refused(Program& second, const Program& first, const std::string& name) {
     EXPECT_EQ(second.wait(), 1) << second.err();
-    EXPECT_THAT(second.err(), HasSubstr("another " + name + " works for robot 'robot': "));
+    EXPECT_THAT(second.err(), HasSubstr("another " + name + " already runs for robot 'robot': "));
     EXPECT_THAT(second.err(), HasSubstr("-" + std::to_string(first.pid()) + "; this one stops"));
     EXPECT_TRUE(wait_in_loop(loop_, "the second to be reported",
                              [&] { return reports_second(first, name); }))

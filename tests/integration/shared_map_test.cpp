@@ -376,7 +376,7 @@ TEST_F(SharedMapServices, ASecondLocalizerOfOneOfTheRobotsIsReported) {
   ASSERT_TRUE(eventually("a stored map", [&] { return !newest_.empty(); }));
   Program second(scratch_, "localizer", words);
   EXPECT_EQ(second.wait(), 1) << second.err();
-  EXPECT_THAT(second.err(), HasSubstr("another localizer works for robot"));
+  EXPECT_THAT(second.err(), HasSubstr("another localizer already runs for robot"));
 }
 
 }  // namespace

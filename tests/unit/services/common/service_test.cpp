@@ -191,7 +191,7 @@ TEST_F(ServiceTest, WhoStartsStopsForOneThatWorks) {
     FAIL() << "two of them work";
   } catch (const std::runtime_error& error) {
     EXPECT_STREQ(error.what(),
-                 "another mapper works for robot 'robot': elsewhere-1; this one stops");
+                 "another mapper already runs for robot 'robot': elsewhere-1; this one stops");
   }
   EXPECT_EQ(service_.status().state(), msg::kServiceFailed);
 }

@@ -135,7 +135,7 @@ TEST(Answer, NoRouteHasItsReason) {
   };
   EXPECT_EQ(status(goal_place("dask"), "'Desk', 'wall', 'window'"), msg::kRouteUnknownPlace);
   EXPECT_EQ(status(goal_place(""), "place: expected a name"), msg::kRouteInvalidPoint);
-  EXPECT_EQ(status(goal_node(7), "number 7, there are 1"), msg::kRouteUnknownNode);
+  EXPECT_EQ(status(goal_node(7), "number 7, the map has 1 nodes"), msg::kRouteUnknownNode);
   EXPECT_EQ(status(goal_place("wall"), "in an obstacle"), msg::kRouteGoalOccupied);
   EXPECT_EQ(status(goal_at(5.75, 0.65), "from an obstacle: too near"), msg::kRouteGoalOccupied);
   EXPECT_EQ(status(goal_at(-3.0, 1.0), "outside of the grid"), msg::kRouteGoalOutside);

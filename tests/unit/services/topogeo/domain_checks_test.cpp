@@ -131,7 +131,7 @@ const std::vector<DomainFault>& domain_faults() {
       {"QosOfAPair", "QoS", Severity::kProblem,
        "writer 'r1/sensor_gateway' and reader 'r1/mapper' differ in reliability",
        [](DomainFacts& f) { f.endpoints[0].qos.reliable = false; }},
-      {"QosThatAServiceHasMet", "QoS", Severity::kProblem, "localizer on pc has met 2 peers",
+      {"QosThatAServiceHasMet", "QoS", Severity::kProblem, "localizer on pc found 2 peers",
        [](DomainFacts& f) {
          msg::FaultCount fault;
          messaging::set_text(fault.reason(), "incompatible_qos", "reason");
