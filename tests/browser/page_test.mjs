@@ -68,7 +68,7 @@ test("a click on room A brings the robot there", async () => {
   await text(page, ".card [role=status]", /\d m, about/);
   await page.click("#go");
   await text(page, ".section h3", /To room A/);
-  await text(page, ".section [role=status]", /Has arrived/);
+  await text(page, ".section [role=status]", /Arrived/);
   const at = await run.true_place();
   assert.ok(Math.hypot(at.x_m - 3, at.y_m) < 0.3, JSON.stringify(at));
   await end(page);
