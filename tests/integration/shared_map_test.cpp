@@ -251,7 +251,7 @@ TEST_F(SharedMapServices, MakeTheSameBytesWithAnyNumberOfWorkers) {
     }
     store = start_store();
     const auto localizer = start_localizer();
-    localizer->wait_for_error_text("adds ");
+    localizer->wait_for_error_text("adding ");
     send_all();
     store->wait_for_error_text("local maps, ");  // the final line
     maps.push_back(read_file(out / "map.pb"));
@@ -318,7 +318,7 @@ TEST_F(SharedMapServices, ARefusalIsHeededByALocalizerThatStartsAgain) {
   localizer->send_signal(SIGKILL);
   EXPECT_EQ(localizer->wait(), 128 + SIGKILL);
   localizer = start_localizer("ask");
-  localizer->wait_for_error_text("adds ");
+  localizer->wait_for_error_text("adding ");
   send(stops + 2);
   ASSERT_TRUE(eventually("the stops to be stored",
                          [&] { return stored("b", stops + 2) && stops_in_map() >= stops + 2; }));
