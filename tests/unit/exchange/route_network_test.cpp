@@ -131,7 +131,7 @@ TEST(RouteNetwork, APlaceBehindAWallHasNoEdges) {
   storage::MapDrawing drawing;
   drawing.places = {{"cellar", {0.0, -2.6}}};
   const RouteNetwork network = route_network(sample_graph(), drawing, &space, {});
-  EXPECT_THAT(network.notes, Contains(HasSubstr("place 'cellar': no way")));
+  EXPECT_THAT(network.notes, Contains(HasSubstr("place 'cellar': no free path")));
   EXPECT_EQ(network.nodes.back().place, 0U);
   for (const NetworkPiece& piece : network.pieces) {
     EXPECT_NE(piece.from, network.nodes.size() - 1);
