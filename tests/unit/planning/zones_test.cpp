@@ -273,7 +273,7 @@ TEST(ZoneDrawing, NamesTheLineOfWhatIsWrong) {
   expect("places:\n  - {name: a, at: [1]}", "f.yaml:2: at", "[x, y]");
   expect("places:\n  - {name: a, at: [1, .inf]}", "f.yaml:2: at", "a number from");
   expect("places:\n  - {name: '', at: [1, 2]}", "f.yaml:2: name", "a non-empty text");
-  expect("places:\n  - {at: [1, 2]}", "name", "a non-empty text");
+  expect("places:\n  - {at: [1, 2]}", "name", "a text");
   expect("places:\n  - {name: a, at: [1, 2], heading: 4}", "f.yaml:2: heading", "a number from");
   expect("places:\n  - {name: a, at: [1, 2]}\n  - {name: a, at: [1, 2]}", "f.yaml:3: name",
          "each name once");

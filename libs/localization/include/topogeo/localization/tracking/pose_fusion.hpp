@@ -11,9 +11,9 @@ namespace topogeo::localization {
 /// covariances must be positive definite.
 UncertainPose fused(const std::vector<UncertainPose>& measurements);
 
-/// Whether a quarter turn is within two deviations, as after metres that nothing mapped, by odometry
-/// that few matches have confirmed. A room looks alike after a quarter turn, so one match then proves
-/// no heading.
+/// Whether a quarter turn is within two deviations, as after metres that nothing mapped, by
+/// odometry that few matches have confirmed. A room looks alike after a quarter turn, so one match
+/// then proves no heading.
 bool heading_is_lost(const UncertainPose& pose);
 
 /// Selects those of the `chosen` poses that lead to the place of most of them, within half a metre
