@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { kPictures, notice, open_page, WatchedRobot } from "./page.mjs";
+import { kPictures, notice, open_page, text, WatchedRobot } from "./page.mjs";
 import { wait_for, SimulatedRun } from "./robot.mjs";
 
 const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source } = process.env;
