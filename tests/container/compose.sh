@@ -28,7 +28,10 @@ if [ ${#sanitized[@]} -gt 0 ]; then  # like common.sh for `docker run`, with mor
   files+=(-f "$work/sanitized.yaml")
 fi
 compose() { docker-compose -p "topogeo-$$" "${files[@]}" --profile "$profile" "$@"; }
-cleanups+=("compose down -t 5")
+# The gateway leaves its state in the memory of the host, for its next life.
+forget_gateway() { rm -f /dev/shm/topogeo-robot-odometry*; }
+forget_gateway
+cleanups+=(forget_gateway "compose down -t 5")
 # shellcheck disable=SC2016  # expanded when it runs
 keepers+=('compose logs --no-color > "$work/compose.log" 2>&1')
 up() { compose up -d "$@" > "$work/up.log" 2>&1 || { tail -n 5 "$work/up.log"; fail "compose up, profile $profile"; }; }
