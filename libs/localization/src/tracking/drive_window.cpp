@@ -66,8 +66,8 @@ std::optional<UncertainPose> DriveWindow::match_near(const topomap::LocalMap& ma
                                                      const UncertainPose& odometry,
                                                      DriveStep& step) {
   constexpr double kNear2 = 4.0;
-  if (const auto matched = match(map, odometry, 1.0, step)) return matched;
-  const std::optional<UncertainPose> matched = match(map, odometry, kStepWidening, step);
+  if (auto matched = match(map, odometry, 1.0, step)) return matched;
+  std::optional<UncertainPose> matched = match(map, odometry, kStepWidening, step);
   if (matched &&
       geometry::squared_mahalanobis(geometry::difference(matched->T_a_b, odometry.T_a_b),
                                     odometry.covariance + matched->covariance) > kNear2) {
