@@ -105,7 +105,7 @@ void ExploreSession::record_path() {
 void ExploreSession::tick() {
   take_map();
   record_path();
-  // Whoever took the robot must not lose it to the next target.
+  // A robot that another program has taken must not get the next target.
   if (!trouble().empty()) return;
   const std::int64_t now_ns = monotonic_ns();
   const std::int64_t last_ns = std::exchange(ticked_ns_, now_ns);
