@@ -23,9 +23,6 @@ namespace {
 constexpr double kMovedAtEnd_m = 0.1;
 constexpr double kMovedAtEnd_rad = 0.02;
 
-// Squared Mahalanobis distance from odometry as configured. Right doubtful matches are within two
-// deviations, most look-alikes are not (tests/bench/RESULTS.md, "Steps in doubt").
-constexpr double kNear2 = 4.0;
 // A match that half of the visible points contradict carries no information.
 constexpr double kLeastContradicted = 0.5;
 
@@ -128,7 +125,7 @@ std::vector<StepMatch> Localizer::match_recent() {
   for (const StopMatch& match : matches) {
     evidence.push_back(match.evidence);
     if (match.accepted() || (!any && match.uncertain() && match.violations < kLeastContradicted &&
-                             steps_.allow(match.edge, kNear2))) {
+                             steps_.allow(match.edge, OdometryMonitor::kNear2))) {
       graph_.add_edge(match.edge);
     }
     if (match.accepted() && match.edge.from + 1 == last()) {

@@ -59,18 +59,13 @@ DriveStep DriveWindow::add(std::shared_ptr<const topomap::LocalMap> map,
   return step;
 }
 
-// T_before_now by matches with the last stops. A widened search finds look-alikes, too: right
-// matches are within two deviations of odometry, most of these are not (tests/bench/RESULTS.md,
-// "Steps in doubt").
+// T_before_now by matches with the last stops. A widened search finds look-alikes, too.
 std::optional<UncertainPose> DriveWindow::match_near(const topomap::LocalMap& map,
                                                      const UncertainPose& odometry,
                                                      DriveStep& step) {
-  constexpr double kNear2 = 4.0;
   if (auto matched = match(map, odometry, 1.0, step)) return matched;
   std::optional<UncertainPose> matched = match(map, odometry, kStepWidening, step);
-  if (matched &&
-      geometry::squared_mahalanobis(geometry::difference(matched->T_a_b, odometry.T_a_b),
-                                    odometry.covariance + matched->covariance) > kNear2) {
+  if (matched && !agree(odometry, *matched, OdometryMonitor::kNear2)) {
     step.match.reset();
     return std::nullopt;
   }

@@ -24,13 +24,6 @@ constexpr std::size_t kPlaces = 8;           // compared at one stop; each costs
 constexpr std::size_t kFewestSearched = 25;  // thinned points of a scan; fewer prove nothing
 constexpr double kLeastConformity = 0.3;     // some points through walls do not refute a place
 
-// Whether a match lies at its predicted pose.
-bool agree(const UncertainPose& predicted, const UncertainPose& measured) {
-  return geometry::squared_mahalanobis(geometry::difference(measured.T_a_b, predicted.T_a_b),
-                                       predicted.covariance + measured.covariance) <=
-         geometry::kMahalanobis2Of99Percent;
-}
-
 /// `index` of the stop in the trajectory, which may have several sessions.
 topomap::StopPose pose_of(const LocalizedStop& stop, std::size_t index) {
   return {static_cast<std::uint32_t>(index),

@@ -29,6 +29,11 @@ UncertainPose fused(const std::vector<UncertainPose>& measurements) {
   return best;
 }
 
+bool agree(const UncertainPose& predicted, const UncertainPose& measured, double most2) {
+  return geometry::squared_mahalanobis(geometry::difference(measured.T_a_b, predicted.T_a_b),
+                                       predicted.covariance + measured.covariance) <= most2;
+}
+
 bool heading_is_lost(const UncertainPose& pose) {
   constexpr double kEighth_rad = 0.25 * std::numbers::pi;
   return pose.covariance(2, 2) > kEighth_rad * kEighth_rad;

@@ -14,6 +14,10 @@ namespace topogeo::localization {
 /// covariance that is too small costs more than one that is too large.
 class OdometryMonitor {
  public:
+  /// Squared Mahalanobis distance from odometry. Right doubtful matches are within two deviations,
+  /// most look-alikes are not (tests/bench/RESULTS.md, "Steps in doubt").
+  static constexpr double kNear2 = 4.0;
+
   /// One step by odometry, with its configured covariance, and by an accepted match, with its own
   /// covariance: both between the same two poses, covariances in the frame of the first.
   void add(const UncertainPose& odometry, const UncertainPose& match);

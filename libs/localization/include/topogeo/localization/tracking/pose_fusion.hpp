@@ -11,6 +11,10 @@ namespace topogeo::localization {
 /// covariances must be positive definite.
 UncertainPose fused(const std::vector<UncertainPose>& measurements);
 
+/// Whether a measured pose is within a squared Mahalanobis distance of an independent prediction.
+bool agree(const UncertainPose& predicted, const UncertainPose& measured,
+           double most2 = geometry::kMahalanobis2Of99Percent);
+
 /// Whether a quarter turn is within two deviations, as after metres that nothing mapped, by
 /// odometry that few matches have confirmed. A room looks alike after a quarter turn, so one match
 /// then proves no heading.
