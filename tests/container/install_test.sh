@@ -61,7 +61,7 @@ if there docker-compose "the compose file is not checked"; then
     DOMAIN=7 docker-compose -f "$source_dir/deploy/compose.yaml" --profile $profile config > "$work/$profile.yaml" ||
       fail "compose.yaml, $profile"
   done
-  # A health check uses the configured domain, and in the host's network checks one service.
+  # A service uses the configured domain, and its health check names it.
   python3 - "$work"/{robot,ros,web,offboard,demo}.yaml <<'PY' || fail "compose.yaml"
 import sys, yaml
 
@@ -109,6 +109,46 @@ partition=install-test-$$
 cleanups+=("kill $!")
 heard=$(timeout "$hang_limit_s" "$work/subscriber/subscriber" "$TOPOGEO_DOMAIN" "$partition") || fail "the subscriber heard nothing"
 [ "$heard" = planner ] || fail "the subscriber heard '$heard'"
+
+step "health checks"
+export TOPOGEO_HEALTH=$work/health TOPOGEO_LONGEST_FREEZE_S=$hang_limit_s
+"$prefix/bin/topogeo-planner" --partition "$partition-health" --log-level off &
+planner=$!
+cleanups+=("kill $planner")
+health() { "$source_dir/deploy/health" "$@" > "$work/health.log" 2>&1; }
+# unwell REASON [SERVICE]: the check fails and gives this reason.
+unwell() {
+  ! health "${@:2}" || fail "healthy: $1"
+  grep -q "$1" "$work/health.log" || { cat "$work/health.log"; fail "the health check does not say '$1'"; }
+}
+wait_for "a service that is well" health planner || { cat "$work/health.log"; fail "a service that runs is not well"; }
+health || { cat "$work/health.log"; fail "the services that run are not well"; }
+unwell 'no service has written .*/localizer' localizer
+# The age of a file is set, so that nothing waits until it is old.
+kill -STOP $planner
+wait_for "a service that stands" grep -q '^State:.T' /proc/$planner/status || fail "the planner does not stop"
+touch -d '20 seconds ago' "$TOPOGEO_HEALTH/planner.$planner"
+unwell "planner.$planner has not reported for 2. s: " planner
+touch -d '20 seconds' "$TOPOGEO_HEALTH/planner.$planner"
+unwell "planner.$planner has not reported for -.. s: " planner
+kill -CONT $planner
+wait_for "a service that is well again" health planner || { cat "$work/health.log"; fail "a service that goes on is not well"; }
+echo 'failed: no odometry' > "$TOPOGEO_HEALTH/localizer.1"
+unwell 'localizer.1 has failed: no odometry'
+health planner || { cat "$work/health.log"; fail "a service is blamed for another one"; }
+rm "$TOPOGEO_HEALTH/localizer.1"
+kill -9 $planner
+wait $planner || true
+touch -d '20 seconds ago' "$TOPOGEO_HEALTH/planner.$planner"
+unwell "planner.$planner has not reported"
+# The next one removes the file that the killed one left, and its own at its end.
+"$prefix/bin/topogeo-planner" --partition "$partition-health" --log-level off &
+cleanups+=("kill $!")
+wait_for "a service in place of the killed one" health || { cat "$work/health.log"; fail "a killed service is blamed on the next one"; }
+kill $!
+wait $! || fail "the planner ends with $?"
+unwell 'no service has written'
+unset TOPOGEO_HEALTH TOPOGEO_LONGEST_FREEZE_S
 
 step "the operator's page"
 make_log 60 "$work/log.clf"

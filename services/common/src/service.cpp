@@ -7,6 +7,7 @@
 #include <string>
 
 #include "topogeo/messaging/revocations.hpp"
+#include "topogeo/service/health_file.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/log.hpp"
 #include "topogeo/support/process_resources.hpp"
@@ -34,6 +35,7 @@ Service::Service(const Setup& setup, bool any_robot)
   cpu_.emplace([this] { return std::chrono::duration<double>(loop_.take_timer_delay()).count(); },
                [this](const char* name, double value) { status_->set_counter(name, value); });
   deafness_ = std::make_unique<DeafnessGuard>(setup_, any_robot, participant_, loop_, *status_);
+  health_ = std::make_unique<HealthFile>(HealthFile::folder(), setup_.name);
   loop_.add_timer(kTick, [this] { tick(); });
   offer_metrics();
 }
@@ -100,6 +102,7 @@ void Service::tick() {
   status_->set_counter("open_files", static_cast<double>(support::open_files()));
   cpu_->tick(support::monotonic_s());
   manager_.show(status_->text() + (cpu_->lasts() ? "; " + cpu_->text() : ""));
+  health_->update(status_->text());
   if (const auto still = participant_.stood_still()) {
     throw StoodStill(
         "stood still for " +

@@ -27,6 +27,7 @@
 namespace topogeo::service {
 
 class DeafnessGuard;
+class HealthFile;
 
 /// Selects the messages of a topic that Service::subscribe takes.
 struct Subscription {
@@ -162,6 +163,7 @@ class Service {
   std::unique_ptr<DeafnessGuard> deafness_;
   std::optional<messaging::SignalStop> signals_;
   messaging::ServiceManager manager_{loop_};
+  std::unique_ptr<HealthFile> health_;
   std::set<std::string_view> subscribed_;
   std::set<std::string_view> announced_;      // topics that have to be subscribed as well
   std::shared_ptr<MetricsEndpoint> metrics_;  // shared with the status, which uses it up to its end

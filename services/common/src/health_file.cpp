@@ -1,0 +1,96 @@
+#include "topogeo/service/health_file.hpp"
+
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include <unistd.h>
+
+#include "topogeo/support/log.hpp"
+
+namespace topogeo::service {
+
+namespace {
+
+constexpr std::chrono::seconds kPeriod{1};
+
+/// Whether `name` is that of a file of this service whose process has died.
+bool is_of_the_dead(std::string_view name, const std::string& service) {
+  if (!name.starts_with(service + ".")) return false;
+  name.remove_prefix(service.size() + 1);
+  pid_t process = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), process);
+  if (error != std::errc() || end != name.data() + name.size() || process <= 0) return false;
+  return ::kill(process, 0) != 0 && errno == ESRCH;
+}
+
+void remove_those_of_the_dead(const std::filesystem::path& folder, const std::string& service) {
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    if (is_of_the_dead(entry.path().filename().string(), service)) {
+      std::filesystem::remove(entry.path(), ignored);
+    }
+  }
+}
+
+}  // namespace
+
+std::filesystem::path HealthFile::folder() {
+  const char* const given =
+      std::getenv("TOPOGEO_HEALTH");  // NOLINT(concurrency-mt-unsafe): never set here
+  return given == nullptr ? "" : given;
+}
+
+HealthFile::HealthFile(std::filesystem::path folder, const std::string& service) {
+  if (folder.empty()) return;
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    log_failure(folder.string() + ": " + error.message());
+  } else {
+    remove_those_of_the_dead(folder, service);
+  }
+  const std::string name = service + "." + std::to_string(::getpid());
+  draft_ = folder / ("." + name);
+  file_ = std::move(folder) / name;
+}
+
+HealthFile::~HealthFile() {
+  if (file_.empty()) return;
+  std::error_code ignored;
+  std::filesystem::remove(file_, ignored);
+  std::filesystem::remove(draft_, ignored);
+}
+
+void HealthFile::update(const std::string& text) {
+  const auto now = Clock::now();
+  if (file_.empty() || (text == text_ && now - written_ < kPeriod)) return;
+  text_ = text;
+  written_ = now;
+  std::ofstream draft(draft_, std::ios::binary);
+  draft << text << '\n';
+  draft.close();
+  if (!draft) {
+    log_failure(draft_.string() + ": cannot be written");
+    return;
+  }
+  std::error_code error;
+  std::filesystem::rename(draft_, file_, error);
+  if (error) {
+    log_failure(file_.string() + ": " + error.message());
+    return;
+  }
+  works_ = true;
+}
+
+void HealthFile::log_failure(const std::string& reason) {
+  if (works_) spdlog::warn("health file: {}; health checks of this service fail", reason);
+  works_ = false;
+}
+
+}  // namespace topogeo::service

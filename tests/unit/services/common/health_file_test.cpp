@@ -1,0 +1,94 @@
+#include "topogeo/service/health_file.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "topogeo/support/temporary_folder.hpp"
+
+namespace topogeo::service {
+namespace {
+
+using testing::IsEmpty;
+using testing::UnorderedElementsAre;
+
+class HealthFileTest : public testing::Test {
+ protected:
+  [[nodiscard]] static std::string own_name(const std::string& service) {
+    return service + "." + std::to_string(::getpid());
+  }
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> out;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+      out.push_back(entry.path().filename().string());
+    }
+    return out;
+  }
+  [[nodiscard]] std::string content(const std::string& name) const {
+    std::ifstream file(folder_ / name);
+    std::string line;
+    std::getline(file, line);
+    return line;
+  }
+  void write(const std::string& name) const { std::ofstream(folder_ / name) << "running\n"; }
+
+  support::TemporaryFolder temporary_{"health"};
+  std::filesystem::path folder_ = temporary_.path() / "health";
+};
+
+TEST_F(HealthFileTest, HoldsTheStateWhileTheServiceLives) {
+  {
+    HealthFile file(folder_, "planner");
+    EXPECT_THAT(names(), IsEmpty());
+    file.update("waiting: no map has come yet");
+    EXPECT_THAT(names(), UnorderedElementsAre(own_name("planner")));
+    EXPECT_EQ(content(own_name("planner")), "waiting: no map has come yet");
+    file.update("running");
+    EXPECT_EQ(content(own_name("planner")), "running");
+  }
+  EXPECT_THAT(names(), IsEmpty());
+}
+
+TEST_F(HealthFileTest, NothingIsWrittenTwiceWithinASecond) {
+  HealthFile file(folder_, "planner");
+  file.update("running");
+  std::filesystem::remove(folder_ / own_name("planner"));
+  file.update("running");
+  EXPECT_THAT(names(), IsEmpty());
+}
+
+TEST_F(HealthFileTest, RemovesTheFilesOfItsDeadPredecessorsOnly) {
+  const pid_t dead = ::fork();
+  if (dead == 0) std::_Exit(0);
+  ASSERT_EQ(::waitpid(dead, nullptr, 0), dead);
+  std::filesystem::create_directory(folder_);
+  const std::string left = "planner." + std::to_string(dead);
+  const std::string of_another = "localizer." + std::to_string(dead);
+  const std::string of_one_alive = "planner." + std::to_string(::getppid());
+  for (const std::string& name : {left, of_another, of_one_alive, std::string("planner.txt")}) {
+    write(name);
+  }
+  const HealthFile file(folder_, "planner");
+  EXPECT_THAT(names(), UnorderedElementsAre(of_another, of_one_alive, "planner.txt"));
+}
+
+TEST_F(HealthFileTest, WithoutAFolderNothingIsWritten) {
+  HealthFile file({}, "planner");
+  file.update("running");
+}
+
+TEST_F(HealthFileTest, AServiceGoesOnWithoutAFolderThatCanBeWritten) {
+  std::ofstream(folder_) << "no folder\n";
+  HealthFile file(folder_, "planner");
+  file.update("running");
+  EXPECT_TRUE(std::filesystem::is_regular_file(folder_));
+}
+
+}  // namespace
+}  // namespace topogeo::service
