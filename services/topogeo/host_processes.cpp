@@ -77,12 +77,27 @@ bool read_stat(HostProcess& process, const std::filesystem::path& folder, double
   return true;
 }
 
-bool in_this_network(const std::filesystem::path& proc, const std::filesystem::path& process) {
+/// Whether the process shares the namespace of that kind, "net" or "uts", with this one.
+bool shares(const char* kind, const std::filesystem::path& proc,
+            const std::filesystem::path& process) {
   std::error_code error;
-  const auto own = std::filesystem::read_symlink(proc / "self/ns/net", error);
+  const auto own = std::filesystem::read_symlink(proc / "self/ns" / kind, error);
   if (error) return true;
-  const auto other = std::filesystem::read_symlink(process / "ns/net", error);
+  const auto other = std::filesystem::read_symlink(process / "ns" / kind, error);
   return error || own == other;
+}
+
+/// The last number of the line NSpid of /proc/PID/status, see proc(5). 0: there is none.
+pid_t innermost_pid(const std::filesystem::path& process) {
+  std::istringstream lines(support::process_file(process / "status"));
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("NSpid:")) continue;
+    std::istringstream numbers(line.substr(line.find(':') + 1));
+    pid_t last = 0;
+    for (pid_t number = 0; numbers >> number;) last = number;
+    return last;
+  }
+  return 0;
 }
 
 }  // namespace
@@ -101,9 +116,11 @@ std::vector<HostProcess> host_processes(const std::filesystem::path& proc) {
     if (words.empty()) continue;
     process.service = service_of(words[0]);
     if (process.service.empty() || !read_stat(process, entry.path(), up_s) ||
-        !in_this_network(proc, entry.path())) {
+        !shares("net", proc, entry.path()) || !shares("uts", proc, entry.path())) {
       continue;
     }
+    const pid_t innermost = innermost_pid(entry.path());
+    process.own_pid = innermost != 0 ? innermost : process.pid;
     process.domain = domain_of(words, entry.path());
     process.partition = option(words, "--partition").value_or(messaging::kDefaultPartition);
     found.push_back(std::move(process));

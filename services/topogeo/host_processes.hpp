@@ -13,6 +13,8 @@ namespace topogeo::cli {
 
 struct HostProcess {
   pid_t pid = 0;
+  pid_t own_pid = 0;         ///< in its own PID namespace, as its status gives it: in a container
+                             ///< it differs from `pid`
   std::string service;       ///< "localizer"
   std::uint32_t domain = 0;  ///< from its command line, else from its environment if readable
   std::string partition;     ///< from its command line, else the default
@@ -20,8 +22,8 @@ struct HostProcess {
   double age_s = 0.0;        ///< since its start
 };
 
-/// The services in the network of this process, by pid; none without `proc`. A process of another
-/// user counts as being in this network.
+/// The services with the network and the host name of this process, by pid; none without `proc`. A
+/// process of another user counts as one of them.
 std::vector<HostProcess> host_processes(const std::filesystem::path& proc = "/proc");
 
 }  // namespace topogeo::cli

@@ -11,7 +11,8 @@ namespace topogeo::cli {
 
 void UnheardServices::heard(const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
   heard_.insert(info.writer);
-  processes_heard_.emplace(status.host().to_string(), status.process_id());
+  processes_heard_.emplace(status.host().to_string(), status.service().to_string(),
+                           status.process_id());
 }
 
 void UnheardServices::discovered(std::span<const messaging::RemoteEndpoint> endpoints, Time now) {
@@ -43,13 +44,13 @@ std::vector<UnheardService> UnheardServices::list(Time now) const {
   for (const HostProcess& process : running_) {
     const bool wanted = process.domain == domain_ &&
                         (partition_ == messaging::kAnyPartition || partition_ == process.partition);
-    const auto id = static_cast<std::uint32_t>(process.pid);
-    if (!wanted || processes_heard_.contains({host_, id})) continue;
+    const auto own_pid = static_cast<std::uint32_t>(process.own_pid);
+    if (!wanted || processes_heard_.contains({host_, process.service, own_pid})) continue;
     if (!process.stopped && process.age_s < kStarting_s) continue;
     named.insert(process.service);
     unheard.push_back(
-        {process.service, fmt::format("process {} of this host {}, and no status of it comes", id,
-                                      process.stopped ? "is stopped" : "runs")});
+        {process.service, fmt::format("process {} of this host {}, and no status of it comes",
+                                      process.pid, process.stopped ? "is stopped" : "runs")});
   }
   for (const auto& [id, writer] : writers_) {
     if (heard_.contains(id) || now - writer.since < kFirstStatus) continue;

@@ -8,6 +8,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -61,9 +62,10 @@ class UnheardServices {
 
   std::uint32_t domain_;
   std::string partition_;
-  std::set<messaging::Handle> heard_;                                // writers of statuses
-  std::set<std::pair<std::string, std::uint32_t>> processes_heard_;  // host, process
-  std::map<messaging::Handle, Writer> writers_;                      // discovered writers
+  std::set<messaging::Handle> heard_;  // writers of statuses
+  // Host, service, process: services in containers may have the same number.
+  std::set<std::tuple<std::string, std::string, std::uint32_t>> processes_heard_;
+  std::map<messaging::Handle, Writer> writers_;  // discovered writers
   std::vector<HostProcess> running_;
   std::string host_;
 };

@@ -71,6 +71,31 @@ TEST_F(HostProcesses, HaveTheDomainOfTheirEnvironment) {
   EXPECT_EQ(found[0].domain, 5U);
 }
 
+TEST_F(HostProcesses, HaveTheNumberThatTheyHaveInTheirContainer) {
+  add(8, {"planner"});
+  add(9, {"planner"});
+  write(proc_ / "8/status", "Name:\tplanner\nPid:\t8\nNSpid:\t8\t17\t3\nThreads:\t1\n");
+  const std::vector<HostProcess> found = host_processes(proc_);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].pid, 8);
+  EXPECT_EQ(found[0].own_pid, 3);
+  EXPECT_EQ(found[1].own_pid, 9) << "an old kernel does not tell";
+}
+
+TEST_F(HostProcesses, AreThoseWithTheSameHostName) {
+  add(9, {"planner"});
+  add(10, {"localizer"});
+  for (const char* process : {"self", "9", "10"}) {
+    std::filesystem::create_directories(proc_ / process / "ns");
+  }
+  std::filesystem::create_symlink("uts:[1]", proc_ / "self/ns/uts");
+  std::filesystem::create_symlink("uts:[2]", proc_ / "9/ns/uts");
+  std::filesystem::create_symlink("uts:[1]", proc_ / "10/ns/uts");
+  const std::vector<HostProcess> found = host_processes(proc_);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].service, "localizer");
+}
+
 TEST_F(HostProcesses, AreThoseOfTheSameNetwork) {
   add(9, {"planner"});
   add(10, {"localizer"});

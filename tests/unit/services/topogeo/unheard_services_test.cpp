@@ -30,8 +30,9 @@ messaging::RemoteEndpoint status_writer(std::uint8_t number, const std::string& 
 
 class UnheardServicesTest : public testing::Test {
  protected:
-  void hear(std::uint8_t writer, std::uint32_t pid) {
+  void hear(std::uint8_t writer, const std::string& service, std::uint32_t pid) {
     msg::ServiceStatus status;
+    messaging::set_service(status, service, "");
     messaging::set_text(status.host(), "robot", "host");
     status.process_id(pid);
     messaging::SampleInfo info;
@@ -39,7 +40,7 @@ class UnheardServicesTest : public testing::Test {
     unheard_.heard(status, info);
   }
   static HostProcess process(pid_t pid, const std::string& service) {
-    return {pid, service, 3, "topogeo", false, 60.0};
+    return {pid, pid, service, 3, "topogeo", false, 60.0};
   }
 
   UnheardServices::Time now_{};
@@ -50,7 +51,7 @@ TEST_F(UnheardServicesTest, AreThoseThatDiscoveryFindsAndNoStatusComesOf) {
   const std::vector<messaging::RemoteEndpoint> endpoints = {status_writer(1, "r1/planner"),
                                                             status_writer(2, "r1/localizer")};
   unheard_.discovered(endpoints, now_);
-  hear(2, 20);
+  hear(2, "localizer", 20);
   EXPECT_TRUE(unheard_.may_come(now_ + milliseconds(1000)));
   EXPECT_THAT(unheard_.list(now_ + milliseconds(1000)), IsEmpty()) << "it may still come";
   now_ += milliseconds(1600);
@@ -59,7 +60,7 @@ TEST_F(UnheardServicesTest, AreThoseThatDiscoveryFindsAndNoStatusComesOf) {
   ASSERT_THAT(unheard_.list(now_), SizeIs(1));
   EXPECT_EQ(unheard_.list(now_)[0].name, "planner");
   EXPECT_THAT(unheard_.list(now_)[0].reason, HasSubstr("'r1/planner'"));
-  hear(1, 10);
+  hear(1, "planner", 10);
   EXPECT_THAT(unheard_.list(now_), IsEmpty());
 }
 
@@ -67,10 +68,24 @@ TEST_F(UnheardServicesTest, AreThoseThatRunOnThisHost) {
   HostProcess frozen = process(10, "planner");
   frozen.stopped = true;
   unheard_.running({frozen, process(20, "localizer")}, "robot");
-  hear(2, 20);
+  hear(2, "localizer", 20);
   ASSERT_THAT(unheard_.list(now_), SizeIs(1));
   EXPECT_EQ(unheard_.list(now_)[0].name, "planner");
   EXPECT_THAT(unheard_.list(now_)[0].reason, HasSubstr("process 10 of this host is stopped"));
+}
+
+// Containers on the network of the host: each counts its processes for itself.
+TEST_F(UnheardServicesTest, AreNotThoseInContainersThatAreHeard) {
+  HostProcess planner = process(1010, "planner");
+  HostProcess localizer = process(1020, "localizer");
+  planner.own_pid = 7;
+  localizer.own_pid = 7;
+  unheard_.running({planner, localizer}, "robot");
+  hear(1, "planner", 7);
+  ASSERT_THAT(unheard_.list(now_), SizeIs(1));
+  EXPECT_THAT(unheard_.list(now_)[0].reason, HasSubstr("process 1020 of this host runs"));
+  hear(2, "localizer", 7);
+  EXPECT_THAT(unheard_.list(now_), IsEmpty());
 }
 
 TEST_F(UnheardServicesTest, AreNamedOnce) {
