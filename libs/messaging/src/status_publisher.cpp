@@ -42,14 +42,11 @@ bool is_replaceable(const std::string& name) {
 StatusPublisher::StatusPublisher(const Participant& participant, EventLoop& loop,
                                  const ServiceIdentity& identity)
     : loop_(loop), writer_(participant), start_(std::chrono::steady_clock::now()) {
-  const std::string host = support::host_name();
-  const std::string instance = identity.instance.empty()
-                                   ? host.substr(0, 48) + "-" + std::to_string(::getpid())
-                                   : identity.instance;
   set_header(status_, identity.robot_id, 0, 0);
-  set_service(status_, identity.service, instance);
+  set_service(status_, identity.service,
+              identity.instance.empty() ? support::process_name() : identity.instance);
   set_text(status_.version(), identity.version, "version");
-  set_text(status_.host(), host, "host");
+  set_text(status_.host(), support::host_name(), "host");
   status_.process_id(static_cast<std::uint32_t>(::getpid()));
   status_.started_ns(support::wall_clock_ns());
   status_.config_fingerprint(identity.config_fingerprint);

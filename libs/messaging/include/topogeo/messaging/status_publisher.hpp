@@ -21,7 +21,7 @@ namespace topogeo::messaging {
 struct ServiceIdentity {
   std::string service;  ///< name of the executable, up to 32 bytes
   std::string
-      instance;  ///< unique among running ones, up to 64 bytes; empty: "<host>-<process id>"
+      instance;  ///< unique among running ones, up to 64 bytes; empty: support::process_name()
   std::string robot_id;                  ///< up to 32 bytes; empty: serves every robot
   std::string version;                   ///< of the software, up to 48 bytes
   std::uint64_t config_fingerprint = 0;  ///< of the configuration; 0: it has none

@@ -9,7 +9,8 @@ namespace topogeo::support {
 /// 1 to 64 bytes; "unknown" if the system does not provide it.
 std::string host_name();
 
-/// "<host>-<process id>", at most 40 bytes: identifies this process for users and other processes.
+/// "<host>-<process id>", in a container "<host>-<process id>.<number of its PID namespace>"; at
+/// most 40 bytes. Identifies this process for users and other processes.
 std::string process_name();
 
 /// Identifies the time since the machine was started: files and clocks of before do not count.
