@@ -6,12 +6,11 @@ namespace topogeo::scan {
 
 void describe(CarmenLogOptions& options, support::ConfigSchema& schema) {
   schema.add("scan.range_max_m", &options.range_max_m, 0.5, 1000.0, "m",
-             "readings at or above it mean that nothing came back; 50 to 82 by sensor in known "
-             "logs");
+             "readings of this range or more are no return; known logs use 50 to 82, depending on "
+             "the sensor");
   schema.add("scan.jump_s", &options.jump_s, 0.001, 1e9, "s",
-             "a stamp of a log that is later than the one before by more than this must be "
-             "confirmed by the next scan; otherwise it is taken to be wrong, not the rest of the "
-             "log");
+             "a stamp that lies more than this after the previous one must be confirmed by the "
+             "next scan; otherwise this stamp is taken to be wrong, not the rest of the log");
 }
 
 void check(const CarmenLogOptions& options) {
