@@ -9,35 +9,36 @@ void describe_votes(GlobalMapConfig& g, support::ConfigSchema& schema) {
   schema.add("global_map.cell_m", &g.cell_m, 0.032, 0.25, "m",
              "side of a cell in which views vote for branches");
   schema.add("global_map.vote_radius_m", &g.vote_radius_m, 0.032, 2.0, "m",
-             "reach of the vote of a branch; one to eight cells");
+             "radius of the vote of a branch; one to eight cells");
   schema.add("global_map.gap_m", &g.gap_m, 0.01, 5.0, "m",
-             "neighbouring scan points further apart than this leave a passage, behind which "
-             "nothing was seen");
+             "neighbouring scan points further apart than this leave a passage; the space behind "
+             "it counts as unseen");
   schema.add("global_map.uncertain_weight", &g.uncertain_weight, 0.0, 1.0, "",
-             "vote of a branch point that something unseen could still move, against 1 of a "
-             "certain one");
+             "weight of the vote of a branch point that unseen obstacles could still move; a "
+             "certain point has 1");
   schema.add("global_map.keep_share", &g.keep_share, 0.12, 0.99, "",
-             "share of the views that looked from which a place is on a branch");
-  schema.add("global_map.bridge_share", &g.bridge_share, 0.01, 0.99, "",
-             "share from which a place can link two such places; not above keep_share");
+             "a place is on a branch if at least this share of the views of the place vote for it");
+  schema.add(
+      "global_map.bridge_share", &g.bridge_share, 0.01, 0.99, "",
+      "a place can link two such places if at least this share vote for it; not above keep_share");
   schema.add("global_map.memory_views", &g.memory_views, 1.0, 1e6, "views",
-             "older views fade beyond this many, so that the map follows what changes");
+             "older views fade beyond this many, so that the map follows changes");
 }
 
 void describe_elements(GlobalMapConfig& g, support::ConfigSchema& schema) {
   schema.add("global_map.node_merge_m", &g.node_merge_m, 0.01, 5.0, "m",
-             "nodes nearer than this and of similar clearance are one");
+             "nodes nearer than this with similar clearances become one");
   schema.add("global_map.clearance_tolerance_m", &g.clearance_tolerance_m, 0.01, 5.0, "m",
-             "difference of clearance up to which they are similar");
+             "largest difference between similar clearances");
   schema.add("global_map.min_observations", &g.min_observations, 1U, 1000U, "",
              "views that must have seen an element");
   schema.add("global_map.hole_m2", &g.hole_m2, 0.0, 100.0, "m2",
-             "a smaller hole between votes is noise, not an obstacle that the map goes around");
+             "smaller holes between votes are noise, not obstacles that branches go around");
   schema.add("global_map.spur_m", &g.spur_m, 0.0, 10.0, "m",
-             "branches with a free end that reach less than this beyond the clearance at their "
-             "node are dropped");
+             "branches with a free end are dropped if they reach less than this beyond the "
+             "clearance at their node");
   schema.add("global_map.min_component_m", &g.min_component_m, 0.0, 1e6, "m",
-             "total length below which a separate part is dropped");
+             "separate parts with a smaller total length are dropped");
   schema.add("global_map.join_m", &g.join_m, 0.0, 5.0, "m",
              "longest gap closed between two ends whose free circles overlap");
 }
@@ -48,7 +49,7 @@ void describe(GlobalMapConfig& config, support::ConfigSchema& schema) {
   schema.add("global_map.fusion", &config.fusion,
              {{"votes", FusionRule::kVotes}, {"pairs", FusionRule::kPairs}},
              "votes: branches are the ridges of the votes of all views; pairs: equivalent nodes "
-             "and branches of map and view are joined, as the thesis prints it (eq. 7.25-7.27), "
+             "and branches of map and view are joined, as printed in the thesis (eq. 7.25-7.27), "
              "for comparison");
   describe_votes(config, schema);
   describe_elements(config, schema);
