@@ -6,42 +6,42 @@ namespace topogeo::localization {
 
 void describe(BackwardConfig& config, support::ConfigSchema& schema) {
   schema.add("backward.beam_width", &config.beam_width, 1U, 100'000U, "paths",
-             "that advance together along a cycle; wider finds better ones, at a cost in "
-             "proportion");
+             "paths that advance together along a cycle; a wider beam finds better paths at a "
+             "proportional cost");
   schema.add("backward.waiting", &config.waiting, 0U, 100'000U, "paths",
-             "kept at each pose for backtracking");
+             "paths kept at each pose for backtracking");
   schema.add("backward.largest_work", &config.largest_work, std::uint64_t{0},
              std::uint64_t{1'000'000'000}, "steps",
-             "tried in all for one cycle, so that one without consistent poses ends too");
+             "most steps tried for one cycle, so that a search without consistent poses ends");
   schema.add("backward.probability", &config.probability, 0.01, 0.9999, "",
-             "of the error ellipse whose rectangle a pose must lie in: a cycle needs all its poses "
-             "inside, so 0.95 for each would refuse many right ones");
+             "probability of the error ellipse whose bounding rectangle must contain a pose; a "
+             "cycle needs all its poses inside, so 0.95 each would reject many correct cycles");
   schema.add("backward.heading_sigmas", &config.heading_sigmas, 0.5, 6.0, "",
-             "half-width of the headings of a pose in standard deviations");
+             "half-width of a pose's heading interval in standard deviations");
   schema.add("backward.draw", &config.draw,
-             "each step is tried a second time, drawn towards the expected pose; the thesis tries "
-             "the stored solutions alone");
+             "tries each step a second time, drawn towards the expected pose; the thesis tries "
+             "only the stored solutions");
   schema.add("backward.solutions", &config.paths_wanted, 1U, 1000U, "",
-             "of a closed cycle that are kept, by their summed fitness; the first one becomes the "
-             "trajectory");
+             "solutions kept of a closed cycle, the largest summed fitness first; the first one "
+             "becomes the trajectory");
   schema.add("backward.intermediate_steps", &config.intermediate_steps, 1U, 100'000U, "",
-             "tried at most where two stops were not matched but both with a third one: each "
-             "solution with the one times each with the other (Thesis, eq. 7.23 and 7.24); 9 as of "
-             "three solutions each, 1600 are all of 40");
+             "most steps tried between two stops that were matched only with a common third one: "
+             "each solution of one match with each of the other (Thesis, eq. 7.23 and 7.24); 9 for "
+             "three solutions each, 1600 for 40 each");
   schema.add("backward.largest_grid", &config.largest_grid, 1U, 1'000'000U, "poses",
-             "tried for a step between two stops of which nothing overlaps; the space of a wider "
-             "uncertainty is tried in wider steps");
+             "most poses tried for a step between two stops without any overlap; a larger "
+             "uncertainty is sampled more coarsely");
 }
 
 void describe(ThesisConfig& config, support::ConfigSchema& schema) {
   schema.add("thesis.matches", &config.matches, 1U, 64U, "",
-             "tasks per stop against the maps that it overlaps with, best first; more of them "
-             "hardly ever hold the fittest match");
+             "match tasks per stop against overlapping maps, best first; further tasks rarely find "
+             "the fittest match");
   schema.add("thesis.cycle_solutions", &config.cycle_solutions, 1U, 40U, "",
-             "solutions kept of a match with a map seen again; 40 as in the thesis");
+             "solutions kept of a match with a revisited map; 40 as in the thesis");
   schema.add("thesis.alternations", &config.alternations, 1U, 20U, "",
-             "of forward and backward correction at one stop, at most: after one cycle has closed "
-             "another one may");
+             "most alternations of forward and backward correction at one stop, because a closed "
+             "cycle may let another one close");
   describe(config.backward, schema);
 }
 

@@ -6,12 +6,14 @@ namespace topogeo::localization {
 
 void describe(ScanTrackerConfig& config, support::ConfigSchema& schema) {
   schema.add("tracker.smallest_overlap", &config.smallest_overlap, 0.0, 1.0, "",
-             "share of the points of a scan in the view of the last stop below which odometry "
+             "smallest share of a scan's points in the view of the last stop; below it odometry "
              "alone places the scan");
   schema.add("tracker.smallest_inliers", &config.smallest_inliers, 0.0, 1.0, "",
-             "the same for the share of those that lie on a surface");
+             "smallest share of those points that lie on a surface; below it odometry alone places "
+             "the scan");
   schema.add("tracker.largest_mahalanobis2", &config.largest_mahalanobis2, 1.0, 1000.0, "",
-             "the same above this squared distance from the prediction in standard deviations");
+             "largest squared Mahalanobis distance from the prediction; above it odometry alone "
+             "places the scan");
 }
 
 }  // namespace topogeo::localization
