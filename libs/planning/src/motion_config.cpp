@@ -7,18 +7,19 @@ namespace topogeo::planning {
 
 void describe(SmoothPathConfig& config, support::ConfigSchema& schema) {
   schema.add("navigator.min_radius_m", &config.min_radius_m, 0.01, 10.0, "m",
-             "tightest arc; corners with less room are turned on the spot");
+             "radius of the tightest arc; corners with less room are turned on the spot");
   schema.add("navigator.max_radius_m", &config.max_radius_m, 0.01, 100.0, "m",
-             "arcs are as wide as fits, up to this");
+             "largest radius of an arc; arcs are as wide as fits");
   schema.add("navigator.path_step_m", &config.step_m, 0.005, 10.0, "m",
-             "between samples of the path");
+             "distance between samples of the path");
 }
 
 void describe(DetourConfig& config, support::ConfigSchema& schema) {
   schema.add("navigator.detour_half_side_m", &config.half_side_m, 0.5, 20.0, "m",
              "half of the side of the window in which a path around an obstacle is searched");
-  schema.add("navigator.detour_snap_m", &config.start_snap_m, 0.0, 5.0, "m",
-             "a detour may begin so far from the robot, where it stands near an obstacle");
+  schema.add(
+      "navigator.detour_snap_m", &config.start_snap_m, 0.0, 5.0, "m",
+      "largest distance between a robot that stands near an obstacle and the start of its detour");
 }
 
 void check(const SmoothPathConfig& config) {
