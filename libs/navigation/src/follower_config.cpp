@@ -6,19 +6,21 @@ namespace topogeo::navigation {
 
 void describe(FollowerConfig& config, support::ConfigSchema& schema) {
   schema.add("navigator.speed_m_per_s", &config.speed_m_per_s, 0.01, 3.0, "m/s",
-             "at most, on a straight path with nothing near");
+             "largest speed, on a straight path with nothing near");
   schema.add("navigator.turn_rad_per_s", &config.turn_rad_per_s, 0.01, 6.0, "rad/s",
-             "of turns, at most");
-  schema.add("navigator.acceleration_m_per_s2", &config.acceleration_m_per_s2, 0.01, 10.0, "m/s2",
-             "less than what the base can do, so that it keeps up with its commands");
+             "largest angular velocity");
+  schema.add(
+      "navigator.acceleration_m_per_s2", &config.acceleration_m_per_s2, 0.01, 10.0, "m/s2",
+      "largest acceleration; less than the base can reach, so that it keeps up with its commands");
   schema.add("navigator.turn_acceleration_rad_per_s2", &config.turn_acceleration_rad_per_s2, 0.01,
-             20.0, "rad/s2", "the same for turns");
+             20.0, "rad/s2", "largest angular acceleration; less than the base can reach");
   schema.add("navigator.delay_s", &config.delay_s, 0.0, 1.0, "s",
-             "from a command until the base obeys it; commands are for where the robot is then");
+             "time from a command until the base obeys it; commands are computed for the robot's "
+             "pose at that time");
   schema.add("navigator.arrival_m", &config.arrival_m, 0.005, 1.0, "m",
-             "so near to the goal the robot has arrived");
+             "the robot has arrived within this distance of the goal");
   schema.add("navigator.arrival_rad", &config.arrival_rad, 0.002, 1.0, "rad",
-             "and so near to the heading, where one is wanted");
+             "the robot has arrived within this angle of the goal's heading, if the goal has one");
 }
 
 void check(const FollowerConfig& config) {
