@@ -71,101 +71,103 @@ void describe_transition(TransitionModel& model, support::ConfigSchema& schema) 
                     why);
   };
   add_matrix("markov.advance_matrix", &model.advance,
-             "grid: positions: where an advance ends, around where it should; rows across the "
-             "motion, the upper one to the left, columns along it (arrow_sense); MACONDO, fig. 6");
+             "grid positions: probabilities of the cells around the expected end of an advance; "
+             "rows lie across the motion, the upper one to the left, columns along it "
+             "(arrow_sense); MACONDO, fig. 6");
   add_matrix("markov.left_matrix", &model.left,
-             "the same of a turn to the left, which MACONDO does not print; axes of the robot "
+             "the same for a turn to the left, which MACONDO does not print; axes of the robot "
              "before the turn");
-  add_matrix("markov.right_matrix", &model.right, "the same of a turn to the right");
-  schema.add(
-      "markov.arrow_sense", &model.sense,
-      {{"right", ArrowSense::kRight}, {"left", ArrowSense::kLeft}},
-      "of the arrow beside MACONDO's matrix of an advance, which the print does not show: the "
-      "right column is ahead of the robot, which rather goes too far, or left, behind it");
+  add_matrix("markov.right_matrix", &model.right, "the same for a turn to the right");
+  schema.add("markov.arrow_sense", &model.sense,
+             {{"right", ArrowSense::kRight}, {"left", ArrowSense::kLeft}},
+             "direction of the arrow beside MACONDO's matrix of an advance, which the print does "
+             "not show; right: the right column is ahead of the robot, which tends to go too far; "
+             "left: the right column is behind it");
   schema.add("markov.advance_step_m", &model.advance_step_m, 0.0, 100.0, "m",
-             "length that the matrix of an advance stands for, from 0.01 on; 0: a whole primitive");
-  schema.add("markov.turn_step_rad", &model.turn_step_rad, 0.0, 6.3, "rad",
-             "angle that the matrix of a turn stands for, from 0.01 on; 0: a whole primitive");
+             "length of the step that the matrix of an advance describes, from 0.01 on; 0: a whole "
+             "primitive");
+  schema.add(
+      "markov.turn_step_rad", &model.turn_step_rad, 0.0, 6.3, "rad",
+      "angle of the step that the matrix of a turn describes, from 0.01 on; 0: a whole primitive");
 }
 
 }  // namespace
 
 void describe(SonarModelConfig& config, support::ConfigSchema& schema) {
   schema.add("markov.max_range_m", &config.max_range_m, 0.5, 20.0, "m",
-             "expected and measured readings beyond it count as this");
+             "expected and measured readings beyond it count as this range");
   schema.add("markov.rays_per_cone", &config.rays_per_cone, 1, 31, "rays",
-             "across the cone of a sonar, odd, so that one is the axis");
+             "rays across the cone of a sonar; odd, so that one is the axis");
   schema.add("markov.scale_m", &config.scale_m, 0.001, 10.0, "m",
-             "a mean difference of the readings by this much makes a place e times less likely");
+             "mean difference of the readings that makes a place e times less likely");
   schema.add("markov.difference_cap_m", &config.difference_cap_m, 0.01, 20.0, "m",
-             "a larger difference counts as this: one reading of a person must not decide");
-  schema.add(
-      "markov.formula", &config.formula,
-      {{"exponential", PerceptualFormula::kExponential},
-       {"inverse", PerceptualFormula::kInverse},
-       {"linear", PerceptualFormula::kLinear}},
-      "probability from the mean difference d and scale_m s: exp(-d / s), 1 / (1 + d / s) or "
-      "1 - d / s; MACONDO says only that it falls");
+             "larger differences count as this, so that one reading of a person does not decide");
+  schema.add("markov.formula", &config.formula,
+             {{"exponential", PerceptualFormula::kExponential},
+              {"inverse", PerceptualFormula::kInverse},
+              {"linear", PerceptualFormula::kLinear}},
+             "probability for the mean difference d and s = scale_m: exp(-d / s), 1 / (1 + d / s) "
+             "or 1 - d / s; MACONDO states only that it falls");
   schema.add_rows("markov.reliability_bands", &config.bands, rows_of_bands, bands_of,
                   "pairs of a distance in m and a reliability of 0 to 1, distances ascending up "
                   "to max_range_m",
-                  "grid: positions: how reliable readings are whose expected distance is up to "
-                  "that of the pair; 0 beyond the last; as MACONDO measured its sonars");
+                  "grid positions: reliability of readings up to the expected distance of each "
+                  "pair; 0 beyond the last; as MACONDO measured its sonars");
   schema.add("markov.weigh_by_reliability", &config.weigh_by_reliability,
-             "each difference by the reliability of its reading; MACONDO: all alike");
+             "weights each difference by the reliability of its reading; MACONDO: all alike");
 }
 
 void describe(MarkovConfig& config, support::ConfigSchema& schema) {
   schema.add("markov.window_cells", &config.window_cells, BeliefGrid::kSmallest,
              BeliefGrid::kLargest, "cells",
-             "side of the window of probabilities, odd; MACONDO: 21");
+             "side of the window of probabilities, an odd number; MACONDO: 21");
   schema.add("markov.perceptual_weight", &config.perceptual_weight, 0.0, 1.0, "",
-             "of readings that are wholly reliable, against the movement; MACONDO: 0.6");
+             "weight of fully reliable readings against the movement; MACONDO: 0.6");
   describe_transition(config.transition, schema);
   describe(config.sonar, schema);
 }
 
 void describe(PoseGridConfig& config, support::ConfigSchema& schema) {
   schema.add("markov.pose_window_m", &config.window_m, 0.5, 5.0, "m",
-             "grid: poses: side of the window of positions");
-  schema.add("markov.pose_cell_m", &config.cell_m, 0.02, 0.5, "m", "side of its cells");
+             "grid poses: side of the window of positions");
+  schema.add("markov.pose_cell_m", &config.cell_m, 0.02, 0.5, "m",
+             "grid poses: side of a cell of that window");
   schema.add("markov.heading_window_rad", &config.heading_window_rad, 0.1, 6.2, "rad",
-             "its headings, both sides together");
+             "width of the window of headings, both sides together");
   schema.add("markov.heading_step_rad", &config.heading_step_rad, 0.01, 0.2, "rad",
-             "between two headings");
+             "difference between two headings of that window");
   schema.add("markov.station_sigma_m", &config.station_sigma_m, 0.005, 0.5, "m",
-             "how exactly the robot is put on its base station, one sigma");
+             "standard deviation of the robot's position on its base station");
   schema.add("markov.station_sigma_rad", &config.station_sigma_rad, 0.005, 0.5, "rad",
-             "the same of its heading");
+             "standard deviation of the robot's heading on its base station");
   schema.add("markov.path_sigma_m", &config.path_sigma_m, 0.001, 0.5, "m",
-             "error of odometry along and across, for the root of each metre");
+             "standard deviation of odometry along and across the path, per root of a metre");
   schema.add("markov.path_sigma_rad", &config.path_sigma_rad, 0.001, 0.5, "rad",
-             "of its heading, for the root of each metre");
+             "standard deviation of the heading of odometry, per root of a metre");
   schema.add("markov.turn_sigma_rad", &config.turn_sigma_rad, 0.001, 0.5, "rad",
-             "of its heading, for the root of each radian turned");
+             "standard deviation of the heading of odometry, per root of a radian turned");
   schema.add("markov.turn_sigma_m", &config.turn_sigma_m, 0.0, 0.5, "m",
-             "of its position, for the root of each radian turned");
+             "standard deviation of the position of odometry, per root of a radian turned");
   schema.add("markov.perceive_every_m", &config.perceive_every_m, 0.02, 2.0, "m",
-             "driven between two perceptual updates; sonars are heard while driving");
+             "distance between two perceptual updates; sonars are read while the robot drives");
   schema.add("markov.perceive_every_rad", &config.perceive_every_rad, 0.02, 2.0, "rad",
-             "turned between two");
+             "turn between two perceptual updates");
   schema.add("markov.hit_sigma_m", &config.hit_sigma_m, 0.01, 1.0, "m",
-             "of a reading of what is expected, cells of the map included");
+             "standard deviation of a reading of the expected obstacle, cells of the map included");
   schema.add("markov.far_from_m", &config.far_from_m, 0.5, 20.0, "m",
-             "beyond it readings are worse; MACONDO: 2.5");
+             "readings beyond this distance are worse; MACONDO: 2.5");
   schema.add("markov.far_off_share", &config.far_off_share, 0.0, 1.0, "",
-             "of the readings there, those that are off; the others are exact; MACONDO: three of "
-             "four");
+             "share of those readings that are off; the others are exact; MACONDO: three of four");
   schema.add("markov.far_off_m", &config.far_off_m, 0.01, 2.0, "m",
-             "how much they are off at the most; MACONDO: 0.3");
+             "largest error of those readings; MACONDO: 0.3");
   schema.add("markov.hit_share", &config.hit_share, 0.05, 0.95, "",
-             "of the readings, those of what is expected");
+             "share of readings of the expected obstacle");
   schema.add("markov.short_share", &config.short_share, 0.0, 0.5, "",
-             "those of something nearer that is not on the map");
+             "share of readings of a nearer obstacle that is not on the map");
   schema.add("markov.evidence", &config.evidence, 0.05, 1.0, "",
-             "weight of one update: readings taken close together err alike");
+             "weight of one update, because readings taken close together have correlated errors");
   schema.add("markov.least_agreement", &config.least_agreement, 0.0, 0.9, "",
-             "share of near readings that agree with the map below which the pose is lost");
+             "smallest share of near readings that agree with the map; below it the pose is lost");
 }
 
 void check(const PoseGridConfig& config) {
