@@ -51,105 +51,108 @@ std::vector<std::uint32_t> parse_bauds(const std::string& text) {
 
 void describe_laser_line(ConfigSchema& schema, Laser& laser) {
   schema.add("laser.port", &laser.port,
-             "serial port of the laser, for example /dev/ttyUSB0; empty: there is no laser");
+             "serial port of the laser, for example /dev/ttyUSB0; empty: no laser");
   schema.add("laser.baud", &laser.settings.baud, 9600U, 500'000U, "baud",
-             "rate to work at: 9600, 19200, 38400 or 500000, which needs an RS-422 line; a PLS "
-             "gives 1.2, 2.4, 4.8 or 25 scans a second with them");
+             "working rate: 9600, 19200, 38400 or 500000, which needs an RS-422 line; a PLS gives "
+             "1.2, 2.4, 4.8 or 25 scans a second with them");
   schema.add(
       "laser.kind", &laser.kind,
       {{"detect", Laser::Kind::kDetect}, {"pls", Laser::Kind::kPls}, {"lms", Laser::Kind::kLms}},
-      "a PLS has even parity, an LMS none; naming it makes finding it twice as fast");
+      "a PLS has even parity, an LMS none; a given kind is found twice as fast");
   schema.add("laser.output", &laser.settings.output,
              {{"continuous", PlsOutput::kContinuous}, {"on_request", PlsOutput::kOnRequest}},
-             "whether the laser sends scan after scan or is asked for each");
+             "continuous: the laser sends scan after scan; on_request: each scan is requested");
   schema.add("laser.password", &laser.settings.password_pls,
-             "of the installation mode of a PLS, eight characters; owners may have changed it");
-  schema.add("laser.password_lms", &laser.settings.password_lms, "the same of an LMS");
+             "password of the installation mode of a PLS, eight characters; its owner may have "
+             "changed it");
+  schema.add("laser.password_lms", &laser.settings.password_lms, "the same for an LMS");
   schema.add("laser.power_on_baud", &laser.settings.power_on_baud, 9600U, 500'000U, "baud",
              "rate after the laser is switched on, unless its owner made another one permanent");
   schema.add("laser.detection_bauds", &laser.detection_bauds,
-             "rates to search for the laser at, in this order");
+             "rates at which the laser is searched for, in this order");
 }
 
 void describe_laser_times(ConfigSchema& schema, Laser& laser) {
   schema.add("laser.ack_timeout_s", &laser.ack_timeout_s, 0.001, 10.0, "s",
-             "from a command to its acknowledgement; 0.04 s by one source");
-  schema.add("laser.reply_timeout_s", &laser.reply_timeout_s, 0.01, 60.0, "s",
-             "from there to the reply to a change of mode; sources wait 2.5 to 20 s");
+             "time from a command to its acknowledgement; 0.04 s in one source");
+  schema.add(
+      "laser.reply_timeout_s", &laser.reply_timeout_s, 0.01, 60.0, "s",
+      "time from the acknowledgement to the reply to a change of mode; sources wait 2.5 to 20 s");
   schema.add("laser.baud_reply_timeout_s", &laser.baud_reply_timeout_s, 0.01, 60.0, "s",
              "the same for a change of the rate, after which the line changes in any case");
   schema.add("laser.settle_s", &laser.settle_s, 0.001, 10.0, "s",
              "rest after a change of the rate; sources wait 0.25 to 5 s");
   schema.add("laser.byte_gap_s", &laser.byte_gap_s, 0.001, 1.0, "s",
-             "silence within a telegram that ends it; more for adapters that deliver in bursts");
-  schema.add(
-      "laser.shortest_silence_s", &laser.shortest_silence_s, 0.1, 60.0, "s",
-      "without a scan for so long, and for four scan periods, the laser is searched for anew");
+             "silence within a telegram that ends it; longer for adapters that deliver in bursts");
+  schema.add("laser.shortest_silence_s", &laser.shortest_silence_s, 0.1, 60.0, "s",
+             "time without a scan, and at least four scan periods, after which the laser is "
+             "searched for again");
   schema.add("laser.scan_period_s", &laser.scan_period_s, 0.005, 1.0, "s",
-             "one turn of the mirror; 25 turns a second by one source");
+             "one turn of the mirror; 25 turns a second in one source");
   schema.add("laser.sweep_to_send_s", &laser.sweep_to_send_s, 0.0, 1.0, "s",
-             "from the middle of the sweep to the first byte of its telegram; shifts all stamps, "
-             "so measure it by turning the robot on the spot");
+             "time from the middle of the sweep to the first byte of its telegram; it shifts all "
+             "stamps, so measure it by turning the robot on the spot");
 }
 
 void describe_laser_scans(ConfigSchema& schema, Laser& laser) {
   schema.add("laser.range_max_m", &laser.settings.range_max_m, 1.0, 100.0, "m",
-             "readings from here on are no return");
+             "readings of this range or more are no return");
   schema.add("laser.first_no_return_code", &laser.first_no_return_code, 1U, 8192U, "",
              "the same for the number that the laser sends, whatever its unit; 8192: none");
-  schema.add("laser.dazzled_is_no_return", &laser.settings.dazzled_is_no_return,
-             "whether a reading that met glaring light is no return or counts by its distance");
+  schema.add(
+      "laser.dazzled_is_no_return", &laser.settings.dazzled_is_no_return,
+      "true: a reading dazzled by glaring light is no return; false: it counts by its distance");
   schema.add("laser.drop_implausible", &laser.settings.drop_implausible,
-             "drop scans that the laser itself calls implausible");
+             "drops scans that the laser itself reports as implausible");
   schema.add("laser.drop_at_error", &laser.settings.drop_at_error,
-             "drop scans while the laser reports an error or a fatal error");
+             "drops scans while the laser reports an error or a fatal error");
   schema.add("laser.stuck_scans", &laser.settings.stuck_scans, 0, 10'000, "",
-             "from so many identical scans in a row on they are dropped, as the laser hangs or is "
-             "covered; 0: never");
+             "identical scans are dropped from this many in a row on, because the laser hangs or "
+             "is covered; 0: never");
   schema.add("laser.stuck_returns", &laser.stuck_returns, 0U, 2048U, "",
-             "scans with fewer returns may repeat, as there is nothing to see");
+             "scans with fewer returns may repeat, because they show nothing");
 }
 
 void describe_base_line(ConfigSchema& schema, DeviceFile::Base& base) {
   devices::BaseSettings& s = base.settings;
   schema.add("base.port", &base.port,
-             "serial port of the base; empty: there is none, and the robot stands still by "
-             "the odometry");
+             "serial port of the base; empty: no base, and the odometry reports a robot that "
+             "stands still");
   schema.add("base.baud", &s.line.baud, 1200U, 500'000U, "baud",
              "rate of the line; 9600 in most sources, 38400 for one B21");
   schema.add("base.parity", &s.line.parity,
              {{"none", Parity::kNone}, {"even", Parity::kEven}, {"odd", Parity::kOdd}},
-             "of the line");
-  schema.add("base.dialect", &s.dialect,
-             {{"ascii", BaseDialect::kAscii}, {"binary", BaseDialect::kBinary}},
-             "text commands or the direct mode, which reports more often on a slow line");
+             "parity of the line");
+  schema.add(
+      "base.dialect", &s.dialect,
+      {{"ascii", BaseDialect::kAscii}, {"binary", BaseDialect::kBinary}},
+      "ascii: text commands; binary: the direct mode, which reports more often on a slow line");
   schema.add(
       "base.checksum", &s.checksum,
       {{"learn", McpChecksum::kLearn}, {"drop", McpChecksum::kDrop}, {"warn", McpChecksum::kWarn}},
-      "what to do with binary messages whose check byte is wrong; its rule is from one "
-      "source, so learn drops them only once three messages had the right one");
+      "treatment of binary messages with a wrong check byte; its rule is from one source, so learn "
+      "drops them only after three messages with the right one");
   schema.add("base.report_mask", &base.report_mask, 0U, 0xFFFF'FFFFU, "",
-             "fields of the status reports, a bit for each");
+             "fields of the status reports, one bit each");
   schema.add("base.report_period_s", &s.report_period_s, 0.0, 2.0, "s",
-             "between two reports; 0: as short as the line allows");
+             "time between two reports; 0: as short as the line allows");
   schema.add("base.write_gap_s", &s.write_gap_s, 0.0, 1.0, "s",
-             "between two commands; by one source the base loses what follows sooner");
+             "time between two commands; the base of one source loses commands that follow sooner");
   schema.add("base.direct_mode_wait_s", &s.direct_mode_wait_s, 0.0, 5.0, "s",
-             "from asking for the direct mode to its first packet");
+             "time from the request for the direct mode to its first packet");
   schema.add("base.silence_s", &s.silence_s, 0.05, 60.0, "s",
-             "without a report for so long, and for four periods, the base is offline");
+             "time without a report, and at least four periods, after which the base is offline");
 }
 
 void describe_base_units(ConfigSchema& schema, DeviceFile::Base& base) {
   devices::McpCalibration& c = base.settings.calibration;
   schema.add("base.counts_per_m", &c.counts_per_m, 1000.0, 1e6, "1/m",
-             "encoder counts of a metre: 28120 for a B21, 25630 for a B21b, 27300 to 54820 in "
-             "other sources. Measure it before the first drive: twice the number is twice the "
-             "speed");
+             "encoder counts per metre: 28120 for a B21, 25630 for a B21b, 27300 to 54820 in other "
+             "sources. Measure it before the first drive: twice the number is twice the speed");
   schema.add("base.position_units_per_m", &c.position_units_per_m, 0.0, 1e6, "1/m",
-             "units of the position in a metre; 0: counts_per_m / 256");
+             "units of the position per metre; 0: counts_per_m / 256");
   schema.add("base.rotation_counts_per_turn", &c.rotation_counts_per_turn, 16.0, 1e6, "",
-             "rotation counts of a whole turn");
+             "rotation counts per whole turn");
   schema.add("base.clockwise_positive", &c.clockwise_positive,
              "the base counts rotation clockwise, as a B21 does; other RWI bases do not");
   schema.add("base.reversed", &c.reversed, "forward of the base is backward of the robot");
@@ -158,53 +161,53 @@ void describe_base_units(ConfigSchema& schema, DeviceFile::Base& base) {
 void describe_base_motion(ConfigSchema& schema, DeviceFile::Base& base) {
   devices::BaseSettings& s = base.settings;
   schema.add("base.largest_linear_mps", &s.limits.linear_mps, 0.01, 2.0, "m/s",
-             "faster motion commands are cut to it");
+             "largest speed; faster motion commands are limited to it");
   schema.add("base.largest_angular_radps", &s.limits.angular_radps, 0.01, 6.0, "rad/s",
              "the same for rotation");
   schema.add("base.linear_acceleration_mps2", &s.limits.linear_mps2, 0.01, 5.0, "m/s^2",
-             "of starting and stopping; the base stops no sooner than this allows");
+             "acceleration of starting and stopping; the base stops no sooner than this allows");
   schema.add("base.angular_acceleration_radps2", &s.limits.angular_radps2, 0.01, 20.0, "rad/s^2",
              "the same for rotation");
   schema.add("base.torque", &base.torque, -1, 255, "",
-             "torque limit of the motors; 20 is a good one by one source; -1: left as it is");
-  schema.add(
-      "base.watchdog_s", &s.watchdog_s, 0.1, 255.0, "s",
-      "the base stops by itself when nothing has refreshed its watchdog for so long: it runs on "
-      "while the gateway is frozen. More needs the same in guard.runs_on_s of the "
-      "configuration");
+             "torque limit of the motors; one source recommends 20; -1: unchanged");
+  schema.add("base.watchdog_s", &s.watchdog_s, 0.1, 255.0, "s",
+             "the base stops by itself when its watchdog has not been refreshed for this time, so "
+             "it runs on while the gateway is frozen. A longer time needs the same in "
+             "guard.runs_on_s of the configuration");
   schema.add("base.command_timeout_s", &s.command_timeout_s, 0.05, 0.5, "s",
              "a motion command holds no longer than this");
   schema.add("base.joystick_allowed", &s.joystick_allowed,
-             "leave the joystick in use; without it an operator has to push the robot");
+             "leaves the joystick in use; without it an operator has to push the robot");
   schema.add("base.stop_on_bump", &s.stop_on_bump, "the base stops by itself when it bumps");
   schema.add("base.error_delay_ticks", &base.error_delay_ticks, 0U, 65535U, "1/256 s",
-             "from an error of the motors to their shutdown");
+             "time from an error of the motors to their shutdown");
 }
 
 void describe_base_states(ConfigSchema& schema, DeviceFile::Base& base) {
   devices::BaseSettings& s = base.settings;
   schema.add("base.stalled_reports", &s.stalled_reports, 2U, 100U, "",
-             "so many reports in a row of acceleration without motion are an emergency stop, for "
-             "which no message is known");
-  schema.add("base.standstill_mps", &s.standstill_mps, 0.0, 0.5, "m/s", "slower is standstill");
+             "reports in a row of acceleration without motion that count as an emergency stop, "
+             "because no message for it is known");
+  schema.add("base.standstill_mps", &s.standstill_mps, 0.0, 0.5, "m/s",
+             "lower speeds are standstill");
   schema.add("base.standstill_radps", &s.standstill_radps, 0.0, 1.0, "rad/s",
              "the same for rotation");
   schema.add(
       "base.ripple_mps", &s.ripple_mps, 0.001, 2.0, "m/s",
-      "an axis that is slower by more than it was commanded, and reports that it accelerates, "
-      "has lost its power: an emergency stop. More where a base is held without one");
+      "an axis that is slower than commanded by more than this, and reports that it accelerates, "
+      "has lost its power: an emergency stop. Raise it if a base is held without one");
   schema.add("base.ripple_radps", &s.ripple_radps, 0.001, 6.0, "rad/s", "the same for rotation");
   schema.add("base.ramp_mps", &s.ramp_mps, 0.001, 2.0, "m/s",
-             "the same of one that lags behind its acceleration");
+             "the same for an axis that lags behind its acceleration");
   schema.add("base.ramp_radps", &s.ramp_radps, 0.001, 6.0, "rad/s", "the same for rotation");
   schema.add("base.uncommanded_mps", &s.uncommanded_mps, 0.005, 2.0, "m/s",
-             "faster by this than commanded is motion by the joystick");
+             "motion that is faster than commanded by this comes from the joystick");
   schema.add("base.uncommanded_radps", &s.uncommanded_radps, 0.01, 6.0, "rad/s",
              "the same for rotation");
   schema.add("base.battery_period_s", &s.battery_period_s, 1.0, 3600.0, "s",
-             "between two questions for the voltage");
+             "time between two requests for the voltage");
   schema.add("base.battery_low_v", &s.battery_low_v, 0.0, 100.0, "V",
-             "the battery is low below it; 44 for a B21");
+             "the battery is low below this voltage; 44 for a B21");
 }
 
 }  // namespace
@@ -238,12 +241,11 @@ ConfigSchema describe(DeviceFile& file) {
   describe_base_states(schema, file.base);
   schema.add("body.sensors", &file.body,
              {{"none", DeviceFile::Body::kNone}, {"b21", DeviceFile::Body::kB21}},
-             "sonars, infrared and tactile sensors; those of a real b21 cannot be read: no source "
-             "documents their bus (docs/devices.md)");
-  schema.add(
-      "odometry.wait_s", &file.odometry_wait_s, 0.0, 1.0, "s",
-      "a scan waits so long, at most, for the odometry after it. 0: it is published at once, "
-      "with the last odometry carried on by its speeds");
+             "sonars, infrared and tactile sensors; those of a real b21 cannot be read, because no "
+             "source documents their bus (docs/devices.md)");
+  schema.add("odometry.wait_s", &file.odometry_wait_s, 0.0, 1.0, "s",
+             "longest time that a scan waits for the odometry after it; 0: the scan is published "
+             "at once, with the last odometry extrapolated by its speeds");
   schema.add("odometry.longest_extrapolation_s", &file.longest_extrapolation_s, 0.0, 5.0, "s",
              "a scan later than this after the last odometry is dropped");
   return schema;
