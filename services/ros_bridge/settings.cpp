@@ -59,7 +59,7 @@ void describe_topics(ConfigSchema& schema, Settings& settings) {
   schema.add("frames.robot", &frames.robot,
              "base_link of REP 105; empty: the child frame of the odometry, or base_link where "
              "odometry comes from /tf");
-  schema.add("frames.laser", &frames.laser, "of the scans with `directions.sensors: out`");
+  schema.add("frames.laser", &frames.laser, "frame of the scans with `directions.sensors: out`");
 }
 
 void describe_directions(ConfigSchema& schema, Settings& settings) {
@@ -67,18 +67,19 @@ void describe_directions(ConfigSchema& schema, Settings& settings) {
   const std::vector<std::pair<std::string, Direction>> ways = {
       {"in", Direction::kIn}, {"out", Direction::kOut}, {"off", Direction::kOff}};
   schema.add("directions.sensors", &directions.sensors, ways,
-             "in: scan and odometry are those of ROS; out: those of our devices, log or simulator, "
-             "given to ROS");
+             "in: scan and odometry come from ROS; out: those of our devices, log or simulator are "
+             "published to ROS");
   schema.add("directions.velocity", &directions.velocity, ways,
              "out: our navigator drives the robot of ROS; in: ROS drives our base");
   schema.add("directions.map", &directions.map, "whether map and map_updates are published");
   schema.add("directions.map_to_odom", &directions.map_to_odom,
-             "whether map -> odom is published on tf; one program only may do so");
+             "whether map -> odom is published on tf; only one program may do so");
   schema.add("directions.pose", &directions.pose, "whether the pose is published");
   schema.add("directions.plan", &directions.plan, "whether the route is published");
   schema.add("directions.graph", &directions.graph, "whether graph and rooms are published");
-  schema.add("directions.initial_pose", &directions.initial_pose, "whether poses are taken");
-  schema.add("directions.goal", &directions.goal, "whether goals are taken");
+  schema.add("directions.initial_pose", &directions.initial_pose,
+             "whether initial poses are accepted");
+  schema.add("directions.goal", &directions.goal, "whether goals are accepted");
   schema.add("directions.diagnostics", &directions.diagnostics, "whether status is published");
   schema.add("directions.clock", &directions.clock,
              "with `sensors: out`: publish the time of the log, for nodes with use_sim_time");
@@ -90,10 +91,11 @@ void describe_qos(ConfigSchema& schema, Settings& settings) {
       {"best_effort", ros::Qos::kBestEffort},
       {"reliable", ros::Qos::kReliable},
       {"latched", ros::Qos::kLatched}};
-  schema.add("qos.scan", &qos.scan, kinds, "best_effort hears every driver; lost scans stay lost");
-  schema.add("qos.odometry", &qos.odometry, kinds, "the same");
+  schema.add("qos.scan", &qos.scan, kinds,
+             "best_effort receives the scans of every driver; lost scans stay lost");
+  schema.add("qos.odometry", &qos.odometry, kinds, "the same for odometry");
   schema.add("qos.map", &qos.map, kinds, "latched (transient local): late readers get the map");
-  schema.add("qos.velocity", &qos.velocity, kinds, "of the velocity in either direction");
+  schema.add("qos.velocity", &qos.velocity, kinds, "QoS of the velocity in either direction");
 }
 
 /// The absolute name of a topic.
@@ -156,32 +158,31 @@ ConfigSchema describe(Settings& settings) {
   schema.add("odometry.source", &settings.odometry_source,
              {{"topic", OdometrySource::kTopic}, {"tf", OdometrySource::kTransforms}},
              "the topic of the odometry, or odom -> robot of /tf");
-  schema.add(
-      "odometry.wait_s", &settings.odometry_wait_s, 0.0, 1.0, "s",
-      "a scan waits so long, at most, for the odometry after it. 0: it is published at once, "
-      "with the last odometry carried on by its speeds");
+  schema.add("odometry.wait_s", &settings.odometry_wait_s, 0.0, 1.0, "s",
+             "longest time that a scan waits for the odometry after it; 0: the scan is published "
+             "at once, with the last odometry extrapolated by its speeds");
   schema.add("odometry.longest_extrapolation_s", &settings.longest_extrapolation_s, 0.0, 5.0, "s",
              "a scan later than this after the last odometry is dropped");
   schema.add("laser.mounting_from_tf", &settings.mounting_from_tf,
-             "whether the frames of tf say where the laser is; false: the configuration of the "
-             "services alone, upright");
-  schema.add("laser.sweep", &settings.sweep,
-             {{"none", ros::SweepOrder::kNone},
-              {"forward", ros::SweepOrder::kForward},
-              {"backward", ros::SweepOrder::kBackward}},
-             "whether the motion during a scan is taken out by time_increment: its rays come one "
-             "after the other (forward) or, as of many clockwise scanners, the last first "
-             "(backward)");
+             "true: the frames of tf give the mounting of the laser; false: only the configuration "
+             "of the services does, and the laser is upright");
+  schema.add(
+      "laser.sweep", &settings.sweep,
+      {{"none", ros::SweepOrder::kNone},
+       {"forward", ros::SweepOrder::kForward},
+       {"backward", ros::SweepOrder::kBackward}},
+      "correction of the motion during a scan by time_increment; none: no correction; forward: the "
+      "rays come in order; backward: the last ray comes first, as in many clockwise scanners");
   schema.add("velocity.stamped", &settings.stamped_velocity,
              "TwistStamped, the default of Nav2 from Kilted on, in place of Twist");
   schema.add("transforms.tolerance_s", &settings.transform_tolerance_s, 0.0, 5.0, "s",
-             "map -> odom is stamped so much later than it was measured, so that others need not "
-             "wait for it");
-  schema.add(
-      "map.period_s", &settings.map_period_s, 0.1, 600.0, "s",
-      "the whole map is published at most so often; what changes meanwhile is in map_updates");
+             "time by which map -> odom is stamped later than it was measured, so that other nodes "
+             "need not wait for it");
+  schema.add("map.period_s", &settings.map_period_s, 0.1, 600.0, "s",
+             "shortest time between two publications of the whole map; changes in between are in "
+             "map_updates");
   schema.add("network.localhost_only", &settings.localhost_only,
-             "for nodes of Humble with ROS_LOCALHOST_ONLY=1; hears no others");
+             "for nodes of Humble with ROS_LOCALHOST_ONLY=1; receives no others");
   return schema;
 }
 
