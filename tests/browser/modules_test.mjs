@@ -243,7 +243,7 @@ test("what the navigator does is said once", () => {
   );
   assert.equal(
     said("relocalizing", "pose_lost", "the localizer does not track the pose: AMBIGUOUS"),
-    "It is not sure where it is, and finds that out before it drives.",
+    "The pose is uncertain. The robot relocalizes before it drives.",
   );
   assert.equal(
     said("blocked", "obstacle", "0.4 m ahead"),

@@ -4,8 +4,8 @@ import { area, length, Maybe, point } from "./format";
 export const draw_texts = {
   spectator: "You are watching. Drawing needs the operator's link.",
   not_offered: "This service does not keep drawings.",
-  hint: "What you draw is kept apart from what was mapped. Planner and guard obey it once saved.",
-  floor_hint: "A floor from nothing, apart from the robot's map. It stays in this page until it is loaded or exported.",
+  hint: "Drawn items are kept apart from the mapped data. Planner and guard obey the saved drawing.",
+  floor_hint: "A new floor, apart from the robot's map. It stays in this page until you load or export it.",
 
   undo: "Undo",
   redo: "Redo",
@@ -18,7 +18,7 @@ export const draw_texts = {
   conflict: "Somebody else has saved the drawing meanwhile.",
   take_theirs: "Take theirs",
   save_over: "Save mine over it",
-  theirs_taken: "This is the drawing of the others. Undo brings yours back.",
+  theirs_taken: "The page shows the other drawing. Undo brings yours back.",
 
   tools: "Tools",
   groups: { names: "Names", walls: "Walls", zones: "Zones", rooms: "Rooms" },
@@ -40,8 +40,8 @@ export const draw_texts = {
   },
   how: {
     select: "Tap an item, then drag it or its corners. Small dots make new corners. Drag beside it to move the map.",
-    place: "Tap where it is.",
-    base: "Press where the robot stands there, drag to where it looks.",
+    place: "Tap its position.",
+    base: "Press where the robot stands on it and drag in the direction that the robot faces.",
     wall: "Tap each corner; tap the last one again to end, the first one to close. Or drag a single wall.",
     opening: "Drag along the stretch of a wall that is open.",
     door: "Drag along the doorway, from post to post.",
@@ -91,8 +91,8 @@ export const draw_texts = {
   },
   item: "Selected",
   name: "Name",
-  name_taken: "Another one has this name.",
-  no_name: "It needs a name.",
+  name_taken: "Another item has this name.",
+  no_name: "The item needs a name.",
   speed: "Speed limit (m/s)",
   heading: "Heading (°)",
   corners: "Corners",
@@ -110,12 +110,12 @@ export const draw_texts = {
   numbered: (kind: string, n: number) => `${kind} ${n}`,
 
   rooms: {
-    none_here: "There is no room here. Tap inside of one.",
+    none_here: "There is no room here. Tap inside a room.",
     none_along: "The line crosses no room. Drag it across one, from wall to wall.",
     save_first: "This room is not saved yet. Save the drawing first.",
     not_parted:
-      "The line does not part the room: drag it from wall to wall. A room that goes round in a " +
-      "ring stays whole.",
+      "The line does not split the room: drag it from wall to wall. A room that forms a ring stays " +
+      "whole.",
     same_room: "Both points are in the same room.",
     not_joined: "These rooms do not meet.",
     split: "The room is parted.",
@@ -132,7 +132,7 @@ export const draw_texts = {
     simulator: "Load into the simulator",
     robot: "Load into the robot",
     simulator_sure: "The simulated robot moves into this floor and its map begins anew.",
-    robot_sure: "This floor becomes the robot's drawing in place of the one that it has.",
+    robot_sure: "This floor replaces the robot's present drawing.",
     yes: "Yes, load it",
     no: "No",
     no_start: "Set a base station first: the robot starts there.",
@@ -141,7 +141,7 @@ export const draw_texts = {
     not_offered: "This service cannot load floors.",
     picture: "Picture in the background",
     choose: "Choose a picture (PNG, JPEG)",
-    no_picture: "This file is no picture that the browser can show.",
+    no_picture: "The browser cannot show this file as a picture.",
     known: "Known distance (m)",
     known_hint: "The two points are this far apart:",
     apply: "Apply",
@@ -151,12 +151,12 @@ export const draw_texts = {
     export: "Export",
     import: "Import",
     imported: "The file is read. Undo brings back what was there.",
-    no_json: "This file is no drawing of this page.",
+    no_json: "This file is not a drawing that this page exported.",
   },
 
   parse: {
-    no_drawing: "This is no drawing.",
-    no_list: (list: string) => `“${list}” is no list.`,
+    no_drawing: "This is not a drawing.",
+    no_list: (list: string) => `“${list}” is not a list.`,
     too_many: (list: string, most: number) => `“${list}” has more than ${most} entries.`,
     wrong_item: (list: string, index: number) => `Entry ${index + 1} of “${list}” is not complete.`,
   },

@@ -22,8 +22,8 @@ export const texts = {
   reasons: {
     none: "No localizer has reported a pose yet.",
     absent: "No service of a robot is heard: only a map is shown.",
-    silent: "No pose has come for over ten seconds; the robot is shown where it was then.",
-    offline: "The page does not hear the robot; what it shows is old.",
+    silent: "No pose has come for over ten seconds; the robot is shown at its last pose.",
+    offline: "The page receives nothing from the robot; the display is old.",
   },
 
   views: {
@@ -46,7 +46,7 @@ export const texts = {
     `The robot is held. It has a goal, ${goal}: as soon as it is released it drives there.`,
   stop_sent: "Stop sent, the base has not confirmed. The robot may still move.",
   stop_moves: "Stopping: the base still moves.",
-  stop_failed: (why: string) => `Stop was not taken: ${why} The robot may still move.`,
+  stop_failed: (why: string) => `Stop was not accepted: ${why} The robot may still move.`,
   release_asks: (goal: string) => `Released, the robot drives at once: ${goal}.`,
   release_and_drive: "Release and drive",
   release_and_cancel: "Cancel the goal, then release",
@@ -56,7 +56,7 @@ export const texts = {
   release: "Release",
   low_battery: "The battery is low.",
   reconnecting: "Connection lost. Trying again …",
-  wrong_token: "The token of this link is not the service's: you can watch, not command.",
+  wrong_token: "The token of this link does not match the service's: you can watch but not command.",
 
   controls: {
     zoom_in: "Zoom in",
@@ -69,7 +69,7 @@ export const texts = {
   layers: {
     rooms: "Rooms in colours",
     names: "Names",
-    drawing: "What was drawn",
+    drawing: "Drawn items",
     graph: "Nodes and branches",
     trail: "Trail of stops",
     loops: "Closed loops",
@@ -119,8 +119,8 @@ export const texts = {
     not_heard: "not heard",
     simulated: "True pose of the simulated robot",
     simulated_hint:
-      "In the frame of its world file. Position and heading above are in the frame of the map, " +
-      "which begins where the robot was at the first stop: the numbers differ also where the pose is right.",
+      "This pose is in the frame of the world file. Position and heading above are in the frame of the " +
+      "map, which begins at the robot's first stop, so the numbers differ even if the pose is right.",
     in_world: "In its world",
     collisions: (n: number) => counted(n, "collision", "collisions"),
     legend: "Legend and keys",
@@ -138,7 +138,7 @@ export const texts = {
     door: "Door",
     narrowing: "Narrowing",
     hall_corridor: "Hall meets corridor",
-    fictitious: "Fictitious node: where the view ends",
+    fictitious: "Fictitious node: end of the view",
   },
 
   send: {
@@ -165,13 +165,13 @@ export const texts = {
     list_length: (meters: Maybe, seconds: Maybe) =>
       `Together ${length(meters)}, about ${duration(seconds)}`,
     explore: "Explore",
-    explore_title: "Drives everywhere that is not mapped yet",
+    explore_title: "Drives to all places that are not mapped yet",
     return: "Return to base",
     underway: "Under way",
     idle: "The robot has no goal.",
     foreign: "The robot has a goal that was not sent from here.",
-    not_heard: "What the robot does is not known: the page does not hear it.",
-    to_explore: "what is not mapped yet",
+    not_heard: "The robot's state is not known: the page receives nothing from it.",
+    to_explore: "places that are not mapped yet",
     to_foreign: "a goal that was not sent from here",
     exploring: "The robot explores by itself.",
     to: (goal: string) => `To ${goal}`,
@@ -179,7 +179,7 @@ export const texts = {
     rest_exploring: (meters: Maybe, seconds: Maybe) =>
       `${length(meters)} to the next point, about ${duration(seconds)}`,
     waiting: (names: string) => `Then: ${names}`,
-    progress: "Share of the route that is driven",
+    progress: "Driven share of the route",
     pause: "Pause",
     resume: "Resume",
     cancel: "Cancel",
@@ -187,8 +187,8 @@ export const texts = {
     no_navigator: "No navigator is running, so the robot cannot be sent.",
     drive: "Drive by hand",
     drive_hint:
-      "Hold a button, or W A S D or the arrow keys. The robot stops when you let go, when the " +
-      "page is left or the connection drops. Space stops and holds it.",
+      "Hold a button, W A S D or an arrow key. The robot stops when you let go, when you leave the " +
+      "page or when the connection drops. Space stops and holds it.",
     drive_on: "Take the controls",
     drive_off: "Let go of the controls",
     drive_speed: "Speed",
@@ -203,7 +203,7 @@ export const texts = {
   navigator: {
     idle: "Without a goal",
     driving: "Driving",
-    relocalizing: "Finding out where it is",
+    relocalizing: "Relocalizing",
     blocked: "Blocked",
     arrived: "Arrived",
     stopped: "Stopped",
@@ -211,9 +211,9 @@ export const texts = {
   halts: {
     no_route: "There is no route to the goal.",
     cancelled: "The goal was cancelled.",
-    pose_lost: "It is not sure where it is.",
+    pose_lost: "The pose is lost.",
     no_map: "There is no map.",
-    outside_map: "It is not on the map.",
+    outside_map: "The robot is not on the map.",
     obstacle: "Something that is not on the map is in its way.",
     no_scan: "The laser sends nothing.",
     sonar_silent: "The sonars hear nothing, though something is near.",
@@ -226,28 +226,29 @@ export const texts = {
     paused: "Paused. It drives on after “Resume”.",
     no_odometry: "Stopped. The base sends no odometry.",
   } as Record<string, string>,
-  unsure: "It is not sure where it is, and finds that out before it drives.",
+  unsure: "The pose is uncertain. The robot relocalizes before it drives.",
 
   correct: {
     pose: "Set the pose",
-    pose_hint: "When the robot is somewhere else than shown: set its place and heading on the map.",
+    pose_hint: "Set the robot's position and heading on the map if they differ from those shown.",
     pose_start: "Set on the map",
-    pose_drag: "Press where the robot stands, drag to where it looks. Press again to change it.",
+    pose_drag:
+      "Press where the robot stands and drag in the direction that it faces. Press again to change it.",
     x: "x (m)",
     y: "y (m)",
     theta: "Heading (°)",
-    sure: "How sure",
+    sure: "Accuracy",
     sure_exact: "exactly there (0.2 m)",
     sure_about: "about there (0.5 m)",
     sure_roughly: "somewhere near (2 m)",
     apply: "Apply",
     cancel: "Cancel",
     while_mapping:
-      "While the robot maps, its pose can neither be set nor searched. First press “Leave the map " +
-      "as it is”, below.",
+      "The pose cannot be set or searched while the robot maps. First press “Leave the map as it is”, " +
+      "below.",
     search: "Search the whole map",
     search_hint:
-      "Forgets the pose and compares what the robot sees with every place. Let it move a few " +
+      "Discards the pose and compares the robot's scans with every place. Let the robot move a few " +
       "metres meanwhile: “Drive by hand” is in the view Send.",
     search_start: "Search",
     mode: "Map",
@@ -266,14 +267,14 @@ export const texts = {
       contradicted: Maybe;
     }) =>
       `Confidence ${percent(m.confidence)}; ${m.matches} of ${m.stops} stops match over ` +
-      `${length(m.distance_m)}; ${percent(m.contradicted)} contradicts.`,
+      `${length(m.distance_m)}; ${percent(m.contradicted)} of the common view contradicts.`,
     accept: "Make them one map",
     refuse: "Keep apart",
     merge_states: {
       open: "open",
       accepted: "accepted: the maps are one",
       refused: "refused",
-      withdrawn: "withdrawn: a map is gone",
+      withdrawn: "withdrawn: one of the maps no longer exists",
     },
     spectator: "You are watching. Corrections need the operator's link.",
   },
@@ -299,7 +300,7 @@ export const texts = {
   },
 
   errors: {
-    status: (status: number) => `The service refused this (HTTP ${status}).`,
+    status: (status: number) => `The service refused the request (HTTP ${status}).`,
     unreachable: "The service cannot be reached.",
     slow: "The service did not answer in time.",
     number: (name: string) => `${name}: enter a number.`,

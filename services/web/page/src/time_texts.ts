@@ -4,12 +4,12 @@ import { MergedMap } from "./protocol";
 
 export const time_texts = {
   film: "Play the drive",
-  film_hint: "How the map came to be: the robot, what it saw, and the floor known until then.",
+  film_hint: "Replays the drive that made the map: the robot, its scans, and the floor known until then.",
   film_note: "The drive as it was, not the robot of now",
   load: "Load the drive",
   fetching: (stops: number, total: number) => `Fetched ${count(stops)} of ${count(total)} stops …`,
   loading: (stops: number, total: number) => `Laid out ${count(stops)} of ${count(total)} stops …`,
-  no_drive: "The map has no stops: nobody has driven it.",
+  no_drive: "The map has no stops, so there is no drive to play.",
   drive: (stops: number, seconds: number) =>
     `${count(stops)} stops, ${duration(seconds)} without the pauses.`,
   slider: "Moment of the drive",
@@ -23,51 +23,51 @@ export const time_texts = {
   snapshots: "Snapshots",
   no_snapshots: "There is no snapshot yet.",
   name: "Name",
-  name_rule: "Letters, digits, '.', '-' and '_', without spaces; no '.' first.",
+  name_rule: "Letters, digits, '.', '-' and '_'; no spaces, no '.' at the start.",
   make: "Make a snapshot",
   made: "The snapshot is made.",
   snapshot_facts: (when: string, stops: number, bytes: number) =>
     `${when}, ${count(stops)} stops, ${(bytes / 1e6).toFixed(1)} MB`,
   restore: "Restore",
   restore_warning:
-    "The map becomes what it was, without what was mapped since; that of now is kept as a " +
-    "snapshot. A robot that is under way goes on from there: cancel its goal first.",
+    "The snapshot replaces the present map and leaves out data mapped since; the present map is kept " +
+    "as a snapshot. A robot under way continues in the restored map: cancel its goal first.",
   restore_sure: "Restore it",
   restored: "The map is restored.",
   merge: "Merge with another map",
   merge_hint:
-    "A map file (map.pb) of the same place, of this robot or another one. You see what would " +
-    "change before anything does.",
+    "A map file (map.pb) of the same place, of this robot or another one. The page shows the " +
+    "changes before you accept them.",
   merge_file: "Map file",
   merge_too_large: (name: string) => `${name} is larger than 64 MB, which is the limit here.`,
-  merging: (name: string) => `Looking for the place of ${name} in the map …`,
+  merging: (name: string) => `Aligning ${name} with the map …`,
   not_merged: (name: string) => `${name} was not merged.`,
   merged: (name: string) => `${name} joins the map`,
   merged_facts: (made: MergedMap) =>
-    `${count(made.joined)} stops of the smaller map find their place in the larger one` +
+    `${count(made.joined)} stops of the smaller map join the larger one` +
     (made.left_out > 0 ? `, ${count(made.left_out)} do not and are left out` : "") +
     `. Confidence ${(100 * made.confidence).toFixed(0)} %: ${count(made.agreeing)} of ` +
     `${count(made.searched)} places agree, within ${(100 * made.sigma_m).toFixed(0)} cm.`,
   merge_warning:
-    "Accepted, this becomes the map; that of now is kept as a snapshot. A robot that is under way " +
-    "looks for its place in it.",
+    "The merged map replaces the present map if you accept it; the present map is kept as a " +
+    "snapshot. A robot under way relocalizes in the merged map.",
   merge_accept: "Make it the map",
   merge_refuse: "Discard it",
-  merge_accepted: "The maps are one.",
+  merge_accepted: "The maps are merged.",
   merge_refused: "The map stays as it is.",
   comparison: "Compare",
-  compare_hint: "What differs between two versions of the map, on the map in colours.",
+  compare_hint: "Shows the differences between two versions of the map in colours.",
   before: "Before",
   after: "After",
-  now: "the map of now",
+  now: "present map",
   compare: "Compare",
   comparing: "Comparing …",
   hide: "Hide",
   stops: "Stops",
   stops_value: (before: number, after: number) => `${count(before)} before, ${count(after)} after`,
-  changes: { gone: "Gone", new: "New", seen: "Seen since", lost: "Not known any more" },
+  changes: { gone: "Gone", new: "New", seen: "Seen since", lost: "No longer known" },
   export: "Export",
-  export_hint: "The map of now as a file for other programs.",
+  export_hint: "Saves the present map as a file for other programs.",
   download: "Download",
   download_file: (file: string) => `Download ${file}`,
   formats: {

@@ -15,25 +15,25 @@ export const understand_texts = {
     accepted: "Accepted",
     gate: "Match not accepted",
     unconfirmed: "Not confirmed",
-    no_closing: "Does not fit the way round",
+    no_closing: "Does not fit the loop",
     outvoted: "Outvoted later",
   },
   sources: {
-    prediction: "Compared because the poses predict it.",
-    place: "Compared because it looks like that place.",
-    window: "Compared because it looks like that place, as a whole.",
+    prediction: "Compared because the poses predict this loop.",
+    place: "Compared because the last metres look like that place.",
+    window: "Compared because the last metres, matched as a whole, look like that place.",
   } as Record<string, string>,
   // Keyed by the localizer's explanation of a loop.
   meanings: {
     "nothing in common": "The two stops hardly see the same part of the floor.",
     "little overlap": "The two stops see too little of the same floor.",
     "few inliers": "Too few points of the later stop lie on walls of the earlier one.",
-    doubtful: "No measure of the match fails alone; together they leave too much doubt.",
-    "far from the prediction": "The match lies farther from where the poses put it than they allow.",
-    "second solution": "It fits in another way nearly as well.",
-    unconfirmed: "It would move the robot far, and nothing agrees with it so far.",
-    "no consistent closing": "No poses along the way round fit what was seen on it.",
-    outvoted: "It was accepted at first; the rest of the map contradicted it.",
+    doubtful: "No measure of the match fails alone, but together they leave too much doubt.",
+    "far from the prediction": "The match lies farther from the predicted pose than its uncertainty allows.",
+    "second solution": "Another solution of the match fits nearly as well.",
+    unconfirmed: "The loop would move the robot far, and no other loop agrees with it yet.",
+    "no consistent closing": "No poses along the loop fit what was seen on it.",
+    outvoted: "The loop was accepted at first, but the rest of the map contradicted it.",
   } as Record<string, string>,
   loop_facts: (
     fitness: Maybe,
@@ -47,15 +47,15 @@ export const understand_texts = {
   loading_maps: "Fetching both local maps …",
   key_earlier: "earlier stop",
   key_later: "later stop, as matched",
-  key_predicted: "later stop, as the poses had put it",
+  key_predicted: "later stop, as predicted by the poses",
   fitness: "Fitness",
   probability: "Estimated probability that it is right",
   probable_but_rejected:
-    "By its measures the match is probably right. A loop needs more, because a wrong one bends the " +
-    "map: the reason above decides.",
+    "The match is probably right. A loop needs more, because a wrong one bends the map: the reason " +
+    "above decides.",
   share: (value: Maybe) => (typeof value === "number" ? percent(value) : "not kept"),
-  overlap: "Of what the later stop saw, in the earlier one's view",
-  near: "Of that within 10 cm of its walls",
+  overlap: "Part of the later stop's view in the earlier one's view",
+  near: "Part of that within 10 cm of its walls",
   moved: "Match and poses differ by",
   none: "nothing",
   moved_value: (meters: Maybe, turn: Maybe) =>
@@ -63,8 +63,8 @@ export const understand_texts = {
   corrected: "Shift of the stop by the loop",
   search: "Search",
   search_hint:
-    "What the localizer compares at the moment: the rectangle that it searches, the ellipse where " +
-    "the poses expect the robot (2 sigma), and what it found.",
+    "Shows the localizer's present search: the rectangle that it searches, the ellipse where the " +
+    "poses expect the robot (2 sigma), and the results.",
   no_search: "No search was heard yet.",
   search_map: (places: number, running: boolean) =>
     running && places === 0
@@ -84,7 +84,7 @@ export const understand_texts = {
   worker_facts: (slots: number, done: number, rate: string, failures: number) =>
     `${slots} ${slots === 1 ? "slot" : "slots"}, ${count(done)} tasks done, ${rate}, ` +
     `${count(failures)} failed`,
-  draining: "finishes and goes",
+  draining: "finishes its tasks, then ends",
   services: "Services",
   no_services: "No service is heard.",
   service_states: {
@@ -94,7 +94,7 @@ export const understand_texts = {
     finished: "finished",
     failed: "failed",
     stopped: "stopped",
-    lost: "lost: no sign of life",
+    lost: "lost: reports nothing",
   } as Record<string, string>,
   waits_for: (what: string) => `Waits for ${what}.`,
   input: (topic: string, rate: string) => `${topic} ${rate}`,
