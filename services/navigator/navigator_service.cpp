@@ -294,12 +294,16 @@ void NavigatorService::publish_pose() {
 void NavigatorService::begin_again(const std::string& fault, const std::string& detail) {
   last_ns_.fill(std::nullopt);
   const bool stuck = navigator_.is_stuck();
+  const navigation::NavigatorStatus before = navigator_.status();
   // The pose by Markov localization is the navigator's own: the base station is not where it is.
   const std::optional<navigation::PoseFix> place = navigator_.markov_pose();
   navigator_ = navigation::Navigator(service_.setup().config.config.navigator);
   if (place && place->tracking) navigator_.add(*place);
   if (map_) navigator_.set_map(map_, live_map_.version());
-  if (!goal_) return;
+  if (!goal_) {
+    if (before.state == NavigatorState::kArrived) stay_arrived(before);
+    return;
+  }
   service_.status().fault(fault, detail);
   navigator_.set_goal(*goal_);
   if (paused_) navigator_.pause();
@@ -308,6 +312,12 @@ void NavigatorService::begin_again(const std::string& fault, const std::string& 
     const msg::Route route = *route_;
     on_route(route);
   }
+}
+
+void NavigatorService::stay_arrived(const navigation::NavigatorStatus& before) {
+  navigator_.set_goal({before.goal_id, false});
+  navigator_.stay_arrived(before.message);
+  if (paused_) navigator_.pause();
 }
 
 void NavigatorService::command(const geometry::Velocity& velocity, std::int64_t now_ns) {

@@ -67,6 +67,8 @@ class NavigatorService {
   void tick();
   /// Starts over with the current goal, because the inputs so far do not fit the new ones.
   void begin_again(const std::string& fault, const std::string& detail);
+  /// Restores the arrival and its pause in a navigator that has just begun.
+  void stay_arrived(const navigation::NavigatorStatus& before);
   void command(const geometry::Velocity& velocity, std::int64_t now_ns);
   void send_command(const geometry::Velocity& velocity, std::int64_t now_ns);
   /// Publishes the pose of Markov localization, the only one that planner and people have then.

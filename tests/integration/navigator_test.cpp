@@ -68,6 +68,25 @@ TEST_F(NavigatorOnRobot, StandsWhenTheOdometryRestartsUntilANewPose) {
   EXPECT_EQ(faults("odometry restarted"), 1U);
 }
 
+// A list of goals goes on only after a resume.
+TEST_F(NavigatorOnRobot, IsPausedAtItsGoalWhenTheOdometryRestarts) {
+  start();
+  send_goal(3, kGoal_m);
+  ASSERT_TRUE(wait_for("the arrival", [&] { return is(msg::kNavigatorArrived); }));
+  send_order(msg::kGoalPause);
+  ASSERT_TRUE(wait_for("the pause", [&] { return halted(msg::kHaltPaused); }));
+  ++odometry_epoch_;
+  T_odom_start_ = robot_.T_odom_robot();
+  const std::uint64_t before = status_->sequence_number();
+  ASSERT_TRUE(wait_for("ten statuses with the new odometry",
+                       [&] { return status_->sequence_number() >= before + 10; }));
+  EXPECT_TRUE(is(msg::kNavigatorArrived)) << status_->message();
+  EXPECT_TRUE(halted(msg::kHaltPaused)) << status_->message();
+  EXPECT_EQ(status_->goal_id(), 3U);
+  send_order(msg::kGoalResume);
+  EXPECT_TRUE(wait_for("the resume", [&] { return halted(msg::kHaltNone); }));
+}
+
 // The odometry of before is of the robot after all.
 TEST_F(NavigatorOnRobot, OdometryOfAStrangerStopsItForMomentsOnly) {
   start();

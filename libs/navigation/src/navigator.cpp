@@ -83,6 +83,15 @@ void Navigator::stay_stuck() {
   state_->base.stay_stuck();
 }
 
+void Navigator::stay_arrived(const std::string& message) {
+  State& state = *state_;
+  if (!state.goal.order()) return;
+  state.goal.arrive();
+  state.status.state = NavigatorState::kArrived;
+  state.status.reason = HaltReason::kNone;
+  state.status.message = message;
+}
+
 void Navigator::add(const PoseFix& pose) {
   state_->poses.add(pose);
 }

@@ -159,6 +159,26 @@ TEST_F(NavigatorHalt, APauseAtTheGoalIsReported) {
   EXPECT_EQ(drive.status().reason, HaltReason::kNone);
 }
 
+// The navigator service replaces the navigator when the odometry restarts.
+TEST_F(NavigatorHalt, AnArrivalAndItsPauseOutliveTheNavigator) {
+  Navigator next(settings().navigator);
+  next.stay_arrived("arrived");
+  next.step(drive.now_ns);
+  EXPECT_EQ(next.status().state, NavigatorState::kIdle) << "it has no goal";
+  next.set_goal({7, false});
+  next.stay_arrived("arrived");
+  next.pause();
+  EXPECT_EQ(next.step(drive.now_ns), geometry::Velocity{});
+  EXPECT_EQ(next.status().state, NavigatorState::kArrived);
+  EXPECT_EQ(next.status().reason, HaltReason::kPaused);
+  EXPECT_EQ(next.status().goal_id, 7U);
+  EXPECT_EQ(next.status().message, "arrived");
+  next.resume();
+  next.step(drive.now_ns);
+  EXPECT_EQ(next.status().state, NavigatorState::kArrived);
+  EXPECT_EQ(next.status().reason, HaltReason::kNone);
+}
+
 TEST_F(NavigatorHalt, PoseLostIsZeroInTheSameStep) {
   drive_off();
   drive.tracking = false;

@@ -48,6 +48,9 @@ class Navigator {
   [[nodiscard]] bool is_stuck() const;
   /// Restores that state, so that another navigator does not push against what holds the base.
   void stay_stuck();
+  /// Restores the state of a robot that has arrived at the goal that was set last, with the message
+  /// of its status. It has no effect on a pause.
+  void stay_arrived(const std::string& message);
 
   // Sensors, in any relative order; each in time order.
   void add(const PoseFix& pose);
