@@ -117,8 +117,11 @@ test("a no-go zone across the way is gone round, and driven through when it is g
     const { x_m, y_m } = await run.true_place();
     entered ||= x_m > 1.5 && x_m < 2.1 && y_m < 0.6;
   }, 50); // as often as the place is published; a missed sample cannot fail the test
-  await is_at("the robot arrives", 3, 0);
-  clearInterval(watched);
+  try {
+    await is_at("the robot arrives", 3, 0);
+  } finally {
+    clearInterval(watched); // this process would not end beside it
+  }
   assert.equal(entered, false, "the robot was in the no-go zone");
 
   // Chosen in the list, for users who do not see the map.

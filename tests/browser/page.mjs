@@ -63,8 +63,11 @@ export class WatchedRobot {
   }
 
   async stop() {
-    await close(this.browser);
-    await this.robot.stop();
+    try {
+      await close(this.browser);
+    } finally {
+      await this.robot.stop(); // this process waits for its end
+    }
   }
 
   newest(channel) {
