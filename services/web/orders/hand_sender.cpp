@@ -106,10 +106,12 @@ void HandSender::on_laser(const msg::LaserStatus& laser) {
 void HandSender::on_base(const msg::BaseStatus& base, const messaging::Handle& writer) {
   base_ = writer;
   stop_count_ = base.stop_count();
+  base_held_ = holds(base);
+  end_release(release_.take(base, steady_ns()));
   if (!stop_wanted_) return;
-  if (base.state() == msg::kBaseHalted || base.state() == msg::kBaseEmergencyStop) {
+  if (base_held_) {
     stopped_base_ = writer;
-  } else if (base.state() == msg::kBaseOffline || base.state() == msg::kBaseStarting) {
+  } else if (hides_stop(base)) {
     return;  // its stop is not reported meanwhile
   } else if (stopped_base_ == writer) {
     stop_wanted_ = false;  // another operator has released it
@@ -157,6 +159,7 @@ void HandSender::release(std::uint64_t viewer) {
 void HandSender::tick() {
   if (stop_unheard_ && base_hears()) stop_unheard_ = !order(msg::kBaseHalt);
   const std::int64_t now_ns = steady_ns();
+  end_release(release_.check(now_ns));
   const std::int64_t stamp_ns = clock_.now_ns(now_ns);
   // Earlier measurements would count as fresh until the clock reaches their stamps again.
   if (clock_.take_set_back()) {
@@ -197,6 +200,8 @@ bool HandSender::base_hears() const {
 
 bool HandSender::stop() {
   drive_.let_go(steady_ns());
+  release_.end();
+  if (on_release_) std::exchange(on_release_, nullptr)(UnconfirmedRelease::Outcome::kRefused);
   const bool heard = order(msg::kBaseHalt);
   stop_unheard_ = !heard;
   stop_wanted_ = true;
@@ -207,12 +212,33 @@ bool HandSender::stop() {
   return heard;
 }
 
-bool HandSender::release_stop() {
+bool HandSender::release_stop(OnRelease done) {
+  using Outcome = UnconfirmedRelease::Outcome;
   stop_unheard_ = false;
   stop_wanted_ = false;
-  const bool heard = order(msg::kBaseReset);
-  if (heard) events_.add(EventLog::Level::kInfo, "web", "released by the operator");
-  return heard;
+  if (!order(msg::kBaseReset)) return false;
+  if (on_release_) std::exchange(on_release_, nullptr)(Outcome::kUnconfirmed);
+  on_release_ = std::move(done);
+  release_.begin(stop_count_, base_held_, steady_ns());
+  return true;
+}
+
+void HandSender::end_release(std::optional<UnconfirmedRelease::Outcome> outcome) {
+  using Level = EventLog::Level;
+  if (!outcome) return;
+  switch (*outcome) {
+    case UnconfirmedRelease::Outcome::kReleased:
+      events_.add(Level::kInfo, "web", "released by the operator");
+      break;
+    case UnconfirmedRelease::Outcome::kRefused:
+      events_.add(Level::kWarning, "web",
+                  "the base refused the operator's release: it was stopped again meanwhile");
+      break;
+    case UnconfirmedRelease::Outcome::kUnconfirmed:
+      events_.add(Level::kWarning, "web", "the base has not confirmed the operator's release");
+      break;
+  }
+  if (on_release_) std::exchange(on_release_, nullptr)(*outcome);
 }
 
 bool HandSender::order(msg::BaseCommandKind kind) {

@@ -19,6 +19,7 @@
 #include "topogeo/service/stamp_clock.hpp"
 
 #include "orders/manual_drive.hpp"
+#include "orders/unconfirmed_release.hpp"
 #include "server/board.hpp"
 #include "server/tally.hpp"
 
@@ -33,6 +34,7 @@ class EventLog;
 /// of the service do.
 class HandSender {
  public:
+  using OnRelease = std::function<void(UnconfirmedRelease::Outcome)>;
   struct Hooks {
     /// Called when a drive by hand begins; the robot may have a goal. keep_off() follows.
     std::function<void()> on_first;
@@ -56,8 +58,11 @@ class HandSender {
   /// or starts again before release_stop() is then halted, too, unless another operator has
   /// released it.
   [[nodiscard]] bool stop();
-  /// Returns false when no base hears it.
-  [[nodiscard]] bool release_stop();
+  /// Lets the base move again after a stop. Returns false when no base hears it; otherwise `done`
+  /// is called once with the outcome.
+  [[nodiscard]] bool release_stop(OnRelease done = {});
+  /// Drops the handler of a release that waits for its outcome.
+  void forget_release() { on_release_ = nullptr; }
   /// Whether anybody drives by hand. Thread-safe.
   [[nodiscard]] bool is_held() const { return held_; }
 
@@ -69,6 +74,7 @@ class HandSender {
   void on_laser(const msg::LaserStatus& laser);
   void on_base(const msg::BaseStatus& base, const messaging::Handle& writer);
   void tick();
+  void end_release(std::optional<UnconfirmedRelease::Outcome> outcome);
   void keep_off_drawn();
   void command(const geometry::Velocity& velocity, std::int64_t stamp_ns);
   /// Returns whether the base hears it.
@@ -102,6 +108,9 @@ class HandSender {
   bool stop_unheard_ = false;
   bool stop_wanted_ = false;                       // from stop() to release_stop()
   std::optional<messaging::Handle> stopped_base_;  // writer that has reported the stop since then
+  bool base_held_ = false;                         // in the base's newest status
+  UnconfirmedRelease release_;
+  OnRelease on_release_;  // empty: answered
 };
 
 }  // namespace topogeo::web

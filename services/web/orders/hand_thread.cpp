@@ -5,12 +5,30 @@
 #include <string>
 #include <utility>
 
+#include "server/json_values.hpp"
+
 namespace topogeo::web {
 namespace {
 
 Answer answer_of(bool heard, const char* effect) {
   if (heard) return {202, "{}"};
   return error_answer(503, std::string("no base is connected: nothing ") + effect);
+}
+
+Answer stopped_again() {
+  return error_answer(409, "stopped again in the meantime: nothing is released");
+}
+
+Answer answer_of(UnconfirmedRelease::Outcome outcome) {
+  switch (outcome) {
+    case UnconfirmedRelease::Outcome::kReleased:
+      break;
+    case UnconfirmedRelease::Outcome::kRefused:
+      return stopped_again();
+    case UnconfirmedRelease::Outcome::kUnconfirmed:
+      return {202, text_of(Json{{"message", "the base has not confirmed the release"}})};
+  }
+  return {202, "{}"};
 }
 
 }  // namespace
@@ -33,6 +51,7 @@ void HandThread::end() {
   loop_.stop();
   if (thread_.joinable()) thread_.join();
   orders_.clear();
+  hand_.forget_release();
 }
 
 void HandThread::run() {
@@ -80,15 +99,16 @@ void HandThread::work_off_orders() {
     const std::scoped_lock lock(mutex_);
     orders.swap(orders_);
   }
-  for (const Order& order : orders) order.respond(carry_out(order));
+  for (const Order& order : orders) carry_out(order);
 }
 
-Answer HandThread::carry_out(const Order& order) {
-  if (!order.release) return answer_of(hand_.stop(), "stops");
-  if (*order.release != stops_) {
-    return error_answer(409, "stopped again in the meantime: nothing is released");
-  }
-  return answer_of(hand_.release_stop(), "is released");
+void HandThread::carry_out(const Order& order) {
+  const Respond& respond = order.respond;
+  if (!order.release) return respond(answer_of(hand_.stop(), "stops"));
+  if (*order.release != stops_) return respond(stopped_again());
+  const bool heard = hand_.release_stop(
+      [respond](UnconfirmedRelease::Outcome outcome) { respond(answer_of(outcome)); });
+  if (!heard) respond(answer_of(false, "is released"));
 }
 
 }  // namespace topogeo::web

@@ -34,7 +34,8 @@ class HandThread {
   void stop(Respond respond);
   /// Number of calls of stop() so far.
   [[nodiscard]] std::uint64_t stops() const { return stops_; }
-  /// Refused (409) if there was a stop after `stops`: a release that waited must not undo it.
+  /// Answered when the base has confirmed or refused it, after a second at the latest. Refused
+  /// (409) if there was a stop after `stops`: a release that waited must not undo it.
   void release_stop(std::uint64_t stops, Respond respond);
   void keep_off(std::shared_ptr<const navigation::DrawnLimits> limits);
   [[nodiscard]] bool is_held() const { return hand_.is_held(); }
@@ -47,7 +48,7 @@ class HandThread {
     std::optional<std::uint64_t> release;  ///< stops() when it was given; empty: stop
     Respond respond;
   };
-  [[nodiscard]] Answer carry_out(const Order& order);
+  void carry_out(const Order& order);
   void run();
   void take(Order order);
   void work_off_orders();

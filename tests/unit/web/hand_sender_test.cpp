@@ -166,6 +166,35 @@ TEST_F(HandSenderStop, IsNamedByTheRelease) {
   }));
 }
 
+TEST_F(HandSenderStop, IsReleasedOnlyWhenTheBaseConfirmsIt) {
+  using Outcome = UnconfirmedRelease::Outcome;
+  constexpr std::uint64_t kStop = 7;
+  const auto outcome_of = [&](msg::BaseState state, std::uint64_t stop_count) {
+    LivingBase base(partition_);
+    EXPECT_TRUE(stop(base));
+    for (int i = 0; i < 3; ++i) {
+      base_noted_ = false;
+      base.report(msg::kBaseHalted, kStop);
+      EXPECT_TRUE(run_until("the report of the stop", [&] { return base_noted_; }));
+    }
+    std::optional<Outcome> outcome;
+    EXPECT_TRUE(hand_.release_stop([&](Outcome found) { outcome = found; }));
+    EXPECT_EQ(outcome, std::nullopt);
+    EXPECT_TRUE(run_until("the outcome", [&] {
+      base.report(state, stop_count);
+      return outcome.has_value();
+    }));
+    hand_.forget_release();
+    return outcome;
+  };
+  const auto events = [&] { return *board_.update(Channel::kEvents, 0).text; };
+  EXPECT_EQ(outcome_of(msg::kBaseHalted, kStop + 1), Outcome::kRefused);
+  EXPECT_THAT(events(), testing::Not(testing::HasSubstr("released by the operator")));
+  EXPECT_THAT(events(), testing::HasSubstr("it was stopped again meanwhile"));
+  EXPECT_EQ(outcome_of(msg::kBaseReady, kStop), Outcome::kReleased);
+  EXPECT_THAT(events(), testing::HasSubstr("released by the operator"));
+}
+
 TEST(HandThread, AReleaseThatWaitedDoesNotUndoALaterStop) {
   service::Service service(page_setup(messaging::random_partition()));
   Board board;
