@@ -363,6 +363,20 @@ test("the release of a robot with a goal says what will happen, and asks", async
   await end(opened);
 });
 
+test("a robot of ROS, whose base reports nothing, is held from a stop to the release", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await show_banners(page);
+  const drive = { held: false, linear_mps: 0, angular_radps: 0, free_ahead_m: 0, message: "stopped" };
+  service.show("drive", { ...drive, stopped: true });
+  await text(page, ".banner", /The robot is held: it does not move/);
+  await page.getByRole("button", { name: "Release", exact: true }).click();
+  await wait_for("the release", () => service.orders.includes("release"));
+  service.show("drive", null);
+  await wait_for("the banner goes", async () => !(await page.getByText("The robot is held").isVisible()));
+  await end(opened);
+});
+
 test("without a navigator the robot cannot be sent, which is said once", async () => {
   const opened = await open();
   const { page, service } = opened;

@@ -115,6 +115,7 @@ void HandSender::on_base(const msg::BaseStatus& base, const messaging::Handle& w
     return;  // its stop is not reported meanwhile
   } else if (stopped_base_ == writer) {
     stop_wanted_ = false;  // another operator has released it
+    show_rest();
   } else {
     // The halt went to a gateway that died, or is still on its way: a second one does no harm.
     static_cast<void>(order(msg::kBaseHalt));
@@ -136,6 +137,10 @@ void HandSender::drive(std::uint64_t viewer, const geometry::Velocity& wanted,
   const std::int64_t now_ns = steady_ns();
   if (now_ns - came_ns > ManualDrive::kPatience_ns) {
     tally_.add("refused: late");
+    return;
+  }
+  if (stop_wanted_) {  // a base of ROS takes no order to halt, so it would obey
+    tally_.add("refused: stopped");
     return;
   }
   const bool first = !drive_.held(now_ns);
@@ -170,7 +175,7 @@ void HandSender::tick() {
   if (held_) keep_off_drawn();
   auto verdict = drive_.step(guard_, now_ns, stamp_ns);
   if (!verdict) {
-    if (commanding_) board_.set(Channel::kDrive, "null");
+    if (commanding_) show_rest();
     commanding_ = false;
     return;
   }
@@ -209,13 +214,14 @@ bool HandSender::stop() {
   events_.add(EventLog::Level::kWarning, "web",
               heard ? "stopped by the operator" : "no base received the operator's stop");
   tick();  // zeros stop a base of ROS, which takes no order to halt
+  if (!commanding_) show_rest();
   return heard;
 }
 
 bool HandSender::release_stop(OnRelease done) {
   using Outcome = UnconfirmedRelease::Outcome;
   stop_unheard_ = false;
-  stop_wanted_ = false;
+  if (std::exchange(stop_wanted_, false)) show_rest();
   if (!order(msg::kBaseReset)) return false;
   if (on_release_) std::exchange(on_release_, nullptr)(Outcome::kUnconfirmed);
   on_release_ = std::move(done);
@@ -253,9 +259,17 @@ bool HandSender::order(msg::BaseCommandKind kind) {
   return false;
 }
 
+void HandSender::show_rest() {
+  if (!stopped_alone()) return board_.set(Channel::kDrive, "null");
+  navigation::GuardVerdict verdict;
+  verdict.message = "stopped; takes orders after a release";
+  show(verdict, false);
+}
+
 void HandSender::show(const navigation::GuardVerdict& verdict, bool held) {
   board_.set(Channel::kDrive,
              text_of(Json{{"held", held},
+                          {"stopped", stopped_alone()},
                           {"linear_mps", rounded(verdict.allowed.linear_m_per_s)},
                           {"angular_radps", rounded(verdict.allowed.angular_rad_per_s)},
                           {"free_ahead_m", rounded(verdict.free_m)},

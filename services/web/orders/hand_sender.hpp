@@ -49,7 +49,8 @@ class HandSender {
   /// Sends a command to stand still.
   ~HandSender();
 
-  /// An order received at `came_ns` of the steady clock; old orders are refused.
+  /// An order received at `came_ns` of the steady clock. Refused if it is old, and from stop() to
+  /// release_stop().
   void drive(std::uint64_t viewer, const geometry::Velocity& wanted, std::int64_t came_ns);
   void release(std::uint64_t viewer);
   /// Sets the drawn walls and no-go zones. Until they are known, the robot does not move.
@@ -80,6 +81,10 @@ class HandSender {
   /// Returns whether the base hears it.
   bool order(msg::BaseCommandKind kind);
   [[nodiscard]] bool base_hears() const;
+  /// Whether a stop holds that no base reports, as with a base of ROS.
+  [[nodiscard]] bool stopped_alone() const { return stop_wanted_ && !base_; }
+  /// Shows that nobody drives by hand, and whether such a stop forbids it.
+  void show_rest();
   void show(const navigation::GuardVerdict& verdict, bool held);
   /// Subscribes to messages of the own robot.
   template <class T, class Handler>

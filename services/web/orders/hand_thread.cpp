@@ -10,9 +10,9 @@
 namespace topogeo::web {
 namespace {
 
-Answer answer_of(bool heard, const char* effect) {
+Answer stop_answer(bool heard) {
   if (heard) return {202, "{}"};
-  return error_answer(503, std::string("no base is connected: nothing ") + effect);
+  return error_answer(503, "no base is connected: nothing stops");
 }
 
 Answer stopped_again() {
@@ -104,11 +104,12 @@ void HandThread::work_off_orders() {
 
 void HandThread::carry_out(const Order& order) {
   const Respond& respond = order.respond;
-  if (!order.release) return respond(answer_of(hand_.stop(), "stops"));
+  if (!order.release) return respond(stop_answer(hand_.stop()));
   if (*order.release != stops_) return respond(stopped_again());
   const bool heard = hand_.release_stop(
       [respond](UnconfirmedRelease::Outcome outcome) { respond(answer_of(outcome)); });
-  if (!heard) respond(answer_of(false, "is released"));
+  if (heard) return;
+  respond(error_answer(503, "no base confirms the release; driving by hand is allowed"));
 }
 
 }  // namespace topogeo::web

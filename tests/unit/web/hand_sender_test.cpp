@@ -238,6 +238,23 @@ TEST_F(HandSenderTest, AStopSendsZerosAtOnce) {
   EXPECT_EQ(tally_.counts().at("commands"), commands + 1);
 }
 
+// A base of ROS takes no order to halt: an order of another page would move it again.
+TEST_F(HandSenderTest, OrdersAfterAStopAreRefusedUntilTheRelease) {
+  const auto shown = [&] { return *board_.update(Channel::kDrive, 0).text; };
+  EXPECT_FALSE(hand_.stop()) << "no base hears it";
+  EXPECT_THAT(shown(), testing::HasSubstr("\"stopped\":true"));
+  hand_.drive(1, {0.3, 0.0}, now_ns());
+  EXPECT_FALSE(hand_.is_held());
+  EXPECT_EQ(first_, 0);
+  EXPECT_FALSE(hand_.release_stop());
+  EXPECT_THAT(shown(), testing::Not(testing::HasSubstr("stopped")));
+  // Commands are repeated, because a slow machine considers the first ones late.
+  EXPECT_TRUE(run_until("somebody drives", [&] {
+    hand_.drive(1, {0.3, 0.0}, now_ns());
+    return first_ > 0;
+  }));
+}
+
 TEST_F(HandSenderTest, NothingMovesBeforeItIsKnownWhereItMayNot) {
   const auto shown = [&] { return *board_.update(Channel::kDrive, 0).text; };
   // Commands are repeated, because a slow machine considers the first ones late.

@@ -67,6 +67,7 @@ export interface Drive {
   angular_radps: number | null;
   free_ahead_m: number | null;
   message: string;
+  stopped?: boolean; // by a stop that no base reports
 }
 
 export interface Base {

@@ -63,6 +63,7 @@ export function held_text(channels: Channels): string | null {
   const base = channels.value("base");
   if (base?.state === "halted") return texts.held;
   if (base?.state === "emergency_stop") return texts.emergency;
+  if (!base && channels.value("drive")?.stopped) return texts.held; // a base of ROS
   return null;
 }
 

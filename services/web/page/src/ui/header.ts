@@ -67,7 +67,7 @@ export class Header {
       this.held.element,
       this.token,
     );
-    channels.on_value(["pose", "base", "goals", "navigator"], update);
+    channels.on_value(["pose", "base", "drive", "goals", "navigator"], update);
     channels.on_table("services", update);
     rights.on_change(update);
     setInterval(update, kSilenceTick_ms);
