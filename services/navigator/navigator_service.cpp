@@ -202,9 +202,13 @@ void NavigatorService::on_scan(const msg::Scan& message) {
 
 void NavigatorService::on_goal(const msg::Goal& message) {
   const service::Goal goal = service::from_msg(message);
-  const bool order = goal.kind == msg::kGoalCancel || goal.kind == msg::kGoalPause ||
-                     goal.kind == msg::kGoalResume;
-  if (order && goal.goal_id != 0 && (!goal_ || goal.goal_id != goal_->goal_id)) {
+  const bool change = goal.kind == msg::kGoalPause || goal.kind == msg::kGoalResume;
+  const bool order = change || goal.kind == msg::kGoalCancel;
+  // A pause may name the goal just reached: a list of goals then waits there.
+  const navigation::NavigatorStatus& now = navigator_.status();
+  const bool stays = change && now.state == NavigatorState::kArrived;
+  const std::uint64_t named = goal_ ? goal_->goal_id : (stays ? now.goal_id : 0);
+  if (order && goal.goal_id != 0 && goal.goal_id != named) {
     service_.status().add_drops("other goal");
     return;
   }

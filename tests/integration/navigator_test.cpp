@@ -73,7 +73,7 @@ TEST_F(NavigatorOnRobot, IsPausedAtItsGoalWhenTheOdometryRestarts) {
   start();
   send_goal(3, kGoal_m);
   ASSERT_TRUE(wait_for("the arrival", [&] { return is(msg::kNavigatorArrived); }));
-  send_order(msg::kGoalPause);
+  send_order(msg::kGoalPause, 3);
   ASSERT_TRUE(wait_for("the pause", [&] { return halted(msg::kHaltPaused); }));
   ++odometry_epoch_;
   T_odom_start_ = robot_.T_odom_robot();
@@ -83,7 +83,7 @@ TEST_F(NavigatorOnRobot, IsPausedAtItsGoalWhenTheOdometryRestarts) {
   EXPECT_TRUE(is(msg::kNavigatorArrived)) << status_->message();
   EXPECT_TRUE(halted(msg::kHaltPaused)) << status_->message();
   EXPECT_EQ(status_->goal_id(), 3U);
-  send_order(msg::kGoalResume);
+  send_order(msg::kGoalResume, 3);
   EXPECT_TRUE(wait_for("the resume", [&] { return halted(msg::kHaltNone); }));
 }
 

@@ -124,7 +124,7 @@ void GoalSender::send(msg::Goal message) {
 
 void GoalSender::insist(msg::GoalKind kind) {
   unconfirmed_.begin(kind, list_.current() ? list_.current()->id : 0);
-  order(kind);
+  order(kind);  // it names no goal, so that it stops the robot even if the goal changes meanwhile
 }
 
 void GoalSender::pause() {

@@ -24,7 +24,7 @@ class UnconfirmedOrder {
   /// An operator's goal or an order to resume was sent.
   void end() { kind_.reset(); }
   /// Whether it is a pause. The end of the goal does not confirm it, because the next goal of a
-  /// list or an exploration would undo it.
+  /// list or an exploration would undo it: it is repeated at the goal.
   [[nodiscard]] bool is_pause() const { return kind_ == msg::kGoalPause; }
   /// Takes each navigator status. Returns the order if it must be sent again.
   std::optional<Repeat> take(const msg::NavigatorStatus& status);
@@ -34,6 +34,7 @@ class UnconfirmedOrder {
 
   std::optional<msg::GoalKind> kind_;
   std::optional<std::uint64_t> in_hand_;  // the navigator's goal, 0: none; empty: not known yet
+  std::uint64_t reached_ = 0;             // the goal at which the robot stands; 0: none
   std::set<std::uint64_t> goals_;         // to which the order refers
   std::uint64_t awaited_ = 0;             // of these, the one that may still arrive; 0: none
   int unseen_ = 0;                        // statuses that do not name it

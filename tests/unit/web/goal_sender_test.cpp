@@ -6,6 +6,7 @@
 #include <functional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -53,12 +54,18 @@ class PlayedNavigator {
     take();
     return orders_taken_.contains(kind);
   }
+  /// The goals that the orders to pause have named.
+  const std::vector<std::uint64_t>& paused_goals() {
+    take();
+    return paused_goals_;
+  }
 
  private:
   void take() {
     goals_.take([&](const msg::Goal& goal, const messaging::SampleInfo& info) {
       if (!info.valid) return;
       orders_taken_.insert(goal.kind());
+      if (goal.kind() == msg::kGoalPause) paused_goals_.push_back(goal.goal_id());
       if (goal.kind() == msg::kGoalPosition) goals_taken_.insert(goal.goal_id());
     });
   }
@@ -69,6 +76,7 @@ class PlayedNavigator {
   std::uint64_t sent_ = 0;
   std::set<std::uint64_t> goals_taken_;
   std::set<msg::GoalKind> orders_taken_;
+  std::vector<std::uint64_t> paused_goals_;
 };
 
 class GoalSenderTest : public testing::Test {
@@ -146,6 +154,17 @@ TEST_F(GoalSenderTest, APauseHoldsTheNextGoalOfAListBack) {
   goals_.resume();
   ASSERT_TRUE(report(first, msg::kNavigatorArrived));
   EXPECT_EQ(goals_.waiting(), 0U) << "it is sent";
+}
+
+TEST_F(GoalSenderTest, APauseThatIsLostAtTheGoalIsRepeated) {
+  const std::uint64_t first = drive_to_first_of_two();
+  goals_.pause();
+  ASSERT_TRUE(run_until("the pause", [&] { return !navigator_.paused_goals().empty(); }));
+  EXPECT_TRUE(run_until(
+      "the pause again", [&] { return navigator_.paused_goals().size() > 1; },
+      [&] { navigator_.report(first, msg::kNavigatorArrived); }));
+  EXPECT_EQ(navigator_.paused_goals().front(), 0U) << "it stops the robot whatever its goal is";
+  EXPECT_EQ(navigator_.paused_goals().back(), first) << "a repeated one would stop a later goal";
 }
 
 TEST_F(GoalSenderTest, AnOperatorsGoalOrAResumeEndsAPause) {

@@ -85,13 +85,36 @@ TEST(UnconfirmedOrder, APauseOutlivesTheEndOfItsGoal) {
     UnconfirmedOrder order;
     static_cast<void>(order.take(driving(7)));
     order.begin(msg::kGoalPause, 7);
-    EXPECT_FALSE(repeat_at(order, arrived(7))) << "it stands";
+    const auto repeat = repeat_at(order, arrived(7));
+    ASSERT_TRUE(repeat);
+    EXPECT_EQ(repeat->kind, msg::kGoalPause);
+    EXPECT_EQ(repeat->goal_id, 7U);
     EXPECT_TRUE(order.is_pause()) << "the next goal of a list would undo it";
     EXPECT_FALSE(order.take(end));
     EXPECT_EQ(order.is_pause(), !confirms) << end.state() << " at goal " << end.goal_id();
     order.end();
     EXPECT_FALSE(order.is_pause());
   }
+}
+
+TEST(UnconfirmedOrder, APauseIsRepeatedAtAGoalReachedBefore) {
+  UnconfirmedOrder order;
+  static_cast<void>(order.take(arrived(7)));
+  order.begin(msg::kGoalPause, 0);
+  const auto repeat = repeat_at(order, arrived(7));
+  ASSERT_TRUE(repeat);
+  EXPECT_EQ(repeat->goal_id, 7U);
+  EXPECT_FALSE(repeat_at(order, arrived(9))) << "of another client";
+  EXPECT_TRUE(order.is_pause());
+  EXPECT_FALSE(order.take(arrived(7, msg::kHaltPaused)));
+  EXPECT_FALSE(order.is_pause());
+}
+
+TEST(UnconfirmedOrder, ACancelNeedsNoRepeatAtTheGoal) {
+  UnconfirmedOrder order;
+  static_cast<void>(order.take(driving(7)));
+  order.begin(msg::kGoalCancel, 7);
+  EXPECT_FALSE(repeat_at(order, arrived(7)));
 }
 
 // Two writers send goals and pauses, so a goal that is lost and sent again arrives after its pause.
