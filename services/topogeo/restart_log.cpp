@@ -34,4 +34,8 @@ void RestartLog::clear() {
   at_work_since_s_.clear();
 }
 
+bool has_worked(msg::ServiceState state) {
+  return state == msg::kServiceRunning || state == msg::kServiceFinished;
+}
+
 }  // namespace topogeo::cli

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "topogeo/msg/status.h"
+
 namespace topogeo::cli {
 
 /// Services are named like their processes. Has no clock: the caller passes the time, in seconds
@@ -40,5 +42,10 @@ class RestartLog {
   std::map<std::string, double> away_since_s_;
   std::map<std::string, double> at_work_since_s_;  // restarted services
 };
+
+/// Whether a service in this state works, or has worked since its start. A log that was read before
+/// is finished without a moment at work. One that waits is still away: a source waits for its
+/// readers, perhaps for a recorder that never comes back.
+[[nodiscard]] bool has_worked(msg::ServiceState state);
 
 }  // namespace topogeo::cli

@@ -198,7 +198,7 @@ std::string ServiceRun::too_busy() const {
 }
 
 void ServiceRun::note_state(const msg::ServiceStatus& status) {
-  if (status.state() != msg::kServiceRunning) return;
+  if (!has_worked(status.state())) return;
   for (const std::string& name : restarts_.away()) {
     const pid_t pid = processes_.pid(name);
     if (pid < 0 || status.process_id() != static_cast<std::uint32_t>(pid)) continue;

@@ -49,6 +49,15 @@ TEST(RestartLog, OneThatDiesBeforeItIsAtWorkHasNotSettled) {
   EXPECT_EQ(log.died("planner", 1000.0).delay, milliseconds(200));
 }
 
+TEST(RestartLog, OneThatIsFinishedHasWorkedAndOneThatWaitsHasNot) {
+  EXPECT_TRUE(has_worked(msg::kServiceRunning));
+  EXPECT_TRUE(has_worked(msg::kServiceFinished));
+  for (const msg::ServiceState state :
+       {msg::kServiceStarting, msg::kServiceWaiting, msg::kServiceFailed, msg::kServiceStopped}) {
+    EXPECT_FALSE(has_worked(state)) << state;
+  }
+}
+
 TEST(RestartLog, WhenAllBeginAgainNoneIsAway) {
   RestartLog log;
   log.died("planner", 0.0);
