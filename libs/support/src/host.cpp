@@ -31,7 +31,7 @@ std::string host_name() {
 }
 
 std::string process_name() {
-  constexpr std::size_t kLongest = 40;
+  constexpr std::size_t kLongest = 50;
   const std::string number = process_number();
   return host_name().substr(0, kLongest - 1 - number.size()) + "-" + number;
 }

@@ -68,7 +68,7 @@ class Container {
 TEST(ProcessName, HasHostAndProcess) {
   EXPECT_THAT(process_name(), testing::HasSubstr("-" + std::to_string(::getpid())));
   EXPECT_THAT(process_name(), testing::StartsWith(host_name().substr(0, 8)));
-  EXPECT_LE(process_name().size(), 40U);
+  EXPECT_LE(process_name().size(), 50U);
 }
 
 // Each is process 1 of its container.

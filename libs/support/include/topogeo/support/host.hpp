@@ -10,7 +10,8 @@ namespace topogeo::support {
 std::string host_name();
 
 /// "<host>-<process id>", in a container "<host>-<process id>.<number of its PID namespace>"; at
-/// most 40 bytes. Identifies this process for users and other processes.
+/// most 50 bytes, of which the host keeps 31 or more. Identifies this process for users and other
+/// processes.
 std::string process_name();
 
 /// Identifies the time since the machine was started: files and clocks of before do not count.
