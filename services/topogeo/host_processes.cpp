@@ -11,6 +11,7 @@
 
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/service/service_names.hpp"
+#include "topogeo/support/host.hpp"
 #include "topogeo/support/process_stat.hpp"
 
 namespace topogeo::cli {
@@ -47,15 +48,18 @@ std::optional<std::string> option(const std::vector<std::string>& words, const s
   return value;
 }
 
+/// A variable of the environment of a process; empty: it has none, or this user may not read it.
+std::string variable_of(const std::filesystem::path& process, const std::string& name) {
+  for (const std::string& variable : strings(support::process_file(process / "environ"))) {
+    if (variable.starts_with(name + "=")) return variable.substr(name.size() + 1);
+  }
+  return {};
+}
+
 std::uint32_t domain_of(const std::vector<std::string>& words,
                         const std::filesystem::path& process) {
-  constexpr std::string_view kVariable = "TOPOGEO_DOMAIN=";
   std::string text = option(words, "--domain").value_or("");
-  if (text.empty()) {
-    for (const std::string& variable : strings(support::process_file(process / "environ"))) {
-      if (variable.starts_with(kVariable)) text = variable.substr(kVariable.size());
-    }
-  }
+  if (text.empty()) text = variable_of(process, "TOPOGEO_DOMAIN");
   std::uint32_t domain = 0;
   std::from_chars(text.data(), text.data() + text.size(), domain);
   return domain;
@@ -87,6 +91,13 @@ bool shares(const char* kind, const std::filesystem::path& proc,
   return error || own == other;
 }
 
+/// Whether the statuses of the process have the host name of this one. A container has a UTS
+/// namespace of its own, but on the network of the host the same name, which its engine also puts
+/// into HOSTNAME.
+bool has_this_host_name(const std::filesystem::path& proc, const std::filesystem::path& process) {
+  return shares("uts", proc, process) || variable_of(process, "HOSTNAME") == support::host_name();
+}
+
 /// The last number of the line NSpid of /proc/PID/status, see proc(5). 0: there is none.
 pid_t innermost_pid(const std::filesystem::path& process) {
   std::istringstream lines(support::process_file(process / "status"));
@@ -116,7 +127,7 @@ std::vector<HostProcess> host_processes(const std::filesystem::path& proc) {
     if (words.empty()) continue;
     process.service = service_of(words[0]);
     if (process.service.empty() || !read_stat(process, entry.path(), up_s) ||
-        !shares("net", proc, entry.path()) || !shares("uts", proc, entry.path())) {
+        !shares("net", proc, entry.path()) || !has_this_host_name(proc, entry.path())) {
       continue;
     }
     const pid_t innermost = innermost_pid(entry.path());

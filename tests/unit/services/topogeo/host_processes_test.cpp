@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "topogeo/support/host.hpp"
+
 namespace topogeo::cli {
 namespace {
 
@@ -85,15 +87,24 @@ TEST_F(HostProcesses, HaveTheNumberThatTheyHaveInTheirContainer) {
 TEST_F(HostProcesses, AreThoseWithTheSameHostName) {
   add(9, {"planner"});
   add(10, {"localizer"});
-  for (const char* process : {"self", "9", "10"}) {
+  add(11, {"navigator"});
+  add(12, {"map_store"});
+  const auto set_namespace = [this](const std::string& process, const std::string& uts) {
     std::filesystem::create_directories(proc_ / process / "ns");
-  }
-  std::filesystem::create_symlink("uts:[1]", proc_ / "self/ns/uts");
-  std::filesystem::create_symlink("uts:[2]", proc_ / "9/ns/uts");
-  std::filesystem::create_symlink("uts:[1]", proc_ / "10/ns/uts");
+    std::filesystem::create_symlink(uts, proc_ / process / "ns/uts");
+  };
+  set_namespace("self", "uts:[1]");
+  set_namespace("9", "uts:[2]");
+  set_namespace("10", "uts:[1]");
+  // In containers, of which one is on the network of the host.
+  set_namespace("11", "uts:[3]");
+  write(proc_ / "11/environ", "HOSTNAME=" + support::host_name() + '\0');
+  set_namespace("12", "uts:[4]");
+  write(proc_ / "12/environ", std::string("HOSTNAME=another host\0", 22));
   const std::vector<HostProcess> found = host_processes(proc_);
-  ASSERT_EQ(found.size(), 1U);
+  ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].service, "localizer");
+  EXPECT_EQ(found[1].service, "navigator");
 }
 
 TEST_F(HostProcesses, AreThoseOfTheSameNetwork) {
