@@ -206,6 +206,11 @@ std::uint64_t ServiceRun::tasks_done(const Program& worker) const {
   return found == workers_.end() ? 0 : found->second.tasks_done();
 }
 
+double ServiceRun::uptime_s(const Program& worker) const {
+  const auto found = workers_.find(worker.pid());
+  return found == workers_.end() ? -1.0 : found->second.uptime_s();
+}
+
 void ServiceRun::expect_same_results() {
   for (const char* file : {"trajectory.tum", "map.pb"}) {
     const std::string expected = drive_.expected(file);

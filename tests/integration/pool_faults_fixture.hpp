@@ -96,6 +96,8 @@ class ServiceRun {
   /// Status of the workers, by process id.
   [[nodiscard]] const std::map<pid_t, msg::WorkerStatus>& workers() const { return workers_; }
   [[nodiscard]] std::uint64_t tasks_done(const Program& worker) const;
+  /// Age of the worker in its last status; -1: there is none yet.
+  [[nodiscard]] double uptime_s(const Program& worker) const;
 
   /// Expects the results of one process, and an answer for every task.
   void expect_same_results();
