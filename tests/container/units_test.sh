@@ -60,7 +60,8 @@ here sed -i "s/^TOPOGEO_DOMAIN=.*/TOPOGEO_DOMAIN=$TOPOGEO_DOMAIN/; s/^TOPOGEO_RO
 here sh -c 'topogeo config --devices > /etc/topogeo/devices.yaml'
 here systemctl enable --now topogeo.target topogeo-worker@1 > /dev/null 2>&1
 wait_for "the failure of the gateway" is_state topogeo-sensor-gateway ActiveState failed || fail "a gateway without ports goes on"
-here journalctl -u topogeo-sensor-gateway --no-pager | grep -q "expected at least one port" || fail "without a reason"
+gives_reason() { here journalctl -u topogeo-sensor-gateway --no-pager | grep "expected at least one port" > /dev/null; }
+wait_for "the reason in the journal, which is written later" gives_reason || fail "without a reason"
 if here topogeo status > "$work/status" 2>&1; then fail "a unit that has failed is called well"; fi
 grep -q '^topogeo-sensor-gateway *failed' "$work/status" || { cat "$work/status"; fail "it is not listed"; }
 
