@@ -77,11 +77,12 @@ drive "room A"
 step "the robot is in room A"
 
 step "metrics"
-# shellcheck disable=SC2016  # expanded in the container
-on pc1 bash -c 'exec 3<> /dev/tcp/127.0.0.1/9468; printf "GET /metrics HTTP/1.0\r\n\r\n" >&3; cat <&3' \
-  > "$work/metrics"
-grep -q '^topogeo_service_state{.*planner.*"running".* 1$' "$work/metrics" ||
-  { head -n 20 "$work/metrics"; fail "the planner has no metrics"; }
+has_metrics() {
+  # shellcheck disable=SC2016  # expanded in the container
+  on pc1 bash -c 'exec 3<> /dev/tcp/127.0.0.1/9468; printf "GET /metrics HTTP/1.0\r\n\r\n" >&3; cat <&3' \
+    > "$work/metrics" 2>&1 && grep -q '^topogeo_service_state{.*planner.*"running".* 1$' "$work/metrics"
+}
+wait_for "metrics of the planner" has_metrics || { head -n 20 "$work/metrics"; fail "the planner has no metrics"; }
 
 step "each service replaced by one of a newer image"
 printf 'FROM %s\nLABEL release=newer\n' "$image" | docker build -q -t "$image-newer" - > /dev/null 2>&1

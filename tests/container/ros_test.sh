@@ -61,10 +61,13 @@ wait_for "the robot at its goal" arrived || { tail -n 1 "$work/log/nodes.robot";
 step "worker, page, and a stranger"
 worked() { [ "$(workers_done)" -ge 1 ]; }
 wait_for "work of the worker" worked || { on robot topogeo workers; fail "the worker had no work"; }
-# shellcheck disable=SC2016  # expanded in the container
-on page bash -c 'exec 3<> /dev/tcp/127.0.0.1/8080
-  printf "GET /api/info HTTP/1.0\r\nHost: 127.0.0.1:8080\r\n\r\n" >&3; cat <&3' > "$work/info"
-grep -q '200 OK' "$work/info" || { cat "$work/info"; fail "the page does not answer"; }
+page_answers() {
+  # shellcheck disable=SC2016  # expanded in the container
+  on page bash -c 'exec 3<> /dev/tcp/127.0.0.1/8080
+    printf "GET /api/info HTTP/1.0\r\nHost: 127.0.0.1:8080\r\n\r\n" >&3; cat <&3' > "$work/info" 2>&1 &&
+    grep -q '200 OK' "$work/info"
+}
+wait_for "an answer of the page" page_answers || { cat "$work/info"; fail "the page does not answer"; }
 # A single check may come before the newcomer has met all others, because authentication takes time.
 all_are_seen() {
   on robot topogeo status > "$work/status" 2>&1 || true
