@@ -43,6 +43,7 @@ using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Matches;
 
 class HealthTest : public testing::Test {
  protected:
@@ -273,10 +274,18 @@ TEST_F(HealthTest, TopShowsThePool) {
     }
     return false;
   }));
-  out = run_until({"top", "--once"}, 0, "ROBOT");
-  EXPECT_THAT(out, AllOf(HasSubstr("1 worker, 3 slots"), HasSubstr("pc-2")));
-  const auto pool =
-      nlohmann::json::parse(run_until({"top", "--once", "--json"}, 0, "\"robot_id\""));
+  // On a busy machine, the status of one of the two may come too late for a command.
+  ASSERT_TRUE(wait_for("topogeo top to list worker and robot", [&] {
+    return run({"top", "--once"}, out) == 0 &&
+           Matches(AllOf(HasSubstr("1 worker, 3 slots"), HasSubstr("pc-2"), HasSubstr("ROBOT")))(
+               out);
+  })) << out;
+  nlohmann::json pool;
+  ASSERT_TRUE(wait_for("topogeo top to give worker and robot", [&] {
+    if (run({"top", "--once", "--json"}, out) != 0) return false;
+    pool = nlohmann::json::parse(out);
+    return pool["workers"].size() == 1 && pool["robots"].size() == 1;
+  })) << out;
   EXPECT_EQ(pool["workers"][0]["name"], "pc-2");
   EXPECT_EQ(pool["workers"][0]["fault_count"], 0);
   EXPECT_EQ(pool["robots"][0]["workers"], 1.0);
