@@ -38,7 +38,18 @@ wait_for "all services to be well" all_run || { cat "$work/status"; compose logs
 
 step "a drive"
 wait_for "the robot at 3,0" arrives secured goto 3,0 || fail "no drive"
-! "$bin/topogeo" status > "$work/stranger" 2>&1 || { cat "$work/stranger"; fail "a stranger sees the services"; }
+
+step "a stranger"
+refusals() { { secured status planner 2> /dev/null || true; } | awk '/^  fault .* peer refused/ { n = $2 } END { print n + 0 }'; }
+before=$(refusals)
+is_refused() { [ "$(refusals)" -gt "$before" ]; }
+"$bin/topogeo" status --watch > "$work/stranger" 2>&1 &
+stranger=$!
+cleanups+=("kill $stranger")
+wait_for "the refusal of a stranger" is_refused || { cat "$work/stranger"; secured status planner; fail "the planner does not refuse a stranger"; }
+kill $stranger || { cat "$work/stranger"; fail "the stranger ended by itself"; }
+# It may list processes of its host, but no state of a service.
+! grep -E ' (starting|waiting|running) ' "$work/stranger" || fail "a stranger sees the services"
 
 step "a planner that hangs"
 mapfile -t containers < <(compose ps -q planner; for service in sensor_gateway navigator local_mapper localizer map_store; do
