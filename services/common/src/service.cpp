@@ -36,6 +36,7 @@ Service::Service(const Setup& setup, bool any_robot)
                [this](const char* name, double value) { status_->set_counter(name, value); });
   deafness_ = std::make_unique<DeafnessGuard>(setup_, any_robot, participant_, loop_, *status_);
   health_ = std::make_unique<HealthFile>(HealthFile::folder(), setup_.name);
+  health_->update(status_->text());  // a service that hangs before its first tick has a state, too
   loop_.add_timer(kTick, [this] { tick(); });
   offer_metrics();
 }
