@@ -198,7 +198,8 @@ std::string ServiceRun::too_busy() const {
 }
 
 void ServiceRun::note_state(const msg::ServiceStatus& status) {
-  if (!has_worked(status.state())) return;
+  // A worker of another host, which serves every partition, may have the same process id.
+  if (!has_worked(status.state()) || !has_started(status)) return;
   for (const std::string& name : restarts_.away()) {
     const pid_t pid = processes_.pid(name);
     if (pid < 0 || status.process_id() != static_cast<std::uint32_t>(pid)) continue;
