@@ -223,7 +223,8 @@ TEST_F(PoolFaultsTest, WorkersHaveTheSameNameOrId) {
   ASSERT_TRUE(run.wait_for_workers(2)) << "a name is not an id";
   const std::unique_ptr<Program> copy = start_faulty(run, "copied_worker_id");
   ASSERT_TRUE(run.wait_until([&] { return run.counter("workers_of_one_id") == 1.0; }));
-  EXPECT_EQ(run.counter("workers"), 2.0);
+  // On a busy machine one of the two may be taken to be gone for a moment.
+  EXPECT_TRUE(run.wait_for_workers(2)) << "the copy is no third worker";
   EXPECT_TRUE(run.go_on_until([&] { return run.counter("answers_ignored") > 0.0; }))
       << "the copy has not answered";
   ASSERT_TRUE(run.finish()) << run.log();
