@@ -93,9 +93,11 @@ bool shares(const char* kind, const std::filesystem::path& proc,
 
 /// Whether the statuses of the process have the host name of this one. A container has a UTS
 /// namespace of its own, but on the network of the host the same name, which its engine also puts
-/// into HOSTNAME.
+/// into HOSTNAME. A unit of systemd with ProtectHostname has such a namespace, too, but no HOSTNAME.
 bool has_this_host_name(const std::filesystem::path& proc, const std::filesystem::path& process) {
-  return shares("uts", proc, process) || variable_of(process, "HOSTNAME") == support::host_name();
+  if (shares("uts", proc, process)) return true;
+  const std::string name = variable_of(process, "HOSTNAME");
+  return name.empty() ? shares("pid", proc, process) : name == support::host_name();
 }
 
 /// The last number of the line NSpid of /proc/PID/status, see proc(5). 0: there is none.

@@ -89,22 +89,28 @@ TEST_F(HostProcesses, AreThoseWithTheSameHostName) {
   add(10, {"localizer"});
   add(11, {"navigator"});
   add(12, {"map_store"});
-  const auto set_namespace = [this](const std::string& process, const std::string& uts) {
+  add(13, {"planner"});
+  const auto set_namespaces = [this](const std::string& process, const std::string& uts,
+                                     const std::string& pid) {
     std::filesystem::create_directories(proc_ / process / "ns");
     std::filesystem::create_symlink(uts, proc_ / process / "ns/uts");
+    std::filesystem::create_symlink(pid, proc_ / process / "ns/pid");
   };
-  set_namespace("self", "uts:[1]");
-  set_namespace("9", "uts:[2]");
-  set_namespace("10", "uts:[1]");
+  set_namespaces("self", "uts:[1]", "pid:[1]");
+  set_namespaces("9", "uts:[2]", "pid:[2]");
+  set_namespaces("10", "uts:[1]", "pid:[1]");
   // In containers, of which one is on the network of the host.
-  set_namespace("11", "uts:[3]");
+  set_namespaces("11", "uts:[3]", "pid:[3]");
   write(proc_ / "11/environ", "HOSTNAME=" + support::host_name() + '\0');
-  set_namespace("12", "uts:[4]");
+  set_namespaces("12", "uts:[4]", "pid:[4]");
   write(proc_ / "12/environ", std::string("HOSTNAME=another host\0", 22));
+  // A unit of systemd with ProtectHostname.
+  set_namespaces("13", "uts:[5]", "pid:[1]");
   const std::vector<HostProcess> found = host_processes(proc_);
-  ASSERT_EQ(found.size(), 2U);
+  ASSERT_EQ(found.size(), 3U);
   EXPECT_EQ(found[0].service, "localizer");
   EXPECT_EQ(found[1].service, "navigator");
+  EXPECT_EQ(found[2].service, "planner");
 }
 
 TEST_F(HostProcesses, AreThoseOfTheSameNetwork) {
