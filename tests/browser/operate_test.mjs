@@ -363,17 +363,22 @@ test("the release of a robot with a goal says what will happen, and asks", async
   await end(opened);
 });
 
-test("a robot of ROS, whose base reports nothing, is held from a stop to the release", async () => {
+test("after a stop, a robot of ROS is not driven by hand until the release", async () => {
   const opened = await open();
   const { page, service } = opened;
   await show_banners(page);
   const drive = { held: false, linear_mps: 0, angular_radps: 0, free_ahead_m: 0, message: "stopped" };
+  await page.click("#stop");
+  await text(page, "#stop-sent", /^Stop sent, the base has not confirmed/);
   service.show("drive", { ...drive, stopped: true });
-  await text(page, ".banner", /The robot is held: it does not move/);
+  service.show("goals", { current: { text: "room A" }, waiting: [], exploring: false });
+  const banner = page.getByText("Driving by hand is refused until the release. A goal drives the robot at once.");
+  await wait_for("the effect of the stop", () => banner.isVisible());
   await page.getByRole("button", { name: "Release", exact: true }).click();
   await wait_for("the release", () => service.orders.includes("release"));
   service.show("drive", null);
-  await wait_for("the banner goes", async () => !(await page.getByText("The robot is held").isVisible()));
+  await wait_for("the banners go", async () =>
+    !(await banner.isVisible()) && !(await page.locator("#stop-sent").isVisible()));
   await end(opened);
 });
 

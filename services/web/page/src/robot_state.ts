@@ -63,8 +63,12 @@ export function held_text(channels: Channels): string | null {
   const base = channels.value("base");
   if (base?.state === "halted") return texts.held;
   if (base?.state === "emergency_stop") return texts.emergency;
-  if (!base && channels.value("drive")?.stopped) return texts.held; // a base of ROS
   return null;
+}
+
+/** Whether a stop forbids only driving by hand: a base of ROS, which reports nothing, obeys goals. */
+export function hand_is_stopped(channels: Channels): boolean {
+  return !channels.value("base") && channels.value("drive")?.stopped === true;
 }
 
 /** Goal to which the robot drives as soon as it may move again, as text; null without a goal. */

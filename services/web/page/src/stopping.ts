@@ -2,12 +2,13 @@
 import { Api } from "./api";
 import { Rights } from "./app";
 import { Channels } from "./channels";
-import { held_text, sentence } from "./robot_state";
+import { hand_is_stopped, held_text, sentence } from "./robot_state";
 import { texts } from "./texts";
 
 export class Stopping {
   private sent_ms: number | null = null; // null: none pending
   private refused = "";
+  private hand_stopped = false;
 
   /** on_change: text() may have changed; on_held: the base has confirmed a stop. */
   constructor(
@@ -20,6 +21,7 @@ export class Stopping {
     for (const name of ["base", "time"] as const) {
       channels.on_value([name], () => this.check());
     }
+    channels.on_value(["drive"], () => this.check_hand());
   }
 
   /** Sends the order, and again by `send` over the existing connection. */
@@ -55,6 +57,13 @@ export class Stopping {
     if (!this.channels.value("base")?.stands) return this.on_change();
     this.forget();
     this.on_held();
+  }
+
+  // No base of ROS confirms a stop, so the banner goes with the release of driving by hand.
+  private check_hand(): void {
+    const before = this.hand_stopped;
+    this.hand_stopped = hand_is_stopped(this.channels);
+    if (before && !this.hand_stopped && !this.channels.value("base")) this.forget();
   }
 
   // A report from before the stop order cannot confirm it.

@@ -2,7 +2,7 @@
 import { Api } from "../api";
 import { Rights } from "../app";
 import { Channels } from "../channels";
-import { held_text, pending_goal } from "../robot_state";
+import { hand_is_stopped, held_text, pending_goal } from "../robot_state";
 import { texts } from "../texts";
 import { button, h, set_text, show } from "./dom";
 import { Notices } from "./notices";
@@ -34,19 +34,30 @@ export class HeldBanner {
   }
 
   update(): void {
-    const held = this.rights.connected ? held_text(this.channels) : null;
-    const goal = pending_goal(this.channels);
-    if (held === null || goal !== this.asked) this.asked = null;
-    const text = held !== null && goal !== null ? texts.held_with_goal(goal) : (held ?? "");
-    set_text(this.words, this.asked === null ? text : texts.release_asks(this.asked));
-    show(this.element, held !== null);
+    const text = this.rights.connected ? this.state_text() : null;
+    if (text === null || this.held_goal() !== this.asked) this.asked = null;
+    set_text(this.words, this.asked === null ? (text ?? "") : texts.release_asks(this.asked));
+    show(this.element, text !== null);
     show(this.release, this.asked === null && this.rights.can("release"));
     show(this.answers, this.asked !== null && this.rights.can("release"));
   }
 
+  /** The effect of the stop; null if none holds. */
+  private state_text(): string | null {
+    const held = held_text(this.channels);
+    if (held === null) return hand_is_stopped(this.channels) ? texts.hand_stopped : null;
+    const goal = this.held_goal();
+    return goal === null ? held : texts.held_with_goal(goal);
+  }
+
+  /** The goal that waits for the release of the base; null if there is none. */
+  private held_goal(): string | null {
+    return held_text(this.channels) === null ? null : pending_goal(this.channels);
+  }
+
   // A robot with a goal drives as soon as it may, so the release asks for confirmation.
   private ask(): void {
-    this.asked = pending_goal(this.channels);
+    this.asked = this.held_goal();
     if (this.asked === null) void this.send();
     else this.update();
   }
