@@ -93,7 +93,7 @@ bool shares(const char* kind, const std::filesystem::path& proc,
 
 /// Whether the statuses of the process have the host name of this one. A container has a UTS
 /// namespace of its own, but on the network of the host the same name, which its engine also puts
-/// into HOSTNAME. A unit of systemd with ProtectHostname has such a namespace, too, but no HOSTNAME.
+/// into HOSTNAME. A unit of systemd with ProtectHostname has such a namespace, but no HOSTNAME.
 bool has_this_host_name(const std::filesystem::path& proc, const std::filesystem::path& process) {
   if (shares("uts", proc, process)) return true;
   const std::string name = variable_of(process, "HOSTNAME");

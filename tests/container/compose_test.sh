@@ -55,6 +55,9 @@ step "a planner that hangs"
 mapfile -t containers < <(compose ps -q planner; for service in sensor_gateway navigator local_mapper localizer map_store; do
   compose ps -q $service; done)
 one_is_unhealthy "${containers[@]}"
+step "a gateway that is started again in its container"
+docker restart -t "$hang_limit_s" "${containers[1]}" > /dev/null
+wait_for "a healthy gateway" is_health "${containers[1]}" healthy || { docker inspect "${containers[1]}"; fail "a gateway is unhealthy after its restart"; }
 down
 [ -s "$work/map/map.pb" ] || fail "no map at the end"
 step "the end"
