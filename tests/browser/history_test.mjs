@@ -3,7 +3,7 @@
 // read-only map, then on a database.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { copyFileSync, existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { drive_log } from "./drive_log.mjs";
@@ -181,6 +181,7 @@ test("snapshots are made, compared and restored", async () => {
   await robot.end("web");
   await robot.end("map_store");
   await robot.start_store("--continue", file("round/map.pb"), "--out", file("store"), "--new");
+  await wait_for("the map store makes its folder", () => existsSync(file("store/map.sqlite")));
   mkdirSync(file("store/map.snapshots"));
   copyFileSync(file("store_half/map.snapshots/half.sqlite"), file("store/map.snapshots/half.sqlite"));
   await page.reload();
