@@ -46,7 +46,11 @@ is_refused() { [ "$(refusals)" -gt "$before" ]; }
 "$bin/topogeo" status --watch > "$work/stranger" 2>&1 &
 stranger=$!
 cleanups+=("kill $stranger")
+tables() { grep -cE '^[0-9]+ services?' "$work/stranger" || true; }
 wait_for "the refusal of a stranger" is_refused || { cat "$work/stranger"; secured status planner; fail "the planner does not refuse a stranger"; }
+shown=$(tables)
+shows_more() { [ "$(tables)" -ge $((shown + 5)) ]; }
+wait_for "five more tables of the stranger" shows_more || { cat "$work/stranger"; fail "the stranger shows no tables"; }
 kill $stranger || { cat "$work/stranger"; fail "the stranger ended by itself"; }
 # It may list processes of its host, but no state of a service.
 ! grep -E ' (starting|waiting|running) ' "$work/stranger" || fail "a stranger sees the services"

@@ -77,6 +77,7 @@ TEST_F(NavigatorOnRobot, IsPausedAtItsGoalWhenTheOdometryRestarts) {
   ASSERT_TRUE(wait_for("the pause", [&] { return halted(msg::kHaltPaused); }));
   ++odometry_epoch_;
   T_odom_start_ = robot_.T_odom_robot();
+  ASSERT_TRUE(wait_for("the navigator to begin again", [&] { return status_->driven_m() < 1.0; }));
   const std::uint64_t before = status_->sequence_number();
   ASSERT_TRUE(wait_for("ten statuses with the new odometry",
                        [&] { return status_->sequence_number() >= before + 10; }));

@@ -141,7 +141,7 @@ class PoolFaultsTest : public testing::Test {
 TEST_F(PoolFaultsTest, OneOfThreeWorkersIsKilled) {
   ServiceRun run(scratch_, drive_, "run");
   const std::vector<Program*> workers = start_workers(run, 3);
-  ASSERT_TRUE(run.go_on_until_stop(30));
+  ASSERT_TRUE(run.go_on_until_stop(15));
   kill_with_tasks_in_hand(run, {workers[0]});
   const std::vector<Program*> left{workers[1], workers[2]};
   const std::vector<std::uint64_t> before = tasks_done(run, left);
@@ -155,7 +155,7 @@ TEST_F(PoolFaultsTest, OneOfThreeWorkersIsKilled) {
 TEST_F(PoolFaultsTest, AllWorkersAreKilledAndOthersCome) {
   ServiceRun run(scratch_, drive_, "run");
   const std::vector<Program*> workers = start_workers(run, 2);
-  ASSERT_TRUE(run.go_on_until_stop(25));
+  ASSERT_TRUE(run.go_on_until_stop(15));
   kill_with_tasks_in_hand(run, workers);
   ASSERT_TRUE(run.go_on_until_stop(run.stops() + 20));
   ASSERT_TRUE(run.wait_until_idle());
@@ -246,7 +246,7 @@ TEST_F(PoolFaultsTest, TwoRobotsOfOneNameShareTheWorkers) {
     second.step();
   };
   // A robot whose tasks the workers leave for those of the other one does them itself.
-  const double shared = drive_.expected_tasks() / 10.0;
+  const auto shared = static_cast<double>(kUsed);
   const auto by_workers = [](const ServiceRun& run) {
     return run.counter("tasks") - run.counter("tasks_in_process");
   };
@@ -298,11 +298,11 @@ TEST_F(PoolFaultsTest, AWorkerLeavesInOrder) {
   const std::vector<std::uint64_t> before = tasks_done(run, left);
   ASSERT_TRUE(run.finish()) << run.log();
   run.expect_same_results();
-  EXPECT_THAT(run.log(), Not(ContainsRegex("worker w1#[0-9a-f]+ lost with")));
   EXPECT_THAT(workers[0]->err(), Not(HasSubstr("not finished")));
   expect_used(run, left, before);
   // On a busy machine, workers miss their time or are taken to be gone: their tasks are sent again.
   if (run.log().find("answered elsewhere") == std::string::npos) {
+    EXPECT_THAT(run.log(), Not(ContainsRegex("worker w1#[0-9a-f]+ lost with")));
     EXPECT_EQ(run.counter("workers_lost"), 0.0) << run.log();
     EXPECT_EQ(run.counter("tasks_resent"), 0.0) << run.log();
   }

@@ -137,7 +137,7 @@ TEST_F(Record, ARunsPosesGraphAndGridAreWhole) {
   for (const std::string name : {"run.mcap", "bag"}) {
     // Records a run at this rate, and returns its number of poses.
     const auto poses_at = [&](const std::string& rate) {
-      SCOPED_TRACE(name + " at rate " + rate);
+      SCOPED_TRACE(testing::Message() << name << " at rate " << rate);
       const fs::path out = scratch_ / (rate + name);
       Program run(
           scratch_, "topogeo",

@@ -7,7 +7,6 @@
 #include <fstream>
 #include <string_view>
 #include <system_error>
-#include <utility>
 
 #include <unistd.h>
 
@@ -46,7 +45,7 @@ std::filesystem::path HealthFile::folder() {
   return given == nullptr ? "" : given;
 }
 
-HealthFile::HealthFile(std::filesystem::path folder, const std::string& service) {
+HealthFile::HealthFile(const std::filesystem::path& folder, const std::string& service) {
   if (folder.empty()) return;
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -57,7 +56,7 @@ HealthFile::HealthFile(std::filesystem::path folder, const std::string& service)
   }
   const std::string name = service + "." + std::to_string(::getpid());
   draft_ = folder / ("." + name);
-  file_ = std::move(folder) / name;
+  file_ = folder / name;
 }
 
 HealthFile::~HealthFile() {

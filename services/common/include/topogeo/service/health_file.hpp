@@ -17,7 +17,7 @@ class HealthFile {
 
   /// Makes the folder, and removes what processes of this service that have died left there. A
   /// folder that cannot be written is logged: a health check then finds no file.
-  HealthFile(std::filesystem::path folder, const std::string& service);
+  HealthFile(const std::filesystem::path& folder, const std::string& service);
   HealthFile(const HealthFile&) = delete;
   HealthFile& operator=(const HealthFile&) = delete;
   /// Removes the file.
