@@ -134,11 +134,12 @@ std::map<std::string, std::pair<int, std::int64_t>> topics_of(const fs::path& fi
 TEST_F(Record, ARunsPosesGraphAndGridAreWhole) {
   const fs::path log = scratch_ / "log.clf";
   write_log("room", log);
+  int runs = 0;
   for (const std::string name : {"run.mcap", "bag"}) {
     // Records a run at this rate, and returns its number of poses.
     const auto poses_at = [&](const std::string& rate) {
       SCOPED_TRACE(testing::Message() << name << " at rate " << rate);
-      const fs::path out = scratch_ / (rate + name);
+      const fs::path out = scratch_ / (std::to_string(++runs) + name);
       Program run(
           scratch_, "topogeo",
           {"run", "--log", log.string(), "--rate", rate, "--out", (scratch_ / "run").string(),
