@@ -21,7 +21,7 @@ release=$image
 # containers share the pseudo-terminals of the simulator.
 run() {
   docker run -d --name "$network-$1-$2" --network "container:$network-$1" --init --no-healthcheck --user root \
-    -e TOPOGEO_DOMAIN -e TOPOGEO_METRICS_PORT="${metrics:-}" -v "$work:/exchange" -v /dev/pts:/dev/pts "$release" "${@:2}" > /dev/null
+    -e TOPOGEO_DOMAIN -e TOPOGEO_LONGEST_FREEZE_S=0 -e TOPOGEO_METRICS_PORT="${metrics:-}" -v "$work:/exchange" -v /dev/pts:/dev/pts "$release" "${@:2}" > /dev/null
   cleanups+=("docker rm -f $network-$1-$2")
 }
 

@@ -13,12 +13,13 @@ make_network() {
     docker logs "$name" > "$work/${name#"$network"-}.container.log" 2>&1; done')
 }
 
-# start_host NAME [OPTIONS]: a container that waits for `run_on`.
+# start_host NAME [OPTIONS]: a container that waits for `run_on`. A service goes on after it stood still on a busy
+# machine, because nothing would start it again.
 start_host() {
   local host=$1
   shift
   docker run -d --rm --name "$network-$host" --hostname "$host" --network "$network" --network-alias "$host" \
-    --init --no-healthcheck -e TOPOGEO_DDS_PARTICIPANT=udp_only -e TOPOGEO_DOMAIN \
+    --init --no-healthcheck -e TOPOGEO_DDS_PARTICIPANT=udp_only -e TOPOGEO_DOMAIN -e TOPOGEO_LONGEST_FREEZE_S=0 \
     -v "$work:/exchange" --user root "$@" "$image" sleep infinity > /dev/null
   cleanups+=("docker rm -f $network-$host")
 }
