@@ -15,13 +15,13 @@
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/motion.h"
 #include "topogeo/msg/sensor.h"
+#include "topogeo/service/base_confirmation.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
 #include "topogeo/support/patience.hpp"
 
-#include "base_confirmation.hpp"
 #include "commands.hpp"
 #include "domain_view.hpp"
 #include "program_connection.hpp"
@@ -124,7 +124,7 @@ int send_base_command(BaseRequest request) {
   send_with(writer, request.command, patience);
   const msg::BaseCommandKind kind = request.command.kind();
   const auto status = next_status(reader, request, patience, [&](const msg::BaseStatus& now) {
-    return confirms(now, kind) || refuses(now, request.command);
+    return service::confirms(now, kind) || service::refuses(now, request.command);
   });
   if (!status) {
     throw std::runtime_error(
@@ -132,7 +132,7 @@ int send_base_command(BaseRequest request) {
                     1000.0 * request.wait_s, patience.reason()));
   }
   print_base(*status);
-  if (confirms(*status, kind)) return service::kOk;
+  if (service::confirms(*status, kind)) return service::kOk;
   throw std::runtime_error(fmt::format(
       "robot '{}' was stopped again meanwhile: repeat the reset to release it", request.robot_id));
 }

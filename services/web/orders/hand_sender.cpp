@@ -8,6 +8,7 @@
 #include "topogeo/geometry/reaction_times.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/reader.hpp"
+#include "topogeo/service/base_confirmation.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/navigation_conversions.hpp"
 #include "topogeo/support/host.hpp"
@@ -106,7 +107,7 @@ void HandSender::on_laser(const msg::LaserStatus& laser) {
 void HandSender::on_base(const msg::BaseStatus& base, const messaging::Handle& writer) {
   base_ = writer;
   stop_count_ = base.stop_count();
-  base_held_ = holds(base);
+  base_held_ = service::holds(base);
   end_release(release_.take(base, steady_ns()));
   if (!stop_wanted_) return;
   if (base_held_) {

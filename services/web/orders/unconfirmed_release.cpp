@@ -1,5 +1,7 @@
 #include "orders/unconfirmed_release.hpp"
 
+#include "topogeo/service/base_confirmation.hpp"
+
 namespace topogeo::web {
 
 void UnconfirmedRelease::begin(std::uint64_t stop_count, bool held, std::int64_t now_ns) {
@@ -13,7 +15,7 @@ void UnconfirmedRelease::begin(std::uint64_t stop_count, bool held, std::int64_t
 std::optional<UnconfirmedRelease::Outcome> UnconfirmedRelease::take(const msg::BaseStatus& status,
                                                                     std::int64_t now_ns) {
   if (!since_ns_ || hides_stop(status)) return std::nullopt;
-  if (!holds(status)) {
+  if (!service::holds(status)) {
     if (!held_ && now_ns - *since_ns_ < kOnItsWay_ns) return std::nullopt;
     end();
     return Outcome::kReleased;

@@ -38,11 +38,6 @@ class UnconfirmedRelease {
   bool reported_ = false;       // kUnconfirmed
 };
 
-/// Whether the base refuses motion until a release.
-inline bool holds(const msg::BaseStatus& status) {
-  return status.state() == msg::kBaseHalted || status.state() == msg::kBaseEmergencyStop;
-}
-
 /// Whether the status does not show if a stop holds.
 inline bool hides_stop(const msg::BaseStatus& status) {
   return status.state() == msg::kBaseOffline || status.state() == msg::kBaseStarting;

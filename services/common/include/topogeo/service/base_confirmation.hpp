@@ -1,10 +1,10 @@
-// Checks by the status of a base whether it has carried out an operator's command.
+// Whether a base has carried out an operator's command, by its status.
 #pragma once
 
 #include "topogeo/msg/motion.h"
 #include "topogeo/msg/sensor.h"
 
-namespace topogeo::cli {
+namespace topogeo::service {
 
 /// The base refuses motion commands until a reset.
 inline bool holds(const msg::BaseStatus& status) {
@@ -26,4 +26,4 @@ inline bool refuses(const msg::BaseStatus& status, const msg::BaseCommand& comma
          status.stop_count() != command.stop_count();
 }
 
-}  // namespace topogeo::cli
+}  // namespace topogeo::service

@@ -1,8 +1,8 @@
-#include "topogeo/base_confirmation.hpp"
+#include "topogeo/service/base_confirmation.hpp"
 
 #include <gtest/gtest.h>
 
-namespace topogeo::cli {
+namespace topogeo::service {
 namespace {
 
 msg::BaseStatus base_in(msg::BaseState state) {
@@ -50,4 +50,4 @@ TEST(BaseConfirmation, AResetIsRefusedIfTheBaseWasStoppedSince) {
 }
 
 }  // namespace
-}  // namespace topogeo::cli
+}  // namespace topogeo::service
