@@ -71,6 +71,7 @@ void HealthFile::update(const std::string& text) {
   if (file_.empty() || (text == text_ && now - written_ < kPeriod)) return;
   text_ = text;
   written_ = now;
+  // Not by write_file_atomically, which waits for the disk: this loop may be that of the guard.
   std::ofstream draft(draft_, std::ios::binary);
   draft << text << '\n';
   draft.close();
