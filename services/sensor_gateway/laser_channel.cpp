@@ -108,7 +108,7 @@ msg::LaserState LaserChannel::state(const devices::PlsStatus& status) const {
     case devices::PlsState::kConfiguring:
       return msg::kLaserStarting;
     case devices::PlsState::kRunning:
-      return reason(status).empty() ? msg::kLaserRunning : msg::kLaserFault;
+      return fault(status).empty() ? msg::kLaserRunning : msg::kLaserFault;
     case devices::PlsState::kOffline:
     case devices::PlsState::kFailed:
       break;
@@ -118,7 +118,13 @@ msg::LaserState LaserChannel::state(const devices::PlsStatus& status) const {
 
 std::string LaserChannel::reason(const devices::PlsStatus& status) const {
   if (!line_.why_closed().empty()) return line_.why_closed();
-  if (status.state != devices::PlsState::kRunning) return status.reason;
+  const std::string why = status.state == devices::PlsState::kRunning ? fault(status) : "";
+  return why.empty() ? status.reason
+                     : why;  // that of a running one: its rate is not the wanted one
+}
+
+std::string LaserChannel::fault(const devices::PlsStatus& status) const {
+  if (!line_.why_closed().empty()) return line_.why_closed();
   if (status.stuck) return "the laser repeats the same scan";
   if (status.health.implausible) return "the laser reports implausible measurements";
   if (status.health.severity >= devices::PlsSeverity::kError) return "the laser reports an error";

@@ -46,7 +46,10 @@ class LaserChannel {
   void after_driver(std::int64_t now_ns);
   void publish_status();
   [[nodiscard]] msg::LaserState state(const devices::PlsStatus& status) const;
+  /// Why the state is what it is; of a running laser, why its rate is not the wanted one.
   [[nodiscard]] std::string reason(const devices::PlsStatus& status) const;
+  /// Why the scans of a running laser are of no use; empty: they are.
+  [[nodiscard]] std::string fault(const devices::PlsStatus& status) const;
 
   service::Service& service_;
   const HostTime& time_;

@@ -91,7 +91,7 @@ std::int64_t PlsDriver::due_ns() const {
     case Phase::kSetUp:
       return std::min(due_ns, setup_.due_ns());
     case Phase::kRun:
-      return std::min(due_ns, supervisor_.due_ns());
+      return std::min({due_ns, supervisor_.due_ns(), setup_.retry_at_ns()});
   }
   return std::numeric_limits<std::int64_t>::max();
 }
@@ -272,6 +272,11 @@ void PlsDriver::run(std::int64_t now_ns) {
 }
 
 void PlsDriver::supervise(std::int64_t now_ns) {
+  if (now_ns >= setup_.retry_at_ns()) {
+    const std::string reason = "tries another rate: " + setup_.fallback();
+    setup_.retry_rate();
+    return search(reason, false, now_ns);
+  }
   if (!supervisor_.silent(now_ns)) return supervisor_.tick(now_ns);
   ++status_.counters.silences;
   // A restart may have gone unnoticed, so the sensor may follow to another rate now.

@@ -7,6 +7,16 @@
 
 namespace topogeo::devices {
 
+namespace {
+
+constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+/// Use at another rate than wanted before the next try, doubled each time. A try costs a second of
+/// scans, so a sensor that never follows gets no more than these.
+constexpr std::int64_t kFirstUse_ns = 15'000'000'000;
+constexpr int kMostRetries = 6;
+
+}  // namespace
+
 void PlsSetup::begin(Step step, std::int64_t now_ns) {
   step_ = step;
   reason_ = name(step);
@@ -100,7 +110,11 @@ void PlsSetup::start_stopped(std::int64_t now_ns) {
 
 PlsSetup::Result PlsSetup::after_stop(std::int64_t now_ns) {
   const bool wanted_rate = line_.settings().baud == settings_.baud;
-  if (wanted_rate) fallback_.clear();
+  if (wanted_rate) {
+    fallback_.clear();
+    retry_at_ns_ = kNever;
+    fallbacks_ = 0;
+  }
   if (wanted_rate || !fallback_.empty()) {
     begin(Step::kStatus, now_ns);
   } else if (failed_switches_ >= settings_.baud_switch_tries) {
@@ -145,6 +159,7 @@ PlsSetup::Result PlsSetup::after_prove(std::int64_t now_ns) {
   }
   line_.heard();
   retry_rate();
+  fallbacks_ = 0;
   begin(Step::kStatus, now_ns);
   return Result::kGoesOn;
 }
@@ -157,6 +172,8 @@ PlsSetup::Result PlsSetup::after_monitor() {
 /// Uses the sensor at its present rate.
 PlsSetup::Result PlsSetup::fall_back(const std::string& why, std::int64_t now_ns) {
   fallback_ = "runs at " + std::to_string(line_.settings().baud) + " baud: " + why;
+  retry_at_ns_ = fallbacks_ < kMostRetries ? now_ns + (kFirstUse_ns << fallbacks_) : kNever;
+  ++fallbacks_;
   begin(Step::kStatus, now_ns);
   return Result::kGoesOn;
 }
@@ -170,6 +187,7 @@ PlsSetup::Result PlsSetup::fail(std::string reason) {
 void PlsSetup::retry_rate() {
   failed_switches_ = 0;
   fallback_.clear();
+  retry_at_ns_ = kNever;
 }
 
 void PlsSetup::tick(std::int64_t now_ns) {
@@ -177,7 +195,7 @@ void PlsSetup::tick(std::int64_t now_ns) {
 }
 
 std::int64_t PlsSetup::due_ns() const {
-  return step_ == Step::kSettle ? settled_ns_ : std::numeric_limits<std::int64_t>::max();
+  return step_ == Step::kSettle ? settled_ns_ : kNever;
 }
 
 }  // namespace topogeo::devices

@@ -232,6 +232,34 @@ TEST(PlsDriver, ComesBackWhenTheSensorDoesNotFollow) {
   }));
 }
 
+// A busy machine hears answers too late, as if the sensor did not follow.
+TEST(PlsDriver, TriesTheWantedRateAgainWhileScansCome) {
+  PlsOnLine pls;
+  pls.emulator.inject(simulation::PlsFault::kIgnoreBaudSwitch, 2);
+  pls.start();
+  ASSERT_EQ(pls.driver.status().line.baud, 9600U);
+  EXPECT_TRUE(pls.line.run_until(20 * kSecond_ns, [&] {
+    pls.collect();
+    return pls.driver.status().line.baud == 500'000;
+  }));
+  EXPECT_TRUE(pls.run_for_scans(25, 2 * kSecond_ns)) << "25 scans a second";
+  EXPECT_EQ(pls.driver.status().reason, "");
+  EXPECT_EQ(pls.driver.status().counters.silences, 0U) << "it has not waited for a loss";
+}
+
+TEST(PlsDriver, ASensorThatNeverFollowsIsLeftInPeace) {
+  PlsOnLine pls;
+  pls.emulator.inject(simulation::PlsFault::kIgnoreBaudSwitch, 1000);
+  pls.start();
+  pls.run_for(1200 * kSecond_ns);
+  const std::uint64_t tried = pls.driver.status().counters.switches_not_followed;
+  EXPECT_EQ(tried, 14U) << "twice at the start, and each of six times later";
+  pls.run_for(1200 * kSecond_ns);
+  EXPECT_EQ(pls.driver.status().counters.switches_not_followed, tried);
+  EXPECT_EQ(pls.driver.status().state, PlsState::kRunning);
+  EXPECT_THAT(pls.driver.status().reason, HasSubstr("does not switch to 500000 baud"));
+}
+
 TEST(PlsDriver, WithholdsAScanThatComesAgainAndAgain) {
   PlsSettings settings;
   settings.stuck_scans = 5;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,6 +44,9 @@ class PlsSetup {
   [[nodiscard]] const std::string& fallback() const { return fallback_; }
   /// The sensor restarted or was silent, so it may now follow to the wanted rate.
   void retry_rate();
+  /// When a sensor that runs at another rate than wanted should get another try, because a busy
+  /// machine or a disturbance may have been the reason; the largest number: never.
+  [[nodiscard]] std::int64_t retry_at_ns() const { return retry_at_ns_; }
   /// Number of failures since reset().
   [[nodiscard]] int failures() const { return failures_; }
   /// Scans come, or the port was opened.
@@ -79,6 +83,8 @@ class PlsSetup {
   Step step_ = Step::kStop;
   std::string reason_;
   std::string fallback_;
+  std::int64_t retry_at_ns_ = std::numeric_limits<std::int64_t>::max();
+  int fallbacks_ = 0;  // since the sensor was heard at the wanted rate
   std::int64_t settled_ns_ = 0;
   int failures_ = 0;
   int failed_switches_ = 0;
