@@ -67,17 +67,12 @@ std::uint32_t domain_of(const std::vector<std::string>& words,
 
 /// Reads state and age from /proc/PID/stat, see proc(5). False: the process has ended.
 bool read_stat(HostProcess& process, const std::filesystem::path& folder, double up_s) {
-  std::istringstream fields = support::process_stat(folder);
   std::string state;
-  fields >> state;
-  constexpr int kBeforeStart = 18;  // fields 4 to 21; 22 is the start in clock ticks since boot
-  std::string skipped;
-  for (int i = 0; i < kBeforeStart; ++i) fields >> skipped;
-  double start_ticks = 0.0;
-  fields >> start_ticks;
-  if (!fields || state == "Z" || state == "X") return false;
+  support::process_stat(folder) >> state;
+  const std::optional<std::uint64_t> start = support::process_start_ticks(folder);
+  if (!start || state == "Z" || state == "X") return false;
   process.stopped = state == "T" || state == "t";
-  process.age_s = up_s - start_ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
+  process.age_s = up_s - static_cast<double>(*start) / static_cast<double>(::sysconf(_SC_CLK_TCK));
   return true;
 }
 

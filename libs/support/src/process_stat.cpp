@@ -20,4 +20,14 @@ std::istringstream process_stat(const std::filesystem::path& process) {
   return std::istringstream(name_end == std::string::npos ? "" : text.substr(name_end + 1));
 }
 
+std::optional<std::uint64_t> process_start_ticks(const std::filesystem::path& process) {
+  constexpr int kBeforeStart = 19;  // fields 3 to 21
+  std::istringstream fields = process_stat(process);
+  std::string skipped;
+  for (int i = 0; i < kBeforeStart; ++i) fields >> skipped;
+  std::uint64_t ticks = 0;
+  if (!(fields >> ticks)) return std::nullopt;
+  return ticks;
+}
+
 }  // namespace topogeo::support
