@@ -137,6 +137,10 @@ echo 'failed: no odometry' > "$TOPOGEO_HEALTH/localizer.1"
 unwell 'localizer.1 has failed: no odometry'
 wait_for "a service beside one that has failed" health planner || { cat "$work/health.log"; fail "a service is blamed for another one"; }
 rm "$TOPOGEO_HEALTH/localizer.1"
+# This shell has the number of a dead service, which started at another time.
+printf 'running\n1\n' > "$TOPOGEO_HEALTH/localizer.$$"
+unwell "localizer.$$ is of a process that has died: running" localizer
+rm "$TOPOGEO_HEALTH/localizer.$$"
 kill -9 $planner
 wait $planner || true
 touch -d '1 hour ago' "$TOPOGEO_HEALTH/planner.$planner"

@@ -1,16 +1,20 @@
 #include "topogeo/service/health_file.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <string_view>
 #include <system_error>
 
 #include <unistd.h>
 
 #include "topogeo/support/log.hpp"
+#include "topogeo/support/process_stat.hpp"
 
 namespace topogeo::service {
 
@@ -18,20 +22,36 @@ namespace {
 
 constexpr std::chrono::seconds kPeriod{1};
 
-/// Whether `name` is that of a file of this service whose process has died.
-bool is_of_the_dead(std::string_view name, const std::string& service) {
+/// The start of the process that wrote the file; empty if the file does not give it.
+std::optional<std::uint64_t> start_in(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return std::nullopt;
+  std::ifstream file(path, std::ios::binary);
+  std::string state;
+  std::uint64_t ticks = 0;
+  if (!std::getline(file, state) || !(file >> ticks)) return std::nullopt;
+  return ticks;
+}
+
+/// Whether this is a file of the service, and its process has died.
+bool is_of_the_dead(const std::filesystem::path& path, const std::string& service) {
+  const std::string file = path.filename().string();
+  std::string_view name = file;
   if (!name.starts_with(service + ".")) return false;
   name.remove_prefix(service.size() + 1);
   pid_t process = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), process);
   if (error != std::errc() || end != name.data() + name.size() || process <= 0) return false;
-  return ::kill(process, 0) != 0 && errno == ESRCH;
+  if (::kill(process, 0) != 0 && errno == ESRCH) return true;
+  const auto written = start_in(path);
+  const auto running = support::process_start_ticks("/proc/" + std::to_string(process));
+  return written && running && *written != *running;
 }
 
 void remove_those_of_the_dead(const std::filesystem::path& folder, const std::string& service) {
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-    if (is_of_the_dead(entry.path().filename().string(), service)) {
+    if (is_of_the_dead(entry.path(), service)) {
       std::filesystem::remove(entry.path(), ignored);
     }
   }
@@ -54,6 +74,9 @@ HealthFile::HealthFile(const std::filesystem::path& folder, const std::string& s
   } else {
     remove_those_of_the_dead(folder, service);
   }
+  if (const auto ticks = support::process_start_ticks("/proc/self")) {
+    start_ = std::to_string(*ticks);
+  }
   const std::string name = service + "." + std::to_string(::getpid());
   draft_ = folder / ("." + name);
   file_ = folder / name;
@@ -73,7 +96,9 @@ void HealthFile::update(const std::string& text) {
   written_ = now;
   // Not by write_file_atomically, which waits for the disk: this loop may be that of the guard.
   std::ofstream draft(draft_, std::ios::binary);
-  draft << text << '\n';
+  std::string state = text;
+  std::ranges::replace(state, '\n', ' ');  // an error message may have several lines
+  draft << state << '\n' << start_ << '\n';
   draft.close();
   if (!draft) {
     log_failure(draft_.string() + ": cannot be written");

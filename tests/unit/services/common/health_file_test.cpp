@@ -11,11 +11,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "topogeo/support/process_stat.hpp"
 #include "topogeo/support/temporary_folder.hpp"
 
 namespace topogeo::service {
 namespace {
 
+using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
@@ -31,11 +33,16 @@ class HealthFileTest : public testing::Test {
     }
     return out;
   }
-  [[nodiscard]] std::string content(const std::string& name) const {
+  [[nodiscard]] std::vector<std::string> lines(const std::string& name) const {
     std::ifstream file(folder_ / name);
-    std::string line;
-    std::getline(file, line);
-    return line;
+    std::vector<std::string> out;
+    for (std::string line; std::getline(file, line);) out.push_back(line);
+    return out;
+  }
+  /// The state, the first line.
+  [[nodiscard]] std::string content(const std::string& name) const {
+    const std::vector<std::string> all = lines(name);
+    return all.empty() ? "" : all.front();
   }
   void write(const std::string& name) const { std::ofstream(folder_ / name) << "running\n"; }
 
@@ -83,6 +90,31 @@ TEST_F(HealthFileTest, RemovesTheFilesOfItsDeadPredecessorsOnly) {
   }
   const HealthFile file(folder_, "planner");
   EXPECT_THAT(names(), UnorderedElementsAre(of_another, of_one_alive, "planner.txt"));
+}
+
+TEST_F(HealthFileTest, HasTheStartOfTheProcessBelowAStateOfOneLine) {
+  HealthFile file(folder_, "planner");
+  file.update("failed: line 1: expected a number\nmap: x");
+  const auto start = support::process_start_ticks("/proc/self");
+  ASSERT_TRUE(start);
+  EXPECT_THAT(lines(own_name("planner")),
+              ElementsAre("failed: line 1: expected a number map: x", std::to_string(*start)));
+}
+
+// A service that starts again in its container often gets the number of the one before.
+TEST_F(HealthFileTest, RemovesTheFileOfADeadServiceWhoseNumberAnotherProcessHas) {
+  std::filesystem::create_directory(folder_);
+  std::ofstream(folder_ / own_name("planner")) << "running\n1\n";  // no process starts that early
+  std::ofstream(folder_ / own_name("localizer")) << "running\n1\n";
+  const HealthFile file(folder_, "planner");
+  EXPECT_THAT(names(), UnorderedElementsAre(own_name("localizer")));
+}
+
+TEST_F(HealthFileTest, KeepsTheFileOfALivingService) {
+  HealthFile living(folder_, "planner");
+  living.update("running");
+  const HealthFile next(folder_, "planner");
+  EXPECT_THAT(names(), UnorderedElementsAre(own_name("planner")));
 }
 
 TEST_F(HealthFileTest, WithoutAFolderNothingIsWritten) {

@@ -7,9 +7,10 @@
 
 namespace topogeo::service {
 
-/// `FOLDER/SERVICE.PID` with one line: the state of the service and its message (the text of
-/// messaging::StatusPublisher). It is written anew each second, so that an old one tells of a
-/// service that hangs. deploy/health reads it.
+/// `FOLDER/SERVICE.PID` with two lines: the state of the service and its message (the text of
+/// messaging::StatusPublisher), and the start of the process (support::process_start_ticks),
+/// because a later process may get the number of a dead one. The file is written anew each second,
+/// so an old one shows that the service hangs. deploy/health reads it.
 class HealthFile {
  public:
   /// The folder that TOPOGEO_HEALTH of the environment names; empty: no file is written.
@@ -33,6 +34,7 @@ class HealthFile {
 
   std::filesystem::path file_;
   std::filesystem::path draft_;  // renamed to file_, so that no reader sees a part of it
+  std::string start_;            // of this process; empty: /proc does not give it
   std::string text_;
   Clock::time_point written_;
   bool works_ = true;
