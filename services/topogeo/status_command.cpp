@@ -72,7 +72,7 @@ int show_status(const StatusOptions& options) {
   loop.add<msg::ServiceStatus>(
       messaging::Reader<msg::ServiceStatus>(participant),
       [&](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
-        unheard.heard(status, info);
+        unheard.heard(status, info, StatusTable::Clock::now());
         if (!options.service.empty() && status.service() != options.service.c_str()) return;
         if (!options.host.empty() && status.host() != options.host.c_str()) return;
         table.update(status, info, StatusTable::Clock::now());

@@ -25,7 +25,7 @@ class StatusTable {
   /// Services publish twice a second: one silent for this long hangs or is cut off.
   static constexpr std::chrono::milliseconds kSilent{1500};
   /// Time that a lost service stays in the table, for people who watch it.
-  static constexpr std::chrono::seconds kForget{10};
+  static constexpr std::chrono::seconds kForget = UnheardServices::kRemembered;
 
   void update(const msg::ServiceStatus& status, const messaging::SampleInfo& info,
               Clock::time_point now);

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <set>
 #include <span>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -37,13 +37,16 @@ class UnheardServices {
   static constexpr std::chrono::milliseconds kFirstStatus{1500};
   /// A process younger than this may not have joined its domain yet.
   static constexpr double kStarting_s = 10.0;
+  /// Time after its last status for which a heard service accounts for its process: StatusTable
+  /// shows it that long.
+  static constexpr std::chrono::seconds kRemembered{10};
 
   /// Services of that domain and partition ("*": all partitions).
   UnheardServices(std::uint32_t domain, std::string partition)
       : domain_(domain), partition_(std::move(partition)) {}
 
   /// A status has come.
-  void heard(const msg::ServiceStatus& status, const messaging::SampleInfo& info);
+  void heard(const msg::ServiceStatus& status, const messaging::SampleInfo& info, Time now);
   /// Replaces the endpoints that discovery knows.
   void discovered(std::span<const messaging::RemoteEndpoint> endpoints, Time now);
   /// Replaces the running services of the host with that name.
@@ -55,16 +58,24 @@ class UnheardServices {
   [[nodiscard]] std::vector<UnheardService> list(Time now) const;
 
  private:
+  /// Name and number of a process in its own PID namespace. Processes in several containers may
+  /// share both.
+  using Numbered = std::pair<std::string, std::uint32_t>;
   struct Writer {
     std::string participant;
     Time since;
   };
 
+  /// Processes of this host without a heard service of their own.
+  [[nodiscard]] std::vector<UnheardService> silent_processes(Time now) const;
+  /// Services heard lately on this host with that name and number.
+  [[nodiscard]] std::size_t services_heard(const Numbered& name, Time now) const;
+
   std::uint32_t domain_;
   std::string partition_;
   std::set<messaging::Handle> heard_;  // writers of statuses
-  // Host, service, process: services in containers may have the same number.
-  std::set<std::tuple<std::string, std::string, std::uint32_t>> processes_heard_;
+  // By host and process: the time of the last status of each instance.
+  std::map<std::pair<std::string, Numbered>, std::map<std::string, Time>> instances_;
   std::map<messaging::Handle, Writer> writers_;  // discovered writers
   std::vector<HostProcess> running_;
   std::string host_;

@@ -32,12 +32,12 @@ class UnheardServicesTest : public testing::Test {
  protected:
   void hear(std::uint8_t writer, const std::string& service, std::uint32_t pid) {
     msg::ServiceStatus status;
-    messaging::set_service(status, service, "");
+    messaging::set_service(status, service, service + "-" + std::to_string(writer));
     messaging::set_text(status.host(), "robot", "host");
     status.process_id(pid);
     messaging::SampleInfo info;
     info.writer.bytes[0] = writer;
-    unheard_.heard(status, info);
+    unheard_.heard(status, info, now_);
   }
   static HostProcess process(pid_t pid, const std::string& service) {
     return {pid, pid, service, 3, "topogeo", false, 60.0};
@@ -86,6 +86,57 @@ TEST_F(UnheardServicesTest, AreNotThoseInContainersThatAreHeard) {
   EXPECT_THAT(unheard_.list(now_)[0].reason, HasSubstr("process 1020 of this host runs"));
   hear(2, "localizer", 7);
   EXPECT_THAT(unheard_.list(now_), IsEmpty());
+}
+
+// Each worker is process 7 of its container.
+TEST_F(UnheardServicesTest, AreThoseBesideAHeardOneWithTheSameNumber) {
+  HostProcess frozen = process(1010, "ga_worker");
+  HostProcess heard = process(1020, "ga_worker");
+  frozen.own_pid = 7;
+  heard.own_pid = 7;
+  frozen.stopped = true;
+  unheard_.running({frozen, heard}, "robot");
+  hear(1, "ga_worker", 7);
+  hear(1, "ga_worker", 7);
+  ASSERT_THAT(unheard_.list(now_), SizeIs(1));
+  EXPECT_THAT(unheard_.list(now_)[0].reason, HasSubstr("process 1010 of this host is stopped"));
+  hear(2, "ga_worker", 7);
+  EXPECT_THAT(unheard_.list(now_), IsEmpty());
+}
+
+// The heard one of two that run is unknown.
+TEST_F(UnheardServicesTest, AreNamedWithTheHeardOneOfTheirNumber) {
+  HostProcess one = process(1010, "ga_worker");
+  HostProcess other = process(1020, "ga_worker");
+  HostProcess young = process(1000, "ga_worker");
+  one.own_pid = 7;
+  other.own_pid = 7;
+  young.own_pid = 7;
+  young.age_s = 2.0;
+  unheard_.running({young, one, other}, "robot");
+  hear(1, "ga_worker", 7);
+  ASSERT_THAT(unheard_.list(now_), SizeIs(1));
+  EXPECT_EQ(unheard_.list(now_)[0].reason,
+            "one of the processes 1010, 1020 of this host publishes no status");
+  hear(2, "ga_worker", 7);
+  EXPECT_THAT(unheard_.list(now_), IsEmpty()) << "the young one may still come";
+}
+
+// A worker that was started again in its container has its number and another instance.
+TEST_F(UnheardServicesTest, AreNotHiddenByAServiceThatWasHeardLongAgo) {
+  HostProcess frozen = process(1010, "ga_worker");
+  HostProcess heard = process(1020, "ga_worker");
+  frozen.own_pid = 7;
+  heard.own_pid = 7;
+  frozen.stopped = true;
+  hear(1, "ga_worker", 7);
+  hear(2, "ga_worker", 7);
+  unheard_.running({frozen, heard}, "robot");
+  EXPECT_THAT(unheard_.list(now_ + UnheardServices::kRemembered), IsEmpty());
+  now_ += UnheardServices::kRemembered + milliseconds(1);
+  hear(2, "ga_worker", 7);
+  ASSERT_THAT(unheard_.list(now_), SizeIs(1));
+  EXPECT_THAT(unheard_.list(now_)[0].reason, HasSubstr("process 1010 of this host is stopped"));
 }
 
 TEST_F(UnheardServicesTest, AreNamedOnce) {
