@@ -7,10 +7,9 @@
 #include <stdexcept>
 #include <string>
 
-#include <unistd.h>
-
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/laser_mounting.hpp"
+#include "topogeo/service/own_partition.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/format.hpp"
@@ -118,7 +117,7 @@ void print_settings(const BridgeOptions& options) {
 /// Runs in a partition of its own, unseen by other services, and sends nothing to ROS.
 void show_mounting(service::Setup setup, ros_bridge::Settings settings, std::uint32_t domain,
                    double wait_s) {
-  setup.options.partition = "show-mounting-" + std::to_string(::getpid());
+  setup.options.partition = service::own_partition("show-mounting");
   settings.directions = {};
   service::Service service(setup);
   const ros_bridge::RosBridgeService bridge(service, settings, domain, false);

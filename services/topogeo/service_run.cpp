@@ -2,12 +2,12 @@
 
 #include <chrono>
 #include <filesystem>
-#include <random>
 #include <system_error>
 #include <utility>
 
 #include <unistd.h>
 
+#include "topogeo/service/own_partition.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
@@ -30,12 +30,6 @@ messaging::Participant join(const RunOptions& options, const std::string& partit
   return messaging::Participant(participant);
 }
 
-/// A partition unique to this run.
-std::string own_partition() {
-  // The process id shows people the owner; the random number separates containers.
-  return fmt::format("run-{}-{:08x}", ::getpid(), std::random_device{}());
-}
-
 std::filesystem::path folder_of_this_program() {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path();
 }
@@ -43,7 +37,7 @@ std::filesystem::path folder_of_this_program() {
 }  // namespace
 
 ServiceRun::ServiceRun(const RunOptions& options)
-    : partition_(own_partition()),
+    : partition_(service::own_partition("run")),
       source_(scan_source(options)),
       host_(support::host_name()),
       participant_(join(options, partition_)),
