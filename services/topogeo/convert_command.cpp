@@ -7,6 +7,7 @@
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/recording/convert.hpp"
+#include "topogeo/recording/log_writer.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/format.hpp"
 
@@ -48,8 +49,10 @@ void add_convert_command(command_line::Command& app, int& exit_code) {
   auto request = std::make_shared<ConvertRequest>();
   command->add_option("IN", request->in, recording::kLogFormats)->required()->type_name("IN");
   command
-      ->add_option("OUT", request->out,
-                   "log to write, by its name: .mcap, .db3, .bag, else CARMEN (.gz: gzip)")
+      ->add_option(
+          "OUT", request->out,
+          std::string("log to write, in the format of its ending: ") + recording::kWrittenLogs)
+      ->check(recording::check_log_name)
       ->required()
       ->type_name("OUT");
   command

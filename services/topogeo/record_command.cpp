@@ -2,10 +2,12 @@
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/messaging/topics.hpp"
+#include "topogeo/recording/log_writer.hpp"
 #include "topogeo/service/service_options.hpp"
 
 #include "commands.hpp"
@@ -40,8 +42,8 @@ void add_record_command(command_line::Command& app, int& exit_code) {
   command
       ->add_option(
           "--out", request->out,
-          "log to write, by its name: .mcap, .db3, .bag, a folder of rosbag2 (NAME/), else "
-          "CARMEN (.gz: gzip)")
+          std::string("log to write, in the format of its ending: ") + recording::kWrittenLogs)
+      ->check(recording::check_log_name)
       ->required()
       ->type_name("FILE");
   add_robot_option(*command, request->robot_id, "whose scans");

@@ -7,6 +7,7 @@
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/localization/mapping/localization_state.hpp"
 #include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/recording/log_writer.hpp"
 #include "topogeo/results/outputs.hpp"
 #include "topogeo/service/replay_rate.hpp"
 #include "topogeo/service/service_options.hpp"
@@ -130,9 +131,12 @@ void add_run_options(command_line::Command& app, RunOptions& options) {
       ->capture_default_str();
   app.add_option("--profiles", options.profiles_file, "QoS profiles instead of the built-in ones")
       ->type_name("FILE");
-  app.add_option("--record", options.record,
-                 "also record the mapped scans as a log that gives the same map (.mcap, .db3, "
-                 ".bag, else CARMEN)")
+  app.add_option(
+         "--record", options.record,
+         std::string("also record the mapped scans as a log that gives the same map, in the "
+                     "format of its ending: ") +
+             recording::kWrittenLogs)
+      ->check(recording::check_log_name)
       ->type_name("FILE");
 }
 

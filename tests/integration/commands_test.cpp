@@ -81,6 +81,8 @@ TEST_F(CommandsTest, WrongCommandLinesAreToldInOneLine) {
       {"run", "--log", "l", "--out", "o", "--workers", "-1"},
       {"run", "--log", "l", "--out", "o", "--domain", "233"},
       {"run", "--log", "l", "--out", "o", "--rate", "slow"},
+      {"run", "--log", "l", "--out", "o", "--record", "drive.foo"},
+      {"convert", "l", "drive.foo"},
       {"run", "--log", "l", "--out", "o", "--robot", std::string(33, 'x')},
       {"map", "--log", "l", "--out", "o", "--nonsense"},
       {"plan", "m", "--from", "1", "--to", "2,3"},

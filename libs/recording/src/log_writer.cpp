@@ -160,9 +160,19 @@ class RosTarget final : public LogWriter::Target {
   std::vector<std::byte> bytes_;
 };
 
+bool is_carmen_name(std::filesystem::path path) {
+  const bool compressed = path.extension() == ".gz";
+  if (compressed) path.replace_extension();
+  const std::string ending = path.extension().string();
+  return ending == ".clf" || ending == ".log" || (compressed && ending.empty());
+}
+
 std::unique_ptr<LogWriter::Target> make_target(const std::filesystem::path& path,
                                                const geometry::Pose2& T_robot_laser,
                                                const std::string& compression) {
+  if (const std::string fault = check_log_name(path); !fault.empty()) {
+    throw std::invalid_argument(fault);
+  }
   if (std::unique_ptr<MessageSink> sink = create_sink(path, compression)) {
     return std::make_unique<RosTarget>(std::move(sink), T_robot_laser);
   }
@@ -170,6 +180,11 @@ std::unique_ptr<LogWriter::Target> make_target(const std::filesystem::path& path
 }
 
 }  // namespace
+
+std::string check_log_name(const std::filesystem::path& path) {
+  if (is_recording_name(path) || is_carmen_name(path)) return {};
+  return path.string() + ": expected a name with the ending " + kWrittenLogs;
+}
 
 LogWriter::LogWriter(const std::filesystem::path& path, const geometry::Pose2& T_robot_laser,
                      const std::string& compression)

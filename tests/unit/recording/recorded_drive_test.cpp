@@ -172,5 +172,23 @@ TEST_F(RecordedDrive, IsRefusedWithoutACompressionOfThatName) {
   EXPECT_THROW(convert(write_drive(path("a.db3")), path("a.db3")), std::runtime_error);
 }
 
+TEST_F(RecordedDrive, IsRefusedUnderANameThatSelectsNoFormat) {
+  const auto file = write_drive(path("a.mcap"));
+  for (const char* name : {"b.foo", "b.MCAP", "b.mcap.gz", "b.clf.zst", "b.clf~", "b.1", "b."}) {
+    SCOPED_TRACE(name);
+    EXPECT_THAT(check_log_name(path(name)),
+                testing::AllOf(HasSubstr(path(name).string() + ": expected"), HasSubstr(".mcap"),
+                               HasSubstr(".db3"), HasSubstr(".bag"), HasSubstr("CARMEN"),
+                               HasSubstr("rosbag2")));
+    EXPECT_THROW(LogWriter(path(name), kMounting), std::invalid_argument);
+    EXPECT_THROW(convert(file, path(name)), std::invalid_argument);
+    EXPECT_FALSE(std::filesystem::exists(path(name)));
+  }
+  for (const char* name : {"b.mcap", "b.db3", "b.bag", "b.clf", "b.log", "b.clf.gz", "b.1.log.gz",
+                           "b.gz", "b", "b.1/", "b.1/b"}) {
+    EXPECT_THAT(check_log_name(path(name)), testing::IsEmpty());
+  }
+}
+
 }  // namespace
 }  // namespace topogeo::recording

@@ -17,13 +17,22 @@
 
 namespace topogeo::recording {
 
+/// Endings of the names of logs to write, for help texts and messages.
+inline constexpr const char* kWrittenLogs =
+    ".mcap, .db3, .bag, .clf or .log (CARMEN; also .clf.gz, .log.gz, .gz), or none or a slash "
+    "(new folder of rosbag2)";
+
+/// The fault of the name of a log to write, with the endings that are expected; empty if LogWriter
+/// knows its format.
+std::string check_log_name(const std::filesystem::path& path);
+
 class LogWriter {
  public:
-  /// Creates or replaces the file, whose name selects the format: .mcap, .db3, .bag; without an
-  /// ending or with a trailing slash a new folder of rosbag2; otherwise a CARMEN log, gzip for .gz.
-  /// `T_robot_laser`: mounting of the laser, stated in the log. `compression`: see ConvertOptions.
-  /// Throws std::runtime_error if the file cannot be written, std::invalid_argument for a
-  /// compression that the format does not have.
+  /// Creates or replaces the file, whose name selects the format: .mcap, .db3, .bag; .clf and .log
+  /// for a CARMEN log, which .gz compresses; without an ending or with a trailing slash a new
+  /// folder of rosbag2. `T_robot_laser`: mounting of the laser, stated in the log. `compression`:
+  /// see ConvertOptions. Throws std::runtime_error if the file cannot be written,
+  /// std::invalid_argument for another ending and for a compression that the format does not have.
   explicit LogWriter(const std::filesystem::path& path, const geometry::Pose2& T_robot_laser = {},
                      const std::string& compression = "zstd");
 
