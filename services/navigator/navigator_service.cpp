@@ -12,6 +12,8 @@
 #include "topogeo/service/navigation_conversions.hpp"
 #include "topogeo/support/log.hpp"
 
+#include "new_arrival.hpp"
+
 namespace topogeo::navigator {
 
 using navigation::NavigatorState;
@@ -355,7 +357,7 @@ void NavigatorService::publish_status(std::int64_t now_ns) {
   status_due_ns_ = steady_ns + kStatusPeriod_ns;
   if (changed) {
     spdlog::info("{}: {}", navigation::describe(status.state), status.message);
-    if (status.state == NavigatorState::kArrived) {
+    if (is_new_arrival(status, published_)) {
       service_.status().add_to_counter("arrivals");
       goal_.reset();
     }

@@ -86,6 +86,8 @@ TEST_F(NavigatorOnRobot, IsPausedAtItsGoalWhenTheOdometryRestarts) {
   EXPECT_EQ(status_->goal_id(), 3U);
   send_order(msg::kGoalResume, 3);
   EXPECT_TRUE(wait_for("the resume", [&] { return halted(msg::kHaltNone); }));
+  ASSERT_TRUE(wait_for("the arrival in the counters", [&] { return counter("arrivals") > 0.0; }));
+  EXPECT_EQ(counter("arrivals"), 1.0) << "a pause and new odometry at the goal are no arrivals";
 }
 
 // The odometry of before is of the robot after all.
