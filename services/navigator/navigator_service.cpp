@@ -237,18 +237,22 @@ void NavigatorService::on_goal(const msg::Goal& message) {
       paused_ = false;
       navigator_.set_goal(*goal_);
       // The planner may have answered before the goal arrived here.
-      if (route_ && route_->goal_id() == goal.goal_id) on_route(*route_);
+      if (route_ && route_->goal_id() == goal.goal_id) use_route(*route_);
       break;
   }
   tick();
 }
 
 void NavigatorService::on_route(const msg::Route& message) {
+  use_route(message);
+  service_.status().add_to_counter("routes");
+  route_ = message;
+}
+
+void NavigatorService::use_route(const msg::Route& message) {
   take_map();
   const bool same_map = message.map_version() == live_map_.version();
   navigator_.set_route(service::route_plan_from_msg(message, same_map ? map_.get() : nullptr));
-  service_.status().add_to_counter("routes");
-  route_ = message;
 }
 
 void NavigatorService::take_map() {
@@ -314,10 +318,7 @@ void NavigatorService::begin_again(const std::string& fault, const std::string& 
   navigator_.set_goal(*goal_);
   if (paused_) navigator_.pause();
   if (stuck) navigator_.stay_stuck();
-  if (route_ && route_->goal_id() == goal_->goal_id) {
-    const msg::Route route = *route_;
-    on_route(route);
-  }
+  if (route_ && route_->goal_id() == goal_->goal_id) use_route(*route_);
 }
 
 void NavigatorService::stay_arrived(const navigation::NavigatorStatus& before) {

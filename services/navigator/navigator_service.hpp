@@ -48,6 +48,8 @@ class NavigatorService {
   void listen_to_sensors();
   void on_goal(const msg::Goal& message);
   void on_route(const msg::Route& message);
+  /// Hands a route to the navigator, which ignores one for another goal.
+  void use_route(const msg::Route& message);
   void on_scan(const msg::Scan& message);
   void take_map();
   /// False, and counted, for a message that is not newer than the one before or that is ahead of

@@ -62,6 +62,7 @@ TEST_F(NavigatorOnRobot, StandsWhenTheOdometryRestartsUntilANewPose) {
   ASSERT_TRUE(wait_for("the robot to halt as its pose is lost", [&] {
     return faults("odometry restarted") > 0 && halted(msg::kHaltPoseLost) && stands();
   })) << status_->message();
+  EXPECT_EQ(counter("routes"), 1.0) << "the route before the restart is used again";
   poses_come_ = true;
   EXPECT_TRUE(wait_for("the arrival", [&] { return is(msg::kNavigatorArrived); }))
       << status_->message();
