@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # Maps every log of a data folder with one process and prints the errors of odometry and of the corrected trajectory
-# against the reference, as the accuracy table of RESULTS.md, and how many revisited places were recognized (topogeo
-# compare --help).
+# against the reference, as in docs/results.md, and how many revisited places were recognized (topogeo compare --help).
 #   tests/bench/accuracy.sh [--mode graph|thesis] EVALUATION_TOOL [DATA_FOLDER]
 # --mode sets localizer.mode; default: the default configuration.
 # EVALUATION_TOOL compares two TUM trajectories and prints JSON (evaluate_trajectory.py).

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Sends a simulated robot to 200 random goals on three floors and prints the table of RESULTS.md; floors and runs are
-# reported on standard error.
+# Sends a simulated robot to 200 random goals on three floors and prints a table, as in docs/results.md; floors and runs
+# are reported on standard error.
 #   tests/bench/arrival.sh [MORE OPTIONS OF topogeo_arrival]
 # TOPOGEO_ARRIVAL names the program; default build/bin/topogeo_arrival.
 set -euo pipefail

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Prints the accuracy of matches of two local maps, and how many wrong ones are accepted: the tables of RESULTS.md. A
+# Prints the accuracy of matches of two local maps, and how many wrong ones are accepted: the tables of docs/results.md. A
 # few minutes; --quick takes a small sample of the pairs.
 #   tests/bench/matching.sh [OPTION...]
 # Options go to the program: --quick, --no-accuracy, --no-look-alikes, --config FILE, --samples FILE.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Maps 20 drives through each of five synthetic floors and prints the table of RESULTS.md; each run is reported on
-# standard error.
+# Maps 20 drives through each of five synthetic floors and prints a table, as in docs/results.md; each run is reported
+# on standard error.
 #   tests/bench/synthetic.sh [MORE OPTIONS OF topogeo_synthetic]
 # TOPOGEO_SYNTHETIC names the program; default build/bin/topogeo_synthetic.
 set -euo pipefail

@@ -12,7 +12,7 @@ using Kind = LoopEvidence::Kind;
 
 // Fitted to 37,000 decisions of nine logs and five synthetic floors, each with the same weight:
 // `topogeo_loops --floors 12 --reliability` prints them, and the reliability of the probabilities
-// on logs outside the fit (tests/bench/RESULTS.md). They define the meaning of the number, so none
+// on logs outside the fit (docs/results.md). They define the meaning of the number, so none
 // is a setting. The last one is from an earlier fit: none of these decisions is contradicted any
 // more.
 constexpr LoopTerms kFitted{4.13, 4.34,  4.41, 1.09,  3.80, -1.53,

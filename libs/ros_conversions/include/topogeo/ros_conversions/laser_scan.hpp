@@ -35,7 +35,7 @@ bool same_beams(const BeamPattern& a, const BeamPattern& b);
 bool alike(const BeamPattern& a, const BeamPattern& b);
 
 /// Times at which the rays of a message were measured. `time_increment` is not reliable: drivers of
-/// clockwise scanners reverse the ranges but not its sign (tests/bench/RESULTS.md, "Recordings of
+/// clockwise scanners reverse the ranges but not its sign (docs/results.md, "Recordings of
 /// ROS").
 enum class SweepOrder : std::uint8_t {
   kNone,     ///< all at the stamp
