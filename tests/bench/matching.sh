@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Prints the accuracy of matches of two local maps, and how many wrong ones are accepted: the tables of docs/results.md. A
-# few minutes; --quick takes a small sample of the pairs.
+# Prints the accuracy of matches of two local maps, and how many wrong ones are accepted: the tables of
+# docs/decisions/match_form.md. A few minutes; --quick takes a small sample of the pairs.
 #   tests/bench/matching.sh [OPTION...]
 # Options go to the program: --quick, --no-accuracy, --no-look-alikes, --config FILE, --samples FILE.
 # Inputs are the simulated floor (tests/data/floor.world.yaml) and each X.clf.gz with its X.ref.tum in

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Prints the cost of the diagram and the local map of one scan against range limit and cell size, beside the numbers of
-# the Thesis (Thesis, fig. 4.18 and 5.2), as the table of docs/results.md.
+# the Thesis (Thesis, fig. 4.18 and 5.2), as the table of docs/decisions/perception.md.
 #   tests/bench/perception_cost.sh
 set -euo pipefail
 

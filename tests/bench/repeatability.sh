@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Prints the share of a local map that is found again half a metre farther on: for each input with the default
 # configuration, then for all inputs together with one setting of it changed at a time (and with all of them as in the
-# Thesis). The defaults are chosen by these tables of docs/results.md.
+# Thesis). The defaults are chosen by these tables (docs/decisions/perception.md).
 #   tests/bench/repeatability.sh [DATA_FOLDER]
 # Inputs are the simulated floor (tests/data/floor.world.yaml) and each X.clf.gz with its X.ref.tum in
 # DATA_FOLDER, default ../shared/data beside the project. REPEATABILITY names the program; default

@@ -176,7 +176,7 @@ int main(int argc, char** argv) {
   app.add_option("--config", options.config_file, "configuration file")
       ->check(command_line::existing_file());
   app.add_option("--save", options.save, "write each log with its true poses into this folder");
-  app.add_flag("--markdown", options.markdown, "print a table for docs/results.md");
+  app.add_flag("--markdown", options.markdown, "print a table in Markdown");
   if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   try {
     run(options);

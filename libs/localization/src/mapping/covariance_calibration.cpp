@@ -9,7 +9,7 @@ namespace topogeo::localization {
 namespace {
 
 // Share of the variances beyond the floor, fitted to the triangles of recorded logs with each log
-// left out once (docs/results.md, "Covariances").
+// left out once (docs/decisions/loop_probability.md).
 constexpr double kUsualShare = 0.06;
 // Factor on the variance for the common part of errors along a path, which no triangle shows.
 constexpr double kCommonErrors = 1.5;

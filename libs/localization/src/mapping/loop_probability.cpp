@@ -12,9 +12,9 @@ using Kind = LoopEvidence::Kind;
 
 // Fitted to 37,000 decisions of nine logs and five synthetic floors, each with the same weight:
 // `topogeo_loops --floors 12 --reliability` prints them, and the reliability of the probabilities
-// on logs outside the fit (docs/results.md). They define the meaning of the number, so none
-// is a setting. The last one is from an earlier fit: none of these decisions is contradicted any
-// more.
+// on logs outside the fit (docs/decisions/loop_probability.md). They define the meaning of the
+// number, so none is a setting. The last one is from an earlier fit: none of these decisions is
+// contradicted any more.
 constexpr LoopTerms kFitted{4.13, 4.34,  4.41, 1.09,  3.80, -1.53,
                             3.66, -1.42, 0.92, -1.55, 1.05, -0.90};
 

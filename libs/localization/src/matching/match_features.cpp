@@ -105,7 +105,7 @@ double grid_cell_m(const std::vector<SurfacePoint>& points) {
 }
 
 // Share of the points of confirmed branches that are found again half a metre away: freiburg-079
-// and intel together (docs/results.md, "What of a local map is found again").
+// and intel together (docs/decisions/perception.md).
 constexpr double kFoundAgain = 0.84;
 
 void add_branch_samples(const topomap::LocalBranch& branch, std::vector<BranchSample>& out) {

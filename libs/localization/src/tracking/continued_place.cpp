@@ -20,7 +20,7 @@ constexpr double kLeast_m = 15.0;
 constexpr double kMost_m = 40.0;
 // Number of whole scans that must be known to the map, in total, and the share of them that it
 // contradicts if the robot is not there: 0 to 15 % at right places, with changed doors and people,
-// 20 % or more at wrong ones (docs/results.md, "Kidnapped robots").
+// 20 % or more at wrong ones (docs/decisions/lost_robot.md).
 constexpr double kLeastKnown = 1.0;
 constexpr double kMostContradicted = 0.2;
 constexpr double kBetweenViews_m = 0.5;  // path between two views that count

@@ -35,8 +35,7 @@ bool same_beams(const BeamPattern& a, const BeamPattern& b);
 bool alike(const BeamPattern& a, const BeamPattern& b);
 
 /// Times at which the rays of a message were measured. `time_increment` is not reliable: drivers of
-/// clockwise scanners reverse the ranges but not its sign (docs/results.md, "Recordings of
-/// ROS").
+/// clockwise scanners reverse the ranges but not its sign (docs/decisions/sweep_order.md).
 enum class SweepOrder : std::uint8_t {
   kNone,     ///< all at the stamp
   kForward,  ///< as the message states: the first at the stamp, each next one time_increment later

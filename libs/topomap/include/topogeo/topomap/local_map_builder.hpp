@@ -9,7 +9,7 @@
 // because matching on everything is more repeatable than on the main graph (`remove_off_main_graph`
 // removes them). And nodes and branches whose clearance circle reaches into space outside the
 // scan's view are marked: such a node is fictitious, such a stretch of a branch not confirmed. They
-// serve navigation, but are no landmarks; both tables are in docs/results.md.
+// serve navigation, but are no landmarks; both tables are in docs/decisions/perception.md.
 #pragma once
 
 #include <memory>

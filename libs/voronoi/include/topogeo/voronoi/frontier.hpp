@@ -4,7 +4,8 @@
 // The clearance of a place is certain only if its whole circle was seen; if the frontier crosses
 // the circle, an unseen object can be nearer. Behind a corner the diagram runs between the corner
 // and the next visible object, and changes with each step of the robot; the depth to which the
-// circle is hidden separates such places from stable ones. docs/results.md has the figures.
+// circle is hidden separates such places from stable ones. docs/decisions/perception.md has the
+// figures.
 #pragma once
 
 #include <span>

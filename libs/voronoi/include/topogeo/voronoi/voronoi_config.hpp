@@ -1,7 +1,7 @@
 // Settings of the local Voronoi diagram (Thesis, 4.2; docs/algorithms.md, "Local Voronoi diagram").
 //
 // Defaults maximise the share of real nodes that are found again in a scan half a metre away, on a
-// simulated floor and three recorded logs together (tests/bench/repeatability.sh, docs/results.md).
+// simulated floor and three recorded logs together (docs/decisions/perception.md).
 // Without eq. 4.9 the share is 0.74, with it as printed 0.75, with `alternate_behind_only` 0.77;
 // with `join_hidden_zones` 0.58 of half as many nodes.
 #pragma once

@@ -15,7 +15,7 @@ namespace topogeo::localization {
 class OdometryMonitor {
  public:
   /// Squared Mahalanobis distance from odometry. Right doubtful matches are within two deviations,
-  /// most look-alikes are not (docs/results.md, "Steps in doubt").
+  /// most look-alikes are not (docs/decisions/doubtful_steps.md).
   static constexpr double kNear2 = 4.0;
 
   /// One step by odometry, with its configured covariance, and by an accepted match, with its own

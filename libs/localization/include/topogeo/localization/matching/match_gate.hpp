@@ -42,7 +42,7 @@ bool plausible(const MatchTask& task, const MatchResult& result);
 /// Limits of plausible().
 struct PlausibleMatch {
   /// Wider than the gate: right matches in clutter reach doubt 4.5, and no set of wrong ones agrees
-  /// up to there (docs/results.md, "Loops").
+  /// up to there (docs/decisions/loop_acceptance.md).
   static constexpr double kMostDoubt = 4.5;
   static constexpr double kLeastInliers = 0.6;
   static constexpr double kLeastOverlap = 0.3;
