@@ -8,7 +8,7 @@
 # Programs get the first one at run time, as TOPOGEO_TIME_FACTOR of the environment: as a compiler option it would
 # recompile everything. The second one is compiled in.
 
-# Output of machine_speed.cpp on an idle AMD EPYC core (the machine of docs/results.md), compiled by GCC 12.
+# Output of machine_speed.cpp on an idle AMD EPYC core (machine B of docs/results.md), compiled by GCC 12.
 set(TOPOGEO_REFERENCE_US 1700)
 # Twenty times the longest test on that machine.
 set(TOPOGEO_TEST_LIMIT_S 1200)

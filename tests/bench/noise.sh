@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Maps every log of a data folder with the errors of its odometry multiplied by 1, 2 and 4 and prints the errors against
-# the reference, as the noise table of docs/results.md.
+# the reference, as in docs/results.md.
 #   tests/bench/noise.sh EVALUATION_TOOL [DATA_FOLDER]
 # EVALUATION_TOOL compares two TUM trajectories and prints JSON (evaluate_trajectory.py).
 # DATA_FOLDER holds X.clf.gz, X.ref.tum and X.relations; default ../shared/data beside the project.
