@@ -117,7 +117,7 @@ map_with() {
 
 # ---- driving
 
-start_drive() {
+start_drive() {  # METRES
   "$bin/topogeo" config --devices | sed "/^laser:/,/^base:/ { s|^  port: .*|  port: $out/laser|; s|^  kind: .*|  kind: pls|; }
     /^base:/,\$ { s|^  port: .*|  port: $out/base|; s|^  dialect: .*|  dialect: binary|; }" > "$out/devices.yaml"
   # The simulator and its watcher keep the real clock.
@@ -131,9 +131,9 @@ start_drive() {
   start_on pc1 localizer "$bin/localizer" --map "$work/floor/map.pb" --initial-pose 0,0,0
   wait_for "the ports of the simulator" test -e "$out/base" || fail "the simulator does not start"
   start_on robot sensor_gateway "$bin/sensor_gateway" --devices "$out/devices.yaml"
-  # Goal: twenty metres along the first drive.
-  goal=$(awk '{ if (NR > 1) way += sqrt(($2 - x) ^ 2 + ($3 - y) ^ 2); x = $2; y = $3
-    if (way > 20) { print x "," y; exit } }' "$work/floor/trajectory.tum")
+  # Goal: so far along the first drive.
+  goal=$(awk -v least="$1" '{ if (NR > 1) way += sqrt(($2 - x) ^ 2 + ($3 - y) ^ 2); x = $2; y = $3
+    if (way > least) { print x "," y; exit } }' "$work/floor/trajectory.tum")
   send_goal
 }
 send_goal() {
@@ -254,7 +254,11 @@ drive() {  # FAULT; sets stood, drove_on, arrival, memory and result
   local started
   stood=- drove_on=- arrival=- memory=-
   result="no: does not drive"
-  start_drive
+  case $1 in
+    # Among strangers the robot drives slowly, since they keep all cores busy.
+    flood | absurd | topics | strangers) start_drive 10 ;;
+    *) start_drive 20 ;;
+  esac
   wait_for "the robot to drive" drives || return 0
   started=$(now_ms)
   must_drive_on || return 0

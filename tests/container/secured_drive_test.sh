@@ -33,9 +33,9 @@ wait_for "a status of a secured service" hears env || fail "the keys do not work
 kill "$planner"
 
 step "each service killed while the robot drives to a goal"
-again integration_navigator 'Services/GotoLives.*'
+again integration_navigator 'GotoLives.*'
 step "each service killed while the robot maps"
-again integration_simulation 'Services/SimulationLivesTest.*'
+again integration_simulation SimulationTest.TheMapEndsCompleteAndRightAfterEachServiceWasKilled
 step "emergency stops, halts and the end of the gateway"
 again integration_gateway 'GatewayInEmergency.*' GatewayOnDevices.HaltHoldsUntilReset GatewayOnDevices.EndOfTheGatewayStopsTheBase
 step "Stop among hostile connections"
