@@ -13,8 +13,7 @@ class DeafLives {
  public:
   explicit DeafLives(std::filesystem::path file) : file_(std::move(file)) {}
 
-  /// File of a service: in the runtime directory that systemd provides, else in memory (/dev/shm),
-  /// where `topogeo run` removes the files of its partition.
+  /// File of a service, see runtime_file().
   [[nodiscard]] static std::filesystem::path place_of(const Setup& setup);
 
   /// 0 when the file is missing or damaged.
