@@ -1,0 +1,66 @@
+// An operator's stop of a base that does not report it, over restarts of the program that keeps it.
+//
+// A base that reports its state (BaseStatus) holds itself and decides about its release. Any other
+// base, for example one of ROS, obeys each motion command, so the programs that command it keep the
+// stop: the web service and the navigator.
+//
+// Each stop has a number, which its release names (BaseCommand::stop_count). A release that a cut
+// link delivers late therefore ends no later stop, and a stop that is repeated for a program that
+// starts again undoes no release.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "topogeo/messaging/events.hpp"
+#include "topogeo/msg/motion.h"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/support/record_file.hpp"
+
+namespace topogeo::service {
+
+class OperatorStop {
+ public:
+  /// The number of a new stop; never 0.
+  static std::uint64_t new_number();
+  /// File of a service that was given none, see runtime_file(). Empty, with a warning in the log,
+  /// if its folder cannot be written.
+  static std::filesystem::path place_of(const Setup& setup);
+
+  /// Resumes the stop that holds by the file; a damaged file counts as a stop. An empty path:
+  /// nothing is kept. Throws std::runtime_error naming the file if it cannot be opened or created.
+  explicit OperatorStop(const std::filesystem::path& file);
+
+  /// The operator of this program stops the robot.
+  void hold(std::uint64_t number);
+  /// The operator of this program releases the robot.
+  void release();
+  /// The base reports that it is held: it decides about the release from now on.
+  void hand_over();
+  /// Takes the order of another program. Returns whether a stop has begun or ended by it.
+  bool take(const msg::BaseCommand& command, const messaging::Handle& writer);
+
+  [[nodiscard]] bool holds() const { return record_.held != 0; }
+  /// The stop that holds, else the last one that was released; 0: none.
+  [[nodiscard]] std::uint64_t number() const { return holds() ? record_.number : record_.released; }
+
+ private:
+  struct Record {
+    std::uint64_t number = 0;    // of the stop that holds
+    std::uint64_t released = 0;  // the last one that was released
+    std::uint64_t held = 0;
+    bool operator==(const Record&) const = default;
+  };
+
+  void keep(const Record& record);
+  void store();
+
+  std::filesystem::path path_;
+  support::RecordFile<Record> file_;
+  Record record_;
+  bool stored_ = true;                          // record_ is in the file
+  std::optional<messaging::Handle> halted_by_;  // the writer of the stop that holds, if another's
+};
+
+}  // namespace topogeo::service

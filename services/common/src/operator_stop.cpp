@@ -1,0 +1,102 @@
+#include "topogeo/service/operator_stop.hpp"
+
+#include <string>
+#include <system_error>
+
+#include <unistd.h>
+
+#include "topogeo/service/runtime_file.hpp"
+#include "topogeo/support/log.hpp"
+#include "topogeo/support/random.hpp"
+
+namespace topogeo::service {
+namespace {
+
+constexpr std::uint64_t kOperatorStopFormat = 0x315453504F475054;  // "TPGOPST1": layout of Record
+
+bool has_bytes(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uintmax_t size_bytes = std::filesystem::file_size(path, error);
+  return !error && size_bytes > 0;
+}
+
+}  // namespace
+
+std::uint64_t OperatorStop::new_number() {
+  return 1 + support::unrepeatable_u64() / 2;
+}
+
+std::filesystem::path OperatorStop::place_of(const Setup& setup) {
+  // One for each user, because users cannot write each other's files in /dev/shm.
+  std::filesystem::path file = runtime_file(setup, "." + std::to_string(::geteuid()) + ".stop");
+  if (::access(file.parent_path().c_str(), W_OK) == 0) return file;
+  spdlog::warn("{}: cannot be written, so a restart forgets an operator's stop",
+               file.parent_path().string());
+  return {};
+}
+
+OperatorStop::OperatorStop(const std::filesystem::path& file)
+    : path_(file), file_(file, kOperatorStopFormat) {
+  if (const std::optional<Record> record = file_.load()) {
+    record_ = *record;
+    return;
+  }
+  if (has_bytes(file)) {
+    spdlog::warn("{}: damaged; the robot is stopped until a release", file.string());
+    record_ = {new_number(), 0, 1};
+  }
+  // Takes the room in the file now: a later stop overwrites it, on a full disk, too.
+  store();
+}
+
+void OperatorStop::hold(std::uint64_t number) {
+  keep({number, record_.released, 1});
+  halted_by_.reset();
+}
+
+void OperatorStop::release() {
+  if (!holds()) return;
+  keep({0, record_.number != 0 ? record_.number : record_.released, 0});
+  halted_by_.reset();
+}
+
+void OperatorStop::hand_over() {
+  if (!holds()) return;
+  keep({0, record_.released, 0});
+  halted_by_.reset();
+}
+
+bool OperatorStop::take(const msg::BaseCommand& command, const messaging::Handle& writer) {
+  const std::uint64_t number = command.stop_count();
+  if (command.kind() == msg::kBaseHalt) {
+    if (number != 0 && number == record_.released) return false;
+    const bool begins = !holds();
+    hold(number);
+    halted_by_ = writer;
+    return begins;
+  }
+  if (command.kind() != msg::kBaseReset) return false;
+  // A writer knows its own stops, because they arrive before its release.
+  if (holds() && (number == record_.number || halted_by_ == writer)) {
+    release();
+    return true;
+  }
+  // The stop of another writer may arrive after its release.
+  if (number != 0) keep({record_.number, number, record_.held});
+  return false;
+}
+
+void OperatorStop::keep(const Record& record) {
+  if (stored_ && record == record_) return;
+  record_ = record;
+  store();
+}
+
+void OperatorStop::store() {
+  stored_ = file_.store(record_);
+  if (stored_) return;
+  spdlog::error("{}: cannot be written; after a restart the robot is stopped until a release",
+                path_.string());
+}
+
+}  // namespace topogeo::service

@@ -1,0 +1,137 @@
+// An operator's stop of a base that reports nothing: restarts, and orders that arrive late.
+#include "topogeo/service/operator_stop.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "full_disk.hpp"
+
+namespace topogeo::service {
+namespace {
+
+constexpr std::uint64_t kFirstStop = 11;
+constexpr std::uint64_t kSecondStop = 22;
+
+messaging::Handle writer_handle(std::uint8_t number) {
+  messaging::Handle handle;
+  handle.bytes[0] = number;
+  return handle;
+}
+
+msg::BaseCommand base_order(msg::BaseCommandKind kind, std::uint64_t number) {
+  msg::BaseCommand command;
+  command.kind(kind);
+  command.stop_count(number);
+  return command;
+}
+
+class OperatorStopTest : public testing::Test {
+ protected:
+  OperatorStopTest() { std::filesystem::remove(path_); }
+  ~OperatorStopTest() override { std::filesystem::remove(path_); }
+
+  const std::filesystem::path path_ =
+      std::filesystem::path(testing::TempDir()) / "topogeo_operator_stop_test";
+  const messaging::Handle page_ = writer_handle(1);
+  const messaging::Handle other_page_ = writer_handle(2);
+};
+
+TEST_F(OperatorStopTest, HoldsInTheNextProcessUntilTheRelease) {
+  EXPECT_FALSE(OperatorStop(path_).holds());
+  OperatorStop(path_).hold(kFirstStop);
+  EXPECT_TRUE(OperatorStop(path_).holds());
+  EXPECT_EQ(OperatorStop(path_).number(), kFirstStop);
+  OperatorStop(path_).release();
+  EXPECT_FALSE(OperatorStop(path_).holds());
+  EXPECT_EQ(OperatorStop(path_).number(), kFirstStop) << "the one that was released";
+}
+
+TEST_F(OperatorStopTest, OfAnotherProgramEndsByItsReleaseAlone) {
+  OperatorStop stop(path_);
+  EXPECT_TRUE(stop.take(base_order(msg::kBaseHalt, kFirstStop), page_));
+  EXPECT_FALSE(stop.take(base_order(msg::kBaseHalt, kSecondStop), other_page_)) << "holds already";
+  EXPECT_FALSE(stop.take(base_order(msg::kBaseSetLimits, kSecondStop), page_));
+  // It was sent before the second stop, by a link that was cut.
+  EXPECT_FALSE(stop.take(base_order(msg::kBaseReset, kFirstStop), page_));
+  EXPECT_TRUE(stop.holds());
+  EXPECT_TRUE(OperatorStop(path_).holds());
+  EXPECT_TRUE(stop.take(base_order(msg::kBaseReset, kSecondStop), page_));
+  EXPECT_FALSE(stop.holds());
+  EXPECT_FALSE(OperatorStop(path_).holds());
+}
+
+// A page that hears a base names the stop that the base counts.
+TEST_F(OperatorStopTest, IsReleasedByItsOwnWriterWhateverNumberItNames) {
+  OperatorStop stop(path_);
+  EXPECT_TRUE(stop.take(base_order(msg::kBaseHalt, kFirstStop), page_));
+  EXPECT_FALSE(stop.take(base_order(msg::kBaseReset, 3), other_page_));
+  EXPECT_TRUE(stop.take(base_order(msg::kBaseReset, 3), page_));
+  EXPECT_FALSE(stop.holds());
+}
+
+TEST_F(OperatorStopTest, RepeatedAfterItsReleaseStopsNothing) {
+  OperatorStop stop(path_);
+  EXPECT_TRUE(stop.take(base_order(msg::kBaseHalt, kFirstStop), page_));
+  EXPECT_TRUE(stop.take(base_order(msg::kBaseReset, kFirstStop), other_page_));
+  EXPECT_FALSE(stop.take(base_order(msg::kBaseHalt, kFirstStop), page_));
+  EXPECT_FALSE(stop.holds());
+  EXPECT_TRUE(stop.take(base_order(msg::kBaseHalt, kSecondStop), page_));
+  EXPECT_TRUE(stop.holds());
+}
+
+// Two programs, two links.
+TEST_F(OperatorStopTest, OvertakenByItsReleaseStopsNothing) {
+  OperatorStop stop(path_);
+  EXPECT_FALSE(stop.take(base_order(msg::kBaseReset, kFirstStop), other_page_));
+  EXPECT_FALSE(stop.take(base_order(msg::kBaseHalt, kFirstStop), page_));
+  EXPECT_FALSE(stop.holds());
+}
+
+TEST_F(OperatorStopTest, IsOverWhenTheBaseHoldsItself) {
+  OperatorStop stop(path_);
+  stop.hold(kFirstStop);
+  stop.hand_over();
+  EXPECT_FALSE(stop.holds());
+  EXPECT_FALSE(OperatorStop(path_).holds());
+  // A gateway that starts again needs the same stop once more.
+  EXPECT_TRUE(stop.take(base_order(msg::kBaseHalt, kFirstStop), page_));
+}
+
+TEST_F(OperatorStopTest, ADamagedFileStops) {
+  OperatorStop(path_).release();
+  std::filesystem::resize_file(path_, std::filesystem::file_size(path_) - 1);
+  EXPECT_TRUE(OperatorStop(path_).holds());
+  EXPECT_TRUE(OperatorStop(path_).holds()) << "over one more start";
+  OperatorStop(path_).release();
+  EXPECT_FALSE(OperatorStop(path_).holds());
+}
+
+TEST_F(OperatorStopTest, ThatCannotBeWrittenHoldsAllTheSame) {
+  OperatorStop stop(path_);
+  {
+    const test::FullDisk full(8);
+    stop.hold(kFirstStop);
+    EXPECT_TRUE(stop.holds());
+  }
+  EXPECT_TRUE(OperatorStop(path_).holds());
+}
+
+TEST_F(OperatorStopTest, WithoutAFileNothingIsKept) {
+  OperatorStop stop{std::filesystem::path()};
+  stop.hold(kFirstStop);
+  EXPECT_TRUE(stop.holds());
+  EXPECT_FALSE(OperatorStop(std::filesystem::path()).holds());
+  EXPECT_THROW(OperatorStop("/nowhere/at/all"), std::runtime_error);
+}
+
+TEST(OperatorStopNumber, IsNeverTheSame) {
+  const std::uint64_t number = OperatorStop::new_number();
+  EXPECT_NE(number, 0U);
+  EXPECT_NE(number, OperatorStop::new_number());
+}
+
+}  // namespace
+}  // namespace topogeo::service
