@@ -35,6 +35,10 @@ HaltReason GuardedBase::halted(std::int64_t now_ns, std::string& message) const 
     message = "the base takes no commands: " + base_->reason;
     return HaltReason::kBaseNotReady;
   }
+  if (stopped_) {
+    message = "the base takes no commands: stopped by an operator until the release";
+    return HaltReason::kBaseNotReady;
+  }
   if (stuck_ns_) {
     message = fmt::format(
         "no motion after {:.1f} s of commands; {}", stuck_s_,

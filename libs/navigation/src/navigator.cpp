@@ -75,6 +75,10 @@ void Navigator::resume() {
   state_->base.retry();
 }
 
+void Navigator::set_stopped(bool stopped) {
+  state_->base.set_stopped(stopped);
+}
+
 bool Navigator::is_stuck() const {
   return state_->base.is_stuck();
 }

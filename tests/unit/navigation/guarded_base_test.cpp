@@ -41,6 +41,15 @@ TEST_F(GuardedBaseTest, HasAReasonNotToMove) {
   EXPECT_EQ(base.halted(0, message), HaltReason::kNone);
 }
 
+TEST_F(GuardedBaseTest, AStopHaltsABaseThatReportsNothing) {
+  scan_at(5.0, 0);
+  base.set_stopped(true);
+  EXPECT_EQ(base.halted(0, message), HaltReason::kBaseNotReady);
+  EXPECT_EQ(message, "the base takes no commands: stopped by an operator until the release");
+  base.set_stopped(false);
+  EXPECT_EQ(base.halted(0, message), HaltReason::kNone);
+}
+
 TEST_F(GuardedBaseTest, IsHeldBeforeAnObstacleUntilItIsReleased) {
   scan_at(5.0, 0);
   EXPECT_FALSE(base.command({0.3, 0.0}, geometry::Pose2{}, 0).stopped);

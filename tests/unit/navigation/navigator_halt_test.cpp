@@ -260,6 +260,20 @@ TEST_F(NavigatorHalt, BaseNotReadyDrivesOnByItself) {
   expect_arrival();
 }
 
+// A base of ROS reports no stop, so the navigator stands by itself.
+TEST_F(NavigatorHalt, AnOperatorsStopHoldsOverResumesAndGoals) {
+  drive_off();
+  drive.navigator.set_stopped(true);
+  expect_halt(HaltReason::kBaseNotReady, NavigatorState::kStopped, 0.1);
+  EXPECT_THAT(drive.status().message, HasSubstr("stopped by an operator"));
+  drive.navigator.resume();
+  expect_halt(HaltReason::kBaseNotReady, NavigatorState::kStopped, 0.1);
+  drive.go_to({6.5, 4.5});
+  expect_halt(HaltReason::kBaseNotReady, NavigatorState::kStopped, 0.1);
+  drive.navigator.set_stopped(false);
+  expect_arrival();
+}
+
 TEST_F(NavigatorHalt, BaseThatDoesNotMoveStaysStoppedUntilResumed) {
   drive_off();
   drive.base_obeys = false;

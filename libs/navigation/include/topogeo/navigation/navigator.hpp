@@ -44,6 +44,9 @@ class Navigator {
   void cancel();
   void pause();
   void resume();
+  /// Whether an operator's stop holds that the base does not report: the robot then stands, with
+  /// any goal.
+  void set_stopped(bool stopped);
   /// The base did not move when ordered to: stands until a resume or another goal.
   [[nodiscard]] bool is_stuck() const;
   /// Restores that state, so that another navigator does not push against what holds the base.

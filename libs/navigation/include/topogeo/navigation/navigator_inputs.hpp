@@ -123,8 +123,8 @@ enum class HaltReason : std::uint8_t {
   kNoScan = 9,
   kSonarSilent = 10,  ///< the sonars have no echo, though something is near
   kNoOdometry = 11,
-  kBaseNotReady = 12,
-  kBaseStuck = 13,  ///< does not move when ordered to
+  kBaseNotReady = 12,  ///< refuses commands, or an operator's stop holds
+  kBaseStuck = 13,     ///< does not move when ordered to
 };
 
 /// Short text for logs and messages: "driving", ...
