@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <string>
 
+#include "topogeo/service/operator_stop.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
 
@@ -15,14 +16,18 @@ int main(int argc, char** argv) {
       argc, argv, "navigator", "Drives to goals along the planner's routes.",
       [&](command_line::Command& app) {
         service::add_map_option(app, map_robot);
-        app.add_option("--memory", memory,
-                       "file with the goal, to which a restarted navigator drives on, even without "
-                       "its client; best in /run")
+        app.add_option(
+               "--memory", memory,
+               "file with the goal, to which a restarted navigator drives on, even without "
+               "its client; best in /run. FILE.stop has an operator's stop until the release")
             ->type_name("FILE");
       },
       [&](const service::Setup& setup) {
         service::Service service(service::with_map_of(setup, map_robot));
-        const navigator::NavigatorService navigator(service, memory);
+        const std::filesystem::path stop_memory =
+            memory.empty() ? service::OperatorStop::place_of(setup)
+                           : std::filesystem::path(memory.string() + ".stop");
+        const navigator::NavigatorService navigator(service, memory, stop_memory);
         service.run();
       });
 }

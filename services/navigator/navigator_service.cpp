@@ -54,11 +54,13 @@ bool differs(const navigation::NavigatorStatus& a, const navigation::NavigatorSt
 
 }  // namespace
 
-NavigatorService::NavigatorService(service::Service& service, const std::filesystem::path& memory)
+NavigatorService::NavigatorService(service::Service& service, const std::filesystem::path& memory,
+                                   const std::filesystem::path& stop_memory)
     : service_(service),
       clock_(host_offset_ns()),
       navigator_(service.setup().config.config.navigator),
       memory_(memory),
+      stop_(service, stop_memory, navigator_, [this] { tick(); }),
       live_map_(service),
       commands_(service.advertise<msg::MotionCommand>()),
       statuses_(service.advertise<msg::NavigatorStatus>()),
@@ -134,7 +136,9 @@ void NavigatorService::listen_to_sensors() {
   });
   service_.subscribe<msg::BaseStatus>([this](const msg::BaseStatus& base) {
     const auto status = service::base_from_msg(base);
-    if (is_newer(Source::kBase, status.stamp_ns)) navigator_.add(status);
+    if (!is_newer(Source::kBase, status.stamp_ns)) return;
+    navigator_.add(status);
+    stop_.take(base);
   });
   service_.subscribe<msg::LaserStatus>([this](const msg::LaserStatus& laser) {
     if (!is_newer(Source::kLaser, laser.stamp_ns())) return;
@@ -310,6 +314,7 @@ void NavigatorService::begin_again(const std::string& fault, const std::string& 
   navigator_ = navigation::Navigator(service_.setup().config.config.navigator);
   if (place && place->tracking) navigator_.add(*place);
   if (map_) navigator_.set_map(map_, live_map_.version());
+  stop_.apply();
   if (!goal_) {
     if (before.state == NavigatorState::kArrived) stay_arrived(before);
     return;

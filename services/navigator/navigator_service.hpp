@@ -25,16 +25,18 @@
 #include "topogeo/service/stamp_clock.hpp"
 
 #include "goal_memory.hpp"
+#include "operator_stop_input.hpp"
 
 namespace topogeo::navigator {
 
 /// Lives in the loop of its service.
 class NavigatorService {
  public:
-  /// Keeps its goal in the file `memory` (empty: none) to continue it after a restart. Throws
-  /// std::invalid_argument for a configuration out of range, std::runtime_error when the file
-  /// cannot be made.
-  explicit NavigatorService(service::Service& service, const std::filesystem::path& memory = {});
+  /// Keeps its goal in the file `memory` to continue it after a restart, and an operator's stop in
+  /// the file `stop_memory` (each empty: none). Throws std::invalid_argument for a configuration
+  /// out of range, std::runtime_error when a file cannot be made.
+  NavigatorService(service::Service& service, const std::filesystem::path& memory,
+                   const std::filesystem::path& stop_memory);
   NavigatorService(const NavigatorService&) = delete;
   NavigatorService& operator=(const NavigatorService&) = delete;
   /// Sends a command to stand still.
@@ -86,6 +88,7 @@ class NavigatorService {
   std::optional<navigation::GoalOrder> goal_;
   bool paused_ = false;
   GoalMemory memory_;
+  OperatorStopInput stop_;
   std::optional<msg::Route> route_;  // the newest one
   std::array<std::optional<std::int64_t>, kSources> last_ns_;
   std::optional<std::uint64_t> epoch_;           // of the odometry

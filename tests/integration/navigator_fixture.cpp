@@ -70,6 +70,7 @@ NavigatorOnRobot::NavigatorOnRobot()
       odometry_(participant_),
       scans_(participant_),
       bases_(participant_),
+      base_orders_(participant_),
       command_reader_(participant_),
       status_reader_(participant_),
       service_reader_(participant_),
@@ -106,8 +107,10 @@ void NavigatorOnRobot::start() {
   navigator_ = std::make_unique<Program>(scratch_, "navigator", words);
   ASSERT_TRUE(wait_for("the navigator to have map and sensors", [&] {
     return status_ && navigator_writer_ != previous && scans_.matched() > 0 &&
-           poses_.matched() > 0 && (!goals_ || goals_->connected_with(navigator_writer_)) &&
-           routes_.matched() > 0 && counter("map_version") == static_cast<double>(kMapVersion);
+           poses_.matched() > 0 &&
+           (base_reports_ || base_orders_.connected_with(navigator_writer_)) &&
+           (!goals_ || goals_->connected_with(navigator_writer_)) && routes_.matched() > 0 &&
+           counter("map_version") == static_cast<double>(kMapVersion);
   })) << navigator_->err();
 }
 
@@ -167,6 +170,7 @@ void NavigatorOnRobot::sense() {
   pose.covariance = 1e-4 * Eigen::Matrix3d::Identity();
   if (poses_come_) static_cast<void>(poses_.write(service::to_msg(pose, robot_id_)));
 
+  if (!base_reports_) return;
   msg::BaseStatus base;
   messaging::set_header(base, robot_id_, moved_ns_, sent_);
   base.state(rolls() ? msg::kBaseMoving : msg::kBaseReady);
@@ -205,6 +209,15 @@ void NavigatorOnRobot::send_order(messaging::Writer<msg::Goal>& client, msg::Goa
   order.client_id = "test";
   order.kind = kind;
   ASSERT_TRUE(client.write(service::to_msg(order, "robot", stamp_ns(), sent_++)));
+}
+
+void NavigatorOnRobot::send_base_order(msg::BaseCommandKind kind, std::uint64_t stop) {
+  msg::BaseCommand order;
+  messaging::set_header(order, "robot", stamp_ns(), sent_++);
+  messaging::set_client_id(order, "test");
+  order.kind(kind);
+  order.stop_count(stop);
+  ASSERT_TRUE(base_orders_.write(order));
 }
 
 void NavigatorOnRobot::restart() {

@@ -45,6 +45,8 @@ class NavigatorOnRobot : public testing::Test {
   void send_order(msg::GoalKind kind, std::uint64_t id = 0) { send_order(*goals_, kind, id); }
   /// The same from another client.
   void send_order(messaging::Writer<msg::Goal>& client, msg::GoalKind kind, std::uint64_t id = 0);
+  /// Sends an order to the base, as a page does; `stop` is its number.
+  void send_base_order(msg::BaseCommandKind kind, std::uint64_t stop);
   /// Kills the navigator and starts the next one beside the living clients.
   void restart();
   /// Sends an order that the navigator drops, and waits until it has. Everything that the client
@@ -88,6 +90,7 @@ class NavigatorOnRobot : public testing::Test {
   planning::HybridMap map_;
   msg::LocalizationState pose_state_ = msg::kStateTracking;
   bool poses_come_ = true;
+  bool base_reports_ = true;
   std::uint64_t odometry_epoch_ = 0;
   geometry::Pose2 T_odom_start_;    // where the odometry epoch began
   std::string robot_id_ = "robot";  // of what is published
@@ -119,6 +122,7 @@ class NavigatorOnRobot : public testing::Test {
   messaging::Writer<msg::Odometry> odometry_;
   messaging::Writer<msg::Scan> scans_;
   messaging::Writer<msg::BaseStatus> bases_;
+  messaging::Writer<msg::BaseCommand> base_orders_;
   messaging::Reader<msg::MotionCommand> command_reader_;
   messaging::Reader<msg::NavigatorStatus> status_reader_;
   messaging::Reader<msg::ServiceStatus> service_reader_;

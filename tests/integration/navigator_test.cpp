@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <optional>
 
+#include <gmock/gmock.h>
+
 #include "topogeo/service/conversions.hpp"
 
 #include "join.hpp"
@@ -118,6 +120,69 @@ TEST_F(NavigatorOnRobot, PausesResumesAndCancels) {
   ASSERT_TRUE(wait_for("the robot to stand",
                        [&] { return !is(msg::kNavigatorDriving) && told_to_stand() && stands(); }));
   EXPECT_LT(robot_.T_world_robot().x_m, 4.4);
+}
+
+/// A robot whose base reports nothing, as one of ROS, and obeys each motion command.
+class NavigatorOfASilentBase : public NavigatorOnRobot {
+ protected:
+  static constexpr std::uint64_t kStop = 17;
+
+  NavigatorOfASilentBase() {
+    base_reports_ = false;
+    memory_ = scratch_ / "goal";
+  }
+  void stop_on_the_way() {
+    start();
+    send_goal(7, {4.5, 1.0});
+    ASSERT_TRUE(wait_for("the robot to drive", [&] { return rolls(); })) << navigator_->err();
+    send_base_order(msg::kBaseHalt, kStop);
+    expect_held();
+  }
+  /// Waits until the stop keeps the robot from its goal, or has failed to.
+  void expect_held() {
+    const auto held = [&] {
+      return is(msg::kNavigatorStopped) && halted(msg::kHaltBaseNotReady) && told_to_stand() &&
+             stands();
+    };
+    ASSERT_TRUE(
+        wait_for("the robot to stand", [&] { return held() || is(msg::kNavigatorArrived); }));
+    ASSERT_TRUE(held()) << status_->message();
+  }
+  void release_and_arrive() {
+    send_base_order(msg::kBaseReset, kStop);
+    EXPECT_TRUE(wait_for("the arrival", [&] { return is(msg::kNavigatorArrived); }))
+        << status_->message();
+  }
+};
+
+TEST_F(NavigatorOfASilentBase, StandsFromAStopToItsReleaseWhateverGoalIsGiven) {
+  ASSERT_NO_FATAL_FAILURE(stop_on_the_way());
+  EXPECT_THAT(status_->message().to_string(), testing::HasSubstr("stopped by an operator"));
+  send_order(msg::kGoalCancel);
+  ASSERT_TRUE(wait_for("the end of the goal", [&] { return is(msg::kNavigatorIdle); }));
+  send_goal(8, kGoal_m);  // as `topogeo goto` does
+  ASSERT_TRUE(wait_for("the goal", [&] { return status_->goal_id() == 8; }));
+  ASSERT_NO_FATAL_FAILURE(expect_held());
+  release_and_arrive();
+  EXPECT_EQ(status_->goal_id(), 8U);
+}
+
+TEST_F(NavigatorOfASilentBase, StandsInItsNextLifeUntilTheRelease) {
+  ASSERT_NO_FATAL_FAILURE(stop_on_the_way());
+  restart();
+  ASSERT_NO_FATAL_FAILURE(expect_held());
+  EXPECT_EQ(status_->goal_id(), 7U);
+  release_and_arrive();
+}
+
+// The service replaces the navigator within its process.
+TEST_F(NavigatorOfASilentBase, StandsWhenTheOdometryRestarts) {
+  ASSERT_NO_FATAL_FAILURE(stop_on_the_way());
+  ++odometry_epoch_;
+  T_odom_start_ = robot_.T_odom_robot();
+  ASSERT_TRUE(wait_for("the restart", [&] { return faults("odometry restarted") > 0; }));
+  ASSERT_NO_FATAL_FAILURE(expect_held());
+  release_and_arrive();
 }
 
 // The page that sent the goal dies with the navigator.
