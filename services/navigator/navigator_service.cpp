@@ -12,7 +12,6 @@
 #include "topogeo/service/navigation_conversions.hpp"
 #include "topogeo/support/log.hpp"
 
-#include "new_arrival.hpp"
 
 namespace topogeo::navigator {
 
@@ -96,11 +95,9 @@ void NavigatorService::resume() {
   if (!goal) return;
   spdlog::info("resuming goal {}{}{}", goal->order.goal_id, goal->paused ? ", paused" : "",
                goal->stuck ? ", stuck" : "");
-  goal_ = goal->order;
+  if (!goal->arrived) goal_ = goal->order;
   paused_ = goal->paused;
-  navigator_.set_goal(*goal_);
-  if (paused_) navigator_.pause();
-  if (goal->stuck) navigator_.stay_stuck();
+  restore(*goal, navigator_);
 }
 
 void NavigatorService::listen_to_orders() {
@@ -288,8 +285,7 @@ void NavigatorService::tick() {
 }
 
 void NavigatorService::remember() {
-  memory_.store(goal_ ? std::optional(RememberedGoal{*goal_, paused_, navigator_.is_stuck()})
-                      : std::nullopt);
+  memory_.store(to_remember(goal_, paused_, navigator_));
 }
 
 void NavigatorService::publish_pose() {
@@ -363,7 +359,7 @@ void NavigatorService::publish_status(std::int64_t now_ns) {
   status_due_ns_ = steady_ns + kStatusPeriod_ns;
   if (changed) {
     spdlog::info("{}: {}", navigation::describe(status.state), status.message);
-    if (is_new_arrival(status, published_)) {
+    if (status.state == NavigatorState::kArrived && goal_) {
       service_.status().add_to_counter("arrivals");
       goal_.reset();
     }

@@ -248,6 +248,27 @@ TEST_F(NavigatorBesideClients, APauseOutlivesTheNavigatorBesideTheClientOfTheGoa
       << status_->message();
 }
 
+// The page's next goal of a list or of an exploration waits for the resume.
+TEST_F(NavigatorBesideClients, APauseAtTheGoalOutlivesTheNavigator) {
+  start();
+  send_goal(3, kGoal_m);
+  ASSERT_TRUE(wait_for("the arrival", [&] { return is(msg::kNavigatorArrived); }));
+  send_order(msg::kGoalPause, 3);
+  ASSERT_TRUE(wait_for("the pause", [&] { return halted(msg::kHaltPaused); }));
+  restart();
+  expect_silence();
+  EXPECT_TRUE(is(msg::kNavigatorArrived)) << status_->message();
+  EXPECT_TRUE(halted(msg::kHaltPaused)) << status_->message();
+  EXPECT_EQ(status_->goal_id(), 3U);
+  EXPECT_TRUE(stands());
+  send_order(msg::kGoalResume, 3);
+  ASSERT_TRUE(wait_for("the resume", [&] { return halted(msg::kHaltNone); }));
+  EXPECT_EQ(counter("arrivals"), 0.0) << "the arrival was in the previous life";
+  restart();
+  expect_silence();
+  EXPECT_TRUE(is(msg::kNavigatorIdle)) << "the pause has ended";
+}
+
 TEST_F(NavigatorBesideClients, AnOldResumeDoesNotUndoALaterPause) {
   set_out();
   pause_from_terminal();
