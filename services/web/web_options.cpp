@@ -51,6 +51,11 @@ void add_web_options(command_line::Command& app, WebOptions& options) {
                  "write the operator's link, which holds the token, to this file of mode 0600 "
                  "instead of printing it to logs that others can read")
       ->type_name("FILE");
+  app.add_option("--memory", options.memory,
+                 "file with an operator's stop that no base reports, which a restarted service "
+                 "keeps until the release (default: in the runtime directory of systemd, else in "
+                 "/dev/shm)")
+      ->type_name("FILE");
   app.add_option("--certificate", options.certificate,
                  "certificate of the server with its chain (PEM)")
       ->type_name("FILE");

@@ -43,12 +43,13 @@ Answer accepted() {
 
 }  // namespace
 
-WebService::WebService(service::Service& service, const ServerConfig& config, PageFiles files)
+WebService::WebService(service::Service& service, const ServerConfig& config, PageFiles files,
+                       const std::filesystem::path& memory)
     : service_(service),
       config_(config),
       files_(std::move(files)),
       foxglove_(feed_, service.setup().config.config.local_mapper.T_robot_laser),
-      hand_(service, board_, events_, tally_, hand_hooks()),
+      hand_(service, board_, events_, tally_, hand_hooks(), memory),
       map_(service, board_,
            [this](const std::shared_ptr<const MapPicture>& picture) { foxglove_.take(picture); }),
       graph_(service, board_),

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
@@ -40,8 +41,10 @@ namespace topogeo::web {
 /// Lives in the loop of its service.
 class WebService : private Backend {
  public:
-  /// Starts listening. Throws like Server.
-  WebService(service::Service& service, const ServerConfig& config, PageFiles files);
+  /// Starts listening. Keeps an operator's stop that no base reports in the file `memory` (empty:
+  /// none). Throws like Server and service::OperatorStop.
+  WebService(service::Service& service, const ServerConfig& config, PageFiles files,
+             const std::filesystem::path& memory = {});
   WebService(const WebService&) = delete;
   WebService& operator=(const WebService&) = delete;
   ~WebService() override;

@@ -165,11 +165,13 @@ test("a map that is only shown has no snapshots, and says so", async () => {
 test("without a robot nothing says that one was stopped or explores", async () => {
   await text(".state", /NO ROBOT\s+No service of a robot is heard/i);
   assert.equal(await robot.post("stop", {}), 503);
+  assert.equal(await robot.post("release", {}), 202);
   assert.equal(await robot.post("release", {}), 503);
   assert.equal(await robot.post("explore", {}), 409);
   await page.click("#stop");
   await text("#stop-sent", /No base is connected: nothing stops/);
   assert.equal(await page.getByText("is stopped and held").count(), 0);
+  assert.equal(await robot.post("release", {}), 202);
 });
 
 test("snapshots are made, compared and restored", async () => {

@@ -157,8 +157,9 @@ export class Robot extends Orders {
     const log = openSync(join(this.work, `${name}.log`), "a");
     const started = spawn(join(this.bin, name), options, {
       stdio: ["ignore", log, log],
-      // Killed programs leave shared memory behind, and others can wait at its locks.
-      env: { ...process.env, TOPOGEO_DDS_PARTICIPANT: "udp_only" },
+      // Killed programs leave shared memory behind, and others can wait at its locks. A stop that holds
+      // must not reach another test.
+      env: { ...process.env, TOPOGEO_DDS_PARTICIPANT: "udp_only", RUNTIME_DIRECTORY: this.work },
     });
     const ended = new Promise((resolve) => started.on("exit", resolve));
     this.processes.set(name, { process: started, ended });

@@ -75,7 +75,8 @@ class WebOnMap : public testing::Test {
   void start_web() {
     web_ = std::make_unique<Program>(
         scratch_, "web",
-        std::vector<std::string>{"--domain", domain_, "--port", "0", "--token", kToken});
+        std::vector<std::string>{"--domain", domain_, "--port", "0", "--token", kToken, "--memory",
+                                 (scratch_ / "web.stop").string()});
     port_ = wait_for_port(*web_);
   }
   /// Whether the page has the whole map.

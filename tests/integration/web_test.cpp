@@ -118,6 +118,28 @@ TEST_F(WebOnMap, APageHasTheMapThroughRestartsOfBothSides) {
   EXPECT_NE(again.others.at(0)["life"], life);
 }
 
+// No base reports the stop, as with a robot of ROS.
+TEST_F(WebOnMap, AStopOutlivesAKilledServiceUntilTheRelease) {
+  EXPECT_EQ(http_post(port_, "/api/stop", kToken).status, 503) << "no base hears it";
+  web_->send_signal(SIGKILL);
+  web_->wait();
+  start_web();
+  PageModel page;
+  WebSocketClient socket(port_);
+  // A page gets channel `drive` before the map.
+  ASSERT_TRUE(page.wait_for(
+      socket, [&] { return is_whole(page); }, kPagePatience));
+  ASSERT_TRUE(page.has("drive"));
+  EXPECT_EQ(page.values["drive"]["stopped"], true);
+  const HttpReply release = http_post(port_, "/api/release", kToken);
+  EXPECT_EQ(release.status, 202);
+  EXPECT_THAT(release.body, HasSubstr("no base reports the release"));
+  EXPECT_TRUE(page.wait_for(
+      socket, [&] { return page.values["drive"].is_null(); }, kPagePatience));
+  const HttpReply again = http_post(port_, "/api/release", kToken);
+  EXPECT_EQ(again.status, 503) << "neither a base nor this service holds the robot";
+}
+
 TEST_F(WebOnMap, TilesAreThoseOfTheMap) {
   PageModel page;
   WebSocketClient socket(port_);

@@ -22,6 +22,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kHandPeriod{50};        // as for the navigator
 constexpr std::chrono::milliseconds kLastHandCommand{200};  // lets the gateway get the last one
+constexpr std::int64_t kZeroPeriod_ns = 500'000'000;        // during a stop that no base reports
 
 }  // namespace
 
@@ -30,7 +31,8 @@ std::int64_t steady_ns() {
 }
 
 HandSender::HandSender(messaging::EventLoop& loop, const service::Service& service, Board& board,
-                       EventLog& events, Tally& tally, Hooks hooks)
+                       EventLog& events, Tally& tally, Hooks hooks,
+                       const std::filesystem::path& memory)
     : loop_(loop),
       service_(service),
       board_(board),
@@ -42,8 +44,14 @@ HandSender::HandSender(messaging::EventLoop& loop, const service::Service& servi
       guard_(service.setup().config.config.navigator.guard),
       drive_(service.setup().config.config.navigator.follower),
       commands_(service.participant()),
-      orders_(service.participant()) {
+      orders_(service.participant()),
+      kept_stop_(memory) {
   listen();
+  if (stop_wanted_) {
+    events_.add(EventLog::Level::kWarning, "web",
+                "the operator's stop of before this start holds until the release");
+    show_rest();
+  }
   loop_.add_timer(kHandPeriod, [this] { tick(); });
 }
 
@@ -67,6 +75,11 @@ void HandSender::listen() {
       [this](const msg::LaserStatus& laser, const Info&) { on_laser(laser); });
   subscribe<msg::BaseStatus>(
       [this](const msg::BaseStatus& base, const Info& info) { on_base(base, info.writer); });
+  subscribe<msg::BaseCommand>([this](const msg::BaseCommand& message, const Info& info) {
+    on_order(message, info.writer);
+  });
+  subscribe<msg::NavigatorStatus>(
+      [this](const msg::NavigatorStatus&, const Info& info) { on_navigator(info.writer); });
 }
 
 HandSender::~HandSender() {
@@ -108,6 +121,7 @@ void HandSender::on_base(const msg::BaseStatus& base, const messaging::Handle& w
   base_ = writer;
   stop_count_ = base.stop_count();
   base_held_ = service::holds(base);
+  if (base_held_) kept_stop_.hand_over();
   end_release(release_.take(base, steady_ns()));
   if (!stop_wanted_) return;
   if (base_held_) {
@@ -119,8 +133,30 @@ void HandSender::on_base(const msg::BaseStatus& base, const messaging::Handle& w
     show_rest();
   } else {
     // The halt went to a gateway that died, or is still on its way: a second one does no harm.
-    static_cast<void>(order(msg::kBaseHalt));
+    static_cast<void>(order(msg::kBaseHalt, stop_number_));
   }
+}
+
+void HandSender::on_order(const msg::BaseCommand& message, const messaging::Handle& writer) {
+  if (message.client_id() == client_id_.c_str() || !kept_stop_.take(message, writer)) return;
+  const std::string client = message.client_id().c_str();
+  if (kept_stop_.holds()) {
+    drive_.let_go(steady_ns());
+    events_.add(EventLog::Level::kWarning, "web", "stopped by " + client);
+    tick();
+  } else {
+    if (!base_) stop_wanted_ = false;
+    events_.add(EventLog::Level::kInfo, "web", "released by " + client);
+  }
+  if (!commanding_) show_rest();
+}
+
+void HandSender::on_navigator(const messaging::Handle& navigator) {
+  if (base_ || navigator_ == navigator || !orders_.connected_with(navigator)) return;
+  navigator_ = navigator;
+  if (kept_stop_.number() == 0) return;
+  static_cast<void>(
+      order(kept_stop_.holds() ? msg::kBaseHalt : msg::kBaseReset, kept_stop_.number()));
 }
 
 void HandSender::keep_off(std::shared_ptr<const navigation::DrawnLimits> limits) {
@@ -140,7 +176,7 @@ void HandSender::drive(std::uint64_t viewer, const geometry::Velocity& wanted,
     tally_.add("refused: late");
     return;
   }
-  if (stop_wanted_) {  // a base of ROS takes no order to halt, so it would obey
+  if (stop_wanted_ || stopped_alone()) {  // a base of ROS takes no order to halt
     tally_.add("refused: stopped");
     return;
   }
@@ -163,7 +199,8 @@ void HandSender::release(std::uint64_t viewer) {
 }
 
 void HandSender::tick() {
-  if (stop_unheard_ && base_hears()) stop_unheard_ = !order(msg::kBaseHalt);
+  if (stop_unheard_ && base_hears()) stop_unheard_ = !order(msg::kBaseHalt, stop_number_);
+  if (navigator_ && !orders_.connected_with(*navigator_)) navigator_.reset();
   const std::int64_t now_ns = steady_ns();
   end_release(release_.check(now_ns));
   const std::int64_t stamp_ns = clock_.now_ns(now_ns);
@@ -178,6 +215,10 @@ void HandSender::tick() {
   if (!verdict) {
     if (commanding_) show_rest();
     commanding_ = false;
+    if (stopped_alone() && now_ns >= zero_due_ns_) {
+      zero_due_ns_ = now_ns + kZeroPeriod_ns;
+      command({}, stamp_ns);
+    }
     return;
   }
   if (held_ && !limits_) {
@@ -208,7 +249,9 @@ bool HandSender::stop() {
   drive_.let_go(steady_ns());
   release_.end();
   if (on_release_) std::exchange(on_release_, nullptr)(UnconfirmedRelease::Outcome::kRefused);
-  const bool heard = order(msg::kBaseHalt);
+  stop_number_ = service::OperatorStop::new_number();
+  const bool heard = order(msg::kBaseHalt, stop_number_);
+  kept_stop_.hold(stop_number_);
   stop_unheard_ = !heard;
   stop_wanted_ = true;
   stopped_base_.reset();
@@ -219,15 +262,24 @@ bool HandSender::stop() {
   return heard;
 }
 
-bool HandSender::release_stop(OnRelease done) {
+HandSender::Release HandSender::release_stop(OnRelease done) {
   using Outcome = UnconfirmedRelease::Outcome;
+  const bool kept = stopped_alone();
+  const bool stopped = std::exchange(stop_wanted_, false) || kept;
   stop_unheard_ = false;
-  if (std::exchange(stop_wanted_, false)) show_rest();
-  if (!order(msg::kBaseReset)) return false;
+  const std::uint64_t number = kept_stop_.number();
+  kept_stop_.release();
+  if (stopped) show_rest();
+  const bool heard = order(msg::kBaseReset, base_ ? stop_count_ : number);
+  if (kept) {
+    events_.add(EventLog::Level::kInfo, "web", "released by the operator; no base reports it");
+    return Release::kHeldHere;
+  }
+  if (!heard) return Release::kUnheard;
   if (on_release_) std::exchange(on_release_, nullptr)(Outcome::kUnconfirmed);
   on_release_ = std::move(done);
   release_.begin(stop_count_, base_held_, steady_ns());
-  return true;
+  return Release::kSent;
 }
 
 void HandSender::end_release(std::optional<UnconfirmedRelease::Outcome> outcome) {
@@ -248,12 +300,12 @@ void HandSender::end_release(std::optional<UnconfirmedRelease::Outcome> outcome)
   if (on_release_) std::exchange(on_release_, nullptr)(*outcome);
 }
 
-bool HandSender::order(msg::BaseCommandKind kind) {
+bool HandSender::order(msg::BaseCommandKind kind, std::uint64_t number) {
   msg::BaseCommand message;
   messaging::set_header(message, service_.robot_id(), support::wall_clock_ns(), orders_sent_++);
   messaging::set_client_id(message, client_id_);
   message.kind(kind);
-  message.stop_count(stop_count_);
+  message.stop_count(number);
   const bool heard = base_hears();  // before sending: a later base may miss it
   if (orders_.write(message)) return heard;
   hooks_.on_blocked("base command");

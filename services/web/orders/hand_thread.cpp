@@ -19,6 +19,12 @@ Answer stopped_again() {
   return error_answer(409, "stopped again in the meantime: nothing is released");
 }
 
+Answer kept_stop_released() {
+  return {202, text_of(Json{{"message",
+                             "no base reports the release; this service and the navigator hold "
+                             "the robot no longer: it may move again"}})};
+}
+
 Answer answer_of(UnconfirmedRelease::Outcome outcome) {
   switch (outcome) {
     case UnconfirmedRelease::Outcome::kReleased:
@@ -34,9 +40,9 @@ Answer answer_of(UnconfirmedRelease::Outcome outcome) {
 }  // namespace
 
 HandThread::HandThread(service::Service& service, Board& board, EventLog& events, Tally& tally,
-                       HandSender::Hooks hooks)
+                       HandSender::Hooks hooks, const std::filesystem::path& memory)
     : service_(service),
-      hand_(loop_, service, board, events, tally, std::move(hooks)),
+      hand_(loop_, service, board, events, tally, std::move(hooks), memory),
       thread_([this] { run(); }) {}
 
 HandThread::~HandThread() {
@@ -106,10 +112,17 @@ void HandThread::carry_out(const Order& order) {
   const Respond& respond = order.respond;
   if (!order.release) return respond(stop_answer(hand_.stop()));
   if (*order.release != stops_) return respond(stopped_again());
-  const bool heard = hand_.release_stop(
+  const HandSender::Release sent = hand_.release_stop(
       [respond](UnconfirmedRelease::Outcome outcome) { respond(answer_of(outcome)); });
-  if (heard) return;
-  respond(error_answer(503, "no base confirms the release; driving by hand is allowed"));
+  switch (sent) {
+    case HandSender::Release::kSent:
+      return;
+    case HandSender::Release::kHeldHere:
+      return respond(kept_stop_released());
+    case HandSender::Release::kUnheard:
+      return respond(error_answer(
+          503, "no base confirms the release; this service holds the robot no longer"));
+  }
 }
 
 }  // namespace topogeo::web

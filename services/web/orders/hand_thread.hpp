@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -22,8 +23,9 @@ namespace topogeo::web {
 class HandThread {
  public:
   /// The hooks are called in this thread. An exception in it ends the loop of the service.
+  /// `memory`: see HandSender.
   HandThread(service::Service& service, Board& board, EventLog& events, Tally& tally,
-             HandSender::Hooks hooks);
+             HandSender::Hooks hooks, const std::filesystem::path& memory = {});
   HandThread(const HandThread&) = delete;
   HandThread& operator=(const HandThread&) = delete;
   ~HandThread();
@@ -34,8 +36,9 @@ class HandThread {
   void stop(Respond respond);
   /// Number of calls of stop() so far.
   [[nodiscard]] std::uint64_t stops() const { return stops_; }
-  /// Answered when the base has confirmed or refused it, after a second at the latest. Refused
-  /// (409) if there was a stop after `stops`: a release that waited must not undo it.
+  /// Answered when the base has confirmed or refused it, after a second at the latest, and at once
+  /// if no base reports the stop. Refused (409) if there was a stop after `stops`: a release that
+  /// waited must not undo it.
   void release_stop(std::uint64_t stops, Respond respond);
   void keep_off(std::shared_ptr<const navigation::DrawnLimits> limits);
   [[nodiscard]] bool is_held() const { return hand_.is_held(); }

@@ -4,6 +4,8 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <future>
 #include <memory>
 #include <optional>
@@ -12,6 +14,7 @@
 #include <gmock/gmock.h>
 
 #include "topogeo/msg/motion.h"
+#include "topogeo/msg/planning.h"
 #include "topogeo/msg/sensor.h"
 
 #include "channels/event_log.hpp"
@@ -178,7 +181,8 @@ TEST_F(HandSenderStop, IsReleasedOnlyWhenTheBaseConfirmsIt) {
       EXPECT_TRUE(run_until("the report of the stop", [&] { return base_noted_; }));
     }
     std::optional<Outcome> outcome;
-    EXPECT_TRUE(hand_.release_stop([&](Outcome found) { outcome = found; }));
+    EXPECT_EQ(hand_.release_stop([&](Outcome found) { outcome = found; }),
+              HandSender::Release::kSent);
     EXPECT_EQ(outcome, std::nullopt);
     EXPECT_TRUE(run_until("the outcome", [&] {
       base.report(state, stop_count);
@@ -218,8 +222,12 @@ TEST(HandThread, AReleaseThatWaitedDoesNotUndoALaterStop) {
   EXPECT_EQ(stopped.get_future().get(), 503U);
   hand.release_stop(before, [&](const Answer& answer) { waited.set_value(answer.status); });
   EXPECT_EQ(waited.get_future().get(), 409U);
+  // No base reports the stop, so it was kept here.
   hand.release_stop(hand.stops(), [&](const Answer& answer) { released.set_value(answer.status); });
-  EXPECT_EQ(released.get_future().get(), 503U);
+  EXPECT_EQ(released.get_future().get(), 202U);
+  std::promise<unsigned> nothing;
+  hand.release_stop(hand.stops(), [&](const Answer& answer) { nothing.set_value(answer.status); });
+  EXPECT_EQ(nothing.get_future().get(), 503U) << "there is neither a base nor a stop";
 }
 
 std::int64_t now_ns() {
@@ -254,13 +262,148 @@ TEST_F(HandSenderTest, OrdersAfterAStopAreRefusedUntilTheRelease) {
   hand_.drive(1, {0.3, 0.0}, now_ns());
   EXPECT_FALSE(hand_.is_held());
   EXPECT_EQ(first_, 0);
-  EXPECT_FALSE(hand_.release_stop());
+  EXPECT_EQ(hand_.release_stop(), HandSender::Release::kHeldHere);
   EXPECT_THAT(shown(), testing::Not(testing::HasSubstr("stopped")));
   // Commands are repeated, because a slow machine considers the first ones late.
   EXPECT_TRUE(run_until("somebody drives", [&] {
     hand_.drive(1, {0.3, 0.0}, now_ns());
     return first_ > 0;
   }));
+}
+
+/// A page of a robot whose base reports nothing, as one of ROS. A navigator takes orders to the
+/// base; another program gives them.
+class BesideSilentBase : public testing::Test {
+ protected:
+  static constexpr std::uint64_t kOtherStop = 7;
+
+  BesideSilentBase() { begin(); }
+  ~BesideSilentBase() override { std::filesystem::remove(memory_); }
+
+  /// Starts the process of the page, after the end of the one before.
+  void begin() {
+    hand_.reset();
+    service_.reset();
+    board_.emplace();
+    events_.emplace(*board_);
+    service_.emplace(page_setup(partition_));
+    hand_.emplace(service_->loop(), *service_, *board_, *events_, tally_,
+                  HandSender::Hooks{[this] { ++first_; }, [](const char*) {}}, memory_);
+  }
+  [[nodiscard]] bool run_until(const std::string& what, const std::function<bool()>& condition) {
+    return test::wait_in_loop(service_->loop(), what, condition);
+  }
+  /// Runs until the newest order at the navigator is of that kind.
+  [[nodiscard]] bool navigator_gets(msg::BaseCommandKind kind) {
+    return run_until("an order at the navigator", [&] {
+      static_cast<void>(statuses_.write(messaging::message<msg::NavigatorStatus>()));
+      orders_.take([&](const msg::BaseCommand& order, const messaging::SampleInfo& info) {
+        if (info.valid) newest_ = order;
+      });
+      return newest_ && newest_->kind() == kind;
+    });
+  }
+  void give(msg::BaseCommandKind kind) {
+    auto order = messaging::message<msg::BaseCommand>();
+    messaging::set_client_id(order, "other");
+    order.kind(kind);
+    order.stop_count(kOtherStop);
+    // The navigator and the page.
+    ASSERT_TRUE(run_until("both readers", [&] { return given_.matched() > 1; }));
+    ASSERT_TRUE(given_.write(order));
+  }
+  [[nodiscard]] bool is_stopped() {
+    if (board_->version(Channel::kDrive) == 0) return false;
+    return board_->update(Channel::kDrive, 0).text->find("\"stopped\":true") != std::string::npos;
+  }
+  /// Whether an order to drive by hand is refused because of a stop. A slow machine may consider
+  /// the order late.
+  [[nodiscard]] bool refuses_to_drive() {
+    const auto refused = [&] {
+      const auto counts = tally_.counts();
+      const auto found = counts.find("refused: stopped");
+      return found == counts.end() ? std::uint64_t{0} : found->second;
+    };
+    const std::uint64_t before = refused();
+    const int first = first_;
+    EXPECT_TRUE(run_until("an order that is taken or refused", [&] {
+      hand_->drive(1, {0.3, 0.0}, now_ns());
+      return refused() > before || first_ > first;
+    }));
+    return refused() > before;
+  }
+
+  std::string partition_ = messaging::random_partition();
+  const std::filesystem::path memory_ = std::filesystem::path(testing::TempDir()) / partition_;
+  std::optional<Board> board_;
+  std::optional<EventLog> events_;
+  Tally tally_;
+  int first_ = 0;
+  std::optional<service::Service> service_;
+  std::optional<HandSender> hand_;
+  messaging::Participant navigator_{messaging::options_in(partition_)};
+  messaging::Reader<msg::BaseCommand> orders_{navigator_};
+  messaging::Writer<msg::NavigatorStatus> statuses_{navigator_};
+  messaging::Participant other_{messaging::options_in(partition_)};
+  messaging::Writer<msg::BaseCommand> given_{other_};
+  std::optional<msg::BaseCommand> newest_;  // at the navigator
+};
+
+TEST_F(BesideSilentBase, AStopOutlivesThePage) {
+  EXPECT_FALSE(hand_->stop()) << "no base hears it";
+  begin();
+  EXPECT_TRUE(is_stopped());
+  EXPECT_TRUE(refuses_to_drive());
+  EXPECT_EQ(hand_->release_stop(), HandSender::Release::kHeldHere);
+  EXPECT_FALSE(refuses_to_drive());
+  begin();
+  EXPECT_FALSE(is_stopped()) << "the stop was released";
+  EXPECT_EQ(hand_->release_stop(), HandSender::Release::kUnheard);
+}
+
+TEST_F(BesideSilentBase, ANavigatorThatConnectsLaterGetsTheStopAndItsRelease) {
+  EXPECT_FALSE(hand_->stop());
+  begin();
+  ASSERT_TRUE(navigator_gets(msg::kBaseHalt));
+  const std::uint64_t stop = newest_->stop_count();
+  EXPECT_NE(stop, 0U);
+  EXPECT_EQ(hand_->release_stop(), HandSender::Release::kHeldHere);
+  ASSERT_TRUE(navigator_gets(msg::kBaseReset));
+  EXPECT_EQ(newest_->stop_count(), stop);
+  newest_.reset();
+  begin();
+  ASSERT_TRUE(navigator_gets(msg::kBaseReset)) << "it may have started after the release";
+  EXPECT_EQ(newest_->stop_count(), stop);
+}
+
+TEST_F(BesideSilentBase, AStopOfAnotherProgramHoldsUntilItsRelease) {
+  ASSERT_NO_FATAL_FAILURE(give(msg::kBaseHalt));
+  ASSERT_TRUE(run_until("the stop", [&] { return is_stopped(); }));
+  EXPECT_TRUE(refuses_to_drive());
+  ASSERT_NO_FATAL_FAILURE(give(msg::kBaseReset));
+  ASSERT_TRUE(run_until("the release", [&] { return !is_stopped(); }));
+  EXPECT_FALSE(refuses_to_drive());
+}
+
+TEST_F(BesideSilentBase, AStopOfAnotherProgramCanBeReleasedHere) {
+  ASSERT_NO_FATAL_FAILURE(give(msg::kBaseHalt));
+  ASSERT_TRUE(run_until("the stop", [&] { return is_stopped(); }));
+  EXPECT_EQ(hand_->release_stop(), HandSender::Release::kHeldHere);
+  ASSERT_TRUE(navigator_gets(msg::kBaseReset));
+  EXPECT_EQ(newest_->stop_count(), kOtherStop);
+}
+
+// A bridge to ROS that starts after the stop must end the last velocity of the one before.
+TEST_F(BesideSilentBase, ZerosAreRepeatedDuringAStop) {
+  const auto commands = [&] {
+    const auto counts = tally_.counts();
+    const auto found = counts.find("commands");
+    return found == counts.end() ? std::uint64_t{0} : found->second;
+  };
+  EXPECT_FALSE(hand_->stop());
+  const std::uint64_t before = commands();
+  EXPECT_TRUE(run_until("three more commands", [&] { return commands() >= before + 3; }));
+  EXPECT_EQ(hand_->release_stop(), HandSender::Release::kHeldHere);
 }
 
 TEST_F(HandSenderTest, NothingMovesBeforeItIsKnownWhereItMayNot) {
