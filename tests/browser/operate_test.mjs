@@ -363,7 +363,7 @@ test("the release of a robot with a goal says what will happen, and asks", async
   await end(opened);
 });
 
-test("after a stop, a robot of ROS is not driven by hand until the release", async () => {
+test("after a stop, a robot of ROS is driven neither by goals nor by hand until the release", async () => {
   const opened = await open();
   const { page, service } = opened;
   await show_banners(page);
@@ -371,14 +371,17 @@ test("after a stop, a robot of ROS is not driven by hand until the release", asy
   await page.click("#stop");
   await text(page, "#stop-sent", /^Stop sent, the base has not confirmed/);
   service.show("drive", { ...drive, stopped: true });
+  await text(page, ".banner", /Neither goals nor driving by hand move the robot until the release/);
   service.show("goals", { current: { text: "room A" }, waiting: [], exploring: false });
-  const banner = page.getByText("Driving by hand is refused until the release. A goal drives the robot at once.");
-  await wait_for("the effect of the stop", () => banner.isVisible());
+  await text(page, ".banner", /has a goal, room A: as soon as it is released it drives there/);
   await page.getByRole("button", { name: "Release", exact: true }).click();
+  await text(page, ".banner", /Released, the robot drives at once: room A/);
+  assert.equal(service.orders.includes("release"), false);
+  await page.getByRole("button", { name: "Cancel the goal, then release" }).click();
   await wait_for("the release", () => service.orders.includes("release"));
+  assert.deepEqual(service.orders.slice(-2), ["cancel", "release"]);
   service.show("drive", null);
-  await wait_for("the banners go", async () =>
-    !(await banner.isVisible()) && !(await page.locator("#stop-sent").isVisible()));
+  await wait_for("the banners go", async () => (await page.locator(".banner:visible").count()) === 0);
   await end(opened);
 });
 

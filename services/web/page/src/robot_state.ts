@@ -66,7 +66,7 @@ export function held_text(channels: Channels): string | null {
   return null;
 }
 
-/** Whether a stop forbids only driving by hand: a base of ROS, which reports nothing, obeys goals. */
+/** Whether a stop holds that no base reports, as with a base of ROS: service and navigator keep it. */
 export function hand_is_stopped(channels: Channels): boolean {
   return !channels.value("base") && channels.value("drive")?.stopped === true;
 }

@@ -59,7 +59,7 @@ export class Stopping {
     this.on_held();
   }
 
-  // No base of ROS confirms a stop, so the banner goes with the release of driving by hand.
+  // No base of ROS confirms a stop, so the banner goes with the release.
   private check_hand(): void {
     const before = this.hand_stopped;
     this.hand_stopped = hand_is_stopped(this.channels);

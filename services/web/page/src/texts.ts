@@ -44,7 +44,10 @@ export const texts = {
   held: "The robot is held: it does not move until it is released.",
   held_with_goal: (goal: string) =>
     `The robot is held. It has a goal, ${goal}: as soon as it is released it drives there.`,
-  hand_stopped: "Driving by hand is refused until the release. A goal drives the robot at once.",
+  hand_stopped:
+    "Neither goals nor driving by hand move the robot until the release. Its base confirms no stop.",
+  hand_stopped_with_goal: (goal: string) =>
+    `The robot has a goal, ${goal}: as soon as it is released it drives there. Its base confirms no stop.`,
   stop_sent: "Stop sent, the base has not confirmed. The robot may still move.",
   stop_moves: "Stopping: the base still moves.",
   stop_failed: (why: string) => `Stop was not accepted: ${why} The robot may still move.`,

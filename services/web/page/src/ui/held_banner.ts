@@ -1,4 +1,4 @@
-// Shows that the base is held and the effect of its release, and releases it.
+// Shows that the robot is held and the effect of its release, and releases it.
 import { Api } from "../api";
 import { Rights } from "../app";
 import { Channels } from "../channels";
@@ -44,15 +44,17 @@ export class HeldBanner {
 
   /** The effect of the stop; null if none holds. */
   private state_text(): string | null {
-    const held = held_text(this.channels);
-    if (held === null) return hand_is_stopped(this.channels) ? texts.hand_stopped : null;
     const goal = this.held_goal();
-    return goal === null ? held : texts.held_with_goal(goal);
+    const held = held_text(this.channels);
+    if (held !== null) return goal === null ? held : texts.held_with_goal(goal);
+    if (!hand_is_stopped(this.channels)) return null;
+    return goal === null ? texts.hand_stopped : texts.hand_stopped_with_goal(goal);
   }
 
-  /** The goal that waits for the release of the base; null if there is none. */
+  /** The goal that waits for the release; null if there is none. */
   private held_goal(): string | null {
-    return held_text(this.channels) === null ? null : pending_goal(this.channels);
+    const held = held_text(this.channels) !== null || hand_is_stopped(this.channels);
+    return held ? pending_goal(this.channels) : null;
   }
 
   // A robot with a goal drives as soon as it may, so the release asks for confirmation.

@@ -2,7 +2,7 @@
 import { App, ViewPart } from "../app";
 import { Destination, destinations } from "../destinations";
 import { Goal, Preview } from "../protocol";
-import { held_text } from "../robot_state";
+import { hand_is_stopped, held_text } from "../robot_state";
 import { texts } from "../texts";
 import { button, fill, h, set_text, show } from "../ui/dom";
 import { KeyedList } from "../ui/list";
@@ -258,7 +258,8 @@ export class SendView implements ViewPart {
     const goals = this.choices.map((choice) => choice.goal);
     const on_the_way =
       goals.length === 1 ? texts.done.goal(this.choices[0].text) : texts.done.goals(goals.length);
-    const held = held_text(this.app.channels) !== null;
+    const { channels } = this.app;
+    const held = held_text(channels) !== null || hand_is_stopped(channels);
     const done = held ? texts.done.goal_held : on_the_way;
     const order = this.app.api.post("goal", goals.length === 1 ? goals[0] : { goals });
     if (await this.app.notices.report(order, done)) this.clear();
