@@ -16,6 +16,7 @@
 #include "topogeo/msg/motion.h"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/service/base_confirmation.hpp"
+#include "topogeo/service/operator_stop.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/format.hpp"
@@ -120,6 +121,9 @@ int send_base_command(BaseRequest request) {
   }
   messaging::set_header(request.command, request.robot_id, 0, 0);
   messaging::set_client_id(request.command, support::process_name());
+  if (request.command.kind() == msg::kBaseHalt) {
+    request.command.stop_count(service::OperatorStop::new_number());
+  }
   support::Patience patience(request.wait_s, support::monotonic_s());
   send_with(writer, request.command, patience);
   const msg::BaseCommandKind kind = request.command.kind();
