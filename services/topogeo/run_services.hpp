@@ -22,9 +22,11 @@ inline constexpr double kSimulatedAcceleration = 1.5;  // m/s^2
 /// Port of "laser" or "base" that the simulator of a run creates.
 std::filesystem::path simulated_port(const RunOptions& options, const std::string& device);
 
+/// The operator's stop, which the web service of a run saves.
+inline constexpr const char* kWebMemory = "stop";
 /// File in which a service of a run saves the state for its restart: "odometry" of the gateway,
-/// "pose" of the localizer, "goal" of the navigator. In memory, because a write to a disk may take
-/// seconds. The caller removes it at the end.
+/// "pose" of the localizer, "goal" of the navigator, kWebMemory of the page. In memory, because a
+/// write to a disk may take seconds. The caller removes it at the end.
 std::filesystem::path memory_of_run(const std::string& partition, const std::string& what);
 /// All existing files of the run, including those that services choose themselves.
 std::vector<std::filesystem::path> memories_of_run(const std::string& partition);

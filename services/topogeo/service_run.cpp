@@ -53,10 +53,10 @@ ServiceRun::~ServiceRun() {
   forget_memories();
 }
 
-void ServiceRun::forget_memories() const {
+void ServiceRun::forget_memories(const std::filesystem::path& except) const {
   std::error_code ignored;
   for (const std::filesystem::path& path : memories_of_run(partition_)) {
-    std::filesystem::remove(path, ignored);
+    if (path != except) std::filesystem::remove(path, ignored);
   }
 }
 
@@ -94,7 +94,8 @@ void ServiceRun::run() {
 void ServiceRun::tick() {
   if (ended_) return;
   if (next_ && processes_.retired()) {
-    forget_memories();  // the base of the previous simulator was switched off
+    // The base of the previous simulator was switched off. The page goes on.
+    forget_memories(memory_of_run(partition_, kWebMemory));
     start_all(*std::exchange(next_, std::nullopt));
   }
   if (recorder_there_ && processes_.has_ended(kRecorder)) forget_recorder();

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
@@ -108,7 +109,8 @@ class ServiceRun {
   void restart(const std::string& name, const std::string& description);
   /// The recorder has ended: a restarted gateway must not wait for it.
   void forget_recorder();
-  void forget_memories() const;
+  /// Removes what the services have saved for their restarts, except for one file.
+  void forget_memories(const std::filesystem::path& except = {}) const;
 
   const std::string partition_;
   const std::string source_;  // of the scans
