@@ -1,9 +1,6 @@
 #include "topogeo/service/operator_stop.hpp"
 
-#include <string>
 #include <system_error>
-
-#include <unistd.h>
 
 #include "topogeo/service/runtime_file.hpp"
 #include "topogeo/support/log.hpp"
@@ -27,12 +24,7 @@ std::uint64_t OperatorStop::new_number() {
 }
 
 std::filesystem::path OperatorStop::place_of(const Setup& setup) {
-  // One for each user, because users cannot write each other's files in /dev/shm.
-  std::filesystem::path file = runtime_file(setup, "." + std::to_string(::geteuid()) + ".stop");
-  if (::access(file.parent_path().c_str(), W_OK) == 0) return file;
-  spdlog::warn("{}: cannot be written, so a restart forgets an operator's stop",
-               file.parent_path().string());
-  return {};
+  return own_runtime_file(setup, ".stop", "a restart forgets an operator's stop");
 }
 
 OperatorStop::OperatorStop(const std::filesystem::path& file)

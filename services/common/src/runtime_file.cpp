@@ -4,6 +4,10 @@
 #include <cstdlib>
 #include <string>
 
+#include <unistd.h>
+
+#include "topogeo/support/log.hpp"
+
 namespace topogeo::service {
 namespace {
 
@@ -26,6 +30,16 @@ std::filesystem::path runtime_file(const Setup& setup, std::string_view ending) 
                      "-" + setup.name;
   name += ending;
   return std::filesystem::path(folder) / name;
+}
+
+std::filesystem::path own_runtime_file(const Setup& setup, std::string_view ending,
+                                       std::string_view loss) {
+  std::string of_user = "." + std::to_string(::geteuid());
+  of_user += ending;
+  std::filesystem::path file = runtime_file(setup, of_user);
+  if (::access(file.parent_path().c_str(), W_OK) == 0) return file;
+  spdlog::warn("{}: cannot be written, so {}", file.parent_path().string(), loss);
+  return {};
 }
 
 }  // namespace topogeo::service

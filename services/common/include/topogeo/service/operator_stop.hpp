@@ -24,8 +24,7 @@ class OperatorStop {
  public:
   /// The number of a new stop; never 0.
   static std::uint64_t new_number();
-  /// File of a service that was given none, see runtime_file(). Empty, with a warning in the log,
-  /// if its folder cannot be written.
+  /// File of a service that was given none, see own_runtime_file().
   static std::filesystem::path place_of(const Setup& setup);
 
   /// Resumes the stop that holds by the file; a damaged file counts as a stop. An empty path:

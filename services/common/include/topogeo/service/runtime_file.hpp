@@ -12,4 +12,10 @@ namespace topogeo::service {
 /// where `topogeo run` removes the files of its partition. `ending` begins with a dot.
 std::filesystem::path runtime_file(const Setup& setup, std::string_view ending);
 
+/// The same with the number of the user, because users cannot write each other's files in /dev/shm.
+/// Empty, with a warning in the log, if the folder cannot be written. `loss` completes "cannot be
+/// written, so".
+std::filesystem::path own_runtime_file(const Setup& setup, std::string_view ending,
+                                       std::string_view loss);
+
 }  // namespace topogeo::service
