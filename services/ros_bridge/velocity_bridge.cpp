@@ -7,6 +7,7 @@
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/ros_conversions/geometry.hpp"
+#include "topogeo/service/runtime_file.hpp"
 #include "topogeo/support/host.hpp"
 #include "topogeo/support/log.hpp"
 
@@ -17,6 +18,10 @@ namespace topogeo::ros_bridge {
 namespace {
 
 constexpr std::chrono::milliseconds kLastVelocity{200};  // time for the base to get the last one
+constexpr std::chrono::milliseconds kEarlierPeriod{50};
+constexpr int kEarlierZeros = 20;  // a best-effort reader may lose some
+constexpr std::uint64_t kVelocityFormat =
+    0x314C455647475054;  // "TPGGVEL1": the layout of the record
 
 }  // namespace
 
@@ -37,6 +42,7 @@ VelocityBridge::~VelocityBridge() {
 
 void VelocityBridge::stop() {
   ros_.service().loop().cancel_timer(timer_);
+  ros_.service().loop().cancel_timer(earlier_timer_);
   if (!moving_) return;
   send(0.0, 0.0);
   if (stamped_) static_cast<void>(stamped_->wait_for_acknowledgments(kLastVelocity));
@@ -52,6 +58,25 @@ void VelocityBridge::give() {
   }
   ros_.service().subscribe<msg::MotionCommand>(
       [this](const msg::MotionCommand& command) { on_command(command); });
+  memory_.emplace(service::own_runtime_file(ros_.service().setup(), ".moving",
+                                            "a killed bridge leaves its last velocity to the base"),
+                  kVelocityFormat);
+  remembered_ = memory_->load().value_or(0) != 0;
+  if (remembered_) end_earlier();
+}
+
+void VelocityBridge::end_earlier() {
+  ros_.complain("velocity of a killed bridge", "the base is stopped");
+  zeros_left_ = kEarlierZeros;
+  earlier_timer_ = ros_.service().loop().add_timer(kEarlierPeriod, [this] {
+    if (!has_base()) return;
+    if (!moving_) send(0.0, 0.0);
+    if (moving_ || --zeros_left_ == 0) ros_.service().loop().cancel_timer(earlier_timer_);
+  });
+}
+
+bool VelocityBridge::has_base() const {
+  return (stamped_ && stamped_->matched() > 0) || (twists_ && twists_->matched() > 0);
 }
 
 void VelocityBridge::take() {
@@ -102,8 +127,15 @@ void VelocityBridge::send(double linear_mps, double angular_radps) {
   } else if (twists_) {
     ros_.send(*twists_, twist);
   }
-  moving_ = linear_mps != 0.0 || angular_radps != 0.0;
+  note_motion(linear_mps != 0.0 || angular_radps != 0.0);
   ros_.service().status().set_counter("velocities", static_cast<double>(++sent_));
+}
+
+void VelocityBridge::note_motion(bool moving) {
+  moving_ = moving;
+  if (!memory_ || remembered_ == moving) return;
+  remembered_ = moving;
+  static_cast<void>(memory_->store(std::uint64_t{moving}));
 }
 
 bool VelocityBridge::is_of_the_moment(const messaging::SampleInfo& info) {

@@ -23,6 +23,7 @@
 #include "topogeo/msg/sensor.h"
 #include "topogeo/storage/tum.hpp"
 
+#include "join.hpp"
 #include "program.hpp"
 
 namespace topogeo::test {
@@ -100,9 +101,9 @@ class RosBridge : public testing::Test {
     return *programs_.emplace_back(std::make_unique<Program>(scratch_, "topogeo", words));
   }
 
-  void start_bridge() {
+  Program& start_bridge() {
     write_settings();
-    start("ros_bridge", {"--ros", scratch_ / "ros.yaml", "--ros-domain", ros_domain()});
+    return start("ros_bridge", {"--ros", scratch_ / "ros.yaml", "--ros-domain", ros_domain()});
   }
 
   Scratch scratch_;
@@ -182,6 +183,28 @@ TEST_F(RosBridge, DrivesARobotOfRosToAGoal) {
   EXPECT_TRUE(wait_for("the arrival", has_arrived)) << last_line(robot.out(), "truth ");
   EXPECT_THAT(last_line(robot.out(), "truth "), HasSubstr("collisions 0"));
   EXPECT_THAT(user.out(), HasSubstr("plan "));
+}
+
+// A base of ROS keeps its last velocity, and nobody may command another one after the kill.
+TEST_F(RosBridge, EndsTheVelocityOfAnEarlierLife) {
+  const Program& user = start_peer({"watch"});
+  Program& killed = start_bridge();
+  const messaging::Participant participant = join(domain_, "ros-test");
+  messaging::Writer<msg::MotionCommand> navigator(participant);
+  std::uint64_t sent = 0;
+  ASSERT_TRUE(wait_for("a velocity", [&] {
+    msg::MotionCommand command;
+    messaging::set_header(command, "robot", 1, sent++);
+    command.linear_mps(0.25);
+    command.valid_for_s(0.5);
+    static_cast<void>(navigator.write(command));
+    return last_line(user.out(), "velocity ") == "0.25 0";
+  })) << killed.err();
+  killed.send_signal(SIGKILL);
+  ASSERT_EQ(killed.wait(), 128 + SIGKILL);
+  const Program& next = start_bridge();
+  EXPECT_TRUE(wait_for("its end", [&] { return last_line(user.out(), "velocity ") == "0 0"; }))
+      << next.err();
 }
 
 // In a finished map, as in docs/ros2.md: rooms of this floor look alike, so a standing robot has no

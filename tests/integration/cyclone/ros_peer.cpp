@@ -3,7 +3,7 @@
 //   ros_peer DOMAIN replay LOG           the robot of a CARMEN log: stands until it is localized,
 //                                        drives as fast as its poses come back, then stands again
 //   ros_peer DOMAIN drive WORLD          a simulated robot, in real time, driven by /cmd_vel
-//   ros_peer DOMAIN watch                prints a user's data: map, tf, pose, plan, graph
+//   ros_peer DOMAIN watch                prints a user's data: map, tf, pose, plan, graph, velocity
 //   ros_peer DOMAIN listen               prints a robot's data: scans, odometry, clock
 //   ros_peer DOMAIN steer V W            sends velocities as Twist on /cmd_vel
 //   ros_peer DOMAIN steer-stamped V W    the same as TwistStamped

@@ -57,6 +57,7 @@ Watcher::Watcher(std::uint32_t domain) : peer_(domain) {
       peer_.reader(visualization_msgs_msg_dds__MarkerArray__desc, "/graph", PeerQos::kLatched);
   diagnostics_ = peer_.reader(diagnostic_msgs_msg_dds__DiagnosticArray__desc, "/diagnostics",
                               PeerQos::kReliable);
+  velocities_ = peer_.reader(geometry_msgs_msg_dds__Twist__desc, "/cmd_vel", PeerQos::kReliable);
 }
 
 void Watcher::print() {
@@ -80,6 +81,9 @@ void Watcher::print() {
         std::cout << "graph " << array.markers_._length << '\n';
       });
   take<diagnostic_msgs_msg_dds__DiagnosticArray_>(diagnostics_, print_diagnostics);
+  take<geometry_msgs_msg_dds__Twist_>(velocities_, [](const geometry_msgs_msg_dds__Twist_& twist) {
+    std::cout << "velocity " << twist.linear_.x_ << ' ' << twist.angular_.z_ << '\n';
+  });
   std::cout << std::flush;
 }
 

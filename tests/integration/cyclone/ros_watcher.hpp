@@ -7,7 +7,7 @@
 
 namespace topogeo::test {
 
-/// Map, transforms, poses, plans, graph and diagnostics.
+/// Map, transforms, poses, plans, graph, diagnostics and velocities.
 class Watcher {
  public:
   explicit Watcher(std::uint32_t domain);
@@ -24,6 +24,7 @@ class Watcher {
   dds_entity_t plans_;
   dds_entity_t graphs_;
   dds_entity_t diagnostics_;
+  dds_entity_t velocities_;
 };
 
 /// Prints scans, odometry, transforms and time of a robot, until it is killed.
