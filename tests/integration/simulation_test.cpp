@@ -89,7 +89,7 @@ TEST_F(SimulationTest, TheMapEndsCompleteAndRightAfterEachServiceWasKilled) {
       << "no scan is missing to who joins a laser that runs";
   const auto truth = storage::read_trajectory_tum(out_ + "/truth.tum");
   const auto found = storage::read_trajectory_tum(out_ + "/trajectory.tum");
-  EXPECT_GT(distance_m(truth), names.size() * kFurther_m)
+  EXPECT_GT(distance_m(truth), static_cast<double>(names.size()) * kFurther_m)
       << "what was driven after the restarts is in the map";
   EXPECT_LT((way(truth) - way(found)).norm(), 0.2) << "one map from the first scan to the last";
 }
