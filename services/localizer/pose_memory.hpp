@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "topogeo/localization/mapping/stored_map.hpp"
-#include "topogeo/localization/tracking/map_localizer.hpp"
+#include "topogeo/localization/tracking/map_tracker.hpp"
 #include "topogeo/support/record_file.hpp"
 #include "topogeo/topomap/local_map.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "topogeo/localization/mapping/slam.hpp"
 #include "topogeo/localization/session/mapping_session.hpp"
-#include "topogeo/localization/tracking/map_localizer.hpp"
+#include "topogeo/localization/tracking/map_tracker.hpp"
 #include "topogeo/msg/stream.h"
 #include "topogeo/search_pool/task_board.hpp"
 

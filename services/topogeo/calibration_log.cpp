@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/mapping/pose_graph_slam.hpp"
 #include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/service/service_options.hpp"

@@ -5,7 +5,7 @@
 
 #include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/localization/session/slam_session.hpp"
-#include "topogeo/localization/tracking/map_localizer.hpp"
+#include "topogeo/localization/tracking/map_tracker.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/support/random.hpp"
 #include "topogeo/support/seed.hpp"

@@ -21,7 +21,7 @@
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/localization/matching/matcher.hpp"
-#include "topogeo/localization/tracking/map_localizer.hpp"
+#include "topogeo/localization/tracking/map_tracker.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/simulation/random_floors.hpp"
 #include "topogeo/simulation/simulate_log.hpp"

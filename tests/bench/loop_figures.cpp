@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/mapping/pose_graph_slam.hpp"
 #include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/results/outputs.hpp"

@@ -30,7 +30,7 @@
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/localization/matching/identical.hpp"
-#include "topogeo/localization/tracking/map_localizer.hpp"
+#include "topogeo/localization/tracking/map_tracker.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/simulation/random_floors.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/mapping/pose_graph_slam.hpp"
 #include "topogeo/localization/matching/match_features.hpp"
 #include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/pipeline/config.hpp"

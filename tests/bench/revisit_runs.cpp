@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "topogeo/localization/matching/matcher.hpp"
-#include "topogeo/localization/tracking/map_localizer.hpp"
+#include "topogeo/localization/tracking/map_tracker.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/support/cpu_time.hpp"

@@ -7,7 +7,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/mapping/pose_graph_slam.hpp"
 #include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"

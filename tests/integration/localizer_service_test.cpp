@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <csignal>
 
-#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/mapping/pose_graph_slam.hpp"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/store.h"
 #include "topogeo/msg/stream.h"

@@ -11,7 +11,7 @@
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/localization/mapping/localizer_config.hpp"
 #include "topogeo/localization/mapping/slam.hpp"
-#include "topogeo/localization/thesis/thesis_localizer.hpp"
+#include "topogeo/localization/thesis/thesis_slam.hpp"
 #include "topogeo/topomap/global_map.hpp"
 #include "topogeo/topomap/global_map_config.hpp"
 #include "topogeo/topomap/local_map.hpp"

@@ -29,7 +29,7 @@ constexpr std::size_t kFewPoints = 12;  // of a blinded laser: such a scan refut
 // doors.
 constexpr double kRight_m = 0.3;
 constexpr double kRight_rad = 0.087266463;
-// A carried robot is lost within three stops (map_localizer_test), a doubted one seldom
+// A carried robot is lost within three stops (map_tracker_test), a doubted one seldom
 // (tests/bench/kidnapped.cpp).
 constexpr double kLostBelow = 0.25;
 constexpr double kTrackingFrom = 0.5;   // more probably right than wrong

@@ -1,7 +1,7 @@
 #include "topogeo/localization/session/make_slam.hpp"
 
-#include "topogeo/localization/mapping/localizer.hpp"
-#include "topogeo/localization/thesis/thesis_localizer.hpp"
+#include "topogeo/localization/mapping/pose_graph_slam.hpp"
+#include "topogeo/localization/thesis/thesis_slam.hpp"
 
 namespace topogeo::localization {
 

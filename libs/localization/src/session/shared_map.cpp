@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "topogeo/localization/mapping/drive_join.hpp"
-#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/mapping/pose_graph_slam.hpp"
 #include "topogeo/localization/session/kept_views.hpp"
 
 namespace topogeo::localization {

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/mapping/pose_graph_slam.hpp"
 #include "topogeo/localization/matching/matcher.hpp"
-#include "topogeo/localization/thesis/thesis_localizer.hpp"
+#include "topogeo/localization/thesis/thesis_slam.hpp"
 
 namespace topogeo::localization {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/localization/session/mapping_session.hpp"
-#include "topogeo/localization/tracking/map_localizer.hpp"
+#include "topogeo/localization/tracking/map_tracker.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/storage/map_document.hpp"
 #include "topogeo/storage/report.hpp"

@@ -1,6 +1,6 @@
 // Interface of all algorithms that map and follow a robot from stop to stop: the pose graph over
-// all accepted matches (localizer.hpp), the thesis alone (thesis_localizer.hpp), localization in a
-// finished map (map_localizer.hpp), or a session of them (slam_session.hpp).
+// all accepted matches (pose_graph_slam.hpp), the thesis alone (thesis_slam.hpp), localization in a
+// finished map (map_tracker.hpp), or a session of them (slam_session.hpp).
 #pragma once
 
 #include <cstddef>

@@ -16,12 +16,12 @@
 #include <optional>
 #include <vector>
 
-#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/mapping/pose_graph_slam.hpp"
 #include "topogeo/localization/mapping/slam.hpp"
 #include "topogeo/localization/mapping/stored_map.hpp"
 #include "topogeo/localization/session/kept_views.hpp"
 #include "topogeo/localization/session/place_confirmation.hpp"
-#include "topogeo/localization/tracking/map_localizer.hpp"
+#include "topogeo/localization/tracking/map_tracker.hpp"
 
 namespace topogeo::localization {
 

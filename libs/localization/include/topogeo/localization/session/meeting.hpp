@@ -13,7 +13,7 @@
 
 #include "topogeo/localization/mapping/stored_map.hpp"
 #include "topogeo/localization/session/place_confirmation.hpp"
-#include "topogeo/localization/tracking/map_localizer.hpp"
+#include "topogeo/localization/tracking/map_tracker.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "topogeo/localization/tracking/map_localizer.hpp"
+#include "topogeo/localization/tracking/map_tracker.hpp"
 
 namespace topogeo::localization {
 

@@ -15,7 +15,7 @@
 #include "topogeo/localization/mapping/stored_map.hpp"
 #include "topogeo/localization/matching/match.hpp"
 #include "topogeo/localization/session/mapping_session.hpp"
-#include "topogeo/localization/tracking/map_localizer.hpp"
+#include "topogeo/localization/tracking/map_tracker.hpp"
 
 namespace topogeo::localization {
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/mapping/pose_graph_slam.hpp"
 
 #include <array>
 #include <chrono>

@@ -1,6 +1,6 @@
 // The thesis's own algorithm alone (Thesis, 7.3.1; docs/algorithms.md, "Forward correction" and
-// "Backward correction"), for comparison with the pose graph of localizer.hpp: forward correction
-// at each stop, backward correction when a cycle closes (CycleClosing).
+// "Backward correction"), for comparison with the pose graph of pose_graph_slam.hpp: forward
+// correction at each stop, backward correction when a cycle closes (CycleClosing).
 //
 // Each pose is that of the one match with the largest fitness (eq. 7.18); nothing is averaged, and
 // only a closed cycle moves older poses. Differences from the print, with reasons:

@@ -1,4 +1,4 @@
-#include "topogeo/localization/tracking/map_localizer.hpp"
+#include "topogeo/localization/tracking/map_tracker.hpp"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "topogeo/localization/thesis/thesis_localizer.hpp"
+#include "topogeo/localization/thesis/thesis_slam.hpp"
 
 #include <algorithm>
 #include <cmath>
