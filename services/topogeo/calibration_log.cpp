@@ -98,12 +98,12 @@ MatchedLog match_log(const pipeline::Config& config, OpenLog& log) {
   matching.final_passes = 0;
   localization::InProcessPool searching;
   localization::RecordingPool pool(searching);
-  localization::Localizer localizer(matching, pool);
+  localization::PoseGraphSlam slam(matching, pool);
   MatchedLog result;
-  result.maps = make_maps(config, log, "matching", [&](const auto& map) { localizer.add(map); });
-  localizer.finish();
+  result.maps = make_maps(config, log, "matching", [&](const auto& map) { slam.add(map); });
+  slam.finish();
   result.matched =
-      localization::motions_from_matches(result.maps, pool.accepted(), localizer.trajectory());
+      localization::motions_from_matches(result.maps, pool.accepted(), slam.trajectory());
   return result;
 }
 

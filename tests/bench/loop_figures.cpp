@@ -33,9 +33,9 @@ std::vector<LocalMap> local_maps_of(const Recording& recording, const pipeline::
   return maps;
 }
 
-void localize(localization::Localizer& localizer, const std::vector<LocalMap>& maps) {
-  for (const LocalMap& map : maps) localizer.add(std::make_shared<const LocalMap>(map));
-  localizer.finish();
+void map_drive(localization::PoseGraphSlam& slam, const std::vector<LocalMap>& maps) {
+  for (const LocalMap& map : maps) slam.add(std::make_shared<const LocalMap>(map));
+  slam.finish();
 }
 
 std::vector<StampedPose> reference_of(const Recording& recording) {
@@ -61,9 +61,9 @@ std::vector<std::optional<Pose2>> reference_of_stops(const std::vector<LocalMap>
   return poses;
 }
 
-std::vector<storage::LoopCandidate> candidates_of(const localization::Localizer& localizer) {
+std::vector<storage::LoopCandidate> candidates_of(const localization::PoseGraphSlam& slam) {
   storage::Report report;
-  results::add_loop_candidates(report, localizer.loop_decisions());
+  results::add_loop_candidates(report, slam.loop_decisions());
   return std::move(report.loop_candidates);
 }
 
@@ -74,15 +74,14 @@ LoopFigures measure_loops(const Recording& recording, const pipeline::Config& co
   support::StageTimes times;
   std::vector<LocalMap> maps;
   localization::InProcessPool pool;
-  localization::Localizer localizer(config.localizer, pool);
+  localization::PoseGraphSlam slam(config.localizer, pool);
   {
     const auto scope = times.measure("mapping");
     maps = local_maps_of(recording, config);
-    localize(localizer, maps);
+    map_drive(slam, maps);
   }
   const std::vector<StampedPose> reference = reference_of(recording);
-  const std::vector<StampedPose> corrected =
-      topomap::expand_trajectory(localizer.trajectory(), maps);
+  const std::vector<StampedPose> corrected = topomap::expand_trajectory(slam.trajectory(), maps);
 
   LoopFigures figures;
   figures.name = recording.name;
@@ -91,13 +90,12 @@ LoopFigures measure_loops(const Recording& recording, const pipeline::Config& co
   if (relations) {
     figures.relations = pipeline::relations_error(corrected, storage::read_relations(*relations));
   }
-  figures.recall =
-      pipeline::loop_recall(maps, reference, candidates_of(localizer), kReferenceApart_ns);
-  figures.triangles = match_triangles(localizer.graph());
+  figures.recall = pipeline::loop_recall(maps, reference, candidates_of(slam), kReferenceApart_ns);
+  figures.triangles = match_triangles(slam.graph());
   const std::vector<std::optional<Pose2>> T_world_stop = reference_of_stops(maps, reference);
-  figures.predictions = revisit_predictions(localizer.loop_decisions(), T_world_stop);
-  figures.decisions = judged_decisions(localizer.loop_decisions(), T_world_stop);
-  figures.match_tasks = localizer.counts().tasks;
+  figures.predictions = revisit_predictions(slam.loop_decisions(), T_world_stop);
+  figures.decisions = judged_decisions(slam.loop_decisions(), T_world_stop);
+  figures.match_tasks = slam.counts().tasks;
   figures.cpu_s = times.stages().front().cpu_s;
   return figures;
 }

@@ -1,4 +1,4 @@
-// The forward step of the localizer deep in a log, and whole logs. Real logs are read from
+// The forward step of PoseGraphSlam deep in a log, and whole logs. Real logs are read from
 // TOPOGEO_LOG_DIR, by default ../shared/data beside the source tree; without them their benchmarks
 // do not exist.
 #include <cstdlib>
@@ -27,24 +27,24 @@ std::filesystem::path csail_log() {
          "csail.clf.gz";
 }
 
-// Time of Localizer::add for the map of `stop`, after all maps before it.
+// Time of PoseGraphSlam::add for the map of `stop`, after all maps before it.
 void measure_forward_step(benchmark::State& state, const Maps& maps, std::size_t stop) {
   if (stop >= maps.size()) {
     state.SkipWithError("the log has too few stops");
     return;
   }
   localization::InProcessPool pool;
-  localization::Localizer before({}, pool);
+  localization::PoseGraphSlam before({}, pool);
   for (std::size_t i = 0; i < stop; ++i) before.add(maps[i]);
   const std::uint64_t tasks_before = before.counts().tasks;
   std::uint64_t tasks = 0;
   for (auto _ : state) {
     state.PauseTiming();
-    localization::Localizer localizer = before;
+    localization::PoseGraphSlam slam = before;
     state.ResumeTiming();
-    benchmark::DoNotOptimize(localizer.add(maps[stop]));
+    benchmark::DoNotOptimize(slam.add(maps[stop]));
     state.PauseTiming();
-    tasks = localizer.counts().tasks - tasks_before;
+    tasks = slam.counts().tasks - tasks_before;
     state.ResumeTiming();
   }
   state.counters["tasks"] = static_cast<double>(tasks);

@@ -60,10 +60,10 @@ class LocalizerTest : public ::testing::Test {
   }
   void expect_result_of_one_process() {
     localization::InProcessPool pool;
-    localization::Localizer localizer({}, pool);
-    for (const auto& map : maps_) localizer.add(map);
-    localizer.finish();
-    const topomap::Trajectory expected = localizer.trajectory();
+    localization::PoseGraphSlam slam({}, pool);
+    for (const auto& map : maps_) slam.add(map);
+    slam.finish();
+    const topomap::Trajectory expected = slam.trajectory();
     const auto got = assembly_.whole(end_->version());
     ASSERT_TRUE(got) << "not all segments came before the end with its version";
     EXPECT_EQ(end_->count(), maps_.size());
@@ -73,14 +73,14 @@ class LocalizerTest : public ::testing::Test {
       EXPECT_EQ(got->stops[i].T_map_robot, expected.stops[i].T_map_robot) << i;
       EXPECT_EQ(got->stops[i].covariance, expected.stops[i].covariance) << i;
     }
-    const std::vector<topomap::LoopClosure> loops = localizer.loop_closures();
+    const std::vector<topomap::LoopClosure> loops = slam.loop_closures();
     EXPECT_EQ(last_closures_->version(), expected.version);
     ASSERT_EQ(last_closures_->closures().size(), loops.size());
     ASSERT_TRUE(wait_until("the localizer to be finished",
                            [&] { return last_status_->state() == msg::kServiceFinished; }));
     EXPECT_EQ(counter("stops"), static_cast<double>(maps_.size()));
-    EXPECT_EQ(counter("tasks"), static_cast<double>(localizer.counts().tasks));
-    EXPECT_EQ(counter("accepted"), static_cast<double>(localizer.counts().reasons[0]));
+    EXPECT_EQ(counter("tasks"), static_cast<double>(slam.counts().tasks));
+    EXPECT_EQ(counter("accepted"), static_cast<double>(slam.counts().reasons[0]));
     EXPECT_EQ(counter("loop_closures"), static_cast<double>(loops.size()));
     EXPECT_EQ(last_status_->fault_count(), 0U) << last_status_->message().to_string();
   }
@@ -240,7 +240,7 @@ TEST_F(LateLocalizer, SaysNoPoseBeforeItHasAddedTheStopsAgain) {
   ASSERT_TRUE(wait_until("the map store to have all stops",
                          [&] { return stored_ && stored_->session_stops() == maps_.size(); }));
   localization::InProcessPool pool;
-  localization::Localizer expected({}, pool);
+  localization::PoseGraphSlam expected({}, pool);
   for (const auto& map : maps_) expected.add(map);
   const geometry::Pose2 T_map_robot = expected.last_stop()->T_map_robot;
   double furthest_m = 0.0;

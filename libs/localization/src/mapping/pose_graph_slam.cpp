@@ -42,13 +42,14 @@ std::vector<std::uint32_t> moved_stops(std::span<const Pose2> before,
 
 }  // namespace
 
-Localizer::Localizer(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer)
+PoseGraphSlam::PoseGraphSlam(const LocalizerConfig& config, MatchPool& pool,
+                             GraphOptimizer* optimizer)
     : config_(config),
       matching_(config, pool),
       loops_(config),
       schedule_(optimizer, config.optimization_delay) {}
 
-bool Localizer::add(MapPointer map) {
+bool PoseGraphSlam::add(MapPointer map) {
   append(std::move(map));
   ++version_;
   const std::uint32_t stop = last();
@@ -67,17 +68,17 @@ bool Localizer::add(MapPointer map) {
 
 // --- stops
 
-std::uint32_t Localizer::last() const {
+std::uint32_t PoseGraphSlam::last() const {
   return static_cast<std::uint32_t>(matching_.size() - 1);
 }
 
 // Null if the first stop belongs to another session, which may be of another robot.
-const LocalMap* Localizer::first_of_session(const LocalMap& map) const {
+const LocalMap* PoseGraphSlam::first_of_session(const LocalMap& map) const {
   const LocalMap& first = matching_.map(0);
   return first.stop.session == map.stop.session ? &first : nullptr;
 }
 
-void Localizer::append(MapPointer map) {
+void PoseGraphSlam::append(MapPointer map) {
   const bool first = matching_.size() == 0;
   check_next(*map, matching_.size(), first ? nullptr : first_of_session(*map));
   if (first) {
@@ -103,14 +104,14 @@ void Localizer::append(MapPointer map) {
 }
 
 // Places the last stop relative to recent ones.
-std::vector<StepMatch> Localizer::place_last() {
+std::vector<StepMatch> PoseGraphSlam::place_last() {
   std::vector<StepMatch> evidence = match_recent();
   graph_.place_last_pose();
   covariances_[last()] = covariance_in_map(graph_, covariances_, last());
   return evidence;
 }
 
-std::vector<StepMatch> Localizer::match_recent() {
+std::vector<StepMatch> PoseGraphSlam::match_recent() {
   std::vector<StopMatch> matches = matching_.match_recent(graph_);
   refuse_look_alikes(matches, steps_);
   const std::vector<StopMatch> further = match_further(matches);
@@ -141,7 +142,7 @@ std::vector<StepMatch> Localizer::match_recent() {
 
 // If no regular search succeeded, compares with stops that odometry is too uncertain to search. A
 // match found there replaces those of the widened search.
-std::vector<StopMatch> Localizer::match_further(std::vector<StopMatch>& matches) {
+std::vector<StopMatch> PoseGraphSlam::match_further(std::vector<StopMatch>& matches) {
   if (std::any_of(matches.begin(), matches.end(),
                   [](const StopMatch& match) { return match.accepted() && !match.widened; })) {
     return {};
@@ -156,7 +157,7 @@ std::vector<StopMatch> Localizer::match_further(std::vector<StopMatch>& matches)
 }
 
 // Closes loops between these stops and earlier places.
-std::vector<StepMatch> Localizer::match_revisited(std::span<const std::uint32_t> stops) {
+std::vector<StepMatch> PoseGraphSlam::match_revisited(std::span<const std::uint32_t> stops) {
   const std::vector<StopMatch> matches = matching_.match_revisited(graph_, stops);
   std::vector<StepMatch> evidence;
   for (const StopMatch& match : matches) {
@@ -189,7 +190,7 @@ std::vector<StepMatch> Localizer::match_revisited(std::span<const std::uint32_t>
   return evidence;
 }
 
-void Localizer::judge_state(std::vector<StepMatch> matches) {
+void PoseGraphSlam::judge_state(std::vector<StepMatch> matches) {
   const std::uint32_t stop = last();
   StepEvidence evidence;
   evidence.matches = std::move(matches);
@@ -204,7 +205,7 @@ void Localizer::judge_state(std::vector<StepMatch> matches) {
 // --- optimisation
 
 // True if there is a result, which may have moved earlier poses.
-bool Localizer::apply(const std::optional<OptimizationSchedule::Finished>& finished) {
+bool PoseGraphSlam::apply(const std::optional<OptimizationSchedule::Finished>& finished) {
   if (!finished) return false;
   for (const PoseGraphEdge& loop : loops_.release(finished->loops)) graph_.add_edge(loop);
   const GraphSolution& solution = finished->solution;
@@ -219,7 +220,7 @@ bool Localizer::apply(const std::optional<OptimizationSchedule::Finished>& finis
 
 // An optimisation of all stops updates all covariances. Otherwise only its stops and all later ones
 // are updated, from the earlier stops that they were matched with.
-void Localizer::update_covariances(const GraphSolution& solution) {
+void PoseGraphSlam::update_covariances(const GraphSolution& solution) {
   if (solution.whole) {
     const std::vector<UncertainPose> T_map_stop = graph_.relative_to(0);
     for (std::size_t i = 0; i < T_map_stop.size(); ++i) covariances_[i] = T_map_stop[i].covariance;
@@ -233,13 +234,13 @@ void Localizer::update_covariances(const GraphSolution& solution) {
   }
 }
 
-void Localizer::rescale_steps() {
+void PoseGraphSlam::rescale_steps() {
   for (std::uint32_t stop = 1; stop <= last(); ++stop) {
     if (const std::optional<Pose2> step = steps_.rescaled(stop)) graph_.correct_step(stop, *step);
   }
 }
 
-void Localizer::optimize_now() {
+void PoseGraphSlam::optimize_now() {
   apply(schedule_.fetch_now());
   rescale_steps();
   schedule_.want_whole();
@@ -247,11 +248,11 @@ void Localizer::optimize_now() {
   apply(schedule_.fetch_now());
 }
 
-void Localizer::compare_stored(std::uint32_t first) {
+void PoseGraphSlam::compare_stored(std::uint32_t first) {
   close_all_loops(std::max(1U, first));
 }
 
-void Localizer::finish() {
+void PoseGraphSlam::finish() {
   if (matching_.size() < 2) return;
   optimize_now();
   // The stops of a stored map were compared with each other when it was made.
@@ -261,7 +262,7 @@ void Localizer::finish() {
 }
 
 // Compares the stops from `first` on, and again all stops that this moves.
-void Localizer::close_all_loops(std::uint32_t first) {
+void PoseGraphSlam::close_all_loops(std::uint32_t first) {
   std::vector<std::uint32_t> again(matching_.size() - first);
   std::iota(again.begin(), again.end(), first);
   for (std::uint32_t pass = 0; pass < config_.final_passes; ++pass) {
@@ -273,7 +274,7 @@ void Localizer::close_all_loops(std::uint32_t first) {
 }
 
 // Returns how many loops were closed.
-std::size_t Localizer::close_more_loops(std::span<const std::uint32_t> stops) {
+std::size_t PoseGraphSlam::close_more_loops(std::span<const std::uint32_t> stops) {
   const std::size_t before = graph_.edges().size() + loops_.waiting().size();
   loops_.drop_pending();
   match_revisited(stops);
@@ -282,9 +283,10 @@ std::size_t Localizer::close_more_loops(std::span<const std::uint32_t> stops) {
 
 // --- stored maps and the drives that join them
 
-Localizer::Localizer(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer,
-                     const std::shared_ptr<const StoredMap>& stored)
-    : Localizer(config, pool, optimizer) {
+PoseGraphSlam::PoseGraphSlam(const LocalizerConfig& config, MatchPool& pool,
+                             GraphOptimizer* optimizer,
+                             const std::shared_ptr<const StoredMap>& stored)
+    : PoseGraphSlam(config, pool, optimizer) {
   check(*stored);
   for (std::size_t i = 0; i < stored->maps.size(); ++i) {
     restore(MapPointer(stored, &stored->maps[i]), stored->trajectory.stops[i]);
@@ -298,7 +300,7 @@ Localizer::Localizer(const LocalizerConfig& config, MatchPool& pool, GraphOptimi
   stored_stops_ = matching_.size();
 }
 
-void Localizer::restore(MapPointer map, const topomap::StopPose& pose) {
+void PoseGraphSlam::restore(MapPointer map, const topomap::StopPose& pose) {
   const bool first = matching_.size() == 0;
   check_next(*map, matching_.size(), first ? nullptr : first_of_session(*map));
   StepEvidence known;  // the map is right by definition
@@ -317,8 +319,8 @@ void Localizer::restore(MapPointer map, const topomap::StopPose& pose) {
   monitor_.add(known);
 }
 
-void Localizer::join(std::span<const MapPointer> drive,
-                     std::span<const StoredMatch> matches_of_last, double confidence) {
+void PoseGraphSlam::join(std::span<const MapPointer> drive,
+                         std::span<const StoredMatch> matches_of_last, double confidence) {
   apply(schedule_.fetch_now());
   gap_ = first_stop_of_drive(graph_, drive, matches_of_last, config_.odometry);
   matching_.forget_solutions();
@@ -350,7 +352,7 @@ void Localizer::join(std::span<const MapPointer> drive,
 
 // --- state
 
-topomap::Trajectory Localizer::trajectory() const {
+topomap::Trajectory PoseGraphSlam::trajectory() const {
   topomap::Trajectory trajectory;
   trajectory.version = version_;
   trajectory.stops.reserve(matching_.size());
@@ -358,17 +360,17 @@ topomap::Trajectory Localizer::trajectory() const {
   return trajectory;
 }
 
-std::optional<topomap::StopPose> Localizer::last_stop() const {
+std::optional<topomap::StopPose> PoseGraphSlam::last_stop() const {
   if (matching_.size() == 0) return std::nullopt;
   return pose_of(last());
 }
 
-topomap::StopPose Localizer::pose_of(std::size_t stop) const {
+topomap::StopPose PoseGraphSlam::pose_of(std::size_t stop) const {
   const LocalMap& map = matching_.map(stop);
   return {map.id, map.stamp_ns, graph_.poses()[stop], covariances_[stop], map.id};
 }
 
-std::vector<topomap::LoopClosure> Localizer::loop_closures() const {
+std::vector<topomap::LoopClosure> PoseGraphSlam::loop_closures() const {
   std::vector<topomap::LoopClosure> closures;
   for (const PoseGraphEdge& edge : graph_.edges()) {
     if (edge.kind == EdgeKind::kRevisit) closures.push_back({edge.from, edge.to, edge.T_from_to});
@@ -376,7 +378,7 @@ std::vector<topomap::LoopClosure> Localizer::loop_closures() const {
   return closures;
 }
 
-SlamCounts Localizer::counts() const {
+SlamCounts PoseGraphSlam::counts() const {
   SlamCounts counts{matching_.requests().counts()};
   counts.steps_in_doubt = steps_in_doubt_;
   counts.unconfirmed_loops = loops_.unconfirmed();

@@ -10,7 +10,7 @@ std::unique_ptr<Slam> make_slam(const LocalizerConfig& config, MatchPool& pool,
   if (config.mode == LocalizerMode::kThesis) {
     return std::make_unique<ThesisLocalizer>(config, pool);
   }
-  return std::make_unique<Localizer>(config, pool, optimizer);
+  return std::make_unique<PoseGraphSlam>(config, pool, optimizer);
 }
 
 }  // namespace topogeo::localization

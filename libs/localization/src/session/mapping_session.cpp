@@ -17,7 +17,7 @@ MappingSession::MappingSession(const LocalizerConfig& config, MatchPool& pool,
       pool_(pool),
       optimizer_(optimizer),
       mapper_(make_slam(config, pool, optimizer)) {
-  localizer_ = dynamic_cast<Localizer*>(mapper_.get());
+  pose_graph_slam_ = dynamic_cast<PoseGraphSlam*>(mapper_.get());
 }
 
 MappingSession::MappingSession(const LocalizerConfig& config, MatchPool& pool,
@@ -34,9 +34,9 @@ MappingSession::MappingSession(const LocalizerConfig& config, MatchPool& pool,
 }
 
 void MappingSession::take_map(const std::shared_ptr<const StoredMap>& map) {
-  auto localizer = std::make_unique<Localizer>(config_, pool_, optimizer_, map);
-  localizer_ = localizer.get();
-  mapper_ = std::move(localizer);
+  auto slam = std::make_unique<PoseGraphSlam>(config_, pool_, optimizer_, map);
+  pose_graph_slam_ = slam.get();
+  mapper_ = std::move(slam);
   maps_.clear();
   for (const topomap::LocalMap& stored : map->maps) maps_.push_back(MapPointer(map, &stored));
   stands_for_ = map->trajectory.stops;
@@ -73,7 +73,7 @@ void MappingSession::begin_drive(const topomap::LocalMap& map) {
   waiting_.clear();
   confirmation_.begin();
   if (follower_ || maps_.empty()) return;
-  if (localizer_ == nullptr) {
+  if (pose_graph_slam_ == nullptr) {
     throw std::invalid_argument("localizer: stop " + std::to_string(map.stop.number) +
                                 " is of another drive, which mode thesis cannot join to its map");
   }
@@ -93,7 +93,7 @@ bool MappingSession::map_stop(const MapPointer& map) {
   const MapPointer own = numbered(map, false);
   const bool moved = mapper_->add(own);
   add_to_map(own);
-  if (maps_.size() >= renew_at_ && localizer_ != nullptr) renew_long_drive();
+  if (maps_.size() >= renew_at_ && pose_graph_slam_ != nullptr) renew_long_drive();
   return moved;
 }
 
@@ -125,20 +125,20 @@ void MappingSession::join() {
     add_to_map(drive.back());
   }
   end_following();
-  localizer_->join(drive, matches, confidence);
+  pose_graph_slam_->join(drive, matches, confidence);
 }
 
 std::optional<MappingSession::Renewed> MappingSession::renew(std::size_t untouched) {
   if (keeps_all_) return std::nullopt;
-  localizer_->settle();
+  pose_graph_slam_->settle();
   std::shared_ptr<const StoredMap> before = map_so_far();
   KeptViews kept(before->maps, before->trajectory.stops, kKeptTimes, untouched,
                  long_drive_.stops_of_drive);
   if (kept.dropped() == 0) return std::nullopt;
-  const std::uint64_t next_task = localizer_->next_task();
+  const std::uint64_t next_task = pose_graph_slam_->next_task();
   add_counts(counts_before_, mapper_->counts());
   take_map(std::make_shared<const StoredMap>(with_kept_views(*before, kept)));
-  localizer_->number_tasks_from(next_task);
+  pose_graph_slam_->number_tasks_from(next_task);
   return Renewed{std::move(before), std::move(kept)};
 }
 
@@ -197,21 +197,22 @@ void MappingSession::stop_mapping() {
 
 void MappingSession::resume_mapping() {
   if (mapping_) throw std::logic_error("mapping is already active");
-  if (localizer_ == nullptr) {
+  if (pose_graph_slam_ == nullptr) {
     throw std::invalid_argument("localizer.mode: a finished map is continued in mode graph only");
   }
   mapping_ = true;
 }
 
 void MappingSession::start_following(std::shared_ptr<const StoredMap> map) {
-  const std::uint64_t next_task = localizer_ != nullptr ? localizer_->next_task() : counts().tasks;
+  const std::uint64_t next_task =
+      pose_graph_slam_ != nullptr ? pose_graph_slam_->next_task() : counts().tasks;
   follower_ = std::make_unique<MapLocalizer>(config_, std::move(map), pool_);
   follower_->number_tasks_from(next_task);
   confirmation_.begin();
 }
 
 void MappingSession::end_following() {
-  localizer_->number_tasks_from(follower_->next_task());
+  pose_graph_slam_->number_tasks_from(follower_->next_task());
   add_counts(counts_before_, follower_->counts());
   follower_.reset();
 }

@@ -239,7 +239,7 @@ void SharedMap::close_loops(std::uint32_t group) {
     auto map = std::make_shared<StoredMap>(map_of(order));
     map->edges = edges_between(order, parts_.links());
     const std::unique_ptr<MatchPool> pool = pool_.view();
-    Localizer all(config_, *pool, nullptr, map);
+    PoseGraphSlam all(config_, *pool, nullptr, map);
     all.compare_stored(static_cast<std::uint32_t>(map->maps.size() - last->map.size()));
     parts_.count(all.counts());
     for (const PoseGraphEdge& edge : all.edges()) {

@@ -79,13 +79,13 @@ TEST(ReferenceMotionsTest, StopsBetweenTwoPosesAreInterpolatedAndOthersLeftOut) 
   EXPECT_TRUE(motions_from_reference(straight_maps(5), {}, 10.0).empty());
 }
 
-/// A drive through the room, and a localizer's accepted matches.
+/// A drive through the room, and the accepted matches of a PoseGraphSlam.
 class MatchedMotionsTest : public testing::Test {
  protected:
   MatchedMotionsTest()
-      : driven_(test::drive(test::world("room"), {})), pool_(searching_), localizer_({}, pool_) {
-    for (const auto& map : driven_.maps) localizer_.add(map);
-    localizer_.finish();
+      : driven_(test::drive(test::world("room"), {})), pool_(searching_), slam_({}, pool_) {
+    for (const auto& map : driven_.maps) slam_.add(map);
+    slam_.finish();
   }
 
   [[nodiscard]] Pose2 truth(std::uint32_t first, std::uint32_t last) const {
@@ -95,18 +95,18 @@ class MatchedMotionsTest : public testing::Test {
   test::DrivenMaps driven_;
   InProcessPool searching_;
   RecordingPool pool_;
-  Localizer localizer_;
+  PoseGraphSlam slam_;
 };
 
 TEST_F(MatchedMotionsTest, ThePoolHandsOnAndKeepsWhatIsAccepted) {
   EXPECT_EQ(pool_.accepted().size(),
-            localizer_.counts().reasons[static_cast<std::size_t>(Reason::kNone)]);
+            slam_.counts().reasons[static_cast<std::size_t>(Reason::kNone)]);
   EXPECT_GT(pool_.accepted().size(), driven_.maps.size() / 2);
 }
 
 TEST_F(MatchedMotionsTest, AreRightWithoutTheOdometry) {
   const MatchedMotions found =
-      motions_from_matches(driven_.maps, pool_.accepted(), localizer_.trajectory());
+      motions_from_matches(driven_.maps, pool_.accepted(), slam_.trajectory());
   EXPECT_EQ(found.motions.size() + found.unrefined + found.contradicted, pool_.accepted().size());
   ASSERT_GT(found.motions.size(), pool_.accepted().size() / 2);
   std::vector<double> errors_m;
@@ -126,9 +126,9 @@ TEST_F(MatchedMotionsTest, AreRightWithoutTheOdometry) {
 
 TEST_F(MatchedMotionsTest, AMatchAgainstAllOthersIsLeftOut) {
   const MatchedMotions before =
-      motions_from_matches(driven_.maps, pool_.accepted(), localizer_.trajectory());
+      motions_from_matches(driven_.maps, pool_.accepted(), slam_.trajectory());
   // Bends the trajectory at one stop, so that the matches of that stop contradict it.
-  topomap::Trajectory bent = localizer_.trajectory();
+  topomap::Trajectory bent = slam_.trajectory();
   bent.stops[2].T_map_robot.theta_rad += 0.5;
   const MatchedMotions after = motions_from_matches(driven_.maps, pool_.accepted(), bent);
   std::size_t of_stop = 0;

@@ -32,20 +32,20 @@ struct Outcome {
   int corrections = 0;  // steps that moved earlier poses
 };
 
-Outcome localize(const test::Maps& maps, MatchPool& pool, const LocalizerConfig& config = {}) {
-  Localizer localizer(config, pool);
+Outcome map_drive(const test::Maps& maps, MatchPool& pool, const LocalizerConfig& config = {}) {
+  PoseGraphSlam slam(config, pool);
   Outcome outcome;
-  for (const auto& map : maps) outcome.corrections += localizer.add(map) ? 1 : 0;
-  localizer.finish();
-  outcome.trajectory = localizer.trajectory();
-  outcome.closures = localizer.loop_closures();
-  outcome.counts = localizer.counts();
+  for (const auto& map : maps) outcome.corrections += slam.add(map) ? 1 : 0;
+  slam.finish();
+  outcome.trajectory = slam.trajectory();
+  outcome.closures = slam.loop_closures();
+  outcome.counts = slam.counts();
   return outcome;
 }
 
-Outcome localize(const test::Maps& maps, const LocalizerConfig& config = {}) {
+Outcome map_drive(const test::Maps& maps, const LocalizerConfig& config = {}) {
   InProcessPool pool;
-  return localize(maps, pool, config);
+  return map_drive(maps, pool, config);
 }
 
 // Root mean square position error when the first poses coincide.
@@ -82,26 +82,26 @@ void expect_same(const Outcome& a, const Outcome& b) {
 }
 
 /// Expects the last stop of a drive through the room at its true place, though odometry errs in the
-/// unmapped step to it; returns the localizer's status.
+/// unmapped step to it; returns the status.
 LocalizationStatus expect_placed(const std::vector<Pose2>& truth, const Pose2& odometry_error) {
   const world::World room = test::world("room");
   InProcessPool pool;
-  Localizer localizer({}, pool);
+  PoseGraphSlam slam({}, pool);
   for (std::uint32_t id = 0; id < truth.size(); ++id) {
     auto map = std::make_shared<topomap::LocalMap>(test::map_at(room, truth[id], id));
     if (id > 0) map->T_previous_robot = geometry::between(truth[id - 1], truth[id]);
     if (id + 1 == truth.size()) map->T_odom_robot = map->T_odom_robot * odometry_error;
-    localizer.add(std::move(map));
+    slam.add(std::move(map));
   }
-  const Pose2 T_map_robot = localizer.trajectory().stops.back().T_map_robot;
+  const Pose2 T_map_robot = slam.trajectory().stops.back().T_map_robot;
   EXPECT_LT(geometry::difference(T_map_robot, geometry::between(truth[0], truth.back())).norm(),
             0.3);
-  return localizer.status();
+  return slam.status();
 }
 
 // The robot turns at its destination and drives back unmapped: its next view shares little with the
 // last ones, and a corner of the room looks alike after a quarter turn.
-TEST(LocalizerTest, ALookAlikeFarFromGoodOdometryDoesNotCount) {
+TEST(PoseGraphSlamTest, ALookAlikeFarFromGoodOdometryDoesNotCount) {
   for (double back_m = 0.6; back_m <= 1.81; back_m += 0.1) {
     SCOPED_TRACE(back_m);
     expect_placed({{1.0, 1.0, 0.0},
@@ -120,7 +120,7 @@ constexpr Pose2 kOdometryError{0.1, -0.1, 0.1};
 
 // The robot turns where the drive began, then drives on unmapped: at its new place the previous
 // stop shows little, the first ones much.
-TEST(LocalizerTest, AfterALongStepThatNobodyMappedThePlaceIsKnownByStopsBefore) {
+TEST(PoseGraphSlamTest, AfterALongStepThatNobodyMappedThePlaceIsKnownByStopsBefore) {
   for (double last_rad = -2.0; last_rad >= -3.05; last_rad -= 0.15) {
     std::vector<Pose2> truth;
     for (double theta_rad = 0.0; theta_rad > last_rad; theta_rad -= 0.35) {
@@ -135,7 +135,7 @@ TEST(LocalizerTest, AfterALongStepThatNobodyMappedThePlaceIsKnownByStopsBefore) 
 
 // The same with the stops that show the place further back than those that each stop is compared
 // with: the robot was there, turned, drove back, and returns unmapped.
-TEST(LocalizerTest, AfterALongStepThatNobodyMappedThePlaceIsKnownByAnEarlierVisit) {
+TEST(PoseGraphSlamTest, AfterALongStepThatNobodyMappedThePlaceIsKnownByAnEarlierVisit) {
   for (double last_rad = -0.3; last_rad <= 0.31; last_rad += 0.1) {
     std::vector<Pose2> truth = {{1.0, 1.0, 0.0}, {2.0, 1.0, -0.05}, {3.0, 0.93, 0.0}};
     for (double theta_rad = 0.15; theta_rad < 3.05; theta_rad += 0.36) {
@@ -148,10 +148,10 @@ TEST(LocalizerTest, AfterALongStepThatNobodyMappedThePlaceIsKnownByAnEarlierVisi
   }
 }
 
-TEST(LocalizerTest, ClosesTheLoopOfTheSimulatedFloor) {
+TEST(PoseGraphSlamTest, ClosesTheLoopOfTheSimulatedFloor) {
   const DrivenMaps& driven = round_trip();
   ASSERT_GT(driven.maps.size(), 80U);
-  const Outcome outcome = localize(driven.maps);
+  const Outcome outcome = map_drive(driven.maps);
   std::vector<Pose2> odometry;
   for (const auto& map : driven.maps) odometry.push_back(map->T_odom_robot);
   const double before_m = position_error_m(odometry, driven.T_world_robot);
@@ -185,14 +185,14 @@ TEST(LocalizerTest, ClosesTheLoopOfTheSimulatedFloor) {
 }
 
 // The scale of odometry was still unknown on the first steps.
-TEST(LocalizerTest, InTheEndAllStepsHaveTheScaleThatWasLearnedOnTheDrive) {
+TEST(PoseGraphSlamTest, InTheEndAllStepsHaveTheScaleThatWasLearnedOnTheDrive) {
   const test::Maps& maps = round_trip().maps;
   InProcessPool pool;
-  Localizer localizer({}, pool);
-  for (const auto& map : maps) localizer.add(map);
+  PoseGraphSlam slam({}, pool);
+  for (const auto& map : maps) slam.add(map);
   const auto scales = [&] {
     std::vector<double> ratios;
-    for (const PoseGraphEdge& edge : localizer.graph().edges()) {
+    for (const PoseGraphEdge& edge : slam.graph().edges()) {
       if (edge.kind != EdgeKind::kOdometry) continue;
       const Pose2 recorded =
           geometry::between(maps[edge.from]->T_odom_robot, maps[edge.to]->T_odom_robot);
@@ -204,26 +204,26 @@ TEST(LocalizerTest, InTheEndAllStepsHaveTheScaleThatWasLearnedOnTheDrive) {
   ASSERT_NEAR(scales().front(), 1.0, 1e-9);
   const double learned = scales().back();
   ASSERT_GT(std::fabs(learned - 1.0), 1e-4);
-  localizer.finish();
+  slam.finish();
   for (const double scale : scales()) EXPECT_NEAR(scale, learned, 1e-9);
 }
 
-TEST(LocalizerTest, WithoutRevisitsNoLoopIsClosed) {
+TEST(PoseGraphSlamTest, WithoutRevisitsNoLoopIsClosed) {
   LocalizerConfig config;
   config.revisit_matches = 0;
-  const Outcome outcome = localize(round_trip().maps, config);
+  const Outcome outcome = map_drive(round_trip().maps, config);
   EXPECT_TRUE(outcome.closures.empty());
   EXPECT_EQ(outcome.corrections, 0);
 }
 
-TEST(LocalizerTest, AStepWithoutALoopTouchesNothingOld) {
+TEST(PoseGraphSlamTest, AStepWithoutALoopTouchesNothingOld) {
   InProcessPool pool;
-  Localizer localizer({}, pool);
+  PoseGraphSlam slam({}, pool);
   topomap::Trajectory before;
   int untouched = 0;
   for (const auto& map : round_trip().maps) {
-    const bool moved = localizer.add(map);
-    topomap::Trajectory after = localizer.trajectory();
+    const bool moved = slam.add(map);
+    topomap::Trajectory after = slam.trajectory();
     for (std::size_t i = 0; !moved && i < before.stops.size(); ++i) {
       ASSERT_EQ(after.stops[i].T_map_robot, before.stops[i].T_map_robot) << i;
       ASSERT_EQ(after.stops[i].covariance, before.stops[i].covariance) << i;
@@ -250,28 +250,28 @@ class LateOptimizer : public GraphOptimizer {
   std::future<GraphSolution> job_;
 };
 
-TEST(LocalizerTest, HowLongTheOptimizationTakesDoesNotMatter) {
+TEST(PoseGraphSlamTest, HowLongTheOptimizationTakesDoesNotMatter) {
   LateOptimizer late;
   InProcessPool pool;
-  Localizer localizer({}, pool, &late);
+  PoseGraphSlam slam({}, pool, &late);
   Outcome outcome;
-  for (const auto& map : round_trip().maps) outcome.corrections += localizer.add(map) ? 1 : 0;
-  localizer.finish();
-  outcome.trajectory = localizer.trajectory();
-  outcome.closures = localizer.loop_closures();
-  outcome.counts = localizer.counts();
+  for (const auto& map : round_trip().maps) outcome.corrections += slam.add(map) ? 1 : 0;
+  slam.finish();
+  outcome.trajectory = slam.trajectory();
+  outcome.closures = slam.loop_closures();
+  outcome.counts = slam.counts();
   EXPECT_GT(late.jobs, 3);
-  expect_same(outcome, localize(round_trip().maps));
+  expect_same(outcome, map_drive(round_trip().maps));
 }
 
-TEST(LocalizerTest, EveryLoopIsExplained) {
+TEST(PoseGraphSlamTest, EveryLoopIsExplained) {
   InProcessPool pool;
-  Localizer localizer({}, pool);
-  for (const auto& map : round_trip().maps) localizer.add(map);
-  localizer.finish();
+  PoseGraphSlam slam({}, pool);
+  for (const auto& map : round_trip().maps) slam.add(map);
+  slam.finish();
   std::set<std::pair<std::uint32_t, std::uint32_t>> standing;
   std::size_t refused = 0;
-  for (const LoopDecision& decision : localizer.loop_decisions()) {
+  for (const LoopDecision& decision : slam.loop_decisions()) {
     const std::pair loop{decision.earlier_id, decision.later_id};
     EXPECT_LT(decision.earlier_id, decision.later_id);
     EXPECT_LE(decision.later_id, decision.step);
@@ -287,7 +287,7 @@ TEST(LocalizerTest, EveryLoopIsExplained) {
   }
   EXPECT_GT(refused, 0U);
   std::set<std::pair<std::uint32_t, std::uint32_t>> closed;
-  for (const topomap::LoopClosure& loop : localizer.loop_closures()) {
+  for (const topomap::LoopClosure& loop : slam.loop_closures()) {
     closed.emplace(loop.earlier_id, loop.later_id);
   }
   EXPECT_EQ(standing, closed);
@@ -310,20 +310,20 @@ class TwoWorkersBackwards : public MatchPool {
   std::size_t turn_ = 0;
 };
 
-TEST(LocalizerTest, TheResultDependsNeitherOnTheRunNorOnWhoAnswersInWhichOrder) {
+TEST(PoseGraphSlamTest, TheResultDependsNeitherOnTheRunNorOnWhoAnswersInWhichOrder) {
   const test::Maps& maps = round_trip().maps;
-  const Outcome once = localize(maps);
-  expect_same(once, localize(maps));
+  const Outcome once = map_drive(maps);
+  expect_same(once, map_drive(maps));
   TwoWorkersBackwards pool;
-  expect_same(once, localize(maps, pool));
+  expect_same(once, map_drive(maps, pool));
 
   LocalizerConfig other_seed;
   other_seed.seed = 2;
-  EXPECT_NE(localize(maps, other_seed).trajectory.stops.back().T_map_robot,
+  EXPECT_NE(map_drive(maps, other_seed).trajectory.stops.back().T_map_robot,
             once.trajectory.stops.back().T_map_robot);
 }
 
-TEST(LocalizerTest, RefusesMapsOutOfOrderAndOfAnotherRobot) {
+TEST(PoseGraphSlamTest, RefusesMapsOutOfOrderAndOfAnotherRobot) {
   const world::World room = test::world("room");
   const auto map = [&](std::uint32_t id, const char* robot) {
     topomap::LocalMap made = test::map_at(room, {1.0 + 0.5 * id, 1.0, 0.0}, id);
@@ -331,42 +331,42 @@ TEST(LocalizerTest, RefusesMapsOutOfOrderAndOfAnotherRobot) {
     return std::make_shared<const topomap::LocalMap>(std::move(made));
   };
   InProcessPool pool;
-  Localizer localizer({}, pool);
-  EXPECT_THROW(localizer.add(map(1, "robot")), std::invalid_argument);
-  localizer.add(map(0, "robot"));
-  EXPECT_THROW(localizer.add(map(0, "robot")), std::invalid_argument);
-  EXPECT_THROW(localizer.add(map(2, "robot")), std::invalid_argument);
-  EXPECT_THROW(localizer.add(map(1, "stranger")), std::invalid_argument);
-  EXPECT_EQ(localizer.trajectory().stops.size(), 1U);
-  EXPECT_NO_THROW(localizer.add(map(1, "robot")));
-  EXPECT_NEAR(localizer.trajectory().stops[1].T_map_robot.x_m, 0.5, 0.05);
+  PoseGraphSlam slam({}, pool);
+  EXPECT_THROW(slam.add(map(1, "robot")), std::invalid_argument);
+  slam.add(map(0, "robot"));
+  EXPECT_THROW(slam.add(map(0, "robot")), std::invalid_argument);
+  EXPECT_THROW(slam.add(map(2, "robot")), std::invalid_argument);
+  EXPECT_THROW(slam.add(map(1, "stranger")), std::invalid_argument);
+  EXPECT_EQ(slam.trajectory().stops.size(), 1U);
+  EXPECT_NO_THROW(slam.add(map(1, "robot")));
+  EXPECT_NEAR(slam.trajectory().stops[1].T_map_robot.x_m, 0.5, 0.05);
 }
 
-TEST(LocalizerTest, NothingOrOneStopIsNoError) {
+TEST(PoseGraphSlamTest, NothingOrOneStopIsNoError) {
   InProcessPool pool;
-  Localizer localizer({}, pool);
-  localizer.finish();
-  EXPECT_TRUE(localizer.trajectory().stops.empty());
-  localizer.add(round_trip().maps[0]);
-  localizer.finish();
-  EXPECT_EQ(localizer.trajectory().stops.size(), 1U);
-  EXPECT_TRUE(localizer.loop_closures().empty());
+  PoseGraphSlam slam({}, pool);
+  slam.finish();
+  EXPECT_TRUE(slam.trajectory().stops.empty());
+  slam.add(round_trip().maps[0]);
+  slam.finish();
+  EXPECT_EQ(slam.trajectory().stops.size(), 1U);
+  EXPECT_TRUE(slam.loop_closures().empty());
 }
 
-TEST(LocalizerTest, TheVersionGrowsWithEveryStep) {
+TEST(PoseGraphSlamTest, TheVersionGrowsWithEveryStep) {
   InProcessPool pool;
-  Localizer localizer({}, pool);
+  PoseGraphSlam slam({}, pool);
   std::uint64_t version = 0;
   for (std::size_t i = 0; i < 12; ++i) {
-    localizer.add(round_trip().maps[i]);
-    EXPECT_GT(localizer.trajectory().version, version);
-    version = localizer.trajectory().version;
+    slam.add(round_trip().maps[i]);
+    EXPECT_GT(slam.trajectory().version, version);
+    version = slam.trajectory().version;
   }
 }
 
 // The robot drives round the first half of the floor and back; then its scans come from a closed
 // room of another building while its odometry follows the first corridor again.
-TEST(LocalizerTest, ScansOfAnotherWorldCloseNoLoop) {
+TEST(PoseGraphSlamTest, ScansOfAnotherWorldCloseNoLoop) {
   const DrivenMaps floor = test::drive(
       test::world("floor"), {{1.3, 1.2}, {15.0, 1.15}, {16.0, 1.2}, {15.0, 1.15}, {1.3, 1.2}});
   const DrivenMaps room = test::drive(test::world("room"), {});
@@ -381,7 +381,7 @@ TEST(LocalizerTest, ScansOfAnotherWorldCloseNoLoop) {
     }
     maps.push_back(std::make_shared<const topomap::LocalMap>(std::move(moved)));
   }
-  const Outcome outcome = localize(maps);
+  const Outcome outcome = map_drive(maps);
   const auto first_of_room = static_cast<std::uint32_t>(floor.maps.size());
   for (const topomap::LoopClosure& loop : outcome.closures) {
     EXPECT_FALSE(loop.earlier_id < first_of_room && loop.later_id >= first_of_room)

@@ -12,7 +12,7 @@ namespace {
 TEST(MakeSlam, MakesTheAlgorithmThatTheModeNames) {
   InProcessPool pool;
   LocalizerConfig config;
-  EXPECT_NE(dynamic_cast<Localizer*>(make_slam(config, pool).get()), nullptr);
+  EXPECT_NE(dynamic_cast<PoseGraphSlam*>(make_slam(config, pool).get()), nullptr);
   config.mode = LocalizerMode::kThesis;
   EXPECT_NE(dynamic_cast<ThesisLocalizer*>(make_slam(config, pool).get()), nullptr);
 }

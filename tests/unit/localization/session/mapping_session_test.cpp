@@ -85,18 +85,18 @@ class MappingSessionTest : public ::testing::Test {
 std::shared_ptr<const StoredMap> MappingSessionTest::stored_;
 test::DrivenMaps* MappingSessionTest::driven_ = nullptr;
 
-TEST_F(MappingSessionTest, ADriveOfItsOwnIsMappedAsByTheLocalizer) {
-  Localizer localizer({}, pool_);
+TEST_F(MappingSessionTest, ADriveOfItsOwnIsMappedAsByPoseGraphSlam) {
+  PoseGraphSlam slam({}, pool_);
   InProcessPool pool;
   MappingSession session({}, pool);
   for (const auto& map : part(driven_->maps, 0, 30)) {
-    EXPECT_EQ(session.add(map), localizer.add(map)) << map->id;
-    EXPECT_EQ(session.last_stop()->T_map_robot, localizer.trajectory().stops.back().T_map_robot);
+    EXPECT_EQ(session.add(map), slam.add(map)) << map->id;
+    EXPECT_EQ(session.last_stop()->T_map_robot, slam.trajectory().stops.back().T_map_robot);
   }
-  localizer.finish();
+  slam.finish();
   session.finish();
-  EXPECT_TRUE(same_poses(session.trajectory(), localizer.trajectory()));
-  EXPECT_EQ(session.counts().tasks, localizer.counts().tasks);
+  EXPECT_TRUE(same_poses(session.trajectory(), slam.trajectory()));
+  EXPECT_EQ(session.counts().tasks, slam.counts().tasks);
   EXPECT_EQ(session.unmapped_stops(), 0U);
 }
 

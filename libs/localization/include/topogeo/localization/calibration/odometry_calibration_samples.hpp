@@ -23,7 +23,7 @@ namespace topogeo::localization {
 
 using LocalMaps = std::vector<std::shared_ptr<const topomap::LocalMap>>;
 
-/// Forwards tasks to another pool and records the accepted matches of a Localizer.
+/// Forwards tasks to another pool and records the accepted matches of a PoseGraphSlam.
 class RecordingPool : public MatchPool {
  public:
   struct Match {
@@ -48,7 +48,7 @@ class RecordingPool : public MatchPool {
 /// Odometry between successive stops, through all scans in between.
 std::vector<OdometryStretch> odometry_stretches(const LocalMaps& maps);
 
-/// Accepted matches as measured motions. `trajectory` is the localizer's result.
+/// Accepted matches as measured motions. `trajectory` is the result of SLAM.
 struct MatchedMotions {
   std::vector<MeasuredMotion> motions;
   std::size_t unrefined = 0;     ///< left out: the scans alone do not determine the pose

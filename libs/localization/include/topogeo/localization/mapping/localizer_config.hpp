@@ -14,7 +14,7 @@ class ConfigSchema;
 namespace topogeo::localization {
 
 enum class LocalizerMode : std::uint8_t {
-  kGraph = 0,   ///< Localizer: pose graph over all accepted matches
+  kGraph = 0,   ///< PoseGraphSlam: pose graph over all accepted matches
   kThesis = 1,  ///< ThesisLocalizer: only the forward and backward correction of the thesis
 };
 

@@ -1,5 +1,6 @@
-// Corrects the pose of every stop by matching its local map against earlier ones, and spreads
-// closed loops over the stops between by least squares (docs/algorithms.md, "Pose graph").
+// SLAM back end: corrects the pose of every stop by matching its local map against earlier ones,
+// and spreads closed loops over the stops between by least squares (docs/algorithms.md, "Pose
+// graph").
 //
 // The thesis (7.3.1.1, eq. 7.18) takes the single match with the largest fitness; here all matches
 // that pass the gates become edges of a pose graph, which was 3-10 times more accurate on real logs
@@ -34,19 +35,20 @@
 
 namespace topogeo::localization {
 
-class Localizer : public Slam {
+class PoseGraphSlam : public Slam {
  public:
   using MapPointer = std::shared_ptr<const topomap::LocalMap>;
 
-  /// The pool and the optimizer must outlive the localizer. Without an optimizer the work is done
+  /// The pool and the optimizer must outlive this. Without an optimizer the work is done
   /// within the step at which it takes effect.
-  Localizer(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer = nullptr);
+  PoseGraphSlam(const LocalizerConfig& config, MatchPool& pool,
+                GraphOptimizer* optimizer = nullptr);
 
   /// Continues a stored map: its stops come first, and its frame is kept. A drive becomes part of
   /// it through join(). Throws std::invalid_argument if the map has no stops or the ids of its
   /// local maps are not their indices.
-  Localizer(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer,
-            const std::shared_ptr<const StoredMap>& stored);
+  PoseGraphSlam(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer,
+                const std::shared_ptr<const StoredMap>& stored);
 
   /// Adds a drive that was localized in the map but is not connected to the last stop by odometry.
   /// `drive` holds its stops so far, numbered on from those of the map; `matches_of_last` are one

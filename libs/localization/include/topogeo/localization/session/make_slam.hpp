@@ -10,8 +10,8 @@
 
 namespace topogeo::localization {
 
-/// Localizer or ThesisLocalizer, by `config.mode`. The pool and the optimizer (see Localizer) must
-/// outlive it.
+/// PoseGraphSlam or ThesisLocalizer, by `config.mode`. The pool and the optimizer (see
+/// PoseGraphSlam) must outlive it.
 std::unique_ptr<Slam> make_slam(const LocalizerConfig& config, MatchPool& pool,
                                 GraphOptimizer* optimizer = nullptr);
 

@@ -1,5 +1,5 @@
-// A part of a map made by several robots: the stops of one session, held together by its own
-// localizer, or a stored map. SharedMap places it relative to the other parts.
+// A part of a map made by several robots: the stops of one session with a pose graph of
+// their own, or a stored map. SharedMap places it relative to the other parts.
 #pragma once
 
 #include <cstddef>

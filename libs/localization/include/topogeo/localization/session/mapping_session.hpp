@@ -43,7 +43,7 @@ class MappingSession : public Slam {
                  GraphOptimizer* optimizer = nullptr);
   /// Continues a stored map. `initial` is the pose of the robot at its first stop; without it the
   /// whole map is searched. Throws std::invalid_argument in LocalizerMode::kThesis, and like
-  /// Localizer and MapLocalizer.
+  /// PoseGraphSlam and MapLocalizer.
   MappingSession(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer,
                  std::shared_ptr<const StoredMap> map, const std::optional<UncertainPose>& initial);
 
@@ -134,7 +134,7 @@ class MappingSession : public Slam {
   MatchPool& pool_;
   GraphOptimizer* optimizer_;
   std::unique_ptr<Slam> mapper_;
-  Localizer* localizer_ = nullptr;  // mapper_; null for the algorithm of the Thesis
+  PoseGraphSlam* pose_graph_slam_ = nullptr;  // mapper_; null for the algorithm of the Thesis
   std::unique_ptr<MapLocalizer> follower_;
   bool mapping_ = true;
   std::optional<topomap::StopId> last_id_;  // of the drive

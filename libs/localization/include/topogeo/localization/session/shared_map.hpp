@@ -1,9 +1,9 @@
 // One map made by several robots at the same time (docs/algorithms.md, "Several robots, one map").
 //
-// Each session of a robot is mapped by its own localizer, as if the robot were alone: a part of the
-// map. Each robot is searched in the maps of the others (Meeting). When its pose is certain, the
-// two maps become one, at once or after an operator agrees. Then the newest stops of each robot are
-// matched with the others' views, and all measurements together determine all poses
+// Each session of a robot is mapped in a pose graph of its own, as if the robot were alone: a part
+// of the map. Each robot is searched in the maps of the others (Meeting). When its pose is certain,
+// the two maps become one, at once or after an operator agrees. Then the newest stops of each robot
+// are matched with the others' views, and all measurements together determine all poses
 // (place_jointly). The map is that of the first part; parts that have not joined it wait.
 //
 // The result depends only on the stops and the order of their arrival.

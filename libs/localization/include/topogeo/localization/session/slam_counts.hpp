@@ -1,4 +1,4 @@
-// Sums of the counts of localizers.
+// Sums of the counts of several SLAM algorithms.
 #pragma once
 
 #include <cstddef>

@@ -37,7 +37,7 @@ struct MapToUse {
 
 class SlamSession {
  public:
-  /// Begins a map. The pool and the optimizer (see Localizer) must outlive the session.
+  /// Begins a map. The pool and the optimizer (see PoseGraphSlam) must outlive the session.
   SlamSession(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer = nullptr);
   /// Uses a stored map. Throws like MapLocalizer or, to continue the map, like MappingSession.
   SlamSession(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer,
