@@ -217,7 +217,7 @@ void LocalizerService::step(const StopQueue::MapPointer& map) {
   live_.set_stop(map);
   last_map_ = map;
   remember();
-  if (localization::MapLocalizer* follower = slam_->follower()) {
+  if (localization::MapTracker* follower = slam_->follower()) {
     if (table_) table_->add({follower->stops(), follower->added_stops()});
     if (!options_.replay && !stops_are_stored_) follower->forget_stops(kShownStops);
   }

@@ -20,15 +20,15 @@ void add_matches(msg::RunSummary& summary, const localization::SlamCounts& count
   }
 }
 
-void add_localization(msg::RunSummary& summary, const localization::MapLocalizer& localizer) {
-  const auto& stops = localizer.stops_by_state();
+void add_localization(msg::RunSummary& summary, const localization::MapTracker& tracker) {
+  const auto& stops = tracker.stops_by_state();
   for (std::size_t i = 0; i < stops.size(); ++i) {
     msg::StateCount count;
     count.state(static_cast<msg::LocalizationState>(i));
     count.stops(stops.at(i));
     summary.stops_by_state().push_back(count);
   }
-  summary.searches(localizer.searches());
+  summary.searches(tracker.searches());
 }
 
 void add_continuation(msg::RunSummary& summary, const localization::MappingSession& session) {

@@ -15,7 +15,7 @@ namespace topogeo::localizer {
 
 struct RunParts {
   const localization::Slam& slam;
-  const localization::MapLocalizer* in_map;       ///< null: it did not localize in a finished map
+  const localization::MapTracker* in_map;         ///< null: it did not localize in a finished map
   const localization::MappingSession* continued;  ///< null: it extended no map
   const search_pool::BoardCounts& pool;
 };

@@ -94,15 +94,15 @@ bool add_scans(Job& job, pipeline::MappingRun& run, support::StageTimes& times,
 storage::Report make_report(const Job& job, const pipeline::MappingRun& run,
                             const storage::MapDocument& document) {
   storage::Report report;
-  report.command = run.map_localizer() != nullptr ? "localize" : "map";
+  report.command = run.map_tracker() != nullptr ? "localize" : "map";
   report.log = job.options.log.filename().string();
   report.configuration = job.inputs.config.effective;
   results::add_map(report, document);
   results::add_matches(report, run.match_counts());
   results::add_loop_candidates(report, run.loop_decisions());
   results::add_log(report, job.reader.statistics());
-  if (run.map_localizer() != nullptr) {
-    report.localization = pipeline::localization_counts(*run.map_localizer());
+  if (run.map_tracker() != nullptr) {
+    report.localization = pipeline::localization_counts(*run.map_tracker());
   }
   if (job.inputs.continued) report.continuation = pipeline::continuation_counts(*run.session());
   return report;
@@ -150,9 +150,9 @@ int map_log(const JobOptions& options, bool stages) {
   {
     const auto scope = times.measure("writing");
     results::write_map_outputs(options.out, document, options.log.filename().string());
-    if (run.map_localizer() != nullptr) {
+    if (run.map_tracker() != nullptr) {
       support::write_file_atomically(options.out / "localization.csv",
-                                     pipeline::localization_csv(run.map_localizer()->stops()));
+                                     pipeline::localization_csv(run.map_tracker()->stops()));
     }
     if (stages) {
       std::cerr << "drawing the stages of the correction\n";

@@ -83,11 +83,11 @@ bool ArrivalResult::good() const {
 ArrivalResult run_arrival(const MappedFloor& floor, const ArrivalConfig& config,
                           const ArrivalTask& task, ArrivalRecord* record) {
   localization::InProcessPool pool;
-  localization::MapLocalizer localizer(config.system.localizer, floor.stored, pool);
+  localization::MapTracker tracker(config.system.localizer, floor.stored, pool);
   if (config.pose_given) {
-    localizer.set_pose(told(task.T_map_start, task.seed), localization::given_pose_covariance());
+    tracker.set_pose(told(task.T_map_start, task.seed), localization::given_pose_covariance());
   }
-  ClosedLoop loop(task.world, loop_config(config, task), localizer);
+  ClosedLoop loop(task.world, loop_config(config, task), tracker);
   loop.set_map(floor.map, 1);
   loop.set_goal({{1, true}, task.T_map_goal.position_m(), task.T_map_goal.theta_rad});
   const double start_s = loop.time_s();

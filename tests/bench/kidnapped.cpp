@@ -244,9 +244,9 @@ Outcome run(std::uint64_t seed, Calibration& calibration, Samples& samples) {
   const MappedFloor floor = map_floor(seed, config);
   const simulation::SimulatedLog drive = drive_and_kidnap(floor, seed);
   localization::InProcessPool pool;
-  localization::MapLocalizer localizer(config.localizer, floor.map, pool);
-  localizer.set_pose(floor.truth(drive.T_world_robot.front()),
-                     Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal());
+  localization::MapTracker tracker(config.localizer, floor.map, pool);
+  tracker.set_pose(floor.truth(drive.T_world_robot.front()),
+                   Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal());
   pipeline::LocalMapper mapper(config.local_mapper, "robot");
   Watch watch;
   for (std::size_t i = 0; i < drive.scans.size(); ++i) {
@@ -256,11 +256,11 @@ Outcome run(std::uint64_t seed, Calibration& calibration, Samples& samples) {
     }
     const auto map = mapper.add(drive.scans[i]);
     if (!map) continue;
-    localizer.add(std::make_shared<const topomap::LocalMap>(*map));
+    tracker.add(std::make_shared<const topomap::LocalMap>(*map));
     const Pose2 here = floor.truth(T_world_robot);
-    const bool right = is_near(localizer.stops().back().T_map_robot, here);
-    if (localizer.last_step()) collect(*localizer.last_step(), here, samples);
-    const localization::LocalizationStatus belief = localizer.status();
+    const bool right = is_near(tracker.stops().back().T_map_robot, here);
+    if (tracker.last_step()) collect(*tracker.last_step(), here, samples);
+    const localization::LocalizationStatus belief = tracker.status();
     count(belief, right, calibration);
     watch.add_stop(belief.state, right);
   }

@@ -146,19 +146,19 @@ std::vector<double> cpu_of(const bench::Workers& workers) {
   return cpu_s;
 }
 
-Result search_lost(const LostOptions& options, localization::MapLocalizer& localizer,
+Result search_lost(const LostOptions& options, localization::MapTracker& tracker,
                    const std::vector<std::vector<MapPointer>>& drives, bench::PoolClient& client,
                    const bench::Workers& workers) {
   Result result;
   for (const std::vector<MapPointer>& drive : drives) {
-    localizer.search();
+    tracker.search();
     bool found = false;
     for (const MapPointer& stop : drive) {
       const std::vector<double> workers_before_s = cpu_of(workers);
       const double before_s = support::process_cpu_s();
       const bench::Clock::time_point start = bench::Clock::now();
       client.publish({stop});  // as the local mapper does
-      localizer.add(stop);
+      tracker.add(stop);
       if (!found) {
         result.wall_ms.push_back(1e3 * bench::seconds_since(start));
         result.cpu_s += support::process_cpu_s() - before_s;
@@ -166,13 +166,13 @@ Result search_lost(const LostOptions& options, localization::MapLocalizer& local
           result.workers_s += workers.cpu_s(i) - workers_before_s[i];
         }
       }
-      found |= localizer.status().state == localization::LocalizationState::kTracking;
+      found |= tracker.status().state == localization::LocalizationState::kTracking;
     }
     result.found += found ? 1 : 0;
   }
   const std::size_t count = options.starts * options.stops;
-  result.stops.assign(localizer.stops().end() - static_cast<std::ptrdiff_t>(count),
-                      localizer.stops().end());
+  result.stops.assign(tracker.stops().end() - static_cast<std::ptrdiff_t>(count),
+                      tracker.stops().end());
   return result;
 }
 
@@ -202,13 +202,13 @@ class Team {
     if (client_.pool().wait_for_workers(workers, bench::kPatience) < workers) {
       throw std::runtime_error("the workers did not come; " + client_.fault());
     }
-    localizer_.emplace(config.localizer, std::move(map), pool_);
+    tracker_.emplace(config.localizer, std::move(map), pool_);
   }
 
   /// Throws std::runtime_error when the pool reported a fault.
   Result search(const LostOptions& options, const std::vector<std::vector<MapPointer>>& drives) {
     static_cast<void>(pool_.take_whole_map_ms());
-    Result result = search_lost(options, *localizer_, drives, client_, workers_);
+    Result result = search_lost(options, *tracker_, drives, client_, workers_);
     result.whole_map_ms = pool_.take_whole_map_ms();
     if (!client_.fault().empty()) throw std::runtime_error(client_.fault());
     return result;
@@ -218,7 +218,7 @@ class Team {
   bench::PoolClient client_;
   TimedPool pool_{client_.pool()};
   bench::Workers workers_;
-  std::optional<localization::MapLocalizer> localizer_;
+  std::optional<localization::MapTracker> tracker_;
 };
 
 void append(Result& all, const Result& one) {

@@ -99,7 +99,7 @@ RevisitRun drive(const Recording& recording, const pipeline::Config& config,
   run.first_scan = first;
   run.map_stops = map->maps.size();
   localization::InProcessPool pool;
-  localization::MapLocalizer localizer(config.localizer, map, pool);
+  localization::MapTracker tracker(config.localizer, map, pool);
   pipeline::LocalMapper mapper(config.local_mapper, "robot");
   double path_m = 0.0;
   std::size_t end = first;
@@ -107,11 +107,11 @@ RevisitRun drive(const Recording& recording, const pipeline::Config& config,
     if (!stop) return;
     const std::size_t scan = first + stop->sequence;
     const double before_s = support::process_cpu_s();
-    localizer.add(std::make_shared<const topomap::LocalMap>(std::move(*stop)));
+    tracker.add(std::make_shared<const topomap::LocalMap>(std::move(*stop)));
     const double step_ms = 1e3 * (support::process_cpu_s() - before_s);
     if (!recording.T_world_robot[scan]) return;
     const Pose2 truth = truth_in(*map, made, *recording.T_world_robot[scan]);
-    const localization::LocalizedStop& last = localizer.stops().back();
+    const localization::LocalizedStop& last = tracker.stops().back();
     run.stops.push_back({scan, path_m, last.status.state, last.T_map_robot, truth,
                          (last.T_map_robot.position_m() - truth.position_m()).norm(), step_ms});
   };

@@ -61,7 +61,7 @@ void relate(const storage::MapDocument& own, const storage::MapDocument& joint,
 
 void note_followed(const pipeline::MappingRun& run, const topomap::Trajectory& own, double path_m,
                    SessionPair& pair) {
-  const localization::MapLocalizer* follower =
+  const localization::MapTracker* follower =
       run.session() == nullptr ? nullptr : run.session()->follower();
   if (follower == nullptr) return;
   for (std::size_t i = pair.followed.size(); i < follower->stops().size(); ++i) {

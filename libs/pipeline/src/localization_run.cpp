@@ -165,14 +165,14 @@ std::string localization_csv(std::span<const localization::LocalizedStop> stops)
   return localization_csv_header() + localization_csv_rows(stops);
 }
 
-storage::ReasonCounts localization_counts(const localization::MapLocalizer& localizer) {
-  const auto& stops = localizer.stops_by_state();
+storage::ReasonCounts localization_counts(const localization::MapTracker& tracker) {
+  const auto& stops = tracker.stops_by_state();
   storage::ReasonCounts counts;
   for (std::size_t i = 0; i < stops.size(); ++i) {
     counts.emplace_back(localization::to_string(static_cast<localization::LocalizationState>(i)),
                         stops.at(i));
   }
-  counts.emplace_back("searches", localizer.searches());
+  counts.emplace_back("searches", tracker.searches());
   return counts;
 }
 

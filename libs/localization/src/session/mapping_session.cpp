@@ -206,7 +206,7 @@ void MappingSession::resume_mapping() {
 void MappingSession::start_following(std::shared_ptr<const StoredMap> map) {
   const std::uint64_t next_task =
       pose_graph_slam_ != nullptr ? pose_graph_slam_->next_task() : counts().tasks;
-  follower_ = std::make_unique<MapLocalizer>(config_, std::move(map), pool_);
+  follower_ = std::make_unique<MapTracker>(config_, std::move(map), pool_);
   follower_->number_tasks_from(next_task);
   confirmation_.begin();
 }

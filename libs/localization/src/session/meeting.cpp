@@ -16,7 +16,7 @@ constexpr std::size_t kShare = 16;
 // Limit while a robot is followed and no operator agrees to join the maps.
 constexpr std::size_t kMostSightings = 3072;
 
-bool followed(const MapLocalizer& follower) {
+bool followed(const MapTracker& follower) {
   return follower.status().state == LocalizationState::kTracking;
 }
 
@@ -47,7 +47,7 @@ void Meeting::set_map(std::shared_ptr<const StoredMap> map,
   if (follower_) add_counts(counts_before_, follower_->counts());
   map_ = std::move(map);
   renew_at_ = map_->maps.size() + std::max(kFewStops, map_->maps.size() / kShare);
-  follower_ = std::make_unique<MapLocalizer>(config_, map_, *pool_);
+  follower_ = std::make_unique<MapTracker>(config_, map_, *pool_);
   if (T_map_last) {
     follower_->start_after(*last_, *T_map_last);
     return;

@@ -16,13 +16,13 @@ constexpr double kContradictedOnce = 0.5;  // by one stop
 
 }  // namespace
 
-bool tracked_well(const MapLocalizer& follower) {
+bool tracked_well(const MapTracker& follower) {
   const std::optional<TrackedStep>& step = follower.last_step();
   return follower.status().state == LocalizationState::kTracking && step &&
          !step->accepted.empty() && contradiction(step->evidence) <= kContradictedOnce;
 }
 
-bool PlaceConfirmation::add(const MapLocalizer& follower) {
+bool PlaceConfirmation::add(const MapTracker& follower) {
   const std::optional<TrackedStep>& step = follower.last_step();
   if (!step) searched_ = true;
   if (!tracked_well(follower)) {

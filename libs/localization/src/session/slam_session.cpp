@@ -30,10 +30,10 @@ SlamSession::SlamSession(const LocalizerConfig& config, MatchPool& pool, GraphOp
     slam_ = std::move(session);
     return;
   }
-  auto localizer = std::make_unique<MapLocalizer>(config, stored.map, pool);
-  if (start) localizer->set_pose(start->T_a_b, start->covariance);
-  map_localizer_ = localizer.get();
-  slam_ = std::move(localizer);
+  auto tracker = std::make_unique<MapTracker>(config, stored.map, pool);
+  if (start) tracker->set_pose(start->T_a_b, start->covariance);
+  map_tracker_ = tracker.get();
+  slam_ = std::move(tracker);
 }
 
 }  // namespace topogeo::localization

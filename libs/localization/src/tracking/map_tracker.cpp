@@ -36,11 +36,11 @@ topomap::StopPose pose_of(const LocalizedStop& stop, std::size_t index) {
 
 }  // namespace
 
-MapLocalizer::MapLocalizer(const LocalizerConfig& config, std::shared_ptr<const StoredMap> map,
-                           MatchPool& pool)
+MapTracker::MapTracker(const LocalizerConfig& config, std::shared_ptr<const StoredMap> map,
+                       MatchPool& pool)
     : config_(config), matching_(config, std::move(map), pool) {}
 
-bool MapLocalizer::add(std::shared_ptr<const topomap::LocalMap> map) {
+bool MapTracker::add(std::shared_ptr<const topomap::LocalMap> map) {
   const std::uint32_t number = added_++;
   if (last_id_ && last_id_->session == map->stop.session) {
     check_follows(map->stop, *last_id_);
@@ -70,7 +70,7 @@ bool MapLocalizer::add(std::shared_ptr<const topomap::LocalMap> map) {
 
 // A restarted local mapper begins another session. Odometry of the same epoch measures the movement
 // since; odometry of another epoch carries no information about the pose.
-void MapLocalizer::begin_session(std::uint64_t odometry_epoch) {
+void MapTracker::begin_session(std::uint64_t odometry_epoch) {
   const bool same_odometry = odometry_epoch != 0 && odometry_epoch == last_epoch_;
   if (same_odometry) return;
   T_odom_last_.reset();
@@ -81,7 +81,7 @@ void MapLocalizer::begin_session(std::uint64_t odometry_epoch) {
 
 // Predicts the pose and the view, and corrects the pose by matches. Returns the number of accepted
 // matches.
-std::uint32_t MapLocalizer::track(const DriveStop& stop) {
+std::uint32_t MapTracker::track(const DriveStop& stop) {
   if (stop.follows) {
     pose_ = compose(pose_, stop.step.T_before_now);
     agreement_.move(stop.step.distance_m);
@@ -162,9 +162,9 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
 
 // Selects the accepted matches with stored stops: accepted by their gate, or because the poses of
 // this stop and the previous ones in the map agree with each other.
-std::vector<bool> MapLocalizer::agreeing(std::span<const MatchTask> tasks,
-                                         std::span<const MatchResult> results,
-                                         std::span<const UncertainPose> measured) {
+std::vector<bool> MapTracker::agreeing(std::span<const MatchTask> tasks,
+                                       std::span<const MatchResult> results,
+                                       std::span<const UncertainPose> measured) {
   std::vector<bool> right(results.size());
   std::vector<bool> agreed(results.size());
   bool any_accepted = false;
@@ -187,8 +187,8 @@ std::vector<bool> MapLocalizer::agreeing(std::span<const MatchTask> tasks,
   return right;
 }
 
-std::vector<MatchTask> MapLocalizer::tracking_tasks(const DriveStop& stop,
-                                                    std::span<const MatchCandidate> stored) {
+std::vector<MatchTask> MapTracker::tracking_tasks(const DriveStop& stop,
+                                                  std::span<const MatchCandidate> stored) {
   std::vector<MatchTask> tasks;
   for (const MatchCandidate& candidate : stored) {
     tasks.push_back(matching_.task(stop, candidate.id, pose_));
@@ -198,7 +198,7 @@ std::vector<MatchTask> MapLocalizer::tracking_tasks(const DriveStop& stop,
 
 // How much better the scan fits another acceptable place of the map. Comparing only the
 // surroundings of a wrong pose would not show it, because one corridor looks like another.
-double MapLocalizer::better_elsewhere(const DriveStop& stop) const {
+double MapTracker::better_elsewhere(const DriveStop& stop) const {
   const GlobalLocalizer& places = matching_.places();
   const GlobalAnswer answer = places.find(stop.map->points, stop.map->T_robot_laser);
   if (answer.verdict != Verdict::kAccepted ||
@@ -210,7 +210,7 @@ double MapLocalizer::better_elsewhere(const DriveStop& stop) const {
 }
 
 // Compares the view of a stop that is not tracked with the place that the drive leads to.
-void MapLocalizer::compare_continued(const DriveStop& stop) {
+void MapTracker::compare_continued(const DriveStop& stop) {
   if (!continued_.pose()) return;
   continued_.compare(matching_.places().known_view(stop.features, continued_.pose()->T_a_b),
                      stop.step.distance_m);
@@ -218,14 +218,14 @@ void MapLocalizer::compare_continued(const DriveStop& stop) {
 
 // --- searching
 
-void MapLocalizer::begin_search() {
+void MapTracker::begin_search() {
   has_pose_ = false;
   monitored_ = false;
   search_.begin();
   ++searches_;
 }
 
-void MapLocalizer::search() {
+void MapTracker::search() {
   begin_search();
   pose_is_given_ = false;
   continued_.forget();
@@ -233,7 +233,7 @@ void MapLocalizer::search() {
 }
 
 // Adds the places of the whole map that fit the last metres, and weights all by this stop.
-void MapLocalizer::look_around(const DriveStop& stop) {
+void MapTracker::look_around(const DriveStop& stop) {
   if (stop.features.coarse.size() >= kFewestSearched) {
     if (continued_.pose()) search_.expect(continued_.pose()->T_a_b);
     std::vector<Pose2> T_map_places;
@@ -247,7 +247,7 @@ void MapLocalizer::look_around(const DriveStop& stop) {
 }
 
 // Matches the stop at each hypothesis with the stored stop that sees it best.
-void MapLocalizer::match_hypotheses(const DriveStop& stop) {
+void MapTracker::match_hypotheses(const DriveStop& stop) {
   const GlobalLocalizer& places = matching_.places();
   std::vector<MatchTask> tasks;
   std::vector<std::size_t> stored;
@@ -278,7 +278,7 @@ void MapLocalizer::match_hypotheses(const DriveStop& stop) {
 
 // Takes the pose of the one place that is left, or the state of the search. Returns 1 if the best
 // place was seen at this stop.
-std::uint32_t MapLocalizer::decide() {
+std::uint32_t MapTracker::decide() {
   status_ = {LocalizationState::kSearching, 0.0};
   const std::optional<PlaceHypothesis> best = search_.best();
   if (!best) return 0;
@@ -305,7 +305,7 @@ std::uint32_t MapLocalizer::decide() {
 
 // --- poses from elsewhere
 
-void MapLocalizer::set_pose(const Pose2& T_map_robot, const Eigen::Matrix3d& covariance) {
+void MapTracker::set_pose(const Pose2& T_map_robot, const Eigen::Matrix3d& covariance) {
   pose_ = {T_map_robot, invertible(covariance)};
   has_pose_ = true;
   pose_is_given_ = true;
@@ -325,7 +325,7 @@ void MapLocalizer::set_pose(const Pose2& T_map_robot, const Eigen::Matrix3d& cov
   }
 }
 
-void MapLocalizer::start_after(const topomap::LocalMap& map, const Pose2& T_map_robot) {
+void MapTracker::start_after(const topomap::LocalMap& map, const Pose2& T_map_robot) {
   constexpr double kSigma_m = 0.1;  // the last pose of a map is as good as its last match
   constexpr double kSigma_rad = 0.03;
   set_pose(T_map_robot,
@@ -334,14 +334,14 @@ void MapLocalizer::start_after(const topomap::LocalMap& map, const Pose2& T_map_
   T_odom_last_ = map.T_odom_robot;
 }
 
-void MapLocalizer::start_after(const LastPlace& place) {
+void MapTracker::start_after(const LastPlace& place) {
   set_pose(place.T_map_robot.T_a_b, place.T_map_robot.covariance);
   pose_is_given_ = false;
   T_odom_last_ = place.T_odom_robot;
   last_epoch_ = place.odometry_epoch;
 }
 
-void MapLocalizer::forget_stops(std::size_t most) {
+void MapTracker::forget_stops(std::size_t most) {
   if (stops_.size() < 2 * most) return;  // in batches, not at every stop
   stops_.erase(stops_.begin(), stops_.end() - static_cast<std::ptrdiff_t>(most));
   numbered_since_ = added_;
@@ -349,7 +349,7 @@ void MapLocalizer::forget_stops(std::size_t most) {
 
 // --- state
 
-topomap::Trajectory MapLocalizer::trajectory() const {
+topomap::Trajectory MapTracker::trajectory() const {
   topomap::Trajectory trajectory;
   trajectory.version = added_;
   trajectory.numbered_since = numbered_since_;
@@ -359,17 +359,17 @@ topomap::Trajectory MapLocalizer::trajectory() const {
   return trajectory;
 }
 
-std::optional<topomap::StopPose> MapLocalizer::last_stop() const {
+std::optional<topomap::StopPose> MapTracker::last_stop() const {
   if (stops_.empty()) return std::nullopt;
   return pose_of(stops_.back(), stops_.size() - 1);
 }
 
-const std::vector<LoopDecision>& MapLocalizer::loop_decisions() const {
+const std::vector<LoopDecision>& MapTracker::loop_decisions() const {
   static const std::vector<LoopDecision> kNone;
   return kNone;
 }
 
-SlamCounts MapLocalizer::counts() const {
+SlamCounts MapTracker::counts() const {
   SlamCounts counts{matching_.requests().counts()};
   counts.steps_in_doubt = steps_in_doubt_;
   return counts;

@@ -32,7 +32,7 @@ std::shared_ptr<const StoredMap> stored(const test::DrivenMaps& driven) {
 }
 
 /// The floor mapped by one drive, with true poses, and another drive through it.
-class MapLocalizerTest : public ::testing::Test {
+class MapTrackerTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     stored_ = stored(test::drive(test::world("floor"), {}));
@@ -44,31 +44,31 @@ class MapLocalizerTest : public ::testing::Test {
     drive_ = nullptr;
   }
 
-  MapLocalizer make() { return MapLocalizer({}, stored_, pool_); }
+  MapTracker make() { return MapTracker({}, stored_, pool_); }
 
   /// Adds the drive's stop as the `id`th; by odometry it is at `T_step` from the last one.
-  void add(MapLocalizer& localizer, std::size_t stop, const Pose2& T_step) {
+  void add(MapTracker& tracker, std::size_t stop, const Pose2& T_step) {
     topomap::LocalMap map = *drive_->maps[stop];
-    map.id = localizer.added_stops();
+    map.id = tracker.added_stops();
     map.stop = {2, map.id};
     T_odom_ = T_odom_ * T_step;
     map.T_odom_robot = T_odom_;
     map.T_previous_robot = T_step;
     map.track.clear();
-    localizer.add(std::make_shared<const topomap::LocalMap>(map));
+    tracker.add(std::make_shared<const topomap::LocalMap>(map));
   }
-  void follow(MapLocalizer& localizer, std::size_t from, std::size_t to) {
+  void follow(MapTracker& tracker, std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
       const Pose2 T_step =
-          localizer.stops().empty()
+          tracker.stops().empty()
               ? Pose2{}
               : geometry::between(drive_->maps[i - 1]->T_odom_robot, drive_->maps[i]->T_odom_robot);
-      add(localizer, i, T_step);
+      add(tracker, i, T_step);
     }
   }
-  static bool right(const MapLocalizer& localizer, std::size_t stop) {
+  static bool right(const MapTracker& tracker, std::size_t stop) {
     const Pose2 error =
-        geometry::between(localizer.stops().back().T_map_robot, drive_->T_world_robot[stop]);
+        geometry::between(tracker.stops().back().T_map_robot, drive_->T_world_robot[stop]);
     return error.position_m().norm() < 0.1 && std::fabs(error.theta_rad) < 0.05;
   }
 
@@ -78,23 +78,23 @@ class MapLocalizerTest : public ::testing::Test {
   Pose2 T_odom_;
 };
 
-std::shared_ptr<const StoredMap> MapLocalizerTest::stored_;
-test::DrivenMaps* MapLocalizerTest::drive_ = nullptr;
+std::shared_ptr<const StoredMap> MapTrackerTest::stored_;
+test::DrivenMaps* MapTrackerTest::drive_ = nullptr;
 
-TEST_F(MapLocalizerTest, FollowsAnotherDriveFromAnInitialPose) {
-  MapLocalizer localizer = make();
-  localizer.set_pose(drive_->T_world_robot[0], kKnown);
+TEST_F(MapTrackerTest, FollowsAnotherDriveFromAnInitialPose) {
+  MapTracker tracker = make();
+  tracker.set_pose(drive_->T_world_robot[0], kKnown);
   for (std::size_t i = 0; i < 60; ++i) {
-    follow(localizer, i, i + 1);
-    EXPECT_TRUE(right(localizer, i)) << i;
-    EXPECT_EQ(localizer.status().state, LocalizationState::kTracking) << i;
-    EXPECT_GT(localizer.status().confidence, 0.8) << i;
+    follow(tracker, i, i + 1);
+    EXPECT_TRUE(right(tracker, i)) << i;
+    EXPECT_EQ(tracker.status().state, LocalizationState::kTracking) << i;
+    EXPECT_GT(tracker.status().confidence, 0.8) << i;
   }
-  EXPECT_EQ(localizer.searches(), 0U);
+  EXPECT_EQ(tracker.searches(), 0U);
 }
 
 // Users of these matches treat the prediction as a separate measurement.
-TEST_F(MapLocalizerTest, MatchesByTheScansAloneDoNotDependOnWhatWasPredicted) {
+TEST_F(MapTrackerTest, MatchesByTheScansAloneDoNotDependOnWhatWasPredicted) {
   const Eigen::Matrix3d surely = Eigen::Vector3d(0.0025, 0.0025, 0.0004).asDiagonal();
   double largest_m = 0.0;
   std::size_t compared = 0;
@@ -102,10 +102,10 @@ TEST_F(MapLocalizerTest, MatchesByTheScansAloneDoNotDependOnWhatWasPredicted) {
     std::vector<TrackedStep> steps;
     for (const double off_m : {-0.1, 0.1}) {
       InProcessPool pool;
-      MapLocalizer localizer({}, stored_, pool);
-      localizer.set_pose(drive_->T_world_robot[stop] * Pose2{off_m, 0.0, 0.0}, surely);
-      add(localizer, stop, {});
-      steps.push_back(*localizer.last_step());
+      MapTracker tracker({}, stored_, pool);
+      tracker.set_pose(drive_->T_world_robot[stop] * Pose2{off_m, 0.0, 0.0}, surely);
+      add(tracker, stop, {});
+      steps.push_back(*tracker.last_step());
     }
     for (std::size_t i = 0; i < steps[0].accepted.size(); ++i) {
       for (std::size_t k = 0; k < steps[1].accepted.size(); ++k) {
@@ -121,182 +121,182 @@ TEST_F(MapLocalizerTest, MatchesByTheScansAloneDoNotDependOnWhatWasPredicted) {
   EXPECT_LT(largest_m, 0.02);
 }
 
-TEST_F(MapLocalizerTest, FindsItselfWithoutAPose) {
-  MapLocalizer localizer = make();
-  add(localizer, 40, {});
-  EXPECT_NE(localizer.status().state, LocalizationState::kTracking);  // one scan is not enough
-  follow(localizer, 41, 48);
-  EXPECT_EQ(localizer.status().state, LocalizationState::kTracking);
-  EXPECT_TRUE(right(localizer, 47));
+TEST_F(MapTrackerTest, FindsItselfWithoutAPose) {
+  MapTracker tracker = make();
+  add(tracker, 40, {});
+  EXPECT_NE(tracker.status().state, LocalizationState::kTracking);  // one scan is not enough
+  follow(tracker, 41, 48);
+  EXPECT_EQ(tracker.status().state, LocalizationState::kTracking);
+  EXPECT_TRUE(right(tracker, 47));
 }
 
-TEST_F(MapLocalizerTest, ACarriedRobotIsLostWithinThreeStopsAndFindsItself) {
-  MapLocalizer localizer = make();
-  localizer.set_pose(drive_->T_world_robot[0], kKnown);
-  follow(localizer, 0, 12);
-  ASSERT_EQ(localizer.status().state, LocalizationState::kTracking);
+TEST_F(MapTrackerTest, ACarriedRobotIsLostWithinThreeStopsAndFindsItself) {
+  MapTracker tracker = make();
+  tracker.set_pose(drive_->T_world_robot[0], kKnown);
+  follow(tracker, 0, 12);
+  ASSERT_EQ(tracker.status().state, LocalizationState::kTracking);
   const std::size_t elsewhere = 60;
-  add(localizer, elsewhere, {1.0, 0.0, 0.0});  // unnoticed by odometry
-  follow(localizer, elsewhere + 1, elsewhere + 3);
+  add(tracker, elsewhere, {1.0, 0.0, 0.0});  // unnoticed by odometry
+  follow(tracker, elsewhere + 1, elsewhere + 3);
   bool lost = false;
   for (std::size_t i = 12; i < 15; ++i) {
-    lost |= localizer.stops()[i].status.state == LocalizationState::kLost;
+    lost |= tracker.stops()[i].status.state == LocalizationState::kLost;
   }
   EXPECT_TRUE(lost);
-  follow(localizer, elsewhere + 3, elsewhere + 9);
-  EXPECT_EQ(localizer.status().state, LocalizationState::kTracking);
-  EXPECT_TRUE(right(localizer, elsewhere + 8));
-  EXPECT_EQ(localizer.searches(), 1U);
+  follow(tracker, elsewhere + 3, elsewhere + 9);
+  EXPECT_EQ(tracker.status().state, LocalizationState::kTracking);
+  EXPECT_TRUE(right(tracker, elsewhere + 8));
+  EXPECT_EQ(tracker.searches(), 1U);
 }
 
-TEST_F(MapLocalizerTest, ABlindedRobotIsLostAndFindsItselfWhenItSeesAgain) {
-  MapLocalizer localizer = make();
-  localizer.set_pose(drive_->T_world_robot[0], kKnown);
-  follow(localizer, 0, 10);
+TEST_F(MapTrackerTest, ABlindedRobotIsLostAndFindsItselfWhenItSeesAgain) {
+  MapTracker tracker = make();
+  tracker.set_pose(drive_->T_world_robot[0], kKnown);
+  follow(tracker, 0, 10);
   for (int i = 0; i < 3; ++i) {
     topomap::LocalMap blind;
     blind.robot_id = "robot";
-    blind.id = localizer.added_stops();
+    blind.id = tracker.added_stops();
     blind.stop = {2, blind.id};
     T_odom_ = T_odom_ * Pose2{0.1, 0.0, 0.0};
     blind.T_odom_robot = T_odom_;
-    localizer.add(std::make_shared<const topomap::LocalMap>(blind));
+    tracker.add(std::make_shared<const topomap::LocalMap>(blind));
   }
-  EXPECT_FALSE(localizer.status().state == LocalizationState::kTracking);
-  EXPECT_LT(localizer.status().confidence, 0.3);
-  add(localizer, 14, {0.5, 0.0, 0.0});
-  follow(localizer, 15, 20);
-  EXPECT_EQ(localizer.status().state, LocalizationState::kTracking);
-  EXPECT_TRUE(right(localizer, 19));
+  EXPECT_FALSE(tracker.status().state == LocalizationState::kTracking);
+  EXPECT_LT(tracker.status().confidence, 0.3);
+  add(tracker, 14, {0.5, 0.0, 0.0});
+  follow(tracker, 15, 20);
+  EXPECT_EQ(tracker.status().state, LocalizationState::kTracking);
+  EXPECT_TRUE(right(tracker, 19));
 }
 
-TEST_F(MapLocalizerTest, InAnotherBuildingItNeverTracks) {
+TEST_F(MapTrackerTest, InAnotherBuildingItNeverTracks) {
   const test::DrivenMaps other = test::drive(test::world("room"), {});
-  MapLocalizer localizer = make();
+  MapTracker tracker = make();
   for (std::size_t i = 0; i < std::min<std::size_t>(other.maps.size(), 20); ++i) {
-    localizer.add(other.maps[i]);
-    EXPECT_NE(localizer.status().state, LocalizationState::kTracking) << i;
+    tracker.add(other.maps[i]);
+    EXPECT_NE(tracker.status().state, LocalizationState::kTracking) << i;
   }
 }
 
-TEST_F(MapLocalizerTest, AWrongInitialPoseIsNotBelievedForLong) {
-  MapLocalizer localizer = make();
-  localizer.set_pose(drive_->T_world_robot[70], kKnown);
-  follow(localizer, 0, 12);
-  EXPECT_EQ(localizer.status().state, LocalizationState::kTracking);
-  EXPECT_TRUE(right(localizer, 11));
+TEST_F(MapTrackerTest, AWrongInitialPoseIsNotBelievedForLong) {
+  MapTracker tracker = make();
+  tracker.set_pose(drive_->T_world_robot[70], kKnown);
+  follow(tracker, 0, 12);
+  EXPECT_EQ(tracker.status().state, LocalizationState::kTracking);
+  EXPECT_TRUE(right(tracker, 11));
 }
 
-TEST_F(MapLocalizerTest, SearchesOnDemandAndTakesAPoseAtAnyTime) {
-  MapLocalizer localizer = make();
-  localizer.set_pose(drive_->T_world_robot[0], kKnown);
-  follow(localizer, 0, 5);
-  localizer.search();
-  EXPECT_EQ(localizer.status().state, LocalizationState::kSearching);
-  follow(localizer, 5, 6);
-  localizer.set_pose(drive_->T_world_robot[5], kKnown);
-  follow(localizer, 6, 7);
-  EXPECT_EQ(localizer.status().state, LocalizationState::kTracking);
-  EXPECT_TRUE(right(localizer, 6));
+TEST_F(MapTrackerTest, SearchesOnDemandAndTakesAPoseAtAnyTime) {
+  MapTracker tracker = make();
+  tracker.set_pose(drive_->T_world_robot[0], kKnown);
+  follow(tracker, 0, 5);
+  tracker.search();
+  EXPECT_EQ(tracker.status().state, LocalizationState::kSearching);
+  follow(tracker, 5, 6);
+  tracker.set_pose(drive_->T_world_robot[5], kKnown);
+  follow(tracker, 6, 7);
+  EXPECT_EQ(tracker.status().state, LocalizationState::kTracking);
+  EXPECT_TRUE(right(tracker, 6));
 }
 
 // A service follows for weeks: its memory must be bounded, its counters need not.
-TEST_F(MapLocalizerTest, ForgetsOldStopsAndNumbersTheOthersAnew) {
-  MapLocalizer localizer = make();
-  localizer.set_pose(drive_->T_world_robot[0], kKnown);
-  follow(localizer, 0, 19);
-  localizer.forget_stops(10);
-  EXPECT_EQ(localizer.stops().size(), 19U) << "not at every stop";
-  EXPECT_EQ(localizer.trajectory().numbered_since, 0U);
-  follow(localizer, 19, 20);
-  localizer.forget_stops(10);
-  const topomap::Trajectory trajectory = localizer.trajectory();
+TEST_F(MapTrackerTest, ForgetsOldStopsAndNumbersTheOthersAnew) {
+  MapTracker tracker = make();
+  tracker.set_pose(drive_->T_world_robot[0], kKnown);
+  follow(tracker, 0, 19);
+  tracker.forget_stops(10);
+  EXPECT_EQ(tracker.stops().size(), 19U) << "not at every stop";
+  EXPECT_EQ(tracker.trajectory().numbered_since, 0U);
+  follow(tracker, 19, 20);
+  tracker.forget_stops(10);
+  const topomap::Trajectory trajectory = tracker.trajectory();
   ASSERT_EQ(trajectory.stops.size(), 10U);
   EXPECT_EQ(trajectory.stops.front().stop.number, 10U);
   EXPECT_EQ(trajectory.stops.front().local_map_id, 0U);
   EXPECT_EQ(trajectory.numbered_since, trajectory.version);
-  follow(localizer, 20, 21);
-  EXPECT_LT(localizer.trajectory().numbered_since, localizer.trajectory().version);
-  EXPECT_THAT(localizer.stops_by_state(), testing::ElementsAre(21, 0, 0, 0));
-  localizer.set_pose(drive_->T_world_robot[20], kKnown);
-  EXPECT_THAT(localizer.stops_by_state(), testing::ElementsAre(20, 1, 0, 0))
+  follow(tracker, 20, 21);
+  EXPECT_LT(tracker.trajectory().numbered_since, tracker.trajectory().version);
+  EXPECT_THAT(tracker.stops_by_state(), testing::ElementsAre(21, 0, 0, 0));
+  tracker.set_pose(drive_->T_world_robot[20], kKnown);
+  EXPECT_THAT(tracker.stops_by_state(), testing::ElementsAre(20, 1, 0, 0))
       << "the last one is ambiguous now";
 }
 
-TEST_F(MapLocalizerTest, AMapOutOfTurnIsAnError) {
-  MapLocalizer localizer = make();
-  localizer.add(drive_->maps[1]);
-  EXPECT_THROW(localizer.add(drive_->maps[1]), std::invalid_argument);
-  EXPECT_THROW(localizer.add(drive_->maps[3]), std::invalid_argument);
+TEST_F(MapTrackerTest, AMapOutOfTurnIsAnError) {
+  MapTracker tracker = make();
+  tracker.add(drive_->maps[1]);
+  EXPECT_THROW(tracker.add(drive_->maps[1]), std::invalid_argument);
+  EXPECT_THROW(tracker.add(drive_->maps[3]), std::invalid_argument);
 }
 
-TEST_F(MapLocalizerTest, AnotherSessionIsSearchedFor) {
-  MapLocalizer localizer = make();
-  localizer.set_pose(drive_->T_world_robot[0], kKnown);
-  follow(localizer, 0, 8);
-  ASSERT_EQ(localizer.status().state, LocalizationState::kTracking);
+TEST_F(MapTrackerTest, AnotherSessionIsSearchedFor) {
+  MapTracker tracker = make();
+  tracker.set_pose(drive_->T_world_robot[0], kKnown);
+  follow(tracker, 0, 8);
+  ASSERT_EQ(tracker.status().state, LocalizationState::kTracking);
   topomap::LocalMap elsewhere = *drive_->maps[30];
   elsewhere.stop = {99, 0};
   elsewhere.T_odom_robot = {};
-  localizer.add(std::make_shared<const topomap::LocalMap>(elsewhere));
-  EXPECT_EQ(localizer.searches(), 1U);
-  EXPECT_FALSE(localizer.status().state == LocalizationState::kTracking && !right(localizer, 30))
+  tracker.add(std::make_shared<const topomap::LocalMap>(elsewhere));
+  EXPECT_EQ(tracker.searches(), 1U);
+  EXPECT_FALSE(tracker.status().state == LocalizationState::kTracking && !right(tracker, 30))
       << "the odometry of one session says nothing of another";
-  const topomap::Trajectory trajectory = localizer.trajectory();
+  const topomap::Trajectory trajectory = tracker.trajectory();
   EXPECT_EQ(trajectory.stops.back().stop, elsewhere.stop);
   EXPECT_EQ(trajectory.stops.back().local_map_id, trajectory.stops.size() - 1)
       << "numbered as the trajectory is, whatever the sessions";
 }
 
 // A restarted local mapper: the robot stood still or drove on in the meantime.
-TEST_F(MapLocalizerTest, AnotherSessionOfTheSameOdometryGoesOn) {
+TEST_F(MapTrackerTest, AnotherSessionOfTheSameOdometryGoesOn) {
   for (const std::size_t stop : {7U, 9U}) {
-    MapLocalizer localizer = make();
-    localizer.set_pose(drive_->T_world_robot[0], kKnown);
+    MapTracker tracker = make();
+    tracker.set_pose(drive_->T_world_robot[0], kKnown);
     const auto add_to = [&](std::uint64_t session, std::size_t first, std::size_t i) {
       topomap::LocalMap map = *drive_->maps[i];
       map.stop = {session, static_cast<std::uint32_t>(i - first)};
       map.odometry_epoch = 5;
       if (i == first) map.T_previous_robot = {};
-      localizer.add(std::make_shared<const topomap::LocalMap>(map));
+      tracker.add(std::make_shared<const topomap::LocalMap>(map));
     };
     for (std::size_t i = 0; i < 8; ++i) add_to(2, 0, i);
     add_to(99, stop, stop);
-    EXPECT_EQ(localizer.searches(), 0U) << stop;
-    EXPECT_EQ(localizer.status().state, LocalizationState::kTracking) << stop;
-    EXPECT_TRUE(right(localizer, stop)) << stop;
+    EXPECT_EQ(tracker.searches(), 0U) << stop;
+    EXPECT_EQ(tracker.status().state, LocalizationState::kTracking) << stop;
+    EXPECT_TRUE(right(tracker, stop)) << stop;
     add_to(99, stop, stop + 1);
-    EXPECT_EQ(localizer.status().state, LocalizationState::kTracking) << stop;
-    EXPECT_TRUE(right(localizer, stop + 1)) << stop;
+    EXPECT_EQ(tracker.status().state, LocalizationState::kTracking) << stop;
+    EXPECT_TRUE(right(tracker, stop + 1)) << stop;
   }
 }
 
-TEST_F(MapLocalizerTest, APoseThatIsSetBeforeAnotherSessionHolds) {
-  MapLocalizer localizer = make();
-  localizer.set_pose(drive_->T_world_robot[0], kKnown);
-  follow(localizer, 0, 4);
-  localizer.set_pose(drive_->T_world_robot[30], kKnown);
+TEST_F(MapTrackerTest, APoseThatIsSetBeforeAnotherSessionHolds) {
+  MapTracker tracker = make();
+  tracker.set_pose(drive_->T_world_robot[0], kKnown);
+  follow(tracker, 0, 4);
+  tracker.set_pose(drive_->T_world_robot[30], kKnown);
   topomap::LocalMap elsewhere = *drive_->maps[30];
   elsewhere.stop = {99, 0};
   elsewhere.odometry_epoch = 6;
-  localizer.add(std::make_shared<const topomap::LocalMap>(elsewhere));
-  EXPECT_EQ(localizer.searches(), 0U);
-  EXPECT_TRUE(right(localizer, 30));
+  tracker.add(std::make_shared<const topomap::LocalMap>(elsewhere));
+  EXPECT_EQ(tracker.searches(), 0U);
+  EXPECT_TRUE(right(tracker, 30));
 }
 
-// A restarted localizer.
-TEST_F(MapLocalizerTest, GoesOnAfterTheLastPlaceOfAnotherProcess) {
+// The localizer was restarted.
+TEST_F(MapTrackerTest, GoesOnAfterTheLastPlaceOfAnotherProcess) {
   constexpr std::uint64_t kEpoch = 5;
   for (const std::uint64_t epoch : {kEpoch, kEpoch + 1}) {
-    MapLocalizer localizer = make();
-    localizer.start_after(
+    MapTracker tracker = make();
+    tracker.start_after(
         {{drive_->T_world_robot[7], kKnown}, drive_->maps[7]->T_odom_robot, kEpoch});
     topomap::LocalMap map = *drive_->maps[8];
     map.odometry_epoch = epoch;
-    localizer.add(std::make_shared<const topomap::LocalMap>(map));
-    EXPECT_EQ(localizer.searches(), epoch == kEpoch ? 0U : 1U);
+    tracker.add(std::make_shared<const topomap::LocalMap>(map));
+    EXPECT_EQ(tracker.searches(), epoch == kEpoch ? 0U : 1U);
     if (epoch == kEpoch) {
-      EXPECT_TRUE(right(localizer, 8));
+      EXPECT_TRUE(right(tracker, 8));
     }
   }
 }
@@ -308,22 +308,22 @@ TEST_F(MapLocalizerTest, GoesOnAfterTheLastPlaceOfAnotherProcess) {
 void expect_honest(std::shared_ptr<const StoredMap> map, const std::vector<Pose2>& truth) {
   const world::World room = test::world("room");
   InProcessPool pool;
-  MapLocalizer localizer({}, std::move(map), pool);
-  localizer.set_pose(truth.front(), kKnown);
+  MapTracker tracker({}, std::move(map), pool);
+  tracker.set_pose(truth.front(), kKnown);
   for (std::uint32_t id = 0; id < truth.size(); ++id) {
     auto stop = std::make_shared<topomap::LocalMap>(test::map_at(room, truth[id], id));
     if (id > 0) stop->T_previous_robot = geometry::between(truth[id - 1], truth[id]);
-    localizer.add(std::move(stop));
-    if (localizer.status().state != LocalizationState::kTracking) continue;
-    EXPECT_LT(geometry::difference(localizer.stops().back().T_map_robot, truth[id]).norm(), 0.3)
-        << "stop " << id << ", confidence " << localizer.status().confidence;
+    tracker.add(std::move(stop));
+    if (tracker.status().state != LocalizationState::kTracking) continue;
+    EXPECT_LT(geometry::difference(tracker.stops().back().T_map_robot, truth[id]).norm(), 0.3)
+        << "stop " << id << ", confidence " << tracker.status().confidence;
   }
 }
 
 // The robot turns at its destination and drives on unmapped, for example because its local mapper
 // was frozen: the next view shares little with the previous ones, and a room looks alike after a
 // quarter turn. Such places were taken for right, with a confidence of 0.996.
-TEST(MapLocalizer, AfterAStepThatNobodyMappedNoWrongPlaceIsSure) {
+TEST(MapTracker, AfterAStepThatNobodyMappedNoWrongPlaceIsSure) {
   const auto map = stored(test::drive(test::world("room"), {}));
   for (double back_m = 0.6; back_m <= 3.01; back_m += 0.2) {
     for (const double turned_rad : {1.8, 2.3, 2.8, 3.13}) {
@@ -339,24 +339,24 @@ TEST(MapLocalizer, AfterAStepThatNobodyMappedNoWrongPlaceIsSure) {
   }
 }
 
-TEST(MapLocalizer, ALookAlikeBeyondTheMapIsNotTaken) {
+TEST(MapTracker, ALookAlikeBeyondTheMapIsNotTaken) {
   const world::World world = simulation::symmetric_building(1);
   const auto& tour_m = world.tour_m;
   const auto map = stored(test::drive(world, {tour_m.begin(), tour_m.begin() + 4}));
   const test::DrivenMaps driven = test::drive(world, {tour_m.begin(), tour_m.begin() + 7}, 0.41);
   InProcessPool pool;
-  MapLocalizer localizer({}, map, pool);
+  MapTracker tracker({}, map, pool);
   std::size_t tracked = 0;
   std::size_t unknown = 0;
   for (std::size_t i = 0; i < driven.maps.size(); ++i) {
-    localizer.add(driven.maps[i]);
-    if (localizer.status().state != LocalizationState::kTracking) {
+    tracker.add(driven.maps[i]);
+    if (tracker.status().state != LocalizationState::kTracking) {
       ++unknown;
       continue;
     }
     ++tracked;
     const Pose2 error =
-        geometry::between(localizer.stops().back().T_map_robot, driven.T_world_robot[i]);
+        geometry::between(tracker.stops().back().T_map_robot, driven.T_world_robot[i]);
     EXPECT_LT(error.position_m().norm(), 0.5) << i;
   }
   EXPECT_GT(tracked, 30U);

@@ -52,6 +52,6 @@ std::string localization_csv_header();
 std::string localization_csv_rows(std::span<const localization::LocalizedStop> stops);
 
 /// Stops by state, and searches, for reports.
-storage::ReasonCounts localization_counts(const localization::MapLocalizer& localizer);
+storage::ReasonCounts localization_counts(const localization::MapTracker& tracker);
 
 }  // namespace topogeo::pipeline

@@ -21,7 +21,7 @@ class MappingRun {
  public:
   MappingRun(const Config& config, std::string robot_id);
   /// Localizes in a finished map instead; the document then contains the stops of this drive, with
-  /// poses in the frame of that map. Without an initial pose it searches. Throws like MapLocalizer.
+  /// poses in the frame of that map. Without an initial pose it searches. Throws like MapTracker.
   MappingRun(const Config& config, std::string robot_id,
              std::shared_ptr<const localization::StoredMap> map,
              const std::optional<geometry::Pose2>& initial_pose);
@@ -45,7 +45,7 @@ class MappingRun {
     return slam_.mapping_session();
   }
   /// Null unless it localizes in a finished map.
-  [[nodiscard]] const localization::MapLocalizer* map_localizer() const {
+  [[nodiscard]] const localization::MapTracker* map_tracker() const {
     return session() == nullptr ? slam_.follower() : nullptr;
   }
   [[nodiscard]] const std::vector<localization::LoopDecision>& loop_decisions() const {

@@ -2,12 +2,12 @@
 // unchanged while the robot is followed in it.
 //
 // Whenever the robot's pose in the map is uncertain, at the start of a stored map and after
-// unmapped stops, a MapLocalizer follows or searches it. Its stops wait meanwhile, and join the map
-// together as soon as the last of them is tracked and matched there (after a search only some
-// metres later). If that never happens, the map does not change. When a drive joins, views of
-// earlier drives leave the map if other views show the same (KeptViews), so that a patrol does not
-// make it grow. All of this follows from the stops alone, so a drive gives the same map wherever it
-// is computed.
+// unmapped stops, a MapTracker follows the robot or searches for it. Its stops wait meanwhile, and
+// join the map together as soon as the last of them is tracked and matched there (after a search
+// only some metres later). If that never happens, the map does not change. When a drive joins,
+// views of earlier drives leave the map if other views show the same (KeptViews), so that a patrol
+// does not make it grow. All of this follows from the stops alone, so a drive gives the same map
+// wherever it is computed.
 #pragma once
 
 #include <cstddef>
@@ -43,7 +43,7 @@ class MappingSession : public Slam {
                  GraphOptimizer* optimizer = nullptr);
   /// Continues a stored map. `initial` is the pose of the robot at its first stop; without it the
   /// whole map is searched. Throws std::invalid_argument in LocalizerMode::kThesis, and like
-  /// PoseGraphSlam and MapLocalizer.
+  /// PoseGraphSlam and MapTracker.
   MappingSession(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer,
                  std::shared_ptr<const StoredMap> map, const std::optional<UncertainPose>& initial);
 
@@ -66,7 +66,7 @@ class MappingSession : public Slam {
   void finish() override;
 
   /// Keeps the map unchanged, starting with the next stop. Waiting stops are discarded. Throws
-  /// std::logic_error if it is unchanged already or there is no map yet, and like MapLocalizer.
+  /// std::logic_error if it is unchanged already or there is no map yet, and like MapTracker.
   void stop_mapping();
   /// Extends the map again, starting with the next stop. Throws std::logic_error if it is extended
   /// already, std::invalid_argument in LocalizerMode::kThesis.
@@ -75,7 +75,7 @@ class MappingSession : public Slam {
   [[nodiscard]] bool mapping() const { return mapping_; }
 
   /// Follows the robot in the map; null while its stops join the map one by one.
-  [[nodiscard]] MapLocalizer* follower() const { return follower_.get(); }
+  [[nodiscard]] MapTracker* follower() const { return follower_.get(); }
 
   /// Local maps of the map, numbered from 0.
   [[nodiscard]] const std::vector<MapPointer>& maps() const { return maps_; }
@@ -135,7 +135,7 @@ class MappingSession : public Slam {
   GraphOptimizer* optimizer_;
   std::unique_ptr<Slam> mapper_;
   PoseGraphSlam* pose_graph_slam_ = nullptr;  // mapper_; null for the algorithm of the Thesis
-  std::unique_ptr<MapLocalizer> follower_;
+  std::unique_ptr<MapTracker> follower_;
   bool mapping_ = true;
   std::optional<topomap::StopId> last_id_;  // of the drive
   std::size_t stops_ = 0;                   // received

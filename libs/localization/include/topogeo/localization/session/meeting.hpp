@@ -1,6 +1,6 @@
 // Searches the pose of one robot in the map of others while all of them drive on.
 //
-// A MapLocalizer follows the robot in a copy of their map, which is renewed when the map has grown:
+// A MapTracker follows the robot in a copy of their map, which is renewed when the map has grown:
 // so the robot that reaches a place second finds that the other was there.
 #pragma once
 
@@ -65,7 +65,7 @@ class Meeting {
   LocalizerConfig config_;
   std::unique_ptr<MatchPool> pool_;
   std::shared_ptr<const StoredMap> map_;
-  std::unique_ptr<MapLocalizer> follower_;
+  std::unique_ptr<MapTracker> follower_;
   PlaceConfirmation confirmation_;
   std::vector<Sighting> sightings_;
   std::size_t newest_ = 0;  // index of the first newest one

@@ -21,7 +21,7 @@ class PlaceConfirmation {
   /// Call after each stop of the follower. True if the last stop is tracked and matched, and, after
   /// a search, enough stops before it as well: at a first look a room of another building can
   /// resemble one of the map.
-  bool add(const MapLocalizer& follower);
+  bool add(const MapTracker& follower);
 
   /// Successive tracked stops, including the last one.
   [[nodiscard]] std::uint32_t stops() const { return stops_; }
@@ -38,6 +38,6 @@ class PlaceConfirmation {
 };
 
 /// Whether the stop is tracked by accepted matches and not contradicted by the rest of its view.
-bool tracked_well(const MapLocalizer& follower);
+bool tracked_well(const MapTracker& follower);
 
 }  // namespace topogeo::localization

@@ -39,7 +39,7 @@ class SlamSession {
  public:
   /// Begins a map. The pool and the optimizer (see PoseGraphSlam) must outlive the session.
   SlamSession(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer = nullptr);
-  /// Uses a stored map. Throws like MapLocalizer or, to continue the map, like MappingSession.
+  /// Uses a stored map. Throws like MapTracker or, to continue the map, like MappingSession.
   SlamSession(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer,
               const MapToUse& stored);
 
@@ -49,8 +49,8 @@ class SlamSession {
   /// Null if a stored map never changes.
   [[nodiscard]] MappingSession* mapping_session() const { return mapping_session_; }
   /// Follows the robot in a map; null while its stops join the map one by one.
-  [[nodiscard]] MapLocalizer* follower() const {
-    return mapping_session_ != nullptr ? mapping_session_->follower() : map_localizer_;
+  [[nodiscard]] MapTracker* follower() const {
+    return mapping_session_ != nullptr ? mapping_session_->follower() : map_tracker_;
   }
   /// Whether stops join the map, now or once their pose in it is known.
   [[nodiscard]] bool mapping() const {
@@ -60,7 +60,7 @@ class SlamSession {
  private:
   std::unique_ptr<Slam> slam_;
   MappingSession* mapping_session_ = nullptr;  // slam_, if it is one
-  MapLocalizer* map_localizer_ = nullptr;      // slam_, if it is one
+  MapTracker* map_tracker_ = nullptr;          // slam_, if it is one
 };
 
 }  // namespace topogeo::localization

@@ -1,6 +1,6 @@
-// Follows a robot in a finished map that does not change (docs/algorithms.md, "Localization in a
-// map"): every stop of the drive is matched with the stored stops that should look alike from its
-// pose by odometry.
+// Localizes a robot in a finished map that does not change (docs/algorithms.md, "Localization in a
+// finished map"): every stop of the drive is matched with the stored stops that should look alike
+// from its pose by odometry.
 //
 // Matches between stops of the drive only improve the odometry, so errors do not grow along the
 // path. If the state monitor reports that the robot is lost, and at a start without a pose, every
@@ -61,11 +61,10 @@ struct LastPlace {
   std::uint64_t odometry_epoch = 0;  ///< as in scan::Scan
 };
 
-class MapLocalizer : public Slam {
+class MapTracker : public Slam {
  public:
-  /// Starts without a pose. The pool must outlive the localizer. Throws like GlobalLocalizer.
-  MapLocalizer(const LocalizerConfig& config, std::shared_ptr<const StoredMap> map,
-               MatchPool& pool);
+  /// Starts without a pose. The pool must outlive this. Throws like GlobalLocalizer.
+  MapTracker(const LocalizerConfig& config, std::shared_ptr<const StoredMap> map, MatchPool& pool);
 
   /// Adds the next stop of the drive. The numbers of a session must be consecutive from its first
   /// stop; throws std::invalid_argument otherwise. Another session continues where the previous one
