@@ -200,7 +200,7 @@ void times_8_1(Report& report) {
   const Correction& correction = report.runs().correction(kLoop);
   report.at_most("local map of a scan (cells of 5 cm, range 4 m there, 10 m here)",
                  drive.perception_ms, 400.0, "ms");
-  const double matches = static_cast<double>(correction.localizer->counts().tasks);
+  const double matches = static_cast<double>(correction.slam->counts().tasks);
   report.at_most("match of two local maps (100 individuals, 50 generations)",
                  correction.wall_s / matches, 10.0, "s");
   report.show("matches of the drive", matches);
@@ -218,7 +218,7 @@ void times_8_1(Report& report) {
 /// ...".
 std::string refusals(const Correction& correction) {
   std::map<std::string, int> counts;
-  for (const localization::LoopDecision& decision : correction.localizer->loop_decisions()) {
+  for (const localization::LoopDecision& decision : correction.slam->loop_decisions()) {
     if (decision.outcome != localization::LoopOutcome::kAccepted) {
       ++counts[localization::explanation(decision)];
     }

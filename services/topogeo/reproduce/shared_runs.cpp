@@ -133,7 +133,7 @@ localization::LocalizerConfig thesis_config(const CorrectionKind& kind, const Dr
 }
 
 void keep_backward(Correction& correction, std::size_t stop, const std::vector<Pose2>& before) {
-  const auto& closing = correction.localizer->cycles().last_closing();
+  const auto& closing = correction.slam->cycles().last_closing();
   if (!closing) return;
   correction.backward.push_back(
       {stop, closing->problem.first_id, closing->found.paths, closing->problem, before});
@@ -144,11 +144,10 @@ Correction correct(const Drive& drive, const CorrectionKind& kind, const DriveSe
   correction.config = thesis_config(kind, setup);
   correction.pool = std::make_unique<localization::InProcessPool>();
   for (const auto& stop : drive.stops) correction.pool->add_map(stop);
-  correction.localizer =
-      std::make_unique<localization::ThesisLocalizer>(correction.config, *correction.pool);
+  correction.slam = std::make_unique<localization::ThesisSlam>(correction.config, *correction.pool);
   const double start_s = support::monotonic_s();
   for (std::size_t k = 0; k < drive.stops.size(); ++k) {
-    const bool moved = correction.localizer->add(drive.stops[k]);
+    const bool moved = correction.slam->add(drive.stops[k]);
     correction.closed.push_back(moved);
     correction.overlaps.push_back(correction.map().stop(k).overlaps);
     const std::vector<Pose2> before =

@@ -35,7 +35,7 @@ struct Drive {
 struct Correction {
   localization::LocalizerConfig config;
   std::unique_ptr<localization::MatchPool> pool;
-  std::unique_ptr<localization::ThesisLocalizer> localizer;
+  std::unique_ptr<localization::ThesisSlam> slam;
   std::vector<std::vector<geometry::Pose2>> poses_after;  ///< [k]: all poses after stop k
   std::vector<std::vector<std::uint32_t>> overlaps;       ///< [k]: set MS of stop k, at stop k
   std::vector<bool> closed;  ///< [k]: whether stop k moved earlier poses
@@ -51,7 +51,7 @@ struct Correction {
   std::vector<Backward> backward;
   double wall_s = 0.0;
 
-  [[nodiscard]] const localization::ThesisMap& map() const { return localizer->map(); }
+  [[nodiscard]] const localization::ThesisMap& map() const { return slam->map(); }
   [[nodiscard]] const std::vector<geometry::Pose2>& final_poses() const {
     return poses_after.back();
   }

@@ -8,7 +8,7 @@ namespace topogeo::localization {
 std::unique_ptr<Slam> make_slam(const LocalizerConfig& config, MatchPool& pool,
                                 GraphOptimizer* optimizer) {
   if (config.mode == LocalizerMode::kThesis) {
-    return std::make_unique<ThesisLocalizer>(config, pool);
+    return std::make_unique<ThesisSlam>(config, pool);
   }
   return std::make_unique<PoseGraphSlam>(config, pool, optimizer);
 }

@@ -23,13 +23,13 @@ LocalizerConfig with_one_resolution(LocalizerConfig config) {
 
 }  // namespace
 
-ThesisLocalizer::ThesisLocalizer(const LocalizerConfig& config, MatchPool& pool)
+ThesisSlam::ThesisSlam(const LocalizerConfig& config, MatchPool& pool)
     : config_(with_one_resolution(config)),
       map_(config_, config_.thesis.cycle_solutions),
       matching_(config_, pool),
       cycles_(config_) {}
 
-bool ThesisLocalizer::add(std::shared_ptr<const topomap::LocalMap> map) {
+bool ThesisSlam::add(std::shared_ptr<const topomap::LocalMap> map) {
   map_.append(std::move(map));
   matching_.add(map_);
   if (map_.size() == 1) {
@@ -42,7 +42,7 @@ bool ThesisLocalizer::add(std::shared_ptr<const topomap::LocalMap> map) {
 }
 
 // Thesis, 7.3.1.1.1.
-void ThesisLocalizer::correct_forward() {
+void ThesisSlam::correct_forward() {
   const auto stop = static_cast<std::uint32_t>(map_.size() - 1);
   const std::vector<ThesisMatch> matches =
       matching_.match(map_, forward_neighbours(), config_.solutions_wanted);  // step 7
@@ -62,7 +62,7 @@ void ThesisLocalizer::correct_forward() {
 
 // Steps 1 to 6: the overlapping maps at the pose by odometry, best first; stores the overlaps. Maps
 // that are neither recent nor seen by the previous stop are left to the closing of cycles.
-std::vector<ThesisNeighbour> ThesisLocalizer::forward_neighbours() {
+std::vector<ThesisNeighbour> ThesisSlam::forward_neighbours() {
   const auto stop = static_cast<std::uint32_t>(map_.size() - 1);
   const UncertainPose& odometry = map_.stop(stop).T_previous_this;
   const Pose2 T_map_predicted = map_.poses().back() * odometry.T_a_b;
@@ -97,7 +97,7 @@ std::vector<ThesisNeighbour> ThesisLocalizer::forward_neighbours() {
 
 // Stores the solutions of all matches that may be right and returns the fittest accepted one, or
 // the fittest of all if none is accepted.
-const ThesisMatch* ThesisLocalizer::best_of(const std::vector<ThesisMatch>& matches) {
+const ThesisMatch* ThesisSlam::best_of(const std::vector<ThesisMatch>& matches) {
   const auto stop = static_cast<std::uint32_t>(map_.size() - 1);
   const ThesisMatch* best = nullptr;
   for (const ThesisMatch& match : matches) {
@@ -113,19 +113,19 @@ const ThesisMatch* ThesisLocalizer::best_of(const std::vector<ThesisMatch>& matc
   return best;
 }
 
-topomap::Trajectory ThesisLocalizer::trajectory() const {
+topomap::Trajectory ThesisSlam::trajectory() const {
   topomap::Trajectory trajectory;
   trajectory.version = map_.version();
   for (std::size_t i = 0; i < map_.size(); ++i) trajectory.stops.push_back(map_.pose_of(i));
   return trajectory;
 }
 
-std::optional<topomap::StopPose> ThesisLocalizer::last_stop() const {
+std::optional<topomap::StopPose> ThesisSlam::last_stop() const {
   if (map_.size() == 0) return std::nullopt;
   return map_.pose_of(map_.size() - 1);
 }
 
-SlamCounts ThesisLocalizer::counts() const {
+SlamCounts ThesisSlam::counts() const {
   SlamCounts counts{matching_.counts()};
   counts.steps_in_doubt = steps_in_doubt_;
   counts.optimizations = cycles_.attempts();

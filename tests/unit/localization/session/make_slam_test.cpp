@@ -14,7 +14,7 @@ TEST(MakeSlam, MakesTheAlgorithmThatTheModeNames) {
   LocalizerConfig config;
   EXPECT_NE(dynamic_cast<PoseGraphSlam*>(make_slam(config, pool).get()), nullptr);
   config.mode = LocalizerMode::kThesis;
-  EXPECT_NE(dynamic_cast<ThesisLocalizer*>(make_slam(config, pool).get()), nullptr);
+  EXPECT_NE(dynamic_cast<ThesisSlam*>(make_slam(config, pool).get()), nullptr);
 }
 
 }  // namespace

@@ -27,16 +27,16 @@ struct ThesisOutcome {
   int corrections = 0;  // steps that moved earlier poses
 };
 
-ThesisOutcome localize_by_thesis(const test::Maps& maps, const LocalizerConfig& config = {}) {
+ThesisOutcome map_by_thesis(const test::Maps& maps, const LocalizerConfig& config = {}) {
   InProcessPool pool;
-  ThesisLocalizer localizer(config, pool);
+  ThesisSlam slam(config, pool);
   ThesisOutcome outcome;
-  for (const auto& map : maps) outcome.corrections += localizer.add(map) ? 1 : 0;
-  localizer.finish();
-  outcome.trajectory = localizer.trajectory();
-  outcome.closures = localizer.loop_closures();
-  outcome.decisions = localizer.loop_decisions();
-  outcome.counts = localizer.counts();
+  for (const auto& map : maps) outcome.corrections += slam.add(map) ? 1 : 0;
+  slam.finish();
+  outcome.trajectory = slam.trajectory();
+  outcome.closures = slam.loop_closures();
+  outcome.decisions = slam.loop_decisions();
+  outcome.counts = slam.counts();
   return outcome;
 }
 
@@ -46,8 +46,8 @@ double end_error_m(const ThesisOutcome& outcome, const DrivenMaps& driven) {
   return (found.position_m() - truth.position_m()).norm();
 }
 
-TEST(ThesisLocalizer, ClosesTheCycleOfTheFloor) {
-  const ThesisOutcome outcome = localize_by_thesis(round_trip().maps);
+TEST(ThesisSlam, ClosesTheCycleOfTheFloor) {
+  const ThesisOutcome outcome = map_by_thesis(round_trip().maps);
   ASSERT_EQ(outcome.trajectory.stops.size(), round_trip().maps.size());
   EXPECT_EQ(outcome.trajectory.stops.front().T_map_robot, Pose2{});
   EXPECT_GT(outcome.corrections, 0);
@@ -59,15 +59,15 @@ TEST(ThesisLocalizer, ClosesTheCycleOfTheFloor) {
   }
   LocalizerConfig open;
   open.revisit_matches = 0;
-  const ThesisOutcome forward = localize_by_thesis(round_trip().maps, open);
+  const ThesisOutcome forward = map_by_thesis(round_trip().maps, open);
   EXPECT_TRUE(forward.closures.empty());
   EXPECT_EQ(forward.corrections, 0);
   EXPECT_LT(end_error_m(outcome, round_trip()), 0.3);
   EXPECT_LT(end_error_m(outcome, round_trip()), end_error_m(forward, round_trip()));
 }
 
-TEST(ThesisLocalizer, ExplainsEveryLoopThatItConsidered) {
-  const ThesisOutcome outcome = localize_by_thesis(round_trip().maps);
+TEST(ThesisSlam, ExplainsEveryLoopThatItConsidered) {
+  const ThesisOutcome outcome = map_by_thesis(round_trip().maps);
   std::size_t accepted = 0;
   for (const LoopDecision& decision : outcome.decisions) {
     EXPECT_LT(decision.earlier_id, decision.later_id);
@@ -79,10 +79,10 @@ TEST(ThesisLocalizer, ExplainsEveryLoopThatItConsidered) {
   EXPECT_GE(accepted, outcome.closures.size());
 }
 
-TEST(ThesisLocalizer, GivesTheSameBitsAgain) {
+TEST(ThesisSlam, GivesTheSameBitsAgain) {
   const test::Maps maps(round_trip().maps.begin(), round_trip().maps.begin() + 40);
-  const ThesisOutcome a = localize_by_thesis(maps);
-  const ThesisOutcome b = localize_by_thesis(maps);
+  const ThesisOutcome a = map_by_thesis(maps);
+  const ThesisOutcome b = map_by_thesis(maps);
   EXPECT_EQ(a.trajectory.version, b.trajectory.version);
   for (std::size_t i = 0; i < maps.size(); ++i) {
     EXPECT_EQ(a.trajectory.stops[i].T_map_robot, b.trajectory.stops[i].T_map_robot);
@@ -91,7 +91,7 @@ TEST(ThesisLocalizer, GivesTheSameBitsAgain) {
 }
 
 // A blind laser: nothing to match, so odometry remains.
-TEST(ThesisLocalizer, GoesByOdometryWhereNothingMatches) {
+TEST(ThesisSlam, GoesByOdometryWhereNothingMatches) {
   test::Maps maps;
   for (std::uint32_t id = 0; id < 3; ++id) {
     auto map = std::make_shared<topomap::LocalMap>();
@@ -100,7 +100,7 @@ TEST(ThesisLocalizer, GoesByOdometryWhereNothingMatches) {
     map->T_odom_robot = {1.0 * id, 0.5 * id, 0.1 * id};
     maps.push_back(map);
   }
-  const ThesisOutcome outcome = localize_by_thesis(maps);
+  const ThesisOutcome outcome = map_by_thesis(maps);
   const Eigen::Vector3d off =
       geometry::difference(outcome.trajectory.stops[2].T_map_robot, maps[2]->T_odom_robot);
   EXPECT_LT(off.norm(), 1e-12);
@@ -108,15 +108,15 @@ TEST(ThesisLocalizer, GoesByOdometryWhereNothingMatches) {
   EXPECT_GT(outcome.trajectory.stops[2].covariance(0, 0), 0.0);
 }
 
-TEST(ThesisLocalizer, RefusesMapsOutOfOrderOrOfAnotherRobot) {
+TEST(ThesisSlam, RefusesMapsOutOfOrderOrOfAnotherRobot) {
   InProcessPool pool;
-  ThesisLocalizer localizer({}, pool);
+  ThesisSlam slam({}, pool);
   auto second = std::make_shared<topomap::LocalMap>();
   second->id = 1;
-  EXPECT_THROW(localizer.add(second), std::invalid_argument);
-  localizer.add(round_trip().maps[0]);
+  EXPECT_THROW(slam.add(second), std::invalid_argument);
+  slam.add(round_trip().maps[0]);
   second->robot_id = "another";
-  EXPECT_THROW(localizer.add(second), std::invalid_argument);
+  EXPECT_THROW(slam.add(second), std::invalid_argument);
 }
 
 }  // namespace

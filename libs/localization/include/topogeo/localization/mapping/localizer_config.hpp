@@ -15,7 +15,7 @@ namespace topogeo::localization {
 
 enum class LocalizerMode : std::uint8_t {
   kGraph = 0,   ///< PoseGraphSlam: pose graph over all accepted matches
-  kThesis = 1,  ///< ThesisLocalizer: only the forward and backward correction of the thesis
+  kThesis = 1,  ///< ThesisSlam: only the forward and backward correction of the thesis
 };
 
 /// Whether the maps of two robots that have seen the same place are merged (SharedMap).

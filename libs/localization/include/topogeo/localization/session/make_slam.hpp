@@ -10,7 +10,7 @@
 
 namespace topogeo::localization {
 
-/// PoseGraphSlam or ThesisLocalizer, by `config.mode`. The pool and the optimizer (see
+/// PoseGraphSlam or ThesisSlam, by `config.mode`. The pool and the optimizer (see
 /// PoseGraphSlam) must outlive it.
 std::unique_ptr<Slam> make_slam(const LocalizerConfig& config, MatchPool& pool,
                                 GraphOptimizer* optimizer = nullptr);

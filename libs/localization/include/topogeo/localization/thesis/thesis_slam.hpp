@@ -24,13 +24,13 @@
 
 namespace topogeo::localization {
 
-class ThesisLocalizer : public Slam {
+class ThesisSlam : public Slam {
  public:
   /// Reads from `config`: seed, odometry, the settings of matches and their gate, recent_way_m,
   /// revisit_matches (maps seen again that are matched per step; 0: cycles stay open),
   /// smallest_expected_overlap, largest_half_width_* and unaided_correction_*. The pool must
-  /// outlive the localizer.
-  ThesisLocalizer(const LocalizerConfig& config, MatchPool& pool);
+  /// outlive this.
+  ThesisSlam(const LocalizerConfig& config, MatchPool& pool);
 
   bool add(std::shared_ptr<const topomap::LocalMap> map) override;
   /// Does nothing: the thesis has no work that waits for the end.
