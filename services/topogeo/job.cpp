@@ -181,7 +181,7 @@ Inputs check_inputs(const JobOptions& options) {
   Inputs inputs{load(options.config), nullptr, nullptr};
   if (!options.log.empty()) choose_mounting(inputs.config, options.log, options.topics);
   const pipeline::Config& config = inputs.config.config;
-  if (options.continued && config.localizer.mode != localization::LocalizerMode::kGraph) {
+  if (options.continued && config.localizer.mode != localization::SlamAlgorithm::kGraph) {
     throw service::UsageError("--continue: expected localizer.mode graph in the configuration");
   }
   try {

@@ -119,7 +119,7 @@ Drive make_drive(const DriveSetup& setup) {
 /// The parameters of the Thesis, as far as they are printed.
 localization::LocalizerConfig thesis_config(const CorrectionKind& kind, const DriveSetup& setup) {
   localization::LocalizerConfig config;
-  config.mode = localization::LocalizerMode::kThesis;
+  config.mode = localization::SlamAlgorithm::kThesis;
   config.genetic.individuals = 100;
   config.genetic.generations = 50;
   config.fitness_form = kind.form;

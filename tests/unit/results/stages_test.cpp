@@ -19,7 +19,7 @@ struct Drive {
   storage::MapDocument document;
 };
 
-Drive drive(localization::LocalizerMode mode) {
+Drive drive(localization::SlamAlgorithm mode) {
   Drive drive;
   drive.config = pipeline::load_config({}).config;
   drive.config.localizer.mode = mode;
@@ -38,7 +38,7 @@ double end_error_m(const Drive& drive, const topomap::Trajectory& trajectory) {
   return (trajectory.stops.back().T_map_robot.position_m() - truth.position_m()).norm();
 }
 
-class StagesTest : public testing::TestWithParam<localization::LocalizerMode> {};
+class StagesTest : public testing::TestWithParam<localization::SlamAlgorithm> {};
 
 TEST_P(StagesTest, GoFromOdometryToTheFinalMap) {
   const Drive driven = drive(GetParam());
@@ -56,15 +56,15 @@ TEST_P(StagesTest, GoFromOdometryToTheFinalMap) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, StagesTest,
-                         testing::Values(localization::LocalizerMode::kGraph,
-                                         localization::LocalizerMode::kThesis),
+                         testing::Values(localization::SlamAlgorithm::kGraph,
+                                         localization::SlamAlgorithm::kThesis),
                          [](const auto& mode) {
-                           return mode.param == localization::LocalizerMode::kGraph ? "Graph"
+                           return mode.param == localization::SlamAlgorithm::kGraph ? "Graph"
                                                                                     : "Thesis";
                          });
 
 TEST(StagePictures, AreFourFiles) {
-  const Drive driven = drive(localization::LocalizerMode::kGraph);
+  const Drive driven = drive(localization::SlamAlgorithm::kGraph);
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / "topogeo_stage_pictures";
   std::filesystem::create_directories(folder);

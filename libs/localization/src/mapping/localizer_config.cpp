@@ -69,7 +69,7 @@ void describe(LocalizerConfig& config, support::ConfigSchema& schema) {
   describe(config.odometry, schema);
   describe_matches(config, schema);
   schema.add("localizer.mode", &config.mode,
-             {{"graph", LocalizerMode::kGraph}, {"thesis", LocalizerMode::kThesis}},
+             {{"graph", SlamAlgorithm::kGraph}, {"thesis", SlamAlgorithm::kThesis}},
              "graph: a pose graph over all accepted matches; thesis: only the forward and backward "
              "correction of the thesis, for comparison");
   schema.add(

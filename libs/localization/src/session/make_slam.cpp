@@ -7,7 +7,7 @@ namespace topogeo::localization {
 
 std::unique_ptr<Slam> make_slam(const LocalizerConfig& config, MatchPool& pool,
                                 GraphOptimizer* optimizer) {
-  if (config.mode == LocalizerMode::kThesis) {
+  if (config.mode == SlamAlgorithm::kThesis) {
     return std::make_unique<ThesisSlam>(config, pool);
   }
   return std::make_unique<PoseGraphSlam>(config, pool, optimizer);

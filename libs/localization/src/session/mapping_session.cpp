@@ -24,7 +24,7 @@ MappingSession::MappingSession(const LocalizerConfig& config, MatchPool& pool,
                                GraphOptimizer* optimizer, std::shared_ptr<const StoredMap> map,
                                const std::optional<UncertainPose>& initial)
     : config_(config), pool_(pool), optimizer_(optimizer) {
-  if (config.mode != LocalizerMode::kGraph) {
+  if (config.mode != SlamAlgorithm::kGraph) {
     throw std::invalid_argument("localizer.mode: a stored map is continued in mode graph only");
   }
   take_map(map);

@@ -29,7 +29,7 @@ constexpr std::size_t kShareOfStops = 50;
 SharedMap::SharedMap(const LocalizerConfig& config, MatchPool& pool,
                      const std::shared_ptr<const StoredMap>& stored, std::size_t most_apart)
     : config_(config), most_apart_(most_apart), pool_(pool) {
-  if (config.mode != LocalizerMode::kGraph) {
+  if (config.mode != SlamAlgorithm::kGraph) {
     throw std::invalid_argument("localizer.mode: several robots map in mode graph only");
   }
   if (!stored) return;

@@ -13,7 +13,7 @@ TEST(MakeSlam, MakesTheAlgorithmThatTheModeNames) {
   InProcessPool pool;
   LocalizerConfig config;
   EXPECT_NE(dynamic_cast<PoseGraphSlam*>(make_slam(config, pool).get()), nullptr);
-  config.mode = LocalizerMode::kThesis;
+  config.mode = SlamAlgorithm::kThesis;
   EXPECT_NE(dynamic_cast<ThesisSlam*>(make_slam(config, pool).get()), nullptr);
 }
 

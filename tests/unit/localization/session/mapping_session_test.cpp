@@ -399,7 +399,7 @@ TEST_F(MappingSessionTest, RefusesAnotherRobotAStopOutOfTurnAndTheAlgorithmThatC
   map.robot_id = "another";
   EXPECT_THROW(session.add(std::make_shared<const topomap::LocalMap>(map)), std::invalid_argument);
   LocalizerConfig thesis;
-  thesis.mode = LocalizerMode::kThesis;
+  thesis.mode = SlamAlgorithm::kThesis;
   EXPECT_THROW(MappingSession(thesis, pool_, nullptr, stored_, std::nullopt),
                std::invalid_argument);
 }

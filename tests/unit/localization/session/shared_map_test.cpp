@@ -305,7 +305,7 @@ TEST(SharedMap, RefusesStopsOutOfTurnAndTheModeOfTheThesis) {
   shared.add(a().maps[0]);
   EXPECT_THROW(shared.add(a().maps[2]), std::invalid_argument);
   LocalizerConfig thesis;
-  thesis.mode = LocalizerMode::kThesis;
+  thesis.mode = SlamAlgorithm::kThesis;
   EXPECT_THROW(SharedMap(thesis, pool), std::invalid_argument);
 }
 

@@ -1,4 +1,4 @@
-// Settings of the localizer.
+// Settings of the localizer service: of SLAM and of localization in a finished map.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ class ConfigSchema;
 
 namespace topogeo::localization {
 
-enum class LocalizerMode : std::uint8_t {
+enum class SlamAlgorithm : std::uint8_t {
   kGraph = 0,   ///< PoseGraphSlam: pose graph over all accepted matches
   kThesis = 1,  ///< ThesisSlam: only the forward and backward correction of the thesis
 };
@@ -25,7 +25,7 @@ enum class MergePolicy : std::uint8_t {
 };
 
 struct LocalizerConfig {
-  LocalizerMode mode = LocalizerMode::kGraph;  ///< algorithm that make_slam() creates
+  SlamAlgorithm mode = SlamAlgorithm::kGraph;  ///< algorithm that make_slam() creates
   std::uint64_t seed = 1;
   OdometryNoise odometry;
   GeneticParameters genetic;

@@ -42,7 +42,7 @@ class MappingSession : public Slam {
   MappingSession(const LocalizerConfig& config, MatchPool& pool,
                  GraphOptimizer* optimizer = nullptr);
   /// Continues a stored map. `initial` is the pose of the robot at its first stop; without it the
-  /// whole map is searched. Throws std::invalid_argument in LocalizerMode::kThesis, and like
+  /// whole map is searched. Throws std::invalid_argument in SlamAlgorithm::kThesis, and like
   /// PoseGraphSlam and MapTracker.
   MappingSession(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer,
                  std::shared_ptr<const StoredMap> map, const std::optional<UncertainPose>& initial);
@@ -69,7 +69,7 @@ class MappingSession : public Slam {
   /// std::logic_error if it is unchanged already or there is no map yet, and like MapTracker.
   void stop_mapping();
   /// Extends the map again, starting with the next stop. Throws std::logic_error if it is extended
-  /// already, std::invalid_argument in LocalizerMode::kThesis.
+  /// already, std::invalid_argument in SlamAlgorithm::kThesis.
   void resume_mapping();
   /// The requested mode: stops join the map, now or once their pose is known.
   [[nodiscard]] bool mapping() const { return mapping_; }

@@ -33,7 +33,7 @@ class SharedMap : public Slam {
   /// A session that has not joined the map within this many stops restarts with the next stop.
   static constexpr std::size_t kMostApart = 2048;
   /// Begins a map, or continues a stored one. The pool must outlive this and have no other user.
-  /// Throws std::invalid_argument in LocalizerMode::kThesis.
+  /// Throws std::invalid_argument in SlamAlgorithm::kThesis.
   SharedMap(const LocalizerConfig& config, MatchPool& pool,
             const std::shared_ptr<const StoredMap>& stored = nullptr,
             std::size_t most_apart = kMostApart);
