@@ -38,15 +38,15 @@ CommandAnswer resume_mapping(const CommandMoment& now, localization::SlamSession
 
 CommandAnswer carry_out(const service::LocalizationCommand& command, const CommandMoment& now,
                         localization::SlamSession& slam) {
-  const bool maps = slam.follower() == nullptr;
+  const bool maps = slam.map_tracker() == nullptr;
   switch (command.kind) {
     case msg::kCommandSetPose:
       if (maps) return {false, "the pose cannot be set while a map is made"};
-      slam.follower()->set_pose(stop_pose(command, now), command.covariance);
+      slam.map_tracker()->set_pose(stop_pose(command, now), command.covariance);
       return {true, "localization continues from this pose"};
     case msg::kCommandSearch:
       if (maps) return {false, "a search needs a finished map; this one is being made"};
-      slam.follower()->search();
+      slam.map_tracker()->search();
       return {true, "the whole map is searched from the next stop on"};
     case msg::kCommandSwitchToLocalization:
       return stop_mapping(now, slam);

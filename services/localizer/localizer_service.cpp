@@ -217,9 +217,9 @@ void LocalizerService::step(const StopQueue::MapPointer& map) {
   live_.set_stop(map);
   last_map_ = map;
   remember();
-  if (localization::MapTracker* follower = slam_->follower()) {
-    if (table_) table_->add({follower->stops(), follower->added_stops()});
-    if (!options_.replay && !stops_are_stored_) follower->forget_stops(kShownStops);
+  if (localization::MapTracker* tracker = slam_->map_tracker()) {
+    if (table_) table_->add({tracker->stops(), tracker->added_stops()});
+    if (!options_.replay && !stops_are_stored_) tracker->forget_stops(kShownStops);
   }
   publish(false);
   send_pose();  // shows a correction at once, also when no odometry arrives any more
@@ -230,7 +230,7 @@ void LocalizerService::recall() {
   if (!memory_) return;
   const std::optional<RememberedPlace> last = memory_->load();
   if (!last) return;
-  slam_->follower()->start_after(last->place);
+  slam_->map_tracker()->start_after(last->place);
   // Match that stop once more, if the local mapper still has it.
   if (last->stop.number > 0) queue_.start_after({last->stop.session, last->stop.number - 1});
   spdlog::info("resuming at stop {}, the last known place of the robot", last->stop.number);
@@ -238,7 +238,7 @@ void LocalizerService::recall() {
 
 void LocalizerService::remember() const {
   if (!memory_ || !last_map_) return;
-  const std::vector<localization::LocalizedStop>& stops = slam_->follower()->stops();
+  const std::vector<localization::LocalizedStop>& stops = slam_->map_tracker()->stops();
   if (stops.empty() || !localization::located(stops.back().status.state)) {
     memory_->forget();
     return;
@@ -251,20 +251,20 @@ void LocalizerService::remember() const {
 
 std::size_t LocalizerService::stops_in_map() const {
   if (slam_->mapping_session() != nullptr) return slam_->mapping_session()->maps().size();
-  return slam_->follower() != nullptr ? slam_->follower()->stops().size() : queue_.taken();
+  return slam_->map_tracker() != nullptr ? slam_->map_tracker()->stops().size() : queue_.taken();
 }
 
 void LocalizerService::finish() {
-  service_.status().set_state(msg::kServiceRunning, slam_->follower() == nullptr
+  service_.status().set_state(msg::kServiceRunning, slam_->map_tracker() == nullptr
                                                         ? "matching revisited places"
                                                         : "localizing");
   (*slam_)->finish();
-  if (table_) table_->finish({slam_->follower()->stops(), slam_->follower()->added_stops()});
+  if (table_) table_->finish({slam_->map_tracker()->stops(), slam_->map_tracker()->added_stops()});
   finished_ = true;
   publish(true);
   send_pose();
   count();
-  const RunParts parts{**slam_, slam_->follower(),
+  const RunParts parts{**slam_, slam_->map_tracker(),
                        options_.continued ? slam_->mapping_session() : nullptr, pool_.counts()};
   const msg::RunSummary summary =
       make_run_summary(parts, service_.robot_id(), live_.stop_pose().stamp_ns);
@@ -334,7 +334,7 @@ void LocalizerService::count() {
     }
     set("stops_in_map", stops_in_map());
   }
-  if (const auto* in_map = slam_->follower()) {
+  if (const auto* in_map = slam_->map_tracker()) {
     for (const auto& [name, value] : pipeline::localization_counts(*in_map)) set(name, value);
   }
   set_pool_counters(pool_, status);
@@ -344,7 +344,7 @@ void LocalizerService::count() {
 void LocalizerService::report_need() {
   // One stop does not distinguish places that look alike, so a robot that stands may wait for ever.
   if (queue_.taken() == 0) return;
-  const bool lost = !finished_ && slam_->follower() != nullptr &&
+  const bool lost = !finished_ && slam_->map_tracker() != nullptr &&
                     !localization::located((*slam_)->status().state);
   service_.status().set_waits_for(lost ? "the robot to drive on, or its pose to be set" : "");
 }

@@ -61,17 +61,17 @@ void relate(const storage::MapDocument& own, const storage::MapDocument& joint,
 
 void note_followed(const pipeline::MappingRun& run, const topomap::Trajectory& own, double path_m,
                    SessionPair& pair) {
-  const localization::MapTracker* follower =
-      run.session() == nullptr ? nullptr : run.session()->follower();
-  if (follower == nullptr) return;
-  for (std::size_t i = pair.followed.size(); i < follower->stops().size(); ++i) {
-    const localization::LocalizedStop& stop = follower->stops()[i];
+  const localization::MapTracker* tracker =
+      run.session() == nullptr ? nullptr : run.session()->map_tracker();
+  if (tracker == nullptr) return;
+  for (std::size_t i = pair.followed.size(); i < tracker->stops().size(); ++i) {
+    const localization::LocalizedStop& stop = tracker->stops()[i];
     pair.followed.push_back({stop.status.state,
                              stop.T_map_robot * geometry::inverse(own.stops[i].T_map_robot), path_m,
                              std::nullopt});
-    if (follower->last_step()) {
+    if (tracker->last_step()) {
       pair.followed.back().contradicted =
-          localization::contradiction(follower->last_step()->evidence);
+          localization::contradiction(tracker->last_step()->evidence);
     }
   }
 }
@@ -109,7 +109,9 @@ SessionPair run_pair(const std::vector<SessionDrive>& drives, std::size_t stored
     }
     run.add(after.scans[i]);
     note_followed(run, after.map.trajectory, path_m, pair);
-    if (!pair.joined_after_m && run.session()->follower() == nullptr) pair.joined_after_m = path_m;
+    if (!pair.joined_after_m && run.session()->map_tracker() == nullptr) {
+      pair.joined_after_m = path_m;
+    }
   }
   const storage::MapDocument joint = run.finish();
   pair.joined = joint.local_maps.size() - before.map.local_maps.size();

@@ -30,7 +30,7 @@ MappingSession::MappingSession(const LocalizerConfig& config, MatchPool& pool,
   take_map(map);
   stored_stops_ = map->maps.size();
   start_following(std::move(map));
-  if (initial) follower_->set_pose(initial->T_a_b, initial->covariance);
+  if (initial) map_tracker_->set_pose(initial->T_a_b, initial->covariance);
 }
 
 void MappingSession::take_map(const std::shared_ptr<const StoredMap>& map) {
@@ -50,7 +50,7 @@ void MappingSession::set_long_drive(const LongDrive& limits) {
 }
 
 void MappingSession::go_on() {
-  follower_->start_after(*maps_.back(), mapper_->trajectory().stops.back().T_map_robot);
+  map_tracker_->start_after(*maps_.back(), mapper_->trajectory().stops.back().T_map_robot);
   last_id_ = maps_.back()->stop;
 }
 
@@ -65,14 +65,14 @@ bool MappingSession::add(MapPointer map) {
   if (last_id_ && !same_session) begin_drive(*map);
   last_id_ = map->stop;
   ++stops_;
-  return follower_ ? follow(map) : map_stop(map);
+  return map_tracker_ ? follow(map) : map_stop(map);
 }
 
-// The follower finds out by itself that the robot may be anywhere.
+// The tracker finds out by itself that the robot may be anywhere.
 void MappingSession::begin_drive(const topomap::LocalMap& map) {
   waiting_.clear();
   confirmation_.begin();
-  if (follower_ || maps_.empty()) return;
+  if (map_tracker_ || maps_.empty()) return;
   if (pose_graph_slam_ == nullptr) {
     throw std::invalid_argument("localizer: stop " + std::to_string(map.stop.number) +
                                 " is of another drive, which mode thesis cannot join to its map");
@@ -104,20 +104,20 @@ void MappingSession::add_to_map(MapPointer map) {
 }
 
 bool MappingSession::follow(const MapPointer& map) {
-  follower_->add(map);
-  const bool found = confirmation_.add(*follower_);
+  map_tracker_->add(map);
+  const bool found = confirmation_.add(*map_tracker_);
   if (!mapping_) return false;
   waiting_.push_back(map);
   if (waiting_.size() > kMostWaiting) waiting_.erase(waiting_.begin());
-  follower_->forget_stops(kMostWaiting);
+  map_tracker_->forget_stops(kMostWaiting);
   if (found) join();
   return found;
 }
 
 void MappingSession::join() {
-  std::vector<StoredMatch> matches = follower_->last_step()->accepted;
+  std::vector<StoredMatch> matches = map_tracker_->last_step()->accepted;
   if (const auto by = renew(0)) matches = renewed(std::move(matches), *by);
-  const double confidence = follower_->status().confidence;
+  const double confidence = map_tracker_->status().confidence;
   std::vector<MapPointer> drive;
   for (const MapPointer& map : std::exchange(waiting_, {})) {
     const bool follows = !maps_.empty() && maps_.back()->stop.next() == map->stop;
@@ -164,7 +164,7 @@ void MappingSession::renew_long_drive() {
   renew_at_ = std::max(long_drive_.stops, maps_.size() + long_drive_.stops / 2);
   if (!by) return;
   start_following(map_so_far());
-  follower_->start_after(*maps_.back(), mapper_->trajectory().stops.back().T_map_robot);
+  map_tracker_->start_after(*maps_.back(), mapper_->trajectory().stops.back().T_map_robot);
 }
 
 // A copy numbered after the last stop of the map.
@@ -177,7 +177,7 @@ MappingSession::MapPointer MappingSession::numbered(const MapPointer& map,
 }
 
 void MappingSession::finish() {
-  if (!follower_ && added_ > 0) mapper_->finish();
+  if (!map_tracker_ && added_ > 0) mapper_->finish();
 }
 
 // --- switching between mapping and localizing
@@ -185,11 +185,11 @@ void MappingSession::finish() {
 void MappingSession::stop_mapping() {
   if (!mapping_) throw std::logic_error("mapping is already stopped");
   if (maps_.empty()) throw std::logic_error("there is no map yet");
-  if (!follower_) {
+  if (!map_tracker_) {
     std::shared_ptr<const StoredMap> stored = map_so_far();
     const geometry::Pose2 T_map_last = stored->trajectory.stops.back().T_map_robot;
     start_following(std::move(stored));
-    follower_->start_after(*maps_.back(), T_map_last);
+    map_tracker_->start_after(*maps_.back(), T_map_last);
   }
   waiting_.clear();
   mapping_ = false;
@@ -206,15 +206,15 @@ void MappingSession::resume_mapping() {
 void MappingSession::start_following(std::shared_ptr<const StoredMap> map) {
   const std::uint64_t next_task =
       pose_graph_slam_ != nullptr ? pose_graph_slam_->next_task() : counts().tasks;
-  follower_ = std::make_unique<MapTracker>(config_, std::move(map), pool_);
-  follower_->number_tasks_from(next_task);
+  map_tracker_ = std::make_unique<MapTracker>(config_, std::move(map), pool_);
+  map_tracker_->number_tasks_from(next_task);
   confirmation_.begin();
 }
 
 void MappingSession::end_following() {
-  pose_graph_slam_->number_tasks_from(follower_->next_task());
-  add_counts(counts_before_, follower_->counts());
-  follower_.reset();
+  pose_graph_slam_->number_tasks_from(map_tracker_->next_task());
+  add_counts(counts_before_, map_tracker_->counts());
+  map_tracker_.reset();
 }
 
 // --- state
@@ -233,7 +233,7 @@ topomap::Trajectory MappingSession::trajectory() const {
 
 std::optional<topomap::StopPose> MappingSession::last_stop() const {
   if (stops_ == 0) return std::nullopt;
-  if (follower_ && !follower_->stops().empty()) return follower_->last_stop();
+  if (map_tracker_ && !map_tracker_->stops().empty()) return map_tracker_->last_stop();
   std::optional<topomap::StopPose> stop = mapper_->last_stop();
   stop->stop = maps_.back()->stop;  // mapped, or just after stop_mapping()
   return stop;
@@ -242,7 +242,7 @@ std::optional<topomap::StopPose> MappingSession::last_stop() const {
 SlamCounts MappingSession::counts() const {
   SlamCounts counts = mapper_->counts();
   add_counts(counts, counts_before_);
-  if (follower_) add_counts(counts, follower_->counts());
+  if (map_tracker_) add_counts(counts, map_tracker_->counts());
   return counts;
 }
 

@@ -16,8 +16,8 @@ constexpr std::size_t kShare = 16;
 // Limit while a robot is followed and no operator agrees to join the maps.
 constexpr std::size_t kMostSightings = 3072;
 
-bool followed(const MapTracker& follower) {
-  return follower.status().state == LocalizationState::kTracking;
+bool is_tracked(const MapTracker& tracker) {
+  return tracker.status().state == LocalizationState::kTracking;
 }
 
 }  // namespace
@@ -26,15 +26,15 @@ Meeting::Meeting(const LocalizerConfig& config, std::unique_ptr<MatchPool> pool)
     : config_(config), pool_(std::move(pool)) {}
 
 bool Meeting::wants_map(std::size_t stops) const {
-  return stops > 0 && (!follower_ || stops >= renew_at_ || stops < map_->maps.size());
+  return stops > 0 && (!map_tracker_ || stops >= renew_at_ || stops < map_->maps.size());
 }
 
 void Meeting::set_map(std::shared_ptr<const StoredMap> map,
                       std::span<const MapPointer> last_stops) {
   std::optional<geometry::Pose2> T_map_last;
-  if (follower_ && followed(*follower_)) {
+  if (map_tracker_ && is_tracked(*map_tracker_)) {
     // Pose relative to a stop that it was matched with, which may have moved since.
-    const geometry::Pose2 before = follower_->last_stop()->T_map_robot;
+    const geometry::Pose2 before = map_tracker_->last_stop()->T_map_robot;
     T_map_last = before;
     for (const Sighting& sighting : newest()) {
       const auto same = std::ranges::find_if(
@@ -44,12 +44,12 @@ void Meeting::set_map(std::shared_ptr<const StoredMap> map,
       break;
     }
   }
-  if (follower_) add_counts(counts_before_, follower_->counts());
+  if (map_tracker_) add_counts(counts_before_, map_tracker_->counts());
   map_ = std::move(map);
   renew_at_ = map_->maps.size() + std::max(kFewStops, map_->maps.size() / kShare);
-  follower_ = std::make_unique<MapTracker>(config_, map_, *pool_);
+  map_tracker_ = std::make_unique<MapTracker>(config_, map_, *pool_);
   if (T_map_last) {
-    follower_->start_after(*last_, *T_map_last);
+    map_tracker_->start_after(*last_, *T_map_last);
     return;
   }
   forget();
@@ -57,27 +57,27 @@ void Meeting::set_map(std::shared_ptr<const StoredMap> map,
 }
 
 void Meeting::expect(const MapPointer& last, const UncertainPose& T_map_robot) {
-  if (followed(*follower_)) return;
-  if (follower_->stops().empty()) follower_->start_after(*last, T_map_robot.T_a_b);
-  follower_->set_pose(T_map_robot.T_a_b, T_map_robot.covariance);
+  if (is_tracked(*map_tracker_)) return;
+  if (map_tracker_->stops().empty()) map_tracker_->start_after(*last, T_map_robot.T_a_b);
+  map_tracker_->set_pose(T_map_robot.T_a_b, T_map_robot.covariance);
 }
 
 bool Meeting::add(const MapPointer& map) {
   follow(map);
-  return confirmation_.add(*follower_);
+  return confirmation_.add(*map_tracker_);
 }
 
 void Meeting::follow(const MapPointer& map) {
-  follower_->add(map);
-  follower_->forget_stops(kFewStops);
+  map_tracker_->add(map);
+  map_tracker_->forget_stops(kFewStops);
   last_ = map;
-  if (!followed(*follower_)) sightings_.clear();
+  if (!is_tracked(*map_tracker_)) sightings_.clear();
   if (sightings_.size() > kMostSightings) {
     sightings_.erase(sightings_.begin(), sightings_.begin() + kMostSightings / 2);
   }
   newest_ = sightings_.size();
-  if (!tracked_well(*follower_)) return;
-  const TrackedStep& step = *follower_->last_step();
+  if (!tracked_well(*map_tracker_)) return;
+  const TrackedStep& step = *map_tracker_->last_step();
   for (std::size_t i = 0; i < step.accepted.size(); ++i) {
     const StoredMatch& match = step.accepted[i];
     sightings_.push_back(
@@ -96,7 +96,7 @@ void Meeting::forget() {
 }
 
 SlamCounts Meeting::counts() const {
-  SlamCounts counts = follower_ ? follower_->counts() : SlamCounts{};
+  SlamCounts counts = map_tracker_ ? map_tracker_->counts() : SlamCounts{};
   add_counts(counts, counts_before_);
   return counts;
 }

@@ -16,16 +16,16 @@ constexpr double kContradictedOnce = 0.5;  // by one stop
 
 }  // namespace
 
-bool tracked_well(const MapTracker& follower) {
-  const std::optional<TrackedStep>& step = follower.last_step();
-  return follower.status().state == LocalizationState::kTracking && step &&
+bool tracked_well(const MapTracker& tracker) {
+  const std::optional<TrackedStep>& step = tracker.last_step();
+  return tracker.status().state == LocalizationState::kTracking && step &&
          !step->accepted.empty() && contradiction(step->evidence) <= kContradictedOnce;
 }
 
-bool PlaceConfirmation::add(const MapTracker& follower) {
-  const std::optional<TrackedStep>& step = follower.last_step();
+bool PlaceConfirmation::add(const MapTracker& tracker) {
+  const std::optional<TrackedStep>& step = tracker.last_step();
   if (!step) searched_ = true;
-  if (!tracked_well(follower)) {
+  if (!tracked_well(tracker)) {
     stops_ = 0;
     distance_m_ = contradiction_ = 0.0;
     return false;

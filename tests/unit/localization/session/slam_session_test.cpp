@@ -45,22 +45,22 @@ class SlamSessionTest : public ::testing::Test {
 test::DrivenMaps* SlamSessionTest::driven_ = nullptr;
 std::shared_ptr<const StoredMap> SlamSessionTest::stored_;
 
-TEST_F(SlamSessionTest, ANewMapGrowsAndHasNoFollower) {
+TEST_F(SlamSessionTest, ANewMapGrowsAndHasNoTracker) {
   SlamSession session({}, pool_);
   ASSERT_NE(session.mapping_session(), nullptr);
-  EXPECT_EQ(session.follower(), nullptr);
+  EXPECT_EQ(session.map_tracker(), nullptr);
   EXPECT_TRUE(session.mapping());
   session->add(driven_->maps[0]);
   EXPECT_EQ(session.mapping_session()->maps().size(), 1U);
   session.mapping_session()->stop_mapping();
   EXPECT_FALSE(session.mapping());
-  EXPECT_NE(session.follower(), nullptr);
+  EXPECT_NE(session.map_tracker(), nullptr);
 }
 
 TEST_F(SlamSessionTest, LocalizingNeverMapsAndStartsAtTheGivenPose) {
   SlamSession session({}, pool_, nullptr, {stored_, Use::kLocalize, Pose2{}});
   EXPECT_EQ(session.mapping_session(), nullptr);
-  ASSERT_NE(session.follower(), nullptr);
+  ASSERT_NE(session.map_tracker(), nullptr);
   EXPECT_FALSE(session.mapping());
   session->add(driven_->maps[0]);
   EXPECT_EQ(session->status().state, LocalizationState::kTracking);
@@ -78,11 +78,11 @@ TEST_F(SlamSessionTest, ContinuingExtendsTheStoredMap) {
   SlamSession session({}, pool_, nullptr, {stored_, Use::kContinue, Pose2{}});
   ASSERT_NE(session.mapping_session(), nullptr);
   EXPECT_TRUE(session.mapping());
-  EXPECT_NE(session.follower(), nullptr);
+  EXPECT_NE(session.map_tracker(), nullptr);
   for (std::size_t i = 0; i < 3; ++i) session->add(driven_->maps[i]);
   EXPECT_EQ(session.mapping_session()->stored_stops(), stored_->maps.size());
   EXPECT_EQ(session.mapping_session()->maps().size(), stored_->maps.size() + 3);
-  EXPECT_EQ(session.follower(), nullptr);
+  EXPECT_EQ(session.map_tracker(), nullptr);
 }
 
 TEST_F(SlamSessionTest, RefusesAMapWithoutStops) {

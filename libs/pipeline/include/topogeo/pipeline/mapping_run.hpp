@@ -46,7 +46,7 @@ class MappingRun {
   }
   /// Null unless it localizes in a finished map.
   [[nodiscard]] const localization::MapTracker* map_tracker() const {
-    return session() == nullptr ? slam_.follower() : nullptr;
+    return session() == nullptr ? slam_.map_tracker() : nullptr;
   }
   [[nodiscard]] const std::vector<localization::LoopDecision>& loop_decisions() const {
     return slam_->loop_decisions();

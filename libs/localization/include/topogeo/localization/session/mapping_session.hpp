@@ -75,7 +75,7 @@ class MappingSession : public Slam {
   [[nodiscard]] bool mapping() const { return mapping_; }
 
   /// Follows the robot in the map; null while its stops join the map one by one.
-  [[nodiscard]] MapTracker* follower() const { return follower_.get(); }
+  [[nodiscard]] MapTracker* map_tracker() const { return map_tracker_.get(); }
 
   /// Local maps of the map, numbered from 0.
   [[nodiscard]] const std::vector<MapPointer>& maps() const { return maps_; }
@@ -102,7 +102,7 @@ class MappingSession : public Slam {
     return mapper_->edges();
   }
   [[nodiscard]] LocalizationStatus status() const override {
-    return follower_ ? follower_->status() : mapper_->status();
+    return map_tracker_ ? map_tracker_->status() : mapper_->status();
   }
   [[nodiscard]] SlamCounts counts() const override;
 
@@ -135,7 +135,7 @@ class MappingSession : public Slam {
   GraphOptimizer* optimizer_;
   std::unique_ptr<Slam> mapper_;
   PoseGraphSlam* pose_graph_slam_ = nullptr;  // mapper_; null for the algorithm of the Thesis
-  std::unique_ptr<MapTracker> follower_;
+  std::unique_ptr<MapTracker> map_tracker_;
   bool mapping_ = true;
   std::optional<topomap::StopId> last_id_;  // of the drive
   std::size_t stops_ = 0;                   // received
@@ -147,9 +147,9 @@ class MappingSession : public Slam {
   LongDrive long_drive_;
   std::size_t renew_at_ = long_drive_.stops;
   bool keeps_all_ = false;
-  PlaceConfirmation confirmation_;   // of the follower's pose
+  PlaceConfirmation confirmation_;   // of the tracker's pose
   std::vector<MapPointer> waiting_;  // to join the map, as received
-  SlamCounts counts_before_;         // of earlier followers and mappers
+  SlamCounts counts_before_;         // of earlier trackers and mappers
 };
 
 }  // namespace topogeo::localization

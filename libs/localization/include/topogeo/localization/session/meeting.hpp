@@ -48,8 +48,10 @@ class Meeting {
   bool add(const MapPointer& map);
 
   /// T_map_robot of the last stop; meaningless unless it is certain.
-  [[nodiscard]] geometry::Pose2 T_map_robot() const { return follower_->last_stop()->T_map_robot; }
-  [[nodiscard]] double confidence() const { return follower_->status().confidence; }
+  [[nodiscard]] geometry::Pose2 T_map_robot() const {
+    return map_tracker_->last_stop()->T_map_robot;
+  }
+  [[nodiscard]] double confidence() const { return map_tracker_->status().confidence; }
   [[nodiscard]] const PlaceConfirmation& confirmation() const { return confirmation_; }
   /// All sightings since the robot has been followed without interruption.
   [[nodiscard]] const std::vector<Sighting>& sightings() const { return sightings_; }
@@ -65,7 +67,7 @@ class Meeting {
   LocalizerConfig config_;
   std::unique_ptr<MatchPool> pool_;
   std::shared_ptr<const StoredMap> map_;
-  std::unique_ptr<MapTracker> follower_;
+  std::unique_ptr<MapTracker> map_tracker_;
   PlaceConfirmation confirmation_;
   std::vector<Sighting> sightings_;
   std::size_t newest_ = 0;  // index of the first newest one

@@ -10,18 +10,18 @@ namespace topogeo::localization {
 
 class PlaceConfirmation {
  public:
-  /// Starts again for another drive or another follower.
+  /// Starts again for another drive or another tracker.
   void begin() { *this = {}; }
-  /// Like begin(), and the pose of the follower counts as found by a search.
+  /// Like begin(), and the pose of the tracker counts as found by a search.
   void begin_searched() {
     *this = {};
     searched_ = true;
   }
 
-  /// Call after each stop of the follower. True if the last stop is tracked and matched, and, after
+  /// Call after each stop of the tracker. True if the last stop is tracked and matched, and, after
   /// a search, enough stops before it as well: at a first look a room of another building can
   /// resemble one of the map.
-  bool add(const MapTracker& follower);
+  bool add(const MapTracker& tracker);
 
   /// Successive tracked stops, including the last one.
   [[nodiscard]] std::uint32_t stops() const { return stops_; }
@@ -38,6 +38,6 @@ class PlaceConfirmation {
 };
 
 /// Whether the stop is tracked by accepted matches and not contradicted by the rest of its view.
-bool tracked_well(const MapTracker& follower);
+bool tracked_well(const MapTracker& tracker);
 
 }  // namespace topogeo::localization

@@ -49,8 +49,8 @@ class SlamSession {
   /// Null if a stored map never changes.
   [[nodiscard]] MappingSession* mapping_session() const { return mapping_session_; }
   /// Follows the robot in a map; null while its stops join the map one by one.
-  [[nodiscard]] MapTracker* follower() const {
-    return mapping_session_ != nullptr ? mapping_session_->follower() : map_tracker_;
+  [[nodiscard]] MapTracker* map_tracker() const {
+    return mapping_session_ != nullptr ? mapping_session_->map_tracker() : map_tracker_;
   }
   /// Whether stops join the map, now or once their pose in it is known.
   [[nodiscard]] bool mapping() const {
