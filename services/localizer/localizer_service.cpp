@@ -36,7 +36,7 @@ localization::MapToUse map_to_use(const service::Service& service,
   }
   return {pipeline::stored_map(*pipeline::load_map_to_continue(
               *options.continued, service.setup().config.config, service.robot_id())),
-          MapToUse::Use::kContinue, options.initial_pose};
+          MapToUse::Use::kExtendMap, options.initial_pose};
 }
 
 localization::SlamSession make_slam(const service::Service& service,
@@ -113,8 +113,9 @@ void LocalizerService::resume(ResumeFrom from) {
     const topomap::LocalMap& last = from.map->maps.back();
     slam_.emplace(
         service_.setup().config.config.localizer, watched_, &optimizer_,
-        localization::MapToUse{from.map, from.goes_on ? Use::kGoOn : Use::kContinue, std::nullopt});
-    if (from.goes_on) {
+        localization::MapToUse{
+            from.map, from.resumes_session ? Use::kResumeSession : Use::kExtendMap, std::nullopt});
+    if (from.resumes_session) {
       queue_.start_after(last.stop);
       odometry_.start_after(last);
       live_.set_stop(std::make_shared<const topomap::LocalMap>(last));

@@ -65,8 +65,8 @@ void Resume::on_map(const service::StoreClient::Answer& answer) {
     std::uint32_t first = 0;
     if (!document.local_maps.empty()) {
       const topomap::StopId last = document.local_maps.back().stop;
-      from_.goes_on = last.session == stored_->session();
-      if (from_.goes_on) first = last.number + 1;
+      from_.resumes_session = last.session == stored_->session();
+      if (from_.resumes_session) first = last.number + 1;
       from_.map = pipeline::stored_map(document);
     }
     get_stops(first);

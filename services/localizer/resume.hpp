@@ -14,8 +14,8 @@ namespace topogeo::localizer {
 /// The state from which the localizer continues.
 struct ResumeFrom {
   std::shared_ptr<const localization::StoredMap>
-      map;               ///< null: the map begins with the stops below
-  bool goes_on = false;  ///< its last stop belongs to the current session
+      map;                       ///< null: the map begins with the stops below
+  bool resumes_session = false;  ///< its last stop belongs to the current session
   std::vector<std::shared_ptr<const topomap::LocalMap>> stops;  ///< of that session, to be added
 };
 

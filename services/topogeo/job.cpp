@@ -135,7 +135,7 @@ void add_overlaps(storage::Report& report, const JobOptions& options,
 
 void add_map_options(command_line::Command& app, JobOptions& options, StoredMapUse use) {
   command_line::Option* map = nullptr;
-  if (use != StoredMapUse::kContinue) {
+  if (use != StoredMapUse::kExtendMap) {
     map =
         app.add_option("--map", options.map, "map.pb to localize in, read-only")->type_name("FILE");
   }

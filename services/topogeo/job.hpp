@@ -45,9 +45,9 @@ void add_log_options(command_line::Command& app, JobOptions& options);
 
 /// The options on stored maps that a command has.
 enum class StoredMapUse : std::uint8_t {
-  kLocalize,  ///< --map, which is required
-  kContinue,  ///< --continue
-  kEither,    ///< both, of which one may be given
+  kLocalize,   ///< --map, which is required
+  kExtendMap,  ///< --continue
+  kEither,     ///< both, of which one may be given
 };
 
 /// Adds those options and --initial-pose.

@@ -183,7 +183,7 @@ void add_map_command(command_line::Command& app, int& exit_code) {
       app.add_subcommand("map", "Map a log in one process, without DDS");
   auto options = std::make_shared<JobOptions>();
   add_log_options(*command, *options);
-  add_map_options(*command, *options, StoredMapUse::kContinue);
+  add_map_options(*command, *options, StoredMapUse::kExtendMap);
   add_overlaps_option(*command, *options);
   auto stages = std::make_shared<bool>(false);
   command

@@ -27,7 +27,7 @@ MappingRun::MappingRun(const Config& config, std::string robot_id,
       local_mapper_(config.local_mapper, robot_id_, storage::identified(*map).map_id),
       continued_(std::move(map)),
       slam_(config.localizer, pool_, nullptr,
-            {stored_map(*continued_), MapToUse::Use::kContinue, initial_pose}) {}
+            {stored_map(*continued_), MapToUse::Use::kExtendMap, initial_pose}) {}
 
 MappingRun::MappingRun(const Config& config, std::string robot_id,
                        std::shared_ptr<const localization::StoredMap> map,

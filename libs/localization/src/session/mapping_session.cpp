@@ -49,7 +49,7 @@ void MappingSession::set_long_drive(const LongDrive& limits) {
   renew_at_ = std::max(long_drive_.stops, 2 * maps_.size());
 }
 
-void MappingSession::go_on() {
+void MappingSession::resume_session() {
   map_tracker_->start_after(*maps_.back(), mapper_->trajectory().stops.back().T_map_robot);
   last_id_ = maps_.back()->stop;
 }

@@ -25,7 +25,7 @@ SlamSession::SlamSession(const LocalizerConfig& config, MatchPool& pool, GraphOp
   if (stored.T_map_start) start = {*stored.T_map_start, given_pose_covariance()};
   if (stored.use != MapToUse::Use::kLocalize) {
     auto session = std::make_unique<MappingSession>(config, pool, optimizer, stored.map, start);
-    if (stored.use == MapToUse::Use::kGoOn) session->go_on();
+    if (stored.use == MapToUse::Use::kResumeSession) session->resume_session();
     mapping_session_ = session.get();
     slam_ = std::move(session);
     return;

@@ -376,7 +376,7 @@ TEST_F(MappingSessionTest, StopsOfASessionThatFoundNoPlaceAreGivenUpWithIt) {
 
 TEST_F(MappingSessionTest, GoesOnAtTheLastStopOfTheStoredMap) {
   MappingSession session({}, pool_, nullptr, stored_, std::nullopt);
-  session.go_on();
+  session.resume_session();
   const Maps drive = part(driven_->maps, 0, kFirst + kSecond);
   for (std::size_t i = kFirst; i < kFirst + kSecond; ++i) {
     session.add(drive[i]);

@@ -75,7 +75,7 @@ TEST_F(SlamSessionTest, WithoutAPoseItSearches) {
 }
 
 TEST_F(SlamSessionTest, ContinuingExtendsTheStoredMap) {
-  SlamSession session({}, pool_, nullptr, {stored_, Use::kContinue, Pose2{}});
+  SlamSession session({}, pool_, nullptr, {stored_, Use::kExtendMap, Pose2{}});
   ASSERT_NE(session.mapping_session(), nullptr);
   EXPECT_TRUE(session.mapping());
   EXPECT_NE(session.map_tracker(), nullptr);
@@ -89,7 +89,7 @@ TEST_F(SlamSessionTest, RefusesAMapWithoutStops) {
   const auto empty = std::make_shared<const StoredMap>();
   EXPECT_THROW(SlamSession({}, pool_, nullptr, {empty, Use::kLocalize, std::nullopt}),
                std::invalid_argument);
-  EXPECT_THROW(SlamSession({}, pool_, nullptr, {empty, Use::kContinue, std::nullopt}),
+  EXPECT_THROW(SlamSession({}, pool_, nullptr, {empty, Use::kExtendMap, std::nullopt}),
                std::invalid_argument);
 }
 

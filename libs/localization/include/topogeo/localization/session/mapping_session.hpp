@@ -49,7 +49,7 @@ class MappingSession : public Slam {
 
   /// The drive continues from the last stop of the stored map, which belongs to its session. Call
   /// before the first stop.
-  void go_on();
+  void resume_session();
 
   /// No view leaves the map, even if others show the same.
   void keep_all_views() { keeps_all_ = true; }

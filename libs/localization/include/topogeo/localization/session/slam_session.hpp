@@ -26,8 +26,8 @@ Eigen::Matrix3d given_pose_covariance();
 struct MapToUse {
   enum class Use : std::uint8_t {
     kLocalize,
-    kContinue,
-    kGoOn  ///< like kContinue, and the robot starts at the last stop of the map
+    kExtendMap,
+    kResumeSession  ///< like kExtendMap, and the robot starts at the last stop of the map
   };
   std::shared_ptr<const StoredMap> map;
   Use use = Use::kLocalize;
