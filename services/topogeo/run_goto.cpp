@@ -13,7 +13,7 @@
 #include "topogeo/support/format.hpp"
 
 #include "commands.hpp"
-#include "goto_run.hpp"
+#include "goto_drive.hpp"
 #include "run_log.hpp"
 
 namespace topogeo::cli {

@@ -1,4 +1,4 @@
-#include "goto_run.hpp"
+#include "goto_drive.hpp"
 
 #include <utility>
 
