@@ -10,7 +10,7 @@
 
 namespace topogeo::cli {
 
-GotoRun::GotoRun(const RunOptions& options)
+GotoDrive::GotoDrive(const RunOptions& options)
     : options_(options),
       phases_(support::monotonic_s()),
       run_(options),
@@ -29,7 +29,7 @@ GotoRun::GotoRun(const RunOptions& options)
   run_.start(options_, std::move(hooks));
 }
 
-GotoResult GotoRun::run() {
+GotoResult GotoDrive::run() {
   run_.run();
   session_.progress().finish();
   result_.failure = run_.failure();
@@ -53,7 +53,7 @@ GotoResult GotoRun::run() {
   return std::move(result_);
 }
 
-geometry::Pose2 GotoRun::T_map_start() {
+geometry::Pose2 GotoDrive::T_map_start() {
   const auto map = session_.client().map();
   if (!options_.station || !map) return {};
   const planning::Place* station = planning::find_base_station(map->places(), *options_.station);
@@ -62,14 +62,14 @@ geometry::Pose2 GotoRun::T_map_start() {
           station->station_heading_rad.value_or(0.0)};
 }
 
-void GotoRun::on_pose(const msg::LivePose& pose) {
+void GotoDrive::on_pose(const msg::LivePose& pose) {
   pose_ = pose;
   if (pose.state() != msg::kStateTracking) return;
   result_.estimated.push_back(
       {pose.sequence_number(), pose.stamp_ns(), service::from_msg(pose.T_map_robot())});
 }
 
-void GotoRun::tick() {
+void GotoDrive::tick() {
   if (phases_.is_driving()) session_.tick();
   const supervision::GotoView view{phases_.is_waiting() ? waits_for() : "", run_.too_busy(),
                                    session_.end(), session_.client().stands()};
@@ -93,12 +93,12 @@ void GotoRun::tick() {
   }
 }
 
-void GotoRun::report_wait(const std::string& what) {
+void GotoDrive::report_wait(const std::string& what) {
   if (!what.empty() && what != reported_) session_.progress().print("waiting for " + what);
   reported_ = what;
 }
 
-std::string GotoRun::waits_for() {
+std::string GotoDrive::waits_for() {
   const std::string missing = session_.client().missing();
   if (!missing.empty()) return "the services";
   if (!session_.client().map()) return "the map";
@@ -110,7 +110,7 @@ std::string GotoRun::waits_for() {
       localization::to_string(static_cast<localization::LocalizationState>(pose_->state())));
 }
 
-void GotoRun::call_off() {
+void GotoDrive::call_off() {
   if (phases_.call_off()) session_.client().cancel();
 }
 

@@ -1,4 +1,4 @@
-// One run of all services with a simulated robot that is sent to a place on a stored map.
+// A drive of a simulated robot to a place on a stored map, with all services (topogeo run --goto).
 #pragma once
 
 #include <cstdint>
@@ -31,11 +31,11 @@ struct GotoResult {
   std::uint64_t run_into = 0;
 };
 
-class GotoRun {
+class GotoDrive {
  public:
   /// Starts the services, in a partition of their own. `options` has a goal, a simulation and a
   /// map. Throws like ServiceRun and GoalSession.
-  explicit GotoRun(const RunOptions& options);
+  explicit GotoDrive(const RunOptions& options);
 
   /// Returns when all services have ended. Call it once. The robot's first pose, at the start of
   /// the tour, is taken as the map's origin, where the mapping drive began, and for a robot without

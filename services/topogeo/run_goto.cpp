@@ -93,7 +93,7 @@ int run_goto(RunOptions options) {
   if (no_laser) options.station = station_of(config.navigator);
   if (!options.goal->picture) options.goal->picture = options.job.out / "route.png";
   prepare_simulation(options);
-  const GotoResult result = GotoRun(options).run();
+  const GotoResult result = GotoDrive(options).run();
   if (!result.estimated.empty()) {
     storage::write_trajectory_tum(options.job.out / "trajectory.tum", result.estimated);
     storage::write_trajectory_tum(options.job.out / "truth.tum",
