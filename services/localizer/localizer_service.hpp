@@ -1,5 +1,6 @@
-// Connects localization::SlamSession to topics: local maps in; corrected trajectory, closed loops,
-// loop decisions and live pose out. RemotePool does the matching.
+// Connects localization::SlamSession, which maps or localizes in a finished map, to topics: local
+// maps in; corrected trajectory, closed loops, loop decisions and live pose out. RemotePool does
+// the matching.
 #pragma once
 
 #include <cstddef>
