@@ -21,11 +21,10 @@ std::int64_t nanoseconds(double time_s) {
 
 }  // namespace
 
-ClosedLoop::ClosedLoop(world::World world, const ClosedLoopConfig& config,
-                       localization::Slam& localizer)
+ClosedLoop::ClosedLoop(world::World world, const ClosedLoopConfig& config, localization::Slam& slam)
     : config_(config),
       robot_(std::move(world), config.robot),
-      localizer_(localizer),
+      slam_(slam),
       mapper_(config.system.local_mapper, "robot"),
       navigator_(config.navigator),
       now_ns_(kStart_ns) {}
@@ -100,7 +99,7 @@ void ClosedLoop::scan() {
   navigator_.add(points);
   if (std::optional<topomap::LocalMap> map = mapper_.add(scan)) {
     local_maps_.push_back(std::make_shared<const topomap::LocalMap>(std::move(*map)));
-    localizer_.add(local_maps_.back());
+    slam_.add(local_maps_.back());
     made_stop_ = true;
     locate();
   }
@@ -108,12 +107,12 @@ void ClosedLoop::scan() {
 
 // Publishes the pose like the localizer service.
 void ClosedLoop::locate() {
-  const std::optional<topomap::StopPose> stop = localizer_.last_stop();
+  const std::optional<topomap::StopPose> stop = slam_.last_stop();
   if (local_maps_.empty() || !stop) return;
   const localization::UncertainPose now = localization::live_pose(
       {stop->T_map_robot, stop->covariance}, local_maps_.back()->T_odom_robot,
       mapper_.last_tracked(), robot_.T_odom_robot(), config_.system.localizer.odometry);
-  const localization::LocalizationState state = localizer_.status().state;
+  const localization::LocalizationState state = slam_.status().state;
   located_ = localization::located(state);
   pose_.emplace();
   pose_->stamp_ns = now_ns_;

@@ -45,9 +45,9 @@ class ClosedLoop {
  public:
   static constexpr std::int64_t kTick_ns = 10'000'000;
 
-  /// The localizer, one for mapping or in a stored map, must outlive the loop. Throws like
+  /// The SLAM, for mapping or in a stored map, must outlive the loop. Throws like
   /// SimulatedRobot and Navigator.
-  ClosedLoop(world::World world, const ClosedLoopConfig& config, localization::Slam& localizer);
+  ClosedLoop(world::World world, const ClosedLoopConfig& config, localization::Slam& slam);
 
   void set_map(std::shared_ptr<const planning::HybridMap> map, std::uint64_t version);
   void set_goal(const LoopGoal& goal);
@@ -84,7 +84,7 @@ class ClosedLoop {
 
   ClosedLoopConfig config_;
   simulation::SimulatedRobot robot_;
-  localization::Slam& localizer_;
+  localization::Slam& slam_;
   pipeline::LocalMapper mapper_;
   navigation::Navigator navigator_;
   std::int64_t now_ns_ = 0;
