@@ -44,17 +44,17 @@ void MappingRun::add(const scan::Scan& scan) {
     const auto scope = times_.measure("local_mapper");
     map = local_mapper_.add(scan);
   }
-  if (map) localize(std::move(*map));
+  if (map) add_stop(std::move(*map));
 }
 
-void MappingRun::localize(topomap::LocalMap map) {
+void MappingRun::add_stop(topomap::LocalMap map) {
   const auto scope = times_.measure("localizer");
   if (session() == nullptr) local_maps_.push_back(map);
   slam_->add(std::make_shared<const topomap::LocalMap>(std::move(map)));
 }
 
 storage::MapDocument MappingRun::finish() {
-  if (std::optional<topomap::LocalMap> map = local_mapper_.finish()) localize(std::move(*map));
+  if (std::optional<topomap::LocalMap> map = local_mapper_.finish()) add_stop(std::move(*map));
   {
     const auto scope = times_.measure("localizer");
     slam_->finish();

@@ -55,7 +55,7 @@ class MappingRun {
   [[nodiscard]] const std::vector<support::StageTime>& stages() const { return times_.stages(); }
 
  private:
-  void localize(topomap::LocalMap map);
+  void add_stop(topomap::LocalMap map);
 
   Config config_;
   std::string robot_id_;
