@@ -12,7 +12,7 @@
 #include "topogeo/support/version.hpp"
 
 #include "commands.hpp"
-#include "installed_settings.hpp"
+#include "common/installed_settings.hpp"
 
 namespace {
 

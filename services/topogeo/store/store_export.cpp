@@ -1,0 +1,121 @@
+// topogeo store export: writes a map in the format of another program.
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "topogeo/command_line/command_line.hpp"
+#include "topogeo/exchange/map_export.hpp"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/support/host.hpp"
+
+#include "store/store_commands.hpp"
+#include "store/store_files.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ExportOptions {
+  fs::path file;
+  std::string format;
+  fs::path out;
+  std::optional<fs::path> config;
+  exchange::ExportSettings settings;
+};
+
+int store_export(ExportOptions options) {
+  options.settings.hybrid_map = read_config(options.config).hybrid_map;
+  options.settings.title = options.file.filename().string();
+  options.settings.header.stamp_ns = support::wall_clock_ns();
+  const storage::MapDocument map = read_any_map(options.file);
+  try {
+    const exchange::ExportedMap exported =
+        exchange::export_map(map, options.format, options.out, options.settings);
+    print_notes(exported.notes);
+    exchange::write_files(exported.files);
+  } catch (const std::invalid_argument& error) {
+    throw service::BadInputError(options.file.string() + ": " + error.what());
+  }
+  return service::kOk;
+}
+
+/// Names of the formats.
+std::vector<std::string> format_names() {
+  std::vector<std::string> names;
+  for (const exchange::ExportFormat& format : exchange::export_formats()) {
+    names.emplace_back(format.name);
+  }
+  return names;
+}
+
+}  // namespace
+
+void add_store_export_command(command_line::Command& store, int& exit_code) {
+  command_line::Command* command =
+      store.add_subcommand("export", "Write a map in the form of another program");
+  auto options = std::make_shared<ExportOptions>();
+  command->add_option("file", options->file, "map file or database")->required()->type_name("FILE");
+  command->add_option("--format", options->format, "format to write, see below")
+      ->required()
+      ->check(command_line::one_of(format_names()))
+      ->type_name("FORMAT");
+  command->add_option("--out", options->out, "file to write, or the common prefix of several")
+      ->required()
+      ->type_name("PATH");
+  command
+      ->add_option("--config", options->config, "configuration (YAML), for its hybrid_map section")
+      ->type_name("FILE");
+  constexpr double kWidest_m = 10.0;
+  command
+      ->add_option("--robot-radius", options->settings.robot_radius_m,
+                   "for graphs: leave out edges too narrow for this radius, metres; default: the "
+                   "forbidden distance to obstacles of the configuration")
+      ->check(command_line::range(0.0, kWidest_m))
+      ->type_name("M");
+  command
+      ->add_option("--tolerance", options->settings.network.tolerance_m,
+                   "for graphs: largest distance of a straight edge from its branch, metres")
+      ->check(command_line::range(0.0, 1.0))
+      ->capture_default_str()
+      ->type_name("M");
+  command->add_flag("--with-virtual", options->settings.network.with_virtual,
+                    "for graphs: include branches that no scan has seen");
+  command->add_flag("--only-free", options->settings.network.only_free,
+                    "for graphs: leave out edges that the grid forbids");
+  command
+      ->add_option("--map-id", options->settings.header.map_id,
+                   "for lif, zones and rmf: name of the map for robots and fleet managers")
+      ->capture_default_str()
+      ->type_name("NAME");
+  command
+      ->add_option("--level", options->settings.header.level,
+                   "for lif and rmf: level of the building")
+      ->capture_default_str()
+      ->type_name("NAME");
+  command
+      ->add_option("--manufacturer", options->settings.header.manufacturer,
+                   "for lif and zones: author of the file")
+      ->capture_default_str()
+      ->type_name("NAME");
+  command->footer(
+      "pgm      grid as PATH.pgm and PATH.yaml, for map_server of ROS\n"
+      "geojson  graph, places and zones, for the route server of Nav2\n"
+      "masks    PATH_keepout and PATH_speed, zones for costmap filters of Nav2\n"
+      "lif      graph and places in the Layout Interchange Format 1.0.0 of the VDMA\n"
+      "zones    zones as a zone set of VDA 5050 3.0\n"
+      "rmf      graph as a navigation graph of Open-RMF (YAML)\n"
+      "svg, png the picture of the map\n"
+      "graphml  the graph without loss, for graph programs\n"
+      "g2o      pose graph of the stops\n"
+      "tum      corrected pose of each scan\n"
+      "carmen   scans of the stops as a log (gzip when PATH ends in .gz)\n"
+      "pb       the whole map as a map file (map.pb)\n"
+      "docs/exchange.md says of each what is written and what is lost.");
+  command->callback([options, &exit_code] { exit_code = store_export(*options); });
+}
+
+}  // namespace topogeo::cli

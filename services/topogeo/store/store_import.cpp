@@ -1,0 +1,197 @@
+// topogeo store import: converts files of other programs to a map file, or adds them to one.
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "topogeo/command_line/command_line.hpp"
+#include "topogeo/exchange/geojson.hpp"
+#include "topogeo/exchange/graphml.hpp"
+#include "topogeo/exchange/grid_image.hpp"
+#include "topogeo/exchange/grid_map.hpp"
+#include "topogeo/exchange/lif.hpp"
+#include "topogeo/exchange/place_graph.hpp"
+#include "topogeo/exchange/read_text.hpp"
+#include "topogeo/exchange/zone_set.hpp"
+#include "topogeo/pipeline/hybrid_map_source.hpp"
+#include "topogeo/pipeline/localization_run.hpp"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/storage/map_file.hpp"
+#include "topogeo/support/format.hpp"
+
+#include "common/job.hpp"
+#include "store/store_commands.hpp"
+#include "store/store_files.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ImportOptions {
+  fs::path file;
+  std::string format;
+  fs::path out;
+  std::optional<fs::path> into;
+  std::optional<std::string> pose;  ///< T_map_file
+  std::optional<fs::path> config;
+  std::string robot_id = "robot";
+  bool with_stops = false;
+  exchange::GridMapSettings grid;
+};
+
+/// Reads a drawing of this project: a world, or zones and places.
+exchange::MapGraph read_own_drawing(const fs::path& file, double resolution_m) {
+  exchange::MapGraph graph;
+  graph.drawing = file.filename().string().ends_with(".world.yaml")
+                      ? pipeline::read_drawing(file, std::nullopt, resolution_m)
+                      : pipeline::read_zones_and_places(file);
+  try {
+    if (graph.drawing.grid) exchange::check_grid_size(graph.drawing.grid->frame());
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(file.string() + ": " + error.what());
+  }
+  return graph;
+}
+
+exchange::MapGraph read_foreign(const ImportOptions& options, double resolution_m) {
+  const std::string name = options.file.string();
+  if (options.format == "drawing") return read_own_drawing(options.file, resolution_m);
+  if (options.format == "pgm") {
+    exchange::GridImage image = exchange::read_grid_image(options.file);
+    exchange::MapGraph graph;
+    graph.drawing.grid = exchange::occupancy_of(image);
+    graph.notes = std::move(image.notes);
+    return graph;
+  }
+  const std::string text = exchange::read_text(options.file);
+  if (options.format == "geojson") return exchange::parse_geojson(text, name);
+  if (options.format == "graphml") return exchange::parse_graphml(text, name);
+  if (options.format == "lif") return exchange::parse_lif(text, name);
+  exchange::ZoneSet set = exchange::parse_zone_set(text, name);
+  exchange::MapGraph graph;
+  graph.drawing.zones = std::move(set.zones);
+  graph.notes = std::move(set.notes);
+  storage::check(graph.drawing);
+  return graph;
+}
+
+geometry::Pose2 pose_of_file(const ImportOptions& options) {
+  if (!options.pose) return {};
+  try {
+    return pipeline::parse_pose(*options.pose);
+  } catch (const std::invalid_argument& error) {
+    throw service::UsageError(std::string("--pose: ") + error.what());
+  }
+}
+
+/// Makes nodes and branches from a grid alone and, if wanted, the stops behind them.
+void add_graph(storage::MapDocument& document, const ImportOptions& options,
+               const pipeline::Config& config) {
+  const planning::FreeSpace space(*document.drawing.grid, config.hybrid_map.inflation);
+  exchange::GridMapSettings settings = options.grid;
+  settings.fixed_spacing = settings.spacing_m != exchange::GridMapSettings{}.spacing_m;
+  storage::MapDocument made = [&] {
+    try {
+      return exchange::map_of_grid(space, config.local_mapper, config.global_map, options.robot_id,
+                                   settings);
+    } catch (const std::runtime_error& error) {
+      throw service::BadInputError(options.file.string() + ": " + error.what());
+    }
+  }();
+  std::cerr << fmt::format("topogeo: {} nodes and {} branches made of the grid\n",
+                           made.global_map.nodes.size(), made.global_map.branches.size());
+  if (options.with_stops) {
+    made.drawing = std::move(document.drawing);
+    document = std::move(made);
+  } else {
+    document.global_map = std::move(made.global_map);
+    document.trajectory.version = made.trajectory.version;
+  }
+}
+
+int store_import(const ImportOptions& options) {
+  const geometry::Pose2 T_map_file = pose_of_file(options);
+  const pipeline::Config config = read_config(options.config);
+  storage::MapDocument document;
+  document.robot_id = options.robot_id;
+  if (options.into) document = read_any_map(*options.into);
+  try {
+    exchange::MapGraph graph = read_foreign(options, config.hybrid_map.grid.resolution_m);
+    exchange::Notes notes = std::move(graph.notes);
+    exchange::move(graph, T_map_file);
+    exchange::lay_over(document, std::move(graph), notes);
+    storage::check(document.drawing);
+    print_notes(notes);
+  } catch (const std::exception& error) {
+    throw service::BadInputError(error.what());
+  }
+  const bool bare = document.local_maps.empty() && document.global_map.nodes.empty();
+  if (bare && document.drawing.grid) add_graph(document, options, config);
+  const pipeline::HybridMapParts parts = pipeline::parts_of(document);
+  if (exchange::lacks_clearances(document.global_map) && pipeline::has_grid(parts)) {
+    exchange::take_clearances(document.global_map,
+                              pipeline::make_hybrid_map(parts, config.hybrid_map).space());
+  }
+  storage::write_map_file(options.out, document);
+  return service::kOk;
+}
+
+}  // namespace
+
+void add_store_import_command(command_line::Command& store, int& exit_code) {
+  command_line::Command* command =
+      store.add_subcommand("import", "Make a map file of a file of another program");
+  auto options = std::make_shared<ImportOptions>();
+  command->add_option("file", options->file, "file to read")->required()->type_name("FILE");
+  command->add_option("--format", options->format, "format of the file, see below")
+      ->required()
+      ->check(command_line::one_of({"pgm", "geojson", "lif", "zones", "graphml", "drawing"}))
+      ->type_name("FORMAT");
+  command->add_option("--out", options->out, "map file to write (map.pb)")
+      ->required()
+      ->type_name("MAP");
+  command
+      ->add_option("--into", options->into,
+                   "map to merge the file into: its grid, and places and zones of the same names, "
+                   "are replaced; not changed unless it is also --out")
+      ->type_name("MAP");
+  command
+      ->add_option("--pose", options->pose,
+                   "pose of the origin of the file in the map; default: 0,0,0")
+      ->type_name("X,Y,DEG");
+  add_config_option(*command, options->config);
+  command->add_option("--robot,--robot-id", options->robot_id, "robot of a map without --into")
+      ->capture_default_str();
+  command->add_flag("--with-stops", options->with_stops,
+                    "for grids: keep the stops that the graph is made from, so that robots can "
+                    "localize in the map (topogeo localize --map)");
+  constexpr double kMost_m = 100.0;
+  command
+      ->add_option("--spacing", options->grid.spacing_m,
+                   "for grids: distance between the places that the graph is made from, metres; "
+                   "the default grows with grids of more than 3,000 places")
+      ->check(command_line::range(0.2, kMost_m))
+      ->capture_default_str()
+      ->type_name("M");
+  command
+      ->add_option("--range", options->grid.range_m,
+                   "for grids: range of the virtual laser at these places, metres")
+      ->check(command_line::range(1.0, kMost_m))
+      ->capture_default_str()
+      ->type_name("M");
+  command->footer(
+      "pgm      image (PGM, PNG, BMP) and YAML of map_server (FILE is the YAML), modes trinary, "
+      "scale, raw\n"
+      "geojson  graph, places and zones of Nav2's route server\n"
+      "lif      graph and stations of a layout (1.0.0, draft of 2.0)\n"
+      "zones    zone set of VDA 5050 3.0\n"
+      "graphml  graph; nodes need x and y\n"
+      "drawing  a world (.world.yaml), or zones and places (.yaml)\n"
+      "A grid becomes a map with nodes and branches.");
+  command->callback([options, &exit_code] { exit_code = store_import(*options); });
+}
+
+}  // namespace topogeo::cli
