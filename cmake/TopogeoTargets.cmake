@@ -95,8 +95,8 @@ endfunction()
 
 # topogeo_add_test(NAME unit_geometry SOURCES ... DEPENDS targets... [LABELS ...] [PROCESSES]): one test program. Each
 # suite in it is one ctest test; with PROCESSES each case is, for programs that start others or join DDS domains.
-# TOPOGEO_TEST_DATA names tests/data, TOPOGEO_BIN build/bin. Shared helpers are included from tests/unit:
-# "localization/simulated_maps.hpp".
+# TOPOGEO_SHARE names share, TOPOGEO_TEST_DATA tests/data, TOPOGEO_BIN build/bin. Shared helpers are included from
+# tests/unit: "localization/simulated_maps.hpp".
 function(topogeo_add_test)
   cmake_parse_arguments(ARG "PROCESSES" "NAME" "SOURCES;DEPENDS;LABELS" ${ARGN})
   topogeo_refuse_time_limit(${ARG_NAME} ${ARGN})
@@ -105,6 +105,7 @@ function(topogeo_add_test)
   target_include_directories(${ARG_NAME} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests/unit)
   target_link_libraries(${ARG_NAME} PRIVATE ${ARG_DEPENDS} GTest::gmock GTest::gtest_main)
   target_compile_definitions(${ARG_NAME} PRIVATE
+    TOPOGEO_SHARE="${PROJECT_SOURCE_DIR}/share"
     TOPOGEO_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data"
     TOPOGEO_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
     TOPOGEO_BIN="${CMAKE_BINARY_DIR}/bin")

@@ -27,7 +27,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = pathlib.Path(os.environ.get("BIN", ROOT / "build/bin"))
-WORLD = ROOT / "tests/data/room.world.yaml"
+WORLD = ROOT / "share/worlds/room.world.yaml"
 SERVICES = ["sensor_gateway", "local_mapper", "localizer", "map_store", "planner", "navigator", "web"]
 DURATIONS_S = [1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 30, 45, 60, 90, 120]
 THERE, BACK = "4.5,1", "1,1"

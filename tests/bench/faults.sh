@@ -121,7 +121,7 @@ start_drive() {  # METRES
   "$bin/topogeo" config --devices | sed "/^laser:/,/^base:/ { s|^  port: .*|  port: $out/laser|; s|^  kind: .*|  kind: pls|; }
     /^base:/,\$ { s|^  port: .*|  port: $out/base|; s|^  dialect: .*|  dialect: binary|; }" > "$out/devices.yaml"
   # The simulator and its watcher keep the real clock.
-  stepping="" start_on robot simulator "$bin/simulator" --world "$source_dir/tests/data/floor.world.yaml" \
+  stepping="" start_on robot simulator "$bin/simulator" --world "$source_dir/share/worlds/floor.world.yaml" \
     --laser-port "$out/laser" --base-port "$out/base"
   stepping="" start_on robot drive_watch "$build/tests/drive_watch" --log-level off
   start_on robot navigator "$bin/navigator"

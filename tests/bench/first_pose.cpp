@@ -68,7 +68,7 @@ void measure(std::size_t runs) {
   const Path work =
       std::filesystem::temp_directory_path() / fmt::format("first-pose-{}", ::getpid());
   std::filesystem::create_directories(work);
-  const std::string world = TOPOGEO_SOURCE_DIR "/tests/data/floor.world.yaml";
+  const std::string world = TOPOGEO_SOURCE_DIR "/share/worlds/floor.world.yaml";
   {
     scan::CarmenLogWriter writer(work / "floor.clf");
     for (const scan::Scan& scan : simulation::simulate_log(world::load_world(world), {}).scans) {

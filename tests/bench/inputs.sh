@@ -3,7 +3,7 @@
 # shellcheck shell=bash
 name_inputs() {
   local root=$1 data=$2 log reference
-  inputs=(--world "$root/tests/data/floor.world.yaml")
+  inputs=(--world "$root/share/worlds/floor.world.yaml")
   for log in "$data"/*.clf.gz; do
     reference=${log%.clf.gz}.ref.tum
     [ ! -r "$reference" ] || inputs+=(--log "$log" --reference "$reference")

@@ -17,7 +17,7 @@ services=("${@:3}")
   services=(sensor_gateway local_mapper localizer ga_worker_1 map_store planner)
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 bin=${BIN:-$root/build/bin}
-world=${WORLD:-$root/tests/data/floor.world.yaml}
+world=${WORLD:-$root/share/worlds/floor.world.yaml}
 export TOPOGEO_DDS_PARTICIPANT=udp_only
 RANDOM=${SEED:-1}
 mkdir -p "$out"

@@ -3,7 +3,7 @@
 # docs/decisions/match_form.md. A few minutes; --quick takes a small sample of the pairs.
 #   tests/bench/matching.sh [OPTION...]
 # Options go to the program: --quick, --no-accuracy, --no-look-alikes, --config FILE, --samples FILE.
-# Inputs are the simulated floor (tests/data/floor.world.yaml) and each X.clf.gz with its X.ref.tum in
+# Inputs are the simulated floor (share/worlds/floor.world.yaml) and each X.clf.gz with its X.ref.tum in
 # the folder that TOPOGEO_LOG_DIR names, default ../shared/data beside the project. MATCHING names the
 # program; default build/bin/topogeo_matching.
 set -euo pipefail

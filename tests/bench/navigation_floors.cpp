@@ -125,10 +125,10 @@ simulation::RobotOptions b21_robot(const geometry::Pose2& T_world_start,
 
 world::World navigation_floor(std::string_view name) {
   if (name == kNavigationFloors[0]) {
-    return world::load_world(TOPOGEO_SOURCE_DIR "/tests/data/floor.world.yaml");
+    return world::load_world(TOPOGEO_SOURCE_DIR "/share/worlds/floor.world.yaml");
   }
   if (name == kNavigationFloors[1]) {
-    return world::load_world(TOPOGEO_SOURCE_DIR "/tests/data/hall.world.yaml");
+    return world::load_world(TOPOGEO_SOURCE_DIR "/share/worlds/hall.world.yaml");
   }
   if (name == kNavigationFloors[2]) return simulation::two_loops(kLoopsSeed);
   throw std::invalid_argument("floor '" + std::string(name) +

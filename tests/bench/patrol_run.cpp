@@ -62,8 +62,8 @@ std::size_t place_of_cupboard(const PatrolOptions& options, std::size_t drive) {
 
 /// The floor during a drive: each of nine doors is open or shut.
 world::World floor_of(const PatrolOptions& options, std::size_t drive) {
-  world::World world = world::load_world(std::filesystem::path(TOPOGEO_SOURCE_DIR) / "tests" /
-                                         "data" / "floor.world.yaml");
+  world::World world = world::load_world(std::filesystem::path(TOPOGEO_SOURCE_DIR) /
+                                         "share/worlds/floor.world.yaml");
   world.tour_m = {{1.3, 1.2},   {15.0, 1.15}, {28.9, 1.2}, {28.9, 9.0}, {28.8, 18.7},
                   {15.0, 18.8}, {1.3, 18.8},  {1.3, 9.6},  {1.3, 1.2},  {11.0, 1.15}};
   support::Random random(1000 + drive);

@@ -3,7 +3,7 @@
 # configuration, then for all inputs together with one setting of it changed at a time (and with all of them as in the
 # Thesis). The defaults are chosen by these tables (docs/decisions/perception.md).
 #   tests/bench/repeatability.sh [DATA_FOLDER]
-# Inputs are the simulated floor (tests/data/floor.world.yaml) and each X.clf.gz with its X.ref.tum in
+# Inputs are the simulated floor (share/worlds/floor.world.yaml) and each X.clf.gz with its X.ref.tum in
 # DATA_FOLDER, default ../shared/data beside the project. REPEATABILITY names the program; default
 # build/bin/topogeo_repeatability.
 set -euo pipefail

@@ -153,7 +153,7 @@ simulation::SimulatedLog drive(const world::World& world, std::uint64_t seed) {
 /// Writes map and log; returns the robot time of the log.
 double prepare(const SoakOptions& options, const Path& work) {
   const world::World world =
-      world::load_world(std::string(TOPOGEO_SOURCE_DIR) + "/tests/data/floor.world.yaml");
+      world::load_world(std::string(TOPOGEO_SOURCE_DIR) + "/share/worlds/floor.world.yaml");
   pipeline::MappingRun mapping({}, "robot");
   for (const scan::Scan& scan : drive(world, 1).scans) mapping.add(scan);
   storage::write_map_file(work / "map.pb", mapping.finish());

@@ -234,7 +234,7 @@ DrawnFloor draw_floor(std::string_view name, const pipeline::HybridMapConfig& co
   DrawnFloor floor;
   floor.name = name;
   floor.world = name == "rooms"
-                    ? world::load_world(TOPOGEO_SOURCE_DIR "/tests/data/rooms.world.yaml")
+                    ? world::load_world(TOPOGEO_SOURCE_DIR "/share/worlds/rooms.world.yaml")
                     : navigation_floor(name);
   storage::MapDrawing drawing;
   drawing.grid = planning::grid_of(pipeline::drawing_of(floor.world), config.grid.resolution_m);

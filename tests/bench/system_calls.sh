@@ -32,7 +32,7 @@ done
 
 step "a robot explores a room, with watchdogs as of systemd"
 export NOTIFY_SOCKET=@topogeo-calls-$$ WATCHDOG_USEC=60000000
-timeout "$hang_limit_s" "$work/bin/topogeo" run --sim "$source_dir/tests/data/room.world.yaml" --explore --workers 1 \
+timeout "$hang_limit_s" "$work/bin/topogeo" run --sim "$source_dir/share/worlds/room.world.yaml" --explore --workers 1 \
   --out "$work/out" > "$work/run.log" 2>&1 || { tail -n 5 "$work/run.log"; fail "the robot does not explore the room"; }
 
 # allowed UNIT: the names of all calls that its filter lets through.

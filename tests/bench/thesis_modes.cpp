@@ -1,5 +1,5 @@
 // Maps recorded logs and the replicas of the thesis's experiments with each of its configurations
-// (tests/data/thesis/*.config.yaml) and prints the errors of the poses against the truth.
+// (share/thesis/*.config.yaml) and prints the errors of the poses against the truth.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -31,7 +31,7 @@ struct ThesisModesOptions {
 };
 
 std::filesystem::path thesis_data(const std::string& name) {
-  return std::filesystem::path(TOPOGEO_SOURCE_DIR) / "tests/data/thesis" / name;
+  return std::filesystem::path(TOPOGEO_SOURCE_DIR) / "share/thesis" / name;
 }
 
 bench::Recording replica(const std::string& name, const simulation::SimulationOptions& options) {
@@ -116,8 +116,7 @@ int main(int argc, char** argv) {
   app.add_option("LOG", options.logs, "names of logs in the data folder, without .clf.gz");
   app.add_option("--data", options.data, "folder of the logs")->type_name("DIR");
   app.add_option("--seeds", options.seeds, "drives of each replica");
-  app.add_option("--configs", options.configs,
-                 "names of tests/data/thesis/NAME.config.yaml, or default")
+  app.add_option("--configs", options.configs, "names of share/thesis/NAME.config.yaml, or default")
       ->delimiter(',');
   if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   try {

@@ -106,7 +106,7 @@ export class Robot extends Orders {
   constructor(bin, source, work) {
     super();
     this.bin = bin;
-    this.world = join(source, "tests/data/room.world.yaml");
+    this.world = join(source, "share/worlds/room.world.yaml");
     this.work = work;
     mkdirSync(work, { recursive: true });
   }
@@ -211,7 +211,7 @@ export class SimulatedRun extends Orders {
   constructor(bin, source, work) {
     super();
     this.bin = bin;
-    this.world = join(source, "tests/data/room.world.yaml");
+    this.world = join(source, "share/worlds/room.world.yaml");
     this.work = work;
   }
 

@@ -19,7 +19,7 @@ make_certificates "$work/keys"
 mkdir "$work/map"
 chown -R 1000 "$work/map"
 # shellcheck disable=SC2154  # claim_domain_as sets it
-"$bin/simulator" --domain "$truth" --world "$source_dir/tests/data/room.world.yaml" --laser-port "$work/laser" \
+"$bin/simulator" --domain "$truth" --world "$source_dir/share/worlds/room.world.yaml" --laser-port "$work/laser" \
   --base-port "$work/base" > "$work/simulator.log" 2>&1 &
 cleanups+=("kill $!")
 wait_for "the ports of the simulator" test -L "$work/base" || { tail -n 3 "$work/simulator.log"; fail "the simulator makes no ports"; }

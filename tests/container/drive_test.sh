@@ -60,7 +60,7 @@ show_all() {
 }
 
 step "the services of a robot on three hosts"
-cp "$source_dir/tests/data/room.world.yaml" "$work"
+cp "$source_dir/share/worlds/room.world.yaml" "$work"
 run robot simulator --world /exchange/room.world.yaml --laser-port /exchange/laser --base-port /exchange/base
 "$bin/topogeo" config --devices > "$work/devices.yaml"
 services='sensor_gateway local_mapper localizer map_store planner navigator ga_worker'

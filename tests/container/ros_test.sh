@@ -17,7 +17,7 @@ make_keys=$source_dir/deploy/security/make_keys
 "$make_keys" "$work/keys" issue --robot robot page web status
 chmod -R a+rX "$work/keys"
 mkdir "$work/nodes"
-cp "$build/tests/ros_peer" "$source_dir/tests/data/room.world.yaml" "$work/nodes"
+cp "$build/tests/ros_peer" "$source_dir/share/worlds/room.world.yaml" "$work/nodes"
 ldd "$build/tests/ros_peer" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | grep -v '/lib\(c\|m\|gcc_s\|stdc++\)\.so' |
   xargs -I{} cp {} "$work/nodes"
 

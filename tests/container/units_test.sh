@@ -66,7 +66,7 @@ if here topogeo status > "$work/status" 2>&1; then fail "a unit that has failed 
 grep -q '^topogeo-sensor-gateway *failed' "$work/status" || { cat "$work/status"; fail "it is not listed"; }
 
 step "a laser and a base"
-docker cp "$source_dir/tests/data/room.world.yaml" $machine:/root/ > /dev/null
+docker cp "$source_dir/share/worlds/room.world.yaml" $machine:/root/ > /dev/null
 # shellcheck disable=SC2154  # claim_domain_as sets it
 docker exec -d $machine /usr/libexec/topogeo/simulator --domain "$truth" --world /root/room.world.yaml \
   --laser-port /root/laser --base-port /root/base

@@ -198,7 +198,7 @@ TEST_F(StrangersTest, ADriveGoesOnAmongSamplesOfAbsurdContent) {
     run_ = std::make_unique<Program>(
         scratch_, "topogeo",
         std::vector<std::string>{"run", "--sim",
-                                 std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml", "--map",
+                                 std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml", "--map",
                                  scratch_ / "alone/map.pb", "--goto", "3,0", "--patience", "600",
                                  "--out", scratch_ / "out", "--workers", "1", "--domain", domain_});
     while (!run_->ended()) {

@@ -190,7 +190,7 @@ TEST_F(BadInputTest, ConfigurationFaultsNameTheLine) {
 
 // Nothing starts when inputs cannot be used, whatever the source of scans.
 TEST_F(BadInputTest, RunsOnDevicesCheckTheirInputsBeforeAnythingStarts) {
-  const std::string world = std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml";
+  const std::string world = std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml";
   const std::string devices = file("robot.yaml", "laser.port: /dev/laser\n");
   const std::string text = file("text", "neither map nor trajectory\n");
   struct Case {

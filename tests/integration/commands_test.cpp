@@ -233,7 +233,7 @@ TEST_F(CommandsTest, PlanRefusesWhatIsNoMap) {
 }
 
 TEST_F(CommandsTest, SimulateRouteShowsStepsAndPictureOrSaysWhyThereIsNone) {
-  const std::string world = std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml";
+  const std::string world = std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml";
   const auto route = [&](const std::string& to, const std::string& picture) {
     std::vector<std::string> words{"simulate-route", world, "--from", "1,1", "--to", to};
     if (!picture.empty()) words.insert(words.end(), {"--picture", picture});
@@ -256,7 +256,7 @@ TEST_F(CommandsTest, SimulateRouteShowsStepsAndPictureOrSaysWhyThereIsNone) {
 }
 
 TEST_F(CommandsTest, SimulateRouteGoesRoundWhatIsSaidToStandInTheWay) {
-  const std::string world = std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml";
+  const std::string world = std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml";
   const auto length_m = [&](const std::vector<std::string>& more) {
     std::vector<std::string> words{"simulate-route", world, "--from", "1,1", "--to", "1,3"};
     words.insert(words.end(), more.begin(), more.end());
@@ -276,7 +276,7 @@ TEST_F(CommandsTest, SimulateRouteGoesRoundWhatIsSaidToStandInTheWay) {
 }
 
 TEST_F(CommandsTest, DemoTellsTheErrorBeforeAndAfter) {
-  const std::string world = std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml";
+  const std::string world = std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml";
   Program demo(scratch_, "topogeo",
                {"demo", "--out", scratch_ / "out", "--world", world, "--domain", own_domain()});
   ASSERT_EQ(demo.wait(), 0) << demo.err();

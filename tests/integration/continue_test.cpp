@@ -23,7 +23,7 @@ using testing::HasSubstr;
 /// Writes a part of the log of a drive, cut at shares of its scans, as a log of its own.
 void write_part(const std::string& world, const std::filesystem::path& log, double from,
                 double to) {
-  const auto file = std::filesystem::path(TOPOGEO_TEST_DATA) / (world + ".world.yaml");
+  const auto file = std::filesystem::path(TOPOGEO_SHARE) / "worlds" / (world + ".world.yaml");
   const auto simulated = simulation::simulate_log(world::load_world(file), {});
   const auto count = static_cast<double>(simulated.scans.size());
   scan::CarmenLogWriter writer(log);

@@ -54,8 +54,8 @@ void GatewayOnDevices::start_simulator() {
   simulator_ = std::make_unique<Program>(
       scratch_, "simulator",
       std::vector<std::string>{"--domain", domain_, "--partition", kPartition, "--world",
-                               std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml", "--laser-port",
-                               (scratch_ / "laser.port").string(), "--base-port",
+                               std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml",
+                               "--laser-port", (scratch_ / "laser.port").string(), "--base-port",
                                (scratch_ / "base.port").string(), "--base-baud", "38400"});
 }
 

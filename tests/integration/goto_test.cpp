@@ -46,7 +46,7 @@ TEST(Goto, ASimulatedRobotIsSentToAPointOfAStoredMap) {
   const std::string out = scratch / "out";
   // The map's origin is the start of the tour, at (1, 1); the robot heads along the wall.
   Program run(scratch, "topogeo",
-              {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml", "--map",
+              {"run", "--sim", std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml", "--map",
                scratch / "map/map.pb", "--goto", "3,0", "--patience", "600", "--heading", "90",
                "--out", out, "--workers", "0", "--domain", own_domain()});
   ASSERT_EQ(run.wait(), 0) << run.err();
@@ -127,7 +127,7 @@ class GotoLives : public testing::Test {
     run_ = std::make_unique<Program>(
         scratch_, "topogeo",
         std::vector<std::string>{
-            "run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml", "--map",
+            "run", "--sim", std::string(TOPOGEO_SHARE) + "/worlds/floor.world.yaml", "--map",
             scratch_ / "map/map.pb", "--goto", "8,0", "--patience", "600", "--out",
             scratch_ / "out", "--workers", "0", "--domain", own_domain()});
     NavigatorWatch navigator;
@@ -202,7 +202,7 @@ TEST(Goto, AlongBranchesWhereTheConfigurationSaysSo) {
   ASSERT_NO_FATAL_FAILURE(map_world(scratch, "floor"));
   std::ofstream(scratch / "graph.yaml") << "planner:\n  on: graph\n";
   Program run(scratch, "topogeo",
-              {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml", "--map",
+              {"run", "--sim", std::string(TOPOGEO_SHARE) + "/worlds/floor.world.yaml", "--map",
                scratch / "map/map.pb", "--goto", "2.5,0", "--patience", "600", "--config",
                scratch / "graph.yaml", "--out", scratch / "out", "--workers", "0", "--domain",
                own_domain()});
@@ -216,7 +216,7 @@ TEST(Explore, ASimulatedRobotMapsARoomByItself) {
   const Scratch scratch;
   const std::string out = scratch / "out";
   Program run(scratch, "topogeo",
-              {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml", "--explore",
+              {"run", "--sim", std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml", "--explore",
                "--out", out, "--workers", "0", "--domain", own_domain()});
   ASSERT_EQ(run.wait(), 0) << run.err();
   EXPECT_THAT(run.err(), HasSubstr("no reachable target is left"));
@@ -240,7 +240,7 @@ TEST(Goto, ARobotWithSonarsAloneIsSentFromItsBaseStationToARoom) {
   const Scratch scratch;
   const std::string world = scratch / "rooms.world.yaml";
   // The last list of the file is that of the places.
-  std::ofstream(world) << read_file(std::string(TOPOGEO_TEST_DATA) + "/rooms.world.yaml")
+  std::ofstream(world) << read_file(std::string(TOPOGEO_SHARE) + "/worlds/rooms.world.yaml")
                        << "  - {name: base station, at: [2.0, 1.6], heading: 1.5707963}\n";
   Program import(scratch, "topogeo",
                  {"store", "import", world, "--format", "drawing", "--out", scratch / "map.pb"});
@@ -248,7 +248,7 @@ TEST(Goto, ARobotWithSonarsAloneIsSentFromItsBaseStationToARoom) {
   Program run(scratch, "topogeo",
               {"run", "--sim", world, "--no-laser", "--map", scratch / "map.pb", "--goto",
                "workroom", "--patience", "600", "--config",
-               std::string(TOPOGEO_TEST_DATA) + "/../../deploy/sonar_robot.example.yaml", "--out",
+               std::string(TOPOGEO_SOURCE_DIR) + "/deploy/sonar_robot.example.yaml", "--out",
                scratch / "out", "--workers", "0", "--domain", own_domain()});
   ASSERT_EQ(run.wait(), 0) << run.err();
   EXPECT_THAT(run.out(), HasSubstr("arrived at workroom"));
@@ -261,7 +261,7 @@ TEST(Goto, ARobotWithSonarsAloneIsSentFromItsBaseStationToARoom) {
 TEST(Goto, WithoutALaserItHasToBeFoundByMarkovLocalization) {
   const Scratch scratch;
   Program run(scratch, "topogeo",
-              {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml", "--no-laser",
+              {"run", "--sim", std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml", "--no-laser",
                "--map", scratch / "map.pb", "--goto", "3,0", "--out", scratch / "out"});
   EXPECT_EQ(run.wait(), 2);
   EXPECT_THAT(run.err(), HasSubstr("pose_source: markov"));
@@ -270,8 +270,8 @@ TEST(Goto, WithoutALaserItHasToBeFoundByMarkovLocalization) {
 TEST(Goto, WithoutAMapNothingStarts) {
   const Scratch scratch;
   Program run(scratch, "topogeo",
-              {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml", "--goto", "3,0",
-               "--out", scratch / "out"});
+              {"run", "--sim", std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml", "--goto",
+               "3,0", "--out", scratch / "out"});
   EXPECT_EQ(run.wait(), 2);
   EXPECT_THAT(run.err(), HasSubstr("--map"));
 }

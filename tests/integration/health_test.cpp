@@ -183,7 +183,7 @@ TEST_F(HealthTest, EveryCounterOfEveryServiceIsAMetric) {
   ASSERT_TRUE(eventually_in_state("map_store", msg::kServiceFinished));
   EXPECT_EQ(run->wait(), 0) << run->err();
   const auto simulator =
-      start("simulator", {"--world", std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml",
+      start("simulator", {"--world", std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml",
                           "--laser-port", laser, "--base-port", base});
   const auto navigator = start("navigator");
   const auto worker = start("ga_worker");

@@ -197,7 +197,7 @@ class LateLocalizer : public LocalizerTest {
   LateLocalizer() {
     pipeline::MappingRun run({}, "robot");
     const world::World world =
-        world::load_world(std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml");
+        world::load_world(std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml");
     for (const scan::Scan& scan : simulation::simulate_log(world, {}).scans) run.add(scan);
     storage::write_map_file(map_file_, run.finish());
     loop_.add<msg::StoredMap>(stored_in_,

@@ -188,7 +188,8 @@ TEST_F(MapStoreShows, ADrawingOverAMap) {
 // Results of a drive, sent like local mapper and localizer do.
 TEST_F(MapStoreShows, TheMapOfADriveWithItsPlaces) {
   pipeline::MappingRun run({}, "robot");
-  const world::World world = world::load_world(std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml");
+  const world::World world =
+      world::load_world(std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml");
   for (const scan::Scan& scan : simulation::simulate_log(world, {}).scans) run.add(scan);
   storage::MapDocument expected = run.finish();
   const auto names = write("names.yaml", "places: [{name: start, at: [0, 0]}]\n");

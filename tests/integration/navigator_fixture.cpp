@@ -27,7 +27,7 @@ constexpr std::int64_t kScanPeriod_ns = 100'000'000;
 constexpr std::uint64_t kMapVersion = 3;
 
 world::World room() {
-  return world::load_world(std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml");
+  return world::load_world(std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml");
 }
 
 simulation::RobotOptions robot_options() {

@@ -41,7 +41,7 @@ messaging::ParticipantOptions own_options() {
 }  // namespace
 
 Drive::Drive(const Scratch& scratch) : log_(scratch / "log.clf.gz"), out_(scratch / "expected") {
-  const auto world = std::filesystem::path(TOPOGEO_TEST_DATA) / "floor.world.yaml";
+  const auto world = std::filesystem::path(TOPOGEO_SHARE) / "worlds/floor.world.yaml";
   scan::CarmenLogWriter writer(log_);
   const auto simulated = simulation::simulate_log(world::load_world(world), {});
   for (std::size_t i = 0; i < std::min(kScans, simulated.scans.size()); ++i) {

@@ -44,7 +44,8 @@ namespace topogeo::test {
 using Maps = std::vector<std::shared_ptr<const topomap::LocalMap>>;
 
 inline Maps maps_of_room() {
-  const world::World world = world::load_world(std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml");
+  const world::World world =
+      world::load_world(std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml");
   pipeline::LocalMapper mapper({}, "robot");
   Maps maps;
   for (const scan::Scan& scan : simulation::simulate_log(world, {}).scans) {

@@ -271,7 +271,7 @@ bool issue_keys(const std::filesystem::path& directory, const std::string& what)
 void write_log(const std::string& world, const std::filesystem::path& log,
                const std::filesystem::path& truth, const simulation::SimulationOptions& options,
                const geometry::Pose2& stated) {
-  const auto file = std::filesystem::path(TOPOGEO_TEST_DATA) / (world + ".world.yaml");
+  const auto file = std::filesystem::path(TOPOGEO_SHARE) / "worlds" / (world + ".world.yaml");
   const auto simulated = simulation::simulate_log(world::load_world(file), options);
   scan::CarmenLogWriter writer(log, stated);
   std::vector<topomap::StampedPose> poses;

@@ -95,8 +95,8 @@ void set_longest_freeze(unsigned seconds);
 /// openssl. Throws std::runtime_error when it fails.
 bool issue_keys(const std::filesystem::path& directory, const std::string& what);
 
-/// Writes the log of a drive through a world of tests/data, and its true poses if `truth` is named.
-/// The log states `stated` as the mounting of its laser, whatever the options say.
+/// Writes the log of a drive through a world of share/worlds, and its true poses if `truth` is
+/// named. The log states `stated` as the mounting of its laser, whatever the options say.
 void write_log(const std::string& world, const std::filesystem::path& log,
                const std::filesystem::path& truth = {},
                const simulation::SimulationOptions& options = {},

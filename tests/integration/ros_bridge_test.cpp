@@ -150,7 +150,7 @@ TEST_F(RosBridge, SendsTheChangesOfAMap) {
   start("local_mapper");
   start_bridge();
   const Program& user = start_peer({"watch"});
-  start_peer({"drive", std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml"});
+  start_peer({"drive", std::string(TOPOGEO_SHARE) + "/worlds/floor.world.yaml"});
   ASSERT_TRUE(says(user, "map map ")) << programs_[3]->err();
   start_peer({"steer", "0", "0.6"});
   EXPECT_TRUE(says(user, "map_update ")) << user.out();
@@ -168,7 +168,8 @@ TEST_F(RosBridge, DrivesARobotOfRosToAGoal) {
   start("planner");
   start("navigator");
   start_bridge();
-  const Program& robot = start_peer({"drive", std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml"});
+  const Program& robot =
+      start_peer({"drive", std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml"});
   const Program& user = start_peer({"watch"});
   ASSERT_TRUE(says(user, "pose map")) << programs_[5]->err();
   Program& goal = start_peer({"goal", "3", "0", "1.5708"});
@@ -221,7 +222,7 @@ class FollowsInAFinishedMap : public RosBridge {
     start("localizer", {"--map", stored, "--wait-workers", "0"});
     start("local_mapper");
     start_bridge();
-    robot_ = &start_peer({"drive", std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml"});
+    robot_ = &start_peer({"drive", std::string(TOPOGEO_SHARE) + "/worlds/floor.world.yaml"});
     user_ = &start_peer({"watch"});
     ASSERT_TRUE(wait_for("the localizer to need the robot to drive", [&] {
       return status().find(kNeeds) != std::string::npos;
@@ -374,7 +375,7 @@ TEST_F(RosBridge, WithSecurityNodesOfRosStayPlainPeers) {
   ::setenv("TOPOGEO_SECURITY", material.c_str(), 1);  // NOLINT(concurrency-mt-unsafe): one thread
   start_bridge();
   ::unsetenv("TOPOGEO_SECURITY");  // NOLINT(concurrency-mt-unsafe): as above
-  start_peer({"drive", std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml"});
+  start_peer({"drive", std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml"});
   messaging::ParticipantOptions options;
   options.domain = static_cast<std::uint32_t>(std::stoul(domain_));
   options.partition = "ros-test";

@@ -45,7 +45,7 @@ using testing::HasSubstr;
 /// The stops of a robot's drive through the floor, and its true poses.
 struct FloorDrive {
   FloorDrive(const std::string& robot, const std::vector<Eigen::Vector2d>& tour_m) {
-    world::World world = world::load_world(std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml");
+    world::World world = world::load_world(std::string(TOPOGEO_SHARE) + "/worlds/floor.world.yaml");
     world.tour_m = tour_m;
     const simulation::SimulatedLog log = simulation::simulate_log(world, {});
     pipeline::LocalMapper mapper({}, robot, robot == "a" ? 1 : 2);

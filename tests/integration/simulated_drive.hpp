@@ -22,7 +22,7 @@ namespace topogeo::test {
 /// Writes the hall of the short drive with a tour of a hundred rounds, 11 m each.
 inline std::string write_world_of_rounds(const Scratch& scratch) {
   constexpr int kRounds = 100;
-  std::string text = read_file(std::string(TOPOGEO_TEST_DATA) + "/short.world.yaml");
+  std::string text = read_file(std::string(TOPOGEO_SHARE) + "/worlds/short.world.yaml");
   text.resize(text.rfind("tour:"));
   text += "tour: [";
   for (int round = 0; round < kRounds; ++round) {

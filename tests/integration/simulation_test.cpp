@@ -47,7 +47,7 @@ class SimulationTest : public testing::Test {
 };
 
 TEST_F(SimulationTest, DrivesTheTourThroughSerialPortsAndMapsIt) {
-  Program run(scratch_, "topogeo", words(std::string(TOPOGEO_TEST_DATA) + "/short.world.yaml"));
+  Program run(scratch_, "topogeo", words(std::string(TOPOGEO_SHARE) + "/worlds/short.world.yaml"));
   ASSERT_EQ(run.wait(), 0) << run.err();
   EXPECT_THAT(run.out(), HasSubstr("corrected"));
   EXPECT_THAT(run.out(), Not(HasSubstr("collisions")));

@@ -38,7 +38,7 @@ class StoredDrive {
         }()) {
     pipeline::MappingRun run({}, "robot");
     const world::World world =
-        world::load_world(std::string(TOPOGEO_TEST_DATA) + "/" + name + ".world.yaml");
+        world::load_world(std::string(TOPOGEO_SHARE) + "/worlds/" + name + ".world.yaml");
     for (const scan::Scan& scan : simulation::simulate_log(world, {}).scans) run.add(scan);
     map_ = run.finish();
     loop_.add<msg::StoredMap>(stored_reader_, [this](const msg::StoredMap& stored, const auto&) {

@@ -83,7 +83,7 @@ class TwoRobotsTest : public testing::Test {
 
  private:
   void write_drive(const std::string& robot, const std::vector<Eigen::Vector2d>& tour_m) {
-    world::World floor = world::load_world(std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml");
+    world::World floor = world::load_world(std::string(TOPOGEO_SHARE) + "/worlds/floor.world.yaml");
     floor.tour_m = tour_m;
     const simulation::SimulatedLog log = simulation::simulate_log(floor, {});
     scan::CarmenLogWriter writer(scratch_ / (robot + ".clf"), {});

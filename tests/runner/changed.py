@@ -12,7 +12,7 @@ import re
 import subprocess
 
 # Files on which any target may depend without CMake knowing.
-ALL = re.compile(r"(CMakeLists\.txt|CMakePresets\.json|tests/CMakeLists\.txt|cmake/.*|idl/.*|tests/data/.*)$")
+ALL = re.compile(r"(CMakeLists\.txt|CMakePresets\.json|tests/CMakeLists\.txt|cmake/.*|idl/.*|share/.*|tests/data/.*)$")
 RUNNER = re.compile(r"(run|\.ci/.*|\.github/.*|tests/runner/.*|tests/costs\.txt|deploy/packages\.txt)$")
 QUERY = ".cmake/api/v1/query/codemodel-v2"  # with this file in the build folder CMake describes the targets
 

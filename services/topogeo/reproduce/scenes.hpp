@@ -26,7 +26,7 @@ struct SeenScene {
 
 SeenScene see(const world::World& world, const geometry::Pose2& T_world_laser,
               const voronoi::VoronoiConfig& voronoi, const topomap::LocalMapConfig& local_map);
-/// Scene of tests/data/figures/figure_<number>.world.yaml seen from its k-th place, facing along x.
+/// Scene of share/figures/figure_<number>.world.yaml seen from its k-th place, facing along x.
 SeenScene see_scene(const std::string& number, const voronoi::VoronoiConfig& voronoi,
                     const topomap::LocalMapConfig& local_map, std::size_t place = 0);
 

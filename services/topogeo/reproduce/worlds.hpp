@@ -1,5 +1,5 @@
-// The worlds of the experiments: the scenes of tests/data/figures and the replicas of
-// tests/data/thesis, compiled in so that the program needs no files.
+// The worlds of the experiments: the scenes of share/figures and the replicas of
+// share/thesis, compiled in so that the program needs no files.
 #pragma once
 
 #include <string>

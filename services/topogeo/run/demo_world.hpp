@@ -1,4 +1,4 @@
-// The floor of the demo, compiled in: tests/data/floor.world.yaml.
+// The floor of the demo, compiled in: share/worlds/floor.world.yaml.
 #pragma once
 
 namespace topogeo::cli {

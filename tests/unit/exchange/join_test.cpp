@@ -24,7 +24,7 @@ namespace {
 using geometry::Pose2;
 using testing::HasSubstr;
 
-constexpr const char* kFloor = TOPOGEO_TEST_DATA "/floor.world.yaml";
+constexpr const char* kFloor = TOPOGEO_SHARE "/worlds/floor.world.yaml";
 
 /// A part of a drive as a map of its own, in the frame of its first stop.
 struct PartOfDrive {

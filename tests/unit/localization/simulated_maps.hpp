@@ -1,5 +1,5 @@
-// Local maps and logs of the simulated worlds in tests/data, with the true poses, for the tests of
-// matching and for the benchmarks.
+// Local maps and logs of the simulated worlds in share/worlds, with the true poses, for the tests
+// of matching and for the benchmarks.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,9 @@
 
 namespace topogeo::localization::test {
 
-/// tests/data/NAME.world.yaml.
+/// share/worlds/NAME.world.yaml.
 inline world::World world(const std::string& name) {
-  return world::load_world(std::filesystem::path(TOPOGEO_SOURCE_DIR) / "tests" / "data" /
+  return world::load_world(std::filesystem::path(TOPOGEO_SOURCE_DIR) / "share" / "worlds" /
                            (name + ".world.yaml"));
 }
 

@@ -76,7 +76,7 @@ std::size_t nodes_near(const Mapped& mapped, const Eigen::Vector2d& point_m, dou
 }
 
 world::World floor_world() {
-  return world::load_world(std::filesystem::path(TOPOGEO_TEST_DATA) / "floor.world.yaml");
+  return world::load_world(std::filesystem::path(TOPOGEO_SHARE) / "worlds/floor.world.yaml");
 }
 
 TEST(ChangingWorldTest, PeopleWhoWalkAboutNeitherBendTheMapNorEnterIt) {

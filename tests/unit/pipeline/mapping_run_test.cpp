@@ -24,7 +24,8 @@ using topomap::StampedPose;
 
 simulation::SimulatedLog simulated(const std::string& world) {
   return simulation::simulate_log(
-      world::load_world(std::filesystem::path(TOPOGEO_TEST_DATA) / (world + ".world.yaml")), {});
+      world::load_world(std::filesystem::path(TOPOGEO_SHARE) / "worlds" / (world + ".world.yaml")),
+      {});
 }
 
 storage::MapDocument mapped(const simulation::SimulatedLog& log) {

@@ -92,7 +92,7 @@ void expect_rooms_of_world(const std::string& name, double turned_rad) {
   std::snprintf(title, sizeof title, "%s, turned by %.1f rad", name.c_str(), turned_rad);
   SCOPED_TRACE(title);
   const world::World world =
-      world::load_world(std::filesystem::path(TOPOGEO_TEST_DATA) / (name + ".world.yaml"));
+      world::load_world(std::filesystem::path(TOPOGEO_SHARE) / "worlds" / (name + ".world.yaml"));
   const geometry::Pose2 turn{0.0, 0.0, turned_rad};
   planning::Drawing drawing = drawing_of(world);
   for (auto& line : drawing.lines) line = {turn * line.a_m, turn * line.b_m};

@@ -24,7 +24,7 @@ const storage::MapDocument& room_document() {
   static const storage::MapDocument document = [] {
     MappingRun run(room_config(), "robot");
     const auto log = simulation::simulate_log(
-        world::load_world(std::filesystem::path(TOPOGEO_TEST_DATA) / "room.world.yaml"), {});
+        world::load_world(std::filesystem::path(TOPOGEO_SHARE) / "worlds/room.world.yaml"), {});
     for (const scan::Scan& scan : log.scans) run.add(scan);
     return run.finish();
   }();

@@ -39,7 +39,7 @@ class StopSearchTest : public ::testing::Test {
 
   Config config_ = load_config({}).config;
   simulation::SimulatedLog log_ = simulation::simulate_log(
-      world::load_world(std::filesystem::path(TOPOGEO_TEST_DATA) / "room.world.yaml"), {});
+      world::load_world(std::filesystem::path(TOPOGEO_SHARE) / "worlds/room.world.yaml"), {});
   std::vector<topomap::LocalMap> stops_;
   std::vector<Pose2> T_world_stop_;
 };

@@ -16,7 +16,7 @@
 namespace topogeo::pipeline {
 namespace {
 
-const std::filesystem::path kThesisData = std::filesystem::path(TOPOGEO_TEST_DATA) / "thesis";
+const std::filesystem::path kThesisData = std::filesystem::path(TOPOGEO_SHARE) / "thesis";
 
 struct MappedExperiment {
   storage::MapDocument map;

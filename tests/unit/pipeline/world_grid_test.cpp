@@ -34,7 +34,7 @@ TEST(WorldGrid, IsFreeInsideAndUnknownBehindTheWalls) {
 // Any two points on the tour of the office floor have a route, hardly longer than the shortest one.
 TEST(WorldGrid, HasWaysBetweenAllPlacesOfATour) {
   const world::World world =
-      world::load_world(std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml");
+      world::load_world(std::string(TOPOGEO_SHARE) + "/worlds/floor.world.yaml");
   const planning::FreeSpace space(planning::grid_of(drawing_of(world)));
   const planning::HybridMap map(space, planning::zones_by_width(space));
   EXPECT_GT(map.zones().zones.size(), 10U);

@@ -24,7 +24,7 @@ Drive drive(localization::SlamAlgorithm mode) {
   drive.config = pipeline::load_config({}).config;
   drive.config.localizer.mode = mode;
   drive.log = simulation::simulate_log(
-      world::load_world(std::filesystem::path(TOPOGEO_TEST_DATA) / "room.world.yaml"), {});
+      world::load_world(std::filesystem::path(TOPOGEO_SHARE) / "worlds/room.world.yaml"), {});
   pipeline::MappingRun run(drive.config, "robot");
   for (const scan::Scan& scan : drive.log.scans) run.add(scan);
   drive.document = run.finish();

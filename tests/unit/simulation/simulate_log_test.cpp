@@ -9,7 +9,7 @@ namespace topogeo::simulation {
 namespace {
 
 world::World shipped(const char* name) {
-  return world::load_world(std::string(TOPOGEO_TEST_DATA) + "/" + name);
+  return world::load_world(std::string(TOPOGEO_SHARE) + "/worlds/" + name);
 }
 
 // FNV-1a over the whole content of a log.

@@ -26,7 +26,7 @@ constexpr const char* kRoom =
     "tour: [[1, 2], [3, 2]]\n";
 
 world::World shipped_world(const char* name) {
-  return world::load_world(std::string(TOPOGEO_TEST_DATA) + "/" + name);
+  return world::load_world(std::string(TOPOGEO_SHARE) + "/worlds/" + name);
 }
 
 TEST(SimulatedRobot, DrivesAsTold) {

@@ -57,7 +57,7 @@ TEST(Echo, ComesFromColumns) {
 // Compared with a fan of thousands of rays on the shipped floor.
 TEST(Echo, IsTheNearestOfManyRays) {
   const world::World floor =
-      world::load_world(std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml");
+      world::load_world(std::string(TOPOGEO_SHARE) + "/worlds/floor.world.yaml");
   constexpr double kHalf_rad = 15.0 * kDegree;
   constexpr double kMax_m = 5.0;
   support::Random random(3);

@@ -15,7 +15,7 @@ namespace {
 using geometry::Pose2;
 
 world::World thesis_world(const std::string& name) {
-  return world::load_world(std::string(TOPOGEO_TEST_DATA) + "/thesis/" + name + ".world.yaml");
+  return world::load_world(std::string(TOPOGEO_SHARE) + "/thesis/" + name + ".world.yaml");
 }
 
 // The least clearance of the robot on its drive, metres, among the objects present at the start.

@@ -51,8 +51,8 @@ std::string name_of_group(const voronoi::GeneratorGroups& groups, const voronoi:
 
 Scene load_scene(const std::string& number) {
   Scene scene;
-  scene.world = world::load_world(std::string(TOPOGEO_TEST_DATA) + "/figures/figure_" + number +
-                                  ".world.yaml");
+  scene.world =
+      world::load_world(std::string(TOPOGEO_SHARE) + "/figures/figure_" + number + ".world.yaml");
   for (const Eigen::Vector2d& at : scene.world.tour_m) {
     scene.T_world_laser.push_back({at.x(), at.y(), 0.0});
   }

@@ -1,4 +1,4 @@
-// The scenes of the Thesis's figures (tests/data/figures) and a textual form of their diagrams.
+// The scenes of the Thesis's figures (share/figures) and a textual form of their diagrams.
 //
 // Walls have the letters A, B, C ... in the order of the scene file, columns a, b, c ... A group is
 // named by the letters of the surfaces with its points ("BC"), a node and a branch by the groups at
@@ -29,7 +29,7 @@ struct Scene {
   std::vector<geometry::Pose2> T_world_laser;
 };
 
-/// Scene of tests/data/figures/figure_<number>.world.yaml.
+/// Scene of share/figures/figure_<number>.world.yaml.
 Scene load_scene(const std::string& number);
 /// Numbers of all scenes.
 const std::vector<std::string>& scene_numbers();

@@ -135,7 +135,7 @@ TEST(World, HasThePlacesThatItNames) {
 }
 
 TEST(World, TheOfficeFloorHasRoomForTheRobotAtItsPlaces) {
-  const World world = load_world(std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml");
+  const World world = load_world(std::string(TOPOGEO_SHARE) + "/worlds/floor.world.yaml");
   EXPECT_EQ(world.places.size(), 9U);
   for (const NamedPlace& place : world.places) {
     EXPECT_GT(clearance_m(world, place.position_m), 0.6) << place.name;
@@ -154,7 +154,7 @@ TEST(World, AMissingFileIsNamed) {
 
 TEST(World, EveryShippedWorldLoads) {
   int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(TOPOGEO_TEST_DATA)) {
+  for (const auto& entry : std::filesystem::directory_iterator(TOPOGEO_SHARE "/worlds")) {
     if (!entry.path().string().ends_with(".world.yaml")) continue;
     ++count;
     EXPECT_GE(load_world(entry.path()).tour_m.size(), 2U) << entry.path();

@@ -1,5 +1,5 @@
 // The drives of the thesis's experiments (Thesis, 8.2 and 8.3), as far as described: the odometry
-// ends with the printed error. The floors are tests/data/thesis/experiment_1.world.yaml and
+// ends with the printed error. The floors are share/thesis/experiment_1.world.yaml and
 // experiment_2.world.yaml.
 #pragma once
 
