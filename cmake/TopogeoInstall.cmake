@@ -51,6 +51,8 @@ install(FILES ${deploy}/systemd/topogeo.env ${deploy}/systemd/web.env DESTINATIO
 install(FILES ${deploy}/systemd/worker.env DESTINATION ${data}/etc COMPONENT topogeo-workers)
 install(FILES ${deploy}/dds_profiles.xml DESTINATION ${data} COMPONENT topogeo-workers)
 install(DIRECTORY ${CMAKE_BINARY_DIR}/share/topogeo/web DESTINATION ${data} COMPONENT topogeo)
+# Worlds, and configurations for them.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/share/ DESTINATION ${data} COMPONENT topogeo)
 install(PROGRAMS ${deploy}/security/make_keys DESTINATION ${data}/security COMPONENT topogeo)
 install(PROGRAMS ${deploy}/security/own_keys DESTINATION ${data}/security COMPONENT topogeo-workers)
 install(FILES ${deploy}/security/permissions.txt DESTINATION ${data}/security COMPONENT topogeo)

@@ -32,6 +32,7 @@ docker run --rm -i --user root -v "$work:/exchange" $image bash -euo pipefail -c
   COMP_WORDS=(topogeo stat) COMP_CWORD=1
   _topogeo
   [ "${COMPREPLY[*]}" = status ]
+  [ -e /usr/share/topogeo/worlds/room.world.yaml ] && [ -e /usr/share/topogeo/thesis/printed.config.yaml ]
   [ -e /etc/topogeo/topogeo.env ] && [ -e /usr/lib/systemd/system/topogeo.target ]
   [ "$(stat -c "%a %U:%G" /etc/topogeo/topogeo.env)" = "640 root:topogeo" ] || { echo "settings are for all"; exit 1; }
   [ "$(stat -c "%a %U:%G" /etc/topogeo/web.env)" = "600 root:root" ] || { echo "the token is for all"; exit 1; }
