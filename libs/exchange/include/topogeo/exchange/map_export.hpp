@@ -4,12 +4,12 @@
 
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "topogeo/exchange/export_header.hpp"
+#include "topogeo/exchange/map_formats.hpp"
 #include "topogeo/exchange/output_file.hpp"
 #include "topogeo/exchange/route_network.hpp"
 #include "topogeo/pipeline/hybrid_map_config.hpp"
@@ -31,15 +31,8 @@ struct ExportedMap {
   Notes notes;
 };
 
-struct ExportFormat {
-  std::string_view name;
-  /// Endings of the files, appended to the chosen name. For a single file the ending is only usual,
-  /// for several it is fixed.
-  std::vector<std::string_view> endings;
-};
-
-/// All formats of docs/exchange.md.
-std::span<const ExportFormat> export_formats();
+/// A row of export_formats().
+using ExportFormat = MapFormat;
 
 /// `path`: the file, or the common start of several. Throws std::invalid_argument for an unknown
 /// format or a map that lacks what it needs, std::runtime_error if a file cannot be made.

@@ -9,7 +9,7 @@ namespace topogeo::exchange {
 
 struct MapGraph {
   topomap::GlobalMap map;
-  storage::MapDrawing drawing;  ///< without a grid
+  storage::MapDrawing drawing;  ///< with a grid only if the format has one
   Notes notes;
 };
 
