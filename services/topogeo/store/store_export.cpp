@@ -2,15 +2,16 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/exchange/map_export.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/host.hpp"
 
+#include "store/format_list.hpp"
 #include "store/store_commands.hpp"
 #include "store/store_files.hpp"
 
@@ -43,15 +44,6 @@ int store_export(ExportOptions options) {
   return service::kOk;
 }
 
-/// Names of the formats.
-std::vector<std::string> format_names() {
-  std::vector<std::string> names;
-  for (const exchange::ExportFormat& format : exchange::export_formats()) {
-    names.emplace_back(format.name);
-  }
-  return names;
-}
-
 }  // namespace
 
 void add_store_export_command(command_line::Command& store, int& exit_code) {
@@ -59,9 +51,10 @@ void add_store_export_command(command_line::Command& store, int& exit_code) {
       store.add_subcommand("export", "Write a map in the form of another program");
   auto options = std::make_shared<ExportOptions>();
   command->add_option("file", options->file, "map file or database")->required()->type_name("FILE");
+  const std::span<const exchange::MapFormat> formats = exchange::export_formats();
   command->add_option("--format", options->format, "format to write, see below")
       ->required()
-      ->check(command_line::one_of(format_names()))
+      ->check(command_line::one_of(names_of(formats)))
       ->type_name("FORMAT");
   command->add_option("--out", options->out, "file to write, or the common prefix of several")
       ->required()
@@ -101,20 +94,8 @@ void add_store_export_command(command_line::Command& store, int& exit_code) {
                    "for lif and zones: author of the file")
       ->capture_default_str()
       ->type_name("NAME");
-  command->footer(
-      "pgm      grid as PATH.pgm and PATH.yaml, for map_server of ROS\n"
-      "geojson  graph, places and zones, for the route server of Nav2\n"
-      "masks    PATH_keepout and PATH_speed, zones for costmap filters of Nav2\n"
-      "lif      graph and places in the Layout Interchange Format 1.0.0 of the VDMA\n"
-      "zones    zones as a zone set of VDA 5050 3.0\n"
-      "rmf      graph as a navigation graph of Open-RMF (YAML)\n"
-      "svg, png the picture of the map\n"
-      "graphml  the graph without loss, for graph programs\n"
-      "g2o      pose graph of the stops\n"
-      "tum      corrected pose of each scan\n"
-      "carmen   scans of the stops as a log (gzip when PATH ends in .gz)\n"
-      "pb       the whole map as a map file (map.pb)\n"
-      "docs/exchange.md says of each what is written and what is lost.");
+  command->footer(help_of(formats, &exchange::MapFormat::write_help) +
+                  "docs/exchange.md names what each format keeps and loses.");
   command->callback([options, &exit_code] { exit_code = store_export(*options); });
 }
 

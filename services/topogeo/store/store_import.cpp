@@ -4,17 +4,13 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "topogeo/command_line/command_line.hpp"
-#include "topogeo/exchange/geojson.hpp"
-#include "topogeo/exchange/graphml.hpp"
-#include "topogeo/exchange/grid_image.hpp"
 #include "topogeo/exchange/grid_map.hpp"
-#include "topogeo/exchange/lif.hpp"
+#include "topogeo/exchange/map_formats.hpp"
 #include "topogeo/exchange/place_graph.hpp"
-#include "topogeo/exchange/read_text.hpp"
-#include "topogeo/exchange/zone_set.hpp"
 #include "topogeo/pipeline/hybrid_map_source.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/service/service_options.hpp"
@@ -22,6 +18,7 @@
 #include "topogeo/support/format.hpp"
 
 #include "common/job.hpp"
+#include "store/format_list.hpp"
 #include "store/store_commands.hpp"
 #include "store/store_files.hpp"
 
@@ -41,42 +38,6 @@ struct ImportOptions {
   bool with_stops = false;
   exchange::GridMapSettings grid;
 };
-
-/// Reads a drawing of this project: a world, or zones and places.
-exchange::MapGraph read_own_drawing(const fs::path& file, double resolution_m) {
-  exchange::MapGraph graph;
-  graph.drawing = file.filename().string().ends_with(".world.yaml")
-                      ? pipeline::read_drawing(file, std::nullopt, resolution_m)
-                      : pipeline::read_zones_and_places(file);
-  try {
-    if (graph.drawing.grid) exchange::check_grid_size(graph.drawing.grid->frame());
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(file.string() + ": " + error.what());
-  }
-  return graph;
-}
-
-exchange::MapGraph read_foreign(const ImportOptions& options, double resolution_m) {
-  const std::string name = options.file.string();
-  if (options.format == "drawing") return read_own_drawing(options.file, resolution_m);
-  if (options.format == "pgm") {
-    exchange::GridImage image = exchange::read_grid_image(options.file);
-    exchange::MapGraph graph;
-    graph.drawing.grid = exchange::occupancy_of(image);
-    graph.notes = std::move(image.notes);
-    return graph;
-  }
-  const std::string text = exchange::read_text(options.file);
-  if (options.format == "geojson") return exchange::parse_geojson(text, name);
-  if (options.format == "graphml") return exchange::parse_graphml(text, name);
-  if (options.format == "lif") return exchange::parse_lif(text, name);
-  exchange::ZoneSet set = exchange::parse_zone_set(text, name);
-  exchange::MapGraph graph;
-  graph.drawing.zones = std::move(set.zones);
-  graph.notes = std::move(set.notes);
-  storage::check(graph.drawing);
-  return graph;
-}
 
 geometry::Pose2 pose_of_file(const ImportOptions& options) {
   if (!options.pose) return {};
@@ -118,8 +79,10 @@ int store_import(const ImportOptions& options) {
   storage::MapDocument document;
   document.robot_id = options.robot_id;
   if (options.into) document = read_any_map(*options.into);
+  const exchange::MapFormat& format =
+      exchange::format_named(exchange::import_formats(), options.format);
   try {
-    exchange::MapGraph graph = read_foreign(options, config.hybrid_map.grid.resolution_m);
+    exchange::MapGraph graph = format.read(options.file, config.hybrid_map.grid.resolution_m);
     exchange::Notes notes = std::move(graph.notes);
     exchange::move(graph, T_map_file);
     exchange::lay_over(document, std::move(graph), notes);
@@ -146,9 +109,10 @@ void add_store_import_command(command_line::Command& store, int& exit_code) {
       store.add_subcommand("import", "Make a map file of a file of another program");
   auto options = std::make_shared<ImportOptions>();
   command->add_option("file", options->file, "file to read")->required()->type_name("FILE");
+  const std::span<const exchange::MapFormat> formats = exchange::import_formats();
   command->add_option("--format", options->format, "format of the file, see below")
       ->required()
-      ->check(command_line::one_of({"pgm", "geojson", "lif", "zones", "graphml", "drawing"}))
+      ->check(command_line::one_of(names_of(formats)))
       ->type_name("FORMAT");
   command->add_option("--out", options->out, "map file to write (map.pb)")
       ->required()
@@ -182,15 +146,8 @@ void add_store_import_command(command_line::Command& store, int& exit_code) {
       ->check(command_line::range(1.0, kMost_m))
       ->capture_default_str()
       ->type_name("M");
-  command->footer(
-      "pgm      image (PGM, PNG, BMP) and YAML of map_server (FILE is the YAML), modes trinary, "
-      "scale, raw\n"
-      "geojson  graph, places and zones of Nav2's route server\n"
-      "lif      graph and stations of a layout (1.0.0, draft of 2.0)\n"
-      "zones    zone set of VDA 5050 3.0\n"
-      "graphml  graph; nodes need x and y\n"
-      "drawing  a world (.world.yaml), or zones and places (.yaml)\n"
-      "A grid becomes a map with nodes and branches.");
+  command->footer(help_of(formats, &exchange::MapFormat::read_help) +
+                  "A grid becomes a map with nodes and branches.");
   command->callback([options, &exit_code] { exit_code = store_import(*options); });
 }
 
