@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "topogeo/exchange/map_export.hpp"
+#include "topogeo/storage/map_snapshots.hpp"
 #include "topogeo/support/host.hpp"
 
 #include "channels/local_map_json.hpp"
