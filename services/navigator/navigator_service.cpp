@@ -12,7 +12,6 @@
 #include "topogeo/service/navigation_conversions.hpp"
 #include "topogeo/support/log.hpp"
 
-
 namespace topogeo::navigator {
 
 using navigation::NavigatorState;
@@ -59,7 +58,7 @@ NavigatorService::NavigatorService(service::Service& service, const std::filesys
       clock_(host_offset_ns()),
       navigator_(service.setup().config.config.navigator),
       memory_(memory),
-      stop_(service, stop_memory, navigator_, [this] { tick(); }),
+      stop_(service, stop_memory, navigator_, steady_now_ns(), [this] { tick(); }),
       live_map_(service),
       commands_(service.advertise<msg::MotionCommand>()),
       statuses_(service.advertise<msg::NavigatorStatus>()),
@@ -275,6 +274,7 @@ void NavigatorService::tick() {
   if (clock_.take_set_back()) {
     begin_again("time set back", "the sensors' stamps are older than before");
   }
+  stop_.check(steady_now_ns());
   navigator_.set_machine({service_.cpu().is_short_now(), service_.cpu().timer_delay_s()});
   const geometry::Velocity velocity = navigator_.step(now_ns);
   command(velocity, now_ns);

@@ -8,9 +8,9 @@
 namespace topogeo::navigator {
 
 OperatorStopInput::OperatorStopInput(service::Service& service, const std::filesystem::path& memory,
-                                     navigation::Navigator& navigator,
+                                     navigation::Navigator& navigator, std::int64_t start_ns,
                                      std::function<void()> on_change)
-    : stop_(memory), navigator_(navigator), on_change_(std::move(on_change)) {
+    : stop_(memory), wait_(start_ns), navigator_(navigator), on_change_(std::move(on_change)) {
   if (stop_.holds()) spdlog::warn("an operator's stop of before this start holds");
   apply();
   service.subscribe<msg::BaseCommand>(
@@ -20,15 +20,35 @@ OperatorStopInput::OperatorStopInput(service::Service& service, const std::files
 }
 
 void OperatorStopInput::take(const msg::BaseStatus& status) {
-  if (!stop_.holds() || !service::holds(status)) return;
-  stop_.hand_over();
-  change();
+  bool changes = wait_.end();
+  if (stop_.holds() && service::holds(status)) {
+    stop_.hand_over();
+    changes = true;
+  }
+  if (changes) change();
 }
 
 void OperatorStopInput::take(const msg::BaseCommand& command, const messaging::Handle& writer) {
-  if (!stop_.take(command, writer)) return;
-  spdlog::warn("{} by {}", stop_.holds() ? "stopped" : "released", command.client_id().c_str());
-  change();
+  const bool waited = command.kind() != msg::kBaseSetLimits && wait_.end();
+  const bool taken = stop_.take(command, writer);
+  if (taken) {
+    spdlog::warn("{} by {}", stop_.holds() ? "stopped" : "released", command.client_id().c_str());
+  }
+  if (waited || taken) change();
+}
+
+void OperatorStopInput::check(std::int64_t now_ns) {
+  if (!wait_.check(now_ns)) return;
+  spdlog::info("no base and no operator has sent anything since the start: goals are driven to");
+  apply();
+}
+
+void OperatorStopInput::apply() {
+  if (stop_.holds()) {
+    navigator_.set_stopped("stopped by an operator until the release");
+  } else {
+    navigator_.set_stopped(wait_.waits() ? "waits for an operator's stop" : "");
+  }
 }
 
 void OperatorStopInput::change() {

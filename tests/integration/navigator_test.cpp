@@ -175,12 +175,24 @@ TEST_F(NavigatorOfASilentBase, StandsInItsNextLifeUntilTheRelease) {
   release_and_arrive();
 }
 
+// A stop while no navigator runs comes only once a page is connected with the next one.
+TEST_F(NavigatorOfASilentBase, WaitsInItsNextLifeForAStopThatItMayHaveMissed) {
+  start();
+  send_goal(7, kGoal_m);
+  ASSERT_TRUE(wait_for("the robot to drive", [&] { return rolls(); })) << navigator_->err();
+  restart();
+  ASSERT_TRUE(wait_for("the arrival", [&] { return is(msg::kNavigatorArrived); }))
+      << status_->message();
+  EXPECT_THAT(navigator_->err(), testing::HasSubstr("no operator has sent anything"));
+}
+
 // The service replaces the navigator within its process.
 TEST_F(NavigatorOfASilentBase, StandsWhenTheOdometryRestarts) {
   ASSERT_NO_FATAL_FAILURE(stop_on_the_way());
   ++odometry_epoch_;
   T_odom_start_ = robot_.T_odom_robot();
   ASSERT_TRUE(wait_for("the restart", [&] { return faults("odometry restarted") > 0; }));
+  status_.reset();
   ASSERT_NO_FATAL_FAILURE(expect_held());
   release_and_arrive();
 }

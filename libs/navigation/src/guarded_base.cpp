@@ -35,8 +35,8 @@ HaltReason GuardedBase::halted(std::int64_t now_ns, std::string& message) const 
     message = "the base takes no commands: " + base_->reason;
     return HaltReason::kBaseNotReady;
   }
-  if (stopped_) {
-    message = "the base takes no commands: stopped by an operator until the release";
+  if (!stopped_.empty()) {
+    message = "the base takes no commands: " + stopped_;
     return HaltReason::kBaseNotReady;
   }
   if (stuck_ns_) {

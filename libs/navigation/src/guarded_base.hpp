@@ -29,8 +29,8 @@ class GuardedBase {
   void add(const SonarRound& sonar);
   void add(const LaserFields& fields) { guard_.add(fields); }
   void add(const BaseCondition& base) { base_ = base; }
-  /// Whether an operator's stop holds that the base does not report.
-  void set_stopped(bool stopped) { stopped_ = stopped; }
+  /// The reason to stand that the base does not report, for people; empty: none.
+  void set_stopped(std::string why) { stopped_ = std::move(why); }
   /// The load of this machine at `now_ns`. A base that seems stuck while the machine is busy may
   /// get its orders too late: it is tried again once the machine has time, at most kTries times
   /// until it moves.
@@ -80,7 +80,7 @@ class GuardedBase {
   NearEchoes near_;
   BaseWatch watch_;
   std::optional<BaseCondition> base_;
-  bool stopped_ = false;                    ///< by an operator
+  std::string stopped_;                     ///< reason to stand; empty: none
   std::int64_t odometry_ns_ = 0;            ///< stamp of the newest
   std::optional<std::int64_t> stuck_ns_;    ///< last detection; empty: not stuck
   std::optional<std::int64_t> busy_ns_;     ///< when the machine was last busy

@@ -75,8 +75,8 @@ void Navigator::resume() {
   state_->base.retry();
 }
 
-void Navigator::set_stopped(bool stopped) {
-  state_->base.set_stopped(stopped);
+void Navigator::set_stopped(std::string why) {
+  state_->base.set_stopped(std::move(why));
 }
 
 bool Navigator::is_stuck() const {

@@ -43,10 +43,13 @@ TEST_F(GuardedBaseTest, HasAReasonNotToMove) {
 
 TEST_F(GuardedBaseTest, AStopHaltsABaseThatReportsNothing) {
   scan_at(5.0, 0);
-  base.set_stopped(true);
+  base.set_stopped("stopped by an operator until the release");
   EXPECT_EQ(base.halted(0, message), HaltReason::kBaseNotReady);
   EXPECT_EQ(message, "the base takes no commands: stopped by an operator until the release");
-  base.set_stopped(false);
+  base.set_stopped("waits for an operator's stop");
+  EXPECT_EQ(base.halted(0, message), HaltReason::kBaseNotReady);
+  EXPECT_EQ(message, "the base takes no commands: waits for an operator's stop");
+  base.set_stopped({});
   EXPECT_EQ(base.halted(0, message), HaltReason::kNone);
 }
 

@@ -263,14 +263,14 @@ TEST_F(NavigatorHalt, BaseNotReadyDrivesOnByItself) {
 // A base of ROS reports no stop, so the navigator stands by itself.
 TEST_F(NavigatorHalt, AnOperatorsStopHoldsOverResumesAndGoals) {
   drive_off();
-  drive.navigator.set_stopped(true);
+  drive.navigator.set_stopped("stopped by an operator");
   expect_halt(HaltReason::kBaseNotReady, NavigatorState::kStopped, 0.1);
   EXPECT_THAT(drive.status().message, HasSubstr("stopped by an operator"));
   drive.navigator.resume();
   expect_halt(HaltReason::kBaseNotReady, NavigatorState::kStopped, 0.1);
   drive.go_to({6.5, 4.5});
   expect_halt(HaltReason::kBaseNotReady, NavigatorState::kStopped, 0.1);
-  drive.navigator.set_stopped(false);
+  drive.navigator.set_stopped({});
   expect_arrival();
 }
 

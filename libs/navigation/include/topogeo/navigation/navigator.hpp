@@ -44,9 +44,9 @@ class Navigator {
   void cancel();
   void pause();
   void resume();
-  /// Whether an operator's stop holds that the base does not report: the robot then stands, with
-  /// any goal.
-  void set_stopped(bool stopped);
+  /// The reason why the robot stands with any goal although the base reports none, for example an
+  /// operator's stop; empty: none.
+  void set_stopped(std::string why);
   /// The base did not move when ordered to: stands until a resume or another goal.
   [[nodiscard]] bool is_stuck() const;
   /// Restores that state, so that another navigator does not push against what holds the base.
