@@ -145,14 +145,14 @@ void HandSender::on_order(const msg::BaseCommand& message, const messaging::Hand
     events_.add(EventLog::Level::kWarning, "web", "stopped by " + client);
     tick();
   } else {
-    if (!base_) stop_wanted_ = false;
+    if (!base_hears()) stop_wanted_ = false;
     events_.add(EventLog::Level::kInfo, "web", "released by " + client);
   }
   if (!commanding_) show_rest();
 }
 
 void HandSender::on_navigator(const messaging::Handle& navigator) {
-  if (base_ || navigator_ == navigator || !orders_.connected_with(navigator)) return;
+  if (base_hears() || navigator_ == navigator || !orders_.connected_with(navigator)) return;
   navigator_ = navigator;
   if (kept_stop_.number() == 0) return;
   static_cast<void>(
@@ -213,7 +213,7 @@ void HandSender::tick() {
   if (held_) keep_off_drawn();
   auto verdict = drive_.step(guard_, now_ns, stamp_ns);
   if (!verdict) {
-    if (commanding_) show_rest();
+    if (commanding_ || shows_stop_ != stopped_alone()) show_rest();
     commanding_ = false;
     if (stopped_alone() && now_ns >= zero_due_ns_) {
       zero_due_ns_ = now_ns + kZeroPeriod_ns;
@@ -313,7 +313,8 @@ bool HandSender::order(msg::BaseCommandKind kind, std::uint64_t number) {
 }
 
 void HandSender::show_rest() {
-  if (!stopped_alone()) return board_.set(Channel::kDrive, "null");
+  shows_stop_ = stopped_alone();
+  if (!shows_stop_) return board_.set(Channel::kDrive, "null");
   navigation::GuardVerdict verdict;
   verdict.message = "stopped; takes orders after a release";
   show(verdict, false);

@@ -99,9 +99,9 @@ class HandSender {
   /// `number`: of the stop that the order means. Returns whether the base hears it.
   bool order(msg::BaseCommandKind kind, std::uint64_t number);
   [[nodiscard]] bool base_hears() const;
-  /// Whether a stop holds that no base reports, as with a base of ROS.
+  /// Whether a stop holds that no connected base reports, as with a base of ROS.
   [[nodiscard]] bool stopped_alone() const {
-    return !base_ && (stop_wanted_ || kept_stop_.holds());
+    return !base_hears() && (stop_wanted_ || kept_stop_.holds());
   }
   /// Shows that nobody drives by hand, and whether such a stop forbids it.
   void show_rest();
@@ -133,6 +133,7 @@ class HandSender {
   std::optional<messaging::Handle> navigator_;  // writer of its status; has the stop or its release
   std::uint64_t stop_count_ = 0;                // of the base's newest status; 0: none
   bool stop_unheard_ = false;
+  bool shows_stop_ = false;                          // channel `drive` shows stopped_alone()
   bool stop_wanted_ = kept_stop_.holds();            // from stop() to release_stop()
   std::uint64_t stop_number_ = kept_stop_.number();  // of the last stop() or its release
   std::int64_t zero_due_ns_ = 0;                     // by the steady clock

@@ -393,6 +393,31 @@ TEST_F(BesideSilentBase, AStopOfAnotherProgramCanBeReleasedHere) {
   EXPECT_EQ(newest_->stop_count(), kOtherStop);
 }
 
+// The robot may have a base of ROS from now on.
+TEST_F(BesideSilentBase, AStopHoldsWhenTheGatewayHasGone) {
+  {
+    LivingBase gateway(partition_);
+    ASSERT_TRUE(run_until("a gateway that hears the stop", [&] {
+      gateway.report(msg::kBaseMoving);
+      return hand_->stop();
+    }));
+    ASSERT_TRUE(run_until("the gateway to decide about it", [&] { return !is_stopped(); }));
+  }
+  EXPECT_TRUE(run_until("the stop to be kept here", [&] { return is_stopped(); }));
+  EXPECT_TRUE(refuses_to_drive());
+  EXPECT_EQ(hand_->release_stop(), HandSender::Release::kHeldHere);
+}
+
+TEST_F(BesideSilentBase, TheChannelShowsThatAGatewayDecides) {
+  ASSERT_NO_FATAL_FAILURE(give(msg::kBaseHalt));
+  ASSERT_TRUE(run_until("the stop", [&] { return is_stopped(); }));
+  LivingBase gateway(partition_);
+  EXPECT_TRUE(run_until("the gateway to decide about it", [&] {
+    gateway.report(msg::kBaseHalted);
+    return !is_stopped();
+  }));
+}
+
 // A bridge to ROS that starts after the stop must end the last velocity of the one before.
 TEST_F(BesideSilentBase, ZerosAreRepeatedDuringAStop) {
   const auto commands = [&] {
