@@ -20,6 +20,7 @@ OperatorStopInput::OperatorStopInput(service::Service& service, const std::files
 }
 
 void OperatorStopInput::take(const msg::BaseStatus& status) {
+  stop_.base_counts(status.stop_count());
   bool changes = wait_.end();
   if (stop_.holds() && service::holds(status)) {
     stop_.hand_over();

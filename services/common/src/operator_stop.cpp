@@ -68,8 +68,9 @@ bool OperatorStop::take(const msg::BaseCommand& command, const messaging::Handle
     return begins;
   }
   if (command.kind() != msg::kBaseReset) return false;
+  const bool of_base = number != 0 && number == base_count_;
   // A writer knows its own stops, because they arrive before its release.
-  if (holds() && (number == record_.number || halted_by_ == writer)) {
+  if (holds() && (number == record_.number || of_base || halted_by_ == writer)) {
     release();
     return true;
   }

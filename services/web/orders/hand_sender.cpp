@@ -120,6 +120,7 @@ void HandSender::on_laser(const msg::LaserStatus& laser) {
 void HandSender::on_base(const msg::BaseStatus& base, const messaging::Handle& writer) {
   base_ = writer;
   stop_count_ = base.stop_count();
+  kept_stop_.base_counts(stop_count_);
   base_held_ = service::holds(base);
   if (base_held_) kept_stop_.hand_over();
   end_release(release_.take(base, steady_ns()));
@@ -268,9 +269,12 @@ HandSender::Release HandSender::release_stop(OnRelease done) {
   const bool stopped = std::exchange(stop_wanted_, false) || kept;
   stop_unheard_ = false;
   const std::uint64_t number = kept_stop_.number();
+  const bool base_decides = !kept_stop_.holds();
   kept_stop_.release();
   if (stopped) show_rest();
   const bool heard = order(msg::kBaseReset, base_ ? stop_count_ : number);
+  // The base may have reported no stop yet: a navigator then knows it by this number alone.
+  if (base_ && !base_decides) static_cast<void>(order(msg::kBaseReset, number));
   if (kept) {
     events_.add(EventLog::Level::kInfo, "web", "released by the operator; no base reports it");
     return Release::kHeldHere;

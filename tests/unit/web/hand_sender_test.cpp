@@ -408,6 +408,21 @@ TEST_F(BesideSilentBase, AStopHoldsWhenTheGatewayHasGone) {
   EXPECT_EQ(hand_->release_stop(), HandSender::Release::kHeldHere);
 }
 
+// A navigator that has started again knows the stop by its number alone.
+TEST_F(BesideSilentBase, TheReleaseNamesAStopThatTheBaseHasNotReported) {
+  constexpr std::uint64_t kCount = 30;
+  LivingBase gateway(partition_);
+  ASSERT_TRUE(run_until("a gateway that hears the stop", [&] {
+    gateway.report(msg::kBaseOffline, kCount);
+    return hand_->stop();
+  }));
+  EXPECT_EQ(hand_->release_stop(), HandSender::Release::kSent);
+  EXPECT_TRUE(run_until("a release that names the stop, not the count of the base", [&] {
+    const std::uint64_t named = gateway.released();
+    return named != 0 && named != kCount;
+  }));
+}
+
 TEST_F(BesideSilentBase, TheChannelShowsThatAGatewayDecides) {
   ASSERT_NO_FATAL_FAILURE(give(msg::kBaseHalt));
   ASSERT_TRUE(run_until("the stop", [&] { return is_stopped(); }));

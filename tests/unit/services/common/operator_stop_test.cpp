@@ -72,6 +72,19 @@ TEST_F(OperatorStopTest, IsReleasedByItsOwnWriterWhateverNumberItNames) {
   EXPECT_FALSE(stop.holds());
 }
 
+// The base is offline: it takes halt and reset, and reports no stop meanwhile.
+TEST_F(OperatorStopTest, IsReleasedByAResetThatNamesTheCountOfTheBase) {
+  constexpr std::uint64_t kBefore = 30;
+  constexpr std::uint64_t kCount = 31;
+  OperatorStop(path_).hold(kFirstStop);
+  OperatorStop stop(path_);
+  EXPECT_FALSE(stop.take(base_order(msg::kBaseReset, 0), page_)) << "it names no stop";
+  stop.base_counts(kCount);
+  EXPECT_FALSE(stop.take(base_order(msg::kBaseReset, kBefore), page_)) << "sent before the stop";
+  EXPECT_TRUE(stop.take(base_order(msg::kBaseReset, kCount), page_));
+  EXPECT_FALSE(stop.holds());
+}
+
 TEST_F(OperatorStopTest, RepeatedAfterItsReleaseStopsNothing) {
   OperatorStop stop(path_);
   EXPECT_TRUE(stop.take(base_order(msg::kBaseHalt, kFirstStop), page_));

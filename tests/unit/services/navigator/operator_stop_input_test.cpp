@@ -85,6 +85,17 @@ TEST_F(OperatorStopInputTest, ABaseThatReportsItsStateEndsTheWait) {
   EXPECT_THAT(reason(), Not(HasSubstr("stop")));
 }
 
+// Another page releases by the count of the base, as `topogeo base reset` does.
+TEST_F(OperatorStopInputTest, TheWordOfAnOfflineBaseReleases) {
+  constexpr std::uint64_t kCount = 30;
+  ASSERT_NO_FATAL_FAILURE(give(page_, msg::kBaseHalt, kStop));
+  ASSERT_TRUE(run_until("the stop", [&] { return is_stopped(); }));
+  stop_.take(base_status(msg::kBaseOffline, kCount));
+  EXPECT_TRUE(is_stopped());
+  ASSERT_NO_FATAL_FAILURE(give(other_page_, msg::kBaseReset, kCount));
+  EXPECT_TRUE(run_until("the release", [&] { return !is_stopped(); }));
+}
+
 TEST_F(OperatorStopInputTest, AnOrderEndsTheWait) {
   ASSERT_NO_FATAL_FAILURE(give(page_, msg::kBaseHalt, kStop));
   ASSERT_TRUE(run_until("the stop", [&] { return is_stopped(); }));

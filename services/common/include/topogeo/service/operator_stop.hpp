@@ -37,6 +37,9 @@ class OperatorStop {
   void release();
   /// The base reports that it is held: it decides about the release from now on.
   void hand_over();
+  /// The number in the newest status of the base (BaseStatus::stop_count). A reset that names it
+  /// means the stop that holds here as well: a base that is offline reports no stop.
+  void base_counts(std::uint64_t stop_count) { base_count_ = stop_count; }
   /// Takes the order of another program. Returns whether a stop has begun or ended by it.
   bool take(const msg::BaseCommand& command, const messaging::Handle& writer);
 
@@ -59,6 +62,7 @@ class OperatorStop {
   support::RecordFile<Record> file_;
   Record record_;
   bool stored_ = true;                          // record_ is in the file
+  std::uint64_t base_count_ = 0;                // 0: no base has reported any
   std::optional<messaging::Handle> halted_by_;  // the writer of the stop that holds, if another's
 };
 
