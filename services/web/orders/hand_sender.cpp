@@ -131,6 +131,7 @@ void HandSender::on_base(const msg::BaseStatus& base, const messaging::Handle& w
     return;  // its stop is not reported meanwhile
   } else if (stopped_base_ == writer) {
     stop_wanted_ = false;  // another operator has released it
+    stop_unheard_ = false;
     show_rest();
   } else {
     // The halt went to a gateway that died, or is still on its way: a second one does no harm.
@@ -147,6 +148,7 @@ void HandSender::on_order(const msg::BaseCommand& message, const messaging::Hand
     tick();
   } else {
     if (!base_hears()) stop_wanted_ = false;
+    stop_unheard_ = false;
     events_.add(EventLog::Level::kInfo, "web", "released by " + client);
   }
   if (!commanding_) show_rest();

@@ -303,11 +303,11 @@ class BesideSilentBase : public testing::Test {
       return newest_ && newest_->kind() == kind;
     });
   }
-  void give(msg::BaseCommandKind kind) {
+  void give(msg::BaseCommandKind kind, std::uint64_t number = kOtherStop) {
     auto order = messaging::message<msg::BaseCommand>();
     messaging::set_client_id(order, "other");
     order.kind(kind);
-    order.stop_count(kOtherStop);
+    order.stop_count(number);
     // The navigator and the page.
     ASSERT_TRUE(run_until("both readers", [&] { return given_.matched() > 1; }));
     ASSERT_TRUE(given_.write(order));
@@ -409,6 +409,27 @@ TEST_F(BesideSilentBase, AStopHoldsWhenTheGatewayHasGone) {
 }
 
 // A navigator that has started again knows the stop by its number alone.
+TEST_F(BesideSilentBase, AStopThatAnotherProgramHasReleasedHaltsNoLaterGateway) {
+  constexpr int kMany = 30;  // the page has time to send a halt
+  EXPECT_FALSE(hand_->stop());
+  ASSERT_TRUE(navigator_gets(msg::kBaseHalt));
+  ASSERT_NO_FATAL_FAILURE(give(msg::kBaseReset, newest_->stop_count()));
+  ASSERT_TRUE(run_until("the release", [&] { return !is_stopped(); }));
+  int statuses = 0;
+  service_->subscribe<msg::BaseStatus>([&](const msg::BaseStatus&) { ++statuses; });
+  LivingBase gateway(partition_);
+  ASSERT_TRUE(run_until("statuses of a gateway", [&] {
+    if (gateway.connected()) gateway.report(msg::kBaseReady);
+    return statuses >= kMany;
+  }));
+  // An order that follows a halt on the same link.
+  ASSERT_TRUE(run_until("a later order", [&] {
+    static_cast<void>(hand_->release_stop());
+    return gateway.released() != 0;
+  }));
+  EXPECT_EQ(gateway.halts(), 0);
+}
+
 TEST_F(BesideSilentBase, TheReleaseNamesAStopThatTheBaseHasNotReported) {
   constexpr std::uint64_t kCount = 30;
   LivingBase gateway(partition_);
