@@ -219,7 +219,8 @@ void HandSender::tick() {
     if (commanding_ || shows_stop_ != stopped_alone()) show_rest();
     commanding_ = false;
     if (stopped_alone() && now_ns >= zero_due_ns_) {
-      zero_due_ns_ = now_ns + kZeroPeriod_ns;
+      // A navigator that does not have the stop yet may drive: these zeros interrupt it.
+      zero_due_ns_ = navigator_ ? now_ns + kZeroPeriod_ns : now_ns;
       command({}, stamp_ns);
     }
     return;
@@ -254,13 +255,13 @@ bool HandSender::stop() {
   if (on_release_) std::exchange(on_release_, nullptr)(UnconfirmedRelease::Outcome::kRefused);
   stop_number_ = service::OperatorStop::new_number();
   const bool heard = order(msg::kBaseHalt, stop_number_);
-  kept_stop_.hold(stop_number_);
   stop_unheard_ = !heard;
   stop_wanted_ = true;
   stopped_base_.reset();
+  tick();                         // zeros stop a base of ROS, which takes no order to halt
+  kept_stop_.hold(stop_number_);  // after the orders, because a disk may be slow
   events_.add(EventLog::Level::kWarning, "web",
               heard ? "stopped by the operator" : "no base received the operator's stop");
-  tick();  // zeros stop a base of ROS, which takes no order to halt
   if (!commanding_) show_rest();
   return heard;
 }
