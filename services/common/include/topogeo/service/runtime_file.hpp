@@ -13,8 +13,9 @@ namespace topogeo::service {
 std::filesystem::path runtime_file(const Setup& setup, std::string_view ending);
 
 /// The same with the number of the user, because users cannot write each other's files in /dev/shm.
-/// Empty, with a warning in the log, if the folder cannot be written. `loss` completes "cannot be
-/// written, so".
+/// The file then exists, and no other user can read it. Empty, with a warning in the log, if it
+/// cannot be created or written, is no regular file or belongs to another user. `loss`: the
+/// consequence, for the warning.
 std::filesystem::path own_runtime_file(const Setup& setup, std::string_view ending,
                                        std::string_view loss);
 
