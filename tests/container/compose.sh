@@ -28,10 +28,10 @@ if [ ${#sanitized[@]} -gt 0 ]; then  # like common.sh for `docker run`, with mor
   files+=(-f "$work/sanitized.yaml")
 fi
 compose() { docker-compose -p "topogeo-$$" "${files[@]}" --profile "$profile" "$@"; }
-# The gateway leaves its state in the memory of the host, for its next life.
-forget_gateway() { rm -f /dev/shm/topogeo-robot-odometry*; }
-forget_gateway
-cleanups+=(forget_gateway "compose down -t 5")
+# Services leave their state in the memory of the host, for their next lives.
+forget_states() { rm -f /dev/shm/topogeo-robot-odometry* /dev/shm/topogeo-robot-*.stop; }
+forget_states
+cleanups+=(forget_states "compose down -t 5")
 # shellcheck disable=SC2016  # expanded when it runs
 keepers+=('compose logs --no-color > "$work/compose.log" 2>&1')
 up() { compose up -d "$@" > "$work/up.log" 2>&1 || { tail -n 5 "$work/up.log"; fail "compose up, profile $profile"; }; }
