@@ -175,6 +175,33 @@ TEST_F(NavigatorOfASilentBase, StandsInItsNextLifeUntilTheRelease) {
   release_and_arrive();
 }
 
+// The number of the stop is unknown to the command.
+TEST_F(NavigatorOfASilentBase, IsReleasedByACommand) {
+  ASSERT_NO_FATAL_FAILURE(stop_on_the_way());
+  restart();
+  ASSERT_NO_FATAL_FAILURE(expect_held());
+  Program reset(
+      scratch_, "topogeo",
+      {"base", "reset", "--domain", domain_, "--partition", kPartition, "--wait-seconds", "600"});
+  EXPECT_EQ(wait_for_end(reset), 0) << reset.err();
+  EXPECT_THAT(reset.out(), testing::HasSubstr("no base reports its state"));
+  EXPECT_TRUE(wait_for("the arrival", [&] { return is(msg::kNavigatorArrived); }))
+      << status_->message();
+}
+
+TEST_F(NavigatorOfASilentBase, IsHeldByACommand) {
+  start();
+  send_goal(7, {4.5, 1.0});
+  Program halt(
+      scratch_, "topogeo",
+      {"base", "halt", "--domain", domain_, "--partition", kPartition, "--wait-seconds", "600"});
+  EXPECT_EQ(wait_for_end(halt), 0) << halt.err();
+  EXPECT_THAT(halt.out(), testing::HasSubstr("holds the robot until the reset"));
+  send_goal(8, {1.5, 1.0});
+  ASSERT_TRUE(wait_for("the goal", [&] { return status_->goal_id() == 8; }));
+  ASSERT_NO_FATAL_FAILURE(expect_held());
+}
+
 // A stop while no navigator runs comes only once a page is connected with the next one.
 TEST_F(NavigatorOfASilentBase, WaitsInItsNextLifeForAStopThatItMayHaveMissed) {
   start();

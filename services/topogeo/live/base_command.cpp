@@ -1,4 +1,5 @@
 // topogeo base: operator commands to the base of a robot.
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -6,6 +7,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -14,6 +16,7 @@
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/motion.h"
+#include "topogeo/msg/planning.h"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/service/base_confirmation.hpp"
 #include "topogeo/service/operator_stop.hpp"
@@ -104,6 +107,66 @@ int show(const BaseRequest& request) {
   return service::kOk;
 }
 
+enum class Listener : std::uint8_t { kNone, kBase, kNavigator };
+
+/// Waits for the base. A navigator hears halts and resets for a base that reports nothing, as one
+/// of ROS. `request` gets the newest stop of the base, which a reset releases.
+Listener find_listener(const messaging::Participant& participant,
+                       messaging::Reader<msg::BaseStatus>& bases,
+                       const messaging::Writer<msg::BaseCommand>& writer, BaseRequest& request,
+                       support::Patience& patience) {
+  constexpr double kBase_s = 2.0;  // a base that reports is found in that time
+  messaging::Reader<msg::NavigatorStatus> navigators(participant);
+  std::set<messaging::Handle> base_writers;
+  std::set<messaging::Handle> navigator_writers;
+  std::optional<double> navigator_since_s;
+  const auto connected = [&](const messaging::Handle& program) {
+    return writer.connected_with(program);
+  };
+  while (true) {
+    bases.take([&](const msg::BaseStatus& status, const messaging::SampleInfo& info) {
+      if (!info.valid || status.robot_id() != request.robot_id.c_str()) return;
+      request.command.stop_count(status.stop_count());
+      base_writers.insert(info.writer);
+    });
+    navigators.take([&](const msg::NavigatorStatus& status, const messaging::SampleInfo& info) {
+      if (!info.valid || status.robot_id() != request.robot_id.c_str()) return;
+      navigator_writers.insert(info.writer);
+    });
+    if (std::ranges::any_of(base_writers, connected)) return Listener::kBase;
+    const double now_s = support::monotonic_s();
+    const bool holds_itself =
+        !base_writers.empty() || request.command.kind() == msg::kBaseSetLimits;
+    if (!navigator_since_s && std::ranges::any_of(navigator_writers, connected)) {
+      navigator_since_s = now_s;
+    }
+    if (!holds_itself && navigator_since_s && now_s - *navigator_since_s > kBase_s) {
+      return Listener::kNavigator;
+    }
+    if (patience.is_over(now_s)) return Listener::kNone;
+    static_cast<void>(bases.wait_for_data(milliseconds(20)));
+  }
+}
+
+/// Sends a halt or a reset to the programs that command a base without a state of its own. Which
+/// stop they keep is unknown, so a reset follows a halt that all of them take.
+int send_to_navigator(messaging::Writer<msg::BaseCommand>& writer, BaseRequest& request) {
+  support::Patience patience(request.wait_s, support::monotonic_s());
+  const bool resets = request.command.kind() == msg::kBaseReset;
+  request.command.stop_count(service::OperatorStop::new_number());
+  request.command.kind(msg::kBaseHalt);
+  send_with(writer, request.command, patience);
+  if (resets) {
+    request.command.kind(msg::kBaseReset);
+    request.command.sequence_number(1);
+    send_with(writer, request.command, patience);
+  }
+  std::cout << request.robot_id << ": no base reports its state; the navigator "
+            << (resets ? "holds the robot no longer: it may move\n"
+                       : "holds the robot until the reset\n");
+  return service::kOk;
+}
+
 /// Sends the command and shows the base's state afterwards.
 int send_base_command(BaseRequest request) {
   const messaging::Participant participant =
@@ -111,16 +174,13 @@ int send_base_command(BaseRequest request) {
   messaging::Reader<msg::BaseStatus> reader(participant);
   messaging::Writer<msg::BaseCommand> writer(participant);
   support::Patience connecting(request.wait_s, support::monotonic_s());
-  const auto of_robot = [&](const msg::BaseStatus& status) {
-    if (status.robot_id() != request.robot_id.c_str()) return false;
-    request.command.stop_count(status.stop_count());  // the newest stop that a reset releases
-    return true;
-  };
-  if (!connect_with_program(reader, writer, connecting, of_robot)) {
+  const Listener listener = find_listener(participant, reader, writer, request, connecting);
+  if (listener == Listener::kNone) {
     throw std::runtime_error(nothing_alive(request.view, "base") + connecting.reason());
   }
   messaging::set_header(request.command, request.robot_id, 0, 0);
   messaging::set_client_id(request.command, support::process_name());
+  if (listener == Listener::kNavigator) return send_to_navigator(writer, request);
   if (request.command.kind() == msg::kBaseHalt) {
     request.command.stop_count(service::OperatorStop::new_number());
   }
