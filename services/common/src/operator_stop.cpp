@@ -1,8 +1,10 @@
 #include "topogeo/service/operator_stop.hpp"
 
+#include <algorithm>
 #include <system_error>
 
 #include "topogeo/service/runtime_file.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/support/log.hpp"
 #include "topogeo/support/random.hpp"
 
@@ -15,6 +17,15 @@ bool has_bytes(const std::filesystem::path& path) {
   std::error_code error;
   const std::uintmax_t size_bytes = std::filesystem::file_size(path, error);
   return !error && size_bytes > 0;
+}
+
+/// Time since the last change of the file.
+std::optional<std::chrono::seconds> age_of(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto written = std::filesystem::last_write_time(path, error);
+  if (error) return std::nullopt;
+  const auto age = std::filesystem::file_time_type::clock::now() - written;
+  return std::max(std::chrono::seconds(0), std::chrono::duration_cast<std::chrono::seconds>(age));
 }
 
 }  // namespace
@@ -31,6 +42,7 @@ OperatorStop::OperatorStop(const std::filesystem::path& file)
     : path_(file), file_(file, kOperatorStopFormat) {
   if (const std::optional<Record> record = file_.load()) {
     record_ = *record;
+    if (holds()) age_at_start_ = age_of(file);
     return;
   }
   if (has_bytes(file)) {
@@ -90,6 +102,19 @@ void OperatorStop::store() {
   if (stored_) return;
   spdlog::error("{}: cannot be written; after a restart the robot is stopped until a release",
                 path_.string());
+}
+
+std::string age_in_words(const std::optional<std::chrono::seconds>& age) {
+  constexpr std::chrono::hours kDay{24};
+  if (!age) return {};
+  if (*age < std::chrono::minutes(2)) return fmt::format("{} s ago", age->count());
+  if (*age < std::chrono::hours(2)) {
+    return fmt::format("{} min ago", std::chrono::floor<std::chrono::minutes>(*age).count());
+  }
+  if (*age < 2 * kDay) {
+    return fmt::format("{} h ago", std::chrono::floor<std::chrono::hours>(*age).count());
+  }
+  return fmt::format("{} days ago", *age / kDay);
 }
 
 }  // namespace topogeo::service

@@ -1,8 +1,10 @@
 // An operator's stop of a base that reports nothing: restarts, and orders that arrive late.
 #include "topogeo/service/operator_stop.hpp"
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
@@ -138,6 +140,27 @@ TEST_F(OperatorStopTest, WithoutAFileNothingIsKept) {
   EXPECT_TRUE(stop.holds());
   EXPECT_FALSE(OperatorStop(std::filesystem::path()).holds());
   EXPECT_THROW(OperatorStop("/nowhere/at/all"), std::runtime_error);
+}
+
+TEST_F(OperatorStopTest, HasTheAgeOfAStopOfBeforeTheStart) {
+  EXPECT_FALSE(OperatorStop(path_).age_at_start());
+  OperatorStop(path_).hold(kFirstStop);
+  const auto now = std::filesystem::last_write_time(path_);
+  std::filesystem::last_write_time(path_, now - std::chrono::hours(5));
+  const auto age = OperatorStop(path_).age_at_start();
+  ASSERT_TRUE(age);
+  EXPECT_GE(*age, std::chrono::hours(5));
+  OperatorStop(path_).release();
+  EXPECT_FALSE(OperatorStop(path_).age_at_start());
+}
+
+TEST(AgeOfAStop, IsInWords) {
+  using namespace std::chrono_literals;
+  EXPECT_EQ(age_in_words(std::nullopt), "");
+  EXPECT_EQ(age_in_words(119s), "119 s ago");
+  EXPECT_EQ(age_in_words(125s), "2 min ago");
+  EXPECT_EQ(age_in_words(5h + 59min), "5 h ago");
+  EXPECT_EQ(age_in_words(50h), "2 days ago");
 }
 
 TEST(OperatorStopNumber, IsNeverTheSame) {

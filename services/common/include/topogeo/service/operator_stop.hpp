@@ -9,9 +9,11 @@
 // starts again undoes no release.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "topogeo/messaging/events.hpp"
 #include "topogeo/msg/motion.h"
@@ -43,6 +45,9 @@ class OperatorStop {
   /// Takes the order of another program. Returns whether a stop has begun or ended by it.
   bool take(const msg::BaseCommand& command, const messaging::Handle& writer);
 
+  /// Time since the stop that this start has found in the file was written; empty: it found none,
+  /// or the file system has no time of it.
+  [[nodiscard]] std::optional<std::chrono::seconds> age_at_start() const { return age_at_start_; }
   [[nodiscard]] bool holds() const { return record_.held != 0; }
   /// The stop that holds, else the last one that was released; 0: none.
   [[nodiscard]] std::uint64_t number() const { return holds() ? record_.number : record_.released; }
@@ -60,10 +65,14 @@ class OperatorStop {
 
   std::filesystem::path path_;
   support::RecordFile<Record> file_;
+  std::optional<std::chrono::seconds> age_at_start_;
   Record record_;
   bool stored_ = true;                          // record_ is in the file
   std::uint64_t base_count_ = 0;                // 0: no base has reported any
   std::optional<messaging::Handle> halted_by_;  // the writer of the stop that holds, if another's
 };
+
+/// The age of a stop for people: "12 min ago"; empty without an age.
+std::string age_in_words(const std::optional<std::chrono::seconds>& age);
 
 }  // namespace topogeo::service
