@@ -69,14 +69,19 @@ void VelocityBridge::end_earlier() {
   ros_.complain("velocity of a killed bridge", "the base is stopped");
   zeros_left_ = kEarlierZeros;
   earlier_timer_ = ros_.service().loop().add_timer(kEarlierPeriod, [this] {
-    if (!has_base()) return;
+    const int readers = matched();
+    // The base may be the one that has just come: the others only record, for example.
+    if (readers > readers_) zeros_left_ = kEarlierZeros;
+    readers_ = readers;
+    if (readers == 0) return;
+    zeros_left_ = moving_ ? 0 : zeros_left_ - 1;
     if (!moving_) send(0.0, 0.0);
-    if (moving_ || --zeros_left_ == 0) ros_.service().loop().cancel_timer(earlier_timer_);
+    if (zeros_left_ == 0) ros_.service().loop().cancel_timer(earlier_timer_);
   });
 }
 
-bool VelocityBridge::has_base() const {
-  return (stamped_ && stamped_->matched() > 0) || (twists_ && twists_->matched() > 0);
+int VelocityBridge::matched() const {
+  return (stamped_ ? stamped_->matched() : 0) + (twists_ ? twists_->matched() : 0);
 }
 
 void VelocityBridge::take() {
@@ -118,6 +123,8 @@ void VelocityBridge::on_command(const msg::MotionCommand& command) {
 
 void VelocityBridge::send(double linear_mps, double angular_radps) {
   const ros::Twist twist = to_ros(linear_mps, angular_radps);
+  moving_ = linear_mps != 0.0 || angular_radps != 0.0;
+  if (moving_) remember(true);  // before the base has it
   if (stamped_) {
     ros::TwistStamped message;
     const std::string& robot = ros_.settings().frames.robot;
@@ -127,12 +134,11 @@ void VelocityBridge::send(double linear_mps, double angular_radps) {
   } else if (twists_) {
     ros_.send(*twists_, twist);
   }
-  note_motion(linear_mps != 0.0 || angular_radps != 0.0);
+  if (!moving_ && zeros_left_ == 0) remember(false);
   ros_.service().status().set_counter("velocities", static_cast<double>(++sent_));
 }
 
-void VelocityBridge::note_motion(bool moving) {
-  moving_ = moving;
+void VelocityBridge::remember(bool moving) {
   if (!memory_ || remembered_ == moving) return;
   remembered_ = moving;
   static_cast<void>(memory_->store(std::uint64_t{moving}));

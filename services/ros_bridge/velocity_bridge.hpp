@@ -40,8 +40,10 @@ class VelocityBridge {
   /// Whether a velocity has just been sent; an older one is counted as dropped.
   bool is_of_the_moment(const messaging::SampleInfo& info);
   void send(double linear_mps, double angular_radps);
-  void note_motion(bool moving);
-  [[nodiscard]] bool has_base() const;
+  /// Stores whether the base may have a velocity.
+  void remember(bool moving);
+  /// Number of readers of the velocity, one of which may be the base.
+  [[nodiscard]] int matched() const;
 
   RosSide& ros_;
   std::optional<messaging::Writer<ros::Twist>> twists_;
@@ -52,7 +54,8 @@ class VelocityBridge {
   std::optional<support::RecordFile<std::uint64_t>> memory_;  // 1: the base has a velocity
   bool remembered_ = false;                                   // in memory_
   std::uint64_t earlier_timer_ = 0;
-  int zeros_left_ = 0;
+  int zeros_left_ = 0;  // of end_earlier()
+  int readers_ = 0;     // matched() at the last of them
   bool moving_ = false;
   std::uint64_t sent_ = 0;
   std::uint64_t timer_ = 0;
