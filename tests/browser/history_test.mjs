@@ -169,7 +169,7 @@ test("without a robot nothing says that one was stopped or explores", async () =
   assert.equal(await robot.post("release", {}), 503);
   assert.equal(await robot.post("explore", {}), 409);
   await page.click("#stop");
-  await text("#stop-sent", /No base is connected: nothing stops/);
+  await text("#stop-sent", /No base and no navigator is connected/);
   assert.equal(await page.getByText("is stopped and held").count(), 0);
   assert.equal(await robot.post("release", {}), 202);
 });

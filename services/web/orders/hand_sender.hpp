@@ -78,6 +78,10 @@ class HandSender {
   [[nodiscard]] Release release_stop(OnRelease done = {});
   /// Drops the handler of a release that waits for its outcome.
   void forget_release() { on_release_ = nullptr; }
+  /// Whether a navigator gets the orders to the base, too: it holds a robot whose base does not.
+  [[nodiscard]] bool navigator_hears() const {
+    return navigator_ && orders_.connected_with(*navigator_);
+  }
   /// Whether anybody drives by hand. Thread-safe.
   [[nodiscard]] bool is_held() const { return held_; }
 

@@ -10,9 +10,15 @@
 namespace topogeo::web {
 namespace {
 
-Answer stop_answer(bool heard) {
+Answer stop_answer(bool heard, bool navigator_hears) {
   if (heard) return {202, "{}"};
-  return error_answer(503, "no base is connected: nothing stops");
+  if (navigator_hears) {
+    return {202, text_of(Json{{"message",
+                               "no base confirms the stop; this service and the navigator hold the "
+                               "robot until the release"}})};
+  }
+  return error_answer(503,
+                      "no base and no navigator is connected: only driving by hand is stopped");
 }
 
 Answer stopped_again() {
@@ -110,7 +116,10 @@ void HandThread::work_off_orders() {
 
 void HandThread::carry_out(const Order& order) {
   const Respond& respond = order.respond;
-  if (!order.release) return respond(stop_answer(hand_.stop()));
+  if (!order.release) {
+    const bool heard = hand_.stop();
+    return respond(stop_answer(heard, hand_.navigator_hears()));
+  }
   if (*order.release != stops_) return respond(stopped_again());
   const HandSender::Release sent = hand_.release_stop(
       [respond](UnconfirmedRelease::Outcome outcome) { respond(answer_of(outcome)); });

@@ -7,9 +7,11 @@
 #include <filesystem>
 #include <functional>
 #include <future>
+#include <list>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include <gmock/gmock.h>
 
@@ -217,7 +219,7 @@ TEST(HandThread, AReleaseThatWaitedDoesNotUndoALaterStop) {
   std::promise<unsigned> waited;
   std::promise<unsigned> released;
   const std::uint64_t before = hand.stops();
-  // 503: no base is connected, but the order was carried out.
+  // 503: no base and no navigator is connected, but the order was carried out.
   hand.stop([&](const Answer& answer) { stopped.set_value(answer.status); });
   EXPECT_EQ(stopped.get_future().get(), 503U);
   hand.release_stop(before, [&](const Answer& answer) { waited.set_value(answer.status); });
@@ -228,6 +230,32 @@ TEST(HandThread, AReleaseThatWaitedDoesNotUndoALaterStop) {
   std::promise<unsigned> nothing;
   hand.release_stop(hand.stops(), [&](const Answer& answer) { nothing.set_value(answer.status); });
   EXPECT_EQ(nothing.get_future().get(), 503U) << "there is neither a base nor a stop";
+}
+
+TEST(HandThread, AStopThatOnlyANavigatorHearsIsKept) {
+  std::list<std::promise<Answer>> answers;
+  const std::string partition = messaging::random_partition();
+  service::Service service(page_setup(partition));
+  Board board;
+  EventLog events(board);
+  Tally tally;
+  HandThread hand(service, board, events, tally, {[] {}, [](const char*) {}});
+  const messaging::Participant navigator(messaging::options_in(partition));
+  const messaging::Reader<msg::BaseCommand> orders(navigator);
+  messaging::Writer<msg::NavigatorStatus> statuses(navigator);
+  std::string body;
+  ASSERT_TRUE(test::wait_for(
+      "a stop that the navigator hears",
+      [&] {
+        static_cast<void>(statuses.write(messaging::message<msg::NavigatorStatus>()));
+        std::promise<Answer>& stopped = answers.emplace_back();
+        hand.stop([&stopped](const Answer& answer) { stopped.set_value(answer); });
+        const Answer answer = stopped.get_future().get();
+        body = answer.body;
+        return answer.status == 202U;
+      },
+      [] { std::this_thread::sleep_for(std::chrono::milliseconds(5)); }));
+  EXPECT_THAT(body, testing::HasSubstr("this service and the navigator hold the robot"));
 }
 
 std::int64_t now_ns() {

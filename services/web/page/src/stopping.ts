@@ -8,6 +8,7 @@ import { texts } from "./texts";
 export class Stopping {
   private sent_ms: number | null = null; // null: none pending
   private refused = "";
+  private kept = ""; // how the stop is kept if no base hears it
   private hand_stopped = false;
 
   /** on_change: text() may have changed; on_held: the base has confirmed a stop. */
@@ -29,10 +30,12 @@ export class Stopping {
     if (!this.rights.may_write) return;
     this.sent_ms = performance.now();
     this.refused = "";
+    this.kept = "";
     this.on_change();
     send();
     try {
-      await this.api.post("stop");
+      const answer = await this.api.post<{ message?: string }>("stop");
+      this.kept = answer.message ? sentence(answer.message) : "";
     } catch (error) {
       this.refused = sentence(error instanceof Error ? error.message : String(error));
     }
@@ -49,7 +52,8 @@ export class Stopping {
   text(): string | null {
     if (this.sent_ms === null) return null;
     if (this.is_held()) return texts.stop_moves;
-    return this.refused ? texts.stop_failed(this.refused) : texts.stop_sent;
+    if (this.refused) return texts.stop_failed(this.refused);
+    return this.kept || texts.stop_sent;
   }
 
   private check(): void {
