@@ -14,6 +14,7 @@
 
 namespace topogeo::navigator {
 
+using navigation::HaltReason;
 using navigation::NavigatorState;
 using std::chrono::milliseconds;
 
@@ -354,21 +355,23 @@ void NavigatorService::send_command(const geometry::Velocity& velocity, std::int
 void NavigatorService::publish_status(std::int64_t now_ns) {
   const navigation::NavigatorStatus& status = navigator_.status();
   const std::int64_t steady_ns = steady_now_ns();
-  const bool changed = !published_ || differs(status, *published_);
+  const std::string stop = status.reason == HaltReason::kBaseNotReady ? "" : stop_.reason();
+  const bool changed = !published_ || differs(status, *published_) || stop != shown_stop_;
   if (!changed && steady_ns < status_due_ns_) return;
   status_due_ns_ = steady_ns + kStatusPeriod_ns;
   if (changed) {
-    spdlog::info("{}: {}", navigation::describe(status.state), status.message);
+    std::string text(navigation::describe(status.state));
+    for (const std::string& part : {status.message, stop}) text += part.empty() ? "" : ": " + part;
+    spdlog::info("{}", text);
     if (status.state == NavigatorState::kArrived && goal_) {
       service_.status().add_to_counter("arrivals");
       goal_.reset();
     }
     remember();  // stored before others see the change
-    service_.status().set_state(msg::kServiceRunning,
-                                std::string(navigation::describe(status.state)) +
-                                    (status.message.empty() ? "" : ": " + status.message));
+    service_.status().set_state(msg::kServiceRunning, text);
   }
   published_ = status;
+  shown_stop_ = stop;
   service_.status().set_counter("commands", static_cast<double>(commands_sent_));
   if (statuses_.write(service::to_msg(status, service_.robot_id(), now_ns, statuses_sent_))) {
     ++statuses_sent_;

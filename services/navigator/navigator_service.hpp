@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/motion.h"
@@ -103,6 +104,7 @@ class NavigatorService {
   std::int64_t status_due_ns_ = 0;     // by the steady clock
   std::int64_t blockages_due_ns_ = 0;  // the same
   std::optional<navigation::NavigatorStatus> published_;
+  std::string shown_stop_;  // in the state of the service, where `published_` has none
   std::optional<std::uint64_t> published_blockages_;
 
   service::LiveHybridMap live_map_;

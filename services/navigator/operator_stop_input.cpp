@@ -47,12 +47,9 @@ void OperatorStopInput::check(std::int64_t now_ns) {
   apply();
 }
 
-void OperatorStopInput::apply() {
-  if (stop_.holds()) {
-    navigator_.set_stopped("stopped by an operator until the release");
-  } else {
-    navigator_.set_stopped(wait_.waits() ? "waits for an operator's stop" : "");
-  }
+std::string OperatorStopInput::reason() const {
+  if (stop_.holds()) return "stopped by an operator until the release";
+  return wait_.waits() ? "waits for an operator's stop" : "";
 }
 
 void OperatorStopInput::change() {

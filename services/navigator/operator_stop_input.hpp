@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <string>
 
 #include "topogeo/messaging/events.hpp"
 #include "topogeo/msg/motion.h"
@@ -34,7 +35,9 @@ class OperatorStopInput {
   /// Ends the wait for a stop once it is over at `now_ns` of the steady clock.
   void check(std::int64_t now_ns);
   /// Passes the stop to a navigator that has begun anew.
-  void apply();
+  void apply() { navigator_.set_stopped(reason()); }
+  /// Why the navigator stands; empty: for no stop.
+  [[nodiscard]] std::string reason() const;
 
  private:
   void take(const msg::BaseCommand& command, const messaging::Handle& writer);

@@ -160,6 +160,10 @@ TEST_F(NavigatorOfASilentBase, StandsFromAStopToItsReleaseWhateverGoalIsGiven) {
   EXPECT_THAT(status_->message().to_string(), testing::HasSubstr("stopped by an operator"));
   send_order(msg::kGoalCancel);
   ASSERT_TRUE(wait_for("the end of the goal", [&] { return is(msg::kNavigatorIdle); }));
+  EXPECT_TRUE(wait_for("the stop in the state of the service", [&] {
+    return service_status_->message().to_string() ==
+           "idle: cancelled: stopped by an operator until the release";
+  })) << service_status_->message();
   send_goal(8, kGoal_m);  // as `topogeo goto` does
   ASSERT_TRUE(wait_for("the goal", [&] { return status_->goal_id() == 8; }));
   ASSERT_NO_FATAL_FAILURE(expect_held());
