@@ -1,11 +1,6 @@
 #include "web_service.hpp"
 
-#include <algorithm>
-#include <array>
 #include <chrono>
-#include <deque>
-#include <functional>
-#include <map>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -18,7 +13,7 @@
 
 #include "orders/order_text.hpp"
 #include "orders/route_preview.hpp"
-#include "resources.hpp"
+#include "routes.hpp"
 #include "server/json_values.hpp"
 
 namespace topogeo::web {
@@ -27,18 +22,9 @@ namespace {
 constexpr std::chrono::milliseconds kCountsPeriod{500};
 constexpr std::chrono::milliseconds kLimitsPeriod{200};  // while anybody drives by hand
 constexpr int kProtocolVersion = 1;
-/// POST paths below /api/.
-constexpr std::array<std::string_view, 18> kOffers = {
-    "goal",    "preview",  "pause",   "resume",  "cancel",      "stop",
-    "release", "return",   "pose",    "search",  "mode",        "merge",
-    "explore", "snapshot", "restore", "drawing", "room_shapes", "merge_map"};
 
-/// POST paths after which the robot may drive.
-constexpr std::array<std::string_view, 4> kDrives = {"/api/goal", "/api/explore", "/api/resume",
-                                                     "/api/return"};
-
-Answer accepted() {
-  return {202, "{}"};
+const ServiceRoute* route_of(const Request& request) {
+  return find_route(request.post ? Method::kPost : Method::kGet, request.path);
 }
 
 }  // namespace
@@ -91,26 +77,30 @@ void WebService::post(Work work) {
   });
 }
 
+const Route* WebService::route(Method method, std::string_view path) const {
+  const ServiceRoute* found = find_route(method, path);
+  return found != nullptr ? &found->route : nullptr;
+}
+
 void WebService::handle(const Request& request, Respond respond) {
-  if (request.post || History::has(request.path)) {
-    hand_over(request, std::move(respond));
-  } else if (request.path.starts_with("/tiles/")) {
-    respond(tile_answer(request, map_.shown().get()));
-  } else if (request.path == "/api/at") {
-    respond(point_answer(request, map_.shown().get()));
-  } else if (request.path == "/api/drawing") {
-    respond(drawing_.shown());
-  } else if (request.path == "/api/info") {
-    respond(info(request));
-  } else {
+  const ServiceRoute* found = route_of(request);
+  if (found == nullptr) {
     respond(error_answer(404, "there is no " + request.path));
+  } else if (found->route.handling == Handling::kInLoop) {
+    hand_over(request, std::move(respond));
+  } else {
+    found->handler(*this, request, respond);
   }
 }
 
 Answer WebService::info(const Request& request) const {
   const std::string& other = service_.setup().options.map_robot;
-  Json offers(kOffers);
-  if (drawing_.takes_floors()) offers.push_back("floor");
+  Json offers = Json::array();
+  for (const ServiceRoute& row : service_routes()) {
+    if (row.offer == Offer::kNever) continue;
+    if (row.offer == Offer::kWithSimulator && !drawing_.takes_floors()) continue;
+    offers.push_back(row.route.path.substr(kApi.size()));
+  }
   Answer answer;
   answer.body = text_of(Json{{"protocol", kProtocolVersion},
                              {"robot_id", service_.robot_id()},
@@ -130,12 +120,12 @@ void WebService::hand_over(Request request, Respond respond) {
 
 void WebService::stop(Respond respond) {
   hand_.stop(std::move(respond));
-  hand_over({true, "/api/cancel", {}, "{}", true, stops()}, [](const Answer&) {});
+  hand_over({true, std::string(kCancelPath), {}, "{}", true, stops()}, [](const Answer&) {});
 }
 
 // Queued after the cancel of its stop, so that a released robot has no goal from before.
 void WebService::release_stop(Respond respond) {
-  hand_over({true, "/api/release", {}, "{}", true, stops()}, std::move(respond));
+  hand_over({true, std::string(kReleasePath), {}, "{}", true, stops()}, std::move(respond));
 }
 
 void WebService::drive(std::uint64_t viewer, double linear_mps, double angular_radps) {
@@ -188,71 +178,14 @@ void WebService::work_off_requests() {
 }
 
 void WebService::answer(const Request& request, const Respond& respond) {
-  if (request.post) {
-    obey(request, respond);
-  } else {
-    history_.get(request, respond);
-  }
-}
-
-void WebService::obey(const Request& request, const Respond& respond) {
-  using Order = std::function<void(const std::string&)>;
-  const auto plain = [&](const auto& act) -> Order {
-    return [&respond, act](const std::string& body) {
-      check_plain(body);
-      act();
-      respond(accepted());
-    };
-  };
-  const std::map<std::string_view, Order> orders = {
-      {"/api/goal", [&](const std::string& body) { respond(give_goals(body)); }},
-      {"/api/preview", [&](const std::string& body) { respond(preview(body)); }},
-      {"/api/pause", plain([this] { goals_.pause(); })},
-      {"/api/resume", plain([this] { goals_.resume(); })},
-      {"/api/cancel", plain([this] { cancel(); })},
-      {"/api/explore",
-       [&](const std::string& body) {
-         check_plain(body);
-         respond(exploration_.start());
-       }},
-      {"/api/release", [&](const std::string&) { hand_.release_stop(request.stops, respond); }},
-      {"/api/return",
-       [&](const std::string& body) {
-         check_plain(body);
-         respond(go_back());
-       }},
-      {"/api/pose",
-       [&](const std::string& body) { localizer_.set_pose(parse_pose_order(body), respond); }},
-      {"/api/search",
-       [&](const std::string& body) {
-         check_plain(body);
-         localizer_.search(respond);
-       }},
-      {"/api/mode",
-       [&](const std::string& body) { localizer_.switch_mode(parse_mapping_mode(body), respond); }},
-      {"/api/merge",
-       [&](const std::string& body) { localizer_.answer_merge(parse_merge_order(body), respond); }},
-      {"/api/snapshot", [&](const std::string& body) { history_.take_snapshot(body, respond); }},
-      {"/api/restore", [&](const std::string& body) { history_.restore(body, respond); }},
-      {kMapUploadPath, [&](const std::string& body) { history_.offer_map(body, respond); }},
-      {"/api/merge_map_answer",
-       [&](const std::string& body) { history_.answer_merge(body, respond); }},
-      {"/api/drawing", [&](const std::string& body) { drawing_.replace(body, respond); }},
-      {"/api/floor", [&](const std::string& body) { load_floor(body, respond); }},
-      {"/api/room_shapes", [&](const std::string& body) { respond(room_shapes(body)); }},
-  };
-  const auto order = orders.find(request.path);
-  if (order == orders.end()) {
-    respond(error_answer(404, "there is no " + request.path));
-    return;
-  }
+  const ServiceRoute* found = route_of(request);
   // The cancel of the stop may have overtaken it.
-  if (request.stops != stops() && std::ranges::find(kDrives, request.path) != kDrives.end()) {
+  if (found->after_stop == AfterStop::kRefused && request.stops != stops()) {
     respond(error_answer(409, "the robot was stopped meanwhile"));
     return;
   }
-  tally_.add("orders");
-  order->second(request.body);
+  if (request.post) tally_.add("orders");
+  found->handler(*this, request, respond);
 }
 
 void WebService::cancel() {

@@ -9,7 +9,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "topogeo/service/service.hpp"
@@ -29,6 +31,7 @@
 #include "orders/goal_sender.hpp"
 #include "orders/hand_thread.hpp"
 #include "orders/localizer_requests.hpp"
+#include "routes.hpp"
 #include "server/board.hpp"
 #include "server/page_files.hpp"
 #include "server/request_queue.hpp"
@@ -52,7 +55,11 @@ class WebService : private Backend {
   [[nodiscard]] std::uint32_t port() const { return server_->port(); }
 
  private:
+  /// Its handlers call the private functions and parts.
+  friend std::span<const ServiceRoute> service_routes();
+
   // Called in the server's threads.
+  [[nodiscard]] const Route* route(Method method, std::string_view path) const override;
   void handle(const Request& request, Respond respond) override;
   void stop(Respond respond) override;
   void release_stop(Respond respond) override;
@@ -68,7 +75,6 @@ class WebService : private Backend {
   // Called in the loop.
   void work_off_requests();
   void answer(const Request& request, const Respond& respond);
-  void obey(const Request& request, const Respond& respond);
   [[nodiscard]] Answer give_goals(const std::string& body);
   [[nodiscard]] Answer give(const GoalOrders& orders);
   [[nodiscard]] Answer preview(const std::string& body);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "topogeo/exchange/map_export.hpp"
@@ -17,7 +18,6 @@
 namespace topogeo::web {
 namespace {
 
-constexpr std::string_view kExportPath = "/api/export/";
 /// Name of exported files, without extension.
 constexpr const char* kExportStem = "map";
 
@@ -25,18 +25,6 @@ Answer json_answer(const Json& json) {
   Answer answer;
   answer.body = text_of(json);
   return answer;
-}
-
-Answer formats_answer() {
-  Json formats = Json::array();
-  for (const exchange::ExportFormat& format : exchange::export_formats()) {
-    Json files = Json::array();
-    for (const std::string_view ending : format.endings) {
-      files.push_back(kExportStem + std::string(ending));
-    }
-    formats.push_back({{"format", format.name}, {"files", std::move(files)}});
-  }
-  return json_answer({{"formats", std::move(formats)}});
 }
 
 /// Path of an export: the name without extension if it has several files, otherwise the file.
@@ -87,20 +75,16 @@ Json History::shown(Comparison comparison) {
   return std::move(comparison.json);
 }
 
-bool History::has(std::string_view path) {
-  return path == "/api/local_map" || path == "/api/drive" || path == "/api/snapshots" ||
-         path == "/api/compare" || path == "/api/compare.png" || path == "/api/export" ||
-         path.starts_with(kExportPath);
-}
-
-void History::get(const Request& request, const Respond& respond) {
-  if (request.path == "/api/local_map") return local_map(request.query, respond);
-  if (request.path == "/api/drive") return drive(request.query, respond);
-  if (request.path == "/api/snapshots") return archive_.list(respond);
-  if (request.path == "/api/compare") return compare(request.query, respond);
-  if (request.path == "/api/compare.png") return picture(request.query, respond);
-  if (request.path == "/api/export") return respond(formats_answer());
-  export_file(request.path.substr(kExportPath.size()), respond);
+Answer History::formats() {
+  Json formats = Json::array();
+  for (const exchange::ExportFormat& format : exchange::export_formats()) {
+    Json files = Json::array();
+    for (const std::string_view ending : format.endings) {
+      files.push_back(kExportStem + std::string(ending));
+    }
+    formats.push_back({{"format", format.name}, {"files", std::move(files)}});
+  }
+  return json_answer({{"formats", std::move(formats)}});
 }
 
 void History::answer_later(Make make, const Respond& respond) {

@@ -6,7 +6,6 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <string_view>
 
 #include "topogeo/service/service.hpp"
 
@@ -25,13 +24,21 @@ class History {
   /// `drive` must outlive it.
   History(service::Service& service, DriveView& drive);
 
-  /// Whether get() answers this path. Thread-safe.
-  [[nodiscard]] static bool has(std::string_view path);
-  /// Answers once, at once or after the map store has answered. Throws std::invalid_argument for a
-  /// malformed request.
-  void get(const Request& request, const Respond& respond);
+  /// The formats in which the map can be exported.
+  [[nodiscard]] static Answer formats();
 
-  /// Body: {"name": "monday"}. Both throw std::invalid_argument like get().
+  // All others answer once, at once or after the map store has answered. They throw
+  // std::invalid_argument for a malformed query or body.
+
+  void local_map(const std::string& query, const Respond& respond);
+  void drive(const std::string& query, const Respond& respond);
+  void list(const Respond& respond) { archive_.list(respond); }
+  void compare(const std::string& query, const Respond& respond);
+  /// The picture of the last comparison.
+  void picture(const std::string& query, const Respond& respond) const;
+  /// `path`: "{format}/{file}".
+  void export_file(const std::string& path, const Respond& respond);
+  /// Body: {"name": "monday"}.
   void take_snapshot(const std::string& body, const Respond& respond);
   void restore(const std::string& body, const Respond& respond);
   /// See MapMerge.
@@ -46,11 +53,6 @@ class History {
   /// Makes an answer from maps, in a background thread.
   using Make = std::function<Answer()>;
 
-  void local_map(const std::string& query, const Respond& respond);
-  void drive(const std::string& query, const Respond& respond);
-  void compare(const std::string& query, const Respond& respond);
-  void picture(const std::string& query, const Respond& respond) const;
-  void export_file(const std::string& path, const Respond& respond);
   /// JSON of a comparison for the page; its picture replaces the previous one.
   [[nodiscard]] Json shown(Comparison comparison);
   [[nodiscard]] bool is_of_now(const storage::MapDocument& map) const;

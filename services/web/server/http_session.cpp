@@ -28,18 +28,15 @@ constexpr std::chrono::milliseconds kPause{250};  // after a request that came t
 constexpr std::size_t kDrained_bytes = 65536;     // at a time ...
 constexpr int kMostDrained = 64;                  // ... and at most so often
 constexpr std::uint32_t kMostRequestHeader_bytes = 8192;
-constexpr std::uint64_t kMostBody_bytes = 65536;
-/// A drawing of the largest size, with all digits of each number.
-constexpr std::uint64_t kMostDrawing_bytes = std::uint64_t{8} << 20U;
-constexpr std::chrono::seconds kUpload{120};             // for a body larger than usual
-constexpr const char* kShapesPath = "/api/room_shapes";  // only computes, hence for everybody
+constexpr std::chrono::seconds kUpload{120};  // for a body larger than usual
 
 std::string_view path_of(std::string_view target) {
   return target.substr(0, target.find('?'));
 }
 
-bool stops_or_releases(std::string_view path) {
-  return path == "/api/stop" || path == "/api/release";
+bool stops_or_releases(const Route* route) {
+  return route != nullptr &&
+         (route->handling == Handling::kStop || route->handling == Handling::kRelease);
 }
 
 /// Browser policy for each answer: the page loads nothing from elsewhere, and no site may frame it.
@@ -117,6 +114,9 @@ void HttpSession::on_header(beast::error_code error) {
   }
   state_.tally.add("requests");
   stops_ = state_.backend.stops();
+  const std::string target(parser_->get().target());
+  const bool post = parser_->get().method() == http::verb::post;
+  route_ = state_.backend.route(post ? Method::kPost : Method::kGet, path_of(target));
   note_token(shows_token(header(http::field::authorization),
                          header(http::field::sec_websocket_protocol), state_.config.token));
   if (const auto refused = refusal()) {
@@ -138,12 +138,8 @@ void HttpSession::note_token(bool shown) {
 }
 
 std::uint64_t HttpSession::most_body_bytes() const {
-  const auto target = parser_->get().target();
-  const std::string_view path = path_of({target.data(), target.size()});
-  if (parser_->get().method() != http::verb::post) return 0;
-  if (path == kMapUploadPath) return kMostMapFile_bytes;
-  if (path == "/api/drawing" || path == "/api/floor") return kMostDrawing_bytes;
-  return kMostBody_bytes;
+  if (parser_->get().method() != http::verb::post) return kNoBody_bytes;
+  return route_ != nullptr ? route_->most_body_bytes : kMostBody_bytes;
 }
 
 void HttpSession::read_body(std::uint64_t most) {
@@ -214,7 +210,10 @@ std::optional<Answer> HttpSession::refusal_of_sender() {
     return refuse(405, "method", "expected GET or POST");
   }
   // Check the token first, so that a peer without it learns nothing else.
-  if (!authorized_ && request.target() != kShapesPath) {
+  const bool open = route_ != nullptr && route_->access == Access::kAnybody &&
+                    std::string_view(request.target().data(), request.target().size()) ==
+                        route_->path;  // without a query
+  if (!authorized_ && !open) {
     return refuse(401, "no token", "this needs the operator's token");
   }
   return {};
@@ -226,8 +225,7 @@ std::optional<Answer> HttpSession::refusal_by_rate() {
   const double now_s = state_.config.clock_s();
   const bool post = request.method() == http::verb::post;
   OperatorLimits& own = state_.operator_limits;
-  const std::string target(request.target());
-  if (authorized_ && post && stops_or_releases(path_of(target))) {
+  if (authorized_ && stops_or_releases(route_)) {
     if (!own.stops.take(now_s)) return refuse(429, "too often", "too many orders to stop");
     return {};
   }
@@ -294,9 +292,10 @@ void HttpSession::route() {
 
 void HttpSession::answer(Request request) {
   connection_.expires_never();  // the answer may wait for another service
-  if (request.post && request.path == "/api/stop") {
+  const Handling handling = route_ != nullptr ? route_->handling : Handling::kAtOnce;
+  if (handling == Handling::kStop) {
     state_.backend.stop(responder());
-  } else if (request.post && request.path == "/api/release") {
+  } else if (handling == Handling::kRelease) {
     state_.backend.release_stop(responder());
   } else {
     const auto turn = authorized_ ? AnswerThread::Turn::kFirst : AnswerThread::Turn::kLater;

@@ -70,9 +70,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession>, private Pl
   asio::steady_timer pause_;           // before the next request of a peer that sends too often
   beast::flat_buffer buffer_;
   std::optional<Parser> parser_;
-  bool authorized_ = false;  // for this request
-  bool too_often_ = false;   // for this request
-  std::uint64_t stops_ = 0;  // before this request
+  const Route* route_ = nullptr;  // of this request
+  bool authorized_ = false;       // for this request
+  bool too_often_ = false;        // for this request
+  std::uint64_t stops_ = 0;       // before this request
   int drained_ = 0;
 };
 

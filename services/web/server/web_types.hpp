@@ -8,11 +8,9 @@
 #include <string_view>
 #include <vector>
 
-namespace topogeo::web {
+#include "server/route.hpp"
 
-/// Path for uploading a map file in the format of `map.pb`.
-inline constexpr std::string_view kMapUploadPath = "/api/merge_map";
-inline constexpr std::uint64_t kMostMapFile_bytes = std::uint64_t{64} << 20U;
+namespace topogeo::web {
 
 struct Request {
   bool post = false;        ///< otherwise GET
@@ -44,6 +42,8 @@ class Backend {
   Backend& operator=(const Backend&) = delete;
   virtual ~Backend() = default;
 
+  /// The route of a request; null when there is none.
+  [[nodiscard]] virtual const Route* route(Method method, std::string_view path) const = 0;
   /// Called in the answer thread.
   virtual void handle(const Request& request, Respond respond) = 0;
   /// POST /api/stop and /api/release, with the token. Their answers wait for no other request.

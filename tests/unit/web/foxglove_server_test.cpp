@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <gmock/gmock.h>
@@ -29,6 +30,7 @@ const milliseconds kFoxglovePatience = test::hang_limit();
 
 class NoBackend : public Backend {
  public:
+  [[nodiscard]] const Route* route(Method, std::string_view) const override { return nullptr; }
   void handle(const Request&, Respond respond) override { respond(error_answer(404, "none")); }
   void stop(Respond respond) override { respond(error_answer(404, "none")); }
   void release_stop(Respond respond) override { respond(error_answer(404, "none")); }

@@ -10,11 +10,13 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
 #include <gmock/gmock.h>
 
+#include "routes.hpp"
 #include "waiting.hpp"
 #include "web_client.hpp"
 
@@ -35,10 +37,14 @@ using testing::Not;
 const milliseconds kPatience = test::hang_limit();
 const std::string kToken = "0123456789abcdef";
 
-/// Echoes its requests, and counts driving commands.
+/// Has the routes of the service. Echoes its requests, and counts driving commands.
 class EchoBackend : public Backend {
  public:
   ~EchoBackend() override { free(); }
+  [[nodiscard]] const Route* route(Method method, std::string_view path) const override {
+    const ServiceRoute* found = find_route(method, path);
+    return found != nullptr ? &found->route : nullptr;
+  }
   void handle(const Request& request, Respond respond) override {
     const std::scoped_lock lock(busy_);
     Answer answer;
