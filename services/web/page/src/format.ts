@@ -1,4 +1,4 @@
-// Formats numbers with their units, for people.
+// Formats numbers with their units, and messages of services, for people.
 
 const kDash = "–";
 
@@ -81,4 +81,11 @@ export function point(x_m: number, y_m: number): string {
 // Like toFixed, but without a minus before a zero.
 function fixed(value: number, digits: number): string {
   return value.toFixed(digits).replace(/^-(?=[0.]+$)/, "");
+}
+
+/** A message of a service, with a capital letter and a full stop. */
+export function sentence(text: string): string {
+  if (text === "") return "";
+  const capital = text[0].toUpperCase() + text.slice(1);
+  return /[.!?…]$/.test(capital) ? capital : `${capital}.`;
 }

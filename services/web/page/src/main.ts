@@ -1,10 +1,11 @@
 // The operator's page: the map with the views beside it.
 import { Api, take_token } from "./api";
-import { App, Rights, ViewPart } from "./app";
+import { App, ViewPart } from "./app";
 import { Channels } from "./channels";
 import { Connection } from "./connection";
 import { MapView } from "./map/map_view";
 import { Info } from "./protocol";
+import { Rights } from "./rights";
 import { texts } from "./texts";
 import { fill, h, icon, set_text, show } from "./ui/dom";
 import { Header } from "./ui/header";

@@ -1,9 +1,9 @@
 // /panel: a keypad and a display for the robot's own small screen.
 import { Api, take_token } from "./api";
-import { Rights } from "./app";
 import { Channels } from "./channels";
 import { Connection } from "./connection";
 import { Destination, destinations, numbered } from "./destinations";
+import { Rights } from "./rights";
 import { is_paused, navigator_text } from "./robot_state";
 import { texts } from "./texts";
 import { button, h, set_attribute, set_text, show } from "./ui/dom";

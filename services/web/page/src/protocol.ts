@@ -1,5 +1,4 @@
 // Messages to and from the service, described in docs/web.md. Metres, radians, seconds, map frame.
-import { NodeKind } from "./map/graph_layer";
 
 export interface Pose {
   stamp_s: number;
@@ -100,6 +99,8 @@ export interface Pose2 {
   y_m: number;
   theta_rad: number;
 }
+
+export type NodeKind = "real" | "fictitious" | "virtual" | "door" | "narrowing" | "hall_corridor";
 
 export interface LocalMap {
   session: string;

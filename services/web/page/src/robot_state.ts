@@ -1,7 +1,8 @@
 // The robot's state as a word and a sentence.
 import { Channels } from "./channels";
-import { Rights } from "./app";
+import { sentence } from "./format";
 import { Pose, ValueName } from "./protocol";
+import { Rights } from "./rights";
 import { texts } from "./texts";
 
 export type StateName = keyof typeof texts.states;
@@ -115,11 +116,4 @@ export function navigator_text(channels: Channels, rights: Rights): string {
   const parts = [halt && !repeated ? `${state}. ${halt}` : `${state}.`];
   if (navigator.message) parts.push(sentence(navigator.message));
   return parts.join(" ");
-}
-
-/** A message of a service, with a capital letter and a full stop. */
-export function sentence(text: string): string {
-  if (text === "") return "";
-  const capital = text[0].toUpperCase() + text.slice(1);
-  return /[.!?…]$/.test(capital) ? capital : `${capital}.`;
 }

@@ -1,8 +1,9 @@
 // A stop order counts as pending until the base itself confirms it: it is held, and it stands.
 import { Api } from "./api";
-import { Rights } from "./app";
 import { Channels } from "./channels";
-import { hand_is_stopped, held_text, sentence } from "./robot_state";
+import { sentence } from "./format";
+import { Rights } from "./rights";
+import { hand_is_stopped, held_text } from "./robot_state";
 import { texts } from "./texts";
 
 export class Stopping {

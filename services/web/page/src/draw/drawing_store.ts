@@ -1,8 +1,8 @@
 // The service's drawing, read again whenever anybody has saved.
 import { Api } from "../api";
-import { Rights } from "../app";
 import { Channels } from "../channels";
 import { Drawing, empty_drawing, parse_drawing } from "./drawing";
+import { Rights } from "../rights";
 
 export interface Saved {
   version: string;

@@ -1,9 +1,8 @@
 // Nodes and branches of the topo-geometric map. 100,000 branch points are drawn in one pass over
 // typed arrays, skipping branches out of view and points closer than a pixel to the last one drawn.
+import { NodeKind } from "../protocol";
 import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";
-
-export type NodeKind = "real" | "fictitious" | "virtual" | "door" | "narrowing" | "hall_corridor";
 
 export interface GraphNode {
   id: number;

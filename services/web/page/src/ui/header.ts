@@ -1,7 +1,7 @@
 // Always visible: the state in large letters with its reason, and Stop.
 import { Api } from "../api";
-import { Rights } from "../app";
 import { Channels } from "../channels";
+import { Rights } from "../rights";
 import { kSilenceTick_ms, robot_state } from "../robot_state";
 import { Stopping } from "../stopping";
 import { texts } from "../texts";

@@ -1,7 +1,7 @@
 // Shows that the robot is held and the effect of its release, and releases it.
 import { Api } from "../api";
-import { Rights } from "../app";
 import { Channels } from "../channels";
+import { Rights } from "../rights";
 import { hand_is_stopped, held_text, pending_goal } from "../robot_state";
 import { texts } from "../texts";
 import { button, h, set_text, show } from "./dom";

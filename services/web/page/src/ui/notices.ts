@@ -1,6 +1,6 @@
 // Short messages that disappear by themselves; errors stay longer.
 import { button, h } from "./dom";
-import { sentence } from "../robot_state";
+import { sentence } from "../format";
 import { texts } from "../texts";
 
 const kShownMs = { info: 4000, error: 10000 };

@@ -1,6 +1,6 @@
 // Dark and light: follows the system until the operator chooses. Colours are defined in style.css,
+import { NodeKind } from "../protocol";
 // where canvases read them.
-import { NodeKind } from "../map/graph_layer";
 
 export interface Palette {
   free: string;

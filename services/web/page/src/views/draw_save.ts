@@ -3,7 +3,7 @@ import { ApiError } from "../api";
 import { App } from "../app";
 import { DrawingStore } from "../draw/drawing_store";
 import { Editor } from "../draw/editor";
-import { sentence } from "../robot_state";
+import { sentence } from "../format";
 import { texts } from "../texts";
 import { button, h, icon, IconName, set_text, show } from "../ui/dom";
 

@@ -1,9 +1,9 @@
 // Replays the drive behind the map: a slider, speeds, pause.
 import { App } from "../app";
 import * as format from "../format";
+import { sentence } from "../format";
 import { Film } from "../map/film";
 import { DrivePart, DriveStop } from "../protocol";
-import { sentence } from "../robot_state";
 import { texts } from "../texts";
 import { button, h, set_attribute, set_text, show } from "../ui/dom";
 import { section } from "../ui/section";

@@ -1,5 +1,6 @@
 // Explains the signs on the map and the keys.
-import { draw_node, NodeKind } from "../map/graph_layer";
+import { draw_node } from "../map/graph_layer";
+import { NodeKind } from "../protocol";
 import { texts } from "../texts";
 import { Facts } from "../ui/bar";
 import { h } from "../ui/dom";

@@ -1,8 +1,8 @@
 // The chosen loop: both local maps overlaid on the map, and the evidence as text.
 import { App } from "../app";
+import { sentence } from "../format";
 import { agreement, apart, compose, draw_laid_maps, LaidMaps } from "../map/match_layer";
 import { LocalMap, Loop } from "../protocol";
-import { sentence } from "../robot_state";
 import { texts } from "../texts";
 import { Facts } from "../ui/bar";
 import { h, set_text, show } from "../ui/dom";

@@ -1,7 +1,7 @@
 // Accepted and rejected loops with their reasons; the chosen one is shown on the map.
 import { App } from "../app";
+import { sentence } from "../format";
 import { Loop } from "../protocol";
-import { sentence } from "../robot_state";
 import { texts } from "../texts";
 import { button, h, set_attribute, set_text, show } from "../ui/dom";
 import { KeyedList } from "../ui/list";

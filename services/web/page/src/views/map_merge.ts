@@ -1,7 +1,7 @@
 // Merges another map file with the current map: upload, review, accept or refuse.
 import { App } from "../app";
+import { sentence } from "../format";
 import { MergedMap, Snapshots } from "../protocol";
-import { sentence } from "../robot_state";
 import { texts } from "../texts";
 import { button, fill, h, show } from "../ui/dom";
 import { section } from "../ui/section";

@@ -2,9 +2,10 @@
 import { App, ViewPart } from "../app";
 import { Channels } from "../channels";
 import * as format from "../format";
+import { sentence } from "../format";
 import { ellipse_of } from "../map/robot_layer";
 import { Pose, ValueName } from "../protocol";
-import { is_silent, kSilenceTick_ms, pose_of_now, sentence, with_age } from "../robot_state";
+import { is_silent, kSilenceTick_ms, pose_of_now, with_age } from "../robot_state";
 import { texts } from "../texts";
 import { Bar, Facts, Level } from "../ui/bar";
 import { h, set_text, show } from "../ui/dom";

@@ -1,8 +1,8 @@
 // Services with their health.
 import { App } from "../app";
 import * as format from "../format";
+import { sentence } from "../format";
 import { Service } from "../protocol";
-import { sentence } from "../robot_state";
 import { texts } from "../texts";
 import { h, set_attribute, set_text, show } from "../ui/dom";
 import { KeyedList } from "../ui/list";

@@ -1,8 +1,8 @@
 // Snapshots of the map: make, restore, and compare them with each other and the current map.
 import { App } from "../app";
 import * as format from "../format";
+import { sentence } from "../format";
 import { Comparison, Snapshot, Snapshots } from "../protocol";
-import { sentence } from "../robot_state";
 import { texts } from "../texts";
 import { button, fill, h, set_text, show } from "../ui/dom";
 import { KeyedList } from "../ui/list";
