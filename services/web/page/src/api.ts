@@ -1,8 +1,8 @@
 // Orders to the service, with the operator's token.
 import { texts } from "./texts";
 
-const kTokenKey = "topogeo-token";
-const kTimeoutMs = 10000;
+const tokenKey = "topogeo-token";
+const timeoutMs = 10000;
 
 /**
  * The token of the operator's link. It is removed from the address, so that nobody copies it by
@@ -11,10 +11,10 @@ const kTimeoutMs = 10000;
 export function take_token(): string {
   const match = /[#&]token=([^&]+)/.exec(location.hash);
   if (match) {
-    sessionStorage.setItem(kTokenKey, decodeURIComponent(match[1]));
+    sessionStorage.setItem(tokenKey, decodeURIComponent(match[1]));
     history.replaceState(null, "", location.pathname + location.search);
   }
-  return sessionStorage.getItem(kTokenKey) ?? "";
+  return sessionStorage.getItem(tokenKey) ?? "";
 }
 
 /** Why an order was refused, as a sentence for people; status: of HTTP, 0 without an answer. */
@@ -32,7 +32,7 @@ export class Api {
   constructor(private readonly token: string) {}
 
   /** GET of a resource as JSON. Throws an ApiError. */
-  async get<Answer>(path: string, timeout_ms = kTimeoutMs): Promise<Answer> {
+  async get<Answer>(path: string, timeout_ms = timeoutMs): Promise<Answer> {
     return read_json<Answer>(await this.request("GET", path, undefined, timeout_ms));
   }
 
@@ -45,7 +45,7 @@ export class Api {
   async post<Answer = unknown>(
     what: string,
     body: unknown = {},
-    timeout_ms = kTimeoutMs,
+    timeout_ms = timeoutMs,
   ): Promise<Answer> {
     const text = JSON.stringify(body);
     return read_json<Answer>(await this.request("POST", `/api/${what}`, text, timeout_ms));

@@ -1,6 +1,6 @@
 // The page's copy of the service's state: values, and tables kept current by deltas.
 import {
-  kTables,
+  tableNames,
   TableMessage,
   TableName,
   Tables,
@@ -31,7 +31,7 @@ export class Channels {
   private readonly table_listeners = new Map<TableName, TableListener[]>();
 
   constructor() {
-    for (const name of kTables) this.tables.set(name, new Map());
+    for (const name of tableNames) this.tables.set(name, new Map());
   }
 
   /** The newest value; null if there is none. */
@@ -102,7 +102,7 @@ export class Channels {
   /** A new service answers from now on, with version numbers of its own. */
   begin_anew(): void {
     this.versions.clear();
-    for (const name of [...kTables, "map"]) this.unconfirmed.add(name);
+    for (const name of [...tableNames, "map"]) this.unconfirmed.add(name);
   }
 
   /** Forgets everything not sent since begin_anew(): the service does not have it. */

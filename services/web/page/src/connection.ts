@@ -3,12 +3,12 @@
 import { Channels } from "./channels";
 import { TableMessage, ValueMessage } from "./protocol";
 
-const kSilenceMs = 5000; // the service sends something every two seconds
-const kPongMs = 1000;
-const kSnapshotsMs = 5000; // until a new service has sent its whole state
-const kFirstDelayMs = 500;
-const kLongestDelayMs = 4000;
-const kMostLate = 20; // clocks that stood still disagree; a new connection corrects that
+const silenceMs = 5000; // the service sends something every two seconds
+const pongMs = 1000;
+const snapshotsMs = 5000; // until a new service has sent its whole state
+const firstDelayMs = 500;
+const longestDelayMs = 4000;
+const mostLate = 20; // clocks that stood still disagree; a new connection corrects that
 
 export interface Listener {
   connected(may_write: boolean, error: string): void;
@@ -37,7 +37,7 @@ export class Connection {
   private socket: WebSocket | null = null;
   private life = "";
   private open = false;
-  private delay_ms = kFirstDelayMs;
+  private delay_ms = firstDelayMs;
   private last_message_ms = 0;
   private pong_timer = 0;
   private retry_timer = 0;
@@ -97,12 +97,12 @@ export class Connection {
     } else if (message.op === "welcome") {
       this.follow_life(message.life ?? "");
       this.open = true;
-      this.delay_ms = kFirstDelayMs;
+      this.delay_ms = firstDelayMs;
       this.listener.connected(message.may_write === true, message.error ?? "");
     } else if (message.op === "pong") {
       window.clearTimeout(this.pong_timer);
     } else if (message.op === "refused") {
-      if (message.late_s !== undefined && ++this.late > kMostLate) return this.lose();
+      if (message.late_s !== undefined && ++this.late > mostLate) return this.lose();
       this.listener.refused(message.what ?? "", message.error ?? "");
     }
   }
@@ -111,7 +111,7 @@ export class Connection {
   private follow_life(life: string): void {
     if (this.life !== "" && this.life !== life) {
       this.channels.begin_anew();
-      window.setTimeout(() => this.channels.drop_unconfirmed(), kSnapshotsMs);
+      window.setTimeout(() => this.channels.drop_unconfirmed(), snapshotsMs);
     }
     this.life = life;
   }
@@ -125,18 +125,18 @@ export class Connection {
     this.listener.disconnected();
     window.clearTimeout(this.retry_timer);
     this.retry_timer = window.setTimeout(() => this.connect(), this.delay_ms);
-    this.delay_ms = Math.min(2 * this.delay_ms, kLongestDelayMs);
+    this.delay_ms = Math.min(2 * this.delay_ms, longestDelayMs);
   }
 
   private reconnect_now(): void {
     if (this.socket) return;
     window.clearTimeout(this.retry_timer);
-    this.delay_ms = kFirstDelayMs;
+    this.delay_ms = firstDelayMs;
     this.connect();
   }
 
   private check_silence(): void {
-    if (this.socket && Date.now() - this.last_message_ms > kSilenceMs) this.lose();
+    if (this.socket && Date.now() - this.last_message_ms > silenceMs) this.lose();
   }
 
   private on_visibility(): void {
@@ -145,7 +145,7 @@ export class Connection {
       this.reconnect_now();
     } else if (this.send({ op: "ping", page_ms: performance.now() })) {
       window.clearTimeout(this.pong_timer);
-      this.pong_timer = window.setTimeout(() => this.lose(), kPongMs);
+      this.pong_timer = window.setTimeout(() => this.lose(), pongMs);
     }
   }
 }

@@ -28,7 +28,7 @@ export function destinations(channels: Channels): Destination[] {
   return [...places.sort(by_name), ...rooms.sort(by_name)];
 }
 
-const kFirstPlaceNumber = 101;
+const firstPlaceNumber = 101;
 
 /**
  * Numbers for a keypad, in the order of the list: "room 7" keeps its own, all others count from
@@ -36,7 +36,7 @@ const kFirstPlaceNumber = 101;
  */
 export function numbered(list: Destination[]): Map<number, Destination> {
   const numbers = new Map<number, Destination>();
-  let next = kFirstPlaceNumber;
+  let next = firstPlaceNumber;
   for (const destination of list) {
     const own = /^room (\d{1,2})$/.exec(destination.name);
     if (own) numbers.set(Number(own[1]), destination);

@@ -1,6 +1,6 @@
 // Formats numbers with their units, and messages of services, for people.
 
-const kDash = "–";
+const noValue = "–";
 
 export type Maybe = number | null | undefined;
 
@@ -10,7 +10,7 @@ function known(value: Maybe): value is number {
 
 /** "3.4 m", "120 m", "1.25 km"; a dash for an unknown value. */
 export function length(meters: Maybe): string {
-  if (!known(meters)) return kDash;
+  if (!known(meters)) return noValue;
   if (meters >= 1000) return `${(meters / 1000).toFixed(2)} km`;
   if (meters >= 100) return `${meters.toFixed(0)} m`;
   return meters >= 10 ? `${meters.toFixed(1)} m` : `${meters.toFixed(2)} m`;
@@ -18,7 +18,7 @@ export function length(meters: Maybe): string {
 
 /** "12 s", "3 min 5 s", "2 h 10 min". */
 export function duration(seconds: Maybe): string {
-  if (!known(seconds)) return kDash;
+  if (!known(seconds)) return noValue;
   const whole = Math.round(seconds);
   if (whole < 60) return `${whole} s`;
   if (whole < 3600) return `${Math.floor(whole / 60)} min ${whole % 60} s`;
@@ -26,25 +26,25 @@ export function duration(seconds: Maybe): string {
 }
 
 export function speed(meters_per_second: Maybe): string {
-  return known(meters_per_second) ? `${meters_per_second.toFixed(2)} m/s` : kDash;
+  return known(meters_per_second) ? `${meters_per_second.toFixed(2)} m/s` : noValue;
 }
 
 export function degrees(radians: Maybe): string {
-  return known(radians) ? `${fixed((radians * 180) / Math.PI, 1)}°` : kDash;
+  return known(radians) ? `${fixed((radians * 180) / Math.PI, 1)}°` : noValue;
 }
 
 export function area(square_meters: Maybe): string {
-  if (!known(square_meters)) return kDash;
+  if (!known(square_meters)) return noValue;
   return `${square_meters >= 100 ? count(square_meters) : square_meters.toFixed(1)} m²`;
 }
 
 export function percent(share: Maybe): string {
-  return known(share) ? `${Math.round(100 * share)} %` : kDash;
+  return known(share) ? `${Math.round(100 * share)} %` : noValue;
 }
 
 /** 12345 as "12,345". */
 export function count(number: Maybe): string {
-  return known(number) ? Math.round(number).toLocaleString("en") : kDash;
+  return known(number) ? Math.round(number).toLocaleString("en") : noValue;
 }
 
 /** "1 node", "2 nodes". */
@@ -53,12 +53,12 @@ export function counted(number: Maybe, one: string, several: string): string {
 }
 
 export function rate(per_second: Maybe): string {
-  if (!known(per_second)) return kDash;
+  if (!known(per_second)) return noValue;
   return `${per_second >= 100 ? per_second.toFixed(0) : per_second.toFixed(1)} /s`;
 }
 
 export function memory(bytes: Maybe): string {
-  return known(bytes) ? `${(bytes / 1e6).toFixed(0)} MB` : kDash;
+  return known(bytes) ? `${(bytes / 1e6).toFixed(0)} MB` : noValue;
 }
 
 /** Time of day of seconds since 1970. */

@@ -14,7 +14,7 @@ import { once_a_frame } from "./ui/schedule";
 import { Theme } from "./ui/theme";
 
 const words = texts.panel;
-const kDigits = 3;
+const digits = 3;
 
 class Panel {
   readonly element: HTMLElement;
@@ -95,7 +95,7 @@ class Panel {
 
   private type(digit: string): void {
     this.entered =
-      digit === "" ? this.entered.slice(0, -1) : (this.entered + digit).slice(-kDigits);
+      digit === "" ? this.entered.slice(0, -1) : (this.entered + digit).slice(-digits);
     this.update();
   }
 

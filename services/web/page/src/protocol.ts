@@ -321,7 +321,7 @@ export interface Tables {
 export type ValueName = keyof Values;
 export type TableName = keyof Tables;
 
-export const kTables: readonly TableName[] = [
+export const tableNames: readonly TableName[] = [
   "tiles",
   "rooms",
   "places",

@@ -8,16 +8,16 @@ import { texts } from "./texts";
 export type StateName = keyof typeof texts.states;
 
 /** Poses arrive with each scan; without one for this long the robot's place is unknown. */
-const kSilence_ms = 10_000;
+const silenceMs = 10_000;
 
 /** Each of these values arrives at least twice a second. */
-const kFresh_ms = 2500;
+const freshMs = 2500;
 
 /** Interval for checking whether poses still arrive, because no message reports that. */
-export const kSilenceTick_ms = 1000;
+export const silenceTickMs = 1000;
 
 /** Services that also run without a robot: for a stored map, or on the operator's machine. */
-const kWithoutRobot = new Set(["web", "map_store", "planner", "ga_worker"]);
+const withoutRobot = new Set(["web", "map_store", "planner", "ga_worker"]);
 
 export interface RobotState {
   name: StateName;
@@ -40,12 +40,12 @@ export function robot_state(channels: Channels, rights: Rights): RobotState {
 /** A text about a value, with the value's age if it is old. */
 export function with_age(channels: Channels, name: ValueName, text: string): string {
   const age_ms = channels.age_ms(name) ?? 0;
-  return age_ms < kFresh_ms ? text : texts.aged(text, age_ms / 1000);
+  return age_ms < freshMs ? text : texts.aged(text, age_ms / 1000);
 }
 
 /** Whether a value is too old to describe the present. */
 export function is_silent(channels: Channels, name: ValueName): boolean {
-  return (channels.age_ms(name) ?? 0) > kSilence_ms;
+  return (channels.age_ms(name) ?? 0) > silenceMs;
 }
 
 /** The current pose of the robot; null if unknown. */
@@ -56,7 +56,7 @@ export function pose_of_now(channels: Channels, rights: Rights): Pose | null {
 
 function robot_is_absent(channels: Channels): boolean {
   const live = [...channels.table("services").values()].filter(({ state }) => state !== "lost");
-  return live.length > 0 && live.every(({ service }) => kWithoutRobot.has(service));
+  return live.length > 0 && live.every(({ service }) => withoutRobot.has(service));
 }
 
 /** Why the base does not move until it is released; null if it may move. */

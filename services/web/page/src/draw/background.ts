@@ -11,12 +11,12 @@ export interface Placement {
   angle_rad: number; // of its rows, counter-clockwise
 }
 
-const kFirstWidth_m = 20;
-const kStraight_rad = 0.15; // plans are scanned slightly askew
+const firstWidthM = 20;
+const straightRad = 0.15; // plans are scanned slightly askew
 
 /** A picture of this many pixels around a point, before it is measured. */
 export function first_placement(width: number, height: number, centre: Point): Placement {
-  const metres_per_pixel = kFirstWidth_m / width;
+  const metres_per_pixel = firstWidthM / width;
   return {
     x_m: centre.x - (width * metres_per_pixel) / 2,
     y_m: centre.y + (height * metres_per_pixel) / 2,
@@ -33,7 +33,7 @@ export function measured(at: Placement, a: Point, b: Point, distance_m: number):
   const factor = distance_m / distance(a, b);
   const angle = heading(a, b);
   const axis = (Math.PI / 2) * Math.round(angle / (Math.PI / 2));
-  const turn = Math.abs(axis - angle) <= kStraight_rad ? axis - angle : 0;
+  const turn = Math.abs(axis - angle) <= straightRad ? axis - angle : 0;
   const [cos, sin] = [factor * Math.cos(turn), factor * Math.sin(turn)];
   const [dx, dy] = [at.x_m - a.x, at.y_m - a.y];
   return {

@@ -1,7 +1,7 @@
 // An edited drawing: undo history, last saved state, selection.
 import { Drawing, empty_drawing, Item, item_of, ItemRef } from "./drawing";
 
-const kMostSteps = 200;
+const mostSteps = 200;
 
 export class DrawingDocument {
   private current: Drawing = empty_drawing();
@@ -116,7 +116,7 @@ export class DrawingDocument {
 
   private push(drawing: Drawing): void {
     this.done.push(drawing);
-    if (this.done.length > kMostSteps) this.done.shift();
+    if (this.done.length > mostSteps) this.done.shift();
     this.undone = [];
   }
 

@@ -48,12 +48,12 @@ export interface ItemRef {
 }
 
 // Upper layers first.
-export const kLists: readonly ListName[] = ["places", "doors", "openings", "walls", "zones"];
-const kZoneKinds: readonly ZoneKind[] = ["room", "no_go", "slow", "one_way"];
+export const listNames: readonly ListName[] = ["places", "doors", "openings", "walls", "zones"];
+const zoneKinds: readonly ZoneKind[] = ["room", "no_go", "slow", "one_way"];
 
 /** Limits of the service, per list and for the corners of an item. */
-export const kMostItems = 4096;
-export const kMostCorners = 256;
+export const mostItems = 4096;
+export const mostCorners = 256;
 
 export function empty_drawing(): Drawing {
   return { places: [], zones: [], walls: [], openings: [], doors: [] };
@@ -65,7 +65,7 @@ export function item_of(drawing: Drawing, ref: ItemRef): Item | undefined {
 
 /** All items, upper layers first. */
 export function all_items(drawing: Drawing): { ref: ItemRef; item: Item }[] {
-  return kLists.flatMap((list) =>
+  return listNames.flatMap((list) =>
     (drawing[list] as Item[]).map((item, index) => ({ ref: { list, index }, item })),
   );
 }
@@ -156,10 +156,10 @@ export function parse_drawing(json: unknown): Drawing {
   const words = texts.draw.parse;
   if (!is_object(json)) throw new Error(words.no_drawing);
   const drawing = empty_drawing();
-  for (const list of kLists) {
+  for (const list of listNames) {
     const items = json[list] ?? [];
     if (!Array.isArray(items)) throw new Error(words.no_list(list));
-    if (items.length > kMostItems) throw new Error(words.too_many(list, kMostItems));
+    if (items.length > mostItems) throw new Error(words.too_many(list, mostItems));
     items.forEach((item, index) => {
       const parsed = is_object(item) ? parse_item(list, item) : null;
       if (!parsed) throw new Error(words.wrong_item(list, index));
@@ -182,7 +182,7 @@ function is_number(value: unknown): value is number {
 function numbers(value: unknown, fewest: number): number[] | null {
   if (!Array.isArray(value) || !value.every(is_number)) return null;
   const good = value.length % 2 === 0 && value.length >= 2 * fewest;
-  return good && value.length <= 2 * kMostCorners ? value : null;
+  return good && value.length <= 2 * mostCorners ? value : null;
 }
 
 // Null if a field is missing or out of range.
@@ -195,7 +195,7 @@ function parse_item(list: ListName, fields: Fields): Item | null {
   }
   if (list === "zones") {
     const corners_m = numbers(fields.corners_m, 3);
-    const kind = kZoneKinds.find((known) => known === fields.kind);
+    const kind = zoneKinds.find((known) => known === fields.kind);
     if (name === "" || !corners_m || !kind) return null;
     return { name, kind, value: is_number(fields.value) ? fields.value : 0, corners_m };
   }

@@ -9,7 +9,7 @@ export interface Saved {
   message?: string;
 }
 
-const kMostReads = 3; // in a row
+const mostReads = 3; // in a row
 
 export class DrawingStore {
   drawing: Drawing = empty_drawing();
@@ -57,7 +57,7 @@ export class DrawingStore {
   // Read once more if somebody saves during the read.
   private async fetch(): Promise<void> {
     try {
-      for (let i = 0; i < kMostReads && (i === 0 || this.is_old()); ++i) {
+      for (let i = 0; i < mostReads && (i === 0 || this.is_old()); ++i) {
         const answer = await this.api.get<{ version: string }>("/api/drawing");
         this.take(parse_drawing(answer), String(answer.version));
       }

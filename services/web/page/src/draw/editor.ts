@@ -1,5 +1,5 @@
 // The edit mode on the map: passes presses and keys to the chosen tool, and draws the edited items.
-import { draw_drawing, kArrowPx, zone_color } from "../map/drawing_layer";
+import { draw_drawing, arrowPx, zone_color } from "../map/drawing_layer";
 import {
   draw_cursor,
   draw_grid,
@@ -29,9 +29,9 @@ import { Sketch, Finished } from "./sketch";
 import { snap, Snapped, SnapSettings } from "./snapping";
 import { is_item_tool, make_item, OtherTool, shape_of, snaps, ToolName } from "./tools";
 
-const kReachPx = 11; // reach of a press, and of the pull of corners
-const kNamePx = 12; // distance of names above lines and places
-const kKeyStep_m = 0.1; // step of the cursor without a grid
+const reachPx = 11; // reach of a press, and of the pull of corners
+const namePx = 12; // distance of names above lines and places
+const keyStepM = 0.1; // step of the cursor without a grid
 
 export interface EditorHooks {
   /** Redraws the map. */
@@ -130,13 +130,13 @@ export class Editor implements MapTool, Overlay {
   // ---- pointer
 
   press(at: MapPointer): boolean {
-    const reach_m = kReachPx / at.pixels_per_m;
+    const reach_m = reachPx / at.pixels_per_m;
     if (this.sketch) {
       this.sketch.press(this.snapped(at));
       this.refresh();
       return true;
     }
-    const arrow_m = kArrowPx / at.pixels_per_m;
+    const arrow_m = arrowPx / at.pixels_per_m;
     const { drawing, selected } = this.edited;
     const grip = grip_at(drawing, selected, at, reach_m, arrow_m);
     const item = grip && item_of(drawing, grip.ref);
@@ -160,7 +160,7 @@ export class Editor implements MapTool, Overlay {
 
   lift(at: MapPointer): void {
     if (this.sketch) {
-      const drawn = this.sketch.lift(this.snapped(at), at.tapped, kReachPx / at.pixels_per_m);
+      const drawn = this.sketch.lift(this.snapped(at), at.tapped, reachPx / at.pixels_per_m);
       if (drawn) this.complete(drawn);
       else this.refresh();
       return;
@@ -202,14 +202,14 @@ export class Editor implements MapTool, Overlay {
     const middle = this.hooks.middle();
     const at = this.cursor ?? this.snapped(middle);
     if (steps[key]) {
-      const step_m = this.settings.grid_m || kKeyStep_m;
+      const step_m = this.settings.grid_m || keyStepM;
       const [dx, dy] = steps[key];
       this.cursor = { x: at.x + step_m * dx, y: at.y + step_m * dy, to: "grid" };
       this.sketch.move(this.cursor);
     } else if (key === "Enter") {
       this.sketch.press(at);
       // Enter at the last point ends a line.
-      const drawn = this.sketch.lift(at, true, (this.settings.grid_m || kKeyStep_m) / 4);
+      const drawn = this.sketch.lift(at, true, (this.settings.grid_m || keyStepM) / 4);
       if (drawn) this.complete(drawn);
     } else {
       return false;
@@ -231,13 +231,13 @@ export class Editor implements MapTool, Overlay {
     draw_drawing(context, view, drawing, palette, selected);
     for (const { ref, item } of all_items(drawing)) {
       if (!("name" in item) || !item.name) continue;
-      const shift = is_closed(ref.list) ? 0 : kNamePx / view.scale;
+      const shift = is_closed(ref.list) ? 0 : namePx / view.scale;
       const at = middle_of(points_of(item));
       draw_text(context, view, { x: at.x, y: at.y + shift }, item.name, palette);
     }
     const item = this.edited.selected_item();
     if (selected && item) {
-      const handles = this.sketch ? [] : handles_of(selected.list, item, kArrowPx / view.scale);
+      const handles = this.sketch ? [] : handles_of(selected.list, item, arrowPx / view.scale);
       draw_selection(context, view, selected, item, handles, palette);
     }
     if (!this.sketch) return;
@@ -284,7 +284,7 @@ export class Editor implements MapTool, Overlay {
       corners: this.corners(own),
       from: this.sketch ? this.sketch.from : from,
       before: this.sketch?.before ?? null,
-      reach_m: kReachPx / at.pixels_per_m,
+      reach_m: reachPx / at.pixels_per_m,
     });
     if (this.sketch) this.cursor = snapped;
     return snapped;

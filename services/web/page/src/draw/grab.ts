@@ -8,7 +8,7 @@ import {
   Item,
   item_of,
   ItemRef,
-  kMostCorners,
+  mostCorners,
   ListName,
   points_of,
   to_mm,
@@ -58,7 +58,7 @@ export function handles_of(list: ListName, item: Item, arrow_m: number): Handle[
   for (let index = 0; index < count && list !== "places"; ++index) {
     handles.push({ ...point_at(points, index), part: { what: "corner", index } });
   }
-  if (!is_extensible(list) || count >= kMostCorners) return handles;
+  if (!is_extensible(list) || count >= mostCorners) return handles;
   for (let index = 0; index < (is_closed(list) ? count : count - 1); ++index) {
     const [a, b] = [point_at(points, index), point_at(points, (index + 1) % count)];
     const part: Part = { what: "middle", index };

@@ -8,7 +8,7 @@ import { contains, Point } from "./geometry";
 
 type Rooms = ReadonlyMap<string, Room>;
 
-const kShares = [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8]; // along a line, where a room is searched
+const lineShares = [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8]; // along a line, where a room is searched
 
 /** For people: why a room cannot be edited. */
 export class RoomError extends Error {}
@@ -43,7 +43,7 @@ async function room_along(
   drawing: Drawing,
   [from, to]: [Point, Point],
 ): Promise<number> {
-  for (const share of kShares) {
+  for (const share of lineShares) {
     const at = { x: from.x + share * (to.x - from.x), y: from.y + share * (to.y - from.y) };
     const zone = await zone_at(api, rooms, drawing, at);
     if (zone !== undefined) return zone;

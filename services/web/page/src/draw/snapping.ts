@@ -19,9 +19,9 @@ export interface Snapped extends Point {
   to: "corner" | "angle" | "grid" | "free";
 }
 
-const kQuarter = Math.PI / 2;
-const kSameDirection = 1e-9;
-const kHeadingNear_rad = 0.12;
+const quarterTurn = Math.PI / 2;
+const sameDirection = 1e-9;
+const headingNearRad = 0.12;
 
 /** Corners have precedence over right angles, and right angles over the grid. */
 export function snap(at: Point, settings: SnapSettings, context: SnapContext): Snapped {
@@ -42,7 +42,7 @@ export function on_grid(at: Point, step_m: number): Point {
 /** The nearest multiple of 45 degrees if it is close, else the angle itself. */
 export function snap_heading(angle: number): number {
   const eighth = (Math.PI / 4) * Math.round(angle / (Math.PI / 4));
-  return Math.abs(angle - eighth) <= kHeadingNear_rad ? eighth : angle;
+  return Math.abs(angle - eighth) <= headingNearRad ? eighth : angle;
 }
 
 function to_step(value: number, step: number): number {
@@ -64,13 +64,13 @@ function at_right_angle(at: Point, grid_m: number, context: SnapContext): Point 
   const bases = before ? [0, heading(before, from)] : [0];
   let best: Point | null = null;
   for (const base of bases) {
-    const angle = base + kQuarter * Math.round((heading(from, at) - base) / kQuarter);
+    const angle = base + quarterTurn * Math.round((heading(from, at) - base) / quarterTurn);
     const [dx, dy] = [Math.cos(angle), Math.sin(angle)];
     const along = (at.x - from.x) * dx + (at.y - from.y) * dy;
     const ray = on_ray(from, dx, dy, along, grid_m);
     const aside = Math.abs((at.x - from.x) * dy - (at.y - from.y) * dx);
     if (aside > reach_m) continue;
-    if (!best || distance(ray, at) < distance(best, at) - kSameDirection) best = ray;
+    if (!best || distance(ray, at) < distance(best, at) - sameDirection) best = ray;
   }
   return best;
 }
@@ -78,10 +78,10 @@ function at_right_angle(at: Point, grid_m: number, context: SnapContext): Point 
 // Parallel to an axis the end lies on the grid; otherwise the length is a multiple of its step.
 function on_ray(from: Point, dx: number, dy: number, along: number, grid_m: number): Point {
   const length = grid_m > 0 ? to_step(along, grid_m) : along;
-  if (Math.abs(dy) < kSameDirection) {
+  if (Math.abs(dy) < sameDirection) {
     return { x: grid_m > 0 ? to_step(from.x + along * dx, grid_m) : from.x + along * dx, y: from.y };
   }
-  if (Math.abs(dx) < kSameDirection) {
+  if (Math.abs(dx) < sameDirection) {
     return { x: from.x, y: grid_m > 0 ? to_step(from.y + along * dy, grid_m) : from.y + along * dy };
   }
   return { x: from.x + length * dx, y: from.y + length * dy };

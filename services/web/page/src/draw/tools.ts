@@ -10,7 +10,7 @@ export type ItemTool = Exclude<ItemKind, "room">;
 export type OtherTool = "split" | "join" | "rename" | "measure" | "shift";
 export type ToolName = "select" | ItemTool | OtherTool;
 
-const kShapes: Record<Exclude<ToolName, "select">, Shape> = {
+const toolShapes: Record<Exclude<ToolName, "select">, Shape> = {
   place: "point",
   base: "arrow",
   wall: "line",
@@ -26,7 +26,7 @@ const kShapes: Record<Exclude<ToolName, "select">, Shape> = {
   shift: "segment",
 };
 
-const kItemTools: readonly ItemTool[] = [
+const itemTools: readonly ItemTool[] = [
   "place",
   "base",
   "wall",
@@ -36,14 +36,14 @@ const kItemTools: readonly ItemTool[] = [
   "slow",
   "one_way",
 ];
-const kSlow_mps = 0.2;
+const slowMps = 0.2;
 
 export function shape_of(tool: ToolName): Shape | null {
-  return tool === "select" ? null : kShapes[tool];
+  return tool === "select" ? null : toolShapes[tool];
 }
 
 export function is_item_tool(tool: ToolName): tool is ItemTool {
-  return kItemTools.some((known) => known === tool);
+  return itemTools.some((known) => known === tool);
 }
 
 /** Whether a tool draws exactly on the grid and corners. */
@@ -91,7 +91,7 @@ function make_place(
 
 function make_zone(kind: ZoneKind, corners_m: number[], drawing: Drawing): Item {
   const name = free_name(drawing, "zones", texts.draw.kinds[kind]);
-  const value = { room: 0, no_go: 0, slow: kSlow_mps, one_way: to_mm(along(corners_m)) }[kind];
+  const value = { room: 0, no_go: 0, slow: slowMps, one_way: to_mm(along(corners_m)) }[kind];
   return { name, kind, value, corners_m };
 }
 

@@ -6,10 +6,10 @@ import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";
 import { to_pixels } from "./to_pixels";
 
-const kHatchPx = 11;
+const hatchPx = 11;
 /** Length of arrows at every zoom. */
-export const kArrowPx = 30;
-const kStationPx = 11;
+export const arrowPx = 30;
+const stationPx = 11;
 
 export function trace_line(
   context: CanvasRenderingContext2D,
@@ -121,8 +121,8 @@ function hatch(
   context.save();
   context.clip();
   context.beginPath();
-  const first = kHatchPx * Math.floor((left - (bottom - top)) / kHatchPx);
-  for (let x = first; x < right; x += kHatchPx) {
+  const first = hatchPx * Math.floor((left - (bottom - top)) / hatchPx);
+  for (let x = first; x < right; x += hatchPx) {
     context.moveTo(x, bottom);
     context.lineTo(x + (bottom - top), top);
   }
@@ -146,10 +146,10 @@ export function draw_arrow(
   context.rotate(-angle);
   context.beginPath();
   context.moveTo(0, 0);
-  context.lineTo(kArrowPx, 0);
-  context.moveTo(kArrowPx - 9, -7);
-  context.lineTo(kArrowPx, 0);
-  context.lineTo(kArrowPx - 9, 7);
+  context.lineTo(arrowPx, 0);
+  context.moveTo(arrowPx - 9, -7);
+  context.lineTo(arrowPx, 0);
+  context.lineTo(arrowPx - 9, 7);
   context.strokeStyle = color;
   context.lineWidth = 3.5;
   context.stroke();
@@ -217,10 +217,10 @@ function draw_place(
   if (place.heading_rad !== undefined) {
     draw_arrow(context, view, { x: place.x_m, y: place.y_m }, place.heading_rad, palette.goal);
     context.fillStyle = palette.goal;
-    context.fillRect(x - kStationPx, y - kStationPx, 2 * kStationPx, 2 * kStationPx);
+    context.fillRect(x - stationPx, y - stationPx, 2 * stationPx, 2 * stationPx);
     context.strokeStyle = palette.halo;
     context.lineWidth = 2;
-    context.strokeRect(x - kStationPx, y - kStationPx, 2 * kStationPx, 2 * kStationPx);
+    context.strokeRect(x - stationPx, y - stationPx, 2 * stationPx, 2 * stationPx);
     return;
   }
   context.beginPath();

@@ -9,12 +9,12 @@ import { draw_arrow, trace_line } from "./drawing_layer";
 import { View } from "./map_canvas";
 import { to_pixels } from "./to_pixels";
 
-const kFont = "600 13px system-ui, sans-serif";
-const kFewestGridPx = 9;
-const kMostGridLines = 400;
-const kHandlePx = 6;
-const kShortestLabelledPx = 56;
-const kBesidePx = 32;
+const labelFont = "600 13px system-ui, sans-serif";
+const fewestGridPx = 9;
+const mostGridLines = 400;
+const handlePx = 6;
+const shortestLabelledPx = 56;
+const besidePx = 32;
 
 /** Lines of the grid; only every 5th or 10th where they would be too dense. */
 export function draw_grid(
@@ -24,8 +24,8 @@ export function draw_grid(
   palette: Palette,
 ): void {
   if (step_m <= 0) return;
-  const step = [1, 5, 10, 50, 100].map((n) => n * step_m).find((s) => s * view.scale >= kFewestGridPx);
-  if (!step || (view.max_x - view.min_x) / step > kMostGridLines) return;
+  const step = [1, 5, 10, 50, 100].map((n) => n * step_m).find((s) => s * view.scale >= fewestGridPx);
+  if (!step || (view.max_x - view.min_x) / step > mostGridLines) return;
   context.beginPath();
   for (let x = step * Math.ceil(view.min_x / step); x <= view.max_x; x += step) {
     const [px] = to_pixels(view, x, 0);
@@ -60,7 +60,7 @@ export function draw_selection(
     const at = to_pixels(view, handle.x, handle.y);
     const middle = handle.part.what === "middle";
     context.beginPath();
-    context.arc(...at, middle ? kHandlePx - 2 : kHandlePx, 0, 2 * Math.PI);
+    context.arc(...at, middle ? handlePx - 2 : handlePx, 0, 2 * Math.PI);
     context.fillStyle = middle ? palette.halo : palette.selected;
     context.fill();
     context.strokeStyle = middle ? palette.selected : palette.halo;
@@ -154,12 +154,12 @@ function draw_lengths(
   const middle = middle_of(points);
   for (const [a, b] of segments_of(points, closed)) {
     const meters = distance(a, b);
-    if (meters * view.scale < kShortestLabelledPx) continue;
+    if (meters * view.scale < shortestLabelledPx) continue;
     const at = { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 };
     if (closed) {
       // Beside vertical sides, so that the inside stays free for the name.
       const upright = Math.abs(b.y - a.y) / meters;
-      at.x += (Math.sign(at.x - middle.x) * upright * kBesidePx) / view.scale;
+      at.x += (Math.sign(at.x - middle.x) * upright * besidePx) / view.scale;
     }
     draw_text(context, view, at, format.length(meters), palette);
   }
@@ -176,7 +176,7 @@ export function draw_text(
   palette: Palette,
 ): void {
   const [x, y] = to_pixels(view, at.x, at.y);
-  context.font = kFont;
+  context.font = labelFont;
   context.textAlign = "center";
   context.textBaseline = "middle";
   context.lineJoin = "round";

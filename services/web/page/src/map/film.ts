@@ -6,17 +6,17 @@ import { View } from "./map_canvas";
 import { compose } from "./match_layer";
 import { draw_body, draw_points } from "./robot_layer";
 
-const kFinestM = 0.1; // side of a cell
-const kMostCells = 4e6;
-const kMarginM = 0.5;
-const kWidestGapRad = 0.3; // between two points of an outline where the laser saw no wall
-const kLongestPauseS = 5; // between two stops, in the replay
-const kNever = 0xffffffff;
+const finestM = 0.1; // side of a cell
+const mostCells = 4e6;
+const marginM = 0.5;
+const widestGapRad = 0.3; // between two points of an outline where the laser saw no wall
+const longestPauseS = 5; // between two stops, in the replay
+const neverSeen = 0xffffffff;
 
 export class Film {
   /** Seconds from the beginning at which each stop is reached, in the replay. */
   readonly times_s: number[] = [];
-  private resolution_m = kFinestM;
+  private resolution_m = finestM;
   private left = 0; // metres
   private bottom = 0;
   private columns = 0;
@@ -34,7 +34,7 @@ export class Film {
     let time_s = 0;
     stops.forEach((stop, i) => {
       const step = i === 0 || stop.starts_drive ? 0 : stop.stamp_s - stops[i - 1].stamp_s;
-      time_s += Math.max(0, Math.min(kLongestPauseS, step));
+      time_s += Math.max(0, Math.min(longestPauseS, step));
       this.times_s.push(time_s);
     });
     this.lay_out();
@@ -136,16 +136,16 @@ export class Film {
       }
     }
     if (min_x > max_x) return;
-    const [width, height] = [max_x - min_x + 2 * kMarginM, max_y - min_y + 2 * kMarginM];
-    while ((width / this.resolution_m) * (height / this.resolution_m) > kMostCells) {
+    const [width, height] = [max_x - min_x + 2 * marginM, max_y - min_y + 2 * marginM];
+    while ((width / this.resolution_m) * (height / this.resolution_m) > mostCells) {
       this.resolution_m *= 2;
     }
-    this.left = min_x - kMarginM;
-    this.bottom = min_y - kMarginM;
+    this.left = min_x - marginM;
+    this.bottom = min_y - marginM;
     this.columns = Math.ceil(width / this.resolution_m);
     this.rows = Math.ceil(height / this.resolution_m);
-    this.free_since = new Uint32Array(this.columns * this.rows).fill(kNever);
-    this.wall_since = new Uint32Array(this.columns * this.rows).fill(kNever);
+    this.free_since = new Uint32Array(this.columns * this.rows).fill(neverSeen);
+    this.wall_since = new Uint32Array(this.columns * this.rows).fill(neverSeen);
     this.picture.width = this.columns;
     this.picture.height = this.rows;
   }
@@ -164,11 +164,11 @@ export class Film {
       const [x, y] = [outline[i] / 100, outline[i + 1] / 100];
       const cell = cells(x, y);
       const bearing = Math.atan2(y - this.laser[1], x - this.laser[0]);
-      if (before && Math.abs(bearing - before.bearing) < kWidestGapRad) {
+      if (before && Math.abs(bearing - before.bearing) < widestGapRad) {
         this.fill(eye, before.cell, cell, index);
       }
       const wall = Math.floor(cell[1]) * this.columns + Math.floor(cell[0]);
-      if (this.wall_since[wall] === kNever) this.wall_since[wall] = index;
+      if (this.wall_since[wall] === neverSeen) this.wall_since[wall] = index;
       before = { cell, bearing };
     }
   }
@@ -193,7 +193,7 @@ export class Film {
       const end = Math.min(this.columns - 1, Math.floor(to));
       for (let column = Math.max(0, Math.floor(from)); column <= end; ++column) {
         const cell = row * this.columns + column;
-        if (this.free_since[cell] === kNever) this.free_since[cell] = index;
+        if (this.free_since[cell] === neverSeen) this.free_since[cell] = index;
       }
     }
   }

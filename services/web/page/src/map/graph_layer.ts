@@ -20,7 +20,7 @@ interface Branch {
   max_y: number;
 }
 
-const kSmallestStepPx = 1.2;
+const smallestStepPx = 1.2;
 
 export class GraphLayer {
   private readonly nodes = new Map<number, GraphNode>();
@@ -109,7 +109,7 @@ function trace(context: CanvasRenderingContext2D, view: View, points: Float32Arr
       context.moveTo(x, y);
     } else {
       const step = Math.abs(x - last_x) + Math.abs(y - last_y);
-      if (step < kSmallestStepPx && i !== last) continue;
+      if (step < smallestStepPx && i !== last) continue;
       context.lineTo(x, y);
     }
     last_x = x;

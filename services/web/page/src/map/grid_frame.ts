@@ -1,10 +1,10 @@
 // Geometry of the map's grid: squares of 64 x 64 cells, pictures of 256 x 256 pixels in levels.
 import { MapInfo } from "../protocol";
 
-export const kSquareCells = 64;
-export const kTilePixels = 256;
-export const kLargestLevel = 8;
-const kSquaresPerTile = kTilePixels / kSquareCells;
+export const squareCells = 64;
+export const tilePixels = 256;
+export const largestLevel = 8;
+const squaresPerTile = tilePixels / squareCells;
 
 /** A range of pictures of a level, both ends included. */
 export interface TileRange {
@@ -60,7 +60,7 @@ export interface CellBox {
 
 /** The box around the known squares; null without any. */
 export function known_box(info: MapInfo, squares: Iterable<string>): Box | null {
-  const in_row = Math.ceil(info.columns / kSquareCells);
+  const in_row = Math.ceil(info.columns / squareCells);
   let [low_c, low_r, high_c, high_r] = [Infinity, Infinity, -1, -1];
   for (const key of squares) {
     const column = Number(key) % in_row;
@@ -71,16 +71,16 @@ export function known_box(info: MapInfo, squares: Iterable<string>): Box | null 
     high_r = Math.max(high_r, row);
   }
   if (high_c < 0) return null;
-  const low: [number, number] = [kSquareCells * low_c, kSquareCells * low_r];
+  const low: [number, number] = [squareCells * low_c, squareCells * low_r];
   return box_of_cells(info, low, [
-    Math.min(kSquareCells * (high_c + 1), info.columns),
-    Math.min(kSquareCells * (high_r + 1), info.rows),
+    Math.min(squareCells * (high_c + 1), info.columns),
+    Math.min(squareCells * (high_r + 1), info.rows),
   ]);
 }
 
 /** The level whose pixels are at least as fine as screen pixels at `pixels_per_cell`. */
 export function level_for(pixels_per_cell: number): number {
-  return Math.max(0, Math.min(kLargestLevel, Math.floor(-Math.log2(pixels_per_cell))));
+  return Math.max(0, Math.min(largestLevel, Math.floor(-Math.log2(pixels_per_cell))));
 }
 
 /** The pictures of a level that touch a box. */
@@ -91,7 +91,7 @@ export function tiles_in(info: MapInfo, level: number, box: Box): TileRange {
     to_grid(info, box.min_x, box.max_y),
     to_grid(info, box.max_x, box.min_y),
   ];
-  const cells = kTilePixels * 2 ** level;
+  const cells = tilePixels * 2 ** level;
   const clamp = (value: number, end: number) =>
     Math.max(0, Math.min(Math.ceil(end / cells) - 1, Math.floor(value / cells)));
   const columns = corners.map((corner) => corner[0]);
@@ -118,10 +118,10 @@ export class TileVersions {
 
   /** Takes the version of a square into account on all levels. */
   add(info: MapInfo, square: number, version: number): void {
-    const in_row = Math.ceil(info.columns / kSquareCells);
-    let column = Math.floor((square % in_row) / kSquaresPerTile);
-    let row = Math.floor(Math.floor(square / in_row) / kSquaresPerTile);
-    for (let level = 0; level <= kLargestLevel; ++level) {
+    const in_row = Math.ceil(info.columns / squareCells);
+    let column = Math.floor((square % in_row) / squaresPerTile);
+    let row = Math.floor(Math.floor(square / in_row) / squaresPerTile);
+    for (let level = 0; level <= largestLevel; ++level) {
       const key = tile_key(level, column, row);
       this.versions.set(key, Math.max(version, this.versions.get(key) ?? 0));
       column >>= 1;

@@ -4,10 +4,10 @@ import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";
 import { to_pixels } from "./to_pixels";
 
-const kFont = "13px system-ui, sans-serif";
-const kLinePx = 17; // from one name to the next one below
-const kGoalPx = 14; // from the middle of a goal's ring to the names
-const kBesideGoalPx = 24; // from there to the middle of a name above or below
+const labelFont = "13px system-ui, sans-serif";
+const linePx = 17; // from one name to the next one below
+const goalPx = 14; // from the middle of a goal's ring to the names
+const besideGoalPx = 24; // from there to the middle of a name above or below
 
 export interface Label {
   text: string;
@@ -60,7 +60,7 @@ export function draw_labels(
 ): void {
   const { rooms, places, rules } = names;
   const goals = names.goals.map((goal) => to_pixels(view, goal.x_m, goal.y_m));
-  context.font = kFont;
+  context.font = labelFont;
   context.textAlign = "center";
   context.textBaseline = "middle";
   const drawn: Label[] = [];
@@ -111,12 +111,12 @@ function draw_pin(context: CanvasRenderingContext2D, x: number, y: number, palet
 function keep_off(label: Label, goals: readonly (readonly [number, number])[]): void {
   const covering = goals.find(
     ([x, y]) =>
-      Math.abs(label.x - x) < label.width / 2 + kGoalPx &&
-      Math.abs(label.y - y) < kLinePx / 2 + kGoalPx,
+      Math.abs(label.x - x) < label.width / 2 + goalPx &&
+      Math.abs(label.y - y) < linePx / 2 + goalPx,
   );
   if (!covering) return;
   const [, y] = covering;
-  label.y = label.y < y - 1 ? y - kBesideGoalPx : y + kBesideGoalPx;
+  label.y = label.y < y - 1 ? y - besideGoalPx : y + besideGoalPx;
 }
 
 /** Draws text of this width in the context's font, unless it would cover one in `drawn`. */
@@ -128,7 +128,7 @@ export function draw_label(
 ): void {
   const covers = (other: Label) =>
     Math.abs(label.x - other.x) < (label.width + other.width) / 2 + 6 &&
-    Math.abs(label.y - other.y) < kLinePx;
+    Math.abs(label.y - other.y) < linePx;
   if (drawn.some(covers)) return;
   drawn.push(label);
   context.lineJoin = "round";

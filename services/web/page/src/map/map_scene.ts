@@ -20,7 +20,7 @@ import {
 } from "./robot_layer";
 import { TrailLayer } from "./trail_layer";
 
-export const kLayers = [
+export const layerNames = [
   "rooms",
   "names",
   "drawing",
@@ -30,10 +30,10 @@ export const kLayers = [
   "scan",
   "local_map",
 ] as const;
-const kBoxStepM = 1;
-const kEmptyPlane: Box = { min_x: -2, min_y: -2, max_x: 18, max_y: 12 };
+const boxStepM = 1;
+const emptyPlane: Box = { min_x: -2, min_y: -2, max_x: 18, max_y: 12 };
 
-export type LayerName = (typeof kLayers)[number];
+export type LayerName = (typeof layerNames)[number];
 
 export type DrawAbove = (
   context: CanvasRenderingContext2D,
@@ -111,7 +111,7 @@ export class MapScene {
 
   /** The box around the known floor; null without a map. */
   box(): Box | null {
-    if (this.overlay?.alone) return kEmptyPlane;
+    if (this.overlay?.alone) return emptyPlane;
     const info = this.channels.value("map");
     if (!info) return null;
     const cells = this.grid.known_cells(this.versions);
@@ -119,10 +119,10 @@ export class MapScene {
     const box = box_of_cells(info, cells.low, cells.high);
     // In steps, so that a growing map does not shift with each cell.
     return {
-      min_x: kBoxStepM * Math.floor(box.min_x / kBoxStepM),
-      min_y: kBoxStepM * Math.floor(box.min_y / kBoxStepM),
-      max_x: kBoxStepM * Math.ceil(box.max_x / kBoxStepM),
-      max_y: kBoxStepM * Math.ceil(box.max_y / kBoxStepM),
+      min_x: boxStepM * Math.floor(box.min_x / boxStepM),
+      min_y: boxStepM * Math.floor(box.min_y / boxStepM),
+      max_x: boxStepM * Math.ceil(box.max_x / boxStepM),
+      max_y: boxStepM * Math.ceil(box.max_y / boxStepM),
     };
   }
 

@@ -20,7 +20,7 @@ export interface MapTool {
   cancel(): void;
 }
 
-const kTapPx = 8;
+const tapPx = 8;
 
 export class ToolListener {
   private tool: MapTool | null = null;
@@ -78,7 +78,7 @@ export class ToolListener {
   private on_move(event: PointerEvent): void {
     const { tool, pressed } = this;
     if (!tool || (pressed && pressed.id !== event.pointerId)) return;
-    if (pressed && Math.hypot(event.clientX - pressed.x, event.clientY - pressed.y) > kTapPx) {
+    if (pressed && Math.hypot(event.clientX - pressed.x, event.clientY - pressed.y) > tapPx) {
       pressed.tapped = false;
     }
     tool.move(this.at(event), pressed !== null);

@@ -9,8 +9,8 @@ import { MapPointer, MapTool, ToolListener } from "./map_tool";
 import { PoseTool } from "./pose_tool";
 import { PoseMark } from "./robot_layer";
 
-const kFirstZoom = 4; // 16 pixels per metre
-const kLargestFitZoom = 6;
+const firstZoom = 4; // 16 pixels per metre
+const largestFitZoom = 6;
 
 export class MapView {
   readonly scene: MapScene;
@@ -39,7 +39,7 @@ export class MapView {
     this.map = L.map(container, {
       crs: L.CRS.Simple,
       center: [0, 0],
-      zoom: kFirstZoom,
+      zoom: firstZoom,
       minZoom: -5,
       maxZoom: 9,
       zoomSnap: 0.25,
@@ -107,7 +107,7 @@ export class MapView {
       [box.min_y, box.min_x],
       [box.max_y, box.max_x],
     ]);
-    const options = { animate, maxZoom: kLargestFitZoom };
+    const options = { animate, maxZoom: largestFitZoom };
     this.map.fitBounds(bounds, {
       ...options,
       paddingTopLeft: [24, 24],
@@ -140,7 +140,7 @@ export class MapView {
       [box.min_y, box.min_x],
       [box.max_y, box.max_x],
     ]);
-    this.map.fitBounds(bounds, { padding: [32, 32], maxZoom: kLargestFitZoom });
+    this.map.fitBounds(bounds, { padding: [32, 32], maxZoom: largestFitZoom });
   }
 
   /** Sets whether arrow keys move the map. */

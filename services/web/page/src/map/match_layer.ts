@@ -4,7 +4,7 @@ import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";
 import { draw_body, draw_local_map, draw_points, ellipse_of } from "./robot_layer";
 
-const kNearM = 0.1; // between points of both maps on one wall
+const nearM = 0.1; // between points of both maps on one wall
 
 /** The composition of two poses: a and b as T_map_a, T_a_b. */
 export function compose(a: Pose2, b: Pose2): Pose2 {
@@ -56,7 +56,7 @@ export function agreement(earlier: LocalMap, later: LocalMap, T_earlier_later: P
       least = Math.min(least, (walls[k] - x) ** 2 + (walls[k + 1] - y) ** 2);
     }
     ++all;
-    const is_near = least <= kNearM * kNearM;
+    const is_near = least <= nearM * nearM;
     if (!is_near && !inside(view, x, y)) continue;
     ++seen;
     if (is_near) ++near;

@@ -4,9 +4,9 @@ import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";
 import { to_pixels } from "./to_pixels";
 
-const kBodyRadiusM = 0.27;
-const kSmallestBodyPx = 9;
-const kSigmas = 2; // of the ellipse
+const bodyRadiusM = 0.27;
+const smallestBodyPx = 9;
+const sigmas = 2; // of the ellipse
 
 export interface PoseMark {
   x: number; // metres, map frame
@@ -42,7 +42,7 @@ export function draw_robot(
   const ellipse = ellipse_of(pose.covariance);
   if (ellipse) {
     context.beginPath();
-    const [a, b] = [kSigmas * ellipse[0] * view.scale, kSigmas * ellipse[1] * view.scale];
+    const [a, b] = [sigmas * ellipse[0] * view.scale, sigmas * ellipse[1] * view.scale];
     context.ellipse(x, y, Math.max(1, a), Math.max(1, b), -ellipse[2], 0, 2 * Math.PI);
     context.globalAlpha = 0.22;
     context.fillStyle = color;
@@ -64,7 +64,7 @@ export function draw_body(
   palette: Palette,
 ): void {
   const [x, y] = to_pixels(view, at.x, at.y);
-  const radius = Math.max(kSmallestBodyPx, kBodyRadiusM * view.scale);
+  const radius = Math.max(smallestBodyPx, bodyRadiusM * view.scale);
   context.save();
   context.translate(x, y);
   context.rotate(-at.theta);

@@ -7,9 +7,9 @@ import { View } from "./map_canvas";
 import { ellipse_of } from "./robot_layer";
 import { to_pixels } from "./to_pixels";
 
-const kSigmas = 2;
-const kArrowPx = 16;
-const kLabelled = 3; // hypotheses with fitness numbers
+const sigmas = 2;
+const arrowPx = 16;
+const mostLabelled = 3; // hypotheses with fitness numbers
 
 export function draw_search(
   context: CanvasRenderingContext2D,
@@ -41,7 +41,7 @@ function draw_match(
   const ellipse = ellipse_of(match.covariance);
   if (ellipse) {
     context.beginPath();
-    const [a, b] = [kSigmas * ellipse[0] * view.scale, kSigmas * ellipse[1] * view.scale];
+    const [a, b] = [sigmas * ellipse[0] * view.scale, sigmas * ellipse[1] * view.scale];
     context.ellipse(0, 0, Math.max(1, a), Math.max(1, b), -ellipse[2], 0, 2 * Math.PI);
     context.globalAlpha = 0.15;
     context.fillStyle = palette.search;
@@ -70,7 +70,7 @@ function draw_hypotheses(
     context.fill();
     context.beginPath();
     context.moveTo(x, y);
-    context.lineTo(x + kArrowPx * Math.cos(theta), y - kArrowPx * Math.sin(theta));
+    context.lineTo(x + arrowPx * Math.cos(theta), y - arrowPx * Math.sin(theta));
     context.stroke();
   }
   context.globalAlpha = 1;
@@ -89,7 +89,7 @@ function draw_figures(
   context.textBaseline = "middle";
   const fitness_of = ([, , , fitness]: Hypothesis) => fitness ?? -1;
   const labelled = [search.hypotheses, ...search.matches.map((match) => match.hypotheses)]
-    .flatMap((hypotheses) => hypotheses.slice(0, kLabelled))
+    .flatMap((hypotheses) => hypotheses.slice(0, mostLabelled))
     .filter((hypothesis) => fitness_of(hypothesis) >= 0)
     .sort((a, b) => fitness_of(b) - fitness_of(a));
   const drawn: Label[] = [];

@@ -4,7 +4,7 @@ import { MapInfo } from "../protocol";
 import { Palette } from "../ui/theme";
 import {
   CellBox,
-  kTilePixels,
+  tilePixels,
   level_for,
   tile_key,
   tiles_in,
@@ -13,8 +13,8 @@ import {
 } from "./grid_frame";
 import { View } from "./map_canvas";
 
-const kRetryMs = 2000;
-const kKeptTiles = 220;
+const retryMs = 2000;
+const keptTiles = 220;
 
 interface Tile {
   picture: HTMLCanvasElement | null;
@@ -84,7 +84,7 @@ export class TileLayer {
 
   private paint(context: CanvasRenderingContext2D, view: View, info: MapInfo, level: number): void {
     const range = tiles_in(info, level, view);
-    const side = kTilePixels * 2 ** level;
+    const side = tilePixels * 2 ** level;
     for (let row = range.first_row; row <= range.last_row; ++row) {
       for (let column = range.first_column; column <= range.last_column; ++column) {
         const tile = this.tiles.get(tile_key(level, column, row));
@@ -144,7 +144,7 @@ export class TileLayer {
       window.setTimeout(() => {
         if (tile.version === version) tile.version = "";
         this.on_load();
-      }, kRetryMs);
+      }, retryMs);
     };
     image.src = `/tiles/${this.layer}/${info.frame}/${key}.png?v=${version}`;
   }
@@ -162,12 +162,12 @@ export class TileLayer {
 
   private paint_tile(tile: Tile, key: string, image: HTMLImageElement): void {
     const canvas = document.createElement("canvas");
-    canvas.width = kTilePixels;
-    canvas.height = kTilePixels;
+    canvas.width = tilePixels;
+    canvas.height = tilePixels;
     const context = canvas.getContext("2d", { willReadFrequently: true });
     if (!context) return;
     context.drawImage(image, 0, 0);
-    const pixels = context.getImageData(0, 0, kTilePixels, kTilePixels);
+    const pixels = context.getImageData(0, 0, tilePixels, tilePixels);
     tile.known = known_of(key, pixels.data);
     this.recolor()(pixels.data);
     context.putImageData(pixels, 0, 0);
@@ -175,34 +175,34 @@ export class TileLayer {
   }
 
   private forget(): void {
-    if (this.tiles.size <= kKeptTiles) return;
+    if (this.tiles.size <= keptTiles) return;
     const oldest = [...this.tiles.entries()].sort((a, b) => a[1].used - b[1].used);
-    for (const [key] of oldest.slice(0, this.tiles.size - kKeptTiles)) this.tiles.delete(key);
+    for (const [key] of oldest.slice(0, this.tiles.size - keptTiles)) this.tiles.delete(key);
   }
 }
 
 function known_of(key: string, pixels: Uint8ClampedArray): CellBox | null {
-  let [left, right, top, bottom] = [kTilePixels, -1, kTilePixels, -1];
-  for (let i = 0; i < kTilePixels * kTilePixels; ++i) {
+  let [left, right, top, bottom] = [tilePixels, -1, tilePixels, -1];
+  for (let i = 0; i < tilePixels * tilePixels; ++i) {
     if (pixels[4 * i + 3] === 0) continue;
-    const line = Math.floor(i / kTilePixels);
-    left = Math.min(left, i % kTilePixels);
-    right = Math.max(right, i % kTilePixels);
+    const line = Math.floor(i / tilePixels);
+    left = Math.min(left, i % tilePixels);
+    right = Math.max(right, i % tilePixels);
     top = Math.min(top, line);
     bottom = line;
   }
   if (right < 0) return null;
   const [level, column, row] = key.split("/").map(Number);
   const cells = 2 ** level;
-  const above = kTilePixels * (row + 1); // the first line of a picture is the top one
+  const above = tilePixels * (row + 1); // the first line of a picture is the top one
   return {
-    low: [cells * (kTilePixels * column + left), cells * (above - bottom - 1)],
-    high: [cells * (kTilePixels * column + right + 1), cells * (above - top)],
+    low: [cells * (tilePixels * column + left), cells * (above - bottom - 1)],
+    high: [cells * (tilePixels * column + right + 1), cells * (above - top)],
   };
 }
 
 // Colours that the service paints.
-const kRoomColors = [0x8dd3c7, 0xffffb3, 0xbebada, 0xfb8072, 0x80b1d3, 0xfdb462];
+const roomColors = [0x8dd3c7, 0xffffb3, 0xbebada, 0xfb8072, 0x80b1d3, 0xfdb462];
 
 function rgb(color: string): [number, number, number] {
   const value = parseInt(color.slice(1), 16);
@@ -224,7 +224,7 @@ export function recolor_grid(palette: Palette): Recolor {
 
 /** Rooms in the colours of the theme. */
 export function recolor_rooms(palette: Palette): Recolor {
-  const colors = new Map(kRoomColors.map((color, i) => [color, rgb(palette.rooms[i])]));
+  const colors = new Map(roomColors.map((color, i) => [color, rgb(palette.rooms[i])]));
   return (pixels) => {
     for (let i = 0; i < pixels.length; i += 4) {
       if (pixels[i + 3] === 0) continue;

@@ -3,7 +3,7 @@ import { Loop, Tables } from "../protocol";
 import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";
 
-const kChunkStops = 32;
+const chunkStops = 32;
 
 export class TrailLayer {
   private chunks = new Map<number, Tables["trail"]>();
@@ -24,14 +24,14 @@ export class TrailLayer {
   size(): number {
     let stops = 0;
     for (const [number, chunk] of this.chunks) {
-      stops = Math.max(stops, kChunkStops * number + chunk.length);
+      stops = Math.max(stops, chunkStops * number + chunk.length);
     }
     return stops;
   }
 
   /** x, y (metres), theta (radians) of a stop; null when its pose is not known. */
   stop(number: number): [number, number, number] | null {
-    return this.chunks.get(Math.floor(number / kChunkStops))?.[number % kChunkStops] ?? null;
+    return this.chunks.get(Math.floor(number / chunkStops))?.[number % chunkStops] ?? null;
   }
 
   draw(context: CanvasRenderingContext2D, view: View, palette: Palette): void {

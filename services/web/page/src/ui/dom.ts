@@ -61,7 +61,7 @@ export function field(label: string, input: HTMLElement, wide = ""): HTMLElement
   return h("div", { class: `field-pair ${wide}` }, h("label", { for: input.id }, label), input);
 }
 
-const kIcons = {
+const icons = {
   fit: "M4 9V4h5M20 9V4h-5M4 15v5h5M20 15v5h-5",
   follow: "M12 3v3M12 18v3M3 12h3M18 12h3M12 7a5 5 0 1 0 0 10 5 5 0 0 0 0-10z",
   layers: "M12 3 3 8l9 5 9-5-9-5zM3 12l9 5 9-5M3 16l9 5 9-5",
@@ -84,7 +84,7 @@ const kIcons = {
   right: "M5 12h14M13 6l6 6-6 6",
   remove: "M6 6l12 12M18 6 6 18",
 };
-export type IconName = keyof typeof kIcons;
+export type IconName = keyof typeof icons;
 
 /** A line drawing beside a text; screen readers skip it. */
 export function icon(name: IconName): SVGSVGElement {
@@ -94,7 +94,7 @@ export function icon(name: IconName): SVGSVGElement {
   svg.setAttribute("class", "icon");
   svg.setAttribute("aria-hidden", "true");
   const path = document.createElementNS(space, "path");
-  path.setAttribute("d", kIcons[name]);
+  path.setAttribute("d", icons[name]);
   svg.append(path);
   return svg;
 }

@@ -2,7 +2,7 @@
 import { Api } from "../api";
 import { Channels } from "../channels";
 import { Rights } from "../rights";
-import { kSilenceTick_ms, robot_state } from "../robot_state";
+import { silenceTickMs, robot_state } from "../robot_state";
 import { Stopping } from "../stopping";
 import { texts } from "../texts";
 import { button, h, set_attribute, set_text, show } from "./dom";
@@ -70,7 +70,7 @@ export class Header {
     channels.on_value(["pose", "base", "drive", "goals", "navigator"], update);
     channels.on_table("services", update);
     rights.on_change(update);
-    setInterval(update, kSilenceTick_ms);
+    setInterval(update, silenceTickMs);
     listen_for_stop_key(() => this.stop_now());
     this.update();
   }

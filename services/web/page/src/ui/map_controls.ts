@@ -1,10 +1,10 @@
 // Buttons on the map: zoom, fit, follow, visible layers.
-import { kLayers } from "../map/map_scene";
+import { layerNames } from "../map/map_scene";
 import { MapView } from "../map/map_view";
 import { texts } from "../texts";
 import { h, icon, IconName, show } from "./dom";
 
-const kLayersKey = "topogeo-layers";
+const layersKey = "topogeo-layers";
 
 export function map_controls(map: MapView): HTMLElement {
   const control = (name: string, picture: IconName, action: () => void) => {
@@ -58,11 +58,11 @@ export function map_controls(map: MapView): HTMLElement {
 function layer_menu(map: MapView): HTMLElement {
   const { visible } = map.scene;
   Object.assign(visible, stored_layers());
-  const boxes = kLayers.map((name) => {
+  const boxes = layerNames.map((name) => {
     const box = h("input", { type: "checkbox", checked: visible[name] });
     box.addEventListener("change", () => {
       visible[name] = box.checked;
-      localStorage.setItem(kLayersKey, JSON.stringify(visible));
+      localStorage.setItem(layersKey, JSON.stringify(visible));
       map.scene.refresh();
     });
     return h("label", {}, box, texts.layers[name]);
@@ -76,9 +76,9 @@ function layer_menu(map: MapView): HTMLElement {
 
 function stored_layers(): Record<string, boolean> {
   try {
-    const stored: unknown = JSON.parse(localStorage.getItem(kLayersKey) ?? "{}");
+    const stored: unknown = JSON.parse(localStorage.getItem(layersKey) ?? "{}");
     const known = Object.entries(stored as Record<string, unknown>).filter(
-      ([name, value]) => kLayers.some((layer) => layer === name) && typeof value === "boolean",
+      ([name, value]) => layerNames.some((layer) => layer === name) && typeof value === "boolean",
     );
     return Object.fromEntries(known) as Record<string, boolean>;
   } catch {

@@ -3,9 +3,9 @@ import { button, h } from "./dom";
 import { sentence } from "../format";
 import { texts } from "../texts";
 
-const kShownMs = { info: 4000, error: 10000 };
-const kSignMs = 200; // a faster answer needs no waiting notice
-const kSlowMs = 3000;
+const shownMs = { info: 4000, error: 10000 };
+const signMs = 200; // a faster answer needs no waiting notice
+const slowMs = 3000;
 
 export class Notices {
   readonly element = h("div", { class: "notices", role: "status", "aria-live": "polite" });
@@ -15,7 +15,7 @@ export class Notices {
       if (shown.firstElementChild?.textContent === text) return; // repeated many times a second
     }
     const notice = this.add(text, kind);
-    window.setTimeout(() => notice.remove(), kShownMs[kind]);
+    window.setTimeout(() => notice.remove(), shownMs[kind]);
   }
 
   /** Reports that an order was sent, and its outcome. Returns true if it was accepted. */
@@ -51,11 +51,11 @@ export class Notices {
   // Shows that an answer is awaited; the returned function removes the notice.
   private show_waiting(): () => void {
     let notice: HTMLElement | null = null;
-    const sign = window.setTimeout(() => (notice = this.add(texts.waiting.sent, "info")), kSignMs);
+    const sign = window.setTimeout(() => (notice = this.add(texts.waiting.sent, "info")), signMs);
     const slow = window.setTimeout(() => {
       const words = notice?.firstElementChild;
       if (words) words.textContent = texts.waiting.slow;
-    }, kSlowMs);
+    }, slowMs);
     return () => {
       window.clearTimeout(sign);
       window.clearTimeout(slow);

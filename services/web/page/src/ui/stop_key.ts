@@ -1,9 +1,9 @@
 // Space stops the robot wherever the focus is, except in text fields. Enter does what Space usually
 // does.
-const kNoTexts = ["checkbox", "radio", "range", "button", "submit", "color", "file"];
+const noTexts = ["checkbox", "radio", "range", "button", "submit", "color", "file"];
 
 function types_text(target: EventTarget | null): boolean {
-  if (target instanceof HTMLInputElement) return !kNoTexts.includes(target.type);
+  if (target instanceof HTMLInputElement) return !noTexts.includes(target.type);
   return target instanceof Element && target.closest("textarea, [contenteditable]") !== null;
 }
 

@@ -33,7 +33,7 @@ export interface Palette {
   search: string;
 }
 
-const kThemeKey = "topogeo-theme";
+const themeKey = "topogeo-theme";
 type Choice = "light" | "dark";
 
 export class Theme {
@@ -52,7 +52,7 @@ export class Theme {
   }
 
   toggle(): void {
-    localStorage.setItem(kThemeKey, this.is_dark() ? "light" : "dark");
+    localStorage.setItem(themeKey, this.is_dark() ? "light" : "dark");
     this.update();
   }
 
@@ -67,7 +67,7 @@ export class Theme {
   }
 
   private apply(): void {
-    const chosen = localStorage.getItem(kThemeKey) as Choice | null;
+    const chosen = localStorage.getItem(themeKey) as Choice | null;
     document.documentElement.dataset.theme = chosen ?? (this.system.matches ? "dark" : "light");
   }
 }

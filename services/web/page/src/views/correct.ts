@@ -10,7 +10,7 @@ import { section } from "../ui/section";
 
 const words = texts.correct;
 // 1 sigma: metres, radians.
-const kSure: Record<string, [number, number]> = {
+const accuracies: Record<string, [number, number]> = {
   exact: [0.2, 0.1],
   about: [0.5, 0.3],
   roughly: [2, 0.8],
@@ -159,7 +159,7 @@ export class CorrectView implements ViewPart {
   private async apply_pose(): Promise<void> {
     const mark = this.read_fields();
     if (!mark) return;
-    const [sigma_m, sigma_rad] = kSure[this.sure.value];
+    const [sigma_m, sigma_rad] = accuracies[this.sure.value];
     const pose = { x_m: mark.x, y_m: mark.y, theta_rad: mark.theta, sigma_m, sigma_rad };
     this.apply.disabled = true;
     const order = this.app.api.post("pose", pose);

@@ -7,12 +7,12 @@ import { Facts } from "../ui/bar";
 import { h } from "../ui/dom";
 
 const words = texts.time;
-const kAbove = "difference";
-const kChanges = ["gone", "new", "seen", "lost"] as const;
+const layerAbove = "difference";
+const changes = ["gone", "new", "seen", "lost"] as const;
 
 /** Removes the difference from the map. */
 export function hide_difference(scene: MapScene): void {
-  scene.above.delete(kAbove);
+  scene.above.delete(layerAbove);
   scene.refresh();
 }
 
@@ -24,7 +24,7 @@ export async function show_difference(scene: MapScene, made: Comparison): Promis
   picture.src = made.picture;
   await picture.decode();
   const [width, height] = [made.columns * made.resolution_m, made.rows * made.resolution_m];
-  scene.above.set(kAbove, (context, view) => {
+  scene.above.set(layerAbove, (context, view) => {
     context.imageSmoothingEnabled = false;
     context.drawImage(
       picture,
@@ -38,10 +38,10 @@ export async function show_difference(scene: MapScene, made: Comparison): Promis
   scene.refresh();
   const facts = new Facts();
   facts.set(words.stops, words.stops_value(made.before.stops, made.after.stops));
-  for (const change of kChanges) {
+  for (const change of changes) {
     facts.set(words.changes[change], format.area(made[`${change}_m2`]));
   }
-  const signs = kChanges.map((change) =>
+  const signs = changes.map((change) =>
     h(
       "span",
       { class: "sign" },

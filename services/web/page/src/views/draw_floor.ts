@@ -12,7 +12,7 @@ import { button, h, show } from "../ui/dom";
 import { folded } from "../ui/section";
 
 const words = texts.draw.floor;
-const kFormat = "topogeo drawing";
+const fileFormat = "topogeo drawing";
 
 type Target = "simulator" | "robot";
 
@@ -141,7 +141,7 @@ export class DrawFloor {
   private export_file(): void {
     const { document: edited, alone } = this.editor;
     const name = this.name.value.trim() || words.first_name;
-    const content = { format: kFormat, name, ...edited.drawing };
+    const content = { format: fileFormat, name, ...edited.drawing };
     const blob = new Blob([JSON.stringify(content, null, 1)], { type: "application/json" });
     const link = h("a", { href: URL.createObjectURL(blob), download: `${name}.json` });
     link.click();

@@ -7,14 +7,14 @@ import { button, h, set_attribute, set_text, show } from "../ui/dom";
 import { folded, section } from "../ui/section";
 
 const words = texts.draw;
-const kGroups: [string, ToolName[]][] = [
+const toolGroups: [string, ToolName[]][] = [
   ["", ["select"]],
   [words.groups.names, ["place", "base"]],
   [words.groups.walls, ["wall", "opening", "door"]],
   [words.groups.zones, ["no_go", "slow", "one_way"]],
   [words.groups.rooms, ["split", "join", "rename"]],
 ];
-const kGrids_m = [0, 0.05, 0.1, 0.25, 0.5, 1];
+const gridsM = [0, 0.05, 0.1, 0.25, 0.5, 1];
 
 export class DrawToolbox {
   readonly element: HTMLElement;
@@ -32,7 +32,7 @@ export class DrawToolbox {
     private readonly choose: (tool: ToolName) => void,
     redraw: () => void,
   ) {
-    const groups = kGroups.map(([title, tools]) => this.group(title, tools));
+    const groups = toolGroups.map(([title, tools]) => this.group(title, tools));
     this.rooms = groups[groups.length - 1];
     this.finish = button(words.finish, () => editor.finish(), { class: "button primary" });
     this.cancel = button(words.cancel, () => editor.escape());
@@ -84,7 +84,7 @@ export class DrawToolbox {
     const step = h(
       "select",
       { class: "field", id: "draw-grid" },
-      ...kGrids_m.map((meters) => {
+      ...gridsM.map((meters) => {
         const text = meters === 0 ? words.no_grid : words.step(meters);
         return h("option", { value: meters, selected: meters === settings.grid_m }, text);
       }),

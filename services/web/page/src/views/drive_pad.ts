@@ -4,15 +4,15 @@ import * as format from "../format";
 import { texts } from "../texts";
 import { button, h, icon, IconName, set_text, show } from "../ui/dom";
 
-const kPeriodMs = 100;
-const kLateMs = 300; // an order or a key press older than this is ignored
-const kTurnRadps = 0.6;
-const kFastestMps = 0.6;
-const kFirstMps = 0.3;
+const periodMs = 100;
+const lateMs = 300; // an order or a key press older than this is ignored
+const turnRadps = 0.6;
+const fastestMps = 0.6;
+const firstMps = 0.3;
 
 type Direction = "forward" | "backward" | "turn_left" | "turn_right";
 
-const kKeys: Record<string, Direction> = {
+const keyDirections: Record<string, Direction> = {
   w: "forward",
   s: "backward",
   a: "turn_left",
@@ -26,7 +26,7 @@ const kKeys: Record<string, Direction> = {
 const words = texts.send;
 
 function is_late(event: Event): boolean {
-  return performance.now() - event.timeStamp > kLateMs;
+  return performance.now() - event.timeStamp > lateMs;
 }
 
 export class DrivePad {
@@ -45,12 +45,12 @@ export class DrivePad {
     this.speed = h("input", {
       type: "range",
       min: 0.1,
-      max: kFastestMps,
+      max: fastestMps,
       step: 0.05,
-      value: kFirstMps,
+      value: firstMps,
       id: "drive-speed",
     });
-    const value = h("output", { for: "drive-speed" }, format.speed(kFirstMps));
+    const value = h("output", { for: "drive-speed" }, format.speed(firstMps));
     this.speed.addEventListener("input", () =>
       set_text(value, format.speed(Number(this.speed.value))),
     );
@@ -127,7 +127,7 @@ export class DrivePad {
 
   private listen(): void {
     const key_name = (event: KeyboardEvent): string | null => {
-      const direction = kKeys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+      const direction = keyDirections[event.key.length === 1 ? event.key.toLowerCase() : event.key];
       return direction ? `${direction}:key${event.code}` : null;
     };
     document.addEventListener("keydown", (event) => {
@@ -156,7 +156,7 @@ export class DrivePad {
   private hold(name: string): void {
     this.held.add(name);
     if (this.timer !== 0) return;
-    this.timer = window.setInterval(() => this.go_on(), kPeriodMs);
+    this.timer = window.setInterval(() => this.go_on(), periodMs);
     this.go_on();
   }
 
@@ -181,8 +181,8 @@ export class DrivePad {
   // A page that stood still does not know which keys were released meanwhile.
   private go_on(): void {
     const now_ms = performance.now();
-    const late = this.due_ms !== 0 && now_ms - this.due_ms > kLateMs;
-    this.due_ms = now_ms + kPeriodMs;
+    const late = this.due_ms !== 0 && now_ms - this.due_ms > lateMs;
+    this.due_ms = now_ms + periodMs;
     if (late) this.release();
     else this.send();
   }
@@ -192,7 +192,7 @@ export class DrivePad {
       [...this.held].some((name) => name.startsWith(`${direction}:`)) ? 1 : 0;
     const speed = Number(this.speed.value) * (wants("forward") - wants("backward"));
     // Also when driving backwards, a key to the left turns the robot's front to the left.
-    const turn = kTurnRadps * (wants("turn_left") - wants("turn_right"));
+    const turn = turnRadps * (wants("turn_left") - wants("turn_right"));
     this.app.connection.drive(speed, turn);
   }
 

@@ -9,9 +9,9 @@ import { button, h, set_attribute, set_text, show } from "../ui/dom";
 import { section } from "../ui/section";
 
 const words = texts.time;
-const kSpeeds = [1, 4, 16, 64];
-const kSliceStops = 100; // processed without a pause for the page
-const kSliderSteps = 1000;
+const playSpeeds = [1, 4, 16, 64];
+const sliceStops = 100; // processed without a pause for the page
+const sliderSteps = 1000;
 
 export class FilmPlayer {
   readonly element: HTMLElement;
@@ -35,21 +35,21 @@ export class FilmPlayer {
     this.slider = h("input", {
       type: "range",
       min: 0,
-      max: kSliderSteps,
+      max: sliderSteps,
       step: 1,
       value: 0,
       id: "film-slider",
       "aria-label": words.slider,
     });
     this.slider.addEventListener("input", () => {
-      this.time_s = (Number(this.slider.value) / kSliderSteps) * (this.film?.duration_s ?? 0);
+      this.time_s = (Number(this.slider.value) / sliderSteps) * (this.film?.duration_s ?? 0);
       this.show_moment();
     });
     this.speed = h(
       "select",
       { class: "field", id: "film-speed", "aria-label": words.speed },
-      ...kSpeeds.map((speed) =>
-        h("option", { value: speed, selected: speed === kSpeeds[1] }, words.times(speed)),
+      ...playSpeeds.map((speed) =>
+        h("option", { value: speed, selected: speed === playSpeeds[1] }, words.times(speed)),
       ),
     );
     this.controls = h(
@@ -89,9 +89,9 @@ export class FilmPlayer {
         return;
       }
       const film = new Film(stops, laser_m);
-      for (let first = 0; first < stops.length; first += kSliceStops) {
-        film.see(first, first + kSliceStops);
-        set_text(this.status, words.loading(Math.min(first + kSliceStops, stops.length), stops.length));
+      for (let first = 0; first < stops.length; first += sliceStops) {
+        film.see(first, first + sliceStops);
+        set_text(this.status, words.loading(Math.min(first + sliceStops, stops.length), stops.length));
         await new Promise((resolve) => window.setTimeout(resolve));
         if (load !== this.loads) return;
       }
@@ -164,7 +164,7 @@ export class FilmPlayer {
     if (!this.film) return;
     const stop = this.film.stop_at(this.time_s);
     const { duration_s } = this.film;
-    const value = duration_s > 0 ? Math.round((this.time_s / duration_s) * kSliderSteps) : 0;
+    const value = duration_s > 0 ? Math.round((this.time_s / duration_s) * sliderSteps) : 0;
     if (Number(this.slider.value) !== value) this.slider.value = String(value);
     const stamp = format.moment(this.film.stops[stop].stamp_s);
     const text = words.moment(stop + 1, this.film.stops.length, stamp);

@@ -6,14 +6,14 @@ import { Facts } from "../ui/bar";
 import { h } from "../ui/dom";
 import { Palette } from "../ui/theme";
 
-const kSizePx = 20;
+const sizePx = 20;
 
 export function legend(palette: () => Palette): { element: HTMLElement; redraw: () => void } {
   const signs = (Object.keys(texts.legend) as (NodeKind & keyof typeof texts.legend)[]).map(
     (kind) => {
       const canvas = h("canvas", {
-        width: 2 * kSizePx,
-        height: 2 * kSizePx,
+        width: 2 * sizePx,
+        height: 2 * sizePx,
         "aria-hidden": "true",
       });
       return { kind, canvas };
@@ -24,8 +24,8 @@ export function legend(palette: () => Palette): { element: HTMLElement; redraw: 
       const context = canvas.getContext("2d");
       if (!context) continue;
       context.setTransform(2, 0, 0, 2, 0, 0);
-      context.clearRect(0, 0, kSizePx, kSizePx);
-      draw_node(context, kind, kSizePx / 2, kSizePx / 2, 5.5, palette());
+      context.clearRect(0, 0, sizePx, sizePx);
+      draw_node(context, kind, sizePx / 2, sizePx / 2, 5.5, palette());
     }
   };
   redraw();

@@ -8,7 +8,7 @@ import { Facts } from "../ui/bar";
 import { h, set_text, show } from "../ui/dom";
 
 const words = texts.understand;
-const kAbove = "loop";
+const layerAbove = "loop";
 
 export class LoopDetail {
   readonly element: HTMLElement;
@@ -46,7 +46,7 @@ export class LoopDetail {
   show(loop: Loop | null): void {
     if (loop === this.chosen) return;
     this.chosen = loop;
-    this.app.map.scene.above.delete(kAbove);
+    this.app.map.scene.above.delete(layerAbove);
     this.app.map.scene.refresh();
     show(this.element, loop !== null);
     if (!loop) return;
@@ -80,7 +80,7 @@ export class LoopDetail {
       ? { x_m: stop[0], y_m: stop[1], theta_rad: stop[2] }
       : { x_m: 0, y_m: 0, theta_rad: 0 };
     const laid: LaidMaps = { loop, earlier, later, T_map_earlier };
-    this.app.map.scene.above.set(kAbove, (context, view, palette) =>
+    this.app.map.scene.above.set(layerAbove, (context, view, palette) =>
       draw_laid_maps(context, view, laid, palette),
     );
     this.show_all(laid);

@@ -8,7 +8,7 @@ import { KeyedList } from "../ui/list";
 import { LoopDetail, meaning_of } from "./loop_detail";
 
 const words = texts.understand;
-const kShownLoops = 100;
+const shownLoops = 100;
 
 type Filter = keyof typeof words.filters;
 
@@ -80,9 +80,9 @@ export class LoopList {
     const wanted = all
       .filter(([, loop]) => this.filter === "all" || loop.accepted === (this.filter === "accepted"))
       .sort((a, b) => Number(b[0]) - Number(a[0]));
-    this.list.show(wanted.slice(0, kShownLoops));
-    show(this.more, wanted.length > kShownLoops);
-    set_text(this.more, words.more(Math.max(0, wanted.length - kShownLoops)));
+    this.list.show(wanted.slice(0, shownLoops));
+    show(this.more, wanted.length > shownLoops);
+    set_text(this.more, words.more(Math.max(0, wanted.length - shownLoops)));
   }
 
   private set_filter(filter: Filter): void {

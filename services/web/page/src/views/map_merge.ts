@@ -8,8 +8,8 @@ import { section } from "../ui/section";
 import { hide_difference, show_difference } from "./difference";
 
 const words = texts.time;
-const kMost_bytes = 64 * 1024 * 1024; // limit of the service
-const kPatienceMs = 600000; // for large maps
+const mostBytes = 64 * 1024 * 1024; // limit of the service
+const patienceMs = 600000; // for large maps
 
 export class MapMerge {
   readonly element: HTMLElement;
@@ -56,7 +56,7 @@ export class MapMerge {
     const file = this.file.files?.[0];
     if (!file) return;
     this.close();
-    if (file.size > kMost_bytes) {
+    if (file.size > mostBytes) {
       this.say(words.merge_too_large(file.name));
       this.file.value = "";
       return;
@@ -64,7 +64,7 @@ export class MapMerge {
     this.file.disabled = true;
     this.say(words.merging(file.name));
     try {
-      const made = await this.app.api.send_file<MergedMap>("merge_map", file, kPatienceMs);
+      const made = await this.app.api.send_file<MergedMap>("merge_map", file, patienceMs);
       await this.show_result(file.name, made);
     } catch (error) {
       const why = error instanceof Error ? error.message : String(error);
@@ -96,7 +96,7 @@ export class MapMerge {
   }
 
   private async answer(number: number, accept: boolean): Promise<void> {
-    const order = this.app.api.post<Snapshots>("merge_map_answer", { number, accept }, kPatienceMs);
+    const order = this.app.api.post<Snapshots>("merge_map_answer", { number, accept }, patienceMs);
     const done = accept ? words.merge_accepted : words.merge_refused;
     this.close();
     if ((await this.app.notices.report(order, done)) && accept) this.on_restored();

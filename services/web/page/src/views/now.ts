@@ -5,7 +5,7 @@ import * as format from "../format";
 import { sentence } from "../format";
 import { ellipse_of } from "../map/robot_layer";
 import { Pose, ValueName } from "../protocol";
-import { is_silent, kSilenceTick_ms, pose_of_now, with_age } from "../robot_state";
+import { is_silent, silenceTickMs, pose_of_now, with_age } from "../robot_state";
 import { texts } from "../texts";
 import { Bar, Facts, Level } from "../ui/bar";
 import { h, set_text, show } from "../ui/dom";
@@ -13,8 +13,8 @@ import { once_a_frame } from "../ui/schedule";
 import { folded, section } from "../ui/section";
 import { legend } from "./legend";
 
-const kStaleLoopStops = 60; // number of stops after which the bar of the last loop is empty
-const kMostSquares = 16384; // limit of a grid
+const staleLoopStops = 60; // number of stops after which the bar of the last loop is empty
+const mostSquares = 16384; // limit of a grid
 
 const words = texts.now;
 
@@ -64,7 +64,7 @@ export class NowView implements ViewPart {
     channels.on_table("graph", update);
     channels.on_table("rooms", update);
     app.rights.on_change(update);
-    setInterval(update, kSilenceTick_ms);
+    setInterval(update, silenceTickMs);
   }
 
   shown(visible: boolean): void {
@@ -158,7 +158,7 @@ export class NowView implements ViewPart {
     const graph = channels.table("graph").get("map");
     const squares = channels.table("tiles").size;
     this.map.set(
-      Math.log1p(squares) / Math.log1p(kMostSquares),
+      Math.log1p(squares) / Math.log1p(mostSquares),
       graph || squares > 0 ? words.map_value(graph?.nodes, graph?.branches, floor) : words.no_map,
     );
 
@@ -168,7 +168,7 @@ export class NowView implements ViewPart {
     }
     const ago = Math.max(0, this.app.map.scene.trail.size() - 1 - last);
     this.loop.set(
-      last < 0 ? 0 : 1 - ago / kStaleLoopStops,
+      last < 0 ? 0 : 1 - ago / staleLoopStops,
       last < 0 ? words.no_loop : words.loop_value(ago),
     );
 

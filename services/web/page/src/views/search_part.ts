@@ -5,8 +5,8 @@ import { texts } from "../texts";
 import { h, set_text, show } from "../ui/dom";
 
 const words = texts.understand;
-const kAbove = "search";
-const kOldMs = 5000; // after that the search has ended
+const layerAbove = "search";
+const oldMs = 5000; // after that the search has ended
 
 export class SearchPart {
   readonly element: HTMLElement;
@@ -35,12 +35,12 @@ export class SearchPart {
     const { channels, map } = this.app;
     const search = channels.value("search");
     const age_ms = performance.now() - this.heard_ms;
-    const is_new = this.visible && search !== null && age_ms < kOldMs;
+    const is_new = this.visible && search !== null && age_ms < oldMs;
     if (is_new && search) {
-      map.scene.above.set(kAbove, (context, view, palette) =>
+      map.scene.above.set(layerAbove, (context, view, palette) =>
         draw_search(context, view, search, palette),
       );
-    } else if (!map.scene.above.delete(kAbove)) {
+    } else if (!map.scene.above.delete(layerAbove)) {
       if (!search) set_text(this.state, words.no_search);
     }
     map.scene.refresh();
@@ -57,6 +57,6 @@ export class SearchPart {
       : search.matches.flatMap((match) => match.hypotheses);
     const fitness = Math.max(...hypotheses.map((hypothesis) => hypothesis[3] ?? 0), 0);
     show(this.best, hypotheses.length > 0);
-    set_text(this.best, words.search_best(fitness, age_ms >= kOldMs));
+    set_text(this.best, words.search_best(fitness, age_ms >= oldMs));
   }
 }

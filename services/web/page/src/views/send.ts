@@ -12,8 +12,8 @@ import { DrivePad } from "./drive_pad";
 import { Underway } from "./underway";
 
 const words = texts.send;
-const kPlannerTime_ms = 1000; // time until the planner has a new drawing
-const kNamedPx = 18; // a tap this near to a place selects the place
+const plannerTimeMs = 1000; // time until the planner has a new drawing
+const namedPx = 18; // a tap this near to a place selects the place
 
 interface Choice {
   goal: Goal;
@@ -83,7 +83,7 @@ export class SendView implements ViewPart {
     const rights = once_a_frame(() => this.show_rights());
     app.channels.on_value(["drawing"], () => {
       window.clearTimeout(this.replan);
-      this.replan = window.setTimeout(() => this.plan_again(), kPlannerTime_ms);
+      this.replan = window.setTimeout(() => this.plan_again(), plannerTimeMs);
     });
     app.rights.on_change(rights);
     app.channels.on_value(["navigator", "goals"], rights);
@@ -107,7 +107,7 @@ export class SendView implements ViewPart {
     if (!this.app.rights.may_write) return;
     const near = destinations(this.app.channels).find(
       (entry) =>
-        entry.is_place && Math.hypot(entry.x_m - x_m, entry.y_m - y_m) * pixels_per_m < kNamedPx,
+        entry.is_place && Math.hypot(entry.x_m - x_m, entry.y_m - y_m) * pixels_per_m < namedPx,
     );
     if (near) return this.choose(near);
     const choice: Choice = { goal: { x_m, y_m }, text: words.point(x_m, y_m), x_m, y_m };

@@ -9,7 +9,7 @@ import { KeyedList } from "../ui/list";
 
 const words = texts.understand;
 
-const kLevels: Record<string, string> = {
+const levelClasses: Record<string, string> = {
   running: "good",
   finished: "good",
   starting: "fair",
@@ -53,7 +53,7 @@ function show_service(element: HTMLElement, service: Service): void {
   const [name, state, message, facts, faults] = element.children as unknown as HTMLElement[];
   set_text(name, service.service);
   set_text(state, words.service_states[service.state] ?? service.state);
-  set_attribute(element, "data-level", kLevels[service.state] ?? "plain");
+  set_attribute(element, "data-level", levelClasses[service.state] ?? "plain");
   const waits = service.waits_for ? words.waits_for(service.waits_for) : "";
   const text = [sentence(service.message), waits].filter(Boolean).join(" ");
   set_text(message, text);

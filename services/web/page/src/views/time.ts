@@ -10,7 +10,7 @@ import { MapMerge } from "./map_merge";
 import { Versions } from "./versions";
 
 const words = texts.time;
-const kPatienceMs = 120000; // for large maps
+const patienceMs = 120000; // for large maps
 
 interface ExportFile {
   format: string;
@@ -78,7 +78,7 @@ export class TimeView implements ViewPart {
   private async download(key: string, file: string, element: HTMLButtonElement): Promise<void> {
     element.disabled = true;
     try {
-      const blob = await this.app.api.download(`/api/export/${key}`, kPatienceMs);
+      const blob = await this.app.api.download(`/api/export/${key}`, patienceMs);
       const link = h("a", { href: URL.createObjectURL(blob), download: file });
       link.click();
       window.setTimeout(() => URL.revokeObjectURL(link.href), 10000);

@@ -2,7 +2,7 @@
 import { App, ViewPart } from "../app";
 import * as format from "../format";
 import { LogEvent, Worker } from "../protocol";
-import { kSilenceTick_ms, pose_of_now, robot_state } from "../robot_state";
+import { silenceTickMs, pose_of_now, robot_state } from "../robot_state";
 import { texts } from "../texts";
 import { Bar } from "../ui/bar";
 import { h, set_attribute, set_text, show } from "../ui/dom";
@@ -14,8 +14,8 @@ import { SearchPart } from "./search_part";
 import { ServiceList } from "./service_list";
 
 const words = texts.understand;
-const kShownEvents = 200;
-const kPeriodMs = 300;
+const shownEvents = 200;
+const periodMs = 300;
 
 export class UnderstandView implements ViewPart {
   readonly element: HTMLElement;
@@ -62,13 +62,13 @@ export class UnderstandView implements ViewPart {
       folded(words.workers, true, this.no_workers, this.workers.element),
       folded(words.events, true, this.no_events, this.events.element),
     );
-    const update = at_most_every(kPeriodMs, () => this.update());
+    const update = at_most_every(periodMs, () => this.update());
     app.channels.on_value(["pose"], update);
     for (const table of ["loops", "services", "workers", "events"] as const) {
       app.channels.on_table(table, update);
     }
     app.rights.on_change(update);
-    setInterval(update, kSilenceTick_ms);
+    setInterval(update, silenceTickMs);
   }
 
   shown(visible: boolean): void {
@@ -97,7 +97,7 @@ export class UnderstandView implements ViewPart {
     this.workers.show(workers);
     const events = [...channels.table("events")].sort((a, b) => Number(b[0]) - Number(a[0]));
     show(this.no_events, events.length === 0);
-    this.events.show(events.slice(0, kShownEvents));
+    this.events.show(events.slice(0, shownEvents));
   }
 }
 

@@ -10,7 +10,7 @@ import { section } from "../ui/section";
 import { hide_difference, show_difference } from "./difference";
 
 const words = texts.time;
-const kPatienceMs = 60000; // for large maps
+const patienceMs = 60000; // for large maps
 
 export class Versions {
   readonly element: HTMLElement;
@@ -79,7 +79,7 @@ export class Versions {
 
   async update(): Promise<void> {
     try {
-      this.snapshots = (await this.app.api.get<Snapshots>("/api/snapshots", kPatienceMs)).snapshots;
+      this.snapshots = (await this.app.api.get<Snapshots>("/api/snapshots", patienceMs)).snapshots;
       this.available = true;
       set_text(this.none, words.no_snapshots);
     } catch (error) {
@@ -119,7 +119,7 @@ export class Versions {
   }
 
   private async make(): Promise<void> {
-    const order = this.app.api.post("snapshot", { name: this.name.value }, kPatienceMs);
+    const order = this.app.api.post("snapshot", { name: this.name.value }, patienceMs);
     if (!(await this.app.notices.report(order, words.made))) return;
     this.name.value = "";
     await this.update();
@@ -159,7 +159,7 @@ export class Versions {
   }
 
   private async restore(name: string, on_done: () => void): Promise<void> {
-    const order = this.app.api.post("restore", { name }, kPatienceMs);
+    const order = this.app.api.post("restore", { name }, patienceMs);
     if (!(await this.app.notices.report(order, words.restored))) return;
     on_done();
     this.close(); // its difference refers to the previous map
@@ -171,7 +171,7 @@ export class Versions {
     show(this.result, true);
     fill(this.result, h("p", { class: "quiet", role: "status" }, words.comparing));
     try {
-      const made = await this.app.api.get<Comparison>(`/api/compare?${query}`, kPatienceMs);
+      const made = await this.app.api.get<Comparison>(`/api/compare?${query}`, patienceMs);
       fill(
         this.result,
         await show_difference(this.app.map.scene, made),
