@@ -215,7 +215,7 @@ test("leaving with something unsaved is asked about", async () => {
   await choose(page, "place");
   await click(page, [1, 1]);
   await page.click("#tab-now");
-  await notice(page, /waits in the view Draw/);
+  await notice(page, /The view Draw has a drawing that is not saved/);
   const asked = page.waitForEvent("dialog");
   // The reload never ends, because the page stays.
   const reloaded = page.reload({ timeout: 2000 }).catch(() => null);
@@ -234,7 +234,7 @@ test("rooms are split, joined and renamed", async () => {
   const rooms = () => service.drawing.zones.map(({ name, kind, corners_m }) => [name, kind, corners_m[0], corners_m[2]]);
   await choose(page, "split");
   await drag(page, [-3, 2], [-3, -2]); // over the table in the middle
-  await notice(page, /The room is parted\./);
+  await notice(page, /The room is split\./);
   await saved(opened);
   assert.deepEqual(rooms(), [
     ["left room", "room", -4, -3],
@@ -244,7 +244,7 @@ test("rooms are split, joined and renamed", async () => {
   await choose(page, "join");
   await click(page, [-2, 0]);
   await click(page, [2, 0]);
-  await notice(page, /The rooms are one\./);
+  await notice(page, /The rooms are joined\./);
   await saved(opened);
   assert.deepEqual(rooms(), [["left room", "room", -4, 4]]);
   service.save_elsewhere({});

@@ -163,7 +163,7 @@ test("a map that is only shown has no snapshots, and says so", async () => {
 });
 
 test("without a robot nothing says that one was stopped or explores", async () => {
-  await text(".state", /NO ROBOT\s+No service of a robot is heard/i);
+  await text(".state", /NO ROBOT\s+The page hears no service of a robot/i);
   assert.equal(await robot.post("stop", {}), 503);
   assert.equal(await robot.post("release", {}), 202);
   assert.equal(await robot.post("release", {}), 503);
@@ -308,7 +308,7 @@ test("the search shows while it runs, and why a loop was rejected", async () => 
   const service = new TwoRooms(join(build, "share/topogeo/web"));
   const own = await open(kAddress, service);
   await own.click("#tab-understand");
-  await text(".search-state", /No search was heard/, own);
+  await text(".search-state", /The localizer has reported no search/, own);
   const covariance = [0.09, 0, 0, 0, 0.04, 0, 0, 0, 0.01];
   const table = (channel, set) => service.tell({ channel, from: 0, version: 1, set, gone: [] });
   const stops = Array.from({ length: 9 }, (_, i) => [i - 4, 0, 0]);

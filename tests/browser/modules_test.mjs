@@ -231,7 +231,7 @@ test("what the navigator does is said once", () => {
   };
   assert.equal(
     said("stopped", "paused", "paused; drives on after a resume"),
-    "Paused. It drives on after “Resume”.",
+    "The robot is paused. “Resume” lets it drive on.",
   );
   assert.equal(
     said("stopped", "base_not_ready", "the base takes no commands: halted on demand"),
@@ -239,7 +239,7 @@ test("what the navigator does is said once", () => {
   );
   assert.equal(
     said("stopped", "waits_for_route", "waits for the planner"),
-    "It waits for a route.",
+    "The robot waits for a route.",
   );
   assert.equal(
     said("relocalizing", "pose_lost", "the localizer does not track the pose: AMBIGUOUS"),
@@ -247,7 +247,7 @@ test("what the navigator does is said once", () => {
   );
   assert.equal(
     said("blocked", "obstacle", "0.4 m ahead"),
-    "Blocked. Something that is not on the map is in its way. 0.4 m ahead.",
+    "Blocked. An obstacle that is not on the map is in the way. 0.4 m ahead.",
   );
   assert.equal(said("driving", "none", "drives, 3.0 m to go"), "Driving.");
 });

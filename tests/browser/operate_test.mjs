@@ -110,22 +110,22 @@ test("an order that is not answered shows that it waits, and at the end that nob
   await page.getByRole("button", { name: "Set on the map" }).click();
   const apply = page.getByRole("button", { name: "Apply" });
   await apply.click();
-  await notice(page, /Sent, waiting for the answer/);
+  await notice(page, /The order is sent\. The page waits for the answer/);
   assert.equal(await apply.isDisabled(), true);
-  await notice(page, /Nothing has answered yet/);
+  await notice(page, /The service has not answered yet/);
   await service.answer_next(503, { error: "no localizer has answered" });
   await notice(page, /No localizer has answered/);
-  assert.equal(await page.getByText("Nothing has answered yet").count(), 0);
+  assert.equal(await page.getByText("The service has not answered yet").count(), 0);
   assert.equal(await apply.isEnabled(), true); // the numbers are unchanged
   await apply.click();
-  await notice(page, /Sent, waiting/);
+  await notice(page, /The order is sent/);
   await service.answer_next(200, { accepted: true });
   await notice(page, /The pose is set/);
-  assert.equal(await page.getByText("Sent, waiting").count(), 0);
+  assert.equal(await page.getByText("The order is sent").count(), 0);
 
   const search = page.getByRole("button", { name: "Search", exact: true });
   await search.click();
-  await notice(page, /Sent, waiting/);
+  await notice(page, /The order is sent/);
   assert.equal(await search.isDisabled(), true);
   await service.answer_next(200, { accepted: true });
   await notice(page, /The whole map is searched/);
@@ -144,7 +144,7 @@ test("why the state is what it is follows the header when poses stop", async () 
     performance.now = () => now() + 20_000;
   });
   await text(page, ".state-word", /No pose/i);
-  await text(page, ".section p", /^No pose\. No pose has come/);
+  await text(page, ".section p", /^No pose\. The page has received no pose/);
   assert.equal(await page.getByText("100 %").count(), 0);
   await end(opened);
 });
@@ -162,7 +162,7 @@ test("a rejected loop that is probable says what decided", async () => {
   await text(page, ".loops li", /Stop 8 at stop 1[^]*estimated 98 % probable; would move the stop by 0\.50 m/);
   await text(page, ".loops li", /Stop 9 at stop 1[^]*estimated 98 % probable; moves the stop by 0\.50 m/);
   await page.getByRole("button", { name: "Stop 8 at stop 1" }).click();
-  await text(page, ".loop-detail p", /probably right\. A loop needs more.*the reason above decides/);
+  await text(page, ".loop-detail p", /probably right\. The reason above rejects the loop/);
   await page.getByRole("button", { name: "Stop 9 at stop 1" }).click();
   assert.equal(await page.getByText("the reason above decides").count(), 0);
   await end(opened);
@@ -258,7 +258,7 @@ test("Space stops whatever has the focus, but in a text", async () => {
   await page.keyboard.up("w");
   await page.locator("#drive-speed").focus();
   await stops_by_space("a slider");
-  const layers = page.getByRole("button", { name: "What the map shows" });
+  const layers = page.getByRole("button", { name: "Layers of the map" });
   await layers.click();
   const box = page.locator(".layer-menu input").first();
   const checked = await box.isChecked();
@@ -346,9 +346,9 @@ test("the release of a robot with a goal says what will happen, and asks", async
   await release.click();
   await wait_for("a release without a goal", () => releases() === 1);
   service.show("goals", { current: { text: "room A" }, waiting: [], exploring: false });
-  await text(page, ".banner", /It has a goal, room A: as soon as it is released it drives there/);
+  await text(page, ".banner", /The robot is held\. It drives to room A as soon as it is released/);
   await release.click();
-  await text(page, ".banner", /Released, the robot drives at once: room A/);
+  await text(page, ".banner", /The robot drives to room A at once when it is released/);
   assert.equal(releases(), 1);
   await assert_accessible(page, "a release that asks");
   await page.getByRole("button", { name: "Keep it held" }).click();
@@ -371,11 +371,11 @@ test("after a stop, a robot of ROS is driven neither by goals nor by hand until 
   await page.click("#stop");
   await text(page, "#stop-sent", /^Stop sent, the base has not confirmed/);
   service.show("drive", { ...drive, stopped: true });
-  await text(page, ".banner", /Neither goals nor driving by hand move the robot until the release/);
+  await text(page, ".banner", /The robot obeys neither goals nor driving by hand until the release/);
   service.show("goals", { current: { text: "room A" }, waiting: [], exploring: false });
-  await text(page, ".banner", /has a goal, room A: as soon as it is released it drives there/);
+  await text(page, ".banner", /The robot drives to room A as soon as it is released/);
   await page.getByRole("button", { name: "Release", exact: true }).click();
-  await text(page, ".banner", /Released, the robot drives at once: room A/);
+  await text(page, ".banner", /The robot drives to room A at once when it is released/);
   assert.equal(service.orders.includes("release"), false);
   await page.getByRole("button", { name: "Cancel the goal, then release" }).click();
   await wait_for("the release", () => service.orders.includes("release"));
@@ -454,7 +454,7 @@ test("the keyboard alone finds its way, and sees where it is", async () => {
   const names = await page.locator(".names").boundingBox();
   assert.ok(name.x - names.x >= 5 && name.y - names.y >= 5, JSON.stringify([name, names]));
 
-  const layers = page.getByRole("button", { name: "What the map shows" });
+  const layers = page.getByRole("button", { name: "Layers of the map" });
   await layers.focus();
   await page.keyboard.press("Enter");
   await page.keyboard.press("Tab");

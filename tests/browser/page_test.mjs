@@ -129,7 +129,7 @@ test("Stop holds the robot until it is released", async () => {
   await page.click("#stop");
   await notice(page, /The robot is stopped and held/);
   await wait_for("the robot stands", stands);
-  await text(page, ".banner", /The robot is held: it does not move/); // its goal is cancelled
+  await text(page, ".banner", /The robot is held until it is released/); // its goal is cancelled
   await page.getByRole("button", { name: "Release" }).click();
   await wait_for(
     "the banner goes",

@@ -14,7 +14,7 @@ export const draw_texts = {
   clean: "Everything is saved.",
   dirty: "Not saved yet.",
   saved: "The drawing is saved.",
-  kept: "The drawing is not saved yet. It waits in the view Draw.",
+  kept: "The view Draw has a drawing that is not saved yet.",
   conflict: "Somebody else has saved the drawing meanwhile.",
   take_theirs: "Take theirs",
   save_over: "Save mine over it",
@@ -113,13 +113,13 @@ export const draw_texts = {
     none_here: "There is no room here. Tap inside a room.",
     none_along: "The line crosses no room. Drag it across one, from wall to wall.",
     save_first: "This room is not saved yet. Save the drawing first.",
-    not_parted:
-      "The line does not split the room: drag it from wall to wall. A room that forms a ring stays " +
-      "whole.",
+    not_split:
+      "The line does not split the room. Drag it from wall to wall. A line cannot split a room that " +
+      "forms a ring.",
     same_room: "Both points are in the same room.",
     not_joined: "These rooms do not meet.",
-    split: "The room is parted.",
-    joined: "The rooms are one.",
+    split: "The room is split.",
+    joined: "The rooms are joined.",
     rename: "Type the new name.",
   },
 
@@ -135,7 +135,7 @@ export const draw_texts = {
     robot_sure: "This floor replaces the robot's present drawing.",
     yes: "Yes, load it",
     no: "No",
-    no_start: "Set a base station first: the robot starts there.",
+    no_start: "Set a base station first, because the robot starts there.",
     no_walls: "Draw walls first.",
     loaded: "The floor is loaded.",
     not_offered: "This service cannot load floors.",
@@ -150,7 +150,7 @@ export const draw_texts = {
     files: "File",
     export: "Export",
     import: "Import",
-    imported: "The file is read. Undo brings back what was there.",
+    imported: "The file is read. Undo brings back the previous drawing.",
     no_json: "This file is not a drawing that this page exported.",
   },
 

@@ -21,9 +21,9 @@ export const texts = {
   },
   reasons: {
     none: "No localizer has reported a pose yet.",
-    absent: "No service of a robot is heard: only a map is shown.",
-    silent: "No pose has come for over ten seconds; the robot is shown at its last pose.",
-    offline: "The page receives nothing from the robot; the display is old.",
+    absent: "The page hears no service of a robot and shows only a map.",
+    silent: "The page has received no pose for over ten seconds and shows the last one.",
+    offline: "The page receives nothing from the robot and shows its last state.",
   },
 
   views: {
@@ -41,17 +41,17 @@ export const texts = {
   stop_title: "Stops the robot at once and holds it (Space)",
   view_only: "View only",
   view_only_title: "Open the operator's link, which has a token, to command the robot.",
-  held: "The robot is held: it does not move until it is released.",
+  held: "The robot is held until it is released.",
   held_with_goal: (goal: string) =>
-    `The robot is held. It has a goal, ${goal}: as soon as it is released it drives there.`,
+    `The robot is held. It drives to ${goal} as soon as it is released.`,
   hand_stopped:
-    "Neither goals nor driving by hand move the robot until the release. Its base confirms no stop.",
+    "The robot obeys neither goals nor driving by hand until the release. Its base does not confirm the stop.",
   hand_stopped_with_goal: (goal: string) =>
-    `The robot has a goal, ${goal}: as soon as it is released it drives there. Its base confirms no stop.`,
+    `The robot drives to ${goal} as soon as it is released. Its base does not confirm the stop.`,
   stop_sent: "Stop sent, the base has not confirmed. The robot may still move.",
   stop_moves: "Stopping: the base still moves.",
   stop_failed: (why: string) => `Stop was not accepted: ${why} The robot may still move.`,
-  release_asks: (goal: string) => `Released, the robot drives at once: ${goal}.`,
+  release_asks: (goal: string) => `The robot drives to ${goal} at once when it is released.`,
   release_and_drive: "Release and drive",
   release_and_cancel: "Cancel the goal, then release",
   keep_held: "Keep it held",
@@ -67,7 +67,7 @@ export const texts = {
     zoom_out: "Zoom out",
     fit: "Show the whole map (F)",
     follow: "Follow the robot (R)",
-    layers: "What the map shows",
+    layers: "Layers of the map",
     theme: "Dark or light",
   },
   layers: {
@@ -84,7 +84,7 @@ export const texts = {
     title: "No map yet",
     text: "The floor appears here as soon as the robot has mapped its first metres.",
     services: (names: string) => `Running services: ${names}.`,
-    no_services: "No service of a robot is heard on the network. Start one with “topogeo run”.",
+    no_services: "The page hears no service of a robot. “topogeo run” starts the services.",
   },
 
   now: {
@@ -174,7 +174,7 @@ export const texts = {
     underway: "Under way",
     idle: "The robot has no goal.",
     foreign: "The robot has a goal that was not sent from here.",
-    not_heard: "The robot's state is not known: the page receives nothing from it.",
+    not_heard: "The page receives nothing from the robot, so its state is unknown.",
     to_explore: "places that are not mapped yet",
     to_foreign: "a goal that was not sent from here",
     exploring: "The robot explores by itself.",
@@ -218,16 +218,16 @@ export const texts = {
     pose_lost: "The pose is lost.",
     no_map: "There is no map.",
     outside_map: "The robot is not on the map.",
-    obstacle: "Something that is not on the map is in its way.",
+    obstacle: "An obstacle that is not on the map is in the way.",
     no_scan: "The laser sends nothing.",
-    sonar_silent: "The sonars hear nothing, though something is near.",
+    sonar_silent: "The sonars hear nothing although an obstacle is near.",
     base_not_ready: "The base takes no commands.",
     base_stuck: "The base does not move.",
   } as Record<string, string>,
   // Reasons that need no message of the navigator.
   whole_halts: {
-    waits_for_route: "It waits for a route.",
-    paused: "Paused. It drives on after “Resume”.",
+    waits_for_route: "The robot waits for a route.",
+    paused: "The robot is paused. “Resume” lets it drive on.",
     no_odometry: "Stopped. The base sends no odometry.",
   } as Record<string, string>,
   unsure: "The pose is uncertain. The robot relocalizes before it drives.",
@@ -311,7 +311,7 @@ export const texts = {
   },
   done: {
     stop: "The robot is stopped and held.",
-    goal_held: "The robot is held: it drives there as soon as it is released.",
+    goal_held: "The robot is held. It drives there as soon as it is released.",
     release: "The robot may move again.",
     cancel: "The goal is cancelled.",
     goal: (name: string) => `On the way to ${name}.`,
@@ -322,12 +322,12 @@ export const texts = {
     pose: "The pose is set.",
     search: "The whole map is searched.",
     mode: "The mode changes.",
-    merge_accept: "The maps become one.",
+    merge_accept: "The maps are joined.",
     merge_refuse: "The maps stay apart.",
   },
   waiting: {
-    sent: "Sent, waiting for the answer …",
-    slow: "Nothing has answered yet. Still waiting …",
+    sent: "The order is sent. The page waits for the answer …",
+    slow: "The service has not answered yet. The page still waits …",
   },
   close: "Close",
 };

@@ -5,7 +5,7 @@ import { MergedMap } from "./protocol";
 export const time_texts = {
   film: "Play the drive",
   film_hint: "Replays the drive that made the map: the robot, its scans, and the floor known until then.",
-  film_note: "The drive as it was, not the robot of now",
+  film_note: "Replay of the drive, not the present robot",
   load: "Load the drive",
   fetching: (stops: number, total: number) => `Fetched ${count(stops)} of ${count(total)} stops …`,
   loading: (stops: number, total: number) => `Laid out ${count(stops)} of ${count(total)} stops …`,
@@ -30,13 +30,13 @@ export const time_texts = {
     `${when}, ${count(stops)} stops, ${(bytes / 1e6).toFixed(1)} MB`,
   restore: "Restore",
   restore_warning:
-    "The snapshot replaces the present map and leaves out data mapped since; the present map is kept " +
-    "as a snapshot. A robot under way continues in the restored map: cancel its goal first.",
+    "The snapshot replaces the present map, which is kept as another snapshot. Data mapped since is left " +
+    "out. A robot under way continues in the restored map, so cancel its goal first.",
   restore_sure: "Restore it",
   restored: "The map is restored.",
   merge: "Merge with another map",
   merge_hint:
-    "A map file (map.pb) of the same place, of this robot or another one. The page shows the " +
+    "Choose a map file (map.pb) of the same place, of this robot or another one. The page shows the " +
     "changes before you accept them.",
   merge_file: "Map file",
   merge_too_large: (name: string) => `${name} is larger than 64 MB, which is the limit here.`,

@@ -7,7 +7,7 @@ export const understand_texts = {
   loops_hint: "Places to which the robot may have come back. Choose one to see both stops.",
   loops_count: (accepted: number, rejected: number) =>
     `${count(accepted)} accepted, ${count(rejected)} rejected`,
-  no_loops: "No loop has been decided yet: the robot has not come back to an earlier place.",
+  no_loops: "The robot has not come back to an earlier place yet, so there is no loop.",
   filters: { all: "All", accepted: "Accepted", rejected: "Rejected" },
   filter_label: "Which loops",
   loop: (later: number, earlier: number) => `Stop ${later} at stop ${earlier}`,
@@ -51,11 +51,11 @@ export const understand_texts = {
   fitness: "Fitness",
   probability: "Estimated probability that it is right",
   probable_but_rejected:
-    "The match is probably right. A loop needs more, because a wrong one bends the map: the reason " +
-    "above decides.",
+    "The match is probably right. The reason above rejects the loop all the same, because a wrong loop " +
+    "bends the map.",
   share: (value: Maybe) => (typeof value === "number" ? percent(value) : "not kept"),
   overlap: "Part of the later stop's view in the earlier one's view",
-  near: "Part of that within 10 cm of its walls",
+  near: "Part of the common view within 10 cm of the earlier walls",
   moved: "Match and poses differ by",
   none: "nothing",
   moved_value: (meters: Maybe, turn: Maybe) =>
@@ -65,7 +65,7 @@ export const understand_texts = {
   search_hint:
     "Shows the localizer's present search: the rectangle that it searches, the ellipse where the " +
     "poses expect the robot (2 sigma), and the results.",
-  no_search: "No search was heard yet.",
+  no_search: "The localizer has reported no search yet.",
   search_map: (places: number, running: boolean) =>
     running && places === 0
       ? "The whole map is searched …"
@@ -76,7 +76,7 @@ export const understand_texts = {
       : `${tasks} ${tasks === 1 ? "match" : "matches"}, ${accepted} accepted.`,
   search_best: (fitness: number, old: boolean) =>
     `Best fitness ${fitness.toFixed(2)}.` +
-    (old ? " Nothing is searched until the robot has moved on a little." : ""),
+    (old ? " The next search begins when the robot has moved on a little." : ""),
   more: (n: number) => `${count(n)} earlier ones are not listed.`,
   workers: "Search workers",
   no_workers: "No worker is heard: the localizer searches in its own process.",
@@ -86,7 +86,7 @@ export const understand_texts = {
     `${count(failures)} failed`,
   draining: "finishes its tasks, then ends",
   services: "Services",
-  no_services: "No service is heard.",
+  no_services: "The page hears no service.",
   service_states: {
     starting: "starting",
     waiting: "waiting",

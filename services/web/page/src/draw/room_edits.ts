@@ -88,7 +88,7 @@ export async function split_room(
 ): Promise<Drawing> {
   const zone = await room_along(api, rooms, drawing, line);
   const shapes = await shapes_of(api, [zone], line);
-  if (shapes.length < 2) throw new RoomError(texts.draw.rooms.not_parted);
+  if (shapes.length < 2) throw new RoomError(texts.draw.rooms.not_split);
   const name = name_of(rooms, zone);
   return replace(
     drawing,
