@@ -17,7 +17,7 @@
 #include "topogeo/storage/map_document.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
-#include "server/board.hpp"
+#include "server/channel_hub.hpp"
 
 namespace topogeo::web {
 

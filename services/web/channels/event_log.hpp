@@ -5,7 +5,7 @@
 #include <mutex>
 #include <string>
 
-#include "server/board.hpp"
+#include "server/channel_hub.hpp"
 
 namespace topogeo::web {
 

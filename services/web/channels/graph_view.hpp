@@ -7,7 +7,7 @@
 #include "topogeo/service/service.hpp"
 #include "topogeo/topomap/global_map.hpp"
 
-#include "server/board.hpp"
+#include "server/channel_hub.hpp"
 
 namespace topogeo::web {
 

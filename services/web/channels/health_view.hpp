@@ -8,7 +8,7 @@
 #include "topogeo/msg/status.h"
 #include "topogeo/service/service.hpp"
 
-#include "server/board.hpp"
+#include "server/channel_hub.hpp"
 
 namespace topogeo::web {
 

@@ -19,7 +19,7 @@
 #include "topogeo/service/service.hpp"
 
 #include "channels/map_picture.hpp"
-#include "server/board.hpp"
+#include "server/channel_hub.hpp"
 
 namespace topogeo::web {
 

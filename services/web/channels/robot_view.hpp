@@ -13,7 +13,7 @@
 #include "topogeo/navigation/navigator_inputs.hpp"
 #include "topogeo/service/service.hpp"
 
-#include "server/board.hpp"
+#include "server/channel_hub.hpp"
 
 namespace topogeo::web {
 

@@ -6,7 +6,7 @@
 #include "topogeo/msg/search.h"
 #include "topogeo/service/service.hpp"
 
-#include "server/board.hpp"
+#include "server/channel_hub.hpp"
 
 namespace topogeo::web {
 

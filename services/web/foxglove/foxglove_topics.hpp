@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "server/board.hpp"
+#include "server/channel_hub.hpp"
 
 namespace topogeo::web {
 

@@ -14,7 +14,7 @@
 #include "orders/goal_list.hpp"
 #include "orders/order_text.hpp"
 #include "orders/unconfirmed_order.hpp"
-#include "server/board.hpp"
+#include "server/channel_hub.hpp"
 
 namespace topogeo::web {
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "foxglove/foxglove_feed.hpp"
-#include "server/board.hpp"
+#include "server/channel_hub.hpp"
 #include "server/page_files.hpp"
 #include "server/tally.hpp"
 #include "server/web_types.hpp"

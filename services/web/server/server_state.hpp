@@ -9,7 +9,7 @@
 
 #include "foxglove/foxglove_feed.hpp"
 #include "server/answer_thread.hpp"
-#include "server/board.hpp"
+#include "server/channel_hub.hpp"
 #include "server/page_files.hpp"
 #include "server/places.hpp"
 #include "server/rate_limit.hpp"

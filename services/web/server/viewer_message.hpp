@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "server/board.hpp"
+#include "server/channel_hub.hpp"
 
 namespace topogeo::web {
 

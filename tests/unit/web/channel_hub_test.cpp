@@ -1,4 +1,4 @@
-#include "server/board.hpp"
+#include "server/channel_hub.hpp"
 
 #include <map>
 #include <random>

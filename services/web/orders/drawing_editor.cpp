@@ -1,4 +1,4 @@
-#include "orders/drawing_desk.hpp"
+#include "orders/drawing_editor.hpp"
 
 #include <optional>
 #include <utility>

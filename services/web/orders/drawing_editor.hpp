@@ -13,7 +13,7 @@
 
 #include "orders/drawing_text.hpp"
 #include "orders/pending_requests.hpp"
-#include "server/board.hpp"
+#include "server/channel_hub.hpp"
 #include "server/web_types.hpp"
 
 namespace topogeo::web {
