@@ -35,23 +35,23 @@ WebService::WebService(service::Service& service, const ServerConfig& config, Pa
       config_(config),
       files_(std::move(files)),
       foxglove_(feed_, service.setup().config.config.local_mapper.T_robot_laser),
-      hand_(service, board_, events_, tally_, hand_hooks(), memory),
-      map_(service, board_,
+      hand_(service, hub_, events_, tally_, hand_hooks(), memory),
+      map_(service, hub_,
            [this](const std::shared_ptr<const MapPicture>& picture) { foxglove_.take(picture); }),
-      graph_(service, board_),
-      goals_(service, board_, map_, events_),
-      robot_(service, board_, events_,
+      graph_(service, hub_),
+      goals_(service, hub_, map_, events_),
+      robot_(service, hub_, events_,
              {[this](const navigation::ScanPoints& scan) { foxglove_.take(scan); },
               [this](const msg::LivePose& pose) { foxglove_.take(pose); },
               [this](const msg::NavigatorStatus& status, const messaging::SampleInfo& info) {
                 exploration_.take(status, goals_.take(status, info));
               }}),
-      drive_(service, board_, events_),
+      drive_(service, hub_, events_),
       exploration_(service, goals_, events_, robot_, [this] { return explored_floor(); }),
-      health_(service, board_, events_),
-      drawing_(service, board_, events_),
-      server_(std::make_unique<Server>(config_, board_, files_, static_cast<Backend&>(*this),
-                                       tally_, feed_)),
+      health_(service, hub_, events_),
+      drawing_(service, hub_, events_),
+      server_(std::make_unique<Server>(config_, hub_, files_, static_cast<Backend&>(*this), tally_,
+                                       feed_)),
       localizer_(service) {
   service_.subscribe<msg::Odometry>(
       [this](const msg::Odometry& odometry) { foxglove_.take(odometry); });

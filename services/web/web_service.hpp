@@ -1,8 +1,8 @@
 // Lets pages and programs observe and command a robot: DDS topics on one side, HTTP and WebSocket
 // on the other.
 //
-// Topic handlers turn messages into channels of the board, in the loop of the service; the server
-// shows the board in threads of its own and passes orders to the loop. Stop and driving by hand
+// Topic handlers turn messages into channels of the hub, in the loop of the service; the server
+// shows the hub in threads of its own and passes orders to the loop. Stop and driving by hand
 // have a dedicated thread.
 #pragma once
 
@@ -91,9 +91,9 @@ class WebService : private Backend {
   ServerConfig config_;
   PageFiles files_;
   Tally tally_;
-  Board board_;
+  ChannelHub hub_;
   FoxgloveFeed feed_;
-  EventLog events_{board_};
+  EventLog events_{hub_};
   FoxgloveView foxglove_;
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // for posted work
   HandThread hand_;
@@ -102,10 +102,10 @@ class WebService : private Backend {
   GoalSender goals_;
   RobotView robot_;
   DriveView drive_;
-  SearchView search_{service_, board_, drive_};
+  SearchView search_{service_, hub_, drive_};
   ExplorationSender exploration_;
   HealthView health_;
-  DrawingDesk drawing_;
+  DrawingEditor drawing_;
   std::shared_ptr<const planning::HybridMap> limits_of_;
   std::shared_ptr<const navigation::DrawnLimits> limits_ =
       std::make_shared<const navigation::DrawnLimits>();

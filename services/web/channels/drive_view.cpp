@@ -47,8 +47,8 @@ Json decision_json(const msg::LoopDecision& decision) {
 
 }  // namespace
 
-DriveView::DriveView(service::Service& service, Board& board, EventLog& events)
-    : board_(board), events_(events) {
+DriveView::DriveView(service::Service& service, ChannelHub& hub, EventLog& events)
+    : hub_(hub), events_(events) {
   service.subscribe<msg::TrajectorySegment>(
       [this](const msg::TrajectorySegment& segment, const messaging::SampleInfo& info) {
         on_segment(segment, info);
@@ -65,7 +65,7 @@ DriveView::DriveView(service::Service& service, Board& board, EventLog& events)
     order_heard_.clear();
     loops_numbered_since_ = 0;
     loops_ = 0;
-    board_.edit(Channel::kLoops, {}, true);
+    hub_.edit(Channel::kLoops, {}, true);
   });
   service.loop().add_timer(kTrailPeriod, [this] {
     if (std::exchange(trail_changed_, false)) show_trail();
@@ -111,7 +111,7 @@ void DriveView::show_stops(std::span<const topomap::StopPose> stops) {
       chunk = Json::array();
     }
   }
-  board_.edit(Channel::kTrail, std::move(edits), true);
+  hub_.edit(Channel::kTrail, std::move(edits), true);
 }
 
 void DriveView::show_stored(const storage::MapDocument& map) {
@@ -132,7 +132,7 @@ void DriveView::show_stored(const storage::MapDocument& map) {
     }
     edits.push_back({std::to_string(edits.size()), text_of(json)});
   }
-  board_.edit(Channel::kLoops, std::move(edits), true);
+  hub_.edit(Channel::kLoops, std::move(edits), true);
 }
 
 std::optional<topomap::StopId> DriveView::stop_at(std::size_t number) const {
@@ -155,7 +155,7 @@ void DriveView::on_decisions(const msg::LoopDecisions& message) {
   if (message.numbered_since() < loops_numbered_since_) return;
   if (message.numbered_since() > loops_numbered_since_) {
     loops_numbered_since_ = message.numbered_since();
-    board_.edit(Channel::kLoops, {}, true);
+    hub_.edit(Channel::kLoops, {}, true);
     loops_ = 0;
   }
   std::vector<Edit> edits;
@@ -170,7 +170,7 @@ void DriveView::on_decisions(const msg::LoopDecisions& message) {
     ++number;
   }
   loops_ = std::max(loops_, number);
-  board_.edit(Channel::kLoops, std::move(edits));
+  hub_.edit(Channel::kLoops, std::move(edits));
 }
 
 void DriveView::on_local_map(const msg::LocalMap& message) {
@@ -192,7 +192,7 @@ void DriveView::on_local_map(const msg::LocalMap& message) {
 void DriveView::show_local_map() {
   const topomap::LocalMap* map = last_stop_ ? heard(*last_stop_) : nullptr;
   if (map == nullptr) return;
-  board_.set(Channel::kLocalMap, text_of(local_map_json(*map, pose_of(*last_stop_))));
+  hub_.set(Channel::kLocalMap, text_of(local_map_json(*map, pose_of(*last_stop_))));
 }
 
 void DriveView::on_proposal(const msg::MergeProposal& message) {
@@ -212,7 +212,7 @@ void DriveView::on_proposal(const msg::MergeProposal& message) {
                                            {"matches", message.matches()},
                                            {"fitness", rounded(message.fitness())},
                                            {"contradicted", rounded(message.contradicted())}})}};
-  board_.edit(Channel::kMerges, std::move(edits));
+  hub_.edit(Channel::kMerges, std::move(edits));
 }
 
 }  // namespace topogeo::web

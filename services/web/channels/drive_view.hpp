@@ -1,4 +1,4 @@
-// The drive on the board: stops, loops, proposals to join maps, the last stop's local map.
+// The drive on the hub: stops, loops, proposals to join maps, the last stop's local map.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,7 @@ class DriveView {
   /// Number of received local maps that are kept.
   static constexpr std::size_t kMostHeard = 512;
 
-  DriveView(service::Service& service, Board& board, EventLog& events);
+  DriveView(service::Service& service, ChannelHub& hub, EventLog& events);
 
   /// Poses of the stops on the map.
   [[nodiscard]] std::vector<geometry::Pose2> T_map_stops() const;
@@ -54,7 +54,7 @@ class DriveView {
   void show_stops(std::span<const topomap::StopPose> stops);
   void show_local_map();
 
-  Board& board_;
+  ChannelHub& hub_;
   EventLog& events_;
   messaging::Handle localizer_{};  // writer of the trajectory
   service::TrajectoryAssembly trajectory_;

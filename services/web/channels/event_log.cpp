@@ -17,7 +17,7 @@ void EventLog::add(Level level, const std::string& source, const std::string& se
                                            {"source", source},
                                            {"text", sentence}})}};
   if (last_ > kKept) edits.push_back({std::to_string(last_ - kKept), {}});
-  board_.edit(Channel::kEvents, std::move(edits));
+  hub_.edit(Channel::kEvents, std::move(edits));
 }
 
 }  // namespace topogeo::web

@@ -15,13 +15,13 @@ class EventLog {
   enum class Level : std::uint8_t { kInfo, kWarning, kError };
   static constexpr std::uint64_t kKept = 500;
 
-  explicit EventLog(Board& board) : board_(board) {}
+  explicit EventLog(ChannelHub& hub) : hub_(hub) {}
 
   /// `source`: service or part of the robot.
   void add(Level level, const std::string& source, const std::string& sentence);
 
  private:
-  Board& board_;
+  ChannelHub& hub_;
   std::mutex mutex_;
   std::uint64_t last_ = 0;
 };

@@ -47,8 +47,8 @@ std::string branch_json(const msg::MapElement& branch) {
 
 }  // namespace
 
-GraphView::GraphView(service::Service& service, Board& board)
-    : board_(board), follower_(robot_of_map(service)) {
+GraphView::GraphView(service::Service& service, ChannelHub& hub)
+    : hub_(hub), follower_(robot_of_map(service)) {
   service.subscribe<msg::MapElement>(
       [this](const msg::MapElement& element, const SampleInfo& info) {
         if (follower_.put(element, info.instance.bytes, info.writer.bytes)) show();
@@ -76,7 +76,7 @@ void GraphView::show() {
                                        {"version", std::to_string(map.version)},
                                        {"nodes", map.nodes.size()},
                                        {"branches", map.branches.size()}})});
-  board_.edit(Channel::kGraph, std::move(edits));
+  hub_.edit(Channel::kGraph, std::move(edits));
 }
 
 std::shared_ptr<const topomap::GlobalMap> GraphView::map() {

@@ -1,4 +1,4 @@
-// Nodes and branches of the map on the board.
+// Nodes and branches of the map on the hub.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ namespace topogeo::web {
 /// Lives in the loop of its service.
 class GraphView {
  public:
-  GraphView(service::Service& service, Board& board);
+  GraphView(service::Service& service, ChannelHub& hub);
 
   /// The newest complete map, for routes; null before the first. Throws std::invalid_argument like
   /// from_elements.
@@ -23,7 +23,7 @@ class GraphView {
  private:
   void show();
 
-  Board& board_;
+  ChannelHub& hub_;
   map_client::MapFollower follower_;
   bool changed_ = false;  // since the last call of map()
   std::shared_ptr<const topomap::GlobalMap> map_;

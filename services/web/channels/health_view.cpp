@@ -41,8 +41,8 @@ Json service_json(const msg::ServiceStatus& status) {
 
 }  // namespace
 
-HealthView::HealthView(service::Service& service, Board& board, EventLog& events)
-    : board_(board), events_(events), robot_id_(service.robot_id()) {
+HealthView::HealthView(service::Service& service, ChannelHub& hub, EventLog& events)
+    : hub_(hub), events_(events), robot_id_(service.robot_id()) {
   service.subscribe<msg::ServiceStatus>(
       [this](const msg::ServiceStatus& status, const SampleInfo& info) {
         on_service(status, info);
@@ -69,7 +69,7 @@ void HealthView::on_service(const msg::ServiceStatus& status, const SampleInfo& 
     if (replaced) edits.push_back({other->first, {}});
     other = replaced ? rows_.erase(other) : std::next(other);
   }
-  board_.edit(Channel::kServices, std::move(edits));
+  hub_.edit(Channel::kServices, std::move(edits));
 }
 
 void HealthView::note(Row& row, const msg::ServiceStatus& status) {
@@ -95,7 +95,7 @@ void HealthView::on_service_gone(const SampleInfo& info) {
   if (key == keys_.end()) return;
   const auto row = rows_.find(key->second);
   if (row != rows_.end() && row->second.state == msg::kServiceStopped) {
-    board_.edit(Channel::kServices, {{key->second, {}}});
+    hub_.edit(Channel::kServices, {{key->second, {}}});
     rows_.erase(row);
   } else if (row != rows_.end()) {
     row->second.lost = true;
@@ -103,7 +103,7 @@ void HealthView::on_service_gone(const SampleInfo& info) {
     // Includes all fields that pages expect.
     Json lost = service_json(row->second.last);
     lost["state"] = "lost";
-    board_.edit(Channel::kServices, {{key->second, text_of(lost)}});
+    hub_.edit(Channel::kServices, {{key->second, text_of(lost)}});
   }
   keys_.erase(key);
 }
@@ -118,21 +118,21 @@ bool HealthView::runs(const std::string& service) const {
 void HealthView::on_worker(const msg::WorkerStatus& status, const SampleInfo& info) {
   const std::string key = text_of_message(status.worker_id());
   workers_[info.instance] = key;
-  board_.edit(Channel::kWorkers, {{key, text_of(Json{{"name", text_of_message(status.name())},
-                                                     {"host", text_of_message(status.host())},
-                                                     {"slots", status.slots()},
-                                                     {"in_hand", status.tasks_in_hand()},
-                                                     {"load", rounded(status.load())},
-                                                     {"tasks_per_s", rounded(status.tasks_per_s())},
-                                                     {"tasks_done", status.tasks_done()},
-                                                     {"failures", status.failures()},
-                                                     {"draining", status.draining()}})}});
+  hub_.edit(Channel::kWorkers, {{key, text_of(Json{{"name", text_of_message(status.name())},
+                                                   {"host", text_of_message(status.host())},
+                                                   {"slots", status.slots()},
+                                                   {"in_hand", status.tasks_in_hand()},
+                                                   {"load", rounded(status.load())},
+                                                   {"tasks_per_s", rounded(status.tasks_per_s())},
+                                                   {"tasks_done", status.tasks_done()},
+                                                   {"failures", status.failures()},
+                                                   {"draining", status.draining()}})}});
 }
 
 void HealthView::on_worker_gone(const SampleInfo& info) {
   const auto key = workers_.find(info.instance);
   if (key == workers_.end()) return;
-  board_.edit(Channel::kWorkers, {{key->second, {}}});
+  hub_.edit(Channel::kWorkers, {{key->second, {}}});
   workers_.erase(key);
 }
 

@@ -1,4 +1,4 @@
-// Services and search workers on the board.
+// Services and search workers on the hub.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ class EventLog;
 /// Lives in the loop of its service.
 class HealthView {
  public:
-  HealthView(service::Service& service, Board& board, EventLog& events);
+  HealthView(service::Service& service, ChannelHub& hub, EventLog& events);
 
   /// Whether a service of that name runs for the robot.
   [[nodiscard]] bool runs(const std::string& service) const;
@@ -37,7 +37,7 @@ class HealthView {
   void on_worker_gone(const messaging::SampleInfo& info);
   void note(Row& row, const msg::ServiceStatus& status);
 
-  Board& board_;
+  ChannelHub& hub_;
   EventLog& events_;
   std::string robot_id_;
   std::map<std::string, Row> rows_;  // by the channel's key

@@ -98,8 +98,8 @@ std::string without_capitals(std::string_view text) {
 
 }  // namespace
 
-MapView::MapView(service::Service& service, Board& board, OnShown on_shown)
-    : service_(service), board_(board), on_shown_(std::move(on_shown)) {
+MapView::MapView(service::Service& service, ChannelHub& hub, OnShown on_shown)
+    : service_(service), hub_(hub), on_shown_(std::move(on_shown)) {
   service.subscribe<msg::GridTile>(
       [this](const msg::GridTile& tile, const SampleInfo& info) { put(tile, info); },
       {.of_map = true},
@@ -200,7 +200,7 @@ void MapView::show_frame(const std::string& frame) {
   json["x_m"] = exact(T_map_grid.x_m);
   json["y_m"] = exact(T_map_grid.y_m);
   json["theta_rad"] = exact(T_map_grid.theta_rad);
-  board_.set(Channel::kMap, text_of(json));
+  hub_.set(Channel::kMap, text_of(json));
 }
 
 void MapView::show_tiles(const std::vector<std::shared_ptr<const GridSquare>>& squares, bool anew) {
@@ -209,8 +209,8 @@ void MapView::show_tiles(const std::vector<std::shared_ptr<const GridSquare>>& s
     if (!squares[number]->is_known()) continue;
     edits.push_back({std::to_string(number), std::to_string(squares[number]->version)});
   }
-  if (anew) board_.edit(Channel::kTiles, {}, true);
-  board_.edit(Channel::kTiles, std::move(edits), true);
+  if (anew) hub_.edit(Channel::kTiles, {}, true);
+  hub_.edit(Channel::kTiles, std::move(edits), true);
 }
 
 void MapView::show_rooms(const MapPicture& picture, const std::vector<std::uint8_t>& colors) {
@@ -229,7 +229,7 @@ void MapView::show_rooms(const MapPicture& picture, const std::vector<std::uint8
                                                         {"y_m", rounded(middle_m.y())},
                                                         {"color", colors[zone]}})});
   }
-  board_.edit(Channel::kRooms, std::move(edits), true);
+  hub_.edit(Channel::kRooms, std::move(edits), true);
 }
 
 void MapView::show_drawing() {
@@ -240,7 +240,7 @@ void MapView::show_drawing() {
     places.push_back({text_of_message(place.name()),
                       text_of(Json{{"x_m", rounded(at_m.x())}, {"y_m", rounded(at_m.y())}})});
   }
-  board_.edit(Channel::kPlaces, std::move(places), true);
+  hub_.edit(Channel::kPlaces, std::move(places), true);
   std::vector<Edit> rules;
   for (const msg::HybridRule& rule : summary_->rules()) {
     if (rule.kind() >= planning::kZoneKinds) continue;  // walls and the like are in the drawing
@@ -254,7 +254,7 @@ void MapView::show_drawing() {
                                                     {"value", exact(rule.value())},
                                                     {"corners_m", std::move(corners)}})});
   }
-  board_.edit(Channel::kRules, std::move(rules), true);
+  hub_.edit(Channel::kRules, std::move(rules), true);
 }
 
 std::optional<NamedPoint> MapView::find(std::string_view name) const {

@@ -1,4 +1,4 @@
-// The hybrid map on the board: grid, rooms, places, rules, its pictures, and the map itself for
+// The hybrid map on the hub: grid, rooms, places, rules, its pictures, and the map itself for
 // routes.
 #pragma once
 
@@ -44,7 +44,7 @@ class MapView {
  public:
   /// `on_shown` gets each version shown; may be empty.
   using OnShown = std::function<void(const std::shared_ptr<const MapPicture>&)>;
-  MapView(service::Service& service, Board& board, OnShown on_shown = {});
+  MapView(service::Service& service, ChannelHub& hub, OnShown on_shown = {});
 
   /// Null before the first complete map. Thread-safe.
   [[nodiscard]] std::shared_ptr<const ShownMap> shown() const;
@@ -65,7 +65,7 @@ class MapView {
   void show_drawing();
 
   service::Service& service_;
-  Board& board_;
+  ChannelHub& hub_;
   OnShown on_shown_;
   service::HybridMapMirror mirror_;
   std::map<std::uint32_t, std::shared_ptr<const GridSquare>> squares_;

@@ -30,8 +30,8 @@ Level level_of(msg::LocalizationState state) {
 
 }  // namespace
 
-RobotView::RobotView(service::Service& service, Board& board, EventLog& events, RobotHooks hooks)
-    : board_(board), events_(events), hooks_(std::move(hooks)), service_(service) {
+RobotView::RobotView(service::Service& service, ChannelHub& hub, EventLog& events, RobotHooks hooks)
+    : hub_(hub), events_(events), hooks_(std::move(hooks)), service_(service) {
   service.subscribe<msg::LivePose>(
       [this](const msg::LivePose& pose, const messaging::SampleInfo& info) {
         on_pose(pose, info.stamp_ns);
@@ -68,7 +68,7 @@ void RobotView::on_pose(const msg::LivePose& pose, std::int64_t sent_ns) {
   json["reason"] = reason_of(pose.state());
   json["sent_s"] = seconds(sent_ns);
   json["heard_s"] = seconds(support::wall_clock_ns());
-  board_.set(Channel::kPose, text_of(json));
+  hub_.set(Channel::kPose, text_of(json));
   show_scan();
 }
 
@@ -97,7 +97,7 @@ void RobotView::show_scan() {
   if (pose_ && is_located(pose_->state()) && support::monotonic_s() - pose_came_s_ < kPoseAge_s) {
     set_pose(json, service::from_msg(pose_->T_map_robot()));
   }
-  board_.set(Channel::kScan, text_of(json));
+  hub_.set(Channel::kScan, text_of(json));
   scan_.reset();
 }
 
@@ -115,7 +115,7 @@ void RobotView::on_navigator(const msg::NavigatorStatus& status,
     }
     navigator_state_ = status.state();
   }
-  if (service::goal_has_ended(status)) board_.set(Channel::kRoute, "null");
+  if (service::goal_has_ended(status)) hub_.set(Channel::kRoute, "null");
   const Json json = {{"state", name_of(status.state())},
                      {"reason", name_of(status.reason())},
                      {"message", message},
@@ -129,7 +129,7 @@ void RobotView::on_navigator(const msg::NavigatorStatus& status,
                      {"detours", status.detours()},
                      {"routes", status.routes()},
                      {"guard_stops", status.guard_stops()}};
-  board_.set(Channel::kNavigator, text_of(json));
+  hub_.set(Channel::kNavigator, text_of(json));
 }
 
 void RobotView::on_route(const msg::Route& route) {
@@ -152,7 +152,7 @@ void RobotView::on_route(const msg::Route& route) {
   if (!found) {
     events_.add(Level::kWarning, "planner", "no route: " + text_of_message(route.message()));
   }
-  board_.set(Channel::kRoute, text_of(json));
+  hub_.set(Channel::kRoute, text_of(json));
 }
 
 void RobotView::on_base(const msg::BaseStatus& status) {
@@ -165,12 +165,12 @@ void RobotView::on_base(const msg::BaseStatus& status) {
                 std::string(name_of(status.state())) + (reason.empty() ? "" : ": " + reason));
   }
   base_state_ = status.state();
-  board_.set(Channel::kBase, text_of(Json{{"state", name_of(status.state())},
-                                          {"reason", reason},
-                                          {"commands_taken", status.commands_taken()},
-                                          {"stands", status.stands()},
-                                          {"battery_v", rounded(status.battery_v())},
-                                          {"battery_low", status.battery_low()}}));
+  hub_.set(Channel::kBase, text_of(Json{{"state", name_of(status.state())},
+                                        {"reason", reason},
+                                        {"commands_taken", status.commands_taken()},
+                                        {"stands", status.stands()},
+                                        {"battery_v", rounded(status.battery_v())},
+                                        {"battery_low", status.battery_low()}}));
 }
 
 void RobotView::on_laser(const msg::LaserStatus& status) {
@@ -181,16 +181,16 @@ void RobotView::on_laser(const msg::LaserStatus& status) {
                 std::string(name_of(status.state())) + (reason.empty() ? "" : ": " + reason));
   }
   laser_state_ = status.state();
-  board_.set(Channel::kLaser, text_of(Json{{"state", name_of(status.state())},
-                                           {"reason", reason},
-                                           {"scans_per_s", rounded(status.scans_per_s())}}));
+  hub_.set(Channel::kLaser, text_of(Json{{"state", name_of(status.state())},
+                                         {"reason", reason},
+                                         {"scans_per_s", rounded(status.scans_per_s())}}));
 }
 
 void RobotView::on_truth(const msg::GroundTruth& truth) {
   Json json = Json::object();
   set_pose(json, service::from_msg(truth.T_world_robot()));
   json["collisions"] = truth.collisions();
-  board_.set(Channel::kTruth, text_of(json));
+  hub_.set(Channel::kTruth, text_of(json));
 }
 
 }  // namespace topogeo::web

@@ -1,4 +1,4 @@
-// The robot on the board: pose, scan, activity, route, devices.
+// The robot on the hub: pose, scan, activity, route, devices.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ struct RobotHooks {
 /// Lives in the loop of its service.
 class RobotView {
  public:
-  RobotView(service::Service& service, Board& board, EventLog& events, RobotHooks hooks = {});
+  RobotView(service::Service& service, ChannelHub& hub, EventLog& events, RobotHooks hooks = {});
 
   /// The newest pose; it is meaningful only in TRACKING and AMBIGUOUS.
   [[nodiscard]] const std::optional<msg::LivePose>& pose() const { return pose_; }
@@ -46,7 +46,7 @@ class RobotView {
   void on_laser(const msg::LaserStatus& status);
   void on_truth(const msg::GroundTruth& truth);
 
-  Board& board_;
+  ChannelHub& hub_;
   EventLog& events_;
   RobotHooks hooks_;
   service::Service& service_;

@@ -48,8 +48,8 @@ Json match_json(const msg::SearchedMatch& match, const geometry::Pose2& T_map_ba
 
 }  // namespace
 
-SearchView::SearchView(service::Service& service, Board& board, const DriveView& drive)
-    : board_(board), drive_(drive) {
+SearchView::SearchView(service::Service& service, ChannelHub& hub, const DriveView& drive)
+    : hub_(hub), drive_(drive) {
   service.subscribe<msg::Search>([this](const msg::Search& search) { newest_ = search; },
                                  {.of_map = true});
   service.loop().add_timer(kSearchDelay, [this] {
@@ -63,13 +63,13 @@ void SearchView::show(const msg::Search& search) {
     const auto T_map_base = drive_.pose_of(service::from_msg(match.base()));
     if (T_map_base) matches.push_back(match_json(match, *T_map_base));
   }
-  board_.set(Channel::kSearch,
-             text_of(Json{{"stamp_s", seconds(search.stamp_ns())},
-                          {"tasks", search.tasks()},
-                          {"running", search.running()},
-                          {"whole_map", search.whole_map()},
-                          {"matches", std::move(matches)},
-                          {"hypotheses", hypotheses_json(search.hypotheses(), {})}}));
+  hub_.set(Channel::kSearch,
+           text_of(Json{{"stamp_s", seconds(search.stamp_ns())},
+                        {"tasks", search.tasks()},
+                        {"running", search.running()},
+                        {"whole_map", search.whole_map()},
+                        {"matches", std::move(matches)},
+                        {"hypotheses", hypotheses_json(search.hypotheses(), {})}}));
 }
 
 }  // namespace topogeo::web

@@ -1,4 +1,4 @@
-// The current search of the localizer, on the board.
+// The current search of the localizer, on the hub.
 #pragma once
 
 #include <optional>
@@ -17,12 +17,12 @@ class SearchView {
  public:
   /// `drive` gives the poses of stops to which hypotheses are relative; it must outlive this
   /// object.
-  SearchView(service::Service& service, Board& board, const DriveView& drive);
+  SearchView(service::Service& service, ChannelHub& hub, const DriveView& drive);
 
  private:
   void show(const msg::Search& search);
 
-  Board& board_;
+  ChannelHub& hub_;
   const DriveView& drive_;
   std::optional<msg::Search> newest_;  // not yet shown
 };

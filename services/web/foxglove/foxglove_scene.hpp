@@ -1,4 +1,4 @@
-// Converts messages of the board's channels for Foxglove: drawn objects become scene entities,
+// Converts messages of the hub's channels for Foxglove: drawn objects become scene entities,
 // events become a log.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace topogeo::web {
 
-/// `update`: a whole message of `channel` from the board. Returns one foxglove.SceneUpdate, or for
+/// `update`: a whole message of `channel` from the hub. Returns one foxglove.SceneUpdate, or for
 /// Channel::kEvents a foxglove.Log per event, in order. An entity's id is its key in the table.
 /// `now_ns` stamps objects without a time of their own. Throws std::invalid_argument for a channel
 /// without a topic.

@@ -22,7 +22,7 @@ struct FoxgloveTopic {
   std::string_view name;
   std::string_view schema;         ///< "foxglove.Grid"
   std::optional<LiveTopic> live;   ///< source: the service itself ...
-  std::optional<Channel> channel;  ///< ... or a channel of the board
+  std::optional<Channel> channel;  ///< ... or a channel of the hub
   double shortest_period_s = 0.0;  ///< between two messages to one client
 };
 

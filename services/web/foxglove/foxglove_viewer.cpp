@@ -55,7 +55,7 @@ Watcher::Made live_frames(std::uint32_t id, const LiveMessage& message) {
   return {{frame_of(message_data(id, message.time_ns, *message.json))}, message.version};
 }
 
-Watcher::Made board_frames(std::uint32_t id, Channel channel, const Update& update) {
+Watcher::Made hub_frames(std::uint32_t id, Channel channel, const Update& update) {
   const std::int64_t now_ns = support::wall_clock_ns();
   Watcher::Made made;
   made.version = update.version;
@@ -163,7 +163,7 @@ std::string FoxgloveViewer::refusal(const std::string& sentence, std::string_vie
 }
 
 std::uint64_t FoxgloveViewer::version_of(const FoxgloveTopic& topic) const {
-  return topic.live ? state().feed.version(*topic.live) : state().board.version(*topic.channel);
+  return topic.live ? state().feed.version(*topic.live) : state().hub.version(*topic.channel);
 }
 
 bool FoxgloveViewer::is_due(const Subscription& subscription) const {
@@ -190,8 +190,8 @@ Watcher::Work FoxgloveViewer::next_work() {
     };
   }
   return
-      [id = id, &board = state().board, channel = *subscription.topic->channel,
-       held = subscription.held] { return board_frames(id, channel, board.update(channel, held)); };
+      [id = id, &hub = state().hub, channel = *subscription.topic->channel,
+       held = subscription.held] { return hub_frames(id, channel, hub.update(channel, held)); };
 }
 
 void FoxgloveViewer::on_made(std::uint64_t version) {

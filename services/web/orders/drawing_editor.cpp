@@ -17,9 +17,9 @@ constexpr double kDrawingPatience_s = 5.0;
 
 }  // namespace
 
-DrawingDesk::DrawingDesk(service::Service& service, Board& board, EventLog& events)
+DrawingEditor::DrawingEditor(service::Service& service, ChannelHub& hub, EventLog& events)
     : service_(service),
-      board_(board),
+      hub_(hub),
       events_(events),
       client_id_(support::process_name()),
       pending_(std::in_place, service, "no answer: the map store or the simulator does not run",
@@ -32,18 +32,18 @@ DrawingDesk::DrawingDesk(service::Service& service, Board& board, EventLog& even
       [this](const msg::DrawingAnswer& answer) { on_answer(answer); }, {.any_robot = true});
 }
 
-const std::string& DrawingDesk::map_robot() const {
+const std::string& DrawingEditor::map_robot() const {
   const std::string& other = service_.setup().options.map_robot;
   return other.empty() ? service_.robot_id() : other;
 }
 
-Answer DrawingDesk::shown() const {
+Answer DrawingEditor::shown() const {
   const std::scoped_lock lock(mutex_);
   if (!json_) return error_answer(503, "no map store has published a drawing yet");
   return {200, *json_};
 }
 
-void DrawingDesk::on_state(const msg::DrawingState& state) {
+void DrawingEditor::on_state(const msg::DrawingState& state) {
   storage::MapDrawing drawing = service::from_msg(state.content());
   drawing.version = version_ = state.version();
   auto json = std::make_shared<const std::string>(text_of(json_of(drawing)));
@@ -51,12 +51,12 @@ void DrawingDesk::on_state(const msg::DrawingState& state) {
     const std::scoped_lock lock(mutex_);
     json_ = std::move(json);
   }
-  board_.set(Channel::kDrawing, text_of(Json{{"version", std::to_string(state.version())}}));
+  hub_.set(Channel::kDrawing, text_of(Json{{"version", std::to_string(state.version())}}));
 }
 
 template <class Order>
-void DrawingDesk::send(Order order, messaging::Writer<Order>& writer, const std::string& robot_id,
-                       const Respond& respond) {
+void DrawingEditor::send(Order order, messaging::Writer<Order>& writer, const std::string& robot_id,
+                         const Respond& respond) {
   messaging::set_header(order, robot_id, support::wall_clock_ns(), sent_++);
   messaging::set_client_id(order, client_id_);
   pending_->begin(
@@ -68,7 +68,7 @@ void DrawingDesk::send(Order order, messaging::Writer<Order>& writer, const std:
       [&writer] { return writer.matched() > 0; });
 }
 
-void DrawingDesk::replace(const std::string& body, const Respond& respond) {
+void DrawingEditor::replace(const std::string& body, const Respond& respond) {
   const storage::MapDrawing drawing = parse_drawing(body);
   msg::DrawingOrder order;
   order.kind(msg::kDrawingReplace);
@@ -77,7 +77,7 @@ void DrawingDesk::replace(const std::string& body, const Respond& respond) {
   send(std::move(order), orders_, map_robot(), respond);
 }
 
-void DrawingDesk::load_floor(const std::string& body, const Respond& respond) {
+void DrawingEditor::load_floor(const std::string& body, const Respond& respond) {
   const FloorText floor = parse_floor(body);
   if (floor.simulator) {
     load_into_simulator(floor, respond);
@@ -86,7 +86,7 @@ void DrawingDesk::load_floor(const std::string& body, const Respond& respond) {
   }
 }
 
-void DrawingDesk::load_into_map(const FloorText& floor, const Respond& respond) {
+void DrawingEditor::load_into_map(const FloorText& floor, const Respond& respond) {
   msg::DrawingOrder order;
   order.kind(msg::kDrawingFloor);
   order.version(version_);
@@ -98,7 +98,7 @@ void DrawingDesk::load_into_map(const FloorText& floor, const Respond& respond) 
   });
 }
 
-void DrawingDesk::load_into_simulator(const FloorText& floor, const Respond& respond) {
+void DrawingEditor::load_into_simulator(const FloorText& floor, const Respond& respond) {
   if (!takes_floors()) {
     respond(
         error_answer(409, "the robot is not simulated, or its simulator does not accept floors"));
@@ -113,7 +113,7 @@ void DrawingDesk::load_into_simulator(const FloorText& floor, const Respond& res
   });
 }
 
-void DrawingDesk::on_answer(const msg::DrawingAnswer& answer) {
+void DrawingEditor::on_answer(const msg::DrawingAnswer& answer) {
   if (!pending_ || answer.client_id() != client_id_.c_str()) return;
   const std::optional<Respond> respond = pending_->take(answer.request_id());
   if (!respond) return;

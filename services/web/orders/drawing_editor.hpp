@@ -21,9 +21,9 @@ namespace topogeo::web {
 class EventLog;
 
 /// Lives in the loop of its service, except shown() and takes_floors().
-class DrawingDesk {
+class DrawingEditor {
  public:
-  DrawingDesk(service::Service& service, Board& board, EventLog& events);
+  DrawingEditor(service::Service& service, ChannelHub& hub, EventLog& events);
 
   /// Answer to GET /api/drawing. Thread-safe.
   [[nodiscard]] Answer shown() const;
@@ -47,7 +47,7 @@ class DrawingDesk {
   [[nodiscard]] const std::string& map_robot() const;
 
   service::Service& service_;
-  Board& board_;
+  ChannelHub& hub_;
   EventLog& events_;
   std::string client_id_;
   std::optional<PendingRequests> pending_;

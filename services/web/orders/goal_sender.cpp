@@ -32,10 +32,10 @@ Json goal_json(const Goal& goal) {
 
 }  // namespace
 
-GoalSender::GoalSender(service::Service& service, Board& board, const MapView& map,
+GoalSender::GoalSender(service::Service& service, ChannelHub& hub, const MapView& map,
                        EventLog& events)
     : service_(service),
-      board_(board),
+      hub_(hub),
       map_(map),
       events_(events),
       client_id_(support::process_name()),
@@ -179,7 +179,7 @@ void GoalSender::show() {
                {"exploring", exploring_},
                {"pausing", is_pausing()}};
   if (list_.current()) json["current"] = goal_json(*list_.current());
-  board_.set(Channel::kGoals, text_of(json));
+  hub_.set(Channel::kGoals, text_of(json));
 }
 
 }  // namespace topogeo::web

@@ -23,7 +23,7 @@ class EventLog;
 /// Lives in the loop of its service.
 class GoalSender {
  public:
-  GoalSender(service::Service& service, Board& board, const MapView& map, EventLog& events);
+  GoalSender(service::Service& service, ChannelHub& hub, const MapView& map, EventLog& events);
 
   /// Returns the id of the first of these goals. Ends a pause, unless they only wait. Throws
   /// std::invalid_argument naming an unknown place, or if no navigator was heard; nothing has
@@ -62,7 +62,7 @@ class GoalSender {
   void show();
 
   service::Service& service_;
-  Board& board_;
+  ChannelHub& hub_;
   const MapView& map_;
   EventLog& events_;
   std::string client_id_;

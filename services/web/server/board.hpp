@@ -1,4 +1,10 @@
-// The former header of channel_hub.hpp, for files that still include it.
+// The former name of ChannelHub, for the senders of orders by hand.
 #pragma once
 
 #include "server/channel_hub.hpp"
+
+namespace topogeo::web {
+
+using Board = ChannelHub;
+
+}  // namespace topogeo::web

@@ -50,12 +50,12 @@ bool is_table(Channel channel) {
   return kInfo.at(static_cast<std::size_t>(channel)).table;
 }
 
-void Board::on_change(std::function<void(Channel)> handler) {
+void ChannelHub::on_change(std::function<void(Channel)> handler) {
   const std::scoped_lock lock(mutex_);
   on_change_ = std::move(handler);
 }
 
-void Board::report(Channel channel) {
+void ChannelHub::report(Channel channel) {
   std::function<void(Channel)> handler;
   {
     const std::scoped_lock lock(mutex_);
@@ -64,7 +64,7 @@ void Board::report(Channel channel) {
   if (handler) handler(channel);
 }
 
-void Board::set(Channel channel, std::string json) {
+void ChannelHub::set(Channel channel, std::string json) {
   {
     const std::scoped_lock lock(mutex_);
     State& now = state(channel);
@@ -78,7 +78,7 @@ void Board::set(Channel channel, std::string json) {
   report(channel);
 }
 
-std::string Board::ages_s() const {
+std::string ChannelHub::ages_s() const {
   const std::scoped_lock lock(mutex_);
   const double now_s = clock_s_();
   Json ages = Json::object();
@@ -90,7 +90,7 @@ std::string Board::ages_s() const {
   return text_of(ages);
 }
 
-void Board::edit(Channel channel, std::vector<Edit> edits, bool anew) {
+void ChannelHub::edit(Channel channel, std::vector<Edit> edits, bool anew) {
   {
     const std::scoped_lock lock(mutex_);
     if (!apply(state(channel), edits, anew)) return;
@@ -99,7 +99,7 @@ void Board::edit(Channel channel, std::vector<Edit> edits, bool anew) {
   report(channel);
 }
 
-bool Board::apply(State& state, std::vector<Edit>& edits, bool anew) {
+bool ChannelHub::apply(State& state, std::vector<Edit>& edits, bool anew) {
   if (anew) {
     std::set<std::string_view> kept;
     for (const Edit& edit : edits) kept.insert(edit.key);
@@ -133,15 +133,15 @@ bool Board::apply(State& state, std::vector<Edit>& edits, bool anew) {
   return true;
 }
 
-std::uint64_t Board::version(Channel channel) const {
+std::uint64_t ChannelHub::version(Channel channel) const {
   return versions_.at(static_cast<std::size_t>(channel));
 }
 
-void Board::show_version(Channel channel) {
+void ChannelHub::show_version(Channel channel) {
   versions_.at(static_cast<std::size_t>(channel)) = state(channel).version;
 }
 
-Update Board::update(Channel channel, std::uint64_t held) const {
+Update ChannelHub::update(Channel channel, std::uint64_t held) const {
   constexpr std::size_t kKept = 8;
   const std::scoped_lock lock(mutex_);
   const State& now = state(channel);
@@ -156,7 +156,7 @@ Update Board::update(Channel channel, std::uint64_t held) const {
   return {made->second, now.version};
 }
 
-std::string Board::text(Channel channel, const State& state, std::uint64_t from) {
+std::string ChannelHub::text(Channel channel, const State& state, std::uint64_t from) {
   std::string out = head(channel);
   if (!is_table(channel)) {
     return out + R"(,"version":)" + std::to_string(state.version) + R"(,"value":)" + state.value +

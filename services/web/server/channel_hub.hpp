@@ -1,7 +1,7 @@
 // The state shown to viewers: channels, each a value or a table of objects, with versions that let
 // a returning viewer get exactly the changes it lacks.
 //
-// Viewers pull: the board keeps the newest state and no messages, so that a slow viewer costs
+// Viewers pull: the hub keeps the newest state and no messages, so that a slow viewer costs
 // nothing. A message joins all changes since the version that a viewer holds; viewers with the same
 // version share one text.
 #pragma once
@@ -75,14 +75,14 @@ struct Update {
 };
 
 /// Thread-safe.
-class Board {
+class ChannelHub {
  public:
   /// Largest number of removed keys remembered per table; a viewer that has missed more gets the
   /// whole table.
   static constexpr std::size_t kRemembered = 4096;
 
   /// `clock_s`: seconds from any start, never going back; gives the ages of values.
-  explicit Board(std::function<double()> clock_s = support::monotonic_s)
+  explicit ChannelHub(std::function<double()> clock_s = support::monotonic_s)
       : clock_s_(std::move(clock_s)) {}
 
   /// Calls `on_change` after each change, in the thread that made it, without holding a lock.

@@ -46,14 +46,14 @@ void ServerState::show_viewers() {
 
 void ServerState::show(Channel channel, std::string json) {
   answers.post(AnswerThread::Turn::kFirst, [this, channel, json = std::move(json)]() mutable {
-    board.set(channel, std::move(json));
+    hub.set(channel, std::move(json));
   });
 }
 
 struct Server::Impl {
-  Impl(const ServerConfig& config, Board& board, const PageFiles& files, Backend& backend,
+  Impl(const ServerConfig& config, ChannelHub& hub, const PageFiles& files, Backend& backend,
        Tally& tally, FoxgloveFeed& feed)
-      : state{config, board, files, backend, tally, feed},
+      : state{config, hub, files, backend, tally, feed},
         acceptor(context),
         retry(context),
         timer(context) {}
@@ -131,10 +131,10 @@ void Server::Impl::take(asio::ip::tcp::socket socket) {
 }
 
 void Server::Impl::tick() {
-  state.answers.post(AnswerThread::Turn::kFirst, [&board = state.board] {
+  state.answers.post(AnswerThread::Turn::kFirst, [&hub = state.hub] {
     const double time_s = static_cast<double>(support::wall_clock_ns()) / 1e9;
-    board.set(Channel::kTime,
-              fmt::format(R"({{"time_s":{:.3f},"ages_s":{}}})", time_s, board.ages_s()));
+    hub.set(Channel::kTime,
+            fmt::format(R"({{"time_s":{:.3f},"ages_s":{}}})", time_s, hub.ages_s()));
   });
   timer.expires_after(kTimePeriod);
   timer.async_wait([this](beast::error_code error) {
@@ -151,13 +151,13 @@ void Server::Impl::wake() {
   });
 }
 
-Server::Server(const ServerConfig& config, Board& board, const PageFiles& files, Backend& backend,
-               Tally& tally, FoxgloveFeed& feed)
-    : impl_(std::make_unique<Impl>(config, board, files, backend, tally, feed)) {
+Server::Server(const ServerConfig& config, ChannelHub& hub, const PageFiles& files,
+               Backend& backend, Tally& tally, FoxgloveFeed& feed)
+    : impl_(std::make_unique<Impl>(config, hub, files, backend, tally, feed)) {
   impl_->use_certificate();
   impl_->listen();
   port_ = impl_->acceptor.local_endpoint().port();
-  board.on_change([impl = impl_.get()](Channel) { impl->wake(); });
+  hub.on_change([impl = impl_.get()](Channel) { impl->wake(); });
   feed.on_change([impl = impl_.get()] { impl->wake(); });
   impl_->accept();
   impl_->tick();
@@ -165,7 +165,7 @@ Server::Server(const ServerConfig& config, Board& board, const PageFiles& files,
 }
 
 Server::~Server() {
-  impl_->state.board.on_change({});
+  impl_->state.hub.on_change({});
   impl_->state.feed.on_change({});
   impl_->context.stop();
   impl_->thread.join();

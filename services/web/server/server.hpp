@@ -16,7 +16,7 @@ class Server {
  public:
   /// All references must outlive it. Throws std::runtime_error naming address, port or file when it
   /// cannot listen or cannot use the certificate.
-  Server(const ServerConfig& config, Board& board, const PageFiles& files, Backend& backend,
+  Server(const ServerConfig& config, ChannelHub& hub, const PageFiles& files, Backend& backend,
          Tally& tally, FoxgloveFeed& feed);
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;

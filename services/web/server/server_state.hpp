@@ -43,7 +43,7 @@ struct ServerState {
   static constexpr std::size_t kMostPeers = 1024;      ///< remembered without connections
 
   ServerConfig config;
-  Board& board;
+  ChannelHub& hub;
   const PageFiles& files;
   Backend& backend;
   Tally& tally;
@@ -62,7 +62,7 @@ struct ServerState {
   }
   /// Publishes the number of viewers.
   void show_viewers();
-  /// Sets a value of the board from the answer thread, because the board's lock may be held for
+  /// Sets a value of the hub from the answer thread, because the hub's lock may be held for
   /// long.
   void show(Channel channel, std::string json);
 

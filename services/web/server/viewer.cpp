@@ -104,7 +104,7 @@ void Viewer::hello(const ViewerMessage& message) {
   control(welcome.dump());
   if (message.life == state().config.life) {
     for (const auto& [channel, version] : message.have) {
-      if (version <= state().board.version(channel)) {
+      if (version <= state().hub.version(channel)) {
         held_.at(static_cast<std::size_t>(channel)) = version;
       }
     }
@@ -166,7 +166,7 @@ std::size_t Viewer::next_channel() const {
   std::size_t next = kChannels;
   for (std::size_t i = 0; i < kChannels; ++i) {
     if (!wanted_.at(i)) continue;
-    if (!anew_.at(i) && state().board.version(static_cast<Channel>(i)) == held_.at(i)) continue;
+    if (!anew_.at(i) && state().hub.version(static_cast<Channel>(i)) == held_.at(i)) continue;
     if (next == kChannels || sent_.at(i) < sent_.at(next)) next = i;
   }
   return next;
@@ -178,8 +178,8 @@ Watcher::Work Viewer::next_work() {
   made_ = next;
   sent_.at(next) = ++messages_sent_;
   const std::uint64_t held = std::exchange(anew_.at(next), false) ? 0 : held_.at(next);
-  return [&board = state().board, channel = static_cast<Channel>(next), held] {
-    const Update update = board.update(channel, held);
+  return [&hub = state().hub, channel = static_cast<Channel>(next), held] {
+    const Update update = hub.update(channel, held);
     return Made{{{update.text, false}}, update.version};
   };
 }

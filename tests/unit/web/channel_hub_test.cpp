@@ -13,95 +13,95 @@ namespace {
 
 using nlohmann::json;
 
-json message(const Board& board, Channel channel, std::uint64_t held) {
-  return json::parse(*board.update(channel, held).text);
+json message(const ChannelHub& hub, Channel channel, std::uint64_t held) {
+  return json::parse(*hub.update(channel, held).text);
 }
 
-TEST(Board, AValueReplacesTheOneBefore) {
-  Board board;
-  EXPECT_EQ(board.version(Channel::kPose), 0U);
-  board.set(Channel::kPose, R"({"x_m":1})");
-  board.set(Channel::kPose, R"({"x_m":2})");
-  EXPECT_EQ(message(board, Channel::kPose, 0),
+TEST(ChannelHub, AValueReplacesTheOneBefore) {
+  ChannelHub hub;
+  EXPECT_EQ(hub.version(Channel::kPose), 0U);
+  hub.set(Channel::kPose, R"({"x_m":1})");
+  hub.set(Channel::kPose, R"({"x_m":2})");
+  EXPECT_EQ(message(hub, Channel::kPose, 0),
             json::parse(R"({"channel":"pose","version":2,"value":{"x_m":2}})"));
 }
 
-TEST(Board, AValueThatIsSetAgainIsNewThoughItIsEqual) {
+TEST(ChannelHub, AValueThatIsSetAgainIsNewThoughItIsEqual) {
   double now_s = 100.0;
-  Board board([&] { return now_s; });
-  board.set(Channel::kBase, "1");
-  board.set(Channel::kPose, "1");
-  board.set(Channel::kTime, "1");
-  board.edit(Channel::kGraph, {{"n1", "{}"}});
+  ChannelHub hub([&] { return now_s; });
+  hub.set(Channel::kBase, "1");
+  hub.set(Channel::kPose, "1");
+  hub.set(Channel::kTime, "1");
+  hub.edit(Channel::kGraph, {{"n1", "{}"}});
   now_s += 120.0;
-  board.set(Channel::kBase, "1");
+  hub.set(Channel::kBase, "1");
   now_s += 0.5;
-  EXPECT_EQ(json::parse(board.ages_s()), json::parse(R"({"pose":120.5,"base":0.5})"));
-  EXPECT_EQ(board.version(Channel::kBase), 1U);
+  EXPECT_EQ(json::parse(hub.ages_s()), json::parse(R"({"pose":120.5,"base":0.5})"));
+  EXPECT_EQ(hub.version(Channel::kBase), 1U);
 }
 
-TEST(Board, WhatIsEqualIsNoChange) {
-  Board board;
+TEST(ChannelHub, WhatIsEqualIsNoChange) {
+  ChannelHub hub;
   int changes = 0;
-  board.on_change([&](Channel) { ++changes; });
-  board.set(Channel::kPose, "1");
-  board.set(Channel::kPose, "1");
-  board.edit(Channel::kGraph, {{"n1", "{}"}});
-  board.edit(Channel::kGraph, {{"n1", "{}"}, {"n7", ""}});
+  hub.on_change([&](Channel) { ++changes; });
+  hub.set(Channel::kPose, "1");
+  hub.set(Channel::kPose, "1");
+  hub.edit(Channel::kGraph, {{"n1", "{}"}});
+  hub.edit(Channel::kGraph, {{"n1", "{}"}, {"n7", ""}});
   EXPECT_EQ(changes, 2);
-  EXPECT_EQ(board.version(Channel::kGraph), 1U);
+  EXPECT_EQ(hub.version(Channel::kGraph), 1U);
 }
 
-TEST(Board, ADeltaHasWhatChangedSinceAVersion) {
-  Board board;
-  board.edit(Channel::kGraph, {{"n1", "1"}, {"n2", "2"}, {"n3", "3"}});
-  board.edit(Channel::kGraph, {{"n2", "20"}});
-  board.edit(Channel::kGraph, {{"n3", ""}});
+TEST(ChannelHub, ADeltaHasWhatChangedSinceAVersion) {
+  ChannelHub hub;
+  hub.edit(Channel::kGraph, {{"n1", "1"}, {"n2", "2"}, {"n3", "3"}});
+  hub.edit(Channel::kGraph, {{"n2", "20"}});
+  hub.edit(Channel::kGraph, {{"n3", ""}});
   EXPECT_EQ(
-      message(board, Channel::kGraph, 1),
+      message(hub, Channel::kGraph, 1),
       json::parse(R"({"channel":"graph","from":1,"version":3,"set":{"n2":20},"gone":["n3"]})"));
   EXPECT_EQ(
-      message(board, Channel::kGraph, 0),
+      message(hub, Channel::kGraph, 0),
       json::parse(R"({"channel":"graph","from":0,"version":3,"set":{"n1":1,"n2":20},"gone":[]})"));
 }
 
-TEST(Board, WhatIsGoneAndThereAgainIsThere) {
-  Board board;
-  board.edit(Channel::kGraph, {{"n1", "1"}});
-  board.edit(Channel::kGraph, {{"n1", ""}});
-  board.edit(Channel::kGraph, {{"n1", "2"}});
-  EXPECT_EQ(message(board, Channel::kGraph, 1),
+TEST(ChannelHub, WhatIsGoneAndThereAgainIsThere) {
+  ChannelHub hub;
+  hub.edit(Channel::kGraph, {{"n1", "1"}});
+  hub.edit(Channel::kGraph, {{"n1", ""}});
+  hub.edit(Channel::kGraph, {{"n1", "2"}});
+  EXPECT_EQ(message(hub, Channel::kGraph, 1),
             json::parse(R"({"channel":"graph","from":1,"version":3,"set":{"n1":2},"gone":[]})"));
 }
 
-TEST(Board, ATableAnewHasNothingElse) {
-  Board board;
-  board.edit(Channel::kTiles, {{"1", "1"}, {"2", "1"}});
-  board.edit(Channel::kTiles, {{"2", "1"}, {"3", "4"}}, true);
-  EXPECT_EQ(message(board, Channel::kTiles, 1),
+TEST(ChannelHub, ATableAnewHasNothingElse) {
+  ChannelHub hub;
+  hub.edit(Channel::kTiles, {{"1", "1"}, {"2", "1"}});
+  hub.edit(Channel::kTiles, {{"2", "1"}, {"3", "4"}}, true);
+  EXPECT_EQ(message(hub, Channel::kTiles, 1),
             json::parse(R"({"channel":"tiles","from":1,"version":2,"set":{"3":4},"gone":["1"]})"));
 }
 
-TEST(Board, WhoHoldsWhatTheBoardDoesNotKnowGetsAllOfIt) {
-  Board board;
-  board.edit(Channel::kGraph, {{"n1", "1"}});
-  EXPECT_EQ(message(board, Channel::kGraph, 17)["from"], 0);
-  for (std::size_t i = 0; i <= Board::kRemembered; ++i) {
-    board.edit(Channel::kGraph, {{"n2", "1"}});
-    board.edit(Channel::kGraph, {{"n2", ""}});
+TEST(ChannelHub, WhoHoldsWhatTheHubDoesNotKnowGetsAllOfIt) {
+  ChannelHub hub;
+  hub.edit(Channel::kGraph, {{"n1", "1"}});
+  EXPECT_EQ(message(hub, Channel::kGraph, 17)["from"], 0);
+  for (std::size_t i = 0; i <= ChannelHub::kRemembered; ++i) {
+    hub.edit(Channel::kGraph, {{"n2", "1"}});
+    hub.edit(Channel::kGraph, {{"n2", ""}});
   }
-  EXPECT_EQ(message(board, Channel::kGraph, 1)["from"], 0) << "what was gone is forgotten";
+  EXPECT_EQ(message(hub, Channel::kGraph, 1)["from"], 0) << "what was gone is forgotten";
 }
 
-TEST(Board, KeysAreTextsOfAnyKind) {
-  Board board;
-  board.edit(Channel::kPlaces, {{"room \"A\"\n\xff", "1"}});
-  EXPECT_EQ(message(board, Channel::kPlaces, 0)["set"].size(), 1U);
+TEST(ChannelHub, KeysAreTextsOfAnyKind) {
+  ChannelHub hub;
+  hub.edit(Channel::kPlaces, {{"room \"A\"\n\xff", "1"}});
+  EXPECT_EQ(message(hub, Channel::kPlaces, 0)["set"].size(), 1U);
 }
 
 /// A viewer that reads now and then, at any times, has the same content as the table.
-TEST(Board, ViewersWhoLookNowAndThenAreExact) {
-  Board board;
+TEST(ChannelHub, ViewersWhoLookNowAndThenAreExact) {
+  ChannelHub hub;
   std::map<std::string, std::string> truth;
   struct Viewer {
     std::uint64_t version = 0;
@@ -127,10 +127,10 @@ TEST(Board, ViewersWhoLookNowAndThenAreExact) {
         truth[key] = value;
       }
     }
-    board.edit(Channel::kGraph, edits, anew);
+    hub.edit(Channel::kGraph, edits, anew);
     for (Viewer& viewer : viewers) {
-      if (random() % 20 != 0 || board.version(Channel::kGraph) == viewer.version) continue;
-      const json update = message(board, Channel::kGraph, viewer.version);
+      if (random() % 20 != 0 || hub.version(Channel::kGraph) == viewer.version) continue;
+      const json update = message(hub, Channel::kGraph, viewer.version);
       if (update["from"] == 0) {
         viewer.table.clear();
       } else {
@@ -146,7 +146,7 @@ TEST(Board, ViewersWhoLookNowAndThenAreExact) {
   }
 }
 
-TEST(Board, ChannelsHaveNames) {
+TEST(ChannelHub, ChannelsHaveNames) {
   for (std::size_t i = 0; i < kChannels; ++i) {
     const auto channel = static_cast<Channel>(i);
     EXPECT_EQ(channel_of(name_of(channel)), channel);

@@ -49,7 +49,7 @@ class FoxgloveServer : public testing::Test {
   FoxgloveServer() {
     config_.robot_id = "robot";
     config_.life = "life1";
-    server_ = std::make_unique<Server>(config_, board_, files_, backend_, tally_, feed_);
+    server_ = std::make_unique<Server>(config_, hub_, files_, backend_, tally_, feed_);
   }
   [[nodiscard]] std::unique_ptr<WebSocketClient> connect(
       const std::string& offered = "foxglove.websocket.v1") const {
@@ -85,7 +85,7 @@ class FoxgloveServer : public testing::Test {
   }
 
   ServerConfig config_;
-  Board board_;
+  ChannelHub hub_;
   PageFiles files_;
   NoBackend backend_;
   Tally tally_;
@@ -108,7 +108,7 @@ TEST_F(FoxgloveServer, GreetsWithItsTopics) {
 
 TEST_F(FoxgloveServer, ALateSubscriberGetsTheNewest) {
   feed_.set(LiveTopic::kMap, [] { return std::string(R"({"map":1})"); });
-  board_.edit(Channel::kRooms, {{"0", R"({"name":"hall","x_m":1,"y_m":2})"}});
+  hub_.edit(Channel::kRooms, {{"0", R"({"name":"hall","x_m":1,"y_m":2})"}});
   const auto client = connect();
   subscribe(*client, 17, 4);
   auto message = next_message(*client);
@@ -187,7 +187,7 @@ TEST_F(FoxgloveServer, PagesOfOtherSitesAreRefused) {
   EXPECT_THROW(with_origin("https://evil.example"), std::runtime_error);
   server_.reset();
   config_.origins = {"file://"};
-  server_ = std::make_unique<Server>(config_, board_, files_, backend_, tally_, feed_);
+  server_ = std::make_unique<Server>(config_, hub_, files_, backend_, tally_, feed_);
   EXPECT_THAT(with_origin("file://"), HasSubstr(" 101 "));
 }
 

@@ -116,13 +116,13 @@ TEST(FoxgloveProtocol, AMessageIsLittleEndianBehindItsOpcode) {
 }
 
 TEST(FoxgloveScene, NodesAreSpheresAndBranchesLines) {
-  Board board;
-  board.edit(Channel::kGraph,
-             {{"n1", R"({"kind":"door","x_m":1.5,"y_m":-2,"clearance_m":0.4,"seen":3})"},
-              {"b2", R"({"a":1,"b":3,"virtual":false,"seen":1,"points_m":[0,0,1,0,1,2]})"},
-              {"map", R"({"map_id":"00","version":"7","nodes":1,"branches":1})"}});
+  ChannelHub hub;
+  hub.edit(Channel::kGraph,
+           {{"n1", R"({"kind":"door","x_m":1.5,"y_m":-2,"clearance_m":0.4,"seen":3})"},
+            {"b2", R"({"a":1,"b":3,"virtual":false,"seen":1,"points_m":[0,0,1,0,1,2]})"},
+            {"map", R"({"map_id":"00","version":"7","nodes":1,"branches":1})"}});
   const auto first =
-      foxglove_messages(Channel::kGraph, *board.update(Channel::kGraph, 0).text, kSecond_ns);
+      foxglove_messages(Channel::kGraph, *hub.update(Channel::kGraph, 0).text, kSecond_ns);
   ASSERT_EQ(first.size(), 1U);
   expect_fits(first[0], "foxglove.SceneUpdate");
   const json all = json::parse(first[0]);
@@ -138,10 +138,9 @@ TEST(FoxgloveScene, NodesAreSpheresAndBranchesLines) {
   EXPECT_EQ(branch["lines"][0]["points"][2]["y"], 2);
   EXPECT_EQ(all["entities"][1]["spheres"][0]["pose"]["position"]["x"], 1.5);
 
-  board.edit(Channel::kGraph,
-             {{"b2", ""}, {"n1", ""}, {"n4", R"({"kind":"real","x_m":0,"y_m":0})"}});
+  hub.edit(Channel::kGraph, {{"b2", ""}, {"n1", ""}, {"n4", R"({"kind":"real","x_m":0,"y_m":0})"}});
   const json delta = json::parse(
-      foxglove_messages(Channel::kGraph, *board.update(Channel::kGraph, 1).text, kSecond_ns)[0]);
+      foxglove_messages(Channel::kGraph, *hub.update(Channel::kGraph, 1).text, kSecond_ns)[0]);
   ASSERT_THAT(delta["deletions"], SizeIs(2));
   std::set<std::string> gone;
   for (const json& deletion : delta["deletions"]) {
@@ -154,25 +153,24 @@ TEST(FoxgloveScene, NodesAreSpheresAndBranchesLines) {
 }
 
 TEST(FoxgloveScene, WhatHasNoPlaceIsLeftOut) {
-  Board board;
-  board.edit(Channel::kGraph, {{"n1", R"({"kind":"door","x_m":null,"y_m":2})"},
-                               {"n2", R"({"kind":"door"})"},
-                               {"b1", R"({"a":1,"b":2,"points_m":[0,null]})"},
-                               {"n3", R"({"kind":"real","x_m":1,"y_m":2})"}});
-  const auto messages =
-      foxglove_messages(Channel::kGraph, *board.update(Channel::kGraph, 0).text, 0);
+  ChannelHub hub;
+  hub.edit(Channel::kGraph, {{"n1", R"({"kind":"door","x_m":null,"y_m":2})"},
+                             {"n2", R"({"kind":"door"})"},
+                             {"b1", R"({"a":1,"b":2,"points_m":[0,null]})"},
+                             {"n3", R"({"kind":"real","x_m":1,"y_m":2})"}});
+  const auto messages = foxglove_messages(Channel::kGraph, *hub.update(Channel::kGraph, 0).text, 0);
   const json entities = json::parse(messages.at(0))["entities"];
   ASSERT_THAT(entities, SizeIs(1));
   EXPECT_EQ(entities[0]["id"], "n3");
 }
 
 TEST(FoxgloveScene, RoomsPlacesAndRulesHaveTheirNames) {
-  Board board;
-  board.edit(Channel::kRooms, {{"0", R"({"name":"hall","area_m2":9,"x_m":1,"y_m":2,"color":0})"}});
-  board.edit(Channel::kPlaces, {{"desk \"A\"", R"({"x_m":3,"y_m":4})"}});
-  board.edit(Channel::kRules, {{"lab", R"({"kind":"no_go","value":0,"corners_m":[0,0,1,0,1,1]})"}});
+  ChannelHub hub;
+  hub.edit(Channel::kRooms, {{"0", R"({"name":"hall","area_m2":9,"x_m":1,"y_m":2,"color":0})"}});
+  hub.edit(Channel::kPlaces, {{"desk \"A\"", R"({"x_m":3,"y_m":4})"}});
+  hub.edit(Channel::kRules, {{"lab", R"({"kind":"no_go","value":0,"corners_m":[0,0,1,0,1,1]})"}});
   const auto entity = [&](Channel channel) {
-    const std::string text = foxglove_messages(channel, *board.update(channel, 0).text, 0).at(0);
+    const std::string text = foxglove_messages(channel, *hub.update(channel, 0).text, 0).at(0);
     expect_fits(text, "foxglove.SceneUpdate");
     return json::parse(text)["entities"][0];
   };
@@ -186,33 +184,33 @@ TEST(FoxgloveScene, RoomsPlacesAndRulesHaveTheirNames) {
 }
 
 TEST(FoxgloveScene, ARouteGoesWhenThereIsNone) {
-  Board board;
-  board.set(Channel::kRoute, R"({"goal_id":"1","found":true,"points_m":[0,0,2,1]})");
+  ChannelHub hub;
+  hub.set(Channel::kRoute, R"({"goal_id":"1","found":true,"points_m":[0,0,2,1]})");
   const auto entities = [&] {
     const std::string text =
-        foxglove_messages(Channel::kRoute, *board.update(Channel::kRoute, 0).text, 0).at(0);
+        foxglove_messages(Channel::kRoute, *hub.update(Channel::kRoute, 0).text, 0).at(0);
     expect_fits(text, "foxglove.SceneUpdate");
     EXPECT_EQ(json::parse(text)["deletions"][0]["type"], 1);
     return json::parse(text)["entities"];
   };
   EXPECT_THAT(entities(), SizeIs(1));
-  board.set(Channel::kRoute, R"({"goal_id":"1","found":false,"points_m":[]})");
+  hub.set(Channel::kRoute, R"({"goal_id":"1","found":false,"points_m":[]})");
   EXPECT_THAT(entities(), SizeIs(0));
-  board.set(Channel::kRoute, "null");
+  hub.set(Channel::kRoute, "null");
   EXPECT_THAT(entities(), SizeIs(0));
   EXPECT_THROW(foxglove_messages(Channel::kPose, R"({"channel":"pose","version":1,"value":{}})", 0),
                std::invalid_argument);
 }
 
 TEST(FoxgloveScene, EventsAreALogInTheirOrder) {
-  Board board;
+  ChannelHub hub;
   std::vector<Edit> events;
   for (const char* number : {"2", "10", "9"}) {
     events.push_back({number, std::string(R"({"time_s":12.5,"level":"warning","source":"base",)") +
                                   R"("text":"event )" + number + R"("})"});
   }
-  board.edit(Channel::kEvents, events);
-  const auto log = foxglove_messages(Channel::kEvents, *board.update(Channel::kEvents, 0).text, 0);
+  hub.edit(Channel::kEvents, events);
+  const auto log = foxglove_messages(Channel::kEvents, *hub.update(Channel::kEvents, 0).text, 0);
   ASSERT_EQ(log.size(), 3U);
   for (const std::string& message : log) expect_fits(message, "foxglove.Log");
   EXPECT_EQ(json::parse(log[0])["message"], "event 2");

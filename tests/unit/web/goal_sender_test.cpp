@@ -127,11 +127,11 @@ class GoalSenderTest : public testing::Test {
 
   std::string partition_ = messaging::random_partition();
   service::Service service_{goals_setup(partition_)};
-  Board board_;
-  EventLog events_{board_};
-  MapView map_{service_, board_};
-  GoalSender goals_{service_, board_, map_, events_};
-  RobotView robot_{service_, board_, events_};
+  ChannelHub hub_;
+  EventLog events_{hub_};
+  MapView map_{service_, hub_};
+  GoalSender goals_{service_, hub_, map_, events_};
+  RobotView robot_{service_, hub_, events_};
   int floors_ = 0;  // asked for by the exploration
   ExplorationSender exploration_{service_, goals_, events_, robot_, [this] {
                                    ++floors_;

@@ -1,4 +1,4 @@
-// The server alone, with the test's own board and backend.
+// The server alone, with the test's own hub and backend.
 #include "server/server.hpp"
 
 #include <algorithm>
@@ -96,7 +96,7 @@ class WebServer : public testing::Test {
     start();
   }
   void start() {
-    server_ = std::make_unique<Server>(config_, board_, files_, backend_, tally_, feed_);
+    server_ = std::make_unique<Server>(config_, hub_, files_, backend_, tally_, feed_);
   }
   [[nodiscard]] std::uint32_t port() const { return server_->port(); }
   [[nodiscard]] std::uint64_t refused(const std::string& reason) const {
@@ -106,7 +106,7 @@ class WebServer : public testing::Test {
   }
 
   ServerConfig config_;
-  Board board_;
+  ChannelHub hub_;
   PageFiles files_;
   EchoBackend backend_;
   Tally tally_;
@@ -306,8 +306,8 @@ TEST_F(WebServer, WhatIsTooMuchOrNoHttpIsRefused) {
 }
 
 TEST_F(WebServer, ALateViewerGetsAllAndThenWhatChanges) {
-  board_.set(Channel::kPose, R"({"x_m":1})");
-  board_.edit(Channel::kGraph, {{"n1", "1"}, {"n2", "2"}});
+  hub_.set(Channel::kPose, R"({"x_m":1})");
+  hub_.edit(Channel::kGraph, {{"n1", "1"}, {"n2", "2"}});
   WebSocketClient socket(port());
   PageModel page;
   ASSERT_TRUE(page.wait_for(
@@ -315,7 +315,7 @@ TEST_F(WebServer, ALateViewerGetsAllAndThenWhatChanges) {
   EXPECT_EQ(page.others.at(0)["op"], "welcome");
   EXPECT_EQ(page.others.at(0)["may_write"], false);
   EXPECT_EQ(page.values["pose"]["x_m"], 1);
-  board_.edit(Channel::kGraph, {{"n1", ""}, {"n3", "3"}});
+  hub_.edit(Channel::kGraph, {{"n1", ""}, {"n3", "3"}});
   ASSERT_TRUE(page.wait_for(
       socket, [&] { return page.versions["graph"] == 2; }, kPatience));
   EXPECT_THAT(page.tables["graph"],
@@ -323,14 +323,14 @@ TEST_F(WebServer, ALateViewerGetsAllAndThenWhatChanges) {
 }
 
 TEST_F(WebServer, WhoComesBackGetsTheRest) {
-  board_.edit(Channel::kGraph, {{"n1", "1"}});
+  hub_.edit(Channel::kGraph, {{"n1", "1"}});
   PageModel page;
   {
     WebSocketClient socket(port());
     ASSERT_TRUE(page.wait_for(
         socket, [&] { return page.has("graph"); }, kPatience));
   }
-  board_.edit(Channel::kGraph, {{"n1", ""}, {"n2", "2"}});
+  hub_.edit(Channel::kGraph, {{"n1", ""}, {"n2", "2"}});
   const int snapshots = page.snapshots;
   WebSocketClient socket(port());
   socket.send({{"op", "hello"}, {"life", "life1"}, {"have", page.versions}});
@@ -341,7 +341,7 @@ TEST_F(WebServer, WhoComesBackGetsTheRest) {
 }
 
 TEST_F(WebServer, AServiceThatStartedAgainBeginsAnew) {
-  board_.edit(Channel::kGraph, {{"n1", "1"}});
+  hub_.edit(Channel::kGraph, {{"n1", "1"}});
   WebSocketClient socket(port());
   socket.send({{"op", "hello"}, {"life", "another"}, {"have", {{"graph", 1}}}});
   PageModel page;
@@ -355,8 +355,8 @@ TEST_F(WebServer, AServiceThatStartedAgainBeginsAnew) {
 }
 
 TEST_F(WebServer, AViewerGetsTheChannelsItWants) {
-  board_.set(Channel::kPose, "1");
-  board_.set(Channel::kScan, "1");
+  hub_.set(Channel::kPose, "1");
+  hub_.set(Channel::kScan, "1");
   WebSocketClient socket(port());
   socket.send({{"op", "hello"}, {"channels", {"pose"}}});
   socket.send({{"op", "ping"}});
@@ -375,10 +375,10 @@ TEST_F(WebServer, ASlowViewerHoldsNobodyUpAndEndsExact) {
   PageModel fast_page;
   const std::string filler(20'000, 'x');
   constexpr int kChanges = 2000;  // 40 MB, more than buffers hold
-  // Viewers read nothing meanwhile: a board that waited for them would never finish.
+  // Viewers read nothing meanwhile: a hub that waited for them would never finish.
   for (int i = 1; i <= kChanges; ++i) {
-    board_.set(Channel::kScan, "\"" + filler + std::to_string(i) + "\"");
-    board_.edit(Channel::kGraph, {{"n" + std::to_string(i % 50), std::to_string(i)}});
+    hub_.set(Channel::kScan, "\"" + filler + std::to_string(i) + "\"");
+    hub_.edit(Channel::kGraph, {{"n" + std::to_string(i % 50), std::to_string(i)}});
   }
   const auto done = [&](PageModel& page) {
     return page.versions["scan"] == kChanges && page.versions["graph"] == kChanges;
@@ -470,14 +470,14 @@ TEST_F(WebServer, ViewersAreCountedAndLimited) {
 
 TEST_F(WebServer, ATakenPortIsNamed) {
   config_.port = port();
-  EXPECT_THAT([this] { const Server other(config_, board_, files_, backend_, tally_, feed_); },
+  EXPECT_THAT([this] { const Server other(config_, hub_, files_, backend_, tally_, feed_); },
               testing::ThrowsMessage<std::runtime_error>(HasSubstr(std::to_string(config_.port))));
 }
 
 TEST_F(WebServer, ACertificateThatIsNoneIsNamed) {
   config_.certificate_file = "/dev/null";
   config_.key_file = "/dev/null";
-  EXPECT_THAT([this] { const Server other(config_, board_, files_, backend_, tally_, feed_); },
+  EXPECT_THAT([this] { const Server other(config_, hub_, files_, backend_, tally_, feed_); },
               testing::ThrowsMessage<std::runtime_error>(HasSubstr("/dev/null")));
 }
 
