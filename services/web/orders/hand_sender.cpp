@@ -124,8 +124,11 @@ void HandSender::on_base(const msg::BaseStatus& base, const messaging::Handle& w
   base_ = writer;
   stop_count_ = base.stop_count();
   kept_stop_.base_counts(stop_count_);
-  base_held_ = service::holds(base);
+  const bool was_held = std::exchange(base_held_, service::holds(base));
   if (base_held_) kept_stop_.hand_over();
+  if (was_held && !base_held_ && !hides_stop(base) && !releasing_.empty()) {
+    events_.add(EventLog::Level::kInfo, "web", "released by " + std::exchange(releasing_, {}));
+  }
   end_release(release_.take(base, steady_ns()));
   if (!stop_wanted_) return;
   if (base_held_) {
@@ -143,8 +146,13 @@ void HandSender::on_base(const msg::BaseStatus& base, const messaging::Handle& w
 }
 
 void HandSender::on_order(const msg::BaseCommand& message, const messaging::Handle& writer) {
-  if (message.client_id() == client_id_.c_str() || !kept_stop_.take(message, writer)) return;
+  if (message.client_id() == client_id_.c_str()) return;
   const std::string client = message.client_id().c_str();
+  if (message.kind() != msg::kBaseSetLimits) releasing_.clear();
+  if (!kept_stop_.take(message, writer)) {
+    if (message.kind() == msg::kBaseReset && base_held_) releasing_ = client;
+    return;
+  }
   if (kept_stop_.holds()) {
     drive_.let_go(steady_ns());
     events_.add(EventLog::Level::kWarning, "web", "stopped by " + client);
@@ -274,6 +282,7 @@ HandSender::Release HandSender::release_stop(OnRelease done) {
   const bool kept = stopped_alone();
   const bool stopped = std::exchange(stop_wanted_, false) || kept;
   stop_unheard_ = false;
+  releasing_.clear();
   const std::uint64_t number = kept_stop_.number();
   const bool base_decides = !kept_stop_.holds();
   kept_stop_.release();

@@ -143,6 +143,7 @@ class HandSender {
   std::int64_t zero_due_ns_ = 0;                     // by the steady clock
   std::optional<messaging::Handle> stopped_base_;    // writer that has reported the stop since then
   bool base_held_ = false;                           // in the base's newest status
+  std::string releasing_;  // another program that has asked a held base for its release
   UnconfirmedRelease release_;
   OnRelease on_release_;  // empty: answered
 };

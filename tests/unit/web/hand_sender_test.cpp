@@ -437,6 +437,28 @@ TEST_F(BesideSilentBase, AStopHoldsWhenTheGatewayHasGone) {
 }
 
 // A navigator that has started again knows the stop by its number alone.
+TEST_F(BesideSilentBase, AReleaseOfAGatewayByAnotherProgramIsAnEvent) {
+  const auto events = [&] { return *board_->update(Channel::kEvents, 0).text; };
+  ASSERT_NO_FATAL_FAILURE(give(msg::kBaseHalt));
+  ASSERT_TRUE(run_until("the stop", [&] { return is_stopped(); }));
+  EXPECT_THAT(events(), testing::HasSubstr("stopped by other"));
+  LivingBase gateway(partition_);
+  ASSERT_TRUE(run_until("the gateway to decide about it", [&] {
+    gateway.report(msg::kBaseHalted);
+    return !is_stopped();
+  }));
+  EXPECT_THAT(events(), testing::Not(testing::HasSubstr("released by other")));
+  // One after the other, and again: the page may hear the gateway before the other program.
+  int step = 0;
+  EXPECT_TRUE(run_until("the event", [&] {
+    if (step == 0) gateway.report(msg::kBaseHalted);
+    if (step == 1) give(msg::kBaseReset);
+    if (step == 2) gateway.report(msg::kBaseReady);
+    step = (step + 1) % 3;
+    return events().find("released by other") != std::string::npos;
+  }));
+}
+
 TEST_F(BesideSilentBase, AStopThatAnotherProgramHasReleasedHaltsNoLaterGateway) {
   constexpr int kMany = 30;  // the page has time to send a halt
   EXPECT_FALSE(hand_->stop());
