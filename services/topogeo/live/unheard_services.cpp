@@ -19,14 +19,18 @@ Likelihood likelihood(const HostProcess* process) {
   return process->age_s < UnheardServices::kStarting_s ? Likelihood::kStarts : Likelihood::kRuns;
 }
 
-/// A reason for running processes that share their number with a heard service, which may be any
+/// A reason for running processes that share their number with `heard` services, which may be any
 /// of them.
-std::string one_is_silent(std::span<const HostProcess* const> processes) {
+std::string some_are_silent(std::span<const HostProcess* const> processes, std::size_t heard) {
   std::string numbers;
   for (const HostProcess* process : processes) {
     numbers += (numbers.empty() ? "" : ", ") + std::to_string(process->pid);
   }
-  return fmt::format("one of the processes {} of this host publishes no status", numbers);
+  const std::size_t silent = processes.size() - heard;
+  if (silent == 1) {
+    return fmt::format("one of the processes {} of this host publishes no status", numbers);
+  }
+  return fmt::format("{} of the processes {} of this host publish no status", silent, numbers);
 }
 
 }  // namespace
@@ -90,9 +94,11 @@ std::vector<UnheardService> UnheardServices::silent_processes(Time now) const {
       const HostProcess& process = *processes[i];
       const Likelihood kind = likelihood(&process);
       if (kind == Likelihood::kStarts) continue;
+      const bool one_of_several = kind == Likelihood::kRuns && accounted > 0;
+      if (one_of_several && i > accounted) continue;  // in the row of the first one
       silent.push_back({process.service,
-                        kind == Likelihood::kRuns && accounted > 0
-                            ? one_is_silent(std::span(processes).first(candidates))
+                        one_of_several
+                            ? some_are_silent(std::span(processes).first(candidates), accounted)
                             : fmt::format("process {} of this host {}, and no status of it comes",
                                           process.pid, process.stopped ? "is stopped" : "runs")});
     }

@@ -122,6 +122,17 @@ TEST_F(UnheardServicesTest, AreNamedWithTheHeardOneOfTheirNumber) {
   EXPECT_THAT(unheard_.list(now_), IsEmpty()) << "the young one may still come";
 }
 
+TEST_F(UnheardServicesTest, AreInOneRowIfAnyOfThemMayBeTheHeardOne) {
+  std::vector<HostProcess> workers = {process(1010, "ga_worker"), process(1020, "ga_worker"),
+                                      process(1030, "ga_worker")};
+  for (HostProcess& worker : workers) worker.own_pid = 7;
+  unheard_.running(workers, "robot");
+  hear(1, "ga_worker", 7);
+  ASSERT_THAT(unheard_.list(now_), SizeIs(1));
+  EXPECT_EQ(unheard_.list(now_)[0].reason,
+            "2 of the processes 1010, 1020, 1030 of this host publish no status");
+}
+
 // A worker that was started again in its container has its number and another instance.
 TEST_F(UnheardServicesTest, AreNotHiddenByAServiceThatWasHeardLongAgo) {
   HostProcess frozen = process(1010, "ga_worker");
