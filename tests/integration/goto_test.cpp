@@ -63,16 +63,14 @@ TEST(Goto, ASimulatedRobotIsSentToAPointOfAStoredMap) {
 class NavigatorWatch {
  public:
   /// Waits until the robot drives to its goal. False when `run` has ended before.
-  [[nodiscard]] bool wait_for_drive(Program& run) { return wait_for_distance(run, 0.0); }
+  [[nodiscard]] bool wait_for_drive(Program& run) {
+    return wait_unless_ended(run,
+                             [&] { return status_ && status_->state() == msg::kNavigatorDriving; });
+  }
   /// Waits until the robot has driven so much further. False when `run` has ended before.
   [[nodiscard]] bool wait_for_distance(Program& run, double further_m) {
     const double least_m = driven_m_ + further_m;
-    const auto is_driven = [&] { return status_ && driven_m_ >= least_m; };
-    const bool there = wait_for("the robot to drive", [&] {
-      receive();
-      return is_driven() || run.ended();
-    });
-    return there && is_driven();
+    return wait_unless_ended(run, [&] { return status_ && driven_m_ >= least_m; });
   }
 
   /// Pauses the drive or resumes it, unless `run` ends before.
@@ -89,6 +87,14 @@ class NavigatorWatch {
   }
 
  private:
+  template <class Condition>
+  [[nodiscard]] bool wait_unless_ended(Program& run, const Condition& condition) {
+    const bool there = wait_for("the robot to drive", [&] {
+      receive();
+      return condition() || run.ended();
+    });
+    return there && condition();
+  }
   void receive() {
     statuses_.take([this](const msg::NavigatorStatus& status, const messaging::SampleInfo& info) {
       if (!info.valid) return;
