@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include <gmock/gmock.h>
 
@@ -324,10 +325,11 @@ class BesideSilentBase : public testing::Test {
   /// Runs until the newest order at the navigator is of that kind.
   [[nodiscard]] bool navigator_gets(msg::BaseCommandKind kind) {
     return run_until("an order at the navigator", [&] {
-      static_cast<void>(statuses_.write(messaging::message<msg::NavigatorStatus>()));
-      orders_.take([&](const msg::BaseCommand& order, const messaging::SampleInfo& info) {
-        if (info.valid) newest_ = order;
-      });
+      static_cast<void>(navigator_->statuses.write(messaging::message<msg::NavigatorStatus>()));
+      navigator_->orders.take(
+          [&](const msg::BaseCommand& order, const messaging::SampleInfo& info) {
+            if (info.valid) newest_ = order;
+          });
       return newest_ && newest_->kind() == kind;
     });
   }
@@ -369,9 +371,15 @@ class BesideSilentBase : public testing::Test {
   int first_ = 0;
   std::optional<service::Service> service_;
   std::optional<HandSender> hand_;
-  messaging::Participant navigator_{messaging::options_in(partition_)};
-  messaging::Reader<msg::BaseCommand> orders_{navigator_};
-  messaging::Writer<msg::NavigatorStatus> statuses_{navigator_};
+  /// A navigator that takes orders to the base.
+  struct Navigator {
+    explicit Navigator(const std::string& partition)
+        : participant(messaging::options_in(partition)) {}
+    messaging::Participant participant;
+    messaging::Reader<msg::BaseCommand> orders{participant};
+    messaging::Writer<msg::NavigatorStatus> statuses{participant};
+  };
+  std::optional<Navigator> navigator_{std::in_place, partition_};
   messaging::Participant other_{messaging::options_in(partition_)};
   messaging::Writer<msg::BaseCommand> given_{other_};
   std::optional<msg::BaseCommand> newest_;  // at the navigator
@@ -390,8 +398,10 @@ TEST_F(BesideSilentBase, AStopOutlivesThePage) {
 }
 
 TEST_F(BesideSilentBase, ANavigatorThatConnectsLaterGetsTheStopAndItsRelease) {
+  navigator_.reset();
   EXPECT_FALSE(hand_->stop());
   begin();
+  navigator_.emplace(partition_);
   ASSERT_TRUE(navigator_gets(msg::kBaseHalt));
   const std::uint64_t stop = newest_->stop_count();
   EXPECT_NE(stop, 0U);
