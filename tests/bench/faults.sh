@@ -131,7 +131,7 @@ start_drive() {  # METRES
   start_on pc1 localizer "$bin/localizer" --map "$work/floor/map.pb" --initial-pose 0,0,0
   wait_for "the ports of the simulator" test -e "$out/base" || fail "the simulator does not start"
   start_on robot sensor_gateway "$bin/sensor_gateway" --devices "$out/devices.yaml"
-  # Goal: so far along the first drive.
+  # The goal is a point of the first drive: the one at that distance from its start.
   goal=$(awk -v least="$1" '{ if (NR > 1) way += sqrt(($2 - x) ^ 2 + ($3 - y) ^ 2); x = $2; y = $3
     if (way > least) { print x "," y; exit } }' "$work/floor/trajectory.tum")
   send_goal

@@ -62,8 +62,8 @@ TEST_F(SimulationTest, DrivesTheTourThroughSerialPortsAndMapsIt) {
   EXPECT_FALSE(std::filesystem::is_symlink(out_ + "/base.port"));
 }
 
-// Each service is killed in turn while the robot drives. The robot drives on until the service has
-// been at work again for some way, however long the restart takes.
+// Each service is killed in turn while the robot drives. The robot drives on until it has driven
+// 1.5 m with the service at work again, however long the restart takes.
 TEST_F(SimulationTest, TheMapEndsCompleteAndRightAfterEachServiceWasKilled) {
   constexpr double kFurther_m = 1.5;
   Program run(scratch_, "topogeo", words(write_world_of_rounds(scratch_)));

@@ -1,4 +1,4 @@
-// An operator's stop of a base that does not report it, over restarts of the program that keeps it.
+// Keeps an operator's stop of a base that does not report it, over restarts of the program.
 //
 // A base that reports its state (BaseStatus) holds itself and decides about its release. Any other
 // base, for example one of ROS, obeys each motion command, so the programs that command it keep the
@@ -42,7 +42,8 @@ class OperatorStop {
   /// The number in the newest status of the base (BaseStatus::stop_count). A reset that names it
   /// means the stop that holds here as well: a base that is offline reports no stop.
   void base_counts(std::uint64_t stop_count) { base_count_ = stop_count; }
-  /// Takes the order of another program. Returns whether a stop has begun or ended by it.
+  /// Takes the order of another program. The newest halt replaces an earlier one, so its release
+  /// ends both, which a gateway permits only if the sender knows them. Returns whether it began or ended a stop.
   bool take(const msg::BaseCommand& command, const messaging::Handle& writer);
 
   /// Time since the stop that this start has found in the file was written; empty: it found none,
