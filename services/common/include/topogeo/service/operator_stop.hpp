@@ -43,7 +43,8 @@ class OperatorStop {
   /// means the stop that holds here as well: a base that is offline reports no stop.
   void base_counts(std::uint64_t stop_count) { base_count_ = stop_count; }
   /// Takes the order of another program. The newest halt replaces an earlier one, so its release
-  /// ends both, which a gateway permits only if the sender knows them. Returns whether it began or ended a stop.
+  /// ends both, which a gateway permits only if the sender knows them. Returns whether it began or
+  /// ended a stop.
   bool take(const msg::BaseCommand& command, const messaging::Handle& writer);
 
   /// Time since the stop that this start has found in the file was written; empty: it found none,
