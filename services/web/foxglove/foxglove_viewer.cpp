@@ -189,9 +189,8 @@ Watcher::Work FoxgloveViewer::next_work() {
       return live_frames(id, feed.newest(topic));
     };
   }
-  return
-      [id = id, &hub = state().hub, channel = *subscription.topic->channel,
-       held = subscription.held] { return hub_frames(id, channel, hub.update(channel, held)); };
+  return [id = id, &hub = state().hub, channel = *subscription.topic->channel,
+          held = subscription.held] { return hub_frames(id, channel, hub.update(channel, held)); };
 }
 
 void FoxgloveViewer::on_made(std::uint64_t version) {
