@@ -136,7 +136,7 @@ void WebService::release(std::uint64_t viewer) {
   hand_.release(viewer);
 }
 
-HandSender::Hooks WebService::hand_hooks() {
+ManualDriveSender::Hooks WebService::hand_hooks() {
   return {[this] {
             post([this] {
               goals_.pause();

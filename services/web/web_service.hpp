@@ -29,8 +29,8 @@
 #include "orders/drawing_editor.hpp"
 #include "orders/exploration_sender.hpp"
 #include "orders/goal_sender.hpp"
-#include "orders/hand_thread.hpp"
 #include "orders/localizer_requests.hpp"
+#include "orders/manual_drive_thread.hpp"
 #include "routes.hpp"
 #include "server/channel_hub.hpp"
 #include "server/page_files.hpp"
@@ -85,7 +85,7 @@ class WebService : private Backend {
   [[nodiscard]] Answer room_shapes(const std::string& body);
   void report_counts();
   void show_limits(bool anew);
-  [[nodiscard]] HandSender::Hooks hand_hooks();
+  [[nodiscard]] ManualDriveSender::Hooks hand_hooks();
 
   service::Service& service_;
   ServerConfig config_;
@@ -96,7 +96,7 @@ class WebService : private Backend {
   EventLog events_{hub_};
   FoxgloveView foxglove_;
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // for posted work
-  HandThread hand_;
+  ManualDriveThread hand_;
   MapView map_;
   GraphView graph_;
   GoalSender goals_;

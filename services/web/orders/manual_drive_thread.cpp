@@ -1,4 +1,4 @@
-#include "orders/hand_thread.hpp"
+#include "orders/manual_drive_thread.hpp"
 
 #include <exception>
 #include <memory>
@@ -45,17 +45,18 @@ Answer answer_of(UnconfirmedRelease::Outcome outcome) {
 
 }  // namespace
 
-HandThread::HandThread(service::Service& service, Board& board, EventLog& events, Tally& tally,
-                       HandSender::Hooks hooks, const std::filesystem::path& memory)
+ManualDriveThread::ManualDriveThread(service::Service& service, ChannelHub& hub, EventLog& events,
+                                     Tally& tally, ManualDriveSender::Hooks hooks,
+                                     const std::filesystem::path& memory)
     : service_(service),
-      hand_(loop_, service, board, events, tally, std::move(hooks), memory),
+      hand_(loop_, service, hub, events, tally, std::move(hooks), memory),
       thread_([this] { run(); }) {}
 
-HandThread::~HandThread() {
+ManualDriveThread::~ManualDriveThread() {
   end();
 }
 
-void HandThread::end() {
+void ManualDriveThread::end() {
   {
     const std::scoped_lock lock(mutex_);
     ended_ = true;
@@ -66,7 +67,7 @@ void HandThread::end() {
   hand_.forget_release();
 }
 
-void HandThread::run() {
+void ManualDriveThread::run() {
   try {
     loop_.run();
   } catch (...) {
@@ -74,29 +75,29 @@ void HandThread::run() {
   }
 }
 
-void HandThread::drive(std::uint64_t viewer, const geometry::Velocity& wanted) {
+void ManualDriveThread::drive(std::uint64_t viewer, const geometry::Velocity& wanted) {
   loop_.post(
       [this, viewer, wanted, came_ns = steady_ns()] { hand_.drive(viewer, wanted, came_ns); });
 }
 
-void HandThread::release(std::uint64_t viewer) {
+void ManualDriveThread::release(std::uint64_t viewer) {
   loop_.post([this, viewer] { hand_.release(viewer); });
 }
 
-void HandThread::keep_off(std::shared_ptr<const navigation::DrawnLimits> limits) {
+void ManualDriveThread::keep_off(std::shared_ptr<const navigation::DrawnLimits> limits) {
   loop_.post([this, limits = std::move(limits)]() mutable { hand_.keep_off(std::move(limits)); });
 }
 
-void HandThread::stop(Respond respond) {
+void ManualDriveThread::stop(Respond respond) {
   ++stops_;
   take({std::nullopt, std::move(respond)});
 }
 
-void HandThread::release_stop(std::uint64_t stops, Respond respond) {
+void ManualDriveThread::release_stop(std::uint64_t stops, Respond respond) {
   take({stops, std::move(respond)});
 }
 
-void HandThread::take(Order order) {
+void ManualDriveThread::take(Order order) {
   {
     const std::scoped_lock lock(mutex_);
     if (ended_) return;
@@ -105,7 +106,7 @@ void HandThread::take(Order order) {
   loop_.post([this] { work_off_orders(); });
 }
 
-void HandThread::work_off_orders() {
+void ManualDriveThread::work_off_orders() {
   std::deque<Order> orders;
   {
     const std::scoped_lock lock(mutex_);
@@ -114,21 +115,21 @@ void HandThread::work_off_orders() {
   for (const Order& order : orders) carry_out(order);
 }
 
-void HandThread::carry_out(const Order& order) {
+void ManualDriveThread::carry_out(const Order& order) {
   const Respond& respond = order.respond;
   if (!order.release) {
     const bool heard = hand_.stop();
     return respond(stop_answer(heard, hand_.navigator_hears()));
   }
   if (*order.release != stops_) return respond(stopped_again());
-  const HandSender::Release sent = hand_.release_stop(
+  const ManualDriveSender::Release sent = hand_.release_stop(
       [respond](UnconfirmedRelease::Outcome outcome) { respond(answer_of(outcome)); });
   switch (sent) {
-    case HandSender::Release::kSent:
+    case ManualDriveSender::Release::kSent:
       return;
-    case HandSender::Release::kHeldHere:
+    case ManualDriveSender::Release::kHeldHere:
       return respond(kept_stop_released());
-    case HandSender::Release::kUnheard:
+    case ManualDriveSender::Release::kUnheard:
       return respond(error_answer(
           503, "no base confirms the release; this service holds the robot no longer"));
   }

@@ -1,6 +1,6 @@
 // The operator's stop when the base of another robot is connected before the robot's own, and
 // manual driving commands.
-#include "orders/hand_sender.hpp"
+#include "orders/manual_drive_sender.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -22,7 +22,7 @@
 
 #include "channels/event_log.hpp"
 #include "messaging/fixture.hpp"
-#include "orders/hand_thread.hpp"
+#include "orders/manual_drive_thread.hpp"
 #include "waiting.hpp"
 
 namespace topogeo::web {
@@ -35,9 +35,9 @@ service::Setup page_setup(const std::string& partition) {
   return setup;
 }
 
-class HandSenderTest : public testing::Test {
+class ManualDriveSenderTest : public testing::Test {
  protected:
-  HandSenderTest() {
+  ManualDriveSenderTest() {
     service_.subscribe<msg::BaseStatus>([this](const msg::BaseStatus&) { base_noted_ = true; });
   }
   [[nodiscard]] bool run_until(const std::string& what, const std::function<bool()>& condition) {
@@ -47,18 +47,18 @@ class HandSenderTest : public testing::Test {
 
   std::string partition_ = messaging::random_partition();
   service::Service service_{page_setup(partition_)};
-  Board board_;
-  EventLog events_{board_};
+  ChannelHub hub_;
+  EventLog events_{hub_};
   Tally tally_;
   int first_ = 0;
-  HandSender hand_{service_.loop(), service_, board_,
-                   events_,         tally_,   {[this] { ++first_; }, [](const char*) {}}};
+  ManualDriveSender hand_{service_.loop(), service_, hub_,
+                          events_,         tally_,   {[this] { ++first_; }, [](const char*) {}}};
   bool base_noted_ = false;
   messaging::Participant base_{messaging::options_in(partition_)};
   messaging::Participant other_{messaging::options_in(partition_)};
 };
 
-TEST_F(HandSenderTest, AStopReachesABaseThatIsConnectedLate) {
+TEST_F(ManualDriveSenderTest, AStopReachesABaseThatIsConnectedLate) {
   const messaging::Reader<msg::BaseCommand> other_base(other_);
   messaging::Writer<msg::BaseStatus> statuses(base_);
   ASSERT_TRUE(run_until("another base and the status of the own one",
@@ -116,7 +116,7 @@ class LivingBase {
   std::uint64_t released_ = 0;
 };
 
-class HandSenderStop : public HandSenderTest {
+class ManualDriveSenderStop : public ManualDriveSenderTest {
  protected:
   /// Stops the base while it moves.
   [[nodiscard]] bool stop(LivingBase& base) {
@@ -128,7 +128,7 @@ class HandSenderStop : public HandSenderTest {
   }
 };
 
-TEST_F(HandSenderStop, HoldsForAGatewayThatStartsAgain) {
+TEST_F(ManualDriveSenderStop, HoldsForAGatewayThatStartsAgain) {
   {
     LivingBase base(partition_);
     ASSERT_TRUE(stop(base));
@@ -145,7 +145,7 @@ TEST_F(HandSenderStop, HoldsForAGatewayThatStartsAgain) {
   }));
 }
 
-TEST_F(HandSenderStop, ThatAnotherOperatorHasReleasedIsOver) {
+TEST_F(ManualDriveSenderStop, ThatAnotherOperatorHasReleasedIsOver) {
   LivingBase base(partition_);
   ASSERT_TRUE(stop(base));
   base.report(msg::kBaseHalted);
@@ -161,7 +161,7 @@ TEST_F(HandSenderStop, ThatAnotherOperatorHasReleasedIsOver) {
   EXPECT_EQ(base.halts(), halts);
 }
 
-TEST_F(HandSenderStop, IsNamedByTheRelease) {
+TEST_F(ManualDriveSenderStop, IsNamedByTheRelease) {
   constexpr std::uint64_t kStop = 7;
   LivingBase base(partition_);
   ASSERT_TRUE(stop(base));
@@ -172,7 +172,7 @@ TEST_F(HandSenderStop, IsNamedByTheRelease) {
   }));
 }
 
-TEST_F(HandSenderStop, IsReleasedOnlyWhenTheBaseConfirmsIt) {
+TEST_F(ManualDriveSenderStop, IsReleasedOnlyWhenTheBaseConfirmsIt) {
   using Outcome = UnconfirmedRelease::Outcome;
   constexpr std::uint64_t kStop = 7;
   const auto first_outcome_of = [&](msg::BaseState state, std::uint64_t stop_count) {
@@ -185,7 +185,7 @@ TEST_F(HandSenderStop, IsReleasedOnlyWhenTheBaseConfirmsIt) {
     }
     std::optional<Outcome> outcome;
     EXPECT_EQ(hand_.release_stop([&](Outcome found) { outcome = found; }),
-              HandSender::Release::kSent);
+              ManualDriveSender::Release::kSent);
     EXPECT_EQ(outcome, std::nullopt);
     EXPECT_TRUE(run_until("the outcome", [&] {
       base.report(state, stop_count);
@@ -202,7 +202,7 @@ TEST_F(HandSenderStop, IsReleasedOnlyWhenTheBaseConfirmsIt) {
     }
     return outcome;
   };
-  const auto events = [&] { return *board_.update(Channel::kEvents, 0).text; };
+  const auto events = [&] { return *hub_.update(Channel::kEvents, 0).text; };
   EXPECT_EQ(outcome_of(msg::kBaseHalted, kStop + 1), Outcome::kRefused);
   EXPECT_THAT(events(), testing::Not(testing::HasSubstr("released by the operator")));
   EXPECT_THAT(events(), testing::HasSubstr("it was stopped again meanwhile"));
@@ -210,12 +210,12 @@ TEST_F(HandSenderStop, IsReleasedOnlyWhenTheBaseConfirmsIt) {
   EXPECT_THAT(events(), testing::HasSubstr("released by the operator"));
 }
 
-TEST(HandThread, AReleaseThatWaitedDoesNotUndoALaterStop) {
+TEST(ManualDriveThread, AReleaseThatWaitedDoesNotUndoALaterStop) {
   service::Service service(page_setup(messaging::random_partition()));
-  Board board;
-  EventLog events(board);
+  ChannelHub hub;
+  EventLog events(hub);
   Tally tally;
-  HandThread hand(service, board, events, tally, {[] {}, [](const char*) {}});
+  ManualDriveThread hand(service, hub, events, tally, {[] {}, [](const char*) {}});
   std::promise<unsigned> stopped;
   std::promise<unsigned> waited;
   std::promise<unsigned> released;
@@ -233,14 +233,14 @@ TEST(HandThread, AReleaseThatWaitedDoesNotUndoALaterStop) {
   EXPECT_EQ(nothing.get_future().get(), 503U) << "there is neither a base nor a stop";
 }
 
-TEST(HandThread, AStopThatOnlyANavigatorHearsIsKept) {
+TEST(ManualDriveThread, AStopThatOnlyANavigatorHearsIsKept) {
   std::list<std::promise<Answer>> answers;
   const std::string partition = messaging::random_partition();
   service::Service service(page_setup(partition));
-  Board board;
-  EventLog events(board);
+  ChannelHub hub;
+  EventLog events(hub);
   Tally tally;
-  HandThread hand(service, board, events, tally, {[] {}, [](const char*) {}});
+  ManualDriveThread hand(service, hub, events, tally, {[] {}, [](const char*) {}});
   const messaging::Participant navigator(messaging::options_in(partition));
   const messaging::Reader<msg::BaseCommand> orders(navigator);
   messaging::Writer<msg::NavigatorStatus> statuses(navigator);
@@ -263,7 +263,7 @@ std::int64_t now_ns() {
   return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-TEST_F(HandSenderTest, AnOrderThatWaitedIsRefused) {
+TEST_F(ManualDriveSenderTest, AnOrderThatWaitedIsRefused) {
   constexpr std::int64_t kSecond_ns = 1'000'000'000;
   hand_.drive(1, {0.3, 0.0}, now_ns() - kSecond_ns);
   EXPECT_FALSE(hand_.is_held());
@@ -271,7 +271,7 @@ TEST_F(HandSenderTest, AnOrderThatWaitedIsRefused) {
   EXPECT_EQ(tally_.counts().at("refused: late"), 1U);
 }
 
-TEST_F(HandSenderTest, AStopSendsZerosAtOnce) {
+TEST_F(ManualDriveSenderTest, AStopSendsZerosAtOnce) {
   // Commands are repeated, because a slow machine considers the first ones late.
   ASSERT_TRUE(run_until("somebody drives", [&] {
     hand_.drive(1, {0.3, 0.0}, now_ns());
@@ -284,14 +284,14 @@ TEST_F(HandSenderTest, AStopSendsZerosAtOnce) {
 }
 
 // A base of ROS takes no order to halt: an order of another page would move it again.
-TEST_F(HandSenderTest, OrdersAfterAStopAreRefusedUntilTheRelease) {
-  const auto shown = [&] { return *board_.update(Channel::kDrive, 0).text; };
+TEST_F(ManualDriveSenderTest, OrdersAfterAStopAreRefusedUntilTheRelease) {
+  const auto shown = [&] { return *hub_.update(Channel::kDrive, 0).text; };
   EXPECT_FALSE(hand_.stop()) << "no base hears it";
   EXPECT_THAT(shown(), testing::HasSubstr("\"stopped\":true"));
   hand_.drive(1, {0.3, 0.0}, now_ns());
   EXPECT_FALSE(hand_.is_held());
   EXPECT_EQ(first_, 0);
-  EXPECT_EQ(hand_.release_stop(), HandSender::Release::kHeldHere);
+  EXPECT_EQ(hand_.release_stop(), ManualDriveSender::Release::kHeldHere);
   EXPECT_THAT(shown(), testing::Not(testing::HasSubstr("stopped")));
   // Commands are repeated, because a slow machine considers the first ones late.
   EXPECT_TRUE(run_until("somebody drives", [&] {
@@ -313,11 +313,11 @@ class BesideSilentBase : public testing::Test {
   void begin() {
     hand_.reset();
     service_.reset();
-    board_.emplace();
-    events_.emplace(*board_);
+    hub_.emplace();
+    events_.emplace(*hub_);
     service_.emplace(page_setup(partition_));
-    hand_.emplace(service_->loop(), *service_, *board_, *events_, tally_,
-                  HandSender::Hooks{[this] { ++first_; }, [](const char*) {}}, memory_);
+    hand_.emplace(service_->loop(), *service_, *hub_, *events_, tally_,
+                  ManualDriveSender::Hooks{[this] { ++first_; }, [](const char*) {}}, memory_);
   }
   [[nodiscard]] bool run_until(const std::string& what, const std::function<bool()>& condition) {
     return test::wait_in_loop(service_->loop(), what, condition);
@@ -343,8 +343,8 @@ class BesideSilentBase : public testing::Test {
     ASSERT_TRUE(given_.write(order));
   }
   [[nodiscard]] bool is_stopped() {
-    if (board_->version(Channel::kDrive) == 0) return false;
-    return board_->update(Channel::kDrive, 0).text->find("\"stopped\":true") != std::string::npos;
+    if (hub_->version(Channel::kDrive) == 0) return false;
+    return hub_->update(Channel::kDrive, 0).text->find("\"stopped\":true") != std::string::npos;
   }
   /// Whether an order to drive by hand is refused because of a stop. A slow machine may consider
   /// the order late.
@@ -365,12 +365,12 @@ class BesideSilentBase : public testing::Test {
 
   std::string partition_ = messaging::random_partition();
   const std::filesystem::path memory_ = std::filesystem::path(testing::TempDir()) / partition_;
-  std::optional<Board> board_;
+  std::optional<ChannelHub> hub_;
   std::optional<EventLog> events_;
   Tally tally_;
   int first_ = 0;
   std::optional<service::Service> service_;
-  std::optional<HandSender> hand_;
+  std::optional<ManualDriveSender> hand_;
   /// A navigator that takes orders to the base.
   struct Navigator {
     explicit Navigator(const std::string& partition)
@@ -390,11 +390,11 @@ TEST_F(BesideSilentBase, AStopOutlivesThePage) {
   begin();
   EXPECT_TRUE(is_stopped());
   EXPECT_TRUE(refuses_to_drive());
-  EXPECT_EQ(hand_->release_stop(), HandSender::Release::kHeldHere);
+  EXPECT_EQ(hand_->release_stop(), ManualDriveSender::Release::kHeldHere);
   EXPECT_FALSE(refuses_to_drive());
   begin();
   EXPECT_FALSE(is_stopped()) << "the stop was released";
-  EXPECT_EQ(hand_->release_stop(), HandSender::Release::kUnheard);
+  EXPECT_EQ(hand_->release_stop(), ManualDriveSender::Release::kUnheard);
 }
 
 TEST_F(BesideSilentBase, ANavigatorThatConnectsLaterGetsTheStopAndItsRelease) {
@@ -405,7 +405,7 @@ TEST_F(BesideSilentBase, ANavigatorThatConnectsLaterGetsTheStopAndItsRelease) {
   ASSERT_TRUE(navigator_gets(msg::kBaseHalt));
   const std::uint64_t stop = newest_->stop_count();
   EXPECT_NE(stop, 0U);
-  EXPECT_EQ(hand_->release_stop(), HandSender::Release::kHeldHere);
+  EXPECT_EQ(hand_->release_stop(), ManualDriveSender::Release::kHeldHere);
   ASSERT_TRUE(navigator_gets(msg::kBaseReset));
   EXPECT_EQ(newest_->stop_count(), stop);
   newest_.reset();
@@ -426,7 +426,7 @@ TEST_F(BesideSilentBase, AStopOfAnotherProgramHoldsUntilItsRelease) {
 TEST_F(BesideSilentBase, AStopOfAnotherProgramCanBeReleasedHere) {
   ASSERT_NO_FATAL_FAILURE(give(msg::kBaseHalt));
   ASSERT_TRUE(run_until("the stop", [&] { return is_stopped(); }));
-  EXPECT_EQ(hand_->release_stop(), HandSender::Release::kHeldHere);
+  EXPECT_EQ(hand_->release_stop(), ManualDriveSender::Release::kHeldHere);
   ASSERT_TRUE(navigator_gets(msg::kBaseReset));
   EXPECT_EQ(newest_->stop_count(), kOtherStop);
 }
@@ -443,12 +443,12 @@ TEST_F(BesideSilentBase, AStopHoldsWhenTheGatewayHasGone) {
   }
   EXPECT_TRUE(run_until("the stop to be kept here", [&] { return is_stopped(); }));
   EXPECT_TRUE(refuses_to_drive());
-  EXPECT_EQ(hand_->release_stop(), HandSender::Release::kHeldHere);
+  EXPECT_EQ(hand_->release_stop(), ManualDriveSender::Release::kHeldHere);
 }
 
 // A navigator that has started again knows the stop by its number alone.
 TEST_F(BesideSilentBase, AReleaseOfAGatewayByAnotherProgramIsAnEvent) {
-  const auto events = [&] { return *board_->update(Channel::kEvents, 0).text; };
+  const auto events = [&] { return *hub_->update(Channel::kEvents, 0).text; };
   ASSERT_NO_FATAL_FAILURE(give(msg::kBaseHalt));
   ASSERT_TRUE(run_until("the stop", [&] { return is_stopped(); }));
   EXPECT_THAT(events(), testing::HasSubstr("stopped by other"));
@@ -497,7 +497,7 @@ TEST_F(BesideSilentBase, TheReleaseNamesAStopThatTheBaseHasNotReported) {
     gateway.report(msg::kBaseOffline, kCount);
     return hand_->stop();
   }));
-  EXPECT_EQ(hand_->release_stop(), HandSender::Release::kSent);
+  EXPECT_EQ(hand_->release_stop(), ManualDriveSender::Release::kSent);
   EXPECT_TRUE(run_until("a release that names the stop, not the count of the base", [&] {
     const std::uint64_t named = gateway.released();
     return named != 0 && named != kCount;
@@ -524,11 +524,11 @@ TEST_F(BesideSilentBase, ZerosAreRepeatedDuringAStop) {
   EXPECT_FALSE(hand_->stop());
   const std::uint64_t before = commands();
   EXPECT_TRUE(run_until("three more commands", [&] { return commands() >= before + 3; }));
-  EXPECT_EQ(hand_->release_stop(), HandSender::Release::kHeldHere);
+  EXPECT_EQ(hand_->release_stop(), ManualDriveSender::Release::kHeldHere);
 }
 
-TEST_F(HandSenderTest, NothingMovesBeforeItIsKnownWhereItMayNot) {
-  const auto shown = [&] { return *board_.update(Channel::kDrive, 0).text; };
+TEST_F(ManualDriveSenderTest, NothingMovesBeforeItIsKnownWhereItMayNot) {
+  const auto shown = [&] { return *hub_.update(Channel::kDrive, 0).text; };
   // Commands are repeated, because a slow machine considers the first ones late.
   ASSERT_TRUE(run_until("somebody drives", [&] {
     hand_.drive(1, {0.3, 0.0}, now_ns());

@@ -15,22 +15,22 @@
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/service/service.hpp"
 
-#include "orders/hand_sender.hpp"
+#include "orders/manual_drive_sender.hpp"
 #include "server/web_types.hpp"
 
 namespace topogeo::web {
 
-class HandThread {
+class ManualDriveThread {
  public:
   /// The hooks are called in this thread. An exception in it ends the loop of the service.
-  /// `memory`: see HandSender.
-  HandThread(service::Service& service, Board& board, EventLog& events, Tally& tally,
-             HandSender::Hooks hooks, const std::filesystem::path& memory = {});
-  HandThread(const HandThread&) = delete;
-  HandThread& operator=(const HandThread&) = delete;
-  ~HandThread();
+  /// `memory`: see ManualDriveSender.
+  ManualDriveThread(service::Service& service, ChannelHub& hub, EventLog& events, Tally& tally,
+                    ManualDriveSender::Hooks hooks, const std::filesystem::path& memory = {});
+  ManualDriveThread(const ManualDriveThread&) = delete;
+  ManualDriveThread& operator=(const ManualDriveThread&) = delete;
+  ~ManualDriveThread();
 
-  // Thread-safe; see HandSender.
+  // Thread-safe; see ManualDriveSender.
   void drive(std::uint64_t viewer, const geometry::Velocity& wanted);
   void release(std::uint64_t viewer);
   void stop(Respond respond);
@@ -58,7 +58,7 @@ class HandThread {
 
   service::Service& service_;
   messaging::EventLoop loop_;
-  HandSender hand_;
+  ManualDriveSender hand_;
   std::mutex mutex_;
   std::deque<Order> orders_;  // here and not in the loop, because they hold connections
   bool ended_ = false;

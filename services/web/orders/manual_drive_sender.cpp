@@ -1,4 +1,4 @@
-#include "orders/hand_sender.hpp"
+#include "orders/manual_drive_sender.hpp"
 
 #include <chrono>
 #include <exception>
@@ -30,12 +30,12 @@ std::int64_t steady_ns() {
   return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-HandSender::HandSender(messaging::EventLoop& loop, const service::Service& service, Board& board,
-                       EventLog& events, Tally& tally, Hooks hooks,
-                       const std::filesystem::path& memory)
+ManualDriveSender::ManualDriveSender(messaging::EventLoop& loop, const service::Service& service,
+                                     ChannelHub& hub, EventLog& events, Tally& tally, Hooks hooks,
+                                     const std::filesystem::path& memory)
     : loop_(loop),
       service_(service),
-      board_(board),
+      hub_(hub),
       events_(events),
       tally_(tally),
       hooks_(std::move(hooks)),
@@ -59,14 +59,14 @@ HandSender::HandSender(messaging::EventLoop& loop, const service::Service& servi
 }
 
 template <class T, class Handler>
-void HandSender::subscribe(Handler handler) {
+void ManualDriveSender::subscribe(Handler handler) {
   loop_.add<T>(messaging::Reader<T>(service_.participant()),
                [this, handler](const T& message, const messaging::SampleInfo& info) {
                  if (message.robot_id() == service_.robot_id()) handler(message, info);
                });
 }
 
-void HandSender::listen() {
+void ManualDriveSender::listen() {
   using Info = messaging::SampleInfo;
   subscribe<msg::Odometry>(
       [this](const msg::Odometry& odometry, const Info&) { on_odometry(odometry); });
@@ -85,7 +85,7 @@ void HandSender::listen() {
       [this](const msg::NavigatorStatus&, const Info& info) { on_navigator(info.writer); });
 }
 
-HandSender::~HandSender() {
+ManualDriveSender::~ManualDriveSender() {
   if (!commanding_) return;
   try {
     command({}, clock_.now_ns(steady_ns()));
@@ -95,19 +95,19 @@ HandSender::~HandSender() {
   }
 }
 
-void HandSender::on_odometry(const msg::Odometry& odometry) {
+void ManualDriveSender::on_odometry(const msg::Odometry& odometry) {
   clock_.observe(odometry.stamp_ns(), steady_ns());
   guard_.add(service::odometry_from_msg(odometry));
 }
 
-void HandSender::on_pose(const msg::LivePose& pose) {
+void ManualDriveSender::on_pose(const msg::LivePose& pose) {
   if (pose.state() != msg::kStateTracking) return;  // the guard carries the previous points on
   pose_.emplace();
   pose_->stamp_ns = pose.stamp_ns();
   pose_->T_map_robot = service::from_msg(pose.T_map_robot());
 }
 
-void HandSender::on_scan(const msg::Scan& message) {
+void ManualDriveSender::on_scan(const msg::Scan& message) {
   const navigation::ScanPoints scan = service::to_scan_points(
       service::from_msg(message), service_.setup().config.config.local_mapper.T_robot_laser);
   clock_.observe(scan.stamp_ns, steady_ns());
@@ -115,12 +115,12 @@ void HandSender::on_scan(const msg::Scan& message) {
   guard_.add(scan);
 }
 
-void HandSender::on_laser(const msg::LaserStatus& laser) {
+void ManualDriveSender::on_laser(const msg::LaserStatus& laser) {
   guard_.add(
       navigation::LaserFields{laser.stamp_ns(), laser.warning_field(), laser.protective_field()});
 }
 
-void HandSender::on_base(const msg::BaseStatus& base, const messaging::Handle& writer) {
+void ManualDriveSender::on_base(const msg::BaseStatus& base, const messaging::Handle& writer) {
   base_ = writer;
   stop_count_ = base.stop_count();
   kept_stop_.base_counts(stop_count_);
@@ -145,7 +145,7 @@ void HandSender::on_base(const msg::BaseStatus& base, const messaging::Handle& w
   }
 }
 
-void HandSender::on_order(const msg::BaseCommand& message, const messaging::Handle& writer) {
+void ManualDriveSender::on_order(const msg::BaseCommand& message, const messaging::Handle& writer) {
   if (message.client_id() == client_id_.c_str()) return;
   const std::string client = message.client_id().c_str();
   if (message.kind() != msg::kBaseSetLimits) releasing_.clear();
@@ -165,7 +165,7 @@ void HandSender::on_order(const msg::BaseCommand& message, const messaging::Hand
   if (!commanding_) show_rest();
 }
 
-void HandSender::on_navigator(const messaging::Handle& navigator) {
+void ManualDriveSender::on_navigator(const messaging::Handle& navigator) {
   if (base_hears() || navigator_ == navigator || !orders_.connected_with(navigator)) return;
   navigator_ = navigator;
   if (kept_stop_.number() == 0) return;
@@ -173,18 +173,18 @@ void HandSender::on_navigator(const messaging::Handle& navigator) {
       order(kept_stop_.holds() ? msg::kBaseHalt : msg::kBaseReset, kept_stop_.number()));
 }
 
-void HandSender::keep_off(std::shared_ptr<const navigation::DrawnLimits> limits) {
+void ManualDriveSender::keep_off(std::shared_ptr<const navigation::DrawnLimits> limits) {
   limits_ = std::move(limits);
 }
 
-void HandSender::keep_off_drawn() {
+void ManualDriveSender::keep_off_drawn() {
   if (!pose_ || !limits_) return;
   guard_.keep_off(pose_->stamp_ns, limits_->near_m(pose_->T_map_robot));
   pose_.reset();
 }
 
-void HandSender::drive(std::uint64_t viewer, const geometry::Velocity& wanted,
-                       std::int64_t came_ns) {
+void ManualDriveSender::drive(std::uint64_t viewer, const geometry::Velocity& wanted,
+                              std::int64_t came_ns) {
   const std::int64_t now_ns = steady_ns();
   if (now_ns - came_ns > ManualDrive::kPatience_ns) {
     tally_.add("refused: late");
@@ -207,12 +207,12 @@ void HandSender::drive(std::uint64_t viewer, const geometry::Velocity& wanted,
   tick();
 }
 
-void HandSender::release(std::uint64_t viewer) {
+void ManualDriveSender::release(std::uint64_t viewer) {
   drive_.release(viewer, steady_ns());
   tick();
 }
 
-void HandSender::tick() {
+void ManualDriveSender::tick() {
   if (stop_unheard_ && base_hears()) stop_unheard_ = !order(msg::kBaseHalt, stop_number_);
   if (navigator_ && !orders_.connected_with(*navigator_)) navigator_.reset();
   const std::int64_t now_ns = steady_ns();
@@ -245,7 +245,7 @@ void HandSender::tick() {
   show(*verdict, held_);
 }
 
-void HandSender::command(const geometry::Velocity& velocity, std::int64_t stamp_ns) {
+void ManualDriveSender::command(const geometry::Velocity& velocity, std::int64_t stamp_ns) {
   msg::MotionCommand message;
   messaging::set_header(message, service_.robot_id(), stamp_ns, commands_sent_++);
   message.linear_mps(velocity.linear_m_per_s);
@@ -256,11 +256,11 @@ void HandSender::command(const geometry::Velocity& velocity, std::int64_t stamp_
 }
 
 // Another robot's base may already be connected when the own one is not.
-bool HandSender::base_hears() const {
+bool ManualDriveSender::base_hears() const {
   return base_ && orders_.connected_with(*base_);
 }
 
-bool HandSender::stop() {
+bool ManualDriveSender::stop() {
   drive_.let_go(steady_ns());
   release_.end();
   if (on_release_) std::exchange(on_release_, nullptr)(UnconfirmedRelease::Outcome::kRefused);
@@ -277,7 +277,7 @@ bool HandSender::stop() {
   return heard;
 }
 
-HandSender::Release HandSender::release_stop(OnRelease done) {
+ManualDriveSender::Release ManualDriveSender::release_stop(OnRelease done) {
   using Outcome = UnconfirmedRelease::Outcome;
   const bool kept = stopped_alone();
   const bool stopped = std::exchange(stop_wanted_, false) || kept;
@@ -301,7 +301,7 @@ HandSender::Release HandSender::release_stop(OnRelease done) {
   return Release::kSent;
 }
 
-void HandSender::end_release(std::optional<UnconfirmedRelease::Outcome> outcome) {
+void ManualDriveSender::end_release(std::optional<UnconfirmedRelease::Outcome> outcome) {
   using Level = EventLog::Level;
   if (!outcome) return;
   switch (*outcome) {
@@ -319,7 +319,7 @@ void HandSender::end_release(std::optional<UnconfirmedRelease::Outcome> outcome)
   if (on_release_) std::exchange(on_release_, nullptr)(*outcome);
 }
 
-bool HandSender::order(msg::BaseCommandKind kind, std::uint64_t number) {
+bool ManualDriveSender::order(msg::BaseCommandKind kind, std::uint64_t number) {
   msg::BaseCommand message;
   messaging::set_header(message, service_.robot_id(), support::wall_clock_ns(), orders_sent_++);
   messaging::set_client_id(message, client_id_);
@@ -331,22 +331,22 @@ bool HandSender::order(msg::BaseCommandKind kind, std::uint64_t number) {
   return false;
 }
 
-void HandSender::show_rest() {
+void ManualDriveSender::show_rest() {
   shows_stop_ = stopped_alone();
-  if (!shows_stop_) return board_.set(Channel::kDrive, "null");
+  if (!shows_stop_) return hub_.set(Channel::kDrive, "null");
   navigation::GuardVerdict verdict;
   verdict.message = "stopped; takes orders after a release";
   show(verdict, false);
 }
 
-void HandSender::show(const navigation::GuardVerdict& verdict, bool held) {
-  board_.set(Channel::kDrive,
-             text_of(Json{{"held", held},
-                          {"stopped", stopped_alone()},
-                          {"linear_mps", rounded(verdict.allowed.linear_m_per_s)},
-                          {"angular_radps", rounded(verdict.allowed.angular_rad_per_s)},
-                          {"free_ahead_m", rounded(verdict.free_m)},
-                          {"message", verdict.message}}));
+void ManualDriveSender::show(const navigation::GuardVerdict& verdict, bool held) {
+  hub_.set(Channel::kDrive,
+           text_of(Json{{"held", held},
+                        {"stopped", stopped_alone()},
+                        {"linear_mps", rounded(verdict.allowed.linear_m_per_s)},
+                        {"angular_radps", rounded(verdict.allowed.angular_rad_per_s)},
+                        {"free_ahead_m", rounded(verdict.free_m)},
+                        {"message", verdict.message}}));
 }
 
 }  // namespace topogeo::web

@@ -28,7 +28,7 @@
 
 #include "orders/manual_drive.hpp"
 #include "orders/unconfirmed_release.hpp"
-#include "server/board.hpp"
+#include "server/channel_hub.hpp"
 #include "server/tally.hpp"
 
 namespace topogeo::web {
@@ -40,7 +40,7 @@ class EventLog;
 
 /// Lives in a loop of its own, so that orders are carried out at once, whatever the other threads
 /// of the service do.
-class HandSender {
+class ManualDriveSender {
  public:
   using OnRelease = std::function<void(UnconfirmedRelease::Outcome)>;
   enum class Release : std::uint8_t {
@@ -57,12 +57,13 @@ class HandSender {
 
   /// Keeps a stop that no base reports in the file `memory` (empty: none). Throws like
   /// service::OperatorStop.
-  HandSender(messaging::EventLoop& loop, const service::Service& service, Board& board,
-             EventLog& events, Tally& tally, Hooks hooks, const std::filesystem::path& memory = {});
-  HandSender(const HandSender&) = delete;
-  HandSender& operator=(const HandSender&) = delete;
+  ManualDriveSender(messaging::EventLoop& loop, const service::Service& service, ChannelHub& hub,
+                    EventLog& events, Tally& tally, Hooks hooks,
+                    const std::filesystem::path& memory = {});
+  ManualDriveSender(const ManualDriveSender&) = delete;
+  ManualDriveSender& operator=(const ManualDriveSender&) = delete;
   /// Sends a command to stand still.
-  ~HandSender();
+  ~ManualDriveSender();
 
   /// An order received at `came_ns` of the steady clock. Refused if it is old, and from stop() or
   /// the stop of another program to the release.
@@ -116,7 +117,7 @@ class HandSender {
 
   messaging::EventLoop& loop_;
   const service::Service& service_;
-  Board& board_;
+  ChannelHub& hub_;
   EventLog& events_;
   Tally& tally_;
   Hooks hooks_;
