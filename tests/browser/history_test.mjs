@@ -108,7 +108,7 @@ test("the drive plays: the floor grows with it", async () => {
   await page.getByRole("button", { name: "Load the drive" }).click();
   const { stops } = facts("round");
   await text(".film-moment", new RegExp(`^Stop ${stops} of ${stops}`));
-  await text(".stage .map-note", /as it was, not the robot of now/);
+  await text(".stage .map-note", /Replay of the drive, not the present robot/);
   await page.locator("#film-slider").fill("0");
   await text(".film-moment", new RegExp(`^Stop 1 of ${stops}`));
   await page.locator("#film-slider").fill("400");

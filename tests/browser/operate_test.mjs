@@ -325,7 +325,7 @@ test("without a connection nothing is said of goals", async () => {
   await text(page, ".section h3", /To room A/);
   service.cut();
   await text(page, ".state-word", /Offline/i);
-  await text(page, ".section h3", /is not known/);
+  await text(page, ".section h3", /state is unknown/);
   assert.equal(await page.getByText("The robot has no goal").count(), 0);
   assert.equal(await page.getByText("No navigator is running").filter({ visible: true }).count(), 0);
   service.reachable = true;
