@@ -21,7 +21,7 @@ namespace topogeo::navigator {
 class OperatorStopInput {
  public:
   /// Keeps the stop in the file `memory` (empty: none), and passes it to the navigator, which must
-  /// outlive this object. From `start_ns` of the steady clock, the navigator stands until it can
+  /// outlive this object. The navigator stands from `start_ns` of the steady clock until it can
   /// have missed no stop, see StopWait. `on_change` is called when a message has begun or ended a
   /// reason to stand. Throws like service::OperatorStop.
   OperatorStopInput(service::Service& service, const std::filesystem::path& memory,
