@@ -113,19 +113,27 @@ TEST(Liveliness, KilledProcessIsReportedAndItsInstancesAreGone) {
   std::optional<Handle> instance;
   std::optional<Handle> gone;
   std::vector<EventKind> kinds;
+  // A writer whose liveliness was never noticed cannot lose it, and its first sample may come
+  // before that.
+  const auto kill_when_alive = [&] {
+    if (instance && std::ranges::count(kinds, EventKind::kLivelinessGained) > 0) worker.kill();
+  };
   loop.add<msg::WorkerStatus>(
       reader,
       [&](const msg::WorkerStatus& status, const SampleInfo& info) {
         EXPECT_EQ(status.worker_id().to_string(), "killed");
         instance = info.instance;
-        worker.kill();
+        kill_when_alive();
       },
       [&](const SampleInfo& info) {
         EXPECT_EQ(info.state, InstanceState::kNoWriters);
         gone = info.instance;
         loop.stop();
       });
-  loop.on_event([&](const Event& event) { kinds.push_back(event.kind); });
+  loop.on_event([&](const Event& event) {
+    kinds.push_back(event.kind);
+    kill_when_alive();
+  });
 
   EXPECT_TRUE(run_to_stop(loop));
 
