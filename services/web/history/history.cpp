@@ -28,12 +28,12 @@ Answer json_answer(const Json& json) {
 }
 
 /// Path of an export: the name without extension if it has several files, otherwise the file.
-std::string export_path(const exchange::ExportFormat& format) {
+std::string export_path(const exchange::MapFormat& format) {
   return format.endings.size() > 1 ? kExportStem
                                    : kExportStem + std::string(format.endings.front());
 }
 
-Answer exported_file(const storage::MapDocument& map, const exchange::ExportFormat& format,
+Answer exported_file(const storage::MapDocument& map, const exchange::MapFormat& format,
                      const std::string& file, const exchange::ExportSettings& settings) {
   const std::string path = export_path(format);
   for (exchange::OutputFile& made : exchange::export_map(map, format.name, path, settings).files) {
@@ -77,7 +77,7 @@ Json History::shown(Comparison comparison) {
 
 Answer History::formats() {
   Json formats = Json::array();
-  for (const exchange::ExportFormat& format : exchange::export_formats()) {
+  for (const exchange::MapFormat& format : exchange::export_formats()) {
     Json files = Json::array();
     for (const std::string_view ending : format.endings) {
       files.push_back(kExportStem + std::string(ending));
@@ -194,7 +194,7 @@ void History::export_file(const std::string& path, const Respond& respond) {
   const std::string name = path.substr(0, slash);
   const std::string file = slash == std::string::npos ? "" : path.substr(slash + 1);
   const auto formats = exchange::export_formats();
-  const auto format = std::ranges::find(formats, name, &exchange::ExportFormat::name);
+  const auto format = std::ranges::find(formats, name, &exchange::MapFormat::name);
   const bool known =
       format != formats.end() && std::ranges::any_of(format->endings, [&](std::string_view ending) {
         return file == kExportStem + std::string(ending);

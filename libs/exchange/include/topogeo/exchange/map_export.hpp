@@ -31,9 +31,6 @@ struct ExportedMap {
   Notes notes;
 };
 
-/// A row of export_formats().
-using ExportFormat = MapFormat;
-
 /// `path`: the file, or the common start of several. Throws std::invalid_argument for an unknown
 /// format or a map that lacks what it needs, std::runtime_error if a file cannot be made.
 ExportedMap export_map(const storage::MapDocument& map, std::string_view format,
