@@ -74,7 +74,7 @@ class UnheardServices {
   std::uint32_t domain_;
   std::string partition_;
   std::set<messaging::Handle> heard_;  // writers of statuses
-  // By host and process: the time of the last status of each instance.
+  // Time of the last status of each instance, by host and process.
   std::map<std::pair<std::string, Numbered>, std::map<std::string, Time>> instances_;
   std::map<messaging::Handle, Writer> writers_;  // discovered writers
   std::vector<HostProcess> running_;
