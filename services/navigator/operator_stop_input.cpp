@@ -11,10 +11,6 @@ OperatorStopInput::OperatorStopInput(service::Service& service, const std::files
                                      navigation::Navigator& navigator, std::int64_t start_ns,
                                      std::function<void()> on_change)
     : stop_(memory), wait_(start_ns), navigator_(navigator), on_change_(std::move(on_change)) {
-  if (stop_.holds()) {
-    spdlog::warn("{}: an operator's stop of before this start holds ({})", memory.string(),
-                 service::age_in_words(stop_.age_at_start()));
-  }
   apply();
   service.subscribe<msg::BaseCommand>(
       [this](const msg::BaseCommand& command, const messaging::SampleInfo& info) {

@@ -43,14 +43,17 @@ OperatorStop::OperatorStop(const std::filesystem::path& file)
   if (const std::optional<Record> record = file_.load()) {
     record_ = *record;
     if (holds()) age_at_start_ = age_of(file);
-    return;
+  } else {
+    if (has_bytes(file)) {
+      spdlog::warn("{}: damaged; the robot is stopped until a release", file.string());
+      record_ = {new_number(), 0, 1};
+    }
+    // Takes the room in the file now: a later stop overwrites it, on a full disk, too.
+    store();
   }
-  if (has_bytes(file)) {
-    spdlog::warn("{}: damaged; the robot is stopped until a release", file.string());
-    record_ = {new_number(), 0, 1};
-  }
-  // Takes the room in the file now: a later stop overwrites it, on a full disk, too.
-  store();
+  if (!holds()) return;
+  spdlog::warn("{}: an operator's stop of before this start holds ({})", file.string(),
+               age_in_words(age_at_start_));
 }
 
 void OperatorStop::hold(std::uint64_t number) {

@@ -49,7 +49,6 @@ ManualDriveSender::ManualDriveSender(messaging::EventLoop& loop, const service::
   listen();
   if (stop_wanted_) {
     const std::string age = service::age_in_words(kept_stop_.age_at_start());
-    spdlog::warn("{}: an operator's stop of before this start holds ({})", memory.string(), age);
     events_.add(EventLog::Level::kWarning, "web",
                 "the operator's stop of before this start holds until the release" +
                     (age.empty() ? "" : " (" + age + ")"));
