@@ -140,13 +140,6 @@ PlsSetup::Result PlsSetup::after_rate(std::int64_t now_ns) {
   const bool refused = exchange_.result() == SickExchange::Result::kRefused ||
                        (replied() && exchange_.mode_reply() != PlsModeReply::kDone);
   if (refused) {
-    // The late answer to a repeated command may be taken for that to the next one, so that the rate
-    // is asked for before the sensor is in installation mode: once more from the start.
-    ++failed_switches_;
-    if (failed_switches_ < settings_.baud_switch_tries) {
-      begin(Step::kStop, now_ns);
-      return Result::kGoesOn;
-    }
     return fall_back("the sensor refuses " + std::to_string(settings_.baud) + " baud", now_ns);
   }
   // Some sensors answer at the old rate, some perhaps at the new one: without an answer only a try

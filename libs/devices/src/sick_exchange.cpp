@@ -15,28 +15,31 @@ constexpr std::uint8_t kReplyBit = 0x80;
 
 void SickExchange::start(std::vector<std::uint8_t> command, const Limits& limits,
                          const LineSettings& line, std::int64_t now_ns) {
+  waiting_ = result_ == Result::kReplied && sent_ > 1;
   command_ = std::move(command);
   limits_ = limits;
   line_ = line;
   result_ = Result::kOpen;
   sent_ = 0;
-  send(now_ns);
+  if (!waiting_) return send(now_ns);
+  to_write_ = false;
+  due_ns_ = now_ns + (now_ns - first_sent_ns_) + limits_.repeat_gap_ns;
 }
 
 void SickExchange::acknowledged(std::int64_t now_ns) {
-  if (!open() || acknowledged_ || repeating_) return;
+  if (!open() || acknowledged_ || waiting_ || repeating_) return;
   acknowledged_ = true;
   due_ns_ = now_ns + limits_.reply_timeout_ns;
 }
 
 void SickExchange::refused(std::int64_t now_ns) {
-  if (!open() || repeating_) return;
+  if (!open() || waiting_ || repeating_) return;
   ++refusals_;
   fail(Result::kRefused, now_ns);
 }
 
 void SickExchange::replied(std::optional<PlsModeReply> reply) {
-  if (!open()) return;
+  if (!open() || waiting_) return;
   to_write_ = false;
   mode_reply_ = reply.value_or(PlsModeReply::kDone);
   result_ = Result::kReplied;
@@ -44,8 +47,8 @@ void SickExchange::replied(std::optional<PlsModeReply> reply) {
 
 void SickExchange::tick(std::int64_t now_ns) {
   if (!open() || now_ns < due_ns_) return;
-  if (repeating_) {
-    ++repeats_;
+  if (waiting_ || repeating_) {
+    if (repeating_) ++repeats_;
     send(now_ns);
     return;
   }
@@ -67,8 +70,9 @@ std::uint8_t SickExchange::code() const {
 }
 
 void SickExchange::send(std::int64_t now_ns) {
-  ++sent_;
+  if (sent_++ == 0) first_sent_ns_ = now_ns;
   to_write_ = true;
+  waiting_ = false;
   repeating_ = false;
   acknowledged_ = false;
   due_ns_ = now_ns + line_time_ns(command_.size(), line_) + limits_.ack_timeout_ns;

@@ -1,9 +1,11 @@
 #include "topogeo/devices/pls_driver.hpp"
 
 #include <cstdint>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -25,6 +27,37 @@ simulation::PlsEmulatorSettings lms() {
   settings.power_on_text = "LMS200;emulated";
   return settings;
 }
+
+/// A device that gets to run only now and then, as on a busy machine: it takes all bytes that have
+/// come since then at once.
+class LateDevice final : public simulation::SerialDevice {
+ public:
+  LateDevice(SerialDevice& device, std::int64_t period_ns)
+      : device_(device), period_ns_(period_ns) {}
+
+  void receive(std::span<const std::uint8_t> bytes, const LineSettings& host,
+               std::int64_t) override {
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    host_ = host;
+  }
+  void tick(std::int64_t now_ns) override {
+    if (now_ns < runs_at_ns_) return;
+    runs_at_ns_ = now_ns + period_ns_;
+    if (!bytes_.empty()) device_.receive(std::exchange(bytes_, {}), host_, now_ns);
+    device_.tick(now_ns);
+  }
+  [[nodiscard]] std::int64_t due_ns() const override { return runs_at_ns_; }
+  std::vector<std::uint8_t> take_output(const LineSettings& host, std::int64_t now_ns) override {
+    return device_.take_output(host, now_ns);
+  }
+
+ private:
+  SerialDevice& device_;
+  std::int64_t period_ns_;
+  std::int64_t runs_at_ns_ = 0;
+  std::vector<std::uint8_t> bytes_;
+  LineSettings host_;
+};
 
 /// Desired rate, rate of the sensor when the port opens, and whether it is streaming.
 using StartUp = std::tuple<std::uint32_t, std::uint32_t, bool>;
@@ -333,6 +366,26 @@ TEST(PlsDriver, StaysAtTheRateWhenTheSensorNeverTakesTheCommand) {
   pls.start();
   EXPECT_EQ(pls.driver.status().line.baud, 9600U);
   EXPECT_EQ(pls.driver.status().reason, "runs at 9600 baud: the sensor refuses 500000 baud");
+}
+
+// The sensor hears each command, but answers so late that the driver repeats it. A sensor that
+// answers a repeated command ignores the next one.
+TEST(PlsDriver, ChangesTheRateOfASensorThatAnswersEachCommandLate) {
+  for (std::int64_t late_ms = 110; late_ms <= 300; late_ms += 10) {
+    SCOPED_TRACE(late_ms);
+    PlsDriver driver(PlsSettings{});
+    simulation::PlsEmulator emulator({},
+                                     [](std::int64_t) { return std::vector<float>(361, 2.0F); });
+    LateDevice sensor(emulator, late_ms * kMillisecond_ns);
+    SimulatedLine line(driver, sensor);
+    line.plug_in();
+    EXPECT_TRUE(line.run_until(30 * kSecond_ns, [&] {
+      return driver.status().state == PlsState::kRunning;
+    })) << driver.status().reason;
+    EXPECT_GT(driver.status().counters.repeats, 0U);
+    EXPECT_EQ(driver.status().reason, "");
+    EXPECT_EQ(driver.status().line.baud, 500'000U);
+  }
 }
 
 TEST(PlsDriver, RestsWhenTheSensorRefusesToSendScans) {

@@ -90,20 +90,6 @@ TEST_F(PlsSetupTest, GivesTheRateUpWhenTheSensorDoesNotFollowTwice) {
   EXPECT_EQ(setup_.fallback(), "");
 }
 
-TEST_F(PlsSetupTest, AsksForTheRateOnceMoreFromTheStartWhenItIsRefused) {
-  setup_.start(0);
-  EXPECT_EQ(reply(), SetupResult::kGoesOn);  // the stream is stopped
-  EXPECT_EQ(reply(), SetupResult::kGoesOn);  // installation mode
-  EXPECT_EQ(reply(PlsModeReply::kRefused), SetupResult::kGoesOn);
-  EXPECT_EQ(written(), pls_mode_command(PlsMode::kOnRequest));
-  EXPECT_EQ(setup_.fallback(), "");
-  EXPECT_EQ(reply(), SetupResult::kGoesOn);
-  EXPECT_EQ(written(), pls_mode_command(PlsMode::kInstallation, "SICK_PLS"));
-  EXPECT_EQ(reply(), SetupResult::kGoesOn);
-  EXPECT_EQ(reply(PlsModeReply::kRefused), SetupResult::kGoesOn);
-  EXPECT_EQ(setup_.fallback(), "runs at 9600 baud: the sensor refuses 500000 baud");
-}
-
 TEST_F(PlsSetupTest, AnLmsChangesItsRateWithoutAPassword) {
   line_.set({9600, Parity::kNone});
   setup_.start_stopped(0);

@@ -98,6 +98,30 @@ TEST_F(SickExchangeTest, MayRepeatOnlyWhatIsRefused) {
   EXPECT_EQ(exchange.result(), Result::kSilent);
 }
 
+TEST_F(SickExchangeTest, WaitsForOtherRepliesAfterTheReplyToARepeatedCommand) {
+  exchange.tick(exchange.due_ns());
+  exchange.tick(exchange.due_ns());
+  EXPECT_EQ(exchange.take_command(), command);
+  exchange.replied(std::nullopt);
+  const std::int64_t replied_ns = left_ns + 200;
+  const std::vector<std::uint8_t> next = sick_command(pls_command::kRequestErrors);
+  exchange.start(next, kLimits, kLine, replied_ns);
+  EXPECT_EQ(exchange.due_ns(), 2 * replied_ns + 30);
+  exchange.acknowledged(replied_ns + 1);
+  exchange.refused(replied_ns + 1);
+  exchange.replied(std::nullopt);
+  EXPECT_EQ(exchange.result(), Result::kOpen) << "these answer the repeated command";
+  EXPECT_EQ(exchange.due_ns(), 2 * replied_ns + 30);
+  EXPECT_FALSE(exchange.take_command());
+  exchange.tick(exchange.due_ns());
+  EXPECT_EQ(exchange.take_command(), next);
+  EXPECT_EQ(exchange.repeats(), 1U) << "that of the first command";
+  exchange.replied(std::nullopt);
+  EXPECT_EQ(exchange.result(), Result::kReplied);
+  exchange.start(command, kLimits, kLine, 10 * replied_ns);
+  EXPECT_EQ(exchange.take_command(), command) << "the last one was not repeated";
+}
+
 TEST_F(SickExchangeTest, IgnoresWhatComesAfterTheEnd) {
   exchange.stop();
   exchange.acknowledged(1);

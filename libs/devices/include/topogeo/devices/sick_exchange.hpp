@@ -30,7 +30,9 @@ class SickExchange {
     kNoReply,  ///< ACK but no reply in time
   };
 
-  /// Sends `command` over `line`; drops an open command.
+  /// Sends `command` over `line`; drops an open command. The sensor may have heard each attempt of
+  /// a repeated command, and nothing tells its later replies from those to the next command: after
+  /// such a reply, the next command waits as long as it took, and answers are ignored meanwhile.
   void start(std::vector<std::uint8_t> command, const Limits& limits, const LineSettings& line,
              std::int64_t now_ns);
   void stop() { result_ = Result::kNone; }
@@ -65,9 +67,11 @@ class SickExchange {
   Result result_ = Result::kNone;
   PlsModeReply mode_reply_ = PlsModeReply::kDone;
   bool to_write_ = false;
+  bool waiting_ = false;    ///< until due_ns_, when the command is sent for the first time
   bool repeating_ = false;  ///< until due_ns_, when the command is repeated
   bool acknowledged_ = false;
   int sent_ = 0;
+  std::int64_t first_sent_ns_ = 0;
   std::int64_t due_ns_ = 0;
   std::uint64_t timeouts_ = 0;
   std::uint64_t repeats_ = 0;
