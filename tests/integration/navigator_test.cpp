@@ -196,6 +196,7 @@ TEST_F(NavigatorOfASilentBase, IsReleasedByACommand) {
 TEST_F(NavigatorOfASilentBase, IsHeldByACommand) {
   start();
   send_goal(7, {4.5, 1.0});
+  ASSERT_TRUE(wait_for("the robot to drive", [&] { return rolls(); })) << navigator_->err();
   Program halt(
       scratch_, "topogeo",
       {"base", "halt", "--domain", domain_, "--partition", kPartition, "--wait-seconds", "600"});
