@@ -303,7 +303,7 @@ test("a stop is done when the base is held and stands", async (t) => {
   let now_ms = 5000;
   t.mock.method(performance, "now", () => now_ms);
   let done = 0;
-  const api = { post: () => Promise.resolve() };
+  const api = { post: () => Promise.resolve({}) };
   const stopping = new Stopping(channels, { may_write: true }, api, () => {}, () => ++done);
   const tell = (state, stands) => {
     now_ms += 100;

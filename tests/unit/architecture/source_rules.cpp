@@ -164,7 +164,8 @@ std::vector<std::string> between_services(const std::filesystem::path& root,
     if (user.empty() || include.header.starts_with("topogeo/")) continue;
     for (const auto& entry : std::filesystem::directory_iterator(services)) {
       const std::string other = entry.path().filename().string();
-      if (other == user || other == "common" || !exists(entry.path() / include.header)) continue;
+      if (other == user || other == "common") continue;
+      if (!is_regular_file(entry.path() / include.header)) continue;
       if (exists(services / user / include.header)) continue;  // its own header of that name
       const std::string header = "services/" + other + "/" + include.header;
       if (std::ranges::find(shared, header) == shared.end()) {

@@ -113,7 +113,9 @@ TEST_F(SourceRules, FindsAServiceThatIncludesAnother) {
   write("services/planner/main.cpp",
         "#include \"answer.hpp\"\n#include \"topogeo/service/service.hpp\"\n");
   write("services/worker/job.hpp", "");
-  write("services/worker/main.cpp", "#include \"job.hpp\"\n#include \"answer.hpp\"\n");
+  write("services/planner/map/sheet.hpp", "");  // a folder with the name of a standard header
+  write("services/worker/main.cpp",
+        "#include \"job.hpp\"\n#include \"answer.hpp\"\n#include <map>\n");
   EXPECT_THAT(between_services(root_, includes(), {}),
               ElementsAre("services/worker/main.cpp:2: includes answer.hpp, a header of "
                           "services/planner"));

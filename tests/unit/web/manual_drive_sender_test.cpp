@@ -255,7 +255,9 @@ TEST(ManualDriveThread, AStopThatOnlyANavigatorHearsIsKept) {
         body = answer.body;
         return answer.status == 202U;
       },
-      [] { std::this_thread::sleep_for(std::chrono::milliseconds(5)); }));
+      [] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));  // between two attempts
+      }));
   EXPECT_THAT(body, testing::HasSubstr("this service and the navigator hold the robot"));
 }
 
