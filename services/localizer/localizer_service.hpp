@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "topogeo/localization/session/odometry_chain.hpp"
 #include "topogeo/localization/session/slam_session.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/local_map.h"
@@ -20,7 +21,6 @@
 #include "command_channel.hpp"
 #include "live_pose_estimate.hpp"
 #include "missing_stops.hpp"
-#include "odometry_chain.hpp"
 #include "pose_memory.hpp"
 #include "remote_pool.hpp"
 #include "resume.hpp"
@@ -87,7 +87,7 @@ class LocalizerService {
   std::optional<Resume> resume_;  // until the place to resume is known
   StopQueue queue_;
   std::optional<MissingStops> missing_;  // unless it is standalone
-  OdometryChain odometry_;
+  localization::OdometryChain odometry_;
   std::size_t known_stops_ = 0;  // to be added again: readers have their poses already
   LivePoseEstimate live_;
   std::optional<StopTable> table_;

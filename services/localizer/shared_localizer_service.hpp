@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "topogeo/localization/session/odometry_chain.hpp"
 #include "topogeo/localization/session/shared_map.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/local_map.h"
@@ -18,7 +19,6 @@
 
 #include "live_pose_estimate.hpp"
 #include "merge_channel.hpp"
-#include "odometry_chain.hpp"
 #include "remote_pool.hpp"
 #include "shared_resume.hpp"
 #include "stop_queue.hpp"
@@ -36,7 +36,7 @@ class SharedLocalizerService {
  private:
   struct Robot {
     StopQueue queue = {};
-    OdometryChain odometry = {};
+    localization::OdometryChain odometry = {};
     LivePoseEstimate live;
     bool ended = false;  // the stream of its local maps has ended
   };

@@ -50,7 +50,10 @@ void MappingRun::add(const scan::Scan& scan) {
 void MappingRun::add_stop(topomap::LocalMap map) {
   const auto scope = times_.measure("localizer");
   if (session() == nullptr) local_maps_.push_back(map);
-  slam_->add(std::make_shared<const topomap::LocalMap>(std::move(map)));
+  const auto measured = std::make_shared<const topomap::LocalMap>(std::move(map));
+  const auto chained = odometry_.add(measured);
+  if (chained != measured) measured_[measured->stop] = measured;
+  slam_->add(chained);
 }
 
 storage::MapDocument MappingRun::finish() {
@@ -66,6 +69,12 @@ storage::MapDocument MappingRun::finish() {
   document.local_maps = std::move(local_maps_);
   if (session() != nullptr) {
     for (const auto& map : session()->maps()) document.local_maps.push_back(*map);
+    for (topomap::LocalMap& map : document.local_maps) {
+      const auto measured = measured_.find(map.stop);
+      if (measured == measured_.end()) continue;
+      map.T_odom_robot = measured->second->T_odom_robot;
+      map.track = measured->second->track;
+    }
   }
   document.trajectory = slam_->trajectory();
   document.loop_closures = slam_->loop_closures();

@@ -104,6 +104,25 @@ TEST(MappingRunTest, ClosesTheLoopOfTheFloor) {
   EXPECT_GE(document.loop_closures.size(), 5U);
 }
 
+TEST(MappingRunTest, OdometryThatRestartsLeavesTheMapWhole) {
+  simulation::SimulatedLog log = simulated("room");
+  const std::size_t stops = mapped(log).local_maps.size();
+  const std::size_t middle = log.scans.size() / 2;
+  const geometry::Pose2 T_odom_restart = log.scans[middle].T_odom_robot;
+  for (std::size_t i = middle; i < log.scans.size(); ++i) {
+    scan::Scan& scan = log.scans[i];
+    scan.T_odom_robot = geometry::between(T_odom_restart, scan.T_odom_robot);
+    ++scan.odometry_epoch;
+  }
+  const storage::MapDocument document = mapped(log);
+  EXPECT_NEAR(static_cast<double>(document.local_maps.size()), static_cast<double>(stops), 2.0);
+  EXPECT_EQ(document.local_maps.back().stop.session, document.local_maps.front().stop.session);
+  EXPECT_LT(errors_of(log, document).corrected.rms_m, 0.05);
+  // The odometry in the map is that of the robot.
+  EXPECT_EQ(document.local_maps.back().T_odom_robot, log.scans.back().T_odom_robot);
+  EXPECT_EQ(document.local_maps.back().odometry_epoch, log.scans.back().odometry_epoch);
+}
+
 TEST(MappingRunTest, TrajectoryHasOnePosePerScanInOrder) {
   const simulation::SimulatedLog log = simulated("room");
   const storage::MapDocument document = mapped(log);

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/localization/session/odometry_chain.hpp"
 #include "topogeo/localization/session/slam_session.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
@@ -61,6 +63,9 @@ class MappingRun {
   std::string robot_id_;
   localization::InProcessPool pool_;
   LocalMapper local_mapper_;
+  localization::OdometryChain odometry_;
+  /// Stops whose odometry epoch is not the first one, with the odometry as it was measured.
+  std::map<topomap::StopId, std::shared_ptr<const topomap::LocalMap>> measured_;
   std::shared_ptr<const storage::MapDocument> continued_;
   localization::SlamSession slam_;
   std::vector<topomap::LocalMap> local_maps_;  // of a drive in a finished map

@@ -1,10 +1,12 @@
-#include "odometry_chain.hpp"
+#include "topogeo/localization/session/odometry_chain.hpp"
 
 #include <utility>
 
-namespace topogeo::localizer {
+namespace topogeo::localization {
 
 OdometryChain::MapPointer OdometryChain::add(MapPointer map) {
+  // The scans before a stop belong to the epoch of the stop before.
+  const geometry::Pose2 T_first_track = T_first_odom_;
   const bool same_session = last_ && last_->stop.session == map->stop.session;
   const bool same_epoch = last_ && last_->odometry_epoch == map->odometry_epoch;
   if (same_session && !same_epoch) {
@@ -13,13 +15,16 @@ OdometryChain::MapPointer OdometryChain::add(MapPointer map) {
   } else if (!same_epoch) {
     T_first_odom_ = {};
   }
-  if (T_first_odom_ != geometry::Pose2{}) {
+  if (T_first_odom_ != geometry::Pose2{} || T_first_track != geometry::Pose2{}) {
     auto chained = std::make_shared<topomap::LocalMap>(*map);
     chained->T_odom_robot = T_first_odom_ * map->T_odom_robot;
+    for (topomap::TrackedScan& scan : chained->track) {
+      scan.T_odom_robot = T_first_track * scan.T_odom_robot;
+    }
     map = std::move(chained);
   }
   last_ = Last{map->stop, map->odometry_epoch, map->T_odom_robot};
   return map;
 }
 
-}  // namespace topogeo::localizer
+}  // namespace topogeo::localization

@@ -2,13 +2,14 @@
 // when the session changes within an epoch.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
-namespace topogeo::localizer {
+namespace topogeo::localization {
 
 class OdometryChain {
  public:
@@ -19,9 +20,9 @@ class OdometryChain {
     last_ = Last{map.stop, map.odometry_epoch, map.T_odom_robot};
   }
 
-  /// Returns the next stop with its odometry in the frame of its session's first epoch. Scan
-  /// tracking gives the step over a change of epoch. A session that begins in the epoch in which
-  /// the previous one ended keeps its frame.
+  /// Returns the next stop with its odometry, and that of its track, in the frame of its session's
+  /// first epoch. Scan tracking gives the step over a change of epoch. A session that begins in the
+  /// epoch in which the previous one ended keeps its frame.
   MapPointer add(MapPointer map);
 
  private:
@@ -35,4 +36,4 @@ class OdometryChain {
   geometry::Pose2 T_first_odom_;  // of the current epoch, in the frame of the first
 };
 
-}  // namespace topogeo::localizer
+}  // namespace topogeo::localization

@@ -1,10 +1,10 @@
-#include "localizer/odometry_chain.hpp"
+#include "topogeo/localization/session/odometry_chain.hpp"
 
 #include <memory>
 
 #include <gtest/gtest.h>
 
-namespace topogeo::localizer {
+namespace topogeo::localization {
 namespace {
 
 using geometry::Pose2;
@@ -39,6 +39,22 @@ TEST(OdometryChain, GoesOnOverANewEpochWhereScanTrackingHasTheRobot) {
   expect_at(chain.add(stop(1, 3, 2, {7.0, 7.0, 0.5}, {1.0, 0.0, 0.25})), {7.5, 6.0, 0.25});
 }
 
+TEST(OdometryChain, TheTrackBeforeANewEpochIsOfTheOldOne) {
+  OdometryChain chain;
+  static_cast<void>(chain.add(stop(1, 0, 4, {5.0, 6.0, 0.0}, {})));
+  const auto with_track = [](const OdometryChain::MapPointer& map, const Pose2& T_odom_robot) {
+    auto tracked = std::make_shared<topomap::LocalMap>(*map);
+    tracked->track.push_back({0, 0, T_odom_robot, {}, true});
+    return tracked;
+  };
+  const auto first =
+      chain.add(with_track(stop(1, 1, 9, {0.0, 0.0, 0.0}, {0.5, 0.0, 0.0}), {5.4, 6.0, 0.0}));
+  const auto next =
+      chain.add(with_track(stop(1, 2, 9, {1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}), {0.3, 0.0, 0.0}));
+  EXPECT_EQ(first->track[0].T_odom_robot, (Pose2{5.4, 6.0, 0.0}));
+  EXPECT_LT(geometry::difference(next->track[0].T_odom_robot, {5.8, 6.0, 0.0}).norm(), 1e-12);
+}
+
 TEST(OdometryChain, GoesOnAfterAStopOfAStoredMap) {
   OdometryChain chain;
   chain.start_after(*stop(1, 6, 4, {5.0, 6.0, 0.0}, {}));
@@ -58,4 +74,4 @@ TEST(OdometryChain, AnotherSessionGoesOnInTheSameEpochOnly) {
 }
 
 }  // namespace
-}  // namespace topogeo::localizer
+}  // namespace topogeo::localization
