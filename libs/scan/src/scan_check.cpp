@@ -80,6 +80,7 @@ void ScanCheck::take(std::uint64_t line, Scan scan) {
     check_.first_ns = scan.stamp_ns;
   }
   check_.last_ns = scan.stamp_ns;
+  count_readings(scan);
   if (last_) {
     compare_time(scan);
     compare_geometry(scan);
@@ -146,7 +147,17 @@ void ScanCheck::compare_readings(const Scan& scan) {
   }
 }
 
+void ScanCheck::count_readings(const Scan& scan) {
+  no_return_.add(scan.ranges_m, scan.T_odom_robot);
+  readings_ += scan.ranges_m.size();
+  empty_ += static_cast<std::uint64_t>(std::ranges::count(scan.ranges_m, Scan::kNoReturn));
+}
+
 LogCheck ScanCheck::finish() {
+  check_.no_return = no_return_.find();
+  if (readings_ > 0) {
+    check_.empty_share = static_cast<double>(empty_) / static_cast<double>(readings_);
+  }
   if (periods_ns_.empty()) return std::move(check_);
   std::vector<std::int64_t> sorted = periods_ns_;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);

@@ -36,6 +36,17 @@ double degrees(double angle_rad) {
   return angle_rad * 180.0 / std::numbers::pi;
 }
 
+/// The readings without an echo; empty if there are none.
+std::string no_return_line(const scan::LogCheck& check) {
+  std::string line;
+  if (check.no_return) line = text_of(*check.no_return);
+  if (check.empty_share > 0.0) {
+    line += fmt::format("{}{:.1f} % of the readings are 0 or beyond the stated maximum: no echo",
+                        line.empty() ? "" : "; ", 100.0 * check.empty_share);
+  }
+  return line.empty() ? line : line + "\n";
+}
+
 void print_faults(const std::string& path, const scan::LogCheck& check) {
   for (const scan::LogFinding& finding : check.findings) {
     std::cout << fmt::format("{}:{}: {}: {}\n", path, finding.line, describe(finding.fault),
@@ -51,6 +62,7 @@ void print_faults(const std::string& path, const scan::LogCheck& check) {
         check.beams, degrees(check.angle_min_rad), degrees(check.angle_step_rad), duration_s(check),
         rate_hz(check), check.longest_period_s, check.path_m);
   }
+  std::cout << no_return_line(check);
   if (check.faults() == 0) {
     std::cout << "no fault found\n";
     return;
@@ -85,6 +97,11 @@ void print_faults_json(const std::string& path, const scan::LogCheck& check) {
   out["median_period_s"] = check.median_period_s;
   out["longest_period_s"] = check.longest_period_s;
   out["way_m"] = check.path_m;
+  if (check.no_return) {
+    out["no_return_m"] = check.no_return->range_m;
+    out["no_return_share"] = check.no_return->share;
+  }
+  out["empty_share"] = check.empty_share;
   out["faults"] = check.faults();
   nlohmann::ordered_json counts = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < scan::kLogFaults; ++i) {

@@ -6,9 +6,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "topogeo/scan/no_return.hpp"
 
 namespace topogeo::scan {
 
@@ -62,7 +65,9 @@ struct LogCheck {
   std::int64_t last_ns = 0;      ///< stamp of the last
   double median_period_s = 0.0;  ///< between scans, 0 with fewer than two
   double longest_period_s = 0.0;
-  double path_m = 0.0;  ///< by the odometry, without jumps
+  double path_m = 0.0;                ///< by the odometry, without jumps
+  std::optional<NoReturn> no_return;  ///< empty if no range means "no echo"
+  double empty_share = 0.0;           ///< share of readings of zero, or beyond a stated maximum
   std::array<std::uint64_t, kLogFaults> counts{};
   std::vector<LogFinding> findings;  ///< in the order of the lines
 

@@ -8,6 +8,7 @@
 
 #include "topogeo/scan/carmen_log_check.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
+#include "topogeo/scan/no_return.hpp"
 #include "topogeo/scan/scan.hpp"
 
 namespace topogeo::scan {
@@ -32,6 +33,7 @@ class ScanCheck {
   void compare_geometry(const Scan& scan);
   void compare_odometry(const Scan& scan);
   void compare_readings(const Scan& scan);
+  void count_readings(const Scan& scan);
   void find_gaps();
   void found_here(LogFault fault, const std::string& text) { found(fault, line_, text); }
 
@@ -40,6 +42,9 @@ class ScanCheck {
   std::uint64_t line_ = 0;
   std::optional<Scan> last_;
   std::uint32_t identical_ = 1;
+  NoReturnFinder no_return_;
+  std::uint64_t readings_ = 0;
+  std::uint64_t empty_ = 0;                  // of these
   std::vector<std::int64_t> periods_ns_;     // between two scans, if positive
   std::vector<std::uint64_t> period_lines_;  // line of the second of each two
 };
