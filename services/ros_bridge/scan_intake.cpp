@@ -5,15 +5,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "topogeo/geometry/odometry_screen.hpp"
 #include "topogeo/ros_conversions/geometry.hpp"
 
 namespace topogeo::ros_bridge {
 namespace {
 
 constexpr std::int64_t kTimeJump_ns = 1'000'000'000;
-/// No indoor robot is as fast, and no odometry as coarse.
-constexpr double kFastestMps = 5.0;
-constexpr double kJump_m = 0.5;
 /// Same tolerance as for a log that contradicts the configuration.
 constexpr double kMountingTolerance_m = 0.02;
 
@@ -68,15 +66,16 @@ std::string ScanIntake::add(const geometry::OdometrySample& sample) {
   std::string why;
   if (last_odometry_) {
     const std::int64_t passed_ns = sample.stamp_ns - last_odometry_->stamp_ns;
-    const double moved_m =
-        geometry::between(last_odometry_->T_odom_robot, sample.T_odom_robot).position_m().norm();
     if (passed_ns < -kTimeJump_ns) {
       why = "time went back by " + std::to_string(static_cast<double>(-passed_ns) * 1e-9) + " s";
     } else if (passed_ns <= 0) {
       count(IntakeDrop::kOldOdometry, std::to_string(sample.stamp_ns));
       return {};
-    } else if (moved_m > kJump_m + kFastestMps * static_cast<double>(passed_ns) * 1e-9) {
-      why = "the odometry jumped by " + std::to_string(moved_m) + " m";
+    } else if (!geometry::is_possible_step(*last_odometry_, sample)) {
+      const geometry::Pose2 step =
+          geometry::between(last_odometry_->T_odom_robot, sample.T_odom_robot);
+      why = "the odometry jumped by " + std::to_string(step.position_m().norm()) + " m and " +
+            std::to_string(step.theta_rad) + " rad";
     }
   }
   if (!why.empty()) begin();
@@ -172,7 +171,7 @@ std::optional<scan::Scan> ScanIntake::finish(const ros::Sweep& sweep, std::int64
     return std::nullopt;
   }
   scan::Scan scan;
-  scan.ranges_m = ranges_of(sweep, stamp_ns);
+  scan.ranges_m = ranges_of(sweep, stamp_ns, odometry->T_odom_robot);
   scan.stamp_ns = stamp_ns;
   scan.T_odom_robot = odometry->T_odom_robot;
   scan.sequence = next_sequence_++;
@@ -186,14 +185,19 @@ std::optional<scan::Scan> ScanIntake::finish(const ros::Sweep& sweep, std::int64
   return scan;
 }
 
-std::vector<float> ScanIntake::ranges_of(const ros::Sweep& sweep, std::int64_t stamp_ns) {
+std::vector<float> ScanIntake::ranges_of(const ros::Sweep& sweep, std::int64_t stamp_ns,
+                                         const geometry::Pose2& T_odom_robot) {
   ros::Sweep straight = sweep;
+  ros::limit_ranges(straight.ranges_m, options_.range_limit_m);
+  if (options_.detect_no_return) no_return_.add(straight.ranges_m, T_odom_robot);
+  if (no_return_.found()) ros::limit_ranges(straight.ranges_m, no_return_.found()->least_m);
   if (sweep.time_step_s != 0.0) {
-    straight.ranges_m = ros::deskewed(sweep, [&](double after_s) -> std::optional<geometry::Pose2> {
-      const auto odometry = track_.at(stamp_ns + std::llround(after_s * 1e9));
-      if (!odometry) return std::nullopt;
-      return odometry->T_odom_robot * mounting_->T_robot_laser;
-    });
+    straight.ranges_m =
+        ros::deskewed(straight, [&](double after_s) -> std::optional<geometry::Pose2> {
+          const auto odometry = track_.at(stamp_ns + std::llround(after_s * 1e9));
+          if (!odometry) return std::nullopt;
+          return odometry->T_odom_robot * mounting_->T_robot_laser;
+        });
   }
   if (!ros::same_beams(sweep.pattern, *pattern_)) {
     ++adapted_;

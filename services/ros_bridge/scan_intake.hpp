@@ -18,6 +18,7 @@
 #include "topogeo/ros_conversions/frame_tree.hpp"
 #include "topogeo/ros_conversions/laser_scan.hpp"
 #include "topogeo/ros_conversions/messages.hpp"
+#include "topogeo/scan/no_return.hpp"
 #include "topogeo/scan/scan.hpp"
 
 namespace topogeo::ros_bridge {
@@ -46,7 +47,8 @@ struct IntakeOptions {
   std::int64_t longest_extrapolation_ns = 0;  ///< see OdometryTrack
   std::size_t most_beams = 2048;              ///< scans with more are thinned out
   ros::SweepOrder sweep = ros::SweepOrder::kNone;
-  double range_limit_m = 1e9;  ///< ranges at or above it are no echo
+  double range_limit_m = 1e9;    ///< ranges at or above it are no echo
+  bool detect_no_return = true;  ///< see CarmenLogOptions
 };
 
 /// Arrival times are of a steady clock; stamps are those of the messages.
@@ -79,6 +81,11 @@ class ScanIntake {
   /// Number of the next scan in the current epoch.
   [[nodiscard]] std::uint64_t scans() const { return next_sequence_; }
   [[nodiscard]] std::uint64_t adapted() const { return adapted_; }
+  /// The range that the laser reports for no echo, found on the way; later scans have no return
+  /// there. Empty if there is none below the range limit of the options.
+  [[nodiscard]] const std::optional<scan::NoReturn>& no_return() const {
+    return no_return_.found();
+  }
   [[nodiscard]] std::uint64_t dropped(IntakeDrop drop) const {
     return drops_[static_cast<std::size_t>(drop)];
   }
@@ -97,7 +104,8 @@ class ScanIntake {
   [[nodiscard]] bool find_mounting(const std::string& laser_frame);
   std::optional<scan::Scan> finish(const ros::LaserScan& message);
   std::optional<scan::Scan> finish(const ros::Sweep& sweep, std::int64_t stamp_ns);
-  std::vector<float> ranges_of(const ros::Sweep& sweep, std::int64_t stamp_ns);
+  std::vector<float> ranges_of(const ros::Sweep& sweep, std::int64_t stamp_ns,
+                               const geometry::Pose2& T_odom_robot);
 
   IntakeOptions options_;
   std::string robot_frame_;
@@ -112,6 +120,7 @@ class ScanIntake {
   std::uint64_t next_sequence_ = 0;
   std::uint64_t epochs_ = 0;
   std::uint64_t adapted_ = 0;
+  scan::NoReturnWatch no_return_;
   std::array<std::uint64_t, kIntakeDrops> drops_{};
   std::array<std::string, kIntakeDrops> details_{};
 };

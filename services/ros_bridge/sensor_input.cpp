@@ -33,6 +33,7 @@ IntakeOptions intake_options(const RosSide& ros) {
   options.most_beams = msg::kMaxBeams;
   options.sweep = settings.sweep;
   options.range_limit_m = ros.service().setup().config.config.log.range_max_m;
+  options.detect_no_return = ros.service().setup().config.config.log.detect_no_return;
   return options;
 }
 
@@ -182,7 +183,9 @@ void SensorInput::on_scan(const ros::LaserScan& message, const messaging::Sample
 }
 
 void SensorInput::release(std::int64_t now_ns) {
+  const bool known = intake_.no_return().has_value();
   for (const ScanIntake::Leaving& leaving : intake_.take(now_ns)) publish(leaving);
+  if (!known && intake_.no_return()) spdlog::info("{}", text_of(*intake_.no_return()));
   messaging::EventLoop& loop = ros_.service().loop();
   loop.cancel_timer(release_timer_);
   if (intake_.due_ns() == std::numeric_limits<std::int64_t>::max()) return;

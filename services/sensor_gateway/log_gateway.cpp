@@ -60,6 +60,7 @@ LogGateway::LogGateway(service::Service& service, const GatewayOptions& options,
           service.loop(),
           {{"scans", options.readers.value_or(1), messaging::ConnectedPrograms(scans_, odometry_)},
            {"odometry", options.odometry_readers, messaging::ConnectedPrograms(odometry_)}}) {
+  if (reader_.no_return()) spdlog::info("{}", text_of(*reader_.no_return()));
   service_.status().set_counter("scans_sent", 0.0);
   service_.status().set_counter("scans_total", static_cast<double>(scans_total));
   service_.subscribe<msg::ScanRequest>([this](const msg::ScanRequest& r) { on_request(r); });
@@ -197,6 +198,7 @@ void LogGateway::finish() {
     return;
   }
   const scan::CarmenLogStatistics& log = reader_.statistics();
+  for (const std::string& note : log.notes) spdlog::warn("{}", note);
   for (const std::string& message : log.messages) spdlog::warn("skipped {}", message);
   spdlog::info("{}", log.summary());
   service_.status().set_state(msg::kServiceFinished, log.summary());

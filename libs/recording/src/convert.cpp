@@ -99,7 +99,7 @@ class Copy {
 Conversion convert_scans(const std::filesystem::path& in, const std::filesystem::path& out,
                          const ConvertOptions& options) {
   LogMounting mounting = mounting_in_log(in, options.topics);
-  LogReader reader(in, {.range_max_m = kRangeLimit_m}, options.topics);
+  LogReader reader(in, {.range_max_m = kRangeLimit_m, .detect_no_return = false}, options.topics);
   LogWriter writer(out, mounting.T_robot_laser.value_or(geometry::Pose2{}), options.compression);
   Conversion done;
   done.notes = std::move(mounting.notes);

@@ -1,5 +1,6 @@
 #include "topogeo/recording/log_reader.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -7,6 +8,7 @@
 #include "topogeo/scan/laser_mounting.hpp"
 #include "topogeo/scan/scan_check.hpp"
 
+#include "no_return_search.hpp"
 #include "ros_scans.hpp"
 
 namespace topogeo::recording {
@@ -61,6 +63,7 @@ class RecordedScans final : public LogReader::Source {
     statistics_.lines = scans_.messages();
     statistics_.laser_lines = scans_.scan_messages();
     statistics_.odometry_lines = scans_.odometry_messages();
+    statistics_.notes = scans_.notes();
     return scan;
   }
   [[nodiscard]] const scan::CarmenLogStatistics& statistics() const override { return statistics_; }
@@ -89,10 +92,13 @@ class RecordedScans final : public LogReader::Source {
 LogReader::LogReader(const std::filesystem::path& path, const scan::CarmenLogOptions& options,
                      const TopicChoice& topics) {
   check(options);
+  no_return_ = find_no_return(path, options, topics);
+  scan::CarmenLogOptions limited = options;
+  if (no_return_) limited.range_max_m = std::min(limited.range_max_m, no_return_->least_m);
   if (is_recording(path)) {
-    source_ = std::make_unique<RecordedScans>(path, options, topics);
+    source_ = std::make_unique<RecordedScans>(path, limited, topics);
   } else {
-    source_ = std::make_unique<CarmenScans>(path, options);
+    source_ = std::make_unique<CarmenScans>(path, limited);
   }
 }
 

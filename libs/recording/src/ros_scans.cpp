@@ -84,7 +84,7 @@ bool RosScans::front_is_due() const {
 std::optional<RosScans::Candidate> RosScans::take_front() {
   const Waiting front = std::move(waiting_.front());
   waiting_.pop_front();
-  const std::optional<geometry::Pose2> pose = track_.at(front.stamp_ns);
+  const std::optional<ScreenedOdometry::Answer> pose = track_.at(front.stamp_ns);
   if (!pose) {
     const std::optional<double> distance_s = track_.distance_s(front.stamp_ns);
     skip_(SkipReason::kPose, front.place,
@@ -96,7 +96,8 @@ std::optional<RosScans::Candidate> RosScans::take_front() {
   Candidate candidate;
   candidate.place = front.place;
   candidate.scan.stamp_ns = front.stamp_ns;
-  candidate.scan.T_odom_robot = *pose;
+  candidate.scan.T_odom_robot = pose->T_odom_robot;
+  candidate.scan.odometry_epoch = pose->epoch;
   put_beams(front, candidate.scan);
   track_.forget_before(front.stamp_ns + nanoseconds_of(std::min(0.0, front.sweep.farthest_s())));
   return candidate;
@@ -104,15 +105,17 @@ std::optional<RosScans::Candidate> RosScans::take_front() {
 
 void RosScans::put_beams(const Waiting& from, scan::Scan& scan) const {
   ros::Sweep sweep = from.sweep;
+  // No echo has no place that a correction of motion could move.
+  ros::limit_ranges(sweep.ranges_m, range_limit_m_);
   if (beams_ == Beams::kOnePattern) {
     // An unknown mounting is assumed at the robot's centre.
     const geometry::Pose2 T_robot_laser =
         survey_.mounting ? survey_.mounting->T_robot_laser : geometry::Pose2{};
     if (sweep.time_step_s != 0.0) {
       sweep.ranges_m = ros::deskewed(sweep, [&](double after_s) -> std::optional<geometry::Pose2> {
-        const auto T_odom_robot = track_.at(from.stamp_ns + nanoseconds_of(after_s));
-        if (!T_odom_robot) return std::nullopt;
-        return *T_odom_robot * T_robot_laser;
+        const auto odometry = track_.at(from.stamp_ns + nanoseconds_of(after_s));
+        if (!odometry || odometry->epoch != scan.odometry_epoch) return std::nullopt;
+        return odometry->T_odom_robot * T_robot_laser;
       });
     }
     if (!ros::same_beams(sweep.pattern, *survey_.beams)) {
@@ -205,6 +208,7 @@ void RosScans::add_pose(const ros::Header& header, std::int64_t log_time_ns,
 
 void RosScans::finish() {
   ended_ = true;
+  track_.finish();
   if (!source_->damage().empty()) skip_(SkipReason::kTruncated, scans_, source_->damage());
 }
 

@@ -9,11 +9,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "topogeo/recording/message_source.hpp"
-#include "topogeo/recording/odometry_track.hpp"
 #include "topogeo/recording/survey.hpp"
 #include "topogeo/scan/scan_sequence.hpp"
+
+#include "screened_odometry.hpp"
 
 namespace topogeo::recording {
 
@@ -28,10 +30,13 @@ class RosScans {
   RosScans(const std::filesystem::path& path, const TopicChoice& choice, double range_limit_m,
            Beams beams, scan::ScanSequence::Skip skip);
 
+  /// Its odometry epoch counts from 0.
   std::optional<scan::ScanSequence::Candidate> next();
 
   [[nodiscard]] const Survey& facts() const { return survey_; }
   [[nodiscard]] double fraction_read() const { return source_->fraction_read(); }
+  /// About the odometry that was read so far, for people.
+  [[nodiscard]] std::vector<std::string> notes() const { return track_.notes(); }
   [[nodiscard]] std::uint64_t messages() const { return messages_; }
   [[nodiscard]] std::uint64_t scan_messages() const { return scans_; }
   [[nodiscard]] std::uint64_t odometry_messages() const { return odometry_; }
@@ -61,7 +66,7 @@ class RosScans {
   Beams beams_;
   scan::ScanSequence::Skip skip_;
   std::unique_ptr<MessageSource> source_;
-  OdometryTrack track_;
+  ScreenedOdometry track_;
   std::deque<Waiting> waiting_;  // until odometry reaches their last beams
   std::uint64_t messages_ = 0;
   std::uint64_t scans_ = 0;

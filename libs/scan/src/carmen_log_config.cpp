@@ -8,6 +8,9 @@ void describe(CarmenLogOptions& options, support::ConfigSchema& schema) {
   schema.add("scan.range_max_m", &options.range_max_m, 0.5, 1000.0, "m",
              "readings of this range or more are no return; known logs use 50 to 82, depending on "
              "the sensor");
+  schema.add("scan.detect_no_return", &options.detect_no_return,
+             "some lasers report one value at the top of their ranges, such as 8.187 m, for no "
+             "echo; true: it is found in the readings, and those at or above it are no return");
   schema.add("scan.jump_s", &options.jump_s, 0.001, 1e9, "s",
              "a stamp that lies more than this after the previous one must be confirmed by the "
              "next scan; otherwise this stamp is taken to be wrong, not the rest of the log");

@@ -10,6 +10,7 @@
 
 #include "carmen_line.hpp"
 #include "gz_lines.hpp"
+#include "screened_scans.hpp"
 
 namespace topogeo::scan {
 namespace {
@@ -66,8 +67,12 @@ struct CarmenLogReader::Impl {
       : path(file.string()),
         lines(file),
         parser(options.range_max_m),
+        odometry([this] { return next_readable(); },
+                 [this](SkipReason reason, std::uint64_t line, const std::string& text) {
+                   skip(reason, line, text);
+                 }),
         sequence(
-            options.jump_s, [this] { return next_readable(); },
+            options.jump_s, [this] { return odometry.next(); },
             [this](SkipReason reason, std::uint64_t line, const std::string& text) {
               skip(reason, line, text);
             }) {}
@@ -79,6 +84,7 @@ struct CarmenLogReader::Impl {
   std::string path;
   GzLines lines;
   CarmenLineParser parser;
+  ScreenedScans odometry;
   ScanSequence sequence;
   CarmenLogStatistics statistics;
   bool damage_reported = false;
@@ -163,6 +169,7 @@ std::optional<Scan> CarmenLogReader::next() {
   std::optional<Scan> scan = std::exchange(impl_->ready, std::nullopt);
   if (!scan) scan = impl_->sequence.next();
   if (scan) ++impl_->statistics.scans;
+  impl_->statistics.notes = impl_->odometry.notes();
   return scan;
 }
 

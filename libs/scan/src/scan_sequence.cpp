@@ -90,7 +90,7 @@ std::optional<Scan> ScanSequence::next() {
   if (!candidate) return std::nullopt;
   if (sequence_ == 0) odometry_epoch_ = fingerprint(candidate->scan);
   candidate->scan.sequence = sequence_++;
-  candidate->scan.odometry_epoch = odometry_epoch_;
+  candidate->scan.odometry_epoch += odometry_epoch_;
   return std::move(candidate->scan);
 }
 

@@ -51,6 +51,7 @@ OpenLog open_log(const std::filesystem::path& path, const scan::CarmenLogOptions
                  const recording::TopicChoice& topics) {
   try {
     recording::LogReader reader(path, options, topics);
+    report_no_return(reader);
     return {std::move(reader), recording::count_scans(path, topics)};
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());

@@ -31,6 +31,7 @@ pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file) {
 Job open_log(const JobOptions& options, Inputs inputs) {
   try {
     recording::LogReader reader(options.log, inputs.config.config.log, options.topics);
+    report_no_return(reader);
     const std::uint64_t laser_lines = recording::count_scans(options.log, options.topics);
     return {options, std::move(inputs), std::move(reader), laser_lines};
   } catch (const std::exception& error) {
@@ -203,7 +204,13 @@ Job prepare(const JobOptions& options) {
   return job;
 }
 
+void report_no_return(const recording::LogReader& reader) {
+  if (!reader.no_return()) return;
+  std::cerr << "topogeo: " << text_of(*reader.no_return()) << '\n';
+}
+
 void report_skipped(const scan::CarmenLogStatistics& statistics) {
+  for (const std::string& note : statistics.notes) std::cerr << "topogeo: " << note << '\n';
   if (statistics.skipped_total() == 0) return;
   for (const std::string& message : statistics.messages) std::cerr << message << '\n';
   if (statistics.skipped_total() > statistics.messages.size()) {

@@ -87,7 +87,10 @@ Job prepare(const JobOptions& options);
 void add_overlaps(storage::Report& report, const JobOptions& options,
                   const pipeline::Config& config);
 
-/// Reports the skipped parts of the log on stderr, if there are any.
+/// Reports the range that means "no echo" on stderr, if the log has one.
+void report_no_return(const recording::LogReader& reader);
+
+/// Reports the skipped parts of the log and faults of its odometry on stderr, if there are any.
 void report_skipped(const scan::CarmenLogStatistics& statistics);
 
 /// A few lines for people: mapped stops, time taken, place of the results.

@@ -1,6 +1,9 @@
 #include "ros_bridge/scan_intake.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -117,6 +120,31 @@ TEST_F(ScanIntakeTest, AScanOfOtherBeamsIsRefused) {
   EXPECT_THAT(intake_.detail(IntakeDrop::kOtherBeams), HasSubstr("the first scan had 3 beams"));
 }
 
+TEST_F(ScanIntakeTest, TheRangeThatMeansNoEchoIsFoundOnTheWay) {
+  constexpr float kNoEcho_m = 8.187F;
+  std::vector<std::size_t> without_echo;
+  for (int i = 0; i < 40; ++i) {
+    const double time_s = 10.0 + 0.1 * i;
+    odometry(time_s, 0.25 * i);
+    std::vector<float> ranges_m;
+    for (int beam = 0; beam < 10; ++beam) {
+      ranges_m.push_back(
+          beam < 3 ? kNoEcho_m : 1.0F + std::fmod(0.37F * static_cast<float>(7 * i + beam), 6.0F));
+    }
+    intake_.add(ros::laser_scan(-0.5, 0.1, ranges_m, stamp(time_s)), 0);
+    for (const ScanIntake::Leaving& leaving : intake_.take(0)) {
+      without_echo.push_back(static_cast<std::size_t>(
+          std::ranges::count(leaving.scan.ranges_m, scan::Scan::kNoReturn)));
+    }
+  }
+  ASSERT_EQ(without_echo.size(), 40U);
+  EXPECT_EQ(without_echo[28], 0U);
+  EXPECT_EQ(without_echo[29], 3U) << "30 places";
+  EXPECT_EQ(without_echo.back(), 3U);
+  ASSERT_TRUE(intake_.no_return());
+  EXPECT_NEAR(intake_.no_return()->range_m, kNoEcho_m, 1e-6);
+}
+
 TEST_F(ScanIntakeTest, TimeThatGoesBackBeginsAnotherEpoch) {
   odometry(100.0, 1.0);
   scan(100.0);
@@ -129,6 +157,12 @@ TEST_F(ScanIntakeTest, TimeThatGoesBackBeginsAnotherEpoch) {
   ASSERT_EQ(leaving.size(), 1U);
   EXPECT_EQ(leaving[0].scan.sequence, 0U);
   EXPECT_EQ(leaving[0].scan.odometry_epoch, epoch + 1);
+}
+
+TEST_F(ScanIntakeTest, AResetToZeroNearByBeginsAnotherEpoch) {
+  odometry(10.0, 0.4);
+  EXPECT_THAT(intake_.add(geometry::OdometrySample{stamp(10.05), {}, 0.0, 0.0}),
+              HasSubstr("jumped"));
 }
 
 TEST_F(ScanIntakeTest, AJumpOfTheOdometryBeginsAnotherEpoch) {

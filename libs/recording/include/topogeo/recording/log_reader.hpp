@@ -13,6 +13,7 @@
 #include "topogeo/recording/survey.hpp"
 #include "topogeo/scan/carmen_log_check.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
+#include "topogeo/scan/no_return.hpp"
 
 namespace topogeo::recording {
 
@@ -42,9 +43,14 @@ class LogReader {
   /// Share of the log read so far, in [0, 1].
   [[nodiscard]] double fraction_read() const;
 
+  /// The range that this log has in place of an echo, found by reading the whole log; its scans
+  /// have no return there. Empty if there is none below the range limit of the options.
+  [[nodiscard]] const std::optional<scan::NoReturn>& no_return() const { return no_return_; }
+
   struct Source;
 
  private:
+  std::optional<scan::NoReturn> no_return_;
   std::unique_ptr<Source> source_;
 };
 

@@ -9,6 +9,7 @@ namespace topogeo::scan {
 
 struct CarmenLogOptions {
   double range_max_m = 49.9;
+  bool detect_no_return = true;
   double jump_s = 60.0;  ///< longest step of the stamps that needs no confirmation
 };
 

@@ -51,6 +51,8 @@ struct CarmenLogStatistics {
   /// "FILE:LINE: expected ..., got ..." of the first kMaxMessages skipped lines.
   std::vector<std::string> messages;
   static constexpr std::size_t kMaxMessages = 10;
+  /// For people, about the odometry that was read so far: poses left out, restarts.
+  std::vector<std::string> notes;
 
   [[nodiscard]] std::uint64_t skipped_for(SkipReason reason) const {
     return skipped[static_cast<std::size_t>(reason)];

@@ -1,5 +1,6 @@
 // Turns the individually readable scans of a log into the sequence that Scan promises: strictly
-// increasing stamps, the beams of the first scan, numbers from 0 without gaps, one odometry epoch.
+// increasing stamps, the beams of the first scan, numbers from 0 without gaps, odometry epochs that
+// no other log has.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,7 @@ namespace topogeo::scan {
 
 class ScanSequence {
  public:
-  /// A scan with its place in the log, for messages.
+  /// A scan with its place in the log, for messages. Its odometry epoch counts from 0.
   struct Candidate {
     Scan scan;
     std::uint64_t place = 0;
@@ -44,7 +45,7 @@ class ScanSequence {
   std::optional<Candidate> read_ahead_;  // precedes the rest of the log
   std::optional<std::int64_t> last_ns_;  // stamp of the last accepted scan
   std::uint64_t sequence_ = 0;
-  std::uint64_t odometry_epoch_ = 0;
+  std::uint64_t odometry_epoch_ = 0;  // the first one
 };
 
 }  // namespace topogeo::scan

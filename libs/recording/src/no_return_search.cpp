@@ -1,0 +1,49 @@
+#include "no_return_search.hpp"
+
+#include <cstdint>
+#include <string>
+
+#include "topogeo/recording/message_source.hpp"
+#include "topogeo/scan/carmen_log_reader.hpp"
+
+#include "ros_scans.hpp"
+
+namespace topogeo::recording {
+namespace {
+
+void read_carmen(const std::filesystem::path& path, const scan::CarmenLogOptions& options,
+                 scan::NoReturnFinder& finder) {
+  scan::CarmenLogReader reader(path, options);
+  while (const std::optional<scan::Scan> scan = reader.next()) {
+    finder.add(scan->ranges_m, scan->T_odom_robot);
+    if (finder.is_full()) return;
+  }
+}
+
+/// Uses the readings as they were measured: a correction of motion would change the value.
+void read_recording(const std::filesystem::path& path, const scan::CarmenLogOptions& options,
+                    const TopicChoice& topics, scan::NoReturnFinder& finder) {
+  RosScans scans(path, topics, options.range_max_m, RosScans::Beams::kAsMeasured,
+                 [](scan::SkipReason, std::uint64_t, const std::string&) {});
+  while (const std::optional<scan::ScanSequence::Candidate> candidate = scans.next()) {
+    finder.add(candidate->scan.ranges_m, candidate->scan.T_odom_robot);
+    if (finder.is_full()) return;
+  }
+}
+
+}  // namespace
+
+std::optional<scan::NoReturn> find_no_return(const std::filesystem::path& path,
+                                             const scan::CarmenLogOptions& options,
+                                             const TopicChoice& topics) {
+  if (!options.detect_no_return) return std::nullopt;
+  scan::NoReturnFinder finder;
+  if (is_recording(path)) {
+    read_recording(path, options, topics, finder);
+  } else {
+    read_carmen(path, options, finder);
+  }
+  return finder.find();
+}
+
+}  // namespace topogeo::recording

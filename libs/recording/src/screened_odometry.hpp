@@ -1,0 +1,48 @@
+// The odometry of a recording without readings that cannot be, one track for each epoch.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "topogeo/geometry/odometry_screen.hpp"
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/recording/odometry_track.hpp"
+
+namespace topogeo::recording {
+
+class ScreenedOdometry {
+ public:
+  /// Adds poses in approximate order of time.
+  void add(std::int64_t stamp_ns, const geometry::Pose2& T_odom_robot);
+  /// Call after the last pose.
+  void finish();
+
+  struct Answer {
+    geometry::Pose2 T_odom_robot;
+    std::uint64_t epoch = 0;  ///< from 0
+  };
+  /// Like OdometryTrack: in the track of the latest epoch that has a pose for that time.
+  [[nodiscard]] std::optional<Answer> at(std::int64_t stamp_ns) const;
+  [[nodiscard]] bool reaches(std::int64_t stamp_ns) const;
+  [[nodiscard]] std::optional<double> distance_s(std::int64_t stamp_ns) const;
+  void forget_before(std::int64_t stamp_ns);
+
+  /// For people, about poses that were left out and further epochs.
+  [[nodiscard]] std::vector<std::string> notes() const { return screen_.notes(); }
+
+ private:
+  struct Epoch {
+    std::uint64_t number = 0;
+    OdometryTrack track;
+  };
+
+  void take();
+
+  geometry::OdometryScreen screen_;
+  std::deque<Epoch> epochs_;  // those that scans may need
+};
+
+}  // namespace topogeo::recording
