@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kBin_m = 0.001;
 /// A farther reading is damaged.
-constexpr float kFarthest_m = 1e6F;
+constexpr float kDamaged_m = 1e6F;
 /// A value of the window belongs to "no echo" if it has this share of the window's readings.
 constexpr double kLeastOfWindow = 0.02;
 
@@ -111,7 +111,7 @@ void NoReturnFinder::add(std::span<const float> ranges_m, const geometry::Pose2&
   ++places_;
   readings_ += ranges_m.size();
   for (const float range_m : ranges_m) {
-    if (!(range_m > 0.0F) || !(range_m <= kFarthest_m)) continue;
+    if (!(range_m > 0.0F) || !(range_m <= kDamaged_m)) continue;
     Bin& bin = bins_[std::llround(static_cast<double>(range_m) / kBin_m)];
     ++bin.readings;
     if (bin.last_place == places_) continue;
