@@ -1,0 +1,161 @@
+#include "topogeo/pipeline/path_disagreement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <numbers>
+#include <optional>
+#include <span>
+
+#include "topogeo/geometry/pose2.hpp"
+
+namespace topogeo::pipeline {
+namespace {
+
+using geometry::Pose2;
+using Kind = PathDisagreement::Kind;
+
+constexpr double kPart_m = 3.0;
+constexpr double kLargestLengthRatio = 1.22;
+constexpr double kLargestTurn_rad = 50.0 * std::numbers::pi / 180.0;
+constexpr double kLargestJump_m = 0.6;
+
+double length_m(const Pose2& T) {
+  return std::sqrt(T.position_m().squaredNorm());
+}
+
+bool comparable(const topomap::LocalMap& before, const topomap::LocalMap& after) {
+  return !after.starts_drive && before.stop.session == after.stop.session &&
+         before.odometry_epoch == after.odometry_epoch;
+}
+
+/// A part of the path of at least kPart_m by odometry.
+struct Part {
+  std::uint32_t first = 0;
+  std::uint32_t last = 0;
+  double odometry_m = 0.0;  // from stop to stop
+  double corrected_m = 0.0;
+  double turn_rad = 0.0;
+  double apart_m = 0.0;  // between both ends, seen from the common start
+
+  [[nodiscard]] double ratio() const { return corrected_m / odometry_m; }
+};
+
+class Path {
+ public:
+  explicit Path(const storage::MapDocument& document)
+      : maps_(document.local_maps), stops_(document.trajectory.stops) {}
+
+  [[nodiscard]] std::size_t size() const { return std::min(maps_.size(), stops_.size()); }
+  [[nodiscard]] bool step_to(std::size_t stop) const {
+    return stops_[stop - 1].located && stops_[stop].located &&
+           comparable(maps_[stop - 1], maps_[stop]);
+  }
+  [[nodiscard]] Pose2 by_odometry(std::size_t from, std::size_t to) const {
+    return geometry::between(maps_[from].T_odom_robot, maps_[to].T_odom_robot);
+  }
+  [[nodiscard]] Pose2 corrected(std::size_t from, std::size_t to) const {
+    return geometry::between(stops_[from].T_map_robot, stops_[to].T_map_robot);
+  }
+
+  /// The shortest part from a stop; none if the drive ends before.
+  [[nodiscard]] std::optional<Part> part_from(std::uint32_t first) const {
+    Part part;
+    part.first = first;
+    std::uint32_t last = first;
+    while (part.odometry_m < kPart_m) {
+      if (++last >= size() || !step_to(last)) return std::nullopt;
+      part.odometry_m += length_m(by_odometry(last - 1, last));
+      part.corrected_m += length_m(corrected(last - 1, last));
+    }
+    part.last = last;
+    const Eigen::Vector3d difference =
+        geometry::difference(corrected(first, last), by_odometry(first, last));
+    part.apart_m = difference.head<2>().norm();
+    part.turn_rad = difference.z();
+    return part;
+  }
+
+  [[nodiscard]] const topomap::LocalMap& map(std::size_t stop) const { return maps_[stop]; }
+
+ private:
+  std::span<const topomap::LocalMap> maps_;
+  std::span<const topomap::StopPose> stops_;
+};
+
+double excess(Kind kind, const PathDisagreement& part) {
+  if (kind == Kind::kTurn) return std::abs(part.turn_rad);
+  return std::abs(std::log(part.corrected_m / part.odometry_m));
+}
+
+/// Joins parts that overlap; the worst one gives the numbers.
+void add(std::vector<PathDisagreement>& found, Kind kind, const Part& part) {
+  const PathDisagreement next{
+      kind, part.first, part.last, part.odometry_m, part.corrected_m, part.turn_rad};
+  const auto last = std::ranges::find(found.rbegin(), found.rend(), kind, &PathDisagreement::kind);
+  if (last == found.rend() || last->last_id < part.first) {
+    found.push_back(next);
+    return;
+  }
+  const std::uint32_t first_id = last->first_id;
+  if (excess(kind, next) > excess(kind, *last)) *last = next;
+  last->first_id = first_id;
+  last->last_id = part.last;
+}
+
+/// The scans before a stop, as the trajectory places them: moved with the previous stop.
+std::optional<PathDisagreement> jump_before(const Path& path, std::uint32_t stop) {
+  const topomap::LocalMap& map = path.map(stop);
+  Pose2 T_stop_robot;
+  Pose2 T_odom_robot = path.map(stop - 1).T_odom_robot;
+  std::optional<PathDisagreement> worst;
+  double largest_m = kLargestJump_m;
+  const auto compare = [&](const Pose2& T_stop_next, const Pose2& T_odom_next) {
+    const Pose2 corrected = geometry::between(T_stop_robot, T_stop_next);
+    const Pose2 odometry = geometry::between(T_odom_robot, T_odom_next);
+    const double more_m = length_m(corrected) - length_m(odometry);
+    if (more_m > largest_m) {
+      largest_m = more_m;
+      worst = PathDisagreement{Kind::kJump,         stop - 1, stop, length_m(odometry),
+                               length_m(corrected), 0.0};
+    }
+    T_stop_robot = T_stop_next;
+    T_odom_robot = T_odom_next;
+  };
+  for (const topomap::TrackedScan& scan : map.track) compare(scan.T_stop_robot, scan.T_odom_robot);
+  compare(path.corrected(stop - 1, stop), map.T_odom_robot);
+  return worst;
+}
+
+}  // namespace
+
+PathComparison compare_with_odometry(const storage::MapDocument& document) {
+  const Path path(document);
+  PathComparison comparison;
+  std::vector<PathDisagreement>& found = comparison.disagreements;
+  std::vector<double> shares;
+  for (std::uint32_t first = 0; first < path.size(); ++first) {
+    const std::optional<Part> part = path.part_from(first);
+    if (!part) continue;
+    shares.push_back(part->apart_m / part->odometry_m);
+    const double ratio = part->ratio();
+    if (ratio > kLargestLengthRatio || ratio < 1.0 / kLargestLengthRatio) {
+      add(found, Kind::kLength, *part);
+    }
+    if (std::abs(part->turn_rad) > kLargestTurn_rad) add(found, Kind::kTurn, *part);
+  }
+  for (std::uint32_t stop = 1; stop < path.size(); ++stop) {
+    if (!path.step_to(stop)) continue;
+    if (const auto jump = jump_before(path, stop)) found.push_back(*jump);
+  }
+  std::ranges::stable_sort(found, {}, &PathDisagreement::kind);
+  if (!shares.empty()) {
+    const auto middle = std::next(shares.begin(), static_cast<std::ptrdiff_t>(shares.size() / 2));
+    std::ranges::nth_element(shares, middle);
+    comparison.typical_share = *middle;
+  }
+  return comparison;
+}
+
+}  // namespace topogeo::pipeline
