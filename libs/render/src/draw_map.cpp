@@ -44,6 +44,24 @@ void draw_path(cairo_t* cr, std::span<const topomap::StampedPose> poses, const L
   cairo_stroke(cr);
 }
 
+// White under the dashes interrupts the line of the trajectory.
+void draw_unmatched(cairo_t* cr, const MapPicture& picture, const Layout& layout) {
+  for (const bool dashed : {false, true}) {
+    set_colour(cr, dashed ? kCorrected : kWhite);
+    cairo_set_line_width(cr, dashed ? 2.0 : 4.0);
+    cairo_set_line_cap(cr, dashed ? CAIRO_LINE_CAP_BUTT : CAIRO_LINE_CAP_ROUND);
+    set_dashes(cr, dashed);
+    for (const std::vector<Eigen::Vector2d>& part : picture.unmatched_m) {
+      if (part.empty()) continue;
+      move_to(cr, layout.to_px(part.front()));
+      for (const Eigen::Vector2d& point_m : part) line_to(cr, layout.to_px(point_m));
+      cairo_stroke(cr);
+    }
+  }
+  set_dashes(cr, false);
+  cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
+}
+
 void draw_branches(cairo_t* cr, const topomap::GlobalMap& map, bool virtual_ones,
                    const Layout& layout) {
   cairo_set_line_width(cr, virtual_ones ? 3.0 : 2.0);
@@ -114,6 +132,7 @@ void draw_map(cairo_t* cr, const MapPicture& picture, const std::vector<ScanOutl
   if (picture.global_map != nullptr) draw_branches(cr, *picture.global_map, false, layout);
   draw_loop_closures(cr, picture, layout);
   draw_path(cr, picture.corrected, layout, kCorrected, 2.0);
+  draw_unmatched(cr, picture, layout);
   if (picture.global_map != nullptr) {
     // On top of the trajectory, which runs along the branches.
     draw_branches(cr, *picture.global_map, true, layout);

@@ -31,6 +31,9 @@ std::vector<LegendItem> legend_items(const MapPicture& picture) {
     items.push_back(line_item("corrected trajectory", kCorrected, 2.0, false));
     items.push_back({"start", draw_start_marker});
   }
+  if (!picture.unmatched_m.empty()) {
+    items.push_back(line_item("by odometry alone", kCorrected, 2.0, true));
+  }
   if (!picture.odometry.empty()) items.push_back(line_item("odometry", kOdometry, 1.5, false));
   if (!picture.loop_closures.empty()) {
     items.push_back(line_item("loop closure", kLoopClosure, 1.0, false));

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/pipeline/odometry_links.hpp"
 #include "topogeo/render/map_picture.hpp"
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/storage/tum.hpp"
@@ -34,6 +35,19 @@ LocatedStops located_stops(const storage::MapDocument& document) {
   return out;
 }
 
+/// Positions of the stops along each part of the path that rests on odometry alone.
+std::vector<std::vector<Eigen::Vector2d>> unmatched_parts_m(const storage::MapDocument& document) {
+  std::vector<std::vector<Eigen::Vector2d>> parts;
+  const std::vector<topomap::StopPose>& stops = document.trajectory.stops;
+  for (const pipeline::OdometryStretch& stretch : pipeline::odometry_stretches(document)) {
+    std::vector<Eigen::Vector2d>& part = parts.emplace_back();
+    for (std::size_t id = stretch.first_id; id <= stretch.last_id && id < stops.size(); ++id) {
+      if (stops[id].located) part.push_back(stops[id].T_map_robot.position_m());
+    }
+  }
+  return parts;
+}
+
 /// Contents of a picture of the map.
 struct Drawn {
   explicit Drawn(const storage::MapDocument& map)
@@ -44,7 +58,7 @@ struct Drawn {
 
   [[nodiscard]] render::MapPicture picture(const std::string& title) const {
     return {located.maps,           located.stops,        odometry, corrected,
-            document.loop_closures, &document.global_map, title};
+            document.loop_closures, &document.global_map, title,    unmatched_parts_m(document)};
   }
 
   const storage::MapDocument& document;

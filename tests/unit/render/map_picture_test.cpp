@@ -15,6 +15,7 @@ namespace topogeo::render {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 TEST(MapPicture, ShowsEveryPartInItsColour) {
@@ -31,6 +32,20 @@ TEST(MapPicture, ShowsEveryPartInItsColour) {
   EXPECT_GT(pixels.count(kOdometry), 500);
   EXPECT_GT(pixels.count(kDoor), 100);
   EXPECT_GT(pixels.count(kInk), 100);
+}
+
+TEST(MapPicture, DashesPartsWithoutAMatch) {
+  const SampleFloor floor = sample_floor();
+  MapPicture picture = floor.picture();
+  picture.global_map = nullptr;  // virtual branches are dashed, too
+  EXPECT_THAT(map_svg(picture), Not(HasSubstr("stroke-dasharray")));
+  const auto whole = Pixels(map_png(picture)).count(kCorrected);
+  std::vector<Eigen::Vector2d>& part = picture.unmatched_m.emplace_back();
+  for (std::size_t i = 4; i < 12; ++i) {
+    part.push_back(picture.stops[i].T_map_robot.position_m());
+  }
+  EXPECT_THAT(map_svg(picture), HasSubstr("stroke-dasharray"));
+  EXPECT_LT(Pixels(map_png(picture)).count(kCorrected), whole);
 }
 
 TEST(MapPicture, LeavesOutWhatIsNotThere) {

@@ -17,8 +17,8 @@ struct SampleFloor {
   std::vector<topomap::StampedPose> corrected;
 
   [[nodiscard]] MapPicture picture() const {
-    return {maps,    trajectory.stops,       odometry, corrected, closures,
-            &global, "Made-up ring corridor"};
+    return {maps,    trajectory.stops,        odometry, corrected, closures,
+            &global, "Made-up ring corridor", {}};
   }
 };
 

@@ -5,6 +5,9 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "topogeo/topomap/global_map.hpp"
 #include "topogeo/topomap/local_map.hpp"
@@ -22,6 +25,8 @@ struct MapPicture {
   std::span<const topomap::LoopClosure> loop_closures;
   const topomap::GlobalMap* global_map = nullptr;  ///< nullptr: none yet
   std::string title;
+  /// Parts of the trajectory that no match measures, as positions of stops (m); drawn dashed.
+  std::vector<std::vector<Eigen::Vector2d>> unmatched_m = {};
 };
 
 struct PictureOptions {
