@@ -105,6 +105,38 @@ Json overlaps(const std::vector<Overlaps>& stops) {
   return json;
 }
 
+Json odometry_stretches(const std::vector<OdometryStretchEntry>& stretches) {
+  Json json = Json::array();
+  for (const OdometryStretchEntry& s : stretches) {
+    json.push_back({{"first_stop", s.first_stop},
+                    {"last_stop", s.last_stop},
+                    {"x_m", s.x_m},
+                    {"y_m", s.y_m},
+                    {"length_m", s.length_m},
+                    {"off_m", s.off_m},
+                    {"off_rad", s.off_rad},
+                    {"held_by_loop", s.held_by_loop}});
+  }
+  return json;
+}
+
+Json quality(const QualityEntry& quality) {
+  Json disagreements = Json::array();
+  for (const PathDisagreementEntry& d : quality.path_disagreements) {
+    disagreements.push_back({{"kind", d.kind},
+                             {"first_stop", d.first_stop},
+                             {"last_stop", d.last_stop},
+                             {"odometry_m", d.odometry_m},
+                             {"corrected_m", d.corrected_m},
+                             {"turn_rad", d.turn_rad}});
+  }
+  return {{"grade", quality.grade},
+          {"reasons", quality.reasons},
+          {"advice", quality.advice},
+          {"odometry_stretches", odometry_stretches(quality.odometry_stretches)},
+          {"path_disagreements", disagreements}};
+}
+
 geometry::Pose2 pose_of(const nlohmann::json& json, const std::string& prefix) {
   return {json.at(prefix + "x_m").get<double>(), json.at(prefix + "y_m").get<double>(),
           json.at(prefix + "theta_rad").get<double>()};
@@ -160,6 +192,7 @@ std::string report_json(const Report& report) {
   if (!report.localization.empty()) json["localization"] = counts(report.localization);
   if (!report.continuation.empty()) json["continuation"] = counts(report.continuation);
   json["distance_m"] = report.distance_m;
+  if (!report.quality.grade.empty()) json["quality"] = quality(report.quality);
   json["wall_s"] = report.wall_s;
   json["cpu_s"] = report.cpu_s;
   json["stages"] = stages(report.stages);

@@ -68,6 +68,43 @@ struct Overlaps {
   friend bool operator==(const Overlaps&, const Overlaps&) = default;
 };
 
+/// Consecutive steps of the path that no match measures.
+struct OdometryStretchEntry {
+  std::uint32_t first_stop = 0;
+  std::uint32_t last_stop = 0;
+  double x_m = 0.0;  ///< of its first stop, in the map
+  double y_m = 0.0;
+  double length_m = 0.0;
+  double off_m = 0.0;  ///< two standard deviations of its end, seen from its start
+  double off_rad = 0.0;
+  bool held_by_loop = false;
+
+  friend bool operator==(const OdometryStretchEntry&, const OdometryStretchEntry&) = default;
+};
+
+/// A part of the path on which map and odometry differ.
+struct PathDisagreementEntry {
+  std::string kind;  ///< "length", "turn" or "jump"
+  std::uint32_t first_stop = 0;
+  std::uint32_t last_stop = 0;
+  double odometry_m = 0.0;
+  double corrected_m = 0.0;
+  double turn_rad = 0.0;  ///< of the map less that of odometry; kind "turn"
+
+  friend bool operator==(const PathDisagreementEntry&, const PathDisagreementEntry&) = default;
+};
+
+/// How far the map can be trusted.
+struct QualityEntry {
+  std::string grade;                 ///< "good", "fair", "poor" or "useless"; "": not assessed
+  std::vector<std::string> reasons;  ///< against a better grade
+  std::string advice;                ///< command or setting that may help; "": none
+  std::vector<OdometryStretchEntry> odometry_stretches;
+  std::vector<PathDisagreementEntry> path_disagreements;
+
+  friend bool operator==(const QualityEntry&, const QualityEntry&) = default;
+};
+
 struct Report {
   std::string command;  ///< "map" or "run"
   std::string log;      ///< file name; only the last part of a path is written
@@ -90,6 +127,7 @@ struct Report {
   ReasonCounts localization;  ///< of a drive in a finished map: stops by state; empty: a mapping
   ReasonCounts continuation;  ///< of a map that was continued: its stops; empty: it was not
   double distance_m = 0.0;    ///< along the corrected trajectory
+  QualityEntry quality;
 
   double wall_s = 0.0;
   double cpu_s = 0.0;  ///< of all processes

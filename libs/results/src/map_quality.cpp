@@ -1,0 +1,280 @@
+#include "topogeo/results/map_quality.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "topogeo/pipeline/odometry_links.hpp"
+#include "topogeo/pipeline/path_disagreement.hpp"
+#include "topogeo/support/format.hpp"
+
+namespace topogeo::results {
+namespace {
+
+using pipeline::PathDisagreement;
+using storage::OdometryStretchEntry;
+using storage::PathDisagreementEntry;
+using storage::Report;
+
+// Thresholds, each in the middle of a gap between right and wrong maps.
+constexpr double kFewestRecentMatches = 1.55;  // at each stop
+constexpr double kOdometryDisagrees = 0.15;    // typical displacement per length
+constexpr double kOdometryContradicts = 0.33;  // the same, whatever the matches are
+constexpr double kGoodAcceptedShare = 0.7;
+constexpr double kMostSkipped = 0.5;
+constexpr double kLongDrive_m = 10.0;
+constexpr std::uint64_t kLongDrive_stops = 10;
+constexpr std::uint32_t kEnd_stops = 3;  // an open step there moves hardly anything
+constexpr double kLongStep_m = 0.4;
+
+constexpr const char* kGood = "good";
+constexpr const char* kFair = "fair";
+constexpr const char* kPoor = "poor";
+constexpr const char* kUseless = "useless";
+
+double degrees(double angle_rad) {
+  return angle_rad * 180.0 / std::numbers::pi;
+}
+
+struct Facts {
+  std::uint64_t steps = 0;
+  double path_m = 0.0;          // by odometry, from stop to stop
+  double recent_matches = 0.0;  // per step
+  double accepted_share = 0.0;
+  double skipped_share = 0.0;
+  double typical_share = 0.0;
+  std::uint64_t open_steps = 0;  // by odometry alone, and held by no loop
+  double open_m = 0.0;
+  bool splits = false;  // an open step with stops on both sides
+  bool jumps = false;
+  bool other_length = false;
+};
+
+Facts facts_of(const Report& report, const storage::MapDocument& document) {
+  using Kind = storage::MapEdge::Kind;
+  Facts facts;
+  std::uint64_t recent = 0;
+  for (const storage::MapEdge& edge : document.edges) {
+    if (edge.kind == Kind::kSequential) ++recent;
+  }
+  const auto& maps = document.local_maps;
+  for (std::size_t i = 1; i < maps.size(); ++i) {
+    if (maps[i].starts_drive) continue;
+    ++facts.steps;
+    facts.path_m += std::sqrt(geometry::between(maps[i - 1].T_odom_robot, maps[i].T_odom_robot)
+                                  .position_m()
+                                  .squaredNorm());
+  }
+  const auto share = [](double part, double whole) { return whole > 0.0 ? part / whole : 0.0; };
+  facts.recent_matches = share(static_cast<double>(recent), static_cast<double>(facts.steps));
+  facts.accepted_share = share(static_cast<double>(report.matches_accepted),
+                               static_cast<double>(report.matches_tried));
+  std::uint64_t skipped = 0;
+  for (const auto& [reason, count] : report.skipped_lines) skipped += count;
+  facts.skipped_share =
+      share(static_cast<double>(skipped), static_cast<double>(skipped + report.scans));
+  for (const OdometryStretchEntry& stretch : report.quality.odometry_stretches) {
+    if (stretch.held_by_loop) continue;
+    facts.open_steps += stretch.last_stop - stretch.first_stop;
+    facts.open_m += stretch.length_m;
+    if (stretch.last_stop >= kEnd_stops && stretch.first_stop + kEnd_stops < maps.size()) {
+      facts.splits = true;
+    }
+  }
+  for (const PathDisagreementEntry& d : report.quality.path_disagreements) {
+    if (d.kind == "jump") facts.jumps = true;
+    if (d.kind == "length") facts.other_length = true;
+  }
+  return facts;
+}
+
+/// Lowers a grade and notes the reason.
+class Judgement {
+ public:
+  void fair(std::string reason) {
+    if (grade_ == kGood) grade_ = kFair;
+    reasons_.push_back(std::move(reason));
+  }
+  void poor(std::string reason) {
+    grade_ = kPoor;
+    reasons_.push_back(std::move(reason));
+  }
+  void useless(std::string reason) {
+    grade_ = kUseless;
+    reasons_ = {std::move(reason)};
+  }
+  [[nodiscard]] const std::string& grade() const { return grade_; }
+  [[nodiscard]] const std::vector<std::string>& reasons() const { return reasons_; }
+
+ private:
+  std::string grade_ = kGood;
+  std::vector<std::string> reasons_;
+};
+
+void judge_odometry(const Facts& facts, Judgement& judgement) {
+  const std::string apart = fmt::format(
+      "scans and odometry are typically {:.2f} m apart after a metre", facts.typical_share);
+  if (facts.typical_share > kOdometryContradicts ||
+      (facts.typical_share > kOdometryDisagrees && facts.accepted_share < kGoodAcceptedShare)) {
+    judgement.poor(apart);
+  } else if (facts.typical_share > kOdometryDisagrees) {
+    judgement.fair(apart);
+  }
+  if (facts.jumps) judgement.poor("the path jumps where odometry does not");
+  if (facts.other_length) judgement.fair("the path is much longer or shorter than by odometry");
+}
+
+Judgement judge(const Report& report, const Facts& facts) {
+  Judgement judgement;
+  if (facts.open_steps > 0) {
+    std::string reason = fmt::format("{} of {} steps ({:.1f} m of {:.1f} m) rest on odometry alone",
+                                     facts.open_steps, facts.steps, facts.open_m, facts.path_m);
+    facts.splits ? judgement.poor(std::move(reason)) : judgement.fair(std::move(reason));
+  }
+  if (facts.steps >= kLongDrive_stops && facts.recent_matches < kFewestRecentMatches) {
+    judgement.poor(
+        fmt::format("a stop matches only {:.1f} recent ones ({:.2f} or more in right maps)",
+                    facts.recent_matches, kFewestRecentMatches));
+  }
+  judge_odometry(facts, judgement);
+  if (facts.skipped_share > kMostSkipped) {
+    judgement.poor(fmt::format("{:.0f} % of the scans were skipped", 100.0 * facts.skipped_share));
+  }
+  if (report.matches_accepted == 0 && facts.steps >= kLongDrive_stops &&
+      facts.path_m >= kLongDrive_m) {
+    judgement.useless(
+        fmt::format("no match was accepted over {:.1f} m, so the map shows odometry "
+                    "alone",
+                    facts.path_m));
+  }
+  return judgement;
+}
+
+/// The one thing that helps most. A calibration that the program makes by itself belongs before
+/// this advice.
+std::string advice(const Facts& facts, const std::string& grade, const QualityInputs& inputs) {
+  if (grade == kGood) return {};
+  if (grade == kUseless) {
+    return "topogeo dvl --log " + inputs.log +
+           " --scan 0 --out scan.png  # shows what the laser sees";
+  }
+  if (facts.skipped_share > kMostSkipped) return "topogeo check-log " + inputs.log;
+  const bool disagrees = facts.typical_share > kOdometryDisagrees;
+  if (disagrees && (!inputs.laser_known || facts.typical_share > kOdometryContradicts)) {
+    return "topogeo calibrate-laser " + inputs.log + " --out laser.yaml";
+  }
+  const double step_m = facts.steps > 0 ? facts.path_m / static_cast<double>(facts.steps) : 0.0;
+  const bool few_matches = facts.open_steps > 0 || facts.recent_matches < kFewestRecentMatches;
+  if (!disagrees && few_matches && step_m >= kLongStep_m) {
+    return "more stops: stop: {distance_m: 0.5} in a file for --config";
+  }
+  return "topogeo calibrate-odometry " + inputs.log + " --out odometry.yaml";
+}
+
+const char* name_of(PathDisagreement::Kind kind) {
+  switch (kind) {
+    case PathDisagreement::Kind::kLength:
+      return "length";
+    case PathDisagreement::Kind::kTurn:
+      return "turn";
+    case PathDisagreement::Kind::kJump:
+      return "jump";
+  }
+  return "unknown";
+}
+
+std::string stretch_line(const OdometryStretchEntry& s) {
+  return fmt::format(
+      "  stops {} to {} at x {:.1f} m, y {:.1f} m: {:.1f} m long, may be off {:.2f} m and {:.0f} "
+      "deg\n",
+      s.first_stop, s.last_stop, s.x_m, s.y_m, s.length_m, s.off_m, degrees(s.off_rad));
+}
+
+std::string stretch_lines(const std::vector<OdometryStretchEntry>& all) {
+  std::vector<OdometryStretchEntry> open;
+  std::uint64_t open_steps = 0;
+  std::uint64_t held_steps = 0;
+  for (const OdometryStretchEntry& stretch : all) {
+    (stretch.held_by_loop ? held_steps : open_steps) += stretch.last_stop - stretch.first_stop;
+    if (!stretch.held_by_loop) open.push_back(stretch);
+  }
+  if (all.empty()) return {};
+  std::string text = fmt::format("steps without a match: {}", open_steps + held_steps);
+  if (held_steps > 0) text += fmt::format(", {} of them held by loops", held_steps);
+  text += '\n';
+  constexpr std::size_t kMostLines = 3;
+  std::ranges::stable_sort(open, std::greater<>{}, &OdometryStretchEntry::off_m);
+  for (std::size_t i = 0; i < std::min(open.size(), kMostLines); ++i) text += stretch_line(open[i]);
+  if (open.size() > kMostLines) {
+    text += fmt::format("  and {} more in report.json\n", open.size() - kMostLines);
+  }
+  return text;
+}
+
+std::string disagreement_line(const PathDisagreementEntry& d) {
+  const std::string place = fmt::format("stops {} to {}", d.first_stop, d.last_stop);
+  if (d.kind == "turn") {
+    return fmt::format("warning: {}: the map turns by {:.0f} deg more than odometry\n", place,
+                       degrees(d.turn_rad));
+  }
+  return fmt::format("warning: {}: the robot {} {:.2f} m in the map, {:.2f} m by odometry\n", place,
+                     d.kind == "jump" ? "jumps" : "drives", d.corrected_m, d.odometry_m);
+}
+
+}  // namespace
+
+void add_quality(Report& report, const storage::MapDocument& document,
+                 const QualityInputs& inputs) {
+  report.quality = {};
+  if (document.edges.empty() && document.local_maps.size() > 1) return;
+  const auto& stops = document.trajectory.stops;
+  for (const pipeline::OdometryStretch& s : pipeline::odometry_stretches(document)) {
+    const geometry::Pose2 start =
+        s.first_id < stops.size() ? stops[s.first_id].T_map_robot : geometry::Pose2{};
+    report.quality.odometry_stretches.push_back({s.first_id, s.last_id, start.x_m, start.y_m,
+                                                 s.length_m, s.off_m, s.off_rad, s.held_by_loop});
+  }
+  const pipeline::PathComparison comparison = pipeline::compare_with_odometry(document);
+  for (const PathDisagreement& d : comparison.disagreements) {
+    report.quality.path_disagreements.push_back(
+        {name_of(d.kind), d.first_id, d.last_id, d.odometry_m, d.corrected_m, d.turn_rad});
+  }
+  Facts facts = facts_of(report, document);
+  facts.typical_share = comparison.typical_share;
+  const Judgement judgement = judge(report, facts);
+  report.quality.grade = judgement.grade();
+  report.quality.reasons = judgement.reasons();
+  report.quality.advice = advice(facts, judgement.grade(), inputs);
+}
+
+std::string quality_text(const Report& report) {
+  const storage::QualityEntry& quality = report.quality;
+  if (quality.grade.empty()) return {};
+  std::string text = "quality: " + quality.grade;
+  for (std::size_t i = 0; i < quality.reasons.size(); ++i) {
+    text += (i == 0 ? ": " : "; ") + quality.reasons[i];
+  }
+  text += '\n';
+  if (!quality.advice.empty()) text += "try: " + quality.advice + '\n';
+  text += stretch_lines(quality.odometry_stretches);
+  constexpr std::size_t kMostWarnings = 3;
+  const auto& all = quality.path_disagreements;
+  for (std::size_t i = 0; i < std::min(all.size(), kMostWarnings); ++i) {
+    text += disagreement_line(all[i]);
+  }
+  if (all.size() > kMostWarnings) {
+    text += fmt::format("warning: {} more such parts in report.json\n", all.size() - kMostWarnings);
+  }
+  return text;
+}
+
+bool is_useless(const Report& report) {
+  return report.quality.grade == kUseless;
+}
+
+}  // namespace topogeo::results

@@ -1,0 +1,103 @@
+#include "topogeo/results/map_quality.hpp"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+
+namespace topogeo::results {
+namespace {
+
+using ::testing::HasSubstr;
+using Kind = storage::MapEdge::Kind;
+
+constexpr std::uint32_t kStops = 20;
+
+/// A straight drive of 19 m on which each stop matches up to two recent ones, except across the
+/// step to `open` (0: none).
+storage::MapDocument drive(std::uint32_t open, std::uint32_t matches = 2) {
+  storage::MapDocument document;
+  const Eigen::Matrix3d covariance = Eigen::Vector3d(0.01, 0.01, 0.0004).asDiagonal();
+  for (std::uint32_t id = 0; id < kStops; ++id) {
+    topomap::LocalMap map;
+    map.T_odom_robot = {1.0 * id, 0.0, 0.0};
+    document.local_maps.push_back(map);
+    topomap::StopPose stop;
+    stop.T_map_robot = map.T_odom_robot;
+    document.trajectory.stops.push_back(stop);
+    if (id > 0) {
+      document.edges.push_back({id - 1, id, {1.0, 0.0, 0.0}, covariance, Kind::kOdometry});
+    }
+    for (std::uint32_t back = 1; back <= std::min(id, matches); ++back) {
+      if (id - back < open && open <= id) continue;
+      document.edges.push_back(
+          {id - back, id, {1.0 * back, 0.0, 0.0}, covariance, Kind::kSequential});
+    }
+  }
+  return document;
+}
+
+storage::Report judged(const storage::MapDocument& document, std::uint64_t accepted,
+                       bool laser_known = true) {
+  storage::Report report;
+  report.scans = 200;
+  report.matches_tried = 40;
+  report.matches_accepted = accepted;
+  add_quality(report, document, {"drive.clf.gz", laser_known});
+  return report;
+}
+
+TEST(MapQuality, AMapOfMatchedStepsIsGood) {
+  const storage::Report report = judged(drive(0), 38);
+  EXPECT_EQ(report.quality.grade, "good");
+  EXPECT_EQ(quality_text(report), "quality: good\n");
+  EXPECT_FALSE(is_useless(report));
+}
+
+TEST(MapQuality, AnOpenStepInTheMiddleMakesItPoorAndSaysWhere) {
+  const storage::Report report = judged(drive(10), 34);
+  EXPECT_EQ(report.quality.grade, "poor");
+  const std::string text = quality_text(report);
+  EXPECT_THAT(text, HasSubstr("1 of 19 steps (1.0 m of 19.0 m) rest on odometry alone"));
+  EXPECT_THAT(text, HasSubstr("stops 9 to 10 at x 9.0 m, y 0.0 m: 1.0 m long, may be off 0.28 m"));
+  EXPECT_THAT(text, HasSubstr("try: more stops: stop: {distance_m: 0.5}"));
+}
+
+TEST(MapQuality, AnOpenStepAtTheEndMovesLittle) {
+  EXPECT_EQ(judged(drive(kStops - 1), 34).quality.grade, "fair");
+}
+
+TEST(MapQuality, StopsWithFewMatchesMakeItPoor) {
+  EXPECT_EQ(judged(drive(0, 1), 10).quality.grade, "poor");
+}
+
+TEST(MapQuality, AnUnknownMountingIsCalibratedFirst) {
+  storage::MapDocument document = drive(0);
+  for (std::uint32_t id = 0; id < kStops; ++id) {
+    document.trajectory.stops[id].T_map_robot = {0.98 * id, 0.2 * id, 0.0};
+  }
+  const storage::Report report = judged(document, 10, false);
+  EXPECT_EQ(report.quality.grade, "poor");
+  EXPECT_EQ(report.quality.advice, "topogeo calibrate-laser drive.clf.gz --out laser.yaml");
+  EXPECT_EQ(judged(document, 10, true).quality.advice,
+            "topogeo calibrate-odometry drive.clf.gz --out odometry.yaml");
+  EXPECT_EQ(judged(document, 38, true).quality.grade, "fair");  // matches carry the map
+}
+
+TEST(MapQuality, ALongDriveWithoutMatchesIsUselessAShortOneIsNot) {
+  storage::MapDocument document = drive(0, 0);
+  EXPECT_TRUE(is_useless(judged(document, 0)));
+  EXPECT_THAT(quality_text(judged(document, 0)), HasSubstr("no match was accepted over 19.0 m"));
+  document.local_maps.resize(5);
+  document.trajectory.stops.resize(5);
+  std::erase_if(document.edges, [](const auto& edge) { return edge.later_id >= 5; });
+  EXPECT_FALSE(is_useless(judged(document, 0)));
+}
+
+TEST(MapQuality, AMapWithoutEdgesIsNotAssessed) {
+  storage::MapDocument document = drive(0);
+  document.edges.clear();
+  EXPECT_EQ(quality_text(judged(document, 38)), "");
+}
+
+}  // namespace
+}  // namespace topogeo::results
