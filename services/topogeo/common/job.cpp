@@ -8,6 +8,7 @@
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/laser_mounting.hpp"
+#include "topogeo/results/map_quality.hpp"
 #include "topogeo/results/outputs.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/map_file.hpp"
@@ -163,13 +164,14 @@ void add_map_options(command_line::Command& app, JobOptions& options, StoredMapU
       ->type_name("X,Y,DEG");
 }
 
-void choose_mounting(pipeline::LoadedConfig& config, const std::filesystem::path& log,
+bool choose_mounting(pipeline::LoadedConfig& config, const std::filesystem::path& log,
                      const recording::TopicChoice& topics) {
   try {
     const recording::LogMounting in_log = recording::mounting_in_log(log, topics);
     for (const std::string& note : in_log.notes) std::cerr << "topogeo: " << note << '\n';
     const std::string message = pipeline::choose_mounting(config, in_log.T_robot_laser);
     if (!message.empty()) std::cerr << "topogeo: " << message << '\n';
+    return config.laser_set || in_log.T_robot_laser.has_value();
   } catch (const std::runtime_error& error) {
     throw service::BadInputError(error.what());
   }
@@ -180,7 +182,9 @@ Inputs check_inputs(const JobOptions& options) {
     throw service::UsageError("--initial-pose: expected with a stored map, --map or --continue");
   }
   Inputs inputs{load(options.config), nullptr, nullptr};
-  if (!options.log.empty()) choose_mounting(inputs.config, options.log, options.topics);
+  if (!options.log.empty()) {
+    inputs.laser_known = choose_mounting(inputs.config, options.log, options.topics);
+  }
   const pipeline::Config& config = inputs.config.config;
   if (options.continued && config.localizer.mode != localization::SlamAlgorithm::kGraph) {
     throw service::UsageError("--continue: expected localizer.mode graph in the configuration");
@@ -220,6 +224,28 @@ void report_skipped(const scan::CarmenLogStatistics& statistics) {
   std::cerr << statistics.summary() << '\n';
 }
 
+void check_usable(const JobOptions& options, const scan::CarmenLogStatistics& statistics) {
+  constexpr std::uint64_t kFewest = 10;      // a shorter log says little
+  constexpr std::uint64_t kLeastShare = 10;  // one scan of so many
+  const std::uint64_t skipped = statistics.skipped_total();
+  const std::uint64_t all = statistics.scans + skipped;
+  if (all < kFewest || statistics.scans * kLeastShare >= all) return;
+  const std::string first = statistics.messages.empty() ? "" : "; " + statistics.messages.front();
+  throw service::BadInputError(fmt::format("{}: only {} of {} scans are usable{}",
+                                           options.log.string(), statistics.scans, all, first));
+}
+
+void add_quality(storage::Report& report, const Job& job, const storage::MapDocument& document) {
+  if (job.options.map || job.options.continued) return;
+  results::add_quality(report, document, {job.options.log.string(), job.inputs.laser_known});
+}
+
+void check_useful(const JobOptions& options, const storage::Report& report) {
+  if (!results::is_useless(report)) return;
+  throw service::BadInputError(fmt::format("{}: {}; see {}", options.log.string(),
+                                           report.quality.reasons.front(), report.quality.advice));
+}
+
 void print_summary(std::ostream& out, const storage::Report& report,
                    const std::filesystem::path& directory) {
   out << fmt::format("{}: {} scans, {} stops, {:.1f} m of path, {} loop closures\n",
@@ -227,7 +253,7 @@ void print_summary(std::ostream& out, const storage::Report& report,
                      report.stops, report.distance_m, report.loop_closures.size())
       << fmt::format("map: {} nodes, {} branches; {} of {} matches accepted\n", report.nodes,
                      report.branches, report.matches_accepted, report.matches_tried)
-      << localization_line(report) << continuation_line(report)
+      << localization_line(report) << continuation_line(report) << results::quality_text(report)
       << fmt::format("time: {:.1f} s, CPU {:.1f} s\n", report.wall_s, report.cpu_s) << "results in "
       << directory.string() << ", picture " << (directory / "map.png").string() << '\n';
 }

@@ -58,12 +58,13 @@ struct Inputs {
   pipeline::LoadedConfig config;
   std::shared_ptr<const localization::StoredMap> map;     ///< of JobOptions::map
   std::shared_ptr<const storage::MapDocument> continued;  ///< of JobOptions::continued
+  bool laser_known = false;  ///< log or configuration state the mounting of the laser
 };
 
 /// Takes the laser mounting from the log unless the configuration sets it, and reports that and the
-/// chosen topics of a recording on stderr. Throws service::BadInputError when the log cannot be
-/// opened.
-void choose_mounting(pipeline::LoadedConfig& config, const std::filesystem::path& log,
+/// chosen topics of a recording on stderr. Returns whether either states one. Throws
+/// service::BadInputError when the log cannot be opened.
+bool choose_mounting(pipeline::LoadedConfig& config, const std::filesystem::path& log,
                      const recording::TopicChoice& topics);
 
 /// Checks before the work starts that configuration, stored map and reference are usable, whatever
@@ -92,6 +93,15 @@ void report_no_return(const recording::LogReader& reader);
 
 /// Reports the skipped parts of the log and faults of its odometry on stderr, if there are any.
 void report_skipped(const scan::CarmenLogStatistics& statistics);
+
+/// Throws service::BadInputError if nearly all scans of a log were skipped.
+void check_usable(const JobOptions& options, const scan::CarmenLogStatistics& statistics);
+
+/// Judges a new map, whose report has its counts, for print_summary.
+void add_quality(storage::Report& report, const Job& job, const storage::MapDocument& document);
+
+/// Throws service::BadInputError if the map that was made of the log is useless.
+void check_useful(const JobOptions& options, const storage::Report& report);
 
 /// A few lines for people: mapped stops, time taken, place of the results.
 void print_summary(std::ostream& out, const storage::Report& report,

@@ -101,6 +101,7 @@ storage::Report make_report(const Job& job, const pipeline::MappingRun& run,
   results::add_matches(report, run.match_counts());
   results::add_loop_candidates(report, run.loop_decisions());
   results::add_log(report, job.reader.statistics());
+  add_quality(report, job, document);
   if (run.map_tracker() != nullptr) {
     report.localization = pipeline::localization_counts(*run.map_tracker());
   }
@@ -138,6 +139,7 @@ int map_log(const JobOptions& options, bool stages) {
   support::StageTimes times;
   if (!add_scans(job, run, times, interruption)) return kSignalBase + interruption.received();
   report_skipped(job.reader.statistics());
+  check_usable(options, job.reader.statistics());
 
   if (interruption.received() != 0) return kSignalBase + interruption.received();
   if (!job.inputs.map) std::cerr << "matching revisited places\n";
@@ -173,6 +175,7 @@ int map_log(const JobOptions& options, bool stages) {
   if (interruption.received() != 0)
     return kSignalBase + interruption.received();  // the signal came while writing
   if (options.reference) print_comparison(std::cout, compare(options.out, *options.reference));
+  check_useful(options, report);
   return 0;
 }
 

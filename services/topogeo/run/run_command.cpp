@@ -157,6 +157,7 @@ int run_log(const RunOptions& options) {
   while (job.reader.next()) {  // to count the lines that the gateway skipped
   }
   results::add_log(report, job.reader.statistics());
+  add_quality(report, job, storage::read_map_file(options.job.out / "map.pb"));
   report.wall_s = support::monotonic_s() - start_s - result.stayed_s;
   storage::write_report(options.job.out / "report.json", report);
   report_skipped(job.reader.statistics());
@@ -165,6 +166,8 @@ int run_log(const RunOptions& options) {
   if (options.job.reference) {
     print_comparison(std::cout, compare(options.job.out, *options.job.reference));
   }
+  check_usable(options.job, job.reader.statistics());
+  check_useful(options.job, report);
   return service::kOk;
 }
 
