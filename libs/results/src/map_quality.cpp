@@ -23,6 +23,7 @@ using storage::Report;
 
 // Thresholds, each in the middle of a gap between right and wrong maps.
 constexpr double kFewestRecentMatches = 1.55;  // at each stop
+constexpr double kUsualRecentMatches = 3.0;    // compared at each stop by default
 constexpr double kOdometryDisagrees = 0.15;    // typical displacement per length
 constexpr double kOdometryContradicts = 0.33;  // the same, whatever the matches are
 constexpr double kGoodAcceptedShare = 0.7;
@@ -43,7 +44,8 @@ double degrees(double angle_rad) {
 
 struct Facts {
   std::uint64_t steps = 0;
-  double path_m = 0.0;          // by odometry, from stop to stop
+  double path_m = 0.0;  // by odometry, from stop to stop
+  double fewest_recent_matches = kFewestRecentMatches;
   double recent_matches = 0.0;  // per step
   double accepted_share = 0.0;
   double skipped_share = 0.0;
@@ -136,10 +138,10 @@ Judgement judge(const Report& report, const Facts& facts) {
                                      facts.open_steps, facts.steps, facts.open_m, facts.path_m);
     facts.splits ? judgement.poor(std::move(reason)) : judgement.fair(std::move(reason));
   }
-  if (facts.steps >= kLongDrive_stops && facts.recent_matches < kFewestRecentMatches) {
+  if (facts.steps >= kLongDrive_stops && facts.recent_matches < facts.fewest_recent_matches) {
     judgement.poor(
         fmt::format("a stop matches only {:.1f} recent ones ({:.2f} or more in right maps)",
-                    facts.recent_matches, kFewestRecentMatches));
+                    facts.recent_matches, facts.fewest_recent_matches));
   }
   judge_odometry(facts, judgement);
   if (facts.skipped_share > kMostSkipped) {
@@ -169,7 +171,8 @@ std::string advice(const Facts& facts, const std::string& grade, const QualityIn
     return "topogeo calibrate-laser " + inputs.log + " --out laser.yaml";
   }
   const double step_m = facts.steps > 0 ? facts.path_m / static_cast<double>(facts.steps) : 0.0;
-  const bool few_matches = facts.open_steps > 0 || facts.recent_matches < kFewestRecentMatches;
+  const bool few_matches =
+      facts.open_steps > 0 || facts.recent_matches < facts.fewest_recent_matches;
   if (!disagrees && few_matches && step_m >= kLongStep_m) {
     return "more stops: stop: {distance_m: 0.5} in a file for --config";
   }
@@ -246,6 +249,7 @@ void add_quality(Report& report, const storage::MapDocument& document,
   }
   Facts facts = facts_of(report, document);
   facts.typical_share = comparison.typical_share;
+  facts.fewest_recent_matches = kFewestRecentMatches / kUsualRecentMatches * inputs.recent_matches;
   const Judgement judgement = judge(report, facts);
   report.quality.grade = judgement.grade();
   report.quality.reasons = judgement.reasons();

@@ -237,7 +237,9 @@ void check_usable(const JobOptions& options, const scan::CarmenLogStatistics& st
 
 void add_quality(storage::Report& report, const Job& job, const storage::MapDocument& document) {
   if (job.options.map || job.options.continued) return;
-  results::add_quality(report, document, {job.options.log.string(), job.inputs.laser_known});
+  results::add_quality(report, document,
+                       {job.options.log.string(), job.inputs.laser_known,
+                        job.inputs.config.config.localizer.recent_matches});
 }
 
 void check_useful(const JobOptions& options, const storage::Report& report) {

@@ -68,6 +68,11 @@ TEST(MapQuality, AnOpenStepAtTheEndMovesLittle) {
 
 TEST(MapQuality, StopsWithFewMatchesMakeItPoor) {
   EXPECT_EQ(judged(drive(0, 1), 10).quality.grade, "poor");
+  // Fewer are expected if only one is compared.
+  storage::Report report;
+  report.matches_tried = report.matches_accepted = 19;
+  add_quality(report, drive(0, 1), {"drive.clf.gz", true, 1});
+  EXPECT_EQ(report.quality.grade, "good");
 }
 
 TEST(MapQuality, AnUnknownMountingIsCalibratedFirst) {

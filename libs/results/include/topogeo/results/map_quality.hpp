@@ -1,6 +1,7 @@
 // How far a map can be trusted, judged without a reference: by its measurements and by odometry.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "topogeo/storage/map_document.hpp"
@@ -12,6 +13,7 @@ namespace topogeo::results {
 struct QualityInputs {
   std::string log;           ///< as the user wrote it, for the suggested command
   bool laser_known = false;  ///< whether log or configuration state the mounting of the laser
+  std::uint32_t recent_matches = 3;  ///< localizer.recent_matches: most for each stop
 };
 
 /// Fills the quality of a report, whose counts and skipped lines must be filled. The thresholds and
