@@ -14,7 +14,7 @@ namespace topogeo::pipeline {
 namespace {
 
 using geometry::Pose2;
-using Kind = PathDisagreement::Kind;
+using Disagreement = PathDisagreement::Kind;
 
 constexpr double kPart_m = 3.0;
 constexpr double kLargestLengthRatio = 1.22;
@@ -84,13 +84,13 @@ class Path {
   std::span<const topomap::StopPose> stops_;
 };
 
-double excess(Kind kind, const PathDisagreement& part) {
-  if (kind == Kind::kTurn) return std::abs(part.turn_rad);
+double excess(Disagreement kind, const PathDisagreement& part) {
+  if (kind == Disagreement::kTurn) return std::abs(part.turn_rad);
   return std::abs(std::log(part.corrected_m / part.odometry_m));
 }
 
 /// Joins parts that overlap; the worst one gives the numbers.
-void add(std::vector<PathDisagreement>& found, Kind kind, const Part& part) {
+void add(std::vector<PathDisagreement>& found, Disagreement kind, const Part& part) {
   const PathDisagreement next{
       kind, part.first, part.last, part.odometry_m, part.corrected_m, part.turn_rad};
   const auto last = std::ranges::find(found.rbegin(), found.rend(), kind, &PathDisagreement::kind);
@@ -117,7 +117,7 @@ std::optional<PathDisagreement> jump_before(const Path& path, std::uint32_t stop
     const double more_m = length_m(corrected) - length_m(odometry);
     if (more_m > largest_m) {
       largest_m = more_m;
-      worst = PathDisagreement{Kind::kJump,         stop - 1, stop, length_m(odometry),
+      worst = PathDisagreement{Disagreement::kJump, stop - 1, stop, length_m(odometry),
                                length_m(corrected), 0.0};
     }
     T_stop_robot = T_stop_next;
@@ -141,9 +141,9 @@ PathComparison compare_with_odometry(const storage::MapDocument& document) {
     shares.push_back(part->apart_m / part->odometry_m);
     const double ratio = part->ratio();
     if (ratio > kLargestLengthRatio || ratio < 1.0 / kLargestLengthRatio) {
-      add(found, Kind::kLength, *part);
+      add(found, Disagreement::kLength, *part);
     }
-    if (std::abs(part->turn_rad) > kLargestTurn_rad) add(found, Kind::kTurn, *part);
+    if (std::abs(part->turn_rad) > kLargestTurn_rad) add(found, Disagreement::kTurn, *part);
   }
   for (std::uint32_t stop = 1; stop < path.size(); ++stop) {
     if (!path.step_to(stop)) continue;

@@ -9,7 +9,7 @@ namespace topogeo::pipeline {
 namespace {
 
 using geometry::Pose2;
-using Kind = PathDisagreement::Kind;
+using Disagreement = PathDisagreement::Kind;
 
 /// Twelve stops, half a metre apart by odometry, and where the map has them.
 storage::MapDocument drive(const std::function<Pose2(std::uint32_t)>& T_map_robot) {
@@ -41,7 +41,7 @@ TEST(PathDisagreement, NamesAPathThatIsTooLong) {
   }));
   ASSERT_EQ(comparison.disagreements.size(), 1U);  // overlapping parts are one
   const PathDisagreement& found = comparison.disagreements[0];
-  EXPECT_EQ(found.kind, Kind::kLength);
+  EXPECT_EQ(found.kind, Disagreement::kLength);
   EXPECT_EQ(found.first_id, 0U);
   EXPECT_EQ(found.last_id, 11U);
   EXPECT_NEAR(found.corrected_m / found.odometry_m, 1.4, 1e-9);
@@ -53,7 +53,7 @@ TEST(PathDisagreement, NamesATurnThatOdometryDoesNotMake) {
     return id < 6 ? Pose2{0.5 * id, 0.0, 0.0} : Pose2{2.5, 0.5 * (id - 5), std::numbers::pi / 2.0};
   }));
   ASSERT_EQ(comparison.disagreements.size(), 1U);
-  EXPECT_EQ(comparison.disagreements[0].kind, Kind::kTurn);
+  EXPECT_EQ(comparison.disagreements[0].kind, Disagreement::kTurn);
   EXPECT_NEAR(comparison.disagreements[0].turn_rad, std::numbers::pi / 2.0, 1e-9);
 }
 
@@ -71,7 +71,7 @@ TEST(PathDisagreement, NamesAJumpBetweenScans) {
   }
   const auto comparison = compare_with_odometry(document);
   ASSERT_EQ(comparison.disagreements.size(), 1U);
-  EXPECT_EQ(comparison.disagreements[0].kind, Kind::kJump);
+  EXPECT_EQ(comparison.disagreements[0].kind, Disagreement::kJump);
   EXPECT_EQ(comparison.disagreements[0].last_id, 6U);
   EXPECT_NEAR(comparison.disagreements[0].corrected_m, 2.0, 1e-9);
 }
