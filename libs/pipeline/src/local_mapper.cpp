@@ -19,6 +19,10 @@ namespace {
 constexpr double kLostStop_m = 0.1;
 constexpr double kLostStop_rad = 0.05;
 
+// Share of the distance between stops after which odometry alone makes a stop: a tracked pose that
+// stays behind must not keep the robot without one.
+constexpr double kFarthestByOdometry = 1.5;
+
 // Never 0, which means no session.
 std::uint64_t session_of(const scan::Scan& scan, const std::string& robot_id, std::uint64_t salt) {
   support::Fnv1a hash;
@@ -56,9 +60,11 @@ std::optional<LocalMap> LocalMapper::add(const scan::Scan& scan) {
   const double step_m = std::sqrt((T.position_m() - T_last.position_m()).squaredNorm());
   const double turn_rad = std::fabs(geometry::wrap_angle(T.theta_rad - T_last.theta_rad));
   const double distance_m = std::sqrt(T.position_m().squaredNorm());
+  const double driven_m = std::sqrt(pose.T_stop_odometry.position_m().squaredNorm());
   const bool lost =
       !pose.matched && (distance_m >= kLostStop_m || std::fabs(T.theta_rad) >= kLostStop_rad);
   const bool stop = lost || distance_m + 0.5 * step_m >= config_.stop_distance_m ||
+                    driven_m >= kFarthestByOdometry * config_.stop_distance_m ||
                     std::fabs(T.theta_rad) + 0.5 * turn_rad >= config_.stop_turn_rad;
   if (stop) return make_stop(scan, T);
   track_.add({scan.sequence, scan.stamp_ns, scan.T_odom_robot, T, pose.matched});

@@ -84,6 +84,18 @@ TEST_F(LocalMapperTest, ARobotThatStandsMakesNoStop) {
   EXPECT_LE(next->track.size(), 5U);
 }
 
+TEST_F(LocalMapperTest, OdometryThatGoesOnMakesAStopWhereTheScansStandStill) {
+  LocalMapper mapper({}, "r");
+  // Wheels that spin in steps of 0.1 m: half as far again as between stops is 1.5 m.
+  std::vector<std::uint64_t> stops;
+  for (int i = 0; i <= 31; ++i) {
+    scan::Scan scan = scan_at({3.0, 3.0, 0.0});
+    scan.T_odom_robot.x_m += 0.1 * i + 1e-9;
+    if (const auto map = mapper.add(scan)) stops.push_back(map->sequence);
+  }
+  EXPECT_EQ(stops, (std::vector<std::uint64_t>{0, 15, 30}));
+}
+
 TEST(BoundedTrack, KeepsEvenlySpreadScansAndTheLast) {
   BoundedTrack track(4);
   const auto sequences_after = [&track](std::uint64_t scans) {

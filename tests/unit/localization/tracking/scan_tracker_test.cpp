@@ -89,6 +89,45 @@ TEST_F(ScanTrackerTest, StartsAgainAtEachStop) {
       0.03);
 }
 
+// A corridor of two bare walls. Both ends are out of the range of its laser, so only odometry knows
+// the distance along it. 5.6 m is the range of a small laser.
+class BareCorridor : public testing::TestWithParam<int> {
+ protected:
+  BareCorridor() {
+    corridor_.segments = {{{-30.0, -0.9}, {30.0, -0.9}}, {{-30.0, 1.1}, {30.0, 1.1}}};
+  }
+
+  std::vector<topomap::ScanPoint> points(const Pose2& T_world_robot) {
+    constexpr simulation::BeamPattern kBeams{-2.0, 4.0 / 725.0, 726, 5.6};
+    scan::Scan scan;
+    scan.angle_min_rad = kBeams.angle_min_rad;
+    scan.angle_step_rad = kBeams.angle_step_rad;
+    scan.ranges_m =
+        simulation::measure(simulation::raycast(corridor_, T_world_robot, kBeams), {}, random_);
+    return topomap::scan_points(scan, {}, 20.0);
+  }
+
+  world::World corridor_;
+  support::Random random_{static_cast<std::uint64_t>(GetParam())};
+};
+
+TEST_P(BareCorridor, IsFollowedByOdometry) {
+  constexpr double kStep_m = 0.02;
+  ScanTracker tracker{{}};
+  tracker.start(points({}), {}, {});
+  for (int i = 1; i <= 60; ++i) {
+    const Pose2 T{kStep_m * i, 0.0, 0.02};
+    const TrackedPose pose = tracker.track(points(T), {kStep_m * i, 0.0, 0.0});
+    EXPECT_TRUE(pose.matched) << i;
+    EXPECT_NEAR(pose.T_stop_robot.x_m, T.x_m, 0.1) << i;
+    EXPECT_NEAR(pose.T_stop_robot.y_m, T.y_m, 0.03) << i;
+    EXPECT_NEAR(pose.T_stop_robot.theta_rad, T.theta_rad, 0.02) << i;
+    EXPECT_DOUBLE_EQ(pose.T_stop_odometry.x_m, kStep_m * i) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, BareCorridor, testing::Range(1, 6));
+
 TEST(ScanTrackerStartTest, WithoutAStopThereIsOnlyOdometry) {
   ScanTracker tracker{{}};
   const auto points = test::exact_points(test::l_room(), {});

@@ -1,5 +1,6 @@
 // Tracks the robot from scan to scan between two stops: each scan is compared with the scan of the
 // last stop (point to line, with the odometry as prior), so errors do not add up from scan to scan.
+// A direction that the walls do not determine, along a bare corridor, is left to the odometry.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include "topogeo/localization/mapping/odometry_monitor.hpp"
 #include "topogeo/localization/matching/fitness.hpp"
 #include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/localization/matching/refinement.hpp"
 #include "topogeo/localization/tracking/scan_tracker_config.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
@@ -15,8 +17,9 @@ namespace topogeo::localization {
 
 struct TrackedPose {
   geometry::Pose2 T_stop_robot;
-  bool matched = false;    ///< false: only odometry since the last matched scan
-  double agreement = 0.0;  ///< share of the scan in the stop's view that fits it, [0, 1]
+  geometry::Pose2 T_stop_odometry;  ///< by the odometry since the stop alone
+  bool matched = false;             ///< false: only odometry since the last matched scan
+  double agreement = 0.0;           ///< share of the scan in the stop's view that fits it, [0, 1]
 };
 
 class ScanTracker {
@@ -35,10 +38,15 @@ class ScanTracker {
                     const geometry::Pose2& T_odom_robot);
 
  private:
+  [[nodiscard]] PosePrior prior(const UncertainPose& predicted) const;
+  [[nodiscard]] Eigen::Matrix3d covariance_of(const Eigen::Matrix3d& match,
+                                              const UncertainPose& predicted) const;
+
   ScanTrackerConfig config_;
   geometry::Pose2 T_robot_laser_;
   Reference stop_;
-  UncertainPose last_;  // pose of the last scan in the frame of the stop
+  UncertainPose last_;         // pose of the last scan in the frame of the stop
+  UncertainPose by_odometry_;  // the same by the odometry since the stop alone
   geometry::Pose2 T_odom_last_;
   OdometryMonitor monitor_;
 };
