@@ -66,8 +66,8 @@ TrackedPose ScanTracker::track(std::span<const ScanPoint> points, const Pose2& T
   return {last_.T_a_b, by_odometry_.T_a_b, matched, refined.overlap * refined.inliers};
 }
 
-// What the match of one scan is combined with. Both parts know their own share of the pose: the
-// odometry since the stop everything but the scans, the prediction the earlier scans too.
+// Joined with the match of a scan: the odometry since the stop, and the prediction, which holds the
+// matches of the earlier scans.
 PosePrior ScanTracker::prior(const UncertainPose& predicted) const {
   const Eigen::Matrix3d of_odometry = invertible(by_odometry_.covariance).inverse();
   const Eigen::Matrix3d of_earlier =
