@@ -18,8 +18,10 @@ constexpr std::int8_t kSecondMap = 77;
 std::string drive_with_maps(const std::filesystem::path& file) {
   constexpr std::size_t kSide = 1100;
   LogWriter writer(file, kMounting, "none");
-  for (int i = 0; i < kScans; ++i) {
-    scan::Scan scan = short_drive()[static_cast<std::size_t>(i) % short_drive().size()];
+  const std::size_t there = short_drive().size();
+  for (int i = 0; i < kScans; ++i) {  // there and back again
+    const std::size_t step = static_cast<std::size_t>(i) % (2 * there);
+    scan::Scan scan = short_drive()[step < there ? step : 2 * there - 1 - step];
     scan.stamp_ns = 1'600'000'000'000'000'000 + i * kPeriod_ns;
     writer.write(scan);
     if (i % 10 != 9) continue;

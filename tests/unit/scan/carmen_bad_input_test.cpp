@@ -144,7 +144,7 @@ std::string varied_log(int scans) {
     std::ostringstream ranges;
     ranges << 1;
     for (int k = 1; k < 180; ++k) ranges << ' ' << 1 + random() % 3000 << "e-2";
-    text += flaser(std::to_string(i) + ".0", ranges.str(), 180);
+    text += flaser(std::to_string(i) + ".0", ranges.str(), 180, "1");
   }
   return text;
 }

@@ -99,7 +99,9 @@ TEST_F(LogFiles, WindowsLineEndsTabsAndAMissingLastLineEndAreRead) {
 
 TEST_F(LogFiles, PlainAndGzipGiveTheSameScans) {
   std::string text;
-  for (int i = 1; i <= 5000; ++i) text += flaser(std::to_string(i) + ".5");
+  for (int i = 1; i <= 5000; ++i) {
+    text += flaser(std::to_string(i) + ".5", "1.00 2.00 3.00 4.00", 4, "1");
+  }
   CarmenLogReader a(plain(text));
   CarmenLogReader b(gzip(text));
   EXPECT_EQ(count_scans(path("a.clf")), 5000U);

@@ -47,10 +47,12 @@ class LogFiles : public ::testing::Test {
 
 /// A valid FLASER line of four beams; its odometry x is the first digit of the stamp.
 inline std::string flaser(const std::string& stamp,
-                          const std::string& ranges = "1.00 2.00 3.00 4.00", int count = 4) {
+                          const std::string& ranges = "1.00 2.00 3.00 4.00", int count = 4,
+                          const std::string& x_m = "") {
   std::ostringstream line;
-  line << "FLASER " << count << ' ' << ranges << " 9 9 9 " << stamp.front() << " 0.5 0.25 " << stamp
-       << " host " << stamp << '\n';
+  line << "FLASER " << count << ' ' << ranges << " 9 9 9 "
+       << (x_m.empty() ? stamp.substr(0, 1) : x_m) << " 0.5 0.25 " << stamp << " host " << stamp
+       << '\n';
   return line.str();
 }
 
