@@ -1,7 +1,6 @@
 #include "screened_odometry.hpp"
 
 #include <algorithm>
-#include <ranges>
 
 namespace topogeo::recording {
 
@@ -25,9 +24,9 @@ void ScreenedOdometry::take() {
 }
 
 std::optional<ScreenedOdometry::Answer> ScreenedOdometry::at(std::int64_t stamp_ns) const {
-  for (const Epoch& epoch : std::views::reverse(epochs_)) {
-    if (const auto T_odom_robot = epoch.track.at(stamp_ns))
-      return Answer{*T_odom_robot, epoch.number};
+  for (auto epoch = epochs_.rbegin(); epoch != epochs_.rend(); ++epoch) {
+    const auto T_odom_robot = epoch->track.at(stamp_ns);
+    if (T_odom_robot) return Answer{*T_odom_robot, epoch->number};
   }
   return std::nullopt;
 }

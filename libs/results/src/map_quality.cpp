@@ -29,8 +29,8 @@ constexpr double kOdometryContradicts = 0.33;  // the same, whatever the matches
 constexpr double kGoodAcceptedShare = 0.7;
 constexpr double kMostSkipped = 0.5;
 constexpr double kLongDrive_m = 10.0;
-constexpr std::uint64_t kLongDrive_stops = 10;
-constexpr std::uint32_t kEnd_stops = 3;  // an open step there moves hardly anything
+constexpr std::uint64_t kStopsOfLongDrive = 10;
+constexpr std::uint32_t kStopsOfEnd = 3;  // an open step there moves hardly anything
 constexpr double kLongStep_m = 0.4;
 
 constexpr const char* kGood = "good";
@@ -84,7 +84,7 @@ Facts facts_of(const Report& report, const storage::MapDocument& document) {
     if (stretch.held_by_loop) continue;
     facts.open_steps += stretch.last_stop - stretch.first_stop;
     facts.open_m += stretch.length_m;
-    if (stretch.last_stop >= kEnd_stops && stretch.first_stop + kEnd_stops < maps.size()) {
+    if (stretch.last_stop >= kStopsOfEnd && stretch.first_stop + kStopsOfEnd < maps.size()) {
       facts.splits = true;
     }
   }
@@ -138,7 +138,7 @@ Judgement judge(const Report& report, const Facts& facts) {
                                      facts.open_steps, facts.steps, facts.open_m, facts.path_m);
     facts.splits ? judgement.poor(std::move(reason)) : judgement.fair(std::move(reason));
   }
-  if (facts.steps >= kLongDrive_stops && facts.recent_matches < facts.fewest_recent_matches) {
+  if (facts.steps >= kStopsOfLongDrive && facts.recent_matches < facts.fewest_recent_matches) {
     judgement.poor(
         fmt::format("a stop matches only {:.1f} recent ones ({:.2f} or more in right maps)",
                     facts.recent_matches, facts.fewest_recent_matches));
@@ -147,7 +147,7 @@ Judgement judge(const Report& report, const Facts& facts) {
   if (facts.skipped_share > kMostSkipped) {
     judgement.poor(fmt::format("{:.0f} % of the scans were skipped", 100.0 * facts.skipped_share));
   }
-  if (report.matches_accepted == 0 && facts.steps >= kLongDrive_stops &&
+  if (report.matches_accepted == 0 && facts.steps >= kStopsOfLongDrive &&
       facts.path_m >= kLongDrive_m) {
     judgement.useless(
         fmt::format("no match was accepted over {:.1f} m, so the map shows odometry "

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -50,7 +49,9 @@ class Histogram {
   std::vector<std::uint64_t> before_;
 };
 
-constexpr auto kWindow = static_cast<std::int64_t>(NoReturnFinder::kWindow_m / kBin_m + 0.5);
+constexpr std::int64_t kWindow = 20;  // bins
+static_assert(kWindow * kBin_m < 1.001 * NoReturnFinder::kWindow_m &&
+              kWindow * kBin_m > 0.999 * NoReturnFinder::kWindow_m);
 
 /// The most readings of a window that ends below that of `bin`.
 std::uint64_t most_below(const Histogram& histogram, std::int64_t bin) {
@@ -128,13 +129,13 @@ std::optional<NoReturn> NoReturnFinder::find() const {
   const Histogram histogram(std::move(counts));
   const auto least =
       static_cast<std::uint64_t>(std::ceil(kLeastShare * static_cast<double>(readings_)));
-  for (const Count& top : std::views::reverse(histogram.counts())) {
-    if (top.readings < least || top.places < kLeastPlaces || !stands_out(histogram, top.bin)) {
-      continue;
-    }
-    return no_return_at(histogram, top.bin, readings_);
-  }
-  return std::nullopt;
+  const std::vector<Count>& all = histogram.counts();
+  const auto top = std::find_if(all.rbegin(), all.rend(), [&](const Count& count) {
+    return count.readings >= least && count.places >= kLeastPlaces &&
+           stands_out(histogram, count.bin);
+  });
+  if (top == all.rend()) return std::nullopt;
+  return no_return_at(histogram, top->bin, readings_);
 }
 
 bool NoReturnWatch::add(std::span<const float> ranges_m, const geometry::Pose2& T_odom_robot) {

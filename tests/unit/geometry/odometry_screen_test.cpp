@@ -134,6 +134,7 @@ TEST(OdometryScreen, ARestartAtZeroBeginsAnEpoch) {
 
 TEST(OdometryScreen, ARestartAtZeroIsSeenWhereTheRobotWasNear) {
   std::vector<OdometrySample> samples;  // straight on, restart 0.4 m from the origin
+  samples.reserve(300);
   for (int i = 0; i < 300; ++i) {
     samples.push_back({i * kStep_ns, {0.01 * (i < 100 ? i - 59 : i - 100), 0.0, 0.0}, 0.0, 0.0});
   }
@@ -165,6 +166,7 @@ TEST(OdometryScreen, AHeadingThatFlipsBeginsAnEpoch) {
 
 TEST(OdometryScreen, AFastRobotWithJitteringStampsIsPossible) {
   std::vector<OdometrySample> samples;  // 2.4 m/s, 5 Hz, every fourth stamp 0.19 s late
+  samples.reserve(100);
   for (int i = 0; i < 100; ++i) {
     samples.push_back(
         {i * 200'000'000LL + (i % 4 == 3 ? 190'000'000LL : 0), {0.48 * i, 0.0, 0.0}, 0.0, 0.0});

@@ -127,6 +127,7 @@ TEST_F(ScanIntakeTest, TheRangeThatMeansNoEchoIsFoundOnTheWay) {
     const double time_s = 10.0 + 0.1 * i;
     odometry(time_s, 0.25 * i);
     std::vector<float> ranges_m;
+    ranges_m.reserve(10);
     for (int beam = 0; beam < 10; ++beam) {
       ranges_m.push_back(
           beam < 3 ? kNoEcho_m : 1.0F + std::fmod(0.37F * static_cast<float>(7 * i + beam), 6.0F));
