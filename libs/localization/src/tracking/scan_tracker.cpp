@@ -48,7 +48,8 @@ TrackedPose ScanTracker::track(std::span<const ScanPoint> points, const Pose2& T
   by_odometry_ = compose(by_odometry_, step);
   const UncertainPose predicted{last_.T_a_b, invertible(last_.covariance)};
   const MatchFeatures features = extract_scan_features(points, T_robot_laser_);
-  const Refinement refined = refine(stop_, features, predicted.T_a_b, prior(predicted));
+  const PosePrior prior = prior_of(predicted);
+  const Refinement refined = refine(stop_, features, predicted.T_a_b, prior);
   const Pose2& T = refined.T_reference_query;
   const Eigen::Vector3d error = geometry::difference(T, predicted.T_a_b);
   const bool matched =
@@ -61,14 +62,15 @@ TrackedPose ScanTracker::track(std::span<const ScanPoint> points, const Pose2& T
     if (refined.information.determinant() > 0.0) {
       monitor_.add({last_.T_a_b, of_step}, {T, refined.information.inverse() + before.covariance});
     }
-    last_ = {T, covariance_of(refined.information, predicted)};
+    last_ = {T, (refined.information + prior.information).inverse() / (1.0 - kEarlierScans)};
   }
   return {last_.T_a_b, by_odometry_.T_a_b, matched, refined.overlap * refined.inliers};
 }
 
 // Joined with the match of a scan: the odometry since the stop, and the prediction, which holds the
-// matches of the earlier scans.
-PosePrior ScanTracker::prior(const UncertainPose& predicted) const {
+// matches of the earlier scans. The weights are divided by that of the scan, so that its match
+// counts whole in the refinement.
+PosePrior ScanTracker::prior_of(const UncertainPose& predicted) const {
   const Eigen::Matrix3d of_odometry = invertible(by_odometry_.covariance).inverse();
   const Eigen::Matrix3d of_earlier =
       kEarlierScans / (1.0 - kEarlierScans) * predicted.covariance.inverse();
@@ -78,13 +80,6 @@ PosePrior ScanTracker::prior(const UncertainPose& predicted) const {
   const Pose2& T = predicted.T_a_b;
   return {{T.x_m + shift.x(), T.y_m + shift.y(), geometry::wrap_angle(T.theta_rad + shift.z())},
           both};
-}
-
-// The covariance intersection of the earlier scans with this scan and the odometry.
-Eigen::Matrix3d ScanTracker::covariance_of(const Eigen::Matrix3d& match,
-                                           const UncertainPose& predicted) const {
-  const Eigen::Matrix3d now = match + invertible(by_odometry_.covariance).inverse();
-  return (kEarlierScans * predicted.covariance.inverse() + (1.0 - kEarlierScans) * now).inverse();
 }
 
 }  // namespace topogeo::localization

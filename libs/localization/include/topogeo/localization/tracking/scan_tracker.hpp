@@ -38,9 +38,7 @@ class ScanTracker {
                     const geometry::Pose2& T_odom_robot);
 
  private:
-  [[nodiscard]] PosePrior prior(const UncertainPose& predicted) const;
-  [[nodiscard]] Eigen::Matrix3d covariance_of(const Eigen::Matrix3d& match,
-                                              const UncertainPose& predicted) const;
+  [[nodiscard]] PosePrior prior_of(const UncertainPose& predicted) const;
 
   ScanTrackerConfig config_;
   geometry::Pose2 T_robot_laser_;
