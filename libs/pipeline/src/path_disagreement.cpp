@@ -26,8 +26,7 @@ double length_m(const Pose2& T) {
 }
 
 bool comparable(const topomap::LocalMap& before, const topomap::LocalMap& after) {
-  return !after.starts_drive && before.stop.session == after.stop.session &&
-         before.odometry_epoch == after.odometry_epoch;
+  return before.stop.session == after.stop.session && topomap::has_odometry_between(before, after);
 }
 
 /// A part of the path of at least kPart_m by odometry.

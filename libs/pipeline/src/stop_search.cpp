@@ -41,7 +41,7 @@ UncertainPose predict_by_odometry(std::span<const topomap::LocalMap> stops, std:
   UncertainPose T_first_last;
   const std::size_t first = std::min(reference, query);
   for (std::size_t i = first + 1; i <= std::max(reference, query); ++i) {
-    if (stops[i].starts_drive || stops[i].odometry_epoch != stops[i - 1].odometry_epoch) {
+    if (!topomap::has_odometry_between(stops[i - 1], stops[i])) {
       throw std::invalid_argument("no odometry connects stop " + std::to_string(i - 1) +
                                   " to stop " + std::to_string(i));
     }

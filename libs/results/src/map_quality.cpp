@@ -68,6 +68,7 @@ Facts facts_of(const Report& report, const storage::MapDocument& document) {
   for (std::size_t i = 1; i < maps.size(); ++i) {
     if (maps[i].starts_drive) continue;
     ++facts.steps;
+    if (!topomap::has_odometry_between(maps[i - 1], maps[i])) continue;
     facts.path_m += std::sqrt(geometry::between(maps[i - 1].T_odom_robot, maps[i].T_odom_robot)
                                   .position_m()
                                   .squaredNorm());

@@ -67,6 +67,10 @@ std::uint64_t content_hash(const LocalMap& map, std::uint32_t id) {
   return hash.value();
 }
 
+bool has_odometry_between(const LocalMap& before, const LocalMap& after) {
+  return !after.starts_drive && before.odometry_epoch == after.odometry_epoch;
+}
+
 LocalMap numbered(LocalMap map, std::uint32_t id, bool starts_drive) {
   map.id = id;
   if (starts_drive) {

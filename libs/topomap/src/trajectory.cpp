@@ -50,7 +50,7 @@ std::vector<StampedPose> expand_odometry(const Trajectory& trajectory,
   geometry::Pose2 T_map_odom;
   for (std::size_t i = 0; i < maps.size(); ++i) {
     if (i == 0) T_map_odom = inverse(maps[i].T_odom_robot);
-    if (i > 0 && (maps[i].starts_drive || maps[i].odometry_epoch != maps[i - 1].odometry_epoch)) {
+    if (i > 0 && !has_odometry_between(maps[i - 1], maps[i])) {
       T_map_odom = trajectory.stops[i].T_map_robot * inverse(maps[i].T_odom_robot);
     }
     append_odometry(maps[i], T_map_odom, poses);

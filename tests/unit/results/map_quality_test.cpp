@@ -98,6 +98,15 @@ TEST(MapQuality, ALongDriveWithoutMatchesIsUselessAShortOneIsNot) {
   EXPECT_FALSE(is_useless(judged(document, 0)));
 }
 
+TEST(MapQuality, ARestartOfTheOdometryIsNoWay) {
+  storage::MapDocument document = drive(0, 0);
+  for (std::uint32_t id = 10; id < kStops; ++id) {
+    document.local_maps[id].odometry_epoch = 1;
+    document.local_maps[id].T_odom_robot = {500.0 + id, 0.0, 0.0};
+  }
+  EXPECT_THAT(quality_text(judged(document, 0)), HasSubstr("no match was accepted over 18.0 m"));
+}
+
 TEST(MapQuality, AMapWithoutEdgesIsNotAssessed) {
   storage::MapDocument document = drive(0);
   document.edges.clear();

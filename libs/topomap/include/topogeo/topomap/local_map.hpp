@@ -102,6 +102,10 @@ std::uint64_t content_hash(const LocalMap& map);
 /// The hash of the map with this id.
 std::uint64_t content_hash(const LocalMap& map, std::uint32_t id);
 
+/// Whether the odometry of two successive stops has one origin, so that it measures the step: both
+/// are of one drive, and the odometry did not restart between them.
+bool has_odometry_between(const LocalMap& before, const LocalMap& after);
+
 /// The map as stop number `id` in a map of several drives; `starts_drive`: the first stop of a
 /// later drive.
 LocalMap numbered(LocalMap map, std::uint32_t id, bool starts_drive);
