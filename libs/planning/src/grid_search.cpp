@@ -20,7 +20,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Ends a search: Boost.Graph offers no other way.
-struct AllReached {};
+struct EnoughReached {
+  std::uint32_t last;
+};
 
 // The estimate of A*, a lower bound of the path's cost.
 class OctileDistance {
@@ -50,7 +52,7 @@ class StopVisitor : public boost::default_astar_visitor {
   void examine_vertex(std::uint32_t vertex, const Graph& /*graph*/) {
     if ((*wanted_)[vertex] == 0) return;
     (*wanted_)[vertex] = 0;
-    if (--*left_ == 0) throw AllReached{};
+    if (--*left_ == 0) throw EnoughReached{vertex};
   }
 
  private:
@@ -68,14 +70,18 @@ class Search {
         color_(window.mask().size(), boost::white_color),
         wanted_(window.mask().size(), 0) {}
 
+  /// Ends at the first `most` of the cells. Returns the vertex of the last one that was needed.
   template <typename Estimate>
-  void run(const Cell& from, std::span<const Cell> to, const Estimate& estimate) {
+  std::optional<std::uint32_t> run(const Cell& from, std::span<const Cell> to,
+                                   const Estimate& estimate,
+                                   std::size_t most = std::numeric_limits<std::size_t>::max()) {
     for (const Cell& cell : to) {
       if (!window_.open(cell) || wanted_[window_.index(cell)] != 0) continue;
       wanted_[window_.index(cell)] = 1;
       ++left_;
     }
-    if (left_ == 0 || !window_.open(from)) return;
+    left_ = std::min(left_, most);
+    if (left_ == 0 || !window_.open(from)) return std::nullopt;
     const std::uint32_t start = window_.index(from);
     cost_[start] = 0.0;
     rank_[start] = estimate(start);
@@ -92,9 +98,10 @@ class Search {
                                   before_.data(), rank_.data(), cost_.data(), weight, color_.data(),
                                   boost::typed_identity_property_map<std::uint32_t>(),
                                   std::less<>(), std::plus<>(), kInfinity, 0.0);
-    } catch (const AllReached&) {
-      return;
+    } catch (const EnoughReached& reached) {
+      return reached.last;
     }
+    return std::nullopt;
   }
 
   [[nodiscard]] std::optional<CellPath> path_to(const Cell& to) const {
@@ -170,6 +177,17 @@ SearchWindow::SearchWindow(const GridFrame& frame, const CellBox& box,
   }
 }
 
+void SearchWindow::set_slowness(const GridFrame& frame, std::span<const float> slowness) {
+  slowness_.assign(mask_.size(), 1.0F);
+  for (std::int32_t row = box_.low.row; row <= box_.high.row; ++row) {
+    std::size_t to = index({box_.low.column, row});
+    std::size_t from = frame.index({box_.low.column, row});
+    for (std::int32_t column = box_.low.column; column <= box_.high.column; ++column) {
+      slowness_[to++] = slowness[from++];
+    }
+  }
+}
+
 void SearchWindow::close(const Cell& cell) {
   if (box_.contains(cell)) mask_[index(cell)] = 0;
 }
@@ -215,6 +233,13 @@ std::vector<std::optional<CellPath>> shortest_paths(const SearchWindow& window, 
   paths.reserve(to.size());
   for (const Cell& cell : to) paths.push_back(search.path_to(cell));
   return paths;
+}
+
+std::optional<CellPath> path_to_nearest(const SearchWindow& window, const Cell& from,
+                                        std::span<const Cell> to) {
+  Search search(window);
+  const auto reached = search.run(from, to, NoEstimate{}, 1);
+  return reached ? search.path_to(window.cell_at(*reached)) : std::nullopt;
 }
 
 }  // namespace topogeo::planning

@@ -64,6 +64,40 @@ TEST(GridSearch, HasNoPathIntoObstaclesOrThroughAClosedDiagonal) {
   EXPECT_EQ(stay->cost_cells, 0.0);
 }
 
+TEST(GridSearch, EndsAtTheNearestOfSeveralCells) {
+  const FreeSpace space = without_inflation({
+      ".....",  //
+      ".###.",  //
+      ".....",  //
+  });
+  const SearchWindow window = whole_window(space);
+  const std::vector<Cell> far_and_near = {{4, 0}, {0, 2}};
+  const auto path = path_to_nearest(window, {0, 0}, far_and_near);
+  ASSERT_TRUE(path);
+  EXPECT_EQ(path->cells, (std::vector<Cell>{{0, 0}, {0, 1}, {0, 2}}));
+  const std::vector<Cell> occupied = {{2, 1}};
+  EXPECT_FALSE(path_to_nearest(window, {0, 0}, occupied));
+}
+
+TEST(GridSearch, SlowCellsCostMore) {
+  const FreeSpace space = without_inflation({
+      ".....",  //
+      ".....",  //
+      ".....",  //
+  });
+  SearchWindow window = whole_window(space);
+  std::vector<float> slowness(space.frame().size(), 9.0F);
+  for (const Cell& fast : {Cell{0, 0}, Cell{0, 1}, Cell{0, 2}, Cell{1, 2}, Cell{2, 2}, Cell{3, 2},
+                           Cell{4, 2}, Cell{4, 1}, Cell{4, 0}}) {
+    slowness[space.frame().index(fast)] = 1.0F;
+  }
+  window.set_slowness(space.frame(), slowness);
+  const auto path = shortest_path(window, {0, 0}, {4, 0});
+  ASSERT_TRUE(path);
+  EXPECT_DOUBLE_EQ(path->cost_cells, 4.0 + 2.0 * kRoot);
+  for (const Cell& cell : path->cells) EXPECT_EQ(slowness[space.frame().index(cell)], 1.0F);
+}
+
 TEST(GridSearch, StaysInItsWindowAndOutOfWhatIsClosed) {
   const FreeSpace space = without_inflation({
       ".....",  //

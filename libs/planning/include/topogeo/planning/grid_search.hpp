@@ -57,6 +57,10 @@ class SearchWindow {
   /// Ignores cells outside of the box.
   void close(const Cell& cell);
 
+  /// Lets each cell of the box cost `slowness` times its length, >= 0; one value for each cell of
+  /// the grid. With values below 1 the estimate of shortest_path() is no lower bound.
+  void set_slowness(const GridFrame& frame, std::span<const float> slowness);
+
   /// Closes the cells whose centre is at most `radius_cells` from that of `cell`.
   void close_disc(const Cell& cell, double radius_cells);
 
@@ -102,5 +106,9 @@ std::optional<CellPath> shortest_path(const SearchWindow& window, const Cell& fr
 /// the cost of a single one.
 std::vector<std::optional<CellPath>> shortest_paths(const SearchWindow& window, const Cell& from,
                                                     std::span<const Cell> to);
+
+/// The cheapest path to the cell among `to` that costs least; empty if none is reached.
+std::optional<CellPath> path_to_nearest(const SearchWindow& window, const Cell& from,
+                                        std::span<const Cell> to);
 
 }  // namespace topogeo::planning
