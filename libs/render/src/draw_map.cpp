@@ -28,8 +28,9 @@ void draw_laser_points(cairo_t* cr, const std::vector<ScanOutline>& outlines,
   cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
 }
 
-void draw_path(cairo_t* cr, std::span<const topomap::StampedPose> poses, const Layout& layout,
-               const Colour& colour, double width_px) {
+void draw_path(cairo_t* cr, std::span<const topomap::StampedPose> poses,
+               std::span<const std::int64_t> starts_ns, const Layout& layout, const Colour& colour,
+               double width_px) {
   if (poses.empty()) return;
   set_colour(cr, colour);
   cairo_set_line_width(cr, width_px);
@@ -37,6 +38,11 @@ void draw_path(cairo_t* cr, std::span<const topomap::StampedPose> poses, const L
   move_to(cr, last_px);
   for (const topomap::StampedPose& p : poses) {
     const Eigen::Vector2d point_px = layout.to_px(p.pose.position_m());
+    if (std::ranges::binary_search(starts_ns, p.stamp_ns)) {
+      move_to(cr, point_px);
+      last_px = point_px;
+      continue;
+    }
     if ((point_px - last_px).norm() < 1.0) continue;  // a standing robot
     line_to(cr, point_px);
     last_px = point_px;
@@ -112,7 +118,7 @@ void draw_title(cairo_t* cr, const MapPicture& picture, const Layout& layout) {
   set_colour(cr, kInk);
   constexpr double kTitleSize_px = 18.0;
   draw_text(cr, picture.title, 24.0, 28.0, kTitleSize_px);
-  if (picture.stops.empty() && picture.corrected.empty()) {
+  if (picture.stops.empty() && picture.corrected.empty() && picture.walls_m.empty()) {
     draw_text(cr, "nothing mapped yet", layout.map_left_px, layout.map_top_px + 20.0, 14.0);
   }
 }
@@ -128,10 +134,10 @@ void draw_map(cairo_t* cr, const MapPicture& picture, const std::vector<ScanOutl
                   layout.map_height_px);
   cairo_clip(cr);
   draw_laser_points(cr, outlines, layout);
-  draw_path(cr, picture.odometry, layout, kOdometry, 1.5);
+  draw_path(cr, picture.odometry, picture.drive_starts_ns, layout, kOdometry, 1.5);
   if (picture.global_map != nullptr) draw_branches(cr, *picture.global_map, false, layout);
   draw_loop_closures(cr, picture, layout);
-  draw_path(cr, picture.corrected, layout, kCorrected, 2.0);
+  draw_path(cr, picture.corrected, picture.drive_starts_ns, layout, kCorrected, 2.0);
   draw_unmatched(cr, picture, layout);
   if (picture.global_map != nullptr) {
     // On top of the trajectory, which runs along the branches.

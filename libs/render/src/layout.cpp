@@ -83,6 +83,7 @@ std::vector<ScanOutline> outlines_in_map(const MapPicture& picture) {
     }
     outlines.push_back(std::move(outline));
   }
+  if (!picture.walls_m.empty()) outlines.push_back(picture.walls_m);
   return outlines;
 }
 

@@ -10,7 +10,7 @@
 
 namespace topogeo::render {
 
-/// Laser points of all stops in the map frame, those of one scan together.
+/// Laser points of all stops in the map frame, those of one scan together; walls as a last one.
 using ScanOutline = std::vector<Eigen::Vector2d>;
 std::vector<ScanOutline> outlines_in_map(const MapPicture& picture);
 

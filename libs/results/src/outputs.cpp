@@ -1,6 +1,8 @@
 #include "topogeo/results/outputs.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "topogeo/localization/matching/match_gate.hpp"
@@ -48,6 +50,37 @@ std::vector<std::vector<Eigen::Vector2d>> unmatched_parts_m(const storage::MapDo
   return parts;
 }
 
+/// Middles of the occupied cells of the drawn grid that have a free neighbour, map frame.
+std::vector<Eigen::Vector2d> walls_m(const storage::MapDrawing& drawing) {
+  std::vector<Eigen::Vector2d> walls;
+  if (!drawing.grid) return walls;
+  const planning::OccupancyGrid& grid = *drawing.grid;
+  const planning::GridFrame& frame = grid.frame();
+  const auto is_free = [&](const planning::Cell& cell) {
+    return frame.contains(cell) && grid.at(cell) == planning::CellState::kFree;
+  };
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    if (grid.cells()[i] != planning::CellState::kOccupied) continue;
+    const auto [column, row] = frame.cell_at(i);
+    if (is_free({column + 1, row}) || is_free({column - 1, row}) || is_free({column, row + 1}) ||
+        is_free({column, row - 1})) {
+      walls.push_back(frame.center_m({column, row}));
+    }
+  }
+  return walls;
+}
+
+/// Stamps of the first scans of drives, and of scans before which the odometry restarted.
+std::vector<std::int64_t> drive_starts_ns(std::span<const topomap::LocalMap> maps) {
+  std::vector<std::int64_t> starts;
+  for (std::size_t i = 1; i < maps.size(); ++i) {
+    if (topomap::has_odometry_between(maps[i - 1], maps[i])) continue;
+    starts.push_back(maps[i].track.empty() ? maps[i].stamp_ns : maps[i].track.front().stamp_ns);
+  }
+  std::ranges::sort(starts);
+  return starts;
+}
+
 /// Contents of a picture of the map.
 struct Drawn {
   explicit Drawn(const storage::MapDocument& map)
@@ -57,8 +90,16 @@ struct Drawn {
         corrected(topomap::expand_trajectory(map.trajectory, map.local_maps)) {}
 
   [[nodiscard]] render::MapPicture picture(const std::string& title) const {
-    return {located.maps,           located.stops,        odometry, corrected,
-            document.loop_closures, &document.global_map, title,    unmatched_parts_m(document)};
+    return {.local_maps = located.maps,
+            .stops = located.stops,
+            .odometry = odometry,
+            .corrected = corrected,
+            .loop_closures = document.loop_closures,
+            .global_map = &document.global_map,
+            .title = title,
+            .unmatched_m = unmatched_parts_m(document),
+            .walls_m = walls_m(document.drawing),
+            .drive_starts_ns = drive_starts_ns(document.local_maps)};
   }
 
   const storage::MapDocument& document;

@@ -48,6 +48,28 @@ TEST(MapPicture, DashesPartsWithoutAMatch) {
   EXPECT_LT(Pixels(map_png(picture)).count(kCorrected), whole);
 }
 
+TEST(MapPicture, DrawsNoLineToTheStartOfADrive) {
+  std::vector<topomap::StampedPose> poses;
+  for (int i = 0; i < 40; ++i) {
+    const double gap_m = i < 20 ? 0.0 : 30.0;  // the second drive is elsewhere
+    poses.push_back({static_cast<std::uint64_t>(i), i * 1'000'000'000LL, {0.1 * i + gap_m, 0.0, 0.0}});
+  }
+  MapPicture picture;
+  picture.corrected = poses;
+  const int joined = Pixels(map_png(picture)).count(kCorrected);
+  picture.drive_starts_ns = {poses[20].stamp_ns};
+  const int apart = Pixels(map_png(picture)).count(kCorrected);
+  EXPECT_LT(apart, joined / 2);
+  EXPECT_GT(apart, 0);
+}
+
+TEST(MapPicture, ShowsTheWallsOfADrawnGrid) {
+  MapPicture picture;
+  for (int i = 0; i < 200; ++i) picture.walls_m.emplace_back(0.05 * i, 2.0);
+  EXPECT_GT(Pixels(map_png(picture)).count(kLaserPoints), 500);
+  EXPECT_THAT(map_svg(picture), Not(HasSubstr("nothing mapped yet")));
+}
+
 TEST(MapPicture, LeavesOutWhatIsNotThere) {
   const SampleFloor floor = sample_floor();
   MapPicture picture = floor.picture();

@@ -27,6 +27,9 @@ struct MapPicture {
   std::string title;
   /// Parts of the trajectory that no match measures, as positions of stops (m); drawn dashed.
   std::vector<std::vector<Eigen::Vector2d>> unmatched_m = {};
+  std::vector<Eigen::Vector2d> walls_m = {};  ///< of a drawn grid: middles of its cells
+  /// Stamps of poses to which nothing was driven, ascending: no line leads to them.
+  std::vector<std::int64_t> drive_starts_ns = {};
 };
 
 struct PictureOptions {
