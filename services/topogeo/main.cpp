@@ -19,8 +19,16 @@ namespace {
 int run(int argc, const char* const* argv) {
   using namespace topogeo;
   int exit_code = service::kOk;
-  command_line::Command app("Maps indoor places from laser scans and plans routes through them.",
-                            "topogeo");
+  command_line::Command app(
+      "Maps indoor places from laser scans and plans routes through them.\n"
+      "\n"
+      "Start here:\n"
+      "  topogeo demo --out demo                 map a made floor, compare it with the truth\n"
+      "  topogeo check-log LOG                   what is in a log or recording, and what is wrong\n"
+      "  topogeo map LOG --out map               map it; map/map.png is the picture\n"
+      "  topogeo view map                        look at the map in the browser\n"
+      "  topogeo run --sim WORLD --out map       drive a simulated robot, all services at work\n",
+      "topogeo");
   app.set_version_flag("--version", "topogeo " + std::string(support::kVersion));
   app.require_subcommand(1);
   app.footer(
@@ -57,6 +65,14 @@ int run(int argc, const char* const* argv) {
   cli::add_calibrate_odometry_command(app, exit_code);
   cli::add_compare_command(app, exit_code);
   cli::add_store_command(app, exit_code);
+  app.group_subcommands("Maps", {"run", "map", "demo", "localize", "view", "store"});
+  app.group_subcommands("Logs and recordings", {"check-log", "convert", "record", "compare",
+                                                "calibrate-laser", "calibrate-odometry"});
+  app.group_subcommands("A running robot",
+                        {"status", "top", "workers", "doctor", "follow", "web", "goto", "explore",
+                         "localizer", "base", "simulator", "draw"});
+  app.group_subcommands("Places and routes", {"places", "plan", "simulate-route"});
+  app.group_subcommands("How it works", {"config", "dvl", "match", "reproduce"});
   if (const auto exit_now = app.parse(argc, argv)) return *exit_now;
   return exit_code;
 }

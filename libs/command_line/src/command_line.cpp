@@ -1,13 +1,89 @@
 #include "topogeo/command_line/command_line.hpp"
 
+#include <algorithm>
 #include <iostream>
+#include <numeric>
 #include <string_view>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
 #include "generated_help.hpp"
+#include "help_format.hpp"
 
 namespace topogeo::command_line {
+namespace {
+
+/// "help a b" as "a b --help".
+std::vector<std::string> without_help_word(std::vector<std::string> words) {
+  if (words.empty() || words.front() != "help") return words;
+  words.erase(words.begin());
+  words.emplace_back("--help");
+  return words;
+}
+
+/// Number of letters to insert, delete or replace (Levenshtein 1966).
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+/// The name of the subcommand that is nearest to a word; empty if none is near.
+std::string nearest_command(const CLI::App& app, const std::string& word) {
+  std::string nearest;
+  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (const CLI::App* command : app.get_subcommands(nullptr)) {
+    const std::size_t distance = edit_distance(word, command->get_name());
+    if (command->get_name().empty() || distance >= least) continue;
+    least = distance;
+    nearest = command->get_name();
+  }
+  return nearest;
+}
+
+/// Throws for a word in the place of a subcommand that is none: CLI11 would say that one is
+/// required.
+void check_commands(const CLI::App& root, const std::vector<std::string>& words) {
+  const CLI::App* app = &root;
+  std::string path = root.get_name();
+  for (const std::string& word : words) {
+    if (word.starts_with('-') || app->get_require_subcommand_min() == 0) return;
+    const std::vector<const CLI::App*> commands = app->get_subcommands(
+        [&](const CLI::App* command) { return command->get_name() == word; });
+    if (commands.empty()) {
+      const std::string nearest = nearest_command(*app, word);
+      throw UsageError("there is no command '" + word + "'" +
+                       (nearest.empty() ? "" : ", did you mean '" + nearest + "'?") + " (see " +
+                       (path.empty() ? "" : path + ' ') + "--help)");
+    }
+    app = commands.front();
+    path += ' ' + word;
+  }
+}
+
+/// Names the arguments that no option takes, in the order in which they were typed.
+std::string unexpected(const std::vector<std::string>& words, std::vector<std::string> extras) {
+  std::string text = extras.size() == 1 ? "The following argument was not expected:"
+                                        : "The following arguments were not expected:";
+  for (const std::string& word : words) {
+    const auto extra = std::ranges::find(extras, word);
+    if (extra == extras.end()) continue;
+    extras.erase(extra);
+    text += ' ' + word;
+  }
+  return text;
+}
+
+}  // namespace
 
 Check::Check(const CLI::Validator& validator)
     : validator_(std::make_shared<const CLI::Validator>(validator)) {}
@@ -113,7 +189,9 @@ std::size_t Option::count() const {
 }
 
 Command::Command(const std::string& description, const std::string& name)
-    : program_(std::make_unique<CLI::App>(description, name)), app_(program_.get()) {}
+    : program_(std::make_unique<CLI::App>(description, name)), app_(program_.get()) {
+  app_->formatter(help_format());  // subcommands inherit it
+}
 
 Command::Command(CLI::App& app) : app_(&app) {}
 
@@ -189,6 +267,11 @@ void Command::footer(const std::string& text) {
   app_->footer(text);
 }
 
+void Command::group_subcommands(const std::string& heading,
+                                std::initializer_list<const char*> names) {
+  for (const char* name : names) app_->get_subcommand(name)->group(heading);
+}
+
 void Command::set_version_flag(const std::string& names, const std::string& version) {
   app_->set_version_flag(names, version);
 }
@@ -202,10 +285,16 @@ std::optional<int> Command::parse(int argc, const char* const* argv) {
     std::cout << bash_completion(*app_);
     return 0;
   }
+  const std::vector<std::string> words = without_help_word({argv + 1, argv + argc});
+  check_commands(*app_, words);
+  std::vector<const char*> arguments = {argv[0]};
+  for (const std::string& word : words) arguments.push_back(word.c_str());
   try {
-    app_->parse(argc, argv);
+    app_->parse(static_cast<int>(arguments.size()), arguments.data());
   } catch (const CLI::Success& success) {  // --help, --version
     return app_->exit(success);
+  } catch (const CLI::ExtrasError&) {
+    throw UsageError(unexpected(words, app_->remaining(true)) + " (see --help)");
   } catch (const CLI::ParseError& error) {
     throw UsageError(std::string(error.what()) + " (see --help)");
   }

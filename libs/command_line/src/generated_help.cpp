@@ -77,7 +77,10 @@ std::vector<std::string> members_of(const CLI::Option& option) {
 }
 
 std::string names_of(const CLI::Option& option) {
-  return option.get_positional() ? option.get_name(true) : option.get_name(false, true);
+  const std::string flags = option.get_name(false, true);
+  if (!option.get_positional()) return flags;
+  const std::string positional = option.get_name(true);
+  return flags == positional ? positional : positional + ", " + flags;
 }
 
 void append_option(std::string& page, const CLI::Option& option) {

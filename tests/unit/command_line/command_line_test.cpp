@@ -226,6 +226,51 @@ TEST(CommandLine, CallsTheSubcommandThatIsGiven) {
   EXPECT_EQ(complaint(command, {}), "A subcommand is required (see --help)");
 }
 
+TEST(CommandLine, NamesAnUnknownCommandAndTheNearestOne) {
+  Command command("a test", "program");
+  Command* store = command.add_subcommand("store", "a subcommand");
+  store->add_subcommand("export", "a subcommand");
+  store->add_subcommand("import", "a subcommand");
+  store->require_subcommand(1);
+  command.add_subcommand("map", "a subcommand");
+  command.require_subcommand(1);
+  EXPECT_EQ(complaint(command, {"mapp", "a.log"}),
+            "there is no command 'mapp', did you mean 'map'? (see program --help)");
+  EXPECT_EQ(complaint(command, {"store", "exprot", "--out", "a"}),
+            "there is no command 'exprot', did you mean 'export'? (see program store --help)");
+  EXPECT_EQ(complaint(command, {"telephone"}),
+            "there is no command 'telephone' (see program --help)");
+}
+
+TEST(CommandLine, NamesArgumentsInTheOrderInWhichTheyWereTyped) {
+  Command command("a test", "program");
+  Command* map = command.add_subcommand("map", "a subcommand");
+  std::string log;
+  map->add_option("log,--log", log);
+  command.require_subcommand(1);
+  EXPECT_EQ(complaint(command, {"map", "a", "b", "--other", "c"}),
+            "The following arguments were not expected: b --other c (see --help)");
+  EXPECT_EQ(complaint(command, {"map", "a"}), "");
+  EXPECT_EQ(log, "a");
+  EXPECT_EQ(complaint(command, {"map", "--log", "b"}), "");
+  EXPECT_EQ(log, "b");
+}
+
+TEST(CommandLine, HelpIsACommand) {
+  Command command("What it does.", "program");
+  command.add_subcommand("map", "Maps a log.");
+  command.group_subcommands("Make maps", {"map"});
+  command.require_subcommand(1);
+  for (const auto& [words, text] : std::vector<std::pair<std::vector<const char*>, std::string>>{
+           {{"help"}, "What it does."}, {{"help", "map"}, "Maps a log."}}) {
+    testing::internal::CaptureStdout();
+    EXPECT_EQ(parse(command, words), 0);
+    const std::string help = testing::internal::GetCapturedStdout();
+    EXPECT_THAT(help, HasSubstr(text));
+    EXPECT_EQ(help.find("Make maps:") != std::string::npos, words.size() == 1);
+  }
+}
+
 TEST(CommandLine, CallbacksMayThrow) {
   Command command("a test");
   command.callback([] { throw std::domain_error("failed"); });
@@ -262,7 +307,7 @@ TEST(CommandLine, PrintsHelpAndVersion) {
   EXPECT_EQ(parse(command, {"--help"}), 0);
   const std::string help = testing::internal::GetCapturedStdout();
   EXPECT_THAT(help, HasSubstr("What it does.\nUsage: program [OPTIONS]"));
-  EXPECT_THAT(help, HasSubstr("--workers UINT:UINT in [0 - 9]=2"));
+  EXPECT_THAT(help, HasSubstr("--workers N=2 (0 to 9)"));
   EXPECT_THAT(help, HasSubstr("--file FILE=the last one"));
   EXPECT_THAT(help, HasSubstr("More below."));
 

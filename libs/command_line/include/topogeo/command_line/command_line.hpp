@@ -128,10 +128,13 @@ class Command {
   void callback(std::function<void()> call);
   /// Text that help prints below the options.
   void footer(const std::string& text);
+  /// Lists these subcommands under a heading of their own in help. Throws for an unknown name.
+  void group_subcommands(const std::string& heading, std::initializer_list<const char*> names);
   void set_version_flag(const std::string& names, const std::string& version);
 
   /// Fills the variables and runs the callbacks. Returns an exit code if the program has nothing
-  /// left to do, because help or the version was printed. Throws UsageError. The hidden options
+  /// left to do, because help or the version was printed. "help COMMAND" is "COMMAND --help".
+  /// Throws UsageError, which names the nearest command to an unknown one. The hidden options
   /// --print-manual and --print-completion, each as the only argument, print the manual page and
   /// the completion for bash.
   [[nodiscard]] std::optional<int> parse(int argc, const char* const* argv);
