@@ -1,7 +1,9 @@
 #include "raster_image.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -63,18 +65,44 @@ RasterImage raster_of_pgm(std::string_view bytes, const std::string& source) {
   return image;
 }
 
-RasterImage raster_of_png(std::string_view bytes, const std::string& source) {
+/// The chunks of a PNG image that say which values its pixels have. Those on colour, such as gAMA
+/// and iCCP, are left out, because libpng would convert the values by them. A chunk that is cut
+/// short stays, for libpng to refuse.
+std::string pixel_chunks(std::string_view bytes) {
+  constexpr std::size_t kSignature_bytes = 8;
+  constexpr std::size_t kBesideData_bytes = 12;  // length, type, checksum
+  constexpr std::array<std::string_view, 5> kKept = {"IHDR", "PLTE", "tRNS", "IDAT", "IEND"};
+  std::string kept(bytes.substr(0, kSignature_bytes));
+  for (std::size_t at = kept.size(); at < bytes.size();) {
+    std::size_t size = kBesideData_bytes;
+    std::uint32_t data_bytes = 0;
+    for (const char byte : bytes.substr(at, 4)) {
+      data_bytes = data_bytes << 8U | static_cast<unsigned char>(byte);
+    }
+    size = std::min(size + data_bytes, bytes.size() - at);
+    const std::string_view chunk = bytes.substr(at, size);
+    const std::string_view type = chunk.substr(std::min<std::size_t>(4, size), 4);
+    if (type.size() < 4 || std::ranges::find(kKept, type) != kKept.end()) kept += chunk;
+    at += size;
+  }
+  return kept;
+}
+
+RasterImage raster_of_png(std::string_view file, const std::string& source) {
+  const std::string bytes = pixel_chunks(file);
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   if (png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()) == 0) {
     fail_raster(source, fmt::format("no PNG image: {}", static_cast<const char*>(png.message)));
   }
+  // Otherwise libpng takes values of 16 bits for linear light.
+  png.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
   png.format = PNG_FORMAT_RGBA;
   std::vector<png_byte> pixels;
   RasterImage image;
   try {
     image = blank_raster(png.width, png.height, source);
-    check_packed(png.width, png.height, bytes.size(), source);
+    check_packed(png.width, png.height, file.size(), source);
     pixels.resize(4 * image.grey.size());
   } catch (...) {
     png_image_free(&png);
