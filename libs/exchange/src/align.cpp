@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/localization/mapping/stored_map.hpp"
 #include "topogeo/localization/matching/match_features.hpp"
@@ -60,11 +62,12 @@ bool agree(const Pose2& a, const Pose2& b, double most_m, double most_rad) {
 
 class Aligner {
  public:
+  /// Of both maps only stops with poses and scan points.
   Aligner(const storage::MapDocument& map, const storage::MapDocument& foreign,
           const AlignSettings& settings)
       : settings_(settings),
-        map_(usable_part(map, "the map")),
-        foreign_(usable_part(foreign, "the foreign map")),
+        map_(map),
+        foreign_(foreign),
         localizer_(map_.local_maps, map_.trajectory) {}
 
   Alignment align() {
@@ -78,7 +81,7 @@ class Aligner {
       }
     }
     if (hypotheses.empty()) {
-      out.reason = "no stop of the foreign map matches the map";
+      out.reason = "no stop of the smaller map matches the larger one";
       return out;
     }
     std::vector<double> support;
@@ -231,11 +234,20 @@ class Aligner {
   }
 
   AlignSettings settings_;
-  storage::MapDocument map_;
-  storage::MapDocument foreign_;
+  const storage::MapDocument& map_;
+  const storage::MapDocument& foreign_;
   localization::GlobalLocalizer localizer_;
   std::vector<SearchedStop> stops_;
 };
+
+/// Diagonal of the box around all stops, metres.
+double extent_m(const storage::MapDocument& document) {
+  Eigen::AlignedBox2d box;
+  for (const topomap::StopPose& stop : document.trajectory.stops) {
+    box.extend(stop.T_map_robot.position_m());
+  }
+  return box.diagonal().norm();
+}
 
 }  // namespace
 
@@ -247,7 +259,12 @@ Alignment align(const storage::MapDocument& map, const storage::MapDocument& for
   }
   support::check_range("least share", settings.least_share, 0.0, 1.0);
   support::check_range("largest rivalry", settings.most_rivalry, 0.0, 1.0);
-  return Aligner(map, foreign, settings).align();
+  const storage::MapDocument ours = usable_part(map, "the map");
+  const storage::MapDocument theirs = usable_part(foreign, "the foreign map");
+  if (extent_m(theirs) <= extent_m(ours)) return Aligner(ours, theirs, settings).align();
+  Alignment alignment = Aligner(theirs, ours, settings).align();
+  alignment.T_map_foreign = geometry::inverse(alignment.T_map_foreign);
+  return alignment;
 }
 
 }  // namespace topogeo::exchange

@@ -87,6 +87,17 @@ TEST(Align, TwoPartsOfADriveFindEachOther) {
   expect_near(geometry::inverse(back.T_map_foreign), found.T_map_foreign, 0.1, 0.01);
 }
 
+TEST(Align, TheSmallerMapIsSearchedInTheLargerWhicheverComesFirst) {
+  const storage::MapDocument floor = map_of(floor_grid());
+  const storage::MapDocument corner = map_part(0.4, 0.5, "robot-3").map;
+  const Alignment corner_in_floor = align(floor, corner);
+  const Alignment floor_in_corner = align(corner, floor);
+  EXPECT_TRUE(corner_in_floor.found) << corner_in_floor.reason;
+  EXPECT_TRUE(floor_in_corner.found) << floor_in_corner.reason;
+  EXPECT_EQ(floor_in_corner.searched, corner_in_floor.searched);
+  EXPECT_EQ(floor_in_corner.T_map_foreign, geometry::inverse(corner_in_floor.T_map_foreign));
+}
+
 TEST(Align, ADrawingOfTheFloorIsFoundInItsMap) {
   const Alignment found = align(first_part().map, map_of(floor_grid()));
   EXPECT_TRUE(found.found) << found.reason;

@@ -1,7 +1,8 @@
 // Finds the pose of a foreign map in ours: another robot's, or one made of a drawing
 // (grid_map.hpp).
 //
-// Searches some of its stops in the whole of our map. A single stop can be mistaken for a similar
+// Searches some of its stops in the whole of our map, or some of ours in the foreign one if that is
+// larger: most stops of a larger map have no counterpart. A single stop can be mistaken for a similar
 // one, but many stops rarely agree on a wrong pose. The pose with the most support wins. It is
 // refused if another pose has nearly as much support, or if too many stops that our map should show
 // do not fit there.
@@ -16,9 +17,9 @@
 namespace topogeo::exchange {
 
 struct AlignSettings {
-  std::size_t stops = 60;      ///< of the foreign map that are searched, [4, 1000]
+  std::size_t stops = 60;      ///< of the smaller map that are searched, [4, 1000]
   std::size_t least = 5;       ///< that must agree
-  double least_share = 0.5;    ///< fitting share of the stops that our map should show
+  double least_share = 0.5;    ///< fitting share of the stops that the larger map should show
   double most_rivalry = 0.67;  ///< support of another pose, as a share of the best pose's
 };
 
@@ -30,7 +31,7 @@ struct Alignment {
   double sigma_rad = 0.0;
   std::size_t searched = 0;  ///< stops
   std::size_t agreeing = 0;  ///< stops of those that were found near the pose
-  std::size_t expected = 0;  ///< stops of those that our map should show
+  std::size_t expected = 0;  ///< stops of those that the larger map should show
   std::size_t fitting = 0;   ///< expected ones that fit there
   double rivalry = 0.0;      ///< support of the second pose, as a share of the best pose's
   double confidence = 0.0;   ///< [0, 1]
