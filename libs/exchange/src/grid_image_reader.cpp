@@ -2,6 +2,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "topogeo/exchange/grid_image.hpp"
@@ -15,6 +16,9 @@ namespace topogeo::exchange {
 namespace {
 
 using support::YamlNode;
+
+/// What map_saver writes for an unknown cell.
+constexpr int kUnknownPixel = 205;
 
 struct ImageYaml {
   std::filesystem::path image;
@@ -97,21 +101,45 @@ std::int8_t value_of(std::uint16_t pixel, int depth, const ImageYaml& yaml,
       std::lround((occupied - yaml.free) / (yaml.occupied - yaml.free) * 100.0F));
 }
 
-void note_thresholds(const ImageYaml& yaml, const RasterImage& image, Notes& notes) {
-  constexpr int kUnknownPixel = 205;
-  if (yaml.mode == ImageMode::kRaw || yaml.negate || image.white % 255 != 0) return;
-  const auto unknown = static_cast<std::uint16_t>(kUnknownPixel * (image.white / 255));
-  if (std::ranges::find(image.grey, unknown) == image.grey.end()) return;
-  if (value_of(unknown, image.white, yaml) == 0) {
+/// A pixel of 8 bits in the depth of an image.
+std::uint16_t in_depth(int pixel, const RasterImage& image) {
+  return static_cast<std::uint16_t>(pixel * (image.white / 255));
+}
+
+/// Whether map_saver may have written the image: it has no value but 0, 205 and 254, for which some
+/// editors write 255.
+bool has_values_of_map_saver(const RasterImage& image) {
+  const std::array<std::uint16_t, 4> values = {in_depth(0, image), in_depth(kUnknownPixel, image),
+                                               in_depth(254, image), in_depth(255, image)};
+  return std::ranges::all_of(image.grey, [&](std::uint16_t pixel) {
+    return std::ranges::find(values, pixel) != values.end();
+  });
+}
+
+/// The pixel that is unknown although the thresholds make it free. A note tells how it was read.
+std::optional<std::uint16_t> unknown_pixel(const ImageYaml& yaml, const RasterImage& image,
+                                           Pixel205 pixel_205, Notes& notes) {
+  if (yaml.mode != ImageMode::kTrinary || yaml.negate || image.white % 255 != 0) return {};
+  const std::uint16_t pixel = in_depth(kUnknownPixel, image);
+  if (std::ranges::find(image.grey, pixel) == image.grey.end()) return {};
+  if (value_of(pixel, image.white, yaml) != 0) return {};
+  if (pixel_205 == Pixel205::kThreshold ||
+      (pixel_205 == Pixel205::kAutomatic && !has_values_of_map_saver(image))) {
     notes.push_back(fmt::format(
         "free_thresh {:g} makes free what map_saver writes as unknown (205); 0.196 would not",
         yaml.free));
+    return {};
   }
+  notes.push_back(
+      fmt::format("pixels of 205 are unknown, as map_saver writes them, although free_thresh {:g} "
+                  "would make them free (--pixel-205 threshold)",
+                  yaml.free));
+  return pixel;
 }
 
 }  // namespace
 
-GridImage read_grid_image(const std::filesystem::path& yaml_path) {
+GridImage read_grid_image(const std::filesystem::path& yaml_path, Pixel205 pixel_205) {
   const YamlNode root = support::parse_yaml(
       support::foreign_content(yaml_path, support::kMostYamlBytes), yaml_path.string(), "keys");
   const ImageYaml yaml = read_image_yaml(root);
@@ -120,7 +148,7 @@ GridImage read_grid_image(const std::filesystem::path& yaml_path) {
   const std::filesystem::path image_path = yaml_path.parent_path() / yaml.image;
   const RasterImage image = parse_raster_image(
       support::foreign_content(image_path, support::kMostImageBytes), image_path.string());
-  note_thresholds(yaml, image, grid.notes);
+  const auto unknown = unknown_pixel(yaml, image, pixel_205, grid.notes);
   grid.mode = yaml.mode;
   grid.frame = yaml.frame;
   grid.frame.columns = image.width;
@@ -130,7 +158,9 @@ GridImage read_grid_image(const std::filesystem::path& yaml_path) {
     for (std::int32_t column = 0; column < grid.frame.columns; ++column) {
       const std::size_t i = grid.frame.index({column, row});
       const bool see_through = !image.see_through.empty() && image.see_through[i] != 0;
-      grid.values.push_back(value_of(image.grey[i], image.white, yaml, see_through));
+      grid.values.push_back(image.grey[i] == unknown
+                                ? std::int8_t{-1}
+                                : value_of(image.grey[i], image.white, yaml, see_through));
     }
   }
   return grid;

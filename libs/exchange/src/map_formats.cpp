@@ -1,6 +1,7 @@
 #include "topogeo/exchange/map_formats.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <optional>
 #include <stdexcept>
@@ -31,9 +32,9 @@ ExportedMap write_as(const storage::MapDocument& map, const fs::path& path,
   return writer.take();
 }
 
-/// Reads a text of which a format has no use for the resolution.
+/// Reads a text of a format without settings.
 template <MapGraph (*Parse)(std::string_view, const std::string&)>
-MapGraph read_as(const fs::path& file, double /*resolution_m*/) {
+MapGraph read_as(const fs::path& file, const ImportSettings& /*settings*/) {
   return Parse(read_text(file), file.string());
 }
 
@@ -46,8 +47,19 @@ MapGraph parse_zones(std::string_view text, const std::string& name) {
   return graph;
 }
 
-MapGraph read_grid_as_map(const fs::path& file, double /*resolution_m*/) {
-  GridImage image = read_grid_image(file);
+/// The YAML file of a grid: the given one, or that beside a given image.
+fs::path yaml_of_grid(const fs::path& file) {
+  constexpr std::array<std::string_view, 3> kImages = {".pgm", ".png", ".bmp"};
+  if (std::ranges::find(kImages, file.extension().string()) == kImages.end()) return file;
+  fs::path yaml = file;
+  yaml.replace_extension(".yaml");
+  if (fs::exists(yaml)) return yaml;
+  throw std::runtime_error(file.string() + ": an image alone has no scale: expected '" +
+                           yaml.string() + "' beside it, the YAML file of map_server");
+}
+
+MapGraph read_grid_as_map(const fs::path& file, const ImportSettings& settings) {
+  GridImage image = read_grid_image(yaml_of_grid(file), settings.pixel_205);
   MapGraph graph;
   graph.drawing.grid = occupancy_of(image);
   graph.notes = std::move(image.notes);
@@ -55,10 +67,10 @@ MapGraph read_grid_as_map(const fs::path& file, double /*resolution_m*/) {
 }
 
 /// Reads a drawing of this project: a world, or zones and places.
-MapGraph read_own_drawing(const fs::path& file, double resolution_m) {
+MapGraph read_own_drawing(const fs::path& file, const ImportSettings& settings) {
   MapGraph graph;
   graph.drawing = file.filename().string().ends_with(".world.yaml")
-                      ? pipeline::read_drawing(file, std::nullopt, resolution_m)
+                      ? pipeline::read_drawing(file, std::nullopt, settings.resolution_m)
                       : pipeline::read_zones_and_places(file);
   try {
     if (graph.drawing.grid) check_grid_size(graph.drawing.grid->frame());
@@ -74,8 +86,8 @@ const std::vector<MapFormat>& map_formats() {
        .endings = {".pgm", ".yaml"},
        .write_help = "grid as PATH.pgm and PATH.yaml, for map_server of ROS",
        .write = write_as<&MapWriter::grid>,
-       .read_help = "image (PGM, PNG, BMP) and YAML of map_server (FILE is the YAML), modes "
-                    "trinary, scale, raw",
+       .read_help = "image (PGM, PNG, BMP) and YAML of map_server (FILE is either of them), "
+                    "modes trinary, scale, raw",
        .read = read_grid_as_map},
       {.name = "masks",
        .endings = {"_keepout.pgm", "_keepout.yaml", "_speed.pgm", "_speed.yaml"},

@@ -1,5 +1,6 @@
 #include "topogeo/exchange/grid_image.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <numbers>
 #include <string>
@@ -8,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <png.h>
+#include <zlib.h>
 
 #include "topogeo/exchange/read_text.hpp"
 #include "topogeo/planning/grid_file.hpp"
@@ -132,6 +134,24 @@ TEST_F(GridImageFiles, UnknownKeysAndFreeUnknownsAreNoted) {
   EXPECT_THAT(image.values, ElementsAre(0, -1, 0, 100));
 }
 
+TEST_F(GridImageFiles, TheUnknownOfMapSaverStaysUnknown) {
+  const std::string yaml =
+      std::string(kHead) + "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n";
+  const std::string saved = "P2 2 2 255 254 0 205 205";
+  const GridImage image = read(yaml, saved);
+  EXPECT_THAT(image.values, ElementsAre(-1, -1, 0, 100));
+  EXPECT_THAT(image.notes, ElementsAre(HasSubstr("pixels of 205 are unknown")));
+  // A drawing has other values: its thresholds count.
+  EXPECT_THAT(read(yaml, "P2 2 2 255 254 0 205 220").values, ElementsAre(0, 0, 0, 100));
+  const auto read_as = [&](const std::string& pgm, Pixel205 pixel_205) {
+    static_cast<void>(write("a.pgm", pgm));
+    return read_grid_image(write("a.yaml", yaml), pixel_205).values;
+  };
+  EXPECT_THAT(read_as(saved, Pixel205::kThreshold), ElementsAre(0, 0, 0, 100));
+  EXPECT_THAT(read_as("P2 2 2 255 254 0 205 220", Pixel205::kUnknown),
+              ElementsAre(-1, 0, 0, 100));
+}
+
 TEST_F(GridImageFiles, NamesWhatIsWrong) {
   const std::string good = std::string(kHead) + "negate: 0\n" + kTail;
   EXPECT_THAT(error("resolution: 0.05\n" + std::string(kTail)), HasSubstr("a.yaml:"));
@@ -199,6 +219,46 @@ TEST_F(GridImageFiles, PngAndBmpAreReadAsPgmIs) {
   for (int i = 0; i < 256; ++i) palette += row({i, i, i, 0});
   EXPECT_EQ(read(yaml, bmp_bytes(2, 2, 8, palette, row({205, 100, 0, 0, 254, 0, 0, 0}))).values,
             pgm.values);
+}
+
+/// A chunk of a PNG image.
+std::string chunk(const std::string& type, const std::string& data) {
+  const std::string checked = type + data;
+  const auto big_endian = [](std::uint32_t value) {
+    std::string bytes = little_endian(value, 4);
+    std::ranges::reverse(bytes);
+    return bytes;
+  };
+  const auto* const bytes = reinterpret_cast<const Bytef*>(checked.data());
+  const auto sum = static_cast<std::uint32_t>(crc32(0, bytes, static_cast<uInt>(checked.size())));
+  return big_endian(static_cast<std::uint32_t>(data.size())) + checked + big_endian(sum);
+}
+
+/// Two by two grey pixels, 254 0 / 205 100, with `depth` bits and a chunk before the pixels.
+std::string grey_png(int depth, const std::string& before_pixels) {
+  std::string rows;
+  for (const std::vector<int>& row : {std::vector{254, 0}, std::vector{205, 100}}) {
+    rows += '\0';  // no filter
+    for (const int pixel : row) rows += std::string(static_cast<std::size_t>(depth / 8), static_cast<char>(pixel));
+  }
+  uLongf size = compressBound(static_cast<uLong>(rows.size()));
+  std::string packed(size, '\0');
+  compress(reinterpret_cast<Bytef*>(packed.data()), &size,
+           reinterpret_cast<const Bytef*>(rows.data()), static_cast<uLong>(rows.size()));
+  packed.resize(size);
+  const std::string header = std::string("\0\0\0\2\0\0\0\2", 8) + static_cast<char>(depth) +
+                             std::string(4, '\0');
+  return "\x89PNG\r\n\x1a\n" + chunk("IHDR", header) + before_pixels + chunk("IDAT", packed) +
+         chunk("IEND", "");
+}
+
+TEST_F(GridImageFiles, PngHasItsValuesAsStored) {
+  const std::string yaml = std::string(kHead) + "negate: 0\n" + kTail;
+  const std::string linear = chunk("gAMA", std::string("\0\1\x86\xa0", 4));  // gamma 1
+  for (const int depth : {8, 16}) {
+    EXPECT_THAT(read(yaml, grey_png(depth, "")).values, ElementsAre(-1, -1, 0, 100)) << depth;
+    EXPECT_THAT(read(yaml, grey_png(depth, linear)).values, ElementsAre(-1, -1, 0, 100)) << depth;
+  }
 }
 
 TEST_F(GridImageFiles, NothingIsKnownWhereAnImageIsSeenThrough) {

@@ -71,7 +71,7 @@ TEST(MapFormats, AFormatIsFoundByItsName) {
 TEST(MapFormats, AMissingFileIsNamed) {
   for (const MapFormat& format : import_formats()) {
     try {
-      static_cast<void>(format.read("/no/such.file", 0.1));
+      static_cast<void>(format.read("/no/such.file", {}));
       ADD_FAILURE() << format.name << " is read from nothing";
     } catch (const std::runtime_error& error) {
       EXPECT_THAT(error.what(), testing::HasSubstr("/no/such.file")) << format.name;

@@ -35,9 +35,18 @@ struct GridImage {
   Notes notes;
 };
 
-/// Reads by the rules of map_server since ROS 2 Jazzy. Throws std::runtime_error naming the file,
-/// the line or field and the expectation; accepts PGM images only.
-GridImage read_grid_image(const std::filesystem::path& yaml_path);
+/// How the pixel value that map_saver writes for unknown cells is read.
+enum class Pixel205 : std::uint8_t {
+  kAutomatic,  ///< unknown if the image has only the values of map_saver: 0, 205, 254, 255
+  kUnknown,
+  kThreshold,  ///< as the thresholds of the YAML file say
+};
+
+/// Reads by the rules of map_server since ROS 2 Jazzy, but for `pixel_205` in mode trinary. Throws
+/// std::runtime_error naming the file, the line or field and the expectation; accepts images in
+/// PGM, PNG and BMP.
+GridImage read_grid_image(const std::filesystem::path& yaml_path,
+                          Pixel205 pixel_205 = Pixel205::kAutomatic);
 
 /// Free up to 19, occupied from 65 on, like the thresholds of map_saver; else unknown.
 planning::OccupancyGrid occupancy_of(const GridImage& image);

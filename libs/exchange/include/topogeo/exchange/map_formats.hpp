@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "topogeo/exchange/grid_image.hpp"
 #include "topogeo/exchange/map_graph.hpp"
 #include "topogeo/storage/map_document.hpp"
 
@@ -13,6 +14,11 @@ namespace topogeo::exchange {
 
 struct ExportSettings;  // map_export.hpp
 struct ExportedMap;
+
+struct ImportSettings {
+  double resolution_m = 0.05;                    ///< cells of a grid made from walls
+  Pixel205 pixel_205 = Pixel205::kAutomatic;  ///< of the images of grids
+};
 
 struct MapFormat {
   std::string_view name;
@@ -26,9 +32,9 @@ struct MapFormat {
                        const ExportSettings& settings) = nullptr;
 
   std::string_view read_help{};  ///< accepted files, for people
-  /// Null for a format that is only written. `resolution_m`: cells of a grid made from walls.
-  /// Throws std::runtime_error naming the file, the line or field and the expectation.
-  MapGraph (*read)(const std::filesystem::path& file, double resolution_m) = nullptr;
+  /// Null for a format that is only written. Throws std::runtime_error naming the file, the line or
+  /// field and the expectation.
+  MapGraph (*read)(const std::filesystem::path& file, const ImportSettings& settings) = nullptr;
 };
 
 /// The formats that can be written.
