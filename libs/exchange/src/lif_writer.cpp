@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "topogeo/exchange/lif.hpp"
+#include "topogeo/exchange/place_graph.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/topomap/node_kind_name.hpp"
 
@@ -25,7 +26,8 @@ class LifWriter {
         drawing_(drawing),
         settings_(settings),
         header_(header),
-        vehicle_(plain_id("topogeo." + header.robot_id)) {}
+        vehicle_(plain_id("topogeo." + header.robot_id)),
+        joining_(joining_virtual_branches(map)) {}
 
   LifText write() {
     Json layout = {{"layoutId", plain_id(header_.level)},
@@ -71,8 +73,10 @@ class LifWriter {
       rule.add(rule_between(drawing_.zones, branch.points[i - 1].position_m,
                             branch.points[i].position_m));
     }
-    if (rule.forbidden() || narrowest_m < settings_.robot_radius_m ||
-        (branch.is_virtual && !settings_.with_virtual) || branch.node_a == branch.node_b) {
+    const bool narrow = narrowest_m < settings_.robot_radius_m && !lacks_clearance(branch);
+    const bool unseen =
+        branch.is_virtual && !settings_.with_virtual && !joining_.contains(branch.id);
+    if (rule.forbidden() || narrow || unseen || branch.node_a == branch.node_b) {
       ++left_out_;
       return;
     }
@@ -139,6 +143,7 @@ class LifWriter {
   NetworkSettings settings_;
   const ExportHeader& header_;
   std::string vehicle_;
+  std::set<std::uint32_t> joining_;  // virtual branches that are kept
   LifText out_;
   std::set<std::uint32_t> joined_;  // ids of nodes that have an edge
   std::size_t left_out_ = 0;

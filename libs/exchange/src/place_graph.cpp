@@ -23,12 +23,12 @@ bool lacks_clearance(const topomap::MapNode& node) {
   return node.clearance_m == 0.0;
 }
 
+}  // namespace
+
 bool lacks_clearance(const topomap::MapBranch& branch) {
   return std::ranges::all_of(branch.points,
                              [](const topomap::BranchPoint& p) { return p.clearance_m == 0.0; });
 }
-
-}  // namespace
 
 bool lacks_clearances(const topomap::GlobalMap& map) {
   const auto lacks = [](const auto& element) { return lacks_clearance(element); };
@@ -53,13 +53,19 @@ void take_clearances(topomap::GlobalMap& map, const planning::FreeSpace& space) 
 void lay_over(storage::MapDocument& document, MapGraph graph, Notes& notes) {
   pipeline::lay_over(document.drawing, std::move(graph.drawing));
   if (graph.map.nodes.empty()) return;
-  if (document.global_map.nodes.empty()) {
+  // Without stops the nodes were made of a grid, or came from another file.
+  if (document.global_map.nodes.empty() || document.local_maps.empty()) {
+    if (!document.global_map.nodes.empty()) {
+      notes.push_back(fmt::format("{} nodes and {} branches of the map are replaced: it has no stops",
+                                  document.global_map.nodes.size(),
+                                  document.global_map.branches.size()));
+    }
     // A map must not be newer than the trajectory that it was made from.
     document.trajectory.version = std::max(document.trajectory.version, graph.map.version);
     document.global_map = std::move(graph.map);
     return;
   }
-  notes.push_back(fmt::format("{} nodes and {} branches left out: the map has nodes of its own",
+  notes.push_back(fmt::format("{} nodes and {} branches left out: the map has nodes of its own stops",
                               graph.map.nodes.size(), graph.map.branches.size()));
 }
 

@@ -4,8 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <span>
 
+#include <boost/pending/disjoint_sets.hpp>
+#include <boost/property_map/property_map.hpp>
+
+#include "topogeo/exchange/place_graph.hpp"
 #include "topogeo/support/check_range.hpp"
 #include "topogeo/support/format.hpp"
 
@@ -47,8 +52,10 @@ class Builder {
   }
 
   RouteNetwork build(const storage::MapDrawing& drawing) {
+    const std::set<std::uint32_t> joining = joining_virtual_branches(map_);
     for (const topomap::MapBranch& branch : map_.branches) {
-      if (branch.is_virtual && !settings_.with_virtual) {
+      if (branch.is_virtual) joining_ += joining.contains(branch.id);
+      if (branch.is_virtual && !settings_.with_virtual && !joining.contains(branch.id)) {
         ++virtual_;
       } else {
         add_branch(branch);
@@ -67,8 +74,10 @@ class Builder {
   /// Parts of a branch that are wide enough become pieces; narrow ones are left out.
   void add_branch(const topomap::MapBranch& branch) {
     const std::vector<BranchPoint>& points = branch.points;
+    const bool unknown = lacks_clearance(branch);
+    if (unknown) ++unknown_;
     const auto passable = [&](std::size_t i) {
-      return points[i].clearance_m >= settings_.robot_radius_m;
+      return unknown || points[i].clearance_m >= settings_.robot_radius_m;
     };
     std::size_t begin = 0;
     while (begin + 1 < points.size()) {
@@ -80,10 +89,11 @@ class Builder {
         continue;
       }
       std::uint32_t from = node_at(branch, begin);
-      for (const std::size_t bend : bends(points, begin, end)) {
+      for (const std::size_t bend : bends(points, begin, end, unknown)) {
         const std::uint32_t to = node_at(branch, bend);
         const std::span<const BranchPoint> piece(&points[begin], bend - begin + 1);
-        const double clearance_m = least_clearance(piece) - deviation(piece).second;
+        const double clearance_m =
+            unknown ? 0.0 : least_clearance(piece) - deviation(piece).second;
         // A branch that returns to its node within the tolerance leads nowhere.
         if (from != to) network_.pieces.push_back({from, to, clearance_m, branch.id, {}});
         from = to;
@@ -117,16 +127,19 @@ class Builder {
     return farthest;
   }
 
-  /// Ends of the pieces of points[begin..end], including `end`.
+  /// Ends of the pieces of points[begin..end], including `end`. Without known clearances only the
+  /// tolerance counts.
   [[nodiscard]] std::vector<std::size_t> bends(const std::vector<BranchPoint>& points,
-                                               std::size_t begin, std::size_t end) const {
+                                               std::size_t begin, std::size_t end,
+                                               bool unknown) const {
     std::vector<std::size_t> ends;
     std::vector<std::size_t> open = {end};  // ends of unfinished parts, nearest last
     while (!open.empty()) {
       const std::span<const BranchPoint> piece(&points[begin], open.back() - begin + 1);
       const auto [farthest, away_m] = deviation(piece);
+      const double spare_m = least_clearance(piece) - settings_.robot_radius_m;
       const double tolerance_m =
-          std::min(settings_.tolerance_m, least_clearance(piece) - settings_.robot_radius_m);
+          unknown ? settings_.tolerance_m : std::min(settings_.tolerance_m, spare_m);
       if (away_m > tolerance_m) {
         open.push_back(begin + farthest);
       } else {
@@ -213,6 +226,15 @@ class Builder {
       network_.notes.push_back(
           fmt::format("{} virtual branches left out, no scan has seen them", virtual_));
     }
+    if (joining_ > 0) {
+      network_.notes.push_back(fmt::format(
+          "{} virtual branches kept, only they join parts of the graph: no scan has seen them",
+          joining_));
+    }
+    if (unknown_ > 0) {
+      network_.notes.push_back(fmt::format(
+          "{} branches have no known clearance, kept whatever the robot's radius", unknown_));
+    }
     narrow_.erase(std::unique(narrow_.begin(), narrow_.end()), narrow_.end());
     if (!narrow_.empty()) {
       network_.notes.push_back(
@@ -256,11 +278,32 @@ class Builder {
   NetworkSettings settings_;
   RouteNetwork network_;
   std::map<std::uint32_t, std::uint32_t> node_of_;  // index by MapNode::id
-  std::size_t virtual_ = 0;
+  std::size_t virtual_ = 0;            // virtual branches left out
+  std::size_t joining_ = 0;            // virtual branches that alone join parts
+  std::size_t unknown_ = 0;            // branches without clearance
   std::vector<std::uint32_t> narrow_;  // ids of branches
 };
 
 }  // namespace
+
+std::set<std::uint32_t> joining_virtual_branches(const topomap::GlobalMap& map) {
+  std::map<std::uint32_t, std::size_t> ranks;
+  std::map<std::uint32_t, std::uint32_t> parents;
+  boost::associative_property_map rank_map(ranks);
+  boost::associative_property_map parent_map(parents);
+  boost::disjoint_sets sets(rank_map, parent_map);
+  for (const topomap::MapNode& node : map.nodes) sets.make_set(node.id);
+  std::set<std::uint32_t> joining;
+  for (const bool is_virtual : {false, true}) {
+    for (const topomap::MapBranch& branch : map.branches) {
+      if (branch.is_virtual != is_virtual) continue;
+      if (sets.find_set(branch.node_a) == sets.find_set(branch.node_b)) continue;
+      sets.link(sets.find_set(branch.node_a), sets.find_set(branch.node_b));
+      if (is_virtual) joining.insert(branch.id);
+    }
+  }
+  return joining;
+}
 
 RouteNetwork route_network(const topomap::GlobalMap& map, const storage::MapDrawing& drawing,
                            const planning::FreeSpace* space, const NetworkSettings& settings) {

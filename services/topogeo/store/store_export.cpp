@@ -76,7 +76,8 @@ void add_store_export_command(command_line::Command& store, int& exit_code) {
       ->capture_default_str()
       ->type_name("M");
   command->add_flag("--with-virtual", options->settings.network.with_virtual,
-                    "for graphs: include branches that no scan has seen");
+                    "for graphs: include all branches that no scan has seen, not only those that "
+                    "alone join parts of the graph");
   command->add_flag("--only-free", options->settings.network.only_free,
                     "for graphs: leave out edges that the grid forbids");
   command

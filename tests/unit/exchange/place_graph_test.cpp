@@ -60,7 +60,7 @@ TEST(PlaceGraph, ClearancesThatAreMissingComeFromTheGrid) {
   EXPECT_EQ(map.branches[1].points[1].clearance_m, 0.8);
 }
 
-TEST(PlaceGraph, AMapKeepsItsOwnGraph) {
+TEST(PlaceGraph, AMapKeepsTheGraphOfItsStops) {
   storage::MapDocument document;
   document.drawing.places = {{"Küche", {1.0, 1.0}}, {"bath", {2.0, 2.0}}};
   Notes notes;
@@ -74,10 +74,17 @@ TEST(PlaceGraph, AMapKeepsItsOwnGraph) {
   MapGraph other = whole_sample();
   other.map.nodes.resize(1);
   other.map.branches.clear();
-  lay_over(document, std::move(other), notes);
+  document.local_maps.emplace_back();
+  lay_over(document, MapGraph(other), notes);
   EXPECT_THAT(notes, testing::ElementsAre("1 nodes and 0 branches left out: the map has nodes of "
-                                          "its own"));
+                                          "its own stops"));
   EXPECT_EQ(document.global_map.nodes.size(), 4U);
+  // The graph of a grid alone gives way.
+  document.local_maps.clear();
+  notes.clear();
+  lay_over(document, std::move(other), notes);
+  EXPECT_THAT(notes, testing::ElementsAre(testing::HasSubstr("4 nodes and 5 branches of the map")));
+  EXPECT_EQ(document.global_map.nodes.size(), 1U);
 }
 
 }  // namespace

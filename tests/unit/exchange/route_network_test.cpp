@@ -84,10 +84,36 @@ TEST(RouteNetwork, LeavesOutWhatTheRobotIsTooWideForAndSaysSo) {
   EXPECT_THAT(network.notes, Contains(HasSubstr("1 virtual branches")));
 }
 
+TEST(RouteNetwork, ABranchWithoutKnownClearanceIsNotNarrow) {
+  const topomap::GlobalMap map = curve(0.0);
+  const RouteNetwork network = route_network(map, {}, nullptr, {});
+  EXPECT_EQ(network.pieces.size(), route_network(curve(2.0), {}, nullptr, {}).pieces.size());
+  EXPECT_LE(farthest(map.branches[0], network), 0.1 + 1e-9);
+  EXPECT_THAT(network.notes, testing::ElementsAre(HasSubstr("1 branches have no known clearance")));
+}
+
 TEST(RouteNetwork, VirtualBranchesComeOnRequest) {
   const RouteNetwork network = route_network(sample_graph(), {}, nullptr, {0.3, 0.1, true});
   const auto is_eight = [](const NetworkPiece& piece) { return piece.branch == 8U; };
   EXPECT_TRUE(std::ranges::any_of(network.pieces, is_eight));
+}
+
+TEST(RouteNetwork, AVirtualBranchThatAloneJoinsPartsIsKept) {
+  // The view ends between two halves of a curve.
+  topomap::GlobalMap map = curve(2.0);
+  map.nodes.push_back({3, topomap::NodeKind::kFictitious, {4.0, 6.0}, 1.0, 1});
+  map.nodes.push_back({4, topomap::NodeKind::kReal, {4.0, 9.0}, 1.0, 1});
+  map.branches.push_back({6, 3, 4, false, 1, {{{4.0, 6.0}, 1.0}, {{4.0, 9.0}, 1.0}}});
+  map.branches.push_back({7, 2, 3, true, 1, {{{4.0, 4.0}, 1.0}, {{4.0, 6.0}, 1.0}}});
+  map.branches.push_back({8, 1, 4, true, 1, {{{0.0, 0.0}, 1.0}, {{4.0, 9.0}, 1.0}}});
+  const RouteNetwork network = route_network(map, {}, nullptr, {});
+  const auto count = [&](std::uint32_t branch) {
+    return std::ranges::count(network.pieces, std::optional(branch), &NetworkPiece::branch);
+  };
+  EXPECT_EQ(count(7), 1);
+  EXPECT_EQ(count(8), 0);
+  EXPECT_THAT(network.notes, Contains(HasSubstr("1 virtual branches kept, only they join parts")));
+  EXPECT_THAT(network.notes, Contains(HasSubstr("1 virtual branches left out")));
 }
 
 TEST(RouteNetwork, PlacesHangOnTheNearestBranch) {

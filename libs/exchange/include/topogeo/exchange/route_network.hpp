@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,8 @@ namespace topogeo::exchange {
 struct NetworkSettings {
   double robot_radius_m = 0.3;  ///< least clearance that lets a robot pass; >= 0
   double tolerance_m = 0.1;     ///< largest distance between a piece and the branch, [0, 1]
-  bool with_virtual = false;    ///< also uses branches that no scan has seen
+  /// Uses all branches that no scan has seen, not only those that alone join parts of the graph.
+  bool with_virtual = false;
   bool only_free = false;       ///< leaves out pieces that the grid forbids
 };
 
@@ -50,6 +52,9 @@ struct RouteNetwork {
   std::vector<NetworkPiece> pieces;
   Notes notes;
 };
+
+/// The ids of virtual branches that join what no other branch joins.
+std::set<std::uint32_t> joining_virtual_branches(const topomap::GlobalMap& map);
 
 /// Leaves out pieces that are too narrow for the robot or that the drawing's zones forbid. A place
 /// becomes a node with a piece to the nearest point of the branches that is free on `space` (null:
