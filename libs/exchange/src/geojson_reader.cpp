@@ -6,18 +6,13 @@
 #include "topogeo/support/format.hpp"
 #include "topogeo/topomap/node_kind_name.hpp"
 
+#include "geojson_frame.hpp"
 #include "graph_checks.hpp"
 #include "json_reader.hpp"
 #include "text.hpp"
 
 namespace topogeo::exchange {
 namespace {
-
-Eigen::Vector2d geojson_position(const JsonValue& value) {
-  const std::vector<double> numbers = value.numbers();
-  if (numbers.size() < 2) value.fail("[x, y]");
-  return {numbers[0], numbers[1]};
-}
 
 /// The geometry in a collection of one.
 JsonValue geometry_in(const JsonValue& feature) {
@@ -27,27 +22,43 @@ JsonValue geometry_in(const JsonValue& feature) {
   return items.front().required("coordinates");
 }
 
+/// The value of a key of properties, which may be null.
+JsonValue property(const JsonValue& properties, const std::string& key) {
+  return properties.exists() ? properties.at(key) : properties;
+}
+
 class GeojsonReader {
  public:
+  explicit GeojsonReader(const JsonValue& top) : frame_(top) { graph_.notes = frame_.notes(); }
+
   MapGraph read(const JsonValue& top, const std::string& name) {
     own_ = top.at("topogeo").is_object();
     if (own_) graph_.map.version = top.at("topogeo").required("map_version").whole();
-    for (const JsonValue& feature : top.required("features").items()) add(feature);
-    if (!own_) add_foreign_branches(name);
+    const std::vector<JsonValue> features = top.required("features").items();
+    if (features.empty()) top.at("features").fail("a feature");
+    for (const JsonValue& feature : features) add(feature);
+    if (!own_) {
+      add_foreign_branches(name);
+      settle_zones(graph_.drawing.zones, name);
+    }
     settle(graph_, name);
     return std::move(graph_);
   }
 
  private:
   void add(const JsonValue& feature) {
-    const JsonValue geometry = feature.required("geometry");
+    const JsonValue geometry = feature.at("geometry");
+    if (!geometry.exists()) {
+      graph_.notes.push_back(fmt::format("{}: left out, it has no geometry", feature.where()));
+      return;
+    }
     const std::string type = geometry.required("type").text();
     const JsonValue properties = feature.at("properties");
     const std::string word = properties.is_object() && properties.at("topogeo").exists()
                                  ? properties.at("topogeo").text()
                                  : "";
     if (type == "Point") {
-      add_node(properties, geojson_position(geometry.required("coordinates")));
+      add_node(properties, frame_.position_m(geometry.required("coordinates")));
     } else if (type == "LineString" || type == "MultiLineString") {
       if (!own_) add_edge(properties);
     } else if (word == "branch") {
@@ -55,7 +66,7 @@ class GeojsonReader {
     } else if (word == "place") {
       planning::Place& place = graph_.drawing.places.emplace_back();
       place.name = properties.required("name").text();
-      place.position_m = geojson_position(geometry_in(feature));
+      place.position_m = frame_.position_m(geometry_in(feature));
       if (const JsonValue heading = properties.at("station_heading"); heading.exists()) {
         place.station_heading_rad = heading.number();
       }
@@ -84,7 +95,8 @@ class GeojsonReader {
         node.last_seen_ns = last_seen(metadata);
       }
       if (!own_ && metadata.at("name").is_text()) {
-        graph_.drawing.places.push_back({metadata.at("name").text(), position_m});
+        graph_.drawing.places.push_back(
+            {new_name(metadata.at("name").text(), place_names_), position_m});
       }
     }
     graph_.map.nodes.push_back(node);
@@ -111,7 +123,7 @@ class GeojsonReader {
     for (const JsonValue& point : points.items()) {
       const std::size_t i = branch.points.size();
       if (i >= clearances.size()) points.fail("as many points as clearances");
-      branch.points.push_back({geojson_position(point), clearances[i]});
+      branch.points.push_back({frame_.position_m(point), clearances[i]});
     }
     if (branch.points.size() < 2 || branch.points.size() != clearances.size()) {
       points.fail("as many points as clearances, at least two");
@@ -126,21 +138,32 @@ class GeojsonReader {
       graph_.notes.push_back(fmt::format("{}: holes are left out", rings.where()));
     }
     planning::DrawnZone zone;
-    zone.name =
-        properties.at("name").text_or(fmt::format("zone {}", graph_.drawing.zones.size() + 1));
+    zone.name = property(properties, "name")
+                    .text_or(fmt::format("zone {}", graph_.drawing.zones.size() + 1));
+    if (!own_) zone.name = new_name(zone.name, zone_names_);
     // Unknown kinds of foreign files become rooms.
-    const JsonValue kind = properties.at("kind");
+    const JsonValue kind = property(properties, "kind");
     if (kind.is_text()) {
       zone.kind = planning::zone_kind_of(kind.text()).value_or(planning::ZoneKind::kRoom);
     }
-    if (zone.kind != planning::ZoneKind::kRoom) zone.value = properties.at("value").number_or(0.0);
+    if (zone.kind != planning::ZoneKind::kRoom) zone.value = property(properties, "value").number_or(0.0);
     for (const JsonValue& corner : items.front().items()) {
-      zone.polygon_m.push_back(geojson_position(corner));
+      zone.polygon_m.push_back(frame_.position_m(corner));
     }
     if (zone.polygon_m.size() > 1 && zone.polygon_m.front() == zone.polygon_m.back()) {
       zone.polygon_m.pop_back();
     }
     graph_.drawing.zones.push_back(std::move(zone));
+  }
+
+  /// The name, with a number if the file has it twice.
+  std::string new_name(const std::string& name, std::set<std::string>& taken) {
+    std::string free = name;
+    for (int number = 2; !taken.insert(free).second; ++number) {
+      free = fmt::format("{} {}", name, number);
+    }
+    if (free != name) graph_.notes.push_back(fmt::format("a second '{}' is named '{}'", name, free));
+    return free;
   }
 
   void add_edge(const JsonValue& properties) {
@@ -176,16 +199,20 @@ class GeojsonReader {
     }
   }
 
+  GeojsonFrame frame_;
   bool own_ = false;  // geojson_text wrote the file
   MapGraph graph_;
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges_;  // ascending pairs of node ids
+  std::set<std::string> place_names_;
+  std::set<std::string> zone_names_;
 };
 
 }  // namespace
 
 MapGraph parse_geojson(std::string_view text, const std::string& name) {
   const nlohmann::ordered_json json = parse_json(text, name);
-  return GeojsonReader().read(JsonValue(&json, name + ':'), name);
+  const JsonValue top(&json, name + ':');
+  return GeojsonReader(top).read(top, name);
 }
 
 }  // namespace topogeo::exchange

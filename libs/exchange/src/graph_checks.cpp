@@ -1,9 +1,13 @@
 #include "graph_checks.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "topogeo/support/format.hpp"
+
+#include "segments.hpp"
 
 namespace topogeo::exchange {
 namespace {
@@ -17,7 +21,37 @@ void sort_by_id(std::vector<Element>& elements, const std::string& name, const c
       fmt::format("{}: {} {}: expected each id once", name, what, repeated->id));
 }
 
+/// What is expected of a value that the zone's kind does not allow; empty: nothing.
+std::string fault_of_value(const planning::DrawnZone& zone) {
+  using planning::ZoneKind;
+  const bool slow = zone.value >= planning::kLeastZoneSpeed_mps &&
+                    zone.value <= planning::kMostZoneSpeed_mps;
+  if (zone.kind == ZoneKind::kSlow && !slow) {
+    return fmt::format("a speed of {:g} to {:g} m/s, got {:g}", planning::kLeastZoneSpeed_mps,
+                       planning::kMostZoneSpeed_mps, zone.value);
+  }
+  if (zone.kind == ZoneKind::kOneWay && !(std::fabs(zone.value) <= std::numbers::pi)) {
+    return fmt::format("a direction of -pi to pi rad, got {:g}", zone.value);
+  }
+  return {};
+}
+
 }  // namespace
+
+std::string settle_border(std::vector<Eigen::Vector2d>& corners) {
+  if (corners.size() > 1 && corners.front() == corners.back()) corners.pop_back();
+  if (corners.size() < 3) return "three corners or more";
+  return is_simple(corners) ? "" : "a border that neither crosses nor touches itself";
+}
+
+void settle_zones(std::span<planning::DrawnZone> zones, const std::string& name) {
+  for (planning::DrawnZone& zone : zones) {
+    std::string fault = settle_border(zone.polygon_m);
+    if (fault.empty()) fault = fault_of_value(zone);
+    if (fault.empty()) continue;
+    throw std::runtime_error(fmt::format("{}: zone '{}': expected {}", name, zone.name, fault));
+  }
+}
 
 void settle(MapGraph& graph, const std::string& name) {
   sort_by_id(graph.map.nodes, name, "node");

@@ -1,7 +1,11 @@
 // Checks of an imported graph before it becomes a map.
 #pragma once
 
+#include <span>
 #include <string>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "topogeo/exchange/map_graph.hpp"
 
@@ -10,5 +14,13 @@ namespace topogeo::exchange {
 /// Sorts nodes and branches by id. Throws std::runtime_error "NAME: ..." for repeated ids, for a
 /// branch whose end is no node, and for a drawing like storage::check.
 void settle(MapGraph& graph, const std::string& name);
+
+/// Takes the repeated first corner from the end of a border. What is expected of a border that is
+/// none, empty for a good one: three corners or more, and no edges that cross or touch.
+std::string settle_border(std::vector<Eigen::Vector2d>& corners);
+
+/// Checks the zones of a foreign file: their borders, speeds and directions. Throws
+/// std::runtime_error "NAME: zone '...': expected ...".
+void settle_zones(std::span<planning::DrawnZone> zones, const std::string& name);
 
 }  // namespace topogeo::exchange

@@ -86,9 +86,21 @@ bool JsonValue::boolean_or(bool otherwise) const {
 }
 
 double JsonValue::number() const {
+  const double value = any_number();
+  if (std::fabs(value) > kMost) fail("a number from -1e6 to 1e6");
+  return value;
+}
+
+double JsonValue::any_number() const {
   if (!exists() || !json_->is_number()) fail("a number");
   const double value = json_->get<double>();
-  if (!(std::fabs(value) <= kMost)) fail("a number from -1e6 to 1e6");
+  if (!std::isfinite(value)) fail("a finite number");
+  return value;
+}
+
+double JsonValue::number_between(double least, double most, std::string_view unit) const {
+  const double value = any_number();
+  if (value < least || value > most) fail(fmt::format("{:g} to {:g} {}", least, most, unit));
   return value;
 }
 
@@ -97,11 +109,12 @@ double JsonValue::number_or(double otherwise) const {
 }
 
 std::uint32_t JsonValue::id() const {
-  constexpr std::uint64_t kMostId = std::numeric_limits<std::uint32_t>::max();
-  if (!exists() || !json_->is_number_unsigned() || json_->get<std::uint64_t>() > kMostId) {
+  constexpr double kMostId = std::numeric_limits<std::uint32_t>::max();
+  const double value = exists() && json_->is_number() ? json_->get<double>() : -1.0;
+  if (!(value >= 0.0 && value <= kMostId && value == std::floor(value))) {
     fail("a whole number from 0 to 4294967295");
   }
-  return json_->get<std::uint32_t>();
+  return static_cast<std::uint32_t>(value);
 }
 
 std::uint64_t JsonValue::whole() const {

@@ -34,10 +34,15 @@ class JsonValue {
   /// Finite and within 1,000 km: no coordinate or speed is larger.
   [[nodiscard]] double number() const;
   [[nodiscard]] double number_or(double otherwise) const;
+  [[nodiscard]] double number_between(double least, double most, std::string_view unit) const;
+  /// A whole number, also written as 1.0.
   [[nodiscard]] std::uint32_t id() const;
   [[nodiscard]] std::uint64_t whole() const;
   [[nodiscard]] std::vector<double> numbers() const;
+  /// Finite, however large.
+  [[nodiscard]] double any_number() const;
   [[nodiscard]] bool is_text() const { return exists() && json_->is_string(); }
+  [[nodiscard]] bool is_number() const { return exists() && json_->is_number(); }
   [[nodiscard]] bool is_object() const { return exists() && json_->is_object(); }
   [[nodiscard]] const std::string& where() const { return where_; }
 

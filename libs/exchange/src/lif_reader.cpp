@@ -20,6 +20,12 @@ Eigen::Vector2d lif_position(const JsonValue& value) {
   return {value.required("x").number(), value.required("y").number()};
 }
 
+/// The value under its name of 1.0, or under that of 2.0.
+JsonValue either(const JsonValue& object, const char* first, const char* second) {
+  const JsonValue value = object.at(first);
+  return value.exists() ? value : object.at(second);
+}
+
 /// The number of "n17" in our own files.
 std::optional<std::uint32_t> lif_number(std::string_view id, char letter) {
   if (id.size() < 2 || id.front() != letter) return std::nullopt;
@@ -34,17 +40,34 @@ class LifReader {
     const JsonValue layout = first_layout(top);
     read_nodes(layout.required("nodes"));
     for (const JsonValue& edge : layout.required("edges").items()) add_edge(edge);
+    add_notes();
     if (layout.at("stations").exists()) {
       for (const JsonValue& station : layout.at("stations").items()) add_station(station);
-    }
-    if (!graph_.map.branches.empty()) {
-      graph_.notes.push_back("LIF holds no clearance: branches get 0");
     }
     settle(graph_, name);
     return std::move(graph_);
   }
 
  private:
+  void add_notes() {
+    if (!graph_.map.branches.empty()) {
+      graph_.notes.push_back("LIF holds no clearance: branches get 0");
+    }
+    const auto one_way = std::ranges::count_if(directions_, [&](const auto& ends) {
+      return !directions_.contains({ends.second, ends.first});
+    });
+    if (one_way > 0) {
+      graph_.notes.push_back(
+          fmt::format("{} edges lead one way only, their branches both ways: a one-way zone of the "
+                      "map keeps the direction",
+                      one_way));
+    }
+    if (elsewhere_ > 0) {
+      graph_.notes.push_back(
+          fmt::format("{} edges lead to a node that this layout lacks, left out", elsewhere_));
+    }
+  }
+
   /// In 2.0 the layouts are inside origins.
   JsonValue first_layout(const JsonValue& top) {
     const JsonValue holder =
@@ -71,7 +94,7 @@ class LifReader {
       node.id = own ? *lif_number(id.text(), 'n')
                     : static_cast<std::uint32_t>(graph_.map.nodes.size() + 1);
       node.position_m = lif_position(item.required("nodePosition"));
-      node.kind = topomap::node_kind_of(item.at("nodeDescription").text_or("")).value_or(node.kind);
+      node.kind = topomap::node_kind_of(either(item, "nodeDescription", "nodeDescriptor").text_or("")).value_or(node.kind);
       if (!nodes_.emplace(id.text(), node).second) id.fail("each nodeId once");
       graph_.map.nodes.push_back(node);
     }
@@ -86,8 +109,15 @@ class LifReader {
   void add_edge(const JsonValue& edge) {
     const std::string id = edge.required("edgeId").text();
     const topomap::MapNode& start = node_of(edge.required("startNodeId"));
-    const topomap::MapNode& end = node_of(edge.required("endNodeId"));
-    std::vector<Eigen::Vector2d> way = trajectory(edge.required("vehicleTypeEdgeProperties"));
+    // An edge to another layout, for example on a lift.
+    if (!nodes_.contains(edge.required("endNodeId").text())) {
+      ++elsewhere_;
+      return;
+    }
+    const topomap::MapNode& end = node_of(edge.at("endNodeId"));
+    std::vector<Eigen::Vector2d> way =
+        trajectory(either(edge, "vehicleTypeEdgeProperties", "mobileRobotTypeEdgeProperties"));
+    directions_.insert({start.id, end.id});
     if (way.empty()) way = {start.position_m, end.position_m};
     const bool backward = id.ends_with('-');
     const bool signed_id = backward || id.ends_with('+');
@@ -110,6 +140,7 @@ class LifReader {
 
   /// The trajectory of the first vehicle type that has one.
   std::vector<Eigen::Vector2d> trajectory(const JsonValue& properties) {
+    if (!properties.exists()) return {};
     for (const JsonValue& of_type : properties.items()) {
       const JsonValue curve = of_type.at("trajectory");
       if (!curve.exists()) continue;
@@ -148,7 +179,7 @@ class LifReader {
     place.name = taken ? id : name;
     place.position_m = at_m;
     // Foreign stations also have a direction, that of the work there.
-    if (station.at("stationDescription").text_or("") == kBaseStation) {
+    if (either(station, "stationDescription", "stationDescriptor").text_or("") == kBaseStation) {
       place.station_heading_rad = position.required("theta").number();
     }
   }
@@ -156,7 +187,9 @@ class LifReader {
   MapGraph graph_;
   std::map<std::string, topomap::MapNode> nodes_;
   std::set<std::uint32_t> branch_ids_;
-  std::set<std::pair<std::uint32_t, std::uint32_t>> straight_;  // start and end of edges
+  std::set<std::pair<std::uint32_t, std::uint32_t>> straight_;    // ends of branches
+  std::set<std::pair<std::uint32_t, std::uint32_t>> directions_;  // start and end of all edges
+  std::size_t elsewhere_ = 0;                                     // edges to other layouts
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "topogeo/exchange/zone_set.hpp"
 
 #include <algorithm>
+#include <numbers>
 #include <set>
 #include <stdexcept>
 
@@ -8,6 +9,7 @@
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/hash.hpp"
 
+#include "graph_checks.hpp"
 #include "json_reader.hpp"
 #include "segments.hpp"
 
@@ -90,10 +92,12 @@ class ZoneSetReader {
       zone.kind = ZoneKind::kNoGo;
     } else if (type == "SPEED_LIMIT") {
       zone.kind = ZoneKind::kSlow;
-      zone.value = in.required("maximumSpeed").number();
+      zone.value = in.required("maximumSpeed").number_between(
+          planning::kLeastZoneSpeed_mps, planning::kMostZoneSpeed_mps, "m/s");
     } else if (type == "DIRECTED") {
       zone.kind = ZoneKind::kOneWay;
-      zone.value = in.required("direction").number();
+      zone.value =
+          in.required("direction").number_between(-std::numbers::pi, std::numbers::pi, "rad");
     } else if (type != "ACTION") {
       set_.notes.push_back(
           fmt::format("zone '{}' left out: no zone kind corresponds to {}", zone.name, type));
@@ -105,7 +109,8 @@ class ZoneSetReader {
     for (const JsonValue& vertex : vertices.items()) {
       zone.polygon_m.emplace_back(vertex.required("x").number(), vertex.required("y").number());
     }
-    if (zone.polygon_m.size() < 3) vertices.fail("three corners or more");
+    const std::string fault = settle_border(zone.polygon_m);
+    if (!fault.empty()) vertices.fail(fault);
     set_.zones.push_back(std::move(zone));
   }
 

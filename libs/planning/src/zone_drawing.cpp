@@ -52,9 +52,7 @@ ZoneKind kind_of(const YamlNode& node) {
 }
 
 double value_of(const YamlNode& node, ZoneKind kind) {
-  constexpr double kLeastSpeed_mps = 0.01;  // slower is standing: draw a no_go zone
-  constexpr double kMostSpeed_mps = 10.0;
-  if (kind == ZoneKind::kSlow) return node.number(kLeastSpeed_mps, kMostSpeed_mps, "m/s");
+  if (kind == ZoneKind::kSlow) return node.number(kLeastZoneSpeed_mps, kMostZoneSpeed_mps, "m/s");
   if (kind == ZoneKind::kOneWay) return node.number(-std::numbers::pi, std::numbers::pi, "rad");
   if (node.exists()) node.fail("no value: only slow and one_way zones have one");
   return 0.0;

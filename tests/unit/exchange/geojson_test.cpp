@@ -80,12 +80,93 @@ TEST_F(Geojson, ForeignGraphsBecomeStraightBranches) {
   EXPECT_THAT(graph.notes, Contains(HasSubstr("MultiPoint left out")));
 }
 
+std::string point(const std::string& properties, const std::string& position) {
+  return R"({"type":"Feature","properties":)" + properties +
+         R"(,"geometry":{"type":"Point","coordinates":)" + position + "}}";
+}
+std::string polygon(const std::string& properties, const std::string& ring) {
+  return R"({"type":"Feature","properties":)" + properties +
+         R"(,"geometry":{"type":"Polygon","coordinates":[)" + ring + "]}}";
+}
+MapGraph features(const std::string& list, const std::string& before = "") {
+  return parse_geojson("{" + before + R"("type":"FeatureCollection","features":[)" + list + "]}",
+                       "f");
+}
+constexpr const char* kTriangle = "[[0,0],[1,0],[1,1],[0,0]]";
+
+TEST_F(Geojson, ReadsWhatTablesWrite) {
+  // A table of nodes and edges has numbers with a point, and null where a column does not apply.
+  const MapGraph graph = features(
+      point(R"({"id":1.0,"startid":null,"endid":null})", "[0,0]") + "," +
+      point(R"({"id":2.0,"startid":null,"endid":null})", "[5,0]") + "," +
+      R"({"type":"Feature","properties":{"id":7.0,"startid":1.0,"endid":2.0},"geometry":{"type":"LineString","coordinates":[[0,0],[5,0]]}},)" +
+      polygon("null", kTriangle) + R"(,{"type":"Feature","properties":null,"geometry":null})");
+  EXPECT_EQ(graph.map.branches.size(), 1U);
+  EXPECT_EQ(graph.drawing.zones.size(), 1U);
+  EXPECT_THAT(graph.notes, Contains(HasSubstr("features[4]: left out, it has no geometry")));
+}
+
+TEST_F(Geojson, ARepeatedNameGetsANumber) {
+  const MapGraph graph = features(point(R"({"id":1,"metadata":{"name":"dock"}})", "[0,0]") + "," +
+                                  point(R"({"id":2,"metadata":{"name":"dock"}})", "[5,0]") + "," +
+                                  polygon(R"({"name":"lawn"})", kTriangle) + "," +
+                                  polygon(R"({"name":"lawn"})", kTriangle));
+  ASSERT_EQ(graph.drawing.places.size(), 2U);
+  EXPECT_EQ(graph.drawing.places[1].name, "dock 2");
+  EXPECT_EQ(graph.drawing.zones[1].name, "lawn 2");
+  EXPECT_THAT(graph.notes, Contains("a second 'dock' is named 'dock 2'"));
+}
+
+TEST_F(Geojson, DegreesBecomeMetres) {
+  const std::string nodes =
+      point(R"({"id":1})", "[8.41,49.01]") + "," + point(R"({"id":2})", "[8.4105,49.01]") + "," +
+      point(R"({"id":3})", "[8.4105,49.0104]") +
+      R"(,{"type":"Feature","properties":{"id":9,"startid":1,"endid":2},"geometry":{"type":"LineString","coordinates":[[0,0],[1,1]]}})";
+  for (const char* system :
+       {"", R"("crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:OGC:1.3:CRS84"}},)"}) {
+    const MapGraph graph = features(nodes, system);
+    ASSERT_EQ(graph.map.nodes.size(), 3U);
+    const Eigen::Vector2d east_m = graph.map.nodes[1].position_m - graph.map.nodes[0].position_m;
+    const Eigen::Vector2d north_m = graph.map.nodes[2].position_m - graph.map.nodes[1].position_m;
+    // A degree of longitude and of latitude on WGS84 at latitude 49.01, by its radii of curvature.
+    EXPECT_NEAR(east_m.x(), 0.0005 * 73157.14, 0.01);
+    EXPECT_NEAR(north_m.y(), 0.0004 * 111209.93, 0.01);
+    EXPECT_NEAR(east_m.y(), 0.0, 0.01);
+    EXPECT_THAT(graph.notes, Contains(HasSubstr("degrees of WGS84")));
+  }
+  // The same numbers are metres where the file says so.
+  const MapGraph metres = features(
+      nodes, R"("crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::3857"}},)");
+  EXPECT_EQ(metres.map.nodes[0].position_m, Eigen::Vector2d(8.41, 49.01));
+}
+
+TEST_F(Geojson, AFarOriginIsMovedToTheMap) {
+  const MapGraph graph = features(point(R"({"id":1})", "[466123.5,5428765.0]") + "," +
+                                  point(R"({"id":2})", "[466128.5,5428769.0]"));
+  EXPECT_EQ(graph.map.nodes[0].position_m, Eigen::Vector2d(-2.5, -2.0));
+  EXPECT_EQ(graph.map.nodes[1].position_m, Eigen::Vector2d(2.5, 2.0));
+  EXPECT_THAT(graph.notes, Contains(HasSubstr("x = 466126, y = 5428767 m of the file")));
+}
+
+TEST_F(Geojson, ZonesThatCannotBeAreRefused) {
+  const auto error = [](const std::string& properties, const std::string& ring) {
+    return error_of([&] { static_cast<void>(features(polygon(properties, ring))); });
+  };
+  EXPECT_THAT(error(R"({"name":"p","kind":"no_go"})", "[[0,0],[2,2],[2,0],[0,2],[0,0]]"),
+              HasSubstr("f: zone 'p': expected a border that neither crosses nor touches itself"));
+  EXPECT_THAT(error(R"({"name":"p","kind":"slow","value":0})", kTriangle),
+              HasSubstr("zone 'p': expected a speed of 0.01 to 10 m/s, got 0"));
+  EXPECT_THAT(error(R"({"name":"p","kind":"one_way","value":90})", kTriangle),
+              HasSubstr("zone 'p': expected a direction of -pi to pi rad, got 90"));
+}
+
 TEST_F(Geojson, NamesWhatIsWrong) {
   const auto error = [](const std::string& text) {
     return error_of([&] { parse_geojson(text, "f.geojson"); });
   };
   EXPECT_EQ(error("{"), "f.geojson: expected JSON, invalid at byte 2");
   EXPECT_EQ(error("{}"), "f.geojson: features: expected a value, got nothing");
+  EXPECT_EQ(error(R"({"features":[]})"), "f.geojson: features: expected a feature, got []");
   EXPECT_EQ(
       error(
           R"({"features":[{"geometry":{"type":"Point","coordinates":[0,0]},"properties":{"id":-1}}]})"),

@@ -89,6 +89,24 @@ TEST_F(Lif, ReadsTheDraftOfTwoAndForeignIds) {
   EXPECT_THAT(graph.notes, Contains("only the first of 2 layouts is read"));
 }
 
+TEST_F(Lif, ReadsTheNamesOfTwo) {
+  // As in example 5 of the draft of January 2026, with a bend.
+  const MapGraph graph = parse_lif(R"({"metaInformation":{"lifVersion":"2.0.0"},"origins":[
+{"originId":"o","layouts":[{"layoutId":"l","nodes":[
+{"nodeId":"N1","nodeDescriptor":"door","nodePosition":{"x":0,"y":0}},
+{"nodeId":"N2","nodePosition":{"x":11,"y":0}}],
+"edges":[{"edgeId":"N1-N2","startNodeId":"N1","endNodeId":"N2","mobileRobotTypeEdgeProperties":[
+{"orientationType":"TANGENTIAL","trajectory":{"degree":1,"knotVector":[0,0,0.5,1,1],
+"controlPoints":[{"x":0,"y":0},{"x":5,"y":1},{"x":11,"y":0}]}}]},
+{"edgeId":"lift","startNodeId":"N2","endNodeId":"N101"}]}]}]})",
+                                   "f");
+  ASSERT_EQ(graph.map.branches.size(), 1U);
+  EXPECT_EQ(graph.map.branches[0].points.size(), 3U);
+  EXPECT_EQ(graph.map.nodes[0].kind, topomap::NodeKind::kDoor);
+  EXPECT_THAT(graph.notes, Contains(HasSubstr("1 edges lead one way only")));
+  EXPECT_THAT(graph.notes, Contains(HasSubstr("1 edges lead to a node that this layout lacks")));
+}
+
 TEST_F(Lif, NamesWhatIsWrong) {
   const auto error = [](const std::string& text) {
     return error_of([&] { parse_lif(text, "f"); });
@@ -98,8 +116,8 @@ TEST_F(Lif, NamesWhatIsWrong) {
             "f: layouts[0].nodes[0].nodePosition.y: expected a value, got nothing");
   const std::string nodes =
       R"({"layouts":[{"nodes":[{"nodeId":"a","nodePosition":{"x":1,"y":2}}],)";
-  EXPECT_EQ(error(nodes + R"("edges":[{"edgeId":"e","startNodeId":"a","endNodeId":"b"}]}]})"),
-            "f: layouts[0].edges[0].endNodeId: expected the nodeId of a node of this layout, got "
+  EXPECT_EQ(error(nodes + R"("edges":[{"edgeId":"e","startNodeId":"b","endNodeId":"a"}]}]})"),
+            "f: layouts[0].edges[0].startNodeId: expected the nodeId of a node of this layout, got "
             "\"b\"");
   EXPECT_THAT(error(nodes + R"("edges":[{"edgeId":"e","startNodeId":"a","endNodeId":"a",
 "vehicleTypeEdgeProperties":[{"trajectory":{"degree":2,"knotVector":[0,1],

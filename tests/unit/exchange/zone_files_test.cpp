@@ -91,6 +91,34 @@ TEST_F(ZoneFiles, NamesWhatIsWrong) {
       "f: zoneSet.zones[0].vertices: expected three corners or more, got [{\"x\":0,\"y\":0}]");
 }
 
+TEST_F(ZoneFiles, ZonesThatCannotBeAreRefused) {
+  const auto error = [](const std::string& zone) {
+    return error_of([&] { parse_zone_set(R"({"zoneSet":{"zones":[)" + zone + "]}}", "f"); });
+  };
+  const std::string square =
+      R"("vertices":[{"x":0,"y":0},{"x":2,"y":0},{"x":2,"y":2},{"x":0,"y":2}]})";
+  for (const char* speed : {"0", "-1", "30"}) {
+    EXPECT_THAT(error(R"({"zoneId":"a","zoneType":"SPEED_LIMIT","maximumSpeed":)" +
+                      std::string(speed) + "," + square),
+                HasSubstr("maximumSpeed: expected 0.01 to 10 m/s, got " + std::string(speed)));
+  }
+  EXPECT_THAT(error(R"({"zoneId":"a","zoneType":"DIRECTED","direction":90,)" + square),
+              HasSubstr("direction: expected -3.14159 to 3.14159 rad, got 90"));
+  EXPECT_THAT(
+      error(
+          R"({"zoneId":"a","zoneType":"BLOCKED","vertices":[{"x":0,"y":0},{"x":2,"y":2},{"x":2,"y":0},{"x":0,"y":2}]})"),
+      HasSubstr("expected a border that neither crosses nor touches itself"));
+}
+
+TEST_F(ZoneFiles, AClosedBorderIsOpenedAndCanBeWrittenAgain) {
+  const ZoneSet set = parse_zone_set(
+      R"({"zones":[{"zoneId":"a","zoneType":"BLOCKED","vertices":[{"x":0,"y":0},{"x":2,"y":0},{"x":2,"y":2},{"x":0,"y":0}]}]})",
+      "f");
+  ASSERT_EQ(set.zones.size(), 1U);
+  EXPECT_EQ(set.zones[0].polygon_m.size(), 3U);
+  EXPECT_NO_THROW(static_cast<void>(zone_set_text(set.zones, {})));
+}
+
 planning::GridFrame mask_frame() {
   planning::GridFrame frame;
   frame.columns = 6;
