@@ -18,6 +18,8 @@
 #include "topogeo/topomap/local_map_builder.hpp"
 #include "topogeo/voronoi/local_voronoi.hpp"
 
+#include "grid_links.hpp"
+
 namespace topogeo::exchange {
 namespace {
 
@@ -212,7 +214,8 @@ storage::MapDocument map_of_grid(const planning::FreeSpace& space,
   voronoi::LocalVoronoi diagram_maker(mapper.voronoi);
   voronoi::LocalVoronoiDiagram diagram;
   topomap::LocalMapBuilder builder(mapper.local_map);
-  for (const Eigen::Vector2d& place_m : places_of_stops(space, settings)) {
+  const std::vector<Eigen::Vector2d> places_m = places_of_stops(space, settings);
+  for (const Eigen::Vector2d& place_m : places_m) {
     const geometry::Pose2 T_map_robot{place_m.x(), place_m.y(), 0.0};
     scan::Scan scan = scan_at(space.grid(), T_map_robot * mapper.T_robot_laser, settings.range_m);
     topomap::LocalMap map;
@@ -239,6 +242,7 @@ storage::MapDocument map_of_grid(const planning::FreeSpace& space,
   document.trajectory.version = 1;
   if (document.local_maps.empty()) return document;
   document.global_map = pipeline::fuse(global_map, document.local_maps, document.trajectory);
+  link_parts(document.global_map, space, places_m);
   return storage::identified(std::move(document));
 }
 

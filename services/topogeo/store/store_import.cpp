@@ -8,6 +8,7 @@
 #include <string>
 
 #include "topogeo/command_line/command_line.hpp"
+#include "topogeo/exchange/grid_image.hpp"
 #include "topogeo/exchange/grid_map.hpp"
 #include "topogeo/exchange/map_formats.hpp"
 #include "topogeo/exchange/place_graph.hpp"
@@ -36,8 +37,14 @@ struct ImportOptions {
   std::optional<fs::path> config;
   std::string robot_id = "robot";
   bool with_stops = false;
+  std::string pixel_205 = "auto";
   exchange::GridMapSettings grid;
 };
+
+exchange::Pixel205 pixel_205_of(const std::string& word) {
+  if (word == "unknown") return exchange::Pixel205::kUnknown;
+  return word == "threshold" ? exchange::Pixel205::kThreshold : exchange::Pixel205::kAutomatic;
+}
 
 geometry::Pose2 pose_of_file(const ImportOptions& options) {
   if (!options.pose) return {};
@@ -62,8 +69,11 @@ void add_graph(storage::MapDocument& document, const ImportOptions& options,
       throw service::BadInputError(options.file.string() + ": " + error.what());
     }
   }();
-  std::cerr << fmt::format("topogeo: {} nodes and {} branches made of the grid\n",
-                           made.global_map.nodes.size(), made.global_map.branches.size());
+  const std::size_t parts = exchange::parts_of_graph(made.global_map);
+  std::cerr << fmt::format("topogeo: {} nodes and {} branches made of the grid, {}\n",
+                           made.global_map.nodes.size(), made.global_map.branches.size(),
+                           parts <= 1 ? "all connected"
+                                      : fmt::format("in {} parts that no free path joins", parts));
   if (options.with_stops) {
     made.drawing = std::move(document.drawing);
     document = std::move(made);
@@ -82,7 +92,9 @@ int store_import(const ImportOptions& options) {
   const exchange::MapFormat& format =
       exchange::format_named(exchange::import_formats(), options.format);
   try {
-    exchange::MapGraph graph = format.read(options.file, config.hybrid_map.grid.resolution_m);
+    exchange::MapGraph graph = format.read(
+        options.file, {.resolution_m = config.hybrid_map.grid.resolution_m,
+                       .pixel_205 = pixel_205_of(options.pixel_205)});
     exchange::Notes notes = std::move(graph.notes);
     exchange::move(graph, T_map_file);
     exchange::lay_over(document, std::move(graph), notes);
@@ -119,8 +131,9 @@ void add_store_import_command(command_line::Command& store, int& exit_code) {
       ->type_name("MAP");
   command
       ->add_option("--into", options->into,
-                   "map to merge the file into: its grid, and places and zones of the same names, "
-                   "are replaced; not changed unless it is also --out")
+                   "map to merge the file into: its grid, places and zones of the same names, and "
+                   "the graph of a map without stops are replaced; not changed unless it is also "
+                   "--out")
       ->type_name("MAP");
   command
       ->add_option("--pose", options->pose,
@@ -132,6 +145,14 @@ void add_store_import_command(command_line::Command& store, int& exit_code) {
   command->add_flag("--with-stops", options->with_stops,
                     "for grids: keep the stops that the graph is made from, so that robots can "
                     "localize in the map (topogeo localize --map)");
+  command
+      ->add_option("--pixel-205", options->pixel_205,
+                   "for grids: read pixels of 205, which map_saver writes for unknown, as 'unknown' "
+                   "or by the 'threshold's of the YAML; 'auto': unknown if the image has only the "
+                   "values of map_saver")
+      ->check(command_line::one_of({"auto", "unknown", "threshold"}))
+      ->capture_default_str()
+      ->type_name("HOW");
   constexpr double kMost_m = 100.0;
   command
       ->add_option("--spacing", options->grid.spacing_m,

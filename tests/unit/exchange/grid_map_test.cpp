@@ -1,5 +1,7 @@
 #include "topogeo/exchange/grid_map.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -132,6 +134,75 @@ TEST(GridMap, StopsKeepTheirDistance) {
                 1.0 - 1e-9);
     }
   }
+}
+
+constexpr std::array<double, 9> kWidths_m = {5.0, 8.0, 8.0, 4.0, 6.0, 8.0, 5.0, 5.0, 8.0};
+
+/// Cells of 0.05 m: two corridors of 58 x 2.4 m, joined at both ends and in the middle, with rooms
+/// of several sizes behind doors of 0.9 m on their outer sides. Turned by almost 180 degrees.
+planning::OccupancyGrid office_floor() {
+  constexpr double kCell_m = 0.05;
+  planning::GridFrame frame;
+  frame.columns = 1200;
+  frame.rows = 720;
+  frame.resolution_m = kCell_m;
+  frame.T_map_grid = {0.0, 0.0, 3.14};
+  planning::OccupancyGrid grid(frame, CellState::kOccupied);
+  const auto fill_m = [&](double left, double bottom, double right, double top) {
+    const auto cell = [](double value) { return static_cast<std::int32_t>(std::lround(value / kCell_m)); };
+    planning::fill_box(grid, {cell(left), cell(bottom)}, {cell(right) - 1, cell(top) - 1},
+                       CellState::kFree);
+  };
+  fill_m(1.0, 15.0, 59.0, 17.4);
+  fill_m(1.0, 24.0, 59.0, 26.4);
+  for (const double left : {1.0, 28.8, 56.6}) fill_m(left, 15.0, left + 2.4, 26.4);
+  double left = 1.0;
+  for (const double width : kWidths_m) {
+    fill_m(left, 1.0, left + width - 0.2, 14.8);
+    fill_m(left + 1.0, 14.8, left + 1.9, 15.0);
+    fill_m(left, 26.6, left + width - 0.2, 35.0);
+    fill_m(left + 1.0, 26.4, left + 1.9, 26.6);
+    left += width;
+  }
+  return grid;
+}
+
+TEST(GridMap, ConnectedFreeSpaceGivesAConnectedGraph) {
+  const planning::FreeSpace space(office_floor());
+  const storage::MapDocument map = map_of_grid(space, {}, {}, "plan");
+  EXPECT_EQ(parts_of_graph(map.global_map), 1U);
+  // Each room has a node.
+  double left_m = 1.0;
+  for (const double width_m : kWidths_m) {
+    for (const double middle_m : {8.0, 31.0}) {
+      const Eigen::Vector2d half_m(0.5 * width_m - 0.1, middle_m < 15.0 ? 7.0 : 4.5);
+      const Eigen::Vector2d room_m(left_m + half_m.x(), middle_m);
+      EXPECT_TRUE(std::ranges::any_of(map.global_map.nodes, [&](const topomap::MapNode& node) {
+        const Eigen::Vector2d away_m =
+            space.frame().in_cells(node.position_m) * space.frame().resolution_m - room_m;
+        return (away_m.cwiseAbs().array() < half_m.array()).all();
+      })) << room_m.transpose();
+    }
+    left_m += width_m;
+  }
+  for (const topomap::MapBranch& branch : map.global_map.branches) {
+    for (const topomap::BranchPoint& p : branch.points) {
+      const auto cell = space.frame().cell_of(p.position_m);
+      ASSERT_TRUE(cell);
+      EXPECT_EQ(space.grid().at(*cell), CellState::kFree) << branch.id;
+    }
+  }
+}
+
+TEST(GridMap, RoomsWithoutADoorStayApart) {
+  planning::GridFrame frame;
+  frame.columns = 200;
+  frame.rows = 60;
+  frame.resolution_m = 0.1;
+  planning::OccupancyGrid grid(frame, CellState::kOccupied);
+  planning::fill_box(grid, {5, 5}, {94, 54}, CellState::kFree);
+  planning::fill_box(grid, {105, 5}, {194, 54}, CellState::kFree);
+  EXPECT_EQ(parts_of_graph(map_of_grid(planning::FreeSpace(grid), {}, {}, "plan").global_map), 2U);
 }
 
 TEST(GridMap, AClosedGridHasNoStops) {

@@ -2,7 +2,8 @@
 //
 // Places stops where the free space is widest, at least `spacing_m` apart, so they follow the
 // middle of corridors. All-round scans are cast in the grid and processed like a robot's, so that
-// the map has nodes and branches, allows localization and can be aligned with others.
+// the map has nodes and branches, allows localization and can be aligned with others. Where the
+// scans leave the graph in parts, branches along the free space join them.
 #pragma once
 
 #include <string>
@@ -41,6 +42,9 @@ storage::MapDocument map_of_grid(const planning::FreeSpace& space,
                                  const pipeline::LocalMapperConfig& mapper,
                                  const topomap::GlobalMapConfig& global_map,
                                  const std::string& robot_id, const GridMapSettings& settings = {});
+
+/// Number of parts of a graph that no branch joins; virtual branches do not count.
+std::size_t parts_of_graph(const topomap::GlobalMap& map);
 
 /// Range of a beam from a point of the map frame to the middle of the first occupied cell,
 /// projected onto the beam; scan::Scan::kNoReturn if there is none within `range_m` or an unknown
