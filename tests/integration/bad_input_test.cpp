@@ -173,6 +173,17 @@ TEST_F(BadInputTest, UnwritableDirectoryIsToldBeforeTheWork) {
   }
 }
 
+TEST_F(BadInputTest, AFolderWithTheDatabaseOfAnotherRunIsNotMixedWithItsResults) {
+  good_lines();
+  std::filesystem::create_directories(out_);
+  const std::string database = std::filesystem::path(out_) / "map.sqlite";
+  std::ofstream(database) << "a map";
+  const Outcome outcome = call("map", scratch_ / "good.clf");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("map.sqlite' is the map of another run"));
+  EXPECT_FALSE(std::filesystem::exists(std::filesystem::path(out_) / "map.pb"));
+}
+
 TEST_F(BadInputTest, ConfigurationFaultsNameTheLine) {
   write_log("room", scratch_ / "log.clf");
   const std::string unknown = file("unknown.yaml", "stop:\n  distance_m: 1\n  distanze_m: 1\n");

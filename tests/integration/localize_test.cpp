@@ -56,6 +56,28 @@ TEST_P(LocalizeByWorkersTest, OverDdsItGivesTheBytesOfOneProcessAndLeavesTheMapA
 INSTANTIATE_TEST_SUITE_P(Workers, LocalizeByWorkersTest, testing::Values(1, 2, 4),
                          [](const auto& workers) { return std::to_string(workers.param); });
 
+TEST_F(LocalizeTest, AGridGetsStops) {
+  write_log("ring", log_);
+  const std::string plan = scratch_ / "plan.pb";
+  Program import(scratch_, "topogeo",
+                 {"store", "import", TOPOGEO_SHARE "/worlds/ring.world.yaml", "--format",
+                  "drawing", "--out", plan});
+  ASSERT_EQ(import.wait(), 0) << import.err();
+  Program grid(scratch_, "topogeo",
+               {"store", "export", plan, "--format", "pgm", "--out", scratch_ / "grid"});
+  ASSERT_EQ(grid.wait(), 0) << grid.err();
+  for (const std::string& map : {plan, std::string(scratch_ / "grid.yaml")}) {
+    Program localize(scratch_, "topogeo",
+                     {"localize", "--log", log_, "--map", map, "--out", scratch_ / "out"});
+    ASSERT_EQ(localize.wait(), 0) << localize.err();
+    EXPECT_THAT(localize.err(), HasSubstr("stops are made of it"));
+    const json report = json::parse(read_file(scratch_ / "out" / "report.json"));
+    EXPECT_GT(report["localization"]["TRACKING"].get<int>(),
+              report["counts"]["stops"].get<int>() / 2)
+        << map;
+  }
+}
+
 TEST_F(LocalizeTest, CommandsAreAcceptedOrRefusedWithTheReason) {
   make_map();
   const std::string domain = own_domain();

@@ -283,6 +283,7 @@ TEST_F(MapStoreShows, PlacesOfAFileCanBeChanged) {
   refused({"--add", "=1,2"}, 2, "expected a name of 1 to 64 bytes");
   refused({"--add", "1,2=3,4"}, 2, "would be taken for a point");
   refused({"--add", "far=1e9,0"}, 2, "coordinate 1000000000");
+  refused({"--add", "garden=100,100"}, 2, "--add 'garden': 100,100 is outside of the map");
 }
 
 TEST_F(MapStoreShows, ABaseStationHasItsHeadingInDegrees) {

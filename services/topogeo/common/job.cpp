@@ -16,6 +16,8 @@
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/format.hpp"
 
+#include "common/map_or_grid.hpp"
+
 namespace topogeo::cli {
 namespace {
 
@@ -110,7 +112,7 @@ void add_topic_options(command_line::Command& app, recording::TopicChoice& topic
 }
 
 void add_log_options(command_line::Command& app, JobOptions& options) {
-  app.add_option("--log", options.log, recording::kLogFormats)->required()->type_name("FILE");
+  app.add_option("log,--log", options.log, recording::kLogFormats)->required()->type_name("FILE");
   add_topic_options(app, options.topics);
   app.add_option("--out", options.out, "directory for the results; created if missing")
       ->required()
@@ -139,7 +141,11 @@ void add_map_options(command_line::Command& app, JobOptions& options, StoredMapU
   command_line::Option* map = nullptr;
   if (use != StoredMapUse::kExtendMap) {
     map =
-        app.add_option("--map", options.map, "map.pb to localize in, read-only")->type_name("FILE");
+        app.add_option("--map", options.map,
+                       use == StoredMapUse::kLocalize
+                           ? "map to localize in, read-only: map.pb, or the YAML of a grid"
+                           : "map.pb to localize in, read-only")
+            ->type_name("FILE");
   }
   if (use == StoredMapUse::kLocalize) map->required();
   if (use != StoredMapUse::kLocalize) {
@@ -191,7 +197,10 @@ Inputs check_inputs(const JobOptions& options) {
   }
   try {
     if (options.reference) (void)storage::read_trajectory_tum(*options.reference);
-    if (options.map) inputs.map = pipeline::load_stored_map(*options.map);
+    if (options.map) {
+      inputs.map = options.map_may_be_grid ? load_map_or_grid(*options.map, config)
+                                           : pipeline::load_stored_map(*options.map);
+    }
     if (options.continued) {
       inputs.continued =
           pipeline::load_map_to_continue(*options.continued, config, options.robot_id);

@@ -24,6 +24,7 @@ struct JobOptions {
   std::optional<std::filesystem::path> config;
   std::string robot_id = "robot";
   std::optional<std::filesystem::path> reference;  ///< trajectory to compare with
+  bool map_may_be_grid = false;  ///< --map may be a grid, which gets stops
   std::optional<std::filesystem::path> map;        ///< map to localize in; none: a map is made
   std::optional<std::filesystem::path> continued;  ///< map to extend; none: a new one
   std::optional<std::string> initial_pose;         ///< "x,y,degrees" in either map

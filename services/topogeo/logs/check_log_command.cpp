@@ -148,7 +148,7 @@ void add_check_log_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command = app.add_subcommand("check-log", "Find what is wrong with a log");
   auto request = std::make_shared<LogRequest>();
   constexpr double kMost = 1e6;
-  command->add_option("log", request->log, recording::kLogFormats)->required();
+  command->add_option("log,--log", request->log, recording::kLogFormats)->required();
   add_topic_options(*command, request->topics);
   command->add_flag("--json", request->json, "print everything as JSON");
   command

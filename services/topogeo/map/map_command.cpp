@@ -2,6 +2,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <mutex>
@@ -16,6 +17,7 @@
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/results/outputs.hpp"
 #include "topogeo/results/stages.hpp"
+#include "topogeo/service/service_options.hpp"
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/progress_bar.hpp"
@@ -130,8 +132,17 @@ void report_unmapped(const localization::MappingSession* session) {
   if (!message.empty()) std::cerr << "topogeo: " << message << '\n';
 }
 
+/// Throws for a folder with the database of a map store: its results would mix with ours.
+void check_no_database(const std::filesystem::path& out) {
+  const std::filesystem::path database = out / "map.sqlite";
+  if (!std::filesystem::exists(database)) return;
+  throw service::UsageError("'" + database.string() +
+                            "' is the map of another run, choose another folder for --out");
+}
+
 int map_log(const JobOptions& options, bool stages) {
   const double start_s = support::monotonic_s();
+  check_no_database(options.out);
   Interruption interruption;
   Job job = prepare(options);
   const std::unique_ptr<pipeline::MappingRun> made = make_run(job);
@@ -201,6 +212,7 @@ void add_localize_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command =
       app.add_subcommand("localize", "Find and follow the robot of a log in a stored map");
   auto options = std::make_shared<JobOptions>();
+  options->map_may_be_grid = true;
   add_log_options(*command, *options);
   add_map_options(*command, *options, StoredMapUse::kLocalize);
   command->callback([options, &exit_code] { exit_code = map_log(*options, false); });

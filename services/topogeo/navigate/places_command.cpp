@@ -87,6 +87,27 @@ void remove_place(std::vector<planning::Place>& places, const std::string& name)
                   names.empty() ? "the map has none" : "the map has " + names));
 }
 
+pipeline::HybridMapConfig hybrid_map_config(const PlacesOptions& options) {
+  try {
+    return pipeline::load_config(options.config).config.hybrid_map;
+  } catch (const std::exception& error) {
+    throw service::UsageError(error.what());
+  }
+}
+
+/// Throws service::UsageError for a place outside of the map, to which no robot could be sent.
+void check_inside(const std::vector<planning::Place>& places, const storage::MapDocument& document,
+                  const pipeline::HybridMapConfig& config) {
+  const pipeline::HybridMapParts parts = pipeline::parts_of(document);
+  if (places.empty() || !pipeline::has_grid(parts)) return;
+  const planning::HybridMap map = pipeline::make_hybrid_map(parts, config);
+  for (const planning::Place& place : places) {
+    if (map.frame().cell_of(place.position_m)) continue;
+    throw service::UsageError(fmt::format("--add '{}': {:g},{:g} is outside of the map", place.name,
+                                          place.position_m.x(), place.position_m.y()));
+  }
+}
+
 /// Changes the places of a map file and rewrites it.
 void edit(const PlacesOptions& options) {
   storage::MapDrawing added;
@@ -102,8 +123,13 @@ void edit(const PlacesOptions& options) {
   try {
     storage::MapDocument document = storage::read_map_file(file);
     for (const std::string& name : options.removed) remove_place(document.drawing.places, name);
+    const std::vector<planning::Place> places = added.places;
     pipeline::lay_over(document.drawing, std::move(added));
+    storage::check(document.drawing);
+    check_inside(places, document, hybrid_map_config(options));
     storage::write_map_file(file, document);
+  } catch (const service::UsageError&) {
+    throw;
   } catch (const service::BadInputError&) {
     throw;
   } catch (const std::invalid_argument& error) {
@@ -142,13 +168,7 @@ void print_places(const planning::HybridMap& map) {
 }
 
 void print_file(const PlacesOptions& options) {
-  const pipeline::HybridMapConfig config = [&] {
-    try {
-      return pipeline::load_config(options.config).config.hybrid_map;
-    } catch (const std::exception& error) {
-      throw service::UsageError(error.what());
-    }
-  }();
+  const pipeline::HybridMapConfig config = hybrid_map_config(options);
   const storage::MapDocument floor = [&] {
     try {
       return pipeline::read_floor(options.source, options.zones, config.grid.resolution_m);
