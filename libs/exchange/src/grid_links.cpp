@@ -9,11 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include <boost/pending/disjoint_sets.hpp>
-
 #include "topogeo/exchange/grid_map.hpp"
 #include "topogeo/planning/grid_search.hpp"
 
+#include "graph_parts.hpp"
 #include "segments.hpp"
 
 namespace topogeo::exchange {
@@ -29,20 +28,12 @@ constexpr double kServed_m = 6.0;
 
 /// For each node, in their order, the number of its part.
 std::vector<std::size_t> parts_of_nodes(const topomap::GlobalMap& map) {
-  std::vector<std::size_t> ranks(map.nodes.size(), 0);
-  std::vector<std::size_t> parents(map.nodes.size(), 0);
-  boost::disjoint_sets<std::size_t*, std::size_t*> sets(ranks.data(), parents.data());
-  std::map<std::uint32_t, std::size_t> index_of;
-  for (std::size_t i = 0; i < map.nodes.size(); ++i) {
-    sets.make_set(i);
-    index_of[map.nodes[i].id] = i;
-  }
+  GraphParts joined(map.nodes);
   for (const MapBranch& branch : map.branches) {
-    if (branch.is_virtual) continue;
-    sets.union_set(index_of.at(branch.node_a), index_of.at(branch.node_b));
+    if (!branch.is_virtual) joined.join(branch);
   }
   std::vector<std::size_t> parts(map.nodes.size());
-  for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = sets.find_set(i);
+  for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = joined.part(i);
   return parts;
 }
 

@@ -7,13 +7,11 @@
 #include <set>
 #include <span>
 
-#include <boost/pending/disjoint_sets.hpp>
-#include <boost/property_map/property_map.hpp>
-
 #include "topogeo/exchange/place_graph.hpp"
 #include "topogeo/support/check_range.hpp"
 #include "topogeo/support/format.hpp"
 
+#include "graph_parts.hpp"
 #include "segments.hpp"
 
 namespace topogeo::exchange {
@@ -287,19 +285,13 @@ class Builder {
 }  // namespace
 
 std::set<std::uint32_t> joining_virtual_branches(const topomap::GlobalMap& map) {
-  std::map<std::uint32_t, std::size_t> ranks;
-  std::map<std::uint32_t, std::uint32_t> parents;
-  boost::associative_property_map rank_map(ranks);
-  boost::associative_property_map parent_map(parents);
-  boost::disjoint_sets sets(rank_map, parent_map);
-  for (const topomap::MapNode& node : map.nodes) sets.make_set(node.id);
+  GraphParts parts(map.nodes);
   std::set<std::uint32_t> joining;
   for (const bool is_virtual : {false, true}) {
     for (const topomap::MapBranch& branch : map.branches) {
-      if (branch.is_virtual != is_virtual) continue;
-      if (sets.find_set(branch.node_a) == sets.find_set(branch.node_b)) continue;
-      sets.link(sets.find_set(branch.node_a), sets.find_set(branch.node_b));
-      if (is_virtual) joining.insert(branch.id);
+      if (branch.is_virtual == is_virtual && parts.join(branch) && is_virtual) {
+        joining.insert(branch.id);
+      }
     }
   }
   return joining;
