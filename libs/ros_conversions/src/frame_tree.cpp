@@ -32,10 +32,15 @@ void FrameTree::add(const std::string& parent, const std::string& child,
   const auto known = std::ranges::find_if(
       edges_, [&](const Edge& other) { return other.child == child && other.parent == parent; });
   if (known == edges_.end()) {
-    if (edges_.size() < kMostEdges) edges_.push_back({parent, child, T_parent_child, is_static, 1});
+    if (edges_.size() < kMostEdges) {
+      edges_.push_back({parent, child, T_parent_child, is_static, false, 1});
+    }
     return;
   }
   ++known->count;
+  if (!is_static && !known->moves) {
+    known->moves = !is_same_mounting(known->T_parent_child, T_parent_child);
+  }
   if (is_static) {
     known->T_parent_child = T_parent_child;
     known->is_static = true;
@@ -60,19 +65,36 @@ bool FrameTree::put(const std::string& parent, const std::string& child,
   return true;
 }
 
+void FrameTree::add(const FrameTree& other) {
+  if (edges_.empty()) {
+    edges_ = other.edges_;
+    return;
+  }
+  for (const Edge& edge : other.edges_) {
+    add(edge.parent, edge.child, edge.T_parent_child, edge.is_static);
+    const auto known = std::ranges::find_if(edges_, [&](const Edge& own) {
+      return own.child == edge.child && own.parent == edge.parent;
+    });
+    if (known == edges_.end()) continue;
+    known->moves |= edge.moves;
+    known->count += edge.count - 1;
+  }
+}
+
 std::optional<Eigen::Isometry3d> FrameTree::find(const std::string& from,
                                                  const std::string& to) const {
-  const std::optional<Eigen::Isometry3d> fixed = find(from, to, true);
-  return fixed ? fixed : find(from, to, false);
+  const std::optional<Eigen::Isometry3d> fixed = find(from, to, Edges::kStatic);
+  return fixed ? fixed : find(from, to, Edges::kConstant);
 }
 
 std::optional<Eigen::Isometry3d> FrameTree::find(const std::string& from, const std::string& to,
-                                                 bool static_only) const {
+                                                 Edges use) const {
   // Indexed by frame, so that the search is linear in the edges: it runs for each scan, and a peer
   // may have filled the whole tree.
   std::unordered_map<std::string_view, std::vector<const Edge*>> edges_of;
   for (const Edge& edge : edges_) {
-    if (static_only && !edge.is_static) continue;
+    if (use == Edges::kStatic && !edge.is_static) continue;
+    if (use == Edges::kConstant && edge.moves) continue;
     edges_of[edge.parent].push_back(&edge);
     edges_of[edge.child].push_back(&edge);
   }
@@ -92,6 +114,16 @@ std::optional<Eigen::Isometry3d> FrameTree::find(const std::string& from, const 
     }
   }
   return std::nullopt;
+}
+
+bool is_same_mounting(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  constexpr double kSame_m = 0.05;
+  constexpr double kSame_rad = 0.05;
+  const Eigen::Isometry3d step = a.inverse() * b;
+  const double tilt_rad = std::acos(std::clamp(step.linear()(2, 2), -1.0, 1.0));
+  const double turn_rad = std::atan2(step.linear()(1, 0), step.linear()(0, 0));
+  return (b.translation() - a.translation()).head<2>().norm() <= kSame_m &&
+         std::fabs(turn_rad) <= kSame_rad && tilt_rad <= kLargestTilt_rad;
 }
 
 LaserMounting planar_mounting(const Eigen::Isometry3d& T_robot_laser) {

@@ -62,13 +62,41 @@ TEST(FrameTree, FindsTheShortestPathBetweenFramesOfTwoParents) {
   moving.transforms_() = {transform_of("odom", "base_link", {5.0, 0.0, 0.0}, 0),
                           transform_of("odom", "base_footprint", {4.0, 0.0, 0.0}, 0)};
   tree.add(moving, false);
-  moving.transforms_() = {transform_of("odom", "base_link", {9.0, 0.0, 0.0}, 0)};
-  tree.add(moving, false);  // the first one remains
-  EXPECT_EQ(found(tree, "base_link", "laser"), (geometry::Pose2{1.0, 2.0, 1.57080}));
   EXPECT_EQ(found(tree, "base_footprint", "laser"), (geometry::Pose2{2.0, 2.0, 1.57080}));
+  moving.transforms_() = {transform_of("odom", "base_link", {5.01, 0.0, 0.0}, 0)};
+  tree.add(moving, false);  // the first one remains
+  EXPECT_EQ(found(tree, "base_footprint", "laser"), (geometry::Pose2{2.0, 2.0, 1.57080}));
+  EXPECT_FALSE(tree.edges()[2].moves);
+  moving.transforms_() = {transform_of("odom", "base_link", {9.0, 0.0, 0.0}, 0)};
+  tree.add(moving, false);
+  EXPECT_TRUE(tree.edges()[2].moves);
+  EXPECT_EQ(found(tree, "base_link", "laser"), (geometry::Pose2{1.0, 2.0, 1.57080}));
+  EXPECT_FALSE(tree.find("base_footprint", "laser"));  // not on a path that moves
   EXPECT_FALSE(tree.find("base_link", "camera"));
   ASSERT_EQ(tree.edges().size(), 4U);
-  EXPECT_EQ(tree.edges()[2].count, 2U);
+  EXPECT_EQ(tree.edges()[2].count, 3U);
+}
+
+TEST(FrameTree, TakesTheEdgesOfAnother) {
+  FrameTree tree;
+  tree.add("odom", "base_link", at(0.0, 0.0, 0.0), false);
+  FrameTree other;
+  other.add("base_link", "laser", at(0.2, 0.0, 0.0), true);
+  for (const double x_m : {0.0, 1.0}) other.add("odom", "base_link", at(x_m, 0.0, 0.0), false);
+  tree.add(other);
+  EXPECT_EQ(found(tree, "base_link", "laser"), (geometry::Pose2{0.2, 0.0, 0.0}));
+  EXPECT_EQ(tree.edges().front().count, 3U);
+  EXPECT_TRUE(tree.edges().front().moves);
+}
+
+TEST(LaserMounting, IsTheSameWhileItJitters) {
+  const Eigen::Isometry3d mounting = at(0.2, 0.1, 1.0);
+  EXPECT_TRUE(is_same_mounting(mounting, at(0.23, 0.12, 1.04)));
+  EXPECT_TRUE(is_same_mounting(mounting, at(0.2, 0.1, 1.0, 0.1)));  // leans
+  EXPECT_FALSE(is_same_mounting(mounting, at(0.26, 0.1, 1.0)));
+  EXPECT_FALSE(is_same_mounting(mounting, at(0.2, 0.1, 1.06)));
+  EXPECT_FALSE(is_same_mounting(mounting, at(0.2, 0.1, 1.0, 0.15)));
+  EXPECT_FALSE(is_same_mounting(mounting, at(0.2, 0.1, 1.0, kPi)));
 }
 
 TEST(FrameTree, PassesOverWhatIsNoTransform) {

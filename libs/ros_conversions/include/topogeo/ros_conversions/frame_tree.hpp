@@ -1,5 +1,5 @@
 // The frames of a robot as /tf and /tf_static state them (REP 105), without their times: for fixed
-// transforms, like the mounting of a laser.
+// transforms, like the mounting of a laser. Transforms that move are kept apart.
 #pragma once
 
 #include <cstddef>
@@ -26,6 +26,7 @@ class FrameTree {
     std::string child;
     Eigen::Isometry3d T_parent_child = Eigen::Isometry3d::Identity();
     bool is_static = false;
+    bool moves = false;       ///< it was stated with another value, see is_same_mounting()
     std::uint64_t count = 0;  ///< number of times it was stated
   };
 
@@ -42,16 +43,20 @@ class FrameTree {
            const Eigen::Isometry3d& T_parent_child);
 
   /// The transform that takes coordinates of `to` to those of `from`, over as few edges as
-  /// possible, preferring static ones only. Empty if no edges connect the two.
+  /// possible, preferring static ones only. Empty if no edges connect the two without one that
+  /// moves.
   [[nodiscard]] std::optional<Eigen::Isometry3d> find(const std::string& from,
                                                       const std::string& to) const;
+
+  /// Adds the edges of another tree, each as often as it was stated there.
+  void add(const FrameTree& other);
 
   [[nodiscard]] const std::vector<Edge>& edges() const { return edges_; }
 
  private:
+  enum class Edges : std::uint8_t { kStatic, kConstant };
   [[nodiscard]] std::optional<Eigen::Isometry3d> find(const std::string& from,
-                                                      const std::string& to,
-                                                      bool static_only) const;
+                                                      const std::string& to, Edges use) const;
 
   std::vector<Edge> edges_;
 };
@@ -67,6 +72,11 @@ struct LaserMounting {
 
 /// A plane that leans more than this does not measure the walls of the floor plan.
 inline constexpr double kLargestTilt_rad = 8.0 * std::numbers::pi / 180.0;
+
+/// Whether two values of a transform are one mounting: within 5 cm and 0.05 rad in plan view, which
+/// is more than a joint that holds its place jitters, and within kLargestTilt_rad of tilt, which a
+/// suspension may have.
+bool is_same_mounting(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b);
 
 /// The mounting, rounded to 0.1 mm and 0.00001 rad as in a CARMEN log, so that a drive has the same
 /// mounting in each format.
