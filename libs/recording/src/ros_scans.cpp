@@ -169,9 +169,13 @@ void RosScans::take_scan(const RawMessage& message, const Topic& topic) {
 }
 
 void RosScans::take_odometry(const RawMessage& message, const Topic& topic) {
-  ++odometry_;
   try {
     const auto odometry = decode<ros::Odometry>(message.data, topic.encoding);
+    if (ros::frame_name(odometry.header_().frame_id_()) != survey_.odom_frame ||
+        ros::frame_name(odometry.child_frame_id_()) != survey_.odometry_child_frame) {
+      return;  // of another robot, as the survey says
+    }
+    ++odometry_;
     add_pose(odometry.header_(), message.log_time_ns, ros::planar(odometry.pose_().pose_()));
   } catch (const DecodeError& error) {
     skip_(SkipReason::kPose, scans_, source_->position() + ": " + error.what());
@@ -183,7 +187,7 @@ void RosScans::take_transforms(const RawMessage& message, const Topic& topic) {
     const auto transforms = decode<ros::TFMessage>(message.data, topic.encoding);
     for (const ros::TransformStamped& stated : transforms.transforms_()) {
       if (ros::frame_name(stated.header_().frame_id_()) != survey_.odom_frame ||
-          ros::frame_name(stated.child_frame_id_()) != survey_.robot_frame) {
+          ros::frame_name(stated.child_frame_id_()) != survey_.odometry_child_frame) {
         continue;
       }
       ++odometry_;

@@ -16,10 +16,10 @@ namespace topogeo::recording {
 /// The user's choices; all are optional.
 struct TopicChoice {
   std::optional<std::string>
-      scan;  ///< of sensor_msgs/LaserScan; none: /scan, else the one with most messages
+      scan;  ///< of sensor_msgs/LaserScan; none: of a level laser, /scan, else most messages
   std::optional<std::string>
-      odometry;  ///< of nav_msgs/Odometry or tf2_msgs/TFMessage; none: /odom, else the
-                 ///< Odometry with most messages, else odom -> base of /tf
+      odometry;  ///< of nav_msgs/Odometry or tf2_msgs/TFMessage; none: of the robot with the
+                 ///< scans, /odom, else the Odometry with most messages, else odom -> base of /tf
   ros::SweepOrder sweep = ros::SweepOrder::kNone;  ///< removes the motion during a scan
 };
 
@@ -30,7 +30,8 @@ struct Survey {
   std::string odometry_topic;
   bool odometry_from_tf = false;
   std::string odom_frame;
-  std::string robot_frame;  ///< child frame of the odometry
+  std::string odometry_child_frame;  ///< as its messages state it
+  std::string robot_frame;           ///< whose motion odometry measures: see robot_frame.hpp
   std::optional<ros::LaserMounting>
       mounting;  ///< empty if no transforms connect robot_frame and laser_frame
   std::optional<ros::BeamPattern> beams;  ///< of most scans; empty if none has beams

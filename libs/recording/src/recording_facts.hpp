@@ -1,0 +1,58 @@
+// What the topics of a recording hold: the frames of scans and odometry, the beams of scans, the
+// transforms.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "topogeo/recording/message_source.hpp"
+#include "topogeo/ros_conversions/frame_tree.hpp"
+#include "topogeo/ros_conversions/laser_scan.hpp"
+
+namespace topogeo::recording {
+
+/// Scans with one pattern of beams.
+struct BeamKind {
+  ros::BeamPattern upright;
+  ros::BeamPattern upside_down;
+  std::uint64_t scans = 0;
+};
+
+/// The messages of a topic with the same frames.
+struct FrameFacts {
+  std::string frame;  ///< of the laser, or of odometry
+  std::string child;  ///< of odometry
+  std::uint64_t messages = 0;
+  std::vector<BeamKind> beams;  ///< of scans
+};
+
+struct TopicFacts {
+  Topic topic;
+  std::uint64_t messages = 0;
+  std::vector<FrameFacts> frames;  ///< of readable scans and odometry, most messages first
+  ros::FrameTree transforms;       ///< of a topic of transforms
+};
+
+class RecordingFacts {
+ public:
+  /// Reads the whole recording once. Throws like open_messages().
+  explicit RecordingFacts(const std::filesystem::path& path);
+
+  /// Of one type, most messages first.
+  [[nodiscard]] std::vector<const TopicFacts*> of_type(std::string_view type) const;
+  /// All topics with their types, for error messages.
+  [[nodiscard]] std::string topics_text() const;
+
+ private:
+  void take(const Topic& topic, const RawMessage& message);
+
+  std::map<std::string, TopicFacts> topics_;  // by name
+  std::vector<Topic> all_topics_;
+  std::string damage_;
+};
+
+}  // namespace topogeo::recording
