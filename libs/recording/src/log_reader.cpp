@@ -43,9 +43,10 @@ class CarmenScans final : public LogReader::Source {
 class RecordedScans final : public LogReader::Source {
  public:
   RecordedScans(const std::filesystem::path& path, const scan::CarmenLogOptions& options,
-                const TopicChoice& topics)
+                std::shared_ptr<const Drive> drive, ros::SweepOrder sweep)
       : name_(path.string()),
-        scans_(path, topics, options.range_max_m, RosScans::Beams::kOnePattern, skip()),
+        scans_(path, std::move(drive), sweep, options.range_max_m, RosScans::Beams::kOnePattern,
+               skip()),
         sequence_(
             options.jump_s, [this] { return scans_.next(); }, skip()) {
     ready_ = sequence_.next();
@@ -92,11 +93,13 @@ class RecordedScans final : public LogReader::Source {
 LogReader::LogReader(const std::filesystem::path& path, const scan::CarmenLogOptions& options,
                      const TopicChoice& topics) {
   check(options);
-  no_return_ = find_no_return(path, options, topics);
+  std::shared_ptr<const Drive> drive;
+  if (is_recording(path)) drive = std::make_shared<const Drive>(path, topics);
+  no_return_ = find_no_return(path, options, drive);
   scan::CarmenLogOptions limited = options;
   if (no_return_) limited.range_max_m = std::min(limited.range_max_m, no_return_->least_m);
-  if (is_recording(path)) {
-    source_ = std::make_unique<RecordedScans>(path, limited, topics);
+  if (drive) {
+    source_ = std::make_unique<RecordedScans>(path, limited, std::move(drive), topics.sweep);
   } else {
     source_ = std::make_unique<CarmenScans>(path, limited);
   }
@@ -136,7 +139,8 @@ scan::LogCheck check_log(const std::filesystem::path& path, const scan::LogCheck
   if (!is_recording(path)) return scan::check_carmen_log(path, options);
   constexpr double kNoLimit_m = 1e9;
   scan::ScanCheck check(options);
-  RosScans scans(path, topics, kNoLimit_m, RosScans::Beams::kAsMeasured,
+  RosScans scans(path, std::make_shared<const Drive>(path, topics), ros::SweepOrder::kNone,
+                 kNoLimit_m, RosScans::Beams::kAsMeasured,
                  [&](scan::SkipReason reason, std::uint64_t scan, const std::string& text) {
                    check.found(scan::fault_of(reason), scan, text);
                  });

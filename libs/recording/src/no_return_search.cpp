@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <string>
 
-#include "topogeo/recording/message_source.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
 
 #include "ros_scans.hpp"
@@ -22,8 +21,9 @@ void read_carmen(const std::filesystem::path& path, const scan::CarmenLogOptions
 
 /// Uses the readings as they were measured: a correction of motion would change the value.
 void read_recording(const std::filesystem::path& path, const scan::CarmenLogOptions& options,
-                    const TopicChoice& topics, scan::NoReturnFinder& finder) {
-  RosScans scans(path, topics, options.range_max_m, RosScans::Beams::kAsMeasured,
+                    const std::shared_ptr<const Drive>& drive, scan::NoReturnFinder& finder) {
+  RosScans scans(path, drive, ros::SweepOrder::kNone, options.range_max_m,
+                 RosScans::Beams::kAsMeasured,
                  [](scan::SkipReason, std::uint64_t, const std::string&) {});
   while (const std::optional<scan::ScanSequence::Candidate> candidate = scans.next()) {
     finder.add(candidate->scan.ranges_m, candidate->scan.T_odom_robot);
@@ -35,11 +35,11 @@ void read_recording(const std::filesystem::path& path, const scan::CarmenLogOpti
 
 std::optional<scan::NoReturn> find_no_return(const std::filesystem::path& path,
                                              const scan::CarmenLogOptions& options,
-                                             const TopicChoice& topics) {
+                                             const std::shared_ptr<const Drive>& drive) {
   if (!options.detect_no_return) return std::nullopt;
   scan::NoReturnFinder finder;
-  if (is_recording(path)) {
-    read_recording(path, options, topics, finder);
+  if (drive) {
+    read_recording(path, options, drive, finder);
   } else {
     read_carmen(path, options, finder);
   }

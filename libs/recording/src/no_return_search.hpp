@@ -2,18 +2,20 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 
-#include "topogeo/recording/survey.hpp"
 #include "topogeo/scan/carmen_log_config.hpp"
 #include "topogeo/scan/no_return.hpp"
+
+#include "timeline.hpp"
 
 namespace topogeo::recording {
 
 /// Among the readings below options.range_max_m; empty if there is no such range, or if the options
-/// do not ask for it. Throws like LogReader.
+/// do not ask for it. `drive` is that of a recording, none of a CARMEN log. Throws like LogReader.
 std::optional<scan::NoReturn> find_no_return(const std::filesystem::path& path,
                                              const scan::CarmenLogOptions& options,
-                                             const TopicChoice& topics);
+                                             const std::shared_ptr<const Drive>& drive);
 
 }  // namespace topogeo::recording

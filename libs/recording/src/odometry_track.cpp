@@ -7,8 +7,6 @@
 namespace topogeo::recording {
 namespace {
 
-/// Half an hour at 50 poses a second without a scan that lets poses be dropped.
-constexpr std::size_t kMostSamples = 100'000;
 // Odometry motion of a standing robot, at most.
 constexpr double kStands_m = 0.01;
 constexpr double kStands_rad = 0.01;
@@ -28,11 +26,11 @@ void OdometryTrack::add(std::int64_t stamp_ns, const geometry::Pose2& T_odom_rob
     return;
   }
   samples_.insert(place, {stamp_ns, T_odom_robot, 0.0, 0.0});
-  if (samples_.size() > kMostSamples) samples_.pop_front();
 }
 
-bool OdometryTrack::reaches(std::int64_t stamp_ns) const {
-  return !samples_.empty() && samples_.back().stamp_ns >= stamp_ns;
+bool OdometryTrack::covers(std::int64_t stamp_ns) const {
+  return !samples_.empty() && samples_.front().stamp_ns <= stamp_ns &&
+         stamp_ns <= samples_.back().stamp_ns;
 }
 
 std::optional<geometry::Pose2> OdometryTrack::at(std::int64_t stamp_ns) const {
@@ -66,10 +64,6 @@ std::optional<double> OdometryTrack::distance_s(std::int64_t stamp_ns) const {
         std::min(nearest_s, static_cast<double>(stamp_ns - std::prev(after)->stamp_ns) * 1e-9);
   }
   return nearest_s;
-}
-
-void OdometryTrack::forget_before(std::int64_t stamp_ns) {
-  while (samples_.size() > 2 && samples_[1].stamp_ns < stamp_ns) samples_.pop_front();
 }
 
 }  // namespace topogeo::recording

@@ -3,9 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,7 +13,7 @@
 #include "topogeo/recording/survey.hpp"
 #include "topogeo/scan/scan_sequence.hpp"
 
-#include "screened_odometry.hpp"
+#include "timeline.hpp"
 
 namespace topogeo::recording {
 
@@ -26,51 +24,38 @@ class RosScans {
     kAsMeasured
   };
 
-  /// Ranges at or above `range_limit_m` are no echo.
-  RosScans(const std::filesystem::path& path, const TopicChoice& choice, double range_limit_m,
-           Beams beams, scan::ScanSequence::Skip skip);
+  /// Ranges at or above `range_limit_m` are no echo. `drive` is of the same file.
+  RosScans(const std::filesystem::path& path, std::shared_ptr<const Drive> drive,
+           ros::SweepOrder sweep, double range_limit_m, Beams beams, scan::ScanSequence::Skip skip);
 
   /// Its odometry epoch counts from 0.
   std::optional<scan::ScanSequence::Candidate> next();
 
-  [[nodiscard]] const Survey& facts() const { return survey_; }
+  [[nodiscard]] const Survey& facts() const { return drive_->survey; }
   [[nodiscard]] double fraction_read() const { return source_->fraction_read(); }
-  /// About the odometry that was read so far, for people.
-  [[nodiscard]] std::vector<std::string> notes() const { return track_.notes(); }
-  [[nodiscard]] std::uint64_t messages() const { return messages_; }
+  /// About times and odometry, for people.
+  [[nodiscard]] std::vector<std::string> notes() const { return drive_->timeline.notes(); }
+  [[nodiscard]] std::uint64_t messages() const { return scans_ + odometry_messages(); }
   [[nodiscard]] std::uint64_t scan_messages() const { return scans_; }
-  [[nodiscard]] std::uint64_t odometry_messages() const { return odometry_; }
+  [[nodiscard]] std::uint64_t odometry_messages() const {
+    return drive_->timeline.odometry_messages();
+  }
 
  private:
   using Candidate = scan::ScanSequence::Candidate;
-  struct Waiting {
-    std::uint64_t place = 0;
-    std::int64_t stamp_ns = 0;
-    ros::Sweep sweep;
-  };
 
-  [[nodiscard]] bool front_is_due() const;
-  std::optional<Candidate> take_front();
-  void take(const RawMessage& message);
-  void put_beams(const Waiting& from, scan::Scan& scan) const;
-  void take_scan(const RawMessage& message, const Topic& topic);
-  void take_odometry(const RawMessage& message, const Topic& topic);
-  void take_transforms(const RawMessage& message, const Topic& topic);
-  void add_pose(const ros::Header& header, std::int64_t log_time_ns,
-                const std::optional<geometry::Pose2>& T_odom_robot);
-  void finish();
+  /// The scan of a message with its beams; empty if it is skipped.
+  std::optional<Candidate> take(const RawMessage& message);
+  void skip_without_pose(std::int64_t stamp_ns);
+  void put_beams(ros::Sweep sweep, scan::Scan& scan) const;
 
-  Survey survey_;
+  std::shared_ptr<const Drive> drive_;
   ros::SweepOrder sweep_;
   double range_limit_m_;
   Beams beams_;
   scan::ScanSequence::Skip skip_;
   std::unique_ptr<MessageSource> source_;
-  ScreenedOdometry track_;
-  std::deque<Waiting> waiting_;  // until odometry reaches their last beams
-  std::uint64_t messages_ = 0;
   std::uint64_t scans_ = 0;
-  std::uint64_t odometry_ = 0;
   bool ended_ = false;
 };
 

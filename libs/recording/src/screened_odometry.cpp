@@ -1,7 +1,5 @@
 #include "screened_odometry.hpp"
 
-#include <algorithm>
-
 namespace topogeo::recording {
 
 void ScreenedOdometry::add(std::int64_t stamp_ns, const geometry::Pose2& T_odom_robot) {
@@ -24,16 +22,14 @@ void ScreenedOdometry::take() {
 }
 
 std::optional<ScreenedOdometry::Answer> ScreenedOdometry::at(std::int64_t stamp_ns) const {
-  for (auto epoch = epochs_.rbegin(); epoch != epochs_.rend(); ++epoch) {
-    const auto T_odom_robot = epoch->track.at(stamp_ns);
-    if (T_odom_robot) return Answer{*T_odom_robot, epoch->number};
+  for (const bool covered : {true, false}) {
+    for (auto epoch = epochs_.rbegin(); epoch != epochs_.rend(); ++epoch) {
+      if (covered && !epoch->track.covers(stamp_ns)) continue;
+      const auto T_odom_robot = epoch->track.at(stamp_ns);
+      if (T_odom_robot) return Answer{*T_odom_robot, epoch->number};
+    }
   }
   return std::nullopt;
-}
-
-bool ScreenedOdometry::reaches(std::int64_t stamp_ns) const {
-  return std::ranges::any_of(epochs_,
-                             [&](const Epoch& epoch) { return epoch.track.reaches(stamp_ns); });
 }
 
 std::optional<double> ScreenedOdometry::distance_s(std::int64_t stamp_ns) const {
@@ -43,12 +39,6 @@ std::optional<double> ScreenedOdometry::distance_s(std::int64_t stamp_ns) const 
     if (distance_s && (!nearest_s || *distance_s < *nearest_s)) nearest_s = distance_s;
   }
   return nearest_s;
-}
-
-void ScreenedOdometry::forget_before(std::int64_t stamp_ns) {
-  for (Epoch& epoch : epochs_) epoch.track.forget_before(stamp_ns);
-  // The scans of an epoch come before those of the next one.
-  while (epochs_.size() > 1 && !epochs_.front().track.reaches(stamp_ns)) epochs_.pop_front();
 }
 
 }  // namespace topogeo::recording

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,11 +23,10 @@ class ScreenedOdometry {
     geometry::Pose2 T_odom_robot;
     std::uint64_t epoch = 0;  ///< from 0
   };
-  /// Like OdometryTrack: in the track of the latest epoch that has a pose for that time.
+  /// Like OdometryTrack: in the track of the latest epoch that covers that time or, if none does,
+  /// has a pose near it.
   [[nodiscard]] std::optional<Answer> at(std::int64_t stamp_ns) const;
-  [[nodiscard]] bool reaches(std::int64_t stamp_ns) const;
   [[nodiscard]] std::optional<double> distance_s(std::int64_t stamp_ns) const;
-  void forget_before(std::int64_t stamp_ns);
 
   /// For people, about poses that were left out and further epochs.
   [[nodiscard]] std::vector<std::string> notes() const { return screen_.notes(); }
@@ -42,7 +40,7 @@ class ScreenedOdometry {
   void take();
 
   geometry::OdometryScreen screen_;
-  std::deque<Epoch> epochs_;  // those that scans may need
+  std::vector<Epoch> epochs_;
 };
 
 }  // namespace topogeo::recording

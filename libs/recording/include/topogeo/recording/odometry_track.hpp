@@ -1,10 +1,10 @@
-// Odometry poses of a recording, for the pose at the time of a scan: they may come late and with
-// gaps, but all come in the end. The track of live odometry is in geometry.
+// Odometry poses of a recording, for the pose at the time of a scan: with gaps, but all are known.
+// The track of live odometry is in geometry.
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <optional>
+#include <vector>
 
 #include "topogeo/geometry/odometry_track.hpp"
 #include "topogeo/geometry/pose2.hpp"
@@ -21,8 +21,8 @@ class OdometryTrack {
   /// Adds poses in approximate order of time; the last one at a time counts.
   void add(std::int64_t stamp_ns, const geometry::Pose2& T_odom_robot);
 
-  /// Whether a pose at or after `stamp_ns` has come.
-  [[nodiscard]] bool reaches(std::int64_t stamp_ns) const;
+  /// Whether there are poses at or before and at or after `stamp_ns`.
+  [[nodiscard]] bool covers(std::int64_t stamp_ns) const;
 
   /// The pose at `stamp_ns`: a pose with that stamp unchanged, otherwise interpolated linearly,
   /// with the heading along the shorter turn. Empty if none is near.
@@ -31,11 +31,8 @@ class OdometryTrack {
   /// Seconds between `stamp_ns` and the nearest pose; empty without one.
   [[nodiscard]] std::optional<double> distance_s(std::int64_t stamp_ns) const;
 
-  /// Drops poses that no scan at or after `stamp_ns` needs.
-  void forget_before(std::int64_t stamp_ns);
-
  private:
-  std::deque<geometry::OdometrySample> samples_;  // speeds are unknown
+  std::vector<geometry::OdometrySample> samples_;  // speeds are unknown
 };
 
 }  // namespace topogeo::recording
