@@ -95,9 +95,10 @@ TEST(LaserScan, OfTooManyBeamsKeepsEveryOther) {
 }
 
 TEST(LaserScan, IsRefusedWithBeamsOfNoLaser) {
-  const auto error_of = [](const LaserScan& message) -> std::string {
+  const auto error_of = [](const LaserScan& message,
+                           SweepOrder order = SweepOrder::kNone) -> std::string {
     try {
-      (void)to_sweep(message, false, kMost);
+      (void)to_sweep(message, false, kMost, order);
     } catch (const std::invalid_argument& error) {
       return error.what();
     }
@@ -114,10 +115,12 @@ TEST(LaserScan, IsRefusedWithBeamsOfNoLaser) {
   message = four_beams();
   message.angle_min_(std::numeric_limits<float>::quiet_NaN());
   EXPECT_THAT(error_of(message), HasSubstr("angle_min"));
-  for (const float step_s : {-1.0F, 100.0F, std::numeric_limits<float>::quiet_NaN()}) {
+  for (const float step_s : {-1.0F, 100.0F, std::numeric_limits<float>::infinity(),
+                             std::numeric_limits<float>::quiet_NaN()}) {
     message = four_beams();
     message.time_increment_(step_s);
-    EXPECT_THAT(error_of(message), HasSubstr("time_increment"));
+    EXPECT_THAT(error_of(message, SweepOrder::kForward), HasSubstr("time_increment"));
+    EXPECT_EQ(error_of(message), "");  // not used
   }
 }
 

@@ -62,7 +62,8 @@ struct Sweep {
 BeamPattern pattern_of(const LaserScan& message, bool upside_down, std::size_t most_beams);
 
 /// Like pattern_of, with ranges and times. A range is an echo if it is above 0, not below
-/// range_min, and below range_max if that is stated. Throws likewise, also for impossible times.
+/// range_min, and below range_max if that is stated. Throws likewise, also for impossible times
+/// unless the order is kNone.
 Sweep to_sweep(const LaserScan& message, bool upside_down, std::size_t most_beams,
                SweepOrder order = SweepOrder::kNone);
 
