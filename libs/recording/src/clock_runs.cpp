@@ -112,7 +112,7 @@ class Divider {
       const auto repeated = static_cast<std::size_t>(std::ranges::count_if(
           run.members, [&](std::size_t number) { return seen.contains(key_of(number)); }));
       if (2 * repeated > run.members.size()) {
-        found_.repeated += run.members.size();
+        found_.repeated.insert(found_.repeated.end(), run.members.begin(), run.members.end());
         return true;
       }
       for (const std::size_t number : run.members) seen.insert(key_of(number));

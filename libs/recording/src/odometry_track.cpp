@@ -45,25 +45,46 @@ std::optional<geometry::Pose2> OdometryTrack::at(std::int64_t stamp_ns) const {
   }
   const geometry::OdometrySample& a = *std::prev(after);
   const geometry::OdometrySample& b = *after;
-  if (b.stamp_ns - a.stamp_ns > kLongestGap_ns && !stood(a.T_odom_robot, b.T_odom_robot)) {
-    return std::nullopt;
-  }
+  if (!bridges(a, b)) return std::nullopt;
   return geometry::interpolate(a, b, stamp_ns);
 }
 
-std::optional<double> OdometryTrack::distance_s(std::int64_t stamp_ns) const {
-  if (samples_.empty()) return std::nullopt;
+/// Whether the poses between two samples are known well enough.
+bool OdometryTrack::bridges(const geometry::OdometrySample& a,
+                            const geometry::OdometrySample& b) const {
+  const std::int64_t gap_ns = b.stamp_ns - a.stamp_ns;
+  if (gap_ns <= kLongestGap_ns || stood(a.T_odom_robot, b.T_odom_robot)) return true;
+  if (gap_ns > std::min(period_ns_ * 5 / 2, kLongestSlowGap_ns)) return false;
+  const geometry::Pose2 step = geometry::between(a.T_odom_robot, b.T_odom_robot);
+  return step.position_m().norm() <= kFarthestStep_m &&
+         std::fabs(step.theta_rad) <= kLargestTurn_rad;
+}
+
+void OdometryTrack::finish() {
+  if (samples_.size() < 2) return;
+  std::vector<std::int64_t> periods_ns;
+  periods_ns.reserve(samples_.size() - 1);
+  for (std::size_t i = 1; i < samples_.size(); ++i) {
+    periods_ns.push_back(samples_[i].stamp_ns - samples_[i - 1].stamp_ns);
+  }
+  const auto middle = periods_ns.begin() + static_cast<std::ptrdiff_t>(periods_ns.size() / 2);
+  std::ranges::nth_element(periods_ns, middle);
+  period_ns_ = *middle;
+}
+
+OdometryTrack::Gap OdometryTrack::gap_at(std::int64_t stamp_ns) const {
   const auto after =
       std::ranges::lower_bound(samples_, stamp_ns, {}, &geometry::OdometrySample::stamp_ns);
-  double nearest_s = 1e18;
-  if (after != samples_.end()) {
-    nearest_s = static_cast<double>(after->stamp_ns - stamp_ns) * 1e-9;
+  Gap gap;
+  if (after != samples_.end()) gap.after_ns = after->stamp_ns;
+  if (after != samples_.begin()) gap.before_ns = std::prev(after)->stamp_ns;
+  if (gap.before_ns && gap.after_ns) {
+    const geometry::Pose2 step =
+        geometry::between(std::prev(after)->T_odom_robot, after->T_odom_robot);
+    gap.step_m = step.position_m().norm();
+    gap.turn_rad = std::fabs(step.theta_rad);
   }
-  if (after != samples_.begin()) {
-    nearest_s =
-        std::min(nearest_s, static_cast<double>(stamp_ns - std::prev(after)->stamp_ns) * 1e-9);
-  }
-  return nearest_s;
+  return gap;
 }
 
 }  // namespace topogeo::recording

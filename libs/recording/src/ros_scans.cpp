@@ -73,6 +73,7 @@ std::optional<RosScans::Candidate> RosScans::take(const RawMessage& message) {
                                   text_of(sweep.pattern));
     }
     if (!stamp_ns) {
+      if (drive_->timeline.is_repeated(scans_ - 1)) return std::nullopt;
       skip_(SkipReason::kStamp, scans_, "expected a time between those beside it, got another");
       return std::nullopt;
     }
@@ -97,11 +98,26 @@ std::optional<RosScans::Candidate> RosScans::take(const RawMessage& message) {
 }
 
 void RosScans::skip_without_pose(std::int64_t stamp_ns) {
-  const std::optional<double> distance_s = drive_->timeline.odometry().distance_s(stamp_ns);
-  skip_(SkipReason::kPose, scans_,
-        "expected odometry around the time of the scan, got " +
-            (distance_s ? "the nearest " + seconds_text_of(*distance_s) + " off"
-                        : std::string("none")));
+  const OdometryTrack::Gap gap = drive_->timeline.odometry().gap_at(stamp_ns);
+  const auto seconds_to = [&](std::int64_t other_ns) {
+    return seconds_text_of(std::fabs(static_cast<double>(other_ns - stamp_ns) * 1e-9));
+  };
+  if (!gap.before_ns && !gap.after_ns) {
+    skip_(SkipReason::kNoOdometry, scans_, "expected odometry, got none");
+  } else if (!gap.before_ns) {
+    skip_(SkipReason::kOdometryEnds, scans_,
+          "no odometry yet: the first comes " + seconds_to(*gap.after_ns) + " later");
+  } else if (!gap.after_ns) {
+    skip_(SkipReason::kOdometryEnds, scans_,
+          "no odometry any more: the last came " + seconds_to(*gap.before_ns) + " before");
+  } else {
+    char text[120];
+    std::snprintf(text, sizeof(text), " with a step of %.2f m and %.2f rad", gap.step_m,
+                  gap.turn_rad);
+    skip_(SkipReason::kNoOdometry, scans_,
+          "expected odometry around the time of the scan, got a gap of " +
+              seconds_text_of(static_cast<double>(*gap.after_ns - *gap.before_ns) * 1e-9) + text);
+  }
 }
 
 void RosScans::put_beams(ros::Sweep sweep, scan::Scan& scan) const {

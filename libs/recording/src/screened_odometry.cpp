@@ -1,5 +1,8 @@
 #include "screened_odometry.hpp"
 
+#include <algorithm>
+#include <cstdio>
+
 namespace topogeo::recording {
 
 void ScreenedOdometry::add(std::int64_t stamp_ns, const geometry::Pose2& T_odom_robot) {
@@ -10,6 +13,7 @@ void ScreenedOdometry::add(std::int64_t stamp_ns, const geometry::Pose2& T_odom_
 void ScreenedOdometry::finish() {
   screen_.finish();
   take();
+  for (Epoch& epoch : epochs_) epoch.track.finish();
 }
 
 void ScreenedOdometry::take() {
@@ -32,13 +36,32 @@ std::optional<ScreenedOdometry::Answer> ScreenedOdometry::at(std::int64_t stamp_
   return std::nullopt;
 }
 
-std::optional<double> ScreenedOdometry::distance_s(std::int64_t stamp_ns) const {
-  std::optional<double> nearest_s;
+OdometryTrack::Gap ScreenedOdometry::gap_at(std::int64_t stamp_ns) const {
+  OdometryTrack::Gap around;
   for (const Epoch& epoch : epochs_) {
-    const std::optional<double> distance_s = epoch.track.distance_s(stamp_ns);
-    if (distance_s && (!nearest_s || *distance_s < *nearest_s)) nearest_s = distance_s;
+    const OdometryTrack::Gap gap = epoch.track.gap_at(stamp_ns);
+    if (gap.before_ns && gap.after_ns) return gap;  // within one epoch
+    if (gap.before_ns) around.before_ns = std::max(gap.before_ns, around.before_ns);
+    if (gap.after_ns && (!around.after_ns || *gap.after_ns < *around.after_ns)) {
+      around.after_ns = gap.after_ns;
+    }
   }
-  return nearest_s;
+  return around;
+}
+
+std::vector<std::string> ScreenedOdometry::notes() const {
+  constexpr std::int64_t kSlow_ns = 500'000'000;
+  std::vector<std::string> notes = screen_.notes();
+  for (const Epoch& epoch : epochs_) {
+    if (epoch.track.period_ns() < kSlow_ns) continue;
+    char text[120];
+    std::snprintf(text, sizeof(text),
+                  "odometry comes only each %.2f s: poses between are interpolated",
+                  static_cast<double>(epoch.track.period_ns()) * 1e-9);
+    notes.emplace_back(text);
+    break;
+  }
+  return notes;
 }
 
 }  // namespace topogeo::recording

@@ -26,10 +26,11 @@ class ScreenedOdometry {
   /// Like OdometryTrack: in the track of the latest epoch that covers that time or, if none does,
   /// has a pose near it.
   [[nodiscard]] std::optional<Answer> at(std::int64_t stamp_ns) const;
-  [[nodiscard]] std::optional<double> distance_s(std::int64_t stamp_ns) const;
+  /// Within one epoch if there is one on both sides, else between epochs.
+  [[nodiscard]] OdometryTrack::Gap gap_at(std::int64_t stamp_ns) const;
 
-  /// For people, about poses that were left out and further epochs.
-  [[nodiscard]] std::vector<std::string> notes() const { return screen_.notes(); }
+  /// For people, about poses that were left out, further epochs, and a slow rate.
+  [[nodiscard]] std::vector<std::string> notes() const;
 
  private:
   struct Epoch {

@@ -32,9 +32,9 @@ std::string text_with(const char* format, double value, double other = 0.0) {
 }
 
 /// One topic.
-class Stream {
+class StampedTopic {
  public:
-  Stream(const char* name, std::span<const StampedMessage> messages)
+  StampedTopic(const char* name, std::span<const StampedMessage> messages)
       : name_(name), messages_(messages.begin(), messages.end()) {
     use_log_times_without_stamps();
     ClockRuns found = divide_by_clock(messages_);
@@ -45,10 +45,8 @@ class Stream {
                        text_with(" have odd times (up to %.1f s off): they are left out",
                                  seconds_of(found.farthest_odd_ns)));
     }
-    if (found.repeated > 0) {
-      notes_.push_back(std::to_string(found.repeated) + " of the " + name_ +
-                       " came before: they are left out");
-    }
+    repeated_.assign(messages_.size(), false);
+    for (const std::size_t number : found.repeated) repeated_[number] = true;
     index_by_log_time();
   }
 
@@ -63,7 +61,7 @@ class Stream {
   }
 
   /// Shifts the runs as the other topic's on the same clock.
-  void join_runs_as(const Stream& other) {
+  void join_runs_as(const StampedTopic& other) {
     join_runs();
     for (std::size_t run = 0; run < runs_.size(); ++run) {
       const std::vector<std::size_t>& members = runs_[run].members;
@@ -99,12 +97,19 @@ class Stream {
     for (std::size_t run = 0; run < runs_.size(); ++run) {
       equal += put_times(runs_[run], shifts_ns_[run], times_ns);
     }
+    const auto repeated = std::ranges::count(repeated_, true);
+    if (repeated > 0) {
+      notes_.push_back(std::to_string(repeated) + " of the " + name_ +
+                       " came before: they are left out");
+    }
     if (equal > 0) {
       notes_.push_back(std::to_string(equal) + " of the " + name_ +
                        " have the time of the one before: they get times from their order");
     }
     return times_ns;
   }
+
+  [[nodiscard]] std::vector<bool>& repeated() { return repeated_; }
 
   /// Time of the message on the clock of the first run, minus that of recording.
   [[nodiscard]] std::int64_t offset_of(std::size_t number) const {
@@ -194,7 +199,7 @@ class Stream {
 
   /// Returns the number of messages that had the time of the one before.
   std::size_t put_times(const ClockRun& run, std::int64_t shift_ns,
-                        std::vector<std::optional<std::int64_t>>& times_ns) const {
+                        std::vector<std::optional<std::int64_t>>& times_ns) {
     const std::vector<std::size_t>& members = run.members;
     const std::int64_t period_ns = period_of(run);
     std::size_t equal = 0;
@@ -205,7 +210,11 @@ class Stream {
       for (; end < members.size(); ++end) {
         const StampedMessage& next = messages_[members[end]];
         if (next.stamp_ns != first.stamp_ns) break;
-        if (next.content != messages_[same.back()].content) same.push_back(members[end]);
+        if (next.content == messages_[same.back()].content) {
+          repeated_[members[end]] = true;
+        } else {
+          same.push_back(members[end]);
+        }
       }
       std::int64_t step_ns = period_ns;
       const auto count = static_cast<std::int64_t>(same.size());
@@ -228,6 +237,7 @@ class Stream {
   std::vector<std::int64_t> shifts_ns_;                            // of the runs
   std::vector<std::uint8_t> run_of_;                               // of the messages
   std::vector<std::pair<std::int64_t, std::size_t>> by_log_time_;  // of messages in runs
+  std::vector<bool> repeated_;                                     // of the messages
   std::vector<std::string> notes_;
 };
 
@@ -238,7 +248,7 @@ std::int64_t median_of(std::vector<std::int64_t> values) {
 }
 
 /// Joins the clocks of two computers by the times of recording, if no times are common.
-void join_clocks(Stream& scans, Stream& odometry) {
+void join_clocks(StampedTopic& scans, StampedTopic& odometry) {
   const auto range = odometry.range();
   if (!range || scans.by_log_time().empty()) return;
   const std::int64_t first_log_ns = odometry.by_log_time().front().first;
@@ -279,8 +289,8 @@ void join_clocks(Stream& scans, Stream& odometry) {
 
 RepairedStamps repair_stamps(std::span<const StampedMessage> scans,
                              std::span<const StampedMessage> odometry) {
-  Stream of_odometry("odometry messages", odometry);
-  Stream of_scans("scans", scans);
+  StampedTopic of_odometry("odometry messages", odometry);
+  StampedTopic of_scans("scans", scans);
   of_odometry.join_runs();
   of_scans.join_runs_as(of_odometry);
   of_odometry.note_steps();
@@ -289,6 +299,7 @@ RepairedStamps repair_stamps(std::span<const StampedMessage> scans,
   RepairedStamps repaired;
   repaired.scans_ns = of_scans.times();
   repaired.odometry_ns = of_odometry.times();
+  repaired.scans_repeated = std::move(of_scans.repeated());
   repaired.notes = std::move(of_odometry.notes());
   repaired.notes.insert(repaired.notes.end(), of_scans.notes().begin(), of_scans.notes().end());
   return repaired;

@@ -16,7 +16,8 @@ struct RepairedStamps {
   /// Of each message; empty if it is left out, because its stamp is odd or it came before.
   std::vector<std::optional<std::int64_t>> scans_ns;
   std::vector<std::optional<std::int64_t>> odometry_ns;
-  std::vector<std::string> notes;  ///< for people, on what is not as it was
+  std::vector<bool> scans_repeated;  ///< whether an equal message came before
+  std::vector<std::string> notes;    ///< for people, on what is not as it was
 };
 
 /// Messages of each topic in the order of arrival.

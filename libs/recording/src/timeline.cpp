@@ -144,8 +144,10 @@ void Timeline::finish(const Collected& collected) {
   RepairedStamps repaired = repair_stamps(collected.scans, collected.odometry);
   notes_ = std::move(repaired.notes);
   scans_ns_.resize(collected.scan_messages);
+  scans_repeated_.resize(collected.scan_messages);
   for (std::size_t i = 0; i < collected.scans.size(); ++i) {
     scans_ns_[collected.scan_numbers[i]] = repaired.scans_ns[i];
+    scans_repeated_[collected.scan_numbers[i]] = repaired.scans_repeated[i];
   }
   std::vector<std::pair<std::int64_t, std::size_t>> in_order;
   for (std::size_t i = 0; i < collected.poses.size(); ++i) {
@@ -160,6 +162,10 @@ void Timeline::finish(const Collected& collected) {
 
 std::optional<std::int64_t> Timeline::scan_ns(std::size_t number) const {
   return number < scans_ns_.size() ? scans_ns_[number] : std::nullopt;
+}
+
+bool Timeline::is_repeated(std::size_t number) const {
+  return number < scans_repeated_.size() && scans_repeated_[number];
 }
 
 std::vector<std::string> Timeline::notes() const {

@@ -32,6 +32,8 @@ class Timeline {
   /// Of a message of the scan topic, from 0 in the order of arrival; empty if its stamp is odd, it
   /// came before, or it is of another frame.
   [[nodiscard]] std::optional<std::int64_t> scan_ns(std::size_t number) const;
+  /// Whether an equal message came before.
+  [[nodiscard]] bool is_repeated(std::size_t number) const;
   [[nodiscard]] const ScreenedOdometry& odometry() const { return odometry_; }
   [[nodiscard]] std::uint64_t odometry_messages() const { return odometry_messages_; }
 
@@ -55,6 +57,7 @@ class Timeline {
   const Survey& survey_;
   std::unique_ptr<MessageSource> source_;  // while reading
   std::vector<std::optional<std::int64_t>> scans_ns_;
+  std::vector<bool> scans_repeated_;
   ScreenedOdometry odometry_;
   std::uint64_t odometry_messages_ = 0;
   std::vector<std::string> faults_;

@@ -113,6 +113,8 @@ std::string_view describe(LogFault fault) {
       return "not text";
     case LogFault::kCompression:
       return "damaged compression";
+    case LogFault::kNoOdometry:
+      return "no odometry";
   }
   return "unknown";
 }

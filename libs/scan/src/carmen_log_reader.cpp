@@ -40,6 +40,10 @@ std::string_view describe(SkipReason reason) {
       return "not text";
     case SkipReason::kTruncated:
       return "compressed data cut off or damaged";
+    case SkipReason::kNoOdometry:
+      return "no odometry at its time";
+    case SkipReason::kOdometryEnds:
+      return "before or after all odometry";
   }
   return "unknown";
 }

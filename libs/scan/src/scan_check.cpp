@@ -57,6 +57,9 @@ LogFault fault_of(SkipReason reason) {
       return LogFault::kText;
     case SkipReason::kTruncated:
       return LogFault::kCompression;
+    case SkipReason::kNoOdometry:
+    case SkipReason::kOdometryEnds:
+      return LogFault::kNoOdometry;
   }
   return LogFault::kFields;
 }

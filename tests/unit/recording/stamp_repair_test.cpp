@@ -179,6 +179,7 @@ TEST(StampRepair, LeavesOutWhatIsPlayedAgain) {
   EXPECT_EQ(expect_sound(repaired.scans_ns, 200 * kMs_ns), 100U);
   EXPECT_EQ(expect_sound(repaired.odometry_ns, 50 * kMs_ns), 400U);
   EXPECT_TRUE(repaired.scans_ns[99]);
+  EXPECT_EQ(std::ranges::count(repaired.scans_repeated, true), 100);
   EXPECT_THAT(repaired.notes, Contains(HasSubstr("100 of the scans came before")));
 }
 
@@ -239,6 +240,47 @@ TEST_F(RecordedTimes, LoseNoScansToOddStamps) {
     EXPECT_LT(geometry::difference(scan.T_odom_robot, arc_pose(0.1 * i)).norm(), 0.005) << i;
     EXPECT_EQ(scan.odometry_epoch, scans.front().odometry_epoch);
   }
+}
+
+// A transform each 1.11 s, and scans that begin before it.
+TEST_F(RecordedTimes, AllowSlowOdometry) {
+  MessageFile file(path("a.mcap"));
+  for (int i = 0; i < 200; ++i) {
+    const std::int64_t time_ns = kStart_ns + i * kSecond_ns / 10;
+    if (i % 11 == 5) file.transform("odom", "base_link", arc_pose(0.1 * i), time_ns, "/tf");
+    file.scan(time_ns, time_ns, ranges_of(i));
+  }
+  file.close();
+  LogReader reader(path("a.mcap"));
+  std::size_t scans = 0;
+  while (const std::optional<scan::Scan> scan = reader.next()) {
+    const double time_s = static_cast<double>(scan->stamp_ns - kStart_ns) * 1e-9;
+    EXPECT_LT(geometry::difference(scan->T_odom_robot, arc_pose(time_s)).norm(), 0.06) << time_s;
+    ++scans;
+  }
+  EXPECT_EQ(scans, 190U);
+  const scan::CarmenLogStatistics& statistics = reader.statistics();
+  EXPECT_THAT(statistics.notes, Contains(HasSubstr("odometry comes only each 1.10 s")));
+  EXPECT_EQ(statistics.skipped_for(scan::SkipReason::kOdometryEnds), 10U);
+  EXPECT_THAT(statistics.messages.front(), HasSubstr("no odometry yet: the first comes 0.500 s"));
+  EXPECT_EQ(check_log(path("a.mcap")).faults(), 0U);
+}
+
+TEST_F(RecordedTimes, AreMissingInAGapOfOdometry) {
+  MessageFile file(path("a.mcap"));
+  for (int i = 0; i < 200; ++i) {
+    const std::int64_t time_ns = kStart_ns + i * kSecond_ns / 10;
+    if (i < 100 || i > 140) file.odometry(time_ns, time_ns, arc_pose(0.1 * i));
+    file.scan(time_ns, time_ns, ranges_of(i));
+  }
+  file.close();
+  LogReader reader(path("a.mcap"));
+  while (reader.next()) {
+  }
+  EXPECT_EQ(reader.statistics().skipped_for(scan::SkipReason::kNoOdometry), 41U);
+  EXPECT_THAT(reader.statistics().messages.front(),
+              HasSubstr("got a gap of 4.200 s with a step of"));
+  EXPECT_EQ(check_log(path("a.mcap")).count(scan::LogFault::kNoOdometry), 41U);
 }
 
 TEST_F(RecordedTimes, AllowAnyOrderOfTopics) {

@@ -28,8 +28,9 @@ enum class LogFault : std::uint8_t {
   kFields,       ///< surplus or non-numeric fields, angles that no laser has
   kText,         ///< binary bytes, or a line longer than any scan
   kCompression,  ///< the compressed data ends early or is damaged
+  kNoOdometry,   ///< in a recording: no odometry around the time of the scan
 };
-inline constexpr std::size_t kLogFaults = 12;
+inline constexpr std::size_t kLogFaults = 13;
 /// Short text for a report: "time reversal".
 std::string_view describe(LogFault fault);
 

@@ -24,18 +24,20 @@
 
 namespace topogeo::scan {
 
-/// Reason for skipping a line.
+/// Reason for skipping a line, or a scan of a recording.
 enum class SkipReason : std::uint8_t {
-  kFields,     ///< missing, surplus or non-numeric fields
-  kRange,      ///< a range that is negative, infinite or not a number
-  kPose,       ///< an odometry pose that is not finite or absurdly far away
-  kStamp,      ///< a time stamp that is no plain decimal number of seconds
-  kTime,       ///< the time does not increase
-  kGeometry,   ///< beam angles no laser has, or count or angles differ from the first scan's
-  kText,       ///< binary bytes, or a line longer than any scan
-  kTruncated,  ///< the compressed data ends early or is damaged; the rest is lost
+  kFields,        ///< missing, surplus or non-numeric fields
+  kRange,         ///< a range that is negative, infinite or not a number
+  kPose,          ///< an odometry pose that is not finite or absurdly far away
+  kStamp,         ///< a time stamp that is no plain decimal number of seconds
+  kTime,          ///< the time does not increase
+  kGeometry,      ///< beam angles no laser has, or count or angles differ from the first scan's
+  kText,          ///< binary bytes, or a line longer than any scan
+  kTruncated,     ///< the compressed data ends early or is damaged; the rest is lost
+  kNoOdometry,    ///< in a recording: a gap of odometry around the time of the scan
+  kOdometryEnds,  ///< in a recording: before the first odometry or after the last
 };
-constexpr std::size_t kSkipReasonCount = 8;
+constexpr std::size_t kSkipReasonCount = 10;
 
 /// Short text for a report: "bad range".
 std::string_view describe(SkipReason reason);
