@@ -24,7 +24,7 @@ FrameFacts* facts_of(std::vector<FrameFacts>& all, const std::string& frame,
       all, [&](const FrameFacts& facts) { return facts.frame == frame && facts.child == child; });
   if (known != all.end()) return &*known;
   if (all.size() == kMostFrames) return nullptr;
-  return &all.emplace_back(FrameFacts{frame, child, 0, {}});
+  return &all.emplace_back(FrameFacts{frame, child, 0, {}, 0, {}});
 }
 
 void count_beams(std::vector<BeamKind>& kinds, const ros::LaserScan& scan) {
@@ -63,11 +63,14 @@ void RecordingFacts::take(const Topic& topic, const RawMessage& message) {
       facts.transforms.add(decode<ros::TFMessage>(message.data, topic.encoding),
                            topic.name.ends_with("tf_static"));
     } else if (topic.type == kLaserScanType) {
-      const auto scan = decode<ros::LaserScan>(message.data, topic.encoding);
+      auto scan = decode<ros::LaserScan>(message.data, topic.encoding);
+      const bool in_degrees = correct_degrees(scan);
       FrameFacts* found =
           facts_of(facts.frames, ros::frame_name(scan.header_().frame_id_()), std::string());
       if (found == nullptr) return;
       ++found->messages;
+      if (in_degrees) ++found->scans_in_degrees;
+      found->range_unit.add(scan);
       count_beams(found->beams, scan);
     } else {
       const auto odometry = decode<ros::Odometry>(message.data, topic.encoding);

@@ -13,6 +13,8 @@
 #include "topogeo/ros_conversions/frame_tree.hpp"
 #include "topogeo/ros_conversions/laser_scan.hpp"
 
+#include "scan_units.hpp"
+
 namespace topogeo::recording {
 
 /// Scans with one pattern of beams.
@@ -27,7 +29,9 @@ struct FrameFacts {
   std::string frame;  ///< of the laser, or of odometry
   std::string child;  ///< of odometry
   std::uint64_t messages = 0;
-  std::vector<BeamKind> beams;  ///< of scans
+  std::vector<BeamKind> beams;         ///< of scans
+  std::uint64_t scans_in_degrees = 0;  ///< see correct_degrees()
+  RangeUnit range_unit;                ///< of scans
 };
 
 struct TopicFacts {

@@ -10,6 +10,8 @@
 #include "topogeo/ros_conversions/geometry.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
 
+#include "scan_units.hpp"
+
 namespace topogeo::recording {
 namespace {
 
@@ -61,7 +63,9 @@ std::optional<RosScans::Candidate> RosScans::take(const RawMessage& message) {
   const Topic& topic = source_->topics()[message.topic];
   const Survey& survey = drive_->survey;
   try {
-    const auto laser = decode<ros::LaserScan>(message.data, topic.encoding);
+    auto laser = decode<ros::LaserScan>(message.data, topic.encoding);
+    correct_degrees(laser);
+    if (survey.ranges_in_millimetres) convert_millimetres(laser);
     const std::string frame = ros::frame_name(laser.header_().frame_id_());
     if (!is_of_laser(survey, frame)) {
       throw std::invalid_argument("frame_id: expected " + survey.laser_frame + ", got " + frame);

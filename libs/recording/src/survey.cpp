@@ -39,6 +39,7 @@ class Surveyor {
   Survey result() {
     choose_scans();
     choose_odometry();
+    find_units();
     find_mounting();
     choose_beams();
     return std::move(survey_);
@@ -48,6 +49,7 @@ class Surveyor {
   void choose_scans();
   void choose_odometry();
   void use_transforms(const TopicFacts& topic);
+  void find_units();
   void find_mounting();
   void choose_beams();
 
@@ -109,6 +111,20 @@ void Surveyor::use_transforms(const TopicFacts& topic) {
   survey_.odometry_child_frame = best->child;
   survey_.notes.push_back("odometry from " + topic.topic.name + ", " + best->parent + " -> " +
                           best->child + " (" + std::to_string(best->count) + ")");
+}
+
+void Surveyor::find_units() {
+  if (scans_.frames == nullptr) return;
+  if (scans_.frames->scans_in_degrees > 0) {
+    survey_.notes.push_back("the angles of " + std::to_string(scans_.frames->scans_in_degrees) +
+                            " scans are in degrees: they are converted");
+  }
+  survey_.ranges_in_millimetres = scans_.frames->range_unit.is_millimetres();
+  if (survey_.ranges_in_millimetres) {
+    survey_.notes.push_back("the ranges are in millimetres (up to " +
+                            std::to_string(std::lround(scans_.frames->range_unit.largest())) +
+                            "): they are converted");
+  }
 }
 
 void Surveyor::find_mounting() {

@@ -27,6 +27,7 @@ struct Survey {
   std::string scan_topic;
   std::string laser_frame;
   std::uint64_t scans = 0;  ///< messages of that topic
+  bool ranges_in_millimetres = false;
   std::string odometry_topic;
   bool odometry_from_tf = false;
   std::string odom_frame;
