@@ -1,4 +1,6 @@
 // Reads a folder of rosbag2: metadata.yaml names its files, which are read one after the other.
+// Without it, because the recorder was killed, the files of one recording are read by their
+// numbers.
 #pragma once
 
 #include <filesystem>

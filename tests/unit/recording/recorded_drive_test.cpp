@@ -71,11 +71,26 @@ TEST_F(RecordedDrive, IsReadFromAFolderOfSeveralFiles) {
     first.close();
     second.close();
   }
-  EXPECT_THAT(open_error(path("bag")), HasSubstr("expected a folder of rosbag2"));
+  const std::vector<scan::Scan> whole = read_scans(write_drive(path("whole.mcap")));
+  expect_same_scans(read_scans(path("bag")), whole);  // the recorder was killed
+  std::filesystem::rename(path("bag/bag_1.mcap"), path("bag/bag_10.mcap"));
+  std::filesystem::rename(path("bag/bag_0.mcap"), path("bag/bag_9.mcap"));
+  expect_same_scans(read_scans(path("bag")), whole);
+  std::filesystem::rename(path("bag/bag_9.mcap"), path("bag/bag_0.mcap"));
+  std::filesystem::rename(path("bag/bag_10.mcap"), path("bag/other_1.mcap"));
+  EXPECT_THAT(open_error(path("bag")), HasSubstr("got bag_0.mcap and other_1.mcap"));
+  std::filesystem::rename(path("bag/other_1.mcap"), path("bag/bag_1.mcap"));
+  std::filesystem::create_directories(path("empty"));
+  EXPECT_THAT(open_error(path("empty")), HasSubstr("expected a folder of rosbag2"));
   put_bytes(path("bag/metadata.yaml"),
             "rosbag2_bagfile_information:\n  version: 5\n  storage_identifier: mcap\n"
             "  relative_file_paths:\n    - bag_0.mcap\n    - bag_1.mcap\n");
-  expect_same_scans(read_scans(path("bag")), read_scans(write_drive(path("whole.mcap"))));
+  expect_same_scans(read_scans(path("bag")), whole);
+  // Packed by the recorder, unpacked by hand.
+  put_bytes(path("bag/metadata.yaml"),
+            "rosbag2_bagfile_information:\n  version: 5\n  storage_identifier: mcap\n"
+            "  relative_file_paths:\n    - bag_0.mcap.zstd\n    - bag_1.mcap.zstd\n");
+  expect_same_scans(read_scans(path("bag")), whole);
 }
 
 // A folder without an ending in its name, like that of `ros2 bag`.
