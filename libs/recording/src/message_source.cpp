@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <stdexcept>
 #include <utility>
+
+#include <zlib.h>
 
 #include "topogeo/support/foreign_file.hpp"
 
@@ -15,19 +18,73 @@
 namespace topogeo::recording {
 namespace {
 
-enum class Format : std::uint8_t { kFolder, kSqlite, kMcap, kBag, kCompressed, kUnknown };
+enum class Format : std::uint8_t { kFolder, kSqlite, kMcap, kBag, kPacked, kUnknown };
 
 constexpr std::size_t kFirstBytes = 16;
+constexpr std::string_view kSqliteStart = "SQLite format 3";
+constexpr std::string_view kMcapStart = "\x89MCAP";
+constexpr std::string_view kBagStart = "#ROSBAG";
+
+/// A file that must be unpacked first.
+struct Packing {
+  std::string_view start;  ///< its first bytes
+  std::string_view name;
+  std::string_view command;
+};
+
+constexpr std::array<Packing, 7> kPackings = {Packing{"\x28\xB5\x2F\xFD", "zstd", "zstd -d"},
+                                              Packing{"\xFD"
+                                                      "7zXZ",
+                                                      "xz", "unxz"},
+                                              Packing{"BZh", "bzip2", "bunzip2"},
+                                              Packing{"\x04\x22\x4D\x18", "lz4", "unlz4"},
+                                              Packing{"PK\x03\x04", "zip", "unzip"},
+                                              Packing{"7z\xBC\xAF\x27\x1C", "7-Zip", "7z x"},
+                                              Packing{"Rar!", "rar", "unrar x"}};
+constexpr Packing kGzip{"\x1F\x8B", "gzip", "gunzip"};
+
+/// The first unpacked bytes of a file of gzip.
+std::string first_unpacked_bytes(const std::filesystem::path& path) {
+  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), &gzclose);
+  std::string bytes(kFirstBytes, '\0');
+  const int count =
+      file ? gzread(file.get(), bytes.data(), static_cast<unsigned>(bytes.size())) : 0;
+  bytes.resize(static_cast<std::size_t>(std::max(0, count)));
+  return bytes;
+}
+
+Format format_of_start(std::string_view start) {
+  if (start.starts_with(kSqliteStart)) return Format::kSqlite;
+  if (start.starts_with(kMcapStart)) return Format::kMcap;
+  if (start.starts_with(kBagStart)) return Format::kBag;
+  return Format::kUnknown;
+}
+
+/// Null for a file that is not packed. CARMEN logs of gzip are read as they are.
+const Packing* packing_of(const std::filesystem::path& path, std::string_view start) {
+  const auto* found = std::ranges::find_if(
+      kPackings, [&](const Packing& packing) { return start.starts_with(packing.start); });
+  if (found != kPackings.end()) return found;
+  if (!start.starts_with(kGzip.start)) return nullptr;
+  const std::string unpacked = first_unpacked_bytes(path);
+  const bool is_tar = path.extension() == ".tgz" || path.stem().extension() == ".tar";
+  return is_tar || format_of_start(unpacked) != Format::kUnknown ? &kGzip : nullptr;
+}
 
 Format format_of(const std::filesystem::path& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) return Format::kFolder;
   const std::string start = support::first_bytes(path, kFirstBytes);
-  if (start.starts_with("SQLite format 3")) return Format::kSqlite;
-  if (start.starts_with("\x89MCAP")) return Format::kMcap;
-  if (start.starts_with("#ROSBAG")) return Format::kBag;
-  if (start.starts_with("\x28\xB5\x2F\xFD")) return Format::kCompressed;
-  return Format::kUnknown;
+  if (packing_of(path, start) != nullptr) return Format::kPacked;
+  return format_of_start(start);
+}
+
+[[noreturn]] void refuse_packed(const std::filesystem::path& path) {
+  const Packing* packing = packing_of(path, support::first_bytes(path, kFirstBytes));
+  if (packing == nullptr) throw std::runtime_error(path.string() + ": has changed meanwhile");
+  throw std::runtime_error(path.string() + ": expected a log or a recording, got one packed with " +
+                           std::string(packing->name) + "; unpack it first with `" +
+                           std::string(packing->command) + "`");
 }
 
 }  // namespace
@@ -49,10 +106,8 @@ std::unique_ptr<MessageSource> open_messages(const std::filesystem::path& path,
       return std::make_unique<McapSource>(path, std::move(wanted));
     case Format::kBag:
       return std::make_unique<BagSource>(path, std::move(wanted));
-    case Format::kCompressed:
-      throw std::runtime_error(path.string() +
-                               ": expected a recording, got one compressed as a whole; unpack it "
-                               "first with `zstd -d`");
+    case Format::kPacked:
+      refuse_packed(path);
     case Format::kUnknown:
       break;
   }

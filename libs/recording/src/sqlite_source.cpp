@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <stdexcept>
+#include <system_error>
 
 #include <sqlite3.h>
 
@@ -11,6 +13,8 @@
 
 namespace topogeo::recording {
 namespace {
+
+constexpr const char* kImmutable = "?mode=ro&immutable=1";
 
 std::string column_text(sqlite3_stmt* row, int column) {
   const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(row, column));
@@ -58,7 +62,8 @@ SqliteSource::~SqliteSource() = default;
 
 void SqliteSource::open() {
   // If no file can be made beside the recording, as on a read-only disk, opens it as immutable.
-  for (const char* how : {"?mode=ro", "?mode=ro&immutable=1"}) {
+  for (const char* how : {"?mode=ro", kImmutable}) {
+    if (how == kImmutable) refuse_write_ahead_log();
     sqlite3* raw = nullptr;
     const std::string uri = "file:" + escaped(name_) + how;
     const int result =
@@ -77,6 +82,17 @@ void SqliteSource::open() {
     throw std::runtime_error(name_ + ": has " + refused + ", expected only the tables of rosbag2");
   }
   fail("cannot be opened");
+}
+
+/// An immutable database is read without its write-ahead log, which would lose its last messages.
+void SqliteSource::refuse_write_ahead_log() const {
+  const std::string log = name_ + "-wal";
+  std::error_code none;
+  const std::uintmax_t bytes = std::filesystem::file_size(log, none);
+  if (none || bytes == 0) return;
+  throw std::runtime_error(name_ + ": has messages in " + log +
+                           ", expected a folder where SQLite can write, to read them: copy both "
+                           "files to one");
 }
 
 SqliteSource::Statement SqliteSource::prepare(const std::string& sql) {

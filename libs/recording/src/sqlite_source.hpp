@@ -36,6 +36,7 @@ class SqliteSource final : public MessageSource {
   using Statement = std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)>;
 
   void open();
+  void refuse_write_ahead_log() const;
   Statement prepare(const std::string& sql);
   [[noreturn]] void fail(const std::string& what);
   /// Cause of the last failure.

@@ -1,5 +1,9 @@
 // Recordings that are cut off or damaged, and files that are no recordings.
+#include <memory>
+
 #include <gmock/gmock.h>
+#include <sqlite3.h>
+#include <zlib.h>
 
 #include "recorded_drive.hpp"
 
@@ -124,6 +128,54 @@ TEST_F(DamagedRecording, IsNoneByItsFirstBytes) {
   EXPECT_THAT(open_error(path("whole.db3.zstd")), HasSubstr("zstd -d"));
   put_bytes(path("text.clf"), "FLASER 2 1 1 0 0 0 0 0 0 1.0 h 1.0\n");
   EXPECT_THAT(open_error(path("text.clf")), IsEmpty());
+}
+
+TEST_F(DamagedRecording, IsNamedForWhatItIsPackedWith) {
+  using std::string_literals::operator""s;
+  for (const auto& [bytes, named] :
+       {std::pair{"\xFD"
+                  "7zXZ\0"s,
+                  "packed with xz; unpack it first with `unxz`"},
+        std::pair{"BZh91AY"s, "bunzip2"}, std::pair{"PK\x03\x04"s, "unzip"},
+        std::pair{"\x04\x22\x4D\x18"s, "unlz4"}, std::pair{"7z\xBC\xAF\x27\x1C"s, "7-Zip"}}) {
+    put_bytes(path("a.bag.packed"), bytes + "123456789");
+    EXPECT_THAT(open_error(path("a.bag.packed")), HasSubstr(named));
+  }
+  for (const char* name : {"a.bag", "a.mcap", "a.db3"}) {
+    const std::string bytes = bytes_of(write_drive(path(name)));
+    const std::filesystem::path packed = path(std::string(name) + ".gz");
+    gzFile file = gzopen(packed.c_str(), "wb");
+    ASSERT_EQ(gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size())),
+              static_cast<int>(bytes.size()));
+    gzclose(file);
+    EXPECT_THAT(open_error(packed), HasSubstr("packed with gzip; unpack it first with `gunzip`"));
+  }
+  EXPECT_THAT(open_error(write_drive(path("a.clf.gz"))), IsEmpty());  // read as it is
+}
+
+// A recorder that was killed leaves the last messages in the write-ahead log.
+TEST_F(DamagedRecording, IsReadWithItsWriteAheadLogOrNotAtAll) {
+  const auto file = write_drive(path("a.db3"));
+  const std::size_t all = read_scans(file).size();
+  sqlite3* raw = nullptr;
+  ASSERT_EQ(sqlite3_open(file.c_str(), &raw), SQLITE_OK);
+  const std::unique_ptr<sqlite3, int (*)(sqlite3*)> database(raw, &sqlite3_close);
+  const char* move_half =
+      "CREATE TEMP TABLE half AS SELECT * FROM messages WHERE id > 20;"
+      "DELETE FROM messages WHERE id > 20; PRAGMA journal_mode=WAL; PRAGMA wal_autocheckpoint=0;"
+      "INSERT INTO messages SELECT * FROM half;";
+  ASSERT_EQ(sqlite3_exec(raw, move_half, nullptr, nullptr, nullptr), SQLITE_OK)
+      << sqlite3_errmsg(raw);
+  for (const char* part : {"", "-wal"}) {
+    std::filesystem::copy_file(path(std::string("a.db3") + part),
+                               path(std::string("b.db3") + part));
+  }
+  EXPECT_EQ(read_scans(path("b.db3")).size(), all);
+  std::filesystem::remove(path("b.db3-shm"));
+  // SQLite cannot write there.
+  std::filesystem::create_symlink(path("none/none"), path("b.db3-shm"));
+  EXPECT_THAT(open_error(path("b.db3")),
+              AllOf(HasSubstr("b.db3: has messages in"), HasSubstr("b.db3-wal")));
 }
 
 TEST_F(DamagedRecording, IsRecognisedByItsContentUnderAnotherName) {
