@@ -53,18 +53,18 @@ TEST(OdometryTrack, InterpolatesSlowOdometryAsFarAsTheMotionAllows) {
   double theta_rad = 0.0;
   for (int i = 0; i < 20; ++i) {
     track.add(i * period_ns, {x_m, 0.0, theta_rad});
-    if (i < 10) x_m += 0.9;
-    if (i == 12) x_m += 1.1;
-    if (i == 14) theta_rad += 0.9;
-    if (i == 16) theta_rad += 0.7;
+    if (i < 10) x_m += 1.9;
+    if (i == 12) x_m += 2.1;
+    if (i == 14) theta_rad += 1.7;
+    if (i == 16) theta_rad += 1.5;
   }
   EXPECT_FALSE(track.at(period_ns / 2));  // before the rate is known
   track.finish();
   EXPECT_EQ(track.period_ns(), period_ns);
-  EXPECT_NEAR(track.at(period_ns / 2)->x_m, 0.45, 1e-12);
+  EXPECT_NEAR(track.at(period_ns / 2)->x_m, 0.95, 1e-12);
   EXPECT_FALSE(track.at(12 * period_ns + period_ns / 2));
   EXPECT_FALSE(track.at(14 * period_ns + period_ns / 2));
-  EXPECT_NEAR(track.at(16 * period_ns + period_ns / 2)->theta_rad, 1.25, 1e-12);
+  EXPECT_NEAR(track.at(16 * period_ns + period_ns / 2)->theta_rad, 2.45, 1e-12);
 }
 
 TEST(OdometryTrack, DoesNotBridgeAGapOfFastOdometry) {

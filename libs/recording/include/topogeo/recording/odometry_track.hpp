@@ -20,8 +20,8 @@ class OdometryTrack {
   /// Slower odometry is interpolated over up to two and a half of its periods and this time, if the
   /// robot moved so little meanwhile: where it was on the path is not known better.
   static constexpr std::int64_t kLongestSlowGap_ns = 5'000'000'000;
-  static constexpr double kFarthestStep_m = 1.0;
-  static constexpr double kLargestTurn_rad = 0.8;
+  static constexpr double kFarthestStep_m = 2.0;
+  static constexpr double kLargestTurn_rad = 1.6;
 
   /// Adds poses in approximate order of time; the last one at a time counts.
   void add(std::int64_t stamp_ns, const geometry::Pose2& T_odom_robot);
