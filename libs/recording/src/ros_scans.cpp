@@ -58,26 +58,31 @@ std::optional<RosScans::Candidate> RosScans::next() {
   return std::nullopt;
 }
 
-std::optional<RosScans::Candidate> RosScans::take(const RawMessage& message) {
-  const std::optional<std::int64_t> stamp_ns = drive_->timeline.scan_ns(scans_++);
-  const Topic& topic = source_->topics()[message.topic];
+ros::Sweep RosScans::read_sweep(const RawMessage& message) const {
   const Survey& survey = drive_->survey;
+  auto laser = decode<ros::LaserScan>(message.data, source_->topics()[message.topic].encoding);
+  correct_degrees(laser);
+  if (survey.ranges_in_millimetres) convert_millimetres(laser);
+  const std::string frame = ros::frame_name(laser.header_().frame_id_());
+  if (!is_of_laser(survey, frame)) {
+    throw std::invalid_argument("frame_id: expected " + survey.laser_frame + ", got " + frame);
+  }
+  ros::Sweep sweep = ros::to_sweep(laser, survey.mounting && survey.mounting->upside_down,
+                                   scan::CarmenLogReader::kMaxBeams, sweep_);
+  if (beams_ == Beams::kOnePattern && !ros::alike(sweep.pattern, *survey.beams)) {
+    throw std::invalid_argument("expected " + text_of(*survey.beams) + " as in most scans, got " +
+                                text_of(sweep.pattern));
+  }
+  return sweep;
+}
+
+std::optional<RosScans::Candidate> RosScans::take(const RawMessage& message) {
+  const std::size_t number = scans_++;
+  const std::optional<std::int64_t> stamp_ns = drive_->timeline.scan_ns(number);
   try {
-    auto laser = decode<ros::LaserScan>(message.data, topic.encoding);
-    correct_degrees(laser);
-    if (survey.ranges_in_millimetres) convert_millimetres(laser);
-    const std::string frame = ros::frame_name(laser.header_().frame_id_());
-    if (!is_of_laser(survey, frame)) {
-      throw std::invalid_argument("frame_id: expected " + survey.laser_frame + ", got " + frame);
-    }
-    ros::Sweep sweep = ros::to_sweep(laser, survey.mounting && survey.mounting->upside_down,
-                                     scan::CarmenLogReader::kMaxBeams, sweep_);
-    if (beams_ == Beams::kOnePattern && !ros::alike(sweep.pattern, *survey.beams)) {
-      throw std::invalid_argument("expected " + text_of(*survey.beams) + " as in most scans, got " +
-                                  text_of(sweep.pattern));
-    }
+    ros::Sweep sweep = read_sweep(message);
+    if (drive_->timeline.is_repeated(number)) return std::nullopt;
     if (!stamp_ns) {
-      if (drive_->timeline.is_repeated(scans_ - 1)) return std::nullopt;
       skip_(SkipReason::kStamp, scans_, "expected a time between those beside it, got another");
       return std::nullopt;
     }

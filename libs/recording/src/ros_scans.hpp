@@ -46,6 +46,9 @@ class RosScans {
 
   /// The scan of a message with its beams; empty if it is skipped.
   std::optional<Candidate> take(const RawMessage& message);
+  /// Throws DecodeError, std::invalid_argument for a scan of another laser or with impossible
+  /// beams.
+  [[nodiscard]] ros::Sweep read_sweep(const RawMessage& message) const;
   void skip_without_pose(std::int64_t stamp_ns);
   void put_beams(ros::Sweep sweep, scan::Scan& scan) const;
 

@@ -86,7 +86,7 @@ void Timeline::take_scan(const RawMessage& message, const Topic& topic, Collecte
     collected.scans.push_back(
         stamped(scan.header_(), message.log_time_ns, content_of(message.data)));
     collected.scan_numbers.push_back(number);
-  } catch (const DecodeError&) {  // NOLINT(bugprone-empty-catch): whoever reads the scan tells it
+  } catch (const DecodeError&) {  // NOLINT(bugprone-empty-catch): RosScans reports it
   }
 }
 

@@ -17,15 +17,18 @@ namespace {
 constexpr double kEnoughScans = 0.5;  // share of the most frequent
 constexpr double kEnoughOdometry = 0.1;
 
-/// All streams of a type, or of one topic.
+/// Streams of a type, or of one topic, most messages first. No robot has more than the limit.
 std::vector<Stream> streams_of(const RecordingFacts& facts, std::string_view type,
                                const std::optional<std::string>& topic) {
+  constexpr std::size_t kMostStreams = 64;
   std::vector<Stream> streams;
   for (const TopicFacts* found : facts.of_type(type)) {
     if (topic && found->topic.name != *topic) continue;
     if (found->frames.empty()) streams.push_back({found, nullptr});
     for (const FrameFacts& frames : found->frames) streams.push_back({found, &frames});
+    if (streams.size() >= kMostStreams) break;
   }
+  if (streams.size() > kMostStreams) streams.resize(kMostStreams);
   return streams;
 }
 
@@ -57,11 +60,17 @@ bool is_of_other_robot(const RecordingFacts& facts, const std::string& topic, co
   });
 }
 
-bool has_other_frames(const Stream& odometry, const Stream& scans) {
+/// Whether the frames of odometry have the prefix of another robot: one with a laser of its own.
+bool has_frames_of_other_robot(const RecordingFacts& facts, const Stream& odometry,
+                               const Stream& scans) {
   if (odometry.frames == nullptr || scans.frames == nullptr) return false;
-  const std::string laser = robot_of(scans.frames->frame);
-  return differ(robot_of(odometry.frames->child), laser) ||
-         differ(robot_of(odometry.frames->frame), laser);
+  const std::string child = robot_of(odometry.frames->child);
+  const std::string robot = child.empty() ? robot_of(odometry.frames->frame) : child;
+  if (!differ(robot, robot_of(scans.frames->frame))) return false;
+  return std::ranges::any_of(
+      streams_of(facts, kLaserScanType, std::nullopt), [&](const Stream& other) {
+        return other.frames != nullptr && robot_of(other.frames->frame) == robot;
+      });
 }
 
 /// Level lasers rank before those of unknown mounting, and these before tilted and moving ones.
@@ -99,7 +108,7 @@ std::optional<Stream> choose_scans(const RecordingFacts& facts, const TopicChoic
     const std::string robot = robot_of(stream.topic->topic.name);
     if (!transforms_of.contains(robot)) transforms_of[robot] = transforms_for(facts, stream);
     const View view = view_of(transforms_of[robot], stream);
-    return std::tuple(messages_of(stream) >= enough && stream.frames != nullptr, joined, view.level,
+    return std::tuple(joined, messages_of(stream) >= enough && stream.frames != nullptr, view.level,
                       stream.topic->topic.name == "/scan", view.forward, messages_of(stream));
   };
   return *std::ranges::max_element(streams, {}, rank);
@@ -111,7 +120,7 @@ std::optional<Stream> choose_odometry(const RecordingFacts& facts, const TopicCh
   if (!choice.odometry) {
     std::erase_if(streams, [&](const Stream& stream) {
       return is_of_other_robot(facts, stream.topic->topic.name, scans) ||
-             has_other_frames(stream, scans);
+             has_frames_of_other_robot(facts, stream, scans);
     });
   }
   if (streams.empty()) return std::nullopt;

@@ -18,8 +18,9 @@ struct Stream {
   const FrameFacts* frames = nullptr;  ///< null if none is readable
 };
 
-/// The scans of the chosen topic or, among those with half as many as the most frequent, of a
-/// level laser, on /scan, that looks forward, with most messages. Empty if there are none.
+/// The scans of the chosen topic or, among those with odometry and half as many as the most
+/// frequent, of a level laser, on /scan, that looks forward, with most messages. Empty if there are
+/// none.
 std::optional<Stream> choose_scans(const RecordingFacts& facts, const TopicChoice& choice);
 
 /// The nav_msgs/Odometry of the chosen topic or of the robot with these scans: on `odom` in their

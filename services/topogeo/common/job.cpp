@@ -102,12 +102,13 @@ void add_topic_options(command_line::Command& app, recording::TopicChoice& topic
          "ray first (forward) or, as in many clockwise scanners, the last ray first (backward)")
       ->check(command_line::one_of({"none", "forward", "backward"}));
   app.add_option("--scan-topic", topics.scan,
-                 "topic of the laser scans in a recording (default: /scan, else the one with most "
-                 "messages)")
+                 "topic of the laser scans in a recording (default: of a level laser, /scan, else "
+                 "the one with most messages)")
       ->type_name("TOPIC");
   app.add_option("--odometry-topic", topics.odometry,
-                 "topic of the odometry or transforms in a recording (default: /odom, else the one "
-                 "with most messages, else odom -> base_link of /tf)")
+                 "topic of the odometry or transforms in a recording (default: of the robot with "
+                 "these scans, /odom, else the one with most messages, else odom -> base_link of "
+                 "/tf)")
       ->type_name("TOPIC");
 }
 

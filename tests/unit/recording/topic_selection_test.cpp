@@ -78,12 +78,25 @@ TEST_F(TopicSelection, KeepsToOneRobotByFrames) {
   EXPECT_LT(geometry::difference(scans[20].T_odom_robot, arc_pose(2.0)).norm(), 1e-6);
 }
 
-TEST_F(TopicSelection, RefusesTheOdometryOfAnotherRobotAlone) {
-  EXPECT_THROW(survey_of([](MessageFile& file, int i, std::int64_t stamp_ns) {
-                 file.scan(stamp_ns, stamp_ns, ranges_of(i), "/scan", "robot1/laser");
-                 file.odometry(stamp_ns, stamp_ns, {}, "robot2/base_link", "/odom", "robot2/odom");
-               }),
-               std::runtime_error);
+TEST_F(TopicSelection, UsesTheOdometryOfAnotherRobotForNoScans) {
+  const auto drive = [](MessageFile& file, int i, std::int64_t stamp_ns) {
+    file.scan(stamp_ns, stamp_ns, ranges_of(i), "/scan", "robot1/laser");
+    if (i % 4 == 0) file.scan(stamp_ns, stamp_ns, ranges_of(i), "/scan2", "robot2/laser");
+    file.odometry(stamp_ns, stamp_ns, {}, "robot2/base_link", "/odom", "robot2/odom");
+  };
+  EXPECT_EQ(survey_of(drive).scan_topic, "/scan2");
+  TopicChoice first;
+  first.scan = "/scan";
+  EXPECT_THROW((void)survey_of(drive, first), std::runtime_error);
+}
+
+// The prefix is that of a sensor.
+TEST_F(TopicSelection, TakesOdometryWithOtherPrefixesOfTheOnlyRobot) {
+  const Survey facts = survey_of([](MessageFile& file, int i, std::int64_t stamp_ns) {
+    file.scan(stamp_ns, stamp_ns, ranges_of(i), "/sensors/scan", "lidar/optical");
+    file.odometry(stamp_ns, stamp_ns, arc_pose(0.1 * i), "vehicle/base", "/wheels/odom");
+  });
+  EXPECT_EQ(facts.odometry_topic, "/wheels/odom");
 }
 
 // The tilted laser has a few messages more, and so has the one that looks back.

@@ -32,7 +32,7 @@ struct Survey {
   bool odometry_from_tf = false;
   std::string odom_frame;
   std::string odometry_child_frame;  ///< as its messages state it
-  std::string robot_frame;           ///< whose motion odometry measures: see robot_frame.hpp
+  std::string robot_frame;           ///< whose motion odometry measures
   std::optional<ros::LaserMounting>
       mounting;  ///< empty if no transforms connect robot_frame and laser_frame
   std::optional<ros::BeamPattern> beams;  ///< of most scans; empty if none has beams
