@@ -26,10 +26,10 @@ struct ClockRun {
 };
 
 struct ClockRuns {
-  std::vector<ClockRun> runs;        ///< in the order of arrival, one after the other
-  std::size_t odd = 0;               ///< messages amid a run with another clock: in no run
+  std::vector<ClockRun> runs;         ///< in the order of arrival, one after the other
+  std::size_t odd = 0;                ///< messages amid a run with another clock: in no run
   std::vector<std::size_t> repeated;  ///< numbers of messages that came before: in no run
-  std::int64_t farthest_odd_ns = 0;  ///< of an odd message from the stamp before it
+  std::int64_t farthest_odd_ns = 0;   ///< of an odd message from the stamp before it
 };
 
 /// A stamp that is late by up to 0.2 s, one up to 60 s ahead, and one as far ahead as its time of

@@ -1,4 +1,4 @@
-// What the topics of a recording hold: the frames of scans and odometry, the beams of scans, the
+// Content of the topics of a recording: the frames of scans and odometry, the beams of scans, the
 // transforms.
 #pragma once
 
@@ -46,7 +46,7 @@ class RecordingFacts {
   /// Reads the whole recording once. Throws like open_messages().
   explicit RecordingFacts(const std::filesystem::path& path);
 
-  /// Of one type, most messages first.
+  /// The topics of one type, most messages first.
   [[nodiscard]] std::vector<const TopicFacts*> of_type(std::string_view type) const;
   /// All topics with their types, for error messages.
   [[nodiscard]] std::string topics_text() const;

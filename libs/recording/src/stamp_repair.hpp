@@ -13,7 +13,7 @@
 namespace topogeo::recording {
 
 struct RepairedStamps {
-  /// Of each message; empty if it is left out, because its stamp is odd or it came before.
+  /// Time of each message; empty if it is left out, because its stamp is odd or it came before.
   std::vector<std::optional<std::int64_t>> scans_ns;
   std::vector<std::optional<std::int64_t>> odometry_ns;
   std::vector<bool> scans_repeated;  ///< whether an equal message came before

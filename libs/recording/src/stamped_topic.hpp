@@ -40,7 +40,7 @@ class StampedTopic {
   /// The message in a run that was recorded nearest to this time; empty without one.
   [[nodiscard]] std::optional<std::size_t> nearest_by_log_time(std::int64_t log_ns) const;
 
-  /// Of a message in a run, as shifted.
+  /// The shifted time of a message in a run.
   [[nodiscard]] std::int64_t time_of(std::size_t number) const;
   /// That time minus the time of recording.
   [[nodiscard]] std::int64_t offset_of(std::size_t number) const;

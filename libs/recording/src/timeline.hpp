@@ -29,8 +29,8 @@ class Timeline {
   /// pose of odometry. Throws like open_messages().
   Timeline(const std::filesystem::path& path, const Survey& survey);
 
-  /// Of a message of the scan topic, from 0 in the order of arrival; empty if its stamp is odd, it
-  /// came before, or it is of another frame.
+  /// The time of a message of the scan topic, from 0 in the order of arrival; empty if its stamp is
+  /// odd, it came before, or it is of another frame.
   [[nodiscard]] std::optional<std::int64_t> scan_ns(std::size_t number) const;
   /// Whether an equal message came before.
   [[nodiscard]] bool is_repeated(std::size_t number) const;

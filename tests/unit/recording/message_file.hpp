@@ -37,7 +37,7 @@ class MessageFile {
     put(scan, topic, kLaserScanType, time_ns);
   }
 
-  /// As a driver made it; sets only the topic.
+  /// Writes a scan as a driver made it.
   void scan(const ros::LaserScan& scan, std::int64_t time_ns) {
     put(scan, "/scan", kLaserScanType, time_ns);
   }
