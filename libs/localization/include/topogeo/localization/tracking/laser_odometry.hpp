@@ -1,0 +1,68 @@
+// Odometry from the scans alone, for lasers without wheels. A track follows the scans until one
+// does not match; then a second track begins there, while the first one waits for a scan that it
+// knows. The scans between get their poses by the second track if the first one finds such a scan;
+// otherwise the odometry begins anew, in another epoch, and the map finds the place again.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/tracking/laser_track.hpp"
+#include "topogeo/scan/scan.hpp"
+
+namespace topogeo::localization {
+
+struct LaserOdometryCounts {
+  std::uint64_t scans = 0;
+  std::uint64_t unplaced = 0;   ///< that match neither those before nor those after them
+  std::uint64_t breaks = 0;     ///< further epochs
+  std::vector<double> steps_m;  ///< between successive placed scans of one epoch
+};
+
+class LaserOdometry {
+ public:
+  /// Mounting of the laser, and the range in metres up to which scans count.
+  LaserOdometry(const geometry::Pose2& T_robot_laser, double points_range_m)
+      : T_robot_laser_(T_robot_laser), points_range_m_(points_range_m) {}
+
+  /// Takes the next scan, in order of time; its odometry is ignored.
+  void add(scan::Scan scan);
+  /// The log has ended.
+  void finish();
+
+  /// The scans placed since the last call, in order, with sequence, odometry and its epoch.
+  std::vector<scan::Scan> take();
+
+  [[nodiscard]] const LaserOdometryCounts& counts() const { return counts_; }
+
+ private:
+  struct Waiting {
+    scan::Scan scan;
+    std::optional<geometry::Pose2> T_second_robot;  // by the second track
+  };
+  void place(scan::Scan scan, const geometry::Pose2& T_odom_robot);
+  void lose(scan::Scan scan, const TimedFeatures& seen);
+  /// Whether the first track has found the last scan of the second, twice in the same place.
+  bool find_again(const TimedFeatures& seen);
+  void follow_second(scan::Scan scan, const TimedFeatures& seen);
+  /// Places what waits; T_odom_second: the frame of the second track.
+  void place_waiting(const geometry::Pose2& T_odom_second);
+  [[nodiscard]] bool is_lost() const;
+
+  geometry::Pose2 T_robot_laser_;
+  double points_range_m_;
+  std::optional<LaserTrack> track_;
+  std::optional<LaserTrack> second_;
+  geometry::Pose2 T_odom_track_;                   // frame of the track
+  std::vector<Waiting> waiting_;                   // since the first scan that did not match
+  std::optional<geometry::Pose2> T_track_second_;  // by the last scan that the track found
+  std::vector<scan::Scan> ready_;
+  std::optional<geometry::Pose2> T_odom_last_;
+  std::uint64_t epoch_ = 0;
+  std::uint64_t sequence_ = 0;
+  LaserOdometryCounts counts_;
+};
+
+}  // namespace topogeo::localization

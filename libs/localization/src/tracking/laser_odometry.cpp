@@ -1,0 +1,138 @@
+#include "topogeo/localization/tracking/laser_odometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "topogeo/topomap/local_map_builder.hpp"
+
+namespace topogeo::localization {
+
+using geometry::Pose2;
+
+namespace {
+
+// The second track takes over once it is longer than the time for which something covers a laser
+// in passing, and has enough scans to make a place.
+constexpr std::int64_t kLost_ns = 2'000'000'000;
+constexpr std::ptrdiff_t kLostScans = 5;
+
+// Two places of one scan are one place.
+bool agree(const Pose2& a, const Pose2& b) {
+  constexpr double kSame_m = 0.3;
+  constexpr double kSame_rad = 0.15;
+  const Eigen::Vector3d apart = geometry::difference(a, b);
+  return apart.head<2>().norm() <= kSame_m && std::fabs(apart.z()) <= kSame_rad;
+}
+
+}  // namespace
+
+void LaserOdometry::add(scan::Scan scan) {
+  ++counts_.scans;
+  const auto points = topomap::scan_points(scan, T_robot_laser_, points_range_m_);
+  const TimedFeatures seen{scan.stamp_ns, std::make_shared<const MatchFeatures>(
+                                              extract_scan_features(points, T_robot_laser_))};
+  if (!track_) {
+    if (!LaserTrack::can_begin(*seen.features)) {
+      ++counts_.unplaced;
+      return;
+    }
+    track_.emplace(seen);
+    place(std::move(scan), {});
+    return;
+  }
+  if (!second_) {
+    if (const std::optional<LaserStep> step = track_->add(seen)) {
+      counts_.unplaced += waiting_.size();
+      waiting_.clear();
+      place(std::move(scan), T_odom_track_ * step->T_track_robot);
+      return;
+    }
+  }
+  follow_second(std::move(scan), seen);
+  if (find_again(seen)) {
+    place_waiting(T_odom_track_ * *T_track_second_);
+    T_odom_track_ = T_odom_track_ * *T_track_second_;
+  } else if (is_lost()) {
+    ++counts_.breaks;
+    ++epoch_;
+    T_odom_last_.reset();
+    place_waiting({});
+    T_odom_track_ = {};
+  } else {
+    return;
+  }
+  track_ = std::exchange(second_, std::nullopt);
+  T_track_second_.reset();
+}
+
+bool LaserOdometry::find_again(const TimedFeatures& seen) {
+  const std::optional<Pose2>& T_second_robot = waiting_.back().T_second_robot;
+  LaserTrack trial = *track_;  // each scan is searched for by itself
+  track_->skip();
+  if (!T_second_robot) return false;
+  const std::optional<LaserStep> step = trial.add(seen);
+  if (!step) return false;
+  const Pose2 T_track_second = step->T_track_robot * geometry::inverse(*T_second_robot);
+  const bool again =
+      T_track_second_ && agree(*T_track_second_ * *T_second_robot, step->T_track_robot);
+  T_track_second_ = T_track_second;
+  return again;
+}
+
+void LaserOdometry::follow_second(scan::Scan scan, const TimedFeatures& seen) {
+  std::optional<LaserStep> step;
+  if (second_) step = second_->add(seen);
+  if (!step && LaserTrack::can_begin(*seen.features)) {
+    // What the second track placed before fits nothing.
+    for (Waiting& waiting : waiting_) waiting.T_second_robot.reset();
+    second_.emplace(seen);
+    T_track_second_.reset();
+    step.emplace();
+  }
+  std::optional<Pose2> T_second_robot;
+  if (step) T_second_robot = step->T_track_robot;
+  waiting_.push_back({std::move(scan), T_second_robot});
+}
+
+bool LaserOdometry::is_lost() const {
+  const auto placed = [](const Waiting& waiting) { return waiting.T_second_robot.has_value(); };
+  const auto first = std::ranges::find_if(waiting_, placed);
+  if (first == waiting_.end()) return false;
+  return std::ranges::count_if(waiting_, placed) >= kLostScans &&
+         waiting_.back().scan.stamp_ns - first->scan.stamp_ns >= kLost_ns;
+}
+
+void LaserOdometry::place_waiting(const Pose2& T_odom_second) {
+  for (Waiting& waiting : waiting_) {
+    if (waiting.T_second_robot) {
+      place(std::move(waiting.scan), T_odom_second * *waiting.T_second_robot);
+    } else {
+      ++counts_.unplaced;
+    }
+  }
+  waiting_.clear();
+}
+
+void LaserOdometry::place(scan::Scan scan, const Pose2& T_odom_robot) {
+  if (T_odom_last_) {
+    counts_.steps_m.push_back((T_odom_robot.position_m() - T_odom_last_->position_m()).norm());
+  }
+  T_odom_last_ = T_odom_robot;
+  scan.T_odom_robot = T_odom_robot;
+  scan.odometry_epoch = epoch_;
+  scan.sequence = sequence_++;
+  ready_.push_back(std::move(scan));
+}
+
+void LaserOdometry::finish() {
+  counts_.unplaced += waiting_.size();
+  waiting_.clear();
+}
+
+std::vector<scan::Scan> LaserOdometry::take() {
+  return std::exchange(ready_, {});
+}
+
+}  // namespace topogeo::localization
