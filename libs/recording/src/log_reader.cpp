@@ -22,6 +22,7 @@ struct LogReader::Source {
   virtual std::optional<scan::Scan> next() = 0;
   [[nodiscard]] virtual const scan::CarmenLogStatistics& statistics() const = 0;
   [[nodiscard]] virtual double fraction_read() const = 0;
+  [[nodiscard]] virtual bool has_odometry() const { return true; }
 };
 
 namespace {
@@ -69,6 +70,9 @@ class RecordedScans final : public LogReader::Source {
   }
   [[nodiscard]] const scan::CarmenLogStatistics& statistics() const override { return statistics_; }
   [[nodiscard]] double fraction_read() const override { return scans_.fraction_read(); }
+  [[nodiscard]] bool has_odometry() const override {
+    return !scans_.facts().odometry_topic.empty();
+  }
 
  private:
   scan::ScanSequence::Skip skip() {
@@ -119,6 +123,10 @@ const scan::CarmenLogStatistics& LogReader::statistics() const {
 
 double LogReader::fraction_read() const {
   return source_->fraction_read();
+}
+
+bool LogReader::has_odometry() const {
+  return source_->has_odometry();
 }
 
 std::uint64_t count_scans(const std::filesystem::path& path, const TopicChoice& topics) {

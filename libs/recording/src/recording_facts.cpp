@@ -8,12 +8,14 @@
 #include "topogeo/ros_conversions/geometry.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
 
+#include "odometry_message.hpp"
+
 namespace topogeo::recording {
 namespace {
 
 bool is_used(const Topic& topic) {
   return topic.encoding != Encoding::kOther &&
-         (topic.type == kLaserScanType || topic.type == kOdometryType || topic.type == kTfType);
+         (topic.type == kLaserScanType || topic.type == kTfType || states_pose(topic.type));
 }
 
 /// The facts of these frames. Null if there are more frames than any robot has.
@@ -73,9 +75,9 @@ void RecordingFacts::take(const Topic& topic, const RawMessage& message) {
       found->range_unit.add(scan);
       count_beams(found->beams, scan);
     } else {
-      const auto odometry = decode<ros::Odometry>(message.data, topic.encoding);
-      FrameFacts* found = facts_of(facts.frames, ros::frame_name(odometry.header_().frame_id_()),
-                                   ros::frame_name(odometry.child_frame_id_()));
+      const OdometryMessage odometry = decode_odometry(topic.type, message.data, topic.encoding);
+      FrameFacts* found = facts_of(facts.frames, ros::frame_name(odometry.header.frame_id_()),
+                                   odometry.child_frame);
       if (found != nullptr) ++found->messages;
     }
   } catch (const DecodeError&) {
@@ -91,6 +93,11 @@ std::vector<const TopicFacts*> RecordingFacts::of_type(std::string_view type) co
   }
   std::ranges::stable_sort(found, std::ranges::greater{}, &TopicFacts::messages);
   return found;
+}
+
+const TopicFacts* RecordingFacts::find(const std::string& name) const {
+  const auto found = topics_.find(name);
+  return found == topics_.end() ? nullptr : &found->second;
 }
 
 std::string RecordingFacts::topics_text() const {

@@ -26,8 +26,8 @@ struct BeamKind {
 
 /// The messages of a topic with the same frames.
 struct FrameFacts {
-  std::string frame;  ///< of the laser, or of odometry
-  std::string child;  ///< of odometry
+  std::string frame;  ///< of the laser, or of odometry or another pose
+  std::string child;  ///< of odometry; empty for poses
   std::uint64_t messages = 0;
   std::vector<BeamKind> beams;         ///< of scans
   std::uint64_t scans_in_degrees = 0;  ///< see correct_degrees()
@@ -48,6 +48,8 @@ class RecordingFacts {
 
   /// The topics of one type, most messages first.
   [[nodiscard]] std::vector<const TopicFacts*> of_type(std::string_view type) const;
+  /// Null if no message of a topic with this name can be used.
+  [[nodiscard]] const TopicFacts* find(const std::string& name) const;
   /// All topics with their types, for error messages.
   [[nodiscard]] std::string topics_text() const;
 

@@ -57,6 +57,11 @@ void fields(auto& field, Is<ros::Pose> auto& m) {
   fields(field, m.orientation_());
 }
 
+void fields(auto& field, Is<ros::PoseStamped> auto& m) {
+  fields(field, m.header_());
+  fields(field, m.pose_());
+}
+
 void fields(auto& field, Is<ros::PoseWithCovariance> auto& m) {
   fields(field, m.pose_());
   field(m.covariance_());
@@ -171,7 +176,9 @@ void fields(auto& field, Is<ros::MarkerArray> auto& m) {
 template <typename Message>
 constexpr bool kInRos1 =
     std::same_as<Message, ros::LaserScan> || std::same_as<Message, ros::Odometry> ||
-    std::same_as<Message, ros::TFMessage>;
+    std::same_as<Message, ros::TFMessage> || std::same_as<Message, ros::PoseStamped> ||
+    std::same_as<Message, ros::PoseWithCovarianceStamped> ||
+    std::same_as<Message, ros::TransformStamped>;
 
 template <typename Message>
 Message decode(std::span<const std::byte> bytes, Encoding encoding) {
@@ -216,7 +223,9 @@ TOPOGEO_ROS_CODEC(ros::LaserScan);
 TOPOGEO_ROS_CODEC(ros::Odometry);
 TOPOGEO_ROS_CODEC(ros::TFMessage);
 TOPOGEO_ROS_CODEC(ros::OccupancyGrid);
+TOPOGEO_ROS_CODEC(ros::PoseStamped);
 TOPOGEO_ROS_CODEC(ros::PoseWithCovarianceStamped);
+TOPOGEO_ROS_CODEC(ros::TransformStamped);
 TOPOGEO_ROS_CODEC(ros::MarkerArray);
 
 #undef TOPOGEO_ROS_CODEC

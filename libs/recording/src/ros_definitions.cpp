@@ -18,6 +18,7 @@ constexpr std::array kDefinitions = {
     RosDefinition{"geometry_msgs/msg/Quaternion",
                   "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n", "", ""},
     RosDefinition{"geometry_msgs/msg/Pose", "Point position\nQuaternion orientation\n", "", ""},
+    RosDefinition{"geometry_msgs/msg/PoseStamped", "std_msgs/Header header\nPose pose\n", "", ""},
     RosDefinition{"geometry_msgs/msg/PoseWithCovariance", "Pose pose\nfloat64[36] covariance\n", "",
                   ""},
     RosDefinition{"geometry_msgs/msg/PoseWithCovarianceStamped",

@@ -86,7 +86,12 @@ std::optional<RosScans::Candidate> RosScans::take(const RawMessage& message) {
       skip_(SkipReason::kStamp, scans_, "expected a time between those beside it, got another");
       return std::nullopt;
     }
-    const std::optional<ScreenedOdometry::Answer> pose = drive_->timeline.odometry().at(*stamp_ns);
+    std::optional<ScreenedOdometry::Answer> pose;
+    if (drive_->survey.odometry_topic.empty()) {
+      pose.emplace();
+    } else {
+      pose = drive_->timeline.odometry().at(*stamp_ns);
+    }
     if (!pose) {
       skip_without_pose(*stamp_ns);
       return std::nullopt;

@@ -77,9 +77,11 @@ void Surveyor::choose_scans() {
 }
 
 void Surveyor::choose_odometry() {
+  if (choice_.odometry_use == OdometryUse::kIgnored) return;
   const std::optional<Stream> used = recording::choose_odometry(facts_, choice_, scans_);
   if (used) {
     survey_.odometry_topic = used->topic->topic.name;
+    survey_.odometry_type = used->topic->topic.type;
     if (used->frames != nullptr) {
       survey_.odom_frame = used->frames->frame;
       survey_.odometry_child_frame = used->frames->child;
@@ -89,7 +91,8 @@ void Surveyor::choose_odometry() {
   }
   const TopicFacts* topic = choose_transforms(facts_, choice_, scans_);
   if (topic != nullptr) use_transforms(*topic);
-  if (survey_.odometry_topic.empty()) {
+  if (!survey_.odometry_topic.empty()) return;
+  if (choice_.odometry || choice_.odometry_use == OdometryUse::kRequired) {
     throw std::runtime_error(
         name_ + ": expected odometry (nav_msgs/Odometry, or transforms odom -> base_link on /tf)" +
         (choice_.odometry ? " on " + *choice_.odometry : "") + ", got " + facts_.topics_text());
@@ -106,7 +109,7 @@ void Surveyor::use_transforms(const TopicFacts& topic) {
   });
   if (best == edges.end() || odometry_rank(*best) == 0) return;
   survey_.odometry_topic = topic.topic.name;
-  survey_.odometry_from_tf = true;
+  survey_.odometry_type = kTfType;
   survey_.odom_frame = best->parent;
   survey_.odometry_child_frame = best->child;
   survey_.notes.push_back("odometry from " + topic.topic.name + ", " + best->parent + " -> " +
@@ -131,6 +134,11 @@ void Surveyor::find_mounting() {
   const RobotFrame robot = find_robot_frame(
       transforms_, {survey_.odom_frame, survey_.odometry_child_frame}, survey_.laser_frame);
   survey_.robot_frame = robot.name;
+  if (survey_.odometry_topic.empty() && !robot.T_robot_laser) {
+    survey_.robot_frame = survey_.laser_frame;
+    survey_.mounting = ros::LaserMounting{};
+    return;
+  }
   if (!robot.note.empty()) survey_.notes.push_back(robot.note);
   if (!robot.T_robot_laser) return;
   survey_.mounting = ros::planar_mounting(*robot.T_robot_laser);

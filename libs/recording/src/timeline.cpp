@@ -12,6 +12,8 @@
 #include "topogeo/ros_conversions/geometry.hpp"
 #include "topogeo/ros_conversions/messages.hpp"
 
+#include "odometry_message.hpp"
+
 namespace topogeo::recording {
 namespace {
 
@@ -43,7 +45,7 @@ bool is_scan_topic(const Survey& survey, const Topic& topic) {
 
 bool is_odometry_topic(const Survey& survey, const Topic& topic) {
   return topic.encoding != Encoding::kOther && topic.name == survey.odometry_topic &&
-         topic.type == (survey.odometry_from_tf ? kTfType : kOdometryType);
+         topic.type == survey.odometry_type;
 }
 
 bool is_of_laser(const Survey& survey, const std::string& frame) {
@@ -68,7 +70,7 @@ Timeline::Timeline(const std::filesystem::path& path, const Survey& survey) : su
     const Topic& topic = source_->topics()[message.topic];
     if (topic.type == kLaserScanType) {
       take_scan(message, topic, collected);
-    } else if (topic.type == kOdometryType) {
+    } else if (states_pose(topic.type)) {
       take_odometry(message, topic, collected);
     } else {
       take_transforms(message, topic, collected);
@@ -92,14 +94,13 @@ void Timeline::take_scan(const RawMessage& message, const Topic& topic, Collecte
 
 void Timeline::take_odometry(const RawMessage& message, const Topic& topic, Collected& collected) {
   try {
-    const auto odometry = decode<ros::Odometry>(message.data, topic.encoding);
-    if (ros::frame_name(odometry.header_().frame_id_()) != survey_.odom_frame ||
-        ros::frame_name(odometry.child_frame_id_()) != survey_.odometry_child_frame) {
+    const OdometryMessage odometry = decode_odometry(topic.type, message.data, topic.encoding);
+    if (ros::frame_name(odometry.header.frame_id_()) != survey_.odom_frame ||
+        odometry.child_frame != survey_.odometry_child_frame) {
       return;  // of another robot, as the survey says
     }
     ++odometry_messages_;
-    add_pose(odometry.header_(), message.log_time_ns, ros::planar(odometry.pose_().pose_()),
-             collected);
+    add_pose(odometry.header, message.log_time_ns, odometry.T_odom_robot, collected);
   } catch (const DecodeError& error) {
     ++odometry_messages_;
     found_fault(error.what());

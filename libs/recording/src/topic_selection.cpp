@@ -9,6 +9,7 @@
 
 #include "topogeo/recording/message_source.hpp"
 
+#include "odometry_message.hpp"
 #include "robot_frame.hpp"
 
 namespace topogeo::recording {
@@ -116,7 +117,11 @@ std::optional<Stream> choose_scans(const RecordingFacts& facts, const TopicChoic
 
 std::optional<Stream> choose_odometry(const RecordingFacts& facts, const TopicChoice& choice,
                                       const Stream& scans) {
-  std::vector<Stream> streams = streams_of(facts, kOdometryType, choice.odometry);
+  // Other poses than odometry serve only if they are named.
+  const TopicFacts* const named = choice.odometry ? facts.find(*choice.odometry) : nullptr;
+  const bool other_pose = named != nullptr && states_pose(named->topic.type);
+  std::vector<Stream> streams =
+      streams_of(facts, other_pose ? named->topic.type : kOdometryType, choice.odometry);
   if (!choice.odometry) {
     std::erase_if(streams, [&](const Stream& stream) {
       return is_of_other_robot(facts, stream.topic->topic.name, scans) ||

@@ -43,6 +43,9 @@ class LogReader {
   /// Share of the log read so far, in [0, 1].
   [[nodiscard]] double fraction_read() const;
 
+  /// False if the log is a recording without odometry, or TopicChoice ignores it.
+  [[nodiscard]] bool has_odometry() const;
+
   /// The range that this log has in place of an echo, found by reading the whole log; its scans
   /// have no return there. Empty if there is none below the range limit of the options.
   [[nodiscard]] const std::optional<scan::NoReturn>& no_return() const { return no_return_; }

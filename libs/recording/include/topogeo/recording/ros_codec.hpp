@@ -23,9 +23,9 @@ struct DecodeError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Reads a whole message; bytes after it are ignored. Message: LaserScan, Odometry or TfMessage of
-/// ros_types.hpp, and in CDR also OccupancyGrid, PoseWithCovarianceStamped and MarkerArray. Throws
-/// DecodeError.
+/// Reads a whole message; bytes after it are ignored. Message: LaserScan, Odometry, TFMessage,
+/// PoseStamped, PoseWithCovarianceStamped or TransformStamped, and in CDR also OccupancyGrid and
+/// MarkerArray. Throws DecodeError.
 template <typename Message>
 Message decode(std::span<const std::byte> bytes, Encoding encoding);
 

@@ -13,14 +13,24 @@
 
 namespace topogeo::recording {
 
+/// Whether the odometry of a recording is wanted.
+enum class OdometryUse : std::uint8_t {
+  kRequired,    ///< a recording without odometry is refused
+  kIfRecorded,  ///< without odometry all scans have the identity
+  kIgnored      ///< so have they with it
+};
+
 /// The user's choices; all are optional.
 struct TopicChoice {
   std::optional<std::string>
       scan;  ///< of sensor_msgs/LaserScan; none: of a level laser, /scan, else most messages
   std::optional<std::string>
-      odometry;  ///< of nav_msgs/Odometry or tf2_msgs/TFMessage; none: of the robot with the
-                 ///< scans, /odom, else the Odometry with most messages, else odom -> base of /tf
+      odometry;  ///< of nav_msgs/Odometry, tf2_msgs/TFMessage, or PoseStamped,
+                 ///< PoseWithCovarianceStamped or TransformStamped of geometry_msgs; none: of the
+                 ///< robot with the scans, /odom, else the Odometry with most messages, else
+                 ///< odom -> base of /tf
   ros::SweepOrder sweep = ros::SweepOrder::kNone;  ///< removes the motion during a scan
+  OdometryUse odometry_use = OdometryUse::kRequired;
 };
 
 struct Survey {
@@ -28,11 +38,11 @@ struct Survey {
   std::string laser_frame;
   std::uint64_t scans = 0;  ///< messages of that topic
   bool ranges_in_millimetres = false;
-  std::string odometry_topic;
-  bool odometry_from_tf = false;
+  std::string odometry_topic;  ///< empty: none, by TopicChoice::odometry_use
+  std::string odometry_type;   ///< Topic::type of its messages
   std::string odom_frame;
   std::string odometry_child_frame;  ///< as its messages state it
-  std::string robot_frame;           ///< whose motion odometry measures
+  std::string robot_frame;           ///< whose motion odometry measures, or that of the laser
   std::optional<ros::LaserMounting>
       mounting;  ///< empty if no transforms connect robot_frame and laser_frame
   std::optional<ros::BeamPattern> beams;  ///< of most scans; empty if none has beams
