@@ -49,6 +49,7 @@ support::ConfigSchema describe(Config& config) {
   voronoi::describe(config.local_mapper.voronoi, schema);
   topomap::describe(config.local_mapper.local_map, schema);
   localization::describe(config.local_mapper.tracker, schema);
+  describe(config.odometry_source, schema);
   localization::describe(config.localizer, schema);
   topomap::describe(config.global_map, schema);
   planning::describe(config.planner, schema);

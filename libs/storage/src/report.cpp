@@ -191,6 +191,11 @@ std::string report_json(const Report& report) {
                     {"loop_candidates", report.loop_candidates.size()}};
   if (!report.localization.empty()) json["localization"] = counts(report.localization);
   if (!report.continuation.empty()) json["continuation"] = counts(report.continuation);
+  if (report.laser_odometry) {
+    json["laser_odometry"] = {{"unplaced_scans", report.laser_odometry->unplaced},
+                              {"breaks", report.laser_odometry->breaks},
+                              {"step_m", report.laser_odometry->step_m}};
+  }
   json["distance_m"] = report.distance_m;
   if (!report.quality.grade.empty()) json["quality"] = quality(report.quality);
   json["wall_s"] = report.wall_s;

@@ -23,14 +23,6 @@ namespace {
 
 constexpr std::size_t kLongestRobotId = 32;  // bytes, idl
 
-pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file) {
-  try {
-    return pipeline::load_config(file);
-  } catch (const std::exception& error) {
-    throw service::UsageError(error.what());
-  }
-}
-
 Job open_log(const JobOptions& options, Inputs inputs) {
   try {
     recording::LogReader reader(options.log, inputs.config.config.log, options.topics);
@@ -73,6 +65,14 @@ void print_error(std::ostream& out, const char* name, const pipeline::Trajectory
 
 }  // namespace
 
+pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file) {
+  try {
+    return pipeline::load_config(file);
+  } catch (const std::exception& error) {
+    throw service::UsageError(error.what());
+  }
+}
+
 void add_config_option(command_line::Command& app, std::optional<std::filesystem::path>& config) {
   app.add_option("--config", config, "configuration (YAML); see `topogeo config`")
       ->type_name("FILE");
@@ -108,7 +108,7 @@ void add_topic_options(command_line::Command& app, recording::TopicChoice& topic
   app.add_option("--odometry-topic", topics.odometry,
                  "topic of the odometry or transforms in a recording (default: of the robot with "
                  "these scans, /odom, else the one with most messages, else odom -> base_link of "
-                 "/tf)")
+                 "/tf); also of PoseStamped, PoseWithCovarianceStamped or TransformStamped")
       ->type_name("TOPIC");
 }
 

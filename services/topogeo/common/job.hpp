@@ -62,6 +62,9 @@ struct Inputs {
   bool laser_known = false;  ///< log or configuration state the mounting of the laser
 };
 
+/// The configuration of a file, or the defaults. Throws service::UsageError if it is unusable.
+pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file);
+
 /// Takes the laser mounting from the log unless the configuration sets it, and reports that and the
 /// chosen topics of a recording on stderr. Returns whether either states one. Throws
 /// service::BadInputError when the log cannot be opened.

@@ -24,6 +24,7 @@
 
 #include "commands.hpp"
 #include "common/job.hpp"
+#include "common/log_odometry.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -70,8 +71,8 @@ class Interruption {
 };
 
 /// Takes all scans of the log; false after a signal.
-bool add_scans(Job& job, pipeline::MappingRun& run, support::StageTimes& times,
-               const Interruption& interruption) {
+bool add_scans(const Job& job, pipeline::ScanFeed& feed, pipeline::MappingRun& run,
+               support::StageTimes& times, const Interruption& interruption) {
   support::ProgressBar bar(std::cerr, support::stderr_is_terminal(), "mapping", "scans");
   const double start_s = support::monotonic_s();
   std::uint64_t done = 0;
@@ -79,7 +80,7 @@ bool add_scans(Job& job, pipeline::MappingRun& run, support::StageTimes& times,
     std::optional<scan::Scan> scan;
     {
       const auto scope = times.measure("reading");
-      scan = job.reader.next();
+      scan = feed.next();
     }
     if (!scan) {
       bar.finish(done, done, support::monotonic_s() - start_s);
@@ -93,8 +94,8 @@ bool add_scans(Job& job, pipeline::MappingRun& run, support::StageTimes& times,
   return false;
 }
 
-storage::Report make_report(const Job& job, const pipeline::MappingRun& run,
-                            const storage::MapDocument& document) {
+storage::Report make_report(const Job& job, const pipeline::ScanFeed& feed,
+                            const pipeline::MappingRun& run, const storage::MapDocument& document) {
   storage::Report report;
   report.command = run.map_tracker() != nullptr ? "localize" : "map";
   report.log = job.options.log.filename().string();
@@ -103,6 +104,7 @@ storage::Report make_report(const Job& job, const pipeline::MappingRun& run,
   results::add_matches(report, run.match_counts());
   results::add_loop_candidates(report, run.loop_decisions());
   results::add_log(report, job.reader.statistics());
+  add_odometry(report, feed);
   add_quality(report, job, document);
   if (run.map_tracker() != nullptr) {
     report.localization = pipeline::localization_counts(*run.map_tracker());
@@ -144,13 +146,15 @@ int map_log(const JobOptions& options, bool stages) {
   const double start_s = support::monotonic_s();
   check_no_database(options.out);
   Interruption interruption;
-  Job job = prepare(options);
+  Job job = prepare(without_odometry(options));
+  pipeline::ScanFeed feed = open_feed(job);
   const std::unique_ptr<pipeline::MappingRun> made = make_run(job);
   pipeline::MappingRun& run = *made;
   support::StageTimes times;
-  if (!add_scans(job, run, times, interruption)) return kSignalBase + interruption.received();
+  if (!add_scans(job, feed, run, times, interruption)) return kSignalBase + interruption.received();
   report_skipped(job.reader.statistics());
   check_usable(options, job.reader.statistics());
+  check_tracked(options, feed);
 
   if (interruption.received() != 0) return kSignalBase + interruption.received();
   if (!job.inputs.map) std::cerr << "matching revisited places\n";
@@ -175,7 +179,7 @@ int map_log(const JobOptions& options, bool stages) {
     }
   }
 
-  storage::Report report = make_report(job, run, document);
+  storage::Report report = make_report(job, feed, run, document);
   if (job.inputs.map == nullptr) add_overlaps(report, options, job.inputs.config.config);
   report.stages = times.stages();
   report.stages.insert(report.stages.begin() + 1, run.stages().begin(), run.stages().end());

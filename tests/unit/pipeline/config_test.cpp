@@ -95,7 +95,7 @@ std::map<std::string, std::set<std::string>> owners_of_keys(Config& c) {
   library("markov", c.navigator.markov.markov);
   library("markov poses", c.navigator.markov.poses);
   library("navigation", c.navigator, c.exploration);
-  library("pipeline", c.local_mapper, c.metrics, c.report);
+  library("pipeline", c.odometry_source, c.local_mapper, c.metrics, c.report);
   return owners;
 }
 

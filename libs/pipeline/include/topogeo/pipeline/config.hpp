@@ -11,6 +11,7 @@
 #include "topogeo/pipeline/hybrid_map_config.hpp"
 #include "topogeo/pipeline/local_mapper_config.hpp"
 #include "topogeo/pipeline/metrics_config.hpp"
+#include "topogeo/pipeline/odometry_source.hpp"
 #include "topogeo/pipeline/report_config.hpp"
 #include "topogeo/planning/hybrid_planner_config.hpp"
 #include "topogeo/planning/planning_config.hpp"
@@ -22,6 +23,7 @@ namespace topogeo::pipeline {
 
 struct Config {
   scan::CarmenLogOptions log;
+  OdometrySource odometry_source = OdometrySource::kAuto;
   LocalMapperConfig local_mapper;
   localization::LocalizerConfig localizer;
   topomap::GlobalMapConfig global_map;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -105,6 +106,15 @@ struct QualityEntry {
   friend bool operator==(const QualityEntry&, const QualityEntry&) = default;
 };
 
+/// Odometry that was made from the scans.
+struct LaserOdometryEntry {
+  std::uint64_t unplaced = 0;  ///< scans left out, because they match no others
+  std::uint64_t breaks = 0;    ///< times that the track was lost
+  double step_m = 0.0;         ///< usual distance between successive scans
+
+  friend bool operator==(const LaserOdometryEntry&, const LaserOdometryEntry&) = default;
+};
+
 struct Report {
   std::string command;  ///< "map" or "run"
   std::string log;      ///< file name; only the last part of a path is written
@@ -115,6 +125,7 @@ struct Report {
 
   std::uint64_t scans = 0;
   ReasonCounts skipped_lines;
+  std::optional<LaserOdometryEntry> laser_odometry;  ///< none: the odometry of the log
   std::uint64_t stops = 0;
   std::uint64_t nodes = 0;
   std::uint64_t branches = 0;
