@@ -27,6 +27,7 @@ struct SyntheticOptions {
   std::size_t jobs = 1;
   std::string config_file;
   std::string save;
+  bool hand_held = false;
   bool markdown = false;
 };
 
@@ -65,7 +66,9 @@ std::vector<SyntheticResult> run_floor(const bench::SyntheticFloor& floor,
     for (std::uint64_t i = next++; i < options.seeds; i = next++) {
       try {
         const std::uint64_t seed = options.first_seed + i;
-        const simulation::SimulatedLog log = bench::synthetic_drive(floor.draw(seed), seed);
+        const simulation::SimulatedLog log = options.hand_held
+                                                 ? bench::hand_held_drive(floor.draw(seed), seed)
+                                                 : bench::synthetic_drive(floor.draw(seed), seed);
         if (!options.save.empty()) bench::save_log(log, options.save, file_name(floor, seed));
         results[i] = bench::run_synthetic(log, config);
         results[i].seed = seed;
@@ -147,6 +150,7 @@ void run(const SyntheticOptions& options) {
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), floor.name) == wanted.end()) {
       continue;
     }
+    if (options.hand_held && floor.large) continue;
     const std::vector<SyntheticResult> runs = run_floor(floor, options, config);
     print(floor.name, runs, options.markdown);
     all.insert(all.end(), runs.begin(), runs.end());
@@ -176,6 +180,8 @@ int main(int argc, char** argv) {
   app.add_option("--config", options.config_file, "configuration file")
       ->check(command_line::existing_file());
   app.add_option("--save", options.save, "write each log with its true poses into this folder");
+  app.add_flag("--hand-held", options.hand_held,
+               "a hand-held laser without odometry; not through the largest floors");
   app.add_flag("--markdown", options.markdown, "print a table in Markdown");
   if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   try {

@@ -14,6 +14,8 @@
 #include "topogeo/storage/tum.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
+#include "localization/hand_held.hpp"
+
 namespace topogeo::bench {
 namespace {
 
@@ -176,6 +178,11 @@ simulation::SimulatedLog synthetic_drive(const world::World& world, std::uint64_
   options.scan_step_rad = 10.0 * kDegree_rad;
   options.odometry = simulation::b21_odometry(seed);
   return simulation::simulate_log(world, options);
+}
+
+simulation::SimulatedLog hand_held_drive(const world::World& world, std::uint64_t seed) {
+  namespace test = localization::test;
+  return test::follow(test::hand_held_drive(world, test::hand_held_options(seed))).log;
 }
 
 SyntheticResult run_synthetic(const simulation::SimulatedLog& log, const pipeline::Config& config,

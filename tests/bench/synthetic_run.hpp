@@ -28,6 +28,10 @@ const std::vector<SyntheticFloor>& synthetic_floors();
 /// simulation::b21_odometry.
 simulation::SimulatedLog synthetic_drive(const world::World& world, std::uint64_t seed);
 
+/// The drive of a person who carries a laser through a floor (1.2 m/s, 90 degrees a second, 10
+/// scans a second, 12 m), with odometry from its scans; those that it cannot place are left out.
+simulation::SimulatedLog hand_held_drive(const world::World& world, std::uint64_t seed);
+
 /// An accepted loop closure that disagrees with the truth.
 struct FalseLoop {
   std::uint32_t earlier_id = 0;
