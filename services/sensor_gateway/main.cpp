@@ -80,6 +80,8 @@ void add_options_to(command_line::Command& app, Options& options) {
                  "topic of the odometry or transforms in a ROS recording")
       ->needs(log)
       ->type_name("TOPIC");
+  app.add_flag("--upside-down", options.replay.topics.upside_down,
+               "the laser of the log hangs upside down");
   app.add_option("--readers", options.replay.readers,
                  "number of scan readers to wait for; 0: do not wait")
       ->check(command_line::range(0, 100))
@@ -103,7 +105,8 @@ void add_options_to(command_line::Command& app, Options& options) {
       ->type_name("FILE");
 }
 
-void replay(const service::Setup& setup, const sensor_gateway::GatewayOptions& options) {
+void replay(const service::Setup& setup, sensor_gateway::GatewayOptions options) {
+  options.topics.T_robot_laser = setup.config.config.local_mapper.T_robot_laser;
   OpenLog log = open_log(options, setup.config.config.log);
   service::Service service(setup);
   const sensor_gateway::LogGateway gateway(service, options, std::move(log.reader),

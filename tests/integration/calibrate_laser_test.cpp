@@ -137,9 +137,20 @@ TEST_F(CalibrateLaserTest, AnExactlyKnownMountingIsFoundAgainWithoutAnyNoise) {
   EXPECT_NEAR(part("yaw").value, 0.0, 0.1);
 }
 
+TEST_F(CalibrateLaserTest, AShortDriveShowsTheMountingRoughly) {
+  write_simulated("room", {0.0, 0.0, std::numbers::pi}, 1);
+  ASSERT_EQ(run({log_}), 0) << err_;
+  EXPECT_THAT(out_, HasSubstr("log.clf.gz: too little motion: "));
+  EXPECT_THAT(out_, HasSubstr("motions shows:"));
+  EXPECT_NEAR(std::fabs(part("yaw").value), 180.0, 3.0 * part("yaw").spread);
+}
+
 TEST_F(CalibrateLaserTest, UnusableInputIsNamed) {
-  write_simulated("room", {}, 1);
-  EXPECT_EQ(run({log_}), 3);  // too short
+  simulation::SimulationOptions sparse;  // some scans without a common view
+  sparse.scan_step_m = 10.0;
+  sparse.scan_step_rad = std::numbers::pi;
+  write_log("room", log_, {}, sparse);
+  EXPECT_EQ(run({log_}), 3);
   EXPECT_THAT(err_, HasSubstr("log.clf.gz: too little motion: "));
   EXPECT_EQ(run({scratch_ / "none.clf"}), 3);
   EXPECT_THAT(err_, HasSubstr("none.clf"));

@@ -27,11 +27,24 @@ struct LogReader::Source {
 
 namespace {
 
+/// The scan of a laser upside down, seen from above.
+void mirror(scan::Scan& scan) {
+  if (scan.ranges_m.empty()) return;
+  const auto steps = static_cast<double>(scan.ranges_m.size() - 1);
+  scan.angle_min_rad = -(scan.angle_min_rad + scan.angle_step_rad * steps);
+  std::ranges::reverse(scan.ranges_m);
+}
+
 class CarmenScans final : public LogReader::Source {
  public:
-  CarmenScans(const std::filesystem::path& path, const scan::CarmenLogOptions& options)
-      : reader_(path, options) {}
-  std::optional<scan::Scan> next() override { return reader_.next(); }
+  CarmenScans(const std::filesystem::path& path, const scan::CarmenLogOptions& options,
+              bool upside_down)
+      : reader_(path, options), upside_down_(upside_down) {}
+  std::optional<scan::Scan> next() override {
+    std::optional<scan::Scan> scan = reader_.next();
+    if (scan && upside_down_) mirror(*scan);
+    return scan;
+  }
   [[nodiscard]] const scan::CarmenLogStatistics& statistics() const override {
     return reader_.statistics();
   }
@@ -39,6 +52,7 @@ class CarmenScans final : public LogReader::Source {
 
  private:
   scan::CarmenLogReader reader_;
+  bool upside_down_;
 };
 
 class RecordedScans final : public LogReader::Source {
@@ -105,7 +119,7 @@ LogReader::LogReader(const std::filesystem::path& path, const scan::CarmenLogOpt
   if (drive) {
     source_ = std::make_unique<RecordedScans>(path, limited, std::move(drive), topics.sweep);
   } else {
-    source_ = std::make_unique<CarmenScans>(path, limited);
+    source_ = std::make_unique<CarmenScans>(path, limited, topics.upside_down);
   }
 }
 
@@ -134,7 +148,10 @@ std::uint64_t count_scans(const std::filesystem::path& path, const TopicChoice& 
 }
 
 LogMounting mounting_in_log(const std::filesystem::path& path, const TopicChoice& topics) {
-  if (!is_recording(path)) return {scan::mounting_in_log(path), {}};
+  if (!is_recording(path)) {
+    const std::optional<geometry::Pose2> stated = scan::mounting_in_log(path);
+    return {stated ? stated : topics.T_robot_laser, {}};
+  }
   Survey facts = survey(path, topics);
   LogMounting mounting;
   if (facts.mounting) mounting.T_robot_laser = facts.mounting->T_robot_laser;

@@ -67,7 +67,7 @@ ros::Sweep RosScans::read_sweep(const RawMessage& message) const {
   if (!is_of_laser(survey, frame)) {
     throw std::invalid_argument("frame_id: expected " + survey.laser_frame + ", got " + frame);
   }
-  ros::Sweep sweep = ros::to_sweep(laser, survey.mounting && survey.mounting->upside_down,
+  ros::Sweep sweep = ros::to_sweep(laser, survey.upside_down,
                                    scan::CarmenLogReader::kMaxBeams, sweep_);
   if (beams_ == Beams::kOnePattern && !ros::alike(sweep.pattern, *survey.beams)) {
     throw std::invalid_argument("expected " + text_of(*survey.beams) + " as in most scans, got " +

@@ -41,6 +41,11 @@ class Surveyor {
     choose_odometry();
     find_units();
     find_mounting();
+    if (!survey_.mounting && choice_.T_robot_laser) {
+      survey_.mounting = ros::LaserMounting{.T_robot_laser = *choice_.T_robot_laser};
+    }
+    survey_.upside_down =
+        choice_.upside_down || (survey_.mounting && survey_.mounting->upside_down);
     choose_beams();
     return std::move(survey_);
   }
@@ -158,8 +163,7 @@ void Surveyor::choose_beams() {
   const std::vector<BeamKind>& kinds = scans_.frames->beams;
   const auto most = std::ranges::max_element(kinds, {}, &BeamKind::scans);
   if (most == kinds.end()) return;
-  survey_.beams =
-      survey_.mounting && survey_.mounting->upside_down ? most->upside_down : most->upright;
+  survey_.beams = survey_.upside_down ? most->upside_down : most->upright;
   std::uint64_t alike = 0;
   std::uint64_t others = 0;
   for (const BeamKind& kind : kinds) {

@@ -137,6 +137,20 @@ Json quality(const QualityEntry& quality) {
           {"path_disagreements", disagreements}};
 }
 
+Json found_laser(const FoundLaserEntry& laser) {
+  return {{"x_m", laser.T_robot_laser.x_m},
+          {"y_m", laser.T_robot_laser.y_m},
+          {"yaw_rad", laser.T_robot_laser.theta_rad},
+          {"upside_down", laser.upside_down},
+          {"heading_known", laser.heading_known},
+          {"position_known", laser.position_known},
+          {"heading_spread_rad", laser.heading_spread_rad},
+          {"position_spread_m", laser.position_spread_m},
+          {"confidence", laser.confidence},
+          {"motions", laser.motions},
+          {"fitting", laser.fitting}};
+}
+
 geometry::Pose2 pose_of(const nlohmann::json& json, const std::string& prefix) {
   return {json.at(prefix + "x_m").get<double>(), json.at(prefix + "y_m").get<double>(),
           json.at(prefix + "theta_rad").get<double>()};
@@ -198,6 +212,7 @@ std::string report_json(const Report& report) {
   }
   json["distance_m"] = report.distance_m;
   if (!report.quality.grade.empty()) json["quality"] = quality(report.quality);
+  if (report.laser.searched) json["laser_found"] = found_laser(report.laser);
   json["wall_s"] = report.wall_s;
   json["cpu_s"] = report.cpu_s;
   json["stages"] = stages(report.stages);

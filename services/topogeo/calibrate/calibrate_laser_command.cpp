@@ -123,16 +123,66 @@ std::string laser_yaml(const LaserCalibration& laser) {
                      laser.y_m.value, laser.yaw_rad.value);
 }
 
-int calibrate_laser_log(const CalibrateLaserOptions& options) {
-  const pipeline::LoadedConfig config =
-      load_for_calibration(options.config, options.out, options.log, options.topics);
-  const Found found = calibrate_laser(options, config.config);
-  const LaserCalibration& laser = found.laser;
+/// Starts at the mounting that the scans show if it is too far from the configured one to be found
+/// from there.
+void start_near(const localization::FoundMounting& shown, pipeline::LoadedConfig& config,
+                recording::TopicChoice& topics) {
+  constexpr double kWithinReach_rad = 15.0 / kMountingDegrees;
+  topics.upside_down |= shown.upside_down;
+  const Pose2& T_configured = config.config.local_mapper.T_robot_laser;
+  const double apart_rad =
+      geometry::wrap_angle(shown.T_robot_laser.theta_rad - T_configured.theta_rad);
+  if (!shown.heading_known || std::fabs(apart_rad) <= kWithinReach_rad) return;
+  pipeline::mount_laser(config.config, shown.T_robot_laser);
+}
+
+/// Adds what the search shows of the parts that the refinement leaves open: it needs less driving.
+LaserCalibration completed(LaserCalibration laser, const localization::FoundMounting& shown) {
+  const Pose2& T = shown.T_robot_laser;
+  if (shown.heading_known && !laser.yaw_rad.known) {
+    laser.yaw_rad = {true, T.theta_rad, shown.heading_spread_rad};
+  }
+  if (shown.position_known && !(laser.x_m.known && laser.y_m.known)) {
+    laser.x_m = {true, T.x_m, shown.position_spread_m};
+    laser.y_m = {true, T.y_m, shown.position_spread_m};
+  }
+  return laser;
+}
+
+/// Refines, or prints why the search alone must do.
+LaserCalibration calibrate_from(const localization::FoundMounting& shown,
+                                const CalibrateLaserOptions& options,
+                                const pipeline::Config& config) {
   const std::string name = options.log.filename().string();
-  std::cout << fmt::format("{}: {}\n", name, describe_drive(found.log.maps))
-            << describe_matches(config.config, found.log.matched)
-            << fmt::format("; {} outlying\n\n", laser.outlying)
-            << "the laser, seen from the point of the robot that its odometry refers to:\n";
+  try {
+    const Found found = calibrate_laser(options, config);
+    std::cout << fmt::format("{}: {}\n", name, describe_drive(found.log.maps))
+              << describe_matches(config, found.log.matched)
+              << fmt::format("; {} outlying\n\n", found.laser.outlying);
+    return completed(found.laser, shown);
+  } catch (const service::BadInputError& error) {
+    if (!shown.heading_known) throw;
+    std::cout << fmt::format("{}; a search with {} motions shows:\n\n", error.what(),
+                             shown.motions);
+    LaserCalibration nothing;
+    nothing.with_path = nothing.with_turn = localization::kFewestStretches;  // the spread says why
+    const Pose2& T_configured = config.local_mapper.T_robot_laser;
+    nothing.x_m = {false, T_configured.x_m, shown.position_spread_m};
+    nothing.y_m = {false, T_configured.y_m, shown.position_spread_m};
+    return completed(nothing, shown);
+  }
+}
+
+int calibrate_laser_log(CalibrateLaserOptions options) {
+  pipeline::LoadedConfig config =
+      load_for_calibration(options.config, options.out, options.log, options.topics);
+  const localization::FoundMounting shown =
+      search_mounting(config.config, options.log, options.topics);
+  start_near(shown, config, options.topics);
+  const LaserCalibration laser = calibrate_from(shown, options, config.config);
+  const std::string name = options.log.filename().string();
+  std::cout << "the laser, seen from the point of the robot that its odometry refers to:\n";
+  if (options.topics.upside_down) std::cout << "  it is upside down: --upside-down\n";
   constexpr const char* kTurn = "0.2 rad of turn";
   print_part("x", laser.x_m, 1.0, "m forward", laser.with_turn, kTurn);
   print_part("y", laser.y_m, 1.0, "m to the left", laser.with_turn, kTurn);
@@ -171,8 +221,7 @@ void add_calibrate_laser_command(command_line::Command& app, int& exit_code) {
       ->type_name("FILE");
   command->footer(
       "Turns show x and y, straight paths show yaw: drive some minutes with both, turning to both\n"
-      "sides, through rooms. A part that the log does not show is left as it is configured. The\n"
-      "search finds mountings within about 0.3 m and 15 degrees of the configured one.\n"
+      "sides, through rooms. A part that the log does not show is left as it is configured.\n"
       "Poses are then those of the point that odometry refers to, no longer of the laser.\n"
       "Example:\n"
       "  topogeo calibrate-laser drive.clf.gz --out robot.yaml\n"

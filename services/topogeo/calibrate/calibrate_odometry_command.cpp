@@ -58,7 +58,7 @@ std::vector<topomap::StampedPose> read_reference(const CalibrateOptions& options
   }
 }
 
-CalibrationInputs read_inputs(const CalibrateOptions& options) {
+CalibrationInputs read_inputs(CalibrateOptions& options) {
   pipeline::LoadedConfig config =
       load_for_calibration(options.config, options.out, options.log, options.topics);
   auto reference = read_reference(options);
@@ -181,7 +181,7 @@ std::string yaml_block(const localization::OdometryNoise& noise) {
   return block;
 }
 
-int calibrate_log(const CalibrateOptions& options) {
+int calibrate_log(CalibrateOptions options) {
   CalibrationInputs inputs = read_inputs(options);
   const Measured measured = options.reference ? measure_by_reference(inputs, *options.reference)
                                               : measure_by_matches(inputs);

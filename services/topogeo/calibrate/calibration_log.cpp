@@ -29,7 +29,7 @@ constexpr std::uint32_t kRecentMatches = 6;
 pipeline::LoadedConfig load_for_calibration(const std::optional<std::filesystem::path>& config,
                                             const std::optional<std::filesystem::path>& out,
                                             const std::filesystem::path& log,
-                                            const recording::TopicChoice& topics) {
+                                            recording::TopicChoice& topics) {
   pipeline::LoadedConfig loaded;
   try {
     loaded = pipeline::load_config(config);

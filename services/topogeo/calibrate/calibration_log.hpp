@@ -21,7 +21,7 @@ namespace topogeo::cli {
 pipeline::LoadedConfig load_for_calibration(const std::optional<std::filesystem::path>& config,
                                             const std::optional<std::filesystem::path>& out,
                                             const std::filesystem::path& log,
-                                            const recording::TopicChoice& topics);
+                                            recording::TopicChoice& topics);
 
 /// A log before its first scan.
 struct OpenLog {

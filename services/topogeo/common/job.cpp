@@ -8,6 +8,7 @@
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/laser_mounting.hpp"
+#include "topogeo/recording/message_source.hpp"
 #include "topogeo/results/map_quality.hpp"
 #include "topogeo/results/outputs.hpp"
 #include "topogeo/service/service_options.hpp"
@@ -32,6 +33,32 @@ Job open_log(const JobOptions& options, Inputs inputs) {
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }
+}
+
+void set_mounting(pipeline::LoadedConfig& config, const geometry::Pose2& T_robot_laser) {
+  pipeline::mount_laser(config.config, T_robot_laser);
+  config.effective = support::effective(pipeline::describe(config.config));
+}
+
+/// Where nothing states it.
+MountingChoice take_found(const localization::FoundMounting& found, pipeline::LoadedConfig& config,
+                          recording::TopicChoice& topics) {
+  std::cerr << "topogeo: " << pipeline::text_of(found) << '\n';
+  set_mounting(config, found.T_robot_laser);
+  topics.T_robot_laser = found.T_robot_laser;
+  topics.upside_down |= found.upside_down;
+  return {found.heading_known, found};
+}
+
+/// A map is continued with the mounting that it was made with, which no search finds exactly.
+void mount_as_in_map(pipeline::LoadedConfig& config, JobOptions& options) {
+  const storage::MapDocument map = storage::read_map_file(*options.continued);
+  if (map.local_maps.empty()) return;
+  const geometry::Pose2& T_robot_laser = map.local_maps.front().T_robot_laser;
+  std::cerr << fmt::format("topogeo: laser {}: as in {}\n",
+                           pipeline::mounting_argument(T_robot_laser), options.continued->string());
+  set_mounting(config, T_robot_laser);
+  options.topics.T_robot_laser = T_robot_laser;
 }
 
 /// Summary of the stops of a drive in a finished map; empty for a mapping.
@@ -110,6 +137,25 @@ void add_topic_options(command_line::Command& app, recording::TopicChoice& topic
                  "these scans, /odom, else the one with most messages, else odom -> base_link of "
                  "/tf); also of PoseStamped, PoseWithCovarianceStamped or TransformStamped")
       ->type_name("TOPIC");
+  app.add_option_function(
+         "--laser",
+         [&topics](const std::string& text) {
+           topics.T_robot_laser = pipeline::parse_mounting(text);
+         },
+         "mounting of the laser on the robot, m and rad; overrides configuration and log (default: "
+         "as they state, else found from the scans of a recording)")
+      ->check([](const std::string& text) -> std::string {
+        try {
+          static_cast<void>(pipeline::parse_mounting(text));
+          return {};
+        } catch (const std::exception& error) {
+          return error.what();
+        }
+      })
+      ->type_name("X,Y,YAW");
+  app.add_flag("--upside-down", topics.upside_down,
+               "the laser hangs upside down, or its driver mirrors the scans; for a log that does "
+               "not state it");
 }
 
 void add_log_options(command_line::Command& app, JobOptions& options) {
@@ -171,26 +217,49 @@ void add_map_options(command_line::Command& app, JobOptions& options, StoredMapU
       ->type_name("X,Y,DEG");
 }
 
-bool choose_mounting(pipeline::LoadedConfig& config, const std::filesystem::path& log,
-                     const recording::TopicChoice& topics) {
+MountingChoice choose_mounting(pipeline::LoadedConfig& config, const std::filesystem::path& log,
+                               recording::TopicChoice& topics) {
+  if (topics.T_robot_laser) set_mounting(config, *topics.T_robot_laser);
+  config.laser_set |= topics.T_robot_laser.has_value();
   try {
     const recording::LogMounting in_log = recording::mounting_in_log(log, topics);
     for (const std::string& note : in_log.notes) std::cerr << "topogeo: " << note << '\n';
     const std::string message = pipeline::choose_mounting(config, in_log.T_robot_laser);
     if (!message.empty()) std::cerr << "topogeo: " << message << '\n';
-    return config.laser_set || in_log.T_robot_laser.has_value();
+    const bool stated = config.laser_set || in_log.T_robot_laser.has_value();
+    if (config.laser_set) return {true, std::nullopt};
+    const localization::FoundMounting found = search_mounting(config.config, log, topics);
+    // A CARMEN log has the laser at its poses, if it states no other mounting.
+    if (!stated && recording::is_recording(log)) return take_found(found, config, topics);
+    const std::string warning =
+        pipeline::contradiction(found, config.config.local_mapper.T_robot_laser);
+    if (!warning.empty()) std::cerr << "topogeo: " << warning << '\n';
+    return {stated, std::nullopt};
   } catch (const std::runtime_error& error) {
     throw service::BadInputError(error.what());
   }
 }
 
-Inputs check_inputs(const JobOptions& options) {
+localization::FoundMounting search_mounting(const pipeline::Config& config,
+                                            const std::filesystem::path& log,
+                                            const recording::TopicChoice& topics) {
+  try {
+    recording::LogReader reader(log, config.log, topics);
+    if (!reader.has_odometry()) return {};
+    return pipeline::find_mounting([&reader] { return reader.next(); }, config);
+  } catch (const std::runtime_error& error) {
+    throw service::BadInputError(error.what());
+  }
+}
+
+Inputs check_inputs(JobOptions& options) {
   if (options.initial_pose && !options.map && !options.continued) {
     throw service::UsageError("--initial-pose: expected with a stored map, --map or --continue");
   }
-  Inputs inputs{load(options.config), nullptr, nullptr};
+  Inputs inputs{load(options.config), nullptr, nullptr, {}};
   if (!options.log.empty()) {
-    inputs.laser_known = choose_mounting(inputs.config, options.log, options.topics);
+    inputs.mounting = choose_mounting(inputs.config, options.log, options.topics);
+    if (inputs.mounting.found && options.continued) mount_as_in_map(inputs.config, options);
   }
   const pipeline::Config& config = inputs.config.config;
   if (options.continued && config.localizer.mode != localization::SlamAlgorithm::kGraph) {
@@ -212,8 +281,9 @@ Inputs check_inputs(const JobOptions& options) {
   return inputs;
 }
 
-Job prepare(const JobOptions& options) {
-  Job job = open_log(options, check_inputs(options));
+Job prepare(JobOptions options) {
+  Inputs inputs = check_inputs(options);
+  Job job = open_log(options, std::move(inputs));
   support::check_writable_directory(options.out);
   return job;
 }
@@ -245,10 +315,25 @@ void check_usable(const JobOptions& options, const scan::CarmenLogStatistics& st
                                            options.log.string(), statistics.scans, all, first));
 }
 
+void add_mounting(storage::Report& report, const Inputs& inputs) {
+  if (!inputs.mounting.found) return;
+  const localization::FoundMounting& found = *inputs.mounting.found;
+  report.laser = {true,
+                  found.T_robot_laser,
+                  found.heading_known,
+                  found.position_known,
+                  found.upside_down,
+                  found.heading_spread_rad,
+                  found.position_spread_m,
+                  found.confidence(),
+                  found.motions,
+                  found.fitting};
+}
+
 void add_quality(storage::Report& report, const Job& job, const storage::MapDocument& document) {
   if (job.options.map || job.options.continued) return;
   results::add_quality(report, document,
-                       {job.options.log.string(), job.inputs.laser_known,
+                       {job.options.log.string(), job.inputs.mounting.known,
                         job.inputs.config.config.localizer.recent_matches});
 }
 

@@ -12,6 +12,7 @@
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/pipeline/trajectory_error.hpp"
+#include "topogeo/pipeline/unknown_mounting.hpp"
 #include "topogeo/recording/log_reader.hpp"
 #include "topogeo/storage/report.hpp"
 
@@ -37,7 +38,7 @@ void add_config_option(command_line::Command& app, std::optional<std::filesystem
 void add_width_option(command_line::Command& app, std::uint32_t& width_px);
 /// Adds --config and --robot, common to all mapping commands.
 void add_common_options(command_line::Command& app, JobOptions& options);
-/// Adds --scan-topic and --odometry-topic.
+/// Adds the options on topics, and on a mounting that the log does not state.
 void add_topic_options(command_line::Command& app, recording::TopicChoice& topics);
 /// Adds --overlaps, for commands that make a map.
 void add_overlaps_option(command_line::Command& app, JobOptions& options);
@@ -54,27 +55,40 @@ enum class StoredMapUse : std::uint8_t {
 /// Adds those options and --initial-pose.
 void add_map_options(command_line::Command& app, JobOptions& options, StoredMapUse use);
 
+/// Where the laser is, and how that is known.
+struct MountingChoice {
+  bool known = false;  ///< stated by flag, configuration or log, or found with its heading
+  std::optional<localization::FoundMounting> found;  ///< by a search, where nothing states it
+};
+
+/// Takes the laser mounting from --laser, the configuration, the log or, where a recording does not
+/// state it, from its scans. Reports that, scans that contradict the log, and the chosen topics of
+/// a recording on stderr. `topics` get what else reading the log needs to know of the mounting.
+/// Throws service::BadInputError when the log cannot be read.
+MountingChoice choose_mounting(pipeline::LoadedConfig& config, const std::filesystem::path& log,
+                               recording::TopicChoice& topics);
+
+/// The mounting by the scans and the odometry of a log; unknown without odometry. Throws service::BadInputError when it cannot be read.
+localization::FoundMounting search_mounting(const pipeline::Config& config,
+                                            const std::filesystem::path& log,
+                                            const recording::TopicChoice& topics);
+
 /// Inputs of mapping besides scans.
 struct Inputs {
   pipeline::LoadedConfig config;
   std::shared_ptr<const localization::StoredMap> map;     ///< of JobOptions::map
   std::shared_ptr<const storage::MapDocument> continued;  ///< of JobOptions::continued
-  bool laser_known = false;  ///< log or configuration state the mounting of the laser
+  MountingChoice mounting;                                ///< with a log
 };
 
 /// The configuration of a file, or the defaults. Throws service::UsageError if it is unusable.
 pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file);
 
-/// Takes the laser mounting from the log unless the configuration sets it, and reports that and the
-/// chosen topics of a recording on stderr. Returns whether either states one. Throws
-/// service::BadInputError when the log cannot be opened.
-bool choose_mounting(pipeline::LoadedConfig& config, const std::filesystem::path& log,
-                     const recording::TopicChoice& topics);
-
 /// Checks before the work starts that configuration, stored map and reference are usable, whatever
-/// the source of the scans; with a log, the laser mounting is that of choose_mounting. Throws
+/// the source of the scans; with a log, the laser mounting and `options.topics` are those of
+/// choose_mounting. Throws
 /// service::UsageError for options and configuration, service::BadInputError for the rest.
-Inputs check_inputs(const JobOptions& options);
+Inputs check_inputs(JobOptions& options);
 
 struct Job {
   JobOptions options;
@@ -85,7 +99,7 @@ struct Job {
 
 /// The same for a log, which it opens; also makes the output directory. Throws the same, and
 /// std::runtime_error for the directory.
-Job prepare(const JobOptions& options);
+Job prepare(JobOptions options);
 
 /// Adds overlap sets and solutions to a report if they are asked for, from the map.pb that was
 /// written.
@@ -100,6 +114,9 @@ void report_skipped(const scan::CarmenLogStatistics& statistics);
 
 /// Throws service::BadInputError if nearly all scans of a log were skipped.
 void check_usable(const JobOptions& options, const scan::CarmenLogStatistics& statistics);
+
+/// Adds the mounting that was found from the scans, if it was searched.
+void add_mounting(storage::Report& report, const Inputs& inputs);
 
 /// Judges a new map, whose report has its counts, for print_summary.
 void add_quality(storage::Report& report, const Job& job, const storage::MapDocument& document);

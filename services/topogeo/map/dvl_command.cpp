@@ -155,7 +155,7 @@ std::string sheet_of_log(const DvlOptions& options, const pipeline::Config& conf
                                {.max_width_px = options.width_px});
 }
 
-int draw(const DvlOptions& options) {
+int draw(DvlOptions options) {
   if (options.all == options.scan.has_value()) {
     throw service::UsageError("expected either --scan K or --all (see --help)");
   }

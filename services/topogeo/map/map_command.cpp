@@ -105,6 +105,7 @@ storage::Report make_report(const Job& job, const pipeline::ScanFeed& feed,
   results::add_loop_candidates(report, run.loop_decisions());
   results::add_log(report, job.reader.statistics());
   add_odometry(report, feed);
+  add_mounting(report, job.inputs);
   add_quality(report, job, document);
   if (run.map_tracker() != nullptr) {
     report.localization = pipeline::localization_counts(*run.map_tracker());

@@ -90,10 +90,10 @@ Stops stops_of_map(const std::filesystem::path& file) {
 }
 
 Stops stops_of_log(const std::filesystem::path& file, const pipeline::Config& config,
-                   std::size_t last) {
+                   const recording::TopicChoice& topics, std::size_t last) {
   Stops stops;
   try {
-    recording::LogReader reader(file, config.log);
+    recording::LogReader reader(file, config.log, topics);
     pipeline::LocalMapper mapper(config.local_mapper, "robot");
     const auto keep = [&](std::optional<topomap::LocalMap> map) {
       if (!map) return;
@@ -269,8 +269,10 @@ int match_stops(const MatchOptions& options) {
   if (is_map(options.source)) {
     stops = stops_of_map(options.source);
   } else {
-    choose_mounting(config, options.source, {});
-    stops = stops_of_log(options.source, config.config, std::max(pair.reference, pair.query));
+    recording::TopicChoice topics;
+    choose_mounting(config, options.source, topics);
+    stops =
+        stops_of_log(options.source, config.config, topics, std::max(pair.reference, pair.query));
   }
   UncertainPose predicted;
   try {

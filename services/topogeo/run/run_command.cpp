@@ -144,6 +144,7 @@ int run_log(const RunOptions& options) {
   const double start_s = support::monotonic_s();
   Job job = prepare(options.job);
   RunOptions mounted = options;
+  mounted.job = job.options;  // with what was found of the laser
   mounted.laser = job.inputs.config.config.local_mapper.T_robot_laser;
   const RunResult result = RunSupervisor(mounted, job.laser_lines).run();
   if (result.signal_number != 0) {
@@ -157,6 +158,7 @@ int run_log(const RunOptions& options) {
   while (job.reader.next()) {  // to count the lines that the gateway skipped
   }
   results::add_log(report, job.reader.statistics());
+  add_mounting(report, job.inputs);
   add_quality(report, job, storage::read_map_file(options.job.out / "map.pb"));
   report.wall_s = support::monotonic_s() - start_s - result.stayed_s;
   storage::write_report(options.job.out / "report.json", report);

@@ -88,7 +88,8 @@ int run_goto(RunOptions options) {
   static_cast<void>(to_goal(*options.goal));
   check_picture(options.goal->picture);
   const bool no_laser = options.simulation && options.simulation->no_laser;
-  const pipeline::Config config = check_inputs(inputs_of(options.job, no_laser)).config.config;
+  JobOptions job = inputs_of(options.job, no_laser);
+  const pipeline::Config config = check_inputs(job).config.config;
   options.laser = config.local_mapper.T_robot_laser;
   if (no_laser) options.station = station_of(config.navigator);
   if (!options.goal->picture) options.goal->picture = options.job.out / "route.png";

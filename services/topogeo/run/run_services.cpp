@@ -94,6 +94,7 @@ void start_source(ProcessGroup& processes, const RunOptions& options, const std:
     source.insert(source.end(), {"--sweep", forward ? "forward" : "backward"});
   }
   if (topics.scan) source.insert(source.end(), {"--scan-topic", *topics.scan});
+  if (topics.upside_down) source.emplace_back("--upside-down");
   if (topics.odometry) source.insert(source.end(), {"--odometry-topic", *topics.odometry});
   if (!options.devices.empty()) {
     source = {"--devices", options.devices.string()};

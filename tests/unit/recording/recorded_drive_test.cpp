@@ -1,6 +1,8 @@
 // One drive in each format, and converted from each to each.
 #include "recorded_drive.hpp"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 
 #include "topogeo/recording/convert.hpp"
@@ -202,6 +204,24 @@ TEST_F(RecordedDrive, IsRefusedUnderANameThatSelectsNoFormat) {
   for (const char* name : {"b.mcap", "b.db3", "b.bag", "b.clf", "b.log", "b.clf.gz", "b.1.log.gz",
                            "b.gz", "b", "b.1/", "b.1/b"}) {
     EXPECT_THAT(check_log_name(path(name)), testing::IsEmpty());
+  }
+}
+
+TEST_F(RecordedDrive, OfALaserUpsideDownIsMirroredInEveryFormat) {
+  const std::vector<scan::Scan> drive = short_drive();
+  TopicChoice choice;
+  choice.upside_down = true;
+  for (const char* name : {"a.clf", "a.bag", "a.mcap"}) {
+    const auto file = write_drive(path(name));
+    const std::vector<scan::Scan> scans = read_scans(file, choice);
+    ASSERT_EQ(scans.size(), drive.size()) << name;
+    for (std::size_t i = 0; i < scans.size(); ++i) {
+      EXPECT_EQ(scans[i].angle_min_rad, -0.75) << name;  // that of the last beam, mirrored
+      std::vector<float> ranges_m = drive[i].ranges_m;
+      std::ranges::reverse(ranges_m);
+      EXPECT_EQ(scans[i].ranges_m, ranges_m) << name;
+    }
+    EXPECT_EQ(mounting_in_log(file, choice).T_robot_laser, kMounting) << name;
   }
 }
 

@@ -61,7 +61,7 @@ class LogReader {
 std::uint64_t count_scans(const std::filesystem::path& path, const TopicChoice& topics = {});
 
 struct LogMounting {
-  std::optional<geometry::Pose2> T_robot_laser;  ///< empty if the log does not state it
+  std::optional<geometry::Pose2> T_robot_laser;  ///< empty if neither the log nor the choice does
   std::vector<std::string> notes;                ///< of Survey; none for a CARMEN log
 };
 /// Throws std::runtime_error if the log cannot be opened.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "topogeo/geometry/pose2.hpp"
 #include "topogeo/ros_conversions/frame_tree.hpp"
 #include "topogeo/ros_conversions/laser_scan.hpp"
 
@@ -31,6 +32,9 @@ struct TopicChoice {
                  ///< odom -> base of /tf
   ros::SweepOrder sweep = ros::SweepOrder::kNone;  ///< removes the motion during a scan
   OdometryUse odometry_use = OdometryUse::kRequired;
+  std::optional<geometry::Pose2> T_robot_laser =
+      std::nullopt;          ///< mounting where the log states none
+  bool upside_down = false;  ///< the laser is, whatever transforms state; also for a CARMEN log
 };
 
 struct Survey {
@@ -43,8 +47,9 @@ struct Survey {
   std::string odom_frame;
   std::string odometry_child_frame;  ///< as its messages state it
   std::string robot_frame;           ///< whose motion odometry measures, or that of the laser
-  std::optional<ros::LaserMounting>
-      mounting;  ///< empty if no transforms connect robot_frame and laser_frame
+  std::optional<ros::LaserMounting> mounting;  ///< empty if no transforms connect robot_frame and
+                                               ///< laser_frame, without a choice
+  bool upside_down = false;  ///< scans are mirrored, by the mounting or the choice
   std::optional<ros::BeamPattern> beams;  ///< of most scans; empty if none has beams
   /// For people, a line each: the chosen topics and the state of the mounting.
   std::vector<std::string> notes;

@@ -115,6 +115,22 @@ struct LaserOdometryEntry {
   friend bool operator==(const LaserOdometryEntry&, const LaserOdometryEntry&) = default;
 };
 
+/// Mounting of the laser that was found from the scans.
+struct FoundLaserEntry {
+  bool searched = false;  ///< false: it was stated
+  geometry::Pose2 T_robot_laser;
+  bool heading_known = false;   ///< false: not shown, taken as 0
+  bool position_known = false;  ///< false: not shown, taken as 0
+  bool upside_down = false;
+  double heading_spread_rad = 0.0;  ///< one standard deviation
+  double position_spread_m = 0.0;   ///< one standard deviation
+  double confidence = 0.0;          ///< [0, 1]
+  std::uint64_t motions = 0;        ///< compared
+  std::uint64_t fitting = 0;        ///< of those, not contradicting
+
+  friend bool operator==(const FoundLaserEntry&, const FoundLaserEntry&) = default;
+};
+
 struct Report {
   std::string command;  ///< "map" or "run"
   std::string log;      ///< file name; only the last part of a path is written
@@ -139,6 +155,7 @@ struct Report {
   ReasonCounts continuation;  ///< of a map that was continued: its stops; empty: it was not
   double distance_m = 0.0;    ///< along the corrected trajectory
   QualityEntry quality;
+  FoundLaserEntry laser;
 
   double wall_s = 0.0;
   double cpu_s = 0.0;  ///< of all processes
