@@ -15,9 +15,10 @@ namespace {
 // hardly faster than 2 m/s, and a hand turns a laser by 90 degrees in a second.
 constexpr double kSigma_m_per_s = 1.0;
 constexpr double kSigma_rad_per_s = 1.2;
-// A walker or robot keeps its course for seconds, but can change it within one.
-constexpr double kMemory_s = 10.0;
+// A walker or robot keeps its course along a bare corridor, but can change it within a second.
+// Over scans farther apart in time less of the velocity remains.
 constexpr double kChange_s = 1.0;
+constexpr double kMemory_s = 10.0;
 
 // The usual speed of this laser is learned from its moving steps, of which the last so many count.
 // A slow robot with a scan each few seconds is nowhere near as far as a walker would be.
@@ -59,7 +60,7 @@ Eigen::Matrix3d MotionFilter::usual() const {
 }
 
 MotionFilter::Velocity MotionFilter::after(double dt_s) const {
-  const double kept = std::exp(-dt_s / kMemory_s);
+  const double kept = std::exp(-std::max(0.0, dt_s - kChange_s) / kMemory_s);
   const double changed = std::min(1.0, dt_s / kChange_s);
   return {kept * velocity_.mean, (1.0 - changed) * velocity_.covariance + changed * usual()};
 }
