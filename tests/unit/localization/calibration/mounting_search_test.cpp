@@ -110,8 +110,10 @@ TEST(MountingSearchTest, AStandingRobotShowsNothing) {
 
 TEST(MountingSearchTest, TurnsOnTheSpotShowTheSideAlone) {
   const world::World world = test::world("floor");
+  constexpr int kScans = 120;
   std::vector<scan::Scan> scans;
-  for (int i = 0; i < 120; ++i) {
+  scans.reserve(kScans);
+  for (int i = 0; i < kScans; ++i) {
     scans.push_back(test::scan_at(world, {14.0, 1.2, 0.15 * i}, static_cast<std::uint64_t>(i)));
   }
   EXPECT_FALSE(find(scans).heading_known);
