@@ -56,7 +56,7 @@ class RecordedPoses : public RecordingFiles, public testing::WithParamInterface<
     set_turn(T.theta_rad, pose.orientation_());
   }
 
-  /// By default the poses are chosen by name.
+  /// The scans with the poses, which are chosen by name.
   std::vector<scan::Scan> read(const std::filesystem::path& file) {
     return read_scans(file, {.scan = {}, .odometry = "/tracker"});
   }

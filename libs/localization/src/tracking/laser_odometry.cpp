@@ -85,7 +85,7 @@ void LaserOdometry::follow_second(scan::Scan scan, const TimedFeatures& seen) {
   std::optional<LaserStep> step;
   if (second_) step = second_->add(seen);
   if (!step && LaserTrack::can_begin(*seen.features)) {
-    // What the second track placed before fits nothing.
+    // The scans that the second track placed before fit nothing.
     for (Waiting& waiting : waiting_) waiting.T_second_robot.reset();
     second_.emplace(seen);
     T_track_second_.reset();

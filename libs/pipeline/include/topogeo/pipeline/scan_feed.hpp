@@ -25,7 +25,7 @@ class ScanFeed {
   /// The next scan; empty at the end of the log.
   std::optional<scan::Scan> next();
 
-  /// Of the odometry from the scans read so far; null with the log's.
+  /// The counts of odometry from the scans read so far; null with the log's.
   [[nodiscard]] const localization::LaserOdometryCounts* laser_counts() const {
     return odometry_ ? &odometry_->counts() : nullptr;
   }

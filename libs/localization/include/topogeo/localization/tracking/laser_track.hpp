@@ -27,8 +27,8 @@ struct TimedFeatures {
 /// A scan that a track has placed.
 struct LaserStep {
   geometry::Pose2 T_track_robot;  ///< in the frame of the first scan of the track
-  /// Of the motion since the scan before, in its frame. Along a bare corridor it is that of the
-  /// prediction.
+  /// The covariance of the motion since the scan before, in its frame. Along a bare corridor it is
+  /// that of the prediction.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double overlap = 0.0;  ///< share of the scan in view of the recent ones, [0, 1]
 };
