@@ -6,20 +6,20 @@
 namespace topogeo::recording {
 namespace {
 
-constexpr std::string_view kPoseType = "geometry_msgs/msg/PoseStamped";
+constexpr std::string_view kPoseStampedType = "geometry_msgs/msg/PoseStamped";
 constexpr std::string_view kPoseWithCovarianceType = "geometry_msgs/msg/PoseWithCovarianceStamped";
 constexpr std::string_view kTransformType = "geometry_msgs/msg/TransformStamped";
 
 }  // namespace
 
 bool states_pose(std::string_view type) {
-  return type == kOdometryType || type == kPoseType || type == kPoseWithCovarianceType ||
+  return type == kOdometryType || type == kPoseStampedType || type == kPoseWithCovarianceType ||
          type == kTransformType;
 }
 
 OdometryMessage decode_odometry(std::string_view type, std::span<const std::byte> bytes,
                                 Encoding encoding) {
-  if (type == kPoseType) {
+  if (type == kPoseStampedType) {
     const auto stated = decode<ros::PoseStamped>(bytes, encoding);
     return {stated.header_(), {}, ros::planar(stated.pose_())};
   }
