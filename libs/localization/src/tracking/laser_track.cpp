@@ -33,8 +33,8 @@ constexpr double kClearly = 2.0;
 
 // Up to this uncertainty of the prediction the refinement, whose reach is half a metre, finds the
 // place by itself.
-constexpr double kNear_m = 0.2;
-constexpr double kNear_rad = 0.1;
+constexpr double kWithinReach_m = 0.2;
+constexpr double kWithinReach_rad = 0.1;
 // Extent of the search otherwise. Scans farther apart have little in common.
 constexpr double kNearest_m = 0.5;
 // Error of a place that the search finds, twice the step of its grid.
@@ -75,8 +75,9 @@ Eigen::Matrix3d turned(const Eigen::Matrix3d& covariance, double angle_rad) {
 
 // Whether the refinement finds the place by itself.
 bool is_near(const UncertainPose& step) {
-  return std::max(step.covariance(0, 0), step.covariance(1, 1)) <= kNear_m * kNear_m &&
-         step.covariance(2, 2) <= kNear_rad * kNear_rad;
+  return std::max(step.covariance(0, 0), step.covariance(1, 1)) <=
+             kWithinReach_m * kWithinReach_m &&
+         step.covariance(2, 2) <= kWithinReach_rad * kWithinReach_rad;
 }
 
 bool within_one_place(const Pose2& a, const Pose2& b) {
