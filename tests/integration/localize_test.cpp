@@ -60,8 +60,8 @@ TEST_F(LocalizeTest, AGridGetsStops) {
   write_log("ring", log_);
   const std::string plan = scratch_ / "plan.pb";
   Program import(scratch_, "topogeo",
-                 {"store", "import", TOPOGEO_SHARE "/worlds/ring.world.yaml", "--format",
-                  "drawing", "--out", plan});
+                 {"store", "import", TOPOGEO_SHARE "/worlds/ring.world.yaml", "--format", "drawing",
+                  "--out", plan});
   ASSERT_EQ(import.wait(), 0) << import.err();
   Program grid(scratch_, "topogeo",
                {"store", "export", plan, "--format", "pgm", "--out", scratch_ / "grid"});

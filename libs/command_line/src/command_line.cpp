@@ -57,8 +57,8 @@ void check_commands(const CLI::App& root, const std::vector<std::string>& words)
   std::string path = root.get_name();
   for (const std::string& word : words) {
     if (word.starts_with('-') || app->get_require_subcommand_min() == 0) return;
-    const std::vector<const CLI::App*> commands = app->get_subcommands(
-        [&](const CLI::App* command) { return command->get_name() == word; });
+    const std::vector<const CLI::App*> commands =
+        app->get_subcommands([&](const CLI::App* command) { return command->get_name() == word; });
     if (commands.empty()) {
       const std::string nearest = nearest_command(*app, word);
       throw UsageError("there is no command '" + word + "'" +

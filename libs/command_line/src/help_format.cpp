@@ -29,9 +29,8 @@ std::string limits_of(const std::string& check) {
 }
 
 bool is_same_word(const std::string& a, const std::string& b) {
-  return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) {
-    return std::tolower(x) == std::tolower(y);
-  });
+  return std::ranges::equal(
+      a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
 class HelpFormat : public CLI::Formatter {
@@ -64,8 +63,8 @@ class HelpFormat : public CLI::Formatter {
   static std::string names_of(const char* relation, const std::set<CLI::Option*>& options) {
     std::string text;
     for (const CLI::Option* option : options) {
-      text += (text.empty() ? std::string(" (") + relation : std::string(", ")) +
-              option->get_name();
+      text +=
+          (text.empty() ? std::string(" (") + relation : std::string(", ")) + option->get_name();
     }
     return text.empty() ? text : text + ')';
   }

@@ -62,7 +62,7 @@ bool agree(const Pose2& a, const Pose2& b, double most_m, double most_rad) {
 
 class Aligner {
  public:
-  /// Of both maps only stops with poses and scan points.
+  /// The stops of both maps have poses and scan points.
   Aligner(const storage::MapDocument& map, const storage::MapDocument& foreign,
           const AlignSettings& settings)
       : settings_(settings),

@@ -24,7 +24,7 @@ class GeojsonFrame {
   /// A position [x, y] of the file in the map frame, metres.
   [[nodiscard]] Eigen::Vector2d position_m(const JsonValue& value) const;
 
-  /// What was done to the coordinates.
+  /// Notes on how the coordinates were changed.
   [[nodiscard]] const Notes& notes() const { return notes_; }
 
  private:

@@ -146,7 +146,8 @@ class GeojsonReader {
     if (kind.is_text()) {
       zone.kind = planning::zone_kind_of(kind.text()).value_or(planning::ZoneKind::kRoom);
     }
-    if (zone.kind != planning::ZoneKind::kRoom) zone.value = property(properties, "value").number_or(0.0);
+    if (zone.kind != planning::ZoneKind::kRoom)
+      zone.value = property(properties, "value").number_or(0.0);
     for (const JsonValue& corner : items.front().items()) {
       zone.polygon_m.push_back(frame_.position_m(corner));
     }
@@ -162,7 +163,8 @@ class GeojsonReader {
     for (int number = 2; !taken.insert(free).second; ++number) {
       free = fmt::format("{} {}", name, number);
     }
-    if (free != name) graph_.notes.push_back(fmt::format("a second '{}' is named '{}'", name, free));
+    if (free != name)
+      graph_.notes.push_back(fmt::format("a second '{}' is named '{}'", name, free));
     return free;
   }
 

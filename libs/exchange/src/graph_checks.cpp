@@ -21,11 +21,11 @@ void sort_by_id(std::vector<Element>& elements, const std::string& name, const c
       fmt::format("{}: {} {}: expected each id once", name, what, repeated->id));
 }
 
-/// What is expected of a value that the zone's kind does not allow; empty: nothing.
+/// The value that the zone's kind expects instead of this one; empty for a good one.
 std::string fault_of_value(const planning::DrawnZone& zone) {
   using planning::ZoneKind;
-  const bool slow = zone.value >= planning::kLeastZoneSpeed_mps &&
-                    zone.value <= planning::kMostZoneSpeed_mps;
+  const bool slow =
+      zone.value >= planning::kLeastZoneSpeed_mps && zone.value <= planning::kMostZoneSpeed_mps;
   if (zone.kind == ZoneKind::kSlow && !slow) {
     return fmt::format("a speed of {:g} to {:g} m/s, got {:g}", planning::kLeastZoneSpeed_mps,
                        planning::kMostZoneSpeed_mps, zone.value);

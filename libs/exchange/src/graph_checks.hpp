@@ -15,8 +15,8 @@ namespace topogeo::exchange {
 /// branch whose end is no node, and for a drawing like storage::check.
 void settle(MapGraph& graph, const std::string& name);
 
-/// Takes the repeated first corner from the end of a border. What is expected of a border that is
-/// none, empty for a good one: three corners or more, and no edges that cross or touch.
+/// Takes the repeated first corner from the end of a border. Returns what a border needs and
+/// this one lacks: three corners or more, and no edges that cross or touch. Empty for a good one.
 std::string settle_border(std::vector<Eigen::Vector2d>& corners);
 
 /// Checks the zones of a foreign file: their borders, speeds and directions. Throws

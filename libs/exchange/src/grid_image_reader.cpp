@@ -17,7 +17,7 @@ namespace {
 
 using support::YamlNode;
 
-/// What map_saver writes for an unknown cell.
+/// The pixel that map_saver writes for an unknown cell.
 constexpr int kUnknownPixel = 205;
 
 struct ImageYaml {

@@ -133,9 +133,8 @@ class Linker {
       if (std::ranges::find(alone, map_.nodes[i].id) != alone.end()) sizes.erase(parts[i]);
     }
     if (sizes.empty()) return false;
-    const std::size_t part = std::ranges::min_element(sizes, {}, [](const auto& entry) {
-                               return entry.second;
-                             })->first;
+    const std::size_t part =
+        std::ranges::min_element(sizes, {}, [](const auto& entry) { return entry.second; })->first;
     const auto path = path_from(cells_of(part, parts));
     if (!path) {
       alone.push_back(map_.nodes[part].id);
@@ -211,9 +210,8 @@ class Linker {
   /// The node nearest to a position; a new one on the nearest branch if that is nearer by more than
   /// a cell.
   std::uint32_t node_at(const Eigen::Vector2d& position_m) {
-    const auto node = std::ranges::min_element(map_.nodes, {}, [&](const MapNode& one) {
-      return distance(one.position_m, position_m);
-    });
+    const auto node = std::ranges::min_element(
+        map_.nodes, {}, [&](const MapNode& one) { return distance(one.position_m, position_m); });
     const double to_node_m = distance(node->position_m, position_m);
     double nearest_m = std::numeric_limits<double>::infinity();
     std::pair<std::size_t, std::size_t> nearest{};

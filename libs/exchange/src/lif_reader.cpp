@@ -94,7 +94,9 @@ class LifReader {
       node.id = own ? *lif_number(id.text(), 'n')
                     : static_cast<std::uint32_t>(graph_.map.nodes.size() + 1);
       node.position_m = lif_position(item.required("nodePosition"));
-      node.kind = topomap::node_kind_of(either(item, "nodeDescription", "nodeDescriptor").text_or("")).value_or(node.kind);
+      node.kind =
+          topomap::node_kind_of(either(item, "nodeDescription", "nodeDescriptor").text_or(""))
+              .value_or(node.kind);
       if (!nodes_.emplace(id.text(), node).second) id.fail("each nodeId once");
       graph_.map.nodes.push_back(node);
     }

@@ -56,17 +56,18 @@ void lay_over(storage::MapDocument& document, MapGraph graph, Notes& notes) {
   // Without stops the nodes were made of a grid, or came from another file.
   if (document.global_map.nodes.empty() || document.local_maps.empty()) {
     if (!document.global_map.nodes.empty()) {
-      notes.push_back(fmt::format("{} nodes and {} branches of the map are replaced: it has no stops",
-                                  document.global_map.nodes.size(),
-                                  document.global_map.branches.size()));
+      notes.push_back(
+          fmt::format("{} nodes and {} branches of the map are replaced: it has no stops",
+                      document.global_map.nodes.size(), document.global_map.branches.size()));
     }
     // A map must not be newer than the trajectory that it was made from.
     document.trajectory.version = std::max(document.trajectory.version, graph.map.version);
     document.global_map = std::move(graph.map);
     return;
   }
-  notes.push_back(fmt::format("{} nodes and {} branches left out: the map has nodes of its own stops",
-                              graph.map.nodes.size(), graph.map.branches.size()));
+  notes.push_back(
+      fmt::format("{} nodes and {} branches left out: the map has nodes of its own stops",
+                  graph.map.nodes.size(), graph.map.branches.size()));
 }
 
 }  // namespace topogeo::exchange

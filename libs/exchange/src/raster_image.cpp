@@ -65,9 +65,9 @@ RasterImage raster_of_pgm(std::string_view bytes, const std::string& source) {
   return image;
 }
 
-/// The chunks of a PNG image that say which values its pixels have. Those on colour, such as gAMA
-/// and iCCP, are left out, because libpng would convert the values by them. A chunk that is cut
-/// short stays, for libpng to refuse.
+/// The chunks of a PNG image that say which values its pixels have. Chunks on colour, such as
+/// gAMA and iCCP, are left out, because libpng would convert the values by them. A chunk that is
+/// cut short stays, for libpng to refuse.
 std::string pixel_chunks(std::string_view bytes) {
   constexpr std::size_t kSignature_bytes = 8;
   constexpr std::size_t kBesideData_bytes = 12;  // length, type, checksum

@@ -90,8 +90,7 @@ class Builder {
       for (const std::size_t bend : bends(points, begin, end, unknown)) {
         const std::uint32_t to = node_at(branch, bend);
         const std::span<const BranchPoint> piece(&points[begin], bend - begin + 1);
-        const double clearance_m =
-            unknown ? 0.0 : least_clearance(piece) - deviation(piece).second;
+        const double clearance_m = unknown ? 0.0 : least_clearance(piece) - deviation(piece).second;
         // A branch that returns to its node within the tolerance leads nowhere.
         if (from != to) network_.pieces.push_back({from, to, clearance_m, branch.id, {}});
         from = to;
@@ -276,10 +275,10 @@ class Builder {
   NetworkSettings settings_;
   RouteNetwork network_;
   std::map<std::uint32_t, std::uint32_t> node_of_;  // index by MapNode::id
-  std::size_t virtual_ = 0;            // virtual branches left out
-  std::size_t joining_ = 0;            // virtual branches that alone join parts
-  std::size_t unknown_ = 0;            // branches without clearance
-  std::vector<std::uint32_t> narrow_;  // ids of branches
+  std::size_t virtual_ = 0;                         // virtual branches left out
+  std::size_t joining_ = 0;                         // virtual branches that alone join parts
+  std::size_t unknown_ = 0;                         // branches without clearance
+  std::vector<std::uint32_t> narrow_;               // ids of branches
 };
 
 }  // namespace

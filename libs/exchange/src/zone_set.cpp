@@ -92,8 +92,9 @@ class ZoneSetReader {
       zone.kind = ZoneKind::kNoGo;
     } else if (type == "SPEED_LIMIT") {
       zone.kind = ZoneKind::kSlow;
-      zone.value = in.required("maximumSpeed").number_between(
-          planning::kLeastZoneSpeed_mps, planning::kMostZoneSpeed_mps, "m/s");
+      zone.value =
+          in.required("maximumSpeed")
+              .number_between(planning::kLeastZoneSpeed_mps, planning::kMostZoneSpeed_mps, "m/s");
     } else if (type == "DIRECTED") {
       zone.kind = ZoneKind::kOneWay;
       zone.value =

@@ -41,8 +41,10 @@ storage::MapDocument load_usable_map(const std::filesystem::path& file) {
   for (const topomap::LocalMap& local_map : document.local_maps) {
     if (!local_map.points.empty()) return document;
   }
-  throw std::runtime_error(file.string() + ": no stop of the map has scan points; `topogeo store import --with-stops` makes "
-                           "stops of a grid");
+  throw std::runtime_error(
+      file.string() +
+      ": no stop of the map has scan points; `topogeo store import --with-stops` makes "
+      "stops of a grid");
 }
 
 localization::EdgeKind kind_of(storage::MapEdge::Kind kind) {

@@ -67,8 +67,8 @@ ros::Sweep RosScans::read_sweep(const RawMessage& message) const {
   if (!is_of_laser(survey, frame)) {
     throw std::invalid_argument("frame_id: expected " + survey.laser_frame + ", got " + frame);
   }
-  ros::Sweep sweep = ros::to_sweep(laser, survey.upside_down,
-                                   scan::CarmenLogReader::kMaxBeams, sweep_);
+  ros::Sweep sweep =
+      ros::to_sweep(laser, survey.upside_down, scan::CarmenLogReader::kMaxBeams, sweep_);
   if (beams_ == Beams::kOnePattern && !ros::alike(sweep.pattern, *survey.beams)) {
     throw std::invalid_argument("expected " + text_of(*survey.beams) + " as in most scans, got " +
                                 text_of(sweep.pattern));

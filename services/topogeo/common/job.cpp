@@ -187,12 +187,11 @@ void add_overlaps(storage::Report& report, const JobOptions& options,
 void add_map_options(command_line::Command& app, JobOptions& options, StoredMapUse use) {
   command_line::Option* map = nullptr;
   if (use != StoredMapUse::kExtendMap) {
-    map =
-        app.add_option("--map", options.map,
-                       use == StoredMapUse::kLocalize
-                           ? "map to localize in, read-only: map.pb, or the YAML of a grid"
-                           : "map.pb to localize in, read-only")
-            ->type_name("FILE");
+    map = app.add_option("--map", options.map,
+                         use == StoredMapUse::kLocalize
+                             ? "map to localize in, read-only: map.pb, or the YAML of a grid"
+                             : "map.pb to localize in, read-only")
+              ->type_name("FILE");
   }
   if (use == StoredMapUse::kLocalize) map->required();
   if (use != StoredMapUse::kLocalize) {

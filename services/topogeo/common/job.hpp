@@ -25,7 +25,7 @@ struct JobOptions {
   std::optional<std::filesystem::path> config;
   std::string robot_id = "robot";
   std::optional<std::filesystem::path> reference;  ///< trajectory to compare with
-  bool map_may_be_grid = false;  ///< --map may be a grid, which gets stops
+  bool map_may_be_grid = false;                    ///< --map may be a grid, which gets stops
   std::optional<std::filesystem::path> map;        ///< map to localize in; none: a map is made
   std::optional<std::filesystem::path> continued;  ///< map to extend; none: a new one
   std::optional<std::string> initial_pose;         ///< "x,y,degrees" in either map
@@ -68,7 +68,8 @@ struct MountingChoice {
 MountingChoice choose_mounting(pipeline::LoadedConfig& config, const std::filesystem::path& log,
                                recording::TopicChoice& topics);
 
-/// The mounting by the scans and the odometry of a log; unknown without odometry. Throws service::BadInputError when it cannot be read.
+/// The mounting by the scans and the odometry of a log; unknown without odometry. Throws
+/// service::BadInputError when it cannot be read.
 localization::FoundMounting search_mounting(const pipeline::Config& config,
                                             const std::filesystem::path& log,
                                             const recording::TopicChoice& topics);

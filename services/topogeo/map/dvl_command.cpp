@@ -180,7 +180,9 @@ void add_dvl_command(command_line::Command& app, int& exit_code) {
       "dvl", "Picture of the local Voronoi diagram and map of one scan, or of many (--all)");
   auto options = std::make_shared<DvlOptions>();
   add_topic_options(*command, options->topics);
-  command->add_option("log,--log", options->log, recording::kLogFormats)->required()->type_name("FILE");
+  command->add_option("log,--log", options->log, recording::kLogFormats)
+      ->required()
+      ->type_name("FILE");
   command->add_option("--out", options->out, "picture to write: .png or .svg")
       ->required()
       ->type_name("FILE");

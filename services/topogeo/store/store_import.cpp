@@ -70,10 +70,10 @@ void add_graph(storage::MapDocument& document, const ImportOptions& options,
     }
   }();
   const std::size_t parts = exchange::parts_of_graph(made.global_map);
-  std::cerr << fmt::format("topogeo: {} nodes and {} branches made of the grid, {}\n",
-                           made.global_map.nodes.size(), made.global_map.branches.size(),
-                           parts <= 1 ? "all connected"
-                                      : fmt::format("in {} parts that no free path joins", parts));
+  std::cerr << fmt::format(
+      "topogeo: {} nodes and {} branches made of the grid, {}\n", made.global_map.nodes.size(),
+      made.global_map.branches.size(),
+      parts <= 1 ? "all connected" : fmt::format("in {} parts that no free path joins", parts));
   if (options.with_stops) {
     made.drawing = std::move(document.drawing);
     document = std::move(made);
@@ -92,9 +92,9 @@ int store_import(const ImportOptions& options) {
   const exchange::MapFormat& format =
       exchange::format_named(exchange::import_formats(), options.format);
   try {
-    exchange::MapGraph graph = format.read(
-        options.file, {.resolution_m = config.hybrid_map.grid.resolution_m,
-                       .pixel_205 = pixel_205_of(options.pixel_205)});
+    exchange::MapGraph graph =
+        format.read(options.file, {.resolution_m = config.hybrid_map.grid.resolution_m,
+                                   .pixel_205 = pixel_205_of(options.pixel_205)});
     exchange::Notes notes = std::move(graph.notes);
     exchange::move(graph, T_map_file);
     exchange::lay_over(document, std::move(graph), notes);
@@ -146,10 +146,11 @@ void add_store_import_command(command_line::Command& store, int& exit_code) {
                     "for grids: keep the stops that the graph is made from, so that robots can "
                     "localize in the map (topogeo localize --map)");
   command
-      ->add_option("--pixel-205", options->pixel_205,
-                   "for grids: read pixels of 205, which map_saver writes for unknown, as 'unknown' "
-                   "or by the 'threshold's of the YAML; 'auto': unknown if the image has only the "
-                   "values of map_saver")
+      ->add_option(
+          "--pixel-205", options->pixel_205,
+          "for grids: read pixels of 205, which map_saver writes for unknown, as 'unknown' "
+          "or by the 'threshold's of the YAML; 'auto': unknown if the image has only the "
+          "values of map_saver")
       ->check(command_line::one_of({"auto", "unknown", "threshold"}))
       ->capture_default_str()
       ->type_name("HOW");

@@ -148,8 +148,7 @@ TEST_F(GridImageFiles, TheUnknownOfMapSaverStaysUnknown) {
     return read_grid_image(write("a.yaml", yaml), pixel_205).values;
   };
   EXPECT_THAT(read_as(saved, Pixel205::kThreshold), ElementsAre(0, 0, 0, 100));
-  EXPECT_THAT(read_as("P2 2 2 255 254 0 205 220", Pixel205::kUnknown),
-              ElementsAre(-1, 0, 0, 100));
+  EXPECT_THAT(read_as("P2 2 2 255 254 0 205 220", Pixel205::kUnknown), ElementsAre(-1, 0, 0, 100));
 }
 
 TEST_F(GridImageFiles, NamesWhatIsWrong) {
@@ -239,15 +238,16 @@ std::string grey_png(int depth, const std::string& before_pixels) {
   std::string rows;
   for (const std::vector<int>& row : {std::vector{254, 0}, std::vector{205, 100}}) {
     rows += '\0';  // no filter
-    for (const int pixel : row) rows += std::string(static_cast<std::size_t>(depth / 8), static_cast<char>(pixel));
+    for (const int pixel : row)
+      rows += std::string(static_cast<std::size_t>(depth / 8), static_cast<char>(pixel));
   }
   uLongf size = compressBound(static_cast<uLong>(rows.size()));
   std::string packed(size, '\0');
   compress(reinterpret_cast<Bytef*>(packed.data()), &size,
            reinterpret_cast<const Bytef*>(rows.data()), static_cast<uLong>(rows.size()));
   packed.resize(size);
-  const std::string header = std::string("\0\0\0\2\0\0\0\2", 8) + static_cast<char>(depth) +
-                             std::string(4, '\0');
+  const std::string header =
+      std::string("\0\0\0\2\0\0\0\2", 8) + static_cast<char>(depth) + std::string(4, '\0');
   return "\x89PNG\r\n\x1a\n" + chunk("IHDR", header) + before_pixels + chunk("IDAT", packed) +
          chunk("IEND", "");
 }

@@ -149,7 +149,9 @@ planning::OccupancyGrid office_floor() {
   frame.T_map_grid = {0.0, 0.0, 3.14};
   planning::OccupancyGrid grid(frame, CellState::kOccupied);
   const auto fill_m = [&](double left, double bottom, double right, double top) {
-    const auto cell = [](double value) { return static_cast<std::int32_t>(std::lround(value / kCell_m)); };
+    const auto cell = [](double value) {
+      return static_cast<std::int32_t>(std::lround(value / kCell_m));
+    };
     planning::fill_box(grid, {cell(left), cell(bottom)}, {cell(right) - 1, cell(top) - 1},
                        CellState::kFree);
   };

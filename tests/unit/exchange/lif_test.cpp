@@ -90,7 +90,7 @@ TEST_F(Lif, ReadsTheDraftOfTwoAndForeignIds) {
 }
 
 TEST_F(Lif, ReadsTheNamesOfTwo) {
-  // As in example 5 of the draft of January 2026, with a bend.
+  // Example 5 of the draft of January 2026, with a bend.
   const MapGraph graph = parse_lif(R"({"metaInformation":{"lifVersion":"2.0.0"},"origins":[
 {"originId":"o","layouts":[{"layoutId":"l","nodes":[
 {"nodeId":"N1","nodeDescriptor":"door","nodePosition":{"x":0,"y":0}},

@@ -52,7 +52,8 @@ TEST(MapPicture, DrawsNoLineToTheStartOfADrive) {
   std::vector<topomap::StampedPose> poses;
   for (int i = 0; i < 40; ++i) {
     const double gap_m = i < 20 ? 0.0 : 30.0;  // the second drive is elsewhere
-    poses.push_back({static_cast<std::uint64_t>(i), i * 1'000'000'000LL, {0.1 * i + gap_m, 0.0, 0.0}});
+    poses.push_back(
+        {static_cast<std::uint64_t>(i), i * 1'000'000'000LL, {0.1 * i + gap_m, 0.0, 0.0}});
   }
   MapPicture picture;
   picture.corrected = poses;

@@ -2,10 +2,10 @@
 // (grid_map.hpp).
 //
 // Searches some of its stops in the whole of our map, or some of ours in the foreign one if that is
-// larger: most stops of a larger map have no counterpart. A single stop can be mistaken for a similar
-// one, but many stops rarely agree on a wrong pose. The pose with the most support wins. It is
-// refused if another pose has nearly as much support, or if too many stops that our map should show
-// do not fit there.
+// larger: most stops of a larger map have no counterpart. A single stop can be mistaken for a
+// similar one, but many stops rarely agree on a wrong pose. The pose with the most support wins. It
+// is refused if another pose has nearly as much support, or if too many stops that our map should
+// show do not fit there.
 #pragma once
 
 #include <cstddef>

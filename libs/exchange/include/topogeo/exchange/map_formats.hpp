@@ -16,7 +16,7 @@ struct ExportSettings;  // map_export.hpp
 struct ExportedMap;
 
 struct ImportSettings {
-  double resolution_m = 0.05;                    ///< cells of a grid made from walls
+  double resolution_m = 0.05;                 ///< cells of a grid made from walls
   Pixel205 pixel_205 = Pixel205::kAutomatic;  ///< of the images of grids
 };
 

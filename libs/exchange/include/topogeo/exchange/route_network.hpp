@@ -28,7 +28,7 @@ struct NetworkSettings {
   double tolerance_m = 0.1;     ///< largest distance between a piece and the branch, [0, 1]
   /// Uses all branches that no scan has seen, not only those that alone join parts of the graph.
   bool with_virtual = false;
-  bool only_free = false;       ///< leaves out pieces that the grid forbids
+  bool only_free = false;  ///< leaves out pieces that the grid forbids
 };
 
 struct NetworkNode {

@@ -49,7 +49,7 @@ struct Survey {
   std::string robot_frame;           ///< whose motion odometry measures, or that of the laser
   std::optional<ros::LaserMounting> mounting;  ///< empty if no transforms connect robot_frame and
                                                ///< laser_frame, without a choice
-  bool upside_down = false;  ///< scans are mirrored, by the mounting or the choice
+  bool upside_down = false;               ///< scans are mirrored, by the mounting or the choice
   std::optional<ros::BeamPattern> beams;  ///< of most scans; empty if none has beams
   /// For people, a line each: the chosen topics and the state of the mounting.
   std::vector<std::string> notes;

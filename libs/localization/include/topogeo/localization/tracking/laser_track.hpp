@@ -54,7 +54,7 @@ class LaserTrack {
     double overlap = 0.0;
     double score = 0.0;  // log-likelihood
   };
-  /// Of the scan, relative to the newest key scan.
+  /// The pose of the scan, relative to the newest key scan.
   struct Prediction : UncertainPose {
     bool near = false;  // the refinement finds the place by itself
   };
