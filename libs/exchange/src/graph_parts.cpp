@@ -1,34 +1,27 @@
 #include "graph_parts.hpp"
 
-#include <boost/pending/disjoint_sets.hpp>
+#include <numeric>
 
 namespace topogeo::exchange {
-namespace {
 
-using Sets = boost::disjoint_sets<std::size_t*, std::size_t*>;
-
-}  // namespace
-
-GraphParts::GraphParts(std::span<const topomap::MapNode> nodes)
-    : ranks_(nodes.size(), 0), parents_(nodes.size(), 0) {
-  Sets sets(ranks_.data(), parents_.data());
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    sets.make_set(i);
-    index_of_[nodes[i].id] = i;
-  }
+GraphParts::GraphParts(std::span<const topomap::MapNode> nodes) : parents_(nodes.size()) {
+  std::iota(parents_.begin(), parents_.end(), std::size_t{0});
+  for (std::size_t i = 0; i < nodes.size(); ++i) index_of_[nodes[i].id] = i;
 }
 
 bool GraphParts::join(const topomap::MapBranch& branch) {
-  Sets sets(ranks_.data(), parents_.data());
-  const std::size_t a = sets.find_set(index_of_.at(branch.node_a));
-  const std::size_t b = sets.find_set(index_of_.at(branch.node_b));
-  if (a == b) return false;
-  sets.link(a, b);
-  return true;
+  const std::size_t a = part(index_of_.at(branch.node_a));
+  const std::size_t b = part(index_of_.at(branch.node_b));
+  parents_[b] = a;
+  return a != b;
 }
 
 std::size_t GraphParts::part(std::size_t node) {
-  return Sets(ranks_.data(), parents_.data()).find_set(node);
+  while (parents_[node] != node) {
+    parents_[node] = parents_[parents_[node]];
+    node = parents_[node];
+  }
+  return node;
 }
 
 }  // namespace topogeo::exchange

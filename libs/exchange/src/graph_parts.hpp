@@ -1,4 +1,5 @@
-// The parts of a graph that its branches leave apart.
+// The parts of a graph that its branches leave apart: disjoint sets with halved paths (Tarjan and
+// van Leeuwen, "Worst-case analysis of set union algorithms", 1984).
 #pragma once
 
 #include <cstddef>
@@ -24,8 +25,7 @@ class GraphParts {
 
  private:
   std::map<std::uint32_t, std::size_t> index_of_;  // by MapNode::id
-  std::vector<std::size_t> ranks_;
-  std::vector<std::size_t> parents_;
+  std::vector<std::size_t> parents_;               // a part is the node that is its own parent
 };
 
 }  // namespace topogeo::exchange

@@ -19,7 +19,7 @@ void move(MapGraph& graph, const geometry::Pose2& T_map_graph) {
 
 namespace {
 
-bool lacks_clearance(const topomap::MapNode& node) {
+bool has_no_clearance(const topomap::MapNode& node) {
   return node.clearance_m == 0.0;
 }
 
@@ -31,8 +31,8 @@ bool lacks_clearance(const topomap::MapBranch& branch) {
 }
 
 bool lacks_clearances(const topomap::GlobalMap& map) {
-  const auto lacks = [](const auto& element) { return lacks_clearance(element); };
-  return std::ranges::any_of(map.nodes, lacks) || std::ranges::any_of(map.branches, lacks);
+  return std::ranges::any_of(map.nodes, has_no_clearance) ||
+         std::ranges::any_of(map.branches, lacks_clearance);
 }
 
 void take_clearances(topomap::GlobalMap& map, const planning::FreeSpace& space) {
@@ -42,7 +42,7 @@ void take_clearances(topomap::GlobalMap& map, const planning::FreeSpace& space) 
     return std::isfinite(clearance_m) ? clearance_m : 0.0;
   };
   for (topomap::MapNode& node : map.nodes) {
-    if (lacks_clearance(node)) node.clearance_m = at(node.position_m);
+    if (has_no_clearance(node)) node.clearance_m = at(node.position_m);
   }
   for (topomap::MapBranch& branch : map.branches) {
     if (!lacks_clearance(branch)) continue;

@@ -52,7 +52,6 @@ const std::vector<RestrictedLibrary>& restricted_libraries() {
        {"libs/localization/include/topogeo/localization/mapping/pose_graph.hpp",
         "libs/localization/src/", "libs/planning/src/"}},
       {"boost/iterator/", {"libs/planning/src/"}},
-      {"boost/pending/", {"libs/exchange/src/graph_parts.cpp"}},
       {"boost/property_map/", {"libs/localization/src/", "libs/planning/src/"}},
       {"cairo", {"libs/render/src/"}},
       {"yaml-cpp/", {"libs/recording/src/", "libs/support/src/"}},

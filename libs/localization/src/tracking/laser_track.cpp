@@ -16,7 +16,7 @@ namespace {
 
 // Conditions on a match, those of ScanTracker; and, because no odometry contradicts a wrong one, a
 // limit on the share of points that the other scan saw through.
-constexpr double kLeastOverlap = 0.3;
+constexpr double kLeastTrackOverlap = 0.3;
 struct Limits {
   double inliers;
   double violations;
@@ -36,13 +36,13 @@ constexpr double kClearly = 2.0;
 constexpr double kWithinReach_m = 0.2;
 constexpr double kWithinReach_rad = 0.1;
 // Extent of the search otherwise. Scans farther apart have little in common.
-constexpr double kNearest_m = 0.5;
+constexpr double kNearestKeyScan_m = 0.5;
 // Error of a place that the search finds, twice the step of its grid.
 constexpr double kCoarse_m = 0.25;
 constexpr double kCoarse_rad = 0.1;
-constexpr double kFarthest_m = 2.0;
-constexpr double kLeastTurn_rad = 0.35;
-constexpr double kMostTurn_rad = 1.6;
+constexpr double kFarthestKeyScan_m = 2.0;
+constexpr double kLeastKeyTurn_rad = 0.35;
+constexpr double kMostKeyTurn_rad = 1.6;
 
 // A key scan for each half metre or 20 degrees keeps the views of successive ones alike.
 constexpr double kKey_m = 0.5;
@@ -116,7 +116,7 @@ std::optional<LaserTrack::Candidate> LaserTrack::match_at(const MatchFeatures& f
   const Limits& limits = predicted.near ? kNear : kSearched;
   const double off2 = geometry::squared_mahalanobis(
       geometry::difference(match.T_reference_query, predicted.T_a_b), predicted.covariance);
-  if (match.information.isZero() || match.overlap < kLeastOverlap ||
+  if (match.information.isZero() || match.overlap < kLeastTrackOverlap ||
       match.inliers < limits.inliers || match.violations > limits.violations ||
       off2 > kLargestMahalanobis2) {
     return std::nullopt;
@@ -135,8 +135,8 @@ std::optional<LaserTrack::Candidate> LaserTrack::best_match(const MatchFeatures&
       std::sqrt(std::max(predicted.covariance(0, 0), predicted.covariance(1, 1)));
   const double sigma_rad = std::sqrt(predicted.covariance(2, 2));
   if (best && predicted.near) return best;
-  const double reach_m = std::clamp(2.5 * sigma_m, kNearest_m, kFarthest_m);
-  const double turn_rad = std::clamp(2.5 * sigma_rad, kLeastTurn_rad, kMostTurn_rad);
+  const double reach_m = std::clamp(2.5 * sigma_m, kNearestKeyScan_m, kFarthestKeyScan_m);
+  const double turn_rad = std::clamp(2.5 * sigma_rad, kLeastKeyTurn_rad, kMostKeyTurn_rad);
   // Each place is refined by itself: half a metre of reach would draw all of them to one.
   const Eigen::Matrix3d around =
       Eigen::Vector3d(kCoarse_m, kCoarse_m, kCoarse_rad).cwiseAbs2().cwiseInverse().asDiagonal();
