@@ -59,9 +59,9 @@ INSTANTIATE_TEST_SUITE_P(Workers, LocalizeByWorkersTest, testing::Values(1, 2, 4
 TEST_F(LocalizeTest, AGridGetsStops) {
   write_log("ring", log_);
   const std::string plan = scratch_ / "plan.pb";
+  const std::string world = std::string(TOPOGEO_SHARE) + "/worlds/ring.world.yaml";
   Program import(scratch_, "topogeo",
-                 {"store", "import", TOPOGEO_SHARE "/worlds/ring.world.yaml", "--format", "drawing",
-                  "--out", plan});
+                 {"store", "import", world, "--format", "drawing", "--out", plan});
   ASSERT_EQ(import.wait(), 0) << import.err();
   Program grid(scratch_, "topogeo",
                {"store", "export", plan, "--format", "pgm", "--out", scratch_ / "grid"});

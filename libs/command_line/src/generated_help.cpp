@@ -77,7 +77,7 @@ std::vector<std::string> members_of(const CLI::Option& option) {
 }
 
 std::string names_of(const CLI::Option& option) {
-  const std::string flags = option.get_name(false, true);
+  std::string flags = option.get_name(false, true);
   if (!option.get_positional()) return flags;
   const std::string positional = option.get_name(true);
   return flags == positional ? positional : positional + ", " + flags;

@@ -25,10 +25,10 @@ void sort_by_id(std::vector<Element>& elements, const std::string& name, const c
 std::string fault_of_value(const planning::DrawnZone& zone) {
   using planning::ZoneKind;
   const bool slow =
-      zone.value >= planning::kLeastZoneSpeed_mps && zone.value <= planning::kMostZoneSpeed_mps;
+      zone.value >= planning::kLeastZoneSpeed_m_s && zone.value <= planning::kMostZoneSpeed_m_s;
   if (zone.kind == ZoneKind::kSlow && !slow) {
-    return fmt::format("a speed of {:g} to {:g} m/s, got {:g}", planning::kLeastZoneSpeed_mps,
-                       planning::kMostZoneSpeed_mps, zone.value);
+    return fmt::format("a speed of {:g} to {:g} m/s, got {:g}", planning::kLeastZoneSpeed_m_s,
+                       planning::kMostZoneSpeed_m_s, zone.value);
   }
   if (zone.kind == ZoneKind::kOneWay && !(std::fabs(zone.value) <= std::numbers::pi)) {
     return fmt::format("a direction of -pi to pi rad, got {:g}", zone.value);

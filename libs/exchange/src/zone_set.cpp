@@ -94,7 +94,7 @@ class ZoneSetReader {
       zone.kind = ZoneKind::kSlow;
       zone.value =
           in.required("maximumSpeed")
-              .number_between(planning::kLeastZoneSpeed_mps, planning::kMostZoneSpeed_mps, "m/s");
+              .number_between(planning::kLeastZoneSpeed_m_s, planning::kMostZoneSpeed_m_s, "m/s");
     } else if (type == "DIRECTED") {
       zone.kind = ZoneKind::kOneWay;
       zone.value =

@@ -52,7 +52,7 @@ ZoneKind kind_of(const YamlNode& node) {
 }
 
 double value_of(const YamlNode& node, ZoneKind kind) {
-  if (kind == ZoneKind::kSlow) return node.number(kLeastZoneSpeed_mps, kMostZoneSpeed_mps, "m/s");
+  if (kind == ZoneKind::kSlow) return node.number(kLeastZoneSpeed_m_s, kMostZoneSpeed_m_s, "m/s");
   if (kind == ZoneKind::kOneWay) return node.number(-std::numbers::pi, std::numbers::pi, "rad");
   if (node.exists()) node.fail("no value: only slow and one_way zones have one");
   return 0.0;

@@ -27,7 +27,7 @@ class RecordedPoses : public RecordingFiles, public testing::WithParamInterface<
  protected:
   template <typename Message, typename Fill>
   std::filesystem::path write_poses(std::string_view type, const Fill& fill) {
-    const std::filesystem::path file = path(GetParam());
+    std::filesystem::path file = path(GetParam());
     const std::unique_ptr<MessageSink> sink = create_sink(file, "none");
     for (const scan::Scan& scan : short_drive()) {
       Message message;

@@ -167,8 +167,8 @@ LaserStep LaserTrack::accept(const TimedFeatures& scan, const Candidate& match,
   const Eigen::Matrix3d measured = (seen + kNothing * Eigen::Matrix3d::Identity()).inverse();
   motion_.update(dt_s, {T_before_scan, turned(measured, back_rad)});
   const Eigen::Matrix3d covariance = (seen + predicted.covariance.inverse()).inverse();
-  const LaserStep step{recent_.T_track_newest() * match.T_key_robot, turned(covariance, back_rad),
-                       match.overlap};
+  LaserStep step{recent_.T_track_newest() * match.T_key_robot, turned(covariance, back_rad),
+                 match.overlap};
   T_key_last_ = {match.T_key_robot, covariance};
   last_ns_ = scan.stamp_ns;
   scans_ = 0;

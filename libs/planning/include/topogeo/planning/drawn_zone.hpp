@@ -18,8 +18,8 @@ enum class ZoneKind : std::uint8_t {
   kOneWay = 3,  ///< value: heading of the allowed direction in rad, map frame
 };
 inline constexpr std::size_t kZoneKinds = 4;
-inline constexpr double kLeastZoneSpeed_mps = 0.01;  ///< slower is standing: draw a no_go zone
-inline constexpr double kMostZoneSpeed_mps = 10.0;
+inline constexpr double kLeastZoneSpeed_m_s = 0.01;  ///< slower is standing: draw a no_go zone
+inline constexpr double kMostZoneSpeed_m_s = 10.0;
 
 /// A drawn zone. If rooms overlap, the first one counts.
 struct DrawnZone {
