@@ -14,8 +14,8 @@ struct MountingFit {
   geometry::Pose2 T_robot_laser;
   std::vector<double> squared_mahalanobis;  ///< of each motion, three degrees of freedom
   double cost = 0.0;                        ///< their sum, each limited to kOutlying
-  /// Of (x, y, yaw), m and rad: by the scatter of the motions, or by the noise that is assumed of
-  /// them where they are few.
+  /// Covariance of (x, y, yaw), m and rad, by the scatter of the motions or, where they are few,
+  /// by the noise that is assumed of them.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
 
   /// A motion beyond it is an outlier: 99.9 % of the right ones are within.

@@ -7,6 +7,8 @@
 
 #include "topogeo/topomap/local_map_builder.hpp"
 
+#include "../matching/match_evidence.hpp"
+
 namespace topogeo::localization {
 
 using geometry::Pose2;
@@ -17,14 +19,6 @@ namespace {
 // in passing, and has enough scans to make a place.
 constexpr std::int64_t kLost_ns = 2'000'000'000;
 constexpr std::ptrdiff_t kLostScans = 5;
-
-// Two places of one scan are one place.
-bool agree(const Pose2& a, const Pose2& b) {
-  constexpr double kSame_m = 0.3;
-  constexpr double kSame_rad = 0.15;
-  const Eigen::Vector3d apart = geometry::difference(a, b);
-  return apart.head<2>().norm() <= kSame_m && std::fabs(apart.z()) <= kSame_rad;
-}
 
 }  // namespace
 
@@ -76,7 +70,7 @@ bool LaserOdometry::find_again(const TimedFeatures& seen) {
   if (!step) return false;
   const Pose2 T_track_second = step->T_track_robot * geometry::inverse(*T_second_robot);
   const bool again =
-      T_track_second_ && agree(*T_track_second_ * *T_second_robot, step->T_track_robot);
+      T_track_second_ && same_place(*T_track_second_ * *T_second_robot, step->T_track_robot);
   T_track_second_ = T_track_second;
   return again;
 }

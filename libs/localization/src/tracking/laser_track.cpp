@@ -8,6 +8,8 @@
 
 #include "topogeo/localization/matching/refinement.hpp"
 
+#include "../matching/match_evidence.hpp"
+
 namespace topogeo::localization {
 
 using geometry::Pose2;
@@ -80,13 +82,6 @@ bool is_near(const UncertainPose& step) {
          step.covariance(2, 2) <= kWithinReach_rad * kWithinReach_rad;
 }
 
-bool within_one_place(const Pose2& a, const Pose2& b) {
-  constexpr double kSame_m = 0.3;
-  constexpr double kSame_rad = 0.15;
-  const Eigen::Vector3d apart = geometry::difference(a, b);
-  return apart.head<2>().norm() <= kSame_m && std::fabs(apart.z()) <= kSame_rad;
-}
-
 }  // namespace
 
 LaserTrack::LaserTrack(const TimedFeatures& first) : last_ns_(first.stamp_ns) {
@@ -145,7 +140,7 @@ std::optional<LaserTrack::Candidate> LaserTrack::best_match(const MatchFeatures&
        recent_.search(features, {predicted.T_a_b, {reach_m, reach_m, turn_rad}})) {
     const std::optional<Candidate> other = match_at(features, {T_guess, around}, predicted);
     if (!other) continue;
-    const bool same = best && within_one_place(other->T_key_robot, best->T_key_robot);
+    const bool same = best && same_place(other->T_key_robot, best->T_key_robot);
     if (!best || other->score > best->score) {
       if (best && !same) second = std::max(second, best->score);
       best = other;
