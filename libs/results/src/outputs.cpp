@@ -116,8 +116,9 @@ void write_map_outputs(const std::filesystem::path& directory, const storage::Ma
   storage::write_trajectory_tum(directory / "trajectory.tum", drawn.corrected);
   storage::write_trajectory_tum(directory / "odometry.tum", drawn.odometry);
   storage::write_map_file(directory / "map.pb", document);
-  render::draw_map_svg(directory / "map.svg", drawn.picture(title));
-  render::draw_map_png(directory / "map.png", drawn.picture(title));
+  const render::MapPicture picture = drawn.picture(title);
+  render::draw_map_svg(directory / "map.svg", picture);
+  render::draw_map_png(directory / "map.png", picture);
 }
 
 std::string map_svg(const storage::MapDocument& document, const std::string& title) {
