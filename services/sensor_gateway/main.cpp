@@ -34,8 +34,9 @@ struct OpenLog {
 OpenLog open_log(const sensor_gateway::GatewayOptions& replay,
                  const scan::CarmenLogOptions& options) {
   try {
-    return {recording::LogReader(replay.log, options, replay.topics),
-            recording::count_scans(replay.log, replay.topics)};
+    recording::LogReader reader(replay.log, options, replay.topics);
+    const std::uint64_t scans = reader.scan_count();
+    return {std::move(reader), scans};
   } catch (const std::runtime_error& error) {
     throw service::BadInputError(error.what());
   }

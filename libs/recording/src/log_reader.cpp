@@ -108,19 +108,39 @@ class RecordedScans final : public LogReader::Source {
 
 }  // namespace
 
-LogReader::LogReader(const std::filesystem::path& path, const scan::CarmenLogOptions& options,
-                     const TopicChoice& topics) {
-  check(options);
-  std::shared_ptr<const Drive> drive;
-  if (is_recording(path)) drive = std::make_shared<const Drive>(path, topics);
-  no_return_ = find_no_return(path, options, drive);
-  scan::CarmenLogOptions limited = options;
-  if (no_return_) limited.range_max_m = std::min(limited.range_max_m, no_return_->least_m);
-  if (drive) {
-    source_ = std::make_unique<RecordedScans>(path, limited, std::move(drive), topics.sweep);
-  } else {
-    source_ = std::make_unique<CarmenScans>(path, limited, topics.upside_down);
+/// All that is known of a log before its scans are read.
+struct LogReader::Opened {
+  Opened(const std::filesystem::path& log, const scan::CarmenLogOptions& wanted,
+         const TopicChoice& choice)
+      : path(log), options(wanted), sweep(choice.sweep), upside_down(choice.upside_down) {
+    check(options);
+    if (is_recording(path)) drive = std::make_shared<const Drive>(path, choice);
+    no_return = find_no_return(path, options, drive);
+    if (no_return) options.range_max_m = std::min(options.range_max_m, no_return->least_m);
   }
+
+  [[nodiscard]] std::unique_ptr<Source> source() const {
+    if (drive) return std::make_unique<RecordedScans>(path, options, drive, sweep);
+    return std::make_unique<CarmenScans>(path, options, upside_down);
+  }
+
+  std::filesystem::path path;
+  scan::CarmenLogOptions options;
+  ros::SweepOrder sweep;
+  bool upside_down;
+  std::shared_ptr<const Drive> drive{};  // of a recording
+  std::optional<scan::NoReturn> no_return{};
+};
+
+LogReader::LogReader(const std::filesystem::path& path, const scan::CarmenLogOptions& options,
+                     const TopicChoice& topics)
+    : LogReader(std::make_shared<const Opened>(path, options, topics)) {}
+
+LogReader::LogReader(std::shared_ptr<const Opened> opened)
+    : opened_(std::move(opened)), source_(opened_->source()) {}
+
+LogReader LogReader::from_start() const {
+  return LogReader(opened_);
 }
 
 LogReader::~LogReader() = default;
@@ -143,8 +163,12 @@ bool LogReader::has_odometry() const {
   return source_->has_odometry();
 }
 
-std::uint64_t count_scans(const std::filesystem::path& path, const TopicChoice& topics) {
-  return is_recording(path) ? survey(path, topics).scans : scan::count_scans(path);
+std::uint64_t LogReader::scan_count() const {
+  return opened_->drive ? opened_->drive->survey.scans : scan::count_scans(opened_->path);
+}
+
+const std::optional<scan::NoReturn>& LogReader::no_return() const {
+  return opened_->no_return;
 }
 
 LogMounting mounting_in_log(const std::filesystem::path& path, const TopicChoice& topics) {

@@ -8,6 +8,8 @@
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/format.hpp"
 
+#include "common/configuration.hpp"
+
 namespace topogeo::cli {
 namespace {
 
@@ -19,8 +21,7 @@ localization::LaserOdometry laser_odometry(const pipeline::Config& config) {
 
 /// The log from its beginning, by another reader.
 pipeline::NextScan read_again(const Job& job) {
-  auto reader = std::make_shared<recording::LogReader>(
-      job.options.log, job.inputs.config.config.log, job.options.topics);
+  auto reader = std::make_shared<recording::LogReader>(job.reader.from_start());
   return [reader] { return reader->next(); };
 }
 

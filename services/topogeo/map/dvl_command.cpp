@@ -84,7 +84,8 @@ recording::LogReader open_scans(const DvlOptions& options, const pipeline::Confi
 }
 
 /// Number of usable scans, which may be smaller than that of laser lines.
-std::uint64_t count_usable(recording::LogReader reader, std::uint64_t laser_lines) {
+std::uint64_t count_usable(recording::LogReader reader) {
+  const std::uint64_t laser_lines = reader.scan_count();
   SlowProgress progress("counting scans");
   std::uint64_t count = 0;
   while (reader.next()) progress.update(++count, laser_lines);
@@ -131,10 +132,9 @@ std::vector<std::uint64_t> chosen_scans(const DvlOptions& options, std::uint64_t
 }
 
 std::string sheet_of_log(const DvlOptions& options, const pipeline::Config& config) {
-  const std::uint64_t scans = count_usable(open_scans(options, config),
-                                           recording::count_scans(options.log, options.topics));
-  const std::vector<std::uint64_t> chosen = chosen_scans(options, scans);
   recording::LogReader reader = open_scans(options, config);
+  const std::uint64_t scans = count_usable(reader.from_start());
+  const std::vector<std::uint64_t> chosen = chosen_scans(options, scans);
   ScanViews maker(config.local_mapper);
   SlowProgress progress("drawing");
   std::vector<render::ScanView> views;

@@ -40,7 +40,7 @@ TEST_P(RecordedDrive, ComesBackAsItWas) {
   const LogMounting mounting = mounting_in_log(file);
   ASSERT_TRUE(mounting.T_robot_laser);
   EXPECT_EQ(*mounting.T_robot_laser, kMounting);
-  EXPECT_EQ(count_scans(file), drive.size());
+  EXPECT_EQ(LogReader(file).scan_count(), drive.size());
 }
 
 // The pipeline gets the same numbers, so maps of all formats are equal to the byte.

@@ -33,12 +33,18 @@ class LogReader {
   LogReader(const LogReader&) = delete;
   LogReader& operator=(const LogReader&) = delete;
 
+  /// Another reader of the log, from its beginning, that need not search the whole log again.
+  [[nodiscard]] LogReader from_start() const;
+
   /// Like scan::CarmenLogReader::next().
   std::optional<scan::Scan> next();
 
   /// In a recording, `lines` counts its messages of all kinds that were read, `laser_lines` its
   /// scans.
   [[nodiscard]] const scan::CarmenLogStatistics& statistics() const;
+
+  /// At least the number of usable scans. Reads a CARMEN log once more.
+  [[nodiscard]] std::uint64_t scan_count() const;
 
   /// Share of the log read so far, in [0, 1].
   [[nodiscard]] double fraction_read() const;
@@ -48,17 +54,17 @@ class LogReader {
 
   /// The range that this log has in place of an echo, found by reading the whole log; its scans
   /// have no return there. Empty if there is none below the range limit of the options.
-  [[nodiscard]] const std::optional<scan::NoReturn>& no_return() const { return no_return_; }
+  [[nodiscard]] const std::optional<scan::NoReturn>& no_return() const;
 
   struct Source;
+  struct Opened;
 
  private:
-  std::optional<scan::NoReturn> no_return_;
+  explicit LogReader(std::shared_ptr<const Opened> opened);
+
+  std::shared_ptr<const Opened> opened_;  // never null, but in a reader that was moved from
   std::unique_ptr<Source> source_;
 };
-
-/// At least the number of usable scans. Throws std::runtime_error if the log cannot be opened.
-std::uint64_t count_scans(const std::filesystem::path& path, const TopicChoice& topics = {});
 
 struct LogMounting {
   std::optional<geometry::Pose2> T_robot_laser;  ///< empty if neither the log nor the choice does
