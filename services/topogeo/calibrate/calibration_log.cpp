@@ -16,6 +16,7 @@
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/format.hpp"
 
+#include "common/configuration.hpp"
 #include "common/job.hpp"
 
 namespace topogeo::cli {
@@ -30,12 +31,7 @@ pipeline::LoadedConfig load_for_calibration(const std::optional<std::filesystem:
                                             const std::optional<std::filesystem::path>& out,
                                             const std::filesystem::path& log,
                                             recording::TopicChoice& topics) {
-  pipeline::LoadedConfig loaded;
-  try {
-    loaded = pipeline::load_config(config);
-  } catch (const std::exception& error) {
-    throw service::UsageError(error.what());
-  }
+  pipeline::LoadedConfig loaded = load(config);
   if (out) {
     const auto directory = std::filesystem::absolute(*out).parent_path();
     if (!std::filesystem::is_directory(directory)) {
@@ -52,7 +48,8 @@ OpenLog open_log(const std::filesystem::path& path, const scan::CarmenLogOptions
   try {
     recording::LogReader reader(path, options, topics);
     report_no_return(reader);
-    return {std::move(reader), recording::count_scans(path, topics)};
+    const std::uint64_t scans = reader.scan_count();
+    return {std::move(reader), scans};
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }

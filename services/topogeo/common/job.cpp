@@ -17,6 +17,7 @@
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/format.hpp"
 
+#include "common/configuration.hpp"
 #include "common/map_or_grid.hpp"
 
 namespace topogeo::cli {
@@ -28,7 +29,7 @@ Job open_log(const JobOptions& options, Inputs inputs) {
   try {
     recording::LogReader reader(options.log, inputs.config.config.log, options.topics);
     report_no_return(reader);
-    const std::uint64_t laser_lines = recording::count_scans(options.log, options.topics);
+    const std::uint64_t laser_lines = reader.scan_count();
     return {options, std::move(inputs), std::move(reader), laser_lines};
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
@@ -91,14 +92,6 @@ void print_error(std::ostream& out, const char* name, const pipeline::Trajectory
 }
 
 }  // namespace
-
-pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file) {
-  try {
-    return pipeline::load_config(file);
-  } catch (const std::exception& error) {
-    throw service::UsageError(error.what());
-  }
-}
 
 void add_config_option(command_line::Command& app, std::optional<std::filesystem::path>& config) {
   app.add_option("--config", config, "configuration (YAML); see `topogeo config`")
@@ -222,7 +215,7 @@ MountingChoice choose_mounting(pipeline::LoadedConfig& config, const std::filesy
   config.laser_set |= topics.T_robot_laser.has_value();
   try {
     const recording::LogMounting in_log = recording::mounting_in_log(log, topics);
-    for (const std::string& note : in_log.notes) std::cerr << "topogeo: " << note << '\n';
+    print_notes(in_log.notes);
     const std::string message = pipeline::choose_mounting(config, in_log.T_robot_laser);
     if (!message.empty()) std::cerr << "topogeo: " << message << '\n';
     const bool stated = config.laser_set || in_log.T_robot_laser.has_value();
@@ -293,7 +286,7 @@ void report_no_return(const recording::LogReader& reader) {
 }
 
 void report_skipped(const scan::CarmenLogStatistics& statistics) {
-  for (const std::string& note : statistics.notes) std::cerr << "topogeo: " << note << '\n';
+  print_notes(statistics.notes);
   if (statistics.skipped_total() == 0) return;
   for (const std::string& message : statistics.messages) std::cerr << message << '\n';
   if (statistics.skipped_total() > statistics.messages.size()) {

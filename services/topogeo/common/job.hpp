@@ -82,13 +82,10 @@ struct Inputs {
   MountingChoice mounting;                                ///< with a log
 };
 
-/// The configuration of a file, or the defaults. Throws service::UsageError if it is unusable.
-pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file);
-
 /// Checks before the work starts that configuration, stored map and reference are usable, whatever
 /// the source of the scans; with a log, the laser mounting and `options.topics` are those of
-/// choose_mounting. Throws
-/// service::UsageError for options and configuration, service::BadInputError for the rest.
+/// choose_mounting. Throws service::UsageError for options and configuration,
+/// service::BadInputError for the rest.
 Inputs check_inputs(JobOptions& options);
 
 struct Job {

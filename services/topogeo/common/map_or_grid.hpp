@@ -1,16 +1,27 @@
-// The map that a command localizes in.
+// Maps that commands make of grids, by simulated views.
 #pragma once
 
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "topogeo/localization/mapping/stored_map.hpp"
 #include "topogeo/pipeline/config.hpp"
+#include "topogeo/planning/occupancy_grid.hpp"
+#include "topogeo/storage/map_document.hpp"
 
 namespace topogeo::cli {
 
-/// Reads a map file or database. A grid (YAML of map_server), and a map that has nothing but one,
-/// gets stops by simulated views, and stderr says so. Throws std::runtime_error naming the file.
+/// A grid by the YAML file of map_server; its notes go to stderr. Throws std::runtime_error
+/// naming the file.
+planning::OccupancyGrid read_grid(const std::filesystem::path& file);
+
+/// A map with stops all over the grid. Throws std::runtime_error for a grid that is too large.
+storage::MapDocument map_with_stops(planning::OccupancyGrid grid, const pipeline::Config& config,
+                                    const std::string& robot_id);
+
+/// The map of a file or database to localize in. A grid (YAML of map_server), and a map that has
+/// nothing but one, gets stops, and stderr says so. Throws std::runtime_error naming the file.
 std::shared_ptr<const localization::StoredMap> load_map_or_grid(const std::filesystem::path& file,
                                                                 const pipeline::Config& config);
 

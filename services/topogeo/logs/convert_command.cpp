@@ -12,6 +12,7 @@
 #include "topogeo/support/format.hpp"
 
 #include "commands.hpp"
+#include "common/configuration.hpp"
 #include "common/job.hpp"
 
 namespace topogeo::cli {
@@ -32,7 +33,7 @@ int convert_log(const ConvertRequest& request) {
   } catch (const std::runtime_error& error) {
     throw service::BadInputError(error.what());
   }
-  for (const std::string& note : done.notes) std::cerr << "topogeo: " << note << '\n';
+  print_notes(done.notes);
   for (const auto& [topic, messages] : done.left_out) {
     std::cerr << fmt::format("topogeo: left out: {} messages of {}\n", messages, topic);
   }

@@ -21,6 +21,7 @@
 #include "topogeo/support/format.hpp"
 
 #include "commands.hpp"
+#include "common/configuration.hpp"
 #include "map/compare_loops.hpp"
 
 namespace topogeo::cli {
@@ -55,11 +56,7 @@ struct Figures {
 
 geometry::Pose2 laser_of(const std::optional<std::filesystem::path>& config) {
   if (!config) return {};
-  try {
-    return pipeline::load_config(*config).config.local_mapper.T_robot_laser;
-  } catch (const std::exception& error) {
-    throw service::UsageError(error.what());
-  }
+  return read_config(config).local_mapper.T_robot_laser;
 }
 
 std::vector<topomap::StampedPose> read_poses(const std::filesystem::path& file) {

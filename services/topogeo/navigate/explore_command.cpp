@@ -12,6 +12,7 @@
 #include "topogeo/service/service_options.hpp"
 
 #include "commands.hpp"
+#include "common/configuration.hpp"
 #include "navigate/explore_session.hpp"
 #include "navigate/goal_session.hpp"
 #include "navigate/robot_in_domain.hpp"
@@ -25,17 +26,9 @@ struct ExploreOptions {
   std::optional<std::filesystem::path> config;
 };
 
-navigation::TourConfig tour_config(const std::optional<std::filesystem::path>& file) {
-  try {
-    return pipeline::load_config(file).config.exploration;
-  } catch (const std::exception& error) {
-    throw service::UsageError(error.what());
-  }
-}
-
 int explore(const ExploreOptions& options) {
   check_picture(options.picture);
-  const navigation::TourConfig config = tour_config(options.config);
+  const navigation::TourConfig config = read_config(options.config).exploration;
   messaging::EventLoop loop;
   const messaging::SignalStop signals([&](int) { loop.stop(); });
   const messaging::Participant participant =

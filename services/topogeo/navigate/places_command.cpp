@@ -28,6 +28,7 @@
 #include "topogeo/support/patience.hpp"
 
 #include "commands.hpp"
+#include "common/configuration.hpp"
 #include "common/domain_view.hpp"
 #include "navigate/target_text.hpp"
 
@@ -87,14 +88,6 @@ void remove_place(std::vector<planning::Place>& places, const std::string& name)
                   names.empty() ? "the map has none" : "the map has " + names));
 }
 
-pipeline::HybridMapConfig hybrid_map_config(const PlacesOptions& options) {
-  try {
-    return pipeline::load_config(options.config).config.hybrid_map;
-  } catch (const std::exception& error) {
-    throw service::UsageError(error.what());
-  }
-}
-
 /// Throws service::UsageError for a place outside of the map, to which no robot could be sent.
 void check_inside(const std::vector<planning::Place>& places, const storage::MapDocument& document,
                   const pipeline::HybridMapConfig& config) {
@@ -123,10 +116,9 @@ void edit(const PlacesOptions& options) {
   try {
     storage::MapDocument document = storage::read_map_file(file);
     for (const std::string& name : options.removed) remove_place(document.drawing.places, name);
-    const std::vector<planning::Place> places = added.places;
+    storage::check(added);
+    check_inside(added.places, document, read_config(options.config).hybrid_map);
     pipeline::lay_over(document.drawing, std::move(added));
-    storage::check(document.drawing);
-    check_inside(places, document, hybrid_map_config(options));
     storage::write_map_file(file, document);
   } catch (const service::UsageError&) {
     throw;
@@ -168,7 +160,7 @@ void print_places(const planning::HybridMap& map) {
 }
 
 void print_file(const PlacesOptions& options) {
-  const pipeline::HybridMapConfig config = hybrid_map_config(options);
+  const pipeline::HybridMapConfig config = read_config(options.config).hybrid_map;
   const storage::MapDocument floor = [&] {
     try {
       return pipeline::read_floor(options.source, options.zones, config.grid.resolution_m);

@@ -22,6 +22,7 @@
 #include "topogeo/support/format.hpp"
 
 #include "commands.hpp"
+#include "common/configuration.hpp"
 #include "navigate/goal_session.hpp"
 #include "navigate/target_text.hpp"
 
@@ -37,14 +38,6 @@ struct PlanOptions {
   std::optional<std::filesystem::path> picture;
   bool json = false;
 };
-
-pipeline::LoadedConfig load_map(const std::optional<std::filesystem::path>& file) {
-  try {
-    return pipeline::load_config(file);
-  } catch (const std::exception& error) {
-    throw service::UsageError(error.what());
-  }
-}
 
 storage::MapDocument read_map(const std::filesystem::path& path) {
   try {
@@ -122,7 +115,7 @@ void draw(const PlanOptions& options, const storage::MapDocument& document,
 int plan_route(const PlanOptions& options) {
   const Eigen::Vector2d from_m = point_for("--from", options.from);
   const Eigen::Vector2d to_m = point_for("--to", options.to);
-  const pipeline::LoadedConfig config = load_map(options.config);
+  const pipeline::Config config = read_config(options.config);
   std::vector<Eigen::Vector2d> blocked_m;
   for (const std::string& block : options.blocks) {
     blocked_m.push_back(point_for("--block", block));
@@ -134,10 +127,10 @@ int plan_route(const PlanOptions& options) {
   scene.lines = document.drawing.lines;
   scene.filled_m = blocked_m;
   const planning::PlanResult result =
-      planning::plan(document.global_map, from_m, to_m, config.config.planning, scene);
+      planning::plan(document.global_map, from_m, to_m, config.planning, scene);
   if (options.picture) {
     draw(options, document, planning::along_branches(result, from_m, to_m), blocked_m,
-         config.config.hybrid_map);
+         config.hybrid_map);
   }
   if (!result.found()) {
     std::cerr << "topogeo: no route: " << result.reason << '\n';

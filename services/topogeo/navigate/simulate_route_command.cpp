@@ -20,6 +20,7 @@
 #include "topogeo/support/format.hpp"
 
 #include "commands.hpp"
+#include "common/configuration.hpp"
 #include "navigate/target_text.hpp"
 
 namespace topogeo::cli {
@@ -114,13 +115,7 @@ int simulate_route(const SimulateRouteOptions& options) {
   } catch (const std::exception& error) {
     throw service::UsageError(error.what());
   }
-  const auto config = [&] {
-    try {
-      return pipeline::load_config(options.config).config;
-    } catch (const std::exception& error) {
-      throw service::UsageError(error.what());
-    }
-  }();
+  const pipeline::Config config = read_config(options.config);
   const Floor floor = [&] {
     try {
       return read_source(options, config.hybrid_map);

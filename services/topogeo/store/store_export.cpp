@@ -11,6 +11,7 @@
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/host.hpp"
 
+#include "common/configuration.hpp"
 #include "store/format_list.hpp"
 #include "store/store_commands.hpp"
 #include "store/store_files.hpp"

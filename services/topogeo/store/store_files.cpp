@@ -1,7 +1,6 @@
 #include "store/store_files.hpp"
 
 #include <exception>
-#include <iostream>
 #include <string_view>
 
 #include "topogeo/service/service_options.hpp"
@@ -38,18 +37,6 @@ bool looks_like_map(const std::filesystem::path& file) {
 
 bool looks_like_database(const std::filesystem::path& file) {
   return start_of(file).starts_with(kDatabaseStart);
-}
-
-pipeline::Config read_config(const std::optional<std::filesystem::path>& file) {
-  try {
-    return pipeline::load_config(file).config;
-  } catch (const std::exception& error) {
-    throw service::UsageError(error.what());
-  }
-}
-
-void print_notes(const exchange::Notes& notes) {
-  for (const std::string& note : notes) std::cerr << "topogeo: " << note << '\n';
 }
 
 }  // namespace topogeo::cli

@@ -21,10 +21,4 @@ bool looks_like_map(const std::filesystem::path& file);
 /// Whether the file begins like an SQLite file.
 bool looks_like_database(const std::filesystem::path& file);
 
-/// Throws service::UsageError naming file and key.
-pipeline::Config read_config(const std::optional<std::filesystem::path>& file);
-
-/// Prints each note on stderr, on a line of its own.
-void print_notes(const exchange::Notes& notes);
-
 }  // namespace topogeo::cli

@@ -18,6 +18,7 @@
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/format.hpp"
 
+#include "common/configuration.hpp"
 #include "common/job.hpp"
 #include "store/format_list.hpp"
 #include "store/store_commands.hpp"

@@ -15,6 +15,7 @@
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/format.hpp"
 
+#include "common/configuration.hpp"
 #include "store/store_commands.hpp"
 #include "store/store_files.hpp"
 

@@ -12,8 +12,6 @@
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/exchange/align.hpp"
-#include "topogeo/exchange/grid_image.hpp"
-#include "topogeo/exchange/grid_map.hpp"
 #include "topogeo/exchange/merge.hpp"
 #include "topogeo/exchange/sessions.hpp"
 #include "topogeo/pipeline/hybrid_map_source.hpp"
@@ -21,7 +19,9 @@
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/format.hpp"
 
+#include "common/configuration.hpp"
 #include "common/job.hpp"
+#include "common/map_or_grid.hpp"
 #include "store/store_commands.hpp"
 #include "store/store_files.hpp"
 
@@ -42,18 +42,12 @@ struct AlignOptions {
 storage::MapDocument read_with_stops(const fs::path& file, const pipeline::Config& config) {
   if (file.extension() != ".yaml") return read_any_map(file);
   try {
-    planning::OccupancyGrid grid = [&] {
-      if (file.filename().string().ends_with(".world.yaml")) {
-        return *pipeline::read_drawing(file, std::nullopt, config.hybrid_map.grid.resolution_m)
-                    .grid;
-      }
-      exchange::GridImage image = exchange::read_grid_image(file);
-      print_notes(image.notes);
-      return exchange::occupancy_of(image);
-    }();
-    exchange::check_grid_size(grid.frame());
-    return exchange::map_of_grid(planning::FreeSpace(std::move(grid), config.hybrid_map.inflation),
-                                 config.local_mapper, config.global_map, "drawing");
+    const bool is_world = file.filename().string().ends_with(".world.yaml");
+    return map_with_stops(
+        is_world
+            ? *pipeline::read_drawing(file, std::nullopt, config.hybrid_map.grid.resolution_m).grid
+            : read_grid(file),
+        config, "drawing");
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }

@@ -13,6 +13,7 @@
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/format.hpp"
 
+#include "common/configuration.hpp"
 #include "common/job.hpp"
 #include "store/store_commands.hpp"
 #include "store/store_files.hpp"
