@@ -88,6 +88,15 @@ void remove_place(std::vector<planning::Place>& places, const std::string& name)
                   names.empty() ? "the map has none" : "the map has " + names));
 }
 
+/// Throws service::UsageError for a place that no map could keep.
+void check_added(const storage::MapDrawing& added) {
+  try {
+    storage::check(added);
+  } catch (const storage::DrawingError& error) {
+    throw service::UsageError(std::string("--add: ") + error.what());
+  }
+}
+
 /// Throws service::UsageError for a place outside of the map, to which no robot could be sent.
 void check_inside(const std::vector<planning::Place>& places, const storage::MapDocument& document,
                   const pipeline::HybridMapConfig& config) {
@@ -116,7 +125,7 @@ void edit(const PlacesOptions& options) {
   try {
     storage::MapDocument document = storage::read_map_file(file);
     for (const std::string& name : options.removed) remove_place(document.drawing.places, name);
-    storage::check(added);
+    check_added(added);
     check_inside(added.places, document, read_config(options.config).hybrid_map);
     pipeline::lay_over(document.drawing, std::move(added));
     storage::write_map_file(file, document);
