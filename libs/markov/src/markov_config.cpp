@@ -115,6 +115,7 @@ void describe(SonarModelConfig& config, support::ConfigSchema& schema) {
                   "pair; 0 beyond the last; as MACONDO measured its sonars");
   schema.add("markov.weigh_by_reliability", &config.weigh_by_reliability,
              "weights each difference by the reliability of its reading; MACONDO: all alike");
+  schema.fix({"markov.rays_per_cone", "markov.difference_cap_m"});
 }
 
 void describe(MarkovConfig& config, support::ConfigSchema& schema) {
@@ -168,6 +169,9 @@ void describe(PoseGridConfig& config, support::ConfigSchema& schema) {
              "weight of one update, because readings taken close together have correlated errors");
   schema.add("markov.least_agreement", &config.least_agreement, 0.0, 0.9, "",
              "smallest share of near readings that agree with the map; below it the pose is lost");
+  schema.fix({"markov.pose_window_m", "markov.pose_cell_m", "markov.heading_window_rad",
+              "markov.heading_step_rad", "markov.far_off_share", "markov.far_off_m",
+              "markov.hit_share", "markov.short_share"});
 }
 
 void check(const PoseGridConfig& config) {

@@ -23,6 +23,8 @@ void describe_targets(ExplorerConfig& e, support::ConfigSchema& schema) {
              "shorter borders in a square are no targets");
   schema.add("explorer.least_room_m2", &e.least_room_m2, 0.0, 100.0, "m2",
              "smaller rooms need not be entered");
+  schema.fix({"explorer.unknown_near_m", "explorer.passage_side_m", "explorer.gap_side_m",
+              "explorer.least_gap_m"});
 }
 
 void describe_views(ExplorerConfig& e, support::ConfigSchema& schema) {
@@ -36,6 +38,7 @@ void describe_views(ExplorerConfig& e, support::ConfigSchema& schema) {
       "explorer.together_m", &e.together_m, 0.0, 10.0, "m",
       "targets viewed from positions nearer than this count as one on the tour that orders them");
   schema.add("explorer.tour", &e.tour, 1U, 30U, "targets", "nearest targets that are put in order");
+  schema.fix({"explorer.view_m", "explorer.sure_m", "explorer.together_m", "explorer.tour"});
 }
 
 // Checks relations between settings.

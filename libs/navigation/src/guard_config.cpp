@@ -37,6 +37,7 @@ void describe(GuardConfig& config, support::ConfigSchema& schema) {
              "the protective field");
   schema.add("guard.warning_field_m_per_s", &config.warning_field_m_per_s, 0.0, 10.0, "m/s",
              "largest speed ahead with an obstacle in the warning field of the laser");
+  schema.fix({"guard.sonar_least_m", "guard.silent_s", "guard.sonar_reach_m"});
 }
 
 void check(const GuardConfig& config) {

@@ -17,6 +17,7 @@ void describe(ScanGridConfig& config, support::ConfigSchema& schema) {
   schema.add("hybrid_map.limit", &config.limit, 1, 10000, "",
              "largest log-odds in hundredths; smaller: changes such as a door shut later are "
              "accepted sooner");
+  schema.fix({"hybrid_map.hit", "hybrid_map.miss", "hybrid_map.limit"});
 }
 
 void describe(InflationConfig& config, support::ConfigSchema& schema) {
@@ -49,6 +50,8 @@ void describe(ZoneConfig& config, support::ConfigSchema& schema) {
              "than this, as in a rack");
   schema.add("hybrid_map.furniture_to_m", &config.rooms.furniture_to_m, 0.0, 100.0, "m",
              "largest thickness of such obstacles; blocks of rooms are thicker");
+  schema.fix({"hybrid_map.narrowing_ratio", "hybrid_map.door_ratio", "hybrid_map.opening_ratio",
+              "hybrid_map.nook_depth"});
 }
 
 void check(const ScanGridConfig& config) {

@@ -12,6 +12,7 @@ void describe(SmoothPathConfig& config, support::ConfigSchema& schema) {
              "largest radius of an arc; arcs are as wide as fits");
   schema.add("navigator.path_step_m", &config.step_m, 0.005, 10.0, "m",
              "distance between samples of the path");
+  schema.fix({"navigator.path_step_m"});
 }
 
 void describe(DetourConfig& config, support::ConfigSchema& schema) {
@@ -20,6 +21,7 @@ void describe(DetourConfig& config, support::ConfigSchema& schema) {
   schema.add(
       "navigator.detour_snap_m", &config.start_snap_m, 0.0, 5.0, "m",
       "largest distance between a robot that stands near an obstacle and the start of its detour");
+  schema.fix({"navigator.detour_half_side_m", "navigator.detour_snap_m"});
 }
 
 void check(const SmoothPathConfig& config) {

@@ -36,6 +36,7 @@ void write_row(const ConfigParameter& p, std::ostream& out) {
 void write_markdown(const ConfigSchema& schema, std::ostream& out) {
   std::vector<std::string> done;
   for (const ConfigParameter& first : schema.parameters()) {
+    if (first.fixed) continue;
     const std::string section = section_of(first.key);
     if (std::ranges::find(done, section) != done.end()) continue;
     if (!done.empty()) out << '\n';
@@ -43,7 +44,7 @@ void write_markdown(const ConfigSchema& schema, std::ostream& out) {
     if (!section.empty()) out << "### `" << section << "`\n\n";
     out << "| key | default | expected | meaning |\n|---|---|---|---|\n";
     for (const ConfigParameter& p : schema.parameters()) {
-      if (section_of(p.key) == section) write_row(p, out);
+      if (!p.fixed && section_of(p.key) == section) write_row(p, out);
     }
   }
 }

@@ -119,6 +119,27 @@ bool ConfigSchema::is_section(std::string_view path) const {
                              [&](const ConfigParameter& p) { return p.key.starts_with(prefix); });
 }
 
+void ConfigSchema::fix(std::initializer_list<std::string_view> keys) {
+  for (const std::string_view key : keys) {
+    const auto p = std::ranges::find(parameters_, key, &ConfigParameter::key);
+    if (p == parameters_.end()) {
+      throw std::invalid_argument("configuration key '" + std::string(key) + "': not declared");
+    }
+    p->fixed = true;
+    p->expected = p->default_text + ", because it is fixed and no longer a setting";
+    p->parse = [parse = std::move(p->parse), text = p->text, value = p->default_text](
+                   const std::string& given) -> std::optional<std::function<void()>> {
+      const auto assign = parse(given);
+      if (!assign) return std::nullopt;
+      (*assign)();
+      const bool same = text() == value;
+      (*parse(value))();
+      if (!same) return std::nullopt;
+      return [] {};
+    };
+  }
+}
+
 void ConfigSchema::leave_out_of_fingerprint(std::string_view section) {
   const std::string prefix = std::string(section) + ".";
   for (ConfigParameter& p : parameters_) {

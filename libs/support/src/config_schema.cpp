@@ -81,7 +81,7 @@ class SchemaReader {
     const std::string prefix = path.empty() ? "" : path + ".";
     std::vector<std::string> names;
     for (const ConfigParameter& p : schema_.parameters()) {
-      if (!p.key.starts_with(prefix)) continue;
+      if (p.fixed || !p.key.starts_with(prefix)) continue;
       const std::string rest = p.key.substr(prefix.size());
       const std::string child = rest.substr(0, rest.find('.'));
       if (std::ranges::find(names, child) == names.end()) names.push_back(child);
@@ -124,7 +124,7 @@ class YamlWriter {
   void write_section(const std::string& prefix, int depth) {
     std::set<std::string> done;
     for (const ConfigParameter& p : schema_.parameters()) {
-      if (!p.key.starts_with(prefix)) continue;
+      if (p.fixed || !p.key.starts_with(prefix)) continue;
       const std::string rest = p.key.substr(prefix.size());
       const std::string name = rest.substr(0, rest.find('.'));
       if (name == rest) {
@@ -176,9 +176,10 @@ EffectiveConfig effective(const ConfigSchema& schema) {
   EffectiveConfig result;
   Fnv1a hash;
   for (const ConfigParameter& p : schema.parameters()) {
-    result.values.emplace_back(p.key, p.text());
+    const std::string value = p.text();
+    if (!p.fixed) result.values.emplace_back(p.key, value);
     if (!p.in_fingerprint) continue;
-    for (const std::string& part : {p.key, result.values.back().second}) {
+    for (const std::string& part : {p.key, value}) {
       hash.add(std::uint64_t{part.size()});
       hash.add(part);
     }

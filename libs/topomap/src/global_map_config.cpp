@@ -23,6 +23,8 @@ void describe_votes(GlobalMapConfig& g, support::ConfigSchema& schema) {
       "a place can link two such places if at least this share vote for it; not above keep_share");
   schema.add("global_map.memory_views", &g.memory_views, 1.0, 1e6, "views",
              "older views fade beyond this many, so that the map follows changes");
+  schema.fix(
+      {"global_map.vote_radius_m", "global_map.uncertain_weight", "global_map.bridge_share"});
 }
 
 void describe_elements(GlobalMapConfig& g, support::ConfigSchema& schema) {
@@ -41,6 +43,8 @@ void describe_elements(GlobalMapConfig& g, support::ConfigSchema& schema) {
              "separate parts with a smaller total length are dropped");
   schema.add("global_map.join_m", &g.join_m, 0.0, 5.0, "m",
              "longest gap closed between two ends whose free circles overlap");
+  schema.fix({"global_map.clearance_tolerance_m", "global_map.hole_m2", "global_map.spur_m",
+              "global_map.min_component_m", "global_map.join_m"});
 }
 
 }  // namespace

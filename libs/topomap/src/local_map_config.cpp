@@ -21,6 +21,7 @@ void describe_confirmation(LocalMapConfig& m, support::ConfigSchema& schema) {
   schema.add("local_map.remove_off_main_graph", &m.remove_off_main_graph,
              "Thesis, 5.2.2: removes everything off the graph nearest to the robot instead of "
              "marking it; then 0.90 of the branch points are found again instead of 0.92");
+  schema.fix({"local_map.min_stretch_m"});
 }
 
 void describe_states(LocalMapConfig& m, support::ConfigSchema& schema) {
@@ -56,6 +57,7 @@ void describe_states(LocalMapConfig& m, support::ConfigSchema& schema) {
       "local_map.separated_m", &m.separated_m, 0.05, 10.0, "m",
       "eq. 5.5: loose ends of the same groups nearer than this belong to one branch that was not "
       "seen whole; a missing beam leaves a smaller gap, another room's branch a larger one");
+  schema.fix({"local_map.state_confirm_m", "local_map.state_reach_m", "local_map.hall_rise_m"});
 }
 
 }  // namespace

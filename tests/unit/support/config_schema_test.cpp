@@ -284,6 +284,52 @@ TEST(ConfigSchema, WritesATableForEachSection) {
             "| `stop_distance_m` | `1` | number between 0.1 and 5 m | Between two stops. |\n");
 }
 
+TEST(ConfigSchema, FilesCannotChangeFixedParameters) {
+  double share = 0.25;
+  double length_m = 2.0;
+  ConfigSchema schema;
+  schema.add("map.share", &share, 0, 1, "", "share of the views");
+  schema.add("map.length_m", &length_m, 0, 10, "m", "length of a branch");
+  const std::uint64_t before = effective(schema).fingerprint;
+  schema.fix({"map.share"});
+
+  load_yaml_text("map: {share: 0.250, length_m: 3}", "f.yaml", schema);
+  EXPECT_EQ(share, 0.25);
+  EXPECT_EQ(length_m, 3.0);
+  for (const char* text : {"map: {share: 0.3, length_m: 4}", "map: {share: 7}", "map: {share: x}"}) {
+    try {
+      load_yaml_text(text, "f.yaml", schema);
+      ADD_FAILURE() << text;
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("expected 0.25, because it is fixed")) << text;
+    }
+    EXPECT_EQ(share, 0.25);
+    EXPECT_EQ(length_m, 3.0);
+  }
+
+  length_m = 2.0;
+  const EffectiveConfig after = effective(schema);
+  EXPECT_EQ(after.fingerprint, before);
+  ASSERT_EQ(after.values.size(), 1U);
+  EXPECT_EQ(after.values[0].first, "map.length_m");
+  std::ostringstream lists;
+  write_yaml(schema, lists);
+  write_markdown(schema, lists);
+  EXPECT_THAT(lists.str(), testing::Not(testing::HasSubstr("share")));
+  EXPECT_THROW(schema.fix({"map.width_m"}), std::invalid_argument);
+}
+
+TEST(ConfigSchema, ASectionOfFixedParametersIsNotListed) {
+  double share = 0.25;
+  ConfigSchema schema;
+  schema.add("map.share", &share, 0, 1, "", "share of the views");
+  schema.fix({"map.share"});
+  std::ostringstream lists;
+  write_yaml(schema, lists);
+  write_markdown(schema, lists);
+  EXPECT_EQ(lists.str(), "");
+}
+
 TEST(ConfigSchema, RefusesDeclarationsThatContradictEachOther) {
   double x = 0.5;
   ConfigSchema schema;

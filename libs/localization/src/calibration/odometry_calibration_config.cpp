@@ -14,6 +14,7 @@ void describe(OdometryCalibrationConfig& config, support::ConfigSchema& schema) 
   schema.add("calibration.resamples", &config.resamples, 2U, 100'000U, "",
              "refits of the bootstrap that give the spread of each value; more: a steadier spread "
              "at a proportional cost");
+  schema.fix({"calibration.blocks", "calibration.resamples"});
 }
 
 }  // namespace topogeo::localization

@@ -32,6 +32,7 @@ void describe_matches(LocalizerConfig& l, support::ConfigSchema& schema) {
   schema.add("match.search_heading_sigmas", &l.search_heading_sigmas, 0.5, 6.0, "",
              "half-width of the searched heading interval in standard deviations");
   describe(l.gate, schema);
+  schema.fix({"match.search_probability"});
 }
 
 void describe_tasks(LocalizerConfig& l, support::ConfigSchema& schema) {
@@ -61,6 +62,7 @@ void describe_tasks(LocalizerConfig& l, support::ConfigSchema& schema) {
              {{"auto", MergePolicy::kAuto}, {"ask", MergePolicy::kAsk}},
              "auto: the maps of robots that map one floor together become one as soon as both have "
              "seen the same place; ask: only after an operator accepts (topogeo store merges)");
+  schema.fix({"localizer.optimization_delay", "localizer.largest_half_width_rad"});
 }
 
 }  // namespace

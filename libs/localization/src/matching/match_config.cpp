@@ -27,6 +27,7 @@ void describe(GeneticParameters& parameters, support::ConfigSchema& schema) {
              "7.3.1.2); 0: no second search, because least squares are finer");
   schema.add("match.finer_resolution_rad", &parameters.finer_resolution_rad, 0.0005, 0.5, "rad",
              "heading resolution of the second search");
+  schema.fix({"match.crossover_rate", "match.elite", "match.resolution_rad"});
 }
 
 void describe(GateConfig& config, support::ConfigSchema& schema) {

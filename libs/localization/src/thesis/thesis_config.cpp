@@ -31,6 +31,7 @@ void describe(BackwardConfig& config, support::ConfigSchema& schema) {
   schema.add("backward.largest_grid", &config.largest_grid, 1U, 1'000'000U, "poses",
              "most poses tried for a step between two stops without any overlap; a larger "
              "uncertainty is sampled more coarsely");
+  schema.fix({"backward.largest_work", "backward.heading_sigmas", "backward.largest_grid"});
 }
 
 void describe(ThesisConfig& config, support::ConfigSchema& schema) {
@@ -43,6 +44,7 @@ void describe(ThesisConfig& config, support::ConfigSchema& schema) {
              "most alternations of forward and backward correction at one stop, because a closed "
              "cycle may let another one close");
   describe(config.backward, schema);
+  schema.fix({"thesis.cycle_solutions", "thesis.alternations"});
 }
 
 }  // namespace topogeo::localization

@@ -14,6 +14,8 @@ void describe(ScanTrackerConfig& config, support::ConfigSchema& schema) {
   schema.add("tracker.largest_mahalanobis2", &config.largest_mahalanobis2, 1.0, 1000.0, "",
              "largest squared Mahalanobis distance from the prediction; above it odometry alone "
              "places the scan");
+  schema.fix(
+      {"tracker.smallest_overlap", "tracker.smallest_inliers", "tracker.largest_mahalanobis2"});
 }
 
 }  // namespace topogeo::localization

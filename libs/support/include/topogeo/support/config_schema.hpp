@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <iosfwd>
 #include <optional>
 #include <string>
@@ -31,6 +32,7 @@ struct ConfigParameter {
   std::string default_text;
   bool is_text = false;  ///< strings: quoted in YAML
   bool in_fingerprint = true;
+  bool fixed = false;  ///< no setting: checked in memory and accepted in files that repeat it
 
   std::function<std::string()> text;  ///< current value; doubles in the shortest form that reads
                                       ///< back to the same value
@@ -68,11 +70,17 @@ class ConfigSchema {
                 std::optional<Value> (*value_of)(const NumberRows&), const std::string& expected,
                 const std::string& why);
 
+  /// Turns declared parameters into constants: a file may only repeat their values, as files
+  /// written by earlier versions do, and no list or documentation shows them. Their ranges are
+  /// still checked in memory, and fingerprints still contain them. Throws std::invalid_argument for
+  /// a key that is not declared.
+  void fix(std::initializer_list<std::string_view> keys);
+
   /// Excludes the keys of a section that no result depends on: configurations that differ only in
   /// these have the same fingerprint.
   void leave_out_of_fingerprint(std::string_view section);
 
-  /// In the order of declaration.
+  /// Settings and fixed parameters, in the order of declaration.
   [[nodiscard]] const std::vector<ConfigParameter>& parameters() const { return parameters_; }
 
   /// The parameter, or null.
@@ -131,7 +139,8 @@ void load_yaml_text(std::string_view text, const std::string& name, const Config
 
 /// The values in force.
 struct EffectiveConfig {
-  std::vector<std::pair<std::string, std::string>> values;  ///< (key, value), order of declaration
+  /// (key, value) of each setting, in the order of declaration.
+  std::vector<std::pair<std::string, std::string>> values;
   std::uint64_t fingerprint = 0;  ///< 64-bit FNV-1a of the values that results depend on
 };
 EffectiveConfig effective(const ConfigSchema& schema);
