@@ -48,9 +48,8 @@ function(topogeo_add_idl)
   file(CONFIGURE OUTPUT ${generated}/types.h CONTENT "#pragma once\n\n${types}")
   file(CONFIGURE OUTPUT ${generated}/type_supports.h CONTENT "#pragma once\n\n${type_supports}")
   set(bounds_output ${staging}/bounds.h)
-  list(JOIN ARG_FILES "$<SEMICOLON>" bounded_files)  # one argument, though it goes through a list
-  set(bounds_command COMMAND ${CMAKE_COMMAND} -DOUTPUT=${bounds_output} "-DFILES=${bounded_files}" -DSTAGING=${staging}
-                             -P ${PROJECT_SOURCE_DIR}/cmake/IdlBounds.cmake)
+  set(bounds_command COMMAND python3 ${PROJECT_SOURCE_DIR}/cmake/idl_bounds.py --staging ${staging}
+                             --output ${bounds_output} ${ARG_FILES})
   if(ARG_UNBOUNDED)
     set(bounds_command "")
     set(bounds_output "")
@@ -72,7 +71,7 @@ function(topogeo_add_idl)
             ${staged_keys}
     ${bounds_command}
     COMMAND ${CMAKE_COMMAND} -E copy_if_different ${staged} ${bounds_output} ${generated}
-    DEPENDS ${ARG_FILES} ${PROJECT_SOURCE_DIR}/cmake/IdlBounds.cmake
+    DEPENDS ${ARG_FILES} ${PROJECT_SOURCE_DIR}/cmake/idl_bounds.py
     WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}
     COMMENT "Generating message types from IDL"
     VERBATIM)

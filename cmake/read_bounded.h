@@ -1,4 +1,4 @@
-// How the code of fastddsgen reads the bounded sequences of our messages (cmake/IdlBounds.cmake).
+// How the code of fastddsgen reads the bounded sequences of our messages (cmake/idl_bounds.py).
 #pragma once
 
 #include <cstdint>

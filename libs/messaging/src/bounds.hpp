@@ -1,5 +1,5 @@
 // Checks that the generated code leaves out: schema version, bounds of sequences, values of
-// enumerations, keys that represent texts. cmake/IdlBounds.cmake finds the fields in the IDL.
+// enumerations, keys that represent texts. cmake/idl_bounds.py finds the fields in the IDL.
 #pragma once
 
 #include <cstddef>
