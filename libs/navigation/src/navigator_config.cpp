@@ -23,8 +23,9 @@ void describe_patience(NavigatorConfig& n, support::ConfigSchema& schema) {
   schema.add("navigator.oldest_odometry_s", &n.oldest_odometry_s, 0.1, 10.0, "s",
              "largest age of odometry; a base reports it ten times a second");
   schema.add("navigator.largest_sigma_m", &n.largest_sigma_m, 0.05, 5.0, "m",
-             "largest standard deviation of a pose; a less certain pose counts as lost, and the "
-             "robot stops");
+             "largest standard deviation of a pose in the direction in which it is known best, and "
+             "a quarter of the largest in the other, as along a bare corridor; a less certain pose "
+             "counts as lost, and the robot stops");
   schema.add("navigator.obstacle_wait_s", &n.obstacle_wait_s, 0.0, 600.0, "s",
              "time in which an obstacle may move away before another route is requested");
   schema.add("navigator.blockage_s", &n.blockage_s, 1.0, 86400.0, "s",

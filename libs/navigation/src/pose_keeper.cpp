@@ -15,11 +15,16 @@ double seconds(std::int64_t duration_ns) {
   return static_cast<double>(duration_ns) * 1e-9;
 }
 
-double sigma_of(const Eigen::Matrix3d& covariance) {
-  // The larger eigenvalue of the position's block.
+/// Standard deviations of the position along the axes of its error ellipse.
+struct Sigmas {
+  double largest_m = 0.0;
+  double smallest_m = 0.0;
+};
+
+Sigmas sigmas_of(const Eigen::Matrix3d& covariance) {
   const double half = 0.5 * (covariance(0, 0) + covariance(1, 1));
   const double spread = std::hypot(0.5 * (covariance(0, 0) - covariance(1, 1)), covariance(0, 1));
-  return std::sqrt(std::max(0.0, half + spread));
+  return {std::sqrt(std::max(0.0, half + spread)), std::sqrt(std::max(0.0, half - spread))};
 }
 
 }  // namespace
@@ -71,7 +76,7 @@ void PoseKeeper::use(const PoseFix& fix) {
   }
   T_map_odom_ = T_map_odom;
   fix_ = fix;
-  if (!fix.tracking) return;
+  if (!fix.tracking && !fix.place_known) return;
   tracked_ = true;
   untracked_m_ = 0.0;
 }
@@ -79,6 +84,12 @@ void PoseKeeper::use(const PoseFix& fix) {
 bool PoseKeeper::usable() const {
   if (!fix_) return false;
   return fix_->tracking || (fix_->located && tracked_ && untracked_m_ <= config_.untracked_m);
+}
+
+bool PoseKeeper::certain() const {
+  const Sigmas sigmas = sigmas_of(fix_->covariance);
+  return sigmas.smallest_m <= config_.largest_sigma_m &&
+         sigmas.largest_m <= kLengthwise * config_.largest_sigma_m;
 }
 
 bool PoseKeeper::has_odometry(std::int64_t now_ns) const {
@@ -102,7 +113,7 @@ std::optional<geometry::Pose2> PoseKeeper::T_map_robot(std::int64_t at_ns) const
 std::optional<geometry::Pose2> PoseKeeper::good_pose(std::int64_t now_ns) const {
   if (!usable() || !has_odometry(now_ns)) return std::nullopt;
   if (seconds(now_ns - fix_->stamp_ns) > config_.oldest_pose_s) return std::nullopt;
-  if (!(sigma_m() <= config_.largest_sigma_m)) return std::nullopt;
+  if (!certain()) return std::nullopt;
   return T_map_robot(now_ns);
 }
 
@@ -115,9 +126,12 @@ std::string PoseKeeper::why_not(std::int64_t now_ns) const {
   if (seconds(now_ns - fix_->stamp_ns) > config_.oldest_pose_s) {
     return fmt::format("the last pose is {:.1f} s old", seconds(now_ns - fix_->stamp_ns));
   }
-  if (!(sigma_m() <= config_.largest_sigma_m)) {
-    return fmt::format("the pose is uncertain by {:.2f} m, expected at most {:.2f} m", sigma_m(),
-                       config_.largest_sigma_m);
+  if (!certain()) {
+    return fmt::format(
+        "the pose is uncertain by {:.2f} m one way and {:.2f} m the other, expected at most {:.2f} "
+        "and {:.2f} m",
+        sigma_m(), sigmas_of(fix_->covariance).smallest_m, kLengthwise * config_.largest_sigma_m,
+        config_.largest_sigma_m);
   }
   return "no odometry";
 }
@@ -128,7 +142,7 @@ std::optional<std::int64_t> PoseKeeper::fix_ns() const {
 }
 
 double PoseKeeper::sigma_m() const {
-  return fix_ ? sigma_of(fix_->covariance) : HUGE_VAL;
+  return fix_ ? sigmas_of(fix_->covariance).largest_m : HUGE_VAL;
 }
 
 double PoseKeeper::take_jump_m() {

@@ -13,7 +13,7 @@ namespace topogeo::navigation {
 struct PoseKeeperConfig {
   double oldest_pose_s = 3.0;
   double oldest_odometry_s = 1.0;
-  double largest_sigma_m = 0.5;
+  double largest_sigma_m = 0.5;  ///< where the position is known best; see kLengthwise
   /// Largest distance without tracking. Unmapped objects may hide the map, so that a stop is not
   /// confirmed but the next one is. A robot that waited for it would stand forever, because a stop
   /// needs motion.
@@ -45,6 +45,10 @@ class PoseKeeper {
   [[nodiscard]] bool doubtful() const { return fix_ && fix_->located && !fix_->tracking; }
   /// Largest standard deviation of the position, metres.
   [[nodiscard]] double sigma_m() const;
+  /// Multiple of largest_sigma_m that is allowed in the other direction. A bare corridor shows
+  /// where its walls are, and not how far along it the robot is; nothing there leads through a
+  /// door, and where something does, the position is known again.
+  static constexpr double kLengthwise = 4.0;
   /// Displacement of the robot by the fixes since the last call, metres.
   double take_jump_m();
   /// Distance by odometry since the last call, metres.
@@ -53,6 +57,7 @@ class PoseKeeper {
  private:
   void use(const PoseFix& fix);
   [[nodiscard]] bool usable() const;
+  [[nodiscard]] bool certain() const;
 
   PoseKeeperConfig config_;
   geometry::OdometryTrack odometry_;

@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/localization/mapping/state_monitor.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/navigation_conversions.hpp"
 
@@ -40,6 +41,11 @@ navigation::PoseFix to_pose_fix(const LivePose& pose) {
   if (pose.mode != msg::kModeMapping) fix.covariance = pose.covariance;
   fix.tracking = pose.status.state == localization::LocalizationState::kTracking;
   fix.located = localization::located(pose.status.state);
+  constexpr double kMoreProbablyRight = 0.5;  // as for TRACKING
+  fix.place_known =
+      fix.located && pose.mode != msg::kModeMapping &&
+      pose.status.confidence >=
+          kMoreProbablyRight * localization::covariance_confidence(pose.covariance);
   fix.state_text = localization::to_string(pose.status.state);
   return fix;
 }

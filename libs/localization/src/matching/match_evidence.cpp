@@ -83,30 +83,6 @@ void check_gate(const Checker& checker, const GateConfig& gate) {
   }
 }
 
-// Normals of walls that branches imply are off by some degrees, so walls along a corridor seem to
-// contain information about the position along it: each point as much as the square of the error.
-// This information is subtracted in the weakest direction of the position, at most all of it.
-Eigen::Matrix3d less_normal_errors(const Eigen::Matrix3d& information) {
-  constexpr double kNormalSigma_rad = 0.1;  // 2 cm over the 20 cm that a normal is fitted to
-  Eigen::Matrix3d known = information;
-  if (!(information(2, 2) > 0.0)) return known;
-  // Information of the position when the heading is free.
-  const Eigen::Vector2d with_heading = information.topRightCorner<2, 1>();
-  const Eigen::Matrix2d position = information.topLeftCorner<2, 2>() -
-                                   with_heading * with_heading.transpose() / information(2, 2);
-  const double half_difference = 0.5 * (position(0, 0) - position(1, 1));
-  const double spread =
-      std::sqrt(half_difference * half_difference + position(0, 1) * position(0, 1));
-  const double weakest = 0.5 * (position(0, 0) + position(1, 1)) - spread;
-  const geometry::SinCos along =
-      geometry::sincos(0.5 * geometry::atan2(-2.0 * position(0, 1), -2.0 * half_difference));
-  const Eigen::Vector2d u(along.cos, along.sin);
-  const double seeming =
-      kNormalSigma_rad * kNormalSigma_rad * (information(0, 0) + information(1, 1));
-  known.topLeftCorner<2, 2>() -= std::min(seeming, std::max(0.0, weakest)) * u * u.transpose();
-  return known;
-}
-
 }  // namespace
 
 void check(const MatchTask& task) {
@@ -173,7 +149,9 @@ void add_evidence(const MatchContext& context, MatchResult& result) {
     } else if (!evidence.information.isZero(0.0)) {
       const bool by_scan = task.evidence == MatchEvidence::kScan;
       stated.covariance = match_covariance(
-          by_scan ? evidence.information : less_normal_errors(evidence.information), doubt(stated));
+          by_scan ? evidence.information
+                  : less_normal_errors(evidence.information, kBranchNormalSigma_rad),
+          doubt(stated));
     }
   }
   const Judgement judgement = judge(task, stated);

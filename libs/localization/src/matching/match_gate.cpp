@@ -3,16 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/localization/matching/fitness_combined.hpp"
+#include "topogeo/localization/matching/refinement.hpp"
 
 namespace topogeo::localization {
 namespace {
 
 // Fixed: verdicts depend on it, and tasks do not carry it.
 constexpr double kOutweighed = 0.12;  // violations at which every match is rejected
+
+/// Along a bare corridor: a deviation of 2 m, not an infinite one. In 1/m^2 and 1/rad^2.
+constexpr double kLeastMatchInformation = 0.25;
 
 }  // namespace
 
@@ -127,11 +132,21 @@ Eigen::Matrix3d data_covariance(const MatchResult& result) {
   return (result.covariance - match_covariance_floor()) / (widening * widening);
 }
 
+Eigen::Matrix3d honest_covariance(const MatchResult& result, MatchEvidence evidence) {
+  constexpr double kNothing = 0.01;  // a deviation of 10 m; keeps it invertible
+  const Eigen::LLT<Eigen::Matrix3d> data(data_covariance(result));
+  if (evidence != MatchEvidence::kScan || data.info() != Eigen::Success) return result.covariance;
+  Eigen::Matrix3d information = data.solve(Eigen::Matrix3d::Identity());
+  for (int i = 0; i < 3; ++i) information(i, i) -= kLeastMatchInformation;
+  information = less_normal_errors(information, kScanNormalSigma_rad);
+  for (int i = 0; i < 3; ++i) information(i, i) += kNothing;
+  const double widening = 0.5 + doubt(result);
+  return information.inverse() * (widening * widening) + match_covariance_floor();
+}
+
 Eigen::Matrix3d match_covariance(const Eigen::Matrix3d& information, double doubt) {
-  constexpr double kLeastInformation =
-      0.25;  // along a bare corridor: a deviation of 2 m, not an infinite one
   Eigen::Matrix3d known = information;
-  for (int i = 0; i < 3; ++i) known(i, i) += kLeastInformation;
+  for (int i = 0; i < 3; ++i) known(i, i) += kLeastMatchInformation;
   const double widening = 0.5 + doubt;
   return known.inverse() * (widening * widening) + match_covariance_floor();
 }

@@ -207,6 +207,25 @@ PosePrior weak_prior(const PosePrior& prior) {
   return {prior.T_reference_query, kShare * prior.information};
 }
 
+Eigen::Matrix3d less_normal_errors(const Eigen::Matrix3d& information, double sigma_rad) {
+  Eigen::Matrix3d known = information;
+  if (!(information(2, 2) > 0.0)) return known;
+  // Information of the position when the heading is free.
+  const Eigen::Vector2d with_heading = information.topRightCorner<2, 1>();
+  const Eigen::Matrix2d position = information.topLeftCorner<2, 2>() -
+                                   with_heading * with_heading.transpose() / information(2, 2);
+  const double half_difference = 0.5 * (position(0, 0) - position(1, 1));
+  const double spread =
+      std::sqrt(half_difference * half_difference + position(0, 1) * position(0, 1));
+  const double weakest = 0.5 * (position(0, 0) + position(1, 1)) - spread;
+  const geometry::SinCos along =
+      geometry::sincos(0.5 * geometry::atan2(-2.0 * position(0, 1), -2.0 * half_difference));
+  const Eigen::Vector2d u(along.cos, along.sin);
+  const double seeming = sigma_rad * sigma_rad * (information(0, 0) + information(1, 1));
+  known.topLeftCorner<2, 2>() -= std::min(seeming, std::max(0.0, weakest)) * u * u.transpose();
+  return known;
+}
+
 Pose2 without_prior(const Pose2& T_aligned, const Eigen::Matrix3d& covariance,
                     const PosePrior& prior) {
   // Fixed: a larger step is not linear.

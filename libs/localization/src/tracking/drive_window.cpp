@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/localization/matching/match_gate.hpp"
 #include "topogeo/localization/tracking/pose_fusion.hpp"
 
 namespace topogeo::localization {
@@ -42,7 +43,7 @@ DriveStep DriveWindow::add(std::shared_ptr<const topomap::LocalMap> map,
   if (!heading_is_lost(predicted)) matched = match_near(*map, predicted, step);
   if (matched) {
     monitor_.add(*odometry, *matched);
-    step.T_before_now = *matched;
+    step.T_before_now = fused({expected, *matched});
     step.matched = true;
   } else {
     step.T_before_now = expected;
@@ -93,9 +94,10 @@ std::optional<UncertainPose> DriveWindow::match(const topomap::LocalMap& map,
   for (std::size_t i = 0; i < results.size(); ++i) {
     if (i == 0) step.match.emplace(tasks[i], results[i]);
     if (results[i].verdict != Verdict::kAccepted) continue;
+    const UncertainPose T_earlier_query{results[i].T_reference_query,
+                                        honest_covariance(results[i], tasks[i].evidence)};
     measured.push_back(
-        compose({T_before_earlier[i], Eigen::Matrix3d::Zero()},
-                inverse(UncertainPose{results[i].T_reference_query, results[i].covariance})));
+        compose({T_before_earlier[i], Eigen::Matrix3d::Zero()}, inverse(T_earlier_query)));
   }
   if (measured.empty()) return std::nullopt;
   return fused(measured);

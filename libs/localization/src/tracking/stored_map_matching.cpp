@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "topogeo/localization/matching/match_gate.hpp"
+
 namespace topogeo::localization {
 
 using geometry::Pose2;
@@ -77,7 +79,9 @@ std::vector<Climbed> StoredMapMatching::search(const DriveStop& stop, std::size_
 
 UncertainPose StoredMapMatching::measured(std::size_t stored, const MatchResult& result) const {
   const UncertainPose T_map_stored{places_.stops()[stored].T_map_robot, Eigen::Matrix3d::Zero()};
-  return compose(T_map_stored, inverse(UncertainPose{result.T_reference_query, result.covariance}));
+  return compose(T_map_stored,
+                 inverse(UncertainPose{result.T_reference_query,
+                                       honest_covariance(result, config_.evidence)}));
 }
 
 }  // namespace topogeo::localization

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+
 namespace topogeo::localization {
 namespace {
 
@@ -157,6 +159,40 @@ TEST_F(MatchGateTest, CovarianceByHand) {
   EXPECT_NEAR(covariance(1, 1), 4.0 + 0.0004, 1e-9);  // unknown along it: 2 m, not infinite
   EXPECT_NEAR(covariance(2, 2), 0.0025 + 0.0052 * 0.0052, 1e-9);
   EXPECT_NEAR(match_covariance(information, 1.5)(0, 0), 0.04 + 0.0004, 1e-9);  // twice as wide
+}
+
+// Points of two walls along x whose normals are off by 3 degrees seem to know x.
+TEST_F(MatchGateTest, MatchesAlongABareCorridorDoNotAddUpToAPosition) {
+  const double off_rad = 0.05;
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  information.diagonal() << 30'000.0 * off_rad * off_rad, 30'000.0, 90'000.0;
+  information(1, 2) = information(2, 1) = 20'000.0;  // the walls lie ahead: heading and y together
+  result_.covariance = match_covariance(information, doubt(result_));
+  EXPECT_LT(std::sqrt(result_.covariance(0, 0)), 0.2);
+
+  const Eigen::Matrix3d honest = honest_covariance(result_, MatchEvidence::kScan);
+  EXPECT_GT(std::sqrt(honest(0, 0)), 4.0);
+  EXPECT_NEAR(honest(1, 1), result_.covariance(1, 1), 1e-6);
+  EXPECT_NEAR(honest(2, 2), result_.covariance(2, 2), 1e-6);
+  EXPECT_EQ(Eigen::LLT<Eigen::Matrix3d>(honest).info(), Eigen::Success);
+  EXPECT_EQ(honest_covariance(result_, MatchEvidence::kBranches), result_.covariance);
+}
+
+TEST_F(MatchGateTest, ARoomIsKnownAsWellAsItsMatchSays) {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  information.diagonal() << 10'000.0, 10'000.0, 90'000.0;
+  result_.covariance = match_covariance(information, doubt(result_));
+  const Eigen::Matrix3d honest = honest_covariance(result_, MatchEvidence::kScan);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(std::sqrt(honest(i, i) / result_.covariance(i, i)), 1.0, 0.01) << i;
+  }
+}
+
+TEST_F(MatchGateTest, ACovarianceBelowTheFloorStaysAsItIs) {
+  result_.covariance.diagonal() << 1e-4, 1e-4, 1e-6;
+  EXPECT_EQ(honest_covariance(result_, MatchEvidence::kScan), result_.covariance);
+  result_.covariance.setZero();
+  EXPECT_EQ(honest_covariance(result_, MatchEvidence::kScan), result_.covariance);
 }
 
 }  // namespace

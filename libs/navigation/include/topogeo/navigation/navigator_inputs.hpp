@@ -25,6 +25,9 @@ struct PoseFix {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< in the map frame
   bool tracking = false;   ///< only then may the robot set out for a goal
   bool located = false;    ///< not tracking, but the pose is usable: it may drive on for a while
+  /// Located, and not tracking only because the covariance is large, as along a bare corridor: the
+  /// robot may drive on as far as that goes.
+  bool place_known = false;
   std::string state_text;  ///< for people, if it is not: "searching", "lost", ...
 };
 
