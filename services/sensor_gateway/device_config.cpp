@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace topogeo::sensor_gateway {
@@ -52,6 +53,12 @@ std::vector<std::uint32_t> parse_bauds(const std::string& text) {
 void describe_laser_line(ConfigSchema& schema, Laser& laser) {
   schema.add("laser.port", &laser.port,
              "serial port of the laser, for example /dev/ttyUSB0; empty: no laser");
+  std::vector<std::pair<std::string, const devices::LaserModel*>> models;
+  for (const devices::LaserModel& model : devices::laser_models()) {
+    models.emplace_back(model.name, &model);
+  }
+  schema.add("laser.model", &laser.model, models,
+             "what the laser is; docs/devices.md has the table of models");
   schema.add("laser.baud", &laser.settings.baud, 9600U, 500'000U, "baud",
              "working rate: 9600, 19200, 38400 or 500000, which needs an RS-422 line; a PLS gives "
              "1.2, 2.4, 4.8 or 25 scans a second with them");
@@ -255,7 +262,8 @@ DeviceConfig to_config(const DeviceFile& file) {
   DeviceConfig config;
   config.laser_port = file.laser.port;
   config.base_port = file.base.port;
-  devices::PlsSettings& laser = config.laser = file.laser.settings;
+  config.laser.model = file.laser.model;
+  devices::PlsSettings& laser = config.laser.pls = file.laser.settings;
   laser.detection_bauds = parse_bauds(file.laser.detection_bauds);
   if (file.laser.kind == Laser::Kind::kPls) laser.parities = {Parity::kEven};
   if (file.laser.kind == Laser::Kind::kLms) laser.parities = {Parity::kNone};
@@ -277,7 +285,7 @@ DeviceConfig to_config(const DeviceFile& file) {
   config.body_sensors = file.body == DeviceFile::Body::kB21;
   config.odometry_wait_ns = nanoseconds(file.odometry_wait_s);
   config.longest_extrapolation_ns = nanoseconds(file.longest_extrapolation_s);
-  laser.check();
+  static_cast<void>(devices::make_laser_driver(config.laser));  // checks the settings
   check(base);
   if (config.laser_port.empty() && config.base_port.empty()) {
     throw std::invalid_argument(

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "topogeo/devices/base_settings.hpp"
+#include "topogeo/devices/laser_models.hpp"
 #include "topogeo/devices/pls_settings.hpp"
 #include "topogeo/support/config_schema.hpp"
 
@@ -16,6 +17,7 @@ namespace topogeo::sensor_gateway {
 struct DeviceFile {
   struct Laser {
     std::string port;
+    const devices::LaserModel* model = &devices::laser_models().front();
     devices::PlsSettings settings;
     std::string detection_bauds;  ///< numbers separated by blanks
     enum class Kind { kDetect, kPls, kLms } kind = Kind::kDetect;
@@ -50,7 +52,7 @@ support::ConfigSchema describe(DeviceFile& file);
 /// Configuration that the gateway uses.
 struct DeviceConfig {
   std::string laser_port;  ///< empty: no laser
-  devices::PlsSettings laser;
+  devices::LaserSettings laser;
   std::string base_port;  ///< empty: no base
   devices::BaseSettings base;
   bool body_sensors = false;  ///< sonars, infrared and tactile sensors of a B21

@@ -72,7 +72,7 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
   if (!config.laser_port.empty()) {
     laser_.emplace(
         service_, config, time_, gate_, beside(memory, ".laser"),
-        [this](const devices::PlsScan& scan) { show_base(scan); },
+        [this](const devices::LaserScan& scan) { show_base(scan); },
         [this](std::int64_t arrival_ns) { release(arrival_ns); });
   }
   if (config.body_sensors) {
@@ -96,7 +96,7 @@ DeviceGateway::~DeviceGateway() {
   service_.loop().cancel_timer(release_timer_);
 }
 
-void DeviceGateway::show_base(const devices::PlsScan& scan) {
+void DeviceGateway::show_base(const devices::LaserScan& scan) {
   if (!base_) return;
   scan::Scan seen;
   seen.stamp_ns = scan.stamp_ns;
@@ -198,6 +198,7 @@ bool DeviceGateway::deliver(messaging::Writer<T>& writer, std::chrono::nanosecon
 
 void DeviceGateway::finish() {
   if (base_) base_->stop();
+  if (laser_) laser_->finish();
   ended_ = true;
   publish_state();
   const auto end_ns = steady_now_ns() + std::chrono::nanoseconds(kLastDelivery).count();

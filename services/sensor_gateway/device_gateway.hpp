@@ -49,7 +49,7 @@ class DeviceGateway {
   /// Reports a fault if the base runs on for longer than the guards assume.
   void compare_watchdog(double watchdog_s);
   /// Shows the laser's view to the base at once, which stops before obstacles.
-  void show_base(const devices::PlsScan& scan);
+  void show_base(const devices::LaserScan& scan);
   /// Publishes the scans that are ready, until finish().
   void release(std::int64_t now_ns);
   /// False, with a fault, when the scan cannot be sent.

@@ -6,9 +6,10 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 
-#include "topogeo/devices/pls_driver.hpp"
+#include "topogeo/devices/laser_driver.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/service/service.hpp"
@@ -28,13 +29,16 @@ class LaserChannel {
   /// `memory` (empty: none) keeps the baud rate of the laser.
   LaserChannel(service::Service& service, const DeviceConfig& config, const HostTime& time,
                ScanGate& gate, const std::filesystem::path& memory,
-               std::function<void(const devices::PlsScan&)> on_scan,
+               std::function<void(const devices::LaserScan&)> on_scan,
                std::function<void(std::int64_t now_ns)> on_scans);
   LaserChannel(const LaserChannel&) = delete;
   LaserChannel& operator=(const LaserChannel&) = delete;
   LaserChannel(LaserChannel&&) = delete;
   LaserChannel& operator=(LaserChannel&&) = delete;
   ~LaserChannel();
+
+  /// Call it after the loop: stops a laser that can be stopped.
+  void finish();
 
   [[nodiscard]] bool running() const;
   /// For people: "running", or the state and the reason.
@@ -45,19 +49,19 @@ class LaserChannel {
  private:
   void after_driver(std::int64_t now_ns);
   void publish_status();
-  [[nodiscard]] msg::LaserState state(const devices::PlsStatus& status) const;
+  [[nodiscard]] msg::LaserState state(const devices::LaserHealth& health) const;
   /// Why the state is what it is; of a running laser, why its rate is not the wanted one.
-  [[nodiscard]] std::string reason(const devices::PlsStatus& status) const;
-  /// Why the scans of a running laser are of no use; empty: they are.
-  [[nodiscard]] std::string fault(const devices::PlsStatus& status) const;
+  [[nodiscard]] std::string reason(const devices::LaserHealth& health) const;
+  /// Why the scans of a running laser are of no use; empty: they are usable.
+  [[nodiscard]] std::string fault(const devices::LaserHealth& health) const;
 
   service::Service& service_;
   const HostTime& time_;
   ScanGate& gate_;
   LaserMemory memory_;
-  std::function<void(const devices::PlsScan&)> on_scan_;
+  std::function<void(const devices::LaserScan&)> on_scan_;
   std::function<void(std::int64_t)> on_scans_;
-  devices::PlsDriver driver_;
+  std::unique_ptr<devices::LaserDriver> driver_;
   messaging::Writer<msg::LaserStatus> statuses_;
   std::uint64_t statuses_sent_ = 0;
   msg::LaserState published_state_ = msg::kLaserOffline;

@@ -22,7 +22,7 @@ std::string_view describe(ScanDrop drop) {
   return "unknown";
 }
 
-void ScanGate::add(devices::PlsScan scan, std::int64_t now_ns) {
+void ScanGate::add(devices::LaserScan scan, std::int64_t now_ns) {
   if (!open_) {
     drop(ScanDrop::kNoReader);
     return;
@@ -50,7 +50,7 @@ std::int64_t ScanGate::due_ns() const {
                           : waiting_.front().arrival_ns + options_.odometry_wait_ns;
 }
 
-std::optional<scan::Scan> ScanGate::finish(devices::PlsScan&& scan) {
+std::optional<scan::Scan> ScanGate::finish(devices::LaserScan&& scan) {
   const Geometry geometry{scan.angle_min_rad, scan.angle_step_rad, scan.ranges_m.size()};
   if (scan.stamp_ns <= last_stamp_ns_) {
     drop(ScanDrop::kTime);

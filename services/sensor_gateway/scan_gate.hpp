@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "topogeo/devices/pls_scan.hpp"
+#include "topogeo/devices/laser_driver.hpp"
 #include "topogeo/geometry/odometry_track.hpp"
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/scan/scan.hpp"
@@ -51,7 +51,7 @@ class ScanGate {
     options_.odometry_epoch = odometry_epoch;
     next_sequence_ = next_sequence;
   }
-  void add(devices::PlsScan scan, std::int64_t now_ns);
+  void add(devices::LaserScan scan, std::int64_t now_ns);
   void add(const geometry::OdometrySample& sample) { track_.add(sample); }
 
   struct Leaving {
@@ -71,7 +71,7 @@ class ScanGate {
 
  private:
   struct Waiting {
-    devices::PlsScan scan;
+    devices::LaserScan scan;
     std::int64_t arrival_ns = 0;
   };
   struct Geometry {
@@ -81,7 +81,7 @@ class ScanGate {
     friend bool operator==(const Geometry&, const Geometry&) = default;
   };
 
-  std::optional<scan::Scan> finish(devices::PlsScan&& scan);
+  std::optional<scan::Scan> finish(devices::LaserScan&& scan);
   [[nodiscard]] bool repeats(const std::vector<float>& ranges_m,
                              const geometry::Pose2& T_odom_robot);
   void drop(ScanDrop reason) { ++drops_[static_cast<std::size_t>(reason)]; }

@@ -12,10 +12,8 @@ namespace {
 // A disturbance as long as a report, ten times a second: some reports get through.
 constexpr std::int64_t kGarbagePeriod_ns = 100'000'000;
 constexpr std::size_t kGarbage_bytes = 24;
-/// More scans or reports than the longest fault can affect.
+/// More reports than the longest fault can affect.
 constexpr int kForEver = 1'000'000'000;
-/// Bit in the status byte of a PLS (SICK LMS quick manual, telegram listing).
-constexpr std::uint8_t kPolluted = 0x80;
 
 Device device_of(const msg::SimulatorCommand& message) {
   switch (message.fault()) {
@@ -127,25 +125,20 @@ void FaultInjector::set(const Fault& fault, bool on) {
   }
 }
 
-void FaultInjector::strike(simulation::PlsFault fault, bool on) {
-  simulation::PlsEmulator& laser = devices_.laser();
-  laser.inject(fault, (on ? kForEver : 0) - laser.pending(fault));
-}
-
 void FaultInjector::set_laser(const Fault& fault, bool on) {
-  simulation::PlsEmulator& laser = devices_.laser();
+  simulation::LaserEmulator& laser = devices_.laser();
   const std::int64_t now_ns = devices_.now_ns();
   switch (fault.kind) {
     case msg::kSimulatedBadCrc:
-      return strike(simulation::PlsFault::kBadCrc, on);
+      return laser.set_fault(simulation::LaserFault::kBadChecksum, on);
     case msg::kSimulatedTruncated:
-      return strike(simulation::PlsFault::kTruncated, on);
+      return laser.set_fault(simulation::LaserFault::kTruncated, on);
     case msg::kSimulatedGarbage:
-      return strike(simulation::PlsFault::kGarbage, on);
+      return laser.set_fault(simulation::LaserFault::kGarbage, on);
     case msg::kSimulatedStuckScan:
-      return strike(simulation::PlsFault::kStuckScan, on);
+      return laser.set_fault(simulation::LaserFault::kStuckScan, on);
     case msg::kSimulatedContaminated:
-      return laser.set_status(on ? kPolluted : std::uint8_t{0});
+      return laser.set_contaminated(on);
     case msg::kSimulatedSilence:
       return on ? laser.fall_silent(now_ns) : laser.speak_again(now_ns);
     case msg::kSimulatedRestart:

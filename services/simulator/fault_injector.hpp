@@ -42,7 +42,6 @@ class FaultInjector {
   void set(const Fault& fault, bool on);
   void set_laser(const Fault& fault, bool on);
   void set_base(const Fault& fault, bool on);
-  void strike(simulation::PlsFault fault, bool on);
 
   SimulatedDevices& devices_;
   std::vector<Active> active_;

@@ -1,5 +1,6 @@
 // A simulated robot: laser and base on pseudo-terminals, in a simulated world.
 #include <string>
+#include <vector>
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/service/service.hpp"
@@ -26,6 +27,12 @@ simulation::OdometryDrift drift(const std::string& name, std::uint64_t seed) {
   return name == "b21" ? simulation::b21_odometry(seed) : simulation::OdometryDrift{};
 }
 
+std::vector<std::string> model_names() {
+  std::vector<std::string> names;
+  for (const devices::LaserModel& model : devices::laser_models()) names.emplace_back(model.name);
+  return names;
+}
+
 struct Arguments {
   std::filesystem::path world;
   int sonars = 24;
@@ -43,15 +50,23 @@ void add_options(command_line::Command& app, Arguments& arguments) {
   app.add_option("--base-port", arguments.options.devices.base_port,
                  "path of the link to the base's port")
       ->required();
+  app.add_option_function(
+         "--laser-model",
+         [&model = arguments.options.devices.laser.model](const std::string& name) {
+           model = &devices::laser_model(name);
+         },
+         "model of the laser, as laser.model of the devices file")
+      ->check(command_line::one_of(model_names()))
+      ->default_str(model_names().front());
   app.add_option("--base-baud", arguments.options.devices.base_baud, "baud rate of the base's line")
       ->check(command_line::one_of({1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200}))
       ->capture_default_str();
   // A person sets this with the manufacturer's program on a real laser.
-  app.add_option("--protective-field", arguments.options.devices.protective_field_m,
+  app.add_option("--protective-field", arguments.options.devices.laser.protective_field_m,
                  "radius of the laser's protective field, which stops the robot, metres; 0: none")
       ->check(command_line::range(0.0, 4.0))
       ->capture_default_str();
-  app.add_option("--warning-field", arguments.options.devices.warning_field_m,
+  app.add_option("--warning-field", arguments.options.devices.laser.warning_field_m,
                  "radius of the laser's warning field, which slows the robot down, metres; 0: none")
       ->check(command_line::range(0.0, 15.0))
       ->capture_default_str();

@@ -11,13 +11,9 @@ namespace {
 
 // The world advances in steps of this length, or shorter ones when a device has to act.
 constexpr std::int64_t kPiece_ns = 5'000'000;
-constexpr devices::Parity kLaserParity = devices::Parity::kEven;
 
-simulation::PlsEmulatorSettings laser_settings(const DeviceOptions& options) {
-  simulation::PlsEmulatorSettings settings;
-  settings.power_on.parity = kLaserParity;
-  settings.protective_field_m = options.protective_field_m;
-  settings.warning_field_m = options.warning_field_m;
+simulation::LaserEmulatorSettings laser_settings(const DeviceOptions& options) {
+  simulation::LaserEmulatorSettings settings = options.laser;
   settings.seed = options.robot.seed;
   return settings;
 }
@@ -40,7 +36,9 @@ std::uint16_t bumper_bits(double direction_rad) {
 
 SimulatedDevices::SimulatedDevices(world::World world, const DeviceOptions& options)
     : robot_(std::move(world), options.robot),
-      laser_(laser_settings(options), [this](std::int64_t) { return robot_.scan(); }),
+      laser_(simulation::make_laser_emulator(laser_settings(options),
+                                             [this](const simulation::BeamPattern& beams,
+                                                    std::int64_t) { return robot_.scan(beams); })),
       base_(base_settings(options)),
       laser_port_(options.laser_port),
       base_port_(options.base_port) {
@@ -49,13 +47,13 @@ SimulatedDevices::SimulatedDevices(world::World world, const DeviceOptions& opti
 }
 
 void SimulatedDevices::run_until(std::int64_t now_ns) {
-  exchange(laser_, laser_port_, kLaserParity);
+  exchange(*laser_, laser_port_, laser_->parity());
   exchange(base_, base_port_, devices::Parity::kNone);
   while (now_ns_ < now_ns) {
-    const std::int64_t due_ns = std::min(laser_.due_ns(), base_.due_ns());
+    const std::int64_t due_ns = std::min(laser_->due_ns(), base_.due_ns());
     advance(std::min({now_ns, now_ns_ + kPiece_ns, std::max(due_ns, now_ns_ + 1)}));
   }
-  exchange(laser_, laser_port_, kLaserParity);
+  exchange(*laser_, laser_port_, laser_->parity());
   exchange(base_, base_port_, devices::Parity::kNone);
 }
 
@@ -67,7 +65,7 @@ void SimulatedDevices::advance(std::int64_t to_ns) {
   const std::optional<double> bumped_rad = robot_.bumped_rad();
   base_.press_bumpers(bumped_rad ? bumper_bits(*bumped_rad) : std::uint16_t{0}, now_ns_);
   base_.tick(now_ns_);
-  laser_.tick(now_ns_);
+  laser_->tick(now_ns_);
 }
 
 void SimulatedDevices::exchange(simulation::SerialDevice& device, const PseudoTerminal& port,

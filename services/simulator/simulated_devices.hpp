@@ -3,11 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "topogeo/simulation/laser_emulator.hpp"
 #include "topogeo/simulation/mcp_emulator.hpp"
-#include "topogeo/simulation/pls_emulator.hpp"
 #include "topogeo/simulation/simulated_robot.hpp"
 #include "topogeo/world/world.hpp"
 
@@ -21,9 +22,7 @@ struct DeviceOptions {
   std::filesystem::path laser_port;  ///< link to create
   std::filesystem::path base_port;
   std::uint32_t base_baud = 9600;
-  /// Fields monitored by the laser itself, see PlsEmulatorSettings; 0: not set up.
-  double protective_field_m = 0.0;
-  double warning_field_m = 0.0;
+  simulation::LaserEmulatorSettings laser;  ///< its seed is that of the robot
   simulation::RobotOptions robot;
 };
 
@@ -45,7 +44,7 @@ class SimulatedDevices {
   }
 
   [[nodiscard]] simulation::SimulatedRobot& robot() { return robot_; }
-  [[nodiscard]] simulation::PlsEmulator& laser() { return laser_; }
+  [[nodiscard]] simulation::LaserEmulator& laser() { return *laser_; }
   [[nodiscard]] simulation::McpEmulator& base() { return base_; }
   [[nodiscard]] PseudoTerminal& port(Device device) {
     return device == Device::kLaser ? laser_port_ : base_port_;
@@ -60,7 +59,7 @@ class SimulatedDevices {
                 devices::Parity parity);
 
   simulation::SimulatedRobot robot_;
-  simulation::PlsEmulator laser_;
+  std::unique_ptr<simulation::LaserEmulator> laser_;
   simulation::McpEmulator base_;
   PseudoTerminal laser_port_;
   PseudoTerminal base_port_;

@@ -83,7 +83,7 @@ void check_listener(std::span<const std::uint8_t> bytes, SickDecoder::Listener l
   require(behind.size() == 1 && behind.front() == last, "what follows a silence is found");
 }
 
-void check_scan(const devices::PlsScan& scan, std::int64_t last_ns) {
+void check_scan(const devices::LaserScan& scan, std::int64_t last_ns) {
   require(scan.stamp_ns > last_ns, "stamps increase strictly");
   require(scan.ranges_m.size() >= 101 && scan.ranges_m.size() <= 401, "beam counts are known ones");
   require(scan.angle_step_rad > 0.0 && std::isfinite(scan.angle_min_rad), "angles are usable");
@@ -101,7 +101,7 @@ void check_pls_driver(std::span<const std::uint8_t> bytes) {
   for (std::size_t at = 0; at < bytes.size(); at += kSickPart_bytes) {
     driver.receive(bytes.subspan(at, std::min(kSickPart_bytes, bytes.size() - at)), now_ns);
     (void)driver.take_orders();
-    for (const devices::PlsScan& scan : driver.take_scans()) {
+    for (const devices::LaserScan& scan : driver.take_scans()) {
       check_scan(scan, last_ns);
       last_ns = scan.stamp_ns;
     }

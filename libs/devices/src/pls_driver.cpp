@@ -100,7 +100,7 @@ std::vector<LineOrder> PlsDriver::take_orders() {
   return line_.take_orders();
 }
 
-std::vector<PlsScan> PlsDriver::take_scans() {
+std::vector<LaserScan> PlsDriver::take_scans() {
   return std::exchange(scans_, {});
 }
 
@@ -118,6 +118,10 @@ PlsStatus PlsDriver::status() const {
   status.counters.repeats = exchange_.repeats();
   status.counters.refusals = exchange_.refusals();
   return status;
+}
+
+LaserHealth PlsDriver::health() const {
+  return laser_health(status());
 }
 
 void PlsDriver::take_events(std::int64_t now_ns) {
@@ -176,7 +180,7 @@ void PlsDriver::take_scan(const SickTelegram& telegram, std::int64_t now_ns) {
   if (!values) return;
   supervisor_.scan_came(now_ns);
   setup_.reset();
-  if (std::optional<PlsScan> scan = maker_.make(*values, telegram, line_.settings())) {
+  if (std::optional<LaserScan> scan = maker_.make(*values, telegram, line_.settings())) {
     ++status_.counters.scans;
     scans_.push_back(std::move(*scan));
   }

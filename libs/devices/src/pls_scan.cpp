@@ -26,7 +26,7 @@ constexpr std::array<Geometry, 6> kGeometries{{{361, -90.0, 0.5},
 
 /// Fills in the ranges and the flags of the readings; returns the number of returns.
 std::size_t read(const PlsMeasuredValues& values, double unit_m, const PlsSettings& settings,
-                 PlsScan& scan) {
+                 LaserScan& scan) {
   std::size_t returns = 0;
   scan.ranges_m.reserve(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -46,8 +46,9 @@ std::size_t read(const PlsMeasuredValues& values, double unit_m, const PlsSettin
 
 }  // namespace
 
-std::optional<PlsScan> PlsScanMaker::make(const PlsMeasuredValues& values,
-                                          const SickTelegram& telegram, const LineSettings& line) {
+std::optional<LaserScan> PlsScanMaker::make(const PlsMeasuredValues& values,
+                                            const SickTelegram& telegram,
+                                            const LineSettings& line) {
   const auto* const geometry = std::ranges::find(kGeometries, values.size(), &Geometry::beams);
   const bool lms = line.parity == Parity::kNone;
   std::uint64_t* reason = nullptr;
@@ -64,7 +65,7 @@ std::optional<PlsScan> PlsScanMaker::make(const PlsMeasuredValues& values,
     ++*reason;
     return std::nullopt;
   }
-  PlsScan scan;
+  LaserScan scan;
   const std::size_t returns = read(values, lms ? values.unit_m : 0.01, settings_, scan);
   if (is_stuck(values, returns)) {
     ++drops_.stuck;
@@ -76,7 +77,7 @@ std::optional<PlsScan> PlsScanMaker::make(const PlsMeasuredValues& values,
   last_stamp_ns_ = scan.stamp_ns;
   scan.angle_min_rad = geometry->min_deg * kDegree_rad;
   scan.angle_step_rad = geometry->step_deg * kDegree_rad;
-  scan.health = values.health;
+  scan.contaminated = values.health.polluted;
   return scan;
 }
 

@@ -19,6 +19,24 @@ constexpr std::uint8_t kReplyBit = 0x80;
 constexpr std::size_t kStatusReport_bytes = 152;
 constexpr std::uint64_t kMostGarbage_bytes = 200;
 constexpr std::uint64_t kFirstAfterHeader = 7;
+/// More scans than the longest fault can affect.
+constexpr int kForEver = 1'000'000'000;
+/// Bit in the status byte of a PLS (SICK LMS quick manual, telegram listing).
+constexpr std::uint8_t kPolluted = 0x80;
+
+PlsFault pls_fault(LaserFault fault) {
+  switch (fault) {
+    case LaserFault::kBadChecksum:
+      return PlsFault::kBadCrc;
+    case LaserFault::kTruncated:
+      return PlsFault::kTruncated;
+    case LaserFault::kStuckScan:
+      return PlsFault::kStuckScan;
+    case LaserFault::kGarbage:
+      break;
+  }
+  return PlsFault::kGarbage;
+}
 
 void put_word(std::vector<std::uint8_t>& bytes, std::size_t word) {
   bytes.push_back(static_cast<std::uint8_t>(word & 0xFFU));
@@ -112,6 +130,15 @@ void PlsEmulator::set_up(std::uint32_t baud, bool streaming, std::int64_t now_ns
 
 void PlsEmulator::inject(PlsFault fault, int count) {
   pending_[static_cast<std::size_t>(fault)] += count;
+}
+
+void PlsEmulator::set_fault(LaserFault fault, bool on) {
+  const PlsFault own = pls_fault(fault);
+  inject(own, (on ? kForEver : 0) - pending(own));
+}
+
+void PlsEmulator::set_contaminated(bool contaminated) {
+  set_status(contaminated ? kPolluted : std::uint8_t{0});
 }
 
 void PlsEmulator::fall_silent(std::int64_t now_ns) {

@@ -228,18 +228,18 @@ world::World SimulatedRobot::scene() const {
   return all;
 }
 
-std::vector<double> SimulatedRobot::exact_scan_m() const {
+std::vector<double> SimulatedRobot::exact_scan_m(const BeamPattern& beams) const {
   const geometry::Pose2 T_world_laser = T_world_robot_ * options_.T_robot_laser;
-  std::vector<double> ranges_m = raycast(scene_, T_world_laser, options_.beams);
+  std::vector<double> ranges_m = raycast(scene_, T_world_laser, beams);
   if (people_scene_.circles.empty()) return ranges_m;
-  const std::vector<double> people_m = raycast(people_scene_, T_world_laser, options_.beams);
+  const std::vector<double> people_m = raycast(people_scene_, T_world_laser, beams);
   for (std::size_t i = 0; i < ranges_m.size(); ++i)
     ranges_m[i] = std::min(ranges_m[i], people_m[i]);
   return ranges_m;
 }
 
-std::vector<float> SimulatedRobot::scan() {
-  return measure(exact_scan_m(), options_.laser, laser_random_);
+std::vector<float> SimulatedRobot::scan(const BeamPattern& beams) {
+  return measure(exact_scan_m(beams), options_.laser, laser_random_);
 }
 
 std::vector<float> SimulatedRobot::sonar() {

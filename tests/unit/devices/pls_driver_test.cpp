@@ -159,7 +159,7 @@ TEST(PlsDriver, ScansSayWhereTheirBeamsAre) {
   for (const auto& [beams, step_deg] : {std::pair{361, 0.5}, {181, 1.0}, {180, 1.0}}) {
     PlsOnLine pls({}, {}, static_cast<std::size_t>(beams));
     pls.start();
-    const PlsScan& scan = pls.scans.back();
+    const LaserScan& scan = pls.scans.back();
     EXPECT_EQ(scan.ranges_m.size(), static_cast<std::size_t>(beams));
     EXPECT_DOUBLE_EQ(scan.angle_min_rad, -90.0 / 180.0 * 3.14159265358979323846);
     EXPECT_DOUBLE_EQ(scan.angle_step_rad, step_deg / 180.0 * 3.14159265358979323846);
@@ -320,7 +320,7 @@ TEST(PlsDriver, SaysWhatTheStatusByteSays) {
   pls.run_for(kSecond_ns);
   EXPECT_TRUE(pls.driver.status().health.polluted);
   EXPECT_EQ(pls.driver.status().health.severity, PlsSeverity::kInfo);
-  EXPECT_TRUE(pls.scans.back().health.polluted);
+  EXPECT_TRUE(pls.scans.back().contaminated);
   pls.emulator.set_status(0x40);
   pls.run_for(kSecond_ns);
   const std::size_t before = pls.scans.size();

@@ -108,13 +108,13 @@ TEST(PlsMessages, StatusErrorsAndPowerOnAreRead) {
   EXPECT_FALSE(pls_power_on_text(Received(sick_reply(0x91, hex("50"), 0)).telegram));
 }
 
-std::optional<PlsScan> scan_of(PlsScanMaker& maker, const std::vector<std::uint16_t>& words,
-                               std::uint8_t status = 0, const LineSettings& line = kPls) {
+std::optional<LaserScan> scan_of(PlsScanMaker& maker, const std::vector<std::uint16_t>& words,
+                                 std::uint8_t status = 0, const LineSettings& line = kPls) {
   const Received received(measured_values(words, status));
   return maker.make(pls_measured_values(received.telegram).value(), received.telegram, line);
 }
 
-TEST(PlsScan, HoldsMetresAndNoReturns) {
+TEST(LaserScan, HoldsMetresAndNoReturns) {
   const PlsSettings settings;
   PlsScanMaker maker(settings);
   std::vector<std::uint16_t> words(181, 100);
@@ -139,7 +139,7 @@ TEST(PlsScan, HoldsMetresAndNoReturns) {
   EXPECT_THAT(scan_of(other, words)->ranges_m[5], FloatEq(2.5F));
 }
 
-TEST(PlsScan, IsStampedWithTheMiddleOfTheSweep) {
+TEST(LaserScan, IsStampedWithTheMiddleOfTheSweep) {
   const PlsSettings settings;
   PlsScanMaker maker(settings);
   // 732 bytes of 11 bits take 16.104 ms at 500000 baud; the middle of the sweep was 10 ms earlier.
@@ -150,7 +150,7 @@ TEST(PlsScan, IsStampedWithTheMiddleOfTheSweep) {
             1'000'000'000 - 26'104'000 + 1);
 }
 
-TEST(PlsScan, OfAnLmsMayCountInMillimetres) {
+TEST(LaserScan, OfAnLmsMayCountInMillimetres) {
   const PlsSettings settings;
   PlsScanMaker maker(settings);
   Bytes data{181, 0x40};
@@ -167,7 +167,7 @@ TEST(PlsScan, OfAnLmsMayCountInMillimetres) {
   EXPECT_EQ(maker.drops().interlaced, 1U);
 }
 
-TEST(PlsScan, IsDroppedForAReason) {
+TEST(LaserScan, IsDroppedForAReason) {
   PlsSettings settings;
   settings.stuck_scans = 3;
   PlsScanMaker maker(settings);

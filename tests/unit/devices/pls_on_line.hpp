@@ -34,7 +34,7 @@ class PlsOnLine {
 
   /// Takes the driver's scans and counts those that the sensor did not measure at their stamp.
   void collect() {
-    for (PlsScan& scan : driver.take_scans()) {
+    for (LaserScan& scan : driver.take_scans()) {
       if (!was_measured(scan)) ++wrong_scans;
       scan_seen_ns = line.now_ns();
       scans.push_back(std::move(scan));
@@ -67,7 +67,7 @@ class PlsOnLine {
   PlsDriver driver;
   simulation::PlsEmulator emulator;
   SimulatedLine line;
-  std::vector<PlsScan> scans;
+  std::vector<LaserScan> scans;
   std::size_t wrong_scans = 0;
   std::int64_t scan_seen_ns = 0;  ///< when the last scan was delivered
   bool still = false;             ///< nothing changes in the world
@@ -95,7 +95,7 @@ class PlsOnLine {
     return ranges_m;
   }
 
-  [[nodiscard]] bool was_measured(const PlsScan& scan) const {
+  [[nodiscard]] bool was_measured(const LaserScan& scan) const {
     for (auto it = measured_.lower_bound(scan.stamp_ns - kStampError_ns);
          it != measured_.end() && it->first <= scan.stamp_ns; ++it) {
       if (same(it->second, scan.ranges_m)) return true;

@@ -83,7 +83,7 @@ class RobotBeforeAWall {
 
   bool take_scans() {
     bool any = false;
-    for (const devices::PlsScan& scan : driver_.take_scans()) {
+    for (const devices::LaserScan& scan : driver_.take_scans()) {
       ScanPoints points;
       points.stamp_ns = scan.stamp_ns;
       points.T_odom_robot = robot_.T_odom_robot();

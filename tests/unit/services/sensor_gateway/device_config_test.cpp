@@ -25,12 +25,12 @@ TEST(DeviceConfig, DefaultsAreThoseOfTheDrivers) {
   const DeviceConfig config = config_of("laser.port: /dev/a\nbase.port: /dev/b\n");
   const devices::PlsSettings laser;
   EXPECT_EQ(config.laser_port, "/dev/a");
-  EXPECT_EQ(config.laser.baud, laser.baud);
-  EXPECT_EQ(config.laser.detection_bauds, laser.detection_bauds);
-  EXPECT_EQ(config.laser.parities, laser.parities);
-  EXPECT_EQ(config.laser.ack_timeout_ns, laser.ack_timeout_ns);
-  EXPECT_EQ(config.laser.sweep_to_send_ns, laser.sweep_to_send_ns);
-  EXPECT_EQ(config.laser.first_no_return_code, laser.first_no_return_code);
+  EXPECT_EQ(config.laser.pls.baud, laser.baud);
+  EXPECT_EQ(config.laser.pls.detection_bauds, laser.detection_bauds);
+  EXPECT_EQ(config.laser.pls.parities, laser.parities);
+  EXPECT_EQ(config.laser.pls.ack_timeout_ns, laser.ack_timeout_ns);
+  EXPECT_EQ(config.laser.pls.sweep_to_send_ns, laser.sweep_to_send_ns);
+  EXPECT_EQ(config.laser.pls.first_no_return_code, laser.first_no_return_code);
   const devices::BaseSettings base;
   EXPECT_EQ(config.base_port, "/dev/b");
   EXPECT_EQ(config.base.line, base.line);
@@ -57,10 +57,10 @@ base:
 odometry:
   wait_s: 0.15
 )");
-  EXPECT_THAT(config.laser.parities, ElementsAre(devices::Parity::kNone));
-  EXPECT_THAT(config.laser.detection_bauds, ElementsAre(38'400U, 9600U));
-  EXPECT_EQ(config.laser.settle_ns, 500'000'000);
-  EXPECT_EQ(config.laser.first_no_return_code, 8000);
+  EXPECT_THAT(config.laser.pls.parities, ElementsAre(devices::Parity::kNone));
+  EXPECT_THAT(config.laser.pls.detection_bauds, ElementsAre(38'400U, 9600U));
+  EXPECT_EQ(config.laser.pls.settle_ns, 500'000'000);
+  EXPECT_EQ(config.laser.pls.first_no_return_code, 8000);
   EXPECT_EQ(config.base.dialect, devices::BaseDialect::kBinary);
   EXPECT_EQ(config.base.line.baud, 38'400U);
   EXPECT_EQ(config.base.calibration.counts_per_m, 25'630.0);

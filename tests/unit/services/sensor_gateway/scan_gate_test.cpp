@@ -12,8 +12,8 @@ namespace {
 constexpr std::int64_t kMs = 1'000'000;
 constexpr double kTolerance = 1e-12;
 
-devices::PlsScan scan_at(std::int64_t stamp_ns, std::size_t beams = 3) {
-  devices::PlsScan scan;
+devices::LaserScan scan_at(std::int64_t stamp_ns, std::size_t beams = 3) {
+  devices::LaserScan scan;
   scan.stamp_ns = stamp_ns;
   scan.angle_min_rad = -1.0;
   scan.angle_step_rad = 0.1;
@@ -55,7 +55,7 @@ TEST(ScanGate, TimeAndBeamsMustFit) {
 TEST(ScanGate, RangesBeyondTheLimitAreNoReturnAsInALog) {
   ScanGate gate({.has_base = false, .range_max_m = 5.0});
   gate.open();
-  devices::PlsScan scan = scan_at(1);
+  devices::LaserScan scan = scan_at(1);
   scan.ranges_m = {4.999F, 5.0F, 0.0F};
   gate.add(scan, 1);
   EXPECT_EQ(gate.take(1).at(0).scan.ranges_m, (std::vector<float>{4.999F, 0.0F, 0.0F}));
@@ -83,7 +83,7 @@ TEST(ScanGate, OldReadingsOfAMovingRobotAreDropped) {
   gate.open();
   const auto published = [&](std::int64_t stamp_ns, std::vector<float> ranges_m,
                              const geometry::Pose2& T_odom_robot) {
-    devices::PlsScan scan = scan_at(stamp_ns);
+    devices::LaserScan scan = scan_at(stamp_ns);
     scan.ranges_m = std::move(ranges_m);
     gate.add({stamp_ns, T_odom_robot});
     gate.add(std::move(scan), stamp_ns);

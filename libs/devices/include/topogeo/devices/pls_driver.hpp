@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "topogeo/devices/laser_driver.hpp"
 #include "topogeo/devices/pls_line.hpp"
 #include "topogeo/devices/pls_scan.hpp"
 #include "topogeo/devices/pls_search.hpp"
@@ -24,14 +25,13 @@
 
 namespace topogeo::devices {
 
-class PlsDriver final : public SerialDriver {
+class PlsDriver final : public LaserDriver {
  public:
   /// Throws std::invalid_argument when a setting is out of range.
   explicit PlsDriver(PlsSettings settings);
 
-  /// An earlier driver made the sensor send scans over this line, and ended: the sensor may still
-  /// do so. Call before the port is opened. A wrong line costs one more attempt.
-  void resume(const LineSettings& line);
+  /// A wrong line costs one more attempt.
+  void resume(const LineSettings& line) override;
 
   void opened(std::int64_t now_ns) override;
   void lost(std::int64_t now_ns) override;
@@ -40,8 +40,8 @@ class PlsDriver final : public SerialDriver {
   [[nodiscard]] std::int64_t due_ns() const override;
   [[nodiscard]] std::vector<LineOrder> take_orders() override;
 
-  /// The scans received since the last call, in order.
-  [[nodiscard]] std::vector<PlsScan> take_scans();
+  [[nodiscard]] std::vector<LaserScan> take_scans() override;
+  [[nodiscard]] LaserHealth health() const override;
   [[nodiscard]] PlsStatus status() const;
 
  private:
@@ -82,7 +82,7 @@ class PlsDriver final : public SerialDriver {
 
   Phase phase_ = Phase::kOffline;
   bool configured_ = false;  ///< it was made to send scans and has not restarted since
-  std::vector<PlsScan> scans_;
+  std::vector<LaserScan> scans_;
   PlsStatus status_;
 };
 

@@ -6,24 +6,13 @@
 #include <optional>
 #include <vector>
 
+#include "topogeo/devices/laser_driver.hpp"
 #include "topogeo/devices/pls_messages.hpp"
 #include "topogeo/devices/pls_settings.hpp"
 #include "topogeo/devices/serial_driver.hpp"
 #include "topogeo/devices/sick_telegram.hpp"
 
 namespace topogeo::devices {
-
-struct PlsScan {
-  /// The middle of the mirror's sweep, on the driver's clock; strictly increasing.
-  std::int64_t stamp_ns = 0;
-  double angle_min_rad = 0.0;   ///< of the first beam, the rightmost, in the laser frame
-  double angle_step_rad = 0.0;  ///< counter-clockwise, > 0
-  std::vector<float> ranges_m;  ///< one per beam; 0: no return
-  PlsHealth health{};           ///< polluted: the window is dirty
-  std::size_t dazzled = 0;      ///< readings with glaring light
-  bool warning_field = false;   ///< a reading lies in the sensor's warning field
-  bool protective_field = false;
-};
 
 /// Counts of scans that were received whole but dropped.
 struct PlsScanDrops {
@@ -42,8 +31,9 @@ class PlsScanMaker {
 
   /// The scan of a telegram with measured values that came over `line`, or nothing if it is
   /// dropped.
-  [[nodiscard]] std::optional<PlsScan> make(const PlsMeasuredValues& values,
-                                            const SickTelegram& telegram, const LineSettings& line);
+  [[nodiscard]] std::optional<LaserScan> make(const PlsMeasuredValues& values,
+                                              const SickTelegram& telegram,
+                                              const LineSettings& line);
 
   /// Does not compare the next scan with the last one, which another sensor may have sent.
   void forget() { last_.clear(); }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "topogeo/devices/laser_driver.hpp"
 #include "topogeo/devices/pls_messages.hpp"
 #include "topogeo/devices/pls_scan.hpp"
 #include "topogeo/devices/serial_driver.hpp"
@@ -49,5 +50,8 @@ struct PlsStatus {
   std::vector<PlsError> errors;  ///< in its memory at start-up
   PlsCounters counters;
 };
+
+/// The same in the terms of all lasers.
+[[nodiscard]] LaserHealth laser_health(const PlsStatus& status);
 
 }  // namespace topogeo::devices

@@ -15,7 +15,7 @@
 #include "topogeo/devices/pls_messages.hpp"
 #include "topogeo/devices/serial_driver.hpp"
 #include "topogeo/devices/sick_telegram.hpp"
-#include "topogeo/simulation/serial_device.hpp"
+#include "topogeo/simulation/laser_emulator.hpp"
 #include "topogeo/simulation/serial_output.hpp"
 #include "topogeo/support/random.hpp"
 
@@ -51,7 +51,7 @@ enum class PlsFault {
 };
 inline constexpr std::size_t kPlsFaults = 5;
 
-class PlsEmulator final : public SerialDevice {
+class PlsEmulator final : public LaserEmulator {
  public:
   /// Ranges in metres at a time, one per beam from the right, for 361 or another supported number
   /// of beams; 0 or not finite: no return.
@@ -69,14 +69,16 @@ class PlsEmulator final : public SerialDevice {
                                                       std::int64_t now_ns) override;
 
   // External events.
-  void switch_off();
+  [[nodiscard]] devices::Parity parity() const override { return settings_.power_on.parity; }
+  void switch_off() override;
   /// Switches on, or off and on again: silence for the start-up time, then the power-on telegram at
   /// the rate after power-on.
-  void switch_on(std::int64_t now_ns);
+  void switch_on(std::int64_t now_ns) override;
   /// Sets the state that an earlier program may have left: this rate, and streaming or not.
   void set_up(std::uint32_t baud, bool streaming, std::int64_t now_ns);
   /// The byte at the end of every telegram: pollution and errors, for example.
   void set_status(std::uint8_t status) { status_ = status; }
+  void set_contaminated(bool contaminated) override;
   /// Changes the fields; see PlsEmulatorSettings. Throws std::invalid_argument out of range.
   void set_fields(double protective_m, double warning_m);
 
@@ -84,9 +86,10 @@ class PlsEmulator final : public SerialDevice {
   /// Applies the fault to the next `count` telegrams, scans or changes of the rate that it
   /// concerns.
   void inject(PlsFault fault, int count);
-  /// Neither sends nor receives anything until speak_again(); cuts the bytes on the line.
-  void fall_silent(std::int64_t now_ns);
-  void speak_again(std::int64_t now_ns);
+  void set_fault(LaserFault fault, bool on) override;
+  /// Receives nothing either.
+  void fall_silent(std::int64_t now_ns) override;
+  void speak_again(std::int64_t now_ns) override;
   /// Number of faults still to come.
   [[nodiscard]] int pending(PlsFault fault) const;
   /// Time at which the last faulty telegram left the line, or the silence ended.
@@ -94,7 +97,7 @@ class PlsEmulator final : public SerialDevice {
 
   [[nodiscard]] const devices::LineSettings& line() const { return line_; }
   [[nodiscard]] bool streaming() const { return mode_ == Mode::kStream; }
-  [[nodiscard]] std::uint64_t scans_sent() const { return scans_sent_; }
+  [[nodiscard]] std::uint64_t scans_sent() const override { return scans_sent_; }
 
  private:
   enum class Power { kOff, kStarting, kOn };

@@ -79,9 +79,12 @@ class SimulatedRobot {
   [[nodiscard]] double path_m() const { return path_m_; }  ///< rolled distance, there and back
 
   /// Readings of the laser here and now, one per beam; scan::Scan::kNoReturn for none.
-  std::vector<float> scan();
+  std::vector<float> scan() { return scan(options_.beams); }
+  /// The same along other beams.
+  std::vector<float> scan(const BeamPattern& beams);
   /// The same without noise; infinity for none.
-  [[nodiscard]] std::vector<double> exact_scan_m() const;
+  [[nodiscard]] std::vector<double> exact_scan_m() const { return exact_scan_m(options_.beams); }
+  [[nodiscard]] std::vector<double> exact_scan_m(const BeamPattern& beams) const;
   /// Readings of the sonars here and now; scan::Scan::kNoReturn for none.
   std::vector<float> sonar();
 

@@ -1,0 +1,43 @@
+// The lasers that have a driver: one row each in laser_models.def.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "topogeo/devices/laser_driver.hpp"
+#include "topogeo/devices/pls_settings.hpp"
+#include "topogeo/devices/serial_driver.hpp"
+
+namespace topogeo::devices {
+
+struct LaserModel;
+
+/// Settings of a laser of any model; each driver uses its own part.
+struct LaserSettings {
+  const LaserModel* model = nullptr;  ///< a row of laser_models(); none: the first
+  PlsSettings pls;
+};
+
+struct LaserModel {
+  std::string_view family;  ///< lasers with the same protocol
+  std::string_view name;    ///< value of laser.model
+  std::string_view title;   ///< maker and models
+  LineSettings line;        ///< of the port while it sends scans, unless the settings change it
+  std::size_t beams = 0;    ///< of a scan, unless the settings change it
+  double view_deg = 0.0;    ///< angle from the first beam to the last, or 360 for a full turn
+  double turns_hz = 0.0;    ///< nominal turns of the mirror a second
+  double range_max_m = 0.0;
+  std::unique_ptr<LaserDriver> (*make)(const LaserSettings& settings) = nullptr;
+};
+
+/// All models; the first is the default.
+[[nodiscard]] std::span<const LaserModel> laser_models();
+/// Throws std::invalid_argument for a name that no model has.
+[[nodiscard]] const LaserModel& laser_model(std::string_view name);
+
+/// Throws std::invalid_argument naming the first setting that is out of range.
+[[nodiscard]] std::unique_ptr<LaserDriver> make_laser_driver(const LaserSettings& settings);
+
+}  // namespace topogeo::devices

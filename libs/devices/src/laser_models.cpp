@@ -1,0 +1,44 @@
+#include "topogeo/devices/laser_models.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string>
+
+#include "topogeo/devices/pls_driver.hpp"
+
+namespace topogeo::devices {
+namespace {
+
+std::unique_ptr<LaserDriver> make_pls(const LaserSettings& settings) {
+  return std::make_unique<PlsDriver>(settings.pls);
+}
+
+#define TOPOGEO_LASER(family, name, title, baud, parity, beams, view_deg, turns_hz, range_max_m) \
+  LaserModel{#family,      name,     title,    LineSettings{baud, Parity::parity},               \
+             beams,        view_deg, turns_hz, range_max_m,                                      \
+             make_##family},
+constexpr std::array kLaserModels{
+#include "topogeo/devices/laser_models.def"
+};
+
+}  // namespace
+
+std::span<const LaserModel> laser_models() {
+  return kLaserModels;
+}
+
+const LaserModel& laser_model(std::string_view name) {
+  const auto* const model = std::ranges::find(kLaserModels, name, &LaserModel::name);
+  if (model == kLaserModels.end()) {
+    throw std::invalid_argument("laser model '" + std::string(name) + "': not known");
+  }
+  return *model;
+}
+
+std::unique_ptr<LaserDriver> make_laser_driver(const LaserSettings& settings) {
+  const LaserModel& model = settings.model != nullptr ? *settings.model : kLaserModels.front();
+  return model.make(settings);
+}
+
+}  // namespace topogeo::devices

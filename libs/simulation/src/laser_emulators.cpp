@@ -1,0 +1,65 @@
+#include <numbers>
+#include <string_view>
+#include <utility>
+
+#include "topogeo/simulation/laser_emulator.hpp"
+#include "topogeo/simulation/pls_emulator.hpp"
+
+namespace topogeo::simulation {
+namespace {
+
+using MakeEmulator = std::unique_ptr<LaserEmulator> (*)(const LaserEmulatorSettings&,
+                                                        const devices::LaserModel&,
+                                                        LaserEmulator::Ranges, std::int64_t);
+
+std::unique_ptr<LaserEmulator> emulate_pls(const LaserEmulatorSettings& settings,
+                                           const devices::LaserModel& model,
+                                           LaserEmulator::Ranges ranges, std::int64_t now_ns) {
+  PlsEmulatorSettings pls;
+  pls.power_on.parity = model.line.parity;
+  pls.protective_field_m = settings.protective_field_m;
+  pls.warning_field_m = settings.warning_field_m;
+  pls.seed = settings.seed;
+  return std::make_unique<PlsEmulator>(
+      pls,
+      [ranges = std::move(ranges), beams = beams_of(model)](std::int64_t at_ns) {
+        return ranges(beams, at_ns);
+      },
+      now_ns);
+}
+
+struct EmulatorRow {
+  std::string_view name;
+  MakeEmulator make;
+};
+
+#define TOPOGEO_LASER(family, name, title, baud, parity, beams, view_deg, turns_hz, range_max_m) \
+  EmulatorRow{name, emulate_##family},
+constexpr EmulatorRow kEmulators[] = {
+#include "topogeo/devices/laser_models.def"
+};
+
+}  // namespace
+
+std::unique_ptr<LaserEmulator> make_laser_emulator(const LaserEmulatorSettings& settings,
+                                                   LaserEmulator::Ranges ranges,
+                                                   std::int64_t now_ns) {
+  const devices::LaserModel& model =
+      settings.model != nullptr ? *settings.model : devices::laser_models().front();
+  const auto row = static_cast<std::size_t>(&model - devices::laser_models().data());
+  return kEmulators[row].make(settings, model, std::move(ranges), now_ns);
+}
+
+BeamPattern beams_of(const devices::LaserModel& model) {
+  constexpr double kTurn_deg = 360.0;
+  const bool turns = model.view_deg >= kTurn_deg;
+  const double gaps = static_cast<double>(turns ? model.beams : model.beams - 1);
+  BeamPattern beams;
+  beams.count = model.beams;
+  beams.angle_step_rad = std::numbers::pi * (model.view_deg / 180.0) / gaps;
+  beams.angle_min_rad = -std::numbers::pi * (model.view_deg / kTurn_deg);
+  if (turns) beams.angle_min_rad += 0.5 * beams.angle_step_rad;
+  return beams;
+}
+
+}  // namespace topogeo::simulation
