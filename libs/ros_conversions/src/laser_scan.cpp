@@ -11,13 +11,12 @@
 
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/ros_conversions/geometry.hpp"
+#include "topogeo/scan/echo_grid.hpp"
 
 namespace topogeo::ros {
 namespace {
 
 constexpr float kNoEcho = scan::Scan::kNoReturn;
-/// Neighbouring echoes that are closer than this belong to one surface.
-constexpr double kOneSurface_m = 0.2;
 /// Motion during a sweep that is too small for the beams to show.
 constexpr double kStill_m = 0.002;
 constexpr double kStill_rad = 0.001;
@@ -77,53 +76,6 @@ double last_angle_of(const BeamPattern& pattern) {
 Eigen::Vector2d direction_of(double angle_rad) {
   const auto [sine, cosine] = geometry::sincos(angle_rad);
   return {cosine, sine};
-}
-
-struct Echo {
-  double angle_rad = 0.0;
-  Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
-};
-
-/// The distance at which a ray meets the line from `a` to `b`; empty if it does not.
-std::optional<double> meet(double angle_rad, const Echo& a, const Echo& b) {
-  const Eigen::Vector2d ray = direction_of(angle_rad);
-  const Eigen::Vector2d edge = b.point_m - a.point_m;
-  const double denominator = ray.x() * edge.y() - ray.y() * edge.x();
-  if (std::fabs(denominator) < 1e-12) return std::nullopt;
-  const double range_m = (a.point_m.x() * edge.y() - a.point_m.y() * edge.x()) / denominator;
-  return range_m > 0.0 ? std::optional(range_m) : std::nullopt;
-}
-
-/// Ranges on the beams of `pattern` from echoes at any angle.
-std::vector<float> rebinned(std::vector<Echo> echoes, const BeamPattern& pattern) {
-  std::ranges::sort(echoes, {}, &Echo::angle_rad);
-  std::vector<float> ranges_m(pattern.beams, kNoEcho);
-  const double reach_rad = 1.5 * pattern.angle_step_rad;
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < pattern.beams; ++i) {
-    const double angle_rad = angle_of(pattern, i);
-    while (next < echoes.size() && echoes[next].angle_rad < angle_rad) ++next;
-    const Echo* before = next > 0 ? &echoes[next - 1] : nullptr;
-    const Echo* after = next < echoes.size() ? &echoes[next] : nullptr;
-    if (before != nullptr && angle_rad - before->angle_rad > reach_rad) before = nullptr;
-    if (after != nullptr && after->angle_rad - angle_rad > reach_rad) after = nullptr;
-    if (before != nullptr && after != nullptr &&
-        (before->point_m - after->point_m).norm() < kOneSurface_m) {
-      if (const auto range_m = meet(angle_rad, *before, *after)) {
-        ranges_m[i] = static_cast<float>(*range_m);
-        continue;
-      }
-    }
-    const double half_rad = 0.5 * pattern.angle_step_rad * (1.0 + 1e-6);
-    const bool left = after != nullptr && after->angle_rad - angle_rad <= half_rad;
-    const bool right = before != nullptr && angle_rad - before->angle_rad <= half_rad;
-    if (left && (!right || after->angle_rad - angle_rad < angle_rad - before->angle_rad)) {
-      ranges_m[i] = static_cast<float>(after->point_m.norm());
-    } else if (right) {
-      ranges_m[i] = static_cast<float>(before->point_m.norm());
-    }
-  }
-  return ranges_m;
 }
 
 }  // namespace
@@ -230,7 +182,7 @@ std::vector<float> deskewed(
   const double middle_rad =
       sweep.pattern.angle_min_rad +
       0.5 * sweep.pattern.angle_step_rad * static_cast<double>(sweep.pattern.beams - 1);
-  std::vector<Echo> echoes;
+  std::vector<scan::Echo> echoes;
   for (std::size_t i = 0; i < sweep.ranges_m.size(); ++i) {
     const auto range_m = static_cast<double>(sweep.ranges_m[i]);
     if (range_m <= 0.0) continue;
@@ -247,7 +199,8 @@ std::vector<float> deskewed(
     const double seen_rad = geometry::atan2(point_m.y(), point_m.x());
     echoes.push_back({middle_rad + geometry::wrap_angle(seen_rad - middle_rad), point_m});
   }
-  return rebinned(std::move(echoes), sweep.pattern);
+  return scan::on_grid(std::move(echoes), {sweep.pattern.angle_min_rad,
+                                           sweep.pattern.angle_step_rad, sweep.pattern.beams});
 }
 
 void limit_ranges(std::vector<float>& ranges_m, double range_limit_m) {
