@@ -58,7 +58,9 @@ void describe_laser_line(ConfigSchema& schema, Laser& laser) {
     models.emplace_back(model.name, &model);
   }
   schema.add("laser.model", &laser.model, models,
-             "what the laser is; docs/devices.md has the table of models");
+             "what the laser is (docs/devices.md has the table). Keys from laser.baud to "
+             "laser.sweep_to_send_s are for a sick_pls, except range_max_m and shortest_silence_s, "
+             "which are for all");
   schema.add("laser.baud", &laser.settings.baud, 9600U, 500'000U, "baud",
              "working rate: 9600, 19200, 38400 or 500000, which needs an RS-422 line; a PLS gives "
              "1.2, 2.4, 4.8 or 25 scans a second with them");
@@ -118,6 +120,26 @@ void describe_laser_scans(ConfigSchema& schema, Laser& laser) {
              "is covered; 0: never");
   schema.add("laser.stuck_returns", &laser.stuck_returns, 0U, 2048U, "",
              "scans with fewer returns may repeat, because they show nothing");
+}
+
+void describe_turning_laser(ConfigSchema& schema, Laser& laser) {
+  devices::TurningLaserSettings& s = laser.turning;
+  schema.add("laser.line_baud", &s.baud, 0U, 3'000'000U, "baud",
+             "rate of the line of a laser that turns all the way round; 0: that of the model");
+  schema.add(
+      "laser.beams", &laser.beams, 0U, 2048U, "",
+      "beams of a scan of a laser that turns all the way round, to which all beams of a turn "
+      "are mapped; 0: those of the model, otherwise at least 90");
+  schema.add("laser.range_min_m", &s.range_min_m, 0.0, 100.0, "m",
+             "shorter readings of such a laser are no return: the robot itself, for example");
+  schema.add("laser.upside_down", &s.upside_down,
+             "such a laser hangs upside down: its beams are mirrored");
+  schema.add("laser.least_intensity", &laser.least_intensity, 0U, 255U, "",
+             "readings of an LDROBOT laser with less intensity are no return; no document says "
+             "which intensity is noise");
+  schema.add("laser.packet_delay_s", &laser.packet_delay_s, 0.0, 1.0, "s",
+             "time from the last beam of a packet to its first byte, which no document states; it "
+             "shifts all stamps, so measure it by turning the robot on the spot");
 }
 
 void describe_base_line(ConfigSchema& schema, DeviceFile::Base& base) {
@@ -242,6 +264,7 @@ ConfigSchema describe(DeviceFile& file) {
   describe_laser_line(schema, file.laser);
   describe_laser_scans(schema, file.laser);
   describe_laser_times(schema, file.laser);
+  describe_turning_laser(schema, file.laser);
   describe_base_line(schema, file.base);
   describe_base_units(schema, file.base);
   describe_base_motion(schema, file.base);
@@ -277,6 +300,12 @@ DeviceConfig to_config(const DeviceFile& file) {
   laser.sweep_to_send_ns = nanoseconds(file.laser.sweep_to_send_s);
   laser.first_no_return_code = static_cast<std::uint16_t>(file.laser.first_no_return_code);
   laser.stuck_returns = file.laser.stuck_returns;
+  devices::TurningLaserSettings& turning = config.laser.turning = file.laser.turning;
+  turning.beams = file.laser.beams;
+  turning.least_intensity = static_cast<std::uint8_t>(file.laser.least_intensity);
+  turning.packet_delay_ns = nanoseconds(file.laser.packet_delay_s);
+  turning.range_max_m = laser.range_max_m;
+  turning.silence_ns = laser.shortest_silence_ns;
   devices::BaseSettings& base = config.base = file.base.settings;
   base.report_mask = file.base.report_mask;
   base.error_delay_ticks = static_cast<std::uint16_t>(file.base.error_delay_ticks);

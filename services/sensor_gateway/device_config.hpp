@@ -19,7 +19,11 @@ struct DeviceFile {
     std::string port;
     const devices::LaserModel* model = &devices::laser_models().front();
     devices::PlsSettings settings;
-    std::string detection_bauds;  ///< numbers separated by blanks
+    devices::TurningLaserSettings turning;
+    std::uint32_t beams = 0;            ///< as `turning.beams`
+    std::uint32_t least_intensity = 0;  ///< as `turning.least_intensity`
+    double packet_delay_s = 0.0;        ///< as nanoseconds in `turning`
+    std::string detection_bauds;        ///< numbers separated by blanks
     enum class Kind { kDetect, kPls, kLms } kind = Kind::kDetect;
     double ack_timeout_s = 0.0;  ///< this and the following: as nanoseconds in `settings`
     double reply_timeout_s = 0.0;

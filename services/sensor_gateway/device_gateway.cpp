@@ -32,6 +32,7 @@ ScanGateOptions gate_options(const service::Service& service, const DeviceConfig
   options.has_base = !config.base_port.empty();
   options.odometry_wait_ns = config.odometry_wait_ns;
   options.longest_extrapolation_ns = config.longest_extrapolation_ns;
+  options.T_robot_laser = service.setup().config.config.local_mapper.T_robot_laser;
   options.range_max_m = service.setup().config.config.log.range_max_m;
   return options;
 }

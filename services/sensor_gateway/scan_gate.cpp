@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "topogeo/ros_conversions/laser_scan.hpp"
+
 namespace topogeo::sensor_gateway {
 
 std::string_view describe(ScanDrop drop) {
@@ -81,12 +83,26 @@ std::optional<scan::Scan> ScanGate::finish(devices::LaserScan&& scan) {
   out.stamp_ns = scan.stamp_ns;
   out.angle_min_rad = scan.angle_min_rad;
   out.angle_step_rad = scan.angle_step_rad;
-  out.ranges_m = std::move(scan.ranges_m);
+  out.ranges_m = ranges_at_stamp(std::move(scan));
   const auto limit_m = static_cast<float>(options_.range_max_m);
   for (float& range_m : out.ranges_m) {
     if (range_m >= limit_m) range_m = scan::Scan::kNoReturn;
   }
   return out;
+}
+
+std::vector<float> ScanGate::ranges_at_stamp(devices::LaserScan&& scan) const {
+  if (!options_.has_base || scan.time_step_s == 0.0) return std::move(scan.ranges_m);
+  const std::int64_t stamp_ns = scan.stamp_ns;
+  const ros::Sweep sweep{{scan.angle_min_rad, scan.angle_step_rad, scan.ranges_m.size()},
+                         std::move(scan.ranges_m),
+                         scan.time_step_s,
+                         scan.first_beam_s};
+  return ros::deskewed(sweep, [&](double after_s) -> std::optional<geometry::Pose2> {
+    const auto answer = track_.at(stamp_ns + std::llround(1e9 * after_s));
+    if (!answer) return std::nullopt;
+    return answer->T_odom_robot * options_.T_robot_laser;
+  });
 }
 
 // A laser that hangs sends old readings with new stamps, which would bend the map.

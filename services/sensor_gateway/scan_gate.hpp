@@ -1,5 +1,5 @@
-// Combines scans and odometry: numbers and stamps scans, adds the odometry at their time, and
-// counts unusable scans.
+// Combines scans and odometry: numbers and stamps scans, adds the odometry at their time, takes the
+// motion during a turn of the laser out of its ranges, and counts unusable scans.
 #pragma once
 
 #include <array>
@@ -36,6 +36,7 @@ struct ScanGateOptions {
   std::int64_t longest_extrapolation_ns = 0;  ///< see OdometryTrack
   std::uint64_t odometry_epoch = 0;           ///< of the odometry that it gets
   double range_max_m = 49.9;                  ///< larger ranges mean no return, as in logs
+  geometry::Pose2 T_robot_laser{};            ///< mounting of the laser
 };
 
 /// All times are of one steady clock, which may differ from the clock of published stamps.
@@ -82,6 +83,8 @@ class ScanGate {
   };
 
   std::optional<scan::Scan> finish(devices::LaserScan&& scan);
+  /// The ranges as if all had been measured at the stamp.
+  [[nodiscard]] std::vector<float> ranges_at_stamp(devices::LaserScan&& scan) const;
   [[nodiscard]] bool repeats(const std::vector<float>& ranges_m,
                              const geometry::Pose2& T_odom_robot);
   void drop(ScanDrop reason) { ++drops_[static_cast<std::size_t>(reason)]; }

@@ -16,15 +16,19 @@
 namespace topogeo::simulator {
 namespace {
 
-constexpr std::array<std::pair<speed_t, std::uint32_t>, 9> kRates = {{{B1200, 1200},
-                                                                      {B2400, 2400},
-                                                                      {B4800, 4800},
-                                                                      {B9600, 9600},
-                                                                      {B19200, 19200},
-                                                                      {B38400, 38400},
-                                                                      {B57600, 57600},
-                                                                      {B115200, 115200},
-                                                                      {B500000, 500000}}};
+constexpr std::array<std::pair<speed_t, std::uint32_t>, 13> kRates = {{{B1200, 1200},
+                                                                       {B2400, 2400},
+                                                                       {B4800, 4800},
+                                                                       {B9600, 9600},
+                                                                       {B19200, 19200},
+                                                                       {B38400, 38400},
+                                                                       {B57600, 57600},
+                                                                       {B115200, 115200},
+                                                                       {B230400, 230400},
+                                                                       {B460800, 460800},
+                                                                       {B921600, 921600},
+                                                                       {B1000000, 1000000},
+                                                                       {B500000, 500000}}};
 
 std::runtime_error failure(const std::filesystem::path& link, const std::string& what) {
   return std::runtime_error(link.string() + ": " + what + ": " + std::strerror(errno));

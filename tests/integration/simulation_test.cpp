@@ -46,8 +46,14 @@ class SimulationTest : public testing::Test {
   std::string out_ = scratch_ / "out";
 };
 
-TEST_F(SimulationTest, DrivesTheTourThroughSerialPortsAndMapsIt) {
-  Program run(scratch_, "topogeo", words(std::string(TOPOGEO_SHARE) + "/worlds/short.world.yaml"));
+class EachSimulatedLaser : public SimulationTest,
+                           public testing::WithParamInterface<std::string> {};
+
+TEST_P(EachSimulatedLaser, DrivesTheTourThroughSerialPortsAndMapsIt) {
+  std::vector<std::string> arguments =
+      words(std::string(TOPOGEO_SHARE) + "/worlds/short.world.yaml");
+  arguments.insert(arguments.end(), {"--laser-model", GetParam()});
+  Program run(scratch_, "topogeo", arguments);
   ASSERT_EQ(run.wait(), 0) << run.err();
   EXPECT_THAT(run.out(), HasSubstr("corrected"));
   EXPECT_THAT(run.out(), Not(HasSubstr("collisions")));
@@ -61,6 +67,9 @@ TEST_F(SimulationTest, DrivesTheTourThroughSerialPortsAndMapsIt) {
   EXPECT_FALSE(std::filesystem::is_symlink(out_ + "/laser.port"));
   EXPECT_FALSE(std::filesystem::is_symlink(out_ + "/base.port"));
 }
+
+INSTANTIATE_TEST_SUITE_P(OneOfEachFamily, EachSimulatedLaser, testing::Values("sick_pls", "ld19"),
+                         [](const auto& laser) { return laser.param; });
 
 // Each service is killed in turn while the robot drives. The robot drives on until it has driven
 // 1.5 m with the service at work again, however long the restart takes.

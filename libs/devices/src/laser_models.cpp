@@ -5,13 +5,18 @@
 #include <stdexcept>
 #include <string>
 
+#include "topogeo/devices/ldrobot_driver.hpp"
 #include "topogeo/devices/pls_driver.hpp"
 
 namespace topogeo::devices {
 namespace {
 
-std::unique_ptr<LaserDriver> make_pls(const LaserSettings& settings) {
+std::unique_ptr<LaserDriver> make_pls(const LaserModel& /*model*/, const LaserSettings& settings) {
   return std::make_unique<PlsDriver>(settings.pls);
+}
+
+std::unique_ptr<LaserDriver> make_ldrobot(const LaserModel& model, const LaserSettings& settings) {
+  return std::make_unique<LdRobotDriver>(model, settings.turning);
 }
 
 #define TOPOGEO_LASER(family, name, title, baud, parity, beams, view_deg, turns_hz, range_max_m) \
@@ -38,7 +43,7 @@ const LaserModel& laser_model(std::string_view name) {
 
 std::unique_ptr<LaserDriver> make_laser_driver(const LaserSettings& settings) {
   const LaserModel& model = settings.model != nullptr ? *settings.model : kLaserModels.front();
-  return model.make(settings);
+  return model.make(model, settings);
 }
 
 }  // namespace topogeo::devices

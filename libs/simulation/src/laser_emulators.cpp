@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "topogeo/simulation/laser_emulator.hpp"
+#include "topogeo/simulation/ldrobot_emulator.hpp"
 #include "topogeo/simulation/pls_emulator.hpp"
 
 namespace topogeo::simulation {
@@ -26,6 +27,18 @@ std::unique_ptr<LaserEmulator> emulate_pls(const LaserEmulatorSettings& settings
         return ranges(beams, at_ns);
       },
       now_ns);
+}
+
+std::unique_ptr<LaserEmulator> emulate_ldrobot(const LaserEmulatorSettings& settings,
+                                               const devices::LaserModel& model,
+                                               LaserEmulator::Ranges ranges, std::int64_t now_ns) {
+  LdRobotEmulatorSettings ldrobot;
+  ldrobot.line = model.line;
+  ldrobot.turns_hz = model.turns_hz;
+  ldrobot.samples_hz = model.turns_hz * static_cast<double>(model.beams);
+  ldrobot.range_max_m = model.range_max_m;
+  ldrobot.seed = settings.seed;
+  return std::make_unique<LdRobotEmulator>(ldrobot, std::move(ranges), now_ns);
 }
 
 struct EmulatorRow {

@@ -33,6 +33,7 @@ PlsFault pls_fault(LaserFault fault) {
     case LaserFault::kStuckScan:
       return PlsFault::kStuckScan;
     case LaserFault::kGarbage:
+    case LaserFault::kDoubled:  // noise, too: a telegram that no command asked for
       break;
   }
   return PlsFault::kGarbage;

@@ -32,6 +32,7 @@ void write_devices(const RunOptions& options) {
   sensor_gateway::DeviceFile file;
   const support::ConfigSchema schema = describe(file);  // with the default values
   if (!simulation.no_laser) file.laser.port = simulated_port(options, "laser").string();
+  file.laser.model = &devices::laser_model(simulation.laser_model);
   file.laser.settings.baud = simulation.laser_baud;
   file.laser.kind = sensor_gateway::DeviceFile::Laser::Kind::kPls;
   file.base.port = simulated_port(options, "base").string();
@@ -45,6 +46,12 @@ void write_devices(const RunOptions& options) {
   std::ostringstream text;
   support::write_yaml(schema, text);
   support::write_file_atomically(options.devices, text.str());
+}
+
+std::vector<std::string> laser_names() {
+  std::vector<std::string> names;
+  for (const devices::LaserModel& model : devices::laser_models()) names.emplace_back(model.name);
+  return names;
 }
 
 /// Checks before the start that the devices are those that a run needs.
@@ -125,7 +132,11 @@ void add_simulation_options(command_line::Command& app, SimulatorOptions& option
                             command_line::Option* simulation) {
   const std::vector<command_line::Option*> added = {
       app.add_option("--seed", options.seed, "simulation: seed of noise, drift, doors and people"),
-      app.add_option("--baud", options.laser_baud, "simulation: baud rate of the laser's line")
+      app.add_option("--laser-model", options.laser_model,
+                     "simulation: model of the laser, as laser.model of the devices file")
+          ->check(command_line::one_of(laser_names())),
+      app.add_option("--baud", options.laser_baud,
+                     "simulation: baud rate of the line of a sick_pls")
           ->check(command_line::one_of({9600, 19200, 38400, 500000})),
       app.add_option("--odometry", options.odometry, "simulation: errors of the odometry")
           ->check(command_line::one_of({"mild", "b21", "none"})),

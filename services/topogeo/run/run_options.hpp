@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "topogeo/devices/laser_models.hpp"
 #include "topogeo/geometry/pose2.hpp"
 
 #include "common/job.hpp"
@@ -19,8 +20,9 @@ namespace topogeo::cli {
 struct SimulatorOptions {
   std::filesystem::path world;  ///< file
   std::uint64_t seed = 1;
-  std::uint32_t laser_baud = 500'000;
-  std::string odometry = "mild";  ///< see `simulator --help`
+  std::string laser_model{devices::laser_models().front().name};
+  std::uint32_t laser_baud = 500'000;  ///< of a laser with a choice of rates
+  std::string odometry = "mild";       ///< see `simulator --help`
   double speed_m_per_s = 0.9;
   std::uint32_t people = 0;
   bool no_laser = false;  ///< sonars only: nothing is mapped or matched

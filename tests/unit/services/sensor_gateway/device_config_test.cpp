@@ -1,5 +1,6 @@
 #include "sensor_gateway/device_config.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -68,6 +69,29 @@ odometry:
   EXPECT_EQ(config.odometry_wait_ns, 150'000'000);
 }
 
+TEST(DeviceConfig, TheModelOfTheLaserChoosesItsDriver) {
+  EXPECT_EQ(config_of("laser.port: /dev/a\n").laser.model->name, "sick_pls");
+  const DeviceConfig config = config_of(R"(
+laser:
+  port: /dev/a
+  model: ld19
+  range_max_m: 8
+  shortest_silence_s: 2
+  beams: 360
+  upside_down: true
+  least_intensity: 20
+  packet_delay_s: 0.002
+)");
+  EXPECT_EQ(config.laser.model, &devices::laser_model("ld19"));
+  const devices::TurningLaserSettings& turning = config.laser.turning;
+  EXPECT_EQ(turning.range_max_m, 8.0);
+  EXPECT_EQ(turning.silence_ns, 2'000'000'000);
+  EXPECT_EQ(turning.beams, 360U);
+  EXPECT_TRUE(turning.upside_down);
+  EXPECT_EQ(turning.least_intensity, 20);
+  EXPECT_EQ(turning.packet_delay_ns, 2'000'000);
+}
+
 TEST(DeviceConfig, BodySensorsAreThereWhereTheFileSaysSo) {
   EXPECT_FALSE(config_of("base.port: /dev/b\n").body_sensors);
   EXPECT_TRUE(config_of("base.port: /dev/b\nbody.sensors: b21\n").body_sensors);
@@ -99,6 +123,19 @@ TEST(DeviceConfig, ExampleNamesEveryKeyWithItsDefault) {
   EXPECT_EQ(text, expected.str());
 }
 
+TEST(DeviceConfig, ThePageOfDevicesHasARowForEachLaser) {
+  std::ifstream page(std::filesystem::path(TOPOGEO_SOURCE_DIR) / "docs/devices.md");
+  const std::string text((std::istreambuf_iterator<char>(page)), {});
+  for (const devices::LaserModel& model : devices::laser_models()) {
+    const std::string beams = std::to_string(model.beams) + " over " +
+                              std::to_string(std::lround(model.view_deg)) + " degrees";
+    const std::string row = "| `" + std::string(model.name) + "` | " + std::string(model.title);
+    const auto at = text.find(row);
+    ASSERT_NE(at, std::string::npos) << row;
+    EXPECT_THAT(text.substr(at, text.find('\n', at) - at), HasSubstr(beams));
+  }
+}
+
 TEST(DeviceConfig, MistakesNameTheKey) {
   const auto why = [](const std::string& text) -> std::string {
     try {
@@ -113,6 +150,8 @@ TEST(DeviceConfig, MistakesNameTheKey) {
   EXPECT_THAT(why("laser.port: /dev/a\nlaser.detection_bauds: 9600,500000\n"),
               HasSubstr("laser.detection_bauds"));
   EXPECT_THAT(why("laser.port: /dev/a\nlaser.password: short\n"), HasSubstr("password"));
+  EXPECT_THAT(why("laser.port: /dev/a\nlaser.model: ld20\n"), HasSubstr("ld19"));
+  EXPECT_THAT(why("laser.port: /dev/a\nlaser.model: ld19\nlaser.beams: 10\n"), HasSubstr("beams"));
   EXPECT_THAT(why("base.port: /dev/b\nbase.counts_per_m: -1\n"), HasSubstr("base.counts_per_m"));
   EXPECT_THAT(why("base.port: /dev/b\nbase.command_timeout_s: 2\n"),
               HasSubstr("base.command_timeout_s"));

@@ -1,5 +1,7 @@
 #include "sensor_gateway/scan_gate.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -50,6 +52,50 @@ TEST(ScanGate, TimeAndBeamsMustFit) {
   EXPECT_EQ(scans[1].scan.sequence, 1U);
   EXPECT_EQ(gate.dropped(ScanDrop::kTime), 2U);
   EXPECT_EQ(gate.dropped(ScanDrop::kGeometry), 1U);
+}
+
+/// Range in the middle of a square room of 4 m, by the direction in the room.
+float room_range_m(double angle_rad) {
+  return static_cast<float>(
+      2.0 / std::max(std::fabs(std::cos(angle_rad)), std::fabs(std::sin(angle_rad))));
+}
+
+TEST(ScanGate, TheMotionDuringATurnIsTakenOut) {
+  // A laser that turns clockwise ten times a second, on a robot that turns by 1 rad/s on the spot.
+  constexpr std::size_t kBeams = 360;
+  constexpr double kTurn_s = 0.1;
+  devices::LaserScan scan = scan_at(200 * kMs, kBeams);
+  scan.angle_step_rad = 2.0 * M_PI / kBeams;
+  scan.angle_min_rad = 0.5 * scan.angle_step_rad - M_PI;
+  scan.time_step_s = -kTurn_s / kBeams;
+  scan.first_beam_s = 0.5 * kTurn_s;
+  double worst_uncorrected_m = 0.0;
+  for (std::size_t i = 0; i < kBeams; ++i) {
+    const auto place = static_cast<double>(i);
+    const double angle_rad = scan.angle_min_rad + place * scan.angle_step_rad;
+    const double heading_rad = 0.2 + scan.first_beam_s + place * scan.time_step_s;
+    scan.ranges_m[i] = room_range_m(angle_rad + heading_rad);
+    worst_uncorrected_m = std::max<double>(
+        worst_uncorrected_m, std::fabs(scan.ranges_m[i] - room_range_m(angle_rad + 0.2)));
+  }
+  EXPECT_GT(worst_uncorrected_m, 0.09);
+
+  ScanGate gate({.longest_extrapolation_ns = 100 * kMs});
+  gate.open();
+  for (std::int64_t at_ns = 0; at_ns <= 400 * kMs; at_ns += 50 * kMs) {
+    gate.add(
+        geometry::OdometrySample{at_ns, {0.0, 0.0, 1e-9 * static_cast<double>(at_ns)}, 0.0, 1.0});
+  }
+  gate.add(std::move(scan), 400 * kMs);
+  const auto scans = gate.take(400 * kMs);
+  ASSERT_EQ(scans.size(), 1U);
+  const scan::Scan& out = scans[0].scan;
+  EXPECT_NEAR(out.T_odom_robot.theta_rad, 0.2, 1e-9);
+  for (std::size_t i = 5; i < kBeams - 5; ++i) {
+    const double angle_rad = out.angle_min_rad + static_cast<double>(i) * out.angle_step_rad;
+    // Two beams beside a corner of the room cut it off.
+    EXPECT_NEAR(out.ranges_m[i], room_range_m(angle_rad + 0.2), 0.03) << "beam " << i;
+  }
 }
 
 TEST(ScanGate, RangesBeyondTheLimitAreNoReturnAsInALog) {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "topogeo/devices/base_settings.hpp"
+#include "topogeo/devices/device_clock.hpp"
 #include "topogeo/devices/mcp_protocol.hpp"
 #include "topogeo/devices/mcp_units.hpp"
 #include "topogeo/geometry/pose2.hpp"
@@ -26,37 +27,6 @@ struct OdometerState {
   McpReport report{};            ///< the last accepted one
   std::int64_t arrival_ns = 0;   ///< its arrival, on the host's steady clock
   geometry::Pose2 T_odom_robot;  ///< the pose it gave
-};
-
-/// Maps a device's clock to the host's steady clock: messages come late by varying times but never
-/// early, so the least delay of the last seconds shows the offset between the clocks.
-class DeviceClock {
- public:
-  /// `transmission_ns`: time that even the least delayed message takes.
-  explicit DeviceClock(std::int64_t transmission_ns) : transmission_ns_(transmission_ns) {}
-
-  /// Host time of the device's time `device_ns`, for a message that arrived at `arrival_ns`. Later
-  /// than every earlier result, and not later than the arrival unless that requires it; runs at
-  /// most 2 % faster or slower than the device's clock.
-  std::int64_t map(std::int64_t device_ns, std::int64_t arrival_ns);
-  /// Delay of a message relative to the least delayed ones; negative if earlier, but not in the
-  /// first seconds. 0 before the first.
-  [[nodiscard]] std::int64_t lateness_ns(std::int64_t device_ns, std::int64_t arrival_ns) const;
-  /// The device's clock starts anew.
-  void restart() { started_ = false; }
-
- private:
-  void settle(std::int64_t device_ns, std::int64_t offset_ns);
-
-  std::int64_t transmission_ns_;
-  bool started_ = false;
-  std::int64_t first_device_ns_ = 0;
-  std::int64_t last_device_ns_ = 0;
-  std::int64_t last_stamp_ns_ = std::numeric_limits<std::int64_t>::min();
-  std::int64_t offset_ns_ = 0;  // host time - device time, as applied
-  std::int64_t least_ns_ = 0;   // least offset of this window
-  std::int64_t before_ns_ = 0;  // least offset of the previous window
-  std::int64_t window_ns_ = 0;  // start of this window, device time
 };
 
 class BaseOdometer {

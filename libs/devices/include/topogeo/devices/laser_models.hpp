@@ -9,6 +9,7 @@
 #include "topogeo/devices/laser_driver.hpp"
 #include "topogeo/devices/pls_settings.hpp"
 #include "topogeo/devices/serial_driver.hpp"
+#include "topogeo/devices/turning_laser_settings.hpp"
 
 namespace topogeo::devices {
 
@@ -18,6 +19,7 @@ struct LaserModel;
 struct LaserSettings {
   const LaserModel* model = nullptr;  ///< a row of laser_models(); none: the first
   PlsSettings pls;
+  TurningLaserSettings turning;  ///< of a laser with a field of view of a full turn
 };
 
 struct LaserModel {
@@ -29,7 +31,8 @@ struct LaserModel {
   double view_deg = 0.0;    ///< angle from the first beam to the last, or 360 for a full turn
   double turns_hz = 0.0;    ///< nominal turns of the mirror a second
   double range_max_m = 0.0;
-  std::unique_ptr<LaserDriver> (*make)(const LaserSettings& settings) = nullptr;
+  std::unique_ptr<LaserDriver> (*make)(const LaserModel& model,
+                                       const LaserSettings& settings) = nullptr;
 };
 
 /// All models; the first is the default.

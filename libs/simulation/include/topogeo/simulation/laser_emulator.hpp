@@ -1,6 +1,7 @@
 // An emulated laser of any model at the other end of a serial line, with faults on demand.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -19,7 +20,9 @@ enum class LaserFault : std::uint8_t {
   kTruncated,    ///< telegrams end early
   kGarbage,      ///< random bytes after a telegram
   kStuckScan,    ///< old readings are sent again instead of new ones
+  kDoubled,      ///< a telegram is sent twice
 };
+inline constexpr std::size_t kLaserFaults = 5;
 
 class LaserEmulator : public SerialDevice {
  public:

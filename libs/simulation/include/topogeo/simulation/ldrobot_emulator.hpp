@@ -1,0 +1,64 @@
+// A LDROBOT LD06, LD19 or STL-19P at the other end of a serial line: it sends packets of twelve
+// points as long as it has power. Its speed varies, so that turns differ in their number of points.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "topogeo/devices/serial_driver.hpp"
+#include "topogeo/simulation/laser_emulator.hpp"
+#include "topogeo/simulation/serial_output.hpp"
+#include "topogeo/simulation/telegram_faults.hpp"
+
+namespace topogeo::simulation {
+
+struct LdRobotEmulatorSettings {
+  devices::LineSettings line{230'400, devices::Parity::kNone};
+  double turns_hz = 10.0;      ///< mean; (0, 30]
+  double samples_hz = 4500.0;  ///< measurements a second, > 0
+  double wobble = 0.02;        ///< largest relative error of the speed; [0, 1)
+  double range_max_m = 12.0;
+  std::int64_t start_up_ns = 1'000'000'000;  ///< from power-on to the first packet
+  std::uint64_t seed = 1;                    ///< of the places of faults
+};
+
+class LdRobotEmulator final : public LaserEmulator {
+ public:
+  /// A laser that was switched on long before `now_ns`. Throws std::invalid_argument for invalid
+  /// settings.
+  LdRobotEmulator(const LdRobotEmulatorSettings& settings, Ranges ranges, std::int64_t now_ns = 0);
+
+  void receive(std::span<const std::uint8_t> bytes, const devices::LineSettings& host,
+               std::int64_t now_ns) override;
+  void tick(std::int64_t now_ns) override;
+  [[nodiscard]] std::int64_t due_ns() const override { return next_ns_; }
+  [[nodiscard]] std::vector<std::uint8_t> take_output(const devices::LineSettings& host,
+                                                      std::int64_t now_ns) override;
+
+  void switch_off() override;
+  void switch_on(std::int64_t now_ns) override;
+  void fall_silent(std::int64_t now_ns) override;
+  void speak_again(std::int64_t now_ns) override;
+  void set_fault(LaserFault fault, bool on) override { faults_.set(fault, on); }
+  [[nodiscard]] std::uint64_t scans_sent() const override { return turns_; }
+
+  [[nodiscard]] TelegramFaults& faults() { return faults_; }
+  /// Changes the mean speed, which its motor reaches after a while; (0, 30].
+  void set_turns_hz(double turns_hz) { settings_.turns_hz = turns_hz; }
+
+ private:
+  void send_packet();
+
+  LdRobotEmulatorSettings settings_;
+  Ranges ranges_;
+  SerialOutput output_;
+  TelegramFaults faults_;
+  std::int64_t next_ns_;    // time of the next packet's last point
+  double angle_deg_ = 0.0;  // of the next packet's first point, clockwise
+  double turns_hz_;         // present mean speed
+  bool silent_ = false;
+  std::uint64_t turns_ = 0;
+};
+
+}  // namespace topogeo::simulation
