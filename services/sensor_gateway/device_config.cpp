@@ -142,6 +142,33 @@ void describe_turning_laser(ConfigSchema& schema, Laser& laser) {
              "shifts all stamps, so measure it by turning the robot on the spot");
 }
 
+void describe_rplidar(ConfigSchema& schema, Laser& laser) {
+  devices::RpLidarSettings& s = laser.rplidar;
+  schema.add("laser.scan_mode", &s.scan,
+             {{"model", devices::RpScan::kModel},
+              {"standard", devices::RpScan::kStandard},
+              {"express", devices::RpScan::kExpress}},
+             "samples of an RPLIDAR; standard: without a checksum, of A1 and A2 with old firmware; "
+             "express: in the mode laser.express_mode");
+  schema.add(
+      "laser.express_mode", &laser.express_mode, 0U, 15U, "",
+      "working mode of the express scan; 0: that of all lasers. A mode with ultra packets is "
+      "refused, one with dense packets works");
+  schema.add("laser.motor", &s.motor,
+             {{"model", devices::RpMotor::kModel},
+              {"none", devices::RpMotor::kNone},
+              {"dtr", devices::RpMotor::kDtr},
+              {"pwm", devices::RpMotor::kPwm},
+              {"speed", devices::RpMotor::kSpeed}},
+             "how the motor of an RPLIDAR is started: by the signal DTR, a duty cycle, or a speed; "
+             "model: by what the laser reports");
+  schema.add("laser.motor_value", &laser.motor_value, 0U, 1500U, "",
+             "duty cycle or turns a minute of that motor; 0: 660 or 600");
+  schema.add("laser.compensation_signed", &s.compensation_signed,
+             "the compensation of angles in express packets has a sign, as the maker's document "
+             "states; the maker's own driver reads it without");
+}
+
 void describe_base_line(ConfigSchema& schema, DeviceFile::Base& base) {
   devices::BaseSettings& s = base.settings;
   schema.add("base.port", &base.port,
@@ -265,6 +292,7 @@ ConfigSchema describe(DeviceFile& file) {
   describe_laser_scans(schema, file.laser);
   describe_laser_times(schema, file.laser);
   describe_turning_laser(schema, file.laser);
+  describe_rplidar(schema, file.laser);
   describe_base_line(schema, file.base);
   describe_base_units(schema, file.base);
   describe_base_motion(schema, file.base);
@@ -306,6 +334,9 @@ DeviceConfig to_config(const DeviceFile& file) {
   turning.packet_delay_ns = nanoseconds(file.laser.packet_delay_s);
   turning.range_max_m = laser.range_max_m;
   turning.silence_ns = laser.shortest_silence_ns;
+  config.laser.rplidar = file.laser.rplidar;
+  config.laser.rplidar.express_mode = static_cast<std::uint8_t>(file.laser.express_mode);
+  config.laser.rplidar.motor_value = static_cast<std::uint16_t>(file.laser.motor_value);
   devices::BaseSettings& base = config.base = file.base.settings;
   base.report_mask = file.base.report_mask;
   base.error_delay_ticks = static_cast<std::uint16_t>(file.base.error_delay_ticks);

@@ -20,6 +20,9 @@ struct DeviceFile {
     const devices::LaserModel* model = &devices::laser_models().front();
     devices::PlsSettings settings;
     devices::TurningLaserSettings turning;
+    devices::RpLidarSettings rplidar;
+    std::uint32_t express_mode = 0;     ///< as `rplidar.express_mode`
+    std::uint32_t motor_value = 0;      ///< as `rplidar.motor_value`
     std::uint32_t beams = 0;            ///< as `turning.beams`
     std::uint32_t least_intensity = 0;  ///< as `turning.least_intensity`
     double packet_delay_s = 0.0;        ///< as nanoseconds in `turning`

@@ -20,6 +20,8 @@
 #include <sys/sysmacros.h>
 #include <termios.h>
 
+#include "topogeo/support/line_rate.hpp"
+
 namespace topogeo::sensor_gateway {
 
 namespace asio = boost::asio;
@@ -118,6 +120,8 @@ class SerialPort::Impl {
   void carry_out();
   void finish_order();
   void change(const devices::LineSettings& settings);
+  /// Pseudo-terminals have no such signal.
+  void set_dtr(bool on);
   [[nodiscard]] bool drain();
   void lose(const std::string& why);
   void try_later();
@@ -202,6 +206,7 @@ void SerialPort::Impl::carry_out() {
       change(*settings);
       continue;  // the queue is empty when that failed
     }
+    if (const auto dtr = std::exchange(queue_.front().dtr, std::nullopt)) set_dtr(*dtr);
     if (queue_.front().bytes.empty()) {
       finish_order();
       continue;
@@ -237,6 +242,7 @@ void SerialPort::Impl::change(const devices::LineSettings& settings) {
   }
   error_code error;
   port_.set_option(asio::serial_port_base::baud_rate(settings.baud), error);
+  if (error && support::set_line_rate(port_.native_handle(), settings.baud)) error = {};
   if (!error) {
     port_.set_option(asio::serial_port_base::parity(asio_parity(settings.parity)), error);
     if (error && is_pseudo_terminal(port_.native_handle())) error = {};
@@ -247,6 +253,11 @@ void SerialPort::Impl::change(const devices::LineSettings& settings) {
   }
   static_cast<void>(::tcflush(port_.native_handle(), TCIFLUSH));
   ++epoch_;
+}
+
+void SerialPort::Impl::set_dtr(bool on) {
+  const int signal = TIOCM_DTR;
+  static_cast<void>(::ioctl(port_.native_handle(), on ? TIOCMBIS : TIOCMBIC, &signal));
 }
 
 /// Waits until all bytes have left the port; false when that takes too long, which tcdrain alone

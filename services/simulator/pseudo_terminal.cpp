@@ -1,6 +1,5 @@
 #include "pseudo_terminal.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -13,22 +12,10 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include "topogeo/support/line_rate.hpp"
+
 namespace topogeo::simulator {
 namespace {
-
-constexpr std::array<std::pair<speed_t, std::uint32_t>, 13> kRates = {{{B1200, 1200},
-                                                                       {B2400, 2400},
-                                                                       {B4800, 4800},
-                                                                       {B9600, 9600},
-                                                                       {B19200, 19200},
-                                                                       {B38400, 38400},
-                                                                       {B57600, 57600},
-                                                                       {B115200, 115200},
-                                                                       {B230400, 230400},
-                                                                       {B460800, 460800},
-                                                                       {B921600, 921600},
-                                                                       {B1000000, 1000000},
-                                                                       {B500000, 500000}}};
 
 std::runtime_error failure(const std::filesystem::path& link, const std::string& what) {
   return std::runtime_error(link.string() + ": " + what + ": " + std::strerror(errno));
@@ -87,14 +74,7 @@ void PseudoTerminal::unplug() {
 }
 
 devices::LineSettings PseudoTerminal::host(devices::Parity parity) const {
-  termios settings{};
-  devices::LineSettings host{0, parity};
-  if (::tcgetattr(device_end_.get(), &settings) != 0) return host;
-  const speed_t speed = ::cfgetospeed(&settings);
-  for (const auto& [constant, baud] : kRates) {
-    if (constant == speed) host.baud = baud;
-  }
-  return host;
+  return {support::line_rate(device_end_.get()), parity};
 }
 
 std::vector<std::uint8_t> PseudoTerminal::receive() const {

@@ -68,7 +68,8 @@ TEST_P(EachSimulatedLaser, DrivesTheTourThroughSerialPortsAndMapsIt) {
   EXPECT_FALSE(std::filesystem::is_symlink(out_ + "/base.port"));
 }
 
-INSTANTIATE_TEST_SUITE_P(OneOfEachFamily, EachSimulatedLaser, testing::Values("sick_pls", "ld19"),
+INSTANTIATE_TEST_SUITE_P(OneOfEachFamily, EachSimulatedLaser,
+                         testing::Values("sick_pls", "ld19", "rplidar_a1"),
                          [](const auto& laser) { return laser.param; });
 
 // Each service is killed in turn while the robot drives. The robot drives on until it has driven

@@ -7,6 +7,7 @@
 
 #include "topogeo/devices/ldrobot_driver.hpp"
 #include "topogeo/devices/pls_driver.hpp"
+#include "topogeo/devices/rplidar_driver.hpp"
 
 namespace topogeo::devices {
 namespace {
@@ -17,6 +18,16 @@ std::unique_ptr<LaserDriver> make_pls(const LaserModel& /*model*/, const LaserSe
 
 std::unique_ptr<LaserDriver> make_ldrobot(const LaserModel& model, const LaserSettings& settings) {
   return std::make_unique<LdRobotDriver>(model, settings.turning);
+}
+
+std::unique_ptr<LaserDriver> make_rplidar(const LaserModel& model, const LaserSettings& settings) {
+  return std::make_unique<RpLidarDriver>(model, settings.turning, settings.rplidar);
+}
+
+/// The same protocol; these lasers have dense packets as their second mode.
+std::unique_ptr<LaserDriver> make_rplidar_dense(const LaserModel& model,
+                                                const LaserSettings& settings) {
+  return make_rplidar(model, settings);
 }
 
 #define TOPOGEO_LASER(family, name, title, baud, parity, beams, view_deg, turns_hz, range_max_m) \

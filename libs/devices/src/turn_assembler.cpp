@@ -16,7 +16,7 @@ constexpr double kFullTurn_rad = 2.0 * std::numbers::pi;
 /// measure every 1.8 degrees.
 constexpr double kLargestStep_rad = 4.0 * std::numbers::pi / 180.0;
 /// Samples of interleaved lasers may step back by this much.
-constexpr double kStepBack_rad = 5.0 * std::numbers::pi / 180.0;
+constexpr double kStepBack_rad = 10.0 * std::numbers::pi / 180.0;
 /// After a larger gap nobody knows whether a whole turn was lost.
 constexpr double kLargestGap_rad = 0.5 * std::numbers::pi;
 /// Share of a turn that a scan needs.
@@ -46,7 +46,7 @@ void TurnAssembler::restart() {
 void TurnAssembler::add(const TurningBeam& beam) {
   const double since_cut_rad = positive_angle(beam.turned_rad + std::numbers::pi);
   if (turn_.empty()) return begin_turn(beam, since_cut_rad);
-  const double last_rad = turn_.back().turned_rad;
+  const double last_rad = front_rad_;
   double step_rad = since_cut_rad - last_rad;
   if (step_rad < -std::numbers::pi) step_rad += kFullTurn_rad;
   if (step_rad > std::numbers::pi) step_rad -= kFullTurn_rad;  // back over the cut
@@ -60,7 +60,10 @@ void TurnAssembler::add(const TurningBeam& beam) {
     finish_turn();
     return begin_turn(beam, since_cut_rad);
   }
-  if (step_rad <= kLargestStep_rad) covered_rad_ += step_rad;
+  if (step_rad > 0.0) {
+    if (step_rad <= kLargestStep_rad) covered_rad_ += step_rad;
+    front_rad_ = since_cut_rad;
+  }
   const bool back_over_cut = last_rad + step_rad < 0.0;
   turn_.push_back({back_over_cut ? 0.0 : since_cut_rad, beam.range_m, beam.time_ns});
 }
@@ -68,6 +71,7 @@ void TurnAssembler::add(const TurningBeam& beam) {
 void TurnAssembler::begin_turn(const TurningBeam& beam, double since_cut_rad) {
   turn_.clear();
   covered_rad_ = since_cut_rad <= kLargestStep_rad ? since_cut_rad : 0.0;
+  front_rad_ = since_cut_rad;
   turn_.push_back({since_cut_rad, beam.range_m, beam.time_ns});
 }
 

@@ -5,6 +5,7 @@
 #include "topogeo/simulation/laser_emulator.hpp"
 #include "topogeo/simulation/ldrobot_emulator.hpp"
 #include "topogeo/simulation/pls_emulator.hpp"
+#include "topogeo/simulation/rplidar_emulator.hpp"
 
 namespace topogeo::simulation {
 namespace {
@@ -39,6 +40,27 @@ std::unique_ptr<LaserEmulator> emulate_ldrobot(const LaserEmulatorSettings& sett
   ldrobot.range_max_m = model.range_max_m;
   ldrobot.seed = settings.seed;
   return std::make_unique<LdRobotEmulator>(ldrobot, std::move(ranges), now_ns);
+}
+
+std::unique_ptr<LaserEmulator> emulate_rplidar(const LaserEmulatorSettings& settings,
+                                               const devices::LaserModel& model,
+                                               LaserEmulator::Ranges ranges, std::int64_t now_ns) {
+  constexpr std::uint8_t kOfSpeedRequests = 0x61;
+  RpLidarEmulatorSettings rplidar;
+  rplidar.line = model.line;
+  rplidar.turns_hz = model.turns_hz;
+  rplidar.samples_hz = model.turns_hz * static_cast<double>(model.beams);
+  rplidar.range_max_m = model.range_max_m;
+  if (model.line.baud > 115'200) rplidar.model = kOfSpeedRequests;
+  rplidar.seed = settings.seed;
+  return std::make_unique<RpLidarEmulator>(rplidar, std::move(ranges), now_ns);
+}
+
+std::unique_ptr<LaserEmulator> emulate_rplidar_dense(const LaserEmulatorSettings& settings,
+                                                     const devices::LaserModel& model,
+                                                     LaserEmulator::Ranges ranges,
+                                                     std::int64_t now_ns) {
+  return emulate_rplidar(settings, model, std::move(ranges), now_ns);
 }
 
 struct EmulatorRow {

@@ -6,7 +6,11 @@
 #include <stdexcept>
 #include <vector>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "topogeo/support/line_rate.hpp"
 
 #include "services/simulator/host_port.hpp"
 
@@ -46,6 +50,19 @@ TEST(PseudoTerminal, ShowsTheRateThatTheHostHasSet) {
   const HostPort host(terminal.link());
   host.set_rate(B500000);
   EXPECT_EQ(terminal.host(devices::Parity::kNone).baud, 500'000U);
+}
+
+TEST(PseudoTerminal, HasRatesWithoutAConstantToo) {
+  PseudoTerminal terminal(link_name("any_rate"));
+  terminal.plug();
+  const int host = ::open(terminal.link().c_str(), O_RDWR | O_NOCTTY);
+  ASSERT_GE(host, 0);
+  for (const std::uint32_t baud : {256'000U, 230'400U, 1'000'000U, 123'456U}) {
+    EXPECT_TRUE(support::set_line_rate(host, baud));
+    EXPECT_EQ(terminal.host(devices::Parity::kNone).baud, baud);
+  }
+  ::close(host);
+  EXPECT_FALSE(support::set_line_rate(host, 9600));
 }
 
 TEST(PseudoTerminal, LosesWhatNobodyReads) {

@@ -8,6 +8,7 @@
 
 #include "topogeo/devices/laser_driver.hpp"
 #include "topogeo/devices/pls_settings.hpp"
+#include "topogeo/devices/rplidar_settings.hpp"
 #include "topogeo/devices/serial_driver.hpp"
 #include "topogeo/devices/turning_laser_settings.hpp"
 
@@ -19,6 +20,7 @@ struct LaserModel;
 struct LaserSettings {
   const LaserModel* model = nullptr;  ///< a row of laser_models(); none: the first
   PlsSettings pls;
+  RpLidarSettings rplidar;
   TurningLaserSettings turning;  ///< of a laser with a field of view of a full turn
 };
 

@@ -20,10 +20,12 @@ struct LineSettings {
 
 /// One action on the line. Orders are carried out in succession. Settings take effect after
 /// everything written before has left the port, and before `bytes` are written. A change of
-/// settings drops received bytes that the driver has not got yet.
+/// settings drops received bytes that the driver has not got yet. `dtr` sets or clears the signal
+/// DTR before the bytes; a port without the signal ignores it.
 struct LineOrder {
   std::optional<LineSettings> settings{};
   std::vector<std::uint8_t> bytes{};
+  std::optional<bool> dtr{};
 };
 
 /// Times are nanoseconds of one steady clock that never goes back.

@@ -50,6 +50,7 @@ class TurnAssembler {
   bool mirrored_;  // angles of the laser frame decrease while the laser turns
 
   std::vector<TurningBeam> turn_;  // turned_rad from the cut, 0 to 2 pi
+  double front_rad_ = 0.0;         // largest of these angles
   double covered_rad_ = 0.0;       // of the turn, without gaps
   std::optional<LaserScan> scan_;
   std::int64_t last_stamp_ns_ = 0;
