@@ -206,6 +206,40 @@ TEST_F(MapFollowers, EndWithExactlyWhatTheStoreHolds) {
   EXPECT_GT(stored.nodes.size(), 10U);
 }
 
+/// The example of docs/follow_map.md, on the domain of the environment.
+class EnvironmentDomain {
+ public:
+  EnvironmentDomain() { ::setenv("TOPOGEO_DOMAIN", own_domain().c_str(), 1); }
+  EnvironmentDomain(const EnvironmentDomain&) = delete;
+  EnvironmentDomain& operator=(const EnvironmentDomain&) = delete;
+  ~EnvironmentDomain() { ::unsetenv("TOPOGEO_DOMAIN"); }
+};
+
+TEST_F(MapFollowers, HearEveryPartitionUnlessOneIsNamed) {
+  const EnvironmentDomain domain;
+  const std::unique_ptr<Program> running = store();
+  drive_.send(4);
+  drive_.finish();
+  running->wait_for_error_text("local maps, ");  // the final line
+  Program all(scratch_, "topogeo", {"follow", "--once"});
+  EXPECT_EQ(all.wait(), 0) << all.err();
+  EXPECT_THAT(all.out(), testing::HasSubstr(" branches\n"));
+
+  map_client::MapReader reader;
+  EXPECT_TRUE(drive_.wait_until("the map in all partitions", [&] {
+    static_cast<void>(reader.wait(milliseconds(0)));
+    return reader.map() != nullptr;
+  }));
+
+  Program other(scratch_, "topogeo", {"follow", "--partition", "other"});
+  other.wait_for_error_text("no map store of robot 'robot' is alive on domain " + own_domain());
+  EXPECT_THAT(other.err(), testing::HasSubstr("partition '" + partition_ + "' (robot 'robot')"));
+  Program recorder(scratch_, "topogeo",
+                   {"record", "--partition", "other", "--out", scratch_ / "x.clf"});
+  recorder.wait_for_error_text("no sensor gateway of robot 'robot' is alive");
+  EXPECT_THAT(recorder.err(), testing::HasSubstr("partition '" + partition_ + "'"));
+}
+
 TEST_F(MapFollowers, WithoutAStoreTheCommandWaitsUntilItIsStopped) {
   for (const bool once : {false, true}) {
     const auto waiting =

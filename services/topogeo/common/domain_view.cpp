@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <iostream>
+#include <vector>
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
@@ -10,6 +11,8 @@
 #include "topogeo/support/patience.hpp"
 
 #include "common/collect_window.hpp"
+#include "live/elsewhere.hpp"
+#include "live/host_processes.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -62,8 +65,9 @@ messaging::Participant join(const DomainView& view, const std::string& name,
 }
 
 messaging::Participant join_for(const DomainView& view, const std::string& name,
-                                const std::string& robot_id) {
+                                const std::string& robot_id, bool observe) {
   messaging::ParticipantOptions options = options_of(view, name);
+  options.observe = observe;
   options.robots = {robot_id};
   return messaging::Participant(options);
 }
@@ -85,10 +89,13 @@ Collected collect_and_show(const DomainView& view, messaging::EventLoop& loop,
   return {count() > 0, patience.reason()};
 }
 
-std::string nothing_alive(const DomainView& view, const std::string& what) {
+std::string nothing_alive(const DomainView& view, const std::string& what,
+                          std::span<const messaging::RemoteEndpoint> discovered) {
+  const std::vector<HostProcess> processes = host_processes();
   return "no " + what + " is alive on domain " + std::to_string(view.domain) + ", partition '" +
-         view.partition + "'; services with other settings are not seen (TOPOGEO_DOMAIN, " +
-         "TOPOGEO_SECURITY, ROS_DISCOVERY_SERVER, TOPOGEO_PEERS)";
+         view.partition + "'" + services_elsewhere(view, discovered, processes) +
+         "; services with other settings are not seen (TOPOGEO_DOMAIN, TOPOGEO_SECURITY, " +
+         "ROS_DISCOVERY_SERVER, TOPOGEO_PEERS)";
 }
 
 }  // namespace topogeo::cli

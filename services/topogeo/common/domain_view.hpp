@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 
 #include "topogeo/command_line/command_line.hpp"
+#include "topogeo/messaging/discovery.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/participant.hpp"
 
@@ -39,7 +41,7 @@ messaging::Participant join(const DomainView& view, const std::string& name,
                             const std::string& identity = "topogeo", bool observe = false);
 /// The same for a command about one robot, which the keys must name when security is on.
 messaging::Participant join_for(const DomainView& view, const std::string& name,
-                                const std::string& robot_id);
+                                const std::string& robot_id, bool observe = false);
 
 struct Collected {
   bool found = false;
@@ -52,7 +54,9 @@ Collected collect_and_show(const DomainView& view, messaging::EventLoop& loop,
                            const std::function<std::size_t()>& count,
                            const std::function<void()>& show);
 
-/// "no <what> is alive on domain 3, partition '*'".
-std::string nothing_alive(const DomainView& view, const std::string& what);
+/// "no <what> is alive on domain 3, partition '*'", with the domains and partitions where services
+/// are: those of this host and the `discovered` ones of the domain.
+std::string nothing_alive(const DomainView& view, const std::string& what,
+                          std::span<const messaging::RemoteEndpoint> discovered = {});
 
 }  // namespace topogeo::cli

@@ -1,4 +1,5 @@
 // topogeo follow: the map of a robot as it changes.
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
@@ -28,6 +29,9 @@
 
 namespace topogeo::cli {
 namespace {
+
+/// Discovery takes a second.
+constexpr std::chrono::seconds kPatience{2};
 
 struct FollowRequest {
   DomainView view;
@@ -120,7 +124,7 @@ class Follower {
  public:
   explicit Follower(const FollowRequest& request)
       : request_(request),
-        participant_(join_for(request.view, "topogeo/follow", request.robot_id)),
+        participant_(join_for(request.view, "topogeo/follow", request.robot_id, /*observe=*/true)),
         elements_(participant_),
         follower_(request.robot_id) {
     using messaging::SampleInfo;
@@ -133,6 +137,7 @@ class Follower {
           if (info.state != messaging::InstanceState::kDisposed) return;
           if (follower_.remove(info.instance.bytes, info.writer.bytes)) show();
         });
+    loop_.add_timer(kPatience, [this] { say_elsewhere(); });
     loop_.on_event([this](const messaging::Event& event) {
       if (event.kind == messaging::EventKind::kUnmatched && event.count == 0) say_waiting();
     });
@@ -154,6 +159,16 @@ class Follower {
         request_.robot_id, request_.view.domain, request_.view.partition);
   }
 
+  /// Once, when no map store is found.
+  void say_elsewhere() {
+    if (said_elsewhere_ || elements_.matched() > 0) return;
+    said_elsewhere_ = true;
+    std::cerr << "topogeo: "
+              << nothing_alive(request_.view, "map store of robot '" + request_.robot_id + "'",
+                               participant_.discovered())
+              << '\n';
+  }
+
   void show() {
     for (const map_client::Change& change : follower_.take_changes()) {
       std::cout << (request_.json ? json_of(change).dump() : text_of(change)) << '\n';
@@ -170,6 +185,7 @@ class Follower {
   messaging::EventLoop loop_;
   map_client::MapFollower follower_;
   bool shown_ = false;
+  bool said_elsewhere_ = false;
 };
 
 void check_out(const std::filesystem::path& out) {
@@ -185,7 +201,6 @@ void add_follow_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command =
       app.add_subcommand("follow", "Show the map of a robot and each change of it");
   auto request = std::make_shared<FollowRequest>();
-  request->view.partition = messaging::kDefaultPartition;
   add_robot_option(*command, request->robot_id, "whose map");
   add_domain_options(*command, request->view);
   command->add_flag("--once", request->once, "show the current map and exit");

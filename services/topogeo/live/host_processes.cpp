@@ -65,6 +65,13 @@ std::uint32_t domain_of(const std::vector<std::string>& words,
   return domain;
 }
 
+std::string robot_of(const std::vector<std::string>& words, const std::filesystem::path& process) {
+  for (const char* name : {"--robot-id", "--robot"}) {
+    if (const auto robot = option(words, name)) return *robot;
+  }
+  return variable_of(process, "TOPOGEO_ROBOT");
+}
+
 /// Reads state and age from /proc/PID/stat, see proc(5). False: the process has ended.
 bool read_stat(HostProcess& process, const std::filesystem::path& folder, double up_s) {
   std::string state;
@@ -131,6 +138,7 @@ std::vector<HostProcess> host_processes(const std::filesystem::path& proc) {
     process.own_pid = innermost != 0 ? innermost : process.pid;
     process.domain = domain_of(words, entry.path());
     process.partition = option(words, "--partition").value_or(messaging::kDefaultPartition);
+    process.robot = robot_of(words, entry.path());
     found.push_back(std::move(process));
   }
   std::ranges::sort(found, {}, &HostProcess::pid);

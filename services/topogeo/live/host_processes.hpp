@@ -20,6 +20,7 @@ struct HostProcess {
   std::string partition;     ///< from its command line, else the default
   bool stopped = false;      ///< by a signal or a debugger
   double age_s = 0.0;        ///< since its start
+  std::string robot{};       ///< from its command line, else its environment; may be empty
 };
 
 /// The services with the network and the host name of this process, by pid; none without `proc`. A

@@ -107,7 +107,8 @@ int show_status(const StatusOptions& options) {
   }
   if (options.json && !options.view.watch) std::cout << "[]\n";
   const std::string what = options.service.empty() ? "service" : "'" + options.service + "'";
-  std::cerr << "topogeo: " << nothing_alive(options.view, what) << collected.reason << '\n';
+  std::cerr << "topogeo: " << nothing_alive(options.view, what, participant.discovered())
+            << collected.reason << '\n';
   return service::kFailure;
 }
 

@@ -6,7 +6,6 @@
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
-#include "topogeo/messaging/topics.hpp"
 #include "topogeo/recording/log_writer.hpp"
 #include "topogeo/service/service_options.hpp"
 
@@ -38,7 +37,6 @@ void add_record_command(command_line::Command& app, int& exit_code) {
                          "Record the scans of a sensor gateway as a log, with poses, graph and "
                          "grid if its format has them");
   auto request = std::make_shared<RecordRequest>();
-  request->view.partition = messaging::kDefaultPartition;
   command
       ->add_option(
           "--out", request->out,

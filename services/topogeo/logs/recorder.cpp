@@ -23,6 +23,8 @@ using std::chrono::milliseconds;
 /// After this time without a message since the end of the stream, no more will come.
 constexpr double kPatience_s = 5.0;
 constexpr milliseconds kRecordTick{50};
+/// Discovery takes a second.
+constexpr std::chrono::seconds kWithoutGateway{2};
 /// Recording period of a growing grid, because a grid is large.
 constexpr std::chrono::seconds kGridPeriod{5};
 /// Scans whose poses may still arrive: a minute or two.
@@ -64,7 +66,7 @@ ros::GraphDrawing drawing_of(const map_client::Map& map) {
 Recorder::Recorder(const RecordRequest& request)
     : request_(request),
       log_(open_log(request)),
-      participant_(join_for(request.view, "topogeo/record", request.robot_id)),
+      participant_(join_for(request.view, "topogeo/record", request.robot_id, /*observe=*/true)),
       // Slows a replay down rather than losing scans.
       scans_(participant_, {std::string(messaging::kReplayRole), {}}),
       ends_(participant_),
@@ -108,6 +110,16 @@ void Recorder::listen() {
     loop_.add_timer(kGridPeriod, [this] { take_grid(); });
   }
   loop_.add_timer(kRecordTick, [this] { stop_at_end(); });
+  loop_.add_timer(kWithoutGateway, [this] { say_elsewhere(); });
+}
+
+void Recorder::say_elsewhere() {
+  if (said_elsewhere_ || recorded_ > 0 || scans_.matched() > 0) return;
+  said_elsewhere_ = true;
+  std::cerr << "topogeo: "
+            << nothing_alive(request_.view, "sensor gateway of robot '" + request_.robot_id + "'",
+                             participant_.discovered())
+            << '\n';
 }
 
 void Recorder::run() {

@@ -59,6 +59,8 @@ class Recorder {
   [[nodiscard]] bool has_graph() const;
   [[nodiscard]] bool has_grid();
   void stop_at_end();
+  /// Once, when no gateway is found.
+  void say_elsewhere();
   void report();
 
   RecordRequest request_;
@@ -93,6 +95,7 @@ class Recorder {
   bool localized_ = false;                 // the localizer's stream has ended
   std::optional<msg::StreamEnd> mapped_;   // end of the map store's
   support::Patience patience_;             // since the last message
+  bool said_elsewhere_ = false;
 };
 
 }  // namespace topogeo::cli

@@ -27,7 +27,7 @@ namespace {
 struct WebCommand {
   WebOptions web;
   std::uint32_t domain = 0;
-  std::string partition = messaging::kDefaultPartition;
+  std::string partition = messaging::kAnyPartition;
   std::string robot_id = "robot";
   std::string map_of;
   std::optional<std::filesystem::path> config;
@@ -84,7 +84,7 @@ void add_web_command(command_line::Command& app, int&) {
   auto options = std::make_shared<WebCommand>();
   add_web_options(*web, options->web);
   service::add_domain_option(*web, options->domain);
-  web->add_option("--partition", options->partition, "of the robot's services")
+  web->add_option("--partition", options->partition, "only services in this partition; *: all")
       ->capture_default_str();
   add_robot_option(*web, options->robot_id, "whose page");
   service::add_map_option(*web, options->map_of);

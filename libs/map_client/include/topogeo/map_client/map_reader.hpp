@@ -3,10 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cstdint>
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -22,10 +26,24 @@
 
 namespace topogeo::map_client {
 
+/// TOPOGEO_DOMAIN of the environment, as for the commands of topogeo; 0 if it is unset or no domain
+/// (0 to 232).
+inline std::uint32_t default_domain() {
+  constexpr std::uint32_t kLargestDomain = 232;
+  const char* const value = std::getenv("TOPOGEO_DOMAIN");  // NOLINT(concurrency-mt-unsafe)
+  const std::string_view text = value == nullptr ? "" : value;
+  std::uint32_t domain = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), domain);
+  const bool is_number = error == std::errc() && end == text.data() + text.size();
+  return is_number && domain <= kLargestDomain ? domain : 0;
+}
+
 struct MapReaderOptions {
   std::string robot_id = "robot";
-  std::uint32_t domain = 0;           ///< DDS domain; unused with a participant
-  std::string partition = "topogeo";  ///< --partition of the services
+  std::uint32_t domain = default_domain();  ///< DDS domain; unused with a participant
+  /// Partition of the services; "*": all. `topogeo run` has one of its own. Name one where two runs
+  /// of a robot name share the domain.
+  std::string partition = "*";
   /// Participant of the calling program, which must outlive the reader. Null: creates its own one
   /// with default settings.
   eprosima::fastdds::dds::DomainParticipant* participant = nullptr;
