@@ -193,14 +193,27 @@ TEST_F(CommandsTest, PlansBetweenRoomsOfAMappedFloor) {
   EXPECT_GT(route["length_m"], 22.0);
   EXPECT_LT(route["length_m"], 45.0);
   EXPECT_GE(route["min_clearance_m"], 0.3);
-  EXPECT_GT(route["points"].size(), 10U);
+  EXPECT_GT(route["points"].size(), 5U);
 
   const std::string picture = scratch_ / "route.png";
   Program text(scratch_, "topogeo",
                {"plan", map, "--from", "7.8,3.2", "--to", "25.1,14", "--picture", picture});
   ASSERT_EQ(text.wait(), 0);
   EXPECT_THAT(text.out(), HasSubstr("length "));
+  EXPECT_LE(std::ranges::count(text.out(), '\n'), 3) << text.out();
   EXPECT_THAT(read_file(picture), StartsWith("\x89PNG"));
+  EXPECT_NEAR(route["points"].front()["x_m"].get<double>(), 7.8, 1e-9);
+  EXPECT_NEAR(route["points"].back()["x_m"].get<double>(), 25.1, 1e-9);
+  EXPECT_NEAR(route["points"].back()["y_m"].get<double>(), 14.0, 1e-9);
+
+  // The branch nearest to (12, 3) is behind a wall, 12.1 m from the start: the route takes the door.
+  Program door(scratch_, "topogeo", {"plan", map, "--from", "0,0", "--to", "12,3", "--json"});
+  ASSERT_EQ(door.wait(), 0) << door.err();
+  EXPECT_GT(json::parse(door.out())["length_m"], 14.0);
+  EXPECT_EQ(json::parse(door.out())["parts"].back()["on"], "off branch");
+  Program walled(scratch_, "topogeo", {"plan", map, "--from", "0,0", "--to", "12,1"});
+  EXPECT_EQ(walled.wait(), 1) << walled.out();
+  EXPECT_THAT(walled.err(), ContainsRegex("no route: .*is the nearest place that can be reached"));
 
   // An obstacle on the route: the new one goes through other rooms.
   const json& middle = route["points"][route["points"].size() / 2];

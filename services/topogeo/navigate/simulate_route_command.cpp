@@ -135,12 +135,7 @@ int simulate_route(const SimulateRouteOptions& options) {
         render::route_picture(floor.map, route, title, *format, {}, blocks.cells, &floor.graph));
   }
   if (!route.found()) {
-    std::cerr << "topogeo: no route: " << route.reason;
-    if (route.nearest_reachable_m) {
-      std::cerr << fmt::format("; ({:.2f}, {:.2f}) is the nearest place that can be reached",
-                               route.nearest_reachable_m->x(), route.nearest_reachable_m->y());
-    }
-    std::cerr << '\n';
+    std::cerr << "topogeo: no route: " << no_route_text(route) << '\n';
     return service::kFailure;
   }
   print_parts(route);

@@ -43,4 +43,10 @@ planning::Target target_of(const std::string& text) {
   return text;
 }
 
+std::string no_route_text(const planning::HybridRoute& route) {
+  if (!route.nearest_reachable_m) return route.reason;
+  return fmt::format("{}; ({:.2f}, {:.2f}) is the nearest place that can be reached", route.reason,
+                     route.nearest_reachable_m->x(), route.nearest_reachable_m->y());
+}
+
 }  // namespace topogeo::cli

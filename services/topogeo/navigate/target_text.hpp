@@ -20,4 +20,7 @@ Eigen::Vector2d point_for(std::string_view flag, std::string_view text);
 /// X,Y, #NODE or the name of a place.
 planning::Target target_of(const std::string& text);
 
+/// Why there is no route, with the nearest place that can be reached if the goal cannot.
+std::string no_route_text(const planning::HybridRoute& route);
+
 }  // namespace topogeo::cli
