@@ -41,6 +41,17 @@ async function open(options = {}, prepare = () => {}) {
   return { page, service, context };
 }
 
+test("the page works below the path of a proxy", async () => {
+  const service = new StandIn(join(build, "share/topogeo/web"), "/robots/anna/");
+  const context = await new_context(browser, { viewport: kSizes.desk, bypassCSP: true });
+  await service.serve(context);
+  const page = await open_page(context, `${kAddress}/robots/anna/#token=${"t".repeat(16)}`);
+  await wait_for("a connection", async () => service.ops.includes("hello"));
+  await page.click("#tab-draw");
+  await page.locator(".tool[data-tool=select]").waitFor();
+  await end({ page, context });
+});
+
 async function end({ page, context }) {
   assert.deepEqual(page.faults, []);
   await context.close();

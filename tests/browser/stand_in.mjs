@@ -32,15 +32,16 @@ export class StandIn {
   sockets = new Set();
   shown = new Map(); // messages for a page that connects again, by channel
 
-  /** page_files: folder of the built page. */
-  constructor(page_files) {
+  /** page_files: folder of the built page. path: below which a proxy serves it. */
+  constructor(page_files, path = "/") {
     this.page_files = page_files;
+    this.path = path;
   }
 
   /** Answers all requests of a browser context's pages. */
   async serve(context) {
     await context.route("**/*", (route) => this.answer(route));
-    await context.routeWebSocket("**/ws", (socket) => this.connect(socket));
+    await context.routeWebSocket(`${kAddress.replace("http", "ws")}${this.path}ws`, (socket) => this.connect(socket));
   }
 
   /** Saves as another editor. */
@@ -94,7 +95,9 @@ export class StandIn {
 
   async answer(route) {
     const request = route.request();
-    const { pathname, searchParams } = new URL(request.url());
+    const { pathname: whole, searchParams } = new URL(request.url());
+    if (!whole.startsWith(this.path)) return route.fulfill({ status: 404, json: { error: `another site: ${whole}` } });
+    const pathname = `/${whole.slice(this.path.length)}`;
     const body = request.method() === "POST" ? JSON.parse(request.postData() || "{}") : null;
     const json = (status, value) => route.fulfill({ status, json: value });
     const goals = () => ({ current: null, waiting: [], exploring: this.exploring });

@@ -1,8 +1,13 @@
 // Orders to the service, with the operator's token.
+import { beside_page } from "./address";
 import { texts } from "./texts";
 
-const tokenKey = "topogeo-token";
 const timeoutMs = 10000;
+
+/** A proxy may serve pages of several robots below paths of one site. */
+function token_key(): string {
+  return `topogeo-token:${beside_page("/")}`;
+}
 
 /**
  * The token of the operator's link. It is removed from the address, so that nobody copies it by
@@ -11,10 +16,10 @@ const timeoutMs = 10000;
 export function take_token(): string {
   const match = /[#&]token=([^&]+)/.exec(location.hash);
   if (match) {
-    sessionStorage.setItem(tokenKey, decodeURIComponent(match[1]));
+    sessionStorage.setItem(token_key(), decodeURIComponent(match[1]));
     history.replaceState(null, "", location.pathname + location.search);
   }
-  return sessionStorage.getItem(tokenKey) ?? "";
+  return sessionStorage.getItem(token_key()) ?? "";
 }
 
 /** Why an order was refused, as a sentence for people; status: of HTTP, 0 without an answer. */
@@ -69,7 +74,7 @@ export class Api {
     if (typeof body === "string") headers["Content-Type"] = "application/json";
     else if (body) headers["Content-Type"] = "application/octet-stream";
     try {
-      const response = await fetch(path, { method, headers, body, signal: abort.signal });
+      const response = await fetch(beside_page(path), { method, headers, body, signal: abort.signal });
       if (response.ok) return response;
       const answer = await read_json<{ error?: string }>(response);
       const message = answer.error || texts.errors.status(response.status);

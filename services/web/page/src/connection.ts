@@ -1,5 +1,6 @@
 // The WebSocket: connects, continues after interruptions from the page's state, detects a dead
 // connection.
+import { socket_address } from "./address";
 import { Channels } from "./channels";
 import { TableMessage, ValueMessage } from "./protocol";
 
@@ -69,8 +70,7 @@ export class Connection {
   }
 
   private connect(): void {
-    const scheme = location.protocol === "https:" ? "wss" : "ws";
-    const socket = new WebSocket(`${scheme}://${location.host}/ws`, protocols(this.token));
+    const socket = new WebSocket(socket_address(), protocols(this.token));
     this.socket = socket;
     this.last_message_ms = Date.now();
     socket.onopen = () => {

@@ -1,5 +1,6 @@
 // Pictures of the grid and of the rooms, in the colours of the theme. A picture stays until its
 // next version arrives, and one of another level until those of the wanted level arrive.
+import { beside_page } from "../address";
 import { MapInfo } from "../protocol";
 import { Palette } from "../ui/theme";
 import {
@@ -146,7 +147,7 @@ export class TileLayer {
         this.on_load();
       }, retryMs);
     };
-    image.src = `/tiles/${this.layer}/${info.frame}/${key}.png?v=${version}`;
+    image.src = beside_page(`/tiles/${this.layer}/${info.frame}/${key}.png?v=${version}`);
   }
 
   /** The box around the known part; null while one of its pictures is missing. */

@@ -1,4 +1,5 @@
 // Shows the differences between two versions of the map in colours on the map.
+import { beside_page } from "../address";
 import * as format from "../format";
 import { MapScene } from "../map/map_scene";
 import { Comparison } from "../protocol";
@@ -21,7 +22,7 @@ export function hide_difference(scene: MapScene): void {
  */
 export async function show_difference(scene: MapScene, made: Comparison): Promise<HTMLElement> {
   const picture = new Image();
-  picture.src = made.picture;
+  picture.src = beside_page(made.picture);
   await picture.decode();
   const [width, height] = [made.columns * made.resolution_m, made.rows * made.resolution_m];
   scene.above.set(layerAbove, (context, view) => {
