@@ -28,9 +28,11 @@ RosSide::RosSide(service::Service& service, Settings settings, std::uint32_t dom
 
 void RosSide::say_once(const std::string& reason, const std::string& detail) {
   constexpr std::size_t kLongestDetail = 512;  // the names in it are as long as a peer chooses
-  last_complaint_ = reason + (detail.empty() ? "" : ": " + detail.substr(0, kLongestDetail));
+  const std::string text =
+      reason + (detail.empty() ? "" : ": " + detail.substr(0, kLongestDetail));
+  complaint_.add(text, steady_now_ns());
   if (said_.insert(reason).second) {
-    spdlog::warn("{} (logged once, counted in the status)", last_complaint_);
+    spdlog::warn("{} (logged once, counted in the status)", text);
   }
 }
 
@@ -43,7 +45,11 @@ void RosSide::complain(const std::string& reason, const std::string& detail) {
 void RosSide::set_complaints(const std::string& reason, std::uint64_t count,
                              const std::string& detail) {
   service_.status().set_drops(reason, count);
-  if (count > 0) say_once(reason, detail);
+  if (complaint_.grows(reason, count)) say_once(reason, detail);
+}
+
+std::string RosSide::recent_complaint() const {
+  return complaint_.text(steady_now_ns());
 }
 
 std::int64_t steady_now_ns() {

@@ -13,6 +13,7 @@
 #include "topogeo/ros_messaging/topic.hpp"
 #include "topogeo/service/service.hpp"
 
+#include "recent_complaint.hpp"
 #include "settings.hpp"
 
 namespace topogeo::ros_bridge {
@@ -60,8 +61,8 @@ class RosSide {
   void complain(const std::string& reason, const std::string& detail);
   /// Same as complain(), for inputs counted elsewhere.
   void set_complaints(const std::string& reason, std::uint64_t count, const std::string& detail);
-  /// The last complaint, for people; empty: none.
-  [[nodiscard]] const std::string& last_complaint() const { return last_complaint_; }
+  /// The last complaint, for people; empty: none lately.
+  [[nodiscard]] std::string recent_complaint() const;
 
   /// The newest stamp of the sensors, which is the current time for ROS; 0 before the first.
   [[nodiscard]] std::int64_t now_ns() const { return now_ns_; }
@@ -74,7 +75,7 @@ class RosSide {
   Settings settings_;
   messaging::Participant participant_;
   std::set<std::string> said_;
-  std::string last_complaint_;
+  RecentComplaint complaint_;
   std::int64_t now_ns_ = 0;
 };
 

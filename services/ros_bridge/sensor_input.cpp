@@ -225,9 +225,10 @@ void SensorInput::publish_state() {
   if (odometry_sent_ == 0) missing = "odometry of ROS";
   if (!flows) missing += missing.empty() ? "scans of ROS" : " and scans of ROS";
   const msg::ServiceState state = missing.empty() ? msg::kServiceRunning : msg::kServiceWaiting;
-  const std::string& text = ros_.last_complaint();
-  if (text == published_ && state == status.state()) return;
-  published_ = text;
+  const std::string text = ros_.recent_complaint();
+  std::string published = fmt::format("{}; {}", text, missing);
+  if (published == published_ && state == status.state()) return;
+  published_ = std::move(published);
   status.set_state(state, text.substr(0, 255));
   status.set_waits_for(missing);
 }
