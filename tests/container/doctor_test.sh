@@ -65,7 +65,11 @@ expect healthy 'map folder' ok 'can write'
 examine no_interface 'ip link set lo down'
 expect no_interface multicast problem 'no network interface'
 
-examine no_route 'ip route del 239.255.0.0/16'
+examine lo_only 'ip route del 239.255.0.0/16; ip link set lo multicast off'
+expect lo_only multicast ok 'come back on lo'
+expect lo_only route ok 'only lo is up'
+
+examine no_route 'ip route del 239.255.0.0/16; ip link add v0 type veth peer name v1; ip link set v0 up; ip address add 10.77.0.1/24 dev v0'
 expect no_route route problem 'no route leads to 239.255.0.1'
 
 if command -v iptables > /dev/null; then

@@ -315,6 +315,30 @@ std::vector<std::string> problems_of(const std::string& report, const std::strin
   return texts;
 }
 
+/// Programs started from here on discover each other by a server, which does not run.
+class DeadServer {
+ public:
+  DeadServer() { ::setenv("ROS_DISCOVERY_SERVER", kAddress, 1); }
+  DeadServer(const DeadServer&) = delete;
+  DeadServer& operator=(const DeadServer&) = delete;
+  ~DeadServer() { ::unsetenv("ROS_DISCOVERY_SERVER"); }
+
+  static constexpr const char* kAddress = "127.0.0.1:9";  // the port of discarded messages
+};
+
+TEST_F(HealthTest, ADiscoveryServerThatDoesNotAnswerIsNamed) {
+  const DeadServer server;
+  const std::string log = scratch_ / "log.clf";
+  write_log("corridor", log);
+  Program run(scratch_, "topogeo",
+              {"run", "--log", log, "--out", scratch_ / "out", "--workers", "0"});
+  run.wait_for_error_text(std::string("no discovery server answers at ") + DeadServer::kAddress);
+  run.send_signal(SIGINT);
+  Program doctor(scratch_, "topogeo", {"doctor", "--json"});
+  EXPECT_EQ(doctor.wait(), 1) << doctor.out();
+  EXPECT_THAT(doctor.out(), HasSubstr("no discovery server answers at"));
+}
+
 TEST_F(HealthTest, DoctorNamesAFolderThatCannotBeWritten) {
   std::ofstream(scratch_ / "file") << "x";
   std::string out;

@@ -97,6 +97,11 @@ std::vector<RemoteEndpoint> DiscoveryListener::endpoints() const {
   return all;
 }
 
+std::size_t DiscoveryListener::participants() const {
+  const std::lock_guard lock(endpoints_mutex_);
+  return names_.size();
+}
+
 void DiscoveryListener::put(const rtps::GUID_t& guid, RemoteEndpoint endpoint) {
   if (by_robot_) leave_robots_out(endpoint.partitions);
   const std::lock_guard lock(endpoints_mutex_);

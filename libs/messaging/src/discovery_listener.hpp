@@ -27,6 +27,8 @@ class DiscoveryListener final : public RefusalListener {
 
   /// The current endpoints, ordered by their ids.
   std::vector<RemoteEndpoint> endpoints() const;
+  /// Number of other participants now, with discovery servers.
+  std::size_t participants() const;
 
  private:
   /// Bounds the memory in a flood of strangers' endpoints.

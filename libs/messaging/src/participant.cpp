@@ -319,6 +319,10 @@ std::vector<RemoteEndpoint> ParticipantCore::discovered() const {
   return observer_ == nullptr ? std::vector<RemoteEndpoint>{} : observer_->endpoints();
 }
 
+std::size_t ParticipantCore::peers() const {
+  return observer_ == nullptr ? 0 : observer_->participants();
+}
+
 std::vector<std::string> ParticipantCore::read_with(const Handle& reader) const {
   return listener_->read_with(reader);
 }
@@ -334,6 +338,10 @@ Participant::Participant(const ParticipantOptions& options)
 
 std::vector<RemoteEndpoint> Participant::discovered() const {
   return core_->discovered();
+}
+
+std::size_t Participant::peers() const {
+  return core_->peers();
 }
 
 std::vector<std::string> Participant::take_refusals() const {

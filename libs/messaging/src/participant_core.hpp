@@ -54,6 +54,7 @@ class ParticipantCore {
   bool take_new_revocations();
   [[nodiscard]] std::optional<std::chrono::nanoseconds> stood_still() const;
   [[nodiscard]] std::vector<RemoteEndpoint> discovered() const;
+  [[nodiscard]] std::size_t peers() const;
   /// Whole names of the topics that the program of another participant's reader announced to read
   /// as well.
   [[nodiscard]] std::vector<std::string> read_with(const Handle& reader) const;

@@ -1,6 +1,7 @@
 #include "common/domain_view.hpp"
 
 #include <chrono>
+#include <cstdlib>
 #include <iostream>
 #include <vector>
 
@@ -87,6 +88,13 @@ Collected collect_and_show(const DomainView& view, messaging::EventLoop& loop,
     std::cout << std::flush;
   } while (view.watch && !loop.run_for(kAgain));
   return {count() > 0, patience.reason()};
+}
+
+std::string unanswered_servers(std::size_t peers) {
+  const char* const value = std::getenv("ROS_DISCOVERY_SERVER");  // NOLINT(concurrency-mt-unsafe)
+  const std::string servers = value == nullptr ? "" : value;
+  if (peers > 0 || servers.find_first_not_of(';') == std::string::npos) return {};
+  return "no discovery server answers at " + servers + " (ROS_DISCOVERY_SERVER)";
 }
 
 std::string nothing_alive(const DomainView& view, const std::string& what,

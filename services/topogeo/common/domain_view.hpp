@@ -54,6 +54,11 @@ Collected collect_and_show(const DomainView& view, messaging::EventLoop& loop,
                            const std::function<std::size_t()>& count,
                            const std::function<void()>& show);
 
+/// "no discovery server answers at 10.0.0.1:11811 (ROS_DISCOVERY_SERVER)", if the environment names
+/// servers and discovery has found no participant, not even a server; else empty. To be called when
+/// discovery had its time.
+std::string unanswered_servers(std::size_t peers);
+
 /// "no <what> is alive on domain 3, partition '*'", with the domains and partitions where services
 /// are: those of this host and the `discovered` ones of the domain.
 std::string nothing_alive(const DomainView& view, const std::string& what,

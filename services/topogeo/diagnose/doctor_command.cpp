@@ -19,6 +19,8 @@
 #include "common/host_units.hpp"
 #include "diagnose/domain_checks.hpp"
 #include "diagnose/machine_checks.hpp"
+#include "live/elsewhere.hpp"
+#include "live/host_processes.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -73,6 +75,8 @@ DomainFacts gather_domain_facts(const DomainView& view) {
       view, loop, [&] { return services.size(); }, [] {}));
   for (auto& [instance, status] : services) facts.services.push_back(std::move(status));
   facts.endpoints = participant.discovered();
+  facts.unanswered_servers = unanswered_servers(participant.peers());
+  facts.elsewhere = services_elsewhere(view, facts.endpoints, host_processes());
   for (const messaging::RemoteEndpoint& endpoint : facts.endpoints) {
     const auto instance = instances.find(endpoint.id);
     if (instance == instances.end() || endpoint.partitions.empty()) continue;

@@ -12,7 +12,7 @@ namespace {
 
 /// Columns of severity and check name, including their separators.
 constexpr std::size_t kSeverityWidth = 9;
-constexpr std::size_t kCheckWidth = 15;
+constexpr std::size_t kCheckWidth = 18;
 
 const char* severity_name(Severity severity) {
   switch (severity) {

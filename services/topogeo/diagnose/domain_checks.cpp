@@ -63,6 +63,33 @@ std::string good_units(const DomainFacts& facts) {
   return facts.units == 0 ? "none runs on this host" : "services of this host are found";
 }
 
+// --- discovery server
+
+Findings check_servers(const DomainFacts& facts) {
+  if (facts.unanswered_servers.empty()) return {};
+  return {{"", kProblem, facts.unanswered_servers, "services find each other through it alone",
+           "start it (fast-discovery-server -i 0), correct the address, or unset the variable "
+           "everywhere (deploy/README.md, \"How services find each other\")"}};
+}
+
+std::string good_servers(const DomainFacts& /*facts*/) {
+  return "none is named, or it answers";
+}
+
+// --- services
+
+Findings check_services(const DomainFacts& facts) {
+  if (!facts.services.empty() || facts.units > 0) return {};  // units: see above
+  return {{"", kHint, fmt::format("none is alive on domain {}{}", facts.domain, facts.elsewhere),
+           "what follows says nothing about services",
+           "start them, or use their settings: TOPOGEO_DOMAIN, TOPOGEO_SECURITY, "
+           "ROS_DISCOVERY_SERVER, TOPOGEO_PEERS"}};
+}
+
+std::string good_services(const DomainFacts& facts) {
+  return fmt::format("{} on domain {}", facts.services.size(), facts.domain);
+}
+
 // --- CPU
 
 Findings check_cpu(const DomainFacts& facts) {
@@ -320,7 +347,9 @@ std::string good_strangers(const DomainFacts& /*facts*/) {
 }
 
 constexpr auto kDomainChecks = std::to_array<Check<DomainFacts>>({
+    {"discovery server", check_servers, good_servers},
     {"units", check_units, good_units},
+    {"services", check_services, good_services},
     {"CPU of services", check_cpu, good_cpu},
     {"robots", check_robots, good_robots},
     {"wire contract", check_wire, good_wire},

@@ -130,8 +130,14 @@ std::string good_multicast(const MachineFacts& facts) {
   return fmt::format("packets to {} come back on{}", kDiscoveryGroup, names);
 }
 
+/// Announcements name their interface, so a machine by itself needs no route.
+bool works_alone(const MachineFacts& facts) {
+  return facts.multicast.size() == 1 && facts.multicast[0].loopback &&
+         facts.multicast[0].error.empty();
+}
+
 Findings check_route(const MachineFacts& facts) {
-  if (!facts.found_by.empty() || facts.multicast_route) return {};
+  if (!facts.found_by.empty() || facts.multicast_route || works_alone(facts)) return {};
   const std::string interface = facts.multicast.empty() ? "lo" : facts.multicast[0].interface;
   return {problem(fmt::format("no route leads to {}", kDiscoveryGroup),
                   "the system may refuse to send the announcements of services",
@@ -139,8 +145,11 @@ Findings check_route(const MachineFacts& facts) {
 }
 
 std::string good_route(const MachineFacts& facts) {
-  return facts.multicast_route ? fmt::format("there is one to {}", kDiscoveryGroup)
-                               : not_needed(facts);
+  if (facts.multicast_route) return fmt::format("there is one to {}", kDiscoveryGroup);
+  if (facts.found_by.empty()) {
+    return fmt::format("not needed: only {} is up", facts.multicast[0].interface);
+  }
+  return not_needed(facts);
 }
 
 // --- buffers

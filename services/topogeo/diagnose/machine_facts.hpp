@@ -11,10 +11,12 @@
 
 namespace topogeo::cli {
 
-/// A multicast test on a network interface that is up and supports it.
+/// A multicast test on a network interface that is up and supports it, or on the loopback interface
+/// if there is no other.
 struct MulticastProbe {
   std::string interface;
   std::string error;  ///< why nothing came back; empty: the packet did
+  bool loopback = false;
 };
 
 struct SerialPortFacts {

@@ -176,10 +176,12 @@ std::vector<MulticastProbe> probe_multicast() {
   for (const bool loopback : {false, true}) {
     for (const ifaddrs* one = list; one != nullptr; one = one->ifa_next) {
       if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
-      if ((one->ifa_flags & IFF_UP) == 0 || (one->ifa_flags & IFF_MULTICAST) == 0) continue;
+      if ((one->ifa_flags & IFF_UP) == 0) continue;
       if (((one->ifa_flags & IFF_LOOPBACK) != 0) != loopback) continue;
+      // Linux lacks the flag on loopback, where multicast works all the same.
+      if (!loopback && (one->ifa_flags & IFF_MULTICAST) == 0) continue;
       const auto* address = reinterpret_cast<const sockaddr_in*>(one->ifa_addr);  // NOLINT
-      probes.push_back({one->ifa_name, why_no_echo(address->sin_addr)});
+      probes.push_back({one->ifa_name, why_no_echo(address->sin_addr), loopback});
     }
     if (!probes.empty()) break;
   }

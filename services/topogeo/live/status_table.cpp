@@ -241,6 +241,7 @@ std::string StatusTable::text(Clock::time_point now, std::size_t columns) const 
 }
 
 std::string StatusTable::sums(Clock::time_point now) const {
+  if (rows_.empty() && unheard_.empty() && absent().empty()) return "no service is alive\n";
   std::uint64_t faults = 0;
   std::size_t ill = unheard_.size();
   std::set<std::string> busy_hosts;

@@ -12,6 +12,7 @@
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
 
+#include "common/domain_view.hpp"
 #include "common/service_table.hpp"
 
 namespace topogeo::cli {
@@ -20,6 +21,9 @@ namespace {
 /// Fast enough for a smooth progress line; process ends need not be detected sooner.
 constexpr std::chrono::milliseconds kRunTick{50};
 
+/// Services publish their first status a second after their start.
+constexpr std::chrono::seconds kFirstStatus{5};
+
 messaging::Participant join(const RunOptions& options, const std::string& partition) {
   messaging::ParticipantOptions participant;
   participant.domain = options.domain;
@@ -27,6 +31,7 @@ messaging::Participant join(const RunOptions& options, const std::string& partit
   participant.name = options.job.robot_id + "/topogeo";
   participant.profiles_file = options.profiles_file;
   participant.robots = {options.job.robot_id};
+  participant.observe = true;  // for discovery servers
   return messaging::Participant(participant);
 }
 
@@ -64,8 +69,21 @@ void ServiceRun::start(const RunOptions& options, Hooks hooks) {
   hooks_ = std::move(hooks);
   signals_.emplace([this](int number) { on_signal(number); });
   loop_.add_timer(kRunTick, [this] { tick(); });
+  loop_.call_after(kFirstStatus, [this] { log_if_deaf(); });
   if (options.web) web_log_ = options.job.out / "logs" / "web.log";
   start_all(options);
+}
+
+void ServiceRun::log_if_deaf() {
+  if (!reports_.empty() || ended_) return;
+  const std::string servers = unanswered_servers(participant_.peers());
+  if (servers.empty()) {
+    hooks_.log("no service is heard yet; `topogeo doctor` checks this machine and its network");
+  } else {
+    hooks_.log(servers +
+               ", so services do not find each other: start one (fast-discovery-server -i 0), or "
+               "unset the variable");
+  }
 }
 
 void ServiceRun::start_all(const RunOptions& options) {

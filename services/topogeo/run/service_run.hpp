@@ -109,6 +109,8 @@ class ServiceRun {
   void restart(const std::string& name, const std::string& description);
   /// The recorder has ended: a restarted gateway must not wait for it.
   void forget_recorder();
+  /// Logs the likely reason if no status has come.
+  void log_if_deaf();
   /// Removes what the services have saved for their restarts, except for one file.
   void forget_memories(const std::filesystem::path& except = {}) const;
 

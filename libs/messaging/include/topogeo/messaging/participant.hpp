@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -60,6 +61,10 @@ class Participant {
   /// The readers and writers of other participants that discovery has announced and not removed;
   /// none without `observe`.
   [[nodiscard]] std::vector<RemoteEndpoint> discovered() const;
+
+  /// Number of other participants that discovery knows, with discovery servers; 0 without
+  /// `observe`.
+  [[nodiscard]] std::size_t peers() const;
 
   [[nodiscard]] const std::shared_ptr<ParticipantCore>& core() const { return core_; }
 

@@ -209,9 +209,20 @@ TEST(MachineChecks, WhatIsNotUsedNeedNotWork) {
     facts.found_by = variable;
     EXPECT_THAT(found_in(facts), IsEmpty());
     EXPECT_THAT(findings_text(run_checks(machine_checks(), facts)),
-                AllOf(HasSubstr("multicast      not needed: " + variable + " is set"),
-                      HasSubstr("route          not needed: " + variable + " is set")));
+                AllOf(HasSubstr("multicast         not needed: " + variable + " is set"),
+                      HasSubstr("route             not needed: " + variable + " is set")));
   }
+}
+
+TEST(MachineChecks, AMachineByItselfNeedsNoRoute) {
+  MachineFacts facts = healthy();
+  facts.multicast = {{"lo", "", true}};
+  facts.multicast_route = false;
+  EXPECT_THAT(found_in(facts), IsEmpty());
+  EXPECT_THAT(findings_text(run_checks(machine_checks(), facts)),
+              HasSubstr("not needed: only lo is up"));
+  facts.multicast[0].error = "nothing comes back";
+  EXPECT_THAT(found_in(facts), testing::SizeIs(2));
 }
 
 TEST(DoctorReport, TextAndJsonHaveEverything) {

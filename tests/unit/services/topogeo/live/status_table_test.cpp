@@ -13,6 +13,7 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -74,6 +75,10 @@ TEST(StatusTable, NamesWhoIsShortOfCpuAndWhere) {
   EXPECT_THAT(text, HasSubstr("idle: no goal; the CPU is short: timers fire up to 0.4 s late\n"));
   EXPECT_THAT(text, HasSubstr("the CPU of pc is short: see topogeo doctor\n"));
   EXPECT_TRUE(table.healthy(kNow)) << "it works, though late";
+}
+
+TEST(StatusTable, WithoutAnyServiceSaysSo) {
+  EXPECT_THAT(StatusTable{}.text(kNow), EndsWith("no service is alive\n"));
 }
 
 TEST(StatusTable, ShowsOneLineForEachService) {
