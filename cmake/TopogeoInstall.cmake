@@ -68,6 +68,7 @@ install(FILES ${deploy}/compose.yaml ${deploy}/devices.example.yaml
 set(libraries geometry support idl map_client messaging)
 foreach(library IN LISTS libraries)
   set_target_properties(topogeo_${library} PROPERTIES EXPORT_NAME ${library})
+  target_compile_features(topogeo_${library} INTERFACE cxx_std_20)  # of the headers
   install(TARGETS topogeo_${library} EXPORT topogeo
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT topogeo-dev)
 endforeach()

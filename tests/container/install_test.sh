@@ -103,6 +103,15 @@ if ! { cmake -S "$source_dir/tests/container/subscriber" -B "$work/subscriber" -
   tail -n 30 "$work/subscriber.log"
   fail "the subscriber does not compile"
 fi
+step "the examples, each alone"
+for example in follow_map publish_scans; do
+  if ! { cmake -S "$source_dir/examples/$example" -B "$work/$example" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" &&
+    ninja -C "$work/$example"; } > "$work/$example.log" 2>&1; then
+    tail -n 30 "$work/$example.log"
+    fail "$example does not compile alone"
+  fi
+  [ -x "$work/$example/$example" ] || fail "there is no program $example"
+done
 claim_domain
 partition=install-test-$$
 "$prefix/bin/topogeo-planner" --partition "$partition" --log-level off &
