@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "topogeo/devices/laser_models.hpp"
+
 namespace topogeo::sensor_gateway {
 
 using devices::BaseDialect;
@@ -269,6 +271,7 @@ void describe_base_states(ConfigSchema& schema, DeviceFile::Base& base) {
 }  // namespace
 
 DeviceFile::DeviceFile() {
+  laser.model = &devices::laser_models().front();
   const devices::PlsSettings& l = laser.settings;
   laser.detection_bauds = join(l.detection_bauds);
   laser.ack_timeout_s = seconds(l.ack_timeout_ns);

@@ -7,8 +7,7 @@
 #include <string>
 
 #include "topogeo/devices/base_settings.hpp"
-#include "topogeo/devices/laser_models.hpp"
-#include "topogeo/devices/pls_settings.hpp"
+#include "topogeo/devices/laser_settings.hpp"
 #include "topogeo/support/config_schema.hpp"
 
 namespace topogeo::sensor_gateway {
@@ -17,7 +16,7 @@ namespace topogeo::sensor_gateway {
 struct DeviceFile {
   struct Laser {
     std::string port;
-    const devices::LaserModel* model = &devices::laser_models().front();
+    const devices::LaserModel* model = nullptr;  ///< set by the constructor
     devices::PlsSettings settings;
     devices::TurningLaserSettings turning;
     devices::RpLidarSettings rplidar;

@@ -11,7 +11,7 @@
 namespace topogeo::devices {
 namespace {
 
-constexpr double kRad_per_cdeg = std::numbers::pi / 18'000.0;
+constexpr double kRadPerCdeg = std::numbers::pi / 18'000.0;
 /// After this many times the allowed silence the laser counts as failed.
 constexpr std::int64_t kFailedAfter = 5;
 /// The laser's time cannot be compared over a longer pause: at 13 turns a second half a turn takes
@@ -19,10 +19,10 @@ constexpr std::int64_t kFailedAfter = 5;
 constexpr std::uint32_t kLongestPause_ms = 30;
 /// Two packets of one laser differ in speed and width by the control of its motor, and by rounding.
 constexpr double kSameSpeed = 0.25;
-constexpr double kSameAngle_cdeg = 50.0;
+constexpr double kSameAngleCdeg = 50.0;
 /// A packet begins where the last one and the speed lead: the time stamps are whole milliseconds.
 constexpr double kStampError_s = 0.002;
-constexpr double kPlace_cdeg = 300.0;
+constexpr double kPlaceCdeg = 300.0;
 /// Time of the host and of the laser since the last packet differ by less, unless the laser
 /// restarted.
 constexpr std::int64_t kRestarted_ns = 1'000'000'000;
@@ -114,11 +114,11 @@ bool LdRobotDriver::follows(const LdPacket& packet) {
   }
   const double speed_cdeg_s = 100.0 * packet.speed_deg_s;
   const double expected_cdeg = speed_cdeg_s * 1e-3 * passed_ms;
-  const double advance_cdeg = (kLdTurn_cdeg + packet.start_cdeg - last_->start_cdeg) % kLdTurn_cdeg;
+  const double advance_cdeg = (kLdTurnCdeg + packet.start_cdeg - last_->start_cdeg) % kLdTurnCdeg;
   const bool fits =
       near_to(packet.speed_deg_s, last_->speed_deg_s, kSameSpeed, 0.0) &&
-      near_to(packet.span_cdeg(), last_->span_cdeg(), kSameSpeed, kSameAngle_cdeg) &&
-      near_to(advance_cdeg, expected_cdeg, 0.0, kPlace_cdeg + kStampError_s * speed_cdeg_s) &&
+      near_to(packet.span_cdeg(), last_->span_cdeg(), kSameSpeed, kSameAngleCdeg) &&
+      near_to(advance_cdeg, expected_cdeg, 0.0, kPlaceCdeg + kStampError_s * speed_cdeg_s) &&
       advance_cdeg > 0.0;
   if (!fits) ++implausible_;
   return fits;
@@ -132,7 +132,7 @@ void LdRobotDriver::add_beams(const LdPacket& packet, std::int64_t last_beam_ns)
     const LdPoint& point = packet.points[i];
     const auto place = static_cast<double>(i);
     TurningBeam beam;
-    beam.turned_rad = (packet.start_cdeg + place * step_cdeg) * kRad_per_cdeg;
+    beam.turned_rad = (packet.start_cdeg + place * step_cdeg) * kRadPerCdeg;
     beam.range_m = point.intensity < settings_.least_intensity ? 0.0 : 1e-3 * point.distance_mm;
     beam.time_ns = last_beam_ns - std::llround((kGaps - place) * step_ns);
     turns_.add(beam);

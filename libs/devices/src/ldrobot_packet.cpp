@@ -13,7 +13,7 @@ constexpr std::uint8_t kLdPolynomial = 0x4D;
 constexpr std::uint16_t kSlowest_deg_s = 360;
 constexpr std::uint16_t kFastest_deg_s = 30 * 360;
 /// Twelve points of a laser that turns that fast.
-constexpr unsigned kWidest_cdeg = 3000;
+constexpr unsigned kWidestCdeg = 3000;
 
 constexpr std::array<std::uint8_t, 256> ld_crc_table() {
   std::array<std::uint8_t, 256> table{};
@@ -53,10 +53,10 @@ LdPacket packet_of(std::span<const std::uint8_t> bytes) {
 }
 
 bool is_possible(const LdPacket& packet) {
-  return packet.start_cdeg < kLdTurn_cdeg && packet.end_cdeg < kLdTurn_cdeg &&
+  return packet.start_cdeg < kLdTurnCdeg && packet.end_cdeg < kLdTurnCdeg &&
          packet.time_ms <= kLdTimeWrap_ms && packet.speed_deg_s >= kSlowest_deg_s &&
          packet.speed_deg_s <= kFastest_deg_s && packet.span_cdeg() > 0 &&
-         packet.span_cdeg() <= kWidest_cdeg;
+         packet.span_cdeg() <= kWidestCdeg;
 }
 
 }  // namespace

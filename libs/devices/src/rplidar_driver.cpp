@@ -36,7 +36,7 @@ constexpr std::uint8_t kStatusError = 2;
 constexpr std::uint8_t kFirstWithPwm = 2;
 constexpr std::uint8_t kFirstWithSpeed = 6;
 constexpr std::uint16_t kDefaultPwm = 660;
-constexpr std::uint16_t kDefaultSpeed_rpm = 600;
+constexpr std::uint16_t kDefaultSpeedRpm = 600;
 
 TurningLaserSettings checked_rplidar(TurningLaserSettings settings) {
   settings.check();
@@ -44,7 +44,7 @@ TurningLaserSettings checked_rplidar(TurningLaserSettings settings) {
 }
 
 double step_deg(const RpPacket& packet, const RpPacket& next) {
-  return (kRpTurn_q6 + next.start_q6 - packet.start_q6) % kRpTurn_q6 / 64.0;
+  return (kRpTurnQ6 + next.start_q6 - packet.start_q6) % kRpTurnQ6 / 64.0;
 }
 
 }  // namespace
@@ -136,7 +136,7 @@ void RpLidarDriver::start_motor() {
   const bool model = settings_.motor == RpMotor::kModel;
   if (settings_.motor == RpMotor::kSpeed || (model && series_ >= kFirstWithSpeed)) {
     write(rp_motor_request(rp_command::kMotorSpeed,
-                           settings_.motor_value > 0 ? settings_.motor_value : kDefaultSpeed_rpm));
+                           settings_.motor_value > 0 ? settings_.motor_value : kDefaultSpeedRpm));
   } else if (settings_.motor == RpMotor::kPwm || (model && series_ >= kFirstWithPwm)) {
     write(rp_motor_request(rp_command::kMotorPwm,
                            settings_.motor_value > 0 ? settings_.motor_value : kDefaultPwm));

@@ -112,7 +112,7 @@ std::optional<RpSample> rp_sample(std::span<const std::uint8_t> bytes) {
   const bool starts = (bytes[0] & 1U) != 0;
   const bool inverse = (bytes[0] & 2U) != 0;
   const auto angle_q6 = static_cast<std::uint16_t>(word_at(bytes, 1) >> 1);
-  if (starts == inverse || (bytes[1] & 1U) == 0 || angle_q6 >= kRpTurn_q6) return std::nullopt;
+  if (starts == inverse || (bytes[1] & 1U) == 0 || angle_q6 >= kRpTurnQ6) return std::nullopt;
   return RpSample{starts, static_cast<std::uint8_t>(bytes[0] >> 2), angle_q6, word_at(bytes, 3)};
 }
 
@@ -140,7 +140,7 @@ std::optional<RpPacket> rp_packet(std::span<const std::uint8_t> bytes, std::uint
   RpPacket packet;
   packet.start_q6 = static_cast<std::uint16_t>(start & 0x7FFFU);
   packet.starts = start >> 15 != 0;
-  if (packet.start_q6 >= kRpTurn_q6) return std::nullopt;
+  if (packet.start_q6 >= kRpTurnQ6) return std::nullopt;
   if (type == rp_answer::kDense) {
     packet.points.reserve(kRpDensePoints);
     for (std::size_t at = kCabinsAt; at + 1 < bytes.size(); at += 2) {
@@ -155,7 +155,7 @@ std::optional<RpPacket> rp_packet(std::span<const std::uint8_t> bytes, std::uint
 
 double rp_angle_deg(const RpPacket& packet, std::uint16_t next_start_q6, std::size_t k,
                     bool compensation_signed) {
-  const double step_deg = (kRpTurn_q6 + next_start_q6 - packet.start_q6) % kRpTurn_q6 / 64.0 /
+  const double step_deg = (kRpTurnQ6 + next_start_q6 - packet.start_q6) % kRpTurnQ6 / 64.0 /
                           static_cast<double>(packet.points.size());
   int compensation_q3 = packet.points[k].compensation_q3;
   if (compensation_signed && compensation_q3 >= 32) compensation_q3 -= 64;

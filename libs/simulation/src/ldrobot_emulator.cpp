@@ -16,7 +16,7 @@ namespace {
 using devices::kLdPoints;
 
 constexpr double kTurn_deg = 360.0;
-constexpr double kRad_per_deg = std::numbers::pi / 180.0;
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 /// Period of the error of the motor's control.
 constexpr double kWobble_s = 5.0;
 /// Change of the motor's speed, turns a second each second.
@@ -32,7 +32,7 @@ std::uint16_t millimetres(float range_m, double range_max_m) {
 }
 
 std::uint16_t hundredths(double angle_deg) {
-  return static_cast<std::uint16_t>(std::lround(100.0 * angle_deg) % devices::kLdTurn_cdeg);
+  return static_cast<std::uint16_t>(std::lround(100.0 * angle_deg) % devices::kLdTurnCdeg);
 }
 
 }  // namespace
@@ -100,7 +100,7 @@ void LdRobotEmulator::send_packet() {
   const double step_deg = kTurn_deg * turns_hz / settings_.samples_hz;
   const double end_deg = angle_deg_ + kGaps * step_deg;
   // The last point is the rightmost: angles of the laser frame are counter-clockwise.
-  const BeamPattern beams{geometry::wrap_angle(-end_deg * kRad_per_deg), step_deg * kRad_per_deg,
+  const BeamPattern beams{geometry::wrap_angle(-end_deg * kRadPerDeg), step_deg * kRadPerDeg,
                           kLdPoints, settings_.range_max_m};
   const std::vector<float> ranges_m = ranges_(beams, next_ns_);
   devices::LdPacket packet;

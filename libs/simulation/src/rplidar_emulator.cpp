@@ -18,7 +18,7 @@ namespace answer_type = devices::rp_answer;
 namespace command_code = devices::rp_command;
 
 constexpr double kRpTurn_deg = 360.0;
-constexpr double kRpRad_per_deg = std::numbers::pi / 180.0;
+constexpr double kRpRadPerDeg = std::numbers::pi / 180.0;
 constexpr std::uint8_t kRequestStart = 0xA5;
 constexpr std::uint8_t kHasPayload = 0x80;
 /// Samples of a standard scan that the emulator measures at once.
@@ -33,7 +33,7 @@ double range_mm(float range_m, double range_max_m) {
 }
 
 std::uint16_t sixty_fourths(double angle_deg) {
-  return static_cast<std::uint16_t>(std::lround(64.0 * angle_deg) % devices::kRpTurn_q6);
+  return static_cast<std::uint16_t>(std::lround(64.0 * angle_deg) % devices::kRpTurnQ6);
 }
 
 }  // namespace
@@ -174,8 +174,8 @@ void RpLidarEmulator::speak_again(std::int64_t now_ns) {
 /// Ranges of the next `count` samples, in the order of their measurement.
 std::vector<float> RpLidarEmulator::measure(std::size_t count, double step_deg) {
   const double last_deg = angle_deg_ + static_cast<double>(count - 1) * step_deg;
-  const BeamPattern beams{geometry::wrap_angle(-last_deg * kRpRad_per_deg),
-                          step_deg * kRpRad_per_deg, count, settings_.range_max_m};
+  const BeamPattern beams{geometry::wrap_angle(-last_deg * kRpRadPerDeg), step_deg * kRpRadPerDeg,
+                          count, settings_.range_max_m};
   const std::vector<float> ranges_m = ranges_(beams, next_ns_);
   return {ranges_m.rbegin(), ranges_m.rend()};
 }

@@ -50,8 +50,8 @@ void wrong_model(LdRobotOnLine& laser, support::Random& random) {
     if (done) return;
     LdPacket other;
     other.speed_deg_s = static_cast<std::uint16_t>(1800 + random.below(3000));
-    other.start_cdeg = static_cast<std::uint16_t>(random.below(kLdTurn_cdeg));
-    other.end_cdeg = static_cast<std::uint16_t>((other.start_cdeg + 880U) % kLdTurn_cdeg);
+    other.start_cdeg = static_cast<std::uint16_t>(random.below(kLdTurnCdeg));
+    other.end_cdeg = static_cast<std::uint16_t>((other.start_cdeg + 880U) % kLdTurnCdeg);
     other.time_ms = static_cast<std::uint16_t>(random.below(kLdTimeWrap_ms));
     for (LdPoint& point : other.points) point = {12'345, 200};
     bytes = ld_bytes(other);

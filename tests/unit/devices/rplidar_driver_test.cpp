@@ -206,7 +206,7 @@ void rp_other_laser(RpOnLine& laser, support::Random& random) {
   laser.line.set_filter([&](std::vector<std::uint8_t>& bytes) {
     if (done || bytes.empty()) return;
     LdPacket packet;
-    packet.start_cdeg = static_cast<std::uint16_t>(random.below(kLdTurn_cdeg));
+    packet.start_cdeg = static_cast<std::uint16_t>(random.below(kLdTurnCdeg));
     packet.time_ms = static_cast<std::uint16_t>(random.below(kLdTimeWrap_ms));
     for (LdPoint& point : packet.points) point = {12'345, 200};
     bytes = ld_bytes(packet);

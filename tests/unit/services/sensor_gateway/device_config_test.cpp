@@ -10,6 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "topogeo/devices/laser_models.hpp"
+
 namespace topogeo::sensor_gateway {
 namespace {
 

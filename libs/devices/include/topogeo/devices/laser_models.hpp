@@ -7,22 +7,10 @@
 #include <string_view>
 
 #include "topogeo/devices/laser_driver.hpp"
-#include "topogeo/devices/pls_settings.hpp"
-#include "topogeo/devices/rplidar_settings.hpp"
+#include "topogeo/devices/laser_settings.hpp"
 #include "topogeo/devices/serial_driver.hpp"
-#include "topogeo/devices/turning_laser_settings.hpp"
 
 namespace topogeo::devices {
-
-struct LaserModel;
-
-/// Settings of a laser of any model; each driver uses its own part.
-struct LaserSettings {
-  const LaserModel* model = nullptr;  ///< a row of laser_models(); none: the first
-  PlsSettings pls;
-  RpLidarSettings rplidar;
-  TurningLaserSettings turning;  ///< of a laser with a field of view of a full turn
-};
 
 struct LaserModel {
   std::string_view family;  ///< lasers with the same protocol

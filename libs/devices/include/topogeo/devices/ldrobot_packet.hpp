@@ -18,7 +18,7 @@ namespace topogeo::devices {
 inline constexpr std::size_t kLdPoints = 12;
 inline constexpr std::size_t kLdPacket_bytes = 47;
 inline constexpr std::uint32_t kLdTimeWrap_ms = 30'000;
-inline constexpr unsigned kLdTurn_cdeg = 36'000;
+inline constexpr unsigned kLdTurnCdeg = 36'000;
 
 struct LdPoint {
   std::uint16_t distance_mm = 0;  ///< 0: no return
@@ -36,7 +36,7 @@ struct LdPacket {
 
   /// Angle from the first point to the last, hundredths of a degree.
   [[nodiscard]] unsigned span_cdeg() const {
-    return (kLdTurn_cdeg + end_cdeg - start_cdeg) % kLdTurn_cdeg;
+    return (kLdTurnCdeg + end_cdeg - start_cdeg) % kLdTurnCdeg;
   }
 };
 

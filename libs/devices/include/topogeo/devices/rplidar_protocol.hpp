@@ -95,7 +95,7 @@ struct RpPacket {
 inline constexpr std::size_t kRpPacket_bytes = 84;
 inline constexpr std::size_t kRpExpressPoints = 32;
 inline constexpr std::size_t kRpDensePoints = 40;
-inline constexpr unsigned kRpTurn_q6 = 360 * 64;
+inline constexpr unsigned kRpTurnQ6 = 360 * 64;
 /// `type` is kExpress or kDense; the packet has the number of points of that type.
 [[nodiscard]] std::vector<std::uint8_t> rp_bytes(const RpPacket& packet, std::uint8_t type);
 /// Empty if the marks or the checksum are wrong. `bytes` has kRpPacket_bytes.
