@@ -72,7 +72,8 @@ std::optional<scan::Scan> ScanGate::finish(devices::LaserScan&& scan) {
     if (answer->extrapolated) ++extrapolated_;
     out.T_odom_robot = answer->T_odom_robot;
     out.odometry_epoch = options_.odometry_epoch;
-    if (repeats(scan.ranges_m, out.T_odom_robot)) {
+    // A laser that hangs sends old readings with new stamps, which would bend the map.
+    if (repeated_.add(scan.ranges_m, out.T_odom_robot, out.odometry_epoch)) {
       drop(ScanDrop::kRepeated);
       return std::nullopt;
     }
@@ -103,21 +104,6 @@ std::vector<float> ScanGate::ranges_at_stamp(devices::LaserScan&& scan) const {
     if (!answer) return std::nullopt;
     return answer->T_odom_robot * options_.T_robot_laser;
   });
-}
-
-// A laser that hangs sends old readings with new stamps, which would bend the map.
-bool ScanGate::repeats(const std::vector<float>& ranges_m, const geometry::Pose2& T_odom_robot) {
-  constexpr double kMoved_m = 0.01;
-  constexpr double kMoved_rad = 0.005;
-  const bool empty = std::all_of(ranges_m.begin(), ranges_m.end(),
-                                 [](float range_m) { return range_m == scan::Scan::kNoReturn; });
-  if (empty || ranges_m != seen_m_) {
-    seen_m_ = ranges_m;
-    T_odom_seen_ = T_odom_robot;
-    return false;
-  }
-  const geometry::Pose2 moved = geometry::between(T_odom_seen_, T_odom_robot);
-  return moved.position_m().norm() > kMoved_m || std::fabs(moved.theta_rad) > kMoved_rad;
 }
 
 }  // namespace topogeo::sensor_gateway

@@ -14,6 +14,7 @@
 #include "topogeo/devices/laser_driver.hpp"
 #include "topogeo/geometry/odometry_track.hpp"
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/scan/repeated_readings.hpp"
 #include "topogeo/scan/scan.hpp"
 
 namespace topogeo::sensor_gateway {
@@ -85,8 +86,6 @@ class ScanGate {
   std::optional<scan::Scan> finish(devices::LaserScan&& scan);
   /// The ranges as if all had been measured at the stamp.
   [[nodiscard]] std::vector<float> ranges_at_stamp(devices::LaserScan&& scan) const;
-  [[nodiscard]] bool repeats(const std::vector<float>& ranges_m,
-                             const geometry::Pose2& T_odom_robot);
   void drop(ScanDrop reason) { ++drops_[static_cast<std::size_t>(reason)]; }
 
   ScanGateOptions options_;
@@ -94,8 +93,7 @@ class ScanGate {
   bool open_ = false;
   std::deque<Waiting> waiting_;
   std::optional<Geometry> geometry_;
-  std::vector<float> seen_m_;    // ranges of the last scan ...
-  geometry::Pose2 T_odom_seen_;  // ... and the robot's pose when they first came
+  scan::RepeatedReadings repeated_{1};
   std::int64_t last_stamp_ns_ = std::numeric_limits<std::int64_t>::min();
   std::uint64_t next_sequence_ = 0;
   std::uint64_t extrapolated_ = 0;

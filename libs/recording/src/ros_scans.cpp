@@ -96,6 +96,12 @@ std::optional<RosScans::Candidate> RosScans::take(const RawMessage& message) {
       skip_without_pose(*stamp_ns);
       return std::nullopt;
     }
+    // No echo has no place that a correction of motion could move.
+    ros::limit_ranges(sweep.ranges_m, range_limit_m_);
+    if (is_repeated(sweep, *pose)) {
+      skip_(SkipReason::kRepeated, scans_, std::string(scan::kRepeatedText));
+      return std::nullopt;
+    }
     Candidate candidate;
     candidate.place = scans_;
     candidate.scan.stamp_ns = *stamp_ns;
@@ -134,10 +140,14 @@ void RosScans::skip_without_pose(std::int64_t stamp_ns) {
   }
 }
 
+// A check of the log counts such scans by itself.
+bool RosScans::is_repeated(const ros::Sweep& sweep, const ScreenedOdometry::Answer& pose) {
+  return beams_ == Beams::kOnePattern &&
+         repeated_.add(sweep.ranges_m, pose.T_odom_robot, pose.epoch);
+}
+
 void RosScans::put_beams(ros::Sweep sweep, scan::Scan& scan) const {
   const Survey& survey = drive_->survey;
-  // No echo has no place that a correction of motion could move.
-  ros::limit_ranges(sweep.ranges_m, range_limit_m_);
   if (beams_ == Beams::kOnePattern) {
     // An unknown mounting is assumed at the robot's centre.
     const geometry::Pose2 T_robot_laser =

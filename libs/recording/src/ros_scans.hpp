@@ -11,6 +11,7 @@
 
 #include "topogeo/recording/message_source.hpp"
 #include "topogeo/recording/survey.hpp"
+#include "topogeo/scan/repeated_readings.hpp"
 #include "topogeo/scan/scan_sequence.hpp"
 
 #include "timeline.hpp"
@@ -50,6 +51,8 @@ class RosScans {
   /// beams.
   [[nodiscard]] ros::Sweep read_sweep(const RawMessage& message) const;
   void skip_without_pose(std::int64_t stamp_ns);
+  /// Whether a laser that hangs has sent these readings before.
+  bool is_repeated(const ros::Sweep& sweep, const ScreenedOdometry::Answer& pose);
   void put_beams(ros::Sweep sweep, scan::Scan& scan) const;
 
   std::shared_ptr<const Drive> drive_;
@@ -57,6 +60,7 @@ class RosScans {
   double range_limit_m_;
   Beams beams_;
   scan::ScanSequence::Skip skip_;
+  scan::RepeatedReadings repeated_;
   std::unique_ptr<MessageSource> source_;
   std::uint64_t scans_ = 0;
   bool ended_ = false;

@@ -44,6 +44,8 @@ std::string_view describe(SkipReason reason) {
       return "no odometry at its time";
     case SkipReason::kOdometryEnds:
       return "before or after all odometry";
+    case SkipReason::kRepeated:
+      return "repeated readings of a laser that hangs";
   }
   return "unknown";
 }

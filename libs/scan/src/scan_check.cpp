@@ -60,6 +60,8 @@ LogFault fault_of(SkipReason reason) {
     case SkipReason::kNoOdometry:
     case SkipReason::kOdometryEnds:
       return LogFault::kNoOdometry;
+    case SkipReason::kRepeated:
+      return LogFault::kStuck;
   }
   return LogFault::kFields;
 }

@@ -42,8 +42,14 @@ void ScreenedScans::decide() {
   };
   for (const geometry::OdometryScreen::Reading& reading : screen_.take()) {
     cut_before(reading.number);
-    good_.push_back(leave());
-    good_.back().scan.odometry_epoch = reading.epoch;
+    ScanSequence::Candidate candidate = leave();
+    Scan& scan = candidate.scan;
+    scan.odometry_epoch = reading.epoch;
+    if (repeated_.add(scan.ranges_m, scan.T_odom_robot, scan.odometry_epoch)) {
+      skip_(SkipReason::kRepeated, candidate.place, std::string(kRepeatedText));
+    } else {
+      good_.push_back(std::move(candidate));
+    }
   }
   cut_before(screen_.decided());
 }

@@ -1,4 +1,5 @@
-// The scans of a log whose odometry can be; each has the number of its odometry epoch.
+// The scans of a log whose odometry can be and whose laser does not hang; each has the number of
+// its odometry epoch.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "topogeo/geometry/odometry_screen.hpp"
+#include "topogeo/scan/repeated_readings.hpp"
 #include "topogeo/scan/scan_sequence.hpp"
 
 namespace topogeo::scan {
@@ -29,6 +31,7 @@ class ScreenedScans {
   ScanSequence::Source source_;
   ScanSequence::Skip skip_;
   geometry::OdometryScreen screen_;
+  RepeatedReadings repeated_;
   std::deque<ScanSequence::Candidate> waiting_;  // undecided
   std::uint64_t first_waiting_ = 0;              // its number in the screen
   std::deque<ScanSequence::Candidate> good_;

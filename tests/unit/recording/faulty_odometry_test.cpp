@@ -1,4 +1,4 @@
-// Odometry that cannot be, in logs of each format.
+// Odometry that cannot be, and a laser that hangs, in logs of each format.
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -21,10 +21,10 @@ std::vector<scan::Scan> long_drive() {
     scan.sequence = static_cast<std::uint64_t>(i);
     scan.stamp_ns = 1'600'000'000'000'000'000 + i * 100'000'000LL;
     scan.angle_min_rad = -0.75;
-    scan.angle_step_rad = 0.25;
+    scan.angle_step_rad = 0.0625;
     const double turn = 0.025 * (i + 40);
     scan.T_odom_robot = {2.0 * std::sin(turn), 2.0 - 2.0 * std::cos(turn), turn};
-    for (int beam = 0; beam < 7; ++beam) {
+    for (int beam = 0; beam < 25; ++beam) {
       scan.ranges_m.push_back(1.0F + 0.1F * static_cast<float>(beam + i % 17));
     }
     scans.push_back(std::move(scan));
@@ -43,10 +43,12 @@ class FaultyOdometry : public RecordingFiles, public testing::WithParamInterface
     std::vector<scan::Scan> scans;
     while (std::optional<scan::Scan> scan = reader.next()) scans.push_back(*std::move(scan));
     notes_ = reader.statistics().notes;
+    repeated_ = reader.statistics().skipped_for(scan::SkipReason::kRepeated);
     return scans;
   }
 
   std::vector<std::string> notes_;
+  std::uint64_t repeated_ = 0;
 };
 
 INSTANTIATE_TEST_SUITE_P(Formats, FaultyOdometry,
@@ -61,6 +63,27 @@ TEST_P(FaultyOdometry, IsNoneInASoundDrive) {
   EXPECT_EQ(scans.size(), 100U);
   EXPECT_EQ(scans.back().odometry_epoch, scans.front().odometry_epoch);
   EXPECT_THAT(notes_, IsEmpty());
+  EXPECT_EQ(repeated_, 0U);
+}
+
+TEST_P(FaultyOdometry, RevealsReadingsThatALaserRepeats) {
+  std::vector<scan::Scan> drive = long_drive();
+  for (std::size_t i = 41; i < 60; ++i) drive[i].ranges_m = drive[40].ranges_m;
+  const std::vector<scan::Scan> scans = read(drive);
+  ASSERT_EQ(scans.size(), 81U);
+  EXPECT_EQ(repeated_, 19U);
+  EXPECT_EQ(scans[40].stamp_ns, drive[40].stamp_ns);
+  EXPECT_EQ(scans[41].stamp_ns, drive[60].stamp_ns);
+  EXPECT_EQ(scans[41].sequence, 41U);
+}
+
+TEST_P(FaultyOdometry, DoesNotBlameARobotThatStands) {
+  std::vector<scan::Scan> drive = long_drive();
+  for (std::size_t i = 1; i < drive.size(); ++i) {
+    drive[i].ranges_m = drive[0].ranges_m;
+    drive[i].T_odom_robot = drive[0].T_odom_robot;
+  }
+  EXPECT_EQ(read(drive).size(), 100U);
 }
 
 TEST_P(FaultyOdometry, OfOneMessageMovesNoScan) {

@@ -126,6 +126,7 @@ TEST_F(LogFiles, WrittenLogsStateTheMountingAndKeepTheOdometry) {
       scan.angle_min_rad = -std::numbers::pi / 2.0;
       scan.angle_step_rad = std::numbers::pi / 180.0;
       scan.ranges_m.assign(beams, 2.0F);
+      scan.ranges_m.front() += 0.01F * static_cast<float>(i);
       scan.T_odom_robot = on_circle(i);
       writer.write(scan);
       written.push_back(scan);

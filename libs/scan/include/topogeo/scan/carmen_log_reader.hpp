@@ -36,8 +36,12 @@ enum class SkipReason : std::uint8_t {
   kTruncated,     ///< the compressed data ends early or is damaged; the rest is lost
   kNoOdometry,    ///< in a recording: a gap of odometry around the time of the scan
   kOdometryEnds,  ///< in a recording: before the first odometry or after the last
+  kRepeated,      ///< the readings of the scan before, although the robot moves
 };
-constexpr std::size_t kSkipReasonCount = 10;
+constexpr std::size_t kSkipReasonCount = 11;
+/// Text for a scan that is skipped for kRepeated.
+inline constexpr std::string_view kRepeatedText =
+    "expected new readings, because the robot moves, got those of the scan before";
 
 /// Short text for a report: "bad range".
 std::string_view describe(SkipReason reason);
