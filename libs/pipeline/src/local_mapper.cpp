@@ -39,6 +39,7 @@ LocalMapper::LocalMapper(const LocalMapperConfig& config, std::string robot_id,
     : config_(config),
       robot_id_(std::move(robot_id)),
       tracker_(config.tracker),
+      carried_(config.tracker, config.T_robot_laser),
       diagram_maker_(config.voronoi),
       map_builder_(config.local_map),
       session_salt_(session_salt),
@@ -51,7 +52,21 @@ std::optional<LocalMap> LocalMapper::add(const scan::Scan& scan) {
     const std::optional<Pose2> T_stop_robot = find_again(scan);
     return T_stop_robot ? make_stop(scan, *T_stop_robot) : begin_session(scan);
   }
-  const localization::TrackedPose pose = tracker_.track(points_of(scan), scan.T_odom_robot);
+  const std::vector<ScanPoint> points = points_of(scan);
+  const localization::TrackedPose pose = tracker_.track(points, scan.T_odom_robot);
+  const Pose2& T = pose.T_stop_robot;
+  const CarriedWatch::State carried = carried_.add(scan, points, pose);
+  if (carried == CarriedWatch::State::kElsewhere) return begin_session(scan);
+  if (is_stop(pose, carried == CarriedWatch::State::kUnclear)) return make_stop(scan, T);
+  track_.add({scan.sequence, scan.stamp_ns, scan.T_odom_robot, T, pose.matched});
+  last_ = scan;
+  return std::nullopt;
+}
+
+bool LocalMapper::is_stop(const localization::TrackedPose& pose, bool maybe_carried) const {
+  const double driven_m = std::sqrt(pose.T_stop_odometry.position_m().squaredNorm());
+  const bool far_by_odometry = driven_m >= kFarthestByOdometry * config_.stop_distance_m;
+  if (maybe_carried) return far_by_odometry;
   const Pose2& T = pose.T_stop_robot;
   // A scan that cannot be placed relative to the stop needs the wider search that only stops get,
   // but a covered laser must not make a stop of every scan. If scans are sparse, waiting for one
@@ -60,16 +75,10 @@ std::optional<LocalMap> LocalMapper::add(const scan::Scan& scan) {
   const double step_m = std::sqrt((T.position_m() - T_last.position_m()).squaredNorm());
   const double turn_rad = std::fabs(geometry::wrap_angle(T.theta_rad - T_last.theta_rad));
   const double distance_m = std::sqrt(T.position_m().squaredNorm());
-  const double driven_m = std::sqrt(pose.T_stop_odometry.position_m().squaredNorm());
   const bool lost =
       !pose.matched && (distance_m >= kLostStop_m || std::fabs(T.theta_rad) >= kLostStop_rad);
-  const bool stop = lost || distance_m + 0.5 * step_m >= config_.stop_distance_m ||
-                    driven_m >= kFarthestByOdometry * config_.stop_distance_m ||
-                    std::fabs(T.theta_rad) + 0.5 * turn_rad >= config_.stop_turn_rad;
-  if (stop) return make_stop(scan, T);
-  track_.add({scan.sequence, scan.stamp_ns, scan.T_odom_robot, T, pose.matched});
-  last_ = scan;
-  return std::nullopt;
+  return lost || far_by_odometry || distance_m + 0.5 * step_m >= config_.stop_distance_m ||
+         std::fabs(T.theta_rad) + 0.5 * turn_rad >= config_.stop_turn_rad;
 }
 
 std::optional<LocalMap> LocalMapper::finish() {
@@ -125,6 +134,7 @@ LocalMap LocalMapper::make_stop(const scan::Scan& scan, const Pose2& T_stop_robo
   map_builder_.build(diagram_, scan, config_.T_robot_laser, map);
   last_.reset();
   tracker_.start(map.points, config_.T_robot_laser, scan.T_odom_robot);
+  carried_.start(scan);
   return map;
 }
 

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/topomap/odometry_contradiction.hpp"
 
 namespace topogeo::pipeline {
 namespace {
@@ -103,6 +104,48 @@ void add(std::vector<PathDisagreement>& found, Disagreement kind, const Part& pa
   last->last_id = part.last;
 }
 
+/// The steps between stops of which the scans contradict the odometry, successive ones as one.
+std::vector<PathDisagreement> contradicted_steps(std::span<const topomap::LocalMap> maps) {
+  std::vector<PathDisagreement> found;
+  for (std::uint32_t stop = 1; stop < maps.size(); ++stop) {
+    const topomap::LocalMap& before = maps[stop - 1];
+    const topomap::LocalMap& map = maps[stop];
+    if (map.starts_drive || before.stop.session != map.stop.session ||
+        before.odometry_epoch != map.odometry_epoch) {
+      continue;
+    }
+    const auto step = topomap::odometry_contradiction(before.T_odom_robot, map);
+    if (!step) continue;
+    if (found.empty() || found.back().last_id + 1 != stop) {
+      found.push_back({Disagreement::kWheels, stop - 1, stop - 1, 0.0, 0.0, 0.0});
+    }
+    PathDisagreement& part = found.back();
+    part.last_id = stop;
+    part.odometry_m += step->odometry_m;
+    part.corrected_m += step->scans_m;
+    part.turn_rad = geometry::wrap_angle(part.turn_rad + step->turn_rad);
+  }
+  return found;
+}
+
+/// The stops at which a robot goes on elsewhere although its odometry has hardly moved.
+std::vector<PathDisagreement> carried_stops(std::span<const topomap::LocalMap> maps) {
+  constexpr double kHardly_m = 2.0;
+  std::vector<PathDisagreement> found;
+  for (std::uint32_t stop = 1; stop < maps.size(); ++stop) {
+    const topomap::LocalMap& before = maps[stop - 1];
+    const topomap::LocalMap& map = maps[stop];
+    if (!map.starts_drive || map.stop.number != 0 || before.robot_id != map.robot_id ||
+        before.odometry_epoch != map.odometry_epoch || map.odometry_epoch == 0) {
+      continue;
+    }
+    const double odometry_m = length_m(geometry::between(before.T_odom_robot, map.T_odom_robot));
+    if (odometry_m > kHardly_m) continue;
+    found.push_back({Disagreement::kCarried, stop - 1, stop, odometry_m, 0.0, 0.0});
+  }
+  return found;
+}
+
 /// The scans before a stop, as the trajectory places them: moved with the previous stop.
 std::optional<PathDisagreement> jump_before(const Path& path, std::uint32_t stop) {
   const topomap::LocalMap& map = path.map(stop);
@@ -148,6 +191,8 @@ PathComparison compare_with_odometry(const storage::MapDocument& document) {
     if (!path.step_to(stop)) continue;
     if (const auto jump = jump_before(path, stop)) found.push_back(*jump);
   }
+  for (const auto& part : contradicted_steps(document.local_maps)) found.push_back(part);
+  for (const auto& part : carried_stops(document.local_maps)) found.push_back(part);
   std::ranges::stable_sort(found, {}, &PathDisagreement::kind);
   if (!shares.empty()) {
     const auto middle = std::next(shares.begin(), static_cast<std::ptrdiff_t>(shares.size() / 2));

@@ -188,6 +188,10 @@ const char* name_of(PathDisagreement::Kind kind) {
       return "turn";
     case PathDisagreement::Kind::kJump:
       return "jump";
+    case PathDisagreement::Kind::kWheels:
+      return "wheels";
+    case PathDisagreement::Kind::kCarried:
+      return "carried";
   }
   return "unknown";
 }
@@ -220,6 +224,27 @@ std::string stretch_lines(const std::vector<OdometryStretchEntry>& all) {
   return text;
 }
 
+/// A part whose odometry does not count.
+bool is_left_out(const PathDisagreementEntry& d) {
+  return d.kind == "wheels" || d.kind == "carried";
+}
+
+std::string left_out_line(const PathDisagreementEntry& d) {
+  if (d.kind == "carried") {
+    return fmt::format(
+        "odometry: stop {}: the scans show another place while the wheels stand: the robot was "
+        "carried, and the scans have found it again\n",
+        d.last_stop);
+  }
+  const char* cause =
+      d.corrected_m > d.odometry_m ? "the robot was carried or pushed" : "the wheels spun";
+  return fmt::format(
+      "odometry: stops {} to {}: {:.2f} m by the wheels, {:.2f} m by the scans, {:.0f} deg between "
+      "them: {}, and the scans count\n",
+      d.first_stop, d.last_stop, d.odometry_m, d.corrected_m, degrees(std::fabs(d.turn_rad)),
+      cause);
+}
+
 std::string disagreement_line(const PathDisagreementEntry& d) {
   const std::string place = fmt::format("stops {} to {}", d.first_stop, d.last_stop);
   if (d.kind == "turn") {
@@ -228,6 +253,27 @@ std::string disagreement_line(const PathDisagreementEntry& d) {
   }
   return fmt::format("warning: {}: the robot {} {:.2f} m in the map, {:.2f} m by odometry\n", place,
                      d.kind == "jump" ? "jumps" : "drives", d.corrected_m, d.odometry_m);
+}
+
+std::string disagreement_lines(const std::vector<PathDisagreementEntry>& all) {
+  constexpr std::size_t kMostLines = 3;  // of each sort
+  std::string text;
+  std::size_t left_out = 0;
+  std::size_t warnings = 0;
+  for (const PathDisagreementEntry& d : all) {
+    if (is_left_out(d)) {
+      if (++left_out <= kMostLines) text += left_out_line(d);
+    } else if (++warnings <= kMostLines) {
+      text += disagreement_line(d);
+    }
+  }
+  if (left_out > kMostLines) {
+    text += fmt::format("odometry: {} more such parts in report.json\n", left_out - kMostLines);
+  }
+  if (warnings > kMostLines) {
+    text += fmt::format("warning: {} more such parts in report.json\n", warnings - kMostLines);
+  }
+  return text;
 }
 
 }  // namespace
@@ -267,15 +313,7 @@ std::string quality_text(const Report& report) {
   text += '\n';
   if (!quality.advice.empty()) text += "try: " + quality.advice + '\n';
   text += stretch_lines(quality.odometry_stretches);
-  constexpr std::size_t kMostWarnings = 3;
-  const auto& all = quality.path_disagreements;
-  for (std::size_t i = 0; i < std::min(all.size(), kMostWarnings); ++i) {
-    text += disagreement_line(all[i]);
-  }
-  if (all.size() > kMostWarnings) {
-    text += fmt::format("warning: {} more such parts in report.json\n", all.size() - kMostWarnings);
-  }
-  return text;
+  return text + disagreement_lines(quality.path_disagreements);
 }
 
 bool is_useless(const Report& report) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "topogeo/support/hash.hpp"
+#include "topogeo/topomap/odometry_contradiction.hpp"
 
 namespace topogeo::topomap {
 namespace {
@@ -68,7 +69,8 @@ std::uint64_t content_hash(const LocalMap& map, std::uint32_t id) {
 }
 
 bool has_odometry_between(const LocalMap& before, const LocalMap& after) {
-  return !after.starts_drive && before.odometry_epoch == after.odometry_epoch;
+  return !after.starts_drive && before.odometry_epoch == after.odometry_epoch &&
+         !odometry_contradiction(before.T_odom_robot, after);
 }
 
 LocalMap numbered(LocalMap map, std::uint32_t id, bool starts_drive) {

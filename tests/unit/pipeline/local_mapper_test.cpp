@@ -1,5 +1,6 @@
 #include "topogeo/pipeline/local_mapper.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -225,6 +226,48 @@ TEST_F(LocalMapperTest, ANewEpochElsewhereBeginsASession) {
   EXPECT_EQ(stop->stop.number, 0U);
   EXPECT_TRUE(stop->track.empty());
   EXPECT_EQ(stop->T_previous_robot, Pose2{});
+}
+
+// --- a robot that is carried
+
+/// At the robot's odometry, a scan from another place.
+scan::Scan displaced(scan::Scan scan, const Pose2& T_odom_robot) {
+  scan.T_odom_robot = T_odom_robot;
+  return scan;
+}
+
+TEST_F(LocalMapperTest, ARobotThatIsCarriedOutOfSightBeginsASession) {
+  LocalMapper mapper({}, "r");
+  const topomap::LocalMap first = *mapper.add(scan_at({7.2, 2.5, 0.0}));
+  EXPECT_FALSE(mapper.add(scan_at({7.25, 2.5, 0.0})));
+  const Pose2 T_odom_lifted{7.25, 2.5, 0.0};
+  std::optional<topomap::LocalMap> stop;
+  int scans = 0;
+  for (; scans < 30 && !stop; ++scans) {
+    const double ahead_m = 0.02 * scans;  // it drives on at once
+    stop = mapper.add(displaced(scan_at(Pose2{1.5, 3.0, 0.3} * Pose2{ahead_m, 0.0, 0.0}),
+                                T_odom_lifted * Pose2{ahead_m, 0.0, 0.0}));
+  }
+  ASSERT_TRUE(stop);
+  EXPECT_NE(stop->stop.session, first.stop.session);
+  EXPECT_EQ(stop->stop.number, 0U);
+  EXPECT_TRUE(stop->track.empty());
+  EXPECT_LE(scans, 12) << "a second is enough";
+}
+
+TEST_F(LocalMapperTest, APersonBeforeTheLaserCarriesNothing) {
+  LocalMapper mapper({}, "r");
+  const topomap::LocalMap first = *mapper.add(scan_at({1.0, 1.0, 0.0}));
+  for (int i = 0; i < 50; ++i) {
+    scan::Scan scan = scan_at({1.0 + 0.002 * i, 1.0, 0.0});
+    for (std::size_t beam = 0; beam < scan.ranges_m.size() * 3 / 4; ++beam) {
+      scan.ranges_m[beam] = std::min(scan.ranges_m[beam], 0.6F);
+    }
+    const auto stop = mapper.add(scan);
+    if (stop) {
+      EXPECT_EQ(stop->stop.session, first.stop.session) << i;
+    }
+  }
 }
 
 }  // namespace

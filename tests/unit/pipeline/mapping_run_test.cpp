@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "topogeo/pipeline/localization_run.hpp"
+#include "topogeo/pipeline/path_disagreement.hpp"
 #include "topogeo/pipeline/trajectory_error.hpp"
 #include "topogeo/results/outputs.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
@@ -56,6 +57,36 @@ TEST(MappingRunTest, CorrectsTheRoundThroughARoom) {
   EXPECT_LT(errors.corrected.rms_m, 0.05);
   EXPECT_LT(errors.corrected.rms_m, 0.5 * errors.odometry.rms_m);
   EXPECT_FALSE(document.global_map.branches.empty());
+}
+
+// --- odometry that the scans contradict
+
+/// The log with `more` added to the odometry of each of these steps between scans.
+simulation::SimulatedLog with_steps(simulation::SimulatedLog log, std::size_t first,
+                                    std::size_t steps, const geometry::Pose2& more) {
+  const std::vector<scan::Scan> recorded = log.scans;
+  for (std::size_t i = first; i < log.scans.size(); ++i) {
+    geometry::Pose2 step = between(recorded[i - 1].T_odom_robot, recorded[i].T_odom_robot);
+    if (i < first + steps) step = step * more;
+    log.scans[i].T_odom_robot = log.scans[i - 1].T_odom_robot * step;
+  }
+  return log;
+}
+
+bool has_disagreement(const storage::MapDocument& document, PathDisagreement::Kind kind) {
+  return std::ranges::any_of(compare_with_odometry(document).disagreements,
+                             [&](const PathDisagreement& d) { return d.kind == kind; });
+}
+
+TEST(MappingRunTest, WheelsThatSpinDoNotBendTheMap) {
+  const simulation::SimulatedLog sound = simulated("room");
+  const simulation::SimulatedLog log =
+      with_steps(sound, sound.scans.size() / 2, 5, {0.4, 0.0, 0.0});
+  const storage::MapDocument document = mapped(log);
+  const Errors errors = errors_of(log, document);
+  EXPECT_LT(errors.corrected.rms_m, 0.05);
+  EXPECT_TRUE(has_disagreement(document, PathDisagreement::Kind::kWheels));
+  EXPECT_FALSE(has_disagreement(mapped(sound), PathDisagreement::Kind::kWheels));
 }
 
 TEST(MappingRunTest, TheMapKeepsTheMeasurementsThatHoldItsPoses) {

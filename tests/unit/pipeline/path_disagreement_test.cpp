@@ -76,6 +76,41 @@ TEST(PathDisagreement, NamesAJumpBetweenScans) {
   EXPECT_NEAR(comparison.disagreements[0].corrected_m, 2.0, 1e-9);
 }
 
+TEST(PathDisagreement, NamesStepsOfWhichTheScansContradictTheOdometry) {
+  storage::MapDocument document = drive([](std::uint32_t id) { return Pose2{0.5 * id, 0.0, 0.0}; });
+  // The wheels spin on the steps to stops 6 and 7.
+  for (std::uint32_t id = 6; id < 12; ++id) {
+    const double spun_m = id == 6 ? 1.0 : 2.0;
+    topomap::LocalMap& map = document.local_maps[id];
+    map.T_odom_robot.x_m += spun_m;
+    map.T_previous_robot = {0.5, 0.0, 0.0};
+    map.track.push_back({0, 0, map.T_odom_robot, map.T_previous_robot, true});
+  }
+  const auto comparison = compare_with_odometry(document);
+  ASSERT_EQ(comparison.disagreements.size(), 1U) << "no other length, no jump";
+  const PathDisagreement& found = comparison.disagreements[0];
+  EXPECT_EQ(found.kind, Disagreement::kWheels);
+  EXPECT_EQ(found.first_id, 5U);
+  EXPECT_EQ(found.last_id, 7U);
+  EXPECT_NEAR(found.odometry_m, 3.0, 1e-9);
+  EXPECT_NEAR(found.corrected_m, 1.0, 1e-9);
+}
+
+TEST(PathDisagreement, NamesTheStopWhereACarriedRobotGoesOn) {
+  storage::MapDocument document = drive([](std::uint32_t id) { return Pose2{0.5 * id, 0.0, 0.0}; });
+  for (std::uint32_t id = 0; id < 12; ++id) {
+    document.local_maps[id].odometry_epoch = 7;
+    document.local_maps[id].stop = {id < 6 ? 1U : 2U, id < 6 ? id : id - 6};
+  }
+  document.local_maps[6].starts_drive = true;
+  const auto comparison = compare_with_odometry(document);
+  ASSERT_EQ(comparison.disagreements.size(), 1U);
+  EXPECT_EQ(comparison.disagreements[0].kind, Disagreement::kCarried);
+  EXPECT_EQ(comparison.disagreements[0].last_id, 6U);
+  document.local_maps[6].odometry_epoch = 8;
+  EXPECT_TRUE(compare_with_odometry(document).disagreements.empty()) << "another base";
+}
+
 TEST(PathDisagreement, ComparesNothingAcrossDrives) {
   storage::MapDocument document = drive([](std::uint32_t id) { return Pose2{2.0 * id, 0.0, 0.0}; });
   for (topomap::LocalMap& map : document.local_maps) map.starts_drive = true;

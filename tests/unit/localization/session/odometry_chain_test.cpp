@@ -55,6 +55,18 @@ TEST(OdometryChain, TheTrackBeforeANewEpochIsOfTheOldOne) {
   EXPECT_LT(geometry::difference(next->track[0].T_odom_robot, {5.8, 6.0, 0.0}).norm(), 1e-12);
 }
 
+TEST(OdometryChain, GoesOnByTheScansWhereTheyContradictOdometry) {
+  OdometryChain chain;
+  static_cast<void>(chain.add(stop(1, 0, 4, {5.0, 6.0, 0.0}, {})));
+  auto slipped =
+      std::make_shared<topomap::LocalMap>(*stop(1, 1, 4, {6.5, 6.0, 0.0}, {0.1, 0.0, 0.0}));
+  slipped->track.push_back({0, 0, {6.3, 6.0, 0.0}, {0.1, 0.0, 0.0}, true});
+  const auto chained = chain.add(slipped);
+  expect_at(chained, {5.1, 6.0, 0.0});
+  EXPECT_EQ(chained->track[0].T_odom_robot, slipped->track[0].T_odom_robot);
+  expect_at(chain.add(stop(1, 2, 4, {7.5, 6.0, 0.0}, {1.0, 0.0, 0.0})), {6.1, 6.0, 0.0});
+}
+
 TEST(OdometryChain, GoesOnAfterAStopOfAStoredMap) {
   OdometryChain chain;
   chain.start_after(*stop(1, 6, 4, {5.0, 6.0, 0.0}, {}));

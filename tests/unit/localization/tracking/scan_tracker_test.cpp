@@ -79,6 +79,35 @@ TEST_F(ScanTrackerTest, AScanOfAnotherPlaceDoesNotMatch) {
   EXPECT_LT(test::distance_m(pose.T_stop_robot, odometry(1)), 1e-9);
 }
 
+TEST_F(ScanTrackerTest, WheelsThatSpinMoveNothing) {
+  const world::World room = test::world("room");
+  constexpr Pose2 kPlace{3.0, 0.8, 0.4};
+  std::uint32_t scan = 0;
+  const auto points_at = [&](const Pose2& T) {
+    return test::map_at(room, kPlace * T, ++scan).points;
+  };
+  tracker_.start(points_at({}), {}, {});
+  Pose2 T_odom_robot;
+  for (int i = 0; i < 5; ++i) {
+    T_odom_robot = T_odom_robot * Pose2{0.4, 0.0, 0.0};
+    const TrackedPose pose = tracker_.track(points_at({}), T_odom_robot);
+    EXPECT_TRUE(pose.matched) << i;
+    EXPECT_LT(test::distance_m(pose.T_stop_robot, {}), 0.03) << i;
+  }
+  const Pose2 T_stop_robot{0.2, 0.0, 0.0};
+  const TrackedPose next = tracker_.track(points_at(T_stop_robot), T_odom_robot * T_stop_robot);
+  EXPECT_TRUE(next.matched);
+  EXPECT_LT(test::distance_m(next.T_stop_robot, T_stop_robot), 0.03) << "the wheels roll again";
+}
+
+TEST_F(ScanTrackerTest, ARobotThatIsCarriedIsFollowedByItsScans) {
+  for (std::size_t i = 1; i <= 5; ++i) {
+    const TrackedPose pose = tracker_.track(points(i), T_odom_[0]);
+    EXPECT_TRUE(pose.matched) << i;
+    EXPECT_LT(test::distance_m(pose.T_stop_robot, T_stop_robot_[i]), 0.05) << i;
+  }
+}
+
 TEST_F(ScanTrackerTest, StartsAgainAtEachStop) {
   for (std::size_t i = 1; i <= 4; ++i) tracker_.track(points(i), T_odom_[i]);
   tracker_.start(points(4), {}, T_odom_[4]);
@@ -123,6 +152,18 @@ TEST_P(BareCorridor, IsFollowedByOdometry) {
     EXPECT_NEAR(pose.T_stop_robot.y_m, T.y_m, 0.03) << i;
     EXPECT_NEAR(pose.T_stop_robot.theta_rad, T.theta_rad, 0.02) << i;
     EXPECT_DOUBLE_EQ(pose.T_stop_odometry.x_m, kStep_m * i) << i;
+  }
+}
+
+// No scan contradicts the wheels there.
+TEST_P(BareCorridor, LetsTheWheelsDecideAlongIt) {
+  ScanTracker tracker{{}};
+  tracker.start(points({}), {}, {});
+  for (int i = 1; i <= 4; ++i) {
+    const Pose2 T_odom_robot{0.4 * i, 0.0, 0.0};
+    const TrackedPose pose = tracker.track(points(T_odom_robot), T_odom_robot);
+    EXPECT_FALSE(pose.against_odometry) << i;
+    EXPECT_NEAR(pose.T_stop_robot.x_m, T_odom_robot.x_m, 0.15) << i;
   }
 }
 

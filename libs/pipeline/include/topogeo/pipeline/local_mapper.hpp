@@ -10,6 +10,7 @@
 
 #include "topogeo/localization/tracking/scan_tracker.hpp"
 #include "topogeo/pipeline/bounded_track.hpp"
+#include "topogeo/pipeline/carried_watch.hpp"
 #include "topogeo/pipeline/local_mapper_config.hpp"
 #include "topogeo/scan/scan.hpp"
 #include "topogeo/topomap/local_map.hpp"
@@ -35,7 +36,8 @@ class LocalMapper {
 
   /// Takes the next scan, in time order; returns a local map if the robot is at a stop. The first
   /// scan is a stop, and so is the first of each odometry epoch: if it can be placed relative to
-  /// the last stop it belongs to that session, otherwise it begins another one.
+  /// the last stop it belongs to that session, otherwise it begins another one. A robot that was
+  /// carried away begins another session, too.
   std::optional<topomap::LocalMap> add(const scan::Scan& scan);
 
   /// The last scan, placed relative to the last stop; null if it was that stop.
@@ -53,6 +55,8 @@ class LocalMapper {
  private:
   /// T_stop_robot of a scan whose odometry has restarted.
   [[nodiscard]] std::optional<geometry::Pose2> find_again(const scan::Scan& scan) const;
+  /// Whether a tracked scan becomes a stop; hardly one where the robot may have been carried.
+  [[nodiscard]] bool is_stop(const localization::TrackedPose& pose, bool maybe_carried) const;
   topomap::LocalMap begin_session(const scan::Scan& scan);
   topomap::LocalMap make_stop(const scan::Scan& scan, const geometry::Pose2& T_stop_robot);
   [[nodiscard]] std::vector<topomap::ScanPoint> points_of(const scan::Scan& scan) const;
@@ -60,6 +64,7 @@ class LocalMapper {
   LocalMapperConfig config_;
   std::string robot_id_;
   localization::ScanTracker tracker_;
+  CarriedWatch carried_;
   voronoi::LocalVoronoi diagram_maker_;
   voronoi::LocalVoronoiDiagram diagram_;
   topomap::LocalMapBuilder map_builder_;

@@ -14,13 +14,16 @@ struct PathDisagreement {
     kLength,  ///< the corrected path is much longer or shorter
     kTurn,    ///< the robot turns in the map and not by odometry, or the reverse
     kJump,    ///< from one scan to the next the robot moves in the map and not by odometry
+    kWheels,  ///< the scans contradict odometry, which does not count (OdometryContradiction)
+    kCarried  ///< the robot goes on at another place, where the scans have found it again
   };
   Kind kind = Kind::kLength;
   std::uint32_t first_id = 0;  ///< local map ids of the stops around the part
   std::uint32_t last_id = 0;
-  double odometry_m = 0.0;   ///< length of the worst 3 m, or of the jump, by odometry
+  double odometry_m = 0.0;   ///< length of the worst 3 m, of the jump, or of all, by odometry
   double corrected_m = 0.0;  ///< the same in the map
-  double turn_rad = 0.0;     ///< turn in the map less that of odometry, in [-pi, pi]; kind kTurn
+  /// Turn in the map less that of odometry, in [-pi, pi]; kinds kTurn and kWheels.
+  double turn_rad = 0.0;
 };
 
 struct PathComparison {
@@ -30,9 +33,9 @@ struct PathComparison {
 };
 
 /// Compares all parts of 3 m, and all pairs of consecutive scans; stops of different drives or with
-/// another origin of odometry are never compared. The thresholds (a fifth of the length, 50
-/// degrees, 0.6 m) are above what recorded logs with poor odometry need (docs/decisions/
-/// map_quality.md).
+/// another origin of odometry are never compared, nor steps whose odometry does not count. The
+/// thresholds (a fifth of the length, 50 degrees, 0.6 m) are above what recorded logs with poor
+/// odometry need (docs/decisions/ map_quality.md).
 PathComparison compare_with_odometry(const storage::MapDocument& document);
 
 }  // namespace topogeo::pipeline

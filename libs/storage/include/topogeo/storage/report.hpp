@@ -85,12 +85,12 @@ struct OdometryStretchEntry {
 
 /// A part of the path on which map and odometry differ.
 struct PathDisagreementEntry {
-  std::string kind;  ///< "length", "turn" or "jump"
+  std::string kind;  ///< "length", "turn", "jump", "wheels" or "carried"
   std::uint32_t first_stop = 0;
   std::uint32_t last_stop = 0;
   double odometry_m = 0.0;
   double corrected_m = 0.0;
-  double turn_rad = 0.0;  ///< of the map less that of odometry; kind "turn"
+  double turn_rad = 0.0;  ///< of the map less that of odometry; kinds "turn", "wheels"
 
   friend bool operator==(const PathDisagreementEntry&, const PathDisagreementEntry&) = default;
 };

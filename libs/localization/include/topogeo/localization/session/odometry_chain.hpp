@@ -1,5 +1,5 @@
-// Makes the odometry of successive stops comparable when its epoch changes within a session, or
-// when the session changes within an epoch.
+// Makes the odometry of successive stops comparable when its epoch changes within a session, when
+// the session changes within an epoch, or where the scans contradict odometry.
 #pragma once
 
 #include <cstdint>
@@ -21,11 +21,14 @@ class OdometryChain {
   }
 
   /// Returns the next stop with its odometry, and that of its track, in the frame of its session's
-  /// first epoch. Scan tracking gives the step over a change of epoch. A session that begins in the
-  /// epoch in which the previous one ended keeps its frame.
+  /// first epoch. Scan tracking gives the step over a change of epoch, and a step of which it
+  /// contradicts the odometry. A session that begins in the epoch in which the previous one ended
+  /// keeps its frame.
   MapPointer add(MapPointer map);
 
  private:
+  [[nodiscard]] bool is_contradicted(const topomap::LocalMap& map) const;
+
   struct Last {
     topomap::StopId stop;
     std::uint64_t odometry_epoch = 0;
