@@ -1,6 +1,5 @@
 #include "scan_gate.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
