@@ -1,6 +1,7 @@
 #include "compression.hpp"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -150,6 +151,12 @@ void decompress(std::span<const std::byte> block, Compression compression, std::
       decompress_bz2(block, out);
       break;
   }
+}
+
+bool is_zstd_frame(std::span<const std::byte> data) {
+  constexpr std::array<std::byte, 4> kFrame = {std::byte{0x28}, std::byte{0xB5}, std::byte{0x2F},
+                                               std::byte{0xFD}};
+  return data.size() > kFrame.size() && std::ranges::equal(data.first(kFrame.size()), kFrame);
 }
 
 void decompress_zstd(std::span<const std::byte> block, UnpackBudget& budget,

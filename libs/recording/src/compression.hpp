@@ -34,6 +34,9 @@ inline constexpr std::uint64_t kLargestBlock = std::uint64_t{1} << 28U;
 void decompress(std::span<const std::byte> block, Compression compression, std::uint64_t size,
                 UnpackBudget& budget, std::vector<std::byte>& out);
 
+/// Whether the bytes begin like a zstd frame, which no message in CDR does.
+bool is_zstd_frame(std::span<const std::byte> data);
+
 /// Unpacks a zstd block that states its own size, as in rosbag2's messages. Throws FormatError.
 void decompress_zstd(std::span<const std::byte> block, UnpackBudget& budget,
                      std::vector<std::byte>& out);

@@ -123,6 +123,11 @@ bool McapSource::take_message(std::span<const std::byte> content, RawMessage& me
   message.log_time_ns = static_cast<std::int64_t>(cursor.number<std::uint64_t>());
   (void)cursor.number<std::uint64_t>();  // publish time
   message.data = cursor.take(cursor.left());
+  // Recorders with compression_mode message leave the encoding of the channel as it is.
+  if (topics()[message.topic].encoding == Encoding::kCdr && is_zstd_frame(message.data)) {
+    decompress_zstd(message.data, budget(), unpacked_message_);
+    message.data = unpacked_message_;
+  }
   return true;
 }
 

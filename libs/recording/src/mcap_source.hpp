@@ -7,6 +7,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "chunked_source.hpp"
 #include "mcap_index.hpp"
@@ -29,6 +30,7 @@ class McapSource final : public ChunkedSource {
 
   std::map<std::uint16_t, std::string> schemas_;  // names
   std::map<std::uint16_t, Channel> channels_;
+  std::vector<std::byte> unpacked_message_;
   std::map<std::uint64_t, std::uint64_t> unwanted_chunks_;  // start of each and of the next record
 };
 

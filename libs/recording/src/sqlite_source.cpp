@@ -1,7 +1,5 @@
 #include "sqlite_source.hpp"
 
-#include <algorithm>
-#include <array>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
@@ -36,12 +34,6 @@ std::string escaped(const std::string& name) {
     }
   }
   return out;
-}
-
-bool is_zstd_frame(std::span<const std::byte> data) {
-  constexpr std::array<std::byte, 4> kFrame = {std::byte{0x28}, std::byte{0xB5}, std::byte{0x2F},
-                                               std::byte{0xFD}};
-  return data.size() > kFrame.size() && std::ranges::equal(data.first(kFrame.size()), kFrame);
 }
 
 }  // namespace

@@ -42,8 +42,13 @@ struct Layout {
 Layout layout_of(const LaserScan& message, bool upside_down, std::size_t most_beams) {
   const std::size_t count = message.ranges_().size();
   require(count >= 2, "ranges", "2 or more", static_cast<double>(count));
-  const auto increment_rad = static_cast<double>(message.angle_increment_());
   const auto start_rad = static_cast<double>(message.angle_min_());
+  auto increment_rad = static_cast<double>(message.angle_increment_());
+  // Some drivers leave it out and state the last angle.
+  if (increment_rad == 0.0) {
+    increment_rad =
+        (static_cast<double>(message.angle_max_()) - start_rad) / static_cast<double>(count - 1);
+  }
   require(std::fabs(start_rad) <= kTurn_rad, "angle_min", "a number within one turn", start_rad);
   require(std::fabs(increment_rad) >= kFinest_rad &&
               std::fabs(increment_rad) * static_cast<double>(count - 1) <= kTurn_rad,

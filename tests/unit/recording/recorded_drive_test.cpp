@@ -10,6 +10,9 @@
 #include "topogeo/ros_conversions/geometry.hpp"
 #include "topogeo/ros_conversions/messages.hpp"
 
+#include "compression.hpp"
+#include "mcap_sink.hpp"
+
 namespace topogeo::recording {
 namespace {
 
@@ -54,6 +57,24 @@ TEST_P(RecordedDrive, GivesTheSameScansInEachFormatItIsConvertedTo) {
     expect_same_scans(read_scans(path(name)), scans);
     EXPECT_EQ(mounting_in_log(path(name)).T_robot_laser, mounting_in_log(file).T_robot_laser);
   }
+}
+
+// As recorded with the storage MCAP and compression_mode message.
+TEST_F(RecordedDrive, OfMessagesThatAreCompressedOneByOneIsRead) {
+  const auto file = write_drive(path("a.mcap"));
+  {
+    McapSink packed(path("b.mcap"), Compression::kNone);
+    const auto source = open_messages(file, [](const Topic& /*topic*/) { return true; });
+    RawMessage message;
+    while (source->next(message)) {
+      const Topic& topic = source->topics()[message.topic];
+      const std::vector<std::byte> data = compress(message.data, Compression::kZstd);
+      packed.write({topic.name, topic.type, message.log_time_ns, data});
+    }
+    packed.close();
+  }
+  expect_same_scans(read_scans(path("b.mcap")), read_scans(file));
+  EXPECT_EQ(mounting_in_log(path("b.mcap")).T_robot_laser, mounting_in_log(file).T_robot_laser);
 }
 
 TEST_F(RecordedDrive, HasNoFaults) {

@@ -33,6 +33,15 @@ TEST(LaserScan, BeamsGoCounterClockwise) {
   EXPECT_THAT(sweep.ranges_m, ElementsAre(1.0F, 2.0F, 3.0F, 4.0F));
 }
 
+TEST(LaserScan, WithoutAStepBetweenBeamsEndsAtItsLastAngle) {
+  LaserScan message = four_beams();
+  message.angle_increment_(0.0F);
+  message.angle_max_(1.0F);
+  const Sweep sweep = to_sweep(message, false, kMost);
+  EXPECT_DOUBLE_EQ(sweep.pattern.angle_min_rad, -0.5);
+  EXPECT_DOUBLE_EQ(sweep.pattern.angle_step_rad, 0.5);
+}
+
 TEST(LaserScan, OfAClockwiseScannerIsTurnedRound) {
   LaserScan message = four_beams();
   message.angle_min_(1.0F);
@@ -107,6 +116,7 @@ TEST(LaserScan, IsRefusedWithBeamsOfNoLaser) {
   for (const float step : {0.0F, 7.0F, std::numeric_limits<float>::quiet_NaN()}) {
     LaserScan message = four_beams();
     message.angle_increment_(step);
+    message.angle_max_(message.angle_min_());
     EXPECT_THAT(error_of(message), HasSubstr("angle_increment: expected 0.00001 or more"));
   }
   LaserScan message = four_beams();
