@@ -37,8 +37,25 @@ foreach(service IN LISTS robot_services)
 endforeach()
 topogeo_install_program(ga_worker ga_worker topogeo-workers)
 get_property(manuals GLOBAL PROPERTY TOPOGEO_MANUALS)
+# A page for each command of topogeo, topogeo-map.1. Some commands share the name of a service, whose page comes first.
+set(command_pages ${generated}/commands)
+file(WRITE ${generated}/make_command_pages.sh [=[
+set -eu  # PROGRAM PAGES FOLDER
+rm -rf "$3"
+mkdir -p "$3"
+for name in $("$1" --print-commands); do
+  page=topogeo-$name.1.gz
+  [ ! -e "$2/$page" ] || cp "$2/$page" "$3/$page"
+  "$1" --print-manual "$name" | gzip -9n >> "$3/$page"
+done
+touch "$3.stamp"
+]=])
+add_custom_command(OUTPUT ${command_pages}.stamp
+  COMMAND sh ${generated}/make_command_pages.sh $<TARGET_FILE:topogeo> ${generated} ${command_pages}
+  DEPENDS topogeo ${manuals} ${generated}/make_command_pages.sh VERBATIM)
+install(DIRECTORY ${command_pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT topogeo)
 # Also part of plain builds, so that cmake --install finds them.
-add_custom_target(manuals ALL DEPENDS ${manuals})
+add_custom_target(manuals ALL DEPENDS ${manuals} ${command_pages}.stamp)
 
 set(data ${CMAKE_INSTALL_DATADIR}/topogeo)
 set(deploy ${PROJECT_SOURCE_DIR}/deploy)

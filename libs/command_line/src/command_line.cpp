@@ -281,6 +281,14 @@ std::optional<int> Command::parse(int argc, const char* const* argv) {
     std::cout << manual_page(*app_);
     return 0;
   }
+  if (argc == 3 && argv[1] == std::string_view("--print-manual")) {
+    std::cout << manual_page(*app_, argv[2]);
+    return 0;
+  }
+  if (argc == 2 && argv[1] == std::string_view("--print-commands")) {
+    for (const std::string& name : command_names(*app_)) std::cout << name << '\n';
+    return 0;
+  }
   if (argc == 2 && argv[1] == std::string_view("--print-completion")) {
     std::cout << bash_completion(*app_);
     return 0;

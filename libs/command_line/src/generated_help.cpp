@@ -7,6 +7,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "topogeo/command_line/command_line.hpp"
+
 namespace topogeo::command_line {
 
 namespace {
@@ -109,6 +111,24 @@ void append_command(std::string& page, const CLI::App& app, const std::string& p
   }
 }
 
+/// The page up to the options. `title`: name of the page; `usage`: words to type.
+std::string page_head(const CLI::App& app, const std::string& title, const std::string& usage,
+                      bool has_commands) {
+  std::string capitals = title;
+  std::ranges::transform(capitals, capitals.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  std::string summary = app.get_description();
+  summary = summary.substr(0, summary.find(". "));
+  if (summary.ends_with('.')) summary.pop_back();
+  std::string page = ".TH " + escaped(capitals) + " 1 \"\" topogeo \"User commands\"\n.SH NAME\n" +
+                     escaped(title) + " \\- " + escaped(summary) + "\n.SH SYNOPSIS\n.B " +
+                     escaped(usage) + "\n[\\fIOPTION\\fR]...";
+  page += has_commands ? " \\fICOMMAND\\fR [\\fIOPTION\\fR]...\n" : "\n";
+  page += ".SH DESCRIPTION\n" + escaped(app.get_description()) + "\n.SH OPTIONS\n";
+  for (const CLI::Option* option : options_of(app)) append_option(page, *option);
+  return page;
+}
+
 void append_case(std::string& script, const CLI::App& app, const std::string& path) {
   std::string options;
   std::string commands;
@@ -119,9 +139,10 @@ void append_case(std::string& script, const CLI::App& app, const std::string& pa
       options += " --" + name;
       names += (names.empty() ? "--" : " | --") + name;
     }
-    if (names.empty()) continue;
     std::string list;
     for (const std::string& member : members_of(*option)) list += ' ' + member;
+    if (option->get_positional()) commands += list;
+    if (names.empty()) continue;
     if (!list.empty()) values += "        " + names + ") values='" + list.substr(1) + "' ;;\n";
   }
   const std::vector<const CLI::App*> parts = subcommands_of(app);
@@ -136,30 +157,43 @@ void append_case(std::string& script, const CLI::App& app, const std::string& pa
 
 }  // namespace
 
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : subcommands_of(app)) names.push_back(command->get_name());
+  return names;
+}
+
 std::string manual_page(const CLI::App& app) {
   const std::string& name = app.get_name();
-  std::string title = name;
-  std::ranges::transform(title, title.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  std::string summary = app.get_description();
-  summary = summary.substr(0, summary.find(". "));
-  if (summary.ends_with('.')) summary.pop_back();
   const std::vector<const CLI::App*> commands = subcommands_of(app);
-
-  std::string page = ".TH " + title + " 1 \"\" topogeo \"User commands\"\n.SH NAME\n" +
-                     escaped(name) + " \\- " + escaped(summary) + "\n.SH SYNOPSIS\n.B " +
-                     escaped(name) + "\n[\\fIOPTION\\fR]...";
-  page += commands.empty() ? "\n" : " \\fICOMMAND\\fR [\\fIOPTION\\fR]...\n";
-  page += ".SH DESCRIPTION\n" + escaped(app.get_description()) + "\n.SH OPTIONS\n";
-  for (const CLI::Option* option : options_of(app)) append_option(page, *option);
+  std::string page = page_head(app, name, name, !commands.empty());
   if (!commands.empty()) page += ".SH COMMANDS\n";
   for (const CLI::App* command : commands) {
-    append_command(page, *command, name + ' ' + command->get_name());
+    page += ".TP\n.BR " + escaped(name + '-' + command->get_name()) + " (1)\n" +
+            escaped(command->get_description()) + '\n';
   }
   if (const std::string footer = app.get_footer(); !footer.empty()) {
     page += ".SH NOTES\n" + escaped(footer) + '\n';
   }
   return page;
+}
+
+std::string manual_page(const CLI::App& app, const std::string& command) {
+  const std::vector<const CLI::App*> commands = subcommands_of(app);
+  const auto found = std::ranges::find(commands, command, &CLI::App::get_name);
+  if (found == commands.end()) {
+    throw UsageError("--print-manual: expected a command, got '" + command + "'");
+  }
+  const CLI::App& one = **found;
+  const std::vector<const CLI::App*> parts = subcommands_of(one);
+  const std::string path = app.get_name() + ' ' + command;
+  std::string page = page_head(one, app.get_name() + '-' + command, path, !parts.empty());
+  if (!parts.empty()) page += ".SH COMMANDS\n";
+  for (const CLI::App* part : parts) append_command(page, *part, path + ' ' + part->get_name());
+  if (const std::string footer = one.get_footer(); !footer.empty()) {
+    page += ".SH NOTES\n" + escaped(footer) + '\n';
+  }
+  return page + ".SH SEE ALSO\n.BR " + escaped(app.get_name()) + " (1)\n";
 }
 
 std::string bash_completion(const CLI::App& app) {

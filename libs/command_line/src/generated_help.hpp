@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace CLI {  // NOLINT(readability-identifier-naming): not ours
 class App;
@@ -9,8 +10,15 @@ class App;
 
 namespace topogeo::command_line {
 
-/// Written in man(7): section 1, with a subsection for each subcommand.
+/// The names of its commands.
+std::vector<std::string> command_names(const CLI::App& app);
+
+/// Written in man(7): section 1. Lists the commands, which have pages of their own.
 std::string manual_page(const CLI::App& app);
+
+/// The page "program-command", with a subsection for each subcommand of the command. Throws
+/// UsageError for an unknown command.
+std::string manual_page(const CLI::App& app, const std::string& command);
 
 /// Functions for bash (4.0) that complete subcommands, options and values from a fixed set; other
 /// words are completed as files.

@@ -11,6 +11,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 std::optional<int> parse(Command& command, std::vector<const char*> words) {
   words.insert(words.begin(), "program");
@@ -326,9 +327,9 @@ TEST(CommandLine, ReportsWrongUsageForProgramsWithoutExitCodes) {
 }
 
 /// Output of a program with this argument.
-std::string printed(Command& command, const char* word) {
+std::string printed(Command& command, const char* word, const char* more = nullptr) {
   testing::internal::CaptureStdout();
-  EXPECT_EQ(parse(command, {word}), 0);
+  EXPECT_EQ(more == nullptr ? parse(command, {word}) : parse(command, {word, more}), 0);
   return testing::internal::GetCapturedStdout();
 }
 
@@ -340,9 +341,13 @@ struct ToolCommand {
         ->check(one_of({"low", "high"}))
         ->default_str("low");
     drive->add_subcommand("home", "Drive home");
+    command.add_subcommand("break", "Break a part")
+        ->add_option("part", part, "which part")
+        ->check(one_of({"wheel", "laser"}));
   }
   Command command{"Drives things. And more.", "tool"};
   std::string gear;
+  std::string part;
   bool all = false;
 };
 
@@ -351,9 +356,20 @@ TEST(CommandLine, PrintsAManualPageOfItsOptions) {
   const std::string page = printed(tool.command, "--print-manual");
   EXPECT_THAT(page, HasSubstr("tool \\- Drives things\n"));
   EXPECT_THAT(page, HasSubstr(".B \\-\\-all\neverything \\- at once\n"));
-  EXPECT_THAT(page, HasSubstr(".SS tool drive\nDrive somewhere\n"));
+  EXPECT_THAT(page, HasSubstr(".BR tool\\-drive (1)\nDrive somewhere\n"));
+  EXPECT_THAT(page, Not(HasSubstr("how fast"))) << "it has a page of its own";
+}
+
+TEST(CommandLine, PrintsAManualPageForEachCommand) {
+  ToolCommand tool;
+  EXPECT_EQ(printed(tool.command, "--print-commands"), "drive\nbreak\n");
+  const std::string page = printed(tool.command, "--print-manual", "drive");
+  EXPECT_THAT(page, HasSubstr(".TH TOOL\\-DRIVE 1"));
+  EXPECT_THAT(page, HasSubstr("tool\\-drive \\- Drive somewhere\n"));
   EXPECT_THAT(page, HasSubstr("how fast ({low,high}) (default: low)"));
   EXPECT_THAT(page, HasSubstr(".SS tool drive home\n"));
+  EXPECT_THAT(page, HasSubstr(".BR tool (1)\n"));
+  EXPECT_THAT(complaint(tool.command, {"--print-manual", "drvie"}), HasSubstr("got 'drvie'"));
 }
 
 /// Completions of bash for a line whose last word is unfinished.
@@ -379,6 +395,7 @@ TEST(CommandLine, PrintsACompletionThatBashUnderstands) {
   EXPECT_EQ(completed(script, "tool drive --gear ''"), "low high");
   EXPECT_EQ(completed(script, "tool drive h"), "home");
   EXPECT_EQ(completed(script, "tool drive home h"), "");
+  EXPECT_EQ(completed(script, "tool break w"), "wheel");
 }
 
 }  // namespace
