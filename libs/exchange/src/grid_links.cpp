@@ -55,14 +55,13 @@ std::uint32_t next_branch_id(const topomap::GlobalMap& map) {
 
 class Linker {
  public:
-  Linker(topomap::GlobalMap& map, const planning::FreeSpace& space)
-      : map_(map), space_(space), window_(space, planning::whole(space.frame())) {
-    middle_.resize(space.frame().size());
-    for (std::size_t i = 0; i < middle_.size(); ++i) {
+  Linker(topomap::GlobalMap& map, const planning::FreeSpace& space) : map_(map), space_(space) {
+    slowness_.resize(space.frame().size());
+    for (std::size_t i = 0; i < slowness_.size(); ++i) {
       // So that a path keeps to the middle where the free space is narrower than this.
       constexpr double kWide_m = 4.0;
       const double clearance_m = space_.clearance_m(space_.frame().cell_at(i));
-      middle_[i] = static_cast<float>(
+      slowness_[i] = static_cast<float>(
           std::max(1.0, kWide_m / std::max(clearance_m, space_.frame().resolution_m)));
     }
   }
@@ -165,27 +164,59 @@ class Linker {
   /// The path of cells from the part to the nearest other one.
   std::optional<std::vector<Cell>> path_from(const PartCells& cells) {
     if (cells.own.empty() || cells.others.empty()) return std::nullopt;
-    std::vector<float> slowness = middle_;
     // Within the part nothing is driven, so any of its cells can be the start.
-    for (const Cell& cell : cells.own) slowness[space_.frame().index(cell)] = 0.0F;
-    window_.set_slowness(space_.frame(), slowness);
+    std::map<std::size_t, float> former;
+    for (const Cell& cell : cells.own) {
+      const std::size_t index = space_.frame().index(cell);
+      former.emplace(index, std::exchange(slowness_[index], 0.0F));
+    }
     const auto path = path_from_any(cells);
+    for (const auto& [index, slowness] : former) slowness_[index] = slowness;
     if (!path) return std::nullopt;
     const auto is_own = [&](const Cell& cell) {
-      return slowness[space_.frame().index(cell)] == 0.0F;
+      return former.contains(space_.frame().index(cell));
     };
     const auto last = std::find_if(path->cells.rbegin(), path->cells.rend(), is_own);
     return std::vector<Cell>(last.base() - 1, path->cells.end());
   }
 
   /// Tries several cells, because a passage of the part may be too narrow for the robot.
-  std::optional<planning::CellPath> path_from_any(const PartCells& cells) const {
+  [[nodiscard]] std::optional<planning::CellPath> path_from_any(const PartCells& cells) const {
     constexpr std::size_t kTries = 8;
     const std::size_t step = std::max<std::size_t>(1, cells.own.size() / kTries);
     for (std::size_t i = 0; i < cells.own.size(); i += step) {
-      if (auto path = planning::path_to_nearest(window_, cells.own[i], cells.others)) return path;
+      if (auto path = path_from_one(cells.own[i], cells)) return path;
     }
     return std::nullopt;
+  }
+
+  /// Searches around the part before it searches the whole grid, which takes long. All cells of
+  /// the part lie in the box, and every step beyond them costs its length or more. So a path that
+  /// leaves a box with this margin costs more than one that is shorter than the margin.
+  [[nodiscard]] std::optional<planning::CellPath> path_from_one(const Cell& start,
+                                                                const PartCells& cells) const {
+    constexpr std::int32_t kFirstMargin = 100;
+    constexpr double kFirstStep = 1.0;  // from a cell of the part, where half a step is free
+    const planning::GridFrame& frame = space_.frame();
+    const planning::CellBox part = box_around(cells.own);
+    for (std::int32_t margin = kFirstMargin;; margin *= 4) {
+      const planning::CellBox box = planning::grown(part, margin, frame);
+      const bool is_whole = box.low.column == 0 && box.low.row == 0 &&
+                            box.high.column == frame.columns - 1 && box.high.row == frame.rows - 1;
+      planning::SearchWindow window(space_, box);
+      window.set_slowness(frame, slowness_);
+      auto path = planning::path_to_nearest(window, start, cells.others);
+      if (is_whole || (path && path->cost_cells < margin - kFirstStep)) return path;
+    }
+  }
+
+  static planning::CellBox box_around(std::span<const Cell> cells) {
+    planning::CellBox box{cells.front(), cells.front()};
+    for (const Cell& cell : cells) {
+      box.low = {std::min(box.low.column, cell.column), std::min(box.low.row, cell.row)};
+      box.high = {std::max(box.high.column, cell.column), std::max(box.high.row, cell.row)};
+    }
+    return box;
   }
 
   void add_branch(const std::vector<Cell>& path) {
@@ -252,8 +283,7 @@ class Linker {
 
   topomap::GlobalMap& map_;
   const planning::FreeSpace& space_;
-  planning::SearchWindow window_;
-  std::vector<float> middle_;      // slowness of each cell
+  std::vector<float> slowness_;    // of each cell
   std::vector<float> away_cells_;  // distance of each cell from the graph along the free space
 };
 

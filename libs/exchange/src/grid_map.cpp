@@ -215,6 +215,10 @@ storage::MapDocument map_of_grid(const planning::FreeSpace& space,
   voronoi::LocalVoronoiDiagram diagram;
   topomap::LocalMapBuilder builder(mapper.local_map);
   const std::vector<Eigen::Vector2d> places_m = places_of_stops(space, settings);
+  const std::size_t work = places_m.size() + 1;  // the stops and the graph
+  const auto report = [&](std::size_t done) {
+    if (settings.progress) settings.progress(done, work);
+  };
   for (const Eigen::Vector2d& place_m : places_m) {
     const geometry::Pose2 T_map_robot{place_m.x(), place_m.y(), 0.0};
     scan::Scan scan = scan_at(space.grid(), T_map_robot * mapper.T_robot_laser, settings.range_m);
@@ -238,11 +242,13 @@ storage::MapDocument map_of_grid(const planning::FreeSpace& space,
             .asDiagonal();
     document.trajectory.stops.push_back(stop);
     document.local_maps.push_back(std::move(map));
+    report(document.local_maps.size());
   }
   document.trajectory.version = 1;
   if (document.local_maps.empty()) return document;
   document.global_map = pipeline::fuse(global_map, document.local_maps, document.trajectory);
   link_parts(document.global_map, space, places_m);
+  report(work);
   return storage::identified(std::move(document));
 }
 

@@ -248,9 +248,12 @@ std::string summary_text(const MapSummary& s, std::uint64_t file_bytes) {
   text += fmt::format("stops      {} in {} {}, {} with a pose, for {} views, {} scan points\n",
                       s.stops, s.sessions, s.sessions == 1 ? "session" : "sessions",
                       s.located_stops, s.views, s.points);
-  text += fmt::format("driven     {:.1f} m, {} scans, {:.1f} s from the first stop to the last\n",
-                      s.driven_m, s.scans,
-                      static_cast<double>(s.last_stamp_ns - s.first_stamp_ns) * 1e-9);
+  text += fmt::format("driven     {:.1f} m, {} scans", s.driven_m, s.scans);
+  // The time between the drives of a merged map says nothing about them.
+  text += s.sessions > 1
+              ? std::string("\n")
+              : fmt::format(", {:.1f} s from the first stop to the last\n",
+                            static_cast<double>(s.last_stamp_ns - s.first_stamp_ns) * 1e-9);
   if (s.has_extent) {
     text += fmt::format("extent     {:.1f} x {:.1f} m, x {:.2f} to {:.2f}, y {:.2f} to {:.2f}\n",
                         s.high_m.x() - s.low_m.x(), s.high_m.y() - s.low_m.y(), s.low_m.x(),

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -42,6 +44,18 @@ planning::OccupancyGrid small_floor() {
 
 storage::MapDocument small_map(const GridMapSettings& settings = {}) {
   return map_of_grid(planning::FreeSpace(small_floor()), {}, {}, "plan", settings);
+}
+
+TEST(GridMap, ReportsEachStopAndTheEnd) {
+  std::vector<std::pair<std::size_t, std::size_t>> calls;
+  GridMapSettings settings;
+  settings.progress = [&](std::size_t done, std::size_t total) { calls.emplace_back(done, total); };
+  const storage::MapDocument map = small_map(settings);
+  ASSERT_EQ(calls.size(), map.local_maps.size() + 1);
+  for (std::size_t i = 0; i < calls.size(); ++i) {
+    EXPECT_EQ(calls[i], std::make_pair(i + 1, calls.size()));
+  }
+  EXPECT_EQ(map.map_id, small_map().map_id) << "it changes nothing";
 }
 
 TEST(GridMap, BeamsEndInTheFirstOccupiedCell) {

@@ -6,6 +6,8 @@
 // scans leave the graph in parts, branches along the free space join them.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <string>
 
 #include "topogeo/pipeline/local_mapper_config.hpp"
@@ -23,6 +25,9 @@ struct GridMapSettings {
   double least_area_m2 = 2.0;
   /// If the floor has room for too many stops: true refuses it, false places them farther apart.
   bool fixed_spacing = false;
+  /// Called after each stop and a last time when the graph is made, with the work that is done and
+  /// all of it: large grids take seconds. May be empty.
+  std::function<void(std::size_t done, std::size_t total)> progress{};
 };
 
 /// Most stops of a map made of a grid: a stop takes about 2 ms.
