@@ -28,8 +28,7 @@ RosSide::RosSide(service::Service& service, Settings settings, std::uint32_t dom
 
 void RosSide::say_once(const std::string& reason, const std::string& detail) {
   constexpr std::size_t kLongestDetail = 512;  // the names in it are as long as a peer chooses
-  const std::string text =
-      reason + (detail.empty() ? "" : ": " + detail.substr(0, kLongestDetail));
+  const std::string text = reason + (detail.empty() ? "" : ": " + detail.substr(0, kLongestDetail));
   complaint_.add(text, steady_now_ns());
   if (said_.insert(reason).second) {
     spdlog::warn("{} (logged once, counted in the status)", text);

@@ -206,7 +206,8 @@ TEST_F(CommandsTest, PlansBetweenRoomsOfAMappedFloor) {
   EXPECT_NEAR(route["points"].back()["x_m"].get<double>(), 25.1, 1e-9);
   EXPECT_NEAR(route["points"].back()["y_m"].get<double>(), 14.0, 1e-9);
 
-  // The branch nearest to (12, 3) is behind a wall, 12.1 m from the start: the route takes the door.
+  // The branch nearest to (12, 3) is behind a wall, 12.1 m from the start: the route takes the
+  // door.
   Program door(scratch_, "topogeo", {"plan", map, "--from", "0,0", "--to", "12,3", "--json"});
   ASSERT_EQ(door.wait(), 0) << door.err();
   EXPECT_GT(json::parse(door.out())["length_m"], 14.0);
@@ -232,6 +233,45 @@ TEST_F(CommandsTest, PlansBetweenRoomsOfAMappedFloor) {
   Program nowhere(scratch_, "topogeo", {"plan", map, "--from", "-90,3", "--to", "25.1,14"});
   EXPECT_EQ(nowhere.wait(), 1);
   EXPECT_THAT(nowhere.err(), HasSubstr("no route"));
+}
+
+TEST_F(CommandsTest, ListsArePrintedForPrograms) {
+  const std::string floor = std::string(TOPOGEO_SHARE) + "/worlds/floor.world.yaml";
+  Program places(scratch_, "topogeo", {"places", floor, "--json"});
+  ASSERT_EQ(places.wait(), 0) << places.err();
+  const json listed = json::parse(places.out());
+  EXPECT_GT(listed["zones"].size(), 5U);
+  EXPECT_GT(listed["zones"][0]["area_m2"], 0.0);
+  EXPECT_TRUE(listed["places"].is_array());
+  Program snapshots(scratch_, "topogeo",
+                    {"store", "snapshots", scratch_ / "none.sqlite", "--json"});
+  ASSERT_EQ(snapshots.wait(), 0) << snapshots.err();
+  EXPECT_EQ(json::parse(snapshots.out()), json::array());
+}
+
+TEST_F(CommandsTest, StatusAndTopTakeTheSameFlagsOfTheirKind) {
+  for (const char* command : {"status", "workers", "top"}) {
+    Program once(scratch_, "topogeo", {command, "--once", "--json", "--domain", own_domain()});
+    EXPECT_EQ(once.wait(), 1) << once.err();
+    EXPECT_THAT(once.err(), HasSubstr("is alive on domain"));
+    Program both(scratch_, "topogeo", {command, "--once", "--watch"});
+    EXPECT_EQ(both.wait(), 2) << both.err();
+  }
+}
+
+TEST_F(CommandsTest, TheRobotOfTheEnvironmentIsThatOfEveryCommand) {
+  const std::string log = scratch_ / "log.clf";
+  write_log("corridor", log);
+  ::setenv("TOPOGEO_ROBOT", "anna", 1);
+  Program mapping(scratch_, "topogeo", {"map", log, "--out", scratch_ / "out"});
+  const int code = mapping.wait();
+  Program waiting(scratch_, "topogeo", {"follow", "--domain", own_domain()});
+  waiting.wait_for_error_text("waiting for a map store of robot 'anna'");
+  ::unsetenv("TOPOGEO_ROBOT");
+  ASSERT_EQ(code, 0) << mapping.err();
+  Program info(scratch_, "topogeo", {"store", "info", (scratch_ / "out" / "map.pb").string()});
+  EXPECT_EQ(info.wait(), 0) << info.err();
+  EXPECT_THAT(info.out(), HasSubstr("robot      anna"));
 }
 
 TEST_F(CommandsTest, PlanRefusesWhatIsNoMap) {

@@ -68,6 +68,7 @@ void add_service_options(command_line::Command& app, ServiceOptions& options) {
                  "DDS partition: only services of the same one connect, * connects to all")
       ->capture_default_str();
   app.add_option("--robot,--robot-id", options.robot_id, "name of the robot, up to 32 bytes")
+      ->environment("TOPOGEO_ROBOT")
       ->check([](const std::string& id) {
         return id.empty() || id.size() > kLongestRobotId ? "expected 1 to 32 bytes" : "";
       })

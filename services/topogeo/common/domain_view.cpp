@@ -48,9 +48,16 @@ void add_domain_options(command_line::Command& app, DomainView& view) {
       ->type_name("FILE");
 }
 
+void add_watch_flags(command_line::Command& app, bool& watch, bool& once, const char* standard) {
+  const std::string ending = *standard == '\0' ? "" : std::string(", ") + standard;
+  app.add_flag("--watch", watch, "refresh twice a second until Ctrl-C" + ending);
+  app.add_flag("--once", once, *standard == '\0' ? "one table, the default" : "one table")
+      ->excludes(app.get_option("--watch"));
+}
+
 void add_view_options(command_line::Command& app, DomainView& view) {
   add_domain_options(app, view);
-  app.add_flag("--watch", view.watch, "refresh twice a second until Ctrl-C");
+  add_watch_flags(app, view.watch, view.once, "");
   app.add_option("--wait-seconds", view.wait_s,
                  "how long to wait for the first one, and for late ones")
       ->check(command_line::range(0.1, kLongestWait_s))

@@ -23,6 +23,7 @@ struct DomainView {
   std::string partition = messaging::kAnyPartition;
   std::filesystem::path profiles_file;
   bool watch = false;
+  bool once = false;    ///< the opposite of `watch`
   double wait_s = 3.2;  ///< for the first service
 };
 
@@ -32,7 +33,11 @@ void add_robot_option(command_line::Command& app, std::string& robot_id, const c
 /// Adds --domain, --partition and --profiles; `view` must outlive the app.
 void add_domain_options(command_line::Command& app, DomainView& view);
 
-/// Adds the same, --watch and --wait-seconds.
+/// Adds --watch and --once, which exclude each other. `standard`: what the help says of --watch,
+/// "the default" or nothing, where --once is.
+void add_watch_flags(command_line::Command& app, bool& watch, bool& once, const char* standard);
+
+/// Adds the flags of add_domain_options, --watch, --once and --wait-seconds.
 void add_view_options(command_line::Command& app, DomainView& view);
 
 /// Joins the domain under a name that DDS tools show. `identity`, `observe`: see
@@ -55,7 +60,7 @@ Collected collect_and_show(const DomainView& view, messaging::EventLoop& loop,
                            const std::function<void()>& show);
 
 /// "no discovery server answers at 10.0.0.1:11811 (ROS_DISCOVERY_SERVER)", if the environment names
-/// servers and discovery has found no participant, not even a server; else empty. To be called when
+/// servers and discovery has found no participant, not even a server; else empty. Callers wait until
 /// discovery had its time.
 std::string unanswered_servers(std::size_t peers);
 

@@ -108,6 +108,7 @@ void add_width_option(command_line::Command& app, std::uint32_t& width_px) {
 void add_common_options(command_line::Command& app, JobOptions& options) {
   add_config_option(app, options.config);
   app.add_option("--robot,--robot-id", options.robot_id, "name of the robot, up to 32 bytes")
+      ->environment("TOPOGEO_ROBOT")
       ->check([](const std::string& id) {
         return id.empty() || id.size() > kLongestRobotId ? "expected 1 to 32 bytes" : "";
       })
@@ -337,9 +338,11 @@ void check_useful(const JobOptions& options, const storage::Report& report) {
 
 void print_summary(std::ostream& out, const storage::Report& report,
                    const std::filesystem::path& directory) {
-  out << fmt::format("{}: {} scans, {} stops, {:.1f} m of path, {} loop closures\n",
+  // A localized robot has no pose before it is found.
+  out << fmt::format("{}: {} {}, {} stops, {:.1f} m of path, {} loop closures\n",
                      std::filesystem::path(report.log).filename().string(), report.scans,
-                     report.stops, report.distance_m, report.loop_closures.size())
+                     report.command == "localize" ? "poses" : "scans", report.stops,
+                     report.distance_m, report.loop_closures.size())
       << fmt::format("map: {} nodes, {} branches; {} of {} matches accepted\n", report.nodes,
                      report.branches, report.matches_accepted, report.matches_tried)
       << localization_line(report) << continuation_line(report) << results::quality_text(report)

@@ -38,11 +38,11 @@ struct DomainFacts {
   std::map<std::string, std::string> partitions;  ///< by instance; runs have their own
   std::map<std::string, ClockLag> clocks;         ///< by host
   std::uint32_t domain = 0;
-  std::string host;       ///< host of this program
+  std::string host;                ///< host of this program
   std::string unanswered_servers;  ///< see unanswered_servers()
   std::string elsewhere;           ///< see services_elsewhere()
-  std::size_t units = 0;  ///< its active units whose services join a domain
-  std::string version;    ///< of this program
+  std::size_t units = 0;           ///< its active units whose services join a domain
+  std::string version;             ///< of this program
   std::uint32_t wire_version = msg::kSchemaVersion;
 };
 

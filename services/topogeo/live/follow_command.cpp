@@ -31,7 +31,7 @@ namespace topogeo::cli {
 namespace {
 
 /// Discovery takes a second.
-constexpr std::chrono::seconds kPatience{2};
+constexpr std::chrono::seconds kWithoutStore{2};
 
 struct FollowRequest {
   DomainView view;
@@ -137,7 +137,7 @@ class Follower {
           if (info.state != messaging::InstanceState::kDisposed) return;
           if (follower_.remove(info.instance.bytes, info.writer.bytes)) show();
         });
-    loop_.add_timer(kPatience, [this] { say_elsewhere(); });
+    loop_.add_timer(kWithoutStore, [this] { say_elsewhere(); });
     loop_.on_event([this](const messaging::Event& event) {
       if (event.kind == messaging::EventKind::kUnmatched && event.count == 0) say_waiting();
     });

@@ -65,7 +65,8 @@ std::uint32_t domain_of(const std::vector<std::string>& words,
   return domain;
 }
 
-std::string robot_of(const std::vector<std::string>& words, const std::filesystem::path& process) {
+std::string robot_of_process(const std::vector<std::string>& words,
+                             const std::filesystem::path& process) {
   for (const char* name : {"--robot-id", "--robot"}) {
     if (const auto robot = option(words, name)) return *robot;
   }
@@ -138,7 +139,7 @@ std::vector<HostProcess> host_processes(const std::filesystem::path& proc) {
     process.own_pid = innermost != 0 ? innermost : process.pid;
     process.domain = domain_of(words, entry.path());
     process.partition = option(words, "--partition").value_or(messaging::kDefaultPartition);
-    process.robot = robot_of(words, entry.path());
+    process.robot = robot_of_process(words, entry.path());
     found.push_back(std::move(process));
   }
   std::ranges::sort(found, {}, &HostProcess::pid);

@@ -21,6 +21,7 @@ namespace {
 
 struct TopOptions {
   DomainView view;
+  bool watch = false;
   bool once = false;
   bool json = false;
 };
@@ -87,7 +88,7 @@ void add_top_command(command_line::Command& app, int& exit_code) {
       "top", "Watch the search pool at work: load, tasks, queues and faults, until Ctrl-C");
   auto options = std::make_shared<TopOptions>();
   add_domain_options(*command, options->view);
-  command->add_flag("--once", options->once, "one table instead of two a second");
+  add_watch_flags(*command, options->watch, options->once, "the default");
   command->add_flag("--json", options->json,
                     "for programs: an object, on a line of its own twice a second without --once");
   command->footer(

@@ -14,6 +14,8 @@
 #include <variant>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
@@ -47,6 +49,7 @@ struct PlacesOptions {
   DomainView view;
   std::string robot_id = "robot";
   double wait_s = 5.0;
+  bool json = false;
 };
 
 /// NAME=X,Y or, for a base station, NAME=X,Y,DEG. Throws service::UsageError.
@@ -168,6 +171,32 @@ void print_places(const planning::HybridMap& map) {
   }
 }
 
+void print_places_json(const planning::HybridMap& map) {
+  nlohmann::ordered_json json = {{"places", nlohmann::ordered_json::array()},
+                                 {"zones", nlohmann::ordered_json::array()}};
+  for (const planning::Place& place : map.places()) {
+    nlohmann::ordered_json one = {
+        {"name", place.name}, {"x_m", place.position_m.x()}, {"y_m", place.position_m.y()}};
+    if (place.station_heading_rad) one["station_heading_rad"] = *place.station_heading_rad;
+    const auto cell = map.frame().cell_of(place.position_m);
+    const planning::ZoneId zone = cell ? map.zone_of(*cell) : planning::kNoZone;
+    if (zone != planning::kNoZone) one["zone"] = zone;
+    json["places"].push_back(std::move(one));
+  }
+  const double cell_m2 = map.frame().resolution_m * map.frame().resolution_m;
+  for (const planning::Zone& zone : map.zones().zones) {
+    json["zones"].push_back({{"zone", zone.id},
+                             {"name", zone.name},
+                             {"area_m2", static_cast<double>(zone.cells) * cell_m2},
+                             {"borders", map.nodes_of(zone.id).size()}});
+  }
+  std::cout << json.dump(2) << '\n';
+}
+
+void show_places(const PlacesOptions& options, const planning::HybridMap& map) {
+  options.json ? print_places_json(map) : print_places(map);
+}
+
 void print_file(const PlacesOptions& options) {
   const pipeline::HybridMapConfig config = read_config(options.config).hybrid_map;
   const storage::MapDocument floor = [&] {
@@ -178,7 +207,7 @@ void print_file(const PlacesOptions& options) {
     }
   }();
   try {
-    print_places(pipeline::make_hybrid_map(pipeline::parts_of(floor), config));
+    show_places(options, pipeline::make_hybrid_map(pipeline::parts_of(floor), config));
   } catch (const std::invalid_argument& error) {
     throw service::BadInputError(options.source + ": " + error.what());
   }
@@ -217,7 +246,7 @@ int places(const PlacesOptions& options) {
   if (!options.added.empty() || !options.removed.empty()) edit(options);
   if (options.source == kLive) {
     if (options.zones) throw service::UsageError("--zones needs a file, not the live map");
-    print_places(*live_map(options));
+    show_places(options, *live_map(options));
   } else {
     print_file(options);
   }
@@ -247,6 +276,7 @@ void add_places_command(command_line::Command& app, int& exit_code) {
       ->add_option("--config", options->config,
                    "configuration (YAML), for its hybrid_map section; files only")
       ->type_name("FILE");
+  command->add_flag("--json", options->json, "for programs: places and zones");
   add_robot_option(*command, options->robot_id, "whose live map");
   add_domain_options(*command, options->view);
   command->add_option("--wait-seconds", options->wait_s, "how long to wait for the live map")

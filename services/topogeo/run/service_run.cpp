@@ -22,7 +22,7 @@ namespace {
 constexpr std::chrono::milliseconds kRunTick{50};
 
 /// Services publish their first status a second after their start.
-constexpr std::chrono::seconds kFirstStatus{5};
+constexpr std::chrono::seconds kFirstReport{5};
 
 messaging::Participant join(const RunOptions& options, const std::string& partition) {
   messaging::ParticipantOptions participant;
@@ -69,7 +69,7 @@ void ServiceRun::start(const RunOptions& options, Hooks hooks) {
   hooks_ = std::move(hooks);
   signals_.emplace([this](int number) { on_signal(number); });
   loop_.add_timer(kRunTick, [this] { tick(); });
-  loop_.call_after(kFirstStatus, [this] { log_if_deaf(); });
+  loop_.call_after(kFirstReport, [this] { log_if_deaf(); });
   if (options.web) web_log_ = options.job.out / "logs" / "web.log";
   start_all(options);
 }

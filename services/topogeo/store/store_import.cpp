@@ -16,9 +16,12 @@
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/map_file.hpp"
+#include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/progress_bar.hpp"
 
 #include "common/configuration.hpp"
+#include "common/domain_view.hpp"
 #include "common/job.hpp"
 #include "store/format_list.hpp"
 #include "store/store_commands.hpp"
@@ -62,6 +65,16 @@ void add_graph(storage::MapDocument& document, const ImportOptions& options,
   const planning::FreeSpace space(*document.drawing.grid, config.hybrid_map.inflation);
   exchange::GridMapSettings settings = options.grid;
   settings.fixed_spacing = settings.spacing_m != exchange::GridMapSettings{}.spacing_m;
+  // A small grid takes a moment and needs no line.
+  constexpr std::size_t kQuick = 200;
+  support::ProgressBar bar(std::cerr, support::stderr_is_terminal(), "reading the grid", "stops");
+  const double start_s = support::monotonic_s();
+  settings.progress = [&](std::size_t done, std::size_t total) {
+    if (total < kQuick) return;
+    const double elapsed_s = support::monotonic_s() - start_s;
+    done < total ? bar.update(done, total - 1, elapsed_s)
+                 : bar.finish(done - 1, total - 1, elapsed_s);
+  };
   storage::MapDocument made = [&] {
     try {
       return exchange::map_of_grid(space, config.local_mapper, config.global_map, options.robot_id,
@@ -141,8 +154,7 @@ void add_store_import_command(command_line::Command& store, int& exit_code) {
                    "pose of the origin of the file in the map; default: 0,0,0")
       ->type_name("X,Y,DEG");
   add_config_option(*command, options->config);
-  command->add_option("--robot,--robot-id", options->robot_id, "robot of a map without --into")
-      ->capture_default_str();
+  add_robot_option(*command, options->robot_id, "robot of a map without --into");
   command->add_flag("--with-stops", options->with_stops,
                     "for grids: keep the stops that the graph is made from, so that robots can "
                     "localize in the map (topogeo localize --map)");

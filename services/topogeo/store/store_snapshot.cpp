@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/map_snapshots.hpp"
@@ -65,8 +67,27 @@ int store_snapshot(const SnapshotOptions& options) {
   return service::kOk;
 }
 
-int list_snapshots(const fs::path& map) {
+void print_snapshots_json(const std::vector<storage::MapSnapshot>& snapshots) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const storage::MapSnapshot& snapshot : snapshots) {
+    list.push_back({{"name", snapshot.name},
+                    {"time_s", snapshot.time_s},
+                    {"bytes", snapshot.bytes},
+                    {"file", snapshot.path.string()},
+                    {"damage", snapshot.damage},
+                    {"map_id", fmt::format("{:016x}", snapshot.map_id)},
+                    {"trajectory_version", snapshot.trajectory_version},
+                    {"stops", snapshot.stops}});
+  }
+  std::cout << list.dump(2) << '\n';
+}
+
+int list_snapshots(const fs::path& map, bool json) {
   const std::vector<storage::MapSnapshot> found = storage::snapshots_of(database_of(map));
+  if (json) {
+    print_snapshots_json(found);
+    return service::kOk;
+  }
   for (const storage::MapSnapshot& snapshot : found) std::cout << snapshot_line(snapshot) << '\n';
   if (found.empty()) std::cerr << "topogeo: no snapshot of " << database_of(map).string() << '\n';
   return service::kOk;
@@ -99,8 +120,10 @@ void add_store_snapshot_commands(command_line::Command& store, int& exit_code) {
   command_line::Command* list =
       store.add_subcommand("snapshots", "List the snapshots of a map database by time");
   auto listed = std::make_shared<fs::path>();
+  auto json = std::make_shared<bool>(false);
   list->add_option("map", *listed, kMap)->required()->type_name("DIR");
-  list->callback([listed, &exit_code] { exit_code = list_snapshots(*listed); });
+  list->add_flag("--json", *json, "for programs: a list, empty without snapshots");
+  list->callback([listed, json, &exit_code] { exit_code = list_snapshots(*listed, *json); });
 
   command_line::Command* restore =
       store.add_subcommand("restore", "Restore a map database from one of its snapshots");

@@ -59,7 +59,7 @@ TEST_P(RecordedDrive, GivesTheSameScansInEachFormatItIsConvertedTo) {
   }
 }
 
-// As recorded with the storage MCAP and compression_mode message.
+// rosbag2 records so with the storage MCAP and compression_mode message.
 TEST_F(RecordedDrive, OfMessagesThatAreCompressedOneByOneIsRead) {
   const auto file = write_drive(path("a.mcap"));
   {

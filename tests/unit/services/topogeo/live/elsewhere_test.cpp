@@ -54,8 +54,8 @@ TEST(ServicesElsewhere, AreNoneThatTheCommandSees) {
 TEST(ServicesElsewhere, LeaveOutWorkersOfAllPartitionsAndOtherTopics) {
   messaging::RemoteEndpoint scans = status_writer_in("other", "anna/sensor_gateway");
   scans.topic = "topogeo/v17/scan";
-  const std::vector<messaging::RemoteEndpoint> discovered = {
-      scans, status_writer_in("*", "ga_worker")};
+  const std::vector<messaging::RemoteEndpoint> discovered = {scans,
+                                                             status_writer_in("*", "ga_worker")};
   const std::vector<HostProcess> processes = {process_in(3, "*", "")};
   EXPECT_EQ(services_elsewhere(view_of(3, "mine"), discovered, processes), "");
 }
