@@ -60,8 +60,8 @@ Collected collect_and_show(const DomainView& view, messaging::EventLoop& loop,
                            const std::function<void()>& show);
 
 /// "no discovery server answers at 10.0.0.1:11811 (ROS_DISCOVERY_SERVER)", if the environment names
-/// servers and discovery has found no participant, not even a server; else empty. Callers wait until
-/// discovery had its time.
+/// servers and discovery has found no participant, not even a server; else empty. Callers wait
+/// until discovery had its time.
 std::string unanswered_servers(std::size_t peers);
 
 /// "no <what> is alive on domain 3, partition '*'", with the domains and partitions where services
