@@ -42,10 +42,9 @@ navigation::PoseFix to_pose_fix(const LivePose& pose) {
   fix.tracking = pose.status.state == localization::LocalizationState::kTracking;
   fix.located = localization::located(pose.status.state);
   constexpr double kMoreProbablyRight = 0.5;  // as for TRACKING
-  fix.place_known =
-      fix.located && pose.mode != msg::kModeMapping &&
-      pose.status.confidence >=
-          kMoreProbablyRight * localization::covariance_confidence(pose.covariance);
+  fix.place_known = fix.located && pose.mode != msg::kModeMapping &&
+                    pose.status.confidence >=
+                        kMoreProbablyRight * localization::covariance_confidence(pose.covariance);
   fix.state_text = localization::to_string(pose.status.state);
   return fix;
 }

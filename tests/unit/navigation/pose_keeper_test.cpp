@@ -3,9 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
+#include <gtest/gtest.h>
 
 #include "post_scan.hpp"
 

@@ -296,7 +296,8 @@ TEST(ConfigSchema, FilesCannotChangeFixedParameters) {
   load_yaml_text("map: {share: 0.250, length_m: 3}", "f.yaml", schema);
   EXPECT_EQ(share, 0.25);
   EXPECT_EQ(length_m, 3.0);
-  for (const char* text : {"map: {share: 0.3, length_m: 4}", "map: {share: 7}", "map: {share: x}"}) {
+  for (const char* text :
+       {"map: {share: 0.3, length_m: 4}", "map: {share: 7}", "map: {share: x}"}) {
     try {
       load_yaml_text(text, "f.yaml", schema);
       ADD_FAILURE() << text;

@@ -79,9 +79,8 @@ std::vector<Climbed> StoredMapMatching::search(const DriveStop& stop, std::size_
 
 UncertainPose StoredMapMatching::measured(std::size_t stored, const MatchResult& result) const {
   const UncertainPose T_map_stored{places_.stops()[stored].T_map_robot, Eigen::Matrix3d::Zero()};
-  return compose(T_map_stored,
-                 inverse(UncertainPose{result.T_reference_query,
-                                       honest_covariance(result, config_.evidence)}));
+  return compose(T_map_stored, inverse(UncertainPose{result.T_reference_query,
+                                                     honest_covariance(result, config_.evidence)}));
 }
 
 }  // namespace topogeo::localization

@@ -5,9 +5,8 @@
 #include <string>
 #include <utility>
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Cholesky>
+#include <gtest/gtest.h>
 
 namespace topogeo::localization {
 namespace {

@@ -23,8 +23,8 @@ struct PoseFix {
   std::int64_t stamp_ns = 0;
   geometry::Pose2 T_map_robot;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< in the map frame
-  bool tracking = false;   ///< only then may the robot set out for a goal
-  bool located = false;    ///< not tracking, but the pose is usable: it may drive on for a while
+  bool tracking = false;  ///< only then may the robot set out for a goal
+  bool located = false;   ///< not tracking, but the pose is usable: it may drive on for a while
   /// Located, and not tracking only because the covariance is large, as along a bare corridor: the
   /// robot may drive on as far as that goes.
   bool place_known = false;

@@ -73,8 +73,8 @@ Eigen::Matrix3d match_covariance(const Eigen::Matrix3d& information, double doub
 Eigen::Matrix3d data_covariance(const MatchResult& result);
 
 /// The covariance of a match for a caller that fuses it with odometry and other matches of nearly
-/// the same points: without what errors of normals only seem to know (less_normal_errors()), so that
-/// matches along a bare corridor do not add up to a position along it. That of the match for
+/// the same points: without what errors of normals only seem to know (less_normal_errors()), so
+/// that matches along a bare corridor do not add up to a position along it. That of the match for
 /// evidence other than scan points.
 Eigen::Matrix3d honest_covariance(const MatchResult& result, MatchEvidence evidence);
 
