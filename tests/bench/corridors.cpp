@@ -219,7 +219,7 @@ void localize(const MappedCorridor& corridor, const simulation::SimulatedLog& lo
 }
 
 /// The drives of a row of the table.
-struct Row {
+struct CorridorRow {
   const char* name;
   std::vector<Errors> drives{};
 };
@@ -255,10 +255,10 @@ int main(int argc, char** argv) {
   app.add_flag("--verbose", verbose, "one line for each drive");
   if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   try {
-    std::array<Row, 4> rows{{{"maps, ends seen from the middle"},
-                             {"maps, ends out of range"},
-                             {"finished map, ends seen"},
-                             {"finished map, ends out of range"}}};
+    std::array<CorridorRow, 4> rows{{{"maps, ends seen from the middle"},
+                                     {"maps, ends out of range"},
+                                     {"finished map, ends seen"},
+                                     {"finished map, ends out of range"}}};
     for (std::uint64_t seed = first_seed; seed < first_seed + drives; ++seed) {
       support::Random random(seed);
       const Corridor corridor = corridor_of(random);
@@ -282,7 +282,7 @@ int main(int argc, char** argv) {
     }
     std::printf("%-34s %6s %10s %13s %8s %8s %10s %8s\n", "corridors", "scans", "in 2 sigma",
                 "drives >= 95%", "rms m", "sigma m", "TRACKING", "most m");
-    for (const Row& row : rows) print(row.name, row.drives);
+    for (const CorridorRow& row : rows) print(row.name, row.drives);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "topogeo_corridors: %s\n", error.what());
     return 1;
