@@ -26,6 +26,7 @@ std::vector<LocalMap> three_stops() {
   maps[1].sequence = 3;
   maps[1].stamp_ns = 400;
   maps[1].T_odom_robot = {5, 6.5, kQuarterTurn};
+  maps[1].T_previous_robot = {1.2, 0.1, 0};
   maps[2].track = {{4, 500, {5, 7, kQuarterTurn}, {0.5, 0, 0.1}, false}};
   maps[2].sequence = 5;
   maps[2].stamp_ns = 600;

@@ -112,6 +112,7 @@ const std::vector<DomainFault>& domain_faults() {
        "none is alive on domain 0; services run on domain 4, partition 'topogeo'",
        [](DomainFacts& f) {
          f.services.clear();
+         f.units = 0;
          f.elsewhere = "; services run on domain 4, partition 'topogeo'";
        }},
       {"NoDiscoveryServer", "discovery server", Severity::kProblem,

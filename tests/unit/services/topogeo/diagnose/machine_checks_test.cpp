@@ -231,10 +231,10 @@ TEST(DoctorReport, TextAndJsonHaveEverything) {
   facts.receive_buffer_bytes = 212'992;
   const std::vector<Finding> findings = run_checks(machine_checks(), facts);
   const std::string text = findings_text(findings);
-  EXPECT_THAT(text, HasSubstr("problem  ports          UDP port 7400 of domain 0"));
+  EXPECT_THAT(text, HasSubstr("problem  ports             UDP port 7400 of domain 0"));
   EXPECT_THAT(text, HasSubstr("         why  services discover each other there\n"));
   EXPECT_THAT(text, HasSubstr("         do   end that program"));
-  EXPECT_THAT(text, HasSubstr("ok       memory         4000 MB are free\n"));
+  EXPECT_THAT(text, HasSubstr("ok       memory            4000 MB are free\n"));
   EXPECT_THAT(text, HasSubstr("1 problem, 1 hint\n"));
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), kColumns) << line;
