@@ -2,12 +2,7 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numbers>
-#include <stdexcept>
 #include <utility>
-
-#include "topogeo/geometry/portable_math.hpp"
 
 namespace topogeo::simulation {
 namespace {
@@ -17,20 +12,11 @@ using devices::kRpExpressPoints;
 namespace answer_type = devices::rp_answer;
 namespace command_code = devices::rp_command;
 
-constexpr double kRpTurn_deg = 360.0;
-constexpr double kRpRadPerDeg = std::numbers::pi / 180.0;
 constexpr std::uint8_t kRequestStart = 0xA5;
 constexpr std::uint8_t kHasPayload = 0x80;
 /// Samples of a standard scan that the emulator measures at once.
 constexpr std::size_t kStandardPoints = 8;
 constexpr std::uint8_t kGoodQuality = 47;
-constexpr std::int64_t kNeverDue_ns = std::numeric_limits<std::int64_t>::max();
-
-double range_mm(float range_m, double range_max_m) {
-  const auto range = static_cast<double>(range_m);
-  return std::isfinite(range) && range > 0.0 && range < range_max_m ? std::round(1000.0 * range)
-                                                                    : 0.0;
-}
 
 std::uint16_t sixty_fourths(double angle_deg) {
   return static_cast<std::uint16_t>(std::lround(64.0 * angle_deg) % devices::kRpTurnQ6);
@@ -40,22 +26,14 @@ std::uint16_t sixty_fourths(double angle_deg) {
 
 RpLidarEmulator::RpLidarEmulator(const RpLidarEmulatorSettings& settings, Ranges ranges,
                                  std::int64_t /*now_ns*/)
-    : settings_(settings),
-      ranges_(std::move(ranges)),
-      faults_(settings.seed),
-      next_ns_(kNeverDue_ns) {
-  if (!(settings.turns_hz > 0.0 && settings.turns_hz <= 30.0) || !(settings.samples_hz > 0.0) ||
-      settings.line.baud == 0 || !ranges_) {
-    throw std::invalid_argument(
-        "an emulated RPLIDAR needs a speed of up to 30 turns a second, samples, a rate of the line "
-        "above 0, and ranges to measure");
-  }
-}
+    : TurningEmulator(settings.line, {settings.turns_hz, settings.samples_hz}, settings.range_max_m,
+                      settings.seed, std::move(ranges)),
+      settings_(settings) {}
 
 void RpLidarEmulator::receive(std::span<const std::uint8_t> bytes,
                               const devices::LineSettings& host, std::int64_t now_ns) {
   tick(now_ns);
-  if (off_ || silent_ || host != settings_.line || now_ns < ready_ns_) {
+  if (off_ || is_silent() || host != settings_.line || now_ns < ready_ns_) {
     request_.clear();
     return;
   }
@@ -86,20 +64,20 @@ void RpLidarEmulator::obey(std::uint8_t command, std::span<const std::uint8_t> p
     return;
   }
   scan_type_ = 0;
-  next_ns_ = kNeverDue_ns;
+  schedule(kNever_ns);
   switch (command) {
     case command_code::kReset:
       settings_.health = 0;
       return switch_on(now_ns);
     case command_code::kGetInfo: {
       std::array<std::uint8_t, devices::kRpInfo_bytes> info{settings_.model, 29, 1, 7};
-      return answer({devices::kRpInfo_bytes, false, answer_type::kInfo}, info, now_ns);
+      return describe({devices::kRpInfo_bytes, false, answer_type::kInfo}, info, now_ns);
     }
     case command_code::kGetHealth: {
       const std::array<std::uint8_t, 3> health{
           settings_.health, static_cast<std::uint8_t>(settings_.error_code & 0xFFU),
           static_cast<std::uint8_t>(settings_.error_code >> 8)};
-      return answer({3, false, answer_type::kHealth}, health, now_ns);
+      return describe({3, false, answer_type::kHealth}, health, now_ns);
     }
     case command_code::kGetSampleRate: {
       if (!settings_.knows_sample_rate) return;
@@ -109,7 +87,7 @@ void RpLidarEmulator::obey(std::uint8_t command, std::span<const std::uint8_t> p
                                              static_cast<std::uint8_t>(standard_us >> 8),
                                              static_cast<std::uint8_t>(express_us & 0xFFU),
                                              static_cast<std::uint8_t>(express_us >> 8)};
-      return answer({4, false, answer_type::kSampleRate}, rate, now_ns);
+      return describe({4, false, answer_type::kSampleRate}, rate, now_ns);
     }
     case command_code::kScan:
       return start_scan(answer_type::kScan, now_ns);
@@ -121,37 +99,27 @@ void RpLidarEmulator::obey(std::uint8_t command, std::span<const std::uint8_t> p
   }
 }
 
-void RpLidarEmulator::answer(const devices::RpDescriptor& descriptor,
-                             std::span<const std::uint8_t> data, std::int64_t now_ns) {
+void RpLidarEmulator::describe(const devices::RpDescriptor& descriptor,
+                               std::span<const std::uint8_t> data, std::int64_t now_ns) {
   std::vector<std::uint8_t> bytes = devices::rp_bytes(descriptor);
   bytes.insert(bytes.end(), data.begin(), data.end());
-  output_.send(std::move(bytes), settings_.line, now_ns + settings_.answer_ns);
+  answer(std::move(bytes), now_ns + settings_.answer_ns);
 }
 
 void RpLidarEmulator::start_scan(std::uint8_t type, std::int64_t now_ns) {
   const auto length = static_cast<std::uint32_t>(
       type == answer_type::kScan ? devices::kRpSample_bytes : devices::kRpPacket_bytes);
-  answer({length, true, type}, {}, now_ns);
+  describe({length, true, type}, {}, now_ns);
   scan_type_ = type;
   first_ = true;
-  next_ns_ = now_ns + 2 * settings_.answer_ns;
-}
-
-void RpLidarEmulator::tick(std::int64_t now_ns) {
-  while (now_ns >= next_ns_) send_samples();
-}
-
-std::vector<std::uint8_t> RpLidarEmulator::take_output(const devices::LineSettings& host,
-                                                       std::int64_t now_ns) {
-  return output_.take(host, now_ns);
+  schedule(now_ns + 2 * settings_.answer_ns);
 }
 
 void RpLidarEmulator::switch_off() {
   off_ = true;
   scan_type_ = 0;
-  next_ns_ = kNeverDue_ns;
-  output_.clear();
   request_.clear();
+  TurningEmulator::switch_off();
 }
 
 void RpLidarEmulator::switch_on(std::int64_t now_ns) {
@@ -160,56 +128,35 @@ void RpLidarEmulator::switch_on(std::int64_t now_ns) {
   ready_ns_ = now_ns + settings_.start_up_ns;
 }
 
-void RpLidarEmulator::fall_silent(std::int64_t now_ns) {
-  tick(now_ns);
-  output_.clear();
-  silent_ = true;
-}
-
-void RpLidarEmulator::speak_again(std::int64_t now_ns) {
-  tick(now_ns);
-  silent_ = false;
-}
-
-/// Ranges of the next `count` samples, in the order of their measurement.
-std::vector<float> RpLidarEmulator::measure(std::size_t count, double step_deg) {
-  const double last_deg = angle_deg_ + static_cast<double>(count - 1) * step_deg;
-  const BeamPattern beams{geometry::wrap_angle(-last_deg * kRpRadPerDeg), step_deg * kRpRadPerDeg,
-                          count, settings_.range_max_m};
-  const std::vector<float> ranges_m = ranges_(beams, next_ns_);
-  return {ranges_m.rbegin(), ranges_m.rend()};
-}
-
-void RpLidarEmulator::send_samples() {
+void RpLidarEmulator::send_packet() {
   const bool standard = scan_type_ == answer_type::kScan;
   const double samples_hz = standard ? 0.5 * settings_.samples_hz : settings_.samples_hz;
   const std::size_t count = standard                            ? kStandardPoints
                             : scan_type_ == answer_type::kDense ? kRpDensePoints
                                                                 : kRpExpressPoints;
-  const double step_deg = kRpTurn_deg * settings_.turns_hz / samples_hz;
-  const std::vector<float> ranges_m = measure(count, step_deg);
+  const double step_deg = kTurn_deg * settings_.turns_hz / samples_hz;
+  const std::vector<double> readings_mm = measure_mm(angle_deg_, step_deg, count);
   std::vector<std::uint8_t> bytes;
   devices::RpPacket packet;
   packet.start_q6 = sixty_fourths(angle_deg_);
   packet.starts = std::exchange(first_, false);
   for (std::size_t i = 0; i < count; ++i) {
-    const double distance_mm = range_mm(ranges_m[i], settings_.range_max_m);
-    packet.points.push_back({distance_mm, 0});
+    packet.points.push_back({readings_mm[i], 0});
     if (standard) {
       const auto sample = devices::rp_bytes(
           devices::RpSample{std::exchange(turned_, false), kGoodQuality, sixty_fourths(angle_deg_),
-                            static_cast<std::uint16_t>(std::lround(4.0 * distance_mm))});
+                            static_cast<std::uint16_t>(std::lround(4.0 * readings_mm[i]))});
       bytes.insert(bytes.end(), sample.begin(), sample.end());
     }
     angle_deg_ += step_deg;
-    if (angle_deg_ < kRpTurn_deg) continue;
-    angle_deg_ -= kRpTurn_deg;
+    if (angle_deg_ < kTurn_deg) continue;
+    angle_deg_ -= kTurn_deg;
     turned_ = true;
-    if (!silent_) ++turns_;
+    count_turn();
   }
   if (!standard) bytes = devices::rp_bytes(packet, scan_type_);
-  if (!silent_) output_.send(faults_.apply(std::move(bytes)), settings_.line, next_ns_);
-  next_ns_ += std::llround(1e9 * static_cast<double>(count) / samples_hz);
+  send(std::move(bytes));
+  schedule(next_ns() + std::llround(1e9 * static_cast<double>(count) / samples_hz));
 }
 
 }  // namespace topogeo::simulation

@@ -4,12 +4,9 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "topogeo/devices/serial_driver.hpp"
-#include "topogeo/simulation/laser_emulator.hpp"
-#include "topogeo/simulation/serial_output.hpp"
-#include "topogeo/simulation/telegram_faults.hpp"
+#include "topogeo/simulation/turning_emulator.hpp"
 
 namespace topogeo::simulation {
 
@@ -23,7 +20,7 @@ struct LdRobotEmulatorSettings {
   std::uint64_t seed = 1;                    ///< of the places of faults
 };
 
-class LdRobotEmulator final : public LaserEmulator {
+class LdRobotEmulator final : public TurningEmulator {
  public:
   /// A laser that was switched on long before `now_ns`. Throws std::invalid_argument for invalid
   /// settings.
@@ -31,34 +28,16 @@ class LdRobotEmulator final : public LaserEmulator {
 
   void receive(std::span<const std::uint8_t> bytes, const devices::LineSettings& host,
                std::int64_t now_ns) override;
-  void tick(std::int64_t now_ns) override;
-  [[nodiscard]] std::int64_t due_ns() const override { return next_ns_; }
-  [[nodiscard]] std::vector<std::uint8_t> take_output(const devices::LineSettings& host,
-                                                      std::int64_t now_ns) override;
-
-  void switch_off() override;
   void switch_on(std::int64_t now_ns) override;
-  void fall_silent(std::int64_t now_ns) override;
-  void speak_again(std::int64_t now_ns) override;
-  void set_fault(LaserFault fault, bool on) override { faults_.set(fault, on); }
-  [[nodiscard]] std::uint64_t scans_sent() const override { return turns_; }
-
-  [[nodiscard]] TelegramFaults& faults() { return faults_; }
   /// Changes the mean speed, which its motor reaches after a while; (0, 30].
   void set_turns_hz(double turns_hz) { settings_.turns_hz = turns_hz; }
 
  private:
-  void send_packet();
+  void send_packet() override;
 
   LdRobotEmulatorSettings settings_;
-  Ranges ranges_;
-  SerialOutput output_;
-  TelegramFaults faults_;
-  std::int64_t next_ns_;    // time of the next packet's last point
   double angle_deg_ = 0.0;  // of the next packet's first point, clockwise
   double turns_hz_;         // present mean speed
-  bool silent_ = false;
-  std::uint64_t turns_ = 0;
 };
 
 }  // namespace topogeo::simulation

@@ -8,9 +8,7 @@
 
 #include "topogeo/devices/rplidar_protocol.hpp"
 #include "topogeo/devices/serial_driver.hpp"
-#include "topogeo/simulation/laser_emulator.hpp"
-#include "topogeo/simulation/serial_output.hpp"
-#include "topogeo/simulation/telegram_faults.hpp"
+#include "topogeo/simulation/turning_emulator.hpp"
 
 namespace topogeo::simulation {
 
@@ -30,7 +28,7 @@ struct RpLidarEmulatorSettings {
   std::uint64_t seed = 1;                    ///< of the places of faults
 };
 
-class RpLidarEmulator final : public LaserEmulator {
+class RpLidarEmulator final : public TurningEmulator {
  public:
   /// A laser that was switched on long before `now_ns` and waits for requests. Throws
   /// std::invalid_argument for invalid settings.
@@ -38,19 +36,8 @@ class RpLidarEmulator final : public LaserEmulator {
 
   void receive(std::span<const std::uint8_t> bytes, const devices::LineSettings& host,
                std::int64_t now_ns) override;
-  void tick(std::int64_t now_ns) override;
-  [[nodiscard]] std::int64_t due_ns() const override { return next_ns_; }
-  [[nodiscard]] std::vector<std::uint8_t> take_output(const devices::LineSettings& host,
-                                                      std::int64_t now_ns) override;
-
   void switch_off() override;
   void switch_on(std::int64_t now_ns) override;
-  void fall_silent(std::int64_t now_ns) override;
-  void speak_again(std::int64_t now_ns) override;
-  void set_fault(LaserFault fault, bool on) override { faults_.set(fault, on); }
-  [[nodiscard]] std::uint64_t scans_sent() const override { return turns_; }
-
-  [[nodiscard]] TelegramFaults& faults() { return faults_; }
   /// Type of the scan that it sends; 0: none.
   [[nodiscard]] std::uint8_t scans() const { return scan_type_; }
   /// The last value of a request for the motor, and its command; 0: none.
@@ -59,28 +46,21 @@ class RpLidarEmulator final : public LaserEmulator {
 
  private:
   void obey(std::uint8_t command, std::span<const std::uint8_t> payload, std::int64_t now_ns);
-  void answer(const devices::RpDescriptor& descriptor, std::span<const std::uint8_t> data,
-              std::int64_t now_ns);
+  void describe(const devices::RpDescriptor& descriptor, std::span<const std::uint8_t> data,
+                std::int64_t now_ns);
   void start_scan(std::uint8_t type, std::int64_t now_ns);
-  void send_samples();
-  [[nodiscard]] std::vector<float> measure(std::size_t count, double step_deg);
+  void send_packet() override;
 
   RpLidarEmulatorSettings settings_;
-  Ranges ranges_;
-  SerialOutput output_;
-  TelegramFaults faults_;
   std::vector<std::uint8_t> request_;
   std::uint8_t scan_type_ = 0;
   bool first_ = false;         // the next packet is the first of its scan
   bool turned_ = false;        // the next sample is the first of a turn
-  std::int64_t next_ns_;       // time of the last sample of the next packet
   std::int64_t ready_ns_ = 0;  // end of the start-up
   double angle_deg_ = 0.0;     // of the next sample, clockwise
   bool off_ = false;
-  bool silent_ = false;
   std::uint8_t motor_command_ = 0;
   std::uint16_t motor_value_ = 0;
-  std::uint64_t turns_ = 0;
 };
 
 }  // namespace topogeo::simulation
