@@ -83,13 +83,16 @@ void LdRobotDriver::receive(std::span<const std::uint8_t> bytes, std::int64_t no
 }
 
 void LdRobotDriver::take(const LdPacket& packet, std::int64_t arrival_ns) {
-  const bool fits = follows(packet);
+  if (last_ && *last_ == packet) {
+    ++repeated_;
+    return;
+  }
   const std::uint32_t passed_ms =
       last_ ? (kLdTimeWrap_ms + packet.time_ms - last_->time_ms) % kLdTimeWrap_ms : 0;
-  if (last_ && *last_ == packet) return;
-  device_ns_ += static_cast<std::int64_t>(passed_ms) * 1'000'000;
-  const std::int64_t apart_ns =
-      arrival_ns - last_arrival_ns_ - static_cast<std::int64_t>(passed_ms) * 1'000'000;
+  const bool fits = follows(packet, passed_ms);
+  const std::int64_t passed_ns = static_cast<std::int64_t>(passed_ms) * 1'000'000;
+  device_ns_ += passed_ns;
+  const std::int64_t apart_ns = arrival_ns - last_arrival_ns_ - passed_ns;
   if (!last_ || std::llabs(apart_ns) > kRestarted_ns) clock_.restart();
   last_ = packet;
   if (!fits) {
@@ -100,14 +103,8 @@ void LdRobotDriver::take(const LdPacket& packet, std::int64_t arrival_ns) {
   add_beams(packet, clock_.map(device_ns_, arrival_ns) - settings_.packet_delay_ns);
 }
 
-bool LdRobotDriver::follows(const LdPacket& packet) {
+bool LdRobotDriver::follows(const LdPacket& packet, std::uint32_t passed_ms) {
   if (!last_) return false;  // whether it was a packet at all, only the next one shows
-  if (*last_ == packet) {
-    ++repeated_;
-    return false;
-  }
-  const std::uint32_t passed_ms =
-      (kLdTimeWrap_ms + packet.time_ms - last_->time_ms) % kLdTimeWrap_ms;
   if (passed_ms > kLongestPause_ms) {
     ++implausible_;
     return false;

@@ -23,10 +23,10 @@ constexpr int kStartsUntilFailed = 3;
 /// A packet of 32 points of a laser that turns 15 times a second spans 43 degrees.
 constexpr double kLongestStep_deg = 60.0;
 constexpr std::int64_t kLongestPacket_ns = 60 * kRpMs_ns;
-/// No motor changes its speed by more from one packet to the next, which follows after 20 ms at
-/// most.
 /// After so many unusual widths in a row the laser has another speed.
 constexpr int kFewWidths = 3;
+/// No motor changes its speed by more from one packet to the next, which follows after 20 ms at
+/// most.
 constexpr double kSameWidth = 0.05;
 constexpr double kSameWidth_deg = 0.3;
 /// The clock by samples is wrong when it lags behind the arrival by more than a busy line delays.
@@ -84,12 +84,7 @@ void RpLidarDriver::lost(std::int64_t /*now_ns*/) {
 void RpLidarDriver::end(std::int64_t /*now_ns*/) {
   if (step_ == Step::kOffline) return;
   write(rp_request(rp_command::kStop));
-  const bool model = settings_.motor == RpMotor::kModel;
-  if (settings_.motor == RpMotor::kSpeed || (model && series_ >= kFirstWithSpeed)) {
-    write(rp_motor_request(rp_command::kMotorSpeed, 0));
-  } else if (settings_.motor == RpMotor::kPwm || (model && series_ >= kFirstWithPwm)) {
-    write(rp_motor_request(rp_command::kMotorPwm, 0));
-  }
+  if (const auto command = motor_command()) write(rp_motor_request(*command, 0));
   if (settings_.motor != RpMotor::kNone) write({}, true);
   reason_ = "the program ends";
   enter(Step::kOffline, 0);
@@ -132,15 +127,22 @@ void RpLidarDriver::request_scan() {
   write(rp_express_request(dense ? std::uint8_t{1} : settings_.express_mode));
 }
 
-void RpLidarDriver::start_motor() {
-  const bool model = settings_.motor == RpMotor::kModel;
-  if (settings_.motor == RpMotor::kSpeed || (model && series_ >= kFirstWithSpeed)) {
-    write(rp_motor_request(rp_command::kMotorSpeed,
-                           settings_.motor_value > 0 ? settings_.motor_value : kDefaultSpeedRpm));
-  } else if (settings_.motor == RpMotor::kPwm || (model && series_ >= kFirstWithPwm)) {
-    write(rp_motor_request(rp_command::kMotorPwm,
-                           settings_.motor_value > 0 ? settings_.motor_value : kDefaultPwm));
+std::optional<std::uint8_t> RpLidarDriver::motor_command() const {
+  const bool by_model = settings_.motor == RpMotor::kModel;
+  if (settings_.motor == RpMotor::kSpeed || (by_model && series_ >= kFirstWithSpeed)) {
+    return rp_command::kMotorSpeed;
   }
+  if (settings_.motor == RpMotor::kPwm || (by_model && series_ >= kFirstWithPwm)) {
+    return rp_command::kMotorPwm;
+  }
+  return std::nullopt;
+}
+
+void RpLidarDriver::start_motor() {
+  const auto command = motor_command();
+  if (!command) return;
+  const std::uint16_t usual = *command == rp_command::kMotorPwm ? kDefaultPwm : kDefaultSpeedRpm;
+  write(rp_motor_request(*command, settings_.motor_value > 0 ? settings_.motor_value : usual));
 }
 
 void RpLidarDriver::fail(const std::string& reason, std::int64_t now_ns) {

@@ -19,8 +19,8 @@ struct LaserScan {
   double angle_step_rad = 0.0;  ///< counter-clockwise, > 0
   std::vector<float> ranges_m;  ///< one per beam; 0: no return
   double first_beam_s = 0.0;    ///< time of the first of ranges_m after the stamp
-  /// From one of ranges_m to the next; negative for a mirror that turns clockwise. 0: the driver
-  /// does not know, and all beams count as measured at the stamp.
+  /// Time from one of ranges_m to the next; negative if the mirror turns clockwise. A driver that
+  /// does not know it gives 0, and all beams count as measured at the stamp.
   double time_step_s = 0.0;
   bool contaminated = false;   ///< the window is dirty
   std::size_t dazzled = 0;     ///< readings with glaring light

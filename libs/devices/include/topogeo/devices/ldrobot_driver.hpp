@@ -36,8 +36,8 @@ class LdRobotDriver final : public LaserDriver {
 
  private:
   void take(const LdPacket& packet, std::int64_t arrival_ns);
-  /// Whether the laser can have sent `packet` after the last one; counts why not.
-  [[nodiscard]] bool follows(const LdPacket& packet);
+  /// Whether the laser can have sent `packet` so long after the last one; counts why not.
+  [[nodiscard]] bool follows(const LdPacket& packet, std::uint32_t passed_ms);
   void add_beams(const LdPacket& packet, std::int64_t last_beam_ns);
   void wait(LaserState state, std::string reason);
 

@@ -63,6 +63,8 @@ class RpLidarDriver final : public LaserDriver {
   void fail(const std::string& reason, std::int64_t now_ns);
   void enter(Step step, std::int64_t due_ns);
   void write(std::vector<std::uint8_t> bytes, std::optional<bool> dtr = {});
+  /// The request that the motor obeys; none for a motor without requests.
+  [[nodiscard]] std::optional<std::uint8_t> motor_command() const;
   void start_motor();
   void request_scan();
 
