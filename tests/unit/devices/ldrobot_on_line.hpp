@@ -1,65 +1,18 @@
-// A driver and an emulated LDROBOT laser on a simulated line, in a world that changes with every
-// packet, with a check of every beam of the driver's scans.
+// A driver and an emulated LDROBOT laser on a simulated line.
 #pragma once
 
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <deque>
-#include <numbers>
-#include <stdexcept>
-#include <utility>
-#include <vector>
-
+#include "topogeo/devices/laser_models.hpp"
 #include "topogeo/devices/ldrobot_driver.hpp"
 #include "topogeo/simulation/ldrobot_emulator.hpp"
-#include "topogeo/support/random.hpp"
 
-#include "measured_beams.hpp"
-#include "simulated_line.hpp"
+#include "turning_laser_on_line.hpp"
 
 namespace topogeo::devices {
 
-class LdRobotOnLine {
- public:
+struct LdRobotOnLine : TurningLaserOnLine<LdRobotDriver, simulation::LdRobotEmulator> {
   explicit LdRobotOnLine(const TurningLaserSettings& settings = {},
                          const simulation::LdRobotEmulatorSettings& laser = {})
-      : driver(laser_model("ld19"), settings),
-        emulator(laser, [this](const simulation::BeamPattern& beams,
-                               std::int64_t now_ns) { return world.measure(beams, now_ns); }),
-        line(driver, emulator),
-        world(laser.seed) {}
-
-  /// Takes the driver's scans and counts those with a beam that the laser did not measure.
-  void collect() {
-    for (LaserScan& scan : driver.take_scans()) {
-      if (!world.has(scan)) ++wrong_scans;
-      scans.push_back(std::move(scan));
-    }
-  }
-
-  void run_for(std::int64_t duration_ns) {
-    line.run_until(duration_ns, [this] {
-      collect();
-      return false;
-    });
-  }
-
-  /// Passes time until the driver has delivered `count` more scans.
-  bool run_for_scans(std::size_t count, std::int64_t limit_ns) {
-    const std::size_t wanted = scans.size() + count;
-    return line.run_until(limit_ns, [&] {
-      collect();
-      return scans.size() >= wanted;
-    });
-  }
-
-  LdRobotDriver driver;
-  simulation::LdRobotEmulator emulator;
-  SimulatedLine line;
-  MeasuredBeams world;
-  std::vector<LaserScan> scans;
-  std::size_t wrong_scans = 0;
+      : TurningLaserOnLine(laser, laser_model("ld19"), settings) {}
 };
 
 }  // namespace topogeo::devices

@@ -10,8 +10,7 @@
 #include "topogeo/devices/ldrobot_packet.hpp"
 #include "topogeo/simulation/rplidar_emulator.hpp"
 
-#include "measured_beams.hpp"
-#include "simulated_line.hpp"
+#include "turning_laser_on_line.hpp"
 
 namespace topogeo::devices {
 namespace {
@@ -23,45 +22,13 @@ using testing::HasSubstr;
 constexpr std::int64_t kRpTestMs_ns = 1'000'000;
 constexpr std::int64_t kRpTestSecond_ns = 1000 * kRpTestMs_ns;
 
-/// A driver and an emulated RPLIDAR on a simulated line, with a check of every beam.
-struct RpOnLine {
+struct RpOnLine : TurningLaserOnLine<RpLidarDriver, simulation::RpLidarEmulator> {
   explicit RpOnLine(const RpLidarSettings& settings = {}, const RpLidarEmulatorSettings& laser = {},
                     const TurningLaserSettings& turning = {}, const char* model = "rplidar_a1")
-      : driver(laser_model(model), turning, settings),
-        emulator(laser, [this](const simulation::BeamPattern& beams,
-                               std::int64_t now_ns) { return world.measure(beams, now_ns); }),
-        line(driver, emulator),
-        world(laser.seed) {
+      : TurningLaserOnLine(laser, laser_model(model), turning, settings) {
     // A packet of 32 points takes 8 ms.
     world.time_error_ns = 12 * kRpTestMs_ns;
   }
-
-  void collect() {
-    for (LaserScan& scan : driver.take_scans()) {
-      if (!world.has(scan)) ++wrong_scans;
-      scans.push_back(std::move(scan));
-    }
-  }
-  void run_for(std::int64_t duration_ns) {
-    line.run_until(duration_ns, [this] {
-      collect();
-      return false;
-    });
-  }
-  bool run_for_scans(std::size_t count, std::int64_t limit_ns) {
-    const std::size_t wanted = scans.size() + count;
-    return line.run_until(limit_ns, [&] {
-      collect();
-      return scans.size() >= wanted;
-    });
-  }
-
-  RpLidarDriver driver;
-  simulation::RpLidarEmulator emulator;
-  SimulatedLine line;
-  MeasuredBeams world;
-  std::vector<LaserScan> scans;
-  std::size_t wrong_scans = 0;
 };
 
 TEST(RpLidarDriver, StartsAnExpressScanAndLosesNoTurn) {
