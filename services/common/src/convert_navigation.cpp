@@ -41,10 +41,8 @@ navigation::PoseFix to_pose_fix(const LivePose& pose) {
   if (pose.mode != msg::kModeMapping) fix.covariance = pose.covariance;
   fix.tracking = pose.status.state == localization::LocalizationState::kTracking;
   fix.located = localization::located(pose.status.state);
-  constexpr double kMoreProbablyRight = 0.5;  // as for TRACKING
-  fix.place_known = fix.located && pose.mode != msg::kModeMapping &&
-                    pose.status.confidence >=
-                        kMoreProbablyRight * localization::covariance_confidence(pose.covariance);
+  fix.place_known =
+      pose.mode != msg::kModeMapping && localization::place_is_known(pose.status, pose.covariance);
   fix.state_text = localization::to_string(pose.status.state);
   return fix;
 }

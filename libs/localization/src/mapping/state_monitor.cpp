@@ -127,6 +127,11 @@ double covariance_confidence(const Eigen::Matrix3d& covariance) {
   return position * std::sqrt(1.0 - geometry::exp(exponent));
 }
 
+bool place_is_known(const LocalizationStatus& status, const Eigen::Matrix3d& covariance) {
+  return located(status.state) &&
+         status.confidence >= kTrackingFrom * covariance_confidence(covariance);
+}
+
 LocalizationStatus StateMonitor::add(const StepEvidence& evidence) {
   struct Support {
     double before;  // confidence of its source

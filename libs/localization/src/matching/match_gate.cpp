@@ -10,6 +10,8 @@
 #include "topogeo/localization/matching/fitness_combined.hpp"
 #include "topogeo/localization/matching/refinement.hpp"
 
+#include "principal_axes.hpp"
+
 namespace topogeo::localization {
 namespace {
 
@@ -113,9 +115,7 @@ bool plausible(const MatchTask& task, const MatchResult& result) {
 }
 
 double weakest_sigma_m(const Eigen::Matrix3d& c) {
-  const double mean = 0.5 * (c(0, 0) + c(1, 1));
-  const double half_difference = 0.5 * (c(0, 0) - c(1, 1));
-  return std::sqrt(mean + std::sqrt(half_difference * half_difference + c(0, 1) * c(0, 1)));
+  return std::sqrt(principal_axes(c(0, 0), c(0, 1), c(1, 1)).largest);
 }
 
 Eigen::Matrix3d match_covariance_floor() {

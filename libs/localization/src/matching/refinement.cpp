@@ -160,20 +160,29 @@ void compare_views(const Reference& reference, const MatchFeatures& query, const
   if (inliers > 0) result.residual_rms_m = std::sqrt(squared / static_cast<double>(inliers));
 }
 
+/// The axis of a symmetric matrix with the larger eigenvalue.
+struct WidestAxis {
+  double largest = 0.0;
+  double smallest = 0.0;
+  Eigen::Vector2d direction;  ///< of the larger one, of length 1
+};
+
+WidestAxis widest_axis(const Eigen::Matrix2d& m) {
+  const double half_difference = 0.5 * (m(0, 0) - m(1, 1));
+  const double mean = 0.5 * (m(0, 0) + m(1, 1));
+  const double spread = std::sqrt(half_difference * half_difference + m(0, 1) * m(0, 1));
+  const geometry::SinCos widest = geometry::sincos(0.5 * geometry::atan2(m(0, 1), half_difference));
+  return {mean + spread, mean - spread, {widest.cos, widest.sin}};
+}
+
 // Removes the part along a direction in which the position is hardly determined. There a pull of
 // centimetres would become metres, and the pose weighs nothing anyway.
 Eigen::Vector2d known_part(const Eigen::Vector2d& step_m, const Eigen::Matrix2d& covariance_m2) {
   constexpr double kKnown_m2 = 0.25;
-  const double half_difference = 0.5 * (covariance_m2(0, 0) - covariance_m2(1, 1));
-  const double mean = 0.5 * (covariance_m2(0, 0) + covariance_m2(1, 1));
-  const double spread =
-      std::sqrt(half_difference * half_difference + covariance_m2(0, 1) * covariance_m2(0, 1));
-  if (mean + spread <= kKnown_m2) return step_m;
-  if (mean - spread > kKnown_m2) return Eigen::Vector2d::Zero();
-  const geometry::SinCos widest =
-      geometry::sincos(0.5 * geometry::atan2(covariance_m2(0, 1), half_difference));
-  const Eigen::Vector2d along(widest.cos, widest.sin);
-  return step_m - along * along.dot(step_m);
+  const WidestAxis widest = widest_axis(covariance_m2);
+  if (widest.largest <= kKnown_m2) return step_m;
+  if (widest.smallest > kKnown_m2) return Eigen::Vector2d::Zero();
+  return step_m - widest.direction * widest.direction.dot(step_m);
 }
 
 }  // namespace
@@ -214,15 +223,11 @@ Eigen::Matrix3d less_normal_errors(const Eigen::Matrix3d& information, double si
   const Eigen::Vector2d with_heading = information.topRightCorner<2, 1>();
   const Eigen::Matrix2d position = information.topLeftCorner<2, 2>() -
                                    with_heading * with_heading.transpose() / information(2, 2);
-  const double half_difference = 0.5 * (position(0, 0) - position(1, 1));
-  const double spread =
-      std::sqrt(half_difference * half_difference + position(0, 1) * position(0, 1));
-  const double weakest = 0.5 * (position(0, 0) + position(1, 1)) - spread;
-  const geometry::SinCos along =
-      geometry::sincos(0.5 * geometry::atan2(-2.0 * position(0, 1), -2.0 * half_difference));
-  const Eigen::Vector2d u(along.cos, along.sin);
+  const WidestAxis negative = widest_axis(-position);
+  const Eigen::Vector2d& weakest = negative.direction;
   const double seeming = sigma_rad * sigma_rad * (information(0, 0) + information(1, 1));
-  known.topLeftCorner<2, 2>() -= std::min(seeming, std::max(0.0, weakest)) * u * u.transpose();
+  known.topLeftCorner<2, 2>() -=
+      std::min(seeming, std::max(0.0, -negative.largest)) * weakest * weakest.transpose();
   return known;
 }
 

@@ -9,6 +9,7 @@
 #include "topogeo/localization/matching/refinement.hpp"
 
 #include "../matching/match_evidence.hpp"
+#include "../matching/principal_axes.hpp"
 
 namespace topogeo::localization {
 
@@ -60,10 +61,8 @@ Eigen::Matrix3d honest(Eigen::Matrix3d information) {
   const double pretended = kNoiseOfNormals * (information(0, 0) + information(1, 1));
   constexpr double kLeast = 1e-2;  // 10 m, 6 rad: nothing
   // Taken off in the direction that is known least, if only that remains.
-  const Eigen::Matrix2d position = information.topLeftCorner<2, 2>();
-  const double half = 0.5 * (position(0, 0) - position(1, 1));
-  const double spread = std::sqrt(half * half + position(0, 1) * position(0, 1));
-  const double smallest = 0.5 * (position(0, 0) + position(1, 1)) - spread;
+  const double smallest =
+      principal_axes(information(0, 0), information(0, 1), information(1, 1)).smallest;
   const double taken = std::clamp(smallest - kLeast, 0.0, pretended);
   information(0, 0) -= taken;
   information(1, 1) -= taken;

@@ -49,6 +49,28 @@ TEST(NavigationConversions, AStatusComesBackAsItWas) {
   EXPECT_EQ(back.guard_stops, 1U);
 }
 
+TEST(NavigationConversions, AnUncertainPoseAtAKnownPlaceIsToldFromADoubtfulOne) {
+  using localization::LocalizationState;
+  LivePose pose;
+  pose.mode = msg::kModeLocalization;
+  pose.covariance.diagonal() << 1.0, 0.01, 1e-6;  // a metre along a corridor
+  pose.status = {LocalizationState::kAmbiguous, 0.08};
+  EXPECT_TRUE(to_pose_fix(pose).place_known);
+  EXPECT_FALSE(to_pose_fix(pose).tracking);
+  pose.status.confidence = 0.02;
+  EXPECT_FALSE(to_pose_fix(pose).place_known);
+  pose.covariance.diagonal() << 1e-4, 1e-4, 1e-6;  // certain, but perhaps elsewhere
+  pose.status.confidence = 0.3;
+  EXPECT_FALSE(to_pose_fix(pose).place_known);
+  pose.status.confidence = 0.7;
+  EXPECT_TRUE(to_pose_fix(pose).place_known);
+  pose.mode = msg::kModeMapping;
+  EXPECT_FALSE(to_pose_fix(pose).place_known);
+  pose.mode = msg::kModeLocalization;
+  pose.status = {LocalizationState::kLost, 0.7};
+  EXPECT_FALSE(to_pose_fix(pose).place_known);
+}
+
 TEST(NavigationConversions, APoseThatIsNotKnownStaysSo) {
   EXPECT_FALSE(from_msg(to_msg(navigation::NavigatorStatus{}, "r", 0, 0)).T_map_robot.has_value());
 }

@@ -86,4 +86,8 @@ double odometry_confidence(const StepEvidence& evidence);
 /// Probability that a pose with this covariance is within 0.3 m and 5 degrees.
 double covariance_confidence(const Eigen::Matrix3d& covariance);
 
+/// Whether a robot is at a known place, more probably than not: it is TRACKING, or would be if its
+/// pose were certain, as along a bare corridor.
+bool place_is_known(const LocalizationStatus& status, const Eigen::Matrix3d& covariance);
+
 }  // namespace topogeo::localization
