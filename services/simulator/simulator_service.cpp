@@ -19,9 +19,7 @@ constexpr std::int64_t kTruthPeriod_ns = 20'000'000;
 constexpr std::int64_t kBodyPeriod_ns = 100'000'000;
 /// Period of the status counters, for people.
 constexpr std::int64_t kStatePeriod_ns = 1'000'000'000;
-/// When the machine gives this process no time for longer, the world's clock stands still for the
-/// rest, because a robot that runs on blindly would hit something.
-constexpr std::chrono::milliseconds kLatest{200};
+constexpr std::chrono::nanoseconds kLatest{simulation::kLongestCatchUp_ns};
 constexpr double kLookAhead_m = 5.0;
 
 std::int64_t nanoseconds(std::chrono::nanoseconds duration) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <span>
 #include <utility>
@@ -30,16 +31,38 @@ class RollingBase final : public simulation::SerialDevice {
 
   void receive(std::span<const std::uint8_t> bytes, const LineSettings& host,
                std::int64_t now_ns) override {
+    if (frozen_) {
+      waiting_.emplace_back(std::vector<std::uint8_t>(bytes.begin(), bytes.end()), host);
+      return;
+    }
     roll(now_ns);
     mcp.receive(bytes, host, now_ns);
   }
-  void tick(std::int64_t now_ns) override { roll(now_ns); }
+  void tick(std::int64_t now_ns) override {
+    if (!frozen_) roll(now_ns);
+  }
   [[nodiscard]] std::int64_t due_ns() const override {
+    if (frozen_) return std::numeric_limits<std::int64_t>::max();
     return std::min(mcp.due_ns(), rolled_ns_ + kStep_ns);
   }
   [[nodiscard]] std::vector<std::uint8_t> take_output(const LineSettings& host,
                                                       std::int64_t now_ns) override {
-    return mcp.take_output(host, now_ns);
+    return frozen_ ? std::vector<std::uint8_t>{} : mcp.take_output(host, now_ns);
+  }
+
+  /// The process of the emulated base waits for a CPU.
+  void freeze() { frozen_ = true; }
+  /// It goes on as the simulator does.
+  void thaw(std::int64_t now_ns) {
+    frozen_ = false;
+    const std::int64_t standstill_ns =
+        std::max<std::int64_t>(0, now_ns - rolled_ns_ - simulation::kLongestCatchUp_ns);
+    mcp.stand_still(standstill_ns);
+    rolled_ns_ += standstill_ns;
+    for (const auto& [bytes, host] : std::exchange(waiting_, {})) {
+      mcp.receive(bytes, host, rolled_ns_);
+    }
+    roll_to(now_ns);
   }
 
   /// True pose of the wheels, interpolated between the two nearest known times.
@@ -77,6 +100,10 @@ class RollingBase final : public simulation::SerialDevice {
   using Place = std::pair<std::int64_t, geometry::Pose2>;
   static constexpr std::int64_t kStep_ns = 5 * kMs;
 
+  void roll_to(std::int64_t to_ns) {
+    while (rolled_ns_ < to_ns) roll(std::min(rolled_ns_ + kStep_ns, to_ns));
+  }
+
   void roll(std::int64_t now_ns) {
     const double dt_s = 1e-9 * static_cast<double>(now_ns - rolled_ns_);
     const geometry::Velocity velocity = mcp.commanded_velocity();
@@ -93,6 +120,8 @@ class RollingBase final : public simulation::SerialDevice {
 
   std::vector<Place> way_;
   std::int64_t rolled_ns_ = 0;
+  bool frozen_ = false;
+  std::vector<std::pair<std::vector<std::uint8_t>, LineSettings>> waiting_;  ///< while it is frozen
   support::Random random_{9};
   double noise_mps_ = 0.0;
   double noise_radps_ = 0.0;

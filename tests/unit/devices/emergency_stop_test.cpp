@@ -85,6 +85,26 @@ TEST_P(EmergencyStopOn, IsNeverNoticedWhereWhatIsCommandedIsWrittenLate) {
   }
 }
 
+/// The emulated base waits for a CPU; the gateway goes on, or waits, too.
+TEST_P(EmergencyStopOn, IsNeverNoticedWhereTheEmulatedBaseWaits) {
+  BaseOnLine all(settings());
+  all.base.set_noise(kLinearNoise, kAngularNoise);
+  ASSERT_TRUE(all.start());
+  OrdinaryDrive drive(7);
+  support::Random random(8);
+  for (int i = 0; i < (all_of_them() ? 5000 : 500); ++i) {
+    follow(all, drive, 400 * kMs);
+    all.base.freeze();
+    follow(all, drive, static_cast<std::int64_t>(random.below(400)) * kMs);
+    all.line.freeze_host(random.below(2) == 0);
+    all.pass(static_cast<std::int64_t>(random.below(300)) * kMs);
+    all.base.thaw(all.line.now_ns());
+    all.pass(static_cast<std::int64_t>(random.below(100)) * kMs);
+    all.line.freeze_host(false);
+    ASSERT_NE(all.driver.status().state, BaseState::kEmergencyStop) << i;
+  }
+}
+
 /// Motion of the wheels with and without the emergency stop.
 struct TwinDrive {
   explicit TwinDrive(const BaseSettings& settings, std::uint64_t seed)

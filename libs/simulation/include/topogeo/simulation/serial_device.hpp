@@ -10,6 +10,12 @@
 
 namespace topogeo::simulation {
 
+/// Longest time that an emulated device catches up after its process waited for a CPU. The world
+/// stands still for the rest of the wait, because a robot that runs on blindly would hit something.
+/// The device obeys the commands of the wait after that standstill, so it obeys them early by at
+/// most this time. A driver would take a larger error for a base without power.
+inline constexpr std::int64_t kLongestCatchUp_ns = 50'000'000;
+
 /// Times are nanoseconds of the simulated world's clock, which never goes back.
 class SerialDevice {
  public:
