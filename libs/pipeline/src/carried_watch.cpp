@@ -19,6 +19,9 @@ constexpr int kFewestBeams = 20;
 // How long the new view must last.
 constexpr std::int64_t kStays_ns = 1'000'000'000;
 constexpr int kStaysScans = 5;
+// A robot that drives on farther within that time has passed a door, behind which a short-sighted
+// laser sees nothing that it saw before.
+constexpr double kPutDown_m = 0.3;
 constexpr double kBetter = 0.2;  // difference in agreement
 
 /// Share of the beams that see beyond what `before` saw, taken at the same place with another
@@ -57,7 +60,9 @@ CarriedWatch::State CarriedWatch::add(const scan::Scan& scan,
       ++there_scans_;
       const bool stays =
           there_scans_ >= kStaysScans && scan.stamp_ns - there_since_ns_ >= kStays_ns;
-      return stays ? State::kElsewhere : State::kUnclear;
+      if (!stays) return State::kUnclear;
+      const Pose2 moved = geometry::between(last_matched_->T_odom_robot, scan.T_odom_robot);
+      if (moved.position_m().norm() < kPutDown_m) return State::kElsewhere;
     }
   }
   there_scans_ = 0;
