@@ -75,7 +75,7 @@ struct Measured {
 
 Measured measure_by_reference(CalibrationInputs& inputs, const std::filesystem::path& reference) {
   Measured measured;
-  measured.maps = make_maps(inputs.config.config, inputs.log, "following", [](const auto&) {});
+  measured.maps = make_maps(inputs.config.config, inputs.log);
   const double longest_path_m = inputs.config.config.localizer.recent_way_m;
   measured.motions =
       localization::motions_from_reference(measured.maps, inputs.reference, longest_path_m);

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "topogeo/localization/mapping/pose_graph_slam.hpp"
 #include "topogeo/localization/matching/matcher.hpp"
@@ -68,16 +69,15 @@ void Bar::finish() {
   bar_.finish(done_, done_, support::monotonic_s() - start_s_);
 }
 
-localization::LocalMaps make_maps(
-    const pipeline::Config& config, OpenLog& log, const char* label,
-    const std::function<void(const std::shared_ptr<const topomap::LocalMap>&)>& use) {
-  localization::LocalMaps maps;
+localization::LocalMaps make_maps(const pipeline::Config& config, OpenLog& log) {
+  std::vector<localization::LocalMaps> drives;
   const auto take = [&](std::optional<topomap::LocalMap> map) {
     if (!map) return;
-    maps.push_back(std::make_shared<const topomap::LocalMap>(std::move(*map)));
-    use(maps.back());
+    const bool begins = drives.empty() || drives.back().back()->stop.session != map->stop.session;
+    if (begins) drives.emplace_back();
+    drives.back().push_back(std::make_shared<const topomap::LocalMap>(std::move(*map)));
   };
-  Bar bar(label, "scans");
+  Bar bar("following", "scans");
   pipeline::LocalMapper mapper(config.local_mapper, "robot");
   std::uint64_t done = 0;
   while (const std::optional<scan::Scan> scan = log.reader.next()) {
@@ -86,7 +86,12 @@ localization::LocalMaps make_maps(
   }
   take(mapper.finish());
   bar.finish();
-  return maps;
+  if (drives.empty()) return {};
+  if (drives.size() > 1) {
+    std::cerr << fmt::format("the odometry breaks {} times: the longest part counts\n",
+                             drives.size() - 1);
+  }
+  return std::move(*std::ranges::max_element(drives, {}, &localization::LocalMaps::size));
 }
 
 MatchedLog match_log(const pipeline::Config& config, OpenLog& log) {
@@ -98,7 +103,14 @@ MatchedLog match_log(const pipeline::Config& config, OpenLog& log) {
   localization::RecordingPool pool(searching);
   localization::PoseGraphSlam slam(matching, pool);
   MatchedLog result;
-  result.maps = make_maps(config, log, "matching", [&](const auto& map) { slam.add(map); });
+  result.maps = make_maps(config, log);
+  Bar bar("matching", "stops");
+  std::uint64_t done = 0;
+  for (const auto& map : result.maps) {
+    slam.add(map);
+    bar.update(++done, result.maps.size());
+  }
+  bar.finish();
   slam.finish();
   result.matched =
       localization::motions_from_matches(result.maps, pool.accepted(), slam.trajectory());

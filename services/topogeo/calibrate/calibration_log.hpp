@@ -3,8 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -45,10 +43,9 @@ class Bar {
   std::uint64_t done_ = 0;
 };
 
-/// Makes the local maps of the log and passes each to `use`.
-localization::LocalMaps make_maps(
-    const pipeline::Config& config, OpenLog& log, const char* label,
-    const std::function<void(const std::shared_ptr<const topomap::LocalMap>&)>& use);
+/// Makes the local maps of the log, of its longest part if the odometry breaks: a motion across a
+/// break measures nothing.
+localization::LocalMaps make_maps(const pipeline::Config& config, OpenLog& log);
 
 struct MatchedLog {
   localization::LocalMaps maps;
