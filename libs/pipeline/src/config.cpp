@@ -1,7 +1,9 @@
 #include "topogeo/pipeline/config.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
+#include "topogeo/localization/calibration/odometry_calibration.hpp"
 #include "topogeo/pipeline/laser_mounting.hpp"
 
 namespace topogeo::pipeline {
@@ -17,14 +19,28 @@ void share_values(Config& c) {
   c.calibration.seed = c.localizer.seed;
 }
 
-// A key that is missing in the file keeps its earlier value, so the result then differs.
-bool sets_laser(const std::filesystem::path& file, const geometry::Pose2& read) {
+// Notes which parts the file sets. A key that is missing in the file keeps its earlier value, so
+// two configurations that differed before then still differ.
+void note_set_keys(const std::filesystem::path& file, LoadedConfig& loaded) {
   Config other;
   other.local_mapper.T_robot_laser = {1.0, 1.0, 1.0};
+  other.local_mapper.stop_distance_m *= 2.0;
+  localization::OdometryNoise& noise = other.localizer.odometry;
+  for (const localization::NoiseParameter& parameter : localization::kOdometryParameters) {
+    noise.*parameter.field *= 0.5;
+  }
   support::load_yaml_file(file, describe(other));
-  const geometry::Pose2& read_again = other.local_mapper.T_robot_laser;
-  return read.x_m == read_again.x_m || read.y_m == read_again.y_m ||
-         read.theta_rad == read_again.theta_rad;
+  const Config& read = loaded.config;
+  const geometry::Pose2& laser = read.local_mapper.T_robot_laser;
+  const geometry::Pose2& other_laser = other.local_mapper.T_robot_laser;
+  loaded.laser_set = laser.x_m == other_laser.x_m || laser.y_m == other_laser.y_m ||
+                     laser.theta_rad == other_laser.theta_rad;
+  loaded.stop_distance_set =
+      read.local_mapper.stop_distance_m == other.local_mapper.stop_distance_m;
+  loaded.odometry_noise_set =
+      std::ranges::any_of(localization::kOdometryParameters, [&](const auto& parameter) {
+        return read.localizer.odometry.*parameter.field == noise.*parameter.field;
+      });
 }
 
 // Checks relations between values beyond the ranges of the keys.
@@ -41,6 +57,17 @@ void check_values(const Config& c) {
 }
 
 }  // namespace
+
+void set_stop_distance(LoadedConfig& loaded, double distance_m) {
+  loaded.config.local_mapper.stop_distance_m = distance_m;
+  loaded.effective = support::effective(describe(loaded.config));
+}
+
+void set_odometry_noise(LoadedConfig& loaded, const localization::OdometryNoise& noise) {
+  loaded.config.localizer.odometry = noise;
+  share_values(loaded.config);
+  loaded.effective = support::effective(describe(loaded.config));
+}
 
 support::ConfigSchema describe(Config& config) {
   support::ConfigSchema schema;
@@ -75,7 +102,7 @@ LoadedConfig load_config(const std::optional<std::filesystem::path>& file) {
   const support::ConfigSchema schema = describe(loaded.config);
   if (file) {
     support::load_yaml_file(*file, schema);
-    loaded.laser_set = sets_laser(*file, loaded.config.local_mapper.T_robot_laser);
+    note_set_keys(*file, loaded);
   }
   loaded.effective = support::effective(schema);
   share_values(loaded.config);

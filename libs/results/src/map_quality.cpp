@@ -1,11 +1,13 @@
 #include "topogeo/results/map_quality.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <numbers>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -28,6 +30,7 @@ constexpr double kOdometryDisagrees = 0.15;    // typical displacement per lengt
 constexpr double kOdometryContradicts = 0.33;  // the same, whatever the matches are
 constexpr double kGoodAcceptedShare = 0.7;
 constexpr double kMostSkipped = 0.5;
+constexpr double kMostUnmapped = 0.05;  // of the stops (own)
 constexpr double kLongDrive_m = 10.0;
 constexpr std::uint64_t kStopsOfLongDrive = 10;
 constexpr std::uint32_t kStopsOfEnd = 3;  // an open step there moves hardly anything
@@ -37,6 +40,9 @@ constexpr const char* kGood = "good";
 constexpr const char* kFair = "fair";
 constexpr const char* kPoor = "poor";
 constexpr const char* kUseless = "useless";
+
+constexpr const char* kMoreStops = "more stops: stop: {distance_m: 0.5} in a file for --config";
+constexpr const char* kCalibrateOdometry = "topogeo calibrate-odometry ";
 
 double degrees(double angle_rad) {
   return angle_rad * 180.0 / std::numbers::pi;
@@ -49,6 +55,7 @@ struct Facts {
   double recent_matches = 0.0;  // per step
   double accepted_share = 0.0;
   double skipped_share = 0.0;
+  std::uint64_t unmapped_stops = 0;
   double typical_share = 0.0;
   std::uint64_t open_steps = 0;  // by odometry alone, and held by no loop
   double open_m = 0.0;
@@ -145,6 +152,14 @@ Judgement judge(const Report& report, const Facts& facts) {
                     facts.recent_matches, facts.fewest_recent_matches));
   }
   judge_odometry(facts, judgement);
+  if (facts.unmapped_stops > 0) {
+    const std::uint64_t stops = report.stops + facts.unmapped_stops;
+    std::string reason = fmt::format(
+        "{} of {} stops are not in the map, because the robot was not found again in it",
+        facts.unmapped_stops, stops);
+    const double share = static_cast<double>(facts.unmapped_stops) / static_cast<double>(stops);
+    share > kMostUnmapped ? judgement.poor(std::move(reason)) : judgement.fair(std::move(reason));
+  }
   if (facts.skipped_share > kMostSkipped) {
     judgement.poor(fmt::format("{:.0f} % of the scans were skipped", 100.0 * facts.skipped_share));
   }
@@ -172,12 +187,29 @@ std::string advice(const Facts& facts, const std::string& grade, const QualityIn
     return "topogeo calibrate-laser " + inputs.log + " --out laser.yaml";
   }
   const double step_m = facts.steps > 0 ? facts.path_m / static_cast<double>(facts.steps) : 0.0;
-  const bool few_matches =
-      facts.open_steps > 0 || facts.recent_matches < facts.fewest_recent_matches;
-  if (!disagrees && few_matches && step_m >= kLongStep_m) {
-    return "more stops: stop: {distance_m: 0.5} in a file for --config";
+  const bool few_matches = facts.open_steps > 0 || facts.unmapped_stops > 0 ||
+                           facts.recent_matches < facts.fewest_recent_matches;
+  if (!disagrees && few_matches && step_m >= kLongStep_m &&
+      !inputs.tried.contains(Remedy::kMoreStops)) {
+    return kMoreStops;
   }
-  return "topogeo calibrate-odometry " + inputs.log + " --out odometry.yaml";
+  if (inputs.tried.contains(Remedy::kOdometryNoise)) return "topogeo check-log " + inputs.log;
+  return kCalibrateOdometry + inputs.log + " --out odometry.yaml";
+}
+
+/// Path that rests on odometry alone and that no loop holds, m.
+double open_m(const Report& report) {
+  double sum_m = 0.0;
+  for (const OdometryStretchEntry& stretch : report.quality.odometry_stretches) {
+    if (!stretch.held_by_loop) sum_m += stretch.length_m;
+  }
+  return sum_m;
+}
+
+/// 0 for the best grade.
+std::ptrdiff_t rank_of(const std::string& grade) {
+  constexpr std::array<std::string_view, 4> kGrades{kGood, kFair, kPoor, kUseless};
+  return std::ranges::find(kGrades, grade) - kGrades.begin();
 }
 
 const char* name_of(PathDisagreement::Kind kind) {
@@ -296,6 +328,7 @@ void add_quality(Report& report, const storage::MapDocument& document,
   }
   Facts facts = facts_of(report, document);
   facts.typical_share = comparison.typical_share;
+  facts.unmapped_stops = inputs.unmapped_stops;
   facts.fewest_recent_matches = kFewestRecentMatches / kUsualRecentMatches * inputs.recent_matches;
   const Judgement judgement = judge(report, facts);
   report.quality.grade = judgement.grade();
@@ -314,6 +347,26 @@ std::string quality_text(const Report& report) {
   if (!quality.advice.empty()) text += "try: " + quality.advice + '\n';
   text += stretch_lines(quality.odometry_stretches);
   return text + disagreement_lines(quality.path_disagreements);
+}
+
+std::optional<Remedy> advised_remedy(const Report& report) {
+  if (report.quality.grade != kPoor) return std::nullopt;
+  const std::string& advice = report.quality.advice;
+  if (advice == kMoreStops) return Remedy::kMoreStops;
+  if (advice.starts_with(kCalibrateOdometry)) return Remedy::kOdometryNoise;
+  return std::nullopt;
+}
+
+bool is_better(const Report& report, const Report& other) {
+  constexpr double kMore = 1.1;
+  const auto scans = static_cast<double>(report.scans);
+  const auto other_scans = static_cast<double>(other.scans);
+  if (scans > kMore * other_scans) return true;
+  if (other_scans > kMore * scans) return false;
+  const std::ptrdiff_t rank = rank_of(report.quality.grade);
+  const std::ptrdiff_t other_rank = rank_of(other.quality.grade);
+  if (rank != other_rank) return rank < other_rank;
+  return open_m(report) < 0.5 * open_m(other);
 }
 
 bool is_useless(const Report& report) {

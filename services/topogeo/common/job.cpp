@@ -9,7 +9,6 @@
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/laser_mounting.hpp"
 #include "topogeo/recording/message_source.hpp"
-#include "topogeo/results/map_quality.hpp"
 #include "topogeo/results/outputs.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/map_file.hpp"
@@ -323,11 +322,13 @@ void add_mounting(storage::Report& report, const Inputs& inputs) {
                   found.fitting};
 }
 
-void add_quality(storage::Report& report, const Job& job, const storage::MapDocument& document) {
+void add_quality(storage::Report& report, const Job& job, const storage::MapDocument& document,
+                 const MappingFacts& facts) {
   if (job.options.map || job.options.continued) return;
-  results::add_quality(report, document,
-                       {job.options.log.string(), job.inputs.mounting.known,
-                        job.inputs.config.config.localizer.recent_matches});
+  results::add_quality(
+      report, document,
+      {job.options.log.string(), job.inputs.mounting.known,
+       job.inputs.config.config.localizer.recent_matches, facts.unmapped_stops, facts.tried});
 }
 
 void check_useful(const JobOptions& options, const storage::Report& report) {

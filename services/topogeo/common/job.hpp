@@ -6,6 +6,7 @@
 #include <iosfwd>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "topogeo/command_line/command_line.hpp"
@@ -14,6 +15,7 @@
 #include "topogeo/pipeline/trajectory_error.hpp"
 #include "topogeo/pipeline/unknown_mounting.hpp"
 #include "topogeo/recording/log_reader.hpp"
+#include "topogeo/results/map_quality.hpp"
 #include "topogeo/storage/report.hpp"
 
 namespace topogeo::cli {
@@ -116,8 +118,15 @@ void check_usable(const JobOptions& options, const scan::CarmenLogStatistics& st
 /// Adds the mounting that was found from the scans, if it was searched.
 void add_mounting(storage::Report& report, const Inputs& inputs);
 
+/// Facts on a map that are in neither its file nor its report.
+struct MappingFacts {
+  std::uint64_t unmapped_stops = 0;  ///< of a robot that was not found again in its map
+  std::set<results::Remedy> tried{};
+};
+
 /// Judges a new map, whose report has its counts, for print_summary.
-void add_quality(storage::Report& report, const Job& job, const storage::MapDocument& document);
+void add_quality(storage::Report& report, const Job& job, const storage::MapDocument& document,
+                 const MappingFacts& facts = {});
 
 /// Throws service::BadInputError if the map that was made of the log is useless.
 void check_useful(const JobOptions& options, const storage::Report& report);

@@ -66,6 +66,12 @@ pipeline::ScanFeed open_feed(Job& job) {
   return {next, laser_odometry(job.inputs.config.config)};
 }
 
+pipeline::ScanFeed open_feed_again(Job& job, const pipeline::ScanFeed& first) {
+  const pipeline::NextScan next = [&job] { return job.reader.next(); };
+  if (first.laser_counts() == nullptr) return pipeline::ScanFeed(next);
+  return {next, laser_odometry(job.inputs.config.config)};
+}
+
 void check_tracked(const JobOptions& options, const pipeline::ScanFeed& feed) {
   const localization::LaserOdometryCounts* counts = feed.laser_counts();
   if (counts == nullptr) return;

@@ -51,6 +51,33 @@ TEST_F(ConfigTest, EveryKeyIsDocumentedAndItsDefaultIsInRange) {
   }
 }
 
+TEST_F(ConfigTest, KnowsWhatTheFileSets) {
+  const auto load = [this](const std::string& yaml) {
+    std::ofstream(file_) << yaml;
+    return load_config(file_);
+  };
+  EXPECT_FALSE(load_config({}).stop_distance_set);
+  EXPECT_FALSE(load_config({}).odometry_noise_set);
+  EXPECT_TRUE(load("stop: {distance_m: 1.0}\n").stop_distance_set) << "the default, but set";
+  EXPECT_FALSE(load("stop: {distance_m: 1.0}\n").odometry_noise_set);
+  EXPECT_TRUE(load("odometry.heading_rad2_per_m: 0.01\n").odometry_noise_set);
+  EXPECT_FALSE(load("odometry.heading_rad2_per_m: 0.01\n").stop_distance_set);
+}
+
+TEST_F(ConfigTest, ChangedValuesReachAllThatUseThem) {
+  LoadedConfig loaded = load_config({});
+  localization::OdometryNoise noise = loaded.config.localizer.odometry;
+  noise.heading_rad2_per_m *= 0.5;
+  const std::uint64_t before = loaded.effective.fingerprint;
+  set_odometry_noise(loaded, noise);
+  EXPECT_EQ(loaded.config.local_mapper.tracker.odometry.heading_rad2_per_m,
+            noise.heading_rad2_per_m);
+  EXPECT_EQ(loaded.config.calibration.fallback.heading_rad2_per_m, noise.heading_rad2_per_m);
+  EXPECT_NE(loaded.effective.fingerprint, before);
+  set_stop_distance(loaded, 0.5);
+  EXPECT_EQ(loaded.config.local_mapper.stop_distance_m, 0.5);
+}
+
 // The part of a page between two lines.
 std::string part_of(const std::filesystem::path& page, const std::string& from,
                     const std::string& to) {

@@ -1,6 +1,9 @@
 #include "topogeo/results/map_quality.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <set>
+#include <utility>
 
 #include <gmock/gmock.h>
 
@@ -105,6 +108,50 @@ TEST(MapQuality, ARestartOfTheOdometryIsNoWay) {
     document.local_maps[id].T_odom_robot = {500.0 + id, 0.0, 0.0};
   }
   EXPECT_THAT(quality_text(judged(document, 0)), HasSubstr("no match was accepted over 18.0 m"));
+}
+
+TEST(MapQuality, StopsThatAreNotInTheMapMakeItPoor) {
+  storage::Report report;
+  report.stops = 90;
+  report.matches_tried = report.matches_accepted = 90;
+  add_quality(report, drive(0), {"drive.clf.gz", true, 3, 10, {}});
+  EXPECT_EQ(report.quality.grade, "poor");
+  EXPECT_THAT(quality_text(report), HasSubstr("10 of 100 stops are not in the map"));
+  add_quality(report, drive(0), {"drive.clf.gz", true, 3, 2, {}});
+  EXPECT_EQ(report.quality.grade, "fair");
+}
+
+TEST(MapQuality, AdviceNamesNoRemedyThatWasTried) {
+  storage::Report report;
+  report.matches_tried = report.matches_accepted = 40;
+  const auto advised = [&](std::set<Remedy> tried) {
+    add_quality(report, drive(10), {"drive.clf.gz", true, 3, 0, std::move(tried)});
+    return advised_remedy(report);
+  };
+  EXPECT_EQ(advised({}), Remedy::kMoreStops);
+  EXPECT_EQ(advised({Remedy::kMoreStops}), Remedy::kOdometryNoise);
+  EXPECT_EQ(advised({Remedy::kMoreStops, Remedy::kOdometryNoise}), std::nullopt);
+  EXPECT_EQ(report.quality.advice, "topogeo check-log drive.clf.gz");
+}
+
+TEST(MapQuality, AGoodOrFairMapNeedsNoRemedy) {
+  EXPECT_EQ(advised_remedy(judged(drive(0), 38)), std::nullopt);
+  EXPECT_EQ(advised_remedy(judged(drive(kStops - 1), 34)), std::nullopt);
+}
+
+TEST(MapQuality, TheBetterMapHasMoreScansThenTheBetterGradeThenFewerOpenSteps) {
+  const storage::Report good = judged(drive(0), 38);
+  const storage::Report poor = judged(drive(10), 34);
+  EXPECT_TRUE(is_better(good, poor));
+  EXPECT_FALSE(is_better(poor, good));
+  EXPECT_FALSE(is_better(poor, poor));
+  storage::Report closed = poor;
+  closed.quality.odometry_stretches.front().held_by_loop = true;
+  EXPECT_TRUE(is_better(closed, poor));
+  storage::Report short_one = good;
+  short_one.scans = 150;
+  EXPECT_TRUE(is_better(poor, short_one));
+  EXPECT_FALSE(is_better(short_one, poor));
 }
 
 TEST(MapQuality, AMapWithoutEdgesIsNotAssessed) {

@@ -46,8 +46,14 @@ support::ConfigSchema describe(Config& config);
 struct LoadedConfig {
   Config config;
   support::EffectiveConfig effective;
-  bool laser_set = false;  ///< the file sets at least one key of section `laser`
+  bool laser_set = false;           ///< the file sets at least one key of section `laser`
+  bool stop_distance_set = false;   ///< ... stop.distance_m
+  bool odometry_noise_set = false;  ///< ... at least one noise parameter of section `odometry`
 };
 LoadedConfig load_config(const std::optional<std::filesystem::path>& file);
+
+/// Changes a value of a configuration after it was loaded, with all that follow from it.
+void set_stop_distance(LoadedConfig& loaded, double distance_m);
+void set_odometry_noise(LoadedConfig& loaded, const localization::OdometryNoise& noise);
 
 }  // namespace topogeo::pipeline

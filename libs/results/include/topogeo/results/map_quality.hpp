@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <set>
 #include <string>
 
 #include "topogeo/storage/map_document.hpp"
@@ -9,11 +11,19 @@
 
 namespace topogeo::results {
 
+/// A change of settings that may make a better map of the same log.
+enum class Remedy : std::uint8_t {
+  kMoreStops,      ///< half the distance between stops
+  kOdometryNoise,  ///< the noise of the odometry as measured in the log
+};
+
 /// Facts that are in neither map nor report.
 struct QualityInputs {
   std::string log;           ///< as the user wrote it, for the suggested command
   bool laser_known = false;  ///< whether log or configuration state the mounting of the laser
   std::uint32_t recent_matches = 3;  ///< localizer.recent_matches: most for each stop
+  std::uint64_t unmapped_stops = 0;  ///< of a robot that was not found again in its map
+  std::set<Remedy> tried{};          ///< these were tried already
 };
 
 /// Fills the quality of a report, whose counts and skipped lines must be filled. The thresholds and
@@ -21,6 +31,13 @@ struct QualityInputs {
 /// modes of the Thesis, is not assessed.
 void add_quality(storage::Report& report, const storage::MapDocument& document,
                  const QualityInputs& inputs);
+
+/// The remedy that the advice for a poor map names; empty if there is none.
+std::optional<Remedy> advised_remedy(const storage::Report& report);
+
+/// Whether a map is better than another of the same log: by a tenth more scans in the map, else by
+/// its grade, else by half the length of path or less that rests on odometry alone.
+bool is_better(const storage::Report& report, const storage::Report& other);
 
 /// Lines for people: the grade with its reasons and the advice, the steps that rest on odometry
 /// alone, and where map and odometry differ. Empty if the map was not assessed.
