@@ -11,15 +11,12 @@
 
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/ros_conversions/geometry.hpp"
-#include "topogeo/scan/echo_grid.hpp"
+#include "topogeo/scan/deskew.hpp"
 
 namespace topogeo::ros {
 namespace {
 
 constexpr float kNoEcho = scan::Scan::kNoReturn;
-/// Motion during a sweep that is too small for the beams to show.
-constexpr double kStill_m = 0.002;
-constexpr double kStill_rad = 0.001;
 // A full turn plus a rounded step, a hundredth of the finest laser's step.
 constexpr double kTurn_rad = 2.0 * std::numbers::pi + 0.01;
 constexpr double kFinest_rad = 1e-5;
@@ -78,11 +75,6 @@ double last_angle_of(const BeamPattern& pattern) {
   return angle_of(pattern, pattern.beams - 1);
 }
 
-Eigen::Vector2d direction_of(double angle_rad) {
-  const auto [sine, cosine] = geometry::sincos(angle_rad);
-  return {cosine, sine};
-}
-
 }  // namespace
 
 std::string text_of(const BeamPattern& pattern) {
@@ -114,11 +106,6 @@ SweepOrder sweep_order(std::string_view name) {
   if (name == "backward") return SweepOrder::kBackward;
   throw std::invalid_argument("sweep: expected none, forward or backward, got " +
                               std::string(name));
-}
-
-double Sweep::farthest_s() const {
-  const double last_beam_s = first_beam_s + time_step_s * static_cast<double>(pattern.beams - 1);
-  return std::fabs(first_beam_s) > std::fabs(last_beam_s) ? first_beam_s : last_beam_s;
 }
 
 BeamPattern pattern_of(const LaserScan& message, bool upside_down, std::size_t most_beams) {
@@ -177,35 +164,12 @@ std::vector<float> on_pattern(const Sweep& sweep, const BeamPattern& pattern) {
 std::vector<float> deskewed(
     const Sweep& sweep,
     const std::function<std::optional<geometry::Pose2>(double)>& T_odom_laser_after) {
-  const std::optional<geometry::Pose2> T_odom_start = T_odom_laser_after(0.0);
-  const std::optional<geometry::Pose2> T_odom_end = T_odom_laser_after(sweep.farthest_s());
-  if (!T_odom_start || !T_odom_end) return sweep.ranges_m;
-  const geometry::Pose2 moved = geometry::between(*T_odom_start, *T_odom_end);
-  if (moved.position_m().norm() <= kStill_m && std::fabs(moved.theta_rad) <= kStill_rad) {
-    return sweep.ranges_m;
-  }
-  const double middle_rad =
-      sweep.pattern.angle_min_rad +
-      0.5 * sweep.pattern.angle_step_rad * static_cast<double>(sweep.pattern.beams - 1);
-  std::vector<scan::Echo> echoes;
-  for (std::size_t i = 0; i < sweep.ranges_m.size(); ++i) {
-    const auto range_m = static_cast<double>(sweep.ranges_m[i]);
-    if (range_m <= 0.0) continue;
-    const double angle_rad = angle_of(sweep.pattern, i);
-    const double after_s = sweep.first_beam_s + static_cast<double>(i) * sweep.time_step_s;
-    const auto T_odom_laser = T_odom_laser_after(after_s);
-    Eigen::Vector2d point_m = range_m * direction_of(angle_rad);
-    if (T_odom_laser) {
-      const Eigen::Vector2d seen_m = geometry::between(*T_odom_start, *T_odom_laser) * point_m;
-      if (seen_m.allFinite()) point_m = seen_m;  // a NaN angle could not be sorted
-    }
-    // Wrapped around the middle of the pattern, so that each direction of a full turn has one
-    // place.
-    const double seen_rad = geometry::atan2(point_m.y(), point_m.x());
-    echoes.push_back({middle_rad + geometry::wrap_angle(seen_rad - middle_rad), point_m});
-  }
-  return scan::on_grid(std::move(echoes), {sweep.pattern.angle_min_rad,
-                                           sweep.pattern.angle_step_rad, sweep.pattern.beams});
+  return scan::deskewed(
+      {{sweep.pattern.angle_min_rad, sweep.pattern.angle_step_rad, sweep.pattern.beams},
+       sweep.ranges_m,
+       sweep.first_beam_s,
+       sweep.time_step_s},
+      T_odom_laser_after);
 }
 
 void limit_ranges(std::vector<float>& ranges_m, double range_limit_m) {

@@ -51,9 +51,6 @@ struct Sweep {
   std::vector<float> ranges_m;  ///< by ascending angle; Scan::kNoReturn: no echo
   double time_step_s = 0.0;     ///< from one beam of ranges_m to the next, of any sign
   double first_beam_s = 0.0;    ///< time of the first of ranges_m after the stamp
-
-  /// Time after the stamp of the beam farthest from it; negative if before.
-  [[nodiscard]] double farthest_s() const;
 };
 
 /// The beams of a message; with `upside_down` in plan view: mirrored about the x axis of its frame.
@@ -71,10 +68,7 @@ Sweep to_sweep(const LaserScan& message, bool upside_down, std::size_t most_beam
 /// the coarser step, no echo if there is none.
 std::vector<float> on_pattern(const Sweep& sweep, const BeamPattern& pattern);
 
-/// The ranges as if all had been measured at the stamp, on the beams of the sweep.
-/// `T_odom_laser_after` gives the laser's pose that many seconds after the stamp; if it returns
-/// none, or none with finite numbers, the range is not changed. No range changes if the motion is
-/// too small for the beams to show: up to 2 mm and 0.001 rad.
+/// scan::deskewed for a sweep.
 std::vector<float> deskewed(
     const Sweep& sweep,
     const std::function<std::optional<geometry::Pose2>(double)>& T_odom_laser_after);

@@ -19,6 +19,10 @@ struct Scan {
   /// Odometry poses of different epochs are unrelated: the base, or its reader, restarted between
   /// them, or they belong to different logs.
   std::uint64_t odometry_epoch = 0;
+  /// Time of the first beam after the stamp, and from one beam to the next, of either sign; both 0
+  /// if all beams count as measured at the stamp.
+  double first_beam_s = 0.0;
+  double beam_step_s = 0.0;
 
   /// Range of a beam without an echo. Readers of logs and devices use it for every reading at or
   /// above the sensor's maximum and for every reading of zero or less.
