@@ -152,7 +152,11 @@ void RosScans::put_beams(ros::Sweep sweep, scan::Scan& scan) const {
     // An unknown mounting is assumed at the robot's centre.
     const geometry::Pose2 T_robot_laser =
         survey.mounting ? survey.mounting->T_robot_laser : geometry::Pose2{};
-    if (sweep.time_step_s != 0.0) {
+    if (survey.odometry_topic.empty()) {
+      // Whoever makes odometry from the scans knows the motion, too.
+      scan.first_beam_s = sweep.first_beam_s;
+      scan.beam_step_s = sweep.time_step_s;
+    } else if (sweep.time_step_s != 0.0) {
       sweep.ranges_m = ros::deskewed(sweep, [&](double after_s) -> std::optional<geometry::Pose2> {
         const auto odometry =
             drive_->timeline.odometry().at(scan.stamp_ns + nanoseconds_of(after_s));
@@ -162,6 +166,7 @@ void RosScans::put_beams(ros::Sweep sweep, scan::Scan& scan) const {
     }
     if (!ros::same_beams(sweep.pattern, *survey.beams)) {
       sweep.ranges_m = ros::on_pattern(sweep, *survey.beams);
+      scan.first_beam_s = scan.beam_step_s = 0.0;  // of other beams
     }
     sweep.pattern = *survey.beams;
   }

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <numbers>
 #include <utility>
 
@@ -39,6 +41,33 @@ inline simulation::SimulatedLog every_tenth_of_a_second(simulation::SimulatedLog
     thinned.T_world_robot.push_back(log.T_world_robot[i]);
   }
   return thinned;
+}
+
+/// Scans of a laser that measures its beams one after the other during a tenth of a second: each
+/// scan of that time gives its part of the beams. Stamp and true pose are those of the middle.
+inline simulation::SimulatedLog skewed(simulation::SimulatedLog ticks, bool times_known) {
+  constexpr std::int64_t kPeriod_ns = 100'000'000;
+  simulation::SimulatedLog log;
+  std::size_t end = 0;
+  for (std::size_t first = 0; first < ticks.scans.size(); first = end) {
+    const std::int64_t first_ns = ticks.scans[first].stamp_ns;
+    while (end < ticks.scans.size() && ticks.scans[end].stamp_ns < first_ns + kPeriod_ns) ++end;
+    const std::size_t parts = end - first;
+    const std::size_t middle = first + parts / 2;
+    scan::Scan& scan = log.scans.emplace_back(ticks.scans[middle]);
+    log.T_world_robot.push_back(ticks.T_world_robot[middle]);
+    scan.T_odom_robot = {};
+    scan.sequence = log.scans.size() - 1;
+    const std::size_t beams = scan.ranges_m.size();
+    for (std::size_t beam = 0; beam < beams; ++beam) {
+      scan.ranges_m[beam] = ticks.scans[first + beam * parts / beams].ranges_m[beam];
+    }
+    if (!times_known) continue;
+    const std::int64_t last_ns = ticks.scans[end - 1].stamp_ns;
+    scan.first_beam_s = 1e-9 * static_cast<double>(first_ns - scan.stamp_ns);
+    scan.beam_step_s = 1e-9 * static_cast<double>(last_ns - first_ns) / static_cast<double>(beams);
+  }
+  return log;
 }
 
 inline simulation::SimulatedLog hand_held_drive(const world::World& world,

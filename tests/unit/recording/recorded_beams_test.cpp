@@ -116,6 +116,14 @@ TEST_F(RecordedBeams, AreThoseOfOneMoment) {
     EXPECT_LT(largest_error_m(scans[i], truth[i]), 0.06);
     EXPECT_LT(std::ranges::count(scans[i].ranges_m, scan::Scan::kNoReturn), 12);
   }
+  // Without odometry the times are kept for whoever makes odometry from the scans.
+  TopicChoice without = forward;
+  without.odometry_use = OdometryUse::kIgnored;
+  for (const scan::Scan& scan : read_scans(file, without)) {
+    EXPECT_EQ(scan.first_beam_s, 0.0);
+    EXPECT_NEAR(scan.beam_step_s, kSweep_s / kRays, 1e-6);
+  }
+  EXPECT_EQ(read_scans(file, without).front().ranges_m, skewed.front().ranges_m);
   // No odometry covers the end of the last sweep.
   EXPECT_EQ(scans.back().ranges_m, skewed.back().ranges_m);
   ConvertOptions options;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "topogeo/scan/deskew.hpp"
 #include "topogeo/topomap/local_map_builder.hpp"
 
 #include "../matching/match_evidence.hpp"
@@ -22,8 +23,32 @@ constexpr std::ptrdiff_t kLostScans = 5;
 
 }  // namespace
 
+const LaserTrack* LaserOdometry::moving_track() const {
+  if (second_) return &*second_;
+  return track_ ? &*track_ : nullptr;
+}
+
+void LaserOdometry::take_out_motion(scan::Scan& scan) const {
+  const LaserTrack* track = moving_track();
+  if (scan.beam_step_s != 0.0 && track != nullptr) {
+    const Eigen::Vector3d velocity = track->velocity();
+    scan.ranges_m = scan::deskewed(
+        {{scan.angle_min_rad, scan.angle_step_rad, scan.ranges_m.size()},
+         scan.ranges_m,
+         scan.first_beam_s,
+         scan.beam_step_s},
+        [&](double after_s) {
+          const Eigen::Vector3d moved = after_s * velocity;
+          const Pose2 half_turn{0.0, 0.0, 0.5 * moved.z()};
+          return half_turn * Pose2{moved.x(), moved.y(), 0.0} * half_turn * T_robot_laser_;
+        });
+  }
+  scan.first_beam_s = scan.beam_step_s = 0.0;
+}
+
 void LaserOdometry::add(scan::Scan scan) {
   ++counts_.scans;
+  take_out_motion(scan);
   const auto points = topomap::scan_points(scan, T_robot_laser_, points_range_m_);
   const TimedFeatures seen{scan.stamp_ns, std::make_shared<const MatchFeatures>(
                                               extract_scan_features(points, T_robot_laser_))};

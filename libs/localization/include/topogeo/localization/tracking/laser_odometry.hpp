@@ -27,7 +27,8 @@ class LaserOdometry {
   LaserOdometry(const geometry::Pose2& T_robot_laser, double points_range_m)
       : T_robot_laser_(T_robot_laser), points_range_m_(points_range_m) {}
 
-  /// Takes the next scan, in order of time; its odometry is ignored.
+  /// Takes the next scan, in order of time; its odometry is ignored. Where the times of its beams
+  /// are known, the motion during the scan is taken out by the velocity of the track.
   void add(scan::Scan scan);
   /// The log has ended.
   void finish();
@@ -42,6 +43,9 @@ class LaserOdometry {
     scan::Scan scan;
     std::optional<geometry::Pose2> T_second_robot;  // by the second track
   };
+  /// The track that the newest scans follow; null before there is one.
+  [[nodiscard]] const LaserTrack* moving_track() const;
+  void take_out_motion(scan::Scan& scan) const;
   void place(scan::Scan scan, const geometry::Pose2& T_odom_robot);
   void lose(scan::Scan scan, const TimedFeatures& seen);
   /// Whether the first track has found the last scan of the second, twice in the same place.

@@ -44,6 +44,8 @@ class LaserTrack {
   /// Places the next scan, later than all before. Empty if it does not match the recent scans or
   /// matches in two places; the track then waits for the next one.
   std::optional<LaserStep> add(const TimedFeatures& scan);
+  /// The velocity at the last placed scan, m/s forward and left and rad/s.
+  [[nodiscard]] const Eigen::Vector3d& velocity() const { return motion_.velocity(); }
   /// Leaves out a scan.
   void skip() { ++scans_; }
 

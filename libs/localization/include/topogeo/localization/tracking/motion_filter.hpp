@@ -20,6 +20,9 @@ class MotionFilter {
   /// ones: some robots write a scan each half metre, however long it takes.
   [[nodiscard]] UncertainPose predict(double dt_s, int scans = 1) const;
 
+  /// The last velocity, m/s forward and left and rad/s, in the frame of the last pose.
+  [[nodiscard]] const Eigen::Vector3d& velocity() const { return velocity_.mean; }
+
   /// The motion in the last `dt_s` > 0 seconds as the scans measured it, without the prediction. A
   /// direction that the scans did not measure has a large variance.
   void update(double dt_s, const UncertainPose& measured);
