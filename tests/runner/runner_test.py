@@ -244,6 +244,35 @@ class ArgumentsTest(unittest.TestCase):
                 run_tests.parse(words)
 
 
+class PackagesTest(unittest.TestCase):
+    """./run packages"""
+
+    def packages(self, release, *stages):
+        """Names of the packages of the stages for an /etc/os-release with these lines."""
+        with tempfile.NamedTemporaryFile("w") as file:
+            file.write(release)
+            file.flush()
+            return subprocess.run([os.path.join(run_tests.ROOT, "run"), "packages", *stages], check=True, text=True,
+                                  capture_output=True, env=dict(os.environ, TOPOGEO_OS_RELEASE=file.name)).stdout.split()
+
+    def test_releases_of_debian_share_a_list_but_for_the_names_that_differ(self):
+        twelve = self.packages('NAME="Debian GNU/Linux"\nVERSION_ID="12"\nVERSION="12 (bookworm)"\n', "build")
+        thirteen = self.packages('NAME="Debian GNU/Linux"\nVERSION_ID="13"\nVERSION="13 (trixie)"\n', "build")
+        self.assertIn("libfastrtps-dev", twelve)
+        self.assertNotIn("libfastdds-dev", twelve)
+        self.assertIn("libfastdds-dev", thirteen)
+        self.assertNotIn("libfastrtps-dev", thirteen)
+        self.assertEqual(set(twelve) - {"libfastrtps-dev"}, set(thirteen) - {"libfastdds-dev"})
+
+    def test_an_unknown_release_gets_the_newest_list(self):
+        self.assertIn("libfastdds-dev", self.packages("VERSION_ID=14\n", "build"))
+        self.assertIn("libfastdds-dev", self.packages("NAME=elsewhere\n", "build"))
+
+    def test_packages_of_one_release_have_their_stage(self):
+        self.assertEqual(STAGES["libfastdds-dev"], "build")
+        self.assertEqual(STAGES["libfastrtps-dev"], "build")
+
+
 class SummaryTest(unittest.TestCase):
     def test_each_missing_thing_has_the_command_that_installs_it(self):
         self.assertEqual(summary.cure("chromium is not installed", STAGES), "tests/browser/install")

@@ -59,7 +59,7 @@ def read_packages(path):
     stages = {}
     with open(path, encoding="utf-8") as file:
         for line in file:
-            found = re.match(r"(\w+): (.*)", line)
+            found = re.match(r"(\w+)(?:@\d+)?: (.*)", line)
             for package in found[2].split() if found else []:
                 stages.setdefault(package, found[1])
     return stages
