@@ -6,17 +6,12 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <boost/geometry/algorithms/comparable_distance.hpp>
-#include <boost/geometry/algorithms/covered_by.hpp>
-#include <boost/geometry/algorithms/disjoint.hpp>
-#include <boost/geometry/geometries/box.hpp>
-#include <boost/geometry/geometries/point_xy.hpp>
-#include <boost/geometry/index/rtree.hpp>
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/topomap/global_map_builder.hpp"
 
 #include "seen_region.hpp"
+#include "spatial_index.hpp"
 
 namespace topogeo::topomap {
 

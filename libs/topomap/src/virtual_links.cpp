@@ -8,14 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include <boost/geometry/algorithms/comparable_distance.hpp>
-#include <boost/geometry/algorithms/covered_by.hpp>
-#include <boost/geometry/algorithms/disjoint.hpp>
-#include <boost/geometry/geometries/box.hpp>
-#include <boost/geometry/geometries/point_xy.hpp>
-#include <boost/geometry/index/rtree.hpp>
-
 #include "components.hpp"
+#include "spatial_index.hpp"
 
 namespace topogeo::topomap {
 namespace {
