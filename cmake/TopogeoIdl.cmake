@@ -1,7 +1,5 @@
 # Turns IDL into a static library with fastddsgen (package fastddsgen, needs a Java runtime).
 
-find_package(fastcdr REQUIRED)
-find_package(fastrtps REQUIRED)
 find_program(FASTDDSGEN fastddsgen REQUIRED)
 
 # topogeo_add_idl(NAME idl FILES a.idl ... [FOLDER topogeo/msg] [UNBOUNDED]): library topogeo_<name>, alias
@@ -13,8 +11,9 @@ find_program(FASTDDSGEN fastddsgen REQUIRED)
 # time to start. It writes into a staging folder, and only changed files are copied, so that a changed file does not
 # recompile the others.
 #
-# sed removes addresses in comments, which differ from run to run, and clears the buffer of a key before each use: the
-# rest of an earlier, longer key in the padding would give one instance two handles.
+# With fastddsgen 2, sed removes addresses in comments, which differ from run to run, and clears the buffer of a key
+# before each use: the rest of an earlier, longer key in the padding would give one instance two handles. The code of
+# fastddsgen 4 is changed by fastddsgen4.py, and <file>.h includes its <file>.hpp.
 function(topogeo_add_idl)
   cmake_parse_arguments(ARG "UNBOUNDED" "NAME;FOLDER" "FILES" ${ARGN})
   if(NOT ARG_FOLDER)
@@ -33,10 +32,18 @@ function(topogeo_add_idl)
     cmake_path(GET file STEM stem)
     list(APPEND staged_types ${staging}/${stem}.cxx)
     list(APPEND staged_keys ${staging}/${stem}PubSubTypes.cxx)
-    foreach(name ${stem} ${stem}PubSubTypes)
-      list(APPEND staged ${staging}/${name}.h ${staging}/${name}.cxx)
-      list(APPEND outputs ${generated}/${name}.h ${generated}/${name}.cxx)
-    endforeach()
+    if(TOPOGEO_FASTDDSGEN_MAJOR EQUAL 4)
+      set(names ${stem}.hpp ${stem}CdrAux.hpp ${stem}CdrAux.ipp ${stem}PubSubTypes.hpp ${stem}PubSubTypes.cxx)
+      foreach(name ${stem} ${stem}PubSubTypes)
+        file(CONFIGURE OUTPUT ${generated}/${name}.h CONTENT "#pragma once\n\n#include \"${name}.hpp\"\n")
+      endforeach()
+    else()
+      set(names ${stem}.h ${stem}.cxx ${stem}PubSubTypes.h ${stem}PubSubTypes.cxx)
+    endif()
+    list(TRANSFORM names PREPEND ${staging}/ OUTPUT_VARIABLE staged_names)
+    list(TRANSFORM names PREPEND ${generated}/ OUTPUT_VARIABLE output_names)
+    list(APPEND staged ${staged_names})
+    list(APPEND outputs ${output_names})
   endforeach()
   set(types "")
   set(type_supports "")
@@ -49,7 +56,7 @@ function(topogeo_add_idl)
   file(CONFIGURE OUTPUT ${generated}/type_supports.h CONTENT "#pragma once\n\n${type_supports}")
   set(bounds_output ${staging}/bounds.h)
   set(bounds_command COMMAND python3 ${PROJECT_SOURCE_DIR}/cmake/idl_bounds.py --staging ${staging}
-                             --output ${bounds_output} ${ARG_FILES})
+                             --output ${bounds_output} --generator ${TOPOGEO_FASTDDSGEN_MAJOR} ${ARG_FILES})
   if(ARG_UNBOUNDED)
     set(bounds_command "")
     set(bounds_output "")
@@ -60,18 +67,36 @@ function(topogeo_add_idl)
   set(sources ${outputs})
   list(FILTER sources INCLUDE REGEX "\\.cxx$")
 
+  # -t: by default all runs on a machine share temporary files named after the IDL files.
+  set(options -replace -cs -t ${staging} -d ${staging})
+  set(show_log || ${CMAKE_COMMAND} -E env sh -c "cat '${staging}/log.txt' && false")
+  if(TOPOGEO_FASTDDSGEN_MAJOR EQUAL 4)
+    set(script ${PROJECT_SOURCE_DIR}/cmake/fastddsgen4.py)
+    set(prepared "")
+    foreach(file IN LISTS ARG_FILES)
+      cmake_path(GET file FILENAME name)
+      list(APPEND prepared ${staging}/idl/${name})
+    endforeach()
+    file(MAKE_DIRECTORY ${staging}/idl)
+    set(generate
+      COMMAND python3 ${script} prepare --staging ${staging}/idl ${ARG_FILES}
+      COMMAND ${FASTDDSGEN} ${options} -flat-output-dir -no-typeobjectsupport ${prepared} > ${staging}/log.txt ${show_log}
+      COMMAND python3 ${script} finish --staging ${staging} ${ARG_FILES})
+  else()
+    set(script "")
+    set(generate
+      COMMAND ${FASTDDSGEN} ${options} ${ARG_FILES} > ${staging}/log.txt ${show_log}
+      COMMAND sed -i -E -e "s/TypeCode@[0-9a-f]+/TypeCode/" ${staged_types}
+      COMMAND sed -i -E
+              -e "s/^( +)p_type->serializeKey\\(ser\\)$<SEMICOLON>/\\1memset(m_keyBuffer, 0, p_type->getKeyMaxCdrSerializedSize())$<SEMICOLON>\\n&/"
+              ${staged_keys})
+  endif()
   add_custom_command(
     OUTPUT ${outputs}
-    # -t: by default all runs on a machine share temporary files named after the IDL files.
-    COMMAND ${FASTDDSGEN} -replace -cs -t ${staging} -d ${staging} ${ARG_FILES} > ${staging}/log.txt
-            || ${CMAKE_COMMAND} -E env sh -c "cat '${staging}/log.txt'; exit 1"
-    COMMAND sed -i -E -e "s/TypeCode@[0-9a-f]+/TypeCode/" ${staged_types}
-    COMMAND sed -i -E
-            -e "s/^( +)p_type->serializeKey\\(ser\\)$<SEMICOLON>/\\1memset(m_keyBuffer, 0, p_type->getKeyMaxCdrSerializedSize())$<SEMICOLON>\\n&/"
-            ${staged_keys}
+    ${generate}
     ${bounds_command}
     COMMAND ${CMAKE_COMMAND} -E copy_if_different ${staged} ${bounds_output} ${generated}
-    DEPENDS ${ARG_FILES} ${PROJECT_SOURCE_DIR}/cmake/idl_bounds.py
+    DEPENDS ${ARG_FILES} ${PROJECT_SOURCE_DIR}/cmake/idl_bounds.py ${script}
     WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}
     COMMENT "Generating message types from IDL"
     VERBATIM)
@@ -82,7 +107,8 @@ function(topogeo_add_idl)
   # SYSTEM: generated headers do not satisfy our warnings.
   target_include_directories(${target} SYSTEM PUBLIC $<BUILD_INTERFACE:${include_dir}>
                                                      $<INSTALL_INTERFACE:include>)
-  target_link_libraries(${target} PUBLIC fastcdr fastrtps)
+  target_link_libraries(${target} PUBLIC fastcdr ${TOPOGEO_FAST_DDS})
+  target_compile_definitions(${target} PUBLIC ${TOPOGEO_FAST_DDS_DEFINITIONS})
   target_compile_options(${target} PRIVATE -w ${TOPOGEO_COLD_OPTIMIZATION})
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${TOPOGEO_UNITY} UNITY_BUILD_BATCH_SIZE 12)
 endfunction()

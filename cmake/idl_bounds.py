@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Makes programs keep the bounds that the IDL states for sequences.
 
-    idl_bounds.py --staging FOLDER --output bounds.h FILE.idl...
+    idl_bounds.py --staging FOLDER --output bounds.h [--generator 4] FILE.idl...
 
-Changes FOLDER/FILE.cxx, the code of fastddsgen, so that it reads no more elements of a sequence than its bound
-(read_bounded.h), and writes a header for checks of received messages and of those to be sent:
+Changes the code of fastddsgen 2, FOLDER/FILE.cxx, or of fastddsgen 4, FOLDER/FILECdrAux.ipp, so that it reads no more
+elements of a sequence than its bound (read_bounded.h), and writes a header for checks of received messages and of those to be sent:
 
     template <class Check> void visit_bounds(const LocalMap& message, Check& check);
 
@@ -49,23 +49,38 @@ def typedefs(text):
     return re.findall(r"typedef [a-z ]+ (\w+)", re.sub(r"//[^\n]*", "", text))
 
 
-def bound_reading(source, struct, member, bound):
-    """`source`, in which the code that reads a sequence of a struct keeps its bound."""
-    begin = source.find(f"void topogeo::msg::{struct}::deserialize(")
-    if begin < 0:
-        raise BoundsError(f"no code reads {struct}")
-    read = f"dcdr >> m_{member};"
-    at = source.find(read, begin)
-    if at < 0 or at > source.find("\n}", begin):
-        raise BoundsError(f"no code reads {member} of {struct}")
-    return f"{source[:at]}topogeo::msg::read_bounded(dcdr, m_{member}, {bound});{source[at + len(read):]}"
+class Generator:
+    """Where a version of fastddsgen writes the code that reads a struct, and how it names its members there."""
+
+    def __init__(self, suffix, begin, member):
+        self.suffix = suffix
+        self._begin = begin
+        self._member = member
+
+    def bound_reading(self, source, struct, member, bound):
+        """`source`, in which the code that reads a sequence of a struct keeps its bound."""
+        begin = source.find(self._begin.format(struct=struct))
+        if begin < 0:
+            raise BoundsError(f"no code reads {struct}")
+        expression = self._member.format(member=member)
+        read = f"dcdr >> {expression};"
+        at = source.find(read, begin)
+        if at < 0 or at > source.find("\n}", begin):
+            raise BoundsError(f"no code reads {member} of {struct}")
+        return f"{source[:at]}topogeo::msg::read_bounded(dcdr, {expression}, {bound});{source[at + len(read):]}"
+
+
+GENERATORS = {
+    "2": Generator(".cxx", "void topogeo::msg::{struct}::deserialize(", "m_{member}"),
+    "4": Generator("CdrAux.ipp", "\n        topogeo::msg::{struct}& data)", "data.{member}()")}
 
 
 class Bounds:
     """The checks of all files so far."""
 
-    def __init__(self):
+    def __init__(self, generator=GENERATORS["2"]):
         self.functions = ""
+        self._generator = generator
         self._structs = set()
         self._visited = set()  # structs that have anything to check
         self._typedefs = set()
@@ -85,7 +100,7 @@ class Bounds:
                 try:
                     if found := SEQUENCE.fullmatch(line):
                         code += self._check_of_sequence(*found.groups())
-                        source = bound_reading(source, struct, found[3], f"topogeo::msg::{found[2]}")
+                        source = self._generator.bound_reading(source, struct, found[3], f"topogeo::msg::{found[2]}")
                     elif found := MEMBER.fullmatch(line):
                         code += self._check_of_member(*found.groups(), members)
                         members.append(found[2])
@@ -136,13 +151,15 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--staging", required=True)
     parser.add_argument("--output", required=True)
+    parser.add_argument("--generator", choices=GENERATORS, default="2", help="version of fastddsgen")
     parser.add_argument("files", nargs="+", metavar="FILE")
     options = parser.parse_args()
-    bounds = Bounds()
+    generator = GENERATORS[options.generator]
+    bounds = Bounds(generator)
     try:
         for name in options.files:
             stem = os.path.splitext(os.path.basename(name))[0]
-            generated = os.path.join(options.staging, stem + ".cxx")
+            generated = os.path.join(options.staging, stem + generator.suffix)
             with open(name, encoding="utf-8") as idl, open(generated, encoding="utf-8") as code:
                 source = bounds.add(name, idl.read(), code.read())
             with open(generated, "w", encoding="utf-8") as code:

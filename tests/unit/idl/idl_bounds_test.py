@@ -67,6 +67,35 @@ void topogeo::msg::Log::deserialize(Cdr& dcdr) {
 }
 """
 
+CODE_4 = """#include <fastcdr/Cdr.h>
+void serialize(
+        eprosima::fastcdr::Cdr& scdr,
+        const topogeo::msg::Scan& data)
+{
+    scdr << data.points();
+}
+void deserialize(
+        eprosima::fastcdr::Cdr& cdr,
+        topogeo::msg::Scan& data)
+{
+    cdr.deserialize_type([&data](Cdr& dcdr) {
+        dcdr >> data.points();
+    });
+}
+void deserialize(
+        eprosima::fastcdr::Cdr& cdr,
+        topogeo::msg::Log& data)
+{
+    cdr.deserialize_type([&data](Cdr& dcdr) {
+        dcdr >> data.scans();
+    });
+}
+"""
+
+BOUNDED_CODE_4 = CODE_4.replace("#include <fastcdr/Cdr.h>\n", '#include <fastcdr/Cdr.h>\n\n#include "read_bounded.h"\n').replace(
+    "dcdr >> data.points();", "topogeo::msg::read_bounded(dcdr, data.points(), topogeo::msg::MAX_POINTS);").replace(
+        "dcdr >> data.scans();", "topogeo::msg::read_bounded(dcdr, data.scans(), topogeo::msg::7);")
+
 CHECKS = """
 template <class Check>
 void visit_bounds(const Scan& message, Check& check) {
@@ -98,6 +127,13 @@ class IdlBounds(unittest.TestCase):
         self.assertEqual(bounds.add("scan.idl", IDL, CODE), BOUNDED_CODE)
         self.assertEqual(bounds.functions, CHECKS)
 
+    def test_the_code_of_fastddsgen_4_keeps_the_same_bounds(self):
+        bounds = idl_bounds.Bounds(idl_bounds.GENERATORS["4"])
+        self.assertEqual(bounds.add("scan.idl", IDL, CODE_4), BOUNDED_CODE_4)
+        self.assertEqual(bounds.functions, CHECKS)
+        with self.assertRaises(idl_bounds.BoundsError):
+            idl_bounds.Bounds(idl_bounds.GENERATORS["4"]).add("scan.idl", IDL, CODE)
+
     def test_a_type_of_an_earlier_file_is_known(self):
         bounds = idl_bounds.Bounds()
         bounds.add("scan.idl", IDL, CODE)
@@ -127,8 +163,9 @@ class IdlBounds(unittest.TestCase):
                         file.write(text)
                 return os.path.join(folder, name)
 
-            def run(idl):
-                return subprocess.run([sys.executable, SCRIPT, "--staging", folder, "--output", path("bounds.h"), idl],
+            def run(idl, *options):
+                return subprocess.run([sys.executable, SCRIPT, "--staging", folder, "--output", path("bounds.h"), *options,
+                                       idl],
                                       capture_output=True, text=True, check=False)
 
             path("scan.cxx", CODE)
@@ -137,6 +174,12 @@ class IdlBounds(unittest.TestCase):
             with open(path("bounds.h"), encoding="utf-8") as header, open(path("scan.cxx"), encoding="utf-8") as code:
                 self.assertIn(CHECKS, header.read())
                 self.assertEqual(code.read(), BOUNDED_CODE)
+
+            path("scanCdrAux.ipp", CODE_4)
+            done = run(path("scan.idl", IDL), "--generator", "4")
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            with open(path("scanCdrAux.ipp"), encoding="utf-8") as code:
+                self.assertEqual(code.read(), BOUNDED_CODE_4)
 
             path("bad.cxx", CODE)
             refused = run(path("bad.idl", struct("Unknown point")))
