@@ -100,7 +100,8 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/idl DESTINATION ${data} COMPONENT topoge
 install(EXPORT topogeo NAMESPACE topogeo:: FILE topogeo-targets.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/topogeo COMPONENT topogeo-dev)
 write_basic_package_version_file(${generated}/topogeo-config-version.cmake COMPATIBILITY ExactVersion)
-install(FILES ${deploy}/package/topogeo-config.cmake ${generated}/topogeo-config-version.cmake
+configure_file(${deploy}/package/topogeo-config.cmake ${generated}/topogeo-config.cmake @ONLY)
+install(FILES ${generated}/topogeo-config.cmake ${generated}/topogeo-config-version.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/topogeo COMPONENT topogeo-dev)
 
 # ---- Debian packages ----

@@ -370,14 +370,15 @@ std::size_t check_bytes(std::string_view bytes) {
   Arrived input(bytes);
   static_cast<void>(messaging::AddressFilter("worker").evaluate(input.payload, {}, {}));
   Message message;
-  require(type.deserialize(&input.payload, &message), "a reader is never left with a sample");
+  require(messaging::detail::read_payload(type, input.payload, &message),
+          "a reader is never left with a sample");
   if (topic.find_defect(&message)) return 0;
-  eprosima::fastrtps::rtps::InstanceHandle_t handle;
-  if (type->m_isGetKeyDefined) static_cast<void>(type.get_key(&message, &handle, true));
+  messaging::detail::make_key(type, &message);
   const std::string sent = written_payload(message, type);
   Message again;
   Arrived arrived(sent);
-  require(type.deserialize(&arrived.payload, &again), "what was sent can be read");
+  require(messaging::detail::read_payload(type, arrived.payload, &again),
+          "what was sent can be read");
   require(written_payload(again, type) == sent, "sending what was read changes nothing");
   try {
     receive(message);

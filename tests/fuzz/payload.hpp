@@ -11,11 +11,13 @@
 
 #include <fastdds/dds/topic/TypeSupport.hpp>
 
+#include "topogeo/messaging/detail/type_support.hpp"
+
 #include "checks.hpp"
 
 namespace topogeo::fuzz {
 
-using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
+using messaging::Payload;
 
 /// A payload without spare bytes at its end, as the middleware passes it.
 struct Arrived {
@@ -30,8 +32,9 @@ struct Arrived {
 template <class Message>
 std::string written_payload(const Message& message, eprosima::fastdds::dds::TypeSupport& type) {
   void* const data = const_cast<Message*>(&message);  // NOLINT: their interface; it only reads
-  Payload payload(type.get_serialized_size_provider(data)());
-  require(type.serialize(data, &payload), "a message without a defect can be sent");
+  Payload payload(messaging::detail::payload_size(type, data));
+  require(messaging::detail::write_payload(type, data, payload),
+          "a message without a defect can be sent");
   return {reinterpret_cast<const char*>(payload.data), payload.length};  // NOLINT: bytes
 }
 

@@ -31,7 +31,8 @@ class Slot {
   /// Whether the reader delivers it.
   bool read(std::string_view bytes) {
     Arrived input(bytes);
-    require(type_.deserialize(&input.payload, data_), "a reader is never left with a sample");
+    require(messaging::detail::read_payload(type_, input.payload, data_),
+            "a reader is never left with a sample");
     return !topic_.find_defect(data_);
   }
   [[nodiscard]] const Message& message() const { return *static_cast<const Message*>(data_); }

@@ -171,7 +171,11 @@ class SharedMemoryTest : public EqualityTest {
 
   /// Names of the Fast DDS segments and ports that the programs have mapped.
   static std::set<std::string> mapped_by(const std::vector<pid_t>& programs) {
+#if __has_include(<fastrtps/config.h>)  // Fast DDS 2
     const std::string begin = std::string(kSharedMemory) + "fastrtps_";
+#else
+    const std::string begin = std::string(kSharedMemory) + "fastdds_";
+#endif
     std::set<std::string> names;
     for (const pid_t program : programs) {
       std::istringstream maps(read_file("/proc/" + std::to_string(program) + "/maps"));

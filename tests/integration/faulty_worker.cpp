@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/messaging/detail/type_support.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/participant.hpp"
@@ -55,18 +56,19 @@ Fault fault_of(std::string_view name) {
 }
 
 /// Sends the valid address of a result, so that it reaches its client, followed by garbage.
-class GarbageType final : public msg::MatchResultsPubSubType {
+class GarbageType final
+    : public messaging::detail::GrowingTypeSupport<msg::MatchResultsPubSubType> {
  public:
-  GarbageType() { m_typeSize = 1024; }
-  bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override {
-    if (!msg::MatchResultsPubSubType::serialize(data, payload)) return false;
+  GarbageType() : GrowingTypeSupport(1024) {}
+
+ protected:
+  bool write(const void* data, messaging::Payload& payload) override {
+    if (!GrowingTypeSupport::write(data, payload)) return false;
     constexpr std::uint32_t kAddress = 160;  // larger than any address
-    payload->length = kAddress + 40;
-    for (std::uint32_t i = kAddress; i < payload->length; ++i) payload->data[i] = 0xFF;
+    payload.length = kAddress + 40;
+    for (std::uint32_t i = kAddress; i < payload.length; ++i) payload.data[i] = 0xFF;
     return true;
   }
-  [[nodiscard]] bool is_bounded() const override { return false; }
-  [[nodiscard]] bool is_plain() const override { return false; }
 };
 
 messaging::TopicInfo garbage_topic() {

@@ -9,9 +9,13 @@
 #include <thread>
 #include <vector>
 
-#include <fastdds/rtps/transport/test_UDPv4TransportDescriptor.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#if __has_include(<fastdds/rtps/transport/test_UDPv4TransportDescriptor.h>)
+#include <fastdds/rtps/transport/test_UDPv4TransportDescriptor.h>
+#else
+#include <fastdds/rtps/transport/test_UDPv4TransportDescriptor.hpp>
+#endif
 
 #include "topogeo/map_client/map_reader.hpp"
 #include "topogeo/service/conversions.hpp"

@@ -9,6 +9,8 @@
 #include <fastdds/dds/topic/IContentFilter.hpp>
 #include <fastdds/dds/topic/IContentFilterFactory.hpp>
 
+#include "topogeo/messaging/detail/fast_dds.hpp"
+
 namespace topogeo::messaging {
 
 /// Class name of the filters. A writer that does not know it sends everything, and the reader
@@ -33,13 +35,13 @@ class AddressFilterFactory final : public eprosima::fastdds::dds::IContentFilter
   static AddressFilterFactory& instance();
 
   /// Takes one parameter, the addressee.
-  ReturnCode_t create_content_filter(const char* filter_class_name, const char* type_name,
-                                     const eprosima::fastdds::dds::TopicDataType* data_type,
-                                     const char* filter_expression,
-                                     const ParameterSeq& filter_parameters,
-                                     eprosima::fastdds::dds::IContentFilter*& filter) override;
-  ReturnCode_t delete_content_filter(const char* filter_class_name,
-                                     eprosima::fastdds::dds::IContentFilter* filter) override;
+  ReturnCode create_content_filter(const char* filter_class_name, const char* type_name,
+                                   const eprosima::fastdds::dds::TopicDataType* data_type,
+                                   const char* filter_expression,
+                                   const ParameterSeq& filter_parameters,
+                                   eprosima::fastdds::dds::IContentFilter*& filter) override;
+  ReturnCode delete_content_filter(const char* filter_class_name,
+                                   eprosima::fastdds::dds::IContentFilter* filter) override;
 };
 
 }  // namespace topogeo::messaging

@@ -18,12 +18,8 @@ class DiscoveryListener final : public RefusalListener {
   /// `by_robot`: the partitions of peers end with their robots, which are left out.
   explicit DiscoveryListener(bool by_robot = false) : by_robot_(by_robot) {}
 
-  void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
-                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
-  void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
-                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
-  void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
-                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+  void on_peer(const DiscoveredPeer& peer) override;
+  void on_peer_endpoint(const DiscoveredEndpoint& endpoint) override;
 
   /// The current endpoints, ordered by their ids.
   std::vector<RemoteEndpoint> endpoints() const;
@@ -34,13 +30,13 @@ class DiscoveryListener final : public RefusalListener {
   /// Bounds the memory in a flood of strangers' endpoints.
   static constexpr std::size_t kMostEndpoints = 65'536;
 
-  void put(const eprosima::fastrtps::rtps::GUID_t& guid, RemoteEndpoint endpoint);
-  void remove(const eprosima::fastrtps::rtps::GUID_t& guid);
+  void put(const rtps::GUID_t& id, RemoteEndpoint endpoint);
+  void remove(const rtps::GUID_t& id);
 
   bool by_robot_;
   mutable std::mutex endpoints_mutex_;
-  std::map<eprosima::fastrtps::rtps::GUID_t, RemoteEndpoint> endpoints_;
-  std::map<eprosima::fastrtps::rtps::GuidPrefix_t, std::string> names_;  // of participants
+  std::map<rtps::GUID_t, RemoteEndpoint> endpoints_;
+  std::map<rtps::GuidPrefix_t, std::string> names_;  // of participants
 };
 
 }  // namespace topogeo::messaging

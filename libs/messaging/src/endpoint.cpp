@@ -62,7 +62,7 @@ const char* policy_name(dds::QosPolicyId_t policy) {
 
 }  // namespace
 
-Handle to_handle(const eprosima::fastrtps::rtps::InstanceHandle_t& handle) {
+Handle to_handle(const rtps::InstanceHandle_t& handle) {
   Handle result;
   for (std::size_t i = 0; i < result.bytes.size(); ++i) result.bytes[i] = handle.value[i];
   return result;
@@ -87,8 +87,7 @@ void Endpoint::Shared::wake_program() {
   if (wake) wake();
 }
 
-void Endpoint::Shared::set_matched(int current, int change,
-                                   const eprosima::fastrtps::rtps::InstanceHandle_t& peer) {
+void Endpoint::Shared::set_matched(int current, int change, const rtps::InstanceHandle_t& peer) {
   Event event;
   event.kind = change >= 0 ? EventKind::kMatched : EventKind::kUnmatched;
   event.peer = to_handle(peer);

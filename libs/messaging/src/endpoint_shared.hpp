@@ -10,9 +10,9 @@
 #include <set>
 
 #include <fastdds/dds/core/status/IncompatibleQosStatus.hpp>
-#include <fastdds/rtps/common/InstanceHandle.h>
 
 #include "topogeo/messaging/detail/endpoint.hpp"
+#include "topogeo/messaging/detail/fast_dds.hpp"
 
 namespace topogeo::messaging::detail {
 
@@ -24,7 +24,7 @@ struct Endpoint::Shared {
 
   void push(Event event);
   /// Counts peers and appends the event.
-  void set_matched(int current, int change, const eprosima::fastrtps::rtps::InstanceHandle_t& peer);
+  void set_matched(int current, int change, const rtps::InstanceHandle_t& peer);
   /// Wakes the program's loop, if it has one.
   void wake_program();
   void push_incompatible(const eprosima::fastdds::dds::IncompatibleQosStatus& status);
@@ -39,7 +39,7 @@ struct Endpoint::Shared {
   std::function<void()> wake;
 };
 
-Handle to_handle(const eprosima::fastrtps::rtps::InstanceHandle_t& handle);
+Handle to_handle(const rtps::InstanceHandle_t& handle);
 
 /// The role's name: `role` if not empty, else that of the topic.
 std::string profile_name(const TopicInfo& topic, const std::string& role, const char* side);

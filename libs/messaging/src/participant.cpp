@@ -10,13 +10,12 @@
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 #include <fastdds/dds/publisher/qos/PublisherQos.hpp>
 #include <fastdds/dds/subscriber/qos/SubscriberQos.hpp>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
 
 #include "topogeo/messaging/plain_participant.hpp"
 #include "topogeo/messaging/revocations.hpp"
@@ -25,17 +24,11 @@
 #include "topogeo/support/log.hpp"
 
 #include "address_filter.hpp"
+#include "corrections.hpp"
 #include "endpoint_shared.hpp"
-#include "fast_dds/discovery_shield.hpp"
-#include "fast_dds/filter_info.hpp"
-#include "fast_dds/fragments.hpp"
-#include "fast_dds/host_sending.hpp"
-#include "fast_dds/packet_shield.hpp"
-#include "fast_dds/reader_end.hpp"
-#include "fast_dds/reader_removal.hpp"
-#include "fast_dds/timer_waits.hpp"
-#include "fast_dds/writer_end.hpp"
+#include "network_names.hpp"
 #include "participant_core.hpp"
+#include "profile_names.hpp"
 #include "robot_partitions.hpp"
 #include "writer_robots.hpp"
 
@@ -75,9 +68,10 @@ void load_profiles(const std::filesystem::path& requested) {
       throw std::runtime_error("DDS profiles: cannot read '" + file.string() + "'");
     }
   }
+  text = with_names_of_library(std::move(text));
   const auto result = dds::DomainParticipantFactory::get_instance()->load_XML_profiles_string(
       text.data(), text.size());
-  if (result != ReturnCode_t::RETCODE_OK) {
+  if (result != kOk) {
     throw std::runtime_error("DDS profiles: '" + (file.empty() ? "built-in" : file.string()) +
                              "' is not a valid Fast DDS profiles file");
   }
@@ -97,7 +91,6 @@ constexpr const char* kThisHost = "127.0.0.1";
 // name without an address is left out, because the services of a robot go on without that host. The
 // name may be this host's own, so the own address takes its place.
 void add_peers(dds::DomainParticipantQos& qos, const std::string& hosts) {
-  using eprosima::fastrtps::rtps::IPLocator;
   std::set<std::string> addresses;
   std::istringstream list(hosts);
   for (std::string host; std::getline(list, host, ';');) {
@@ -110,7 +103,7 @@ void add_peers(dds::DomainParticipantQos& qos, const std::string& hosts) {
     addresses.insert(found.begin(), found.end());
   }
   for (const std::string& address : addresses) {
-    eprosima::fastrtps::rtps::Locator_t locator;  // UDP; without a port: the ports of the domain
+    rtps::Locator_t locator;  // UDP; without a port: the ports of the domain
     IPLocator::setIPv4(locator, address);
     qos.wire_protocol().builtin.initialPeersList.push_back(locator);
   }
@@ -121,12 +114,11 @@ void add_peers(dds::DomainParticipantQos& qos, const std::string& hosts) {
 // network: with any peer given, the middleware leaves the multicast address out, and it takes a
 // multicast address without a port for that of a host.
 void add_ros_peers(dds::DomainParticipantQos& qos, std::uint32_t domain) {
-  using eprosima::fastrtps::rtps::IPLocator;
   constexpr std::uint32_t kFirstPort = 7400;
   constexpr std::uint32_t kPortsOfDomain = 250;
-  eprosima::fastrtps::rtps::Locator_t host;
+  rtps::Locator_t host;
   IPLocator::setIPv4(host, kThisHost);
-  eprosima::fastrtps::rtps::Locator_t network;
+  rtps::Locator_t network;
   IPLocator::setIPv4(network, "239.255.0.1");
   network.port = kFirstPort + kPortsOfDomain * domain;
   qos.wire_protocol().builtin.initialPeersList.push_back(host);
@@ -149,10 +141,9 @@ constexpr std::string_view kBetweenSites = "wan";
 void send_whole_certificates(dds::DomainParticipantQos& qos, bool rest_in_packets) {
   constexpr std::uint32_t kLargestMessage_bytes = 65500;
   for (auto& transport : qos.transport().user_transports) {
-    const auto* udp =
-        dynamic_cast<const eprosima::fastdds::rtps::UDPv4TransportDescriptor*>(transport.get());
+    const auto* udp = dynamic_cast<const UDPv4TransportDescriptor*>(transport.get());
     if (udp == nullptr) continue;
-    auto whole = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>(*udp);
+    auto whole = std::make_shared<UDPv4TransportDescriptor>(*udp);
     if (rest_in_packets) send_fragments_within(udp->maxMessageSize);
     whole->maxMessageSize = kLargestMessage_bytes;
     transport = std::move(whole);
@@ -175,15 +166,7 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
     throw std::invalid_argument("DDS domain: " + std::to_string(options.domain) +
                                 ", expected 0 to 232");
   }
-  correct_fragments();
-  keep_filter_info_out();
-  send_to_each_host_apart();
-  shield_packets();
-  shield_discovery();
-  let_timers_end_alone();
-  let_readers_end_beside_peers();
-  let_readers_leave_beside_sending();
-  let_writers_end_undisturbed();
+  correct_fast_dds();
   load_profiles(options.profiles_file);
   std::string profile = options.profile;
   if (profile.empty()) profile = environment("TOPOGEO_DDS_PARTICIPANT");
@@ -191,7 +174,7 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
 
   auto* factory = dds::DomainParticipantFactory::get_instance();
   dds::DomainParticipantQos qos;
-  if (factory->get_participant_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
+  if (factory->get_participant_qos_from_profile(profile, qos) != kOk) {
     throw std::runtime_error("DDS participant profile '" + profile +
                              "' is not in the profiles file");
   }
@@ -239,8 +222,8 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
   static_cast<void>(
       require(participant_, "a participant in domain " + std::to_string(options.domain)));
   try {
-    if (participant_->register_content_filter_factory(
-            kAddressFilterClass, &AddressFilterFactory::instance()) != ReturnCode_t::RETCODE_OK) {
+    if (participant_->register_content_filter_factory(kAddressFilterClass,
+                                                      &AddressFilterFactory::instance()) != kOk) {
       throw std::runtime_error("DDS: cannot register the filter class " +
                                std::string(kAddressFilterClass));
     }
@@ -267,7 +250,7 @@ dds::Topic& ParticipantCore::topic(const TopicInfo& info) {
   if (const auto found = topics_.find(info.name); found != topics_.end()) return *found->second;
   const std::string name(info.name);
   const dds::TypeSupport type(info.make_type());
-  if (type.register_type(participant_) != ReturnCode_t::RETCODE_OK) {
+  if (type.register_type(participant_) != kOk) {
     throw std::runtime_error("DDS: cannot register the type of topic " + name);
   }
   dds::Topic* topic =

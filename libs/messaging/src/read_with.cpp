@@ -3,17 +3,11 @@
 #include <algorithm>
 #include <utility>
 
-#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
-#include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>
-
 #include "topogeo/messaging/same_participant.hpp"
 
 #include "endpoint_shared.hpp"
 
 namespace topogeo::messaging {
-
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
 
 namespace {
 
@@ -50,28 +44,18 @@ std::vector<std::string> parse_read_with(std::span<const std::uint8_t> user_data
   return {};
 }
 
-void ReadWithListener::on_participant_discovery(dds::DomainParticipant* /*participant*/,
-                                                rtps::ParticipantDiscoveryInfo&& info) {
-  forget_if_gone(info);
-}
-
-void ReadWithListener::forget_if_gone(const rtps::ParticipantDiscoveryInfo& info) {
-  if (info.status != rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT &&
-      info.status != rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT) {
-    return;
-  }
-  const Handle gone = detail::to_handle(rtps::InstanceHandle_t(info.info.m_guid));
+void ReadWithListener::on_peer(const DiscoveredPeer& peer) {
+  if (!peer.gone) return;
+  const Handle gone = detail::to_handle(rtps::InstanceHandle_t(peer.id));
   const std::lock_guard lock(read_with_mutex_);
   std::erase_if(read_with_, [&](const auto& entry) { return same_participant(entry.first, gone); });
 }
 
-void ReadWithListener::on_subscriber_discovery(dds::DomainParticipant* /*participant*/,
-                                               rtps::ReaderDiscoveryInfo&& info) {
-  const Handle reader = detail::to_handle(rtps::InstanceHandle_t(info.info.guid()));
-  const bool removed = info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER;
-  const std::vector<std::uint8_t>& user_data = info.info.m_qos.m_userData.data_vec();
+void ReadWithListener::on_peer_endpoint(const DiscoveredEndpoint& endpoint) {
+  if (endpoint.endpoint.writer) return;
+  const Handle reader = endpoint.endpoint.id;
   std::vector<std::string> topics =
-      removed ? std::vector<std::string>{} : parse_read_with(user_data);
+      endpoint.gone ? std::vector<std::string>{} : parse_read_with(endpoint.user_data);
   const std::lock_guard lock(read_with_mutex_);
   if (topics.empty()) {
     read_with_.erase(reader);

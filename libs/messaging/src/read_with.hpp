@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
-
 #include "topogeo/messaging/events.hpp"
+
+#include "peer_listener.hpp"
 
 namespace topogeo::messaging {
 
@@ -24,18 +24,13 @@ std::vector<std::string> parse_read_with(std::span<const std::uint8_t> user_data
 
 /// Remembers the announcements of the readers of other participants. Discovery reports a reader to
 /// it before the reader is connected.
-class ReadWithListener : public eprosima::fastdds::dds::DomainParticipantListener {
+class ReadWithListener : public PeerListener {
  public:
-  void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
-                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
-  void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
-                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+  void on_peer(const DiscoveredPeer& peer) override;
+  void on_peer_endpoint(const DiscoveredEndpoint& endpoint) override;
 
   /// Whole names; none when the reader has announced none.
   std::vector<std::string> read_with(const Handle& reader) const;
-
- protected:
-  void forget_if_gone(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo& info);
 
  private:
   /// Bounds the memory in a flood of strangers; a run has a dozen such readers.

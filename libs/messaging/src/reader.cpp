@@ -6,10 +6,10 @@
 
 #include "topogeo/messaging/same_participant.hpp"
 
-#include "fast_dds/packet_shield.hpp"
 #include "read_with.hpp"
 #include "reader_impl.hpp"
 #include "security.hpp"
+#include "stranger_counts.hpp"
 
 namespace topogeo::messaging::detail {
 
@@ -108,7 +108,7 @@ void Collector::collect(dds::DataReader& reader) {
   dds::SampleInfo info;
   std::shared_ptr<void> message = spare_message();
   while (!arrivals.is_full(batch.size() + 1) &&
-         reader.take_next_sample(message.get(), &info) == ReturnCode_t::RETCODE_OK) {
+         reader.take_next_sample(message.get(), &info) == kOk) {
     batch.push_back(make_arrival(info, message));
     if (info.valid_data) message = spare_message();
   }
@@ -185,10 +185,10 @@ bool ReaderCore::Impl::next(Arrival& arrival) {
   }
   dds::SampleInfo dds_info;
   const auto result = reader->take_next_sample(message.get(), &dds_info);
-  if (result == ReturnCode_t::RETCODE_NO_DATA) return false;
-  if (result != ReturnCode_t::RETCODE_OK) {
+  if (result == kNoData) return false;
+  if (result != kOk) {
     throw std::runtime_error(std::string(info->name) + ": DDS take failed with code " +
-                             std::to_string(result()));
+                             std::to_string(number_of(result)));
   }
   arrival = make_arrival(dds_info, message);
   return true;
@@ -278,7 +278,7 @@ void ReaderCore::Impl::create_reader(const std::string& profile, const std::stri
                                      const std::vector<std::string_view>& read_with) {
   dds::Subscriber& subscriber = participant->subscriber();
   dds::DataReaderQos qos;
-  if (subscriber.get_datareader_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
+  if (subscriber.get_datareader_qos_from_profile(profile, qos) != kOk) {
     throw std::runtime_error("DDS profile '" + profile + "' of topic " + std::string(info->name) +
                              " is not in the profiles file");
   }

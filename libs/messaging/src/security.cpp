@@ -11,25 +11,19 @@
 #include <utility>
 
 #include <fastdds/dds/log/Log.hpp>
-#include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
-#include <fastdds/rtps/common/InstanceHandle.h>
-#include <fastdds/rtps/common/Token.h>
 #include <unistd.h>
 
 #include "topogeo/support/log.hpp"
 #include "topogeo/support/printable.hpp"
 
+#include "corrections.hpp"
 #include "endpoint_shared.hpp"
-#include "fast_dds/handshake_certificates.hpp"
-#include "fast_dds/packet_shield.hpp"
-#include "fast_dds/security_keys.hpp"
-#include "fast_dds/writer_permissions.hpp"
+#include "stranger_counts.hpp"
 #include "writer_robots.hpp"
 
 namespace topogeo::messaging {
 
 namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
 
 namespace {
 
@@ -119,12 +113,6 @@ void forward_log() {
   static_cast<void>(done);
 }
 
-std::string subject_of(const rtps::ParticipantProxyData& peer) {
-  const std::string* const subject =
-      rtps::DataHolderHelper::find_property_value(peer.identity_token_, "dds.cert.sn");
-  return subject == nullptr ? std::string() : line_of(*subject);
-}
-
 /// Empty for a peer that has not shown its certificate.
 std::string shown_subject(const rtps::GuidPrefix_t& peer) {
   SecurityErrors& errors = security_errors();
@@ -148,17 +136,13 @@ std::string text_of(const rtps::GuidPrefix_t& prefix) {
 }  // namespace
 
 void add_security(dds::DomainParticipantQos& qos, const std::filesystem::path& folder) {
+  correct_security();
   const char* const servers = std::getenv("ROS_DISCOVERY_SERVER");
   if (servers != nullptr && *servers != '\0') {
     throw std::runtime_error(std::string("DDS security: ROS_DISCOVERY_SERVER is '") + servers +
                              "', but discovery servers of Fast DDS 2.9 carry no security; unset it "
                              "and name the hosts in TOPOGEO_PEERS where there is no multicast");
   }
-  keep_security_races_away();
-  keep_one_certificate_of_a_peer();
-  keep_security_keys();
-  note_denials();
-  note_writer_permissions();
   forward_log();
   auto& properties = qos.properties().properties();
   properties.emplace_back("dds.sec.auth.plugin", "builtin.PKI-DH");
@@ -204,34 +188,27 @@ std::string last_security_error() {
   return errors.last;
 }
 
-void RefusalListener::on_participant_discovery(dds::DomainParticipant* /*participant*/,
-                                               rtps::ParticipantDiscoveryInfo&& info) {
-  forget_if_gone(info);
-  const rtps::GuidPrefix_t& prefix = info.info.m_guid.guidPrefix;
+void RefusalListener::on_peer(const DiscoveredPeer& peer) {
+  ReadWithListener::on_peer(peer);
+  const rtps::GuidPrefix_t& prefix = peer.id.guidPrefix;
   const std::lock_guard lock(mutex_);
   const auto known = peers_.find(prefix);
-  if (info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
-      info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT) {
-    writer_robots().depart(detail::to_handle(rtps::InstanceHandle_t(info.info.m_guid)));
+  if (peer.gone) {
+    writer_robots().depart(detail::to_handle(rtps::InstanceHandle_t(peer.id)));
     if (known == peers_.end()) return;
     report_denials();  // while the name is still known
     if (!known->second.settled) report(prefix, "left before its authentication");
     peers_.erase(known);
     forget_subject(prefix);
   } else if (known == peers_.end() && peers_.size() < kMaxPeers) {
-    peers_[prefix] = {line_of(info.info.m_participantName.to_string()), subject_of(info.info),
-                      Clock::now()};
+    peers_[prefix] = {line_of(peer.name), line_of(peer.subject), Clock::now()};
   }
 }
 
-void RefusalListener::onParticipantAuthentication(dds::DomainParticipant* /*participant*/,
-                                                  rtps::ParticipantAuthenticationInfo&& info) {
-  const rtps::GuidPrefix_t& prefix = info.guid.guidPrefix;
+void RefusalListener::on_authentication(const rtps::GuidPrefix_t& peer, bool authorized) {
   const std::lock_guard lock(mutex_);
-  if (info.status == rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT) {
-    report(prefix, "fails authentication");
-  }
-  if (const auto known = peers_.find(prefix); known != peers_.end()) known->second.settled = true;
+  if (!authorized) report(peer, "fails authentication");
+  if (const auto known = peers_.find(peer); known != peers_.end()) known->second.settled = true;
 }
 
 void RefusalListener::report(const rtps::GuidPrefix_t& prefix, const std::string& what) {

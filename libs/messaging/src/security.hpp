@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 
 #include "read_with.hpp"
@@ -20,7 +19,7 @@ namespace topogeo::messaging {
 /// Turns authentication, access control and encryption on, with the files that
 /// deploy/security/make_keys writes into `folder`. Throws std::runtime_error that names the missing
 /// file, or if ROS_DISCOVERY_SERVER is set: Fast DDS 2.9 has no security there, and participants
-/// would silently find no peers.
+/// would silently find no peers, or with Fast DDS 3 (corrections.hpp).
 void add_security(eprosima::fastdds::dds::DomainParticipantQos& qos,
                   const std::filesystem::path& folder);
 
@@ -28,14 +27,14 @@ void add_security(eprosima::fastdds::dds::DomainParticipantQos& qos,
 /// one takes longer than encrypting a message. The random part of the initialization vector has 64
 /// bits, so two of the million messages of a key have the same one with a probability of 3e-8 (NIST
 /// SP 800-38D, chapter 8).
-void use_long_sessions(eprosima::fastrtps::rtps::PropertyPolicy& properties);
+void use_long_sessions(rtps::PropertyPolicy& properties);
 
 /// Does nothing, but a call links the fixes of security_races.cpp into the program.
 void keep_security_races_away();
 
 /// A peer's writer or reader that security does not let connect to ours, or one of its samples.
 struct Denial {
-  eprosima::fastrtps::rtps::GuidPrefix_t peer;
+  rtps::GuidPrefix_t peer;
   std::string topic;
   bool writer = false;
   bool other_governance = false;  // its protection differs from the topic's here
@@ -49,7 +48,7 @@ void note_denial(Denial denial);
 void note_denials();
 
 /// Records the proven certificate subject of a peer. Thread-safe.
-void note_subject(const eprosima::fastrtps::rtps::GuidPrefix_t& peer, std::string subject);
+void note_subject(const rtps::GuidPrefix_t& peer, std::string subject);
 
 /// The last message of the security plug-ins, to explain why a participant or endpoint could not be
 /// made; empty when they logged nothing.
@@ -61,11 +60,8 @@ std::string last_security_error();
 /// note_subject() has the right one.
 class RefusalListener : public ReadWithListener {
  public:
-  void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
-                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
-  void onParticipantAuthentication(
-      eprosima::fastdds::dds::DomainParticipant* participant,
-      eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
+  void on_peer(const DiscoveredPeer& peer) override;
+  void on_authentication(const rtps::GuidPrefix_t& peer, bool authorized) override;
 
   /// A line for each refusal since the last call, by this participant or, for denials, by this
   /// process. Bounded: a flood leaves only the newest.
@@ -81,11 +77,11 @@ class RefusalListener : public ReadWithListener {
   };
 
   // The mutex is locked.
-  void report(const eprosima::fastrtps::rtps::GuidPrefix_t& prefix, const std::string& what);
+  void report(const rtps::GuidPrefix_t& prefix, const std::string& what);
   void report_denials();
 
   std::mutex mutex_;
-  std::map<eprosima::fastrtps::rtps::GuidPrefix_t, Peer> peers_;
+  std::map<rtps::GuidPrefix_t, Peer> peers_;
   std::deque<std::string> refusals_;
 };
 

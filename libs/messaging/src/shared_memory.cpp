@@ -16,19 +16,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The name of the segment of a lock "fastrtps_0123456789abcdef_el"; empty for other files, such as
-/// the locks of ports.
+/// The name of the segment of a lock "fastrtps_0123456789abcdef_el" (Fast DDS 2.9.1) or
+/// "fastdds_0123456789abcdef_el" (3); empty for other files, such as the locks of ports.
 std::string segment_of(std::string_view lock) {
-  constexpr std::string_view kPrefix = "fastrtps_";
   constexpr std::string_view kSuffix = "_el";
   constexpr std::size_t kDigits = 16;
-  if (lock.size() != kPrefix.size() + kDigits + kSuffix.size() || !lock.starts_with(kPrefix) ||
-      !lock.ends_with(kSuffix)) {
-    return {};
+  for (const std::string_view prefix : {"fastrtps_", "fastdds_"}) {
+    if (lock.size() != prefix.size() + kDigits + kSuffix.size() || !lock.starts_with(prefix) ||
+        !lock.ends_with(kSuffix)) {
+      continue;
+    }
+    const std::string_view digits = lock.substr(prefix.size(), kDigits);
+    if (digits.find_first_not_of("0123456789abcdef") != std::string_view::npos) continue;
+    return std::string(lock.substr(0, prefix.size() + kDigits));
   }
-  const std::string_view digits = lock.substr(kPrefix.size(), kDigits);
-  if (digits.find_first_not_of("0123456789abcdef") != std::string_view::npos) return {};
-  return std::string(lock.substr(0, kPrefix.size() + kDigits));
+  return {};
 }
 
 bool is_dead(const fs::path& lock, std::chrono::seconds age) {

@@ -5,6 +5,7 @@
 #include <exception>
 #include <vector>
 
+#include "topogeo/messaging/detail/type_support.hpp"
 #include "topogeo/msg/type_supports.h"
 
 #include "bounds.hpp"
@@ -16,23 +17,19 @@ namespace {
 /// First allocation for a sample of unknown size, bytes.
 constexpr std::uint32_t kInitialPayload = 256;
 
-/// A generated type support whose histories start small and grow with the samples. The generated
-/// one makes histories allocate the maximum of a bounded type for each sample, which is 50 MB for a
-/// local map.
 template <class Generated>
-class GrowingTypeSupport final : public Generated {
+class MessageTypeSupport final : public detail::GrowingTypeSupport<Generated> {
  public:
-  GrowingTypeSupport() { this->m_typeSize = std::min(this->m_typeSize, kInitialPayload); }
-  [[nodiscard]] bool is_bounded() const override { return false; }
-  [[nodiscard]] bool is_plain() const override { return false; }
+  MessageTypeSupport() : detail::GrowingTypeSupport<Generated>(kInitialPayload) {}
 
+ protected:
   /// Turns a payload that is no message of the type into one that find_defect() refuses. Otherwise
   /// the middleware would keep the sample and read none behind it, and an exception of the
   /// generated code would end the process (a truth value of 2, an unknown encapsulation).
-  bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override {
+  bool read(Payload& payload, void* data) override {
     using Message = typename Generated::type;
     try {
-      if (Generated::deserialize(payload, data)) return true;
+      if (detail::GrowingTypeSupport<Generated>::read(payload, data)) return true;
     } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): as the false
     }
     auto& message = *static_cast<Message*>(data);
@@ -44,7 +41,7 @@ class GrowingTypeSupport final : public Generated {
 
 template <class Generated>
 eprosima::fastdds::dds::TopicDataType* make_type() {
-  return new GrowingTypeSupport<Generated>;  // NOLINT: the caller hands it to a dds::TypeSupport
+  return new MessageTypeSupport<Generated>;  // NOLINT: the caller hands it to a dds::TypeSupport
 }
 
 template <class T>

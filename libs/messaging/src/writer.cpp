@@ -6,9 +6,10 @@
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
 
+#include "corrections.hpp"
 #include "endpoint_shared.hpp"
-#include "fast_dds/separate_sending.hpp"
 #include "participant_core.hpp"
+#include "security.hpp"
 
 namespace topogeo::messaging::detail {
 
@@ -46,7 +47,7 @@ class Listener final : public dds::DataWriterListener {
   std::shared_ptr<Endpoint::Shared> shared_;
 };
 
-eprosima::fastrtps::Duration_t to_duration(std::chrono::nanoseconds duration) {
+DdsDuration to_duration(std::chrono::nanoseconds duration) {
   constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
   return {static_cast<std::int32_t>(duration.count() / kNanosecondsPerSecond),
           static_cast<std::uint32_t>(duration.count() % kNanosecondsPerSecond)};
@@ -72,7 +73,7 @@ WriterCore::WriterCore(const Participant& participant, const TopicInfo& topic,
   dds::Publisher& publisher = impl_->participant->publisher();
   const std::string profile = profile_name(topic, role, "writer");
   dds::DataWriterQos qos;
-  if (publisher.get_datawriter_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
+  if (publisher.get_datawriter_qos_from_profile(profile, qos) != kOk) {
     throw std::runtime_error("DDS profile '" + profile + "' of topic " + std::string(topic.name) +
                              " is not in the profiles file");
   }
@@ -100,13 +101,13 @@ bool WriterCore::write(const void* message) {
   }
   // The API takes a mutable pointer but only serializes.
   const auto result = impl_->writer->write(const_cast<void*>(message), dds::HANDLE_NIL);  // NOLINT
-  if (result == ReturnCode_t::RETCODE_OK) {
+  if (result == kOk) {
     ++shared_->messages;
     return true;
   }
-  if (result == ReturnCode_t::RETCODE_TIMEOUT) return false;
+  if (result == kTimeout) return false;
   throw std::runtime_error(shared_->topic + ": DDS write failed with code " +
-                           std::to_string(result()));
+                           std::to_string(number_of(result)));
 }
 
 void WriterCore::dispose(const void* message) {
@@ -114,14 +115,14 @@ void WriterCore::dispose(const void* message) {
   // Unregistering with autodispose (the default) disposes the instance and frees the writer's
   // memory of it, so that ever new ids do not use up max_instances.
   const auto result = impl_->writer->unregister_instance(sample, dds::HANDLE_NIL);
-  if (result != ReturnCode_t::RETCODE_OK && result != ReturnCode_t::RETCODE_PRECONDITION_NOT_MET) {
+  if (result != kOk && result != kPreconditionNotMet) {
     throw std::runtime_error(shared_->topic + ": DDS dispose failed with code " +
-                             std::to_string(result()));
+                             std::to_string(number_of(result)));
   }
 }
 
 bool WriterCore::wait_for_acknowledgments(std::chrono::nanoseconds timeout) {
-  return impl_->writer->wait_for_acknowledgments(to_duration(timeout)) == ReturnCode_t::RETCODE_OK;
+  return impl_->writer->wait_for_acknowledgments(to_duration(timeout)) == kOk;
 }
 
 std::vector<std::string> WriterCore::read_with(const Handle& reader) const {

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "topogeo/messaging/detail/type_support.hpp"
 #include "topogeo/ros2/type_supports.h"
 
 namespace topogeo::ros {
@@ -23,12 +24,12 @@ constexpr std::size_t kLongestName = 247;
 /// before it reads the first. This holds for every list, but among the messages that the bridge
 /// reads only TFMessage has list elements much larger than a byte.
 template <class T>
-bool has_room(const eprosima::fastrtps::rtps::SerializedPayload_t& /*payload*/) {
+bool has_room(const messaging::Payload& /*payload*/) {
   return true;
 }
 
 template <>
-bool has_room<TFMessage>(const eprosima::fastrtps::rtps::SerializedPayload_t& payload) {
+bool has_room<TFMessage>(const messaging::Payload& payload) {
   /// Encapsulation and the number of transforms.
   constexpr std::size_t kStart_bytes = 8;
   /// A stamp, two empty texts, seven numbers.
@@ -48,29 +49,28 @@ struct Received final : public T {
   bool readable = true;
 };
 
-/// A generated type support whose histories grow with the samples. A payload that is no message of
-/// the type becomes one that find_defect refuses; otherwise the middleware would read nothing
-/// behind it, and an exception of the generated code would end the process.
+/// A payload that is no message of the type becomes one that find_defect refuses; otherwise the
+/// middleware would read nothing behind it, and an exception of the generated code would end the
+/// process.
 template <class Generated>
-class RosTypeSupport final : public Generated {
+class RosTypeSupport final : public messaging::detail::GrowingTypeSupport<Generated> {
   using Message = typename Generated::type;
+  using Growing = messaging::detail::GrowingTypeSupport<Generated>;
 
  public:
-  RosTypeSupport() { this->m_typeSize = std::min(this->m_typeSize, kFirstPayload); }
-  [[nodiscard]] bool is_bounded() const override { return false; }
-  [[nodiscard]] bool is_plain() const override { return false; }
+  RosTypeSupport() : Growing(kFirstPayload) {}
 
-  void* createData() override { return new Received<Message>; }  // NOLINT: the interface's
-  void deleteData(void* data) override {
+ protected:
+  void* make() override { return new Received<Message>; }  // NOLINT: the interface's
+  void remove(void* data) override {
     delete static_cast<Received<Message>*>(data);  // NOLINT: as above
   }
 
-  bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override {
+  bool read(messaging::Payload& payload, void* data) override {
     auto& received = *static_cast<Received<Message>*>(data);
     received.readable = true;
     try {
-      if (has_room<Message>(*payload) &&
-          Generated::deserialize(payload, static_cast<Message*>(&received))) {
+      if (has_room<Message>(payload) && Growing::read(payload, static_cast<Message*>(&received))) {
         return true;
       }
     } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): as the false

@@ -22,7 +22,13 @@ const std::vector<Include>& project_includes() {
 const std::vector<RestrictedLibrary>& restricted_libraries() {
   static const std::vector<RestrictedLibrary> kLibraries = {
       {"fastdds/",
-       {"libs/messaging/src/", "libs/map_client/include/topogeo/map_client/map_reader.hpp"}},
+       {"libs/messaging/src/", "libs/messaging/include/topogeo/messaging/detail/fast_dds.hpp",
+        "libs/messaging/include/topogeo/messaging/detail/type_support.hpp",
+        "libs/map_client/include/topogeo/map_client/map_reader.hpp"}},
+      {"topogeo/messaging/detail/fast_dds.hpp",
+       {"libs/messaging/src/", "libs/messaging/include/topogeo/messaging/detail/type_support.hpp"}},
+      {"topogeo/messaging/detail/type_support.hpp",
+       {"libs/messaging/src/", "libs/ros_messaging/src/"}},
       {"fastcdr/", {"libs/messaging/src/"}},
       {"topogeo/msg/type_supports.h", {"libs/messaging/src/"}},
       {"topogeo/ros2/type_supports.h", {"libs/ros_messaging/src/"}},

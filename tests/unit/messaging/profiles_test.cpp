@@ -6,6 +6,7 @@
 #include <string>
 
 #include "fixture.hpp"
+#include "profile_names.hpp"
 
 namespace topogeo::messaging {
 namespace {
@@ -58,13 +59,28 @@ TEST(Profiles, ParticipantsOfAllTransportsHearEachOther) {
   }
 }
 
+TEST(Profiles, HaveTheNamesOfTheVersionOfFastDds) {
+  const std::string old = "<heartbeatPeriod><sec>1</sec></heartbeatPeriod>";
+  const std::string now = "<heartbeat_period><sec>1</sec></heartbeat_period>";
+#if TOPOGEO_FAST_DDS == 2
+  EXPECT_EQ(with_names_of_library(old), old);
+#else
+  EXPECT_EQ(with_names_of_library(old), now);
+#endif
+  EXPECT_EQ(with_names_of_library(now), now);
+}
+
 // Programs of several users, or short-lived ones, block the shared memory of Fast DDS 2.9.1.
 TEST(Profiles, ByDefaultNothingIsPutIntoSharedMemory) {
   // Checks this process only, because other programs create segments at any time.
   const auto has_segments = [] {
     std::ifstream mapped("/proc/self/maps");
-    for (std::string line; std::getline(mapped, line);)
-      if (line.find("/fastrtps_") != std::string::npos) return true;
+    for (std::string line; std::getline(mapped, line);) {
+      if (line.find("/fastrtps_") != std::string::npos ||
+          line.find("/fastdds_") != std::string::npos) {
+        return true;
+      }
+    }
     return false;
   };
   const auto has_segments_with = [&](const ParticipantOptions& options) {

@@ -7,6 +7,7 @@
 #include <fastdds/dds/topic/TypeSupport.hpp>
 #include <gtest/gtest.h>
 
+#include "topogeo/messaging/detail/type_support.hpp"
 #include "topogeo/messaging/topics.hpp"
 #include "topogeo/msg/types.h"
 
@@ -27,7 +28,11 @@ std::vector<char> sequence_of(std::uint32_t count) {
 std::vector<msg::LocalNode> read(std::uint32_t count, std::uint32_t bound) {
   std::vector<char> bytes = sequence_of(count);
   cdr::FastBuffer buffer(bytes.data(), bytes.size());
+#if TOPOGEO_FAST_DDS == 2
   cdr::Cdr stream(buffer);
+#else
+  cdr::Cdr stream(buffer, cdr::Cdr::DEFAULT_ENDIAN, cdr::CdrVersion::XCDRv1);
+#endif
   std::vector<msg::LocalNode> nodes;
   try {
     msg::read_bounded(stream, nodes, bound);
@@ -56,11 +61,10 @@ TEST(ReadBounded, IsWhatReadersOfTopicsDo) {
     msg::LocalMap message;
     message.schema_version(msg::kSchemaVersion);
     message.nodes().resize(nodes);
-    eprosima::fastrtps::rtps::SerializedPayload_t payload(
-        type.get_serialized_size_provider(&message)());
-    ASSERT_TRUE(type.serialize(&message, &payload));
+    Payload payload(detail::payload_size(type, &message));
+    ASSERT_TRUE(detail::write_payload(type, &message, payload));
     msg::LocalMap arrived;
-    ASSERT_TRUE(type.deserialize(&payload, &arrived));
+    ASSERT_TRUE(detail::read_payload(type, payload, &arrived));
     const bool allowed = nodes == msg::kMaxLocalNodes;
     EXPECT_EQ(arrived.schema_version(), allowed ? msg::kSchemaVersion : kUnreadable);
     EXPECT_EQ(arrived.nodes().capacity(), allowed ? nodes : 0U);

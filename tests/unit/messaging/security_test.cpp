@@ -2,21 +2,15 @@
 #include "security.hpp"
 
 #include <string>
-#include <utility>
+#include <vector>
 
-#include <fastdds/rtps/attributes/RTPSParticipantAllocationAttributes.hpp>
-#include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
-#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
 #include <gmock/gmock.h>
 
 namespace topogeo::messaging {
 namespace {
 
-namespace rtps = eprosima::fastrtps::rtps;
-
 using testing::ElementsAre;
 using testing::IsEmpty;
-using Info = rtps::ParticipantDiscoveryInfo;
 
 constexpr const char* kGuid = "01.00.00.00.00.00.00.00.00.00.00.07";
 
@@ -32,35 +26,23 @@ class Refusals : public testing::Test {
   Refusals() { listener_.take(); }  // entries of other tests in this process
 
   /// The peer is discovered, or leaves.
-  void peer(const std::string& name, const std::string& subject,
-            Info::DISCOVERY_STATUS status = Info::DISCOVERED_PARTICIPANT) {
-    rtps::ParticipantProxyData data{rtps::RTPSParticipantAllocationAttributes()};
-    data.m_guid.guidPrefix = prefix_of_peer();
-    data.m_participantName = name.c_str();
-    if (!subject.empty()) {
-      rtps::Property property;
-      property.name("dds.cert.sn");
-      property.value(subject);
-      data.identity_token_.properties().push_back(property);
-    }
-    Info info(data);
-    info.status = status;
-    listener_.on_participant_discovery(nullptr, std::move(info));
+  void peer(const std::string& name, const std::string& subject, bool gone = false) {
+    DiscoveredPeer peer;
+    peer.id.guidPrefix = prefix_of_peer();
+    peer.name = name;
+    peer.subject = subject;
+    peer.gone = gone;
+    listener_.on_peer(peer);
   }
 
-  void authenticate(rtps::ParticipantAuthenticationInfo::AUTHENTICATION_STATUS status) {
-    rtps::ParticipantAuthenticationInfo info;
-    info.status = status;
-    info.guid.guidPrefix = prefix_of_peer();
-    listener_.onParticipantAuthentication(nullptr, std::move(info));
-  }
+  void authenticate(bool authorized) { listener_.on_authentication(prefix_of_peer(), authorized); }
 
   RefusalListener listener_;
 };
 
 TEST_F(Refusals, NameTheParticipantAndItsCertificate) {
   peer("robot/ga_worker", "CN=ga_worker.pc1,O=topogeo");
-  authenticate(rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT);
+  authenticate(false);
   EXPECT_THAT(listener_.take(), ElementsAre("'robot/ga_worker' (CN=ga_worker.pc1,O=topogeo; " +
                                             std::string(kGuid) + ") fails authentication"));
   EXPECT_THAT(listener_.take(), IsEmpty()) << "each once";
@@ -69,7 +51,7 @@ TEST_F(Refusals, NameTheParticipantAndItsCertificate) {
 TEST_F(Refusals, NameThePeerThatIsDeniedATopic) {
   // A worker under the name of the map store, with its own certificate.
   peer("robot/map_store", "CN=ga_worker.pc1,O=topogeo");
-  authenticate(rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
+  authenticate(true);
   note_denial({prefix_of_peer(), "topogeo/v17/map", true, false});
   note_denial({prefix_of_peer(), "topogeo/v17/scan", false, true});
   const std::string who =
@@ -84,21 +66,21 @@ TEST_F(Refusals, NameThePeerThatIsDeniedATopic) {
 TEST_F(Refusals, NameTheCertificateThatThePeerHasShown) {
   peer("robot/map_store", "/O=topogeo/CN=map_store.robot");
   note_subject(prefix_of_peer(), "/O=topogeo/CN=ga_worker.pc1");
-  authenticate(rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
+  authenticate(true);
   note_denial({prefix_of_peer(), "topogeo/v17/map", true, false});
   EXPECT_THAT(listener_.take(),
               ElementsAre("'robot/map_store' (/O=topogeo/CN=ga_worker.pc1; " + std::string(kGuid) +
                           ") may not write topogeo/v17/map"));
-  peer("", "", Info::REMOVED_PARTICIPANT);
+  peer("", "", true);
   peer("robot/map_store", "/O=topogeo/CN=map_store.robot");
-  authenticate(rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT);
+  authenticate(false);
   EXPECT_THAT(listener_.take(), ElementsAre(testing::HasSubstr("CN=map_store.robot")))
       << "who comes with the same id has to show it again";
 }
 
 TEST_F(Refusals, NameTheRobotOfASampleThatIsDenied) {
   peer("anna/sensor_gateway", "/O=topogeo/OU=anna/CN=sensor_gateway.anna");
-  authenticate(rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
+  authenticate(true);
   note_denial({prefix_of_peer(), "topogeo/v17/scan", true, false, "bert\n"});
   EXPECT_THAT(
       listener_.take(),
@@ -108,9 +90,9 @@ TEST_F(Refusals, NameTheRobotOfASampleThatIsDenied) {
 
 TEST_F(Refusals, NameAPeerThatHasLeft) {
   peer("robot/map_store", "CN=ga_worker.pc1,O=topogeo");
-  authenticate(rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
+  authenticate(true);
   note_denial({prefix_of_peer(), "topogeo/v17/map", true, false});
-  peer("", "", Info::REMOVED_PARTICIPANT);
+  peer("", "", true);
   EXPECT_THAT(listener_.take(),
               ElementsAre("'robot/map_store' (CN=ga_worker.pc1,O=topogeo; " + std::string(kGuid) +
                           ") may not write topogeo/v17/map"));
@@ -118,7 +100,7 @@ TEST_F(Refusals, NameAPeerThatHasLeft) {
 
 TEST_F(Refusals, AreOneShortLineEach) {
   peer("line\nof a log\x1b[2J", std::string(10'000, 'x'));
-  authenticate(rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT);
+  authenticate(false);
   EXPECT_THAT(listener_.take(), ElementsAre("'line?of a log?[2J' (" + std::string(128, 'x') + "; " +
                                             kGuid + ") fails authentication"));
 }

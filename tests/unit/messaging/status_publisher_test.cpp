@@ -7,8 +7,8 @@
 
 #include <gmock/gmock.h>
 
-#include "fast_dds/packet_shield.hpp"
 #include "fixture.hpp"
+#include "stranger_counts.hpp"
 
 namespace topogeo::messaging {
 namespace {

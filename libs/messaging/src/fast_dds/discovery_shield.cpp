@@ -25,6 +25,7 @@
 #include <fastdds/rtps/security/accesscontrol/EndpointSecurityAttributes.h>
 #include <fastdds/rtps/security/accesscontrol/ParticipantSecurityAttributes.h>
 
+#include "../stranger_counts.hpp"
 #include "library_function.hpp"
 #include "packet_shield.hpp"
 #include "removal_log.hpp"

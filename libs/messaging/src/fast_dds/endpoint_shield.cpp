@@ -12,6 +12,7 @@
 #include <fastdds/rtps/reader/StatelessReader.h>
 #include <fastdds/rtps/writer/StatefulWriter.h>
 
+#include "../stranger_counts.hpp"
 #include "library_function.hpp"
 #include "packet_shield.hpp"
 

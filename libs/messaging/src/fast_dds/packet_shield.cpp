@@ -11,7 +11,6 @@
 #include "packet_shield.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -23,9 +22,9 @@
 #include <fastdds/rtps/common/CacheChange.h>
 #include <fastdds/rtps/common/Locator.h>
 
-#include "topogeo/messaging/strangers.hpp"
 #include "topogeo/messaging/topics.hpp"
 
+#include "../stranger_counts.hpp"
 #include "discovery_shield.hpp"
 #include "library_function.hpp"
 #include "packet_check.hpp"
@@ -52,12 +51,6 @@ constexpr const char* kTakeHandshake =
     "_ZN8eprosima8fastrtps4rtps8security15SecurityManager37process_participant_stateless_"
     "messageEPKNS1_13CacheChange_tE";
 
-std::atomic<std::uint64_t> g_invalid = 0;
-std::atomic<std::uint64_t> g_unprotected = 0;
-std::atomic<std::uint64_t> g_security_errors = 0;
-std::atomic<std::uint64_t> g_denied_samples = 0;
-std::atomic<std::uint64_t> g_unknown_topics = 0;
-std::atomic<std::uint64_t> g_forged_removals = 0;
 thread_local bool t_unprotected = false;
 
 /// Marks what this thread works on.
@@ -81,7 +74,7 @@ bool endpoint_valid(const rtps::CDRMessage_t& message) {
   const std::string_view topic = messaging::topic_of({message.buffer, message.length});
   const auto topics = messaging::all_topics();
   if (std::ranges::none_of(topics, [&](const auto* known) { return known->name == topic; })) {
-    g_unknown_topics.fetch_add(1, std::memory_order_relaxed);
+    messaging::count_unknown_topic();
   }
   return true;
 }
@@ -176,35 +169,6 @@ void shield_packets() {}
 
 bool in_unprotected_packet() {
   return t_unprotected;
-}
-
-void count_invalid_packet() {
-  g_invalid.fetch_add(1, std::memory_order_relaxed);
-}
-
-void count_unprotected_packet() {
-  g_unprotected.fetch_add(1, std::memory_order_relaxed);
-}
-
-void count_forged_removals(std::uint64_t count) {
-  g_forged_removals.fetch_add(count, std::memory_order_relaxed);
-}
-
-void count_security_error() {
-  g_security_errors.fetch_add(1, std::memory_order_relaxed);
-}
-
-void count_denied_sample() {
-  g_denied_samples.fetch_add(1, std::memory_order_relaxed);
-}
-
-StrangerCounts stranger_counts() {
-  return {.invalid_packets = g_invalid.load(std::memory_order_relaxed),
-          .unprotected_packets = g_unprotected.load(std::memory_order_relaxed),
-          .security_errors = g_security_errors.load(std::memory_order_relaxed),
-          .denied_samples = g_denied_samples.load(std::memory_order_relaxed),
-          .unknown_topics = g_unknown_topics.load(std::memory_order_relaxed),
-          .forged_removals = g_forged_removals.load(std::memory_order_relaxed)};
 }
 
 }  // namespace topogeo::messaging

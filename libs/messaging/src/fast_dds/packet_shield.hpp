@@ -2,8 +2,6 @@
 // packet before it is read, endpoint_shield.cpp what it asks of a reader or a writer.
 #pragma once
 
-#include <cstdint>
-
 namespace topogeo::messaging {
 
 /// Does nothing; whoever calls it gets the shields linked in.
@@ -11,11 +9,5 @@ void shield_packets();
 
 /// Whether this thread works on a packet with submessages that nothing protects.
 [[nodiscard]] bool in_unprotected_packet();
-
-void count_invalid_packet();
-void count_unprotected_packet();
-void count_security_error();
-void count_denied_sample();
-void count_forged_removals(std::uint64_t count);
 
 }  // namespace topogeo::messaging

@@ -158,8 +158,9 @@ inline void MapReader::make_reader() {
   qos.resource_limits().max_instances = kMostElements;
   qos.resource_limits().max_samples_per_instance = kMostOfAnElement;
   qos.resource_limits().allocated_samples = kAllocatedAtFirst;
-  qos.endpoint().history_memory_policy =
-      eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  // In another namespace in each version of Fast DDS.
+  using MemoryPolicy = decltype(qos.endpoint().history_memory_policy);
+  qos.endpoint().history_memory_policy = MemoryPolicy::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   qos.data_sharing().off();
   reader_ = subscriber_->create_datareader(topic_, qos);
   if (reader_ == nullptr) throw std::runtime_error("DDS: cannot create a reader of the map");
@@ -185,7 +186,9 @@ inline bool MapReader::take() {
     std::copy_n(static_cast<const std::uint8_t*>(from.value), to.size(), to.begin());
     return to;
   };
-  while (reader_->take_next_sample(&element_, &info) == ReturnCode_t::RETCODE_OK) {
+  // Success is the default in all versions of Fast DDS, which have return codes of different types.
+  using ReturnCode = decltype(reader_->take_next_sample(&element_, &info));
+  while (reader_->take_next_sample(&element_, &info) == ReturnCode()) {
     last_news_ = Clock::now();
     const Handle instance = handle(info.instance_handle);
     const Handle writer = handle(info.publication_handle);

@@ -1,0 +1,26 @@
+// Corrections of Fast DDS 2.9.1 (src/fast_dds). Fast DDS 3 has none (fast_dds_3.cpp) and therefore
+// no security here.
+#pragma once
+
+#include <cstdint>
+
+#include <fastdds/dds/publisher/DataWriter.hpp>
+
+namespace topogeo::messaging {
+
+/// A call links the corrections into the program, and does nothing else.
+void correct_fast_dds();
+
+/// The same for the corrections of security. Throws std::runtime_error with Fast DDS 3: the rules
+/// about robots and the checks of packets, which security needs, are corrections.
+void correct_security();
+
+/// Makes this process send each fragment of a sample in a message of its own, of at most so many
+/// bytes, though a message may hold more. Messages of discovery still go whole.
+void send_fragments_within(std::uint32_t message_bytes);
+
+/// Lets a writer of addressed messages send heartbeats to the addressees alone
+/// (fast_dds/separate_sending.hpp).
+void send_heartbeats_to_addressees(const eprosima::fastdds::dds::DataWriter& writer);
+
+}  // namespace topogeo::messaging
