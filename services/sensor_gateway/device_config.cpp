@@ -144,6 +144,17 @@ void describe_turning_laser(ConfigSchema& schema, Laser& laser) {
              "shifts all stamps, so measure it by turning the robot on the spot");
 }
 
+void describe_lds(ConfigSchema& schema, Laser& laser) {
+  schema.add("laser.checksum", &laser.lds.checksum,
+             {{"model", devices::LdsChecksum::kModel},
+              {"learn", devices::LdsChecksum::kLearn},
+              {"drop", devices::LdsChecksum::kDrop},
+              {"warn", devices::LdsChecksum::kWarn}},
+             "packets of an lds01 or xv11 with a wrong checksum; model: an xv11 drops them, an "
+             "lds01, whose rule is from one source, learns: drops them only after eight packets "
+             "with the right one, and checks none if 64 have another");
+}
+
 void describe_rplidar(ConfigSchema& schema, Laser& laser) {
   devices::RpLidarSettings& s = laser.rplidar;
   schema.add("laser.scan_mode", &s.scan,
@@ -295,6 +306,7 @@ ConfigSchema describe(DeviceFile& file) {
   describe_laser_scans(schema, file.laser);
   describe_laser_times(schema, file.laser);
   describe_turning_laser(schema, file.laser);
+  describe_lds(schema, file.laser);
   describe_rplidar(schema, file.laser);
   describe_base_line(schema, file.base);
   describe_base_units(schema, file.base);
@@ -337,6 +349,7 @@ DeviceConfig to_config(const DeviceFile& file) {
   turning.packet_delay_ns = nanoseconds(file.laser.packet_delay_s);
   turning.range_max_m = laser.range_max_m;
   turning.silence_ns = laser.shortest_silence_ns;
+  config.laser.lds = file.laser.lds;
   config.laser.rplidar = file.laser.rplidar;
   config.laser.rplidar.express_mode = static_cast<std::uint8_t>(file.laser.express_mode);
   config.laser.rplidar.motor_value = static_cast<std::uint16_t>(file.laser.motor_value);

@@ -19,6 +19,7 @@ struct DeviceFile {
     const devices::LaserModel* model = nullptr;  ///< set by the constructor
     devices::PlsSettings settings;
     devices::TurningLaserSettings turning;
+    devices::LdsSettings lds;
     devices::RpLidarSettings rplidar;
     std::uint32_t express_mode = 0;     ///< as `rplidar.express_mode`
     std::uint32_t motor_value = 0;      ///< as `rplidar.motor_value`

@@ -39,6 +39,11 @@ std::size_t check_map_file(std::string_view bytes);
 /// BrokenPromise.
 std::size_t check_sick_decoder(std::string_view bytes);
 
+/// Passes `bytes` after the first, which chooses a row of laser_models(), as received from that
+/// laser through its driver, at the rate of its line. Returns the number of scans. Throws
+/// BrokenPromise.
+std::size_t check_laser_driver(std::string_view bytes);
+
 /// Passes `bytes` as received from a B21 base, in both dialects, through the decoder, split in
 /// several ways, and through the driver. Returns the number of messages that the decoders found.
 /// Throws BrokenPromise.

@@ -58,6 +58,7 @@ TEST(FuzzSeeds, MapFilesPass) {
 
 TEST(FuzzSeeds, LaserBytesPass) {
   expect_all_pass("sick_decoder", [](const std::string& bytes) { check_sick_decoder(bytes); });
+  expect_all_pass("laser_driver", [](const std::string& bytes) { check_laser_driver(bytes); });
 }
 
 TEST(FuzzSeeds, BaseBytesPass) {
@@ -117,6 +118,12 @@ TEST(FuzzSeeds, ReachTheTelegrams) {
   EXPECT_EQ(telegrams("late"), 1U);
   EXPECT_EQ(telegrams("false_header"), 2U);
   EXPECT_EQ(telegrams("commands"), 0U);
+}
+
+TEST(FuzzSeeds, ReachTheTurns) {
+  for (const auto& entry : std::filesystem::directory_iterator(seeds("laser_driver"))) {
+    EXPECT_GT(check_laser_driver(content(entry.path())), 0U) << entry.path();
+  }
 }
 
 TEST(FuzzSeeds, ReachTheSubmessages) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "topogeo/devices/ldrobot_driver.hpp"
+#include "topogeo/devices/lds_driver.hpp"
 #include "topogeo/devices/pls_driver.hpp"
 #include "topogeo/devices/rplidar_driver.hpp"
 
@@ -18,6 +19,21 @@ std::unique_ptr<LaserDriver> make_pls(const LaserModel& /*model*/, const LaserSe
 
 std::unique_ptr<LaserDriver> make_ldrobot(const LaserModel& model, const LaserSettings& settings) {
   return std::make_unique<LdRobotDriver>(model, settings.turning);
+}
+
+/// The same packets of a laser that looks past its axis.
+std::unique_ptr<LaserDriver> make_ldrobot_offset(const LaserModel& model,
+                                                 const LaserSettings& settings) {
+  return make_ldrobot(model, settings);
+}
+
+std::unique_ptr<LaserDriver> make_xv11(const LaserModel& model, const LaserSettings& settings) {
+  return std::make_unique<LdsDriver>(model, settings.turning, settings.lds);
+}
+
+/// The same packets with more readings.
+std::unique_ptr<LaserDriver> make_lds01(const LaserModel& model, const LaserSettings& settings) {
+  return make_xv11(model, settings);
 }
 
 std::unique_ptr<LaserDriver> make_rplidar(const LaserModel& model, const LaserSettings& settings) {
@@ -50,6 +66,10 @@ const LaserModel& laser_model(std::string_view name) {
     throw std::invalid_argument("laser model '" + std::string(name) + "': not known");
   }
   return *model;
+}
+
+LineSettings line_of(const LaserModel& model, const TurningLaserSettings& settings) {
+  return {settings.baud > 0 ? settings.baud : model.line.baud, model.line.parity};
 }
 
 std::unique_ptr<LaserDriver> make_laser_driver(const LaserSettings& settings) {

@@ -1,19 +1,16 @@
 #include "topogeo/devices/ldrobot_driver.hpp"
 
 #include <cmath>
-#include <limits>
+#include <cstdlib>
 #include <numbers>
-#include <string>
-#include <utility>
 
+#include "topogeo/devices/ldrobot_optics.hpp"
 #include "topogeo/devices/line_time.hpp"
 
 namespace topogeo::devices {
 namespace {
 
 constexpr double kRadPerCdeg = std::numbers::pi / 18'000.0;
-/// After this many times the allowed silence the laser counts as failed.
-constexpr std::int64_t kFailedAfter = 5;
 /// The laser's time cannot be compared over a longer pause: at 13 turns a second half a turn takes
 /// 38 ms.
 constexpr std::uint32_t kLongestPause_ms = 30;
@@ -26,59 +23,44 @@ constexpr double kPlaceCdeg = 300.0;
 /// Time of the host and of the laser since the last packet differ by less, unless the laser
 /// restarted.
 constexpr std::int64_t kRestarted_ns = 1'000'000'000;
+/// Far returns, whose directions differ least, keep their place in the turn.
+constexpr double kFar_mm = 8000.0;
 
-TurningLaserSettings checked_turning(TurningLaserSettings settings) {
-  settings.check();
-  return settings;
-}
-
-LineSettings line_of(const LaserModel& model, const TurningLaserSettings& settings) {
-  return {settings.baud > 0 ? settings.baud : model.line.baud, model.line.parity};
+/// Replaces what an LD08 states by what the centre of the laser sees.
+void look_from_axis(TurningBeam& beam) {
+  constexpr double kRadPerDeg = 100.0 * kRadPerCdeg;
+  const double far_deg = ld08_point(kFar_mm).back_deg;
+  beam.turned_rad -= far_deg * kRadPerDeg;
+  if (beam.range_m <= 0.0) return;
+  const Ld08Point point = ld08_point(1e3 * beam.range_m);
+  beam.range_m = 1e-3 * point.range_mm;
+  beam.aside_rad = (far_deg - point.back_deg) * kRadPerDeg;
 }
 
 bool near_to(double value, double expected, double share, double margin) {
   return std::fabs(value - expected) <= share * expected + margin;
 }
 
-std::string listening(const LaserModel& model) {
-  return "listens for a " + std::string(model.title);
-}
-
 }  // namespace
 
 LdRobotDriver::LdRobotDriver(const LaserModel& model, const TurningLaserSettings& settings)
-    : model_(model),
-      settings_(checked_turning(settings)),
-      line_(line_of(model, settings)),
-      turns_(settings_, model.beams, model.range_max_m, true),
-      clock_(line_time_ns(kLdPacket_bytes, line_)),
-      reason_("the port is closed") {}
+    : TurningLaserDriver(model, settings, true),
+      beside_axis_(model.family == "ldrobot_offset"),
+      clock_(line_time_ns(kLdPacket_bytes, line())) {}
 
-void LdRobotDriver::opened(std::int64_t now_ns) {
-  orders_ = {{line_, {}}};
+void LdRobotDriver::restart() {
   decoder_.clear();
-  turns_.restart();
   last_.reset();
-  waits_since_ns_ = now_ns;
-  wait(LaserState::kStarting, listening(model_));
 }
 
-void LdRobotDriver::lost(std::int64_t /*now_ns*/) {
-  orders_.clear();
-  wait(LaserState::kOffline, "the port is closed");
+void LdRobotDriver::interrupt() {
+  last_.reset();
 }
 
-void LdRobotDriver::wait(LaserState state, std::string reason) {
-  state_ = state;
-  reason_ = std::move(reason);
-}
-
-void LdRobotDriver::receive(std::span<const std::uint8_t> bytes, std::int64_t now_ns) {
-  if (state_ == LaserState::kOffline || bytes.empty()) return;
-  last_byte_ns_ = now_ns;
+void LdRobotDriver::decode(std::span<const std::uint8_t> bytes, std::int64_t now_ns) {
   decoder_.push(bytes);
   while (const std::optional<LdDecoder::Found> found = decoder_.next()) {
-    take(found->packet, now_ns - line_time_ns(found->bytes_since, line_));
+    take(found->packet, now_ns - line_time_ns(found->bytes_since, line()));
   }
 }
 
@@ -96,11 +78,12 @@ void LdRobotDriver::take(const LdPacket& packet, std::int64_t arrival_ns) {
   if (!last_ || std::llabs(apart_ns) > kRestarted_ns) clock_.restart();
   last_ = packet;
   if (!fits) {
-    turns_.restart();
+    restart_turn();
     return;
   }
-  last_arrival_ns_ = waits_since_ns_ = arrival_ns;
-  add_beams(packet, clock_.map(device_ns_, arrival_ns) - settings_.packet_delay_ns);
+  last_arrival_ns_ = arrival_ns;
+  heard(arrival_ns);
+  add_beams(packet, clock_.map(device_ns_, arrival_ns));
 }
 
 bool LdRobotDriver::follows(const LdPacket& packet, std::uint32_t passed_ms) {
@@ -128,70 +111,25 @@ void LdRobotDriver::add_beams(const LdPacket& packet, std::int64_t last_beam_ns)
   for (std::size_t i = 0; i < kLdPoints; ++i) {
     const LdPoint& point = packet.points[i];
     const auto place = static_cast<double>(i);
+    const bool returned = point.distance_mm > 0 && point.intensity >= settings().least_intensity;
     TurningBeam beam;
     beam.turned_rad = (packet.start_cdeg + place * step_cdeg) * kRadPerCdeg;
-    beam.range_m = point.intensity < settings_.least_intensity ? 0.0 : 1e-3 * point.distance_mm;
+    beam.range_m = returned ? 1e-3 * point.distance_mm : 0.0;
     beam.time_ns = last_beam_ns - std::llround((kGaps - place) * step_ns);
-    turns_.add(beam);
-    if (std::optional<LaserScan> scan = turns_.take_scan()) {
-      wait(LaserState::kRunning, {});
-      scans_.push_back(*std::move(scan));
-    }
+    if (beside_axis_) look_from_axis(beam);
+    add_beam(beam);
   }
 }
 
-void LdRobotDriver::tick(std::int64_t now_ns) {
-  if (state_ == LaserState::kOffline || now_ns < waits_since_ns_ + settings_.silence_ns) return;
-  if (state_ == LaserState::kRunning) {
-    ++silences_;
-    turns_.restart();
-    last_.reset();
-    wait(LaserState::kStarting,
-         "no packet for " + std::to_string((now_ns - waits_since_ns_) / 1'000'000) + " ms");
-  }
-  if (now_ns < waits_since_ns_ + kFailedAfter * settings_.silence_ns) return;
-  const bool other =
-      last_byte_ns_ > waits_since_ns_ && now_ns - last_byte_ns_ < settings_.silence_ns;
-  wait(LaserState::kFailed,
-       other ? "bytes arrive, but no packets of a " + std::string(model_.title) + " at " +
-                   std::to_string(line_.baud) + " baud: expected that laser (laser.model)"
-             : "no bytes arrive: is the laser connected and does it turn?");
+double LdRobotDriver::turns_hz() const {
+  return last_ ? last_->speed_deg_s / 360.0 : 0.0;
 }
 
-std::int64_t LdRobotDriver::due_ns() const {
-  switch (state_) {
-    case LaserState::kRunning:
-      return waits_since_ns_ + settings_.silence_ns;
-    case LaserState::kStarting:
-      return waits_since_ns_ + kFailedAfter * settings_.silence_ns;
-    case LaserState::kOffline:
-    case LaserState::kFailed:
-      break;
-  }
-  return std::numeric_limits<std::int64_t>::max();
-}
-
-std::vector<LineOrder> LdRobotDriver::take_orders() {
-  return std::exchange(orders_, {});
-}
-
-std::vector<LaserScan> LdRobotDriver::take_scans() {
-  return std::exchange(scans_, {});
-}
-
-LaserHealth LdRobotDriver::health() const {
-  LaserHealth health;
-  health.state = state_;
-  health.reason = reason_;
-  health.line = line_;
-  health.searches = silences_;
-  if (state_ == LaserState::kRunning && last_) health.turns_hz = last_->speed_deg_s / 360.0;
-  health.drops = {{"bad checksum", decoder_.counters().bad_checksum},
-                  {"noise bytes", decoder_.counters().noise_bytes},
-                  {"implausible packet", decoder_.counters().implausible + implausible_},
-                  {"repeated packet", repeated_},
-                  {"incomplete turn", turns_.incomplete()}};
-  return health;
+TurningLaserDriver::Drops LdRobotDriver::drops() const {
+  return {{"bad checksum", decoder_.counters().bad_checksum},
+          {"noise bytes", decoder_.counters().noise_bytes},
+          {"implausible packet", decoder_.counters().implausible + implausible_},
+          {"repeated packet", repeated_}};
 }
 
 }  // namespace topogeo::devices

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "topogeo/devices/little_endian.hpp"
+
 namespace topogeo::devices {
 namespace {
 
@@ -27,28 +29,19 @@ constexpr std::array<std::uint8_t, 256> ld_crc_table() {
   return table;
 }
 
-void put_u16(std::vector<std::uint8_t>& bytes, std::uint16_t value) {
-  bytes.push_back(static_cast<std::uint8_t>(value & 0xFFU));
-  bytes.push_back(static_cast<std::uint8_t>(value >> 8));
-}
-
-std::uint16_t u16_at(std::span<const std::uint8_t> bytes, std::size_t at) {
-  return static_cast<std::uint16_t>(bytes[at] | bytes[at + 1] << 8);
-}
-
 LdPacket packet_of(std::span<const std::uint8_t> bytes) {
   constexpr std::size_t kPointsAt = 6;
   constexpr std::size_t kPoint_bytes = 3;
   constexpr std::size_t kEndAt = kPointsAt + kLdPoints * kPoint_bytes;
   LdPacket packet;
-  packet.speed_deg_s = u16_at(bytes, 2);
-  packet.start_cdeg = u16_at(bytes, 4);
+  packet.speed_deg_s = word_at(bytes, 2);
+  packet.start_cdeg = word_at(bytes, 4);
   for (std::size_t i = 0; i < kLdPoints; ++i) {
     const std::size_t at = kPointsAt + i * kPoint_bytes;
-    packet.points[i] = {u16_at(bytes, at), bytes[at + 2]};
+    packet.points[i] = {word_at(bytes, at), bytes[at + 2]};
   }
-  packet.end_cdeg = u16_at(bytes, kEndAt);
-  packet.time_ms = u16_at(bytes, kEndAt + 2);
+  packet.end_cdeg = word_at(bytes, kEndAt);
+  packet.time_ms = word_at(bytes, kEndAt + 2);
   return packet;
 }
 
@@ -71,14 +64,14 @@ std::uint8_t ld_crc(std::span<const std::uint8_t> bytes) {
 std::vector<std::uint8_t> ld_bytes(const LdPacket& packet) {
   std::vector<std::uint8_t> bytes{kLdHeader, kLdVersionLength};
   bytes.reserve(kLdPacket_bytes);
-  put_u16(bytes, packet.speed_deg_s);
-  put_u16(bytes, packet.start_cdeg);
+  put_word(bytes, packet.speed_deg_s);
+  put_word(bytes, packet.start_cdeg);
   for (const LdPoint& point : packet.points) {
-    put_u16(bytes, point.distance_mm);
+    put_word(bytes, point.distance_mm);
     bytes.push_back(point.intensity);
   }
-  put_u16(bytes, packet.end_cdeg);
-  put_u16(bytes, packet.time_ms);
+  put_word(bytes, packet.end_cdeg);
+  put_word(bytes, packet.time_ms);
   bytes.push_back(ld_crc(bytes));
   return bytes;
 }

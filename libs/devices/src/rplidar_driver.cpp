@@ -38,11 +38,6 @@ constexpr std::uint8_t kFirstWithSpeed = 6;
 constexpr std::uint16_t kDefaultPwm = 660;
 constexpr std::uint16_t kDefaultSpeedRpm = 600;
 
-TurningLaserSettings checked_rplidar(TurningLaserSettings settings) {
-  settings.check();
-  return settings;
-}
-
 double step_deg(const RpPacket& packet, const RpPacket& next) {
   return (kRpTurnQ6 + next.start_q6 - packet.start_q6) % kRpTurnQ6 / 64.0;
 }
@@ -52,9 +47,9 @@ double step_deg(const RpPacket& packet, const RpPacket& next) {
 RpLidarDriver::RpLidarDriver(const LaserModel& model, const TurningLaserSettings& turning,
                              const RpLidarSettings& settings)
     : model_(model),
-      turning_(checked_rplidar(turning)),
+      turning_(checked(turning)),
       settings_(settings),
-      line_{turning.baud > 0 ? turning.baud : model.line.baud, model.line.parity},
+      line_(line_of(model, turning)),
       turns_(turning_, model.beams, model.range_max_m, true),
       reason_("the port is closed"),
       sample_ns_(std::llround(1e9 / (model.turns_hz * static_cast<double>(model.beams)))) {}

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "topogeo/devices/little_endian.hpp"
+
 namespace topogeo::devices {
 namespace {
 
@@ -12,15 +14,6 @@ constexpr std::uint8_t kFirstMark = 0xA0;
 constexpr std::uint8_t kSecondMark = 0x50;
 constexpr std::size_t kPayloadAt = 2;  // after the marks: what the checksum covers
 constexpr std::size_t kCabinsAt = 4;
-
-std::uint16_t word_at(std::span<const std::uint8_t> bytes, std::size_t at) {
-  return static_cast<std::uint16_t>(bytes[at] | bytes[at + 1] << 8);
-}
-
-void put_word(std::vector<std::uint8_t>& bytes, unsigned word) {
-  bytes.push_back(static_cast<std::uint8_t>(word & 0xFFU));
-  bytes.push_back(static_cast<std::uint8_t>(word >> 8 & 0xFFU));
-}
 
 std::uint8_t xor_of(std::span<const std::uint8_t> bytes) {
   std::uint8_t sum = 0;

@@ -65,14 +65,15 @@ void TurnAssembler::add(const TurningBeam& beam) {
     front_rad_ = since_cut_rad;
   }
   const bool back_over_cut = last_rad + step_rad < 0.0;
-  turn_.push_back({back_over_cut ? 0.0 : since_cut_rad, beam.range_m, beam.time_ns});
+  turn_.push_back(
+      {back_over_cut ? 0.0 : since_cut_rad, beam.range_m, beam.time_ns, beam.aside_rad});
 }
 
 void TurnAssembler::begin_turn(const TurningBeam& beam, double since_cut_rad) {
   turn_.clear();
   covered_rad_ = since_cut_rad <= kLargestStep_rad ? since_cut_rad : 0.0;
   front_rad_ = since_cut_rad;
-  turn_.push_back({since_cut_rad, beam.range_m, beam.time_ns});
+  turn_.push_back({since_cut_rad, beam.range_m, beam.time_ns, beam.aside_rad});
 }
 
 std::optional<LaserScan> TurnAssembler::take_scan() {
@@ -101,7 +102,7 @@ LaserScan TurnAssembler::scan_of_turn() const {
         beam.range_m >= range_max_m_) {
       continue;
     }
-    const double turned_rad = beam.turned_rad - std::numbers::pi;
+    const double turned_rad = beam.turned_rad - std::numbers::pi + beam.aside_rad;
     const double angle_rad = mirrored_ ? -turned_rad : turned_rad;
     const geometry::SinCos direction = geometry::sincos(angle_rad);
     echoes.push_back({angle_rad, {beam.range_m * direction.cos, beam.range_m * direction.sin}});

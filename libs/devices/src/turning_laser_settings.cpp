@@ -23,4 +23,9 @@ void TurningLaserSettings::check() const {
           static_cast<double>(silence_ns), "0.1 to 60 s");
 }
 
+TurningLaserSettings checked(TurningLaserSettings settings) {
+  settings.check();
+  return settings;
+}
+
 }  // namespace topogeo::devices

@@ -4,6 +4,7 @@
 
 #include "topogeo/simulation/laser_emulator.hpp"
 #include "topogeo/simulation/ldrobot_emulator.hpp"
+#include "topogeo/simulation/lds_emulator.hpp"
 #include "topogeo/simulation/pls_emulator.hpp"
 #include "topogeo/simulation/rplidar_emulator.hpp"
 
@@ -38,8 +39,42 @@ std::unique_ptr<LaserEmulator> emulate_ldrobot(const LaserEmulatorSettings& sett
   ldrobot.turns_hz = model.turns_hz;
   ldrobot.samples_hz = model.turns_hz * static_cast<double>(model.beams);
   ldrobot.range_max_m = model.range_max_m;
+  ldrobot.beside_axis = model.family == "ldrobot_offset";
   ldrobot.seed = settings.seed;
   return std::make_unique<LdRobotEmulator>(ldrobot, std::move(ranges), now_ns);
+}
+
+std::unique_ptr<LaserEmulator> emulate_ldrobot_offset(const LaserEmulatorSettings& settings,
+                                                      const devices::LaserModel& model,
+                                                      LaserEmulator::Ranges ranges,
+                                                      std::int64_t now_ns) {
+  return emulate_ldrobot(settings, model, std::move(ranges), now_ns);
+}
+
+std::unique_ptr<LaserEmulator> emulate_lds(const devices::LdsFormat& format, bool waits_for_letter,
+                                           const LaserEmulatorSettings& settings,
+                                           const devices::LaserModel& model,
+                                           LaserEmulator::Ranges ranges, std::int64_t now_ns) {
+  LdsEmulatorSettings lds;
+  lds.format = format;
+  lds.line = model.line;
+  lds.waits_for_letter = waits_for_letter;
+  lds.turns_hz = model.turns_hz;
+  lds.range_max_m = model.range_max_m;
+  lds.seed = settings.seed;
+  return std::make_unique<LdsEmulator>(lds, std::move(ranges), now_ns);
+}
+
+std::unique_ptr<LaserEmulator> emulate_xv11(const LaserEmulatorSettings& settings,
+                                            const devices::LaserModel& model,
+                                            LaserEmulator::Ranges ranges, std::int64_t now_ns) {
+  return emulate_lds(devices::kXv11, false, settings, model, std::move(ranges), now_ns);
+}
+
+std::unique_ptr<LaserEmulator> emulate_lds01(const LaserEmulatorSettings& settings,
+                                             const devices::LaserModel& model,
+                                             LaserEmulator::Ranges ranges, std::int64_t now_ns) {
+  return emulate_lds(devices::kLds01, true, settings, model, std::move(ranges), now_ns);
 }
 
 std::unique_ptr<LaserEmulator> emulate_rplidar(const LaserEmulatorSettings& settings,

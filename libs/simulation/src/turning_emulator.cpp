@@ -1,5 +1,6 @@
 #include "topogeo/simulation/turning_emulator.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -11,18 +12,36 @@ namespace topogeo::simulation {
 namespace {
 
 constexpr double kBeamRadPerDeg = std::numbers::pi / 180.0;
+/// Period of the error of the motor's control.
+constexpr double kWobble_s = 5.0;
+/// Change of the motor's speed, turns a second each second.
+constexpr double kAcceleration = 5.0;
 
 }  // namespace
 
 TurningEmulator::TurningEmulator(const devices::LineSettings& line, const Motor& motor,
                                  double range_max_m, std::uint64_t seed, Ranges ranges)
-    : line_(line), range_max_m_(range_max_m), ranges_(std::move(ranges)), faults_(seed) {
+    : line_(line),
+      motor_(motor),
+      mean_hz_(motor.turns_hz),
+      range_max_m_(range_max_m),
+      ranges_(std::move(ranges)),
+      faults_(seed) {
   if (!(motor.turns_hz > 0.0 && motor.turns_hz <= 30.0) || !(motor.samples_hz > 0.0) ||
-      line.baud == 0 || !ranges_) {
+      !(motor.wobble >= 0.0 && motor.wobble < 1.0) || line.baud == 0 || !ranges_) {
     throw std::invalid_argument(
-        "an emulated laser that turns needs a speed of up to 30 turns a second, samples, a rate of "
-        "the line above 0, and ranges to measure");
+        "an emulated laser that turns needs a speed of up to 30 turns a second, a wobble of at "
+        "least 0 and below 1, samples, a rate of the line above 0, and ranges to measure");
   }
+}
+
+double TurningEmulator::turn_motor(std::size_t samples) {
+  const double phase_rad =
+      geometry::wrap_angle(2.0 * std::numbers::pi / kWobble_s *
+                           std::fmod(1e-9 * static_cast<double>(next_ns_), kWobble_s));
+  const double change_hz = kAcceleration * static_cast<double>(samples) / motor_.samples_hz;
+  mean_hz_ += std::clamp(motor_.turns_hz - mean_hz_, -change_hz, change_hz);
+  return mean_hz_ * (1.0 + motor_.wobble * geometry::sincos(phase_rad).sin);
 }
 
 void TurningEmulator::tick(std::int64_t now_ns) {
@@ -52,17 +71,40 @@ void TurningEmulator::speak_again(std::int64_t now_ns) {
 
 std::vector<double> TurningEmulator::measure_mm(double first_deg, double step_deg,
                                                 std::size_t count) const {
-  // The last beam is the rightmost: angles of the laser frame are counter-clockwise.
+  // Angles of the laser frame are counter-clockwise: of a clockwise turn the last beam is the
+  // rightmost.
   const double last_deg = first_deg + static_cast<double>(count - 1) * step_deg;
-  const BeamPattern beams{geometry::wrap_angle(-last_deg * kBeamRadPerDeg),
+  const double right_deg = motor_.clockwise ? -last_deg : first_deg;
+  const BeamPattern beams{geometry::wrap_angle(right_deg * kBeamRadPerDeg),
                           step_deg * kBeamRadPerDeg, count, range_max_m_};
   const std::vector<float> ranges_m = ranges_(beams, next_ns_);
   std::vector<double> readings_mm;
   readings_mm.reserve(count);
-  for (std::size_t i = count; i-- > 0;) {
-    const auto range_m = static_cast<double>(ranges_m[i]);
-    const bool returned = std::isfinite(range_m) && range_m > 0.0 && range_m < range_max_m_;
-    readings_mm.push_back(returned ? std::round(1000.0 * range_m) : 0.0);
+  for (const float range_m : ranges_m) {
+    const bool returned =
+        std::isfinite(range_m) && range_m > 0.0F && static_cast<double>(range_m) < range_max_m_;
+    readings_mm.push_back(returned ? std::round(1000.0 * static_cast<double>(range_m)) : 0.0);
+  }
+  if (motor_.clockwise) std::ranges::reverse(readings_mm);
+  return readings_mm;
+}
+
+/// The direction of a beam depends on its reading, so it is found by steps.
+std::vector<double> TurningEmulator::measure_aside_mm(double first_deg, double step_deg,
+                                                      std::size_t count,
+                                                      const BesideAxis& geometry) const {
+  constexpr int kSteps = 3;
+  const double far_mm = 1000.0 * range_max_m_;
+  std::vector<double> readings_mm;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double stated_deg = first_deg + static_cast<double>(i) * step_deg;
+    double reading_mm = far_mm;
+    for (int step = 0; step < kSteps; ++step) {
+      const double aside_deg = geometry.aside_deg(reading_mm > 0.0 ? reading_mm : far_mm);
+      const double range_mm = measure_mm(stated_deg + aside_deg, step_deg, 1).front();
+      reading_mm = range_mm > 0.0 ? std::round(geometry.reading_mm(range_mm)) : 0.0;
+    }
+    readings_mm.push_back(reading_mm);
   }
   return readings_mm;
 }

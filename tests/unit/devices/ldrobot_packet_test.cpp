@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "topogeo/devices/ldrobot_optics.hpp"
 #include "topogeo/support/random.hpp"
 
 namespace topogeo::devices {
@@ -55,6 +56,22 @@ TEST(LdPacket, EndsBeyondZero) {
   packet.start_cdeg = 35'900;
   packet.end_cdeg = 780;
   EXPECT_EQ(packet.span_cdeg(), 880U);
+}
+
+// At 1000 mm: 1005.9 mm ahead, 119.23 - 20.14 = 99.09 mm aside: 1010.77 mm at 5.6260 degrees. At
+// 168.92 mm the receiver's line crosses the axis: no angle.
+TEST(Ld08Optics, MovesPointsToTheCentre) {
+  const Ld08Point far = ld08_point(1000.0);
+  EXPECT_NEAR(far.range_mm, 1010.769, 0.001);
+  EXPECT_NEAR(far.back_deg, 5.6260, 0.0001);
+  const Ld08Point crossing = ld08_point(20.14 / 0.11923);
+  EXPECT_NEAR(crossing.range_mm, 174.817, 0.001);
+  EXPECT_NEAR(crossing.back_deg, 0.0, 1e-9);
+  EXPECT_LT(ld08_point(100.0).back_deg, 0.0);
+  for (const double distance_mm : {120.0, 500.0, 3000.0, 7900.0}) {
+    EXPECT_NEAR(ld08_distance_mm(ld08_point(distance_mm).range_mm), distance_mm, 1e-6);
+  }
+  EXPECT_EQ(ld08_distance_mm(5.0), 0.0);
 }
 
 TEST(LdDecoder, FindsPacketsCutAnywhere) {

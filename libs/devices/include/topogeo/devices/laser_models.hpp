@@ -30,6 +30,9 @@ struct LaserModel {
 /// Throws std::invalid_argument for a name that no model has.
 [[nodiscard]] const LaserModel& laser_model(std::string_view name);
 
+/// The line of a model at the rate of the settings, or at its own.
+[[nodiscard]] LineSettings line_of(const LaserModel& model, const TurningLaserSettings& settings);
+
 /// Throws std::invalid_argument naming the first setting that is out of range.
 [[nodiscard]] std::unique_ptr<LaserDriver> make_laser_driver(const LaserSettings& settings);
 

@@ -18,6 +18,10 @@ struct TurningBeam {
   double turned_rad = 0.0;   ///< from the laser's own zero, in the sense of its rotation
   double range_m = 0.0;      ///< 0: no return
   std::int64_t time_ns = 0;  ///< of the measurement
+  /// The direction of the return differs by this from `turned_rad`, in the same sense: of a laser
+  /// whose receiver lies beside the axis. A return that it moves over the cut is left out, because
+  /// it has the time of the other end of the turn.
+  double aside_rad = 0.0;
 };
 
 class TurnAssembler {

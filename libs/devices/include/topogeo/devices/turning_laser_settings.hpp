@@ -30,4 +30,7 @@ struct TurningLaserSettings {
   void check() const;
 };
 
+/// The settings, after check().
+[[nodiscard]] TurningLaserSettings checked(TurningLaserSettings settings);
+
 }  // namespace topogeo::devices

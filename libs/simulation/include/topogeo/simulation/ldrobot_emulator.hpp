@@ -1,5 +1,6 @@
-// A LDROBOT LD06, LD19 or STL-19P at the other end of a serial line: it sends packets of twelve
-// points as long as it has power. Its speed varies, so that turns differ in their number of points.
+// A LDROBOT LD06, LD08, LD19 or STL-19P at the other end of a serial line: it sends packets of
+// twelve points as long as it has power. Its speed varies, so that turns differ in their number of
+// points.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +17,7 @@ struct LdRobotEmulatorSettings {
   double samples_hz = 4500.0;  ///< measurements a second, > 0
   double wobble = 0.02;        ///< largest relative error of the speed; [0, 1)
   double range_max_m = 12.0;
+  bool beside_axis = false;                  ///< it looks past its axis, as an LD08 does
   std::int64_t start_up_ns = 1'000'000'000;  ///< from power-on to the first packet
   std::uint64_t seed = 1;                    ///< of the places of faults
 };
@@ -29,15 +31,12 @@ class LdRobotEmulator final : public TurningEmulator {
   void receive(std::span<const std::uint8_t> bytes, const devices::LineSettings& host,
                std::int64_t now_ns) override;
   void switch_on(std::int64_t now_ns) override;
-  /// Changes the mean speed, which its motor reaches after a while; (0, 30].
-  void set_turns_hz(double turns_hz) { settings_.turns_hz = turns_hz; }
 
  private:
   void send_packet() override;
 
   LdRobotEmulatorSettings settings_;
   double angle_deg_ = 0.0;  // of the next packet's first point, clockwise
-  double turns_hz_;         // present mean speed
 };
 
 }  // namespace topogeo::simulation

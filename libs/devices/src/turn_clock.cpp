@@ -1,0 +1,43 @@
+#include "topogeo/devices/turn_clock.hpp"
+
+#include <cmath>
+
+namespace topogeo::devices {
+namespace {
+
+/// What a host has not read for a while arrives at once, so later packets are on time.
+constexpr std::int64_t kSettle_ns = 100'000'000;
+/// A clock that lags by more than a busy line delays, and for longer, is wrong.
+constexpr std::int64_t kLargestTurnLag_ns = 150'000'000;
+constexpr std::int64_t kLongestTurnLag_ns = 1'000'000'000;
+/// Share of a turn that may be missing without doubt about whole turns.
+constexpr double kDoubt_turns = 0.5;
+
+}  // namespace
+
+std::optional<std::int64_t> TurnClock::at(double turns, double turns_hz, std::int64_t arrival_ns,
+                                          std::int64_t read_ns) {
+  const std::int64_t passed_ns = std::llround(1e9 * turns / turns_hz);
+  const std::int64_t missing_ns = arrival_ns - last_arrival_ns_ - passed_ns;
+  const bool doubt = static_cast<double>(missing_ns) > 1e9 * kDoubt_turns / turns_hz;
+  if (!started_ || doubt) {
+    settling_ = true;
+    settled_ns_ = read_ns + kSettle_ns;
+  }
+  started_ = true;
+  device_ns_ += passed_ns;
+  last_arrival_ns_ = arrival_ns;
+  if (settling_ && read_ns < settled_ns_) return std::nullopt;
+  if (settling_) clock_.restart();
+  settling_ = false;
+  const std::int64_t time_ns = clock_.map(device_ns_, arrival_ns);
+  if (arrival_ns - time_ns <= kLargestTurnLag_ns) {
+    punctual_ns_ = arrival_ns;
+  } else if (arrival_ns - punctual_ns_ > kLongestTurnLag_ns) {
+    restart();
+    return std::nullopt;
+  }
+  return time_ns;
+}
+
+}  // namespace topogeo::devices
