@@ -174,7 +174,8 @@ void describe_rplidar(ConfigSchema& schema, Laser& laser) {
               {"pwm", devices::RpMotor::kPwm},
               {"speed", devices::RpMotor::kSpeed}},
              "how the motor of an RPLIDAR is started: by the signal DTR, a duty cycle, or a speed; "
-             "model: by what the laser reports");
+             "model: by what the laser reports. The motor of a YDLIDAR: dtr, none, or as its model "
+             "needs");
   schema.add("laser.motor_value", &laser.motor_value, 0U, 1500U, "",
              "duty cycle or turns a minute of that motor; 0: 660 or 600");
   schema.add("laser.compensation_signed", &s.compensation_signed,

@@ -5,10 +5,6 @@
 namespace topogeo::devices {
 namespace {
 
-/// Long enough to contain a report with little delay, short enough to ignore the clocks' drift.
-constexpr std::int64_t kWindow_ns = 5'000'000'000;
-/// 2 %: more than any two clocks drift apart, too little to show in a speed.
-constexpr std::int64_t kSlewDivisor = 50;
 /// The first message may be a late one; after this time the least delay is known.
 constexpr std::int64_t kSettled_ns = 2'000'000'000;
 
@@ -23,15 +19,15 @@ std::int64_t DeviceClock::lateness_ns(std::int64_t device_ns, std::int64_t arriv
 }
 
 void DeviceClock::settle(std::int64_t device_ns, std::int64_t offset_ns) {
-  if (device_ns - window_ns_ > kWindow_ns) {
+  if (device_ns - window_ns_ > tracking_.window_ns) {
     // Offsets from before a long pause do not fit the clocks now.
-    before_ns_ = device_ns - window_ns_ > 2 * kWindow_ns ? offset_ns : least_ns_;
+    before_ns_ = device_ns - window_ns_ > 2 * tracking_.window_ns ? offset_ns : least_ns_;
     least_ns_ = offset_ns;
     window_ns_ = device_ns;
   }
   least_ns_ = std::min(least_ns_, offset_ns);
   const std::int64_t most_ns =
-      std::max<std::int64_t>(0, device_ns - last_device_ns_) / kSlewDivisor;
+      std::max<std::int64_t>(0, device_ns - last_device_ns_) / tracking_.slew_divisor;
   offset_ns_ += std::clamp(std::min(least_ns_, before_ns_) - offset_ns_, -most_ns, most_ns);
 }
 

@@ -9,6 +9,7 @@
 #include "topogeo/devices/lds_driver.hpp"
 #include "topogeo/devices/pls_driver.hpp"
 #include "topogeo/devices/rplidar_driver.hpp"
+#include "topogeo/devices/ydlidar_driver.hpp"
 
 namespace topogeo::devices {
 namespace {
@@ -44,6 +45,22 @@ std::unique_ptr<LaserDriver> make_rplidar(const LaserModel& model, const LaserSe
 std::unique_ptr<LaserDriver> make_rplidar_dense(const LaserModel& model,
                                                 const LaserSettings& settings) {
   return make_rplidar(model, settings);
+}
+
+std::unique_ptr<LaserDriver> make_ydlidar(const LaserModel& model, const LaserSettings& settings) {
+  return std::make_unique<YdLidarDriver>(model, settings.turning, settings.rplidar.motor);
+}
+
+/// The same packets of a laser that reads no requests.
+std::unique_ptr<LaserDriver> make_ydlidar_one_way(const LaserModel& model,
+                                                  const LaserSettings& settings) {
+  return make_ydlidar(model, settings);
+}
+
+/// The same packets of a laser that measures the time of flight.
+std::unique_ptr<LaserDriver> make_ydlidar_tof(const LaserModel& model,
+                                              const LaserSettings& settings) {
+  return make_ydlidar(model, settings);
 }
 
 #define TOPOGEO_LASER(family, name, title, baud, parity, beams, view_deg, turns_hz, range_max_m) \

@@ -82,7 +82,9 @@ void LdsDriver::take(const LdsPacket& packet, std::int64_t arrival_ns, std::int6
   }
   heard(arrival_ns);
   const double turns = static_cast<double>(ahead) / static_cast<double>(format_.packets);
-  const std::optional<std::int64_t> time_ns = clock_.at(turns, turns_hz(), arrival_ns, now_ns);
+  const double turn_ns = 1e9 / turns_hz();
+  const std::optional<std::int64_t> time_ns =
+      clock_.at(std::llround(turns * turn_ns), std::llround(turn_ns), arrival_ns, now_ns);
   if (!time_ns) {
     ++untimed_;
     return restart_turn();

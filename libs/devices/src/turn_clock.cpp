@@ -1,7 +1,5 @@
 #include "topogeo/devices/turn_clock.hpp"
 
-#include <cmath>
-
 namespace topogeo::devices {
 namespace {
 
@@ -10,16 +8,18 @@ constexpr std::int64_t kSettle_ns = 100'000'000;
 /// A clock that lags by more than a busy line delays, and for longer, is wrong.
 constexpr std::int64_t kLargestTurnLag_ns = 150'000'000;
 constexpr std::int64_t kLongestTurnLag_ns = 1'000'000'000;
-/// Share of a turn that may be missing without doubt about whole turns.
-constexpr double kDoubt_turns = 0.5;
+/// The reported speed is rounded, or that of the last turn: time by the angle is a clock that gains
+/// and loses some percent.
+constexpr DeviceClock::Tracking kTracking{.window_ns = 500'000'000, .slew_divisor = 10};
 
 }  // namespace
 
-std::optional<std::int64_t> TurnClock::at(double turns, double turns_hz, std::int64_t arrival_ns,
-                                          std::int64_t read_ns) {
-  const std::int64_t passed_ns = std::llround(1e9 * turns / turns_hz);
+TurnClock::TurnClock(std::int64_t transmission_ns) : clock_(transmission_ns, kTracking) {}
+
+std::optional<std::int64_t> TurnClock::at(std::int64_t passed_ns, std::int64_t turn_ns,
+                                          std::int64_t arrival_ns, std::int64_t read_ns) {
   const std::int64_t missing_ns = arrival_ns - last_arrival_ns_ - passed_ns;
-  const bool doubt = static_cast<double>(missing_ns) > 1e9 * kDoubt_turns / turns_hz;
+  const bool doubt = missing_ns > turn_ns / 2;
   if (!started_ || doubt) {
     settling_ = true;
     settled_ns_ = read_ns + kSettle_ns;

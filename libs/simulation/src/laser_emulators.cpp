@@ -7,6 +7,7 @@
 #include "topogeo/simulation/lds_emulator.hpp"
 #include "topogeo/simulation/pls_emulator.hpp"
 #include "topogeo/simulation/rplidar_emulator.hpp"
+#include "topogeo/simulation/ydlidar_emulator.hpp"
 
 namespace topogeo::simulation {
 namespace {
@@ -96,6 +97,35 @@ std::unique_ptr<LaserEmulator> emulate_rplidar_dense(const LaserEmulatorSettings
                                                      LaserEmulator::Ranges ranges,
                                                      std::int64_t now_ns) {
   return emulate_rplidar(settings, model, std::move(ranges), now_ns);
+}
+
+std::unique_ptr<LaserEmulator> emulate_ydlidar(const LaserEmulatorSettings& settings,
+                                               const devices::LaserModel& model,
+                                               LaserEmulator::Ranges ranges, std::int64_t now_ns) {
+  YdLidarEmulatorSettings ydlidar;
+  ydlidar.line = model.line;
+  ydlidar.asked = model.family != "ydlidar_one_way";
+  ydlidar.triangulates = model.family != "ydlidar_tof";
+  ydlidar.reports_frequency = ydlidar.asked;
+  ydlidar.turns_hz = model.turns_hz;
+  ydlidar.samples_hz = model.turns_hz * static_cast<double>(model.beams);
+  ydlidar.range_max_m = model.range_max_m;
+  ydlidar.seed = settings.seed;
+  return std::make_unique<YdLidarEmulator>(ydlidar, std::move(ranges), now_ns);
+}
+
+std::unique_ptr<LaserEmulator> emulate_ydlidar_one_way(const LaserEmulatorSettings& settings,
+                                                       const devices::LaserModel& model,
+                                                       LaserEmulator::Ranges ranges,
+                                                       std::int64_t now_ns) {
+  return emulate_ydlidar(settings, model, std::move(ranges), now_ns);
+}
+
+std::unique_ptr<LaserEmulator> emulate_ydlidar_tof(const LaserEmulatorSettings& settings,
+                                                   const devices::LaserModel& model,
+                                                   LaserEmulator::Ranges ranges,
+                                                   std::int64_t now_ns) {
+  return emulate_ydlidar(settings, model, std::move(ranges), now_ns);
 }
 
 struct EmulatorRow {

@@ -10,12 +10,24 @@ namespace topogeo::devices {
 /// early, so the least delay of the last seconds shows the offset between the clocks.
 class DeviceClock {
  public:
+  /// How the offset follows the messages.
+  struct Tracking {
+    /// Long enough to contain a message with little delay, short enough to ignore the clocks'
+    /// drift.
+    std::int64_t window_ns = 5'000'000'000;
+    /// The offset changes by at most one part in so many of the device's time: more than any two
+    /// clocks drift apart, too little to show in a speed.
+    std::int64_t slew_divisor = 50;
+  };
+
   /// `transmission_ns`: time that even the least delayed message takes.
-  explicit DeviceClock(std::int64_t transmission_ns) : transmission_ns_(transmission_ns) {}
+  explicit DeviceClock(std::int64_t transmission_ns) : DeviceClock(transmission_ns, Tracking()) {}
+  DeviceClock(std::int64_t transmission_ns, const Tracking& tracking)
+      : transmission_ns_(transmission_ns), tracking_(tracking) {}
 
   /// Host time of the device's time `device_ns`, for a message that arrived at `arrival_ns`. Later
   /// than every earlier result, and not later than the arrival unless that requires it; runs at
-  /// most 2 % faster or slower than the device's clock.
+  /// most one part in Tracking::slew_divisor faster or slower than the device's clock.
   std::int64_t map(std::int64_t device_ns, std::int64_t arrival_ns);
   /// Delay of a message relative to the least delayed ones; negative if earlier, but not in the
   /// first seconds. 0 before the first.
@@ -27,6 +39,7 @@ class DeviceClock {
   void settle(std::int64_t device_ns, std::int64_t offset_ns);
 
   std::int64_t transmission_ns_;
+  Tracking tracking_;
   bool started_ = false;
   std::int64_t first_device_ns_ = 0;
   std::int64_t last_device_ns_ = 0;

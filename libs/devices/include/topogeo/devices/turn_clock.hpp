@@ -1,5 +1,5 @@
-// Time of the packets of a laser that reports its speed and angles but no time: the angle that it
-// has turned is its clock, mapped to the host's.
+// Time of the packets of a laser that reports no time: the angle that it has turned, or the number
+// of its samples, is its clock, mapped to the host's.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,13 @@ namespace topogeo::devices {
 class TurnClock {
  public:
   /// `transmission_ns`: time that a packet takes on the line.
-  explicit TurnClock(std::int64_t transmission_ns) : clock_(transmission_ns) {}
+  explicit TurnClock(std::int64_t transmission_ns);
 
   /// Host time at which the laser measured the last beam of a packet that arrived at `arrival_ns`
-  /// and was read at `read_ns`.
-  /// The laser has turned `turns` (0 to 1) since the last packet, at `turns_hz` (> 0). After a gap
-  /// in which whole turns may have been lost the packets of a tenth of a second give no time,
-  /// because only later ones show how late they come.
-  [[nodiscard]] std::optional<std::int64_t> at(double turns, double turns_hz,
+  /// and was read at `read_ns`. By its speed or samples, `passed_ns` have passed since the last
+  /// packet; a turn takes `turn_ns`. After a gap in which whole turns may have been lost the
+  /// packets of a tenth of a second give no time, because only later ones show how late they come.
+  [[nodiscard]] std::optional<std::int64_t> at(std::int64_t passed_ns, std::int64_t turn_ns,
                                                std::int64_t arrival_ns, std::int64_t read_ns);
   /// The next packet follows no earlier one.
   void restart() { started_ = false; }
@@ -28,7 +27,7 @@ class TurnClock {
   DeviceClock clock_;
   bool started_ = false;
   bool settling_ = false;
-  std::int64_t device_ns_ = 0;  // by the angle
+  std::int64_t device_ns_ = 0;  // by angle or samples
   std::int64_t last_arrival_ns_ = 0;
   std::int64_t settled_ns_ = 0;   // end of the moment without times
   std::int64_t punctual_ns_ = 0;  // last arrival that fits the clock
