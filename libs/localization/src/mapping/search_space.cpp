@@ -12,9 +12,12 @@ MatchTask match_task(const LocalizerConfig& config, const UncertainPose& T_refer
   task.covariance = T_reference_query.covariance;
   const Eigen::Vector3d half = search_half_width(
       T_reference_query.covariance, config.search_probability, config.search_heading_sigmas);
+  // A refinement starts within a cell of the search around a good pose. Without one, only the
+  // uncertainty itself keeps the pose near its odometry, as in the Thesis (6.25-6.28).
+  const double cells = config.evidence == MatchEvidence::kFitness ? 0.0 : 1.0;
   const Eigen::Vector3d smallest(config.genetic.resolution_m, config.genetic.resolution_m,
                                  config.genetic.resolution_rad);
-  task.half_width = half.cwiseMax(smallest);
+  task.half_width = half.cwiseMax(cells * smallest);
   task.half_width.x() = std::min(task.half_width.x(), config.largest_half_width_m);
   task.half_width.y() = std::min(task.half_width.y(), config.largest_half_width_m);
   task.half_width.z() = std::min(task.half_width.z(), config.largest_half_width_rad);

@@ -69,13 +69,20 @@ void choose(const MatchContext& context, const std::vector<MatchSolution>& start
 }
 
 // The second search (Thesis, 7.3.1.2): around a solution, one cell of the first search to each
-// side.
+// side, as far as that lies in the search space.
 MatchTask finer_task(const MatchTask& task, const Pose2& T_solution) {
   MatchTask finer = task;
-  finer.T_reference_query = T_solution;
   finer.initial_individuals.clear();
-  finer.half_width = {task.genetic.resolution_m, task.genetic.resolution_m,
-                      task.genetic.resolution_rad};
+  const Eigen::Vector3d cell(task.genetic.resolution_m, task.genetic.resolution_m,
+                             task.genetic.resolution_rad);
+  const Eigen::Vector3d off = geometry::difference(T_solution, task.T_reference_query);
+  const Eigen::Vector3d low = (off - cell).cwiseMax(-task.half_width);
+  const Eigen::Vector3d high = (off + cell).cwiseMin(task.half_width);
+  const Eigen::Vector3d middle = 0.5 * (low + high);
+  finer.T_reference_query = {task.T_reference_query.x_m + middle.x(),
+                             task.T_reference_query.y_m + middle.y(),
+                             geometry::wrap_angle(task.T_reference_query.theta_rad + middle.z())};
+  finer.half_width = 0.5 * (high - low);
   finer.genetic.resolution_m = task.genetic.finer_resolution_m;
   finer.genetic.resolution_rad = task.genetic.finer_resolution_rad;
   return finer;

@@ -21,13 +21,13 @@ std::vector<std::uint32_t> fresh_overlaps(const ThesisMap& map) {
 }
 
 // All solutions of the last map against the maps seen again, relative to the first pose.
-std::vector<BackwardCandidate> candidates_of(const ThesisMap& map,
+std::vector<BackwardCandidate> candidates_of(const ThesisMap& map, const SolutionStore& solutions,
                                              std::span<const ThesisMatch> matches,
                                              std::uint32_t first) {
   std::vector<BackwardCandidate> found;
   for (const ThesisMatch& match : matches) {
     const Pose2 T_first_via = geometry::between(map.poses()[first], map.poses()[match.earlier]);
-    for (const RelativeSolution& solution : map.solutions().find(match.earlier, last_of(map))) {
+    for (const RelativeSolution& solution : solutions.find(match.earlier, last_of(map))) {
       found.push_back(
           {match.earlier,
            {T_first_via * solution.T_earlier_later,
@@ -39,6 +39,23 @@ std::vector<BackwardCandidate> candidates_of(const ThesisMap& map,
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.fitness > b.fitness; });
   return found;
+}
+
+// The fittest of the candidates, without those at a pose that a fitter one already has.
+std::vector<BackwardCandidate> distinct_candidates(std::vector<BackwardCandidate> candidates,
+                                                   const LocalizerConfig& config) {
+  std::vector<BackwardCandidate> distinct;
+  for (BackwardCandidate& candidate : candidates) {
+    if (distinct.size() == config.thesis.cycle_candidates) break;
+    const bool known = std::ranges::any_of(distinct, [&](const BackwardCandidate& fitter) {
+      const Eigen::Vector3d off =
+          geometry::difference(fitter.T_first_last.T_a_b, candidate.T_first_last.T_a_b);
+      return off.head<2>().norm() < 1.5 * config.genetic.resolution_m &&
+             std::fabs(off.z()) < 1.5 * config.genetic.resolution_rad;
+    });
+    if (!known) distinct.push_back(std::move(candidate));
+  }
+  return distinct;
 }
 
 // The loop from a stop to the last one by the forward correction.
@@ -125,6 +142,61 @@ std::vector<ThesisNeighbour> CycleClosing::seen_again(ThesisMap& map,
   return seen;
 }
 
+std::vector<CycleSolution> CycleClosing::solutions(const ThesisMap& map, ThesisMatching& matching) {
+  const std::uint32_t stop = last_of(map);
+  std::vector<ThesisNeighbour> seen =
+      map.neighbours(stop, map.poses()[stop], map.relative_to(stop));
+  std::erase_if(seen, [&](const ThesisNeighbour& n) { return map.recent(n.id, stop); });
+  std::stable_sort(seen.begin(), seen.end(),
+                   [](const auto& a, const auto& b) { return a.overlap > b.overlap; });
+  if (seen.size() > config_.revisit_matches) seen.resize(config_.revisit_matches);
+  std::vector<CycleSolution> found;
+  if (seen.empty()) return found;
+  std::uint32_t first = stop;
+  SolutionStore known = map.solutions();
+  std::vector<ThesisMatch> matches = matching.match(map, seen, config_.thesis.cycle_solutions);
+  std::erase_if(matches, [&](const ThesisMatch& match) {
+    if (match.result.verdict == Verdict::kAccepted ||
+        match.result.reason == Reason::kSecondSolution) {
+      return false;
+    }
+    decide(map, match, LoopOutcome::kGate, map.poses()[stop]);
+    return true;
+  });
+  if (matches.empty()) return found;
+  for (const ThesisMatch& match : matches) {
+    first = std::min(first, match.earlier);
+    map.store_in(known, stop, match);
+  }
+  BackwardProblem problem = backward_problem(map, first);
+  std::vector<std::uint32_t> closed;
+  for (const BackwardCandidate& candidate :
+       distinct_candidates(candidates_of(map, known, matches, first), config_)) {
+    problem.candidates = {candidate};
+    ++attempts_;
+    const BackwardResult result =
+        correct_backward(problem, map.solutions(), config_.thesis.backward);
+    if (result.outcome != LoopSearchOutcome::kClosed) {
+      ++failures_;
+      continue;
+    }
+    closed.push_back(candidate.via);
+    CycleSolution& solution = found.emplace_back();
+    solution.earlier = candidate.via;
+    solution.later = stop;
+    solution.T_map_stop.assign(map.poses().begin(), map.poses().begin() + first + 1);
+    const LoopPath& path = result.paths.front();
+    for (std::size_t k = 1; k < path.T_first_pose.size(); ++k) {
+      solution.T_map_stop.push_back(map.poses()[first] * path.T_first_pose[k]);
+    }
+  }
+  for (const ThesisMatch& match : matches) {
+    const bool used = std::ranges::find(closed, match.earlier) != closed.end();
+    decide(map, match, used ? LoopOutcome::kAccepted : LoopOutcome::kNoClosing, map.poses()[stop]);
+  }
+  return found;
+}
+
 bool CycleClosing::close_with(ThesisMap& map, ThesisMatching& matching,
                               std::span<const ThesisNeighbour> seen_again) {
   const std::uint32_t stop = last_of(map);
@@ -146,7 +218,7 @@ bool CycleClosing::close_with(ThesisMap& map, ThesisMatching& matching,
     map.store(stop, match);
   }
   BackwardProblem problem = backward_problem(map, first);
-  problem.candidates = candidates_of(map, matches, first);
+  problem.candidates = candidates_of(map, map.solutions(), matches, first);
   ++attempts_;
   BackwardResult found = correct_backward(problem, map.solutions(), config_.thesis.backward);
   if (found.outcome != LoopSearchOutcome::kClosed) {

@@ -43,8 +43,16 @@ void describe(ThesisConfig& config, support::ConfigSchema& schema) {
   schema.add("thesis.alternations", &config.alternations, 1U, 20U, "",
              "most alternations of forward and backward correction at one stop, because a closed "
              "cycle may let another one close");
+  schema.add("thesis.kept_solutions", &config.kept_solutions, 0U, 100U, "",
+             "distinct solutions of backward corrections that are kept, each correction from the "
+             "poses of the forward correction alone; the one at whose poses the maps overlap best "
+             "gives the trajectory. 0: the best solution of each correction at once becomes the "
+             "trajectory");
+  schema.add("thesis.cycle_candidates", &config.cycle_candidates, 1U, 1000U, "",
+             "poses of the last stop that are traced back one by one for distinct solutions, the "
+             "fittest first");
   describe(config.backward, schema);
-  schema.fix({"thesis.cycle_solutions", "thesis.alternations"});
+  schema.fix({"thesis.cycle_solutions", "thesis.alternations", "thesis.cycle_candidates"});
 }
 
 }  // namespace topogeo::localization

@@ -78,8 +78,9 @@ std::vector<ThesisNeighbour> ThesisMap::neighbours(std::uint32_t stop, const Pos
     const Eigen::Vector3d half = search_half_width(pose.covariance, config_.search_probability,
                                                    config_.search_heading_sigmas);
     const Pose2 T_earlier_new = geometry::between(graph_.poses()[i], T_map_stop);
-    if (!overlap(seen_from(now.view, T_earlier_new, half), before.view)) continue;
-    const double share = expected_share(now, before, pose);
+    const VisibleRectangle seen = seen_from(now.view, T_earlier_new, half);
+    if (!overlap(seen, before.view)) continue;
+    const double share = expected_share(now, before, pose, seen);
     if (share >= config_.smallest_expected_overlap || i + 1 == stop) {
       found.push_back({i, pose, share});
     }
@@ -88,14 +89,15 @@ std::vector<ThesisNeighbour> ThesisMap::neighbours(std::uint32_t stop, const Pos
 }
 
 double ThesisMap::expected_share(const ThesisStop& now, const ThesisStop& before,
-                                 const UncertainPose& T_new_earlier) const {
+                                 const UncertainPose& T_new_earlier,
+                                 const VisibleRectangle& seen_from_earlier) const {
   if (config_.evidence != MatchEvidence::kFitness) {
     return expected_overlap(now.profile, before.outline, T_new_earlier);
   }
   if (before.landmarks_m.empty()) return 0.0;
-  const auto seen = std::count_if(
-      before.landmarks_m.begin(), before.landmarks_m.end(),
-      [&](const Eigen::Vector2d& p) { return contains(now.view, T_new_earlier.T_a_b * p); });
+  const auto seen =
+      std::count_if(before.landmarks_m.begin(), before.landmarks_m.end(),
+                    [&](const Eigen::Vector2d& p) { return contains(seen_from_earlier, p); });
   return static_cast<double>(seen) / static_cast<double>(before.landmarks_m.size());
 }
 
@@ -106,6 +108,10 @@ bool ThesisMap::overlap_now(std::uint32_t earlier, std::uint32_t later) const {
 }
 
 void ThesisMap::store(std::uint32_t stop, const ThesisMatch& match) {
+  store_in(solutions_, stop, match);
+}
+
+void ThesisMap::store_in(SolutionStore& store, std::uint32_t stop, const ThesisMatch& match) const {
   const double cell_m = config_.genetic.resolution_m;
   const double cell_rad = config_.genetic.resolution_rad;
   const Eigen::Matrix3d unrefined =
@@ -123,7 +129,7 @@ void ThesisMap::store(std::uint32_t stop, const ThesisMatch& match) {
                          geometry::inverse_covariance(solution.T_reference_query, unrefined),
                          std::min(solution.fitness, match.result.fitness)});
   }
-  solutions_.put(match.earlier, stop, std::move(solutions));
+  store.put(match.earlier, stop, std::move(solutions));
 }
 
 void ThesisMap::add_closure(std::uint32_t stop, const ThesisMatch& match) {

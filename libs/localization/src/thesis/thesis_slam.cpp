@@ -27,18 +27,47 @@ ThesisSlam::ThesisSlam(const LocalizerConfig& config, MatchPool& pool)
     : config_(with_one_resolution(config)),
       map_(config_, config_.thesis.cycle_solutions),
       matching_(config_, pool),
-      cycles_(config_) {}
+      cycles_(config_),
+      kept_(config_) {}
 
 bool ThesisSlam::add(std::shared_ptr<const topomap::LocalMap> map) {
   map_.append(std::move(map));
   matching_.add(map_);
+  const bool keeps = config_.thesis.kept_solutions > 0;
   if (map_.size() == 1) {
     map_.place_first();
+    if (keeps) kept_.add_stop(map_);
     status_ = {LocalizationState::kTracking, 1.0};
     return false;
   }
   correct_forward();
-  return cycles_.close(map_, matching_);
+  if (!keeps) return cycles_.close(map_, matching_);
+  const std::vector<Pose2> before = poses();
+  kept_.add_stop(map_);
+  if (config_.revisit_matches > 0) kept_.offer(map_, cycles_.solutions(map_, matching_));
+  const std::vector<Pose2>& now = poses();
+  const bool moved = !std::equal(before.begin(), before.end(), now.begin());
+  if (moved) ++kept_version_;
+  return moved;
+}
+
+void ThesisSlam::finish() {
+  if (kept_.best() == nullptr) return;
+  kept_.refine(map_);
+  ++kept_version_;
+}
+
+const std::vector<Pose2>& ThesisSlam::poses() const {
+  const CycleSolution* best = kept_.best();
+  return best != nullptr && best->T_map_stop.size() == map_.size() ? best->T_map_stop
+                                                                   : map_.poses();
+}
+
+std::vector<topomap::LoopClosure> ThesisSlam::loop_closures() const {
+  const CycleSolution* best = kept_.best();
+  if (best == nullptr) return cycles_.closures();
+  return {{best->earlier, best->later,
+           geometry::between(best->T_map_stop[best->earlier], best->T_map_stop[best->later])}};
 }
 
 // Thesis, 7.3.1.1.1.
@@ -83,7 +112,8 @@ std::vector<ThesisNeighbour> ThesisSlam::forward_neighbours() {
   map_.set_overlaps(stop, std::move(overlaps));
   std::erase_if(with, [&](const ThesisNeighbour& n) {
     return !map_.recent(n.id, stop) &&
-           (config_.revisit_matches == 0 || std::binary_search(fresh.begin(), fresh.end(), n.id));
+           (config_.revisit_matches == 0 || config_.thesis.kept_solutions > 0 ||
+            std::binary_search(fresh.begin(), fresh.end(), n.id));
   });
   std::stable_sort(with.begin(), with.end(),
                    [&](const ThesisNeighbour& a, const ThesisNeighbour& b) {
@@ -115,14 +145,19 @@ const ThesisMatch* ThesisSlam::best_of(const std::vector<ThesisMatch>& matches) 
 
 topomap::Trajectory ThesisSlam::trajectory() const {
   topomap::Trajectory trajectory;
-  trajectory.version = map_.version();
-  for (std::size_t i = 0; i < map_.size(); ++i) trajectory.stops.push_back(map_.pose_of(i));
+  trajectory.version = map_.version() + kept_version_;
+  for (std::size_t i = 0; i < map_.size(); ++i) {
+    trajectory.stops.push_back(map_.pose_of(i));
+    trajectory.stops.back().T_map_robot = poses()[i];
+  }
   return trajectory;
 }
 
 std::optional<topomap::StopPose> ThesisSlam::last_stop() const {
   if (map_.size() == 0) return std::nullopt;
-  return map_.pose_of(map_.size() - 1);
+  topomap::StopPose last = map_.pose_of(map_.size() - 1);
+  last.T_map_robot = poses().back();
+  return last;
 }
 
 SlamCounts ThesisSlam::counts() const {

@@ -17,6 +17,7 @@
 #include "topogeo/localization/mapping/localizer_config.hpp"
 #include "topogeo/localization/mapping/loop_decision.hpp"
 #include "topogeo/localization/thesis/backward_correction.hpp"
+#include "topogeo/localization/thesis/kept_solutions.hpp"
 #include "topogeo/localization/thesis/thesis_map.hpp"
 #include "topogeo/localization/thesis/thesis_matching.hpp"
 #include "topogeo/topomap/trajectory.hpp"
@@ -40,6 +41,11 @@ class CycleClosing {
   /// matching and correction, because other maps may overlap once a cycle has closed. True if poses
   /// moved.
   bool close(ThesisMap& map, ThesisMatching& matching);
+
+  /// Distinct solutions for the last stop, whose pose by the forward correction is known: one
+  /// backward correction for each of the fittest poses that maps seen again give it. Poses of `map`
+  /// do not change, and no closure is added. Reads thesis.cycle_candidates, too.
+  std::vector<CycleSolution> solutions(const ThesisMap& map, ThesisMatching& matching);
 
   [[nodiscard]] const std::vector<topomap::LoopClosure>& closures() const { return closures_; }
   [[nodiscard]] const std::vector<LoopDecision>& decisions() const { return decisions_; }

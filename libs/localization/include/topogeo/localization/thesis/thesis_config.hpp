@@ -16,6 +16,8 @@ struct ThesisConfig {
   std::uint32_t matches = 8;
   std::uint32_t cycle_solutions = 40;
   std::uint32_t alternations = 3;
+  std::uint32_t kept_solutions = 0;  ///< 0: the best one at once becomes the trajectory
+  std::uint32_t cycle_candidates = 12;
   BackwardConfig backward;
 };
 

@@ -83,6 +83,8 @@ class ThesisMap {
   /// Stores the n best solutions of a match (definition 7.3.4): the refined one, then those of the
   /// search that lie elsewhere.
   void store(std::uint32_t stop, const ThesisMatch& match);
+  /// The same in another store.
+  void store_in(SolutionStore& store, std::uint32_t stop, const ThesisMatch& match) const;
   [[nodiscard]] SolutionStore& solutions() { return solutions_; }
   [[nodiscard]] const SolutionStore& solutions() const { return solutions_; }
 
@@ -97,9 +99,12 @@ class ThesisMap {
   [[nodiscard]] std::uint64_t version() const { return version_; }
 
  private:
-  // Predicted share of the earlier map that the new one sees.
+  // Predicted share of the earlier map that the new one sees. Without scan points it is the share
+  // of nodes and branches inside the field of view that the new map has from anywhere in its search
+  // space, seen from the earlier one.
   [[nodiscard]] double expected_share(const ThesisStop& now, const ThesisStop& before,
-                                      const UncertainPose& T_new_earlier) const;
+                                      const UncertainPose& T_new_earlier,
+                                      const VisibleRectangle& seen_from_earlier) const;
 
   LocalizerConfig config_;
   PoseGraph graph_;  // poses and their matches, only for uncertainties

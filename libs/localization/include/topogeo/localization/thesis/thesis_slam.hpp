@@ -3,7 +3,10 @@
 // correction at each stop, backward correction when a cycle closes (CycleClosing).
 //
 // Each pose is that of the one match with the largest fitness (eq. 7.18); nothing is averaged, and
-// only a closed cycle moves older poses. Differences from the print, with reasons:
+// only a closed cycle moves older poses. With thesis.kept_solutions, forward and backward
+// correction stay apart as in figures 8.15 to 8.22: each backward correction starts from the
+// forward poses, and the trajectory is the best kept solution (KeptSolutions). Differences from the
+// print, with reasons:
 // - matches pass the same gate as everywhere, because one poor match in a turn costs more than all
 //   good ones give; a match that the gate only doubts is used if there is no better one;
 // - the uncertainty of a pose relative to an earlier one runs along the matches between them, not
@@ -19,6 +22,7 @@
 #include "topogeo/localization/mapping/slam.hpp"
 #include "topogeo/localization/matching/match.hpp"
 #include "topogeo/localization/thesis/cycle_closing.hpp"
+#include "topogeo/localization/thesis/kept_solutions.hpp"
 #include "topogeo/localization/thesis/thesis_map.hpp"
 #include "topogeo/localization/thesis/thesis_matching.hpp"
 
@@ -33,14 +37,13 @@ class ThesisSlam : public Slam {
   ThesisSlam(const LocalizerConfig& config, MatchPool& pool);
 
   bool add(std::shared_ptr<const topomap::LocalMap> map) override;
-  /// Does nothing: the thesis has no work that waits for the end.
-  void finish() override {}
+  /// Refines the kept solutions; does nothing without any.
+  void finish() override;
 
   [[nodiscard]] topomap::Trajectory trajectory() const override;
   [[nodiscard]] std::optional<topomap::StopPose> last_stop() const override;
-  [[nodiscard]] std::vector<topomap::LoopClosure> loop_closures() const override {
-    return cycles_.closures();
-  }
+  /// With kept solutions only the match that placed the stops of the best one.
+  [[nodiscard]] std::vector<topomap::LoopClosure> loop_closures() const override;
   [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override {
     return cycles_.decisions();
   }
@@ -49,8 +52,12 @@ class ThesisSlam : public Slam {
   [[nodiscard]] LocalizationStatus status() const override { return status_; }
   [[nodiscard]] SlamCounts counts() const override;
 
-  // For inspection of the origin of a pose.
+  /// Poses of all stops: by the best kept solution, otherwise those of the map.
+  [[nodiscard]] const std::vector<geometry::Pose2>& poses() const;
+
+  // For inspection of the origin of a pose. With kept solutions the map has the forward poses.
   [[nodiscard]] const ThesisMap& map() const { return map_; }
+  [[nodiscard]] const KeptSolutions& kept() const { return kept_; }
   [[nodiscard]] const CycleClosing& cycles() const { return cycles_; }
 
  private:
@@ -62,6 +69,8 @@ class ThesisSlam : public Slam {
   ThesisMap map_;
   ThesisMatching matching_;
   CycleClosing cycles_;
+  KeptSolutions kept_;
+  std::uint64_t kept_version_ = 0;
   LocalizationStatus status_;
   std::uint64_t steps_in_doubt_ = 0;
 };
