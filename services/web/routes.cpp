@@ -138,7 +138,7 @@ std::span<const ServiceRoute> service_routes() {
        [](Web& web, const Request& request, const Respond& respond) {
          web.hand_.release_stop(request.stops, respond);
        }},
-      {{kPost, "/api/return", kOperator, kMostBody_bytes, kInLoop, "sends the robot to its base"},
+      {{kPost, "/api/return", kOperator, kMostBody_bytes, kInLoop, "sends the robot home"},
        kAlways,
        kRefused,
        [](Web& web, const Request& request, const Respond& respond) {
@@ -152,7 +152,7 @@ std::span<const ServiceRoute> service_routes() {
          check_plain(request.body);
          respond(web.exploration_.start());
        }},
-      {{kPost, "/api/pose", kOperator, kMostBody_bytes, kInLoop, "sets the pose"},
+      {{kPost, "/api/pose", kOperator, kMostBody_bytes, kInLoop, "sets the position"},
        kAlways,
        kObeyed,
        [](Web& web, const Request& request, const Respond& respond) {

@@ -214,7 +214,8 @@ Answer WebService::give(const GoalOrders& orders) {
 
 Answer WebService::go_back() {
   WantedGoal goal;
-  for (const char* name : {"base", "base station"}) {
+  // The drawing of an earlier version may name the home "base".
+  for (const char* name : {"base", "base station", "home"}) {
     if (const auto found = map_.find(name); found && found->place) goal.name = found->name;
   }
   if (goal.name.empty()) goal.point_m = Eigen::Vector2d(0.0, 0.0);  // the origin of the map
@@ -225,7 +226,7 @@ Answer WebService::preview(const std::string& body) {
   const GoalOrders orders = parse_goals(body);
   const auto& pose = robot_.pose();
   if (!pose || (pose->state() != msg::kStateTracking && pose->state() != msg::kStateAmbiguous)) {
-    return error_answer(409, "the robot does not know where it is");
+    return error_answer(409, "the robot does not know its position");
   }
   std::shared_ptr<const planning::HybridMap> map;
   std::shared_ptr<const topomap::GlobalMap> graph;

@@ -167,7 +167,7 @@ test("a base station gets its arrow by a drag", async () => {
   await choose(opened.page, "base");
   await drag(opened.page, [1, 1], [1.1, 4]);
   const { places } = await saved(opened);
-  assert.deepEqual(places, [{ name: "base", x_m: 1, y_m: 1, heading_rad: 1.571 }]);
+  assert.deepEqual(places, [{ name: "home", x_m: 1, y_m: 1, heading_rad: 1.571 }]);
   await end(opened);
 });
 
@@ -194,12 +194,12 @@ test("when somebody else has saved, theirs is taken or mine saved over it", asyn
   await click(page, [1, 1]);
   service.save_elsewhere({ places: [{ name: "theirs", x_m: 0, y_m: 0 }] });
   await page.getByText("Somebody else has saved").waitFor();
-  await press(page, "Take theirs");
+  await press(page, "Use their version");
   await page.locator(".draw-items li").getByText("theirs").waitFor({ state: "attached" });
   await press(page, "Undo");
   service.save_elsewhere({ places: [{ name: "again", x_m: 0, y_m: 0 }] });
   await page.getByText("Somebody else has saved").waitFor();
-  await press(page, "Save mine over it");
+  await press(page, "Replace it with mine");
   await wait_for("mine is saved", () => service.drawing.places[0].name === "place 1");
   // Without edits here, a save from elsewhere is loaded by itself.
   service.save_elsewhere({ places: [{ name: "later", x_m: 0, y_m: 0 }] });
@@ -286,7 +286,7 @@ test("a new floor is drawn, exported, imported and loaded", async () => {
   await page.mouse.click(...at(0.7, 0.7));
   await press(page, "Finish");
   await press(page, "Load into the simulator");
-  await notice(page, /Set a base station first/);
+  await notice(page, /Set the home first/);
   await choose(page, "base");
   await page.mouse.click(...at(0.5, 0.5));
   const download = page.waitForEvent("download");

@@ -79,7 +79,7 @@ test("a loop of a stored map shows both local maps laid on each other", async ()
   const { loops } = facts("round");
   await text(".section p", new RegExp(`^${loops} accepted, 0 rejected`));
   const row = page.locator(".loops .row-title").first();
-  const [, later, earlier] = /Stop (\d+) at stop (\d+)/.exec(await row.innerText());
+  const [, later, earlier] = /Scan point (\d+) at scan point (\d+)/.exec(await row.innerText());
   await row.click();
   await text(".loop-detail dt", /in the earlier one's view/);
   const shares = await page.locator(".loop-detail dd").allInnerTexts();
@@ -107,15 +107,15 @@ test("the drive plays: the floor grows with it", async () => {
   await page.click("#tab-time");
   await page.getByRole("button", { name: "Load the drive" }).click();
   const { stops } = facts("round");
-  await text(".film-moment", new RegExp(`^Stop ${stops} of ${stops}`));
+  await text(".film-moment", new RegExp(`^Scan point ${stops} of ${stops}`));
   await text(".stage .map-note", /Replay of the drive, not the present robot/);
   await page.locator("#film-slider").fill("0");
-  await text(".film-moment", new RegExp(`^Stop 1 of ${stops}`));
+  await text(".film-moment", new RegExp(`^Scan point 1 of ${stops}`));
   await page.locator("#film-slider").fill("400");
   await picture("time-film");
   await page.selectOption("#film-speed", "64");
   await page.click("#film-play");
-  await text(".film-moment", new RegExp(`^Stop ${stops} of ${stops}`));
+  await text(".film-moment", new RegExp(`^Scan point ${stops} of ${stops}`));
   const frames = await page.evaluate(() =>
     performance.getEntriesByName("film-drawn").map((entry) => entry.duration),
   );
@@ -163,14 +163,14 @@ test("a map that is only shown has no snapshots, and says so", async () => {
 });
 
 test("without a robot nothing says that one was stopped or explores", async () => {
-  await text(".state", /NO ROBOT\s+The page hears no service of a robot/i);
+  await text(".state", /NO ROBOT\s+No robot connected\. Map only/i);
   assert.equal(await robot.post("stop", {}), 503);
   assert.equal(await robot.post("release", {}), 202);
   assert.equal(await robot.post("release", {}), 503);
   assert.equal(await robot.post("explore", {}), 409);
   await page.click("#stop");
   await text("#stop-sent", /No base and no navigator is connected/);
-  assert.equal(await page.getByText("is stopped and held").count(), 0);
+  assert.equal(await page.getByText("The robot is held.").count(), 0);
   assert.equal(await robot.post("release", {}), 202);
 });
 
@@ -273,7 +273,7 @@ test("another map of the place is merged once the operator has seen and accepted
   assert.equal(JSON.parse((await get("/api/drive")).bytes).total, total);
 
   const shown = await offer(file("evening/map.pb"), /map\.pb joins the map/);
-  const joined = Number(/(\d+) stops of the smaller map/.exec(shown)[1]);
+  const joined = Number(/(\d+) scan points of the smaller map/.exec(shown)[1]);
   assert.ok(joined > total / 2, shown); // the map of the morning is the smaller one
   await page.getByRole("button", { name: "Make it the map" }).click();
   await notice(page, /restoring snapshot merged-/i);

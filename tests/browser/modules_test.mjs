@@ -12,6 +12,7 @@ const { navigator_text, pose_of_now, robot_state } = await load("robot_state");
 const { agreement, apart, compose } = await load("map/match_layer");
 const { Film } = await load("map/film");
 const { Stopping } = await load("stopping");
+const { texts } = await load("texts");
 
 const delta = (from, version, set, gone = []) => ({ channel: "events", from, version, set, gone });
 
@@ -231,19 +232,27 @@ test("what the navigator does is said once", () => {
   };
   assert.equal(
     said("stopped", "paused", "paused; drives on after a resume"),
-    "The robot is paused. “Resume” lets it drive on.",
+    "Paused. “Resume” lets it drive on.",
   );
   assert.equal(
-    said("stopped", "base_not_ready", "the base takes no commands: halted on demand"),
-    "Stopped. The base takes no commands: halted on demand.",
+    said("stopped", "base_not_ready", "the drive unit takes no orders: held; release it to drive"),
+    "Held. Release it to drive.",
+  );
+  assert.equal(
+    said("stopped", "base_not_ready", "the drive unit takes no orders: stopped by an operator until the release"),
+    "Held. Release it to drive.",
+  );
+  assert.equal(
+    said("stopped", "base_not_ready", "the drive unit takes no orders: a bumper was pressed"),
+    "Stopped. The drive unit takes no orders: a bumper was pressed.",
   );
   assert.equal(
     said("stopped", "waits_for_route", "waits for the planner"),
-    "The robot waits for a route.",
+    "Planning the route.",
   );
   assert.equal(
     said("relocalizing", "pose_lost", "the localizer does not track the pose: AMBIGUOUS"),
-    "The pose is uncertain. The robot relocalizes before it drives.",
+    "Position unsure. The robot finds its position before it drives.",
   );
   assert.equal(
     said("blocked", "obstacle", "0.4 m ahead"),
@@ -316,7 +325,7 @@ test("a stop is done when the base is held and stands", async (t) => {
   tell("moving", false);
   assert.match(stopping.text(), /^Stop sent/);
   tell("halted", false);
-  assert.match(stopping.text(), /^Stopping: the base still moves/);
+  assert.match(stopping.text(), /^Stopping: the robot still moves/);
   assert.equal(done, 0);
   tell("halted", true);
   assert.equal(stopping.text(), null);
@@ -335,4 +344,37 @@ test("a map that is shown alone has no robot, one whose localizer has not spoken
   assert.equal(named(["web", "running"], ["map_store", "running"], ["localizer", "waiting"]), "none");
   assert.equal(named(["web", "running"], ["sensor_gateway", "running"]), "none");
   assert.equal(named(["web", "running"], ["sensor_gateway", "lost"]), "absent");
+});
+
+/** All texts of an object; functions are called with arguments that any of them can show. */
+function all_texts(value) {
+  if (typeof value === "string") return [value];
+  if (typeof value === "function") {
+    const shown = (argument) => {
+      try {
+        return [String(value(...Array(8).fill(argument)))];
+      } catch {
+        return [];
+      }
+    };
+    return [...shown(2), ...shown("x")];
+  }
+  return Object.values(value).flatMap(all_texts);
+}
+
+test("one thing has one name on the page", () => {
+  // The button Stop is the only stop: places where a scan was taken are scan points.
+  const forbidden = {
+    "a scan point is no stop": /\bstops\b(?! (at once|when|and holds|the robot|if))|\b(earlier|later|this|last|first) stop\b/,
+    "names of states are words": /TRACKING|AMBIGUOUS|SEARCHING|LOST/,
+    "a drive unit is no base": /\bbase\b/i,
+    "pages do not hear": /\bhears?\b(?! nothing although)|\bheard\b/,
+    "a position is known, not tracked": /\btracks?\b|\bposes?\b(?! graph)/i,
+    "topics belong to technical details": /topogeo\/v\d/,
+  };
+  for (const text of all_texts(texts)) {
+    for (const [rule, words] of Object.entries(forbidden)) {
+      assert.doesNotMatch(text.replace("The robot stops when you let go", ""), words, rule);
+    }
+  }
 });

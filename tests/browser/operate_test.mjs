@@ -87,8 +87,8 @@ async function open({ path = "/", service = new SlowLocalizer(), script = () => 
   await context.addInitScript(script);
   await service.serve(context);
   const page = await open_page(context, `${kAddress}${path}#token=${"t".repeat(16)}`);
-  await text(page, ".state", /No pose/i);
-  await text_of_fresh(page, service, "pose", kPose, ".state-word", /Tracking/i);
+  await text(page, ".state", /No position/i);
+  await text_of_fresh(page, service, "pose", kPose, ".state-word", /Position known/i);
   return { page, service, context };
 }
 
@@ -120,7 +120,7 @@ test("an order that is not answered shows that it waits, and at the end that nob
   await apply.click();
   await notice(page, /The order is sent/);
   await service.answer_next(200, { accepted: true });
-  await notice(page, /The pose is set/);
+  await notice(page, /The position is set/);
   assert.equal(await page.getByText("The order is sent").count(), 0);
 
   const search = page.getByRole("button", { name: "Search", exact: true });
@@ -137,14 +137,14 @@ test("why the state is what it is follows the header when poses stop", async () 
   const opened = await open();
   const { page, service } = opened;
   await page.click("#tab-understand");
-  await text_of_fresh(page, service, "pose", kPose, ".section p", /^Tracking\. What the laser sees/);
+  await text_of_fresh(page, service, "pose", kPose, ".section p", /^Position known\. The laser fits the map/);
   await text_of_fresh(page, service, "pose", kPose, ".bar", /100 %/);
   await page.evaluate(() => {
     const now = performance.now.bind(performance);
     performance.now = () => now() + 20_000;
   });
-  await text(page, ".state-word", /No pose/i);
-  await text(page, ".section p", /^No pose\. The page has received no pose/);
+  await text(page, ".state-word", /No position/i);
+  await text(page, ".section p", /^No position\. No position for over ten/);
   assert.equal(await page.getByText("100 %").count(), 0);
   await end(opened);
 });
@@ -159,11 +159,11 @@ test("a rejected loop that is probable says what decided", async () => {
     0: { ...loop, later: 8, accepted: false, outcome: "unconfirmed", explanation: "unconfirmed" },
     1: { ...loop, later: 9, accepted: true, outcome: "accepted", explanation: "" },
   });
-  await text(page, ".loops li", /Stop 8 at stop 1[^]*estimated 98 % probable; would move the stop by 0\.50 m/);
-  await text(page, ".loops li", /Stop 9 at stop 1[^]*estimated 98 % probable; moves the stop by 0\.50 m/);
-  await page.getByRole("button", { name: "Stop 8 at stop 1" }).click();
+  await text(page, ".loops li", /Scan point 8 at scan point 1[^]*estimated 98 % probable; would move the scan point by 0\.50 m/);
+  await text(page, ".loops li", /Scan point 9 at scan point 1[^]*estimated 98 % probable; moves the scan point by 0\.50 m/);
+  await page.getByRole("button", { name: "Scan point 8 at scan point 1" }).click();
   await text(page, ".loop-detail p", /probably right\. The reason above rejects the loop/);
-  await page.getByRole("button", { name: "Stop 9 at stop 1" }).click();
+  await page.getByRole("button", { name: "Scan point 9 at scan point 1" }).click();
   assert.equal(await page.getByText("the reason above decides").count(), 0);
   await end(opened);
 });
@@ -191,22 +191,22 @@ test("a stop is not done before the base itself reports that it stands", async (
   const { page, service } = opened;
   await show_banners(page);
   service.show("base", { ...kBase, state: "halted" });
-  await text(page, ".banner", /The robot is held/);
+  await text(page, ".banner", /Held\. Release it to drive/);
   service.show("base", { ...kBase, state: "moving", stands: false });
   await page.click("#stop");
-  await text(page, "#stop-sent", /^Stop sent, the base has not confirmed/);
+  await text(page, "#stop-sent", /^Stop sent, not confirmed/);
   await wait_for("both orders", () => service.orders.includes("stop") && service.ops.includes("stop"));
   service.show("base", { ...kBase, state: "moving", stands: false });
   service.show("pose", kPose);
   await after_in_page(page, 100); // two frames, time for a wrong change
   assert.equal(await page.locator("#stop-sent").isVisible(), true);
-  assert.equal(await page.getByText("The robot is stopped and held").count(), 0);
+  assert.equal(await page.getByText("The robot is held.").count(), 0);
   await assert_accessible(page, "a stop that is not confirmed");
   service.show("base", { ...kBase, state: "halted", stands: false });
-  await text(page, "#stop-sent", /^Stopping: the base still moves/);
-  assert.equal(await page.getByText("The robot is stopped and held").count(), 0);
+  await text(page, "#stop-sent", /^Stopping: the robot still moves/);
+  assert.equal(await page.getByText("The robot is held.").count(), 0);
   service.show("base", { ...kBase, state: "halted" });
-  await notice(page, /The robot is stopped and held/);
+  await notice(page, /The robot is held\./);
   await wait_for("the banner goes", async () => !(await page.locator("#stop-sent").isVisible()));
   await end(opened);
 });
@@ -216,10 +216,10 @@ test("a base that was heard last before the stop confirms nothing", async () => 
   const { page, service } = opened;
   await show_banners(page);
   service.show("base", { ...kBase, state: "halted" });
-  await text(page, ".banner", /The robot is held/);
+  await text(page, ".banner", /Held\. Release it to drive/);
   service.ages_s = { base: 30 };
   await page.click("#stop");
-  await text(page, "#stop-sent", /has not confirmed/);
+  await text(page, "#stop-sent", /not confirmed/);
   service.show("time", { time_s: 0, ages_s: { base: 30 } });
   await after_in_page(page, 100); // as above
   assert.equal(await page.locator("#stop-sent").isVisible(), true);
@@ -308,9 +308,9 @@ test("a page that is opened on old inputs shows how old they are", async () => {
     await text(page, ".facts dd", /^0\.40 m\/s \(2 min \d+ s old\)$/);
     await text(page, ".facts dd", /^running, 10\.0 \/s \(2 min \d+ s old\)$/);
     await text(page, ".facts dd", /^moving \(2 min \d+ s old\)$/);
-    assert.match(await page.innerText(".state-word"), /No pose/i);
+    assert.match(await page.innerText(".state-word"), /No position/i);
     service.ages_s = {};
-    await text_of_fresh(page, service, "pose", kPose, ".state-word", /Tracking/i);
+    await text_of_fresh(page, service, "pose", kPose, ".state-word", /Position known/i);
     const laser = { state: "running", reason: "", scans_per_s: 10 };
     await text_of_fresh(page, service, "laser", laser, ".facts dd", /^running, 10\.0 \/s$/);
   });
@@ -327,7 +327,7 @@ test("without a connection nothing is said of goals", async () => {
   await text(page, ".state-word", /Offline/i);
   await text(page, ".section h3", /state is unknown/);
   assert.equal(await page.getByText("The robot has no goal").count(), 0);
-  assert.equal(await page.getByText("No navigator is running").filter({ visible: true }).count(), 0);
+  assert.equal(await page.getByText("its navigator is not running").filter({ visible: true }).count(), 0);
   service.reachable = true;
   await text(page, ".section h3", /The robot has no goal/);
   // The goal was sent from elsewhere, or before the service restarted.
@@ -346,9 +346,9 @@ test("the release of a robot with a goal says what will happen, and asks", async
   await release.click();
   await wait_for("a release without a goal", () => releases() === 1);
   service.show("goals", { current: { text: "room A" }, waiting: [], exploring: false });
-  await text(page, ".banner", /The robot is held\. It drives to room A as soon as it is released/);
+  await text(page, ".banner", /Held\. When released, the robot drives to room A at once/);
   await release.click();
-  await text(page, ".banner", /The robot drives to room A at once when it is released/);
+  await text(page, ".banner", /When released, the robot drives to room A at once/);
   assert.equal(releases(), 1);
   await assert_accessible(page, "a release that asks");
   await page.getByRole("button", { name: "Keep it held" }).click();
@@ -369,13 +369,13 @@ test("after a stop, a robot of ROS is driven neither by goals nor by hand until 
   await show_banners(page);
   const drive = { held: false, linear_mps: 0, angular_radps: 0, free_ahead_m: 0, message: "stopped" };
   await page.click("#stop");
-  await text(page, "#stop-sent", /^Stop sent, the base has not confirmed/);
+  await text(page, "#stop-sent", /^Stop sent, not confirmed/);
   service.show("drive", { ...drive, stopped: true });
-  await text(page, ".banner", /The robot obeys neither goals nor driving by hand until the release/);
+  await text(page, ".banner", /Held, not confirmed by the drive unit/);
   service.show("goals", { current: { text: "room A" }, waiting: [], exploring: false });
-  await text(page, ".banner", /The robot drives to room A as soon as it is released/);
+  await text(page, ".banner", /Held, not confirmed[^]*the robot drives to room A at once/);
   await page.getByRole("button", { name: "Release", exact: true }).click();
-  await text(page, ".banner", /The robot drives to room A at once when it is released/);
+  await text(page, ".banner", /When released, the robot drives to room A at once/);
   assert.equal(service.orders.includes("release"), false);
   await page.getByRole("button", { name: "Cancel the goal, then release" }).click();
   await wait_for("the release", () => service.orders.includes("release"));
@@ -390,8 +390,8 @@ test("without a navigator the robot cannot be sent, which is said once", async (
   const { page, service } = opened;
   await page.click("#tab-send");
   service.show("navigator", null);
-  await text(page, ".note", /No navigator is running/);
-  assert.equal(await page.locator(".view").getByText("No navigator is running").filter({ visible: true }).count(), 1);
+  await text(page, ".note", /its navigator is not running/);
+  assert.equal(await page.locator(".view").getByText("its navigator is not running").filter({ visible: true }).count(), 1);
   assert.equal(await page.getByRole("button", { name: "Explore" }).isDisabled(), true);
   await end(opened);
 });

@@ -38,7 +38,7 @@ async function stands() {
 
 test("shows the map", async () => {
   const page = await open("now");
-  await text(page, ".state-word", /TRACKING/i);
+  await text(page, ".state-word", /POSITION KNOWN/i);
   const mark = () => performance.getEntriesByName("map-shown")[0]?.startTime;
   const shown_ms = await wait_for("a picture of the map", () => page.evaluate(mark));
   console.log(`map on the screen ${Math.round(shown_ms)} ms after opening`);
@@ -127,15 +127,15 @@ test("Stop holds the robot until it is released", async () => {
   await page.click("#go");
   await wait_for("the robot drives", async () => !(await stands()));
   await page.click("#stop");
-  await notice(page, /The robot is stopped and held/);
+  await notice(page, /The robot is held\./);
   await wait_for("the robot stands", stands);
-  await text(page, ".banner", /The robot is held until it is released/); // its goal is cancelled
+  await text(page, ".banner", /Held\. Release it to drive/); // its goal is cancelled
   await page.getByRole("button", { name: "Release" }).click();
   await wait_for(
     "the banner goes",
     async () =>
-      (await page.getByText("The robot is held").count()) === 0 ||
-      !(await page.getByText("The robot is held").isVisible()),
+      (await page.getByText("Held. Release it to drive").count()) === 0 ||
+      !(await page.getByText("Held. Release it to drive").isVisible()),
   );
   await end(page);
 });
@@ -184,14 +184,14 @@ test("a restored map stays without what the drive under way has mapped since", a
 
 test("the page goes on after the web service was replaced", async () => {
   const page = await open("now");
-  await text(page, ".state-word", /TRACKING/i);
+  await text(page, ".state-word", /POSITION KNOWN/i);
   await robot.end("web", "SIGKILL");
   await text(page, ".banner", /Connection lost/);
   await text(page, ".state-word", /OFFLINE/i);
   await robot.start_web();
-  await text(page, ".state-word", /TRACKING/i);
+  await text(page, ".state-word", /POSITION KNOWN/i);
   await page.reload();
-  await text(page, ".state-word", /TRACKING/i);
+  await text(page, ".state-word", /POSITION KNOWN/i);
   assert.equal(await page.locator("#stop").isVisible(), true);
   await end(page);
 });
@@ -216,8 +216,8 @@ test("the pose is set by dragging, in a map that stays as it is", async () => {
   await wait_for("no pose is chosen while the robot maps", () =>
     page.getByRole("button", { name: "Set on the map" }).isDisabled(),
   );
-  await page.getByRole("button", { name: "Leave the map as it is" }).click();
-  await text(page, "button", /Map from now on/);
+  await page.getByRole("button", { name: "Stop mapping" }).click();
+  await text(page, "button", /Start mapping/);
   await page.getByRole("button", { name: "Set on the map" }).click();
   const at = await run.newest("pose");
   // A drag on the map fills the fields; then the true pose is typed, so that the robot stays localized.
@@ -236,7 +236,7 @@ test("the pose is set by dragging, in a map that stays as it is", async () => {
   await page.getByRole("button", { name: "Apply" }).click();
   await notice(page, /continues from this pose/i);
   assert.equal(await page.getByRole("button", { name: "Apply" }).isVisible(), false);
-  await page.getByRole("button", { name: "Map from now on" }).click();
-  await text(page, "button", /Leave the map as it is/);
+  await page.getByRole("button", { name: "Start mapping" }).click();
+  await text(page, "button", /Stop mapping/);
   await end(page);
 });

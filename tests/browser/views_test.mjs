@@ -24,7 +24,7 @@ for (const [scheme, rules] of [["light", undefined], ["dark", kColorRules]]) {
       const options = { viewport, colorScheme: scheme, bypassCSP: true };
       const context = await new_context(run.browser, options);
       const page = await open_page(context, `${robot.address}/#token=${robot.token}`);
-      await text(page, ".state-word", /TRACKING/i);
+      await text(page, ".state-word", /POSITION KNOWN/i);
       for (const view of kViews) {
         await page.click(`#tab-${view}`);
         if (view === "send") {

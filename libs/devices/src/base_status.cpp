@@ -15,15 +15,15 @@ struct StateText {
 constexpr std::array<StateText, 10> kStateTexts{{
     {"ready", ""},
     {"moving", ""},
-    {"offline", "no connection to the base"},
-    {"starting", "the base is being set up"},
+    {"offline", "no connection to the drive unit"},
+    {"starting", "the drive unit is being set up"},
     {"emergency stop",
-     "the base did not move as commanded: emergency stop or blocked wheels; the base reports "
+     "the drive unit did not move as commanded: emergency stop or blocked wheels; it reports "
      "neither, so a person must release it"},
-    {"halted", "halted on demand"},
-    {"watchdog expired", "the base stopped: it received no command for too long"},
+    {"halted", "held; release it to drive"},
+    {"watchdog expired", "the drive unit stopped: it received no command for too long"},
     {"bumped", "a bumper was pressed"},
-    {"joystick", "the base moves without a command"},
+    {"joystick", "the drive unit moves without a command"},
     {"motors off", "the motors are limp"},
 }};
 

@@ -43,7 +43,7 @@ ArrivalStep Arrival::step(const ArrivalView& view, std::int64_t now_ns) {
   const bool seen = view.fix_ns.value_or(0) >=
                     *settle_ns_ + static_cast<std::int64_t>(kStands * config_.settle_s * 1e9);
   if (stood_s < config_.settle_s || (!seen && stood_s < kLongest * config_.settle_s)) {
-    return {ArrivalStep::Kind::kStands, {}, {}, "at the goal; measures its pose"};
+    return {ArrivalStep::Kind::kStands, {}, {}, "at the goal, checking its position"};
   }
   if (!view.tracking && looks_ < kLooks) return look_around(view);
   const double off_m = (view.goal_m - view.T_map_robot.position_m()).norm();
@@ -54,11 +54,11 @@ ArrivalStep Arrival::step(const ArrivalView& view, std::int64_t now_ns) {
   const bool there = off_m <= config_.follower.arrival_m && off_rad <= config_.follower.arrival_rad;
   const int tries = off_m > kPoor_m ? kMostCorrections : kCorrections;
   if (!there && corrections_ < tries) return correct(view, off_m);
-  std::string message = fmt::format("arrived, {:.2f} m", off_m);
+  std::string message = fmt::format("arrived (estimated error {:.0f} cm", 100.0 * off_m);
   if (view.heading_rad) {
     message += fmt::format(" and {:.1f} degrees", off_rad * 180.0 / std::numbers::pi);
   }
-  message += view.tracking ? " off the goal" : " off the goal, pose uncertain";
+  message += view.tracking ? ")" : ", position unsure)";
   return {ArrivalStep::Kind::kArrived, {}, {}, std::move(message)};
 }
 
@@ -69,7 +69,7 @@ ArrivalStep Arrival::look_around(const ArrivalView& view) {
   return {ArrivalStep::Kind::kMoves,
           {},
           geometry::wrap_angle(view.T_map_robot.theta_rad + kLookTurn_rad),
-          "at the goal with an uncertain pose; turns to look around"};
+          "at the goal, position unsure; turns to look around"};
 }
 
 ArrivalStep Arrival::correct(const ArrivalView& view, double off_m) {

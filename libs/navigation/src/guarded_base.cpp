@@ -32,11 +32,11 @@ void GuardedBase::set(const MachineLoad& load, std::int64_t now_ns) {
 
 HaltReason GuardedBase::halted(std::int64_t now_ns, std::string& message) const {
   if (base_ && !base_->commands_taken) {
-    message = "the base takes no commands: " + base_->reason;
+    message = "the drive unit takes no orders: " + base_->reason;
     return HaltReason::kBaseNotReady;
   }
   if (!stopped_.empty()) {
-    message = "the base takes no commands: " + stopped_;
+    message = "the drive unit takes no orders: " + stopped_;
     return HaltReason::kBaseNotReady;
   }
   if (stuck_ns_) {

@@ -164,7 +164,7 @@ geometry::Velocity NavigationStep::drive(const geometry::Pose2& T_map_robot) {
     progress_m = driver.follower().progress_m();
   }
   if (poses.must_stand(arrival.needs_look(), progress_m, now_ns)) {
-    return stop(NavigatorState::kRelocalizing, HaltReason::kNone, "stops to measure its pose");
+    return stop(NavigatorState::kRelocalizing, HaltReason::kNone, "stops to check its position");
   }
   if (arrival.settling()) return settle(T_map_robot);
   // Far from its route it waits for one from its place; if none comes, it returns to the old one.

@@ -33,7 +33,7 @@ std::string_view describe(HaltReason reason) {
     case HaltReason::kPaused:
       return "paused";
     case HaltReason::kPoseLost:
-      return "the pose is not known";
+      return "the position is not known";
     case HaltReason::kNoMap:
       return "no map";
     case HaltReason::kOutsideMap:
@@ -47,9 +47,9 @@ std::string_view describe(HaltReason reason) {
     case HaltReason::kNoOdometry:
       return "no odometry";
     case HaltReason::kBaseNotReady:
-      return "the base takes no commands";
+      return "the drive unit takes no orders";
     case HaltReason::kBaseStuck:
-      return "the base does not move";
+      return "the drive unit does not move";
   }
   return "unknown";
 }

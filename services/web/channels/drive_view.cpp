@@ -124,7 +124,7 @@ void DriveView::show_stored(const storage::MapDocument& map) {
                  {"later", loop.later_id},
                  {"accepted", true},
                  {"outcome", "accepted"},
-                 {"explanation", "closed, as the map file has it"},
+                 {"explanation", ""},
                  {"source", ""}};
     set_pose(json, loop.T_earlier_later);
     for (const char* unknown : {"correction_m", "correction_rad", "fitness", "probability"}) {

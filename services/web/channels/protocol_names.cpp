@@ -99,14 +99,13 @@ string_view name_of(msg::MergeState state) {
 std::string reason_of(msg::LocalizationState state) {
   switch (state) {
     case msg::kStateTracking:
-      return "What the laser sees fits the map.";
+      return "The laser fits the map.";
     case msg::kStateAmbiguous:
-      return "What the laser sees does not settle the place: the pose rests on odometry or on "
-             "uncertain matches.";
+      return "Not sure where it is: the laser fits more than one place, or none.";
     case msg::kStateSearching:
-      return "The robot looks for its place in the map: drive it on, or set its pose.";
+      return "Looking for its place on the map. Drive it on, or set its position.";
     case msg::kStateLost:
-      return "What the laser sees contradicts the place where the robot should be.";
+      return "The laser contradicts this place. Set the position, or search the whole map.";
   }
   return {};
 }

@@ -41,7 +41,7 @@ class BaseLinkTest : public ::testing::Test {
 TEST_F(BaseLinkTest, IsOfflineUntilAPortIsOpenedAndRunsFromTheFirstReportOn) {
   EXPECT_TRUE(link_.closed());
   EXPECT_TRUE(link_.offline());
-  EXPECT_EQ(link_.reason(), "no connection to the base");
+  EXPECT_EQ(link_.reason(), "no connection to the drive unit");
   EXPECT_EQ(link_.due_ns(), std::numeric_limits<std::int64_t>::max());
   link_.open(now_ns_);
   EXPECT_FALSE(link_.offline());

@@ -84,7 +84,7 @@ TEST_F(ArrivalTest, TurnsOnceRoundForAPoseThatIsNotSure) {
   EXPECT_GT(turned_rad, 6.2);
   const ArrivalStep last = settle();
   EXPECT_EQ(last.kind, Kind::kArrived);
-  EXPECT_EQ(last.message, "arrived, 0.00 m off the goal, pose uncertain");
+  EXPECT_EQ(last.message, "arrived (estimated error 0 cm, position unsure)");
   arrival.reset();
   EXPECT_EQ(settle().kind, Kind::kMoves);
 }

@@ -36,7 +36,7 @@ TEST_F(GuardedBaseTest, HasAReasonNotToMove) {
   EXPECT_EQ(base.halted(0, message), HaltReason::kNone);
   base.add(BaseCondition{0, false, "emergency stop"});
   EXPECT_EQ(base.halted(0, message), HaltReason::kBaseNotReady);
-  EXPECT_EQ(message, "the base takes no commands: emergency stop");
+  EXPECT_EQ(message, "the drive unit takes no orders: emergency stop");
   base.add(BaseCondition{0, true, ""});
   EXPECT_EQ(base.halted(0, message), HaltReason::kNone);
 }
@@ -45,10 +45,10 @@ TEST_F(GuardedBaseTest, AStopHaltsABaseThatReportsNothing) {
   scan_at(5.0, 0);
   base.set_stopped("stopped by an operator until the release");
   EXPECT_EQ(base.halted(0, message), HaltReason::kBaseNotReady);
-  EXPECT_EQ(message, "the base takes no commands: stopped by an operator until the release");
+  EXPECT_EQ(message, "the drive unit takes no orders: stopped by an operator until the release");
   base.set_stopped("waits for an operator's stop");
   EXPECT_EQ(base.halted(0, message), HaltReason::kBaseNotReady);
-  EXPECT_EQ(message, "the base takes no commands: waits for an operator's stop");
+  EXPECT_EQ(message, "the drive unit takes no orders: waits for an operator's stop");
   base.set_stopped({});
   EXPECT_EQ(base.halted(0, message), HaltReason::kNone);
 }

@@ -16,8 +16,8 @@ export const draw_texts = {
   saved: "The drawing is saved.",
   kept: "The view Draw has a drawing that is not saved yet.",
   conflict: "Somebody else has saved the drawing meanwhile.",
-  take_theirs: "Take theirs",
-  save_over: "Save mine over it",
+  take_theirs: "Use their version",
+  save_over: "Replace it with mine",
   theirs_taken: "The page shows the other drawing. Undo brings yours back.",
 
   tools: "Tools",
@@ -25,7 +25,7 @@ export const draw_texts = {
   tool: {
     select: "Select",
     place: "Place",
-    base: "Base station",
+    base: "Home",
     wall: "Wall",
     opening: "Opening",
     door: "Door",
@@ -69,7 +69,7 @@ export const draw_texts = {
 
   kinds: {
     place: "place",
-    base: "base station",
+    base: "home",
     wall: "wall",
     opening: "opening",
     door: "door",
@@ -80,7 +80,7 @@ export const draw_texts = {
   },
   titles: {
     place: "Place",
-    base: "Base station",
+    base: "Home",
     wall: "Wall",
     opening: "Opening",
     door: "Door",
@@ -135,7 +135,7 @@ export const draw_texts = {
     robot_sure: "This floor replaces the robot's present drawing.",
     yes: "Yes, load it",
     no: "No",
-    no_start: "Set a base station first, because the robot starts there.",
+    no_start: "Set the home first, because the robot starts there.",
     no_walls: "Draw walls first.",
     loaded: "The floor is loaded.",
     not_offered: "This service cannot load floors.",

@@ -34,7 +34,7 @@ export function robot_state(channels: Channels, rights: Rights): RobotState {
     return named(name, texts.reasons[name]);
   }
   if (is_silent(channels, "pose")) return named("silent", texts.reasons.silent);
-  return named(pose.state, with_age(channels, "pose", pose.reason));
+  return named(pose.state, with_age(channels, "pose", texts.reasons[pose.state] ?? pose.reason));
 }
 
 /** A text about a value, with the value's age if it is old. */
@@ -93,6 +93,9 @@ export function is_paused(channels: Channels): boolean {
   return channels.value("navigator")?.reason === "paused" || channels.value("goals")?.pausing === true;
 }
 
+// Reasons of a base, or of a navigator without one, that an operator holds.
+const holds = /: (held|stopped by an operator)/;
+
 /** The navigator's activity as a sentence. */
 export function navigator_text(channels: Channels, rights: Rights): string {
   if (!rights.connected) return texts.send.not_heard;
@@ -108,6 +111,7 @@ export function navigator_text(channels: Channels, rights: Rights): string {
   const halt = halted ? texts.halts[navigator.reason] : undefined;
   const whole = halted ? texts.whole_halts[navigator.reason] : undefined;
   if (whole) return whole;
+  if (navigator.reason === "base_not_ready" && holds.test(navigator.message)) return texts.held;
   if (navigator.state === "relocalizing" && /does not track/.test(navigator.message)) {
     return texts.unsure;
   }

@@ -1,6 +1,6 @@
 // All texts of the page, in English. Another language is another object of this type.
 import { draw_texts } from "./draw_texts";
-import { area, count, counted, degrees, duration, length, Maybe, percent, point, speed } from "./format";
+import { area, counted, degrees, duration, length, Maybe, percent, point, speed } from "./format";
 import { time_texts } from "./time_texts";
 import { understand_texts } from "./understand_texts";
 
@@ -10,20 +10,24 @@ export const texts = {
   no_robot: "robot",
 
   states: {
-    TRACKING: "Tracking",
-    AMBIGUOUS: "Ambiguous",
+    TRACKING: "Position known",
+    AMBIGUOUS: "Position unsure",
     SEARCHING: "Searching",
-    LOST: "Lost",
-    none: "No pose",
+    LOST: "Position lost",
+    none: "No position",
     absent: "No robot",
-    silent: "No pose",
+    silent: "No position",
     offline: "Offline",
   },
   reasons: {
-    none: "No localizer has reported a pose yet.",
-    absent: "The page hears no service of a robot and shows only a map.",
-    silent: "The page has received no pose for over ten seconds and shows the last one.",
-    offline: "The page receives nothing from the robot and shows its last state.",
+    TRACKING: "The laser fits the map.",
+    AMBIGUOUS: "Not sure where it is: the laser fits more than one place, or none.",
+    SEARCHING: "Looking for its place on the map. Drive it on, or set its position.",
+    LOST: "The laser contradicts this place. Set the position, or search the whole map.",
+    none: "The robot has not reported its position yet.",
+    absent: "No robot connected. Map only.",
+    silent: "No position for over ten seconds. The map shows the last one.",
+    offline: "Nothing arrives from the robot. The page shows its last state.",
   },
 
   views: {
@@ -41,17 +45,15 @@ export const texts = {
   stop_title: "Stops the robot at once and holds it (Space)",
   view_only: "View only",
   view_only_title: "Open the operator's link, which has a token, to command the robot.",
-  held: "The robot is held until it is released.",
-  held_with_goal: (goal: string) =>
-    `The robot is held. It drives to ${goal} as soon as it is released.`,
-  hand_stopped:
-    "The robot obeys neither goals nor driving by hand until the release. Its base does not confirm the stop.",
+  held: "Held. Release it to drive.",
+  held_with_goal: (goal: string) => `Held. When released, the robot drives to ${goal} at once.`,
+  hand_stopped: "Held, not confirmed by the drive unit. Release it to drive.",
   hand_stopped_with_goal: (goal: string) =>
-    `The robot drives to ${goal} as soon as it is released. Its base does not confirm the stop.`,
-  stop_sent: "Stop sent, the base has not confirmed. The robot may still move.",
-  stop_moves: "Stopping: the base still moves.",
+    `Held, not confirmed by the drive unit. When released, the robot drives to ${goal} at once.`,
+  stop_sent: "Stop sent, not confirmed by the drive unit. The robot may still move.",
+  stop_moves: "Stopping: the robot still moves.",
   stop_failed: (why: string) => `Stop was not accepted: ${why} The robot may still move.`,
-  release_asks: (goal: string) => `The robot drives to ${goal} at once when it is released.`,
+  release_asks: (goal: string) => `When released, the robot drives to ${goal} at once.`,
   release_and_drive: "Release and drive",
   release_and_cancel: "Cancel the goal, then release",
   keep_held: "Keep it held",
@@ -60,7 +62,7 @@ export const texts = {
   release: "Release",
   low_battery: "The battery is low.",
   reconnecting: "Connection lost. Trying again …",
-  wrong_token: "The token of this link does not match the service's: you can watch but not command.",
+  wrong_token: "This link is wrong or has expired. You can only watch.",
 
   controls: {
     zoom_in: "Zoom in",
@@ -75,30 +77,30 @@ export const texts = {
     names: "Names",
     drawing: "Drawn items",
     graph: "Nodes and branches",
-    trail: "Trail of stops",
-    loops: "Closed loops",
+    trail: "Trail of scan points",
+    loops: "Accepted loops",
     scan: "Laser scan",
-    local_map: "Voronoi diagram of the last stop",
+    local_map: "Voronoi diagram of the last scan point",
   },
   empty_map: {
     title: "No map yet",
     text: "The floor appears here as soon as the robot has mapped its first metres.",
     services: (names: string) => `Running services: ${names}.`,
-    no_services: "The page hears no service of a robot. “topogeo run” starts the services.",
+    no_services: "No robot connected. “topogeo run” starts one.",
   },
 
   now: {
     robot: "Robot",
     mode: "Mode",
-    modes: { mapping: "Mapping", localization: "Localization, the map stays as it is" },
+    modes: { mapping: "Mapping", localization: "Not mapping: the map stays as it is" },
     position: "Position",
     heading: "Heading",
-    precision: "Precision (1 sigma)",
+    precision: "Accuracy (1 sigma)",
     speed: "Speed",
     sigma: (a: Maybe, b: Maybe, theta: Maybe) => `${length(a)} × ${length(b)}, ${degrees(theta)}`,
     unknown: "unknown",
     health: "At a glance",
-    confidence: "Confidence of the pose",
+    confidence: "Confidence of the position",
     workers: "Search workers",
     workers_value: (busy: number, slots: number, workers: number) =>
       `${workers} at work, ${busy} of ${slots} slots busy`,
@@ -108,23 +110,35 @@ export const texts = {
     map_value: (nodes: Maybe, branches: Maybe, floor: Maybe) =>
       `${area(floor)}, ${counted(nodes, "node", "nodes")}, ` +
       counted(branches, "branch", "branches"),
-    loop: "Last closed loop",
-    loop_value: (stops_ago: number) =>
-      stops_ago === 0
-        ? "at this stop"
-        : `${count(stops_ago)} ${stops_ago === 1 ? "stop" : "stops"} ago`,
+    loop: "Last accepted loop",
+    loop_value: (points_ago: number) =>
+      points_ago === 0
+        ? "at this scan point"
+        : `${counted(points_ago, "scan point", "scan points")} ago`,
     no_loop: "none yet",
     battery: "Battery",
     battery_value: (volts: Maybe, low: boolean) =>
       `${typeof volts === "number" ? `${volts.toFixed(1)} V` : "–"}${low ? ", low" : ""}`,
-    devices: "Laser and base",
+    devices: "Laser and drive unit",
     laser: "Laser",
-    base: "Base",
-    not_heard: "not heard",
-    simulated: "True pose of the simulated robot",
+    base: "Drive unit",
+    base_states: {
+      ready: "ready",
+      moving: "moving",
+      offline: "not connected",
+      starting: "starting",
+      emergency_stop: "emergency stop",
+      halted: "held",
+      watchdog_expired: "stopped: no orders arrived",
+      bumped: "bumped",
+      joystick: "moved by its joystick",
+      motors_off: "motors off",
+    } as Record<string, string>,
+    not_heard: "not connected",
+    simulated: "True position of the simulated robot",
     simulated_hint:
-      "This pose is in the frame of the world file. Position and heading above are in the frame of the " +
-      "map, which begins at the robot's first stop, so the numbers differ even if the pose is right.",
+      "The world file's coordinates. Position and heading above are the map's, which begins where the " +
+      "robot started, so the numbers differ even if the position is right.",
     in_world: "In its world",
     collisions: (n: number) => counted(n, "collision", "collisions"),
     legend: "Legend and keys",
@@ -170,11 +184,11 @@ export const texts = {
       `Together ${length(meters)}, about ${duration(seconds)}`,
     explore: "Explore",
     explore_title: "Drives to all places that are not mapped yet",
-    return: "Return to base",
+    return: "Return home",
     underway: "Under way",
     idle: "The robot has no goal.",
     foreign: "The robot has a goal that was not sent from here.",
-    not_heard: "The page receives nothing from the robot, so its state is unknown.",
+    not_heard: "Nothing arrives from the robot, so its state is unknown.",
     to_explore: "places that are not mapped yet",
     to_foreign: "a goal that was not sent from here",
     exploring: "The robot explores by itself.",
@@ -188,7 +202,7 @@ export const texts = {
     resume: "Resume",
     cancel: "Cancel",
     spectator: "You are watching. With the operator's link you can send the robot from here.",
-    no_navigator: "No navigator is running, so the robot cannot be sent.",
+    no_navigator: "The robot cannot be sent: its navigator is not running.",
     drive: "Drive by hand",
     drive_hint:
       "Hold a button, W A S D or an arrow key. The robot stops when you let go, when you leave the " +
@@ -207,7 +221,7 @@ export const texts = {
   navigator: {
     idle: "Without a goal",
     driving: "Driving",
-    relocalizing: "Relocalizing",
+    relocalizing: "Finding its position",
     blocked: "Blocked",
     arrived: "Arrived",
     stopped: "Stopped",
@@ -215,25 +229,25 @@ export const texts = {
   halts: {
     no_route: "There is no route to the goal.",
     cancelled: "The goal was cancelled.",
-    pose_lost: "The pose is lost.",
+    pose_lost: "The position is lost.",
     no_map: "There is no map.",
     outside_map: "The robot is not on the map.",
     obstacle: "An obstacle that is not on the map is in the way.",
     no_scan: "The laser sends nothing.",
     sonar_silent: "The sonars hear nothing although an obstacle is near.",
-    base_not_ready: "The base takes no commands.",
-    base_stuck: "The base does not move.",
+    base_not_ready: "The drive unit takes no orders.",
+    base_stuck: "The drive unit does not move.",
   } as Record<string, string>,
   // Reasons that need no message of the navigator.
   whole_halts: {
-    waits_for_route: "The robot waits for a route.",
-    paused: "The robot is paused. “Resume” lets it drive on.",
-    no_odometry: "Stopped. The base sends no odometry.",
+    waits_for_route: "Planning the route.",
+    paused: "Paused. “Resume” lets it drive on.",
+    no_odometry: "Stopped. The drive unit does not report its motion.",
   } as Record<string, string>,
-  unsure: "The pose is uncertain. The robot relocalizes before it drives.",
+  unsure: "Position unsure. The robot finds its position before it drives.",
 
   correct: {
-    pose: "Set the pose",
+    pose: "Set the position",
     pose_hint: "Set the robot's position and heading on the map if they differ from those shown.",
     pose_start: "Set on the map",
     pose_drag:
@@ -248,18 +262,17 @@ export const texts = {
     apply: "Apply",
     cancel: "Cancel",
     while_mapping:
-      "The pose cannot be set or searched while the robot maps. First press “Leave the map as it is”, " +
-      "below.",
+      "While the robot maps, its position cannot be set or searched. First press “Stop mapping”, below.",
     search: "Search the whole map",
     search_hint:
-      "Discards the pose and compares the robot's scans with every place. Let the robot move a few " +
+      "Discards the position and compares the robot's scans with every place. Let the robot move a few " +
       "metres meanwhile: “Drive by hand” is in the view Send.",
     search_start: "Search",
     mode: "Map",
-    mode_hint: "While mapping, new stops change the map. Localization leaves it as it is.",
+    mode_hint: "While the robot maps, new scan points change the map. Otherwise the map stays as it is.",
     mode_now: { mapping: "The robot maps now.", localization: "The map stays as it is now." },
-    to_mapping: "Map from now on",
-    to_localization: "Leave the map as it is",
+    to_mapping: "Start mapping",
+    to_localization: "Stop mapping",
     merges: "Merge of maps",
     no_merges: "No merge of two maps is proposed.",
     merge: (robot: string, other: string) => `${robot} seems to be where ${other} has been.`,
@@ -270,7 +283,7 @@ export const texts = {
       matches: number;
       contradicted: Maybe;
     }) =>
-      `Confidence ${percent(m.confidence)}; ${m.matches} of ${m.stops} stops match over ` +
+      `Confidence ${percent(m.confidence)}; ${m.matches} of ${m.stops} scan points match over ` +
       `${length(m.distance_m)}; ${percent(m.contradicted)} of the common view contradicts.`,
     accept: "Make them one map",
     refuse: "Keep apart",
@@ -297,7 +310,7 @@ export const texts = {
     pause: "Pause",
     resume: "Resume",
     cancel: "Cancel",
-    return: "Base",
+    return: "Home",
     keypad: "Keypad",
     line: "State",
     no_names: "The map has no rooms or places yet.",
@@ -310,7 +323,7 @@ export const texts = {
     number: (name: string) => `${name}: enter a number.`,
   },
   done: {
-    stop: "The robot is stopped and held.",
+    stop: "The robot is held.",
     goal_held: "The robot is held. It drives there as soon as it is released.",
     release: "The robot may move again.",
     cancel: "The goal is cancelled.",
@@ -318,8 +331,8 @@ export const texts = {
     goals: (n: number) => `On the way to ${n} goals.`,
     appended: (name: string) => `${name} is added.`,
     explore: "The robot explores.",
-    return: "The robot returns to its base.",
-    pose: "The pose is set.",
+    return: "The robot returns home.",
+    pose: "The position is set.",
     search: "The whole map is searched.",
     mode: "The mode changes.",
     merge_accept: "The maps are joined.",

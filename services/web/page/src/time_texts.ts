@@ -7,11 +7,11 @@ export const time_texts = {
   film_hint: "Replays the drive that made the map: the robot, its scans, and the floor known until then.",
   film_note: "Replay of the drive, not the present robot",
   load: "Load the drive",
-  fetching: (stops: number, total: number) => `Fetched ${count(stops)} of ${count(total)} stops …`,
-  loading: (stops: number, total: number) => `Laid out ${count(stops)} of ${count(total)} stops …`,
-  no_drive: "The map has no stops, so there is no drive to play.",
+  fetching: (stops: number, total: number) => `Fetched ${count(stops)} of ${count(total)} scan points …`,
+  loading: (stops: number, total: number) => `Laid out ${count(stops)} of ${count(total)} scan points …`,
+  no_drive: "The map has no scan points, so there is no drive to play.",
   drive: (stops: number, seconds: number) =>
-    `${count(stops)} stops, ${duration(seconds)} without the pauses.`,
+    `${count(stops)} scan points, ${duration(seconds)} without the pauses.`,
   slider: "Moment of the drive",
   play: "Play",
   pause: "Pause",
@@ -19,7 +19,7 @@ export const time_texts = {
   times: (speed: number) => `${speed} ×`,
   close: "Back to now",
   moment: (stop: number, total: number, when: string) =>
-    `Stop ${count(stop)} of ${count(total)}, ${when}`,
+    `Scan point ${count(stop)} of ${count(total)}, ${when}`,
   snapshots: "Snapshots",
   no_snapshots: "There is no snapshot yet.",
   name: "Name",
@@ -27,7 +27,7 @@ export const time_texts = {
   make: "Make a snapshot",
   made: "The snapshot is made.",
   snapshot_facts: (when: string, stops: number, bytes: number) =>
-    `${when}, ${count(stops)} stops, ${(bytes / 1e6).toFixed(1)} MB`,
+    `${when}, ${count(stops)} scan points, ${(bytes / 1e6).toFixed(1)} MB`,
   restore: "Restore",
   restore_warning:
     "The snapshot replaces the present map, which is kept as another snapshot. Data mapped since is left " +
@@ -44,13 +44,13 @@ export const time_texts = {
   not_merged: (name: string) => `${name} was not merged.`,
   merged: (name: string) => `${name} joins the map`,
   merged_facts: (made: MergedMap) =>
-    `${count(made.joined)} stops of the smaller map join the larger one` +
+    `${count(made.joined)} scan points of the smaller map join the larger one` +
     (made.left_out > 0 ? `, ${count(made.left_out)} do not and are left out` : "") +
     `. Confidence ${(100 * made.confidence).toFixed(0)} %: ${count(made.agreeing)} of ` +
     `${count(made.searched)} places agree, within ${(100 * made.sigma_m).toFixed(0)} cm.`,
   merge_warning:
     "The merged map replaces the present map if you accept it; the present map is kept as a " +
-    "snapshot. A robot under way relocalizes in the merged map.",
+    "snapshot. A robot under way finds its position in the merged map.",
   merge_accept: "Make it the map",
   merge_refuse: "Discard it",
   merge_accepted: "The maps are merged.",
@@ -63,7 +63,7 @@ export const time_texts = {
   compare: "Compare",
   comparing: "Comparing …",
   hide: "Hide",
-  stops: "Stops",
+  stops: "Scan points",
   stops_value: (before: number, after: number) => `${count(before)} before, ${count(after)} after`,
   changes: { gone: "Gone", new: "New", seen: "Seen since", lost: "No longer known" },
   export: "Export",
@@ -78,11 +78,11 @@ export const time_texts = {
     zones: "zones, VDA 5050",
     rmf: "graph, for Open-RMF",
     graphml: "graph without loss, for graph programs",
-    g2o: "pose graph of the stops",
+    g2o: "pose graph of the scan points",
     svg: "picture",
     png: "picture",
-    tum: "corrected pose of each scan",
-    carmen: "scans of the stops as a log",
+    tum: "corrected position of each scan",
+    carmen: "scans of the scan points as a log",
     pb: "the whole map",
   } as Record<string, string>,
 };

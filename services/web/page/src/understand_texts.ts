@@ -4,13 +4,13 @@ import { count, degrees, length, Maybe, percent } from "./format";
 export const understand_texts = {
   why: "Why this state",
   loops: "Loops",
-  loops_hint: "Places to which the robot may have come back. Choose one to see both stops.",
+  loops_hint: "Places to which the robot may have come back. Choose one to see both scan points.",
   loops_count: (accepted: number, rejected: number) =>
     `${count(accepted)} accepted, ${count(rejected)} rejected`,
   no_loops: "The robot has not come back to an earlier place yet, so there is no loop.",
   filters: { all: "All", accepted: "Accepted", rejected: "Rejected" },
   filter_label: "Which loops",
-  loop: (later: number, earlier: number) => `Stop ${later} at stop ${earlier}`,
+  loop: (later: number, earlier: number) => `Scan point ${later} at scan point ${earlier}`,
   outcomes: {
     accepted: "Accepted",
     gate: "Match not accepted",
@@ -19,20 +19,22 @@ export const understand_texts = {
     outvoted: "Outvoted later",
   },
   sources: {
-    prediction: "Compared because the poses predict this loop.",
+    prediction: "Compared because the positions predict this loop.",
     place: "Compared because the last metres look like that place.",
     window: "Compared because the last metres, matched as a whole, look like that place.",
   } as Record<string, string>,
+  accepted: "Accepted.",
+  not_kept: "The map file keeps no evidence of it.",
   // Keyed by the localizer's explanation of a loop.
   meanings: {
-    "nothing in common": "The two stops hardly see the same part of the floor.",
-    "little overlap": "The two stops see too little of the same floor.",
-    "few inliers": "Too few points of the later stop lie on walls of the earlier one.",
+    "nothing in common": "The two scan points hardly see the same part of the floor.",
+    "little overlap": "The two scan points see too little of the same floor.",
+    "few inliers": "Too few points of the later scan lie on walls of the earlier one.",
     doubtful: "No measure of the match fails alone, but together they leave too much doubt.",
-    "far from the prediction": "The match lies farther from the predicted pose than its uncertainty allows.",
+    "far from the prediction": "The match lies farther from the predicted position than its uncertainty allows.",
     "second solution": "Another solution of the match fits nearly as well.",
     unconfirmed: "The loop would move the robot far, and no other loop agrees with it yet.",
-    "no consistent closing": "No poses along the loop fit what was seen on it.",
+    "no consistent closing": "No positions along the loop fit what was seen on it.",
     outvoted: "The loop was accepted at first, but the rest of the map contradicted it.",
   } as Record<string, string>,
   loop_facts: (
@@ -43,29 +45,29 @@ export const understand_texts = {
     accepted: boolean,
   ) =>
     `Fitness ${percent(fitness)}, estimated ${percent(probability)} probable; ` +
-    `${accepted ? "moves" : "would move"} the stop by ${length(moved)}, ${degrees(turned)}.`,
+    `${accepted ? "moves" : "would move"} the scan point by ${length(moved)}, ${degrees(turned)}.`,
   loading_maps: "Fetching both local maps …",
-  key_earlier: "earlier stop",
-  key_later: "later stop, as matched",
-  key_predicted: "later stop, as predicted by the poses",
+  key_earlier: "earlier scan point",
+  key_later: "later scan point, as matched",
+  key_predicted: "later scan point, as predicted",
   fitness: "Fitness",
   probability: "Estimated probability that it is right",
   probable_but_rejected:
     "The match is probably right. The reason above rejects the loop all the same, because a wrong loop " +
     "bends the map.",
   share: (value: Maybe) => (typeof value === "number" ? percent(value) : "not kept"),
-  overlap: "Part of the later stop's view in the earlier one's view",
+  overlap: "Part of the later view in the earlier one",
   near: "Part of the common view within 10 cm of the earlier walls",
-  moved: "Match and poses differ by",
+  moved: "Match and prediction differ by",
   none: "nothing",
   moved_value: (meters: Maybe, turn: Maybe) =>
     typeof meters === "number" ? `${length(meters)}, ${degrees(turn)}` : "not kept",
-  corrected: "Shift of the stop by the loop",
+  corrected: "Shift of the scan point by the loop",
   search: "Search",
   search_hint:
-    "Shows the localizer's present search: the rectangle that it searches, the ellipse where the " +
-    "poses expect the robot (2 sigma), and the results.",
-  no_search: "The localizer has reported no search yet.",
+    "Shows the present search: the rectangle that is searched, the ellipse where the " +
+    "robot is expected (2 sigma), and the results.",
+  no_search: "There was no search yet.",
   search_map: (places: number, running: boolean) =>
     running && places === 0
       ? "The whole map is searched …"
@@ -79,14 +81,14 @@ export const understand_texts = {
     (old ? " The next search begins when the robot has moved on a little." : ""),
   more: (n: number) => `${count(n)} earlier ones are not listed.`,
   workers: "Search workers",
-  no_workers: "No worker is heard: the localizer searches in its own process.",
+  no_workers: "No worker is connected: the localizer searches by itself.",
   load: "Load",
   worker_facts: (slots: number, done: number, rate: string, failures: number) =>
     `${slots} ${slots === 1 ? "slot" : "slots"}, ${count(done)} tasks done, ${rate}, ` +
     `${count(failures)} failed`,
   draining: "finishes its tasks, then ends",
   services: "Services",
-  no_services: "The page hears no service.",
+  no_services: "No service is connected.",
   service_states: {
     starting: "starting",
     waiting: "waiting",
@@ -97,6 +99,7 @@ export const understand_texts = {
     lost: "lost: reports nothing",
   } as Record<string, string>,
   waits_for: (what: string) => `Waits for ${what}.`,
+  technical: "Technical details",
   input: (topic: string, rate: string) => `${topic} ${rate}`,
   faults: (n: number) => `${count(n)} ${n === 1 ? "fault" : "faults"}`,
   last_error: (text: string) => `Last: ${text}`,

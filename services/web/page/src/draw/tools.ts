@@ -84,8 +84,8 @@ function make_place(
   if (tool === "place") {
     return { name: free_name(drawing, "places", texts.draw.kinds.place), x_m, y_m };
   }
-  // "Return to base" looks for this name.
-  const name = name_is_free(drawing, "places", "base") ? "base" : free_name(drawing, "places", "base");
+  // The service looks for this name when the robot returns home.
+  const name = name_is_free(drawing, "places", "home") ? "home" : free_name(drawing, "places", "home");
   return { name, x_m, y_m, heading_rad: to_mm(heading_rad) };
 }
 

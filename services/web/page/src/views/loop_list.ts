@@ -108,7 +108,7 @@ export class LoopList {
       facts,
       measured
         ? words.loop_facts(fitness, probability, correction_m, correction_rad, loop.accepted)
-        : "",
+        : words.not_kept,
     );
     set_attribute(element, "data-level", loop.accepted ? "good" : "bad");
   }
@@ -116,6 +116,7 @@ export class LoopList {
 
 /** Why it was rejected, as a sentence; or the outcome if there is no explanation. */
 function reason_of(loop: Loop): string {
+  if (loop.accepted && !loop.explanation) return words.accepted;
   const outcome = loop.explanation || words.outcomes[loop.outcome] || loop.outcome;
   return meaning_of(loop.explanation) || sentence(outcome);
 }

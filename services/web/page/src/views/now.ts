@@ -89,7 +89,7 @@ export class NowView implements ViewPart {
     this.show_device(
       words.base,
       "base",
-      base && base.state.replace("_", " ") + because(base.reason),
+      base && (words.base_states[base.state] ?? base.state) + because(base.reason),
     );
     const truth = channels.value("truth");
     show(this.truth_section, truth !== null);

@@ -33,8 +33,13 @@ export class ServiceList {
           h("h3"),
           h("span", { class: "badge" }),
           h("p"),
-          h("p", { class: "quiet" }),
           h("p", { class: "bad-text" }),
+          h(
+            "details",
+            { class: "technical" },
+            h("summary", {}, words.technical),
+            h("p", { class: "quiet" }),
+          ),
         ),
       show_service,
     );
@@ -50,7 +55,7 @@ export class ServiceList {
 }
 
 function show_service(element: HTMLElement, service: Service): void {
-  const [name, state, message, facts, faults] = element.children as unknown as HTMLElement[];
+  const [name, state, message, faults, technical] = element.children as unknown as HTMLElement[];
   set_text(name, service.service);
   set_text(state, words.service_states[service.state] ?? service.state);
   set_attribute(element, "data-level", levelClasses[service.state] ?? "plain");
@@ -62,7 +67,7 @@ function show_service(element: HTMLElement, service: Service): void {
   if (service.input) parts.push(words.input(service.input, format.rate(service.input_rate_per_s)));
   if (service.memory_bytes) parts.push(format.memory(service.memory_bytes));
   if (service.cpu_s) parts.push(`CPU ${format.duration(service.cpu_s)}`);
-  set_text(facts, parts.join(" · "));
+  set_text(technical.lastElementChild as HTMLElement, parts.join(" · "));
   const last = service.last_error ? ` ${words.last_error(sentence(service.last_error))}` : "";
   set_text(faults, service.faults > 0 ? `${words.faults(service.faults)}.${last}` : "");
   show(faults, service.faults > 0);
