@@ -181,6 +181,27 @@ test("while it explores, what is left is that to the next point", async () => {
   await end(opened);
 });
 
+test("a refused goal is named with what is in its way, and another one is offered only if it is reached", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await page.click("#tab-send");
+  service.refusal = { found: false, goal: 0, message: "'no-go 1' and 'one-way 1' are in the way" };
+  await page.getByRole("button", { name: "right room", exact: true }).click();
+  await text(page, ".card [role=status]", /^No route to right room: 'no-go 1' and 'one-way 1' are in the way\.$/);
+  const nearest = page.getByRole("button", { name: "Go to the nearest point that can be reached" });
+  assert.equal(await nearest.count(), 0);
+  assert.equal(await page.locator("#go").isDisabled(), true);
+  const message = "the goal (2.00, 0.00) is in the no-go zone 'stairs'";
+  service.refusal = { found: false, goal: 0, message, nearest_reachable: { x_m: 1, y_m: 1 } };
+  await page.getByRole("button", { name: "right room", exact: true }).click();
+  await text(page, ".card [role=status]", /^No route to right room: it is in the no-go zone 'stairs'\.$/);
+  service.refusal = null;
+  await nearest.click();
+  await text(page, ".card h3", /Point 1\.00, 1\.00 m/);
+  await wait_for("Go", () => page.locator("#go").isEnabled());
+  await end(opened);
+});
+
 const kBase = { reason: "", battery_v: 12, battery_low: false, commands_taken: true, stands: true };
 
 /** Shows the banners, which the stub hides so that the map keeps its size. */

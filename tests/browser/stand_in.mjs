@@ -18,6 +18,7 @@ export class StandIn {
   floors = [];
   exploring = false;
   previews = 0; // number of requested previews
+  refusal = null; // answer to previews
   ops = []; // of messages that pages sent
   messages = []; // the same messages, whole
   orders = []; // sent by pages by POST and only recorded
@@ -130,6 +131,7 @@ export class StandIn {
         return json(200, { shapes: room_shapes(body) });
       case "/api/preview":
         ++this.previews;
+        if (this.refusal) return json(200, this.refusal);
         return json(200, { found: true, length_m: 3, time_s: 9, min_clearance_m: 1, points_m: [0, 0, 3, 0] });
       case "/api/goal":
         this.goal = body;

@@ -41,6 +41,11 @@ bool along(const Eigen::Vector2d& heading, const Eigen::Vector2d& direction) {
 
 }  // namespace
 
+bool may_drive(const DrawnZone& one_way, const Eigen::Vector2d& direction_m) {
+  const auto [sin, cos] = geometry::sincos(one_way.value);
+  return along({cos, sin}, direction_m);
+}
+
 DrivingRules::DrivingRules(const GridFrame& frame, std::span<const DrawnZone> zones,
                            std::span<const DrawnLine> lines)
     : lines_(lines.begin(), lines.end()) {

@@ -121,7 +121,13 @@ HybridRoute plan_on_graph(const PlanningMaps& maps, const Eigen::Vector2d& from_
     scene.zones = maps.hybrid->space().rules().zones();
     scene.lines = maps.hybrid->space().rules().lines();
   }
-  return along_branches(plan(*maps.graph, from_m, to_m, config, scene), from_m, to_m);
+  HybridRoute route = along_branches(plan(*maps.graph, from_m, to_m, config, scene), from_m, to_m);
+  // The branch nearest to the goal may be out of reach itself.
+  if (const auto nearest_m = route.nearest_reachable_m;
+      nearest_m && !plan(*maps.graph, from_m, *nearest_m, config, scene).found()) {
+    route.nearest_reachable_m.reset();
+  }
+  return route;
 }
 
 Closures closures_of(const HybridMap& map, std::span<const Eigen::Vector2d> filled_m) {

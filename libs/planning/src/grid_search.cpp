@@ -242,4 +242,26 @@ std::optional<CellPath> path_to_nearest(const SearchWindow& window, const Cell& 
   return reached ? search.path_to(window.cell_at(*reached)) : std::nullopt;
 }
 
+std::vector<bool> reached_cells(const SearchWindow& window, const GridFrame& frame,
+                                const Cell& from) {
+  std::vector<bool> reached(frame.size(), false);
+  if (!window.open(from)) return reached;
+  const CellGraph graph(window);
+  reached[frame.index(from)] = true;
+  std::vector<std::uint32_t> edge = {window.index(from)};
+  while (!edge.empty()) {
+    const std::uint32_t vertex = edge.back();
+    edge.pop_back();
+    for (std::uint32_t left = graph.neighbours(vertex); left != 0; left &= left - 1) {
+      const std::uint32_t next =
+          graph.neighbour(vertex, static_cast<std::size_t>(__builtin_ctz(left)));
+      const std::size_t index = frame.index(window.cell_at(next));
+      if (reached[index]) continue;
+      reached[index] = true;
+      edge.push_back(next);
+    }
+  }
+  return reached;
+}
+
 }  // namespace topogeo::planning

@@ -9,6 +9,7 @@
 #include "topogeo/planning/motion_primitives.hpp"
 
 #include "closed_cells.hpp"
+#include "drawn_obstructions.hpp"
 #include "goal_target.hpp"
 #include "route_ends.hpp"
 #include "route_query.hpp"
@@ -38,6 +39,19 @@ std::vector<ZoneId> zones_along(const HybridMap& map, const std::vector<Cell>& c
     if (zones.empty() || zones.back() != zone) zones.push_back(zone);
   }
   return zones;
+}
+
+/// Why no path leads from one open cell to another, if that is known.
+std::optional<std::string> why_unreachable(const HybridMap& map, const Closures& closed,
+                                           const ClosedCells& cells, const Cell& from,
+                                           const Cell& to) {
+  const bool parts_closed = !closed.nodes.empty() || !closed.edges.empty();
+  if (!parts_closed) {
+    const auto items = drawn_items_between(map.space(), cells, from, to);
+    if (!items.empty()) return in_the_way(items);
+  }
+  if (!parts_closed && cells.empty()) return std::nullopt;
+  return "no path leads there past what is closed now";
 }
 
 }  // namespace
@@ -89,8 +103,7 @@ HybridRoute HybridPlanner::plan(const Eigen::Vector2d& from_m, const Target& to,
     std::vector<ZoneId> tried;
     for (auto start = start_cell; start;
          start = ends.start_apart(map_, from_m, config_.start_snap_m, tried)) {
-      route = query.run(*start, *goal_cell);
-      if (query.needs_rules(route.cells)) route = query.run_by_rules(*start, *goal_cell);
+      route = query.obedient(*start, *goal_cell);
       if (!route.cells.empty()) break;
       tried.push_back(map_.zone_of(*start));
     }
@@ -102,16 +115,17 @@ HybridRoute HybridPlanner::plan(const Eigen::Vector2d& from_m, const Target& to,
       route.parts = {{PlannedOn::kGrid, 0, 0}};
       return route;
     }
-    route = no_route(RouteStatus::kUnreachable,
-                     "no path leads from " + shown(from_m) + " to " + shown(goal.point_m));
-    if (!closed.nodes.empty() || !closed.edges.empty() || !cells.empty()) {
-      route.reason += " with the parts that are closed now";
-    } else if (map_.space().rules().guides()) {
-      route.reason += " in the direction of the one-way zones";
-    }
+    route = no_route(
+        RouteStatus::kUnreachable,
+        why_unreachable(map_, closed, cells, *start_cell, *goal_cell)
+            .value_or("no path leads from " + shown(from_m) + " to " + shown(goal.point_m)));
   }
   const std::vector<bool> reachable = query.within_reach(*start_cell);
-  route.nearest_reachable_m = nearest_cell_m(map_.frame(), goal.point_m, reachable);
+  const auto nearest_m = nearest_cell_m(map_.frame(), goal.point_m, reachable);
+  if (nearest_m) {
+    const Cell nearest = map_.frame().cell_of(*nearest_m).value();
+    if (!query.obedient(*start_cell, nearest).cells.empty()) route.nearest_reachable_m = nearest_m;
+  }
   return route;
 }
 

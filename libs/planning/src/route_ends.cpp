@@ -8,6 +8,7 @@
 #include "topogeo/planning/motion_primitives.hpp"
 #include "topogeo/support/format.hpp"
 
+#include "drawn_obstructions.hpp"
 #include "nearest_in_sight.hpp"
 
 namespace topogeo::planning {
@@ -38,7 +39,10 @@ std::optional<Cell> EndFinder::find(const std::string& what, const Eigen::Vector
     return near;
   }
   const CellState state = space_.grid().at(*cell);
-  if (state == CellState::kUnknown) {
+  const auto drawn = drawn_obstruction(space_, point_m);
+  if (drawn && state != CellState::kUnknown) {
+    failure = no_route(occupied, what + " " + *drawn);
+  } else if (state == CellState::kUnknown) {
     failure = no_route(outside, what + " is in unknown space");
   } else if (state == CellState::kOccupied) {
     failure = no_route(occupied, what + " is in an obstacle");

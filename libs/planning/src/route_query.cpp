@@ -227,6 +227,22 @@ bool RouteQuery::needs_rules(std::span<const Cell> cells) const {
          });
 }
 
+HybridRoute RouteQuery::obedient(const Cell& from, const Cell& to) const {
+  HybridRoute route = run(from, to);
+  return needs_rules(route.cells) ? run_by_rules(from, to) : route;
+}
+
+std::vector<bool> RouteQuery::within_reach(const Cell& from) const {
+  std::vector<bool> reached = network_.within_reach(from);
+  if (!map_.space().rules().guides()) return reached;
+  SearchWindow window(map_.space(), whole(map_.frame()), SearchWindow::Rules::kObeyed);
+  cells_.close_in(window);
+  close_parts(window, map_.zone_of(from));
+  const std::vector<bool> by_rules = reached_cells(window, map_.frame(), from);
+  for (std::size_t i = 0; i < reached.size(); ++i) reached[i] = reached[i] && by_rules[i];
+  return reached;
+}
+
 HybridRoute RouteQuery::run_by_rules(const Cell& from, const Cell& to) const {
   HybridRoute route;
   SearchWindow window(map_.space(), whole(map_.frame()), SearchWindow::Rules::kObeyed);

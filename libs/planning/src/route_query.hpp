@@ -27,10 +27,11 @@ class RouteQuery {
   /// Like run(), by one search of the whole grid that obeys the rules of zones.
   [[nodiscard]] HybridRoute run_by_rules(const Cell& from, const Cell& to) const;
 
-  /// Like OpenNetwork::within_reach.
-  [[nodiscard]] std::vector<bool> within_reach(const Cell& from) const {
-    return network_.within_reach(from);
-  }
+  /// The cheapest route that obeys all rules; no cells if there is none.
+  [[nodiscard]] HybridRoute obedient(const Cell& from, const Cell& to) const;
+
+  /// Like OpenNetwork::within_reach, in the directions that one-way zones allow.
+  [[nodiscard]] std::vector<bool> within_reach(const Cell& from) const;
 
   /// Like `straighten`, around closed parts.
   [[nodiscard]] std::vector<Eigen::Vector2d> straightened(std::span<const Cell> cells,

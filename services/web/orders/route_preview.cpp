@@ -41,10 +41,11 @@ Answer preview_route(const planning::PlanningMaps& maps, const Eigen::Vector2d& 
   double length_m = 0.0;
   double clearance_m = std::numeric_limits<double>::infinity();
   Eigen::Vector2d start_m = from_m;
-  for (const Eigen::Vector2d& goal_m : goals_m) {
+  for (std::size_t k = 0; k < goals_m.size(); ++k) {
+    const Eigen::Vector2d& goal_m = goals_m[k];
     const planning::HybridRoute route = planning::plan_to_goal(maps, start_m, goal_m, {}, config);
     if (!route.found()) {
-      Json json = {{"found", false}, {"message", route.reason}};
+      Json json = {{"found", false}, {"message", route.reason}, {"goal", k}};
       if (const auto& nearest_m = route.nearest_reachable_m) {
         json["nearest_reachable"] = {{"x_m", rounded(nearest_m->x())},
                                      {"y_m", rounded(nearest_m->y())}};

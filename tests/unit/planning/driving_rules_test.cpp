@@ -121,6 +121,7 @@ TEST(DrivingRules, NoRobotEntersANoGoZone) {
   EXPECT_GT(round.length_m, 12.0) << "below the block";
   const HybridRoute in = HybridPlanner(map).plan({2.5, 5.5}, Eigen::Vector2d(6.0, 5.5));
   EXPECT_EQ(in.status, RouteStatus::kGoalOccupied);
+  EXPECT_THAT(in.reason, HasSubstr("is in the no-go zone 'wet'"));
   const FreeSpace wide(grid_of_text(std::vector<std::string>(9, ".........")), {1.0, false}, zones);
   EXPECT_FALSE(wide.passable(Cell{5, 5}));
   EXPECT_FALSE(wide.passable(Cell{5, 4}));
@@ -155,7 +156,52 @@ TEST(DrivingRules, AOneWayZoneIsDrivenInItsDirectionAlone) {
   const HybridRoute none =
       HybridPlanner(map_with(east, line)).plan({11.5, 5.5}, Eigen::Vector2d(1.5, 5.5));
   EXPECT_EQ(none.status, RouteStatus::kUnreachable);
-  EXPECT_THAT(none.reason, HasSubstr("one-way"));
+  EXPECT_EQ(none.reason, "'aisle' is in the way");
+}
+
+// One corridor, five cells high.
+const std::vector<std::string> kCorridor = {"##################", "#................#",
+                                            "#................#", "#................#",
+                                            "#................#", "#................#",
+                                            "##################"};
+
+TEST(DrivingRules, AReasonNamesTheDrawnItemsThatSeparateStartAndGoal) {
+  const std::vector<DrawnZone> zones = {
+      {"stairs", ruled_box(4, 1, 6, 6), ZoneKind::kNoGo, 0.0},
+      {"far away", ruled_box(1, 1, 2, 2), ZoneKind::kNoGo, 0.0},
+      {"aisle", ruled_box(10, 1, 12, 6), ZoneKind::kOneWay, kHalfTurn_rad}};
+  const std::vector<DrawnLine> wall = {{LineKind::kWall, {{8.5, 0.5}, {8.5, 6.5}}, ""}};
+  const InflationConfig inflation{0.0, false};
+  const auto reason = [&](const std::vector<DrawnZone>& drawn, const std::vector<DrawnLine>& lines,
+                          const Eigen::Vector2d& goal_m) {
+    FreeSpace space(grid_of_text(kCorridor), inflation, drawn, lines);
+    ZoneMap found = zones_by_width(space);
+    const HybridMap map(std::move(space), std::move(found));
+    const HybridRoute route = HybridPlanner(map).plan({2.5, 3.5}, goal_m);
+    EXPECT_EQ(route.status, RouteStatus::kUnreachable);
+    return route.reason;
+  };
+  EXPECT_EQ(reason(zones, {}, {15.5, 3.5}), "'stairs' and 'aisle' are in the way");
+  EXPECT_EQ(reason({zones[0]}, wall, {15.5, 3.5}), "'stairs' and a drawn wall are in the way");
+  EXPECT_EQ(reason({}, wall, {15.5, 3.5}), "a drawn wall is in the way");
+  EXPECT_EQ(reason(zones, wall, {7.5, 3.5}), "'stairs' is in the way");
+}
+
+TEST(DrivingRules, TheNearestReachablePlaceIsReachedByTheRules) {
+  // The goal lies beyond a one-way zone that leads towards the start.
+  const std::vector<DrawnZone> zones = {
+      {"aisle", ruled_box(8, 1, 10, 6), ZoneKind::kOneWay, kHalfTurn_rad}};
+  FreeSpace space(grid_of_text(kCorridor), {0.0, false}, zones);
+  ZoneMap found = zones_by_width(space);
+  const HybridMap map(std::move(space), std::move(found));
+  const HybridPlanner planner(map);
+  const Eigen::Vector2d start_m(2.5, 3.5);
+  const Eigen::Vector2d goal_m(15.5, 3.5);
+  const HybridRoute none = planner.plan(start_m, goal_m);
+  ASSERT_EQ(none.status, RouteStatus::kUnreachable) << none.reason;
+  ASSERT_TRUE(none.nearest_reachable_m);
+  EXPECT_LT(none.nearest_reachable_m->x(), 9.0) << "before the zone, or at its edge";
+  EXPECT_TRUE(planner.plan(start_m, *none.nearest_reachable_m).found());
 }
 
 TEST(DrivingRules, RoutesAreTheCheapestOfAllThatAreAllowed) {

@@ -51,6 +51,7 @@ export interface Preview extends Partial<Route> {
   found: boolean;
   time_s?: number | null;
   min_clearance_m?: number | null;
+  goal?: number; // index of the goal without a route
 }
 
 export interface Goals {

@@ -173,6 +173,8 @@ export const texts = {
       `${length(meters)}, about ${duration(seconds)}` +
       (typeof clearance === "number" ? `, narrowest ${length(2 * clearance)} wide` : ""),
     no_route: "There is no route.",
+    no_route_to: (name: string, reason: string) => `No route to ${name}: ${reason}.`,
+    it: "it ",
     nearest: "Go to the nearest point that can be reached",
     go: "Go",
     go_all: (n: number) => `Go to all ${n} in this order`,

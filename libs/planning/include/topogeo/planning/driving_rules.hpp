@@ -15,6 +15,9 @@
 
 namespace topogeo::planning {
 
+/// Whether a one-way zone allows driving straight in this direction of the map frame.
+bool may_drive(const DrawnZone& one_way, const Eigen::Vector2d& direction_m);
+
 class DrivingRules {
  public:
   /// No rules.

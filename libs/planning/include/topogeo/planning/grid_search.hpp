@@ -111,4 +111,9 @@ std::vector<std::optional<CellPath>> shortest_paths(const SearchWindow& window, 
 std::optional<CellPath> path_to_nearest(const SearchWindow& window, const Cell& from,
                                         std::span<const Cell> to);
 
+/// The cells that a path over the window leads to, `from` included; one value for each cell of the
+/// grid.
+std::vector<bool> reached_cells(const SearchWindow& window, const GridFrame& frame,
+                                const Cell& from);
+
 }  // namespace topogeo::planning

@@ -188,7 +188,7 @@ export class SendView implements ViewPart {
         ? several
           ? words.list_length(answer.length_m, answer.time_s)
           : words.route(answer.length_m, answer.time_s, answer.min_clearance_m)
-        : answer.message || words.no_route;
+        : this.why_not(answer);
     const ready = answer?.found === true;
     const go = button(
       several ? words.go_all(this.choices.length) : words.go,
@@ -211,6 +211,14 @@ export class SendView implements ViewPart {
       ),
       this.adding ? h("p", { class: "quiet" }, words.hint) : null,
     );
+  }
+
+  // An answer to a list names the goal that fails.
+  private why_not(answer: Preview): string {
+    if (answer.goal === undefined || !answer.message) return answer.message || words.no_route;
+    const failed = this.choices[answer.goal] ?? this.choices[0];
+    const reason = answer.message.replace(/^the goal \([^)]*\) /, words.it);
+    return words.no_route_to(failed.text, reason);
   }
 
   private chosen_list(): HTMLElement {
