@@ -22,6 +22,15 @@ bool has_echo(const SonarReading& reading) {
   return reading.range_m > scan::Scan::kNoReturn;
 }
 
+std::string describe_contact(bool is_drawn, double free_m, bool ahead) {
+  constexpr double kTouches_m = 0.01;
+  const char* what = is_drawn ? "a drawn wall or no-go zone" : "something";
+  if (free_m < kTouches_m) {
+    return fmt::format("{} is right {} the body", what, ahead ? "in front of" : "behind");
+  }
+  return fmt::format("{} is {:.2f} m {} the body", what, free_m, ahead ? "ahead of" : "behind");
+}
+
 }  // namespace
 
 CollisionGuard::CollisionGuard(const GuardConfig& config) : config_(config) {
@@ -265,9 +274,7 @@ GuardVerdict CollisionGuard::judge_by_distances(const geometry::Velocity& wanted
     verdict.allowed = {};
     verdict.reason = HaltReason::kObstacle;
   }
-  verdict.message =
-      fmt::format("{} is {:.2f} m ahead of the body",
-                  is_drawn ? "a drawn wall or no-go zone" : "something", arc.length_m);
+  verdict.message = describe_contact(is_drawn, arc.length_m, wanted.linear_m_per_s > 0.0);
   return verdict;
 }
 

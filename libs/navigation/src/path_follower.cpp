@@ -6,6 +6,7 @@
 
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/navigation/arc_sweep.hpp"
+#include "topogeo/navigation/drive_time.hpp"
 
 namespace topogeo::navigation {
 namespace {
@@ -63,8 +64,10 @@ std::size_t PathFollower::leg_end(std::size_t from) const {
 }
 
 void PathFollower::follow(std::vector<planning::PathSample> path,
-                          std::optional<double> final_heading_rad) {
+                          std::optional<double> final_heading_rad,
+                          std::span<const double> limits_m_per_s) {
   path_ = std::move(path);
+  rest_times_s_ = rest_times_s(path_, limits_m_per_s, config_);
   final_heading_rad_ = final_heading_rad;
   active_ = true;
   progress_m_ = 0.0;
@@ -95,6 +98,15 @@ void PathFollower::forget() {
   active_ = false;
   path_.clear();
   phase_ = Phase::kDone;
+}
+
+double PathFollower::rest_s() const {
+  if (path_.size() < 2) return 0.0;
+  const std::size_t next = std::min(segment_ + 1, path_.size() - 1);
+  const double piece_m = path_[next].distance_m - path_[segment_].distance_m;
+  const double share =
+      piece_m > 0.0 ? std::clamp((path_[next].distance_m - progress_m_) / piece_m, 0.0, 1.0) : 0.0;
+  return rest_times_s_[next] + share * (rest_times_s_[segment_] - rest_times_s_[next]);
 }
 
 double PathFollower::rest_m() const {
@@ -285,11 +297,7 @@ FollowerStep PathFollower::step(const geometry::Pose2& T_map_robot, std::int64_t
   result.done = phase_ == Phase::kDone;
   result.rest_m = rest_m();
   result.off_m = off_m_;
-  result.rest_s = result.rest_m / config_.speed_m_per_s;
-  if (!result.done) result.rest_s += config_.speed_m_per_s / config_.acceleration_m_per_s2;
-  for (std::size_t i = segment_ + 1; i < path_.size(); ++i) {
-    result.rest_s += std::fabs(path_[i].turn_on_spot_rad) / config_.turn_rad_per_s;
-  }
+  result.rest_s = rest_s();
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "topogeo/navigation/arc_sweep.hpp"
+#include "topogeo/navigation/drive_time.hpp"
 #include "topogeo/support/format.hpp"
 
 #include "elapsed.hpp"
@@ -59,7 +60,8 @@ bool RouteDriver::find_path(const Scene& scene) {
   if (local.status == planning::DetourStatus::kFound) ++detours_.all;
   if (local.on_branches) ++detours_.on_branches;
   if (local.on_virtual) ++detours_.on_virtual;
-  follower_.follow(std::move(local.path), scene.route.route().heading_rad);
+  const std::vector<double> limits = limits_along(*scene.route.space(), local.path);
+  follower_.follow(std::move(local.path), scene.route.route().heading_rad, limits);
   needs_path_ = false;
   doubts_route_ = false;
   return true;

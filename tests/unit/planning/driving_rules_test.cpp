@@ -160,10 +160,9 @@ TEST(DrivingRules, AOneWayZoneIsDrivenInItsDirectionAlone) {
 }
 
 // One corridor, five cells high.
-const std::vector<std::string> kCorridor = {"##################", "#................#",
-                                            "#................#", "#................#",
-                                            "#................#", "#................#",
-                                            "##################"};
+const std::vector<std::string> kCorridor = {
+    "##################", "#................#", "#................#", "#................#",
+    "#................#", "#................#", "##################"};
 
 TEST(DrivingRules, AReasonNamesTheDrawnItemsThatSeparateStartAndGoal) {
   const std::vector<DrawnZone> zones = {

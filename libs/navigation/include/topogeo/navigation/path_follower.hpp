@@ -43,8 +43,10 @@ class PathFollower {
   explicit PathFollower(const FollowerConfig& config);
 
   /// Switches to another path, even while moving. With an empty `path` there is only the final
-  /// heading to turn to.
-  void follow(std::vector<planning::PathSample> path, std::optional<double> final_heading_rad);
+  /// heading to turn to. `limits_m_per_s`: speed limits at the samples, for the estimate of the
+  /// time; empty: none.
+  void follow(std::vector<planning::PathSample> path, std::optional<double> final_heading_rad,
+              std::span<const double> limits_m_per_s = {});
   void forget();
   [[nodiscard]] bool has_path() const { return active_; }
 
@@ -74,6 +76,7 @@ class PathFollower {
     double to_go_m;
   };
 
+  [[nodiscard]] double rest_s() const;
   [[nodiscard]] std::size_t leg_end(std::size_t from) const;
   [[nodiscard]] Place locate(const geometry::Pose2& T_map_robot);
   [[nodiscard]] double curve_speed(double to_go_m) const;
@@ -89,6 +92,7 @@ class PathFollower {
 
   FollowerConfig config_;
   std::vector<planning::PathSample> path_;
+  std::vector<double> rest_times_s_;  // from each sample to the end
   std::optional<double> final_heading_rad_;
   bool active_ = false;
   Phase phase_ = Phase::kDone;
