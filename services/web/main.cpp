@@ -32,7 +32,8 @@ int main(int argc, char** argv) {
         service::Service service(service::with_map_of(setup, options.map_robot));
         const std::filesystem::path memory =
             options.memory.empty() ? service::OperatorStop::place_of(setup) : options.memory;
-        const web::WebService web(service, config, web::page_files(options), memory);
+        const web::WebService web(service, config, web::page_files(options), memory,
+                                  options.audit_log);
         std::cout << web::links(config, web.port(), options.link_file) << std::flush;
         service.run();
       });

@@ -92,7 +92,7 @@ std::span<const ServiceRoute> service_routes() {
          web.history_.export_file(request.path.substr(kExportPath.size()), respond);
        }},
 
-      {{kPost, "/api/goal", kOperator, kMostBody_bytes, kInLoop, "sends the robot to goals"},
+      {{kPost, "/api/goal", kOperator, kMostBody_bytes, kInLoop, "sends the robot to goals", true},
        kAlways,
        kRefused,
        [](Web& web, const Request& request, const Respond& respond) {
@@ -104,7 +104,7 @@ std::span<const ServiceRoute> service_routes() {
        [](Web& web, const Request& request, const Respond& respond) {
          respond(web.preview(request.body));
        }},
-      {{kPost, "/api/pause", kOperator, kMostBody_bytes, kInLoop, "pauses the drive"},
+      {{kPost, "/api/pause", kOperator, kMostBody_bytes, kInLoop, "pauses the drive", true},
        kAlways,
        kObeyed,
        [](Web& web, const Request& request, const Respond& respond) {
@@ -112,66 +112,71 @@ std::span<const ServiceRoute> service_routes() {
          web.goals_.pause();
          respond(accepted());
        }},
-      {{kPost, "/api/resume", kOperator, kMostBody_bytes, kInLoop, "resumes the drive"},
+      {{kPost, "/api/resume", kOperator, kMostBody_bytes, kInLoop, "resumes the drive", true},
        kAlways,
        kRefused,
        [](Web& web, const Request& request, const Respond& respond) {
          check_plain(request.body);
-         web.goals_.resume();
-         respond(accepted());
+         respond(web.resume());
        }},
-      {{kPost, kCancelPath, kOperator, kMostBody_bytes, kInLoop, "cancels all goals"},
+      {{kPost, kCancelPath, kOperator, kMostBody_bytes, kInLoop, "cancels all goals", true},
        kAlways,
        kObeyed,
        [](Web& web, const Request& request, const Respond& respond) {
-         check_plain(request.body);
-         web.cancel();
+         if (parse_keep(request.body)) {
+           web.interrupt();
+         } else {
+           web.cancel();
+         }
          respond(accepted());
        }},
       {{kPost, "/api/stop", kOperator, kMostBody_bytes, kStop, "stops and holds the robot"},
        kAlways,
        kObeyed,
-       [](Web& web, const Request&, const Respond& respond) { web.stop(respond); }},
-      {{kPost, kReleasePath, kOperator, kMostBody_bytes, kRelease, "releases the robot"},
+       [](Web& web, const Request& request, const Respond& respond) {
+         web.stop(request.page, respond);
+       }},
+      {{kPost, kReleasePath, kOperator, kMostBody_bytes, kRelease, "releases the robot", true},
        kAlways,
        kObeyed,
        [](Web& web, const Request& request, const Respond& respond) {
          web.hand_.release_stop(request.stops, respond);
        }},
-      {{kPost, "/api/return", kOperator, kMostBody_bytes, kInLoop, "sends the robot home"},
+      {{kPost, "/api/return", kOperator, kMostBody_bytes, kInLoop, "sends the robot home", true},
        kAlways,
        kRefused,
        [](Web& web, const Request& request, const Respond& respond) {
          check_plain(request.body);
          respond(web.go_back());
        }},
-      {{kPost, "/api/explore", kOperator, kMostBody_bytes, kInLoop, "starts an exploration"},
+      {{kPost, "/api/explore", kOperator, kMostBody_bytes, kInLoop, "starts an exploration", true},
        kAlways,
        kRefused,
        [](Web& web, const Request& request, const Respond& respond) {
          check_plain(request.body);
          respond(web.exploration_.start());
        }},
-      {{kPost, "/api/pose", kOperator, kMostBody_bytes, kInLoop, "sets the position"},
+      {{kPost, "/api/pose", kOperator, kMostBody_bytes, kInLoop, "sets the position", true},
        kAlways,
        kObeyed,
        [](Web& web, const Request& request, const Respond& respond) {
          web.localizer_.set_pose(parse_pose_order(request.body), respond);
        }},
-      {{kPost, "/api/search", kOperator, kMostBody_bytes, kInLoop, "searches the whole map"},
+      {{kPost, "/api/search", kOperator, kMostBody_bytes, kInLoop, "searches the whole map", true},
        kAlways,
        kObeyed,
        [](Web& web, const Request& request, const Respond& respond) {
          check_plain(request.body);
          web.localizer_.search(respond);
        }},
-      {{kPost, "/api/mode", kOperator, kMostBody_bytes, kInLoop, "switches mapping on or off"},
+      {{kPost, "/api/mode", kOperator, kMostBody_bytes, kInLoop, "switches mapping on or off",
+        true},
        kAlways,
        kObeyed,
        [](Web& web, const Request& request, const Respond& respond) {
          web.localizer_.switch_mode(parse_mapping_mode(request.body), respond);
        }},
-      {{kPost, "/api/merge", kOperator, kMostBody_bytes, kInLoop, "answers a proposed merge"},
+      {{kPost, "/api/merge", kOperator, kMostBody_bytes, kInLoop, "answers a proposed merge", true},
        kAlways,
        kObeyed,
        [](Web& web, const Request& request, const Respond& respond) {
@@ -183,7 +188,7 @@ std::span<const ServiceRoute> service_routes() {
        [](Web& web, const Request& request, const Respond& respond) {
          web.history_.take_snapshot(request.body, respond);
        }},
-      {{kPost, "/api/restore", kOperator, kMostBody_bytes, kInLoop, "restores a snapshot"},
+      {{kPost, "/api/restore", kOperator, kMostBody_bytes, kInLoop, "restores a snapshot", true},
        kAlways,
        kObeyed,
        [](Web& web, const Request& request, const Respond& respond) {
@@ -195,7 +200,8 @@ std::span<const ServiceRoute> service_routes() {
        [](Web& web, const Request& request, const Respond& respond) {
          web.history_.offer_map(request.body, respond);
        }},
-      {{kPost, "/api/merge_map_answer", kOperator, kMostBody_bytes, kInLoop, "joins the other map"},
+      {{kPost, "/api/merge_map_answer", kOperator, kMostBody_bytes, kInLoop, "joins the other map",
+        true},
        kNever,
        kObeyed,
        [](Web& web, const Request& request, const Respond& respond) {
@@ -213,7 +219,14 @@ std::span<const ServiceRoute> service_routes() {
        [](Web& web, const Request& request, const Respond& respond) {
          respond(web.room_shapes(request.body));
        }},
-      {{kPost, "/api/floor", kOperator, kMostDrawing_bytes, kInLoop, "loads a drawn floor"},
+      {{kPost, "/api/controls", kOperator, kMostBody_bytes, kInLoop,
+        "asks for the controls, or takes them"},
+       kAlways,
+       kObeyed,
+       [](Web& web, const Request& request, const Respond& respond) {
+         respond(web.change_controls(request));
+       }},
+      {{kPost, "/api/floor", kOperator, kMostDrawing_bytes, kInLoop, "loads a drawn floor", true},
        kWithSimulator,
        kObeyed,
        [](Web& web, const Request& request, const Respond& respond) {

@@ -33,6 +33,7 @@ inline constexpr std::string_view kApi = "/api/";
 /// Orders that a stop and its release pass to the loop.
 inline constexpr std::string_view kCancelPath = "/api/cancel";
 inline constexpr std::string_view kReleasePath = "/api/release";
+inline constexpr std::string_view kStopPath = "/api/stop";
 
 std::span<const ServiceRoute> service_routes();
 

@@ -56,6 +56,9 @@ void add_web_options(command_line::Command& app, WebOptions& options) {
                  "keeps until the release (default: in the runtime directory of systemd, else in "
                  "/dev/shm)")
       ->type_name("FILE");
+  app.add_option("--audit-log", options.audit_log,
+                 "append a line for each order to this file: when, who, what")
+      ->type_name("FILE");
   app.add_option("--certificate", options.certificate,
                  "certificate of the server with its chain (PEM)")
       ->type_name("FILE");

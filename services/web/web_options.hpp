@@ -21,6 +21,7 @@ struct WebOptions {
   std::optional<std::filesystem::path> token_file;
   std::filesystem::path link_file;  ///< gets the operator's link; empty: it is printed
   std::filesystem::path memory;     ///< of an operator's stop; empty: its usual place
+  std::filesystem::path audit_log;  ///< gets each order; empty: none is kept
   std::filesystem::path certificate;
   std::filesystem::path key;
   std::vector<std::string> hosts;

@@ -8,6 +8,8 @@
 
 #include "topogeo/navigation/drawn_limits.hpp"
 #include "topogeo/planning/zone_outlines.hpp"
+#include "topogeo/service/conversions.hpp"
+#include "topogeo/support/host.hpp"
 #include "topogeo/support/log.hpp"
 #include "topogeo/support/version.hpp"
 
@@ -22,6 +24,7 @@ namespace {
 constexpr std::chrono::milliseconds kCountsPeriod{500};
 constexpr std::chrono::milliseconds kLimitsPeriod{200};  // while anybody drives by hand
 constexpr int kProtocolVersion = 1;
+constexpr std::int64_t kSameStop_ns = 1'000'000'000;
 
 const ServiceRoute* route_of(const Request& request) {
   return find_route(request.post ? Method::kPost : Method::kGet, request.path);
@@ -29,12 +32,23 @@ const ServiceRoute* route_of(const Request& request) {
 
 }  // namespace
 
+template <class Work>
+void WebService::post(Work work) {
+  service_.loop().post([alive = std::weak_ptr<bool>(alive_), work = std::move(work)] {
+    if (!alive.expired()) work();
+  });
+}
+
 WebService::WebService(service::Service& service, const ServerConfig& config, PageFiles files,
-                       const std::filesystem::path& memory)
+                       const std::filesystem::path& memory, const std::filesystem::path& audit)
     : service_(service),
       config_(config),
       files_(std::move(files)),
+      audit_(audit),
       foxglove_(feed_, service.setup().config.config.local_mapper.T_robot_laser),
+      controls_([this](const std::string& json) {
+        post([this, json] { hub_.set(Channel::kControls, json); });
+      }),
       hand_(service, hub_, events_, tally_, hand_hooks(), memory),
       map_(service, hub_,
            [this](const std::shared_ptr<const MapPicture>& picture) { foxglove_.take(picture); }),
@@ -68,13 +82,6 @@ WebService::~WebService() {
   service_.loop().cancel_timer(limits_timer_);
   drawing_.abandon();
   hand_.end();
-}
-
-template <class Work>
-void WebService::post(Work work) {
-  service_.loop().post([alive = std::weak_ptr<bool>(alive_), work = std::move(work)] {
-    if (!alive.expired()) work();
-  });
 }
 
 const Route* WebService::route(Method method, std::string_view path) const {
@@ -118,18 +125,33 @@ void WebService::hand_over(Request request, Respond respond) {
   }
 }
 
-void WebService::stop(Respond respond) {
+void WebService::stop(const std::string& page, Respond respond) {
   hand_.stop(std::move(respond));
-  hand_over({true, std::string(kCancelPath), {}, "{}", true, stops()}, [](const Answer&) {});
+  Request cancel{true, std::string(kCancelPath), {}, R"({"keep":true})", true, stops(), page};
+  cancel.of_stop = true;
+  hand_over(std::move(cancel), [](const Answer&) {});
 }
 
 // Queued after the cancel of its stop, so that a released robot has no goal from before.
-void WebService::release_stop(Respond respond) {
-  hand_over({true, std::string(kReleasePath), {}, "{}", true, stops()}, std::move(respond));
+void WebService::release_stop(const std::string& page, Respond respond) {
+  hand_over({true, std::string(kReleasePath), {}, "{}", true, stops(), page}, std::move(respond));
+}
+
+std::uint32_t WebService::enter(std::uint64_t viewer, const std::string& page,
+                                const std::string& name) {
+  return controls_.enter(viewer, page, name);
+}
+
+void WebService::leave(std::uint64_t viewer) {
+  controls_.leave(viewer);
 }
 
 void WebService::drive(std::uint64_t viewer, double linear_mps, double angular_radps) {
-  hand_.drive(viewer, {linear_mps, angular_radps});
+  if (controls_.admit(viewer)) {
+    hand_.drive(viewer, {linear_mps, angular_radps});
+  } else {
+    tally_.add("refused: no controls");
+  }
 }
 
 void WebService::release(std::uint64_t viewer) {
@@ -141,6 +163,10 @@ ManualDriveSender::Hooks WebService::hand_hooks() {
             post([this] {
               goals_.pause();
               show_limits(true);
+              const std::string driver = controls_.holder();
+              if (!driver.empty()) {
+                events_.add(EventLog::Level::kInfo, "operator", driver + ": drives by hand");
+              }
             });
           },
           [this](const char* message) {
@@ -184,13 +210,96 @@ void WebService::answer(const Request& request, const Respond& respond) {
     respond(error_answer(409, "the robot was stopped meanwhile"));
     return;
   }
-  if (request.post) tally_.add("orders");
+  if (found->route.needs_controls && !request.of_stop && !controls_.admit(request.page)) {
+    tally_.add("refused: no controls");
+    respond(error_answer(409, controls_.refusal()));
+    return;
+  }
+  if (request.post) {
+    tally_.add("orders");
+    record(request, found->route);
+  }
   found->handler(*this, request, respond);
+}
+
+// Previews and outlines of rooms order nothing.
+void WebService::record(const Request& request, const Route& route) {
+  if (route.access != Access::kOperator || route.path == "/api/preview") return;
+  const std::string who = controls_.name_of(request.page);
+  const std::string_view order = request.of_stop ? kStopPath : route.path;
+  if (request.of_stop) controls_.set_stopped_by(who);
+  if (route.path == kReleasePath) controls_.set_stopped_by({});
+  // A page sends its stop through two connections.
+  const std::int64_t now_ns = support::wall_clock_ns();
+  const bool again = request.of_stop && who == stopper_ && now_ns - stopped_ns_ < kSameStop_ns;
+  if (request.of_stop) {
+    stopper_ = who;
+    stopped_ns_ = now_ns;
+  }
+  if (again) return;
+  if (route.needs_controls) {
+    const std::string_view what =
+        request.of_stop ? std::string_view("stops and holds the robot") : route.help;
+    events_.add(request.of_stop ? EventLog::Level::kWarning : EventLog::Level::kInfo, "operator",
+                who + ": " + std::string(what));
+  }
+  if (!audit_.add(now_ns, who, std::string(order),
+                  request.of_stop ? std::string() : request.body)) {
+    service_.status().fault("audit log", "an order could not be written to the audit log");
+  }
+}
+
+Answer WebService::change_controls(const Request& request) {
+  using Kind = ControlsOrder::Kind;
+  const ControlsOrder order = parse_controls_order(request.body);
+  const std::string who = controls_.name_of(request.page);
+  const std::string before = controls_.holder();
+  switch (order.kind) {
+    case Kind::kAsk:
+      controls_.ask(request.page);
+      break;
+    case Kind::kTake:
+      // The page that had them may be driving by hand.
+      for (const std::uint64_t viewer : controls_.take(request.page)) hand_.release(viewer);
+      events_.add(EventLog::Level::kWarning, "operator",
+                  who + ": takes the controls" + (before.empty() ? "" : " from " + before));
+      break;
+    case Kind::kGive:
+    case Kind::kKeep:
+      controls_.answer(request.page, order.kind == Kind::kGive);
+      break;
+    case Kind::kLetGo:
+      controls_.let_go(request.page);
+      break;
+    case Kind::kRename:
+      controls_.rename(request.page, order.name);
+      break;
+  }
+  return {202, "{}"};
 }
 
 void WebService::cancel() {
   exploration_.stop();
   goals_.cancel();
+}
+
+void WebService::interrupt() {
+  goals_.interrupt();
+  exploration_.stop();
+}
+
+Answer WebService::resume() {
+  if (goals_.was_exploring()) return exploration_.start();
+  try {
+    if (goals_.has_interrupted()) {
+      goals_.resume_interrupted();
+    } else {
+      goals_.resume();
+    }
+  } catch (const std::invalid_argument& error) {
+    return error_answer(409, error.what());
+  }
+  return {202, "{}"};
 }
 
 ExploredFloor WebService::explored_floor() {
@@ -241,7 +350,7 @@ Answer WebService::preview(const std::string& body) {
   const planning::PlanningMaps maps{map.get(), graph.get()};
   if (!maps.any()) return error_answer(409, "there is no map to plan on yet");
   const pipeline::Config& config = service_.setup().config.config;
-  return preview_route(maps, {pose->T_map_robot().x_m(), pose->T_map_robot().y_m()}, goals_m,
+  return preview_route(maps, service::from_msg(pose->T_map_robot()), goals_m,
                        {config.planner, config.hybrid_planner, config.planning},
                        config.navigator.follower);
 }

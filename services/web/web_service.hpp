@@ -26,6 +26,7 @@
 #include "foxglove/foxglove_feed.hpp"
 #include "foxglove/foxglove_view.hpp"
 #include "history/history.hpp"
+#include "orders/audit_log.hpp"
 #include "orders/drawing_editor.hpp"
 #include "orders/exploration_sender.hpp"
 #include "orders/goal_sender.hpp"
@@ -33,6 +34,7 @@
 #include "orders/manual_drive_thread.hpp"
 #include "routes.hpp"
 #include "server/channel_hub.hpp"
+#include "server/controls.hpp"
 #include "server/page_files.hpp"
 #include "server/request_queue.hpp"
 #include "server/server.hpp"
@@ -45,9 +47,10 @@ namespace topogeo::web {
 class WebService : private Backend {
  public:
   /// Starts listening. Keeps an operator's stop that no base reports in the file `memory` (empty:
-  /// none). Throws like Server and service::OperatorStop.
+  /// none), and appends each order to the file `audit` (empty: none). Throws like Server,
+  /// service::OperatorStop and AuditLog.
   WebService(service::Service& service, const ServerConfig& config, PageFiles files,
-             const std::filesystem::path& memory = {});
+             const std::filesystem::path& memory = {}, const std::filesystem::path& audit = {});
   WebService(const WebService&) = delete;
   WebService& operator=(const WebService&) = delete;
   ~WebService() override;
@@ -61,8 +64,11 @@ class WebService : private Backend {
   // Called in the server's threads.
   [[nodiscard]] const Route* route(Method method, std::string_view path) const override;
   void handle(const Request& request, Respond respond) override;
-  void stop(Respond respond) override;
-  void release_stop(Respond respond) override;
+  void stop(const std::string& page, Respond respond) override;
+  void release_stop(const std::string& page, Respond respond) override;
+  std::uint32_t enter(std::uint64_t viewer, const std::string& page,
+                      const std::string& name) override;
+  void leave(std::uint64_t viewer) override;
   [[nodiscard]] std::uint64_t stops() const override { return hand_.stops(); }
   void drive(std::uint64_t viewer, double linear_mps, double angular_radps) override;
   void release(std::uint64_t viewer) override;
@@ -75,11 +81,17 @@ class WebService : private Backend {
   // Called in the loop.
   void work_off_requests();
   void answer(const Request& request, const Respond& respond);
+  [[nodiscard]] Answer change_controls(const Request& request);
+  /// Adds an order to the events, if it commands the robot, and to the audit log.
+  void record(const Request& request, const Route& route);
   [[nodiscard]] Answer give_goals(const std::string& body);
   [[nodiscard]] Answer give(const GoalOrders& orders);
   [[nodiscard]] Answer preview(const std::string& body);
   [[nodiscard]] Answer go_back();
   void cancel();
+  /// Like cancel(), but the goals can be resumed.
+  void interrupt();
+  [[nodiscard]] Answer resume();
   [[nodiscard]] ExploredFloor explored_floor();
   void load_floor(const std::string& body, const Respond& respond);
   [[nodiscard]] Answer room_shapes(const std::string& body);
@@ -94,8 +106,12 @@ class WebService : private Backend {
   ChannelHub hub_;
   FoxgloveFeed feed_;
   EventLog events_{hub_};
+  AuditLog audit_;
   FoxgloveView foxglove_;
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // for posted work
+  Controls controls_;
+  std::string stopper_;  // who has stopped the robot last
+  std::int64_t stopped_ns_ = 0;
   ManualDriveThread hand_;
   MapView map_;
   GraphView graph_;

@@ -201,7 +201,8 @@ void start_services(ProcessGroup& processes, const RunOptions& options,
     export_token(*options.web);
     const std::filesystem::path log = options.job.out / "logs" / "web.log";
     start("web", common + web_arguments(*options.web) +
-                     Arguments{"--link-file", link_file_beside(log).string()} +
+                     Arguments{"--link-file", link_file_beside(log).string(), "--audit-log",
+                               (options.job.out / "logs" / "orders.jsonl").string()} +
                      memory_argument(partition, kWebMemory));
   }
   if (options.ros && !from_ros(options)) start_bridge(processes, options, common);

@@ -107,9 +107,13 @@ void RobotView::on_navigator(const msg::NavigatorStatus& status,
   const std::string message = text_of_message(status.message());
   if (navigator_state_ != status.state()) {
     if (navigator_state_) {
-      const bool trouble = status.state() == msg::kNavigatorBlocked ||
-                           status.state() == msg::kNavigatorStopped ||
-                           status.state() == msg::kNavigatorRelocalizing;
+      // Each goal waits for its route, and an operator's pause or cancel is none either.
+      const bool wanted = status.reason() == msg::kHaltWaitsForRoute ||
+                          status.reason() == msg::kHaltPaused ||
+                          status.reason() == msg::kHaltCancelled;
+      const bool trouble = !wanted && (status.state() == msg::kNavigatorBlocked ||
+                                       status.state() == msg::kNavigatorStopped ||
+                                       status.state() == msg::kNavigatorRelocalizing);
       events_.add(trouble ? Level::kWarning : Level::kInfo, "navigator",
                   std::string(name_of(status.state())) + (message.empty() ? "" : ": " + message));
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -42,6 +43,9 @@ class Exploration {
 
   /// Nothing reachable is left; false before start().
   [[nodiscard]] bool done() const { return tour_ && tour_->done(); }
+  /// Targets visited so far, and those of them that were not reached.
+  [[nodiscard]] std::size_t visited() const { return tour_ ? tour_->targets() : 0; }
+  [[nodiscard]] std::size_t given_up() const { return tour_ ? tour_->given_up() : 0; }
   /// A line for people during the exploration.
   [[nodiscard]] std::string summary() const;
 

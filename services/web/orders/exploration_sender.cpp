@@ -29,14 +29,12 @@ ExplorationSender::~ExplorationSender() {
 
 Answer ExplorationSender::start() {
   const auto& pose = robot_.pose();
-  if (!pose) return error_answer(409, "the robot does not know where it is");
+  if (!pose) return error_answer(409, "the robot does not know its position");
   if (pose->mode() == msg::kModeLocalization) {
     return error_answer(
-        409,
-        "the robot only follows its pose in a map that stays as it is; to explore, let it "
-        "map (“Map from now on”, in the view Correct)");
+        409, "the map stays as it is now; to explore, press “Start mapping” in the view Correct");
   }
-  if (!goals_.has_navigator()) return error_answer(409, "no navigator is there to take the goals");
+  if (!goals_.has_navigator()) return error_answer(409, "no navigator is connected");
   exploration_.start(service_.setup().config.config.exploration);
   goal_id_ = 0;
   goals_.set_exploring(true);
@@ -81,10 +79,13 @@ void ExplorationSender::step() {
   const bool taken = goal_id_ != 0 && navigator.goal_id == goal_id_;
   const auto goal = exploration_.step(newest_, navigator, taken, kExplorationPeriod);
   if (goal) goal_id_ = goals_.send_to(goal->T_map_goal, goal->text);
-  if (!exploration_.done()) return;
+  const std::size_t visited = exploration_.visited();
+  const std::size_t given_up = exploration_.given_up();
+  if (!exploration_.done()) return goals_.show_exploration(visited, given_up, false);
   // The last target may have been given up on the way.
   if (goals_.under_way()) goals_.cancel();
   end();
+  goals_.show_exploration(visited, given_up, true);
 }
 
 }  // namespace topogeo::web

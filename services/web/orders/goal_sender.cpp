@@ -1,6 +1,5 @@
 #include "orders/goal_sender.hpp"
 
-#include <deque>
 #include <random>
 #include <stdexcept>
 #include <utility>
@@ -75,6 +74,8 @@ std::uint64_t GoalSender::add(const GoalOrders& orders) {
   for (const WantedGoal& wanted : orders.goals) goals.push_back(make(wanted));
   if (!goals_.has_navigator()) throw std::invalid_argument("no navigator is connected");
   const std::uint64_t first = goals.front().id;
+  forget_interrupted();
+  exploration_ = "null";
   if (list_.add(std::move(goals), orders.append)) {
     unconfirmed_.end();
     send_current();
@@ -99,7 +100,18 @@ std::uint64_t GoalSender::send_to(const geometry::Pose2& T_map_goal, const std::
 
 void GoalSender::set_exploring(bool exploring) {
   if (exploring && is_pausing()) unconfirmed_.end();
+  if (exploring) {
+    forget_interrupted();
+    exploration_ = "null";
+  }
   exploring_ = exploring;
+  show();
+}
+
+void GoalSender::show_exploration(std::size_t visited, std::size_t given_up, bool ended) {
+  std::string now = text_of(Json{{"visited", visited}, {"given_up", given_up}, {"ended", ended}});
+  if (now == exploration_) return;
+  exploration_ = std::move(now);
   show();
 }
 
@@ -139,8 +151,47 @@ void GoalSender::resume() {
 }
 
 void GoalSender::cancel() {
+  forget_interrupted();
+  exploration_ = "null";
+  cancel_all();
+}
+
+void GoalSender::cancel_all() {
   insist(msg::kGoalCancel);
   list_.clear();
+  show();
+}
+
+// A second stop keeps what the first one has interrupted.
+void GoalSender::interrupt() {
+  if (exploring_ || list_.current()) {
+    forget_interrupted();
+    was_exploring_ = exploring_;
+    if (!exploring_) {
+      interrupted_ = list_.waiting();
+      interrupted_.push_front(*list_.current());
+    }
+  }
+  cancel_all();
+}
+
+void GoalSender::forget_interrupted() {
+  interrupted_.clear();
+  was_exploring_ = false;
+}
+
+// The navigator does not take a cancelled goal again, so each gets another id.
+void GoalSender::resume_interrupted() {
+  if (!goals_.has_navigator()) throw std::invalid_argument("no navigator is connected");
+  std::deque<Goal> goals = std::exchange(interrupted_, {});
+  for (Goal& goal : goals) {
+    goal.id = random_goal_id();
+    goal.message.goal_id(goal.id);
+  }
+  if (list_.add(std::move(goals), false)) {
+    unconfirmed_.end();
+    send_current();
+  }
   show();
 }
 
@@ -177,7 +228,15 @@ void GoalSender::show() {
   Json json = {{"current", nullptr},
                {"waiting", std::move(waiting)},
                {"exploring", exploring_},
-               {"pausing", is_pausing()}};
+               {"pausing", is_pausing()},
+               {"exploration", Json::parse(exploration_)},
+               {"interrupted", nullptr}};
+  if (has_interrupted()) {
+    json["interrupted"] = {
+        {"text", interrupted_.empty() ? std::string() : interrupted_.front().text},
+        {"waiting", interrupted_.empty() ? 0 : interrupted_.size() - 1},
+        {"exploring", was_exploring_}};
+  }
   if (list_.current()) json["current"] = goal_json(*list_.current());
   hub_.set(Channel::kGoals, text_of(json));
 }

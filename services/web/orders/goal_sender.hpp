@@ -1,7 +1,9 @@
 // Sends the robot its goals, one after the other: channel `goals`.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
 
@@ -35,12 +37,24 @@ class GoalSender {
   void pause();
   void resume();
   void cancel();
+  /// Cancels all goals, because the robot is stopped, and keeps them, or the exploration, until
+  /// another order, so that resume_interrupted() can continue.
+  void interrupt();
+  [[nodiscard]] bool has_interrupted() const { return was_exploring_ || !interrupted_.empty(); }
+  /// Whether an exploration was interrupted; resume_interrupted() has no goals then.
+  [[nodiscard]] bool was_exploring() const { return was_exploring_; }
+  /// Sends the goals again that interrupt() has kept. Throws std::invalid_argument if no navigator
+  /// is connected.
+  void resume_interrupted();
   /// How the current goal ended, if it did; the next one has then been sent. A pause holds it back
   /// until a resume. Sends again what the navigator has not received.
   std::optional<GoalList::End> take(const msg::NavigatorStatus& status,
                                     const messaging::SampleInfo& info);
   /// Whether goals come from an exploration. One that begins ends a pause, as a goal does.
   void set_exploring(bool exploring);
+  /// Shows how far an exploration is: `visited` targets, `given_up` of them not reached. `ended`:
+  /// nothing reachable is left.
+  void show_exploration(std::size_t visited, std::size_t given_up, bool ended);
 
   /// Whether there is a goal that has not ended.
   [[nodiscard]] bool under_way() const { return list_.current().has_value(); }
@@ -58,6 +72,8 @@ class GoalSender {
   void order(msg::GoalKind kind, std::uint64_t goal_id = 0);
   /// Orders a cancel or a pause, and repeats it until the navigator has carried it out.
   void insist(msg::GoalKind kind);
+  void cancel_all();
+  void forget_interrupted();
   void send(msg::Goal message);
   void show();
 
@@ -69,6 +85,9 @@ class GoalSender {
   GoalList list_;
   UnconfirmedOrder unconfirmed_;
   bool exploring_ = false;
+  std::deque<Goal> interrupted_;
+  bool was_exploring_ = false;
+  std::string exploration_ = "null";  // JSON: how far the last one is
   std::uint64_t sent_ = 0;
   service::GoalOutbox goals_;
 };

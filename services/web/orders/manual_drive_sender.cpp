@@ -339,12 +339,14 @@ void ManualDriveSender::show_rest() {
 }
 
 void ManualDriveSender::show(const navigation::GuardVerdict& verdict, bool held) {
+  const double ahead = verdict.allowed.linear_m_per_s;
   hub_.set(Channel::kDrive,
            text_of(Json{{"held", held},
                         {"stopped", stopped_alone()},
                         {"linear_mps", rounded(verdict.allowed.linear_m_per_s)},
                         {"angular_radps", rounded(verdict.allowed.angular_rad_per_s)},
-                        {"free_ahead_m", rounded(verdict.free_m)},
+                        {"free_ahead_m", held && ahead >= 0.0 ? rounded(verdict.free_m) : Json()},
+                        {"free_behind_m", held && ahead < 0.0 ? rounded(verdict.free_m) : Json()},
                         {"message", verdict.message}}));
 }
 

@@ -1,9 +1,11 @@
 #include "orders/order_text.hpp"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "topogeo/support/format.hpp"
 
@@ -97,6 +99,28 @@ std::string parse_name(const std::string& body) {
     throw std::invalid_argument("name: expected a text");
   }
   return name->get<std::string>();
+}
+
+bool parse_keep(const std::string& body) {
+  return !body.empty() && flag(object_of(body), "keep", false);
+}
+
+ControlsOrder parse_controls_order(const std::string& body) {
+  using Kind = ControlsOrder::Kind;
+  static constexpr std::array<std::pair<std::string_view, Kind>, 6> kKinds = {
+      {{"ask", Kind::kAsk},
+       {"take", Kind::kTake},
+       {"give", Kind::kGive},
+       {"keep", Kind::kKeep},
+       {"let_go", Kind::kLetGo},
+       {"rename", Kind::kRename}}};
+  const Json json = object_of(body);
+  const auto wanted = json.find("do");
+  for (const auto& [word, kind] : kKinds) {
+    if (wanted == json.end() || *wanted != word) continue;
+    return {kind, kind == Kind::kRename ? parse_name(body) : std::string()};
+  }
+  throw std::invalid_argument("do: expected ask, take, give, keep, let_go or rename");
 }
 
 void check_plain(const std::string& body) {

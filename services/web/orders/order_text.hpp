@@ -43,6 +43,16 @@ MergeOrder parse_merge_order(const std::string& body);
 bool parse_mapping_mode(const std::string& body);
 /// Returns the name in {"name": "monday"}.
 std::string parse_name(const std::string& body);
+/// Whether a cancel keeps the goals for a resume: {"keep": true}.
+bool parse_keep(const std::string& body);
+struct ControlsOrder {
+  enum class Kind : std::uint8_t { kAsk, kTake, kGive, kKeep, kLetGo, kRename };
+  Kind kind = Kind::kAsk;
+  std::string name;  ///< kRename
+};
+
+/// {"do": "ask", "take", "give", "keep", "let_go" or "rename"}, the last one with "name".
+ControlsOrder parse_controls_order(const std::string& body);
 /// Accepts only a body without content: empty, or an object.
 void check_plain(const std::string& body);
 

@@ -1,38 +1,16 @@
 #include "orders/route_preview.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
+#include <optional>
 
-#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/navigation/drive_time.hpp"
 
 #include "server/json_values.hpp"
 
 namespace topogeo::web {
-namespace {
 
-double heading_rad(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
-  return std::atan2(to_m.y() - from_m.y(), to_m.x() - from_m.x());
-}
-
-}  // namespace
-
-// The follower rounds corners that are not sharp, so only the turning takes time there.
-double drive_time_s(const std::vector<Eigen::Vector2d>& points_m,
-                    const navigation::FollowerConfig& follower) {
-  double time_s =
-      points_m.size() > 1 ? follower.speed_m_per_s / follower.acceleration_m_per_s2 : 0.0;
-  for (std::size_t i = 1; i < points_m.size(); ++i) {
-    time_s += (points_m[i] - points_m[i - 1]).norm() / follower.speed_m_per_s;
-    if (i + 1 == points_m.size()) break;
-    const double turn_rad = std::fabs(geometry::wrap_angle(
-        heading_rad(points_m[i], points_m[i + 1]) - heading_rad(points_m[i - 1], points_m[i])));
-    time_s += turn_rad / follower.turn_rad_per_s;
-  }
-  return time_s;
-}
-
-Answer preview_route(const planning::PlanningMaps& maps, const Eigen::Vector2d& from_m,
+Answer preview_route(const planning::PlanningMaps& maps, const geometry::Pose2& T_map_robot,
                      const std::vector<Eigen::Vector2d>& goals_m,
                      const planning::GoalPlannerConfig& config,
                      const navigation::FollowerConfig& follower) {
@@ -40,7 +18,10 @@ Answer preview_route(const planning::PlanningMaps& maps, const Eigen::Vector2d& 
   std::vector<Eigen::Vector2d> points_m;
   double length_m = 0.0;
   double clearance_m = std::numeric_limits<double>::infinity();
-  Eigen::Vector2d start_m = from_m;
+  Eigen::Vector2d start_m = T_map_robot.position_m();
+  double time_s = 0.0;
+  std::optional<double> heading_rad = T_map_robot.theta_rad;
+  const planning::FreeSpace* space = maps.hybrid == nullptr ? nullptr : &maps.hybrid->space();
   for (std::size_t k = 0; k < goals_m.size(); ++k) {
     const Eigen::Vector2d& goal_m = goals_m[k];
     const planning::HybridRoute route = planning::plan_to_goal(maps, start_m, goal_m, {}, config);
@@ -56,6 +37,8 @@ Answer preview_route(const planning::PlanningMaps& maps, const Eigen::Vector2d& 
     length_m += route.length_m;
     clearance_m = std::min(clearance_m, route.min_clearance_m);
     points_m.insert(points_m.end(), route.points_m.begin(), route.points_m.end());
+    time_s += navigation::drive_time_s(route.points_m, heading_rad, space, follower);
+    heading_rad.reset();  // at a goal the robot looks wherever it has come to stand
     start_m = goal_m;
   }
   Json points = Json::array();
@@ -65,7 +48,7 @@ Answer preview_route(const planning::PlanningMaps& maps, const Eigen::Vector2d& 
   }
   answer.body = text_of(Json{{"found", true},
                              {"length_m", rounded(length_m)},
-                             {"time_s", rounded(drive_time_s(points_m, follower))},
+                             {"time_s", rounded(time_s)},
                              {"min_clearance_m", rounded(clearance_m)},
                              {"points_m", std::move(points)}});
   return answer;

@@ -53,8 +53,9 @@ enum class Channel : std::uint8_t {
   kLoops,
   kEvents,
   kViewers,
+  kControls,
 };
-inline constexpr std::size_t kChannels = static_cast<std::size_t>(Channel::kViewers) + 1;
+inline constexpr std::size_t kChannels = static_cast<std::size_t>(Channel::kControls) + 1;
 
 /// Name in the protocol: "pose", "local_map", ...
 std::string_view name_of(Channel channel);

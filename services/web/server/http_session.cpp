@@ -13,6 +13,7 @@
 
 #include "foxglove/foxglove_viewer.hpp"
 #include "server/access.hpp"
+#include "server/controls.hpp"
 #include "server/viewer.hpp"
 
 namespace topogeo::web {
@@ -180,6 +181,11 @@ void HttpSession::answer_read_error(beast::error_code error) {
   send(response);
 }
 
+std::string HttpSession::page_id() const {
+  const auto value = parser_->get()["X-Topogeo-Page"];
+  return {value.data(), std::min<std::size_t>(value.size(), Controls::kLongestId)};
+}
+
 std::string HttpSession::header(http::field field) const {
   const auto value = parser_->get()[field];
   return {value.data(), value.size()};
@@ -280,6 +286,7 @@ void HttpSession::route() {
   if (question != std::string::npos) out.query = target.substr(question + 1);
   out.authorized = authorized_;
   out.stops = stops_;
+  out.page = page_id();
   if (!out.post) {
     if (const PageFile* file = state_.files.find(out.path)) {
       send_file(*file);
@@ -294,9 +301,9 @@ void HttpSession::answer(Request request) {
   connection_.expires_never();  // the answer may wait for another service
   const Handling handling = route_ != nullptr ? route_->handling : Handling::kAtOnce;
   if (handling == Handling::kStop) {
-    state_.backend.stop(responder());
+    state_.backend.stop(request.page, responder());
   } else if (handling == Handling::kRelease) {
-    state_.backend.release_stop(responder());
+    state_.backend.release_stop(request.page, responder());
   } else {
     const auto turn = authorized_ ? AnswerThread::Turn::kFirst : AnswerThread::Turn::kLater;
     state_.answers.post(turn, [&backend = state_.backend, respond = responder(),

@@ -32,7 +32,8 @@ struct Route {
   Access access;
   std::uint64_t most_body_bytes;
   Handling handling;
-  std::string_view help;  ///< for docs/web_protocol.md
+  std::string_view help;        ///< for docs/web_protocol.md
+  bool needs_controls = false;  ///< of a page, see Controls
 };
 
 }  // namespace topogeo::web

@@ -31,6 +31,7 @@ Viewer::Viewer(Connection connection, ServerState& state, std::shared_ptr<void> 
 
 Viewer::~Viewer() {
   state().backend.release(number_);
+  state().backend.leave(number_);
 }
 
 void Viewer::on_open() {
@@ -44,6 +45,7 @@ void Viewer::on_open() {
 void Viewer::on_end() {
   hello_timer_.cancel();
   state().backend.release(number_);
+  state().backend.leave(number_);
 }
 
 void Viewer::on_text(const std::string& text) {
@@ -97,6 +99,10 @@ void Viewer::hello(const ViewerMessage& message) {
                   {"life", state().config.life},
                   {"may_write", is_operator()},
                   {"robot_id", state().config.robot_id}};
+  if (is_operator()) {
+    page_ = message.page;
+    welcome["page"] = state().backend.enter(number_, page_, message.name);
+  }
   if (!is_operator() && !message.token.empty()) {
     state().refuse("no token");
     welcome["error"] = "wrong token";
@@ -143,12 +149,12 @@ void Viewer::stop() {
   }
   // A viewer that has gone meanwhile gets no answer; its last reference must end in this thread.
   const auto self = std::static_pointer_cast<Viewer>(shared_from_this());
-  state().backend.stop(
-      [weak = std::weak_ptr<Viewer>(self), executor = socket().get_executor()](Answer answer) {
-        asio::post(executor, [weak, answer = std::move(answer)] {
-          if (const auto viewer = weak.lock()) viewer->show_stop(answer);
-        });
-      });
+  state().backend.stop(page_, [weak = std::weak_ptr<Viewer>(self),
+                               executor = socket().get_executor()](Answer answer) {
+    asio::post(executor, [weak, answer = std::move(answer)] {
+      if (const auto viewer = weak.lock()) viewer->show_stop(answer);
+    });
+  });
 }
 
 void Viewer::show_stop(const Answer& answer) {

@@ -44,6 +44,7 @@ class Viewer : public Watcher {
   [[nodiscard]] std::size_t next_channel() const;
 
   std::uint64_t number_;
+  std::string page_;  // secret id of an operator's page
   asio::steady_timer hello_timer_;
   bool ready_ = false;  // the first message has arrived or will not
   TransitClock transit_;

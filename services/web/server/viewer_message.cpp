@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "server/bounded_json.hpp"
+#include "server/controls.hpp"
 
 namespace topogeo::web {
 namespace {
@@ -75,6 +76,11 @@ ViewerMessage parse_viewer_message(std::string_view text) {
     case Op::kHello:
       message.token = text_at(json, "token");
       message.life = text_at(json, "life");
+      message.page = text_at(json, "page");
+      message.name = text_at(json, "name");
+      if (message.page.size() > Controls::kLongestId) {
+        throw std::invalid_argument("page: expected at most 64 bytes");
+      }
       take_held(json, message);
       take_channels(json, message);
       break;

@@ -17,6 +17,8 @@ struct ViewerMessage {
 
   Op op = Op::kPing;
   std::string token;                      ///< kHello
+  std::string page;                       ///< kHello: secret id of the page, see Controls
+  std::string name;                       ///< kHello: of the operator, for others
   std::string life;                       ///< kHello: run of the service to which `have` refers
   std::map<Channel, std::uint64_t> have;  ///< kHello: versions that the page holds
   bool all_channels = true;               ///< kHello: it names none

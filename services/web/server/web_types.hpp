@@ -19,6 +19,8 @@ struct Request {
   std::string body;         ///< POST only
   bool authorized = false;  ///< has the operator's token; always true for a POST that writes
   std::uint64_t stops = 0;  ///< Backend::stops() when its header was read
+  std::string page{};       ///< secret id of the page, see Controls; empty: a program
+  bool of_stop = false;     ///< the cancel that belongs to a stop
 };
 
 struct Answer {
@@ -47,10 +49,22 @@ class Backend {
   /// Called in the answer thread.
   virtual void handle(const Request& request, Respond respond) = 0;
   /// POST /api/stop and /api/release, with the token. Their answers wait for no other request.
-  virtual void stop(Respond respond) = 0;
-  virtual void release_stop(Respond respond) = 0;
+  /// `page`: see Request.
+  virtual void stop(const std::string& page, Respond respond) = 0;
+  virtual void release_stop(const std::string& page, Respond respond) = 0;
   /// Number of calls of stop() so far.
   [[nodiscard]] virtual std::uint64_t stops() const = 0;
+  /// A page of an operator has connected as `viewer`, or has another name. Returns its number, see
+  /// Controls.
+  virtual std::uint32_t enter(std::uint64_t viewer, const std::string& page,
+                              const std::string& name) {
+    static_cast<void>(viewer);
+    static_cast<void>(page);
+    static_cast<void>(name);
+    return 0;
+  }
+  /// The viewer is gone; also called for one that has never entered.
+  virtual void leave(std::uint64_t viewer) { static_cast<void>(viewer); }
   /// An operator holds a key or a button. `viewer` is a unique number.
   virtual void drive(std::uint64_t viewer, double linear_mps, double angular_radps) = 0;
   /// The viewer let go or is gone; also called for one that has never driven.

@@ -32,8 +32,10 @@ class NoBackend : public Backend {
  public:
   [[nodiscard]] const Route* route(Method, std::string_view) const override { return nullptr; }
   void handle(const Request&, Respond respond) override { respond(error_answer(404, "none")); }
-  void stop(Respond respond) override { respond(error_answer(404, "none")); }
-  void release_stop(Respond respond) override { respond(error_answer(404, "none")); }
+  void stop(const std::string&, Respond respond) override { respond(error_answer(404, "none")); }
+  void release_stop(const std::string&, Respond respond) override {
+    respond(error_answer(404, "none"));
+  }
   [[nodiscard]] std::uint64_t stops() const override { return 0; }
   void drive(std::uint64_t, double, double) override {}
   void release(std::uint64_t) override {}

@@ -180,6 +180,38 @@ TEST_F(GoalSenderTest, AnOperatorsGoalOrAResumeEndsAPause) {
   EXPECT_FALSE(goals_.is_pausing());
 }
 
+TEST_F(GoalSenderTest, WhatAStopInterruptsIsKeptUntilAnotherOrder) {
+  const std::uint64_t first = drive_to_first_of_two();
+  goals_.interrupt();
+  EXPECT_FALSE(goals_.under_way()) << "a released robot has no goal";
+  ASSERT_TRUE(goals_.has_interrupted());
+  EXPECT_FALSE(goals_.was_exploring());
+  goals_.interrupt();
+  EXPECT_TRUE(goals_.has_interrupted()) << "a second stop";
+  ASSERT_TRUE(report(first, msg::kNavigatorStopped, msg::kHaltCancelled));
+  goals_.resume_interrupted();
+  EXPECT_FALSE(goals_.has_interrupted());
+  EXPECT_TRUE(goals_.under_way());
+  EXPECT_EQ(goals_.waiting(), 1U);
+  ASSERT_TRUE(report(first, msg::kNavigatorStopped, msg::kHaltCancelled));
+  EXPECT_TRUE(goals_.under_way()) << "it has another id than the cancelled one";
+  goals_.interrupt();
+  goals_.cancel();
+  EXPECT_FALSE(goals_.has_interrupted()) << "an operator's cancel";
+  static_cast<void>(drive_to_first_of_two());
+  goals_.interrupt();
+  static_cast<void>(drive_to_first_of_two());
+  EXPECT_FALSE(goals_.has_interrupted()) << "another goal";
+}
+
+TEST_F(GoalSenderTest, AnInterruptedExplorationIsKept) {
+  goals_.set_exploring(true);
+  goals_.interrupt();
+  goals_.set_exploring(false);
+  EXPECT_TRUE(goals_.was_exploring());
+  EXPECT_TRUE(goals_.has_interrupted());
+}
+
 TEST_F(GoalSenderTest, AnExplorationWaitsDuringAPause) {
   messaging::Participant localizer(messaging::options_in(partition_));
   messaging::Writer<msg::LivePose> poses(localizer);

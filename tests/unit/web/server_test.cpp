@@ -52,11 +52,11 @@ class EchoBackend : public Backend {
                   request.body + (request.authorized ? " authorized" : "");
     respond(answer);
   }
-  void stop(Respond respond) override {
+  void stop(const std::string&, Respond respond) override {
     ++stopped;
     respond({202, "{}"});
   }
-  void release_stop(Respond respond) override { respond({202, "{}"}); }
+  void release_stop(const std::string&, Respond respond) override { respond({202, "{}"}); }
   [[nodiscard]] std::uint64_t stops() const override {
     return static_cast<std::uint64_t>(stopped.load());
   }
