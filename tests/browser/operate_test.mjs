@@ -19,6 +19,8 @@ const kPose = {
   confidence: 1,
 };
 
+const kBegun = { visited: 0, given_up: 0, ended: false };
+
 let browser;
 
 before(async () => {
@@ -172,12 +174,218 @@ test("while it explores, what is left is that to the next point", async () => {
   const opened = await open();
   const { page, service } = opened;
   await page.click("#tab-send");
-  service.show("goals", { current: { text: "what is not mapped yet (a gap)" }, waiting: [], exploring: true });
+  service.show("goals", { current: { text: "what is not mapped yet (a gap)" }, waiting: [], exploring: true, exploration: kBegun });
   const navigator = { state: "driving", reason: "none", message: "drives", rest_m: 0.24, rest_s: 2, driven_m: 3 };
   service.show("navigator", navigator);
-  await text(page, ".section p", /^0\.24 m to the next point, about 2 s$/);
+  await text(page, ".section p", /0\.24 m to the next point, about 2 s\.$/);
   service.show("goals", { current: { text: "room A" }, waiting: [], exploring: false });
   await text(page, ".section p", /^0\.24 m left, about 2 s$/);
+  await end(opened);
+});
+
+test("the header says what the robot does, or what it waits for", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  const activity = (pattern) => text(page, "#activity", pattern);
+  const navigator = { state: "driving", reason: "none", message: "drives", rest_m: 8, rest_s: 14, driven_m: 1 };
+  const goals = { current: { text: "room 3" }, waiting: [], exploring: false };
+  await activity(/^Idle$/);
+  service.show("goals", goals);
+  service.show("navigator", navigator);
+  await activity(/^Driving to room 3 \(8\.00 m, 14 s\)$/);
+  service.show("navigator", { ...navigator, rest_m: 0, rest_s: 0, message: "at the goal, checking its position" });
+  await activity(/^At room 3, checking its position$/);
+  service.show("navigator", { ...navigator, state: "stopped", reason: "waits_for_route" });
+  await activity(/^Planning the route to room 3$/);
+  service.show("navigator", { ...navigator, state: "blocked", reason: "obstacle" });
+  await activity(/^Waiting for a free path to room 3$/);
+  service.show("navigator", { ...navigator, state: "stopped", reason: "paused" });
+  await activity(/^Paused on the way to room 3$/);
+  service.show("goals", { current: { text: "a gap" }, waiting: [], exploring: true });
+  service.show("navigator", navigator);
+  await activity(/^Exploring$/);
+  service.show("drive", { held: true, linear_mps: 0.3, angular_radps: 0, free_ahead_m: 2, message: "" });
+  await activity(/^Driven by hand$/);
+  service.show("controls", { holder: { page: 2, name: "Anna" }, asking: null, stopped_by: "Ben" });
+  await activity(/^Driven by hand by Anna$/);
+  service.show("base", { ...kBase, state: "halted" });
+  await activity(/^Held by Ben$/);
+  service.show("base", { ...kBase, state: "emergency_stop" });
+  await activity(/^Emergency stop$/);
+  await assert_accessible(page, "an activity");
+  service.cut();
+  await wait_for("nothing is said of the robot", async () => !(await page.locator("#activity").isVisible()));
+  await end(opened);
+});
+
+test("after a stop and its release, the page offers to resume what was interrupted", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await show_banners(page);
+  const goals = { current: null, waiting: [], exploring: false };
+  service.show("goals", { ...goals, interrupted: { text: "room 3", waiting: 1, exploring: false } });
+  service.show("base", { ...kBase, state: "halted" });
+  await text(page, ".banner", /Held\. Release it to drive\. It was on the way to room 3 and 1 more/);
+  const resume = page.getByRole("button", { name: "Resume: to room 3 and 1 more" });
+  assert.equal(await resume.isVisible(), false, "a held robot is released first");
+  await page.getByRole("button", { name: "Release", exact: true }).click();
+  await wait_for("the release", () => service.orders.includes("release"));
+  service.show("base", { ...kBase, state: "ready" });
+  await assert_accessible(page, "a goal that can be resumed");
+  await resume.click();
+  await wait_for("the order", () => service.orders.includes("resume"));
+  service.show("goals", { ...goals, interrupted: { text: "", waiting: 0, exploring: true } });
+  await page.getByRole("button", { name: "Resume: to places that are not mapped yet" }).waitFor();
+  await page.getByRole("button", { name: "Forget it" }).click();
+  await wait_for("the order", () => service.orders.includes("cancel"));
+  service.show("goals", { ...goals, interrupted: null });
+  await wait_for("the offer goes", async () => !(await page.getByRole("button", { name: /^Resume/ }).isVisible()));
+  await end(opened);
+});
+
+test("an exploration says what it has done and when it is at its end", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await page.click("#tab-send");
+  const goals = { current: { text: "a gap" }, waiting: [], exploring: true };
+  const navigator = { state: "driving", reason: "none", message: "drives", rest_m: 0, rest_s: 1, driven_m: 3 };
+  service.show("navigator", navigator);
+  service.show("goals", { ...goals, exploration: { visited: 3, given_up: 1, ended: false } });
+  const rest = ".section p.quiet";
+  await text(page, rest, /^3 places visited, 1 of them not reached, 32\.0 m² mapped\. Choosing the next point …$/);
+  service.show("navigator", { ...navigator, rest_m: 2, rest_s: 4 });
+  await text(page, rest, /mapped\. 2\.00 m to the next point, about 4 s\.$/);
+  const ended = { visited: 5, given_up: 0, ended: true };
+  service.show("navigator", { ...navigator, state: "idle" });
+  service.show("goals", { current: null, waiting: [], exploring: false, exploration: ended });
+  await text(page, ".section h3", /^Exploration finished: everything that can be reached is mapped/);
+  await text(page, rest, /^5 places visited, 32\.0 m² mapped\.$/);
+  await end(opened);
+});
+
+test("driving by hand shows the free distance in the direction of motion alone", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await page.click("#tab-send");
+  await page.getByText("Drive by hand", { exact: true }).click();
+  const drive = { held: true, linear_mps: 0, angular_radps: 0, free_ahead_m: 0, free_behind_m: null, message: "" };
+  service.show("drive", drive);
+  await text(page, ".drive [role=status]", /^Stands\.$/);
+  service.show("drive", { ...drive, linear_mps: 0.3, free_ahead_m: 2.5 });
+  await text(page, ".drive [role=status]", /^0\.30 m\/s, 2\.50 m free ahead\.$/);
+  service.show("drive", { ...drive, linear_mps: -0.2, free_ahead_m: null, free_behind_m: 1.5 });
+  await text(page, ".drive [role=status]", /^-0\.20 m\/s, 1\.50 m free behind\.$/);
+  await end(opened);
+});
+
+// The last size is a screen of 1366 x 768 at a zoom of 200 %.
+for (const [width, height] of [[320, 568], [390, 844], [844, 390], [1920, 1080], [683, 384]]) {
+  test(`on ${width} x ${height} the map has its share, and nothing is covered`, async () => {
+    const opened = await open({ viewport: { width, height } });
+    const { page, service } = opened;
+    await page.addStyleTag({ content: ".header { height: auto !important; overflow: visible !important }" });
+    service.show("goals", { current: { text: "room 3" }, waiting: [], exploring: false });
+    service.show("navigator", { state: "driving", reason: "none", message: "drives", rest_m: 8, rest_s: 14 });
+    await text(page, "#activity", /Driving to room 3/);
+    for (const view of ["now", "send", "correct", "understand", "draw", "time"]) {
+      await page.click(`#tab-${view}`);
+      const box = async (selector) => page.locator(selector).first().boundingBox();
+      const map = await box(".stage");
+      assert.ok(map.height >= 0.4 * height || map.width >= 0.4 * width, `${view}: ${JSON.stringify(map)}`);
+      assert.ok(map.height >= 0.3 * height && map.width >= 0.3 * width, `${view}: ${JSON.stringify(map)}`);
+      const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+      assert.ok(wide <= width, `${view} is ${wide} wide`);
+      for (const control of await page.locator(".controls .control").all()) {
+        const at = await control.boundingBox();
+        assert.ok(at.y >= map.y && at.y + at.height <= map.y + map.height + 1, `${view}: a button lies off the map`);
+      }
+      assert.ok((await box("#panel")).height >= 80, `${view}: its panel`);
+      await assert_accessible(page, `${view}, ${width} x ${height}`);
+    }
+    const name = await page.locator(".robot-name").boundingBox();
+    assert.ok(name.width > 20 && name.height > 8, "the robot's name");
+    await page.click("#tab-send");
+    await page.getByText("Drive by hand", { exact: true }).click();
+    await page.getByRole("button", { name: "Take the controls" }).click();
+    await page.locator("#drive-speed").waitFor();
+    const speed = await page.locator("#drive-speed").boundingBox();
+    const panel = await page.locator("#panel").boundingBox();
+    assert.ok(speed.y >= panel.y && speed.y + speed.height <= panel.y + panel.height, "the speed is out of sight");
+    await end(opened);
+  });
+}
+
+test("a map without a robot says nothing of one", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  const quiet = { state: "running", host: "desk", message: "", waits_for: "", input: "", faults: 0, last_error: "" };
+  service.table("services", { 1: { ...quiet, service: "web" }, 2: { ...quiet, service: "map_store" } });
+  service.show("pose", null);
+  service.show("viewers", { viewers: 1, operators: 1 });
+  await text(page, ".state-word", /No robot/i);
+  await text(page, "p.quiet", /^1 page is open\.$/);
+  for (const value of await page.getByText("unknown").all()) assert.equal(await value.isVisible(), false);
+  const loop = { x_m: 0, y_m: 0, theta_rad: 0, source: "", fitness: null, probability: null, outcome: "accepted" };
+  Object.assign(loop, { correction_m: null, correction_rad: null, step: 9, earlier: 1, later: 8 });
+  service.table("loops", { 0: { ...loop, accepted: true, explanation: "" } });
+  await page.click("#tab-understand");
+  await text(page, ".section p", /^1 accepted\. The map file keeps no rejected ones\.$/);
+  await text(page, ".loops li", /Accepted\.[^]*The map file keeps no evidence of it/);
+  await end(opened);
+});
+
+test("a goal gets the heading that is typed", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await page.click("#tab-send");
+  await page.getByRole("button", { name: "right room", exact: true }).click();
+  await text(page, ".card [role=status]", /m, about/);
+  await page.fill("#goal-heading", "90");
+  await page.click("#go");
+  await wait_for("the goal", () => service.goal);
+  assert.ok(Math.abs(service.goal.heading_rad - Math.PI / 2) < 1e-9, JSON.stringify(service.goal));
+  await page.getByRole("button", { name: "right room", exact: true }).click();
+  await text(page, ".card [role=status]", /m, about/);
+  assert.equal(await page.inputValue("#goal-heading"), "");
+  service.goal = undefined;
+  await page.click("#go");
+  await wait_for("the goal", () => service.goal);
+  assert.equal("heading_rad" in service.goal, false);
+  await end(opened);
+});
+
+test("a distance is measured by two taps or a drag, and the pointer's coordinates show", async () => {
+  const opened = await open();
+  const { page } = opened;
+  const map = await page.locator("#map").boundingBox();
+  const [x, y] = [map.x + map.width / 2, map.y + map.height / 2];
+  const shown = async () => (await page.innerText(".under-pointer")).match(/-?[\d.]+/g).map(Number);
+  await page.mouse.move(x, y);
+  const from = await shown();
+  await page.mouse.move(x + 100, y);
+  const to = await shown();
+  assert.ok(to[0] > from[0] && to[1] === from[1], `${from} ${to}`);
+  const meters = to[0] - from[0];
+  const is_distance = async () => {
+    const found = /^([\d.]+) m$/.exec(await page.innerText(".map-note"));
+    return found !== null && Math.abs(Number(found[1]) - meters) < 0.03 * meters;
+  };
+  const measure = page.getByRole("button", { name: "Measure a distance" });
+  await measure.click();
+  await text(page, ".map-note", /^Drag, or tap two points/);
+  await page.mouse.click(x, y);
+  await page.mouse.click(x + 100, y);
+  await wait_for("the distance of two taps", is_distance);
+  await page.mouse.move(x, y + 50);
+  await page.mouse.down();
+  await page.mouse.move(x + 100, y + 50, { steps: 4 });
+  await page.mouse.up();
+  await wait_for("the distance of a drag", is_distance);
+  await assert_accessible(page, "a measured distance");
+  await measure.click();
+  assert.equal(await page.locator(".map-note").isVisible(), false);
+  await page.mouse.click(x, y);
+  await text(page, ".card h3", /Point/); // a tap chooses a goal again
   await end(opened);
 });
 

@@ -101,6 +101,7 @@ class Orders {
 /** All services as separate processes, which can be ended one by one. */
 export class Robot extends Orders {
   processes = new Map();
+  web_options = []; // further ones
 
   /** bin: folder of the programs; source: of the project; work: where files go, made if missing. */
   constructor(bin, source, work) {
@@ -149,7 +150,7 @@ export class Robot extends Orders {
 
   /** Starts the web service at its previous port. */
   async start_web() {
-    this.run("web", "--port", String(this.port), "--token", this.token);
+    this.run("web", "--port", String(this.port), "--token", this.token, ...this.web_options);
     await wait_for("the web service answers", () => fetch(`${this.address}/api/info`).catch(() => null));
   }
 

@@ -21,10 +21,11 @@ export class StandIn {
   refusal = null; // answer to previews
   ops = []; // of messages that pages sent
   messages = []; // the same messages, whole
+  controls = []; // orders about the controls
   orders = []; // sent by pages by POST and only recorded
   reachable = true; // through the WebSocket
   ages_s = undefined; // time since each value was received
-  offers = ["goal", "preview", "drawing", "room_shapes", "floor", "explore", "cancel", "stop", "release"];
+  offers = ["goal", "preview", "drawing", "room_shapes", "floor", "explore", "cancel", "resume", "stop", "release"];
   /** Two rooms of 4 x 4 m that meet at x = 0; zone 0 lies left. */
   rooms = {
     0: { name: "left room", area_m2: 16, x_m: -2, y_m: 0, color: 0 },
@@ -77,7 +78,7 @@ export class StandIn {
       this.messages.push(message);
       if (op === "ping") send({ op: "pong", time_s: 0 });
       if (op !== "hello") return;
-      send({ op: "welcome", protocol: 1, life: "a", may_write: true, robot_id: kRobot });
+      send({ op: "welcome", protocol: 1, life: "a", may_write: true, robot_id: kRobot, page: message.page ? 1 : 0 });
       const time = () =>
         send({ channel: "time", version: 1, value: { time_s: Date.now() / 1000, ages_s: this.ages_s } });
       time();
@@ -140,8 +141,12 @@ export class StandIn {
         this.floors.push(body);
         return json(202, {});
       case "/api/stop":
+      case "/api/resume":
       case "/api/release":
         this.orders.push(pathname.slice("/api/".length));
+        return json(202, {});
+      case "/api/controls":
+        this.controls.push(body.do);
         return json(202, {});
       case "/api/explore":
       case "/api/cancel":

@@ -34,7 +34,11 @@ export class ApiError extends Error {
 }
 
 export class Api {
-  constructor(private readonly token: string) {}
+  /** page: the secret id of this page. */
+  constructor(
+    private readonly token: string,
+    private readonly page: string,
+  ) {}
 
   /** GET of a resource as JSON. Throws an ApiError. */
   async get<Answer>(path: string, timeout_ms = timeoutMs): Promise<Answer> {
@@ -71,6 +75,7 @@ export class Api {
     const timer = window.setTimeout(() => abort.abort(), timeout_ms);
     const headers: Record<string, string> = {};
     if (this.token) headers.Authorization = `Bearer ${this.token}`;
+    if (this.token && method === "POST") headers["X-Topogeo-Page"] = this.page;
     if (typeof body === "string") headers["Content-Type"] = "application/json";
     else if (body) headers["Content-Type"] = "application/octet-stream";
     try {

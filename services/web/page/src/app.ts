@@ -2,6 +2,7 @@
 import { Api } from "./api";
 import { Channels } from "./channels";
 import { Connection } from "./connection";
+import { Identity } from "./identity";
 import { MapView } from "./map/map_view";
 import { Rights } from "./rights";
 import { Notices } from "./ui/notices";
@@ -13,6 +14,7 @@ export interface App {
   notices: Notices;
   rights: Rights;
   connection: Connection;
+  identity: Identity;
   map: MapView;
   theme: Theme;
 }

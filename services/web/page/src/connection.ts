@@ -2,6 +2,7 @@
 // connection.
 import { socket_address } from "./address";
 import { Channels } from "./channels";
+import { Identity } from "./identity";
 import { TableMessage, ValueMessage } from "./protocol";
 
 const silenceMs = 5000; // the service sends something every two seconds
@@ -12,7 +13,8 @@ const longestDelayMs = 4000;
 const mostLate = 20; // clocks that stood still disagree; a new connection corrects that
 
 export interface Listener {
-  connected(may_write: boolean, error: string): void;
+  /** page: number of this page among those of operators; 0: none. */
+  connected(may_write: boolean, error: string, page: number): void;
   disconnected(): void;
   refused(what: string, error: string): void;
 }
@@ -23,6 +25,7 @@ interface Control {
   may_write?: boolean;
   what?: string;
   error?: string;
+  page?: number;
   late_s?: number;
 }
 
@@ -48,6 +51,7 @@ export class Connection {
   constructor(
     private readonly channels: Channels,
     private readonly token: string,
+    private readonly identity: Identity,
     private readonly names: string[],
     private readonly listener: Listener,
   ) {
@@ -76,7 +80,8 @@ export class Connection {
     socket.onopen = () => {
       const hello: Record<string, unknown> = { op: "hello", page_ms: performance.now() };
       this.late = 0;
-      if (this.token) hello.token = this.token;
+      const { id, name } = this.identity;
+      if (this.token) Object.assign(hello, { token: this.token, page: id, name });
       if (this.names.length > 0) hello.channels = this.names;
       if (this.life) Object.assign(hello, { life: this.life, have: this.channels.held() });
       socket.send(JSON.stringify(hello));
@@ -98,7 +103,8 @@ export class Connection {
       this.follow_life(message.life ?? "");
       this.open = true;
       this.delay_ms = firstDelayMs;
-      this.listener.connected(message.may_write === true, message.error ?? "");
+      const { may_write, error, page } = message;
+      this.listener.connected(may_write === true, error ?? "", page ?? 0);
     } else if (message.op === "pong") {
       window.clearTimeout(this.pong_timer);
     } else if (message.op === "refused") {

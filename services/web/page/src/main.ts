@@ -3,6 +3,7 @@ import { Api, take_token } from "./api";
 import { App, ViewPart } from "./app";
 import { Channels } from "./channels";
 import { Connection } from "./connection";
+import { Identity } from "./identity";
 import { MapView } from "./map/map_view";
 import { Info } from "./protocol";
 import { Rights } from "./rights";
@@ -129,7 +130,8 @@ function start(): void {
   const theme = new Theme();
   const channels = new Channels();
   const rights = new Rights();
-  const api = new Api(token);
+  const identity = new Identity();
+  const api = new Api(token, identity.id);
   const notices = new Notices();
 
   const robot = h("h1", { class: "robot-name" }, texts.title);
@@ -161,9 +163,9 @@ function start(): void {
     set_text(robot, info.robot_id || texts.no_robot);
     document.title = `${info.robot_id || texts.no_robot} – ${texts.title}`;
   };
-  const connection = new Connection(channels, token, [], {
-    connected: (may_write, error) => {
-      rights.set_connected(true, may_write);
+  const connection = new Connection(channels, token, identity, [], {
+    connected: (may_write, error, page) => {
+      rights.set_connected(true, may_write, page);
       if (error) header.show_token_error();
       void read_info();
     },
@@ -174,7 +176,7 @@ function start(): void {
     refused: (_, error) => notices.show(error, "error"),
   });
   const map = new MapView(canvas, scale, channels, theme);
-  const app: App = { channels, api, notices, rights, connection, map, theme };
+  const app: App = { channels, api, notices, rights, connection, identity, map, theme };
   const send = new SendView(app);
   header.on_stop = () => {
     connection.send({ op: "stop" });

@@ -3,6 +3,7 @@ import { Api, take_token } from "./api";
 import { Channels } from "./channels";
 import { Connection } from "./connection";
 import { Destination, destinations, numbered } from "./destinations";
+import { Identity } from "./identity";
 import { Rights } from "./rights";
 import { is_paused, navigator_text } from "./robot_state";
 import { texts } from "./texts";
@@ -168,7 +169,8 @@ function start(): void {
   new Theme();
   const channels = new Channels();
   const rights = new Rights();
-  const api = new Api(token);
+  const identity = new Identity();
+  const api = new Api(token, identity.id);
   const notices = new Notices();
   const title = h("h1", { class: "unseen" }, words.title);
   const header = new Header(channels, rights, api, notices, [title]);
@@ -177,10 +179,13 @@ function start(): void {
   root.append(notices.element);
   document.body.replaceChildren(root);
   document.title = `${words.title} – ${texts.title}`;
-  const names = ["pose", "navigator", "goals", "base", "places", "rooms", "time"];
-  const connection = new Connection(channels, token, names, {
-    connected: (may_write, error) => {
-      rights.set_connected(true, may_write);
+  const names = [
+    ...["pose", "navigator", "goals", "base", "drive", "controls"],
+    ...["places", "rooms", "services", "time"],
+  ];
+  const connection = new Connection(channels, token, identity, names, {
+    connected: (may_write, error, page) => {
+      rights.set_connected(true, may_write, page);
       if (error) header.show_token_error();
     },
     disconnected: () => {

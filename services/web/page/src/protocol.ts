@@ -59,13 +59,22 @@ export interface Goals {
   waiting: { text: string }[];
   exploring: boolean;
   pausing?: boolean; // ordered, and not reported by the navigator
+  exploration?: { visited: number; given_up: number; ended: boolean } | null;
+  interrupted?: { text: string; waiting: number; exploring: boolean } | null; // by a stop
+}
+
+export interface Controls {
+  holder: { page: number; name: string } | null;
+  asking: { page: number; name: string } | null;
+  stopped_by: string;
 }
 
 export interface Drive {
   held: boolean;
   linear_mps: number | null;
   angular_radps: number | null;
-  free_ahead_m: number | null;
+  free_ahead_m?: number | null;
+  free_behind_m?: number | null;
   message: string;
   stopped?: boolean; // by a stop that no base reports
 }
@@ -145,6 +154,7 @@ export interface Values {
   navigator: Navigator;
   route: Route;
   goals: Goals;
+  controls: Controls;
   drive: Drive;
   base: Base;
   laser: Laser;

@@ -2,11 +2,13 @@
 export class Rights {
   connected = false;
   may_write = false;
+  page = 0; // number of this page among those of operators
   private offered: Set<string> | null = null;
   private readonly listeners: (() => void)[] = [];
 
-  set_connected(connected: boolean, may_write: boolean): void {
+  set_connected(connected: boolean, may_write: boolean, page = 0): void {
     this.connected = connected;
+    this.page = page;
     this.may_write = connected ? may_write : this.may_write;
     this.notify();
   }

@@ -54,7 +54,8 @@ export function pose_of_now(channels: Channels, rights: Rights): Pose | null {
   return name === "offline" || name === "silent" ? null : channels.value("pose");
 }
 
-function robot_is_absent(channels: Channels): boolean {
+/** Whether services run, but none of a robot. */
+export function robot_is_absent(channels: Channels): boolean {
   const live = [...channels.table("services").values()].filter(({ state }) => state !== "lost");
   return live.length > 0 && live.every(({ service }) => withoutRobot.has(service));
 }
@@ -78,6 +79,14 @@ export function pending_goal(channels: Channels): string | null {
   if (goals?.exploring) return texts.send.to_explore;
   if (goals?.current) return goals.current.text;
   return has_foreign_goal(channels) ? texts.send.to_foreign : null;
+}
+
+/** Goal, list or exploration that a stop has interrupted, as text; null if there is none. */
+export function interrupted_goal(channels: Channels): string | null {
+  const interrupted = channels.value("goals")?.interrupted;
+  if (!interrupted) return null;
+  if (interrupted.exploring) return texts.send.to_explore;
+  return texts.and_more(interrupted.text, interrupted.waiting);
 }
 
 /** Whether the navigator has a goal of another client, or from before a restart of the service. */

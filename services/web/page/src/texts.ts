@@ -30,6 +30,45 @@ export const texts = {
     offline: "Nothing arrives from the robot. The page shows its last state.",
   },
 
+  activity: {
+    idle: "Idle",
+    arrived: "Arrived",
+    emergency: "Emergency stop",
+    held: (by: string) => (by ? `Held by ${by}` : "Held"),
+    by_hand: (by: string) => (by ? `Driven by hand by ${by}` : "Driven by hand"),
+    driving: (goal: string, meters: Maybe, seconds: Maybe) =>
+      `Driving${goal ? ` to ${goal}` : ""}` +
+      (typeof meters === "number" ? ` (${length(meters)}, ${duration(seconds)})` : ""),
+    at_goal: (goal: string) => `At ${goal || "the goal"}, checking its position`,
+    exploring: "Exploring",
+    paused: (goal: string) => (goal ? `Paused on the way to ${goal}` : "Paused"),
+    planning: (goal: string) => `Planning the route${goal ? ` to ${goal}` : ""}`,
+    finding: "Finding its position",
+    blocked: (goal: string) => `Waiting for a free path${goal ? ` to ${goal}` : ""}`,
+    stopped: "Waiting",
+    no_navigator: "Not ready to drive",
+    base: {
+      offline: "Drive unit not connected",
+      starting: "Drive unit is starting",
+      watchdog_expired: "Drive unit stopped: no orders arrived",
+      bumped: "Bumped into something",
+      joystick: "Moved by its joystick",
+      motors_off: "Motors off",
+    } as Record<string, string>,
+    waiting: {
+      no_route: "Waiting: no route to the goal",
+      pose_lost: "Waiting: position lost",
+      no_map: "Waiting for a map",
+      outside_map: "Waiting: not on the map",
+      obstacle: "Waiting: something is in the way",
+      no_scan: "Waiting for the laser",
+      sonar_silent: "Waiting for the sonars",
+      no_odometry: "Waiting for the drive unit",
+      base_not_ready: "Waiting for the drive unit",
+      base_stuck: "Stuck: the drive unit does not move",
+    } as Record<string, string>,
+  },
+
   views: {
     now: "Now",
     send: "Send",
@@ -50,6 +89,13 @@ export const texts = {
   hand_stopped: "Held, not confirmed by the drive unit. Release it to drive.",
   hand_stopped_with_goal: (goal: string) =>
     `Held, not confirmed by the drive unit. When released, the robot drives to ${goal} at once.`,
+  interrupted_held: (text: string, goal: string) =>
+    `${text} It was on the way to ${goal}; after the release you can resume.`,
+  interrupted: (goal: string) => `Stopped on the way to ${goal}.`,
+  resume_to: (goal: string) => `Resume: to ${goal}`,
+  forget: "Forget it",
+  and_more: (goal: string, more: number) =>
+    more > 0 ? `${goal} and ${more} more` : goal,
   stop_sent: "Stop sent, not confirmed by the drive unit. The robot may still move.",
   stop_moves: "Stopping: the robot still moves.",
   stop_failed: (why: string) => `Stop was not accepted: ${why} The robot may still move.`,
@@ -64,12 +110,35 @@ export const texts = {
   reconnecting: "Connection lost. Trying again …",
   wrong_token: "This link is wrong or has expired. You can only watch.",
 
+  controls_of_robot: {
+    other: (name: string) => `${name} has the controls. You can watch, and stop the robot.`,
+    waiting: (name: string) => `You asked ${name} for the controls …`,
+    asks: (name: string) => `${name} asks for the controls.`,
+    ask: "Ask for them",
+    take: "Take over",
+    give: "Give them",
+    keep: "Keep them",
+    got: "You have the controls now.",
+    lost: (name: string) => `${name} has the controls now.`,
+    kept: (name: string) => `${name} keeps the controls.`,
+    title: "Operators",
+    holder: "Controls",
+    nobody: "free: the next order takes them",
+    mine: "yours",
+    your_name: "Your name, for other operators",
+    no_name: "an operator",
+    let_go: "Give up the controls",
+  },
+
   controls: {
     zoom_in: "Zoom in",
     zoom_out: "Zoom out",
     fit: "Show the whole map (F)",
     follow: "Follow the robot (R)",
     layers: "Layers of the map",
+    measure: "Measure a distance",
+    measuring: "Drag, or tap two points.",
+    measured: (meters: number) => length(meters),
     theme: "Dark or light",
   },
   layers: {
@@ -103,8 +172,9 @@ export const texts = {
     confidence: "Confidence of the position",
     workers: "Search workers",
     workers_value: (busy: number, slots: number, workers: number) =>
-      `${workers} at work, ${busy} of ${slots} slots busy`,
-    no_workers: "none at work",
+      `${counted(workers, "worker", "workers")}, ` +
+      (busy > 0 ? `${busy} of ${slots} searches at a time` : "idle"),
+    no_workers: "none connected",
     map: "Map",
     no_map: "none yet",
     map_value: (nodes: Maybe, branches: Maybe, floor: Maybe) =>
@@ -142,8 +212,9 @@ export const texts = {
     in_world: "In its world",
     collisions: (n: number) => counted(n, "collision", "collisions"),
     legend: "Legend and keys",
-    viewers: (viewers: number, operators: number) =>
-      `${viewers} ${viewers === 1 ? "page is" : "pages are"} open, ${operators} may command.`,
+    viewers: (viewers: number, operators?: number) =>
+      `${viewers} ${viewers === 1 ? "page is" : "pages are"} open` +
+      (operators === undefined ? "." : `, ${operators} may command.`),
   },
   keys: [
     ["Space", "Stop"],
@@ -178,6 +249,7 @@ export const texts = {
     nearest: "Go to the nearest point that can be reached",
     go: "Go",
     go_all: (n: number) => `Go to all ${n} in this order`,
+    heading_at_goal: "Heading at the goal (°), empty: any",
     append: "Add to the list",
     clear: "Clear",
     remove: (name: string) => `Remove ${name}`,
@@ -194,10 +266,16 @@ export const texts = {
     to_explore: "places that are not mapped yet",
     to_foreign: "a goal that was not sent from here",
     exploring: "The robot explores by itself.",
+    explored: "Exploration finished: everything that can be reached is mapped.",
+    explored_facts: (visited: number, given_up: number, floor: Maybe) =>
+      `${counted(visited, "place", "places")} visited` +
+      (given_up > 0 ? `, ${given_up} of them not reached` : "") +
+      `, ${area(floor)} mapped`,
     to: (goal: string) => `To ${goal}`,
     rest: (meters: Maybe, seconds: Maybe) => `${length(meters)} left, about ${duration(seconds)}`,
     rest_exploring: (meters: Maybe, seconds: Maybe) =>
       `${length(meters)} to the next point, about ${duration(seconds)}`,
+    next_point: "Choosing the next point …",
     waiting: (names: string) => `Then: ${names}`,
     progress: "Driven share of the route",
     pause: "Pause",
@@ -217,8 +295,11 @@ export const texts = {
     turn_left: "Turn left",
     turn_right: "Turn right",
     drive_idle: "Nobody drives.",
-    drive_state: (now: Maybe, free: Maybe) =>
-      `${speed(now)}` + (typeof free === "number" ? `, ${length(free)} free ahead` : ""),
+    drive_stands: "Stands.",
+    drive_state: (now: Maybe, ahead: Maybe, behind: Maybe) =>
+      speed(now) +
+      (typeof ahead === "number" ? `, ${length(ahead)} free ahead` : "") +
+      (typeof behind === "number" ? `, ${length(behind)} free behind` : ""),
   },
   navigator: {
     idle: "Without a goal",
@@ -329,6 +410,8 @@ export const texts = {
     goal_held: "The robot is held. It drives there as soon as it is released.",
     release: "The robot may move again.",
     cancel: "The goal is cancelled.",
+    resume: "The robot drives on.",
+    forget: "The interrupted goal is forgotten.",
     goal: (name: string) => `On the way to ${name}.`,
     goals: (n: number) => `On the way to ${n} goals.`,
     appended: (name: string) => `${name} is added.`,

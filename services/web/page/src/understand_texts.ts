@@ -5,6 +5,8 @@ export const understand_texts = {
   why: "Why this state",
   loops: "Loops",
   loops_hint: "Places to which the robot may have come back. Choose one to see both scan points.",
+  loops_kept: (accepted: number) =>
+    `${count(accepted)} accepted. The map file keeps no rejected ones.`,
   loops_count: (accepted: number, rejected: number) =>
     `${count(accepted)} accepted, ${count(rejected)} rejected`,
   no_loops: "The robot has not come back to an earlier place yet, so there is no loop.",

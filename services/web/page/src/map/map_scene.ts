@@ -12,6 +12,7 @@ import { View } from "./map_canvas";
 import {
   draw_body,
   draw_goal,
+  draw_heading,
   draw_local_map,
   draw_robot,
   draw_route,
@@ -45,6 +46,7 @@ export type DrawAbove = (
 export interface Mark {
   x_m: number;
   y_m: number;
+  goal?: { heading_rad?: number };
 }
 
 /** Drawn on the map in edit mode, in place of the saved drawing. */
@@ -183,6 +185,8 @@ export class MapScene {
     this.marks.forEach((mark, i) => {
       const number = this.marks.length > 1 ? String(i + 1) : "";
       draw_goal(context, view, mark.x_m, mark.y_m, palette, number);
+      const theta = mark.goal?.heading_rad;
+      if (theta !== undefined) draw_heading(context, view, mark.x_m, mark.y_m, theta, palette);
     });
     const scan = this.channels.value("scan");
     if (scan && located && this.visible.scan) draw_scan(context, view, scan, palette);

@@ -6,9 +6,11 @@ import { Box } from "./grid_frame";
 import { MapCanvas } from "./map_canvas";
 import { MapScene } from "./map_scene";
 import { MapPointer, MapTool, ToolListener } from "./map_tool";
+import { MeasureTool } from "./measure_tool";
 import { PoseTool } from "./pose_tool";
 import { PoseMark } from "./robot_layer";
 
+const measureAbove = "measure";
 const firstZoom = 4; // 16 pixels per metre
 const largestFitZoom = 6;
 
@@ -21,10 +23,15 @@ export class MapView {
   private readonly scale_bar: HTMLElement;
   private moved = false; // by a person: until then a growing map is kept in view
   private following = false;
+  private measuring = false;
   private fitted = ""; // the last fitted box
   private readonly tools: ToolListener;
 
   on_tap: (x_m: number, y_m: number, pixels_per_m: number) => void = () => undefined;
+  /** Another tool has ended a measurement. */
+  on_tool: () => void = () => undefined;
+  /** The pointer of a mouse is at this point, metres; null: it has left the map. */
+  on_point: (point: { x_m: number; y_m: number } | null) => void = () => undefined;
   on_follow: (following: boolean) => void = () => undefined;
 
   /** container: filled by the map; scale_bar: gets width and text. */
@@ -61,6 +68,12 @@ export class MapView {
       if (this.tools.active) return;
       this.on_tap(event.latlng.lng, event.latlng.lat, 2 ** this.map.getZoom());
     });
+    container.addEventListener("pointermove", (event) => {
+      if (event.pointerType !== "mouse") return;
+      const { lng, lat } = this.map.mouseEventToLatLng(event);
+      this.on_point({ x_m: lng, y_m: lat });
+    });
+    container.addEventListener("pointerleave", () => this.on_point(null));
     this.map.on("dragstart", () => {
       this.moved = true;
       this.follow(false);
@@ -159,6 +172,7 @@ export class MapView {
       this.moving.redraw();
       on_change(mark);
     };
+    this.leave_measuring();
     this.tools.set(new PoseTool(before, show), "setting-pose");
   }
 
@@ -168,7 +182,34 @@ export class MapView {
 
   /** Gives presses and drags to a tool. drawing: it draws, else it grabs existing items. */
   start_tool(tool: MapTool, drawing: boolean): void {
+    this.leave_measuring();
     this.tools.set(tool, drawing ? "drawing" : "selecting");
+  }
+
+  /** Measures distances until stop_measuring(); on_change gets the length, metres. */
+  start_measuring(on_change: (meters: number | null) => void): void {
+    const tool = new MeasureTool((meters) => {
+      on_change(meters);
+      this.moving.redraw();
+    });
+    this.scene.above.set(measureAbove, (context, view, palette) => tool.draw(context, view, palette));
+    this.tools.set(tool, "drawing");
+    this.measuring = true;
+  }
+
+  // Another tool takes the place of the measure.
+  private leave_measuring(): void {
+    if (!this.measuring) return;
+    this.stop_measuring();
+    this.on_tool();
+  }
+
+  stop_measuring(): void {
+    if (!this.measuring) return;
+    this.measuring = false;
+    this.scene.above.delete(measureAbove);
+    this.tools.set(null);
+    this.moving.redraw();
   }
 
   end_tool(): void {

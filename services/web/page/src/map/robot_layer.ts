@@ -144,6 +144,29 @@ export function draw_route(
   context.setLineDash([]);
 }
 
+/** An arrow at a goal in the direction in which the robot will look. */
+export function draw_heading(
+  context: CanvasRenderingContext2D,
+  view: View,
+  x_m: number,
+  y_m: number,
+  theta: number,
+  palette: Palette,
+): void {
+  const [x, y] = to_pixels(view, x_m, y_m);
+  const at = (along: number, left: number): [number, number] => [
+    x + along * Math.cos(theta) - left * Math.sin(theta),
+    y - along * Math.sin(theta) - left * Math.cos(theta),
+  ];
+  context.beginPath();
+  context.moveTo(...at(26, 0));
+  context.lineTo(...at(13, 8));
+  context.lineTo(...at(13, -8));
+  context.closePath();
+  context.fillStyle = palette.goal;
+  context.fill();
+}
+
 /** A goal of the robot: a ring with a point; number: position in a sequence. */
 export function draw_goal(
   context: CanvasRenderingContext2D,

@@ -1,19 +1,23 @@
-// Always visible: the state in large letters with its reason, and Stop.
+// Always visible: what the robot does in large letters, how sure its position is, and Stop.
+import { activity } from "../activity";
 import { Api } from "../api";
 import { Channels } from "../channels";
 import { Rights } from "../rights";
 import { silenceTickMs, robot_state } from "../robot_state";
 import { Stopping } from "../stopping";
 import { texts } from "../texts";
+import { ControlsBanner } from "./controls_banner";
 import { button, h, set_attribute, set_text, show } from "./dom";
 import { HeldBanner } from "./held_banner";
 import { Notices } from "./notices";
+import { ResumeBanner } from "./resume_banner";
 import { once_a_frame } from "./schedule";
 import { listen_for_stop_key } from "./stop_key";
 
 export class Header {
   readonly element: HTMLElement;
   readonly banners: HTMLElement;
+  private readonly activity = h("strong", { class: "activity", id: "activity" });
   private readonly state = h("strong", { class: "state-word" });
   private readonly reason = h("span", { class: "state-reason" });
   private readonly stop: HTMLButtonElement;
@@ -27,6 +31,8 @@ export class Header {
   });
   private readonly stopping: Stopping;
   private readonly held: HeldBanner;
+  private readonly resume: ResumeBanner;
+  private readonly controls: ControlsBanner;
   private readonly token = h("div", { class: "banner fair", role: "alert", hidden: true });
 
   /** Called by Stop in addition to its order. */
@@ -52,22 +58,26 @@ export class Header {
     this.element = h(
       "header",
       { class: "header" },
-      h("div", { class: "state", role: "status", id: "state" }, this.state, this.reason),
+      h("div", { class: "state", role: "status", id: "state" }, this.activity, this.state, this.reason),
       h("div", { class: "header-end" }, ...extra, this.view_only, this.stop),
     );
     const update = once_a_frame(() => this.update());
     const on_held = () => notices.show(texts.done.stop);
     this.stopping = new Stopping(channels, rights, api, update, on_held);
     this.held = new HeldBanner(channels, rights, api, notices, () => this.stopping.forget());
+    this.controls = new ControlsBanner(channels, rights, api, notices);
+    this.resume = new ResumeBanner(channels, rights, api, notices);
     this.banners = h(
       "div",
       { class: "banners" },
       this.offline,
       this.stop_sent,
       this.held.element,
+      this.resume.element,
+      this.controls.element,
       this.token,
     );
-    channels.on_value(["pose", "base", "drive", "goals", "navigator"], update);
+    channels.on_value(["pose", "base", "drive", "goals", "navigator", "controls"], update);
     channels.on_table("services", update);
     rights.on_change(update);
     setInterval(update, silenceTickMs);
@@ -89,6 +99,10 @@ export class Header {
 
   private update(): void {
     const state = robot_state(this.channels, this.rights);
+    const now = activity(this.channels, this.rights);
+    set_text(this.activity, now?.text ?? "");
+    show(this.activity, now !== null);
+    set_attribute(this.activity, "data-level", now?.level ?? "plain");
     set_text(this.state, state.word);
     set_text(this.reason, state.reason);
     set_attribute(this.element, "data-state", state.name);
@@ -100,5 +114,7 @@ export class Header {
     set_text(this.stop_sent, unconfirmed ?? "");
     show(this.stop_sent, unconfirmed !== null);
     this.held.update();
+    this.resume.update();
+    this.controls.update();
   }
 }

@@ -2,7 +2,7 @@
 import { Api } from "../api";
 import { Channels } from "../channels";
 import { Rights } from "../rights";
-import { hand_is_stopped, held_text, pending_goal } from "../robot_state";
+import { hand_is_stopped, held_text, interrupted_goal, pending_goal } from "../robot_state";
 import { texts } from "../texts";
 import { button, h, set_text, show } from "./dom";
 import { Notices } from "./notices";
@@ -46,9 +46,13 @@ export class HeldBanner {
   private state_text(): string | null {
     const goal = this.held_goal();
     const held = held_text(this.channels);
-    if (held !== null) return goal === null ? held : texts.held_with_goal(goal);
-    if (!hand_is_stopped(this.channels)) return null;
-    return goal === null ? texts.hand_stopped : texts.hand_stopped_with_goal(goal);
+    if (held === null && !hand_is_stopped(this.channels)) return null;
+    if (goal !== null) {
+      return held === null ? texts.hand_stopped_with_goal(goal) : texts.held_with_goal(goal);
+    }
+    const text = held ?? texts.hand_stopped;
+    const interrupted = interrupted_goal(this.channels);
+    return interrupted === null ? text : texts.interrupted_held(text, interrupted);
   }
 
   /** The goal that waits for the release; null if there is none. */

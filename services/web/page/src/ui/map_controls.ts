@@ -1,8 +1,9 @@
 // Buttons on the map: zoom, fit, follow, visible layers.
 import { layerNames } from "../map/map_scene";
 import { MapView } from "../map/map_view";
+import { point } from "../format";
 import { texts } from "../texts";
-import { h, icon, IconName, show } from "./dom";
+import { h, icon, IconName, set_text, show } from "./dom";
 
 const layersKey = "topogeo-layers";
 
@@ -28,6 +29,25 @@ export function map_controls(map: MapView): HTMLElement {
     layers.setAttribute("aria-expanded", String(!menu.hidden));
   });
   layers.setAttribute("aria-expanded", "false");
+  const note = h("div", { class: "map-note", role: "status", hidden: true });
+  const measure = control(words.measure, "measure", () => {
+    const on = note.hidden;
+    show(note, on);
+    measure.setAttribute("aria-pressed", String(on));
+    set_text(note, words.measuring);
+    const tell = (meters: number | null) =>
+      set_text(note, meters ? words.measured(meters) : words.measuring);
+    if (on) map.start_measuring(tell);
+    else map.stop_measuring();
+  });
+  measure.setAttribute("aria-pressed", "false");
+  map.on_tool = () => {
+    show(note, false);
+    measure.setAttribute("aria-pressed", "false");
+  };
+  const under_pointer = h("div", { class: "under-pointer", "aria-hidden": "true" });
+  map.on_point = (at) => set_text(under_pointer, at ? point(at.x_m, at.y_m) : "");
+  map.stage.append(note, under_pointer);
   listen(map);
   const element = h(
     "div",
@@ -43,6 +63,7 @@ export function map_controls(map: MapView): HTMLElement {
       { class: "control-group" },
       control(words.fit, "fit", () => map.fit()),
       follow,
+      measure,
       layers,
     ),
     menu,

@@ -1,6 +1,7 @@
 // Driving by hand: sends an order every 100 ms while a button or a key is held; silence means stop.
 import { App } from "../app";
 import * as format from "../format";
+import { sentence } from "../format";
 import { texts } from "../texts";
 import { button, h, icon, IconName, set_text, show } from "../ui/dom";
 
@@ -68,9 +69,7 @@ export class DrivePad {
     this.element = h(
       "div",
       { class: "drive" },
-      h("p", { class: "quiet" }, words.drive_hint),
       this.toggle,
-      this.pad,
       h(
         "div",
         { class: "field-row" },
@@ -78,7 +77,9 @@ export class DrivePad {
         this.speed,
         value,
       ),
+      this.pad,
       this.state,
+      h("p", { class: "quiet" }, words.drive_hint),
     );
     this.listen();
     app.channels.on_value(["drive"], () => this.show_state());
@@ -91,6 +92,7 @@ export class DrivePad {
     this.active = active;
     if (!active) this.release();
     show(this.pad, active);
+    if (active) this.toggle.scrollIntoView({ block: "start" });
     set_text(this.toggle, active ? words.drive_off : words.drive_on);
     this.toggle.setAttribute("aria-pressed", String(active));
     this.app.map.take_keys(!active);
@@ -199,7 +201,11 @@ export class DrivePad {
   private show_state(): void {
     const drive = this.app.channels.value("drive");
     if (!drive) return set_text(this.state, words.drive_idle);
-    const now = words.drive_state(drive.linear_mps, drive.free_ahead_m);
-    set_text(this.state, drive.message ? `${now}. ${drive.message}` : now);
+    const { linear_mps, angular_radps, free_ahead_m, free_behind_m } = drive;
+    const stands = !linear_mps && !angular_radps;
+    const now = stands
+      ? words.drive_stands
+      : `${words.drive_state(linear_mps, linear_mps ? free_ahead_m : null, free_behind_m)}.`;
+    set_text(this.state, drive.message ? `${now} ${sentence(drive.message)}` : now);
   }
 }

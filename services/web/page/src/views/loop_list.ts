@@ -70,12 +70,16 @@ export class LoopList {
   update(): void {
     const all = [...this.app.channels.table("loops")];
     const accepted = all.filter(([, loop]) => loop.accepted).length;
-    set_text(this.counts, words.loops_count(accepted, all.length - accepted));
+    const from_file = all.every(([, loop]) => loop.accepted && loop.fitness === null);
+    const counts = from_file
+      ? words.loops_kept(accepted)
+      : words.loops_count(accepted, all.length - accepted);
+    set_text(this.counts, counts);
     show(this.counts, all.length > 0);
     show(this.empty, all.length === 0);
     for (const [filter, element] of this.filters) {
       set_attribute(element, "aria-pressed", String(filter === this.filter));
-      show(element, all.length > 0);
+      show(element, all.length > 0 && !from_file);
     }
     const wanted = all
       .filter(([, loop]) => this.filter === "all" || loop.accepted === (this.filter === "accepted"))

@@ -5,16 +5,16 @@ import * as format from "../format";
 import { sentence } from "../format";
 import { ellipse_of } from "../map/robot_layer";
 import { Pose, ValueName } from "../protocol";
-import { is_silent, silenceTickMs, pose_of_now, with_age } from "../robot_state";
+import { is_silent, silenceTickMs, pose_of_now, robot_is_absent, with_age } from "../robot_state";
 import { texts } from "../texts";
 import { Bar, Facts, Level } from "../ui/bar";
 import { h, set_text, show } from "../ui/dom";
 import { once_a_frame } from "../ui/schedule";
 import { folded, section } from "../ui/section";
 import { legend } from "./legend";
+import { Operators } from "./operators";
 
 const staleLoopStops = 60; // number of stops after which the bar of the last loop is empty
-const mostSquares = 16384; // limit of a grid
 
 const words = texts.now;
 
@@ -27,37 +27,46 @@ export class NowView implements ViewPart {
   private readonly facts = new Facts();
   private readonly devices = new Facts();
   private readonly truth = new Facts();
+  private readonly map = new Facts();
   private readonly truth_section: HTMLElement;
+  private readonly robot_section: HTMLElement;
+  private readonly devices_section: HTMLElement;
+  private readonly bars_section: HTMLElement;
   private readonly viewers = h("p", { class: "quiet" });
+  private readonly operators: Operators;
   private readonly confidence = new Bar(words.confidence);
   private readonly workers = new Bar(words.workers);
-  private readonly map = new Bar(words.map);
   private readonly loop = new Bar(words.loop);
   private readonly battery = new Bar(words.battery);
   private visible = false;
 
   constructor(private readonly app: App) {
+    this.operators = new Operators(app);
     this.truth_section = section(
       words.simulated,
       this.truth.element,
       h("p", { class: "quiet" }, words.simulated_hint),
     );
-    const bars = [this.confidence, this.workers, this.map, this.loop, this.battery];
+    const bars = [this.confidence, this.workers, this.loop, this.battery];
+    this.robot_section = section(words.robot, this.facts.element);
+    this.devices_section = section(words.devices, this.devices.element);
+    this.bars_section = h("div", { class: "bars" }, ...bars.map((bar) => bar.element));
     const picture = legend(() => app.theme.palette);
     app.theme.on_change(() => picture.redraw());
     this.element = h(
       "div",
       { class: "view" },
-      section(words.health, h("div", { class: "bars" }, ...bars.map((bar) => bar.element))),
-      section(words.robot, this.facts.element),
-      section(words.devices, this.devices.element),
+      section(words.health, this.bars_section, this.map.element),
+      this.robot_section,
+      this.devices_section,
       this.truth_section,
       folded(words.legend, false, picture.element),
+      this.operators.element,
       this.viewers,
     );
     const update = once_a_frame(() => this.update());
     const { channels } = app;
-    channels.on_value(["pose", "navigator", "base", "laser", "truth", "viewers"], update);
+    channels.on_value(["pose", "navigator", "base", "laser", "truth", "viewers", "controls"], update);
     channels.on_table("workers", update);
     channels.on_table("loops", update);
     channels.on_table("trail", update);
@@ -76,6 +85,11 @@ export class NowView implements ViewPart {
     if (!this.visible) return;
     const { channels } = this.app;
     const pose = channels.value("pose");
+    // A map that is shown alone has nothing to say of a robot.
+    const robot = !robot_is_absent(channels);
+    for (const part of [this.robot_section, this.devices_section, this.bars_section]) {
+      show(part, robot);
+    }
     this.show_pose(pose);
     this.show_bars(pose_of_now(channels, this.app.rights));
     const laser = channels.value("laser");
@@ -98,8 +112,10 @@ export class NowView implements ViewPart {
       this.truth.set(words.in_world, `${at}, ${format.degrees(truth.theta_rad)}`);
       this.truth.set("", words.collisions(truth.collisions));
     }
+    this.operators.update();
     const viewers = channels.value("viewers");
-    set_text(this.viewers, viewers ? words.viewers(viewers.viewers, viewers.operators) : "");
+    const operators = robot ? viewers?.operators : undefined;
+    set_text(this.viewers, viewers ? words.viewers(viewers.viewers, operators) : "");
   }
 
   private show_pose(pose: Pose | null): void {
@@ -158,7 +174,7 @@ export class NowView implements ViewPart {
     const graph = channels.table("graph").get("map");
     const squares = channels.table("tiles").size;
     this.map.set(
-      Math.log1p(squares) / Math.log1p(mostSquares),
+      words.map,
       graph || squares > 0 ? words.map_value(graph?.nodes, graph?.branches, floor) : words.no_map,
     );
 

@@ -4,7 +4,7 @@ import { Destination, destinations } from "../destinations";
 import { Goal, Preview } from "../protocol";
 import { hand_is_stopped, held_text } from "../robot_state";
 import { texts } from "../texts";
-import { button, fill, h, set_text, show } from "../ui/dom";
+import { button, field, fill, h, set_text, show } from "../ui/dom";
 import { KeyedList } from "../ui/list";
 import { once_a_frame } from "../ui/schedule";
 import { folded, section } from "../ui/section";
@@ -201,6 +201,7 @@ export class SendView implements ViewPart {
       h("h3", {}, title),
       several ? this.chosen_list() : null,
       h("p", { class: answer?.found === false ? "bad-text" : "", role: "status" }, text),
+      ready ? this.heading_field() : null,
       near ? button(words.nearest, () => this.take_nearest(near.x_m, near.y_m)) : null,
       h(
         "div",
@@ -211,6 +212,28 @@ export class SendView implements ViewPart {
       ),
       this.adding ? h("p", { class: "quiet" }, words.hint) : null,
     );
+  }
+
+  // Of the last goal; the robot looks anywhere without one.
+  private heading_field(): HTMLElement {
+    const choice = this.choices[this.choices.length - 1];
+    const { heading_rad } = choice.goal;
+    const input = h("input", {
+      type: "number",
+      class: "field",
+      id: "goal-heading",
+      step: "any",
+      min: -360,
+      max: 360,
+      value: heading_rad === undefined ? "" : Math.round((heading_rad * 180) / Math.PI),
+      oninput: () => {
+        const degrees = input.valueAsNumber;
+        const known = Number.isFinite(degrees) && Math.abs(degrees) <= 360;
+        choice.goal.heading_rad = known ? (degrees * Math.PI) / 180 : undefined;
+        this.app.map.scene.refresh();
+      },
+    });
+    return field(words.heading_at_goal, input);
   }
 
   // An answer to a list names the goal that fails.

@@ -1,5 +1,6 @@
 // The robot's goal, its progress and obstacles; pause, resume, cancel.
 import { App } from "../app";
+import { Maybe } from "../format";
 import { has_foreign_goal, is_paused, navigator_text } from "../robot_state";
 import { texts } from "../texts";
 import { button, h, set_attribute, set_text, show } from "../ui/dom";
@@ -7,6 +8,7 @@ import { once_a_frame } from "../ui/schedule";
 import { section } from "../ui/section";
 
 const words = texts.send;
+const nearM = 0.05; // a nearer point is reached
 type Order = "pause" | "resume" | "cancel";
 
 export class Underway {
@@ -43,6 +45,7 @@ export class Underway {
     );
     const update = once_a_frame(() => this.update());
     app.channels.on_value(["navigator", "goals"], update);
+    app.channels.on_table("rooms", update);
     app.rights.on_change(update);
     this.update();
   }
@@ -61,8 +64,24 @@ export class Underway {
     const goals = channels.value("goals");
     if (!rights.connected) return words.not_heard;
     if (goals?.exploring) return words.exploring;
+    if (goals?.exploration?.ended && !goals.current) return words.explored;
     if (goals?.current) return words.to(goals.current.text);
     return has_foreign_goal(channels) ? words.foreign : words.idle;
+  }
+
+  /** rest_m: null if there is none. */
+  private rest_text(rest_m: number | null, rest_s: Maybe): string {
+    const goals = this.app.channels.value("goals");
+    const progress = goals?.exploration;
+    if (goals?.current && !goals.exploring) return rest_m === null ? "" : words.rest(rest_m, rest_s);
+    if (!progress) return "";
+    let floor = 0;
+    for (const room of this.app.channels.table("rooms").values()) floor += room.area_m2;
+    const facts = words.explored_facts(progress.visited, progress.given_up, floor);
+    if (progress.ended) return `${facts}.`;
+    const next =
+      (rest_m ?? 0) < nearM ? words.next_point : `${words.rest_exploring(rest_m, rest_s)}.`;
+    return `${facts}. ${next}`;
   }
 
   private update(): void {
@@ -82,15 +101,16 @@ export class Underway {
     const rest = arrived ? 0 : (navigator?.rest_m ?? null);
     const driven = navigator?.driven_m ?? 0;
     const known = moving && typeof rest === "number" && driven + rest > 0;
-    show(this.progress, known);
-    show(this.rest, known && !arrived);
+    // An exploration has no known end, and its next point is not chosen yet while it looks.
+    show(this.progress, known && !exploring);
     if (known) {
       const percent = Math.round((100 * driven) / (driven + rest));
       this.fill.style.width = `${percent}%`;
       set_attribute(this.progress, "aria-valuenow", String(percent));
-      const text = exploring ? words.rest_exploring : words.rest;
-      set_text(this.rest, text(rest, navigator?.rest_s));
     }
+    const text = this.rest_text(known && !arrived ? rest : null, navigator?.rest_s);
+    show(this.rest, text !== "");
+    set_text(this.rest, text);
     const waiting = (goals?.waiting ?? []).map((entry) => entry.text);
     show(this.waiting, waiting.length > 0);
     set_text(this.waiting, waiting.length > 0 ? words.waiting(waiting.join(", ")) : "");
