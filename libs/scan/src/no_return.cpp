@@ -49,6 +49,17 @@ class Histogram {
   std::vector<std::uint64_t> before_;
 };
 
+/// Whether fewer than a third of the readings have changed. Drop-outs and NaN count as no change.
+bool is_same_view(std::span<const float> before_m, std::span<const float> now_m) {
+  if (before_m.size() != now_m.size()) return false;
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < now_m.size(); ++i) {
+    const bool both = before_m[i] > 0.0F && now_m[i] > 0.0F;
+    if (both && std::fabs(now_m[i] - before_m[i]) > NoReturnFinder::kChanged_m) ++changed;
+  }
+  return 3 * changed < now_m.size();
+}
+
 constexpr std::int64_t kWindow = 20;  // bins
 static_assert(kWindow * kBin_m < 1.001 * NoReturnFinder::kWindow_m &&
               kWindow * kBin_m > 0.999 * NoReturnFinder::kWindow_m);
@@ -109,6 +120,17 @@ void NoReturnFinder::add(std::span<const float> ranges_m, const geometry::Pose2&
     return;
   }
   T_odom_last_ = T_odom_robot;
+  count(ranges_m);
+}
+
+void NoReturnFinder::add_without_odometry(std::span<const float> ranges_m) {
+  if (is_full()) return;
+  if (is_same_view(last_m_, ranges_m)) return;
+  last_m_.assign(ranges_m.begin(), ranges_m.end());
+  count(ranges_m);
+}
+
+void NoReturnFinder::count(std::span<const float> ranges_m) {
   ++places_;
   readings_ += ranges_m.size();
   for (const float range_m : ranges_m) {

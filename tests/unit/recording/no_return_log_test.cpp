@@ -63,6 +63,18 @@ TEST_P(NoReturnLog, HasNoReadingsOfThatValue) {
   }
 }
 
+TEST_P(NoReturnLog, HasNoneWithoutOdometryEither) {
+  LogWriter writer(path(GetParam()), kMounting);
+  for (scan::Scan scan : drive_without_echoes()) {
+    scan.T_odom_robot = {};
+    writer.write(scan);
+  }
+  writer.close();
+  const LogReader reader(path(GetParam()));
+  ASSERT_TRUE(reader.no_return());
+  EXPECT_NEAR(reader.no_return()->range_m, kNoEcho_m, 1e-6);
+}
+
 TEST_P(NoReturnLog, KeepsThemIfToldTo) {
   LogReader reader(write(), {.detect_no_return = false});
   EXPECT_FALSE(reader.no_return());

@@ -158,6 +158,21 @@ TEST(NoReturn, NeedsSeveralPlaces) {
   EXPECT_FALSE(NoReturnFinder{}.find());
 }
 
+TEST(NoReturn, WithoutOdometryTheViewTellsThePlaces) {
+  Corridor corridor;
+  NoReturnFinder standing;
+  for (int i = 0; i < 100; ++i) standing.add_without_odometry(corridor.scan({5.0, 0.0, 0.0}));
+  EXPECT_EQ(standing.places(), 1U);
+  NoReturnFinder driving;
+  for (double x_m = 1.0; x_m < 29.0; x_m += 0.05) {
+    driving.add_without_odometry(corridor.scan({x_m, 0.2 * std::sin(x_m), 0.3 * std::sin(x_m)}));
+  }
+  EXPECT_GE(driving.places(), NoReturnFinder::kLeastPlaces);
+  const auto found = driving.find();
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->range_m, 8.187, 1e-9);
+}
+
 TEST(NoReturn, IsFoundOnTheWay) {
   Corridor corridor;
   NoReturnWatch watch;

@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
 
@@ -47,6 +48,11 @@ class NoReturnFinder {
   /// Takes a scan, in order of time. Readings that are not finite or not above 0 count as readings
   /// without a value.
   void add(std::span<const float> ranges_m, const geometry::Pose2& T_odom_robot);
+  /// The same without odometry: the place is another one if a third of the readings have changed by
+  /// more than kChanged_m.
+  void add_without_odometry(std::span<const float> ranges_m);
+  /// Half of the beams of a laser that moves by kPlace_m change by more.
+  static constexpr float kChanged_m = 0.1F;
 
   /// Whether enough places have been added.
   [[nodiscard]] bool is_full() const { return places_ >= kMostPlaces; }
@@ -62,7 +68,10 @@ class NoReturnFinder {
     std::uint32_t last_place = 0;  // that counted, from 1
   };
 
+  void count(std::span<const float> ranges_m);
+
   std::optional<geometry::Pose2> T_odom_last_;  // where readings counted last
+  std::vector<float> last_m_;                   // without odometry: these readings
   std::map<std::int64_t, Bin> bins_;            // by range in millimetres
   std::uint64_t readings_ = 0;                  // with and without a value
   std::uint32_t places_ = 0;

@@ -43,6 +43,7 @@ class ScanCheck {
   std::optional<Scan> last_;
   std::uint32_t identical_ = 1;
   NoReturnFinder no_return_;
+  NoReturnFinder no_return_by_views_;  // for odometry that stands
   std::uint64_t readings_ = 0;
   std::uint64_t empty_ = 0;                  // of these
   std::vector<std::int64_t> periods_ns_;     // between two scans, if positive
