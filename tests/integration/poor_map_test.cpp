@@ -67,6 +67,7 @@ TEST_F(PoorMapTest, StaysIfAnotherIsNoBetter) {
   write_log("rooms", log_, truth_, short_sighted(1.5, 2));
   ASSERT_EQ(map(), 0) << err_;
   EXPECT_THAT(err_, HasSubstr("mapping again with the measured noise\n"));
+  EXPECT_THAT(err_, HasSubstr("mapping again with odometry from the scans\n"));
   EXPECT_THAT(err_, HasSubstr("the map is no better: the one before stays\n"));
   EXPECT_THAT(out_, HasSubstr("try: topogeo check-log"));
 }

@@ -69,6 +69,11 @@ void set_odometry_noise(LoadedConfig& loaded, const localization::OdometryNoise&
   loaded.effective = support::effective(describe(loaded.config));
 }
 
+void use_laser_odometry(LoadedConfig& loaded) {
+  loaded.config.odometry_source = OdometrySource::kLaser;
+  loaded.effective = support::effective(describe(loaded.config));
+}
+
 support::ConfigSchema describe(Config& config) {
   support::ConfigSchema schema;
   scan::describe(config.log, schema);

@@ -43,6 +43,8 @@ constexpr const char* kUseless = "useless";
 
 constexpr const char* kMoreStops = "more stops: stop: {distance_m: 0.5} in a file for --config";
 constexpr const char* kCalibrateOdometry = "topogeo calibrate-odometry ";
+constexpr const char* kLaserOdometry =
+    "odometry from the scans: odometry: {source: laser} in a file for --config";
 
 double degrees(double angle_rad) {
   return angle_rad * 180.0 / std::numbers::pi;
@@ -193,8 +195,11 @@ std::string advice(const Facts& facts, const std::string& grade, const QualityIn
       !inputs.tried.contains(Remedy::kMoreStops)) {
     return kMoreStops;
   }
-  if (inputs.tried.contains(Remedy::kOdometryNoise)) return "topogeo check-log " + inputs.log;
-  return kCalibrateOdometry + inputs.log + " --out odometry.yaml";
+  if (!inputs.tried.contains(Remedy::kOdometryNoise)) {
+    return kCalibrateOdometry + inputs.log + " --out odometry.yaml";
+  }
+  if (!inputs.tried.contains(Remedy::kLaserOdometry)) return kLaserOdometry;
+  return "topogeo check-log " + inputs.log;
 }
 
 /// Path that rests on odometry alone and that no loop holds, m.
@@ -354,6 +359,7 @@ std::optional<Remedy> advised_remedy(const Report& report) {
   const std::string& advice = report.quality.advice;
   if (advice == kMoreStops) return Remedy::kMoreStops;
   if (advice.starts_with(kCalibrateOdometry)) return Remedy::kOdometryNoise;
+  if (advice == kLaserOdometry) return Remedy::kLaserOdometry;
   return std::nullopt;
 }
 

@@ -68,8 +68,11 @@ pipeline::ScanFeed open_feed(Job& job) {
 
 pipeline::ScanFeed open_feed_again(Job& job, const pipeline::ScanFeed& first) {
   const pipeline::NextScan next = [&job] { return job.reader.next(); };
-  if (first.laser_counts() == nullptr) return pipeline::ScanFeed(next);
-  return {next, laser_odometry(job.inputs.config.config)};
+  const pipeline::Config& config = job.inputs.config.config;
+  if (first.laser_counts() == nullptr && config.odometry_source != OdometrySource::kLaser) {
+    return pipeline::ScanFeed(next);
+  }
+  return {next, laser_odometry(config)};
 }
 
 void check_tracked(const JobOptions& options, const pipeline::ScanFeed& feed) {

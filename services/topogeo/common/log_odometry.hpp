@@ -16,7 +16,8 @@ JobOptions without_odometry(const JobOptions& options);
 /// from the scans. Throws service::BadInputError when the log cannot be read.
 pipeline::ScanFeed open_feed(Job& job);
 
-/// The same for another job with the same log, with the odometry of the first feed.
+/// The same for another job with the same log: with odometry from the scans if its configuration
+/// asks for that, else with that of the first feed.
 pipeline::ScanFeed open_feed_again(Job& job, const pipeline::ScanFeed& first);
 
 /// Reports on stderr what became of odometry from the scans, once the log is read. Throws

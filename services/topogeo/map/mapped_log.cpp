@@ -113,6 +113,13 @@ std::optional<MappedLog> map_again(const MappedLog& first, pipeline::LoadedConfi
   return mapped;
 }
 
+/// Whether a map is better than the one before it, and can be trusted.
+bool is_better(const MappedLog& mapped, const MappedLog& before) {
+  const localization::LaserOdometryCounts* counts = mapped.feed->laser_counts();
+  if (counts != nullptr && !pipeline::too_sparse(*counts).empty()) return false;
+  return results::is_better(mapped.report, before.report);
+}
+
 /// The noise of the odometry as measured by matches; empty if the log does not show it.
 std::optional<localization::OdometryNoise> measured_noise(const Job& job) {
   const pipeline::Config& config = job.inputs.config.config;
@@ -132,7 +139,9 @@ std::optional<localization::OdometryNoise> measured_noise(const Job& job) {
 bool may_change(Remedy remedy, const MappedLog& mapped) {
   const pipeline::LoadedConfig& config = mapped.job->inputs.config;
   if (remedy == Remedy::kMoreStops) return !config.stop_distance_set;
-  return !config.odometry_noise_set && mapped.feed->laser_counts() == nullptr;
+  if (mapped.feed->laser_counts() != nullptr) return false;
+  if (remedy == Remedy::kOdometryNoise) return !config.odometry_noise_set;
+  return config.config.odometry_source == pipeline::OdometrySource::kAuto;
 }
 
 /// The configuration with a remedy, after a line on stderr; empty if the log does not show it.
@@ -142,6 +151,11 @@ std::optional<pipeline::LoadedConfig> with_remedy(Remedy remedy, const Job& job)
     set_stop_distance(config, 0.5 * config.config.local_mapper.stop_distance_m);
     std::cerr << fmt::format("topogeo: few stops match: mapping again with a stop each {:g} m\n",
                              config.config.local_mapper.stop_distance_m);
+    return config;
+  }
+  if (remedy == Remedy::kLaserOdometry) {
+    use_laser_odometry(config);
+    std::cerr << "topogeo: few stops match: mapping again with odometry from the scans\n";
     return config;
   }
   std::cerr << "topogeo: few stops match: measuring the noise of the odometry\n";
@@ -181,7 +195,7 @@ std::optional<MappedLog> improved(MappedLog mapped, Interruption& interruption) 
     if (config) {
       std::optional<MappedLog> again = map_again(mapped, std::move(*config), interruption);
       if (!again) return std::nullopt;
-      if (results::is_better(again->report, mapped.report)) {
+      if (is_better(*again, mapped)) {
         mapped = std::move(*again);
       } else {
         std::cerr << "topogeo: the map is no better: the one before stays\n";

@@ -130,7 +130,9 @@ TEST(MapQuality, AdviceNamesNoRemedyThatWasTried) {
   };
   EXPECT_EQ(advised({}), Remedy::kMoreStops);
   EXPECT_EQ(advised({Remedy::kMoreStops}), Remedy::kOdometryNoise);
-  EXPECT_EQ(advised({Remedy::kMoreStops, Remedy::kOdometryNoise}), std::nullopt);
+  EXPECT_EQ(advised({Remedy::kMoreStops, Remedy::kOdometryNoise}), Remedy::kLaserOdometry);
+  EXPECT_EQ(advised({Remedy::kMoreStops, Remedy::kOdometryNoise, Remedy::kLaserOdometry}),
+            std::nullopt);
   EXPECT_EQ(report.quality.advice, "topogeo check-log drive.clf.gz");
 }
 

@@ -55,5 +55,6 @@ LoadedConfig load_config(const std::optional<std::filesystem::path>& file);
 /// Changes a value of a configuration after it was loaded, with all that follow from it.
 void set_stop_distance(LoadedConfig& loaded, double distance_m);
 void set_odometry_noise(LoadedConfig& loaded, const localization::OdometryNoise& noise);
+void use_laser_odometry(LoadedConfig& loaded);
 
 }  // namespace topogeo::pipeline

@@ -15,6 +15,7 @@ namespace topogeo::results {
 enum class Remedy : std::uint8_t {
   kMoreStops,      ///< half the distance between stops
   kOdometryNoise,  ///< the noise of the odometry as measured in the log
+  kLaserOdometry,  ///< odometry from the scans in place of the log's
 };
 
 /// Facts that are in neither map nor report.
