@@ -179,6 +179,7 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
                              "' is not in the profiles file");
   }
   qos.name(options.name);
+  fit_packets(qos);
   const bool ros = is_ros_profile(profile);
   if (ros) {
     add_ros_peers(qos, options.domain);
