@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "topogeo/devices/base_models.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/support/log.hpp"
@@ -62,20 +63,20 @@ BaseChannel::BaseChannel(service::Service& service, const DeviceConfig& config,
       time_(time),
       remembered_(remembered),
       hooks_(std::move(hooks)),
-      driver_(config.base),
+      driver_(devices::make_base_driver(config.base)),
       stop_memory_(stop_memory),
       stop_count_(1 + support::unrepeatable_u64() / 2),
       odometry_(service.advertise<msg::Odometry>()),
       statuses_(service.advertise<msg::BaseStatus>()),
-      line_(service.loop(), driver_, PortOptions{config.base_port},
+      line_(service.loop(), *driver_, PortOptions{config.base_port},
             [this](std::int64_t now_ns) { after_driver(now_ns); }) {
-  if (remembered_) driver_.resume_odometry(remembered_->state);
+  if (remembered_) driver_->resume_odometry(remembered_->state);
   resume_stops();
   if (!config.laser_port.empty()) {
     guard_.emplace(service.setup().config.config.navigator.guard, config.base.watchdog_s);
-    driver_.guard_velocities([this](const devices::BaseVelocity& wanted,
-                                    std::int64_t now_ns) { return guarded(wanted, now_ns); },
-                             navigation::LastGuard::kPeriod_ns);
+    driver_->guard_velocities([this](const devices::BaseVelocity& wanted,
+                                     std::int64_t now_ns) { return guarded(wanted, now_ns); },
+                              navigation::LastGuard::kPeriod_ns);
   }
   service.subscribe<msg::MotionCommand>(
       [this](const msg::MotionCommand& command, const messaging::SampleInfo& info) {
@@ -94,7 +95,7 @@ BaseChannel::~BaseChannel() {
   // After an exception the loop no longer runs, so the base gets only what the line takes at once.
   // Its watchdog does the rest.
   try {
-    driver_.end(line_.now_ns());
+    driver_->end(line_.now_ns());
     line_.carry_out();
     static_cast<void>(line_.wait_written(kLongestStop));
   } catch (const std::exception& error) {
@@ -110,24 +111,24 @@ void BaseChannel::resume_stops() {
     spdlog::warn("{} of before this start: the base moves after a reset",
                  held.emergency_stop ? "emergency stop" : "halt");
   }
-  driver_.hold_stops(held);
+  driver_->hold_stops(held);
 }
 
 void BaseChannel::begin_epoch(std::int64_t stamp_ns) {
   // If the system's clock was set back meanwhile, others would reject new messages as old.
   const bool resumed =
-      remembered_ && driver_.odometry_resumed() && stamp_ns > remembered_->last_stamp_ns;
+      remembered_ && driver_->odometry_resumed() && stamp_ns > remembered_->last_stamp_ns;
   odometry_epoch_ = resumed ? remembered_->epoch : support::unrepeatable_u64();
   if (resumed) spdlog::info("the odometry goes on: the base has counted on");
   hooks_.on_epoch(*odometry_epoch_, resumed);
 }
 
 void BaseChannel::after_driver(std::int64_t) {
-  stop_count_.emergency_stop(driver_.held_stops().emergency_stop);
-  if (!stop_memory_.store(driver_.held_stops())) {
+  stop_count_.emergency_stop(driver_->held_stops().emergency_stop);
+  if (!stop_memory_.store(driver_->held_stops())) {
     service_.status().fault("stop not stored", "a restarted gateway halts the base");
   }
-  for (const devices::BaseOdometry& sample : driver_.take_odometry()) {
+  for (const devices::BaseOdometry& sample : driver_->take_odometry()) {
     if (!odometry_epoch_) begin_epoch(time_.stamp_ns(sample.stamp_ns));
     msg::Odometry message;
     messaging::set_header(message, service_.robot_id(), time_.stamp_ns(sample.stamp_ns),
@@ -157,7 +158,7 @@ devices::BaseVelocity BaseChannel::guarded(const devices::BaseVelocity& wanted,
                                            std::int64_t now_ns) {
   using Verdict = navigation::LastGuard::Verdict;
   const navigation::LastGuard::Judgement judgement = guard_->judge(
-      {wanted.linear_mps, wanted.angular_radps}, driver_.limits().linear_mps2, now_ns);
+      {wanted.linear_mps, wanted.angular_radps}, driver_->limits().linear_mps2, now_ns);
   const bool stops =
       judgement.verdict == Verdict::kObstacle || judgement.verdict == Verdict::kBlind;
   if (stops && judgement.verdict != verdict_) {
@@ -196,8 +197,8 @@ void BaseChannel::on_command(const msg::MotionCommand& command, const messaging:
     ++refused_;
     return;
   }
-  const bool taken = driver_.command(command.linear_mps(), command.angular_radps(),
-                                     now_ns - *age_ns + std::llround(valid_s * 1e9), now_ns);
+  const bool taken = driver_->command(command.linear_mps(), command.angular_radps(),
+                                      now_ns - *age_ns + std::llround(valid_s * 1e9), now_ns);
   ++(taken ? commands_ : refused_);
   line_.carry_out();
   after_driver(now_ns);
@@ -209,7 +210,7 @@ void BaseChannel::on_command(const msg::BaseCommand& command, const messaging::S
   switch (command.kind()) {
     case msg::kBaseHalt:
       spdlog::warn("halted by {}", client);
-      driver_.halt(now_ns);
+      driver_->halt(now_ns);
       stop_count_.halt(info.writer);
       break;
     case msg::kBaseReset:
@@ -217,7 +218,7 @@ void BaseChannel::on_command(const msg::BaseCommand& command, const messaging::S
       break;
     case msg::kBaseSetLimits:
       try {
-        driver_.set_limits(
+        driver_->set_limits(
             {command.largest_linear_mps(), command.largest_angular_radps(),
              command.linear_acceleration_mps2(), command.angular_acceleration_radps2()},
             now_ns);
@@ -234,7 +235,7 @@ void BaseChannel::reset_stop(const msg::BaseCommand& command, const messaging::H
                              std::int64_t now_ns) {
   if (stop_count_.may_release(writer, command.stop_count())) {
     spdlog::warn("{} allows the base to move again", command.client_id().c_str());
-    driver_.reset_stop(now_ns);
+    driver_->reset_stop(now_ns);
     return;
   }
   service_.status().add_drops("old reset");
@@ -244,14 +245,14 @@ void BaseChannel::reset_stop(const msg::BaseCommand& command, const messaging::H
 }
 
 std::string BaseChannel::describe() const {
-  const devices::BaseStatus& status = driver_.status();
+  const devices::BaseStatus& status = driver_->status();
   const std::string name(devices::base_state_name(status.state));
   if (!line_.why_closed().empty()) return name + ": " + line_.why_closed();
   return status.reason.empty() ? name : name + ": " + status.reason;
 }
 
 void BaseChannel::publish_status() {
-  const devices::BaseStatus& status = driver_.status();
+  const devices::BaseStatus& status = driver_->status();
   published_ = shown();
   msg::BaseStatus message;
   messaging::set_header(message, service_.robot_id(), time_.stamp_ns(line_.now_ns()),
@@ -274,7 +275,7 @@ void BaseChannel::publish_status() {
 
 void BaseChannel::count() {
   messaging::StatusPublisher& status = service_.status();
-  const devices::BaseStatus& base = driver_.status();
+  const devices::BaseStatus& base = driver_->status();
   const auto set = [&](const std::string& name, std::uint64_t value) {
     status.set_counter(name, static_cast<double>(value));
   };
@@ -294,12 +295,12 @@ void BaseChannel::count() {
 
 void BaseChannel::stop() {
   if (std::exchange(stopped_, true)) return;
-  driver_.end(line_.now_ns());
+  driver_->end(line_.now_ns());
   line_.carry_out();
   after_driver(line_.now_ns());
   if (!line_.is_open()) return;
   const auto end = std::chrono::steady_clock::now() + kLongestStop;
-  while (line_.is_open() && !driver_.stands() && std::chrono::steady_clock::now() < end) {
+  while (line_.is_open() && !driver_->stands() && std::chrono::steady_clock::now() < end) {
     service_.loop().run_for(kStopPoll);
   }
   if (!line_.wait_written(kLongestStop)) {

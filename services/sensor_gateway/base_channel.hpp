@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include "topogeo/devices/base_driver.hpp"
@@ -51,14 +52,14 @@ class BaseChannel {
   void see(const navigation::ScanPoints& scan);
 
   /// Whether the base takes motion commands.
-  [[nodiscard]] bool ready() const { return driver_.status().commands_taken; }
+  [[nodiscard]] bool ready() const { return driver_->status().commands_taken; }
   /// For people: "ready", or the state and the reason.
   [[nodiscard]] std::string describe() const;
   /// Sets the counters of the service's status.
   void count();
   /// Empty until the first odometry.
   [[nodiscard]] std::optional<devices::OdometerState> odometer_state() const {
-    return driver_.odometer_state();
+    return driver_->odometer_state();
   }
 
   [[nodiscard]] messaging::Writer<msg::Odometry>& odometry() { return odometry_; }
@@ -93,7 +94,7 @@ class BaseChannel {
     friend bool operator==(const Shown&, const Shown&) = default;
   };
   [[nodiscard]] Shown shown() const {
-    return {driver_.status().state, ready(), driver_.status().stands, stop_count_.number()};
+    return {driver_->status().state, ready(), driver_->status().stands, stop_count_.number()};
   }
   void publish_status();
 
@@ -102,7 +103,7 @@ class BaseChannel {
   std::optional<RememberedOdometry> remembered_;
   Hooks hooks_;
   std::optional<std::uint64_t> odometry_epoch_;
-  devices::BaseDriver driver_;
+  std::unique_ptr<devices::BaseDriver> driver_;
   StopMemory stop_memory_;
   StopCount stop_count_;
   std::optional<navigation::LastGuard> guard_;  ///< only with a laser

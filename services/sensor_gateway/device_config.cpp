@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "topogeo/devices/base_models.hpp"
 #include "topogeo/devices/laser_models.hpp"
 
 namespace topogeo::sensor_gateway {
@@ -188,6 +189,11 @@ void describe_base_line(ConfigSchema& schema, DeviceFile::Base& base) {
   schema.add("base.port", &base.port,
              "serial port of the base; empty: no base, and the odometry reports a robot that "
              "stands still");
+  std::vector<std::pair<std::string, const devices::BaseModel*>> models;
+  for (const devices::BaseModel& model : devices::base_models()) {
+    models.emplace_back(model.name, &model);
+  }
+  schema.add("base.model", &s.model, models, "what the base is (docs/devices.md has the table)");
   schema.add("base.baud", &s.line.baud, 1200U, 500'000U, "baud",
              "rate of the line; 9600 in most sources, 38400 for one B21");
   schema.add("base.parity", &s.line.parity,
@@ -284,6 +290,7 @@ void describe_base_states(ConfigSchema& schema, DeviceFile::Base& base) {
 
 DeviceFile::DeviceFile() {
   laser.model = &devices::laser_models().front();
+  base.settings.model = &devices::base_models().front();
   const devices::PlsSettings& l = laser.settings;
   laser.detection_bauds = join(l.detection_bauds);
   laser.ack_timeout_s = seconds(l.ack_timeout_ns);
@@ -363,6 +370,7 @@ DeviceConfig to_config(const DeviceFile& file) {
   config.odometry_wait_ns = nanoseconds(file.odometry_wait_s);
   config.longest_extrapolation_ns = nanoseconds(file.longest_extrapolation_s);
   static_cast<void>(devices::make_laser_driver(config.laser));  // checks the settings
+  static_cast<void>(devices::make_base_driver(config.base));
   check(base);
   if (config.laser_port.empty() && config.base_port.empty()) {
     throw std::invalid_argument(

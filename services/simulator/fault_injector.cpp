@@ -12,8 +12,6 @@ namespace {
 // A disturbance as long as a report, ten times a second: some reports get through.
 constexpr std::int64_t kGarbagePeriod_ns = 100'000'000;
 constexpr std::size_t kGarbage_bytes = 24;
-/// More reports than the longest fault can affect.
-constexpr int kForEver = 1'000'000'000;
 
 Device device_of(const msg::SimulatorCommand& message) {
   switch (message.fault()) {
@@ -149,19 +147,19 @@ void FaultInjector::set_laser(const Fault& fault, bool on) {
 }
 
 void FaultInjector::set_base(const Fault& fault, bool on) {
-  simulation::McpEmulator& base = devices_.base();
+  simulation::BaseEmulator& base = devices_.base();
   const std::int64_t now_ns = devices_.now_ns();
   switch (fault.kind) {
     case msg::kSimulatedBadCrc:
-      return base.line_faults().corrupt(on ? kForEver : 0);
+      return base.set_fault(simulation::BaseFault::kCorrupted, on);
     case msg::kSimulatedTruncated:
-      return base.line_faults().truncate(on ? kForEver : 0);
+      return base.set_fault(simulation::BaseFault::kTruncated, on);
     case msg::kSimulatedSilence:
-      return base.line_faults().set_silent(on);
+      return base.set_fault(simulation::BaseFault::kSilent, on);
     case msg::kSimulatedRestart:
       return on ? base.switch_off(now_ns) : base.switch_on(now_ns);
     case msg::kSimulatedEcho:
-      return base.set_echo(on);
+      return base.set_fault(simulation::BaseFault::kEcho, on);
     case msg::kSimulatedJoystick:
       return base.take_joystick(on ? fault.velocity : simulation::Velocity{});
     case msg::kSimulatedEmergencyStop:

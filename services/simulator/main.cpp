@@ -58,7 +58,7 @@ void add_options(command_line::Command& app, Arguments& arguments) {
          "model of the laser, as laser.model of the devices file")
       ->check(command_line::one_of(model_names()))
       ->default_str(model_names().front());
-  app.add_option("--base-baud", arguments.options.devices.base_baud, "baud rate of the base's line")
+  app.add_option("--base-baud", arguments.options.devices.base.baud, "baud rate of the base's line")
       ->check(command_line::one_of({1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200}))
       ->capture_default_str();
   // A person sets this with the manufacturer's program on a real laser.

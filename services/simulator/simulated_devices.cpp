@@ -18,9 +18,8 @@ simulation::LaserEmulatorSettings laser_settings(const DeviceOptions& options) {
   return settings;
 }
 
-simulation::McpEmulatorSettings base_settings(const DeviceOptions& options) {
-  simulation::McpEmulatorSettings settings;
-  settings.line = {options.base_baud, devices::Parity::kNone};
+simulation::BaseEmulatorSettings base_settings(const DeviceOptions& options) {
+  simulation::BaseEmulatorSettings settings = options.base;
   settings.seed = options.robot.seed;
   return settings;
 }
@@ -39,7 +38,7 @@ SimulatedDevices::SimulatedDevices(world::World world, const DeviceOptions& opti
       laser_(simulation::make_laser_emulator(laser_settings(options),
                                              [this](const simulation::BeamPattern& beams,
                                                     std::int64_t) { return robot_.scan(beams); })),
-      base_(base_settings(options)),
+      base_(simulation::make_base_emulator(base_settings(options))),
       laser_port_(options.laser_port),
       base_port_(options.base_port) {
   laser_port_.plug();
@@ -48,23 +47,23 @@ SimulatedDevices::SimulatedDevices(world::World world, const DeviceOptions& opti
 
 void SimulatedDevices::run_until(std::int64_t now_ns) {
   exchange(*laser_, laser_port_, laser_->parity());
-  exchange(base_, base_port_, devices::Parity::kNone);
+  exchange(*base_, base_port_, devices::Parity::kNone);
   while (now_ns_ < now_ns) {
-    const std::int64_t due_ns = std::min(laser_->due_ns(), base_.due_ns());
+    const std::int64_t due_ns = std::min(laser_->due_ns(), base_->due_ns());
     advance(std::min({now_ns, now_ns_ + kPiece_ns, std::max(due_ns, now_ns_ + 1)}));
   }
   exchange(*laser_, laser_port_, laser_->parity());
-  exchange(base_, base_port_, devices::Parity::kNone);
+  exchange(*base_, base_port_, devices::Parity::kNone);
 }
 
 void SimulatedDevices::advance(std::int64_t to_ns) {
   const double piece_s = static_cast<double>(to_ns - now_ns_) * 1e-9;
-  const simulation::EncoderStep wheels = robot_.step(base_.commanded_velocity(), piece_s);
+  const simulation::EncoderStep wheels = robot_.step(base_->commanded_velocity(), piece_s);
   now_ns_ = to_ns;
-  base_.moved(wheels.forward_m, wheels.turn_rad, piece_s);
+  base_->moved(wheels.forward_m, wheels.turn_rad, piece_s);
   const std::optional<double> bumped_rad = robot_.bumped_rad();
-  base_.press_bumpers(bumped_rad ? bumper_bits(*bumped_rad) : std::uint16_t{0}, now_ns_);
-  base_.tick(now_ns_);
+  base_->press_bumpers(bumped_rad ? bumper_bits(*bumped_rad) : std::uint16_t{0}, now_ns_);
+  base_->tick(now_ns_);
   laser_->tick(now_ns_);
 }
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "topogeo/simulation/base_emulator.hpp"
 #include "topogeo/simulation/laser_emulator.hpp"
-#include "topogeo/simulation/mcp_emulator.hpp"
 #include "topogeo/simulation/simulated_robot.hpp"
 #include "topogeo/world/world.hpp"
 
@@ -21,7 +21,7 @@ enum class Device { kLaser, kBase };
 struct DeviceOptions {
   std::filesystem::path laser_port;  ///< link to create
   std::filesystem::path base_port;
-  std::uint32_t base_baud = 9600;
+  simulation::BaseEmulatorSettings base;    ///< its seed is that of the robot
   simulation::LaserEmulatorSettings laser;  ///< its seed is that of the robot
   simulation::RobotOptions robot;
 };
@@ -40,12 +40,12 @@ class SimulatedDevices {
   /// heard its host meanwhile, so its watchdog waits, too.
   void stand_still(std::int64_t duration_ns) {
     now_ns_ += duration_ns;
-    base_.stand_still(duration_ns);
+    base_->stand_still(duration_ns);
   }
 
   [[nodiscard]] simulation::SimulatedRobot& robot() { return robot_; }
   [[nodiscard]] simulation::LaserEmulator& laser() { return *laser_; }
-  [[nodiscard]] simulation::McpEmulator& base() { return base_; }
+  [[nodiscard]] simulation::BaseEmulator& base() { return *base_; }
   [[nodiscard]] PseudoTerminal& port(Device device) {
     return device == Device::kLaser ? laser_port_ : base_port_;
   }
@@ -60,7 +60,7 @@ class SimulatedDevices {
 
   simulation::SimulatedRobot robot_;
   std::unique_ptr<simulation::LaserEmulator> laser_;
-  simulation::McpEmulator base_;
+  std::unique_ptr<simulation::BaseEmulator> base_;
   PseudoTerminal laser_port_;
   PseudoTerminal base_port_;
   std::int64_t now_ns_ = 0;

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/devices/base_driver.hpp"
 #include "topogeo/devices/mcp_ascii.hpp"
 #include "topogeo/devices/mcp_binary.hpp"
+#include "topogeo/devices/rwi_driver.hpp"
 
 #include "checks.hpp"
 
@@ -70,7 +70,7 @@ std::size_t check_decoder(const Decoder& fresh, std::span<const std::uint8_t> by
 void check_driver(std::span<const std::uint8_t> bytes, devices::BaseDialect dialect) {
   devices::BaseSettings settings;
   settings.dialect = dialect;
-  devices::BaseDriver driver(settings);
+  devices::RwiDriver driver(settings);
   std::int64_t now_ns = 0;
   std::int64_t stamp_ns = std::numeric_limits<std::int64_t>::min();
   driver.opened(now_ns);

@@ -274,4 +274,18 @@ void McpEmulator::execute_question(const McpOrder& order, std::int64_t now_ns) {
   }
 }
 
+void McpEmulator::set_fault(BaseFault fault, bool on) {
+  constexpr int kEveryMessage = 1'000'000'000;
+  switch (fault) {
+    case BaseFault::kCorrupted:
+      return faults_.corrupt(on ? kEveryMessage : 0);
+    case BaseFault::kTruncated:
+      return faults_.truncate(on ? kEveryMessage : 0);
+    case BaseFault::kSilent:
+      return faults_.set_silent(on);
+    case BaseFault::kEcho:
+      return set_echo(on);
+  }
+}
+
 }  // namespace topogeo::simulation

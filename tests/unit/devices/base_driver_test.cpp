@@ -212,7 +212,7 @@ TEST(BaseDriver, StaysOfflineOnALineWithOtherSettings) {
   BaseSettings settings;
   BaseOnLine all(settings);
   settings.line.baud = 38400;
-  BaseDriver fast(settings);
+  RwiDriver fast(settings);
   SimulatedLine line(fast, all.base);
   line.plug_in();
   line.run_for(60 * kSecond);
@@ -227,7 +227,7 @@ TEST(BaseDriver, TakesABaseThatIsInTheBinaryDialectAlready) {
   settings.dialect = BaseDialect::kBinary;
   BaseOnLine all(settings);
   ASSERT_TRUE(all.start());
-  BaseDriver second(settings);
+  RwiDriver second(settings);
   SimulatedLine line(second, all.base, all.line.now_ns());
   line.plug_in();
   EXPECT_TRUE(
@@ -238,7 +238,7 @@ TEST(BaseDriver, RefusesSettingsOutOfRange) {
   const auto refuses = [](auto change) {
     BaseSettings settings;
     change(settings);
-    EXPECT_THROW(BaseDriver{settings}, std::invalid_argument);
+    EXPECT_THROW(RwiDriver{settings}, std::invalid_argument);
   };
   refuses([](BaseSettings& s) { s.watchdog_s = 0.0; });
   refuses([](BaseSettings& s) { s.watchdog_s = 256.0; });
@@ -253,7 +253,7 @@ TEST(BaseDriver, RefusesSettingsOutOfRange) {
 }
 
 TEST(BaseDriver, RefusesCommandsThatAreNoNumbers) {
-  BaseDriver driver({});
+  RwiDriver driver({});
   EXPECT_THROW((void)driver.command(std::nan(""), 0, 1, 0), std::invalid_argument);
   EXPECT_THROW((void)driver.advance(std::numeric_limits<double>::infinity(), 1, 0),
                std::invalid_argument);

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "topogeo/devices/base_driver.hpp"
+#include "topogeo/devices/rwi_driver.hpp"
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/simulation/mcp_emulator.hpp"
 #include "topogeo/simulation/serial_device.hpp"
@@ -201,7 +201,7 @@ struct BaseOnLine {
 
   BaseSettings settings;
   RollingBase base;
-  BaseDriver driver;
+  RwiDriver driver;
   SimulatedLine line;
   std::uint64_t odometries = 0;  ///< since the comparison began
   std::uint64_t all_odometries = 0;

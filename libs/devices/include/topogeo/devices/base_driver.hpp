@@ -1,153 +1,63 @@
-// Drives an RWI B21 base over the serial line of its controller (MCP), in either dialect: starts it
-// up, arms and refreshes its watchdog, passes motion commands on, halts it when they cease, when it
-// is stopped or taken over by hand, and makes odometry of its reports. No input or output: see
-// serial_driver.hpp.
+// Interface of the driver of a base: bytes and the time go in; odometry, the state of the base and
+// orders for the line come out. No port and no clock, see serial_driver.hpp. Each driver stops its
+// base when motion commands cease, and arms what the base has to stop itself when the driver does.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <span>
-#include <string>
 #include <vector>
 
-#include "topogeo/devices/base_decoder.hpp"
 #include "topogeo/devices/base_interlocks.hpp"
-#include "topogeo/devices/base_link.hpp"
-#include "topogeo/devices/base_motion.hpp"
 #include "topogeo/devices/base_odometer.hpp"
 #include "topogeo/devices/base_settings.hpp"
 #include "topogeo/devices/base_status.hpp"
-#include "topogeo/devices/base_upkeep.hpp"
-#include "topogeo/devices/base_writer.hpp"
-#include "topogeo/devices/motion_monitor.hpp"
-#include "topogeo/devices/motion_term.hpp"
 #include "topogeo/devices/serial_driver.hpp"
 
 namespace topogeo::devices {
 
-class BaseDriver final : public SerialDriver {
+class BaseDriver : public SerialDriver {
  public:
-  /// Throws std::invalid_argument for settings out of range.
-  explicit BaseDriver(const BaseSettings& settings);
-
-  // Interface of SerialDriver.
-  void opened(std::int64_t now_ns) override;
-  void lost(std::int64_t now_ns) override;
-  void receive(std::span<const std::uint8_t> bytes, std::int64_t now_ns) override;
-  void tick(std::int64_t now_ns) override;
-  [[nodiscard]] std::int64_t due_ns() const override;
-  [[nodiscard]] std::vector<LineOrder> take_orders() override;
-  void written(std::int64_t now_ns) override {
-    orders_written_ = true;
-    confirm_aim(now_ns);
-  }
-
   /// Drives with these velocities (cut down to the limits) until `valid_until_ns` or for
   /// settings.command_timeout_s, whichever ends first, then halts. False if the command is refused,
   /// see BaseStatus::commands_taken. Both 0 halts and is never refused. Throws
   /// std::invalid_argument for velocities that are not finite.
-  bool command(double linear_mps, double angular_radps, std::int64_t valid_until_ns,
-               std::int64_t now_ns);
+  virtual bool command(double linear_mps, double angular_radps, std::int64_t valid_until_ns,
+                       std::int64_t now_ns) = 0;
   /// Last check of velocities: returns the part of a wanted velocity that the base gets now. Called
-  /// for each command, and every `period_ns` (> 0) while one holds. Relative moves bypass it.
+  /// for each command, and every `period_ns` (> 0) while one holds.
   using VelocityGuard =
       std::function<BaseVelocity(const BaseVelocity& wanted, std::int64_t now_ns)>;
-  void guard_velocities(VelocityGuard guard, std::int64_t period_ns);
-  /// Drives straight by `distance_m` (backward if negative), with the limits' velocity, halting at
-  /// `valid_until_ns` at the latest. False if refused; throws like command().
-  bool advance(double distance_m, std::int64_t valid_until_ns, std::int64_t now_ns);
-  /// Turns on the spot by `angle_rad`, counter-clockwise.
-  bool turn(double angle_rad, std::int64_t valid_until_ns, std::int64_t now_ns);
-  /// Whether the last advance() or turn() has ended, for any reason. False while it runs; true if
-  /// none was ordered.
-  [[nodiscard]] bool primitive_done() const { return !term_.relative_holds(); }
+  virtual void guard_velocities(VelocityGuard guard, std::int64_t period_ns) = 0;
 
   /// Stops now and refuses motion commands until reset_stop().
-  void halt(std::int64_t now_ns);
+  virtual void halt(std::int64_t now_ns) = 0;
   /// Stops for good, because the program ends: no command moves the base any more. That is no halt:
   /// held_stops() has only stops by others, also those that come later.
-  void end(std::int64_t now_ns) {
-    interlocks_.end();
-    stand_again(now_ns);
-    tick(now_ns);
-  }
-  /// Both axes were sent a halt, and the base has since reported standstill.
-  [[nodiscard]] bool stands() const;
+  virtual void end(std::int64_t now_ns) = 0;
+  /// The base was told to halt, and has since reported standstill.
+  [[nodiscard]] virtual bool stands() const = 0;
   /// An operator permits motion again after halt() or an emergency stop. The base does not move
   /// before the next command.
-  void reset_stop(std::int64_t now_ns);
+  virtual void reset_stop(std::int64_t now_ns) = 0;
   /// Stops that only reset_stop() ends. They belong to the robot and not to this process: the
   /// caller stores them for the next driver, which adds them by hold_stops().
-  [[nodiscard]] const HeldStops& held_stops() const { return interlocks_.held(); }
-  void hold_stops(const HeldStops& stops) {
-    interlocks_.hold(stops);
-    update_status();
-  }
+  [[nodiscard]] virtual const HeldStops& held_stops() const = 0;
+  virtual void hold_stops(const HeldStops& stops) = 0;
   /// Each > 0 and never above those of the settings; effective at once. Throws
   /// std::invalid_argument for limits that are not finite and positive.
-  void set_limits(const BaseLimits& limits, std::int64_t now_ns);
-  [[nodiscard]] const BaseLimits& limits() const { return motion_.limits(); }
+  virtual void set_limits(const BaseLimits& limits, std::int64_t now_ns) = 0;
+  [[nodiscard]] virtual const BaseLimits& limits() const = 0;
 
   /// Odometry since the last call; stamps increase strictly over the driver's whole life.
-  [[nodiscard]] std::vector<BaseOdometry> take_odometry();
-  [[nodiscard]] const BaseStatus& status() const { return status_; }
-  /// See BaseOdometer.
-  void resume_odometry(const OdometerState& state) { odometer_.resume(state); }
-  [[nodiscard]] bool odometry_resumed() const { return odometer_.has_resumed(); }
-  [[nodiscard]] std::optional<OdometerState> odometer_state() const { return odometer_.state(); }
-
- private:
-  void follow(BaseLink::Change change, std::int64_t now_ns);
-  void take(const McpReport& report, std::int64_t now_ns);
-  void take(const McpEvent& event, std::int64_t now_ns);
-  void take(const McpAnswer& answer, std::int64_t now_ns);
-  void bump(std::uint16_t active_low, std::int64_t now_ns);
-  void check_motion(std::int64_t now_ns);
-
-  [[nodiscard]] bool commands_taken() const;
-  [[nodiscard]] bool accept_motion(double linear_mps, std::int64_t now_ns);
-  void start_relative(std::int64_t valid_until_ns, std::int64_t now_ns);
-  void aim_changed(std::int64_t now_ns);
-  [[nodiscard]] BaseVelocity guarded(std::int64_t now_ns);
-  void judge_again(std::int64_t now_ns);
-  void stand(std::int64_t now_ns);
-  void stand_again(std::int64_t now_ns);
-
-  /// Gives the monitor the velocity that is commanded from now on.
-  void aim_at(const BaseVelocity& velocity, std::int64_t now_ns);
-  /// Once all orders for its aim have been written, the monitor may expect the base to obey.
-  void confirm_aim(std::int64_t now_ns);
-  [[nodiscard]] bool write_next(std::int64_t now_ns);
-  [[nodiscard]] std::optional<McpOrder> next_order(std::int64_t now_ns);
-
-  void update_status();
-  [[nodiscard]] BaseState state() const;
-  [[nodiscard]] std::string reason() const;
-
-  BaseSettings settings_;
-  BaseDecoder decoder_;
-  BaseOdometer odometer_;
-  BaseMotion motion_;
-  MotionMonitor monitor_;
-  MotionTerm term_;
-  BaseInterlocks interlocks_;
-  BaseWriter writer_;
-  BaseLink link_;
-  BaseUpkeep upkeep_;
-
-  VelocityGuard guard_{};
-  std::int64_t judge_period_ns_ = 0;
-  std::int64_t judge_ns_ = 0;  // time of the guard's next check
-  BaseVelocity wanted_{};      // of the last command, before the guard
-
-  bool idle_ = true;            // no write is due until a time or a message comes
-  bool aim_ordered_ = false;    // all orders for the current aim have been given
-  bool orders_written_ = true;  // all orders that were taken
-  std::optional<std::uint64_t> reports_at_halt_{};  // number of reports when both halts were sent
-  std::uint64_t implausible_ = 0;                   // dropped reports
-  std::vector<BaseOdometry> odometry_{};
-  BaseStatus status_{};
+  [[nodiscard]] virtual std::vector<BaseOdometry> take_odometry() = 0;
+  [[nodiscard]] virtual const BaseStatus& status() const = 0;
+  /// Continues the odometry of an earlier driver, see BaseOdometer. A driver whose base does not
+  /// show whether it kept counting ignores it.
+  virtual void resume_odometry(const OdometerState& state) { static_cast<void>(state); }
+  [[nodiscard]] virtual bool odometry_resumed() const { return false; }
+  /// Empty before the first odometry, and always for a driver that cannot continue it.
+  [[nodiscard]] virtual std::optional<OdometerState> odometer_state() const { return {}; }
 };
 
 }  // namespace topogeo::devices

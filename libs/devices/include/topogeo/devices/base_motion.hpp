@@ -12,13 +12,6 @@
 
 namespace topogeo::devices {
 
-/// Along x of the robot and counter-clockwise.
-struct BaseVelocity {
-  double linear_mps = 0.0;
-  double angular_radps = 0.0;
-  bool operator==(const BaseVelocity&) const = default;
-};
-
 /// The commands that differ between the two axes.
 struct BaseAxisCommands {
   McpCommand velocity, acceleration, halt, plus, minus, relative_plus, relative_minus;

@@ -21,7 +21,17 @@ struct BaseLimits {
   double angular_radps2 = 1.0;
 };
 
+/// Along x of the robot and counter-clockwise.
+struct BaseVelocity {
+  double linear_mps = 0.0;
+  double angular_radps = 0.0;
+  bool operator==(const BaseVelocity&) const = default;
+};
+
+struct BaseModel;
+
 struct BaseSettings {
+  const BaseModel* model = nullptr;  ///< a row of base_models(); none: the first
   BaseDialect dialect = BaseDialect::kAscii;
   /// 9600 in most sources; one B21 uses 38400.
   LineSettings line{};

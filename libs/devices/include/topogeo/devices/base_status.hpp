@@ -1,4 +1,4 @@
-// Status of an RWI base, for people and for the programs that drive it.
+// Status of a base, for people and for the programs that drive it.
 #pragma once
 
 #include <cstdint>

@@ -17,10 +17,10 @@
 #include "topogeo/devices/mcp_protocol.hpp"
 #include "topogeo/devices/serial_driver.hpp"
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/simulation/base_emulator.hpp"
 #include "topogeo/simulation/mcp_drive.hpp"
 #include "topogeo/simulation/mcp_line_faults.hpp"
 #include "topogeo/simulation/mcp_order_reader.hpp"
-#include "topogeo/simulation/serial_device.hpp"
 #include "topogeo/simulation/serial_output.hpp"
 
 namespace topogeo::simulation {
@@ -45,7 +45,7 @@ struct McpEmulatorSettings {
   std::uint64_t seed = 1;  ///< of the places of faults
 };
 
-class McpEmulator final : public SerialDevice {
+class McpEmulator final : public BaseEmulator {
  public:
   /// Switched on at `now_ns`. Throws std::invalid_argument for an impossible calibration.
   explicit McpEmulator(const McpEmulatorSettings& settings, std::int64_t now_ns = 0);
@@ -58,44 +58,34 @@ class McpEmulator final : public SerialDevice {
   [[nodiscard]] std::vector<std::uint8_t> take_output(const devices::LineSettings& host,
                                                       std::int64_t now_ns) override;
 
-  /// The emulator was suspended for this time, although its clock went on: its watchdog and its
-  /// reports are delayed as much. Call before the next tick.
-  void stand_still(std::int64_t duration_ns);
-
-  // Interface for the world.
-  /// Wheel motion as driven by the motors since the last tick; robot frame.
-  [[nodiscard]] geometry::Velocity commanded_velocity() const {
+  // Interface of BaseEmulator.
+  void stand_still(std::int64_t duration_ns) override;
+  [[nodiscard]] geometry::Velocity commanded_velocity() const override {
     return drive_.commanded_velocity();
   }
-  /// Motion measured by the wheels' encoders in the last `time_s`: forward and counter-clockwise.
-  void moved(double forward_m, double turn_rad, double time_s) {
+  void moved(double forward_m, double turn_rad, double time_s) override {
     drive_.moved(forward_m, turn_rad, time_s);
   }
+  void press_bumpers(std::uint16_t pressed, std::int64_t now_ns) override;
+  /// No effect while the host has switched the joystick off.
+  void take_joystick(const geometry::Velocity& velocity) override;
+  void press_emergency_stop() override { drive_.set_power(false); }
+  void release_emergency_stop() override { drive_.set_power(true); }
+  void switch_off(std::int64_t now_ns) override;
+  void switch_on(std::int64_t now_ns) override;
+  void set_fault(BaseFault fault, bool on) override;
+  void send_garbage(std::size_t bytes, std::int64_t now_ns) override;
+  [[nodiscard]] std::uint64_t reports() const override { return reports_; }
+
   /// Sum of all encoder steps since construction, each as half its turn, forward, the other half.
   [[nodiscard]] const geometry::Pose2& T_start_robot() const { return drive_.T_start_robot(); }
-  /// Bits of the pressed switches.
-  void press_bumpers(std::uint16_t pressed, std::int64_t now_ns);
-
-  // Interface for the operator.
-  /// No effect while the host has switched the joystick off. Both 0: released.
-  void take_joystick(const geometry::Velocity& velocity);
-  /// The motors lose their power.
-  void press_emergency_stop() { drive_.set_power(false); }
-  void release_emergency_stop() { drive_.set_power(true); }
   void set_battery(double battery_v, std::int64_t now_ns);
   /// A servo error: the translation motor goes limp until it gets a new command.
   void fail_motor(std::int64_t now_ns);
 
   // Faults.
-  /// Without power it neither receives nor sends anything, its wheels stand, and all commands and
-  /// counts are lost.
-  void switch_off(std::int64_t now_ns);
-  /// Switches on, or off and on again: the initial state, after the start-up time.
-  void switch_on(std::int64_t now_ns);
   void set_echo(bool echo) { echo_ = echo; }
   [[nodiscard]] McpLineFaults& line_faults() { return faults_; }
-  /// Sends random bytes.
-  void send_garbage(std::size_t bytes, std::int64_t now_ns);
 
   // State for tests.
   [[nodiscard]] bool ready() const { return ready_; }
@@ -103,7 +93,6 @@ class McpEmulator final : public SerialDevice {
   [[nodiscard]] bool echoes() const { return echo_; }
   [[nodiscard]] const std::vector<devices::McpOrder>& orders() const { return orders_; }
   void forget_orders() { orders_.clear(); }
-  [[nodiscard]] std::uint64_t reports() const { return reports_; }
 
  private:
   static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();

@@ -1,4 +1,4 @@
-#include "topogeo/devices/base_driver.hpp"
+#include "topogeo/devices/rwi_driver.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,7 @@ bool same_fields(std::uint32_t mask, std::uint32_t wanted) {
 
 }  // namespace
 
-BaseDriver::BaseDriver(const BaseSettings& settings)
+RwiDriver::RwiDriver(const BaseSettings& settings)
     : settings_(checked_base(settings)),
       decoder_(settings),
       odometer_(settings),
@@ -51,21 +51,21 @@ BaseDriver::BaseDriver(const BaseSettings& settings)
   update_status();
 }
 
-void BaseDriver::opened(std::int64_t now_ns) {
+void RwiDriver::opened(std::int64_t now_ns) {
   decoder_.reset();
   link_.open(now_ns);
   follow(BaseLink::Change::kSetUp, now_ns);
   tick(now_ns);
 }
 
-void BaseDriver::lost(std::int64_t now_ns) {
+void RwiDriver::lost(std::int64_t now_ns) {
   link_.close();
   orders_written_ = true;  // they are lost with the port
   follow(BaseLink::Change::kOffline, now_ns);
   update_status();
 }
 
-void BaseDriver::receive(std::span<const std::uint8_t> bytes, std::int64_t now_ns) {
+void RwiDriver::receive(std::span<const std::uint8_t> bytes, std::int64_t now_ns) {
   if (link_.closed() || bytes.empty()) return;
   for (const McpMessage& message : decoder_.decode(bytes)) {
     std::visit([&](const auto& content) { take(content, now_ns); }, message);
@@ -74,7 +74,7 @@ void BaseDriver::receive(std::span<const std::uint8_t> bytes, std::int64_t now_n
   tick(now_ns);
 }
 
-void BaseDriver::tick(std::int64_t now_ns) {
+void RwiDriver::tick(std::int64_t now_ns) {
   if (term_.expired(now_ns)) stand(now_ns);
   interlocks_.tick(now_ns);
   follow(link_.tick(now_ns), now_ns);
@@ -84,7 +84,7 @@ void BaseDriver::tick(std::int64_t now_ns) {
   update_status();
 }
 
-std::int64_t BaseDriver::due_ns() const {
+std::int64_t RwiDriver::due_ns() const {
   if (link_.closed()) return link_.due_ns();
   std::int64_t due_ns = std::min({term_.due_ns(), interlocks_.due_ns(), link_.due_ns()});
   if (guard_ && term_.velocity_holds()) due_ns = std::min(due_ns, judge_ns_);
@@ -96,26 +96,26 @@ std::int64_t BaseDriver::due_ns() const {
   return std::min(due_ns, next_ns);
 }
 
-std::vector<LineOrder> BaseDriver::take_orders() {
+std::vector<LineOrder> RwiDriver::take_orders() {
   std::vector<LineOrder> orders = writer_.take_orders();
   if (!orders.empty()) orders_written_ = false;
   return orders;
 }
 
-void BaseDriver::confirm_aim(std::int64_t now_ns) {
+void RwiDriver::confirm_aim(std::int64_t now_ns) {
   if (aim_ordered_ && orders_written_ && !writer_.has_orders()) monitor_.written(now_ns);
 }
 
-void BaseDriver::aim_at(const BaseVelocity& velocity, std::int64_t now_ns) {
+void RwiDriver::aim_at(const BaseVelocity& velocity, std::int64_t now_ns) {
   aim_ordered_ = false;
   monitor_.aim_at(velocity, motion_.limits(), now_ns);
 }
 
-std::vector<BaseOdometry> BaseDriver::take_odometry() {
+std::vector<BaseOdometry> RwiDriver::take_odometry() {
   return std::exchange(odometry_, {});
 }
 
-void BaseDriver::follow(BaseLink::Change change, std::int64_t now_ns) {
+void RwiDriver::follow(BaseLink::Change change, std::int64_t now_ns) {
   switch (change) {
     case BaseLink::Change::kNone:
       break;
@@ -140,7 +140,7 @@ void BaseDriver::follow(BaseLink::Change change, std::int64_t now_ns) {
   }
 }
 
-void BaseDriver::take(const McpReport& report, std::int64_t now_ns) {
+void RwiDriver::take(const McpReport& report, std::int64_t now_ns) {
   if (!same_fields(report.mask, settings_.report_mask)) {
     ++implausible_;
     return;
@@ -164,7 +164,7 @@ void BaseDriver::take(const McpReport& report, std::int64_t now_ns) {
   if (link_.running()) check_motion(now_ns);
 }
 
-void BaseDriver::take(const McpEvent& event, std::int64_t now_ns) {
+void RwiDriver::take(const McpEvent& event, std::int64_t now_ns) {
   if (interlocks_.motor_event(event.kind)) {
     upkeep_.acknowledge();
     if (motion_.moves()) interlocks_.emergency_stop();
@@ -198,13 +198,13 @@ void BaseDriver::take(const McpEvent& event, std::int64_t now_ns) {
 }
 
 /// A pressed bumper has stopped the base, which has not lost its power.
-void BaseDriver::bump(std::uint16_t active_low, std::int64_t now_ns) {
+void RwiDriver::bump(std::uint16_t active_low, std::int64_t now_ns) {
   if (!interlocks_.bumpers(active_low, motion_.aim().linear_mps, now_ns)) return;
   monitor_.forget_power();
   stand_again(now_ns);
 }
 
-void BaseDriver::take(const McpAnswer& answer, std::int64_t /*now_ns*/) {
+void RwiDriver::take(const McpAnswer& answer, std::int64_t /*now_ns*/) {
   link_.answered();
   if (answer.command != McpCommand::kBatteryVoltage) return;
   const double battery_v = kVoltsPerUnit * answer.value;
@@ -214,7 +214,7 @@ void BaseDriver::take(const McpAnswer& answer, std::int64_t /*now_ns*/) {
 }
 
 /// Compares the motion of the base with its commands.
-void BaseDriver::check_motion(std::int64_t now_ns) {
+void RwiDriver::check_motion(std::int64_t now_ns) {
   if (monitor_.stalled() && interlocks_.emergency_stop()) stand_again(now_ns);
   if (interlocks_.joystick(monitor_.joystick())) stand_again(now_ns);
   if (term_.relative_ended(monitor_.reports_standing(), now_ns)) stand(now_ns);
@@ -224,11 +224,11 @@ void BaseDriver::check_motion(std::int64_t now_ns) {
   if (monitor_.disobeys() && !term_.relative_holds()) motion_.forget();
 }
 
-bool BaseDriver::commands_taken() const {
+bool RwiDriver::commands_taken() const {
   return link_.running() && !interlocks_.engaged() && !monitor_.joystick();
 }
 
-bool BaseDriver::accept_motion(double linear_mps, std::int64_t now_ns) {
+bool RwiDriver::accept_motion(double linear_mps, std::int64_t now_ns) {
   interlocks_.motion_commanded(now_ns);
   if (!commands_taken() || interlocks_.pushes(linear_mps)) return false;
   interlocks_.motion_taken();
@@ -236,7 +236,7 @@ bool BaseDriver::accept_motion(double linear_mps, std::int64_t now_ns) {
   return true;
 }
 
-bool BaseDriver::command(double linear_mps, double angular_radps, std::int64_t valid_until_ns,
+bool RwiDriver::command(double linear_mps, double angular_radps, std::int64_t valid_until_ns,
                          std::int64_t now_ns) {
   finite("linear_mps", linear_mps);
   finite("angular_radps", angular_radps);
@@ -253,24 +253,24 @@ bool BaseDriver::command(double linear_mps, double angular_radps, std::int64_t v
   return true;
 }
 
-void BaseDriver::guard_velocities(VelocityGuard guard, std::int64_t period_ns) {
+void RwiDriver::guard_velocities(VelocityGuard guard, std::int64_t period_ns) {
   guard_ = std::move(guard);
   judge_period_ns_ = period_ns;
 }
 
 /// The part of the wanted velocity that the guard allows now.
-BaseVelocity BaseDriver::guarded(std::int64_t now_ns) {
+BaseVelocity RwiDriver::guarded(std::int64_t now_ns) {
   if (!guard_) return wanted_;
   judge_ns_ = now_ns + judge_period_ns_;
   return guard_(wanted_, now_ns);
 }
 
-void BaseDriver::judge_again(std::int64_t now_ns) {
+void RwiDriver::judge_again(std::int64_t now_ns) {
   motion_.want_velocity(guarded(now_ns));
   aim_at(motion_.aim(), now_ns);
 }
 
-bool BaseDriver::advance(double distance_m, std::int64_t valid_until_ns, std::int64_t now_ns) {
+bool RwiDriver::advance(double distance_m, std::int64_t valid_until_ns, std::int64_t now_ns) {
   finite("distance_m", distance_m);
   if (!accept_motion(distance_m, now_ns)) return false;
   motion_.want_distance(distance_m);
@@ -278,7 +278,7 @@ bool BaseDriver::advance(double distance_m, std::int64_t valid_until_ns, std::in
   return true;
 }
 
-bool BaseDriver::turn(double angle_rad, std::int64_t valid_until_ns, std::int64_t now_ns) {
+bool RwiDriver::turn(double angle_rad, std::int64_t valid_until_ns, std::int64_t now_ns) {
   finite("angle_rad", angle_rad);
   if (!accept_motion(0.0, now_ns)) return false;
   motion_.want_turn(angle_rad);
@@ -286,44 +286,44 @@ bool BaseDriver::turn(double angle_rad, std::int64_t valid_until_ns, std::int64_
   return true;
 }
 
-void BaseDriver::start_relative(std::int64_t valid_until_ns, std::int64_t now_ns) {
+void RwiDriver::start_relative(std::int64_t valid_until_ns, std::int64_t now_ns) {
   if (motion_.moves()) term_.start_relative(valid_until_ns);
   aim_changed(now_ns);
   monitor_.leave_power(motion_.limits(), now_ns);
 }
 
-void BaseDriver::aim_changed(std::int64_t now_ns) {
+void RwiDriver::aim_changed(std::int64_t now_ns) {
   aim_at(motion_.aim(), now_ns);
   tick(now_ns);
 }
 
 /// Ends all motion; the halts are written next.
-void BaseDriver::stand(std::int64_t now_ns) {
+void RwiDriver::stand(std::int64_t now_ns) {
   term_.clear();
   motion_.want_halt();
   aim_at({}, now_ns);
 }
 
 /// Like stand(), but sends the halts even if they were sent before.
-void BaseDriver::stand_again(std::int64_t now_ns) {
+void RwiDriver::stand_again(std::int64_t now_ns) {
   stand(now_ns);
   motion_.forget();
 }
 
-void BaseDriver::halt(std::int64_t now_ns) {
+void RwiDriver::halt(std::int64_t now_ns) {
   interlocks_.halt();
   stand_again(now_ns);
   tick(now_ns);
 }
 
-void BaseDriver::reset_stop(std::int64_t now_ns) {
+void RwiDriver::reset_stop(std::int64_t now_ns) {
   interlocks_.release();
   monitor_.forget_power();
   stand(now_ns);
   tick(now_ns);
 }
 
-void BaseDriver::set_limits(const BaseLimits& limits, std::int64_t now_ns) {
+void RwiDriver::set_limits(const BaseLimits& limits, std::int64_t now_ns) {
   const BaseLimits& most = settings_.limits;
   motion_.set_limits({limited("linear_mps", limits.linear_mps, most.linear_mps),
                       limited("angular_radps", limits.angular_radps, most.angular_radps),
@@ -334,7 +334,7 @@ void BaseDriver::set_limits(const BaseLimits& limits, std::int64_t now_ns) {
 }
 
 /// Writes the next command that is due; false if there is none.
-bool BaseDriver::write_next(std::int64_t now_ns) {
+bool RwiDriver::write_next(std::int64_t now_ns) {
   if (writer_.write_queued(now_ns)) return true;
   if (!link_.running()) return false;
   const std::optional<McpOrder> order = next_order(now_ns);
@@ -343,7 +343,7 @@ bool BaseDriver::write_next(std::int64_t now_ns) {
 }
 
 /// Halts first, then the watchdog, which halts the base if this program fails.
-std::optional<McpOrder> BaseDriver::next_order(std::int64_t now_ns) {
+std::optional<McpOrder> RwiDriver::next_order(std::int64_t now_ns) {
   if (const auto halt = motion_.next_halt()) return halt;
   if (const auto watchdog = upkeep_.next_refresh(now_ns)) return watchdog;
   if (const auto order = motion_.next()) {
@@ -354,11 +354,11 @@ std::optional<McpOrder> BaseDriver::next_order(std::int64_t now_ns) {
   return upkeep_.next(motion_, now_ns);
 }
 
-bool BaseDriver::stands() const {
+bool RwiDriver::stands() const {
   return reports_at_halt_ && status_.reports > *reports_at_halt_ && monitor_.stands();
 }
 
-void BaseDriver::update_status() {
+void RwiDriver::update_status() {
   if (!motion_.halt_sent()) {
     reports_at_halt_.reset();
   } else if (!reports_at_halt_) {
@@ -376,7 +376,7 @@ void BaseDriver::update_status() {
   count_of(status_.drops, McpDrop::kImplausible) = implausible_;
 }
 
-BaseState BaseDriver::state() const {
+BaseState RwiDriver::state() const {
   if (link_.offline()) return BaseState::kOffline;
   if (!link_.running()) return BaseState::kStarting;
   if (const auto stopped = interlocks_.state()) return *stopped;
@@ -386,7 +386,7 @@ BaseState BaseDriver::state() const {
   return BaseState::kReady;
 }
 
-std::string BaseDriver::reason() const {
+std::string RwiDriver::reason() const {
   const BaseState state = status_.state;
   if (state == BaseState::kOffline) return link_.offline() ? link_.reason() : "the gateway ends";
   if (state == BaseState::kBumped && status_.bumpers != 0) return "a bumper is pressed";

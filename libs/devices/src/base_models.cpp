@@ -1,0 +1,41 @@
+#include "topogeo/devices/base_models.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string>
+
+#include "topogeo/devices/rwi_driver.hpp"
+
+namespace topogeo::devices {
+namespace {
+
+std::unique_ptr<BaseDriver> make_rwi(const BaseSettings& settings) {
+  return std::make_unique<RwiDriver>(settings);
+}
+
+#define TOPOGEO_BASE(family, name, title) BaseModel{#family, name, title, make_##family},
+constexpr std::array kBaseModels{
+#include "topogeo/devices/base_models.def"
+};
+
+}  // namespace
+
+std::span<const BaseModel> base_models() {
+  return kBaseModels;
+}
+
+const BaseModel& base_model(std::string_view name) {
+  const auto* const model = std::ranges::find(kBaseModels, name, &BaseModel::name);
+  if (model == kBaseModels.end()) {
+    throw std::invalid_argument("base model '" + std::string(name) + "': not known");
+  }
+  return *model;
+}
+
+std::unique_ptr<BaseDriver> make_base_driver(const BaseSettings& settings) {
+  const BaseModel& model = settings.model != nullptr ? *settings.model : kBaseModels.front();
+  return model.make(settings);
+}
+
+}  // namespace topogeo::devices

@@ -1,0 +1,34 @@
+#include <string_view>
+
+#include "topogeo/simulation/base_emulator.hpp"
+#include "topogeo/simulation/mcp_emulator.hpp"
+
+namespace topogeo::simulation {
+namespace {
+
+std::unique_ptr<BaseEmulator> emulate_rwi(const BaseEmulatorSettings& settings,
+                                          std::int64_t now_ns) {
+  McpEmulatorSettings mcp;
+  mcp.line = {settings.baud, devices::Parity::kNone};
+  mcp.seed = settings.seed;
+  return std::make_unique<McpEmulator>(mcp, now_ns);
+}
+
+using MakeBaseEmulator = std::unique_ptr<BaseEmulator> (*)(const BaseEmulatorSettings&,
+                                                           std::int64_t);
+
+#define TOPOGEO_BASE(family, name, title) emulate_##family,
+constexpr MakeBaseEmulator kBaseEmulators[] = {
+#include "topogeo/devices/base_models.def"
+};
+
+}  // namespace
+
+std::unique_ptr<BaseEmulator> make_base_emulator(const BaseEmulatorSettings& settings,
+                                                 std::int64_t now_ns) {
+  const devices::BaseModel& model =
+      settings.model != nullptr ? *settings.model : devices::base_models().front();
+  return kBaseEmulators[&model - devices::base_models().data()](settings, now_ns);
+}
+
+}  // namespace topogeo::simulation
