@@ -234,6 +234,21 @@ void describe_base_units(ConfigSchema& schema, DeviceFile::Base& base) {
   schema.add("base.reversed", &c.reversed, "forward of the base is backward of the robot");
 }
 
+void describe_text_base(ConfigSchema& schema, DeviceFile::Base& base) {
+  devices::TextBaseSettings& t = base.settings.text;
+  schema.add("base.ticks_per_m", &t.ticks_per_m, 1.0, 1e7, "1/m",
+             "encoder ticks of a wheel of a microcontroller per metre; measure it before the first "
+             "drive");
+  schema.add("base.track_m", &t.track_m, 0.01, 10.0, "m",
+             "distance between the wheels of a microcontroller");
+  schema.add("base.mixes", &t.mixes,
+             "true: a microcontroller gets its speed and rate of turn (W), and mixes the wheels "
+             "itself; false: it gets the speeds of its wheels (V)");
+  schema.add("base.gyro", &t.gyro,
+             "the heading of a microcontroller follows its gyro where it reports one; false: its "
+             "wheels");
+}
+
 void describe_base_motion(ConfigSchema& schema, DeviceFile::Base& base) {
   devices::BaseSettings& s = base.settings;
   schema.add("base.largest_linear_mps", &s.limits.linear_mps, 0.01, 2.0, "m/s",
@@ -318,6 +333,7 @@ ConfigSchema describe(DeviceFile& file) {
   describe_rplidar(schema, file.laser);
   describe_base_line(schema, file.base);
   describe_base_units(schema, file.base);
+  describe_text_base(schema, file.base);
   describe_base_motion(schema, file.base);
   describe_base_states(schema, file.base);
   schema.add("body.sensors", &file.body,

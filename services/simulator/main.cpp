@@ -33,6 +33,12 @@ std::vector<std::string> model_names() {
   return names;
 }
 
+std::vector<std::string> base_names() {
+  std::vector<std::string> names;
+  for (const devices::BaseModel& model : devices::base_models()) names.emplace_back(model.name);
+  return names;
+}
+
 struct Arguments {
   std::filesystem::path world;
   int sonars = 24;
@@ -58,6 +64,14 @@ void add_options(command_line::Command& app, Arguments& arguments) {
          "model of the laser, as laser.model of the devices file")
       ->check(command_line::one_of(model_names()))
       ->default_str(model_names().front());
+  app.add_option_function(
+         "--base-model",
+         [&model = arguments.options.devices.base.model](const std::string& name) {
+           model = &devices::base_model(name);
+         },
+         "model of the base, as base.model of the devices file")
+      ->check(command_line::one_of(base_names()))
+      ->default_str(base_names().front());
   app.add_option("--base-baud", arguments.options.devices.base.baud, "baud rate of the base's line")
       ->check(command_line::one_of({1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200}))
       ->capture_default_str();

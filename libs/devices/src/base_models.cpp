@@ -6,12 +6,17 @@
 #include <string>
 
 #include "topogeo/devices/rwi_driver.hpp"
+#include "topogeo/devices/text_base_driver.hpp"
 
 namespace topogeo::devices {
 namespace {
 
 std::unique_ptr<BaseDriver> make_rwi(const BaseSettings& settings) {
   return std::make_unique<RwiDriver>(settings);
+}
+
+std::unique_ptr<BaseDriver> make_text(const BaseSettings& settings) {
+  return std::make_unique<TextBaseDriver>(settings);
 }
 
 #define TOPOGEO_BASE(family, name, title) BaseModel{#family, name, title, make_##family},

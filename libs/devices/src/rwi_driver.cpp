@@ -1,9 +1,9 @@
 #include "topogeo/devices/rwi_driver.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <stdexcept>
 #include <utility>
+
+#include "topogeo/devices/base_limits.hpp"
 
 namespace topogeo::devices {
 namespace {
@@ -17,17 +17,6 @@ constexpr double kVoltsPerUnit = 0.1;
 const BaseSettings& checked_base(const BaseSettings& settings) {
   check(settings);
   return settings;
-}
-
-void finite(const char* name, double value) {
-  if (std::isfinite(value)) return;
-  throw std::invalid_argument("base command: " + std::string(name) + " is not a finite number");
-}
-
-double limited(const char* name, double wanted, double largest) {
-  if (std::isfinite(wanted) && wanted > 0.0) return std::min(wanted, largest);
-  throw std::invalid_argument("base limits: " + std::string(name) + " is " +
-                              std::to_string(wanted) + ", not a positive number");
 }
 
 /// The first bit requests the mask itself, which only binary reports contain.
@@ -237,9 +226,9 @@ bool RwiDriver::accept_motion(double linear_mps, std::int64_t now_ns) {
 }
 
 bool RwiDriver::command(double linear_mps, double angular_radps, std::int64_t valid_until_ns,
-                         std::int64_t now_ns) {
-  finite("linear_mps", linear_mps);
-  finite("angular_radps", angular_radps);
+                        std::int64_t now_ns) {
+  require_finite("linear_mps", linear_mps);
+  require_finite("angular_radps", angular_radps);
   if (linear_mps != 0.0 || angular_radps != 0.0) {
     if (!accept_motion(linear_mps, now_ns)) return false;
     term_.start_velocity(valid_until_ns, now_ns);
@@ -271,7 +260,7 @@ void RwiDriver::judge_again(std::int64_t now_ns) {
 }
 
 bool RwiDriver::advance(double distance_m, std::int64_t valid_until_ns, std::int64_t now_ns) {
-  finite("distance_m", distance_m);
+  require_finite("distance_m", distance_m);
   if (!accept_motion(distance_m, now_ns)) return false;
   motion_.want_distance(distance_m);
   start_relative(valid_until_ns, now_ns);
@@ -279,7 +268,7 @@ bool RwiDriver::advance(double distance_m, std::int64_t valid_until_ns, std::int
 }
 
 bool RwiDriver::turn(double angle_rad, std::int64_t valid_until_ns, std::int64_t now_ns) {
-  finite("angle_rad", angle_rad);
+  require_finite("angle_rad", angle_rad);
   if (!accept_motion(0.0, now_ns)) return false;
   motion_.want_turn(angle_rad);
   start_relative(valid_until_ns, now_ns);
@@ -324,11 +313,7 @@ void RwiDriver::reset_stop(std::int64_t now_ns) {
 }
 
 void RwiDriver::set_limits(const BaseLimits& limits, std::int64_t now_ns) {
-  const BaseLimits& most = settings_.limits;
-  motion_.set_limits({limited("linear_mps", limits.linear_mps, most.linear_mps),
-                      limited("angular_radps", limits.angular_radps, most.angular_radps),
-                      limited("linear_mps2", limits.linear_mps2, most.linear_mps2),
-                      limited("angular_radps2", limits.angular_radps2, most.angular_radps2)});
+  motion_.set_limits(within(limits, settings_.limits));
   if (term_.velocity_holds()) motion_.want_velocity(guarded(now_ns));
   aim_changed(now_ns);
 }

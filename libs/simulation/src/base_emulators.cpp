@@ -2,6 +2,7 @@
 
 #include "topogeo/simulation/base_emulator.hpp"
 #include "topogeo/simulation/mcp_emulator.hpp"
+#include "topogeo/simulation/text_base_emulator.hpp"
 
 namespace topogeo::simulation {
 namespace {
@@ -12,6 +13,17 @@ std::unique_ptr<BaseEmulator> emulate_rwi(const BaseEmulatorSettings& settings,
   mcp.line = {settings.baud, devices::Parity::kNone};
   mcp.seed = settings.seed;
   return std::make_unique<McpEmulator>(mcp, now_ns);
+}
+
+std::unique_ptr<BaseEmulator> emulate_text(const BaseEmulatorSettings& settings,
+                                           std::int64_t now_ns) {
+  constexpr std::uint32_t kFastLine = 38'400;
+  constexpr std::int64_t kSlowReports_ns = 100'000'000;
+  TextBaseEmulatorSettings text;
+  text.line = {settings.baud, devices::Parity::kNone};
+  if (settings.baud < kFastLine) text.report_ns = kSlowReports_ns;
+  text.seed = settings.seed;
+  return std::make_unique<TextBaseEmulator>(text, now_ns);
 }
 
 using MakeBaseEmulator = std::unique_ptr<BaseEmulator> (*)(const BaseEmulatorSettings&,

@@ -37,6 +37,7 @@ void write_devices(const RunOptions& options) {
   file.laser.kind = sensor_gateway::DeviceFile::Laser::Kind::kPls;
   file.base.port = simulated_port(options, "base").string();
   devices::BaseSettings& base = file.base.settings;
+  base.model = &devices::base_model(simulation.base_model);
   base.line.baud = kSimulatedBaseBaud;
   base.dialect = devices::BaseDialect::kBinary;
   base.limits.linear_mps = simulation.speed_m_per_s;
@@ -51,6 +52,12 @@ void write_devices(const RunOptions& options) {
 std::vector<std::string> laser_names() {
   std::vector<std::string> names;
   for (const devices::LaserModel& model : devices::laser_models()) names.emplace_back(model.name);
+  return names;
+}
+
+std::vector<std::string> base_names() {
+  std::vector<std::string> names;
+  for (const devices::BaseModel& model : devices::base_models()) names.emplace_back(model.name);
   return names;
 }
 
@@ -135,6 +142,9 @@ void add_simulation_options(command_line::Command& app, SimulatorOptions& option
       app.add_option("--laser-model", options.laser_model,
                      "simulation: model of the laser, as laser.model of the devices file")
           ->check(command_line::one_of(laser_names())),
+      app.add_option("--base-model", options.base_model,
+                     "simulation: model of the base, as base.model of the devices file")
+          ->check(command_line::one_of(base_names())),
       app.add_option("--baud", options.laser_baud,
                      "simulation: baud rate of the line of a sick_pls")
           ->check(command_line::one_of({9600, 19200, 38400, 500000})),

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "topogeo/devices/base_models.hpp"
 #include "topogeo/devices/laser_models.hpp"
 #include "topogeo/geometry/pose2.hpp"
 
@@ -21,6 +22,7 @@ struct SimulatorOptions {
   std::filesystem::path world;  ///< file
   std::uint64_t seed = 1;
   std::string laser_model{devices::laser_models().front().name};
+  std::string base_model{devices::base_models().front().name};
   std::uint32_t laser_baud = 500'000;  ///< of a laser with a choice of rates
   std::string odometry = "mild";       ///< see `simulator --help`
   double speed_m_per_s = 0.9;

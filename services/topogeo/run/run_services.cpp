@@ -77,15 +77,16 @@ void start_source(ProcessGroup& processes, const RunOptions& options, const std:
   if (const auto& simulation = options.simulation) {
     const Arguments sonars =
         simulation->no_laser ? Arguments{"--sonar-noise", "macondo"} : Arguments{};
-    processes.start("simulator", "simulator",
-                    common + sonars +
-                        Arguments{"--world", simulation->world.string(), "--seed",
-                                  std::to_string(simulation->seed), "--laser-model",
-                                  simulation->laser_model, "--odometry", simulation->odometry,
-                                  "--people", std::to_string(simulation->people), "--laser-port",
-                                  simulated_port(options, "laser").string(), "--base-port",
-                                  simulated_port(options, "base").string(), "--base-baud",
-                                  std::to_string(kSimulatedBaseBaud)});
+    processes.start(
+        "simulator", "simulator",
+        common + sonars +
+            Arguments{"--world", simulation->world.string(), "--seed",
+                      std::to_string(simulation->seed), "--laser-model", simulation->laser_model,
+                      "--base-model", simulation->base_model, "--odometry", simulation->odometry,
+                      "--people", std::to_string(simulation->people), "--laser-port",
+                      simulated_port(options, "laser").string(), "--base-port",
+                      simulated_port(options, "base").string(), "--base-baud",
+                      std::to_string(kSimulatedBaseBaud)});
   }
   Arguments source = {"--log", options.job.log.string(), "--rate", options.rate};
   const recording::TopicChoice& topics = options.job.topics;

@@ -7,6 +7,7 @@
 #include "topogeo/devices/mcp_binary.hpp"
 #include "topogeo/devices/mcp_units.hpp"
 #include "topogeo/devices/serial_driver.hpp"
+#include "topogeo/devices/text_base_settings.hpp"
 #include "topogeo/geometry/reaction_times.hpp"
 
 namespace topogeo::devices {
@@ -36,6 +37,7 @@ struct BaseSettings {
   /// 9600 in most sources; one B21 uses 38400.
   LineSettings line{};
   McpCalibration calibration{};
+  TextBaseSettings text{};  ///< of a microcontroller
   /// BaseDriver::set_limits cannot exceed them.
   BaseLimits limits{};
 

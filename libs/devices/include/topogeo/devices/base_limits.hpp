@@ -1,0 +1,13 @@
+// Checks of commands and limits of any base.
+#pragma once
+
+#include "topogeo/devices/base_settings.hpp"
+
+namespace topogeo::devices {
+
+/// Throws std::invalid_argument for a command that is not finite.
+void require_finite(const char* name, double value);
+/// `limits`, but nowhere above `most`. Throws std::invalid_argument unless all are finite and > 0.
+[[nodiscard]] BaseLimits within(const BaseLimits& limits, const BaseLimits& most);
+
+}  // namespace topogeo::devices
