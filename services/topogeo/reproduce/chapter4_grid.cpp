@@ -106,7 +106,7 @@ void figure_4_19(Report& report) {
     if (g == 0) off_m = std::fabs((nearest_m - cell_m).norm() - (cell_m.y() + 0.9));
   }
   report.draw({.title = "Distance of a cell to groups (4.16)", .panels = {panel}});
-  report.worked_out("distance to the wall, off its perpendicular", off_m, 0.0, "m", 0.01);
+  report.worked_out("distance to the wall, off its perpendicular", off_m, 0.0, "m");
 }
 
 // The print truncates digits instead of rounding.
@@ -120,9 +120,9 @@ void table_4_1(Report& report) {
                          Row{7, 4.95, 9.9}, Row{9, 6.36, 12.73}}) {
     const double error_cm = 100.0 * voronoi::largest_distance_error_m(0.01 * row.resolution_cm);
     report.printed(fmt::format("E_max of cells of {} cm", row.resolution_cm), error_cm,
-                   row.error_cm, "cm", 0.0075);
+                   row.error_cm, "cm");
     report.printed(fmt::format("2 E_max of cells of {} cm", row.resolution_cm), 2.0 * error_cm,
-                   row.twice_cm, "cm", 0.0075);
+                   row.twice_cm, "cm");
   }
 }
 

@@ -93,7 +93,7 @@ void figure_4_7(Report& report) {
     for (const voronoi::DiagramPoint& point : seen.diagram.points) {
       off_m = std::max(off_m, std::fabs(point.position_m.y()));
     }
-    report.worked_out(name + ": branch off the line ahead", off_m, 0.0, "m", 0.025);
+    report.worked_out(name + ": branch off the line ahead", off_m, 0.0, "m");
   }
   report.draw(figure, "Groups numbered, the virtual branch dashed.");
 }
@@ -108,7 +108,7 @@ void figure_4_8(Report& report) {
   compare(report, "without", counted(without), {2, 0, 1}, false);
   report.worked_out("node to the middle of the crossing",
                     (with.diagram.nodes.at(0).position_m - Eigen::Vector2d(2.0, 0.1)).norm(), 0.0,
-                    "m", 0.03);
+                    "m");
 }
 
 /// The nearest points of two groups.

@@ -71,11 +71,36 @@ std::size_t count_off_main(const topomap::LocalMap& map) {
       std::ranges::count(map.branches, false, &LocalBranch::in_main_graph));
 }
 
-/// The one node of that kind; throws std::out_of_range without one.
-const LocalNode& node_of(const topomap::LocalMap& map, NodeKind kind) {
-  const auto at = std::ranges::find(map.nodes, kind, &LocalNode::kind);
-  if (at == map.nodes.end()) throw std::out_of_range("the map has no such node");
-  return *at;
+constexpr const char* kOwnRule = "our rule for states";
+
+/// The printed rule: each confirmed change of slope is a state (5.1 to 5.4).
+LocalMapConfig printed_states() {
+  LocalMapConfig config = topomap::thesis_local_map();
+  config.state_rule = topomap::StateRule::kSlopes;
+  return config;
+}
+
+bool is_state(const LocalNode& node) {
+  return node.kind == NodeKind::kDoor || node.kind == NodeKind::kNarrowing ||
+         node.kind == NodeKind::kHallCorridor;
+}
+
+std::size_t count_states(const topomap::LocalMap& map) {
+  return static_cast<std::size_t>(std::ranges::count_if(map.nodes, is_state));
+}
+
+/// The state nearest to a place; throws std::out_of_range without any.
+const LocalNode& state_near(const topomap::LocalMap& map, const Eigen::Vector2d& place_m) {
+  const LocalNode* nearest = nullptr;
+  for (const LocalNode& node : map.nodes) {
+    if (!is_state(node)) continue;
+    if (nearest == nullptr ||
+        (node.position_m - place_m).norm() < (nearest->position_m - place_m).norm()) {
+      nearest = &node;
+    }
+  }
+  if (nearest == nullptr) throw std::out_of_range("the map has no state");
+  return *nearest;
 }
 
 /// Clearance along the branches on both sides of a node, or of the longest branch.
@@ -141,43 +166,65 @@ void figure_5_2(Report& report) {
 }
 
 void figure_5_3(Report& report) {
-  const SeenScene seen = scene5("5_05", topomap::thesis_local_map());
-  const LocalNode& door = node_of(seen.map, NodeKind::kDoor);
-  const FigurePanel panel = clearance_panel(seen.map, &door);
-  report.draw(
-      {.title = "Where the slope of the clearance changes its sign (5.1)", .panels = {panel}},
-      "Orange: the new state.");
-  double least_m = door.clearance_m;
-  for (const render::FigureLine& line : panel.lines) {
+  const Eigen::Vector2d door_m(1.05, 1.1);
+  const SeenScene printed = scene5("5_05", printed_states());
+  const SeenScene own = scene5("5_05", topomap::thesis_local_map());
+  const LocalNode& state = state_near(printed.map, door_m);
+  const LocalNode& own_state = state_near(own.map, door_m);
+  FigurePanel by_print = clearance_panel(printed.map, &state);
+  by_print.title = "by the printed rule, between the next states";
+  FigurePanel by_own = clearance_panel(own.map, &own_state);
+  by_own.title = "by our rule, along the whole branch";
+  double least_m = own_state.clearance_m;
+  for (const render::FigureLine& line : by_own.lines) {
     for (const Eigen::Vector2d& point : line.points) least_m = std::min(least_m, point.y());
   }
-  report.states("clearance falls and rises again", panel.lines.size() == 2);
-  report.worked_out("state above the least clearance", door.clearance_m - least_m, 0.0, "m", 0.01);
+  report.draw({.title = "Where the slope of the clearance changes its sign (5.1)",
+               .panels = {by_print, by_own}},
+              "Orange: the new state.");
+  report.states("clearance falls and rises again", by_own.lines.size() == 2);
+  report.worked_out("state above the least clearance", state.clearance_m - least_m, 0.0, "m");
+  report.beside("state above the least clearance", own_state.clearance_m - least_m, "m", kOwnRule);
 }
 
-/// Figures 5.4 and 5.5: one state of this kind at the place given by the scene.
-void draw_state(Report& report, const std::string& number, NodeKind kind,
-                const Eigen::Vector2d& expected_m, double tolerance_m) {
+/// States by the printed rule and, beside them, by our own.
+void compare_states(Report& report, const SeenScene& printed, const SeenScene& own,
+                    const Eigen::Vector2d& expected_m) {
+  report.printed("new states", number_of(count_states(printed.map)), 1);
+  report.show("of them doors", number_of(count_nodes(printed.map, NodeKind::kDoor)));
+  report.show("of them narrowings", number_of(count_nodes(printed.map, NodeKind::kNarrowing)));
+  report.show("of them passages between hall and corridor",
+              number_of(count_nodes(printed.map, NodeKind::kHallCorridor)));
+  report.worked_out("state to where the scene has it",
+                    (state_near(printed.map, expected_m).position_m - expected_m).norm(), 0.0, "m");
+  report.beside("new states", number_of(count_states(own.map)), "", kOwnRule);
+  report.beside("state to where the scene has it",
+                (state_near(own.map, expected_m).position_m - expected_m).norm(), "m", kOwnRule);
+}
+
+/// Figures 5.4 and 5.5: one state at the place given by the scene.
+void draw_state(Report& report, const std::string& number, const Eigen::Vector2d& expected_m) {
   const SeenScene without = scene5(number, without_states());
-  const SeenScene with = scene5(number, topomap::thesis_local_map());
-  const LocalNode& state = node_of(with.map, kind);
+  const SeenScene printed = scene5(number, printed_states());
+  const SeenScene own = scene5(number, topomap::thesis_local_map());
   Figure figure;
   figure.title = "A state by the clearance along a branch";
-  figure.panels = {clearance_panel(with.map, &state), map_panel(without, "by the diagram alone"),
-                   map_panel(with, "with the new state")};
-  report.draw(figure, "The state is orange.");
-  report.printed("new states", number_of(count_nodes(with.map, kind)), 1);
-  report.printed("states of the diagram alone", number_of(count_nodes(without.map, kind)), 0);
-  report.worked_out("state to where the scene has it", (state.position_m - expected_m).norm(), 0.0,
-                    "m", tolerance_m);
+  figure.columns = 2;
+  figure.panels = {clearance_panel(own.map, &state_near(own.map, expected_m)),
+                   map_panel(without, "by the diagram alone"),
+                   map_panel(printed, "states by the printed rule"),
+                   map_panel(own, "states by our rule")};
+  report.draw(figure, "States are orange.");
+  report.printed("states of the diagram alone", number_of(count_states(without.map)), 0);
+  compare_states(report, printed, own, expected_m);
 }
 
 void figure_5_4(Report& report) {
-  draw_state(report, "5_04", NodeKind::kHallCorridor, {1.5, 0.1}, 0.02);
+  draw_state(report, "5_04", {1.5, 0.1});
 }
 
 void figure_5_5(Report& report) {
-  draw_state(report, "5_05", NodeKind::kDoor, {1.05, 1.1}, 0.05);
+  draw_state(report, "5_05", {1.05, 1.1});
 }
 
 LocalMapConfig uncut() {
@@ -213,22 +260,29 @@ void figure_5_6(Report& report) {
 
 void figure_5_7(Report& report) {
   const SeenScene cut = scene5("5_07", without_states());
-  const SeenScene with = scene5("5_07", topomap::thesis_local_map());
-  const LocalNode& state = node_of(with.map, NodeKind::kNarrowing);
-  report.draw({.title = "A corridor between two doors, one of them open into it",
-               .panels = {map_panel(cut, "without far points"), map_panel(with, "with the state"),
-                          clearance_panel(with.map, &state)}},
-              "The narrowing is orange.");
-  report.printed("narrowings", number_of(count_nodes(with.map, NodeKind::kNarrowing)), 1);
+  const Eigen::Vector2d narrowing_m(1.6, -0.125);
+  const SeenScene printed = scene5("5_07", printed_states());
+  const SeenScene own = scene5("5_07", topomap::thesis_local_map());
+  Figure figure;
+  figure.title = "A corridor between two doors, one of them open into it";
+  figure.columns = 2;
+  figure.panels = {map_panel(cut, "without far points"),
+                   map_panel(printed, "states by the printed rule"),
+                   map_panel(own, "states by our rule"),
+                   clearance_panel(own.map, &state_near(own.map, narrowing_m))};
+  report.draw(figure, "States are orange.");
   report.printed("stretches of branches cut off", number_of(count_off_main(cut.map)), 1);
-  report.worked_out("narrowing to where the scene has it",
-                    (state.position_m - Eigen::Vector2d(1.6, -0.125)).norm(), 0.0, "m", 0.05);
+  compare_states(report, printed, own, narrowing_m);
 }
 
 }  // namespace
 
 std::vector<Experiment> chapter5() {
   const std::string kThesis = "Thesis";
+  const std::string kPrintedRule =
+      "By 5.3 and 5.4 a single later point that lies far enough and on the same side confirms a "
+      "change of slope, so steps between cells of the diagram make states even in an exact scan "
+      "(docs/algorithms.md, Local topo-geometric map, errata)";
   return {
       {"figure-5.1", kThesis, "Figure 5.1",
        "Nodes and branches of a corridor with an open door: a branch joins nodes that share two "
@@ -239,14 +293,15 @@ std::vector<Experiment> chapter5() {
       {"figure-5.3", kThesis, "Figure 5.3",
        "Clearance of the points of a branch, with the change of slope that is a state", figure_5_3},
       {"figure-5.4", kThesis, "Figure 5.4",
-       "From a hall into a corridor: the state where the clearance stops falling", figure_5_4},
+       "From a hall into a corridor: the state where the clearance stops falling", figure_5_4,
+       kPrintedRule},
       {"figure-5.5", kThesis, "Figure 5.5",
-       "A door in a corridor: the state at the least clearance", figure_5_5},
+       "A door in a corridor: the state at the least clearance", figure_5_5, kPrintedRule},
       {"figure-5.6", kThesis, "Figure 5.6", "Points of a branch beyond a gap are cut off",
        figure_5_6},
       {"figure-5.7", kThesis, "Figure 5.7",
-       "Two doors and a narrowing: far points cut off, then the state of the narrowing",
-       figure_5_7},
+       "Two doors and a narrowing: far points cut off, then the state of the narrowing", figure_5_7,
+       kPrintedRule},
   };
 }
 

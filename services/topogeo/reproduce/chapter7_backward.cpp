@@ -40,6 +40,13 @@ const Correction::Backward& first_closing(const Correction& correction) {
   return correction.backward.front();
 }
 
+/// Whether there is a backward correction to show; the row states it.
+bool closes(Report& report, const Correction& correction) {
+  report.made_by(means_of(report.runs().drive(kTurn), correction));
+  report.states("the view after the turn closes a cycle", !correction.backward.empty());
+  return !correction.backward.empty();
+}
+
 /// Poses of all solutions of a stop against each earlier map.
 std::vector<Pose2> solutions_of(const Correction& correction, std::size_t stop) {
   std::vector<Pose2> poses;
@@ -62,7 +69,8 @@ FigurePanel corridor_panel(const Drive& drive, const std::string& title) {
 
 void figure_7_22(Report& report) {
   const Drive& drive = report.runs().drive(kTurn);
-  const Correction& correction = report.runs().correction(kTurn, {.backward = false});
+  const Correction& correction = report.runs().correction(kTurn, kForwardAlone);
+  report.made_by(means_of(drive, correction));
   FigurePanel panel = corridor_panel(drive, "best solutions of each position");
   std::size_t most = 0;
   for (std::size_t k = 1; k < drive.stops.size(); ++k) {
@@ -84,7 +92,8 @@ void figure_7_22(Report& report) {
 
 void figure_7_23(Report& report) {
   const Drive& drive = report.runs().drive(kTurn);
-  const Correction& correction = report.runs().correction(kTurn, {.backward = false});
+  const Correction& correction = report.runs().correction(kTurn, kForwardAlone);
+  report.made_by(means_of(drive, correction));
   FigurePanel panel = corridor_panel(drive, "best solution of each position");
   for (std::size_t k = 0; k < drive.stops.size(); ++k) {
     add_map(panel, *drive.stops[k], correction.final_poses()[k], FigureColour::kSky);
@@ -122,7 +131,8 @@ OldestMatch oldest_match(const Correction& correction) {
 
 void figure_7_24(Report& report) {
   const Drive& drive = report.runs().drive(kTurn);
-  const Correction& correction = report.runs().correction(kTurn);
+  const Correction& correction = report.runs().correction(kTurn, kSingleWalk);
+  if (!closes(report, correction)) return;
   const OldestMatch match = oldest_match(correction);
   Figure figure;
   figure.title = "Several good solutions of one pair of maps";
@@ -140,7 +150,8 @@ void figure_7_24(Report& report) {
 }
 
 void figure_7_25(Report& report) {
-  const Correction& correction = report.runs().correction(kTurn);
+  const Correction& correction = report.runs().correction(kTurn, kSingleWalk);
+  if (!closes(report, correction)) return;
   const OldestMatch match = oldest_match(correction);
   FigurePanel panel;
   panel.title = fmt::format("solutions of position {} seen from position {}", match.stop + 1,
@@ -161,7 +172,8 @@ void figure_7_25(Report& report) {
 
 void figure_7_26(Report& report) {
   const Drive& drive = report.runs().drive(kTurn);
-  const Correction& correction = report.runs().correction(kTurn);
+  const Correction& correction = report.runs().correction(kTurn, kSingleWalk);
+  if (!closes(report, correction)) return;
   const OldestMatch match = oldest_match(correction);
   FigurePanel panel = corridor_panel(drive, "in the frame of the first position");
   render::FigureDots earlier{{}, FigureColour::kRed, 3.0};
@@ -179,8 +191,7 @@ void figure_7_26(Report& report) {
   panel.dots = {later, earlier};
   report.draw({.title = "Solutions of both positions", .panels = {panel}},
               "Of the earlier position red, of the one after the turn blue.");
-  report.at_most("best of them off the truth (resolution of the search)", nearest_m, 0.15, "m",
-                 0.0);
+  report.at_most("best of them off the truth (resolution of the search)", nearest_m, 0.15, "m");
   report.show("combinations", size_as_number(later.points.size()));
 }
 
@@ -204,7 +215,8 @@ double farthest_in_space(const Correction::Backward& backward, const Correction&
 
 void figure_7_27(Report& report) {
   const Drive& drive = report.runs().drive(kTurn);
-  const Correction& correction = report.runs().correction(kTurn);
+  const Correction& correction = report.runs().correction(kTurn, kSingleWalk);
+  if (!closes(report, correction)) return;
   const Correction::Backward& backward = first_closing(correction);
   std::vector<Pose2> forward = backward.before;
   const auto& path = backward.paths.front().T_first_pose;
@@ -236,7 +248,7 @@ void figure_7_27(Report& report) {
   report.states("the walk comes to the first position of the loop",
                 path.size() == backward.problem.poses.size());
   report.worked_out("positions beyond their search space (1: its border)",
-                    std::max(1.0, farthest_in_space(backward, correction)), 1.0, "", 0.01);
+                    std::max(1.0, farthest_in_space(backward, correction)), 1.0);
   report.show("solutions found", size_as_number(backward.paths.size()));
   report.show("summed fitness of the best", backward.paths.front().summed_fitness);
   report.show("mean error of the forward correction", pose_errors(forward, drive.truth).mean_m,
@@ -256,7 +268,8 @@ struct BackwardWay {
 
 void backward_ways(Report& report) {
   const Drive& drive = report.runs().drive(kTurn);
-  const Correction& correction = report.runs().correction(kTurn);
+  const Correction& correction = report.runs().correction(kTurn, kSingleWalk);
+  if (!closes(report, correction)) return;
   const Correction::Backward& backward = first_closing(correction);
   Table table{"The same cycle closed by each way alone.",
               {"way", "steps of that way", "closed", "summed fitness", "mean error (m)"},
@@ -322,7 +335,8 @@ void backward_ways(Report& report) {
 
 void figure_7_30(Report& report) {
   const Drive& drive = report.runs().drive(kTurn);
-  const Correction& correction = report.runs().correction(kTurn);
+  const Correction& correction = report.runs().correction(kTurn, kSingleWalk);
+  if (!closes(report, correction)) return;
   const Correction::Backward& backward = first_closing(correction);
   const auto& problem = backward.problem;
   const auto& last = problem.poses.back();

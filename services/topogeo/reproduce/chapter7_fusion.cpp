@@ -42,7 +42,8 @@ double branch_length_m(const Map& map) {
 
 void figure_7_32(Report& report) {
   const Drive& drive = report.runs().drive(kFused);
-  const Correction& correction = report.runs().correction(kFused, {.backward = false});
+  const Correction& correction = report.runs().correction(kFused, kForwardAlone);
+  report.made_by(means_of(drive, correction));
   const topomap::GlobalMap first = fused(drive, correction.final_poses(), 1);
   FigurePanel local;
   local.title = "local map of position 1";
@@ -61,8 +62,9 @@ void figure_7_32(Report& report) {
 template <std::size_t P>
 void fuse_position(Report& report) {
   const Drive& drive = report.runs().drive(kFused);
-  const Correction& correction = report.runs().correction(kFused, {.backward = false});
+  const Correction& correction = report.runs().correction(kFused, kForwardAlone);
   const auto& poses = correction.final_poses();
+  report.made_by(means_of(drive, correction));
   const topomap::LocalMap& local = *drive.stops[P - 1];
   const topomap::GlobalMap before = fused(drive, poses, P - 1);
   const topomap::GlobalMap after = fused(drive, poses, P);

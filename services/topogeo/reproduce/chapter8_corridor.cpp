@@ -20,6 +20,7 @@ using render::FigurePanel;
 using topomap::NodeKind;
 
 constexpr const char* kCorridor = "corridor";
+constexpr const char* kProductCorridor = "corridor, 10 m";
 
 /// The stop at which the robot is farthest down the corridor.
 std::size_t end_of_corridor(const Drive& drive) {
@@ -28,6 +29,7 @@ std::size_t end_of_corridor(const Drive& drive) {
 }
 
 void figure_8_4(Report& report) {
+  report.made_by(means_of(report.runs().drive(kCorridor)));
   report.draw({.title = "Readings where odometry has the robot",
                .panels = {readings_panel(report.runs().drive(kCorridor), "by odometry", false),
                           readings_panel(report.runs().drive(kCorridor), "in truth", true)}});
@@ -40,6 +42,7 @@ void figure_8_4(Report& report) {
 
 void figure_8_5(Report& report) {
   const Drive& drive = report.runs().drive(kCorridor);
+  report.made_by(means_of(drive));
   report.draw({.title = "Local maps where odometry has the robot",
                .panels = {maps_panel(drive, drive.odometry, drive.stops.size(), "by odometry"),
                           maps_panel(drive, drive.truth, drive.stops.size(), "in truth")}});
@@ -50,7 +53,8 @@ void figure_8_5(Report& report) {
 
 void figure_8_6(Report& report) {
   const Drive& drive = report.runs().drive(kCorridor);
-  const Correction& correction = report.runs().correction(kCorridor, {.backward = false});
+  const Correction& correction = report.runs().correction(kCorridor, kForwardAlone);
+  report.made_by(means_of(drive, correction));
   const std::size_t end = end_of_corridor(drive);
   const topomap::GlobalMap map = fused(drive, correction.final_poses(), end + 1);
   FigurePanel panel;
@@ -71,38 +75,57 @@ void figure_8_6(Report& report) {
       correction.final_poses().begin(),
       correction.final_poses().begin() + static_cast<std::ptrdiff_t>(end) + 1);
   report.show("mean error of positions", pose_errors(driven, drive.truth).mean_m, "m");
+  report.show("the same by odometry",
+              pose_errors({drive.odometry.begin(),
+                           drive.odometry.begin() + static_cast<std::ptrdiff_t>(end) + 1},
+                          drive.truth)
+                  .mean_m,
+              "m");
 }
 
 void figure_8_7(Report& report) {
   const Drive& drive = report.runs().drive(kCorridor);
   const Correction& correction = report.runs().correction(kCorridor);
+  report.made_by(means_of(drive, correction));
   render::Figure figure;
   figure.title = "Solutions of backward corrections on the way back";
   figure.columns = 4;
+  const std::size_t end = end_of_corridor(drive);
   std::size_t most = 0;
-  for (const Correction::Backward& backward : correction.backward) {
-    most = std::max(most, backward.paths.size());
-    if (figure.panels.size() == 8) continue;
+  std::size_t without = 0;
+  for (std::size_t k = end + 1; k < drive.stops.size(); ++k) {
+    const auto& solutions = correction.kept[k];
+    most = std::max(most, solutions.size());
+    if (solutions.empty()) ++without;
+    if (solutions.empty() || figure.panels.size() == 8) continue;
     FigurePanel panel;
-    panel.title =
-        fmt::format("position {}: {} solutions", backward.stop + 1, backward.paths.size());
-    for (std::size_t p = 0; p < backward.paths.size(); ++p) {
-      std::vector<Pose2> poses;
-      for (const Pose2& T : backward.paths[p].T_first_pose) {
-        poses.push_back(backward.before[backward.first] * T);
-      }
-      add_path(panel, poses, distinct_colour(p));
+    panel.title = fmt::format("position {}: {} solution{}", k + 1, solutions.size(),
+                              solutions.size() == 1 ? "" : "s");
+    for (std::size_t p = 0; p < solutions.size(); ++p) {
+      add_path(panel, solutions[p], distinct_colour(p));
     }
     figure.panels.push_back(std::move(panel));
   }
-  if (figure.panels.empty()) throw std::runtime_error("no cycle was closed");
+  if (figure.panels.empty()) {
+    FigurePanel panel;
+    panel.title = "no cycle was closed: forward correction";
+    add_path(panel, correction.final_poses(), FigureColour::kRed);
+    figure.panels.push_back(std::move(panel));
+  }
   report.draw(figure, "A colour for each solution.");
   report.states("there are several valid solutions", most > 1);
-  report.show("backward corrections", static_cast<double>(correction.backward.size()));
+  report.printed("positions on the way back without a backward correction",
+                 static_cast<double>(without), 0);
+  report.show("positions on the way back", static_cast<double>(drive.stops.size() - end - 1));
   const PoseErrors errors = pose_errors(correction.final_poses(), drive.truth);
   report.show("mean error of all positions at the end", errors.mean_m, "m");
   report.states("positions end nearer to the truth than odometry",
                 errors.mean_m < pose_errors(drive.odometry, drive.truth).mean_m);
+  const Drive& farther = report.runs().drive(kProductCorridor);
+  const Correction& product = report.runs().correction(kProductCorridor, kProduct);
+  report.beside("mean error of all positions at the end",
+                pose_errors(product.final_poses(), farther.truth).mean_m, "m",
+                matcher_text(product.config) + ", 10 m");
 }
 
 /// Length of the branches of a global map, or of a local one at its pose, inside a rectangle of the
@@ -158,29 +181,60 @@ std::vector<std::optional<double>> behind_leaf_m(const Drive& drive,
   return behind_m;
 }
 
+/// The first view with a branch behind the leaf, and the first one after it without.
+struct FalseBranch {
+  std::optional<std::size_t> seen;
+  std::optional<std::size_t> gone;
+  double length_m = 0.0;  ///< in the first view
+  std::size_t last = 0;   ///< stop before the door opens
+};
+
+FalseBranch false_branch(const Drive& drive, const std::vector<Pose2>& poses) {
+  const auto behind_m = behind_leaf_m(drive, poses);
+  FalseBranch found;
+  found.last = behind_m.empty() ? 0 : behind_m.size() - 1;
+  for (std::size_t k = 0; k < behind_m.size(); ++k) {
+    if (!found.seen && behind_m[k].value_or(0.0) > 0.0) {
+      found.seen = k;
+      found.length_m = *behind_m[k];
+    } else if (found.seen && !found.gone && behind_m[k] == 0.0) {
+      found.gone = k;
+    }
+  }
+  return found;
+}
+
+/// Length behind the leaf in the global map of the stops up to one, metres.
+double false_length_m(const Drive& drive, const std::vector<Pose2>& poses, std::size_t stop,
+                      topomap::FusionRule rule) {
+  return length_within(fused(drive, poses, stop + 1, rule), drive.T_world_first, kLeafLow_m,
+                       kLeafHigh_m);
+}
+
 void figure_8_8(Report& report) {
   const Drive& drive = report.runs().drive(kCorridor);
-  const std::vector<Pose2>& poses = report.runs().correction(kCorridor).final_poses();
-  const auto behind_m = behind_leaf_m(drive, poses);
-  const auto seen =
-      std::ranges::find_if(behind_m, [](const auto& m) { return m.value_or(0.0) > 0.0; });
-  if (seen == behind_m.end()) throw std::runtime_error("no view has a branch behind the leaf");
-  const auto rid = std::find_if(seen, behind_m.end(), [](const auto& m) { return m == 0.0; });
-  report.states("a later view has none any more", rid != behind_m.end());
-  const auto false_m = [&](std::size_t stop, topomap::FusionRule rule) {
-    return length_within(fused(drive, poses, stop + 1, rule), drive.T_world_first, kLeafLow_m,
-                         kLeafHigh_m);
-  };
-  const std::size_t last = behind_m.size() - 1;
-  const auto first = static_cast<std::size_t>(seen - behind_m.begin());
-  const std::size_t then =
-      rid == behind_m.end() ? last : static_cast<std::size_t>(rid - behind_m.begin());
-  report.states("the global map has it then", false_m(first, topomap::FusionRule::kPairs) > 0.0);
-  report.show("false branch of the view", **seen, "m");
-  report.show("left in the global map, fused as printed",
-              false_m(last, topomap::FusionRule::kPairs), "m");
-  report.show("left in the global map, by votes (the default)",
-              false_m(last, topomap::FusionRule::kVotes), "m");
+  const Correction& correction = report.runs().correction(kCorridor, kForwardAlone);
+  const std::vector<Pose2>& poses = correction.final_poses();
+  report.made_by(means_of(drive, correction));
+  const FalseBranch found = false_branch(drive, poses);
+  report.states("a view has a branch behind the leaf", found.seen.has_value());
+  report.states("a later view has none any more", found.gone.has_value());
+  const std::size_t first = found.seen.value_or(found.last);
+  const std::size_t then = found.gone.value_or(found.last);
+  report.states("the global map has it then",
+                false_length_m(drive, poses, first, topomap::FusionRule::kPairs) > 0.0);
+  report.show("false branch of the view", found.length_m, "m");
+  report.show("false branch left in the global map",
+              false_length_m(drive, poses, found.last, topomap::FusionRule::kPairs), "m");
+  const Drive& farther = report.runs().drive(kProductCorridor);
+  const Correction& product = report.runs().correction(kProductCorridor, kProduct);
+  const FalseBranch own = false_branch(farther, product.final_poses());
+  const std::string by = matcher_text(product.config) + ", 10 m, fused by votes";
+  report.beside("false branch of the view", own.length_m, "m", by);
+  report.beside(
+      "false branch left in the global map",
+      false_length_m(farther, product.final_poses(), own.last, topomap::FusionRule::kVotes), "m",
+      by);
   std::vector<FigurePanel> panels;
   for (const auto& [stop, title] : {std::pair{first, "(b) while it is seen"},
                                     std::pair{then, "(c) the view that has none any more"}}) {
@@ -190,6 +244,9 @@ void figure_8_8(Report& report) {
   }
   report.draw({.title = "A leaf along the wall that looks like an opening", .panels = panels},
               "Global map green, local map orange.");
+  report.note(
+      "Published is that later views have no false branch any more, not that it leaves the global "
+      "map; fusion joins branches and removes none.");
 }
 
 // The door of door_opens.world.yaml.
@@ -199,7 +256,8 @@ constexpr double kDoorOpens_m = 12.0;
 
 void figure_8_9(Report& report) {
   const Drive& drive = report.runs().drive("door");
-  const Correction& correction = report.runs().correction("door");
+  const Correction& correction = report.runs().correction("door", kForwardAlone);
+  report.made_by(means_of(drive, correction));
   const auto opened = std::ranges::lower_bound(drive.path_m, kDoorOpens_m);
   const auto count = static_cast<std::size_t>(opened - drive.path_m.begin());
   const topomap::GlobalMap shut = fused(drive, correction.final_poses(), count);
@@ -211,10 +269,16 @@ void figure_8_9(Report& report) {
   add_map(b, open, FigureColour::kGreen);
   report.draw({.title = "A door that opens meanwhile", .panels = {a, b}});
   report.worked_out("branches through the shut door",
-                    length_within(shut, drive.T_world_first, kDoorLow_m, kDoorHigh_m), 0.0, "m",
-                    0.1);
+                    length_within(shut, drive.T_world_first, kDoorLow_m, kDoorHigh_m), 0.0, "m");
   report.states("a branch leads through the open door",
                 length_within(open, drive.T_world_first, kDoorLow_m, kDoorHigh_m) > 0.3);
+  const Drive& farther = report.runs().drive("door, 10 m");
+  const Correction& product = report.runs().correction("door, 10 m", kProduct);
+  report.beside("branches through the open door",
+                length_within(fused(farther, product.final_poses(), farther.stops.size(),
+                                    topomap::FusionRule::kVotes),
+                              farther.T_world_first, kDoorLow_m, kDoorHigh_m),
+                "m", matcher_text(product.config) + ", 10 m, fused by votes");
   const auto nodes = [](const topomap::GlobalMap& map) {
     return std::ranges::count_if(map.nodes, [](const topomap::MapNode& node) {
       return node.kind != NodeKind::kFictitious && node.kind != NodeKind::kVirtual;
@@ -226,6 +290,7 @@ void figure_8_9(Report& report) {
 void figure_8_10(Report& report) {
   const Drive& drive = report.runs().drive(kCorridor);
   const Correction& correction = report.runs().correction(kCorridor);
+  report.made_by(means_of(drive, correction));
   const Eigen::Vector2d mouth_m(4.0, 0.0);
   const auto near_mouth = [&](const Eigen::Vector2d& at_m) {
     return (drive.T_world_first * at_m - mouth_m).norm() < 1.2;

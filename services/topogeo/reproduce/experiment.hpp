@@ -28,20 +28,23 @@ class Report {
   /// `folder` exists; pictures are <experiment>.png and <experiment>_<part>.png in it.
   Report(std::filesystem::path folder, std::string experiment, SharedRuns& runs);
 
-  void add(Value value) { values_.push_back(std::move(value)); }
+  /// What makes the values of this row; every row says it once.
+  void made_by(Means means) { means_ = std::move(means); }
+
+  // The tolerance of a value is that of tolerances.hpp for its name; without an entry there it has
+  // to be exact.
+
   /// For people only.
   void show(std::string name, double measured, std::string unit = "");
+  /// A value of other means than those of the row, for people only: it never changes the verdict.
+  void beside(std::string name, double measured, std::string unit, std::string by);
   /// Expected to equal the printed value.
-  void printed(std::string name, double measured, double expected, std::string unit = "",
-               double tolerance = 1e-9);
+  void printed(std::string name, double measured, double expected, std::string unit = "");
   /// Expected to equal the value worked out by hand.
-  void worked_out(std::string name, double measured, double expected, std::string unit = "",
-                  double tolerance = 1e-9);
+  void worked_out(std::string name, double measured, double expected, std::string unit = "");
   /// The smaller or the larger, the better.
-  void at_most(std::string name, double measured, double printed, std::string unit = "",
-               double tolerance = 0.0);
-  void at_least(std::string name, double measured, double printed, std::string unit = "",
-                double tolerance = 0.0);
+  void at_most(std::string name, double measured, double printed, std::string unit = "");
+  void at_least(std::string name, double measured, double printed, std::string unit = "");
   /// A statement of the publication that holds or does not.
   void states(std::string statement, bool holds);
 
@@ -53,6 +56,7 @@ class Report {
   void keep_picture(const std::string& bytes, const std::string& caption,
                     const std::string& part = "");
 
+  [[nodiscard]] const Means& means() const { return means_; }
   [[nodiscard]] const std::vector<Value>& values() const { return values_; }
   [[nodiscard]] const std::vector<Table>& tables() const { return tables_; }
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
@@ -61,9 +65,13 @@ class Report {
   [[nodiscard]] SharedRuns& runs() { return *runs_; }
 
  private:
+  void compare(std::string name, double measured, double expected, std::string unit,
+               Relation relation, Origin origin);
+
   std::filesystem::path folder_;
   std::string experiment_;
   SharedRuns* runs_;
+  Means means_;
   std::vector<Value> values_;
   std::vector<Table> tables_;
   std::vector<std::string> notes_;
@@ -78,6 +86,7 @@ struct Experiment {
   void (*run)(Report&) = nullptr;
   std::string why{};    ///< the known reason for differences, if there are any
   bool drives = false;  ///< takes seconds: it simulates whole drives
+  Means means{};        ///< unless the run says so itself
 };
 
 /// All experiments, in the order of the publications; names are unique.

@@ -35,18 +35,22 @@ const char* relation_text(Relation relation) {
 std::string values_html(const std::vector<Value>& values) {
   if (values.empty()) return "";
   std::string html =
-      "<table><tr><th>value</th><th>here</th><th>published</th><th></th><th>verdict</th></tr>\n";
+      "<table><tr><th>value</th><th>here</th><th>published</th><th></th><th>tolerance</th>"
+      "<th>verdict</th></tr>\n";
   for (const Value& value : values) {
     const bool compared = value.relation != Relation::kShown && value.expected.has_value();
     html += fmt::format(
-        "<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td>{}</td><td "
-        "class=\"{}\">{}</td></tr>\n",
-        support::escaped_markup(value.name), text_of(value.measured, value.unit),
+        "<tr><td>{}{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td>{}</td><td "
+        "class=\"n\">{}</td><td class=\"{}\">{}</td></tr>\n",
+        support::escaped_markup(value.name),
+        value.by.empty() ? "" : " <i>(beside, by " + support::escaped_markup(value.by) + ")</i>",
+        text_of(value.measured, value.unit),
         value.expected ? text_of(*value.expected, value.unit) : "",
         !value.expected                      ? ""
         : value.unit == "yes"                ? "stated"
         : value.relation == Relation::kEqual ? origin_text(value.origin)
                                              : relation_text(value.relation),
+        compared && value.tolerance > 1e-6 ? text_of(value.tolerance, value.unit) : "",
         compared ? to_string(verdict_of(value)) : "", compared ? to_string(verdict_of(value)) : "");
   }
   return html + "</table>\n";
@@ -70,11 +74,11 @@ std::string row_html(const Outcome& outcome) {
   const Experiment& experiment = *outcome.experiment;
   std::string html = fmt::format(
       "<section id=\"{0}\"><h2>{1}, {2} <span class=\"{3}\">{3}</span></h2>\n<p>{4}</p>\n"
-      "<p><b>{5}</b> ({0}, {6:.1f} s)</p>\n",
+      "<p><b>{5}</b> ({0}, {6:.1f} s). Made by: {7}.</p>\n",
       support::escaped_markup(experiment.name), support::escaped_markup(experiment.publication),
       support::escaped_markup(experiment.number), to_string(outcome.verdict()),
       support::escaped_markup(experiment.caption), support::escaped_markup(outcome.verdict_text()),
-      outcome.wall_s);
+      outcome.wall_s, support::escaped_markup(text_of(outcome.means)));
   html += values_html(outcome.values);
   for (const Table& table : outcome.tables) html += table_html(table);
   for (const std::string& note : outcome.notes)
@@ -104,7 +108,9 @@ h2 span { font-size: 0.7em; }
 <h1>Experiments, figures and tables of the publications</h1>
 <p>Each row is a figure or table of a publication (see docs/algorithms.md), described in our words,
 with what this program measures beside what is published. "Worked out" values follow from the scene
-by the publication's equations. Verdicts are computed from the values.</p>
+by the publication's equations. Verdicts are computed from the values and from tolerances that
+were chosen before the run. A value "beside" was made by other means than the publication's; it
+never counts in a verdict.</p>
 )";
 
 std::string summary_html(const std::vector<Outcome>& outcomes) {
@@ -116,15 +122,17 @@ std::string summary_html(const std::vector<Outcome>& outcomes) {
   }
   std::string html = fmt::format(
       "<p>{} rows: {} equal, {} better, {} differ; {:.0f} s.</p>\n<table><tr><th>"
-      "published</th><th>what</th><th>verdict</th></tr>\n",
+      "published</th><th>what</th><th>made by</th><th>verdict</th></tr>\n",
       outcomes.size(), count[0], count[1], count[2], wall_s);
   for (const Outcome& outcome : outcomes) {
     const Experiment& experiment = *outcome.experiment;
     html += fmt::format(
-        "<tr><td><a href=\"#{}\">{}, {}</a></td><td>{}</td><td class=\"{}\">{}</td></tr>\n",
+        "<tr><td><a href=\"#{}\">{}, {}</a></td><td>{}</td><td>{}</td><td class=\"{}\">{}</td></tr>"
+        "\n",
         support::escaped_markup(experiment.name), support::escaped_markup(experiment.publication),
         support::escaped_markup(experiment.number), support::escaped_markup(experiment.caption),
-        to_string(outcome.verdict()), support::escaped_markup(outcome.verdict_text()));
+        support::escaped_markup(text_of(outcome.means)), to_string(outcome.verdict()),
+        support::escaped_markup(outcome.verdict_text()));
   }
   return html + "</table>\n";
 }
@@ -137,7 +145,8 @@ nlohmann::ordered_json json_of_value(const Value& value) {
                                  {"relation", relation_text(value.relation)},
                                  {"tolerance", value.tolerance},
                                  {"origin", nullptr},
-                                 {"verdict", nullptr}};
+                                 {"verdict", nullptr},
+                                 {"by", value.by}};
   if (value.expected) {
     json["expected"] = *value.expected;
     json["origin"] = origin_text(value.origin);
@@ -164,6 +173,10 @@ nlohmann::ordered_json json_of_outcome(const Outcome& outcome) {
           {"caption", experiment.caption},
           {"verdict", to_string(outcome.verdict())},
           {"verdict_text", outcome.verdict_text()},
+          {"made_by",
+           {{"matcher", outcome.means.matcher},
+            {"laser_range_m", outcome.means.laser_range_m},
+            {"runs", outcome.means.runs}}},
           {"values", values},
           {"tables", tables},
           {"notes", outcome.notes},
@@ -191,11 +204,13 @@ Outcome run_experiment(const Experiment& experiment, const std::filesystem::path
   outcome.experiment = &experiment;
   const double start_s = support::monotonic_s();
   Report report(folder, experiment.name, runs);
+  report.made_by(experiment.means);
   try {
     experiment.run(report);
   } catch (const std::exception& error) {
     outcome.failure = error.what();
   }
+  outcome.means = report.means();
   outcome.values = report.values();
   outcome.tables = report.tables();
   outcome.notes = report.notes();

@@ -11,6 +11,7 @@ namespace topogeo::reproduce {
 
 struct Outcome {
   const Experiment* experiment = nullptr;
+  Means means{};
   std::vector<Value> values;
   std::vector<Table> tables;
   std::vector<std::string> notes;

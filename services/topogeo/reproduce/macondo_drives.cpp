@@ -7,6 +7,7 @@
 
 #include "topogeo/devices/sonar_ring.hpp"
 #include "topogeo/markov/markov_localizer.hpp"
+#include "topogeo/markov/pose_localizer.hpp"
 #include "topogeo/pipeline/world_grid.hpp"
 #include "topogeo/planning/grid_sources.hpp"
 #include "topogeo/planning/hybrid_planner.hpp"
@@ -28,6 +29,7 @@ constexpr double kFarError_m = 0.30;
 constexpr double kFarErrorShare = 0.75;
 constexpr int kLastLooks = 5;              // at the goal
 constexpr double kLongestAdvance_m = 0.5;  // so that the robot looks around often enough
+constexpr double kNodeReach_m = 0.15;      // of an expected position that is a node
 
 markov::ObstacleCells obstacles_of(const planning::HybridMap& map) {
   const planning::GridFrame& frame = map.frame();
@@ -133,16 +135,40 @@ Pose2 after(const Pose2& T, const markov::Move& move) {
   throw std::logic_error("unknown move");
 }
 
-/// Splits long advances.
-std::vector<markov::Move> moves_of(const std::vector<planning::MotionPrimitive>& primitives) {
+/// Primitives as moves. The published rule needs a stop where the robot expects to be at a node of
+/// the graph, the others one each half metre.
+std::vector<markov::Move> moves_of(const std::vector<planning::MotionPrimitive>& primitives,
+                                   const Pose2& T_start,
+                                   const std::vector<Eigen::Vector2d>& nodes_m, bool at_nodes) {
   std::vector<markov::Move> moves;
+  Pose2 T = T_start;
   for (const planning::MotionPrimitive& primitive : primitives) {
-    markov::Move move = move_of(primitive);
-    const int parts = move.kind == markov::MoveKind::kAdvance
-                          ? static_cast<int>(std::ceil(move.amount / kLongestAdvance_m))
-                          : 1;
-    move.amount /= std::max(parts, 1);
-    for (int i = 0; i < parts; ++i) moves.push_back(move);
+    const markov::Move move = move_of(primitive);
+    if (move.kind != markov::MoveKind::kAdvance) {
+      moves.push_back(move);
+    } else {
+      std::vector<double> stops_m;
+      if (at_nodes) {
+        for (const Eigen::Vector2d& node_m : nodes_m) {
+          const Eigen::Vector2d in_robot = geometry::inverse(T) * node_m;
+          const bool on_path = std::fabs(in_robot.y()) <= kNodeReach_m && in_robot.x() > 0.0 &&
+                               in_robot.x() < move.amount;
+          if (on_path) stops_m.push_back(in_robot.x());
+        }
+        std::ranges::sort(stops_m);
+      } else {
+        const int parts = std::max(1, static_cast<int>(std::ceil(move.amount / kLongestAdvance_m)));
+        for (int i = 1; i < parts; ++i) stops_m.push_back(move.amount * i / parts);
+      }
+      stops_m.push_back(move.amount);
+      double done_m = 0.0;
+      for (const double stop_m : stops_m) {
+        if (stop_m - done_m < kRounding_m) continue;
+        moves.push_back({markov::MoveKind::kAdvance, stop_m - done_m});
+        done_m = stop_m;
+      }
+    }
+    T = after(T, move);
   }
   return moves;
 }
@@ -221,6 +247,88 @@ std::vector<float> published_readings(const world::World& scene, const Pose2& T_
   return readings;
 }
 
+namespace {
+
+/// The published localization, at the places that the rule names.
+void drive_by_window(const DrawnFloor& floor, const Task& task, PerceptionRule rule, Wheels& wheels,
+                     support::Random& random, MacondoDrive& drive) {
+  std::vector<Eigen::Vector2d> nodes_m;
+  for (const std::uint32_t node : task.route.nodes) {
+    nodes_m.push_back(floor.map->nodes()[node].position_m);
+  }
+  const bool published = rule == PerceptionRule::kPublished;
+  markov::MarkovLocalizer localizer({}, obstacles_of(*floor.map), six_sonars());
+  drive.localized =
+      rule == PerceptionRule::kNever ||
+      localizer.initialize(task.T_start, published_readings(floor.world, wheels.pose(), random))
+          .possible;
+  Pose2 T_route = task.T_start;
+  const auto at_node = [&] {
+    return std::ranges::any_of(nodes_m, [&](const Eigen::Vector2d& node_m) {
+      return (node_m - T_route.position_m()).norm() <= kNodeReach_m;
+    });
+  };
+  const auto moves =
+      moves_of(planning::motion_primitives(task.route.points_m, task.T_start.theta_rad),
+               task.T_start, nodes_m, published);
+  for (const markov::Move& move : moves) {
+    if (!drive.localized) break;
+    const markov::Move done = wheels.execute(move);
+    T_route = after(T_route, move);
+    if (rule != PerceptionRule::kNever) {
+      drive.localized = localizer.move(done).possible;
+      const bool perceives = !published || (move.kind == markov::MoveKind::kAdvance && at_node());
+      if (drive.localized && perceives) {
+        drive.localized =
+            relocalize(floor.world, T_route, wheels, localizer, random, drive.kept_off);
+      }
+    }
+    drive.truth.push_back(wheels.pose());
+  }
+  const int looks = rule == PerceptionRule::kNever ? 0 : published ? 1 : kLastLooks;
+  for (int i = 0; drive.localized && i < looks; ++i) {
+    drive.localized = relocalize(floor.world, T_route, wheels, localizer, random, drive.kept_off);
+  }
+}
+
+/// The product's localization over poses; the robot goes back to its route after each move.
+void drive_by_poses(const DrawnFloor& floor, const Task& task, Wheels& wheels,
+                    support::Random& random, MacondoDrive& drive) {
+  markov::PoseLocalizer localizer({}, obstacles_of(*floor.map), six_sonars(), kSonarReach_m,
+                                  task.T_start);
+  Pose2 T_route = task.T_start;
+  const auto execute = [&](const markov::Move& move) {
+    localizer.move(after({}, wheels.execute(move)));
+    localizer.perceive(published_readings(floor.world, wheels.pose(), random));
+    drive.truth.push_back(wheels.pose());
+  };
+  const auto return_to_route = [&] {
+    const Pose2 T_robot = localizer.estimate().T_map_robot;
+    const Eigen::Vector2d off_m = geometry::inverse(T_robot) * T_route.position_m();
+    if (off_m.norm() < 0.5 * kCell_m) return;
+    const double bearing_rad = std::atan2(off_m.y(), off_m.x());
+    const auto turn = [&](double angle_rad) {
+      if (std::fabs(angle_rad) < kRounding_m) return;
+      execute({angle_rad > 0.0 ? markov::MoveKind::kTurnLeft : markov::MoveKind::kTurnRight,
+               std::fabs(angle_rad)});
+    };
+    turn(bearing_rad);
+    execute({markov::MoveKind::kAdvance, off_m.norm()});
+    turn(geometry::wrap_angle(T_route.theta_rad - T_robot.theta_rad - bearing_rad));
+  };
+  for (const markov::Move& move :
+       moves_of(planning::motion_primitives(task.route.points_m, task.T_start.theta_rad),
+                task.T_start, {}, false)) {
+    execute(move);
+    T_route = after(T_route, move);
+    return_to_route();
+  }
+  for (int i = 0; i < kLastLooks; ++i) return_to_route();
+  drive.localized = localizer.located();
+}
+
+}  // namespace
+
 MacondoDrive drive_macondo(const DrawnFloor& floor, std::uint64_t seed, const MacondoKind& kind) {
   support::Random random(seed);
   const Task task = draw_drive(*floor.map, random);
@@ -228,26 +336,11 @@ MacondoDrive drive_macondo(const DrawnFloor& floor, std::uint64_t seed, const Ma
   drive.route_m = task.route.points_m;
   drive.goal = {task.goal_m.x(), task.goal_m.y(), 0.0};
   Wheels wheels(floor.world, task.T_start, kind.wheel_errors, random);
-  markov::MarkovLocalizer localizer({}, obstacles_of(*floor.map), six_sonars());
-  drive.localized =
-      !kind.sonars ||
-      localizer.initialize(task.T_start, published_readings(floor.world, wheels.pose(), random))
-          .possible;
   drive.truth.push_back(wheels.pose());
-  Pose2 T_route = task.T_start;
-  for (const markov::Move& move :
-       moves_of(planning::motion_primitives(task.route.points_m, task.T_start.theta_rad))) {
-    if (!drive.localized) break;
-    const markov::Move done = wheels.execute(move);
-    T_route = after(T_route, move);
-    if (kind.sonars) {
-      drive.localized = localizer.move(done).possible &&
-                        relocalize(floor.world, T_route, wheels, localizer, random, drive.kept_off);
-    }
-    drive.truth.push_back(wheels.pose());
-  }
-  for (int i = 0; kind.sonars && drive.localized && i < kLastLooks; ++i) {
-    drive.localized = relocalize(floor.world, T_route, wheels, localizer, random, drive.kept_off);
+  if (kind.rule == PerceptionRule::kPoses) {
+    drive_by_poses(floor, task, wheels, random, drive);
+  } else {
+    drive_by_window(floor, task, kind.rule, wheels, random, drive);
   }
   drive.hit = wheels.hit();
   drive.error_x_m = wheels.pose().x_m - task.goal_m.x();

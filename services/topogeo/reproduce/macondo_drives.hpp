@@ -42,8 +42,16 @@ struct MacondoDrive {
   [[nodiscard]] bool arrived() const;
 };
 
+/// When and how the robot uses its sonars.
+enum class PerceptionRule : std::uint8_t {
+  kPublished = 0,  ///< when the expected position is a node of the graph or the destination
+  kOften = 1,      ///< each half metre, and five times at the destination
+  kPoses = 2,      ///< each half metre, by the product's Markov localization over poses
+  kNever = 3,      ///< the robot trusts its wheels
+};
+
 struct MacondoKind {
-  bool sonars = true;         ///< without them the robot trusts its wheels
+  PerceptionRule rule = PerceptionRule::kPublished;
   double wheel_errors = 1.0;  ///< share of the printed transition matrices' errors, [0, 1]
 };
 

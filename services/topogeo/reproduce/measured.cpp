@@ -39,6 +39,17 @@ Verdict verdict_of(const std::vector<Value>& values) {
   return compared ? verdict : Verdict::kDiffers;
 }
 
+bool is_time(const Value& value) {
+  return value.unit == "ms" || value.unit == "s";
+}
+
+std::string text_of(const Means& means) {
+  return fmt::format("{}, {}, {} run{}", means.matcher,
+                     means.laser_range_m > 0.0 ? fmt::format("{:g} m", means.laser_range_m)
+                                               : std::string("no laser"),
+                     means.runs, means.runs == 1 ? "" : "s");
+}
+
 std::string differences(const std::vector<Value>& values) {
   std::string text;
   for (const Value& value : values) {

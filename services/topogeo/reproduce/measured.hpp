@@ -1,6 +1,7 @@
 // Measured values of an experiment, the published ones, and the resulting verdict.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -30,7 +31,19 @@ struct Value {
   Relation relation = Relation::kShown;
   double tolerance = 0.0;  ///< a difference up to this is ignored
   Origin origin = Origin::kPrinted;
+  std::string by{};  ///< what made the value; empty: the means of its row
 };
+
+/// What made the values of a row.
+struct Means {
+  std::string matcher =
+      "no matching";           ///< "no matching", or form of the fitness, evidence and refinement
+  double laser_range_m = 0.0;  ///< limit of the readings that are used; 0: no range sensor
+  std::size_t runs = 1;        ///< drives, scans or draws that the values are counted over
+};
+
+/// "no matching, 4 m, 1 run".
+std::string text_of(const Means& means);
 
 enum class Verdict : std::uint8_t { kEqual, kBetter, kDiffers };
 
@@ -42,6 +55,9 @@ Verdict verdict_of(const Value& value);
 
 /// Differs if any value does or none is compared; otherwise better if any is; otherwise equal.
 Verdict verdict_of(const std::vector<Value>& values);
+
+/// A duration of our own work, which depends on the machine.
+bool is_time(const Value& value);
 
 /// The differing values as one line; empty if there are none.
 std::string differences(const std::vector<Value>& values);

@@ -3,6 +3,7 @@
 #include "topogeo/support/atomic_file.hpp"
 
 #include "reproduce/experiment.hpp"
+#include "reproduce/tolerances.hpp"
 
 namespace topogeo::reproduce {
 
@@ -10,31 +11,42 @@ Report::Report(std::filesystem::path folder, std::string experiment, SharedRuns&
     : folder_(std::move(folder)), experiment_(std::move(experiment)), runs_(&runs) {}
 
 void Report::show(std::string name, double measured, std::string unit) {
-  add(Value{.name = std::move(name), .unit = std::move(unit), .measured = measured});
+  values_.push_back(Value{.name = std::move(name), .unit = std::move(unit), .measured = measured});
 }
 
-void Report::printed(std::string name, double measured, double expected, std::string unit,
-                     double tolerance) {
-  add(Value{std::move(name), std::move(unit), measured, expected, Relation::kEqual, tolerance,
-            Origin::kPrinted});
+void Report::beside(std::string name, double measured, std::string unit, std::string by) {
+  values_.push_back(Value{
+      .name = std::move(name), .unit = std::move(unit), .measured = measured, .by = std::move(by)});
 }
 
-void Report::worked_out(std::string name, double measured, double expected, std::string unit,
-                        double tolerance) {
-  add(Value{std::move(name), std::move(unit), measured, expected, Relation::kEqual, tolerance,
-            Origin::kWorkedOut});
+void Report::compare(std::string name, double measured, double expected, std::string unit,
+                     Relation relation, Origin origin) {
+  const double tolerance = tolerance_of(experiment_, name);
+  values_.push_back(Value{.name = std::move(name),
+                          .unit = std::move(unit),
+                          .measured = measured,
+                          .expected = expected,
+                          .relation = relation,
+                          .tolerance = tolerance,
+                          .origin = origin});
 }
 
-void Report::at_most(std::string name, double measured, double printed, std::string unit,
-                     double tolerance) {
-  add(Value{std::move(name), std::move(unit), measured, printed, Relation::kSmaller, tolerance,
-            Origin::kPrinted});
+void Report::printed(std::string name, double measured, double expected, std::string unit) {
+  compare(std::move(name), measured, expected, std::move(unit), Relation::kEqual, Origin::kPrinted);
 }
 
-void Report::at_least(std::string name, double measured, double printed, std::string unit,
-                      double tolerance) {
-  add(Value{std::move(name), std::move(unit), measured, printed, Relation::kLarger, tolerance,
-            Origin::kPrinted});
+void Report::worked_out(std::string name, double measured, double expected, std::string unit) {
+  compare(std::move(name), measured, expected, std::move(unit), Relation::kEqual,
+          Origin::kWorkedOut);
+}
+
+void Report::at_most(std::string name, double measured, double printed, std::string unit) {
+  compare(std::move(name), measured, printed, std::move(unit), Relation::kSmaller,
+          Origin::kPrinted);
+}
+
+void Report::at_least(std::string name, double measured, double printed, std::string unit) {
+  compare(std::move(name), measured, printed, std::move(unit), Relation::kLarger, Origin::kPrinted);
 }
 
 void Report::states(std::string statement, bool holds) {

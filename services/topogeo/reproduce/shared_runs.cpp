@@ -13,6 +13,7 @@
 #include "topogeo/simulation/simulate_log.hpp"
 #include "topogeo/simulation/thesis_experiments.hpp"
 #include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/topomap/global_map_builder.hpp"
 
 #include "reproduce/worlds.hpp"
@@ -40,12 +41,15 @@ constexpr std::size_t kAllStops = std::numeric_limits<std::size_t>::max();
 constexpr double kStopTurn_rad = 2.8;  // nearly a half turn on the spot is a stop of its own
 
 constexpr DriveSetup kSetups[] = {
-    {"corridor", "experiment_1", false, 1.3, kWholePath_m, kAllStops, 10.0, 6.0},
+    {"corridor", "experiment_1", false, 1.3, kWholePath_m, kAllStops, 4.0, 6.0},
+    {"corridor, 10 m", "experiment_1", false, 1.3, kWholePath_m, kAllStops, 10.0, 6.0},
     {"positions", "experiment_1", false, 2.42, 26.0, 11, 4.0, 6.0},
     {"positions, 10 m", "experiment_1", false, 2.42, 26.0, 11, 10.0, 6.0},
     {"turn", "experiment_1", false, 0.66, kWholePath_m, 46, 4.0, 1.5},
-    {"loop", "experiment_2", true, 1.5, kWholePath_m, kAllStops, 10.0, 6.0},
-    {"door", "door_opens", false, 1.3, kWholePath_m, kAllStops, 10.0, 6.0},
+    {"loop", "experiment_2", true, 1.5, kWholePath_m, kAllStops, 4.0, 6.0},
+    {"loop, 10 m", "experiment_2", true, 1.5, kWholePath_m, kAllStops, 10.0, 6.0},
+    {"door", "door_opens", false, 1.3, kWholePath_m, kAllStops, 4.0, 6.0},
+    {"door, 10 m", "door_opens", false, 1.3, kWholePath_m, kAllStops, 10.0, 6.0},
     {"apart", "experiment_1", false, 9.0, 28.0, kAllStops, 3.0, 6.0},
 };
 
@@ -57,13 +61,14 @@ const DriveSetup& setup_named(const std::string& name) {
 }
 
 pipeline::LocalMapperConfig mapper_config(const DriveSetup& setup) {
-  pipeline::LocalMapperConfig config;
+  const bool thesis = setup.range_m <= kThesisRange_m;
+  pipeline::LocalMapperConfig config =
+      thesis ? thesis_preset().local_mapper : pipeline::LocalMapperConfig{};
   config.stop_distance_m = setup.stop_distance_m;
   config.stop_turn_rad = kStopTurn_rad;
   config.voronoi.range_limit_m = setup.range_m;
-  // With a small field of view, scan points are matched only inside the diagram's view, as in the
-  // Thesis.
-  if (setup.range_m <= kThesisRange_m) config.local_map.points_range_m = setup.range_m;
+  // With a small field of view, scan points are matched only inside the diagram's view.
+  if (thesis && !setup.loop) config.local_map.points_range_m = setup.range_m;
   return config;
 }
 
@@ -83,14 +88,15 @@ void add_stop(Drive& drive, topomap::LocalMap map, const Pose2& T_world_robot, d
   drive.stops.push_back(std::make_shared<const topomap::LocalMap>(std::move(map)));
 }
 
-Drive make_drive(const DriveSetup& setup) {
+Drive make_drive(const DriveSetup& setup, std::uint64_t seed = 1) {
   Drive drive;
+  drive.range_m = setup.range_m;
   drive.world = world_named(setup.world);
   // The published drive ends at position 62; this one continues to its start.
   if (setup.loop) drive.world.tour_m.insert(drive.world.tour_m.end(), {{-0.2, 7.0}, {0.0, 3.0}});
   const simulation::SimulatedLog log =
-      simulation::simulate_log(drive.world, setup.loop ? simulation::thesis_experiment_2()
-                                                       : simulation::thesis_experiment_1());
+      simulation::simulate_log(drive.world, setup.loop ? simulation::thesis_experiment_2(seed)
+                                                       : simulation::thesis_experiment_1(seed));
   pipeline::LocalMapper mapper(mapper_config(setup), "robot");
   double path_m = 0.0;
   const double apart_m = std::string_view(setup.name) == "apart" ? setup.stop_distance_m : 0.0;
@@ -116,19 +122,26 @@ Drive make_drive(const DriveSetup& setup) {
   return drive;
 }
 
-/// The parameters of the Thesis, as far as they are printed.
+/// The parameters of the Thesis; matches of scan points keep the search of the product around them.
 localization::LocalizerConfig thesis_config(const CorrectionKind& kind, const DriveSetup& setup) {
-  localization::LocalizerConfig config;
-  config.mode = localization::SlamAlgorithm::kThesis;
-  config.genetic.individuals = 100;
-  config.genetic.generations = 50;
+  localization::LocalizerConfig config = thesis_preset().localizer;
+  const bool preset = kind.evidence == localization::MatchEvidence::kFitness;
+  if (!preset) {
+    config = {};
+    config.mode = localization::SlamAlgorithm::kThesis;
+    config.genetic.individuals = 100;
+    config.genetic.generations = 50;
+  }
+  if (!kind.calibrated) {
+    config.odometry = {};
+    // The odometry of a straight drive errs by degrees, not by tens of them.
+    if (!setup.loop) config.odometry.heading_rad2_per_m = 0.01;
+  }
+  if (!kind.kept) config.thesis.kept_solutions = 0;
   config.fitness_form = kind.form;
   config.evidence = kind.evidence;
   if (!kind.backward) config.revisit_matches = 0;
   config.recent_way_m = setup.recent_m;
-  if (!setup.loop) {  // the odometry of a straight drive errs by degrees, not by tens of them
-    config.odometry.heading_rad2_per_m = 0.01;
-  }
   return config;
 }
 
@@ -153,13 +166,48 @@ Correction correct(const Drive& drive, const CorrectionKind& kind, const DriveSe
     const std::vector<Pose2> before =
         correction.poses_after.empty() ? std::vector<Pose2>{} : correction.poses_after.back();
     if (moved) keep_backward(correction, k, before);
-    correction.poses_after.push_back(correction.map().poses());
+    correction.poses_after.push_back(correction.slam->poses());
+    correction.kept.emplace_back();
+    for (const localization::CycleSolution& solution : correction.slam->kept().all()) {
+      correction.kept.back().push_back(solution.T_map_stop);
+    }
   }
+  correction.slam->finish();
+  correction.poses_after.back() = correction.slam->poses();
   correction.wall_s = support::monotonic_s() - start_s;
   return correction;
 }
 
 }  // namespace
+
+std::string matcher_text(const localization::LocalizerConfig& config) {
+  using localization::FitnessForm;
+  using localization::MatchEvidence;
+  const char* form = config.fitness_form == FitnessForm::kPrinted       ? "printed form"
+                     : config.fitness_form == FitnessForm::kTopological ? "topological form"
+                     : config.fitness_form == FitnessForm::kCombined    ? "combined form"
+                                                                        : "weighted form";
+  const char* evidence = config.evidence == MatchEvidence::kFitness ? "no gate, no scan points"
+                         : config.evidence == MatchEvidence::kScan  ? "scan points and gate"
+                                                                    : "walls of branches and gate";
+  return fmt::format("{}, {}", form, evidence);
+}
+
+Means means_of(const Drive& drive) {
+  return {"no matching", drive.range_m, 1};
+}
+
+Means means_of(const Drive& drive, const Correction& correction) {
+  return {matcher_text(correction.config), drive.range_m, 1};
+}
+
+Drive loop_drive(std::uint64_t seed) {
+  return make_drive(setup_named("loop"), seed);
+}
+
+Correction correct_loop(const Drive& drive, const CorrectionKind& kind) {
+  return correct(drive, kind, setup_named("loop"));
+}
 
 std::vector<topomap::LocalMap> Drive::maps() const {
   std::vector<topomap::LocalMap> all;

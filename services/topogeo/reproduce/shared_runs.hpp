@@ -17,6 +17,8 @@
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/world/world.hpp"
 
+#include "reproduce/measured.hpp"
+
 namespace topogeo::reproduce {
 
 /// The stops of a simulated drive. Poses are in the frame of the first stop.
@@ -28,6 +30,7 @@ struct Drive {
   std::vector<geometry::Pose2> odometry;
   std::vector<double> path_m;  ///< driven up to each stop
   double perception_ms = 0.0;  ///< mean time of a diagram and local map
+  double range_m = 0.0;        ///< of the readings in diagrams and maps
   [[nodiscard]] std::vector<topomap::LocalMap> maps() const;
 };
 
@@ -49,6 +52,8 @@ struct Correction {
     std::vector<geometry::Pose2> before;  ///< poses by the forward correction
   };
   std::vector<Backward> backward;
+  /// With kept solutions: those of stop k once it is added, best first, as poses of all stops.
+  std::vector<std::vector<std::vector<geometry::Pose2>>> kept;
   double wall_s = 0.0;
 
   [[nodiscard]] const localization::ThesisMap& map() const { return slam->map(); }
@@ -57,24 +62,52 @@ struct Correction {
   }
 };
 
-/// Matching with nodes and branches only or also with scan points, and with or without cycle
-/// closing.
+/// How a drive is corrected: by default with the preset of the Thesis (thesis.config.yaml), nodes
+/// and branches alone.
 struct CorrectionKind {
-  localization::FitnessForm form = localization::FitnessForm::kCombined;
-  bool backward = true;
+  bool backward = true;  ///< whether cycles are closed
+  bool kept = true;  ///< whether distinct solutions are kept; otherwise the best becomes the map
+  localization::FitnessForm form = localization::FitnessForm::kTopological;
   /// Condition for a match to pass; kFitness accepts every match with a fitness, as printed.
-  localization::MatchEvidence evidence = localization::MatchEvidence::kScan;
+  localization::MatchEvidence evidence = localization::MatchEvidence::kFitness;
+  bool calibrated = true;  ///< noise of the odometry of the preset; otherwise the default
   friend auto operator<=>(const CorrectionKind&, const CorrectionKind&) = default;
 };
+
+/// The better means of the product: scan points refine a match, and a gate accepts it.
+inline constexpr CorrectionKind kProduct{.kept = false,
+                                         .form = localization::FitnessForm::kCombined,
+                                         .evidence = localization::MatchEvidence::kScan,
+                                         .calibrated = false};
+inline constexpr CorrectionKind kForwardAlone{.backward = false};
+inline constexpr CorrectionKind kProductForward{.backward = false,
+                                                .kept = false,
+                                                .form = localization::FitnessForm::kCombined,
+                                                .evidence = localization::MatchEvidence::kScan,
+                                                .calibrated = false};
+/// The printed form; each backward correction becomes the trajectory at once.
+inline constexpr CorrectionKind kSingleWalk{.kept = false,
+                                            .form = localization::FitnessForm::kPrinted};
+
+/// "topological form, no gate, no scan points".
+std::string matcher_text(const localization::LocalizerConfig& config);
+/// Values of a drive alone, without any match.
+Means means_of(const Drive& drive);
+Means means_of(const Drive& drive, const Correction& correction);
+
+/// One drive of experiment 2 and back to its start with this seed, as "loop".
+Drive loop_drive(std::uint64_t seed);
+Correction correct_loop(const Drive& drive, const CorrectionKind& kind = {});
 
 class SharedRuns {
  public:
   /// "corridor": experiment 1 with a stop every 1.3 m; "positions": its first 24 m with a stop
-  /// every 2.4 m and 4 m of range, "positions, 10 m" with 10 m; "turn": up to its turn with 45
-  /// stops, one every 0.66 m; "loop": experiment 2 with a stop every 1.5 m, and back to its start;
-  /// "apart": experiment 1 with stops so far apart and ranges so short that local maps do not
-  /// overlap; "door": a corridor with a door that opens. Throws std::invalid_argument for any other
-  /// name.
+  /// every 2.4 m; "turn": up to its turn with 45 stops, one every 0.66 m; "loop": experiment 2 with
+  /// a stop every 1.5 m, and back to its start; "apart": experiment 1 with stops so far apart and
+  /// ranges so short that local maps do not overlap; "door": a corridor with a door that opens. All
+  /// but "apart" have 4 m of range and the local maps of the Thesis; "corridor, 10 m", "positions,
+  /// 10 m", "loop, 10 m" and "door, 10 m" have 10 m and those of the product. Throws
+  /// std::invalid_argument for any other name.
   const Drive& drive(const std::string& name);
   const Correction& correction(const std::string& drive, const CorrectionKind& kind = {});
 

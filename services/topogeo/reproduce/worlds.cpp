@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "topogeo/support/config_schema.hpp"
+
 namespace topogeo::reproduce {
 namespace {
 
@@ -22,6 +24,13 @@ world::World world_named(std::string_view name) {
   const WorldText* found = find_world(name);
   if (found == nullptr) throw std::invalid_argument("no world " + std::string(name));
   return world::parse_world(std::string(found->text), std::string(name));
+}
+
+pipeline::Config thesis_preset() {
+  pipeline::Config config;
+  support::load_yaml_text(thesis_preset_text(), "thesis.config.yaml", pipeline::describe(config));
+  config.local_mapper.tracker.odometry = config.localizer.odometry;
+  return config;
 }
 
 }  // namespace topogeo::reproduce

@@ -50,6 +50,26 @@ TEST(Verdict, NothingComparedIsNoAgreement) {
   EXPECT_EQ(verdict_of(std::vector{Value{.name = "shown", .measured = 1.0}}), Verdict::kDiffers);
 }
 
+// A value of other means has no expected one, whatever it measures.
+TEST(Verdict, ValuesBesideAreNotCompared) {
+  Value beside = value_of(1.0, 2.0, Relation::kEqual);
+  beside.expected.reset();
+  beside.by = "other means";
+  EXPECT_EQ(verdict_of(std::vector{value_of(1.0, 1.0, Relation::kEqual), beside}), Verdict::kEqual);
+  EXPECT_EQ(verdict_of(std::vector{beside}), Verdict::kDiffers);
+}
+
+TEST(Verdict, TimesAreThoseOfOurOwnWork) {
+  EXPECT_TRUE(is_time(Value{.name = "match", .unit = "s"}));
+  EXPECT_TRUE(is_time(Value{.name = "local map", .unit = "ms"}));
+  EXPECT_FALSE(is_time(Value{.name = "length", .unit = "m"}));
+}
+
+TEST(TextOf, MeansNameMatcherRangeAndRuns) {
+  EXPECT_EQ(text_of(Means{}), "no matching, no laser, 1 run");
+  EXPECT_EQ(text_of(Means{"printed form", 4.0, 20}), "printed form, 4 m, 20 runs");
+}
+
 TEST(TextOf, StatementsAreWordsAndNumbersHaveTheirUnits) {
   EXPECT_EQ(text_of(1.0, "yes"), "yes");
   EXPECT_EQ(text_of(0.0, "yes"), "no");
