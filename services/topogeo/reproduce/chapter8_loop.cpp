@@ -102,7 +102,7 @@ std::string pose_as_text(const Pose2& T) {
   return fmt::format("({:.2f}, {:.2f}, {:.3f})", -T.y_m, T.x_m, T.theta_rad);
 }
 
-/// What is published of a position: how far the backward correction moves the forward one.
+/// The published move of a position: by the backward correction from the forward one.
 struct PublishedMove {
   double moved_m;
   double turned_degrees;

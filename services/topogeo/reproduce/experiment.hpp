@@ -28,7 +28,7 @@ class Report {
   /// `folder` exists; pictures are <experiment>.png and <experiment>_<part>.png in it.
   Report(std::filesystem::path folder, std::string experiment, SharedRuns& runs);
 
-  /// What makes the values of this row; every row says it once.
+  /// Sets the means that make the values of this row.
   void made_by(Means means) { means_ = std::move(means); }
 
   // The tolerance of a value is that of tolerances.hpp for its name; without an entry there it has

@@ -34,7 +34,7 @@ struct Value {
   std::string by{};  ///< what made the value; empty: the means of its row
 };
 
-/// What made the values of a row.
+/// The means that made the values of a row.
 struct Means {
   std::string matcher =
       "no matching";           ///< "no matching", or form of the fitness, evidence and refinement

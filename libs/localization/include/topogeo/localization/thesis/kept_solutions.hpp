@@ -47,7 +47,8 @@ class KeptSolutions {
 
   /// Best first.
   [[nodiscard]] const std::vector<CycleSolution>& all() const { return kept_; }
-  /// The best one; null while none agrees with the earlier maps nearly as much as one pair of equal maps.
+  /// The best one; null while none agrees with the earlier maps nearly as much as one pair of equal
+  /// maps.
   [[nodiscard]] const CycleSolution* best() const;
 
  private:
