@@ -12,7 +12,7 @@ const { navigator_text, pose_of_now, robot_state } = await load("robot_state");
 const { agreement, apart, compose } = await load("map/match_layer");
 const { Film } = await load("map/film");
 const { Stopping } = await load("stopping");
-const { texts } = await load("texts");
+const { english, languages, texts } = await load("texts");
 
 const delta = (from, version, set, gone = []) => ({ channel: "events", from, version, set, gone });
 
@@ -376,5 +376,25 @@ test("one thing has one name on the page", () => {
     for (const [rule, words] of Object.entries(forbidden)) {
       assert.doesNotMatch(text.replace("The robot stops when you let go", ""), words, rule);
     }
+  }
+});
+
+/** The paths of all texts, and the number of parameters of those that are functions. */
+function shape(value, path = "") {
+  if (typeof value === "function") return [`${path}()`];
+  if (typeof value !== "object") return [path];
+  return Object.entries(value).flatMap(([key, part]) => shape(part, `${path}.${key}`));
+}
+
+test("no language lacks a text, and none is English", () => {
+  assert.equal(texts, english); // without a browser
+  for (const [code, language] of Object.entries(languages)) {
+    assert.equal(language.language, code);
+    assert.deepEqual(shape(language).sort(), shape(english).sort(), code);
+    const empty = all_texts(language).filter((text) => text === "");
+    assert.ok(empty.length <= 2, `${code}: ${empty.length} empty texts`);
+    if (code === "en") continue;
+    const sentences = new Set(all_texts(english).filter((text) => /[a-z] [a-z]+ [a-z]/.test(text)));
+    assert.deepEqual(all_texts(language).filter((text) => sentences.has(text)), [], code);
   }
 });

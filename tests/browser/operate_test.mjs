@@ -389,6 +389,19 @@ test("a distance is measured by two taps or a drag, and the pointer's coordinate
   await end(opened);
 });
 
+test("the page speaks the browser's language, or the one that is chosen", async () => {
+  const context = await new_context(browser, { viewport: kSizes.desk, locale: "es-ES" });
+  const service = new SlowLocalizer();
+  await service.serve(context);
+  const page = await open_page(context, `${kAddress}/#token=${"t".repeat(16)}`);
+  await text(page, "#tab-send", /^Enviar$/);
+  assert.equal(await page.getAttribute("html", "lang"), "es");
+  await Promise.all([page.waitForNavigation(), page.selectOption("#language", "en")]);
+  await text(page, "#tab-send", /^Send$/);
+  assert.equal(await page.getAttribute("html", "lang"), "en");
+  await end({ page, context });
+});
+
 test("a refused goal is named with what is in its way, and another one is offered only if it is reached", async () => {
   const opened = await open();
   const { page, service } = opened;

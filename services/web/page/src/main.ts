@@ -126,6 +126,7 @@ function empty_map(channels: Channels): HTMLElement {
 }
 
 function start(): void {
+  document.documentElement.lang = texts.language;
   const token = take_token();
   const theme = new Theme();
   const channels = new Channels();

@@ -165,6 +165,7 @@ class Panel {
 }
 
 function start(): void {
+  document.documentElement.lang = texts.language;
   const token = take_token();
   new Theme();
   const channels = new Channels();

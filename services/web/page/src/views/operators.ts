@@ -1,6 +1,7 @@
 // The operators: who has the controls, and the name of this page's one.
 import { App } from "../app";
-import { texts } from "../texts";
+import { choose_language } from "../language";
+import { languages, texts } from "../texts";
 import { Facts } from "../ui/bar";
 import { button, field, h, show } from "../ui/dom";
 import { section } from "../ui/section";
@@ -9,6 +10,7 @@ const words = texts.controls_of_robot;
 
 export class Operators {
   readonly element: HTMLElement;
+  private readonly own: HTMLElement; // of an operator's page
   private readonly facts = new Facts();
   private readonly let_go: HTMLButtonElement;
 
@@ -27,12 +29,25 @@ export class Operators {
       },
     });
     this.let_go = button(words.let_go, () => void this.order({ do: "let_go" }));
-    this.element = section(
-      words.title,
+    const language: HTMLSelectElement = h(
+      "select",
+      { class: "field", id: "language", onchange: () => choose_language(language.value) },
+      ...Object.keys(languages).map((code) =>
+        h(
+          "option",
+          { value: code, lang: code, selected: code === texts.language },
+          words.language_names[code] ?? code,
+        ),
+      ),
+    );
+    this.own = h(
+      "div",
+      {},
       this.facts.element,
       field(words.your_name, name),
       h("div", { class: "buttons" }, this.let_go),
     );
+    this.element = section(words.title, this.own, field(words.language, language));
     this.update();
   }
 
@@ -40,7 +55,7 @@ export class Operators {
     const { rights, channels } = this.app;
     const holder = channels.value("controls")?.holder ?? null;
     const mine = holder !== null && holder.page === rights.page;
-    show(this.element, rights.may_write && rights.page !== 0);
+    show(this.own, rights.may_write && rights.page !== 0);
     this.facts.set(words.holder, holder === null ? words.nobody : mine ? words.mine : holder.name);
     show(this.let_go, mine);
   }
