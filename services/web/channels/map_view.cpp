@@ -213,6 +213,13 @@ void MapView::show_tiles(const std::vector<std::shared_ptr<const GridSquare>>& s
   hub_.edit(Channel::kTiles, std::move(edits), true);
 }
 
+std::string room_name(const msg::HybridZone& room, const msg::HybridMap& map) {
+  const std::string name = text_of_message(room.name());
+  const bool is_place = std::ranges::any_of(
+      map.places(), [&](const msg::HybridPlace& place) { return place.name() == room.name(); });
+  return is_place && room.room() != 0 ? fmt::format("room {}", room.room()) : name;
+}
+
 void MapView::show_rooms(const MapPicture& picture, const std::vector<std::uint8_t>& colors) {
   const auto middles = middles_of(picture, summary_->zones().size());
   std::vector<Edit> edits;
@@ -221,7 +228,7 @@ void MapView::show_rooms(const MapPicture& picture, const std::vector<std::uint8
     if (!middles[zone]) continue;
     const msg::HybridZone& room = summary_->zones()[zone];
     const Eigen::Vector2d middle_m = picture.frame().center_m(*middles[zone]);
-    const std::string name = text_of_message(room.name());
+    const std::string name = room_name(room, *summary_);
     if (!name.empty()) names_.push_back({false, name, middle_m});
     edits.push_back({std::to_string(zone), text_of(Json{{"name", name},
                                                         {"area_m2", rounded(room.area_m2())},

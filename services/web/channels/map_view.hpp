@@ -39,6 +39,10 @@ struct ShownMap {
   std::shared_ptr<const MapPicture> picture;
 };
 
+/// The name of a room for people. A room that is named after the place in it keeps its number as
+/// its name, so that both can be chosen.
+std::string room_name(const msg::HybridZone& room, const msg::HybridMap& map);
+
 /// Lives in the loop of its service, except shown().
 class MapView {
  public:

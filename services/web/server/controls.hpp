@@ -6,6 +6,7 @@
 // from ordering, because nobody is there to ask.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -20,7 +21,6 @@ namespace topogeo::web {
 /// Thread-safe.
 class Controls {
  public:
-  static constexpr std::size_t kLongestId = 64;    ///< bytes
   static constexpr std::size_t kLongestName = 40;  ///< bytes
 
   /// `show` gets each change of the channel `controls` as JSON. It is called under the lock.

@@ -13,13 +13,11 @@
 
 #include "foxglove/foxglove_viewer.hpp"
 #include "server/access.hpp"
-#include "server/controls.hpp"
 #include "server/viewer.hpp"
 
 namespace topogeo::web {
 
 namespace http = beast::http;
-
 namespace {
 
 constexpr std::string_view kPageProtocol = "topogeo";
@@ -181,11 +179,6 @@ void HttpSession::answer_read_error(beast::error_code error) {
   send(response);
 }
 
-std::string HttpSession::page_id() const {
-  const auto value = parser_->get()["X-Topogeo-Page"];
-  return {value.data(), std::min<std::size_t>(value.size(), Controls::kLongestId)};
-}
-
 std::string HttpSession::header(http::field field) const {
   const auto value = parser_->get()[field];
   return {value.data(), value.size()};
@@ -286,7 +279,8 @@ void HttpSession::route() {
   if (question != std::string::npos) out.query = target.substr(question + 1);
   out.authorized = authorized_;
   out.stops = stops_;
-  out.page = page_id();
+  const auto page = request["X-Topogeo-Page"];
+  out.page.assign(page.data(), std::min<std::size_t>(page.size(), kLongestPageId));
   if (!out.post) {
     if (const PageFile* file = state_.files.find(out.path)) {
       send_file(*file);

@@ -62,7 +62,6 @@ class HttpSession : public std::enable_shared_from_this<HttpSession>, private Pl
   /// Ends the connection after the peer has: data still under way would make the peer's system drop
   /// our answer.
   void linger();
-  [[nodiscard]] std::string page_id() const;
   [[nodiscard]] std::string header(beast::http::field field) const;
 
   Connection connection_;

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "server/bounded_json.hpp"
-#include "server/controls.hpp"
+#include "server/web_types.hpp"
 
 namespace topogeo::web {
 namespace {
@@ -78,7 +78,7 @@ ViewerMessage parse_viewer_message(std::string_view text) {
       message.life = text_at(json, "life");
       message.page = text_at(json, "page");
       message.name = text_at(json, "name");
-      if (message.page.size() > Controls::kLongestId) {
+      if (message.page.size() > kLongestPageId) {
         throw std::invalid_argument("page: expected at most 64 bytes");
       }
       take_held(json, message);

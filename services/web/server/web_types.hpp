@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -11,6 +12,8 @@
 #include "server/route.hpp"
 
 namespace topogeo::web {
+
+inline constexpr std::size_t kLongestPageId = 64;  ///< bytes; see Controls
 
 struct Request {
   bool post = false;        ///< otherwise GET
