@@ -49,6 +49,26 @@ class SimulationTest : public testing::Test {
 class EachSimulatedLaser : public SimulationTest,
                            public testing::WithParamInterface<std::string> {};
 
+class EachSimulatedBase : public SimulationTest, public testing::WithParamInterface<std::string> {};
+
+TEST_P(EachSimulatedBase, DrivesTheTourThroughSerialPortsAndMapsIt) {
+  std::vector<std::string> arguments =
+      words(std::string(TOPOGEO_SHARE) + "/worlds/short.world.yaml");
+  arguments.insert(arguments.end(), {"--base-model", GetParam(), "--laser-model", "ld19"});
+  Program run(scratch_, "topogeo", arguments);
+  ASSERT_EQ(run.wait(), 0) << run.err();
+  EXPECT_THAT(run.out(), Not(HasSubstr("collisions")));
+  const auto truth = storage::read_trajectory_tum(out_ + "/truth.tum");
+  const auto found = storage::read_trajectory_tum(out_ + "/trajectory.tum");
+  ASSERT_GT(truth.size(), 20U);
+  EXPECT_LT((truth.back().pose.position_m() - Eigen::Vector2d(6.2, 3.0)).norm(), 0.3);
+  EXPECT_LT((way(truth) - way(found)).norm(), 0.2);
+}
+
+INSTANTIATE_TEST_SUITE_P(OneOfEachOtherFamily, EachSimulatedBase,
+                         testing::Values("microcontroller"),
+                         [](const auto& base) { return base.param; });
+
 TEST_P(EachSimulatedLaser, DrivesTheTourThroughSerialPortsAndMapsIt) {
   std::vector<std::string> arguments =
       words(std::string(TOPOGEO_SHARE) + "/worlds/short.world.yaml");

@@ -75,7 +75,7 @@ void TextBaseDriver::lost(std::int64_t /*now_ns*/) {
 void TextBaseDriver::disconnect(const std::string& reason) {
   link_ = Link::kAsking;
   reason_ = reason;
-  last_.reset();
+  heard_ = false;
   doubted_.reset();
   term_.clear();
   wanted_ = sent_ = {};
@@ -106,8 +106,6 @@ void TextBaseDriver::take(const TextBaseMessage& message, std::int64_t now_ns) {
                  " of the line protocol: expected " + std::to_string(kTextBaseVersion));
       return;
     }
-    // Also a base that was switched on again says hello: its ticks begin anew.
-    if (link_ == Link::kRunning) ++status_.restarts;
     disconnect({});
     ++status_.starts;
     link_ = Link::kRunning;
@@ -121,9 +119,10 @@ void TextBaseDriver::take(const TextBaseMessage& message, std::int64_t now_ns) {
   if (message.report && link_ == Link::kRunning) take(*message.report, now_ns);
 }
 
-bool TextBaseDriver::plausible(const TextBaseReport& report, std::int64_t /*now_ns*/) const {
+bool TextBaseDriver::plausible(const TextBaseReport& report, std::int64_t now_ns) const {
   const std::uint32_t passed_ms = report.time_ms - last_->time_ms;
-  if (passed_ms == 0 || passed_ms > kLongestGap_ms) return false;
+  const std::int64_t gap_ms = (now_ns - last_report_ns_) / kTextMs_ns;
+  if (passed_ms == 0 || passed_ms > kLongestGap_ms + gap_ms) return false;
   const double turn_mps = 0.5 * settings_.text.track_m * settings_.limits.angular_radps;
   const double most_m =
       kPush_m + kFaster * 1e-3 * passed_ms * (settings_.limits.linear_mps + turn_mps);
@@ -149,7 +148,8 @@ void TextBaseDriver::take(const TextBaseReport& report, std::int64_t now_ns) {
     clock_.restart();
   }
   doubted_.reset();
-  last_arrival_ns_ = now_ns;
+  last_arrival_ns_ = last_report_ns_ = now_ns;
+  heard_ = true;
   ++status_.reports;
   if (last_) move(report, now_ns);
   last_ = report;
@@ -249,7 +249,7 @@ std::vector<LineOrder> TextBaseDriver::take_orders() {
 }
 
 bool TextBaseDriver::commands_taken() const {
-  return link_ == Link::kRunning && last_ && !interlocks_.engaged();
+  return link_ == Link::kRunning && heard_ && !interlocks_.engaged();
 }
 
 bool TextBaseDriver::command(double linear_mps, double angular_radps, std::int64_t valid_until_ns,
@@ -311,7 +311,7 @@ std::vector<BaseOdometry> TextBaseDriver::take_odometry() {
 }
 
 void TextBaseDriver::update_status() {
-  const bool running = link_ == Link::kRunning && last_.has_value();
+  const bool running = link_ == Link::kRunning && heard_;
   status_.stands = running && at_rest_ >= kReportsStanding;
   status_.bumpers = interlocks_.pressed();
   status_.commands_taken = commands_taken();

@@ -180,6 +180,20 @@ TEST(TextBaseDriver, ThePoseGoesOnWhenTheBaseRestarts) {
   expect_pose(base, 0.03);
 }
 
+TEST(TextBaseDriver, WhatWasDrivenUnheardIsInThePose) {
+  TextBaseOnLine base;
+  ASSERT_TRUE(base.start());
+  base.drive(0.3, 0.0, 2 * kTextTestSecond_ns);
+  base.emulator.set_fault(BaseFault::kSilent, true);
+  base.drive(0.3, 0.2, 3 * kTextTestSecond_ns);
+  EXPECT_EQ(base.driver.status().state, BaseState::kOffline);
+  base.emulator.set_fault(BaseFault::kSilent, false);
+  base.pass(2 * kTextTestSecond_ns);
+  ASSERT_TRUE(base.driver.status().commands_taken);
+  EXPECT_EQ(base.driver.status().restarts, 0U);
+  expect_pose(base, 0.03);
+}
+
 TEST(TextBaseDriver, RefusesSettingsOutOfRange) {
   for (const auto& change : std::vector<std::function<void(BaseSettings&)>>{
            [](BaseSettings& s) { s.text.ticks_per_m = 0.0; },

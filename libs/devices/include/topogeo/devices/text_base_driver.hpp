@@ -74,7 +74,9 @@ class TextBaseDriver final : public BaseDriver {
   std::string reason_ = "the port is closed";
   std::optional<TextBaseReport> last_;
   std::optional<TextBaseReport> doubted_;  // a report that does not follow last_
-  std::int64_t last_arrival_ns_ = 0;
+  bool heard_ = false;                     // a report came since the hello
+  std::int64_t last_arrival_ns_ = 0;       // of a report or the hello
+  std::int64_t last_report_ns_ = 0;
   std::int64_t device_ns_ = 0;  // time of the base without wrapping
   std::int64_t asked_ns_ = 0;
   std::int64_t sent_ns_ = 0;  // last speeds
