@@ -78,7 +78,7 @@ class RuleBreaker {
   RuleBreaker(const FreeSpace& space, const ClosedCells& closed)
       : space_(space), closed_(closed), undrawn_(space.seen(), space.inflation()) {}
 
-  /// From the first to the last cell; empty if there is none.
+  /// All its cells from the first to the last; empty if there is none.
   std::vector<std::size_t> path(const Cell& from, const Cell& to) {
     const GridFrame& frame = space_.frame();
     cost_.assign(frame.size(), std::numeric_limits<double>::infinity());
