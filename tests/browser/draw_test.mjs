@@ -35,7 +35,7 @@ test("the robot explores its room by itself", async () => {
     },
   );
   // It explores until all is seen, including the far side of the room behind the table.
-  await text(page, ".section h3", /has no goal/);
+  await text(page, ".section h3", /Exploration finished/);
   await page.click("#tab-understand");
   await text(page, ".events .text", /explored: .*no reachable target is left/);
 });

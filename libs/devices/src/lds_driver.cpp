@@ -14,7 +14,7 @@ constexpr std::uint8_t kStartLetter = 'b';
 constexpr std::uint8_t kStopLetter = 'e';
 /// No motor changes its speed by more from one packet to the next.
 constexpr double kSameLdsSpeed = 0.25;
-constexpr double kLargestGap_turns = 0.25;
+constexpr double kLargestGap = 0.25;
 
 const LdsFormat& format_of(const LaserModel& model) {
   return model.family == "xv11" ? kXv11 : kLds01;
@@ -90,7 +90,7 @@ void LdsDriver::take(const LdsPacket& packet, std::int64_t arrival_ns, std::int6
     return restart_turn();
   }
   // The assembler takes almost a whole turn for a small step back.
-  if (turns > kLargestGap_turns) restart_turn();
+  if (turns > kLargestGap) restart_turn();
   add_beams(packet, *time_ns);
 }
 

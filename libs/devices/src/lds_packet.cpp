@@ -11,7 +11,7 @@ constexpr std::uint8_t kLdsHeader = 0xFA;
 constexpr std::uint8_t kFirstNumber = 0xA0;
 constexpr std::size_t kReadingsAt = 4;
 constexpr std::uint16_t kInvalidMark = 0x8000;
-constexpr std::uint16_t kDistanceMask = 0x3FFF;
+constexpr std::uint16_t kLdsDistanceMask = 0x3FFF;
 /// Neither laser measures slower or faster; both aim at 300.
 constexpr double kSlowestRpm = 60.0;
 constexpr double kFastestRpm = 900.0;
@@ -30,9 +30,9 @@ LdsPacket lds_packet_of(std::span<const std::uint8_t> bytes, const LdsFormat& fo
         format.intensity_first ? LdsReading{second, first} : LdsReading{first, second};
     if (format.flags) {
       const bool invalid = (reading.distance_mm & kInvalidMark) != 0;
-      reading.distance_mm = invalid
-                                ? std::uint16_t{0}
-                                : static_cast<std::uint16_t>(reading.distance_mm & kDistanceMask);
+      reading.distance_mm =
+          invalid ? std::uint16_t{0}
+                  : static_cast<std::uint16_t>(reading.distance_mm & kLdsDistanceMask);
     }
     packet.readings.push_back(reading);
   }

@@ -3,7 +3,7 @@
 namespace topogeo::devices {
 namespace {
 
-/// What a host has not read for a while arrives at once, so later packets are on time.
+/// Packets that a host has not read for a while arrive at once, so later ones are on time.
 constexpr std::int64_t kSettle_ns = 100'000'000;
 /// A clock that lags by more than a busy line delays, and for longer, is wrong.
 constexpr std::int64_t kLargestTurnLag_ns = 150'000'000;

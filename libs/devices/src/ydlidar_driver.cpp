@@ -10,7 +10,7 @@ namespace topogeo::devices {
 namespace {
 
 constexpr std::int64_t kYdMs_ns = 1'000'000;
-/// From one request to the next; the answers take a few milliseconds.
+/// Time from one request to the next; the answers take a few milliseconds.
 constexpr std::int64_t kYdStep_ns = 100 * kYdMs_ns;
 /// The longest packet, for the clock: 40 samples.
 constexpr std::size_t kYdPacket_bytes = 90;

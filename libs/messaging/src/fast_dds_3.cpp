@@ -8,6 +8,8 @@
 #include "corrections.hpp"
 #include "network_names.hpp"
 
+#if TOPOGEO_FAST_DDS != 2
+
 namespace topogeo::messaging {
 
 void correct_fast_dds() {}
@@ -35,3 +37,5 @@ void send_fragments_within(std::uint32_t /*message_bytes*/) {}
 void send_heartbeats_to_addressees(const eprosima::fastdds::dds::DataWriter& /*writer*/) {}
 
 }  // namespace topogeo::messaging
+
+#endif

@@ -10,21 +10,21 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kBrake = 0.6;              // of the acceleration, as the follower plans stops
-constexpr double kTurnBrake = 0.6;          // the same for turns
-constexpr double kCorner_rad = 0.9;         // sharper corners are turned on the spot
-constexpr double kRounding_m = 0.4;         // length on which other corners are rounded
-constexpr double kLeastTurn_rad = 0.02;     // less is no turn
-constexpr double kLeastSpeed_m_s = 0.03;    // bases do not move slower
-constexpr double kSideways_m_per_s2 = 0.6;  // limit in curves
-constexpr double kTurnShare = 0.8;          // of the turning speed in curves
-constexpr double kArrival_s = 0.4;          // the robot comes to rest
+constexpr double kMeanBrake = 0.6;             // of the acceleration, in the mean of a stop
+constexpr double kMeanTurnBrake = 0.6;         // the same for turns
+constexpr double kSharpCorner_rad = 0.9;       // sharper corners are turned on the spot
+constexpr double kRounding_m = 0.4;            // length on which other corners are rounded
+constexpr double kLeastTurn_rad = 0.02;        // less is no turn
+constexpr double kLeastSpeed_m_s = 0.03;       // bases do not move slower
+constexpr double kSidewaysAcceleration = 0.6;  // limit in curves
+constexpr double kTurnShare = 0.8;             // of the turning speed in curves
+constexpr double kArrival_s = 0.4;             // the robot comes to rest
 
 double turn_time_s(double turn_rad, const FollowerConfig& config) {
   const double angle = std::fabs(turn_rad);
   if (angle < kLeastTurn_rad) return 0.0;
   const double up = config.turn_acceleration_rad_per_s2;
-  const double down = kTurnBrake * up;
+  const double down = kMeanTurnBrake * up;
   const double ramps = 0.5 * (1.0 / up + 1.0 / down);  // seconds per speed
   const double fastest = std::min(config.turn_rad_per_s, std::sqrt(angle / ramps));
   return angle / fastest + ramps * fastest + config.delay_s;
@@ -36,7 +36,7 @@ double fastest_at(const planning::PathSample& sample, double limit_m_per_s,
   const double curvature = std::fabs(sample.curvature_per_m);
   if (curvature > 1e-3) {
     speed = std::min({speed, kTurnShare * config.turn_rad_per_s / curvature,
-                      std::sqrt(kSideways_m_per_s2 / curvature)});
+                      std::sqrt(kSidewaysAcceleration / curvature)});
   }
   return std::max(speed, std::min(kLeastSpeed_m_s, limit_m_per_s));
 }
@@ -75,7 +75,7 @@ std::vector<double> rest_times_s(std::span<const planning::PathSample> path,
     speed[i + 1] = std::min(speed[i + 1], reached(speed[i], up, piece_m(i)));
   }
   for (std::size_t i = path.size() - 1; i-- > 0;) {
-    speed[i] = std::min(speed[i], reached(speed[i + 1], kBrake * up, piece_m(i)));
+    speed[i] = std::min(speed[i], reached(speed[i + 1], kMeanBrake * up, piece_m(i)));
   }
   for (std::size_t i = path.size() - 1; i-- > 0;) {
     const double limit = limits_m_per_s.empty() ? config.speed_m_per_s : limits_m_per_s[i];
@@ -94,7 +94,7 @@ double drive_time_s(std::span<const Eigen::Vector2d> points_m, std::optional<dou
   std::vector<planning::PathSample> path = straight_path(points_m);
   if (path.size() < 2) return 0.0;
   for (planning::PathSample& sample : path) {
-    if (std::fabs(sample.turn_on_spot_rad) >= kCorner_rad) continue;
+    if (std::fabs(sample.turn_on_spot_rad) >= kSharpCorner_rad) continue;
     sample.curvature_per_m = sample.turn_on_spot_rad / kRounding_m;
     sample.turn_on_spot_rad = 0.0;
   }

@@ -153,7 +153,7 @@ void RosScans::put_beams(ros::Sweep sweep, scan::Scan& scan) const {
     const geometry::Pose2 T_robot_laser =
         survey.mounting ? survey.mounting->T_robot_laser : geometry::Pose2{};
     if (survey.odometry_topic.empty()) {
-      // Whoever makes odometry from the scans knows the motion, too.
+      // Odometry from the scans knows the motion, too.
       scan.first_beam_s = sweep.first_beam_s;
       scan.beam_step_s = sweep.time_step_s;
     } else if (sweep.time_step_s != 0.0) {

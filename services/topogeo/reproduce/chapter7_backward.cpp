@@ -8,6 +8,7 @@
 #include "topogeo/support/format.hpp"
 
 #include "reproduce/chapter7.hpp"
+#include "reproduce/chapter7_closing.hpp"
 #include "reproduce/drawing.hpp"
 #include "reproduce/shared_runs.hpp"
 
@@ -21,8 +22,6 @@ using render::Figure;
 using render::FigureColour;
 using render::FigurePanel;
 
-constexpr const char* kTurn = "turn";
-
 double size_as_number(std::size_t n) {
   return static_cast<double>(n);
 }
@@ -35,18 +34,6 @@ std::size_t turned_stop(const Drive& drive) {
   throw std::runtime_error("the drive does not turn");
 }
 
-const Correction::Backward& first_closing(const Correction& correction) {
-  if (correction.backward.empty()) throw std::runtime_error("no cycle was closed");
-  return correction.backward.front();
-}
-
-/// Whether there is a backward correction to show; the row states it.
-bool closes(Report& report, const Correction& correction) {
-  report.made_by(means_of(report.runs().drive(kTurn), correction));
-  report.states("the view after the turn closes a cycle", !correction.backward.empty());
-  return !correction.backward.empty();
-}
-
 /// Poses of all solutions of a stop against each earlier map.
 std::vector<Pose2> solutions_of(const Correction& correction, std::size_t stop) {
   std::vector<Pose2> poses;
@@ -57,14 +44,6 @@ std::vector<Pose2> solutions_of(const Correction& correction, std::size_t stop) 
     }
   }
   return poses;
-}
-
-FigurePanel corridor_panel(const Drive& drive, const std::string& title) {
-  FigurePanel panel;
-  panel.title = title;
-  add_walls(panel, drive.world, drive.T_world_first);
-  panel.extent = {{-4.0, -4.0}, {4.0, 32.0}};
-  return panel;
 }
 
 void figure_7_22(Report& report) {
@@ -377,29 +356,28 @@ void figure_7_30(Report& report) {
 }  // namespace
 
 std::vector<Experiment> chapter7_backward() {
-  const std::string kThesis = "Thesis";
-  return {
-      {"figure-7.22", kThesis, "Figure 7.22", "The best solutions of each position up to the turn",
-       figure_7_22, "", true},
-      {"figure-7.23", kThesis, "Figure 7.23", "The best one of each position alone", figure_7_23,
-       "", true},
-      {"figure-7.24", kThesis, "Figure 7.24",
-       "Several solutions of one pair of maps that are all good", figure_7_24, "", true},
-      {"figure-7.25", kThesis, "Figure 7.25",
-       "Solutions of the position after the turn relative to an earlier one", figure_7_25, "",
-       true},
-      {"figure-7.26", kThesis, "Figure 7.26",
-       "The same in the frame of the first position, with those of the earlier position",
-       figure_7_26, "", true},
-      {"figure-7.27-7.29", kThesis, "Figures 7.27 to 7.29",
-       "The walk back from the position after the turn, position by position", figure_7_27, "",
-       true},
-      {"equations-7.22-7.24", kThesis, "Equations 7.22 to 7.24",
-       "The ways back to the position before: matched, through an intermediate map, odometry, grid",
-       backward_ways, "", true},
-      {"figure-7.30", kThesis, "Figure 7.30",
-       "A candidate at which maps that overlapped no longer do is refused", figure_7_30, "", true},
+  std::vector<Experiment> all;
+  const auto add = [&](const char* row, const char* place, const char* what, void (*run)(Report&)) {
+    all.push_back({row, "Thesis", place, what, run, "", true});
   };
+  add("figure-7.22", "Figure 7.22", "The best solutions of each position up to the turn",
+      figure_7_22);
+  add("figure-7.23", "Figure 7.23", "The best one of each position alone", figure_7_23);
+  add("figure-7.24", "Figure 7.24", "Several solutions of one pair of maps that are all good",
+      figure_7_24);
+  add("figure-7.25", "Figure 7.25",
+      "Solutions of the position after the turn relative to an earlier one", figure_7_25);
+  add("figure-7.26", "Figure 7.26",
+      "The same in the frame of the first position, with those of the earlier position",
+      figure_7_26);
+  add("figure-7.27-7.29", "Figures 7.27 to 7.29",
+      "The walk back from the position after the turn, position by position", figure_7_27);
+  add("equations-7.22-7.24", "Equations 7.22 to 7.24",
+      "The ways back to the position before: matched, through an intermediate map, odometry, grid",
+      backward_ways);
+  add("figure-7.30", "Figure 7.30",
+      "A candidate at which maps that overlapped no longer do is refused", figure_7_30);
+  return all;
 }
 
 }  // namespace topogeo::reproduce

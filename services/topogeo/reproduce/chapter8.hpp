@@ -12,6 +12,9 @@ namespace topogeo::reproduce {
 std::vector<Experiment> chapter8_corridor();
 std::vector<Experiment> chapter8_loop();
 
+/// Experiment 2 by each form of the fitness, in a table.
+void forms_8_3(Report& report);
+
 /// All readings of a drive, at the stops by odometry or by the truth, and its path.
 render::FigurePanel readings_panel(const Drive& drive, const std::string& title, bool truth);
 /// The local maps of the first stops at these poses, and their path.

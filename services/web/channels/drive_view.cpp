@@ -119,12 +119,8 @@ void DriveView::show_stored(const storage::MapDocument& map) {
   show_stops(map.trajectory.stops);
   std::vector<Edit> edits;
   for (const topomap::LoopClosure& loop : map.loop_closures) {
-    Json json = {{"step", loop.later_id},
-                 {"earlier", loop.earlier_id},
-                 {"later", loop.later_id},
-                 {"accepted", true},
-                 {"outcome", "accepted"},
-                 {"explanation", ""},
+    Json json = {{"step", loop.later_id}, {"earlier", loop.earlier_id}, {"later", loop.later_id},
+                 {"accepted", true},      {"outcome", "accepted"},      {"explanation", ""},
                  {"source", ""}};
     set_pose(json, loop.T_earlier_later);
     for (const char* unknown : {"correction_m", "correction_rad", "fitness", "probability"}) {

@@ -16,7 +16,6 @@
 namespace topogeo::devices {
 namespace {
 
-using simulation::BaseFault;
 using simulation::TextBaseEmulatorSettings;
 using testing::HasSubstr;
 
@@ -184,10 +183,10 @@ TEST(TextBaseDriver, WhatWasDrivenUnheardIsInThePose) {
   TextBaseOnLine base;
   ASSERT_TRUE(base.start());
   base.drive(0.3, 0.0, 2 * kTextTestSecond_ns);
-  base.emulator.set_fault(BaseFault::kSilent, true);
+  base.emulator.set_fault(simulation::BaseFault::kSilent, true);
   base.drive(0.3, 0.2, 3 * kTextTestSecond_ns);
   EXPECT_EQ(base.driver.status().state, BaseState::kOffline);
-  base.emulator.set_fault(BaseFault::kSilent, false);
+  base.emulator.set_fault(simulation::BaseFault::kSilent, false);
   base.pass(2 * kTextTestSecond_ns);
   ASSERT_TRUE(base.driver.status().commands_taken);
   EXPECT_EQ(base.driver.status().restarts, 0U);
@@ -210,7 +209,7 @@ struct TextBaseFaultCase {
   std::function<void(TextBaseOnLine&, std::int64_t)> inject;  ///< for a time
 };
 
-auto with(BaseFault fault) {
+auto with(simulation::BaseFault fault) {
   return [fault](TextBaseOnLine& base, std::int64_t time_ns) {
     base.emulator.set_fault(fault, true);
     base.pass(time_ns);
@@ -252,9 +251,9 @@ TEST_P(TextBaseFaults, AThousandTimes) {
 }
 
 const std::vector<TextBaseFaultCase> kTextBaseFaults{
-    {"Corrupted", with(BaseFault::kCorrupted)},
-    {"Truncated", with(BaseFault::kTruncated)},
-    {"Silent", with(BaseFault::kSilent)},
+    {"Corrupted", with(simulation::BaseFault::kCorrupted)},
+    {"Truncated", with(simulation::BaseFault::kTruncated)},
+    {"Silent", with(simulation::BaseFault::kSilent)},
     {"Noise",
      [](TextBaseOnLine& base, std::int64_t time_ns) {
        base.emulator.send_garbage(static_cast<std::size_t>(time_ns / kTextTestMs_ns),

@@ -49,6 +49,7 @@ std::vector<TurningLaserFault<Line>> turning_laser_faults(
       bytes = other_bytes(random);
       done = true;
     });
+    // NOLINTNEXTLINE(bugprone-infinite-loop): the filter ends it
     while (!done) laser.run_for(kFaultMs_ns);
     laser.line.set_filter({});
   };

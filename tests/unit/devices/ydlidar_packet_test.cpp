@@ -110,7 +110,7 @@ TEST(YdDecoder, NoSingleWrongBitPasses) {
   for (std::size_t bit = 0; bit < 8 * kTwoSamples.size(); ++bit) {
     Bytes bytes = kTwoSamples;
     bytes[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
-    // As many bytes as a packet with a wrong count may take.
+    // The bytes that a packet with a wrong count may take.
     for (int copy = 0; copy < 40; ++copy) {
       bytes.insert(bytes.end(), kTwoSamples.begin(), kTwoSamples.end());
     }

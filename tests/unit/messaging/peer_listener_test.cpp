@@ -21,7 +21,7 @@ namespace {
 
 enum class Change { kFound, kLeft, kLost };
 
-rtps::GuidPrefix_t prefix_of_peer() {
+rtps::GuidPrefix_t prefix_of_listened_peer() {
   rtps::GuidPrefix_t prefix;
   prefix.value[11] = 7;
   return prefix;
@@ -43,7 +43,7 @@ class Listener final : public PeerListener {
 void report(Listener& listener, Change change) {
   using Info = rtps::ParticipantDiscoveryInfo;
   rtps::ParticipantProxyData data{rtps::RTPSParticipantAllocationAttributes()};
-  data.m_guid.guidPrefix = prefix_of_peer();
+  data.m_guid.guidPrefix = prefix_of_listened_peer();
   data.m_participantName = "robot/ga_worker";
   rtps::Property property;
   property.name("dds.cert.sn");
@@ -62,7 +62,7 @@ constexpr const char* kSubject = "CN=ga_worker";
 void report(Listener& listener, Change change) {
   using Status = rtps::ParticipantDiscoveryStatus;
   eprosima::fastdds::dds::ParticipantBuiltinTopicData data;
-  data.guid.guidPrefix = prefix_of_peer();
+  data.guid.guidPrefix = prefix_of_listened_peer();
   data.participant_name = "robot/ga_worker";
   bool ignored = true;
   listener.on_participant_discovery(nullptr,
@@ -81,7 +81,7 @@ TEST(PeerListener, ReportsWhoComesAndGoes) {
   for (const Change change : {Change::kFound, Change::kLeft, Change::kLost}) {
     report(listener, change);
     const DiscoveredPeer& peer = listener.peers.back();
-    EXPECT_EQ(peer.id.guidPrefix, prefix_of_peer());
+    EXPECT_EQ(peer.id.guidPrefix, prefix_of_listened_peer());
     EXPECT_EQ(peer.name, "robot/ga_worker");
     EXPECT_EQ(peer.subject, kSubject);
     EXPECT_EQ(peer.gone, change != Change::kFound);
@@ -94,9 +94,9 @@ TEST(PeerListener, ReportsWhetherAPeerHasProvenItsIdentity) {
   for (const bool authorized : {true, false}) {
     Info info;
     info.status = authorized ? Info::AUTHORIZED_PARTICIPANT : Info::UNAUTHORIZED_PARTICIPANT;
-    info.guid.guidPrefix = prefix_of_peer();
+    info.guid.guidPrefix = prefix_of_listened_peer();
     listener.onParticipantAuthentication(nullptr, std::move(info));
-    EXPECT_EQ(listener.authenticated.back(), std::pair(prefix_of_peer(), authorized));
+    EXPECT_EQ(listener.authenticated.back(), std::pair(prefix_of_listened_peer(), authorized));
   }
 }
 

@@ -39,7 +39,7 @@ TEST(AuditLog, AppendsALineForEachOrder) {
 TEST(AuditLog, WithoutAFileNothingIsKeptAndAFileThatCannotBeOpenedIsNamed) {
   EXPECT_TRUE(AuditLog({}).add(0, "Anna", "/api/stop", ""));
   try {
-    AuditLog("/proc/no/such/file");
+    const AuditLog log("/proc/no/such/file");
     FAIL() << "expected an error";
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("/proc/no/such/file"));

@@ -1,4 +1,4 @@
-// What the robot does now, or what it waits for, as a few words for the header.
+// A few words for the header: what the robot does now, or what it waits for.
 import { Channels } from "./channels";
 import { Goals, Navigator } from "./protocol";
 import { Rights } from "./rights";

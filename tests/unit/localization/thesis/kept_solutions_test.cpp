@@ -14,7 +14,7 @@ namespace {
 
 using geometry::Pose2;
 
-constexpr std::uint32_t kStops = 9;  // 8 m apart: the first stop is not recent at the last one
+constexpr std::uint32_t kKeptStops = 9;  // 8 m apart: the first stop is not recent at the last one
 
 /// Nodes on both sides of the path, as far apart as no other map has them.
 std::shared_ptr<const topomap::LocalMap> map_of(std::uint32_t id, std::uint32_t place) {
@@ -41,8 +41,8 @@ struct Round {
   KeptSolutions kept{config};
 
   Round() {
-    for (std::uint32_t id = 0; id < kStops; ++id) {
-      map.append(map_of(id, id + 1 == kStops ? 0 : id));
+    for (std::uint32_t id = 0; id < kKeptStops; ++id) {
+      map.append(map_of(id, id + 1 == kKeptStops ? 0 : id));
       if (id == 0) {
         map.place_first();
       } else {
@@ -54,7 +54,7 @@ struct Round {
 
   /// All stops by odometry, except the last one.
   [[nodiscard]] CycleSolution ending_at(const Pose2& T_map_last) const {
-    CycleSolution solution{map.poses(), 0, kStops - 1, 0.0};
+    CycleSolution solution{map.poses(), 0, kKeptStops - 1, 0.0};
     solution.T_map_stop.back() = T_map_last;
     return solution;
   }
@@ -95,8 +95,8 @@ TEST(KeptSolutions, KeepsDistinctOnesUpToTheLimit) {
 TEST(KeptSolutions, FollowTheForwardStepsOfTheRobot) {
   Round round;
   round.kept.offer(round.map, {round.ending_at({0.0, 0.0, 0.0})});
-  round.map.append(map_of(kStops, 1));
-  round.map.place(kStops - 1, round.map.stop(kStops).T_previous_this, false);
+  round.map.append(map_of(kKeptStops, 1));
+  round.map.place(kKeptStops - 1, round.map.stop(kKeptStops).T_previous_this, false);
   round.kept.add_stop(round.map);
   ASSERT_NE(round.kept.best(), nullptr);
   EXPECT_NEAR(round.kept.best()->T_map_stop.back().x_m, 1.0, 1e-9);
@@ -111,7 +111,7 @@ TEST(KeptSolutions, RefiningMovesTheStopsToWhereTheyAgreeBest) {
   const Pose2& last = round.kept.best()->T_map_stop.back();
   EXPECT_LT(last.position_m().norm(), 0.02);
   EXPECT_NEAR(last.theta_rad, 0.0, 0.005);
-  EXPECT_EQ(round.kept.best()->T_map_stop[kStops - 2], round.map.poses()[kStops - 2]);
+  EXPECT_EQ(round.kept.best()->T_map_stop[kKeptStops - 2], round.map.poses()[kKeptStops - 2]);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@
 
 namespace topogeo::devices {
 
-/// What differs between the two lasers.
+/// The differences between the two lasers.
 struct LdsFormat {
   std::size_t readings = 0;       ///< of a packet, one degree apart
   std::size_t reading_bytes = 0;  ///< of one reading

@@ -45,7 +45,7 @@ struct TextBaseBattery {
 [[nodiscard]] std::string to_line(const TextBaseReport& report);
 [[nodiscard]] std::string to_line(const TextBaseBattery& battery);
 
-/// What a line holds; nothing in any of them: the base knows a message that we do not.
+/// The content of a line. All parts are empty for a message that only the base knows.
 struct TextBaseMessage {
   std::optional<TextBaseHello> hello;
   std::optional<TextBaseReport> report;

@@ -15,8 +15,8 @@ class TurnClock {
   explicit TurnClock(std::int64_t transmission_ns);
 
   /// Host time at which the laser measured the last beam of a packet that arrived at `arrival_ns`
-  /// and was read at `read_ns`. By its speed or samples, `passed_ns` have passed since the last
-  /// packet; a turn takes `turn_ns`. After a gap in which whole turns may have been lost the
+  /// and was read at `read_ns`. `passed_ns` have passed since the last packet, by its speed or
+  /// samples; a turn takes `turn_ns`. After a gap in which whole turns may have been lost the
   /// packets of a tenth of a second give no time, because only later ones show how late they come.
   [[nodiscard]] std::optional<std::int64_t> at(std::int64_t passed_ns, std::int64_t turn_ns,
                                                std::int64_t arrival_ns, std::int64_t read_ns);

@@ -1,5 +1,5 @@
-// What drivers of lasers that send packets without further requests share: the port, orders that
-// start the laser, silence and restart, and the scans of whole turns.
+// The common part of drivers of lasers that send packets without further requests: the port, orders
+// that start the laser, silence and restart, and the scans of whole turns.
 #pragma once
 
 #include <cstdint>

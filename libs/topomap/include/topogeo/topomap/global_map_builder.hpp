@@ -7,8 +7,8 @@
 // inside its field of view but that it did not see. The map is the ridge of the votes, so a branch
 // is the mean of all views that saw it, a door seen open later adds its branch (fig. 8.9), and a
 // false branch loses to views that look well into its place and do not have it. Where few views do,
-// as behind the leaf of fig. 8.8, it stays. Nodes are fused as in the Thesis: equivalent ones merge to
-// the mean of position (7.25) and clearance (7.26), neighbouring ones collapse (fig. 8.10). The
+// as behind the leaf of fig. 8.8, it stays. Nodes are fused as in the Thesis: equivalent ones merge
+// to the mean of position (7.25) and clearance (7.26), neighbouring ones collapse (fig. 8.10). The
 // trade-off: branches closer together than about twice `vote_radius_m` become one. `fusion: pairs`
 // joins as printed in the Thesis, for comparison.
 //

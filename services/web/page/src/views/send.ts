@@ -214,7 +214,7 @@ export class SendView implements ViewPart {
     );
   }
 
-  // Of the last goal; the robot looks anywhere without one.
+  // The heading at the last goal; the robot looks anywhere without one.
   private heading_field(): HTMLElement {
     const choice = this.choices[this.choices.length - 1];
     const { heading_rad } = choice.goal;

@@ -7,8 +7,6 @@
 // second, at walking pace (1.2 m/s, 90 degrees/s in turns). The map is that of `topogeo map`, by
 // odometry from the scans. A loop counts as closed if places that are seen again have a relative
 // error of 0.10 m or less. Prints a row for each sort of floor.
-#include "localization/hand_held.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -26,6 +24,8 @@
 #include "topogeo/pipeline/trajectory_error.hpp"
 #include "topogeo/simulation/random_floors.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
+
+#include "localization/hand_held.hpp"
 
 namespace {
 
@@ -54,7 +54,7 @@ simulation::SimulatedLog walk(const world::World& world, std::uint64_t seed, Mot
   return localization::test::skewed(std::move(ticks), motion == MotionInScan::kKnownTimes);
 }
 
-struct Outcome {
+struct HandHeldMap {
   std::size_t scans = 0;
   std::size_t placed = 0;
   std::ptrdiff_t loops = 0;
@@ -63,7 +63,7 @@ struct Outcome {
   std::optional<double> loop_m;  ///< none: no place is seen again
 };
 
-Outcome map_of(const simulation::SimulatedLog& log) {
+HandHeldMap map_of(const simulation::SimulatedLog& log) {
   const pipeline::Config config;
   std::size_t next = 0;
   pipeline::ScanFeed feed(
@@ -83,40 +83,41 @@ Outcome map_of(const simulation::SimulatedLog& log) {
   const pipeline::TrajectoryError error = pipeline::trajectory_error(placed, truth);
   const auto loop_closures =
       std::ranges::count(document.edges, storage::MapEdge::Kind::kLoop, &storage::MapEdge::kind);
-  Outcome outcome{log.scans.size(), placed.size(), loop_closures, feed.laser_counts()->breaks,
-                  error.rms_m,      std::nullopt};
+  HandHeldMap outcome{log.scans.size(), placed.size(), loop_closures, feed.laser_counts()->breaks,
+                      error.rms_m,      std::nullopt};
   if (error.loop) outcome.loop_m = error.loop->mean_m;
   return outcome;
 }
 
-double largest(const std::vector<Outcome>& outcomes) {
-  return std::ranges::max_element(outcomes, {}, &Outcome::rms_m)->rms_m;
+double largest(const std::vector<HandHeldMap>& outcomes) {
+  return std::ranges::max_element(outcomes, {}, &HandHeldMap::rms_m)->rms_m;
 }
 
-double median(const std::vector<Outcome>& outcomes) {
+double median(const std::vector<HandHeldMap>& outcomes) {
   std::vector<double> rms_m;
-  for (const Outcome& outcome : outcomes) rms_m.push_back(outcome.rms_m);
+  rms_m.reserve(outcomes.size());
+  for (const HandHeldMap& outcome : outcomes) rms_m.push_back(outcome.rms_m);
   std::ranges::nth_element(rms_m, rms_m.begin() + static_cast<std::ptrdiff_t>(rms_m.size() / 2));
   return rms_m[rms_m.size() / 2];
 }
 
-void print_row(const char* name, const std::vector<Outcome>& outcomes) {
+void print_row(const char* name, const std::vector<HandHeldMap>& outcomes) {
   const auto right = std::ranges::count_if(
-      outcomes, [](const Outcome& outcome) { return outcome.rms_m <= kRight_m; });
+      outcomes, [](const HandHeldMap& outcome) { return outcome.rms_m <= kRight_m; });
   const auto open = std::ranges::count_if(
-      outcomes, [](const Outcome& outcome) { return outcome.loop_m.value_or(0.0) > kRight_m; });
-  const auto broken =
-      std::ranges::count_if(outcomes, [](const Outcome& outcome) { return outcome.breaks > 0; });
+      outcomes, [](const HandHeldMap& outcome) { return outcome.loop_m.value_or(0.0) > kRight_m; });
+  const auto broken = std::ranges::count_if(
+      outcomes, [](const HandHeldMap& outcome) { return outcome.breaks > 0; });
   std::printf("| %s | %zu | %td | %td | %td | %.3f | %.3f |\n", name, outcomes.size(), right, open,
               broken, median(outcomes), largest(outcomes));
 }
 
 int run(std::uint64_t floors, std::uint64_t first_seed, MotionInScan motion, bool verbose) {
-  std::array<std::vector<Outcome>, kKinds.size()> outcomes;
+  std::array<std::vector<HandHeldMap>, kKinds.size()> outcomes;
   for (std::uint64_t i = 0; i < floors; ++i) {
     const std::size_t kind = i % kKinds.size();
     const std::uint64_t seed = first_seed + i;
-    const Outcome& outcome =
+    const HandHeldMap& outcome =
         outcomes.at(kind).emplace_back(map_of(walk(kKinds.at(kind).make(seed), seed, motion)));
     if (!verbose) continue;
     std::printf(
