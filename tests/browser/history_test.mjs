@@ -81,7 +81,7 @@ test("a loop of a stored map shows both local maps laid on each other", async ()
   const row = page.locator(".loops .row-title").first();
   const [, later, earlier] = /Scan point (\d+) at scan point (\d+)/.exec(await row.innerText());
   await row.click();
-  await text(".loop-detail dt", /in the earlier one's view/);
+  await text(".loop-detail dt", /in the earlier one/);
   const shares = await page.locator(".loop-detail dd").allInnerTexts();
   const [overlap, near] = shares.slice(2, 4).map((share) => Number(/^(\d+) %$/.exec(share)?.[1]));
   assert.ok(overlap > 5 && near > 80, shares.join("; ")); // it was accepted, perhaps looking elsewhere
