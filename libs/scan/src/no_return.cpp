@@ -160,6 +160,15 @@ std::optional<NoReturn> NoReturnFinder::find() const {
   return no_return_at(histogram, top->bin, readings_);
 }
 
+void NoReturnSearch::add(std::span<const float> ranges_m, const geometry::Pose2& T_odom_robot) {
+  by_odometry_.add(ranges_m, T_odom_robot);
+  if (!has_moved()) by_views_.add_without_odometry(ranges_m);
+}
+
+std::optional<NoReturn> NoReturnSearch::find() const {
+  return has_moved() ? by_odometry_.find() : by_views_.find();
+}
+
 bool NoReturnWatch::add(std::span<const float> ranges_m, const geometry::Pose2& T_odom_robot) {
   if (found_) return false;
   finder_.add(ranges_m, T_odom_robot);

@@ -154,14 +154,12 @@ void ScanCheck::compare_readings(const Scan& scan) {
 
 void ScanCheck::count_readings(const Scan& scan) {
   no_return_.add(scan.ranges_m, scan.T_odom_robot);
-  no_return_by_views_.add_without_odometry(scan.ranges_m);
   readings_ += scan.ranges_m.size();
   empty_ += static_cast<std::uint64_t>(std::ranges::count(scan.ranges_m, Scan::kNoReturn));
 }
 
 LogCheck ScanCheck::finish() {
-  const bool has_moved = no_return_.places() > 1;
-  check_.no_return = has_moved ? no_return_.find() : no_return_by_views_.find();
+  check_.no_return = no_return_.find();
   if (readings_ > 0) {
     check_.empty_share = static_cast<double>(empty_) / static_cast<double>(readings_);
   }

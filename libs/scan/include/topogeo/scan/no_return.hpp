@@ -77,6 +77,23 @@ class NoReturnFinder {
   std::uint32_t places_ = 0;
 };
 
+/// Looks for the value in a whole log, whose odometry may be missing or stand.
+class NoReturnSearch {
+ public:
+  /// Takes a scan, in order of time, like NoReturnFinder.
+  void add(std::span<const float> ranges_m, const geometry::Pose2& T_odom_robot);
+  /// Whether no further scan changes the answer.
+  [[nodiscard]] bool is_full() const { return by_odometry_.is_full(); }
+  /// The answer by the places of the odometry, or by those of the views if it has never moved.
+  [[nodiscard]] std::optional<NoReturn> find() const;
+
+ private:
+  [[nodiscard]] bool has_moved() const { return by_odometry_.places() > 1; }
+
+  NoReturnFinder by_odometry_;
+  NoReturnFinder by_views_;
+};
+
 /// Looks for the value while the robot drives.
 class NoReturnWatch {
  public:

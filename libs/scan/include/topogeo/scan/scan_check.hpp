@@ -42,8 +42,7 @@ class ScanCheck {
   std::uint64_t line_ = 0;
   std::optional<Scan> last_;
   std::uint32_t identical_ = 1;
-  NoReturnFinder no_return_;
-  NoReturnFinder no_return_by_views_;  // for odometry that stands
+  NoReturnSearch no_return_;
   std::uint64_t readings_ = 0;
   std::uint64_t empty_ = 0;                  // of these
   std::vector<std::int64_t> periods_ns_;     // between two scans, if positive
