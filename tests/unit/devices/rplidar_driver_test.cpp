@@ -10,6 +10,7 @@
 #include "topogeo/devices/ldrobot_packet.hpp"
 #include "topogeo/simulation/rplidar_emulator.hpp"
 
+#include "turning_laser_faults.hpp"
 #include "turning_laser_on_line.hpp"
 
 namespace topogeo::devices {
@@ -132,103 +133,44 @@ TEST(RpLidarDriver, AnotherRateOrLaserIsNamed) {
   EXPECT_TRUE(laser.scans.empty());
 }
 
-struct RpFault {
-  const char* name;
-  void (*inject)(RpOnLine&, support::Random&);
-  std::int64_t allowed_ns;  ///< until the next scan
-  bool counted;             ///< in the drops of the driver
-};
-
-std::int64_t rp_between(support::Random& random, std::int64_t low_ns, std::int64_t high_ns) {
-  return low_ns +
-         static_cast<std::int64_t>(random.below(static_cast<std::uint64_t>(high_ns - low_ns)));
-}
-
-template <LaserFault kFault, int kMost>
-void rp_strike(RpOnLine& laser, support::Random& random) {
-  laser.emulator.faults().inject(kFault, 1 + static_cast<int>(random.below(kMost)));
-  while (laser.emulator.faults().pending(kFault) > 0) laser.run_for(8 * kRpTestMs_ns);
-}
-
-void rp_unplug(RpOnLine& laser, support::Random& random) {
-  laser.line.unplug();
-  laser.run_for(rp_between(random, kRpTestMs_ns, 2 * kRpTestSecond_ns));
-  laser.line.plug_in();
-}
-
-void rp_silence(RpOnLine& laser, support::Random& random) {
-  laser.emulator.fall_silent(laser.line.now_ns());
-  laser.run_for(rp_between(random, 50 * kRpTestMs_ns, 2 * kRpTestSecond_ns));
-  laser.emulator.speak_again(laser.line.now_ns());
-}
+using RpFault = TurningLaserFault<RpOnLine>;
 
 void rp_restart(RpOnLine& laser, support::Random& /*random*/) {
   laser.emulator.switch_off();
   laser.emulator.switch_on(laser.line.now_ns());
 }
 
-/// Bytes of another laser instead of its own.
-void rp_other_laser(RpOnLine& laser, support::Random& random) {
-  bool done = false;
-  laser.line.set_filter([&](std::vector<std::uint8_t>& bytes) {
-    if (done || bytes.empty()) return;
-    LdPacket packet;
-    packet.start_cdeg = static_cast<std::uint16_t>(random.below(kLdTurnCdeg));
-    packet.time_ms = static_cast<std::uint16_t>(random.below(kLdTimeWrap_ms));
-    for (LdPoint& point : packet.points) point = {12'345, 200};
-    bytes = ld_bytes(packet);
-    done = true;
-  });
-  while (!done) laser.run_for(kRpTestMs_ns);
-  laser.line.set_filter({});
+std::vector<std::uint8_t> bytes_of_an_ld19(support::Random& random) {
+  LdPacket packet;
+  packet.start_cdeg = static_cast<std::uint16_t>(random.below(kLdTurnCdeg));
+  packet.time_ms = static_cast<std::uint16_t>(random.below(kLdTimeWrap_ms));
+  for (LdPoint& point : packet.points) point = {12'345, 200};
+  return ld_bytes(packet);
 }
 
 class RpLidarFaults : public testing::TestWithParam<RpFault> {};
 
 TEST_P(RpLidarFaults, AThousandTimes) {
-  const RpFault& fault = GetParam();
-  support::Random random(4);
   // A line with room for the bytes of the faults: on a full one every packet would stay late.
   const RpLidarEmulatorSettings fast{.line = {256'000, Parity::kNone}};
   TurningLaserSettings turning;
   turning.beams = 720;
   RpOnLine laser({}, fast, turning, "rplidar_a3");
-  laser.line.plug_in();
-  ASSERT_TRUE(laser.run_for_scans(3, 5 * kRpTestSecond_ns));
-  const auto drops = [&laser] {
-    const LaserHealth health = laser.driver.health();
-    std::uint64_t sum = health.searches;
-    for (const auto& [reason, count] : health.drops) sum += count;
-    return sum;
-  };
-  std::size_t late = 0;
-  std::size_t silently = 0;
-  for (int time = 0; time < 1000; ++time) {
-    laser.run_for(rp_between(random, 0, 200 * kRpTestMs_ns));
-    const std::uint64_t before = drops();
-    fault.inject(laser, random);
-    if (!laser.run_for_scans(1, fault.allowed_ns)) ++late;
-    laser.run_for(100 * kRpTestMs_ns);
-    if (fault.counted && drops() == before) ++silently;
-    laser.scans.clear();
-  }
-  EXPECT_EQ(laser.wrong_scans, 0U);
-  EXPECT_EQ(late, 0U);
-  EXPECT_EQ(silently, 0U);
+  expect_no_wrong_scan(laser, GetParam(), {5 * kRpTestSecond_ns, 100 * kRpTestMs_ns});
 }
 
 INSTANTIATE_TEST_SUITE_P(
     All, RpLidarFaults,
     testing::Values(
-        RpFault{"BadChecksum", rp_strike<LaserFault::kBadChecksum, 5>, kRpTestSecond_ns, true},
-        RpFault{"Truncated", rp_strike<LaserFault::kTruncated, 5>, kRpTestSecond_ns, true},
-        RpFault{"Noise", rp_strike<LaserFault::kGarbage, 5>, kRpTestSecond_ns, true},
-        RpFault{"Doubled", rp_strike<LaserFault::kDoubled, 5>, kRpTestSecond_ns, true},
-        RpFault{"Stuck", rp_strike<LaserFault::kStuckScan, 20>, 2 * kRpTestSecond_ns, true},
-        RpFault{"WrongModel", rp_other_laser, kRpTestSecond_ns, true},
-        RpFault{"Unplugged", rp_unplug, 3 * kRpTestSecond_ns, false},
-        RpFault{"Silent", rp_silence, 12 * kRpTestSecond_ns, true},
-        RpFault{"Restarted", rp_restart, 12 * kRpTestSecond_ns, true}),
+        RpFault{"BadChecksum", struck_by<RpOnLine>(LaserFault::kBadChecksum, 5), kRpTestSecond_ns},
+        RpFault{"Truncated", struck_by<RpOnLine>(LaserFault::kTruncated, 5), kRpTestSecond_ns},
+        RpFault{"Noise", struck_by<RpOnLine>(LaserFault::kGarbage, 5), kRpTestSecond_ns},
+        RpFault{"Doubled", struck_by<RpOnLine>(LaserFault::kDoubled, 5), kRpTestSecond_ns},
+        RpFault{"Stuck", struck_by<RpOnLine>(LaserFault::kStuckScan, 20), 2 * kRpTestSecond_ns},
+        RpFault{"WrongModel", other_laser<RpOnLine>(bytes_of_an_ld19), kRpTestSecond_ns},
+        RpFault{"Unplugged", unplug_for_a_while<RpOnLine>, 3 * kRpTestSecond_ns, false},
+        RpFault{"Silent", silence_for_a_while<RpOnLine>, 12 * kRpTestSecond_ns},
+        RpFault{"Restarted", rp_restart, 12 * kRpTestSecond_ns}),
     [](const auto& fault) { return std::string(fault.param.name); });
 
 }  // namespace
