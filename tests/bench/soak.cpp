@@ -13,7 +13,6 @@
 // memory of each service must stay within 5 % of its value at the end of the warm-up, plus 1 MB for
 // noise between samples; open files and shared memory must not grow at all; and after the end no
 // shared memory of the services may remain. Exits with 1 when something grew.
-// something grew.
 #include <algorithm>
 #include <chrono>
 #include <csignal>

@@ -122,7 +122,8 @@ def reached_tests(files, targets, compiled_by, tests, root, readers=frozenset())
             direct |= targets.of_folders(path) | readers
             folders.add(os.path.dirname(path))
     reached = targets.with_users(direct)
-    # All scripts share tests/container/common.sh; tests of containers use the files of deploy/.
+    # All scripts share tests/container/common.sh; tests of containers use the files of deploy/; integration.examples
+    # uses those of examples/.
     all_scripts = bool(targets.in_services(reached)) or "tests/container/common.sh" in files
     deployed = any(path.startswith("deploy/") for path in files)
     names = set()
@@ -133,8 +134,8 @@ def reached_tests(files, targets, compiled_by, tests, root, readers=frozenset())
             hit = runner
         elif script:
             hit = all_scripts or (deployed and home == "tests/container") or any(
-                (folder + "/").startswith(home + "/") or folder == "tests/" + test["name"].split(".")[0]
-                for folder in folders)
+                (folder + "/").startswith(home + "/") or folder == "tests/" + test["name"].split(".")[0] or
+                folder.split("/")[0] == test["name"].split(".")[1] for folder in folders)
         else:
             hit = os.path.basename(test.get("command", [""])[0]) in reached
         if hit:
