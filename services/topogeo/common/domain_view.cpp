@@ -12,8 +12,8 @@
 #include "topogeo/support/patience.hpp"
 
 #include "common/collect_window.hpp"
-#include "live/elsewhere.hpp"
-#include "live/host_processes.hpp"
+#include "common/elsewhere.hpp"
+#include "common/host_processes.hpp"
 
 namespace topogeo::cli {
 namespace {

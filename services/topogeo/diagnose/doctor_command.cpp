@@ -16,11 +16,11 @@
 
 #include "commands.hpp"
 #include "common/domain_view.hpp"
+#include "common/elsewhere.hpp"
+#include "common/host_processes.hpp"
 #include "common/host_units.hpp"
 #include "diagnose/domain_checks.hpp"
 #include "diagnose/machine_checks.hpp"
-#include "live/elsewhere.hpp"
-#include "live/host_processes.hpp"
 
 namespace topogeo::cli {
 namespace {

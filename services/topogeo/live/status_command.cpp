@@ -15,8 +15,8 @@
 
 #include "commands.hpp"
 #include "common/domain_view.hpp"
+#include "common/host_processes.hpp"
 #include "common/host_units.hpp"
-#include "live/host_processes.hpp"
 #include "live/status_table.hpp"
 #include "live/unheard_services.hpp"
 

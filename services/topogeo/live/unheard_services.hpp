@@ -18,7 +18,7 @@
 #include "topogeo/messaging/events.hpp"
 #include "topogeo/msg/status.h"
 
-#include "live/host_processes.hpp"
+#include "common/host_processes.hpp"
 
 namespace topogeo::cli {
 

@@ -7,7 +7,7 @@
 #include "topogeo/messaging/discovery.hpp"
 
 #include "common/domain_view.hpp"
-#include "live/host_processes.hpp"
+#include "common/host_processes.hpp"
 
 namespace topogeo::cli {
 

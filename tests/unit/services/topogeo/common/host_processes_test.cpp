@@ -1,5 +1,5 @@
 // Services among the processes of a host, from a folder like /proc.
-#include "topogeo/live/host_processes.hpp"
+#include "topogeo/common/host_processes.hpp"
 
 #include <filesystem>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include "live/elsewhere.hpp"
+#include "common/elsewhere.hpp"
 
 #include <cstdint>
 #include <map>

@@ -1,5 +1,5 @@
 // A command that hears nothing, and services with other settings.
-#include "topogeo/live/elsewhere.hpp"
+#include "topogeo/common/elsewhere.hpp"
 
 #include <vector>
 

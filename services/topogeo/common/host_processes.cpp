@@ -1,4 +1,4 @@
-#include "live/host_processes.hpp"
+#include "common/host_processes.hpp"
 
 #include <algorithm>
 #include <charconv>
