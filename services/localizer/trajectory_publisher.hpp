@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "topogeo/localization/mapping/loop_decision.hpp"
+#include "topogeo/localization/loop/loop_decision.hpp"
 #include "topogeo/localization/mapping/slam.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/trajectory.h"

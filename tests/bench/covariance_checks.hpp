@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/mapping/loop_decision.hpp"
+#include "topogeo/localization/loop/loop_decision.hpp"
 #include "topogeo/localization/mapping/pose_graph.hpp"
 
 namespace topogeo::bench {

@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "topogeo/localization/mapping/loop_decision.hpp"
+#include "topogeo/localization/loop/loop_decision.hpp"
 #include "topogeo/localization/matching/match_features.hpp"
 #include "topogeo/localization/matching/match_gate.hpp"
 #include "topogeo/localization/matching/refinement.hpp"

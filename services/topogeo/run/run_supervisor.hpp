@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/mapping/loop_decision.hpp"
+#include "topogeo/localization/loop/loop_decision.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/msg/status.h"
 #include "topogeo/msg/stream.h"

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "topogeo/localization/loop/look_alikes.hpp"
 #include "topogeo/localization/mapping/drive_join.hpp"
-#include "topogeo/localization/mapping/look_alikes.hpp"
 #include "topogeo/localization/matching/match_gate.hpp"
 
 #include "link_covariances.hpp"

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
+#include "topogeo/localization/loop/stop_match.hpp"
 #include "topogeo/localization/mapping/covariance_calibration.hpp"
 #include "topogeo/localization/mapping/pose_graph.hpp"
-#include "topogeo/localization/mapping/stop_match.hpp"
 #include "topogeo/localization/places/place_recognition.hpp"
 
 namespace topogeo::localization {

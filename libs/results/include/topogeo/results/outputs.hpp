@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "topogeo/localization/mapping/loop_decision.hpp"
+#include "topogeo/localization/loop/loop_decision.hpp"
 #include "topogeo/localization/mapping/slam.hpp"
 #include "topogeo/pipeline/stop_overlaps.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"

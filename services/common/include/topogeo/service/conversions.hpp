@@ -16,8 +16,8 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/loop/loop_decision.hpp"
 #include "topogeo/localization/mapping/localization_state.hpp"
-#include "topogeo/localization/mapping/loop_decision.hpp"
 #include "topogeo/localization/matching/match.hpp"
 #include "topogeo/msg/local_map.h"
 #include "topogeo/msg/map_update.h"

@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "topogeo/localization/mapping/loop_decision.hpp"
+#include "topogeo/localization/loop/loop_decision.hpp"
 #include "topogeo/msg/trajectory.h"
 
 namespace topogeo::service {

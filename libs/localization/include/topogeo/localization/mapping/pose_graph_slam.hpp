@@ -18,9 +18,9 @@
 
 #include <Eigen/Core>
 
+#include "topogeo/localization/loop/loop_closing.hpp"
 #include "topogeo/localization/mapping/graph_optimization.hpp"
 #include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/mapping/loop_closing.hpp"
 #include "topogeo/localization/mapping/odometry_steps.hpp"
 #include "topogeo/localization/mapping/optimization_schedule.hpp"
 #include "topogeo/localization/mapping/pose_graph.hpp"

@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include "topogeo/localization/loop/loop_decision.hpp"
 #include "topogeo/localization/mapping/localization_state.hpp"
-#include "topogeo/localization/mapping/loop_decision.hpp"
 #include "topogeo/localization/mapping/match_counts.hpp"
 #include "topogeo/localization/mapping/pose_graph.hpp"
 #include "topogeo/topomap/local_map.hpp"

@@ -14,13 +14,13 @@
 #include <span>
 #include <vector>
 
+#include "topogeo/localization/loop/stop_match.hpp"
 #include "topogeo/localization/mapping/candidate_choice.hpp"
 #include "topogeo/localization/mapping/covariance_calibration.hpp"
 #include "topogeo/localization/mapping/localizer_config.hpp"
 #include "topogeo/localization/mapping/match_requests.hpp"
 #include "topogeo/localization/mapping/pose_graph.hpp"
 #include "topogeo/localization/mapping/stop_comparisons.hpp"
-#include "topogeo/localization/mapping/stop_match.hpp"
 #include "topogeo/localization/matching/match.hpp"
 #include "topogeo/localization/matching/match_features.hpp"
 #include "topogeo/localization/places/place_recognition.hpp"

@@ -12,7 +12,7 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/mapping/loop_search.hpp"
+#include "topogeo/localization/loop/loop_search.hpp"
 #include "topogeo/localization/matching/odometry_model.hpp"
 #include "topogeo/localization/thesis/backward_config.hpp"
 #include "topogeo/localization/thesis/solution_store.hpp"

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/loop/loop_decision.hpp"
 #include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/mapping/loop_decision.hpp"
 #include "topogeo/localization/thesis/backward_correction.hpp"
 #include "topogeo/localization/thesis/kept_solutions.hpp"
 #include "topogeo/localization/thesis/thesis_map.hpp"

@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/loop_decision.hpp"
+#include "topogeo/localization/loop/loop_decision.hpp"
 
 #include <array>
 

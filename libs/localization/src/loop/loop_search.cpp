@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/loop_search.hpp"
+#include "topogeo/localization/loop/loop_search.hpp"
 
 #include <algorithm>
 #include <array>

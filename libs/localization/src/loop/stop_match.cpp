@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/stop_match.hpp"
+#include "topogeo/localization/loop/stop_match.hpp"
 
 #include <algorithm>
 

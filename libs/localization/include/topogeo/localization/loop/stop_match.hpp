@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/localization/mapping/loop_decision.hpp"
-#include "topogeo/localization/mapping/loop_probability.hpp"
+#include "topogeo/localization/loop/loop_decision.hpp"
+#include "topogeo/localization/loop/loop_probability.hpp"
 #include "topogeo/localization/mapping/pose_graph.hpp"
 #include "topogeo/localization/mapping/state_monitor.hpp"
 #include "topogeo/localization/matching/match.hpp"

@@ -1,9 +1,9 @@
-#include "topogeo/localization/mapping/loop_closing.hpp"
+#include "topogeo/localization/loop/loop_closing.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "topogeo/localization/mapping/closing_check.hpp"
+#include "topogeo/localization/loop/closing_check.hpp"
 
 namespace topogeo::localization {
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/closing_check.hpp"
+#include "topogeo/localization/loop/closing_check.hpp"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/look_alikes.hpp"
+#include "topogeo/localization/loop/look_alikes.hpp"
 
 #include <algorithm>
 

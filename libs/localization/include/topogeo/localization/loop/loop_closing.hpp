@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/loop/loop_agreement.hpp"
+#include "topogeo/localization/loop/loop_decision.hpp"
+#include "topogeo/localization/loop/stop_match.hpp"
 #include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/mapping/loop_agreement.hpp"
-#include "topogeo/localization/mapping/loop_decision.hpp"
 #include "topogeo/localization/mapping/pose_graph.hpp"
-#include "topogeo/localization/mapping/stop_match.hpp"
 
 namespace topogeo::localization {
 

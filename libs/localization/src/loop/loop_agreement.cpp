@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/loop_agreement.hpp"
+#include "topogeo/localization/loop/loop_agreement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <optional>
 #include <set>
 
+#include "topogeo/localization/loop/loop_probability.hpp"
 #include "topogeo/localization/mapping/covariance_calibration.hpp"
-#include "topogeo/localization/mapping/loop_probability.hpp"
 #include "topogeo/localization/matching/match_gate.hpp"
 #include "topogeo/localization/places/place_recognition.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/mapping/loop_probability.hpp"
+#include "topogeo/localization/loop/loop_probability.hpp"
 #include "topogeo/localization/matching/match.hpp"
 #include "topogeo/localization/matching/odometry_model.hpp"
 

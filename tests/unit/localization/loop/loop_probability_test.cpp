@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/loop_probability.hpp"
+#include "topogeo/localization/loop/loop_probability.hpp"
 
 #include <cmath>
 
