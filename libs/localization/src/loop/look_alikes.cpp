@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/loop/loop_config.hpp"
 
 namespace topogeo::localization {
 
 void refuse_look_alikes(std::vector<StopMatch>& matches, const OdometrySteps& steps) {
   const auto found_far = [](const StopMatch& match) { return match.widened && match.accepted(); };
   if (std::any_of(matches.begin(), matches.end(), [&](const StopMatch& match) {
-        return found_far(match) && steps.allow(match.edge, geometry::kMahalanobis2Of99Percent);
+        return found_far(match) && steps.allow(match.edge, LookAlikeLimits::kAllowed2);
       })) {
     return;
   }

@@ -7,9 +7,9 @@
 #include <optional>
 #include <set>
 
+#include "topogeo/localization/loop/loop_config.hpp"
 #include "topogeo/localization/loop/loop_probability.hpp"
 #include "topogeo/localization/mapping/covariance_calibration.hpp"
-#include "topogeo/localization/matching/match_gate.hpp"
 #include "topogeo/localization/places/place_recognition.hpp"
 
 namespace topogeo::localization {
@@ -18,35 +18,16 @@ using geometry::Pose2;
 
 namespace {
 
-// Over a longer path odometry is too uncertain for a contradiction between two loops.
-constexpr double kFarthest_m = 25.0;
-constexpr double kFarOff_m = 5.0;  // round trips over two agreeing loops end nearer to their start
-constexpr double kAgree = 7.8;     // 95 % of right pairs (chi-square, three degrees of freedom)
-// Path between two stops that count once each: nearer stops see much the same, and each of more
-// distant ones sees more that is new.
-constexpr double kCountedApart_m = 0.75;
-constexpr double kLeastShare = 0.6;
-constexpr double kMostShare = 1.5;
+using PairLimits = LoopAgreementLimits;
+using Weights = AgreementWeights;
+
 // Weight of a window for each metre of path that only it contains: a full window weighs as much as
 // the most that a stop does.
-constexpr double kShareOfWindow = kMostShare / PlaceRecognition::kQuery_m;
-// Less than for a robot that may be anywhere in a map (AgreementWeights::kWanted), because the
-// prediction is evidence too. A set that contradicts the prediction needs more, per logarithm of
-// the squared Mahalanobis distance, because predictions are far off more often than a Gaussian
-// allows.
-constexpr double kWanted = 3.0;
-constexpr double kPerSurprise = 0.75;
-constexpr double kOverRival = 2.0;  // required weight of an accepted set over its rivals
-// Required of each match in a set that agrees with the prediction: less probable ones are less
-// accurate than the rest of their set, and one in fifty of them is more than half a metre off.
-constexpr double kLeastProbability = 0.98;
-constexpr std::size_t kRivalSeeds = 8;
-// Older hypotheses had their chance: this bounds the work of a step.
-constexpr double kForgotten_m = 60.0;
+constexpr double kShareOfWindow = Weights::kMostShare / PlaceRecognition::kQuery_m;
 
 /// Whether the path between two stops is too long for odometry.
 bool far_apart(std::span<const double> path_m, std::uint32_t a, std::uint32_t b) {
-  return std::fabs(path_m[a] - path_m[b]) > kFarthest_m;
+  return std::fabs(path_m[a] - path_m[b]) > PairLimits::kFarthest_m;
 }
 
 /// Distance by which the round trip over two loops misses its start, metres.
@@ -66,7 +47,8 @@ double disagreement(const PoseGraph& graph, const PoseGraphEdge& a, const PoseGr
     return std::numeric_limits<double>::infinity();
   }
   // Most pairs are far from agreement, which is visible without covariances.
-  if (off_by_way_of(graph, a, b) > kFarOff_m) return std::numeric_limits<double>::infinity();
+  if (off_by_way_of(graph, a, b) > PairLimits::kFarOff_m)
+    return std::numeric_limits<double>::infinity();
   return disagreement(graph, a, b, graph.along_path(b.from, a.from));
 }
 
@@ -80,20 +62,18 @@ double disagreement(const PoseGraph& graph, const PoseGraphEdge& a, const PoseGr
 }
 
 void LoopAgreement::add(const StopMatch& match, std::span<const double> path_m) {
-  keep({match, match.accepted() ? AgreementWeights::kPassed : AgreementWeights::kDoubtful, true,
-        false},
-       path_m);
+  keep({match, match.accepted() ? Weights::kPassed : Weights::kDoubtful, true, false}, path_m);
 }
 
 void LoopAgreement::add_accepted(const StopMatch& match, std::span<const double> path_m) {
-  keep({match, AgreementWeights::kPassed, false, true}, path_m);
+  keep({match, Weights::kPassed, false, true}, path_m);
 }
 
 void LoopAgreement::keep(Hypothesis hypothesis, std::span<const double> path_m) {
   const PoseGraphEdge& edge = hypothesis.match.edge;
   std::erase_if(hypotheses_, [&](const Hypothesis& h) {
     return (h.match.edge.from == edge.from && h.match.edge.to == edge.to) ||
-           path_m[edge.to] - path_m[h.match.edge.to] > kForgotten_m;
+           path_m[edge.to] - path_m[h.match.edge.to] > PairLimits::kForgotten_m;
   });
   hypotheses_.push_back(std::move(hypothesis));
 }
@@ -102,7 +82,8 @@ double LoopAgreement::disagreement(std::size_t a, std::size_t b, const Ways& way
   const PoseGraphEdge& first = edge_of(a);
   const PoseGraphEdge& second = edge_of(b);
   if (!far_apart(ways.path_m, first.from, second.from)) {
-    return localization::disagreement(ways.graph, first, second, ways.path_m, kFarthest_m);
+    return localization::disagreement(ways.graph, first, second, ways.path_m,
+                                      PairLimits::kFarthest_m);
   }
   const UncertainPose* const T_seed_first = ways.T_seed_stop.find(first.from);
   const UncertainPose* const T_seed_second = ways.T_seed_stop.find(second.from);
@@ -123,14 +104,14 @@ std::vector<std::uint32_t> LoopAgreement::other_visits(std::size_t seed, const W
   for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
     const PoseGraphEdge& edge = edge_of(i);
     if (far_apart(ways.path_m, edge.to, seed_edge.to) ||
-        off_by_way_of(ways.graph, edge, seed_edge) > kFarOff_m) {
+        off_by_way_of(ways.graph, edge, seed_edge) > PairLimits::kFarOff_m) {
       continue;
     }
     near.push_back(i);
     others |= far_apart(ways.path_m, edge.from, seed_edge.from);
   }
   std::vector<std::uint32_t> stops;
-  if (!others || weight_of(near, ways.path_m) < kWanted) return stops;
+  if (!others || weight_of(near, ways.path_m) < Weights::kWantedOfLoop) return stops;
   for (const std::size_t i : near) stops.push_back(edge_of(i).from);
   std::sort(stops.begin(), stops.end());
   stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
@@ -149,7 +130,7 @@ LoopAgreement::Set LoopAgreement::set_around(std::size_t seed, std::span<const s
   for (const std::size_t i : among) {
     if (i == seed) continue;
     const double apart = disagreement(i, seed, ways);
-    if (apart <= kAgree) partners.push_back({i, hypotheses_[i].weight, apart});
+    if (apart <= PairLimits::kAgree2) partners.push_back({i, hypotheses_[i].weight, apart});
   }
   std::stable_sort(partners.begin(), partners.end(), [](const Partner& a, const Partner& b) {
     return a.weight != b.weight ? a.weight > b.weight : a.disagreement < b.disagreement;
@@ -157,7 +138,7 @@ LoopAgreement::Set LoopAgreement::set_around(std::size_t seed, std::span<const s
   Set set{seed};
   for (const Partner& partner : partners) {
     const bool all = std::all_of(set.begin() + 1, set.end(), [&](std::size_t other) {
-      return disagreement(partner.index, other, ways) <= kAgree;
+      return disagreement(partner.index, other, ways) <= PairLimits::kAgree2;
     });
     if (all) set.push_back(partner.index);
   }
@@ -189,9 +170,10 @@ double LoopAgreement::weight_of(const Set& set, std::span<const double> path_m) 
   std::optional<double> before_m;
   double windows_until_m = path_m.front();
   for (const auto& [stop, evidence] : of_stop) {
-    const double apart_m = before_m ? path_m[stop] - *before_m : kCountedApart_m;
+    const double apart_m = before_m ? path_m[stop] - *before_m : Weights::kCountedApart_m;
     before_m = path_m[stop];
-    const double share = std::clamp(apart_m / kCountedApart_m, kLeastShare, kMostShare);
+    const double share =
+        std::clamp(apart_m / Weights::kCountedApart_m, Weights::kLeastShare, Weights::kMostShare);
     double window = 0.0;
     if (evidence.window > 0.0) {
       const double from_m = std::max(windows_until_m, path_m[evidence.first_of_window]);
@@ -217,11 +199,12 @@ bool LoopAgreement::spread(const Set& set, std::span<const double> path_m) const
     low_m = std::min(low_m, path_m[hypotheses_[i].match.edge.to]);
     high_m = std::max(high_m, path_m[hypotheses_[i].match.edge.to]);
   }
-  return high_m - low_m >= AgreementWeights::kLeastSpread_m;
+  return high_m - low_m >= Weights::kLeastSpread_m;
 }
 
 bool LoopAgreement::is_heavy(const Set& set, std::span<const double> path_m) const {
-  const double wanted = kWanted + kPerSurprise * std::log1p(surprise_of(set));
+  const double wanted =
+      Weights::kWantedOfLoop + Weights::kPerSurprise * std::log1p(surprise_of(set));
   return weight_of(set, path_m) >= wanted && spread(set, path_m);
 }
 
@@ -244,7 +227,7 @@ LoopAgreement::Set LoopAgreement::rivals_of(std::size_t seed, const Set& set,
       continue;
     }
     const bool agrees = std::any_of(set.begin(), set.end(), [&](std::size_t other) {
-      return disagreement(i, other, ways) <= kAgree;
+      return disagreement(i, other, ways) <= PairLimits::kAgree2;
     });
     if (agrees) continue;
     others.push_back(i);
@@ -271,7 +254,7 @@ LoopAgreement::Set LoopAgreement::rivals_of(std::size_t seed, const Set& set,
     const UncertainPose T_from_nearest =
         compose(inverse(T_seed_stop.at(edge_of(i).from)), T_seed_nearest);
     return localization::disagreement(ways.graph, nearest, edge_of(i), T_from_nearest) >
-           kAgree + surprise;
+           PairLimits::kAgree2 + surprise;
   };
   std::erase_if(others, [&](std::size_t i) { return !elsewhere(i); });
   return others;
@@ -303,11 +286,11 @@ std::vector<StopMatch> LoopAgreement::accepted(const PoseGraph& graph,
       std::stable_sort(rivals.begin(), rivals.end(), [&](std::size_t a, std::size_t b) {
         return hypotheses_[a].weight > hypotheses_[b].weight;
       });
-      for (std::size_t k = 0; k < std::min(kRivalSeeds, rivals.size()); ++k) {
+      for (std::size_t k = 0; k < std::min(PairLimits::kRivalSeeds, rivals.size()); ++k) {
         rival = std::max(rival, weight_of(set_around(rivals[k], rivals, ways), path_m));
       }
-      if (weight < kOverRival * rival) continue;
-      const bool as_predicted = surprise_of(set) <= geometry::kMahalanobis2Of99Percent;
+      if (weight < Weights::kOverRival * rival) continue;
+      const bool as_predicted = surprise_of(set) <= PairLimits::kMostSurprise2;
       for (const std::size_t i : set) {
         // Matches that slid along a corridor agree with the others, but not with the prediction
         // that the others agree with. Windows slide most easily: if they move nothing, stops are
@@ -315,14 +298,15 @@ std::vector<StopMatch> LoopAgreement::accepted(const PoseGraph& graph,
         StopMatch match = hypotheses_[i].match;
         match.agreement = weight;
         match.rival_agreement = rival;
-        if (as_predicted && (match.source == ProposalSource::kWindow ||
-                             match.surprise() > geometry::kMahalanobis2Of99Percent ||
-                             loop_probability(match.loop_evidence()) < kLeastProbability)) {
+        if (as_predicted &&
+            (match.source == ProposalSource::kWindow ||
+             match.surprise() > PairLimits::kMostSurprise2 ||
+             loop_probability(match.loop_evidence()) < PairLimits::kLeastProbability)) {
           continue;
         }
         if (!hypotheses_[i].accepted) out.push_back(std::move(match));
         hypotheses_[i].accepted = true;
-        hypotheses_[i].weight = AgreementWeights::kPassed;
+        hypotheses_[i].weight = Weights::kPassed;
       }
       std::vector<std::size_t> gone;
       for (const std::size_t i : rivals) {

@@ -4,17 +4,13 @@
 #include <cmath>
 
 #include "topogeo/localization/loop/closing_check.hpp"
+#include "topogeo/localization/loop/loop_config.hpp"
 
 namespace topogeo::localization {
 
 using geometry::Pose2;
 
 namespace {
-
-// Two cells of a 5 cm grid: a smaller correction needs no optimisation of its own.
-constexpr double kNoticeable_m = 0.1;
-// Stops until a pending loop is dropped: by then odometry has drifted too far for agreement.
-constexpr std::uint32_t kLongestWait = 12;
 
 // Whether the steps between the two stops of a loop can be bent to meet it.
 bool fits_steps(const PoseGraph& graph, const PoseGraphEdge& loop, double fitness) {
@@ -31,36 +27,46 @@ bool fits_steps(const PoseGraph& graph, const PoseGraphEdge& loop, double fitnes
 
 }  // namespace
 
-double LoopClosing::Correction::distance_m() const {
-  return std::sqrt((T_map_now.position_m() - T_map_corrected.position_m()).squaredNorm());
-}
-
-double LoopClosing::Correction::turn_rad() const {
-  return std::fabs(geometry::wrap_angle(T_map_now.theta_rad - T_map_corrected.theta_rad));
-}
-
-Pose2 LoopClosing::Correction::motion() const {
-  return T_map_corrected * geometry::inverse(T_map_now);
-}
-
 LoopClosing::LoopClosing(const LocalizerConfig& config)
     : unaided_correction_m_(config.unaided_correction_m),
       unaided_correction_rad_(config.unaided_correction_rad) {}
 
-LoopClosing::Correction LoopClosing::correction_of(const PoseGraph& graph,
-                                                   const PoseGraphEdge& loop) {
-  return {graph.poses()[loop.to], graph.poses()[loop.from] * loop.T_from_to};
+LoopClosing::Round LoopClosing::judge(PoseGraph& graph, std::span<const StopMatch> matches,
+                                      std::span<const double> path_m) {
+  Round round;
+  for (const StopMatch& match : matches) {
+    if (match.accepted()) continue;
+    decide(graph, match, LoopOutcome::kGate, match.reason);
+    suppose_if_plausible(match, path_m);
+  }
+  for (const StopMatch& match : matches) {
+    if (!match.accepted()) continue;
+    switch (judge_alone(graph, match)) {
+      case Verdict::kRefused:
+        break;
+      case Verdict::kPending:
+        round.pending.push_back(match.edge);
+        suppose_if_plausible(match, path_m);
+        break;
+      case Verdict::kMoves:
+        round.moves = true;
+        agreement_.add_accepted(match, path_m);
+        break;
+      case Verdict::kAgrees:
+        agreement_.add_accepted(match, path_m);
+        graph.add_edge(match.edge);
+        round.added.push_back(match.edge);
+        break;
+    }
+  }
+  if (accept_agreed(graph, path_m) > 0) round.moves = true;
+  return round;
 }
 
-bool LoopClosing::far(const Correction& correction) const {
-  return correction.distance_m() > unaided_correction_m_ ||
-         correction.turn_rad() > unaided_correction_rad_;
-}
-
-LoopClosing::Verdict LoopClosing::consider(const PoseGraph& graph, const StopMatch& loop) {
+LoopClosing::Verdict LoopClosing::judge_alone(const PoseGraph& graph, const StopMatch& loop) {
   const Correction correction = correction_of(graph, loop.edge);
   // A match that contradicts its prediction is accepted only if many others agree with it.
-  if (loop.surprise() > geometry::kMahalanobis2Of99Percent) {
+  if (loop.surprise() > SingleLoopLimits::kMostSurprise2) {
     decide(graph, loop, LoopOutcome::kUnconfirmed, Reason::kNone);
     ++unconfirmed_;
     return Verdict::kPending;
@@ -79,7 +85,7 @@ LoopClosing::Verdict LoopClosing::consider(const PoseGraph& graph, const StopMat
     ++unconfirmed_;
     return Verdict::kPending;
   }
-  if (correction.distance_m() > kNoticeable_m) {
+  if (correction.distance_m() > SingleLoopLimits::kNoticeable_m) {
     accept(graph, loop);
     return Verdict::kMoves;
   }
@@ -99,7 +105,7 @@ bool LoopClosing::confirm(const PoseGraph& graph, const StopMatch& loop,
            same_place(correction_of(graph, other).motion() * correction.T_map_now);
   });
   std::erase_if(pending_, [&](const PendingLoop& pending) {
-    return pending.match.edge.to + kLongestWait < loop.edge.to;
+    return pending.match.edge.to + SingleLoopLimits::kLongestWait < loop.edge.to;
   });
   const auto agrees = [&](const PendingLoop& pending) {
     return pending.match.edge.to != loop.edge.to &&
@@ -114,6 +120,10 @@ bool LoopClosing::confirm(const PoseGraph& graph, const StopMatch& loop,
   return confirmed;
 }
 
+void LoopClosing::suppose_if_plausible(const StopMatch& loop, std::span<const double> path_m) {
+  if (loop.plausible()) agreement_.add(loop, path_m);
+}
+
 std::size_t LoopClosing::accept_agreed(const PoseGraph& graph, std::span<const double> path_m) {
   const std::vector<StopMatch> agreed = agreement_.accepted(graph, path_m);
   for (const StopMatch& loop : agreed) {
@@ -125,8 +135,26 @@ std::size_t LoopClosing::accept_agreed(const PoseGraph& graph, std::span<const d
   return agreed.size();
 }
 
-void LoopClosing::refuse(const PoseGraph& graph, const StopMatch& loop) {
-  decide(graph, loop, LoopOutcome::kGate, loop.reason);
+double LoopClosing::Correction::distance_m() const {
+  return std::sqrt((T_map_now.position_m() - T_map_corrected.position_m()).squaredNorm());
+}
+
+double LoopClosing::Correction::turn_rad() const {
+  return std::fabs(geometry::wrap_angle(T_map_now.theta_rad - T_map_corrected.theta_rad));
+}
+
+Pose2 LoopClosing::Correction::motion() const {
+  return T_map_corrected * geometry::inverse(T_map_now);
+}
+
+LoopClosing::Correction LoopClosing::correction_of(const PoseGraph& graph,
+                                                   const PoseGraphEdge& loop) {
+  return {graph.poses()[loop.to], graph.poses()[loop.from] * loop.T_from_to};
+}
+
+bool LoopClosing::far(const Correction& correction) const {
+  return correction.distance_m() > unaided_correction_m_ ||
+         correction.turn_rad() > unaided_correction_rad_;
 }
 
 void LoopClosing::accept(const PoseGraph& graph, const StopMatch& loop) {

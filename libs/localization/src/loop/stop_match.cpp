@@ -3,7 +3,8 @@
 #include <algorithm>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/localization/loop/loop_config.hpp"
+#include "topogeo/localization/loop/plausible_match.hpp"
 #include "topogeo/localization/places/place_recognition.hpp"
 
 namespace topogeo::localization {
@@ -22,15 +23,18 @@ bool StopMatch::plausible() const {
           geometry::kMahalanobis2Of99Percent) {
     return false;
   }
-  constexpr double kLeastOfWindow = 0.88;
-  using Limits = PlausibleMatch;
-  if (weakest_sigma_m > Limits::kLeastKnown_m || rivalry > Limits::kMostRivalry) return false;
   if (source == ProposalSource::kWindow) {
-    return fitness >= kLeastOfWindow && overlap >= Limits::kLeastOverlap;
+    return is_determined(weakest_sigma_m, rivalry) && fitness >= PlausibleMatch::kLeastOfWindow &&
+           overlap >= PlausibleMatch::kLeastOverlap;
   }
-  return accepted() ||
-         (uncertain() && doubt <= Limits::kMostDoubt && inliers >= Limits::kLeastInliers &&
-          overlap >= Limits::kLeastOverlap && violations <= Limits::kMostViolations);
+  return localization::plausible({.accepted = accepted(),
+                                  .doubted = uncertain(),
+                                  .doubt = doubt,
+                                  .inliers = inliers,
+                                  .overlap = overlap,
+                                  .violations = violations,
+                                  .rivalry = rivalry,
+                                  .weakest_sigma_m = weakest_sigma_m});
 }
 
 LoopEvidence StopMatch::loop_evidence() const {

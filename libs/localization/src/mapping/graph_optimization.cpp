@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "topogeo/localization/loop/outvoted_loop.hpp"
+
 #include "least_squares.hpp"
 
 namespace topogeo::localization {
@@ -13,20 +15,10 @@ using geometry::Pose2;
 
 namespace {
 
-// Squared Mahalanobis distance of a loop after optimisation: a right loop comes this far once in a
-// million (chi-square, three degrees of freedom).
-constexpr double kOutvoted = 30.0;
 // A stop that should move less than this sees the same places: such a strain can wait for the
 // optimisation of all stops.
 constexpr double kStrain_m = 0.1;
 constexpr double kStrain_rad = 0.02;
-
-bool is_outvoted(const PoseGraphEdge& edge, std::span<const Pose2> poses) {
-  if (edge.kind != EdgeKind::kRevisit) return false;
-  const Pose2 now = geometry::between(poses[edge.from], poses[edge.to]);
-  return geometry::squared_mahalanobis(geometry::difference(now, edge.T_from_to), edge.covariance) >
-         kOutvoted;
-}
 
 bool moved_noticeably(const Pose2& before, const Pose2& after) {
   return (after.position_m() - before.position_m()).squaredNorm() > kStrain_m * kStrain_m ||

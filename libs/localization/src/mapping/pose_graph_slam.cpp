@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "topogeo/localization/loop/look_alikes.hpp"
+#include "topogeo/localization/loop/loop_config.hpp"
 #include "topogeo/localization/mapping/drive_join.hpp"
-#include "topogeo/localization/matching/match_gate.hpp"
 
 #include "link_covariances.hpp"
 
@@ -159,34 +159,12 @@ std::vector<StopMatch> PoseGraphSlam::match_further(std::vector<StopMatch>& matc
 // Closes loops between these stops and earlier places.
 std::vector<StepMatch> PoseGraphSlam::match_revisited(std::span<const std::uint32_t> stops) {
   const std::vector<StopMatch> matches = matching_.match_revisited(graph_, stops);
+  const LoopClosing::Round round = loops_.judge(graph_, matches, matching_.path_m());
+  for (const PoseGraphEdge& pending : round.pending) matching_.reopen(pending);
+  for (const PoseGraphEdge& loop : round.added) schedule_.count_loop(loop);
+  if (round.moves) schedule_.want();
   std::vector<StepMatch> evidence;
-  for (const StopMatch& match : matches) {
-    evidence.push_back(match.evidence);
-    if (match.accepted()) continue;
-    loops_.refuse(graph_, match);
-    if (match.plausible()) loops_.suppose(match, matching_.path_m());
-  }
-  for (const StopMatch& match : matches) {
-    if (!match.accepted()) continue;
-    switch (loops_.consider(graph_, match)) {
-      case LoopClosing::Verdict::kRefused:
-        break;
-      case LoopClosing::Verdict::kPending:
-        matching_.reopen(match.edge);
-        if (match.plausible()) loops_.suppose(match, matching_.path_m());
-        break;
-      case LoopClosing::Verdict::kMoves:
-        schedule_.want();
-        loops_.support(match, matching_.path_m());
-        break;
-      case LoopClosing::Verdict::kAgrees:
-        loops_.support(match, matching_.path_m());
-        graph_.add_edge(match.edge);
-        schedule_.count_loop(match.edge);
-        break;
-    }
-  }
-  if (loops_.accept_agreed(graph_, matching_.path_m()) > 0) schedule_.want();
+  for (const StopMatch& match : matches) evidence.push_back(match.evidence);
   return evidence;
 }
 
@@ -342,7 +320,7 @@ void PoseGraphSlam::join(std::span<const MapPointer> drive,
     known.verdict = Verdict::kAccepted;
     known.reason = Reason::kNone;
     known.fitness = match.fitness;
-    known.agreement = AgreementWeights::kWanted;  // with the previously tracked stops
+    known.agreement = AgreementWeights::kWantedAnywhere;  // with the previously tracked stops
     loops_.accept(graph_, known);
     matching_.skip(loop);
   }

@@ -99,21 +99,6 @@ Judgement judge(const MatchTask& task, const MatchResult& result) {
   return {Verdict::kAccepted, Reason::kNone};
 }
 
-bool plausible(const MatchTask& task, const MatchResult& result) {
-  const bool doubted =
-      result.reason == Reason::kDoubtful || result.reason == Reason::kSecondSolution;
-  if (result.verdict != Verdict::kAccepted && !doubted) return false;
-  if (weakest_sigma_m(data_covariance(result)) > PlausibleMatch::kLeastKnown_m ||
-      rivalry(task, result) > PlausibleMatch::kMostRivalry) {
-    return false;
-  }
-  return result.verdict == Verdict::kAccepted ||
-         (doubt(result) <= PlausibleMatch::kMostDoubt &&
-          result.inliers >= PlausibleMatch::kLeastInliers &&
-          result.overlap >= PlausibleMatch::kLeastOverlap &&
-          result.violations <= PlausibleMatch::kMostViolations);
-}
-
 double weakest_sigma_m(const Eigen::Matrix3d& c) {
   return std::sqrt(principal_axes(c(0, 0), c(0, 1), c(1, 1)).largest);
 }

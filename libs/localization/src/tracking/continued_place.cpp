@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/localization/loop/plausible_match.hpp"
 
 namespace topogeo::localization {
 

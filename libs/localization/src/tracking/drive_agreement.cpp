@@ -1,6 +1,6 @@
 #include "topogeo/localization/tracking/drive_agreement.hpp"
 
-#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/localization/loop/loop_config.hpp"
 
 namespace topogeo::localization {
 
@@ -22,7 +22,7 @@ void DriveAgreement::contradict() {
 }
 
 bool DriveAgreement::enough() const {
-  return weight() >= AgreementWeights::kWanted &&
+  return weight() >= AgreementWeights::kWantedAnywhere &&
          agreed_.back().path_m - agreed_.front().path_m >= AgreementWeights::kLeastSpread_m;
 }
 

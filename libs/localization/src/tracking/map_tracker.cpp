@@ -7,6 +7,7 @@
 
 #include <Eigen/LU>
 
+#include "topogeo/localization/loop/plausible_match.hpp"
 #include "topogeo/localization/matching/match_gate.hpp"
 #include "topogeo/localization/matching/refinement.hpp"
 #include "topogeo/localization/tracking/pose_fusion.hpp"

@@ -44,12 +44,26 @@ StopMatch predicted(StopMatch match, double sigma_m) {
   return match;
 }
 
+/// Path to each stop of straight().
+std::vector<double> path_to(std::uint32_t stops) {
+  std::vector<double> path_m(stops);
+  std::iota(path_m.begin(), path_m.end(), 0.0);
+  return path_m;
+}
+
+StopMatch doubted(StopMatch match) {
+  match.verdict = Verdict::kRejected;
+  match.reason = Reason::kDoubtful;
+  match.inliers = match.overlap = 1.0;
+  return match;
+}
+
 TEST(LoopClosing, ASmallCorrectionIsAcceptedAtOnce) {
   const PoseGraph graph = straight(12);
   LoopClosing loops({});
-  EXPECT_EQ(loops.consider(graph, loop(0, 11, 0.05)), LoopVerdict::kAgrees);
+  EXPECT_EQ(loops.judge_alone(graph, loop(0, 11, 0.05)), LoopVerdict::kAgrees);
   EXPECT_TRUE(loops.waiting().empty());  // adding it is up to the caller
-  EXPECT_EQ(loops.consider(graph, loop(1, 11, 0.3, 0.8)), LoopVerdict::kMoves);
+  EXPECT_EQ(loops.judge_alone(graph, loop(1, 11, 0.3, 0.8)), LoopVerdict::kMoves);
   ASSERT_EQ(loops.waiting().size(), 1U);
   EXPECT_EQ(loops.waiting()[0].from, 1U);
   ASSERT_EQ(loops.decisions().size(), 2U);
@@ -68,13 +82,13 @@ TEST(LoopClosing, ASmallCorrectionIsAcceptedAtOnce) {
 TEST(LoopClosing, AFarCorrectionWaitsForAnotherStopThatAgrees) {
   const PoseGraph graph = straight(12);
   LoopClosing loops({});
-  EXPECT_EQ(loops.consider(graph, loop(0, 10, 1.0)), LoopVerdict::kPending);
+  EXPECT_EQ(loops.judge_alone(graph, loop(0, 10, 1.0)), LoopVerdict::kPending);
   EXPECT_TRUE(loops.waiting().empty());
   EXPECT_EQ(loops.unconfirmed(), 1U);
   // The same stop again is no proof, nor is another one that moves the robot elsewhere.
-  EXPECT_EQ(loops.consider(graph, loop(1, 10, 1.0)), LoopVerdict::kPending);
-  EXPECT_EQ(loops.consider(graph, loop(1, 11, -1.0)), LoopVerdict::kPending);
-  EXPECT_EQ(loops.consider(graph, loop(2, 11, 1.1)), LoopVerdict::kMoves);
+  EXPECT_EQ(loops.judge_alone(graph, loop(1, 10, 1.0)), LoopVerdict::kPending);
+  EXPECT_EQ(loops.judge_alone(graph, loop(1, 11, -1.0)), LoopVerdict::kPending);
+  EXPECT_EQ(loops.judge_alone(graph, loop(2, 11, 1.1)), LoopVerdict::kMoves);
   ASSERT_EQ(loops.waiting().size(), 3U);  // including both loops of stop 10
   EXPECT_EQ(loops.waiting()[0].from, 0U);
   EXPECT_EQ(loops.waiting()[1].from, 1U);
@@ -87,26 +101,26 @@ TEST(LoopClosing, AWaitingLoopConfirmsAFarOne) {
   const PoseGraph graph = straight(12);
   LoopClosing loops({});
   loops.accept(graph, loop(0, 10, 1.0, 0.7));
-  EXPECT_EQ(loops.consider(graph, loop(1, 11, 1.0)), LoopVerdict::kMoves);
+  EXPECT_EQ(loops.judge_alone(graph, loop(1, 11, 1.0)), LoopVerdict::kMoves);
 }
 
 TEST(LoopClosing, APendingLoopIsDroppedInTheEnd) {
   const PoseGraph graph = straight(40);
   LoopClosing loops({});
-  EXPECT_EQ(loops.consider(graph, loop(0, 20, 1.0)), LoopVerdict::kPending);
-  EXPECT_EQ(loops.consider(graph, loop(0, 33, 1.0)), LoopVerdict::kPending);  // 13 stops later
-  EXPECT_EQ(loops.consider(graph, loop(0, 34, 1.0)), LoopVerdict::kMoves);
+  EXPECT_EQ(loops.judge_alone(graph, loop(0, 20, 1.0)), LoopVerdict::kPending);
+  EXPECT_EQ(loops.judge_alone(graph, loop(0, 33, 1.0)), LoopVerdict::kPending);  // 13 stops later
+  EXPECT_EQ(loops.judge_alone(graph, loop(0, 34, 1.0)), LoopVerdict::kMoves);
   EXPECT_EQ(loops.waiting().size(), 2U);
   LoopClosing dropped({});
-  EXPECT_EQ(dropped.consider(graph, loop(0, 20, 1.0)), LoopVerdict::kPending);
+  EXPECT_EQ(dropped.judge_alone(graph, loop(0, 20, 1.0)), LoopVerdict::kPending);
   dropped.drop_pending();
-  EXPECT_EQ(dropped.consider(graph, loop(0, 21, 1.0)), LoopVerdict::kPending);
+  EXPECT_EQ(dropped.judge_alone(graph, loop(0, 21, 1.0)), LoopVerdict::kPending);
 }
 
 TEST(LoopClosing, StepsThatCannotBeBentRefuseALoop) {
   const PoseGraph graph = straight(5);  // at stop 4 odometry is known to 0.4 m
   LoopClosing loops({});
-  EXPECT_EQ(loops.consider(graph, loop(0, 4, 6.0)), LoopVerdict::kRefused);
+  EXPECT_EQ(loops.judge_alone(graph, loop(0, 4, 6.0)), LoopVerdict::kRefused);
   ASSERT_EQ(loops.decisions().size(), 1U);
   EXPECT_EQ(loops.decisions()[0].outcome, LoopOutcome::kNoClosing);
   EXPECT_TRUE(loops.decisions()[0].evidence.contradicted);
@@ -116,28 +130,65 @@ TEST(LoopClosing, StepsThatCannotBeBentRefuseALoop) {
 TEST(LoopClosing, AMatchFarFromItsPredictionNeedsOthersHoweverSmallTheCorrection) {
   const PoseGraph graph = straight(12);
   LoopClosing loops({});
-  EXPECT_EQ(loops.consider(graph, predicted(loop(0, 10, 0.5), 0.4)), LoopVerdict::kMoves);
-  EXPECT_EQ(loops.consider(graph, predicted(loop(0, 11, 0.5), 0.1)), LoopVerdict::kPending);
+  EXPECT_EQ(loops.judge_alone(graph, predicted(loop(0, 10, 0.5), 0.4)), LoopVerdict::kMoves);
+  EXPECT_EQ(loops.judge_alone(graph, predicted(loop(0, 11, 0.5), 0.1)), LoopVerdict::kPending);
   EXPECT_EQ(loops.decisions().back().outcome, LoopOutcome::kUnconfirmed);
 }
 
-TEST(LoopClosing, DoubtfulMatchesThatAgreeAreAcceptedTogether) {
-  const PoseGraph graph = straight(40);
-  std::vector<double> path_m(40);
-  std::iota(path_m.begin(), path_m.end(), 0.0);
+TEST(LoopClosing, ARoundReturnsTheEffectOfEachVerdict) {
+  PoseGraph graph = straight(12);
+  const std::size_t steps = graph.edges().size();
   LoopClosing loops({});
+  const std::vector matches{loop(0, 11, 0.05), loop(1, 11, 1.0), loop(2, 11, 0.3)};
+  const LoopClosing::Round round = loops.judge(graph, matches, path_to(12));
+  ASSERT_EQ(round.added.size(), 1U);
+  EXPECT_EQ(round.added[0].from, 0U);
+  ASSERT_EQ(graph.edges().size(), steps + 1);
+  EXPECT_EQ(graph.edges().back().from, 0U);
+  ASSERT_EQ(round.pending.size(), 1U);
+  EXPECT_EQ(round.pending[0].from, 1U);
+  EXPECT_TRUE(round.moves);
+  ASSERT_EQ(loops.waiting().size(), 1U);
+  EXPECT_EQ(loops.waiting()[0].from, 2U);
+}
+
+TEST(LoopClosing, ARoundDecidesFirstOnMatchesThatTheirGateRefused) {
+  PoseGraph graph = straight(12);
+  LoopClosing loops({});
+  const std::vector matches{loop(0, 11, 0.05), doubted(loop(1, 11, 0.05))};
+  const LoopClosing::Round round = loops.judge(graph, matches, path_to(12));
+  EXPECT_FALSE(round.moves);
+  ASSERT_EQ(loops.decisions().size(), 2U);
+  EXPECT_EQ(loops.decisions()[0].outcome, LoopOutcome::kGate);
+  EXPECT_EQ(loops.decisions()[1].outcome, LoopOutcome::kAccepted);
+}
+
+TEST(LoopClosing, DoubtfulMatchesThatAgreeAreAcceptedTogether) {
+  PoseGraph graph = straight(40);
+  const std::vector<double> path_m = path_to(40);
+  std::vector<StopMatch> matches;
+  for (std::uint32_t i = 0; i < 6; ++i) matches.push_back(doubted(loop(i, 30 + i, 1.0)));
+  LoopClosing loops({});
+  EXPECT_TRUE(loops.judge(graph, matches, path_m).moves);
+  EXPECT_GE(loops.waiting().size(), 4U);
+  ASSERT_EQ(loops.decisions().size(), 6U + loops.waiting().size());
+  const LoopDecision& decision = loops.decisions()[6];
+  EXPECT_EQ(decision.outcome, LoopOutcome::kAccepted);
+  EXPECT_GE(decision.evidence.agreement, 4.0);
+  EXPECT_EQ(decision.evidence.rival_agreement, 0.0);
+  EXPECT_FALSE(loops.judge(graph, {}, path_m).moves);
+}
+
+TEST(LoopClosing, DoubtfulMatchesThatAreNotPlausibleProveNothing) {
+  PoseGraph graph = straight(40);
+  std::vector<StopMatch> matches;
   for (std::uint32_t i = 0; i < 6; ++i) {
-    StopMatch doubtful = loop(i, 30 + i, 1.0);
-    doubtful.verdict = Verdict::kRejected;
-    doubtful.reason = Reason::kDoubtful;
-    loops.suppose(doubtful, path_m);
+    matches.push_back(doubted(loop(i, 30 + i, 1.0)));
+    matches.back().rivalry = 0.95;
   }
-  EXPECT_GE(loops.accept_agreed(graph, path_m), 4U);
-  EXPECT_EQ(loops.waiting().size(), loops.decisions().size());
-  EXPECT_EQ(loops.decisions().front().outcome, LoopOutcome::kAccepted);
-  EXPECT_GE(loops.decisions().front().evidence.agreement, 4.0);
-  EXPECT_EQ(loops.decisions().front().evidence.rival_agreement, 0.0);
-  EXPECT_EQ(loops.accept_agreed(graph, path_m), 0U);
+  LoopClosing loops({});
+  EXPECT_FALSE(loops.judge(graph, matches, path_to(40)).moves);
+  EXPECT_TRUE(loops.waiting().empty());
 }
 
 TEST(LoopClosing, ALoopThatIsOutvotedIsLessProbableThanBefore) {
@@ -169,11 +220,12 @@ TEST(LoopClosing, GivesWaitingLoopsAwayInTheirOrder) {
 }
 
 TEST(LoopClosing, RecordsWhatGateAndOptimisationRefuse) {
-  const PoseGraph graph = straight(12);
+  PoseGraph graph = straight(12);
   LoopClosing loops({});
   StopMatch refused = loop(0, 11, 2.0, 0.4);
+  refused.verdict = Verdict::kRejected;
   refused.reason = Reason::kFewInliers;
-  loops.refuse(graph, refused);
+  loops.judge(graph, {&refused, 1}, path_to(12));
   const std::vector outvoted{loop(1, 10, 0.5).edge, loop(2, 9, 0.5).edge};
   loops.outvote(graph, outvoted);
   ASSERT_EQ(loops.decisions().size(), 3U);

@@ -1,8 +1,11 @@
-// Decides which matches with earlier places close a loop, and records every decision.
+// Decides which matches with earlier places close a loop, and records every decision. judge() is
+// the entry; loop_config.hpp has all thresholds.
 //
 // A loop that moves the robot little is accepted at once. One that moves it far must fit the steps
 // along the loop (closing_check.hpp) and stays pending until a loop of another stop moves the robot
-// to the same place.
+// to the same place. Matches that are doubtful alone are accepted together, when enough of them
+// agree (loop_agreement.hpp). The next optimisation removes loops that the rest contradicts
+// (outvoted_loop.hpp).
 #pragma once
 
 #include <cstddef>
@@ -24,29 +27,25 @@ class LoopClosing {
   /// Reads only unaided_correction_* of `config`.
   explicit LoopClosing(const LocalizerConfig& config);
 
+  /// Effect of judge() beside the decisions.
+  struct Round {
+    std::vector<PoseGraphEdge> added;    ///< accepted, and part of the graph already
+    std::vector<PoseGraphEdge> pending;  ///< may be matched again
+    bool moves = false;  ///< more accepted loops wait for an optimisation, see waiting()
+  };
+  /// Decides on matches of stops with earlier places, those that their gate refused too. `path_m`:
+  /// path length from the first stop to each stop.
+  Round judge(PoseGraph& graph, std::span<const StopMatch> matches, std::span<const double> path_m);
+
   enum class Verdict : std::uint8_t {
     kRefused = 0,  ///< no poses along the loop fit it
     kPending,      ///< moves the robot far, and no other loop agrees yet
     kAgrees,       ///< accepted without moving poses: the caller adds it to the graph
     kMoves,        ///< accepted, waits for an optimisation
   };
-  /// Decides on a match of the last stop, or of any stop after the end of a log, that passed its
-  /// gate.
-  Verdict consider(const PoseGraph& graph, const StopMatch& loop);
+  /// Decides on a match that passed its gate, by itself and the loops of other stops.
+  Verdict judge_alone(const PoseGraph& graph, const StopMatch& loop);
 
-  /// Keeps a match, whatever its verdict, as a hypothesis that may be right together with others.
-  void suppose(const StopMatch& loop, std::span<const double> path_m) {
-    agreement_.add(loop, path_m);
-  }
-  /// Passes a loop that was accepted on its own to the pending hypotheses.
-  void support(const StopMatch& loop, std::span<const double> path_m) {
-    agreement_.add_accepted(loop, path_m);
-  }
-  /// Accepts hypotheses that agree, to wait for an optimisation; returns their number.
-  std::size_t accept_agreed(const PoseGraph& graph, std::span<const double> path_m);
-
-  /// Records a match that its gate refused.
-  void refuse(const PoseGraph& graph, const StopMatch& loop);
   /// Accepts a loop that is known to be right, to wait for an optimisation.
   void accept(const PoseGraph& graph, const StopMatch& loop);
   /// Records loops that an optimisation has left out.
@@ -78,6 +77,10 @@ class LoopClosing {
     geometry::Pose2 motion;  // Correction::motion() when it became pending
   };
 
+  /// Keeps a match that may be right together with others as a hypothesis.
+  void suppose_if_plausible(const StopMatch& loop, std::span<const double> path_m);
+  /// Accepts hypotheses that agree, to wait for an optimisation; returns their number.
+  std::size_t accept_agreed(const PoseGraph& graph, std::span<const double> path_m);
   [[nodiscard]] static Correction correction_of(const PoseGraph& graph, const PoseGraphEdge& loop);
   [[nodiscard]] bool far(const Correction& correction) const;
   bool confirm(const PoseGraph& graph, const StopMatch& loop, const Correction& correction);

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/loop/loop_search_config.hpp"
+#include "topogeo/localization/loop/loop_config.hpp"
 #include "topogeo/localization/loop/relative_solution.hpp"
 #include "topogeo/localization/matching/odometry_model.hpp"
 

@@ -7,6 +7,7 @@
 
 #include "topogeo/localization/loop/loop_decision.hpp"
 #include "topogeo/localization/loop/loop_probability.hpp"
+#include "topogeo/localization/loop/plausible_match.hpp"
 #include "topogeo/localization/mapping/pose_graph.hpp"
 #include "topogeo/localization/mapping/state_monitor.hpp"
 #include "topogeo/localization/matching/match.hpp"
@@ -38,10 +39,8 @@ struct StopMatch {
   std::vector<MatchSolution> solutions;
 
   [[nodiscard]] bool accepted() const { return verdict == Verdict::kAccepted; }
-  /// Not accepted, but not refuted.
-  [[nodiscard]] bool uncertain() const {
-    return reason == Reason::kDoubtful || reason == Reason::kSecondSolution;
-  }
+  /// See is_doubted().
+  [[nodiscard]] bool uncertain() const { return is_doubted(reason); }
   /// Squared Mahalanobis distance of the match from its prediction; 0 without one.
   [[nodiscard]] double surprise() const;
   /// Whether it may be right together with matches that agree with it (LoopAgreement).

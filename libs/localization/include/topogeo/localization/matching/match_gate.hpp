@@ -34,32 +34,6 @@ struct Judgement {
 /// Judges the evidence in `result` by the gate of `task`; the verdict in `result` is not read.
 Judgement judge(const MatchTask& task, const MatchResult& result);
 
-/// Whether a match may be right together with others that agree with it: its gate accepted it, or
-/// doubted it no more than clutter and people explain, and the scans determine the position in
-/// every direction. Its distance from the prediction is not judged.
-bool plausible(const MatchTask& task, const MatchResult& result);
-
-/// Limits of plausible().
-struct PlausibleMatch {
-  /// Wider than the gate: right matches in clutter reach doubt 4.5, and no set of wrong ones agrees
-  /// up to there (docs/decisions/loop_acceptance.md).
-  static constexpr double kMostDoubt = 4.5;
-  static constexpr double kLeastInliers = 0.6;
-  static constexpr double kLeastOverlap = 0.3;
-  static constexpr double kMostViolations = 0.3;
-  /// Along a bare corridor the scans allow any place; a position by odometry is no evidence there.
-  static constexpr double kLeastKnown_m = 0.2;
-  static constexpr double kMostRivalry = 0.9;
-};
-
-/// Combined weight of stops whose matches agree (LoopAgreement, DriveAgreement).
-struct AgreementWeights {
-  static constexpr double kPassed = 1.5;  ///< a stop with a match that passed its gate
-  static constexpr double kDoubtful = 1.0;
-  static constexpr double kWanted = 4.0;         ///< required sum
-  static constexpr double kLeastSpread_m = 2.0;  ///< path between the first and the last
-};
-
 /// Position deviation along the direction of largest variance.
 double weakest_sigma_m(const Eigen::Matrix3d& covariance);
 
