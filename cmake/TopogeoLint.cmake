@@ -10,7 +10,7 @@ set(TOPOGEO_LINT_CHANGED "" CACHE STRING "Files that the target lint_changed che
 
 # Units, each with a regular expression for the folders of its sources: the first match counts.
 set(TOPOGEO_LINT_UNITS
-  foundation  "^libs/(geometry|scan|support|voronoi|topomap|localization|search_pool)(/|$)"
+  foundation  "^libs/(geometry|scan|support|voronoi|topomap|matching|calibration|slam|relocalization|thesis|session|search_pool)(/|$)"
   libraries   "^libs/"
   services    "^services/"
   localizing  "^tests/unit/(geometry|scan|support|voronoi|topomap|localization|search_pool|pipeline)(/|$)"

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "topogeo/localization/mapping/graph_optimization.hpp"
+#include "topogeo/slam/graph_optimization.hpp"
 
 namespace topogeo::localizer {
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "topogeo/localization/tracking/live_pose.hpp"
+#include "topogeo/relocalization/live_pose.hpp"
 
 namespace topogeo::localizer {
 

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/session/slam_session.hpp"
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/session/slam_session.hpp"
 
 namespace topogeo::localizer {
 

@@ -8,14 +8,14 @@
 #include <filesystem>
 #include <optional>
 
-#include "topogeo/localization/session/odometry_chain.hpp"
-#include "topogeo/localization/session/slam_session.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/local_map.h"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/stream.h"
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/service/service.hpp"
+#include "topogeo/session/odometry_chain.hpp"
+#include "topogeo/session/slam_session.hpp"
 
 #include "background_optimizer.hpp"
 #include "command_channel.hpp"

@@ -6,10 +6,10 @@
 #include <functional>
 #include <vector>
 
-#include "topogeo/localization/session/merge_proposals.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/merge.h"
 #include "topogeo/service/service.hpp"
+#include "topogeo/session/merge_proposals.hpp"
 
 #include "localizer_commands.hpp"
 #include "reply_sender.hpp"

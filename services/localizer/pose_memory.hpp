@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "topogeo/localization/mapping/stored_map.hpp"
-#include "topogeo/localization/tracking/map_tracker.hpp"
+#include "topogeo/relocalization/map_tracker.hpp"
+#include "topogeo/slam/stored_map.hpp"
 #include "topogeo/support/record_file.hpp"
 #include "topogeo/topomap/local_map.hpp"
 

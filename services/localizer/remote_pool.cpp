@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "topogeo/localization/places/place_field.hpp"
+#include "topogeo/matching/place_field.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/support/format.hpp"

@@ -14,8 +14,8 @@
 #include <string_view>
 #include <vector>
 
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/reader.hpp"

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "topogeo/localization/mapping/stored_map.hpp"
 #include "topogeo/service/store_client.hpp"
+#include "topogeo/slam/stored_map.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localizer {

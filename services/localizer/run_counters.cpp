@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/matching/match_gate.hpp"
 
 namespace topogeo::localizer {
 

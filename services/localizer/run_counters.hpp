@@ -3,8 +3,8 @@
 
 #include <cstddef>
 
-#include "topogeo/localization/mapping/slam.hpp"
 #include "topogeo/messaging/status_publisher.hpp"
+#include "topogeo/slam/slam.hpp"
 
 #include "remote_pool.hpp"
 

@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <string>
 
-#include "topogeo/localization/mapping/slam.hpp"
-#include "topogeo/localization/session/mapping_session.hpp"
-#include "topogeo/localization/tracking/map_tracker.hpp"
 #include "topogeo/msg/stream.h"
+#include "topogeo/relocalization/map_tracker.hpp"
 #include "topogeo/search_pool/task_board.hpp"
+#include "topogeo/session/mapping_session.hpp"
+#include "topogeo/slam/slam.hpp"
 
 namespace topogeo::localizer {
 

@@ -8,14 +8,14 @@
 #include <optional>
 #include <string>
 
-#include "topogeo/localization/session/odometry_chain.hpp"
-#include "topogeo/localization/session/shared_map.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/local_map.h"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/stream.h"
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/service/service.hpp"
+#include "topogeo/session/odometry_chain.hpp"
+#include "topogeo/session/shared_map.hpp"
 
 #include "live_pose_estimate.hpp"
 #include "merge_channel.hpp"

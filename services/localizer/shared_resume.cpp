@@ -5,8 +5,8 @@
 #include <tuple>
 #include <utility>
 
-#include "topogeo/localization/session/mapping_session.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
+#include "topogeo/session/mapping_session.hpp"
 #include "topogeo/storage/map_file.hpp"
 
 namespace topogeo::localizer {

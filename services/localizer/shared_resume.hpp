@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/mapping/stored_map.hpp"
 #include "topogeo/service/store_client.hpp"
+#include "topogeo/slam/stored_map.hpp"
 #include "topogeo/storage/map_document.hpp"
 #include "topogeo/topomap/local_map.hpp"
 

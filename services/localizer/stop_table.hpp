@@ -6,7 +6,7 @@
 #include <fstream>
 #include <span>
 
-#include "topogeo/localization/tracking/map_tracker.hpp"
+#include "topogeo/relocalization/map_tracker.hpp"
 
 namespace topogeo::localizer {
 

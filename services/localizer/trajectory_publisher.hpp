@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "topogeo/localization/loop/loop_decision.hpp"
-#include "topogeo/localization/mapping/slam.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/service/service.hpp"
+#include "topogeo/slam/loop/loop_decision.hpp"
+#include "topogeo/slam/slam.hpp"
 #include "topogeo/storage/map_document.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 

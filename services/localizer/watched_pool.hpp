@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/matching/match.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/search.h"
 #include "topogeo/service/service.hpp"

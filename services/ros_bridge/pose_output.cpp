@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "topogeo/localization/mapping/localization_state.hpp"
 #include "topogeo/ros_conversions/geometry.hpp"
+#include "topogeo/slam/localization_state.hpp"
 
 #include "outputs.hpp"
 

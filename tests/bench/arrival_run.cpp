@@ -3,10 +3,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "topogeo/localization/matching/matcher.hpp"
-#include "topogeo/localization/session/slam_session.hpp"
-#include "topogeo/localization/tracking/map_tracker.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
+#include "topogeo/relocalization/map_tracker.hpp"
+#include "topogeo/session/slam_session.hpp"
 #include "topogeo/support/random.hpp"
 #include "topogeo/support/seed.hpp"
 

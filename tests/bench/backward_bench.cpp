@@ -4,7 +4,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "topogeo/localization/thesis/backward_correction.hpp"
+#include "topogeo/thesis/backward_correction.hpp"
 
 #include "localization/thesis/backward_problems.hpp"
 

@@ -11,13 +11,13 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/geometry/velocity.hpp"
-#include "topogeo/localization/mapping/slam.hpp"
 #include "topogeo/navigation/navigator.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/planning/hybrid_map.hpp"
 #include "topogeo/planning/hybrid_planner.hpp"
 #include "topogeo/simulation/simulated_robot.hpp"
+#include "topogeo/slam/slam.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/world/world.hpp"
 

@@ -22,11 +22,11 @@
 #include <vector>
 
 #include "topogeo/command_line/command_line.hpp"
-#include "topogeo/localization/matching/matcher.hpp"
-#include "topogeo/localization/session/slam_session.hpp"
-#include "topogeo/localization/tracking/live_pose.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
+#include "topogeo/relocalization/live_pose.hpp"
+#include "topogeo/session/slam_session.hpp"
 #include "topogeo/simulation/random_floors.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
 #include "topogeo/support/random.hpp"

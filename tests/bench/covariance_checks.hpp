@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/loop/loop_decision.hpp"
-#include "topogeo/localization/mapping/pose_graph.hpp"
+#include "topogeo/slam/loop/loop_decision.hpp"
+#include "topogeo/slam/pose_graph.hpp"
 
 namespace topogeo::bench {
 

@@ -8,12 +8,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "topogeo/localization/matching/matcher.hpp"
-#include "topogeo/localization/session/make_slam.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/pipeline/world_grid.hpp"
 #include "topogeo/planning/grid_sources.hpp"
 #include "topogeo/planning/hybrid_planner.hpp"
 #include "topogeo/planning/zones.hpp"
+#include "topogeo/session/make_slam.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/random.hpp"
 #include "topogeo/support/seed.hpp"

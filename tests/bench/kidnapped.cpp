@@ -20,9 +20,9 @@
 #include <Eigen/Cholesky>
 
 #include "topogeo/command_line/command_line.hpp"
-#include "topogeo/localization/matching/matcher.hpp"
-#include "topogeo/localization/tracking/map_tracker.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
+#include "topogeo/relocalization/map_tracker.hpp"
 #include "topogeo/simulation/random_floors.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
 #include "topogeo/support/random.hpp"

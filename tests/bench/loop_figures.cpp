@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "topogeo/localization/mapping/pose_graph_slam.hpp"
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/results/outputs.hpp"
+#include "topogeo/slam/pose_graph_slam.hpp"
 #include "topogeo/storage/relations.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/topomap/trajectory.hpp"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/loop/loop_decision.hpp"
+#include "topogeo/slam/loop/loop_decision.hpp"
 
 namespace topogeo::bench {
 

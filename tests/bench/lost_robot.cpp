@@ -29,10 +29,10 @@
 #include <fmt/format.h>
 
 #include "topogeo/command_line/command_line.hpp"
-#include "topogeo/localization/matching/identical.hpp"
-#include "topogeo/localization/tracking/map_tracker.hpp"
+#include "topogeo/matching/identical.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
+#include "topogeo/relocalization/map_tracker.hpp"
 #include "topogeo/simulation/random_floors.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
 #include "topogeo/storage/map_file.hpp"

@@ -8,8 +8,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "topogeo/localization/matching/match_features.hpp"
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/match_features.hpp"
+#include "topogeo/matching/matcher.hpp"
 
 #include "localization/simulated_maps.hpp"
 

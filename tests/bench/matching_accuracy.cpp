@@ -8,7 +8,7 @@
 
 #include <Eigen/LU>
 
-#include "topogeo/localization/matching/refinement.hpp"
+#include "topogeo/matching/refinement.hpp"
 #include "topogeo/support/cpu_time.hpp"
 
 namespace topogeo::bench {

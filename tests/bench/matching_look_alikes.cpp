@@ -8,8 +8,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
-#include "topogeo/localization/matching/error_ellipse.hpp"
-#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/matching/error_ellipse.hpp"
+#include "topogeo/matching/match_gate.hpp"
 #include "topogeo/support/seed.hpp"
 
 namespace topogeo::bench {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
-#include "topogeo/localization/mapping/search_space.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
+#include "topogeo/slam/search_space.hpp"
 #include "topogeo/support/seed.hpp"
 
 namespace topogeo::bench {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/mapping/pose_graph_slam.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/match_features.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/pipeline/config.hpp"
+#include "topogeo/slam/pose_graph_slam.hpp"
 
 #include "recordings.hpp"
 

@@ -13,11 +13,11 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/mapping/stored_map.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/planning/hybrid_map.hpp"
 #include "topogeo/simulation/odometry.hpp"
 #include "topogeo/simulation/simulated_robot.hpp"
+#include "topogeo/slam/stored_map.hpp"
 #include "topogeo/world/world.hpp"
 
 namespace topogeo::bench {

@@ -8,13 +8,13 @@
 #include <string>
 #include <utility>
 
-#include "topogeo/localization/matching/matcher.hpp"
-#include "topogeo/localization/session/mapping_session.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/planning/grid_sources.hpp"
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/session/mapping_session.hpp"
 #include "topogeo/simulation/random_floors.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
 #include "topogeo/support/cpu_time.hpp"

@@ -34,7 +34,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/participant.hpp"

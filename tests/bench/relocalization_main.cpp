@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "topogeo/command_line/command_line.hpp"
-#include "topogeo/localization/tracking/global_localization.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
+#include "topogeo/relocalization/global_localization.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/topomap/local_map_builder.hpp"

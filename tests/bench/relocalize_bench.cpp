@@ -6,8 +6,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "topogeo/localization/tracking/global_localization.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
+#include "topogeo/relocalization/global_localization.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
 #include "topogeo/topomap/local_map_builder.hpp"
 

@@ -6,10 +6,10 @@
 #include <memory>
 #include <utility>
 
-#include "topogeo/localization/matching/matcher.hpp"
-#include "topogeo/localization/tracking/map_tracker.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
+#include "topogeo/relocalization/map_tracker.hpp"
 #include "topogeo/support/cpu_time.hpp"
 
 namespace topogeo::bench {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/mapping/localization_state.hpp"
 #include "topogeo/pipeline/config.hpp"
+#include "topogeo/slam/localization_state.hpp"
 
 #include "recordings.hpp"
 

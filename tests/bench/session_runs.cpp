@@ -5,11 +5,11 @@
 #include <memory>
 #include <utility>
 
-#include "topogeo/localization/session/mapping_session.hpp"
 #include "topogeo/pipeline/laser_mounting.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
 #include "topogeo/scan/laser_mounting.hpp"
+#include "topogeo/session/mapping_session.hpp"
 
 namespace topogeo::bench {
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/mapping/localization_state.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/scan/scan.hpp"
+#include "topogeo/slam/localization_state.hpp"
 #include "topogeo/storage/map_document.hpp"
 
 namespace topogeo::bench {

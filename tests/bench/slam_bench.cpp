@@ -7,10 +7,10 @@
 
 #include <benchmark/benchmark.h>
 
-#include "topogeo/localization/mapping/pose_graph_slam.hpp"
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
+#include "topogeo/slam/pose_graph_slam.hpp"
 
 #include "localization/simulated_maps.hpp"
 

@@ -9,9 +9,9 @@
 
 #include <fastdds/dds/topic/TypeSupport.hpp>
 
-#include "topogeo/localization/matching/matcher.hpp"
-#include "topogeo/localization/places/place_field.hpp"
 #include "topogeo/map_client/map_follower.hpp"
+#include "topogeo/matching/matcher.hpp"
+#include "topogeo/matching/place_field.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/topics.hpp"
 #include "topogeo/msg/types.h"

@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <csignal>
 
-#include "topogeo/localization/mapping/pose_graph_slam.hpp"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/store.h"
 #include "topogeo/msg/stream.h"
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/service/trajectory_assembly.hpp"
+#include "topogeo/slam/pose_graph_slam.hpp"
 #include "topogeo/storage/map_file.hpp"
 
 #include "pool_fixture.hpp"

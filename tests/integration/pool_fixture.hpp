@@ -18,8 +18,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/identical.hpp"
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/identical.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/participant.hpp"

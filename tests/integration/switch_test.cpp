@@ -1,10 +1,10 @@
 // A running localizer that is ordered to stop mapping, and to map again.
 #include <csignal>
 
-#include "topogeo/localization/session/mapping_session.hpp"
 #include "topogeo/msg/stream.h"
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/service/trajectory_assembly.hpp"
+#include "topogeo/session/mapping_session.hpp"
 
 #include "pool_fixture.hpp"
 

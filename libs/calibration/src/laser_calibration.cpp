@@ -1,4 +1,4 @@
-#include "topogeo/localization/calibration/laser_calibration.hpp"
+#include "topogeo/calibration/laser_calibration.hpp"
 
 #include <algorithm>
 #include <cmath>

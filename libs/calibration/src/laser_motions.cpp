@@ -1,4 +1,4 @@
-#include "topogeo/localization/calibration/laser_motions.hpp"
+#include "topogeo/calibration/laser_motions.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/matching/match_gate.hpp"
 
 namespace topogeo::localization {
 namespace {

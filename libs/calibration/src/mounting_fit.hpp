@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/localization/calibration/laser_motions.hpp"
+#include "topogeo/calibration/laser_motions.hpp"
 
 namespace topogeo::localization {
 

@@ -1,11 +1,11 @@
-#include "topogeo/localization/calibration/mounting_search.hpp"
+#include "topogeo/calibration/mounting_search.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
-#include "topogeo/localization/calibration/laser_calibration.hpp"
+#include "topogeo/calibration/laser_calibration.hpp"
 
 #include "mounting_fit.hpp"
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/calibration/odometry_calibration.hpp"
+#include "topogeo/calibration/odometry_calibration.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "topogeo/localization/calibration/odometry_calibration_config.hpp"
+#include "topogeo/calibration/odometry_calibration_config.hpp"
 
 #include "topogeo/support/config_schema.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "topogeo/localization/calibration/odometry_calibration.hpp"
+#include "topogeo/calibration/odometry_calibration.hpp"
 
 namespace topogeo::localization {
 

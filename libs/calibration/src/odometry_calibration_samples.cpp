@@ -1,4 +1,4 @@
-#include "topogeo/localization/calibration/odometry_calibration_samples.hpp"
+#include "topogeo/calibration/odometry_calibration_samples.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 
 #include <Eigen/LU>
 
-#include "topogeo/localization/matching/fitness.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
-#include "topogeo/localization/matching/match_gate.hpp"
-#include "topogeo/localization/matching/refinement.hpp"
+#include "topogeo/matching/fitness.hpp"
+#include "topogeo/matching/match_features.hpp"
+#include "topogeo/matching/match_gate.hpp"
+#include "topogeo/matching/refinement.hpp"
 #include "topogeo/topomap/pose_at.hpp"
 
 namespace topogeo::localization {

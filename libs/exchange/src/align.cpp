@@ -9,9 +9,9 @@
 #include <Eigen/Geometry>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/localization/mapping/stored_map.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
-#include "topogeo/localization/tracking/global_localization.hpp"
+#include "topogeo/matching/match_features.hpp"
+#include "topogeo/relocalization/global_localization.hpp"
+#include "topogeo/slam/stored_map.hpp"
 #include "topogeo/support/check_range.hpp"
 #include "topogeo/support/format.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 
-#include "topogeo/localization/mapping/stored_map.hpp"
+#include "topogeo/slam/stored_map.hpp"
 #include "topogeo/support/format.hpp"
 
 #include "text.hpp"

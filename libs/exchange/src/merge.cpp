@@ -9,11 +9,11 @@
 
 #include "topogeo/exchange/place_graph.hpp"
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/localization/matching/matcher.hpp"
-#include "topogeo/localization/session/mapping_session.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/pipeline/hybrid_map_source.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
+#include "topogeo/session/mapping_session.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/hash.hpp"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "topogeo/localization/session/kept_views.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
+#include "topogeo/session/kept_views.hpp"
 #include "topogeo/storage/map_database.hpp"
 
 namespace topogeo::exchange {

@@ -5,9 +5,9 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "topogeo/localization/mapping/pose_graph.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
+#include "topogeo/slam/pose_graph.hpp"
 #include "topogeo/support/format.hpp"
 
 namespace topogeo::exchange {

@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/branch_walls.hpp"
+#include "topogeo/matching/branch_walls.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "topogeo/localization/places/coarse_search.hpp"
+#include "topogeo/matching/coarse_search.hpp"
 
 #include <algorithm>
 #include <cmath>

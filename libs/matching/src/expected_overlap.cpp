@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/expected_overlap.hpp"
+#include "topogeo/matching/expected_overlap.hpp"
 
 #include <algorithm>
 #include <cmath>

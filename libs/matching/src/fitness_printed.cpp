@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/fitness_printed.hpp"
+#include "topogeo/matching/fitness_printed.hpp"
 
 #include <algorithm>
 #include <cmath>

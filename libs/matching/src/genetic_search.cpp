@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/genetic_search.hpp"
+#include "topogeo/matching/genetic_search.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "topogeo/localization/matching/genetic_search_hypotheses.hpp"
+#include "topogeo/matching/genetic_search_hypotheses.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/localization/matching/genetic_search.hpp"
+#include "topogeo/matching/genetic_search.hpp"
 
 namespace topogeo::localization {
 namespace {

@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/identical.hpp"
+#include "topogeo/matching/identical.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,14 +1,13 @@
-#include "topogeo/localization/tracking/laser_odometry.hpp"
+#include "topogeo/matching/laser_odometry.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
 
+#include "topogeo/matching/match_evidence.hpp"
 #include "topogeo/scan/deskew.hpp"
 #include "topogeo/topomap/local_map_builder.hpp"
-
-#include "../matching/match_evidence.hpp"
 
 namespace topogeo::localization {
 

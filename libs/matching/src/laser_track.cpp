@@ -1,4 +1,4 @@
-#include "topogeo/localization/tracking/laser_track.hpp"
+#include "topogeo/matching/laser_track.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,10 @@
 
 #include <Eigen/LU>
 
-#include "topogeo/localization/matching/refinement.hpp"
+#include "topogeo/matching/match_evidence.hpp"
+#include "topogeo/matching/refinement.hpp"
 
-#include "../matching/match_evidence.hpp"
-#include "../matching/principal_axes.hpp"
+#include "principal_axes.hpp"
 
 namespace topogeo::localization {
 

@@ -8,7 +8,7 @@
 #include <Eigen/LU>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/refinement.hpp"
+#include "topogeo/matching/refinement.hpp"
 
 namespace topogeo::localization {
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/tracking/map_field.hpp"
+#include "topogeo/matching/map_field.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/match_config.hpp"
+#include "topogeo/matching/match_config.hpp"
 
 #include "topogeo/support/config_schema.hpp"
 

@@ -1,4 +1,4 @@
-#include "match_evidence.hpp"
+#include "topogeo/matching/match_evidence.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 #include <Eigen/LU>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/localization/matching/match_gate.hpp"
-#include "topogeo/localization/matching/refinement.hpp"
+#include "topogeo/matching/match_gate.hpp"
+#include "topogeo/matching/refinement.hpp"
 
 namespace topogeo::localization {
 namespace {

@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/matching/match_gate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <Eigen/LU>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/fitness_combined.hpp"
-#include "topogeo/localization/matching/refinement.hpp"
+#include "topogeo/matching/fitness_combined.hpp"
+#include "topogeo/matching/refinement.hpp"
 
 #include "principal_axes.hpp"
 

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/localization/matching/refinement.hpp"
+#include "topogeo/matching/refinement.hpp"
 
 namespace topogeo::localization {
 namespace {

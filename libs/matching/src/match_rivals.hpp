@@ -2,9 +2,8 @@
 #pragma once
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/match.hpp"
-
-#include "match_evidence.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/matching/match_evidence.hpp"
 
 namespace topogeo::localization {
 

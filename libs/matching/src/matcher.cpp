@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,12 +9,12 @@
 
 #include <Eigen/LU>
 
-#include "topogeo/localization/matching/branch_walls.hpp"
-#include "topogeo/localization/matching/genetic_search.hpp"
-#include "topogeo/localization/matching/refinement.hpp"
-#include "topogeo/localization/places/place_field.hpp"
+#include "topogeo/matching/branch_walls.hpp"
+#include "topogeo/matching/genetic_search.hpp"
+#include "topogeo/matching/match_evidence.hpp"
+#include "topogeo/matching/place_field.hpp"
+#include "topogeo/matching/refinement.hpp"
 
-#include "match_evidence.hpp"
 #include "match_rivals.hpp"
 
 namespace topogeo::localization {

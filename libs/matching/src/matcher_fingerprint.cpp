@@ -2,7 +2,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/support/seed.hpp"
 
 namespace topogeo::localization {

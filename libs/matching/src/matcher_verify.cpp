@@ -4,12 +4,11 @@
 #include <numbers>
 #include <string>
 
-#include "topogeo/localization/matching/genetic_search.hpp"
-#include "topogeo/localization/matching/identical.hpp"
-#include "topogeo/localization/matching/matcher.hpp"
-#include "topogeo/localization/places/place_field.hpp"
-
-#include "match_evidence.hpp"
+#include "topogeo/matching/genetic_search.hpp"
+#include "topogeo/matching/identical.hpp"
+#include "topogeo/matching/match_evidence.hpp"
+#include "topogeo/matching/matcher.hpp"
+#include "topogeo/matching/place_field.hpp"
 
 namespace topogeo::localization {
 namespace {

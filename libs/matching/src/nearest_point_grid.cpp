@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/nearest_point_grid.hpp"
+#include "topogeo/matching/nearest_point_grid.hpp"
 
 #include <algorithm>
 #include <cmath>

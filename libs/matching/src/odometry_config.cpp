@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/odometry_config.hpp"
+#include "topogeo/matching/odometry_config.hpp"
 
 #include "topogeo/support/config_schema.hpp"
 

@@ -1,8 +1,8 @@
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/odometry_model.hpp"
 
 #include <cmath>
 
-#include "topogeo/localization/matching/error_ellipse.hpp"
+#include "topogeo/matching/error_ellipse.hpp"
 
 namespace topogeo::localization {
 

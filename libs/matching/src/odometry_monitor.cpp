@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/odometry_monitor.hpp"
+#include "topogeo/matching/odometry_monitor.hpp"
 
 #include <algorithm>
 #include <cmath>

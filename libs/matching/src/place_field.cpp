@@ -1,4 +1,4 @@
-#include "topogeo/localization/places/place_field.hpp"
+#include "topogeo/matching/place_field.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/localization/matching/identical.hpp"
+#include "topogeo/matching/identical.hpp"
 #include "topogeo/support/hash.hpp"
 
 namespace topogeo::localization {

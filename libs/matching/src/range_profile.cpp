@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/range_profile.hpp"
+#include "topogeo/matching/range_profile.hpp"
 
 #include <numbers>
 #include <utility>

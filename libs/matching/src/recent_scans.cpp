@@ -1,4 +1,4 @@
-#include "topogeo/localization/tracking/recent_scans.hpp"
+#include "topogeo/matching/recent_scans.hpp"
 
 #include <cmath>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/refinement.hpp"
+#include "topogeo/matching/refinement.hpp"
 
 #include <algorithm>
 #include <cmath>

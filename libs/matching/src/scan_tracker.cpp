@@ -1,10 +1,10 @@
-#include "topogeo/localization/tracking/scan_tracker.hpp"
+#include "topogeo/matching/scan_tracker.hpp"
 
 #include <cmath>
 
 #include <Eigen/LU>
 
-#include "topogeo/localization/matching/refinement.hpp"
+#include "topogeo/matching/refinement.hpp"
 
 namespace topogeo::localization {
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/tracking/scan_tracker_config.hpp"
+#include "topogeo/matching/scan_tracker_config.hpp"
 
 #include "topogeo/support/config_schema.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/matching/match_features.hpp"
 
 namespace topogeo::localization {
 

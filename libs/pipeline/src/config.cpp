@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "topogeo/localization/calibration/odometry_calibration.hpp"
+#include "topogeo/calibration/odometry_calibration.hpp"
 #include "topogeo/pipeline/laser_mounting.hpp"
 
 namespace topogeo::pipeline {

@@ -9,10 +9,10 @@
 
 #include <Eigen/Core>
 
-#include "topogeo/localization/loop/loop_decision.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
-#include "topogeo/localization/matching/match_gate.hpp"
-#include "topogeo/localization/matching/refinement.hpp"
+#include "topogeo/matching/match_features.hpp"
+#include "topogeo/matching/match_gate.hpp"
+#include "topogeo/matching/refinement.hpp"
+#include "topogeo/slam/loop/loop_decision.hpp"
 #include "topogeo/support/format.hpp"
 
 #include "nearest_pose.hpp"

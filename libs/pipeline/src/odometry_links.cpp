@@ -6,7 +6,7 @@
 
 #include <Eigen/LU>
 
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/odometry_model.hpp"
 
 namespace topogeo::pipeline {
 namespace {

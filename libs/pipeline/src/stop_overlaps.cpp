@@ -4,8 +4,8 @@
 #include <set>
 #include <utility>
 
-#include "topogeo/localization/session/slam_session.hpp"
-#include "topogeo/localization/thesis/visible_rectangle.hpp"
+#include "topogeo/session/slam_session.hpp"
+#include "topogeo/thesis/visible_rectangle.hpp"
 
 namespace topogeo::pipeline {
 namespace {

@@ -4,10 +4,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "topogeo/localization/mapping/search_space.hpp"
-#include "topogeo/localization/matching/branch_walls.hpp"
-#include "topogeo/localization/matching/fitness_forms.hpp"
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/branch_walls.hpp"
+#include "topogeo/matching/fitness_forms.hpp"
+#include "topogeo/matching/matcher.hpp"
+#include "topogeo/slam/search_space.hpp"
 #include "topogeo/support/hash.hpp"
 
 namespace topogeo::pipeline {

@@ -1,8 +1,8 @@
-#include "topogeo/localization/tracking/continued_place.hpp"
+#include "topogeo/relocalization/continued_place.hpp"
 
 #include <algorithm>
 
-#include "topogeo/localization/loop/plausible_match.hpp"
+#include "topogeo/slam/loop/plausible_match.hpp"
 
 namespace topogeo::localization {
 

@@ -1,6 +1,6 @@
-#include "topogeo/localization/tracking/drive_agreement.hpp"
+#include "topogeo/relocalization/drive_agreement.hpp"
 
-#include "topogeo/localization/loop/loop_config.hpp"
+#include "topogeo/slam/loop/loop_config.hpp"
 
 namespace topogeo::localization {
 

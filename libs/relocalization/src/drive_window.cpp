@@ -1,11 +1,11 @@
-#include "topogeo/localization/tracking/drive_window.hpp"
+#include "topogeo/relocalization/drive_window.hpp"
 
 #include <cmath>
 #include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/localization/matching/match_gate.hpp"
-#include "topogeo/localization/tracking/pose_fusion.hpp"
+#include "topogeo/matching/match_gate.hpp"
+#include "topogeo/relocalization/pose_fusion.hpp"
 
 namespace topogeo::localization {
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/tracking/global_localization.hpp"
+#include "topogeo/relocalization/global_localization.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/matching/match_gate.hpp"
 
 namespace topogeo::localization {
 

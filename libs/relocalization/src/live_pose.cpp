@@ -1,4 +1,4 @@
-#include "topogeo/localization/tracking/live_pose.hpp"
+#include "topogeo/relocalization/live_pose.hpp"
 
 namespace topogeo::localization {
 namespace {

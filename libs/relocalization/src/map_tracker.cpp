@@ -1,4 +1,4 @@
-#include "topogeo/localization/tracking/map_tracker.hpp"
+#include "topogeo/relocalization/map_tracker.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -7,10 +7,10 @@
 
 #include <Eigen/LU>
 
-#include "topogeo/localization/loop/plausible_match.hpp"
-#include "topogeo/localization/matching/match_gate.hpp"
-#include "topogeo/localization/matching/refinement.hpp"
-#include "topogeo/localization/tracking/pose_fusion.hpp"
+#include "topogeo/matching/match_gate.hpp"
+#include "topogeo/matching/refinement.hpp"
+#include "topogeo/relocalization/pose_fusion.hpp"
+#include "topogeo/slam/loop/plausible_match.hpp"
 
 namespace topogeo::localization {
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/tracking/place_search.hpp"
+#include "topogeo/relocalization/place_search.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/localization/tracking/pose_fusion.hpp"
+#include "topogeo/relocalization/pose_fusion.hpp"
 
 namespace topogeo::localization {
 

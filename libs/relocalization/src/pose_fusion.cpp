@@ -1,11 +1,11 @@
-#include "topogeo/localization/tracking/pose_fusion.hpp"
+#include "topogeo/relocalization/pose_fusion.hpp"
 
 #include <algorithm>
 #include <numbers>
 
 #include <Eigen/LU>
 
-#include "topogeo/localization/tracking/global_localization.hpp"
+#include "topogeo/relocalization/global_localization.hpp"
 
 namespace topogeo::localization {
 

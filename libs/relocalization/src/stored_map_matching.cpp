@@ -1,9 +1,9 @@
-#include "topogeo/localization/tracking/stored_map_matching.hpp"
+#include "topogeo/relocalization/stored_map_matching.hpp"
 
 #include <cmath>
 #include <utility>
 
-#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/matching/match_gate.hpp"
 
 namespace topogeo::localization {
 

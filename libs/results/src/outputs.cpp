@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/matching/match_gate.hpp"
 #include "topogeo/pipeline/odometry_links.hpp"
 #include "topogeo/render/map_picture.hpp"
 #include "topogeo/storage/map_file.hpp"

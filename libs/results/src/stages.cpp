@@ -3,10 +3,10 @@
 #include <memory>
 #include <utility>
 
-#include "topogeo/localization/matching/matcher.hpp"
-#include "topogeo/localization/session/make_slam.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/render/map_picture.hpp"
+#include "topogeo/session/make_slam.hpp"
 
 namespace topogeo::results {
 namespace {

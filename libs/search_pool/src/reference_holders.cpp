@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 
 namespace topogeo::search_pool {
 namespace {

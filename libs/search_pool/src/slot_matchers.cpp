@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "topogeo/localization/places/place_field.hpp"
+#include "topogeo/matching/place_field.hpp"
 #include "topogeo/search_pool/map_cache.hpp"
 
 namespace topogeo::search_pool {

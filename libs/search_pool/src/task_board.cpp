@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "topogeo/localization/matching/identical.hpp"
+#include "topogeo/matching/identical.hpp"
 #include "topogeo/support/hash.hpp"
 
 namespace topogeo::search_pool {

@@ -1,11 +1,11 @@
-#include "topogeo/localization/session/joint_poses.hpp"
+#include "topogeo/session/joint_poses.hpp"
 
 #include <map>
 #include <numeric>
 #include <optional>
 #include <utility>
 
-#include "topogeo/localization/mapping/graph_optimization.hpp"
+#include "topogeo/slam/graph_optimization.hpp"
 
 namespace topogeo::localization {
 

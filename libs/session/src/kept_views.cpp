@@ -1,12 +1,12 @@
-#include "topogeo/localization/session/kept_views.hpp"
+#include "topogeo/session/kept_views.hpp"
 
 #include <algorithm>
 #include <optional>
 #include <set>
 #include <utility>
 
-#include "topogeo/localization/matching/expected_overlap.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/matching/expected_overlap.hpp"
+#include "topogeo/matching/match_features.hpp"
 
 namespace topogeo::localization {
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/session/map_part.hpp"
+#include "topogeo/session/map_part.hpp"
 
 #include <utility>
 

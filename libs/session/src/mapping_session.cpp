@@ -1,4 +1,4 @@
-#include "topogeo/localization/session/mapping_session.hpp"
+#include "topogeo/session/mapping_session.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "topogeo/localization/session/make_slam.hpp"
-#include "topogeo/localization/session/slam_counts.hpp"
+#include "topogeo/session/make_slam.hpp"
+#include "topogeo/session/slam_counts.hpp"
 
 namespace topogeo::localization {
 

@@ -1,9 +1,9 @@
-#include "topogeo/localization/session/meeting.hpp"
+#include "topogeo/session/meeting.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "topogeo/localization/session/slam_counts.hpp"
+#include "topogeo/session/slam_counts.hpp"
 
 namespace topogeo::localization {
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/session/merge_proposals.hpp"
+#include "topogeo/session/merge_proposals.hpp"
 
 #include <algorithm>
 #include <cmath>

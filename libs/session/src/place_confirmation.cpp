@@ -1,4 +1,4 @@
-#include "topogeo/localization/session/place_confirmation.hpp"
+#include "topogeo/session/place_confirmation.hpp"
 
 #include <optional>
 

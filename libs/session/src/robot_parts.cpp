@@ -1,4 +1,4 @@
-#include "topogeo/localization/session/robot_parts.hpp"
+#include "topogeo/session/robot_parts.hpp"
 
 #include <algorithm>
 

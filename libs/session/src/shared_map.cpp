@@ -1,13 +1,13 @@
-#include "topogeo/localization/session/shared_map.hpp"
+#include "topogeo/session/shared_map.hpp"
 
 #include <algorithm>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
-#include "topogeo/localization/mapping/drive_join.hpp"
-#include "topogeo/localization/mapping/pose_graph_slam.hpp"
-#include "topogeo/localization/session/kept_views.hpp"
+#include "topogeo/session/kept_views.hpp"
+#include "topogeo/slam/drive_join.hpp"
+#include "topogeo/slam/pose_graph_slam.hpp"
 
 namespace topogeo::localization {
 

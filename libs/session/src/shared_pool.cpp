@@ -1,4 +1,4 @@
-#include "topogeo/localization/session/shared_pool.hpp"
+#include "topogeo/session/shared_pool.hpp"
 
 #include <utility>
 #include <vector>

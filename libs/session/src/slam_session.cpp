@@ -1,4 +1,4 @@
-#include "topogeo/localization/session/slam_session.hpp"
+#include "topogeo/session/slam_session.hpp"
 
 #include <numbers>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/candidate_choice.hpp"
+#include "topogeo/slam/candidate_choice.hpp"
 
 #include <algorithm>
 

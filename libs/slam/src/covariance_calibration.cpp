@@ -1,8 +1,8 @@
-#include "topogeo/localization/mapping/covariance_calibration.hpp"
+#include "topogeo/slam/covariance_calibration.hpp"
 
 #include <algorithm>
 
-#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/matching/match_gate.hpp"
 
 namespace topogeo::localization {
 

@@ -1,11 +1,11 @@
-#include "topogeo/localization/mapping/graph_optimization.hpp"
+#include "topogeo/slam/graph_optimization.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
-#include "topogeo/localization/loop/outvoted_loop.hpp"
+#include "topogeo/slam/loop/outvoted_loop.hpp"
 
 #include "least_squares.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "topogeo/localization/mapping/pose_graph.hpp"
+#include "topogeo/slam/pose_graph.hpp"
 
 namespace topogeo::localization {
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/localization_state.hpp"
+#include "topogeo/slam/localization_state.hpp"
 
 #include <array>
 

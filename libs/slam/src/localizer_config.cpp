@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/localizer_config.hpp"
+#include "topogeo/slam/localizer_config.hpp"
 
 #include "topogeo/support/config_schema.hpp"
 

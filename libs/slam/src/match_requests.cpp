@@ -1,8 +1,8 @@
-#include "topogeo/localization/mapping/match_requests.hpp"
+#include "topogeo/slam/match_requests.hpp"
 
 #include <utility>
 
-#include "topogeo/localization/mapping/search_space.hpp"
+#include "topogeo/slam/search_space.hpp"
 #include "topogeo/support/seed.hpp"
 
 namespace topogeo::localization {

@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/odometry_scale.hpp"
+#include "topogeo/slam/odometry_scale.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/optimization_schedule.hpp"
+#include "topogeo/slam/optimization_schedule.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/optimization_window.hpp"
+#include "topogeo/slam/optimization_window.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "topogeo/localization/places/place_recognition.hpp"
+#include "topogeo/slam/place_recognition.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,10 @@
 #include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/localization/matching/expected_overlap.hpp"
-#include "topogeo/localization/matching/match_gate.hpp"
-#include "topogeo/localization/matching/refinement.hpp"
-
-#include "../matching/match_evidence.hpp"
+#include "topogeo/matching/expected_overlap.hpp"
+#include "topogeo/matching/match_evidence.hpp"
+#include "topogeo/matching/match_gate.hpp"
+#include "topogeo/matching/refinement.hpp"
 
 namespace topogeo::localization {
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/pose_graph_slam.hpp"
+#include "topogeo/slam/pose_graph_slam.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "topogeo/localization/loop/look_alikes.hpp"
-#include "topogeo/localization/loop/loop_config.hpp"
-#include "topogeo/localization/mapping/drive_join.hpp"
+#include "topogeo/slam/drive_join.hpp"
+#include "topogeo/slam/loop/look_alikes.hpp"
+#include "topogeo/slam/loop/loop_config.hpp"
 
 #include "link_covariances.hpp"
 

@@ -14,7 +14,7 @@
 #include <boost/graph/adjacency_list.hpp>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/mapping/pose_graph.hpp"
+#include "topogeo/slam/pose_graph.hpp"
 
 namespace topogeo::localization {
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/relative_poses.hpp"
+#include "topogeo/slam/relative_poses.hpp"
 
 #include <stdexcept>
 #include <string>

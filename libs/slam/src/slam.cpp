@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/slam.hpp"
+#include "topogeo/slam/slam.hpp"
 
 #include <stdexcept>
 #include <string>

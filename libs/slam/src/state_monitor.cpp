@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/state_monitor.hpp"
+#include "topogeo/slam/state_monitor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <string>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/matching/match_gate.hpp"
 
 namespace topogeo::localization {
 

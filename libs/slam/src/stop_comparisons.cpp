@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/stop_comparisons.hpp"
+#include "topogeo/slam/stop_comparisons.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/stop_matching.hpp"
+#include "topogeo/slam/stop_matching.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,11 @@
 
 #include <Eigen/LU>
 
-#include "topogeo/localization/mapping/search_space.hpp"
-#include "topogeo/localization/matching/branch_walls.hpp"
-#include "topogeo/localization/matching/expected_overlap.hpp"
-#include "topogeo/localization/matching/match_gate.hpp"
-#include "topogeo/localization/matching/refinement.hpp"
+#include "topogeo/matching/branch_walls.hpp"
+#include "topogeo/matching/expected_overlap.hpp"
+#include "topogeo/matching/match_gate.hpp"
+#include "topogeo/matching/refinement.hpp"
+#include "topogeo/slam/search_space.hpp"
 
 #include "window_match.hpp"
 

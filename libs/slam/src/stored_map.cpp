@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/stored_map.hpp"
+#include "topogeo/slam/stored_map.hpp"
 
 #include <stdexcept>
 #include <string>

@@ -1,4 +1,4 @@
-#include "topogeo/localization/thesis/thesis_config.hpp"
+#include "topogeo/slam/thesis_config.hpp"
 
 #include "topogeo/support/config_schema.hpp"
 

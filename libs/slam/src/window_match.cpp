@@ -1,6 +1,6 @@
 #include "window_match.hpp"
 
-#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/matching/match_gate.hpp"
 
 namespace topogeo::localization {
 

@@ -3,10 +3,10 @@
 
 #include <cstdint>
 
-#include "topogeo/localization/loop/stop_match.hpp"
-#include "topogeo/localization/mapping/covariance_calibration.hpp"
-#include "topogeo/localization/mapping/pose_graph.hpp"
-#include "topogeo/localization/places/place_recognition.hpp"
+#include "topogeo/slam/covariance_calibration.hpp"
+#include "topogeo/slam/loop/stop_match.hpp"
+#include "topogeo/slam/place_recognition.hpp"
+#include "topogeo/slam/pose_graph.hpp"
 
 namespace topogeo::localization {
 

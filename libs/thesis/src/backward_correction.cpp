@@ -1,4 +1,4 @@
-#include "topogeo/localization/thesis/backward_correction.hpp"
+#include "topogeo/thesis/backward_correction.hpp"
 
 #include <algorithm>
 #include <stdexcept>

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "topogeo/localization/thesis/backward_correction.hpp"
+#include "topogeo/thesis/backward_correction.hpp"
 
 namespace topogeo::localization {
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/thesis/cycle_closing.hpp"
+#include "topogeo/thesis/cycle_closing.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
-#include "topogeo/localization/thesis/kept_solutions.hpp"
+#include "topogeo/thesis/kept_solutions.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "topogeo/localization/matching/branch_walls.hpp"
+#include "topogeo/matching/branch_walls.hpp"
 
 namespace topogeo::localization {
 

@@ -1,13 +1,13 @@
-#include "topogeo/localization/thesis/thesis_map.hpp"
+#include "topogeo/thesis/thesis_map.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "topogeo/localization/mapping/search_space.hpp"
-#include "topogeo/localization/mapping/slam.hpp"
-#include "topogeo/localization/matching/branch_walls.hpp"
-#include "topogeo/localization/matching/expected_overlap.hpp"
+#include "topogeo/matching/branch_walls.hpp"
+#include "topogeo/matching/expected_overlap.hpp"
+#include "topogeo/slam/search_space.hpp"
+#include "topogeo/slam/slam.hpp"
 
 namespace topogeo::localization {
 

@@ -1,11 +1,11 @@
-#include "topogeo/localization/thesis/thesis_matching.hpp"
+#include "topogeo/thesis/thesis_matching.hpp"
 
 #include <utility>
 
 #include <Eigen/LU>
 
-#include "topogeo/localization/matching/match_gate.hpp"
-#include "topogeo/localization/matching/refinement.hpp"
+#include "topogeo/matching/match_gate.hpp"
+#include "topogeo/matching/refinement.hpp"
 
 namespace topogeo::localization {
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/thesis/thesis_slam.hpp"
+#include "topogeo/thesis/thesis_slam.hpp"
 
 #include <algorithm>
 #include <utility>

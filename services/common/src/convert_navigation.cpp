@@ -2,9 +2,9 @@
 #include <numbers>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/localization/mapping/state_monitor.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/navigation_conversions.hpp"
+#include "topogeo/slam/state_monitor.hpp"
 
 #include "convert.hpp"
 

@@ -11,9 +11,9 @@
 #include <string>
 #include <utility>
 
+#include "topogeo/calibration/laser_calibration.hpp"
+#include "topogeo/calibration/odometry_calibration_samples.hpp"
 #include "topogeo/command_line/command_line.hpp"
-#include "topogeo/localization/calibration/laser_calibration.hpp"
-#include "topogeo/localization/calibration/odometry_calibration_samples.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/laser_mounting.hpp"
 #include "topogeo/service/service_options.hpp"

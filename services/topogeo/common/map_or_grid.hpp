@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
-#include "topogeo/localization/mapping/stored_map.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/planning/occupancy_grid.hpp"
+#include "topogeo/slam/stored_map.hpp"
 #include "topogeo/storage/map_document.hpp"
 
 namespace topogeo::cli {

@@ -5,10 +5,10 @@
 #include <string>
 
 #include "topogeo/command_line/command_line.hpp"
-#include "topogeo/localization/session/slam_session.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/session/slam_session.hpp"
 
 #include "commands.hpp"
 #include "common/domain_view.hpp"

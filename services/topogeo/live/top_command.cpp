@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "topogeo/command_line/command_line.hpp"
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/service/service_options.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "topogeo/localization/calibration/odometry_calibration.hpp"
+#include "topogeo/calibration/odometry_calibration.hpp"
 #include "topogeo/results/outputs.hpp"
 #include "topogeo/results/stages.hpp"
 #include "topogeo/support/cpu_time.hpp"

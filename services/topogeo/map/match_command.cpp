@@ -16,14 +16,14 @@
 #include <nlohmann/json.hpp>
 
 #include "topogeo/command_line/command_line.hpp"
-#include "topogeo/localization/matching/match_gate.hpp"
-#include "topogeo/localization/session/slam_session.hpp"
+#include "topogeo/matching/match_gate.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/pipeline/stop_search.hpp"
 #include "topogeo/recording/log_reader.hpp"
 #include "topogeo/render/match_picture.hpp"
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/session/slam_session.hpp"
 #include "topogeo/storage/read_map.hpp"
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/format.hpp"

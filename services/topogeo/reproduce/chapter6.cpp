@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "topogeo/localization/matching/error_ellipse.hpp"
-#include "topogeo/localization/matching/fitness_forms.hpp"
-#include "topogeo/localization/matching/genetic_search_parts.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/error_ellipse.hpp"
+#include "topogeo/matching/fitness_forms.hpp"
+#include "topogeo/matching/genetic_search_parts.hpp"
+#include "topogeo/matching/odometry_model.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/random.hpp"
 #include "topogeo/topomap/thesis_local_map.hpp"

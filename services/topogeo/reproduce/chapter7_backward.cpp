@@ -4,7 +4,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/odometry_model.hpp"
 #include "topogeo/support/format.hpp"
 
 #include "reproduce/chapter7.hpp"

@@ -7,9 +7,9 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/thesis/visible_rectangle.hpp"
 #include "topogeo/render/figure.hpp"
 #include "topogeo/scan/scan.hpp"
+#include "topogeo/thesis/visible_rectangle.hpp"
 #include "topogeo/topomap/global_map.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/voronoi/local_voronoi.hpp"

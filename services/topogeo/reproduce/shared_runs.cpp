@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
 #include "topogeo/simulation/thesis_experiments.hpp"

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/mapping/slam.hpp"
-#include "topogeo/localization/thesis/thesis_slam.hpp"
+#include "topogeo/slam/localizer_config.hpp"
+#include "topogeo/slam/slam.hpp"
+#include "topogeo/thesis/thesis_slam.hpp"
 #include "topogeo/topomap/global_map.hpp"
 #include "topogeo/topomap/global_map_config.hpp"
 #include "topogeo/topomap/local_map.hpp"

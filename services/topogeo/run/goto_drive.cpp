@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "topogeo/localization/mapping/localization_state.hpp"
 #include "topogeo/planning/place_names.hpp"
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/slam/localization_state.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/format.hpp"
 

@@ -5,12 +5,12 @@
 #include <string>
 
 #include "topogeo/command_line/command_line.hpp"
-#include "topogeo/localization/mapping/localization_state.hpp"
-#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/matching/match_gate.hpp"
 #include "topogeo/recording/log_writer.hpp"
 #include "topogeo/results/outputs.hpp"
 #include "topogeo/service/replay_rate.hpp"
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/slam/localization_state.hpp"
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/cpu_time.hpp"
 

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/loop/loop_decision.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/msg/status.h"
 #include "topogeo/msg/stream.h"
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/service/decision_assembly.hpp"
+#include "topogeo/slam/loop/loop_decision.hpp"
 #include "topogeo/supervision/stall_watch.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/progress_bar.hpp"

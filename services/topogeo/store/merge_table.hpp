@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "topogeo/localization/session/merge_proposals.hpp"
+#include "topogeo/session/merge_proposals.hpp"
 
 namespace topogeo::cli {
 

@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "topogeo/localization/mapping/localization_state.hpp"
 #include "topogeo/navigation/navigator_inputs.hpp"
+#include "topogeo/slam/localization_state.hpp"
 #include "topogeo/topomap/node_kind_name.hpp"
 
 namespace topogeo::web {

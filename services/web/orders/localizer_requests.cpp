@@ -3,8 +3,8 @@
 #include <optional>
 #include <utility>
 
-#include "topogeo/localization/session/slam_session.hpp"
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/session/slam_session.hpp"
 #include "topogeo/support/host.hpp"
 
 #include "server/json_values.hpp"

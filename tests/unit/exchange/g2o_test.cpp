@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/mapping/pose_graph.hpp"
+#include "topogeo/slam/pose_graph.hpp"
 
 #include "readers.hpp"
 #include "sample_floor.hpp"

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/localization/tracking/global_localization.hpp"
+#include "topogeo/relocalization/global_localization.hpp"
 #include "topogeo/scan/scan.hpp"
 #include "topogeo/storage/map_file.hpp"
 

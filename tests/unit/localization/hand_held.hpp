@@ -8,7 +8,7 @@
 #include <numbers>
 #include <utility>
 
-#include "topogeo/localization/tracking/laser_odometry.hpp"
+#include "topogeo/matching/laser_odometry.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
 
 namespace topogeo::localization::test {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/matching/match_features.hpp"
 #include "topogeo/simulation/laser.hpp"
 #include "topogeo/topomap/local_map.hpp"
 

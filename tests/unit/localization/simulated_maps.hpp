@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/matching/odometry_model.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
 #include "topogeo/support/random.hpp"

@@ -7,7 +7,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "topogeo/localization/calibration/odometry_calibration.hpp"
+#include "topogeo/calibration/odometry_calibration.hpp"
 #include "topogeo/support/random.hpp"
 
 namespace topogeo::localization::test {

@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/session/slam_session.hpp"
-#include "topogeo/localization/thesis/visible_rectangle.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
+#include "topogeo/session/slam_session.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
+#include "topogeo/thesis/visible_rectangle.hpp"
 #include "topogeo/world/world.hpp"
 
 namespace topogeo::pipeline {

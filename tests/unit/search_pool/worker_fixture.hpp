@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/localization/places/place_field.hpp"
+#include "topogeo/matching/place_field.hpp"
 #include "topogeo/search_pool/match_job.hpp"
 
 namespace topogeo::search_pool {

@@ -1,4 +1,4 @@
-#include "topogeo/localization/loop/closing_check.hpp"
+#include "topogeo/slam/loop/closing_check.hpp"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,8 +1,8 @@
-#include "topogeo/localization/loop/look_alikes.hpp"
+#include "topogeo/slam/loop/look_alikes.hpp"
 
 #include <algorithm>
 
-#include "topogeo/localization/loop/loop_config.hpp"
+#include "topogeo/slam/loop/loop_config.hpp"
 
 namespace topogeo::localization {
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/loop/loop_agreement.hpp"
+#include "topogeo/slam/loop/loop_agreement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 #include <optional>
 #include <set>
 
-#include "topogeo/localization/loop/loop_config.hpp"
-#include "topogeo/localization/loop/loop_probability.hpp"
-#include "topogeo/localization/mapping/covariance_calibration.hpp"
-#include "topogeo/localization/places/place_recognition.hpp"
+#include "topogeo/slam/covariance_calibration.hpp"
+#include "topogeo/slam/loop/loop_config.hpp"
+#include "topogeo/slam/loop/loop_probability.hpp"
+#include "topogeo/slam/place_recognition.hpp"
 
 namespace topogeo::localization {
 

@@ -1,10 +1,10 @@
-#include "topogeo/localization/loop/loop_closing.hpp"
+#include "topogeo/slam/loop/loop_closing.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "topogeo/localization/loop/closing_check.hpp"
-#include "topogeo/localization/loop/loop_config.hpp"
+#include "topogeo/slam/loop/closing_check.hpp"
+#include "topogeo/slam/loop/loop_config.hpp"
 
 namespace topogeo::localization {
 

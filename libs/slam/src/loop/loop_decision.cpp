@@ -1,8 +1,8 @@
-#include "topogeo/localization/loop/loop_decision.hpp"
+#include "topogeo/slam/loop/loop_decision.hpp"
 
 #include <array>
 
-#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/matching/match_gate.hpp"
 
 namespace topogeo::localization {
 

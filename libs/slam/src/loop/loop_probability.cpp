@@ -1,4 +1,4 @@
-#include "topogeo/localization/loop/loop_probability.hpp"
+#include "topogeo/slam/loop/loop_probability.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/loop/loop_search.hpp"
+#include "topogeo/slam/loop/loop_search.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
-#include "topogeo/localization/loop/outvoted_loop.hpp"
+#include "topogeo/slam/loop/outvoted_loop.hpp"
 
-#include "topogeo/localization/loop/loop_config.hpp"
+#include "topogeo/slam/loop/loop_config.hpp"
 
 namespace topogeo::localization {
 

@@ -1,7 +1,7 @@
-#include "topogeo/localization/loop/plausible_match.hpp"
+#include "topogeo/slam/loop/plausible_match.hpp"
 
-#include "topogeo/localization/loop/loop_config.hpp"
-#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/matching/match_gate.hpp"
+#include "topogeo/slam/loop/loop_config.hpp"
 
 namespace topogeo::localization {
 

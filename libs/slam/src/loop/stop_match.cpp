@@ -1,11 +1,11 @@
-#include "topogeo/localization/loop/stop_match.hpp"
+#include "topogeo/slam/loop/stop_match.hpp"
 
 #include <algorithm>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/loop/loop_config.hpp"
-#include "topogeo/localization/loop/plausible_match.hpp"
-#include "topogeo/localization/places/place_recognition.hpp"
+#include "topogeo/slam/loop/loop_config.hpp"
+#include "topogeo/slam/loop/plausible_match.hpp"
+#include "topogeo/slam/place_recognition.hpp"
 
 namespace topogeo::localization {
 

@@ -1,5 +1,5 @@
 // calibrate_laser on motions of a robot and of a laser with a known mounting.
-#include "topogeo/localization/calibration/laser_calibration.hpp"
+#include "topogeo/calibration/laser_calibration.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,5 +1,5 @@
 // find_mounting on drives through made worlds with a laser at a known place of the robot.
-#include "topogeo/localization/calibration/mounting_search.hpp"
+#include "topogeo/calibration/mounting_search.hpp"
 
 #include <algorithm>
 #include <cmath>

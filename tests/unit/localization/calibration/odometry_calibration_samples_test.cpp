@@ -1,5 +1,5 @@
 // The measured motions of a log, from matches and from a reference trajectory.
-#include "topogeo/localization/calibration/odometry_calibration_samples.hpp"
+#include "topogeo/calibration/odometry_calibration_samples.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -9,8 +9,8 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/mapping/pose_graph_slam.hpp"
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
+#include "topogeo/slam/pose_graph_slam.hpp"
 
 #include "localization/hand_scenes.hpp"
 #include "localization/simulated_maps.hpp"

@@ -1,5 +1,5 @@
 // calibrate_odometry on motions with known, simulated noise.
-#include "topogeo/localization/calibration/odometry_calibration.hpp"
+#include "topogeo/calibration/odometry_calibration.hpp"
 
 #include <cmath>
 #include <limits>

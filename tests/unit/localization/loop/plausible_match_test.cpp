@@ -1,8 +1,8 @@
-#include "topogeo/localization/loop/plausible_match.hpp"
+#include "topogeo/slam/loop/plausible_match.hpp"
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/loop/loop_config.hpp"
+#include "topogeo/slam/loop/loop_config.hpp"
 
 namespace topogeo::localization {
 namespace {

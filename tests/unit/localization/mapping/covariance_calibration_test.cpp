@@ -1,10 +1,10 @@
 // Matches with errors of a known size, and the calibration from triangles of them.
-#include "topogeo/localization/mapping/covariance_calibration.hpp"
+#include "topogeo/slam/covariance_calibration.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/matching/match_gate.hpp"
 #include "topogeo/support/random.hpp"
 
 namespace topogeo::localization {

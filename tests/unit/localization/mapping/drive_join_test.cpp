@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/drive_join.hpp"
+#include "topogeo/slam/drive_join.hpp"
 
 #include <stdexcept>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/graph_optimization.hpp"
+#include "topogeo/slam/graph_optimization.hpp"
 
 #include <stdexcept>
 

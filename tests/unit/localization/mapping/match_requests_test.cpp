@@ -1,11 +1,11 @@
-#include "topogeo/localization/mapping/match_requests.hpp"
+#include "topogeo/slam/match_requests.hpp"
 
 #include <stdexcept>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/mapping/search_space.hpp"
+#include "topogeo/slam/search_space.hpp"
 #include "topogeo/support/seed.hpp"
 
 namespace topogeo::localization {

@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/odometry_steps.hpp"
+#include "topogeo/slam/odometry_steps.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/pose_graph_slam.hpp"
+#include "topogeo/slam/pose_graph_slam.hpp"
 
 #include <array>
 #include <chrono>
@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 
 #include "localization/hand_scenes.hpp"
 #include "localization/simulated_maps.hpp"

@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/pose_graph.hpp"
+#include "topogeo/slam/pose_graph.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/mapping/pose_graph.hpp"
+#include "topogeo/slam/pose_graph.hpp"
 
 #include "localization/hand_scenes.hpp"
 

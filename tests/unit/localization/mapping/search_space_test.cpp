@@ -1,8 +1,8 @@
-#include "topogeo/localization/mapping/search_space.hpp"
+#include "topogeo/slam/search_space.hpp"
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/mapping/pose_graph.hpp"
+#include "topogeo/slam/pose_graph.hpp"
 
 namespace topogeo::localization {
 namespace {

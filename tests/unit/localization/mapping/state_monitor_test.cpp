@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/state_monitor.hpp"
+#include "topogeo/slam/state_monitor.hpp"
 
 #include <stdexcept>
 

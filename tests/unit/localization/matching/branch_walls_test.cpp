@@ -1,5 +1,5 @@
 // Hand-made branches between known walls.
-#include "topogeo/localization/matching/branch_walls.hpp"
+#include "topogeo/matching/branch_walls.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/error_ellipse.hpp"
+#include "topogeo/matching/error_ellipse.hpp"
 
 #include <cmath>
 #include <limits>

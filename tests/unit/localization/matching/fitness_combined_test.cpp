@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/fitness_combined.hpp"
+#include "topogeo/matching/fitness_combined.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/fitness_topological.hpp"
+#include "topogeo/matching/fitness_topological.hpp"
 
 #include <algorithm>
 #include <cmath>

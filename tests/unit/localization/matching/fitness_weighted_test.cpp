@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/fitness_weighted.hpp"
+#include "topogeo/matching/fitness_weighted.hpp"
 
 #include <cmath>
 

@@ -1,11 +1,11 @@
-#include "topogeo/localization/matching/genetic_search_hypotheses.hpp"
+#include "topogeo/matching/genetic_search_hypotheses.hpp"
 
 #include <algorithm>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/genetic_search.hpp"
+#include "topogeo/matching/genetic_search.hpp"
 
 #include "localization/hand_scenes.hpp"
 #include "localization/simulated_maps.hpp"

@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/genetic_search_parts.hpp"
+#include "topogeo/matching/genetic_search_parts.hpp"
 
 #include <array>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/genetic_search.hpp"
+#include "topogeo/matching/genetic_search.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/fitness_combined.hpp"
+#include "topogeo/matching/fitness_combined.hpp"
 
 #include "localization/hand_scenes.hpp"
 

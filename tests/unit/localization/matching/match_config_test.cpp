@@ -1,12 +1,12 @@
-#include "topogeo/localization/matching/match_config.hpp"
+#include "topogeo/matching/match_config.hpp"
 
 #include <stdexcept>
 
 #include <gmock/gmock.h>
 
-#include "topogeo/localization/calibration/odometry_calibration.hpp"
-#include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/tracking/scan_tracker_config.hpp"
+#include "topogeo/calibration/odometry_calibration.hpp"
+#include "topogeo/matching/scan_tracker_config.hpp"
+#include "topogeo/slam/localizer_config.hpp"
 #include "topogeo/support/config_schema.hpp"
 
 namespace topogeo::localization {

@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/matching/match_features.hpp"
 
 #include <cmath>
 #include <memory>

@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/matching/match_gate.hpp"
 
 #include <cmath>
 #include <set>

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/match_gate.hpp"
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/match_gate.hpp"
+#include "topogeo/matching/matcher.hpp"
 
 #include "localization/hand_scenes.hpp"
 #include "localization/simulated_maps.hpp"

@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/fitness_forms.hpp"
-#include "topogeo/localization/matching/genetic_search.hpp"
-#include "topogeo/localization/matching/genetic_search_hypotheses.hpp"
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/fitness_forms.hpp"
+#include "topogeo/matching/genetic_search.hpp"
+#include "topogeo/matching/genetic_search_hypotheses.hpp"
+#include "topogeo/matching/matcher.hpp"
 
 #include "counted_allocations.hpp"
 #include "localization/simulated_maps.hpp"

@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 
 #include <functional>
 #include <limits>
@@ -12,7 +12,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/matching/match_gate.hpp"
 
 #include "localization/hand_scenes.hpp"
 #include "localization/simulated_maps.hpp"

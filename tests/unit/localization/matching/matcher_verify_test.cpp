@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/support/random.hpp"
 
 #include "localization/hand_scenes.hpp"

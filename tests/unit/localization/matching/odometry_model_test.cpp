@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/odometry_model.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -9,7 +9,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/error_ellipse.hpp"
+#include "topogeo/matching/error_ellipse.hpp"
 #include "topogeo/support/random.hpp"
 
 namespace topogeo::localization {

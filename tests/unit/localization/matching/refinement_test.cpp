@@ -1,4 +1,4 @@
-#include "topogeo/localization/matching/refinement.hpp"
+#include "topogeo/matching/refinement.hpp"
 
 #include <cmath>
 #include <vector>
@@ -7,7 +7,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/fitness_combined.hpp"
+#include "topogeo/matching/fitness_combined.hpp"
 
 #include "localization/hand_scenes.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/matching/match_features.hpp"
 #include "topogeo/support/random.hpp"
 
 #include "localization/hand_scenes.hpp"

@@ -1,5 +1,5 @@
 // The oracle tries every pose of the window.
-#include "topogeo/localization/places/coarse_search.hpp"
+#include "topogeo/matching/coarse_search.hpp"
 
 #include <algorithm>
 #include <cmath>

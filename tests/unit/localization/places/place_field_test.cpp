@@ -1,5 +1,5 @@
 // Found places are the true ones for any searcher; searches in pieces give the same results.
-#include "topogeo/localization/places/place_field.hpp"
+#include "topogeo/matching/place_field.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 
 namespace topogeo::localization {
 namespace {

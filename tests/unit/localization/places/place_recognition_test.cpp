@@ -1,6 +1,6 @@
 // A robot drives along a corridor with niches and returns to its beginning with a drifted pose: is
 // the place proposed?
-#include "topogeo/localization/places/place_recognition.hpp"
+#include "topogeo/slam/place_recognition.hpp"
 
 #include <cmath>
 #include <memory>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/matching/match_features.hpp"
 
 namespace topogeo::localization {
 namespace {

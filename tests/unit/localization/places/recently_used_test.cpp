@@ -1,4 +1,4 @@
-#include "topogeo/localization/places/recently_used.hpp"
+#include "topogeo/matching/recently_used.hpp"
 
 #include <gtest/gtest.h>
 

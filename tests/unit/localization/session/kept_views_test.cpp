@@ -1,4 +1,4 @@
-#include "topogeo/localization/session/kept_views.hpp"
+#include "topogeo/session/kept_views.hpp"
 
 #include <algorithm>
 #include <cstdint>

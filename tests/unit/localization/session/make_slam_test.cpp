@@ -1,10 +1,10 @@
-#include "topogeo/localization/session/make_slam.hpp"
+#include "topogeo/session/make_slam.hpp"
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/mapping/pose_graph_slam.hpp"
-#include "topogeo/localization/matching/matcher.hpp"
-#include "topogeo/localization/thesis/thesis_slam.hpp"
+#include "topogeo/matching/matcher.hpp"
+#include "topogeo/slam/pose_graph_slam.hpp"
+#include "topogeo/thesis/thesis_slam.hpp"
 
 namespace topogeo::localization {
 namespace {

@@ -1,4 +1,4 @@
-#include "topogeo/localization/session/mapping_session.hpp"
+#include "topogeo/session/mapping_session.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 
 #include "localization/session/robot_drives.hpp"
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/session/odometry_chain.hpp"
+#include "topogeo/session/odometry_chain.hpp"
 
 #include <memory>
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 
 namespace topogeo::localization::test {
 

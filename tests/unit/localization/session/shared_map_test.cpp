@@ -1,4 +1,4 @@
-#include "topogeo/localization/session/shared_map.hpp"
+#include "topogeo/session/shared_map.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/matcher.hpp"
-#include "topogeo/localization/session/mapping_session.hpp"
+#include "topogeo/matching/matcher.hpp"
+#include "topogeo/session/mapping_session.hpp"
 
 #include "localization/session/remembering_pool.hpp"
 #include "localization/session/robot_drives.hpp"

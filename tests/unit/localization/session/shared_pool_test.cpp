@@ -1,10 +1,10 @@
-#include "topogeo/localization/session/shared_pool.hpp"
+#include "topogeo/session/shared_pool.hpp"
 
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 
 #include "localization/simulated_maps.hpp"
 

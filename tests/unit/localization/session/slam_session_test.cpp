@@ -1,4 +1,4 @@
-#include "topogeo/localization/session/slam_session.hpp"
+#include "topogeo/session/slam_session.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 
 #include "localization/simulated_maps.hpp"
 

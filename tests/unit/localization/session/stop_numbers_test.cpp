@@ -1,4 +1,4 @@
-#include "topogeo/localization/session/stop_numbers.hpp"
+#include "topogeo/session/stop_numbers.hpp"
 
 #include <memory>
 #include <utility>

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/thesis/backward_correction.hpp"
 #include "topogeo/support/random.hpp"
+#include "topogeo/thesis/backward_correction.hpp"
 
 namespace topogeo::localization::test {
 

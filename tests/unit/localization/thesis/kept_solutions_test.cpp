@@ -1,6 +1,6 @@
 // Stops that see nodes alone, each map in another pattern; the last stop is at the place of the
 // first one, where odometry does not have it.
-#include "topogeo/localization/thesis/kept_solutions.hpp"
+#include "topogeo/thesis/kept_solutions.hpp"
 
 #include <memory>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "topogeo/localization/thesis/solution_store.hpp"
+#include "topogeo/thesis/solution_store.hpp"
 
 #include <cmath>
 #include <stdexcept>

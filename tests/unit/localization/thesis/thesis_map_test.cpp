@@ -1,5 +1,5 @@
 // Stops without scans, whose view is defined by nodes alone: a rectangle of 4 m by 2 m ahead.
-#include "topogeo/localization/thesis/thesis_map.hpp"
+#include "topogeo/thesis/thesis_map.hpp"
 
 #include <memory>
 #include <stdexcept>

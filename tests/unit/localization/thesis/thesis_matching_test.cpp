@@ -1,4 +1,4 @@
-#include "topogeo/localization/thesis/thesis_matching.hpp"
+#include "topogeo/thesis/thesis_matching.hpp"
 
 #include <memory>
 #include <vector>

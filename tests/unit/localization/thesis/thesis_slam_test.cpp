@@ -1,4 +1,4 @@
-#include "topogeo/localization/thesis/thesis_slam.hpp"
+#include "topogeo/thesis/thesis_slam.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 
 #include "localization/simulated_maps.hpp"
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/thesis/visible_rectangle.hpp"
+#include "topogeo/thesis/visible_rectangle.hpp"
 
 #include <algorithm>
 #include <cmath>

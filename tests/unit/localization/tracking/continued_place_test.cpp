@@ -1,4 +1,4 @@
-#include "topogeo/localization/tracking/continued_place.hpp"
+#include "topogeo/relocalization/continued_place.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/tracking/drive_agreement.hpp"
+#include "topogeo/relocalization/drive_agreement.hpp"
 
 #include <gtest/gtest.h>
 

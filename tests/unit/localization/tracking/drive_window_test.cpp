@@ -1,12 +1,12 @@
-#include "topogeo/localization/tracking/drive_window.hpp"
+#include "topogeo/relocalization/drive_window.hpp"
 
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/match_features.hpp"
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/match_features.hpp"
+#include "topogeo/matching/matcher.hpp"
 
 #include "localization/simulated_maps.hpp"
 

@@ -1,4 +1,4 @@
-#include "topogeo/localization/tracking/global_localization.hpp"
+#include "topogeo/relocalization/global_localization.hpp"
 
 #include <cmath>
 #include <stdexcept>

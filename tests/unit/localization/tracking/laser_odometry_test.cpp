@@ -1,4 +1,4 @@
-#include "topogeo/localization/tracking/laser_odometry.hpp"
+#include "topogeo/matching/laser_odometry.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "topogeo/localization/tracking/map_tracker.hpp"
+#include "topogeo/relocalization/map_tracker.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/simulation/random_floors.hpp"
 
 #include "localization/simulated_maps.hpp"

@@ -1,4 +1,4 @@
-#include "topogeo/localization/tracking/motion_filter.hpp"
+#include "topogeo/matching/motion_filter.hpp"
 
 #include <cmath>
 

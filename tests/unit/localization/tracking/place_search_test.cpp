@@ -1,4 +1,4 @@
-#include "topogeo/localization/tracking/place_search.hpp"
+#include "topogeo/relocalization/place_search.hpp"
 
 #include <cmath>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "topogeo/localization/tracking/pose_fusion.hpp"
+#include "topogeo/relocalization/pose_fusion.hpp"
 
 #include <gtest/gtest.h>
 

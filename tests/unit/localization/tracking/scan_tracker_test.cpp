@@ -1,4 +1,4 @@
-#include "topogeo/localization/tracking/scan_tracker.hpp"
+#include "topogeo/matching/scan_tracker.hpp"
 
 #include <vector>
 

@@ -1,11 +1,11 @@
-#include "topogeo/localization/tracking/stored_map_matching.hpp"
+#include "topogeo/relocalization/stored_map_matching.hpp"
 
 #include <stdexcept>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 
 #include "localization/simulated_maps.hpp"
 

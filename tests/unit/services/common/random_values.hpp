@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/matching/match.hpp"
 #include "topogeo/planning/route_planner.hpp"
 #include "topogeo/scan/scan.hpp"
 #include "topogeo/support/random.hpp"

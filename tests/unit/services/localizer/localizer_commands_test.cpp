@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/msg/trajectory.h"
 
 namespace topogeo::localizer {

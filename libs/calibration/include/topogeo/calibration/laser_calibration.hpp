@@ -15,8 +15,8 @@
 #include <functional>
 #include <span>
 
+#include "topogeo/calibration/odometry_calibration.hpp"
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/calibration/odometry_calibration.hpp"
 
 namespace topogeo::localization {
 

@@ -14,10 +14,10 @@
 
 #include <Eigen/Core>
 
+#include "topogeo/calibration/odometry_calibration.hpp"
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/calibration/odometry_calibration.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
-#include "topogeo/localization/matching/refinement.hpp"
+#include "topogeo/matching/match_features.hpp"
+#include "topogeo/matching/refinement.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {

@@ -9,8 +9,8 @@
 #include <numbers>
 #include <span>
 
+#include "topogeo/calibration/laser_motions.hpp"
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/calibration/laser_motions.hpp"
 
 namespace topogeo::localization {
 

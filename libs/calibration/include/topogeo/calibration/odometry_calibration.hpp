@@ -31,9 +31,9 @@
 
 #include <Eigen/Core>
 
+#include "topogeo/calibration/odometry_calibration_config.hpp"
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/calibration/odometry_calibration_config.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/odometry_model.hpp"
 
 namespace topogeo::localization {
 

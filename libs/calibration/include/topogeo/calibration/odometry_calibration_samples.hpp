@@ -15,8 +15,8 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/localization/calibration/odometry_calibration.hpp"
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/calibration/odometry_calibration.hpp"
+#include "topogeo/matching/match.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
 namespace topogeo::localization {

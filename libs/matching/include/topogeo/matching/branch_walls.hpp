@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/match_config.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/matching/match_config.hpp"
+#include "topogeo/matching/match_features.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {

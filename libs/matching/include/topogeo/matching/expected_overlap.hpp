@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
-#include "topogeo/localization/matching/match_features.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/match_features.hpp"
+#include "topogeo/matching/odometry_model.hpp"
 
 namespace topogeo::localization {
 

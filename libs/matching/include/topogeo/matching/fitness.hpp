@@ -5,8 +5,8 @@
 
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/matching/match_features.hpp"
 
 namespace topogeo::localization {
 

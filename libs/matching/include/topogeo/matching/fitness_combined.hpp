@@ -9,9 +9,9 @@
 
 #include <Eigen/Core>
 
-#include "topogeo/localization/matching/fitness.hpp"
-#include "topogeo/localization/matching/fitness_points.hpp"
-#include "topogeo/localization/matching/fitness_topological.hpp"
+#include "topogeo/matching/fitness.hpp"
+#include "topogeo/matching/fitness_points.hpp"
+#include "topogeo/matching/fitness_topological.hpp"
 
 namespace topogeo::localization {
 

@@ -1,9 +1,9 @@
 // All forms of the fitness for one pair of maps, reused from match to match to save allocations.
 #pragma once
 
-#include "topogeo/localization/matching/fitness_combined.hpp"
-#include "topogeo/localization/matching/fitness_printed.hpp"
-#include "topogeo/localization/matching/fitness_weighted.hpp"
+#include "topogeo/matching/fitness_combined.hpp"
+#include "topogeo/matching/fitness_printed.hpp"
+#include "topogeo/matching/fitness_weighted.hpp"
 
 namespace topogeo::localization {
 

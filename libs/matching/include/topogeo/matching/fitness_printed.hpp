@@ -21,7 +21,7 @@
 
 #include <vector>
 
-#include "topogeo/localization/matching/fitness.hpp"
+#include "topogeo/matching/fitness.hpp"
 
 namespace topogeo::localization {
 

@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "topogeo/localization/matching/fitness.hpp"
-#include "topogeo/localization/matching/fitness_points.hpp"
+#include "topogeo/matching/fitness.hpp"
+#include "topogeo/matching/fitness_points.hpp"
 
 namespace topogeo::localization {
 

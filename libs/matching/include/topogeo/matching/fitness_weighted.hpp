@@ -12,8 +12,8 @@
 
 #include <vector>
 
-#include "topogeo/localization/matching/fitness.hpp"
-#include "topogeo/localization/matching/fitness_combined.hpp"
+#include "topogeo/matching/fitness.hpp"
+#include "topogeo/matching/fitness_combined.hpp"
 
 namespace topogeo::localization {
 

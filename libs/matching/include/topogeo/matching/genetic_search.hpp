@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/localization/matching/fitness.hpp"
-#include "topogeo/localization/matching/genetic_search_parts.hpp"
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/matching/fitness.hpp"
+#include "topogeo/matching/genetic_search_parts.hpp"
+#include "topogeo/matching/match.hpp"
 
 namespace topogeo::localization {
 

@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/matching/match_features.hpp"
 
 namespace topogeo::localization {
 

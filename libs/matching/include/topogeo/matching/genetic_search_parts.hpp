@@ -8,7 +8,7 @@
 
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/matching/match.hpp"
 #include "topogeo/support/random.hpp"
 
 namespace topogeo::localization {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/matching/match.hpp"
 
 namespace topogeo::localization {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/tracking/laser_track.hpp"
+#include "topogeo/matching/laser_track.hpp"
 #include "topogeo/scan/scan.hpp"
 
 namespace topogeo::localization {

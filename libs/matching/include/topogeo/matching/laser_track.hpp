@@ -10,11 +10,11 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
-#include "topogeo/localization/matching/refinement.hpp"
-#include "topogeo/localization/tracking/motion_filter.hpp"
-#include "topogeo/localization/tracking/recent_scans.hpp"
+#include "topogeo/matching/match_features.hpp"
+#include "topogeo/matching/motion_filter.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/matching/recent_scans.hpp"
+#include "topogeo/matching/refinement.hpp"
 
 namespace topogeo::localization {
 

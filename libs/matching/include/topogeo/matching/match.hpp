@@ -15,7 +15,7 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/match_config.hpp"
+#include "topogeo/matching/match_config.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {

@@ -1,10 +1,10 @@
 // All statements of a match result about its poses, computed in one place for solve() and verify().
 #pragma once
 
-#include "topogeo/localization/matching/fitness_forms.hpp"
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
-#include "topogeo/localization/matching/refinement.hpp"
+#include "topogeo/matching/fitness_forms.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/matching/match_features.hpp"
+#include "topogeo/matching/refinement.hpp"
 
 namespace topogeo::localization {
 

@@ -11,8 +11,8 @@
 
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/nearest_point_grid.hpp"
-#include "topogeo/localization/matching/range_profile.hpp"
+#include "topogeo/matching/nearest_point_grid.hpp"
+#include "topogeo/matching/range_profile.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/matching/match.hpp"
 
 namespace topogeo::localization {
 

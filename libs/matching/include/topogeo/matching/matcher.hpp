@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
-#include "topogeo/localization/matching/fitness_forms.hpp"
-#include "topogeo/localization/matching/genetic_search.hpp"
-#include "topogeo/localization/matching/genetic_search_hypotheses.hpp"
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/matching/fitness_forms.hpp"
+#include "topogeo/matching/genetic_search.hpp"
+#include "topogeo/matching/genetic_search_hypotheses.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/matching/match_features.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {

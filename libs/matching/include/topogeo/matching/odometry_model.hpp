@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/odometry_config.hpp"
+#include "topogeo/matching/odometry_config.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {

@@ -18,8 +18,8 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/tracking/map_field.hpp"
+#include "topogeo/matching/map_field.hpp"
+#include "topogeo/matching/match.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
-#include "topogeo/localization/places/coarse_search.hpp"
+#include "topogeo/matching/coarse_search.hpp"
+#include "topogeo/matching/match_features.hpp"
 
 namespace topogeo::localization {
 

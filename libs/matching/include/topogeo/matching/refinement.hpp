@@ -6,8 +6,8 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/fitness.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/matching/fitness.hpp"
+#include "topogeo/matching/match_features.hpp"
 
 namespace topogeo::localization {
 

@@ -10,11 +10,11 @@
 #include <optional>
 #include <span>
 
-#include "topogeo/localization/mapping/odometry_monitor.hpp"
-#include "topogeo/localization/matching/fitness.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
-#include "topogeo/localization/matching/refinement.hpp"
-#include "topogeo/localization/tracking/scan_tracker_config.hpp"
+#include "topogeo/matching/fitness.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/matching/odometry_monitor.hpp"
+#include "topogeo/matching/refinement.hpp"
+#include "topogeo/matching/scan_tracker_config.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {

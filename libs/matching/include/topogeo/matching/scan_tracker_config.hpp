@@ -1,7 +1,7 @@
 // Settings of the tracking of scans between stops.
 #pragma once
 
-#include "topogeo/localization/matching/odometry_config.hpp"
+#include "topogeo/matching/odometry_config.hpp"
 
 namespace topogeo::support {
 class ConfigSchema;

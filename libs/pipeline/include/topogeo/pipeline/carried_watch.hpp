@@ -10,7 +10,7 @@
 #include <span>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/tracking/scan_tracker.hpp"
+#include "topogeo/matching/scan_tracker.hpp"
 #include "topogeo/scan/scan.hpp"
 #include "topogeo/topomap/local_map.hpp"
 

@@ -4,8 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "topogeo/localization/calibration/odometry_calibration_config.hpp"
-#include "topogeo/localization/mapping/localizer_config.hpp"
+#include "topogeo/calibration/odometry_calibration_config.hpp"
 #include "topogeo/navigation/explorer_config.hpp"
 #include "topogeo/navigation/navigator_config.hpp"
 #include "topogeo/pipeline/hybrid_map_config.hpp"
@@ -16,6 +15,7 @@
 #include "topogeo/planning/hybrid_planner_config.hpp"
 #include "topogeo/planning/planning_config.hpp"
 #include "topogeo/scan/carmen_log_config.hpp"
+#include "topogeo/slam/localizer_config.hpp"
 #include "topogeo/support/config_schema.hpp"
 #include "topogeo/topomap/global_map_config.hpp"
 

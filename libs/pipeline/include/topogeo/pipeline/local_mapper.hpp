@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/tracking/scan_tracker.hpp"
+#include "topogeo/matching/scan_tracker.hpp"
 #include "topogeo/pipeline/bounded_track.hpp"
 #include "topogeo/pipeline/carried_watch.hpp"
 #include "topogeo/pipeline/local_mapper_config.hpp"

@@ -8,9 +8,9 @@
 #include <string>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/session/mapping_session.hpp"
-#include "topogeo/localization/tracking/map_tracker.hpp"
 #include "topogeo/pipeline/config.hpp"
+#include "topogeo/relocalization/map_tracker.hpp"
+#include "topogeo/session/mapping_session.hpp"
 #include "topogeo/storage/map_document.hpp"
 #include "topogeo/storage/report.hpp"
 

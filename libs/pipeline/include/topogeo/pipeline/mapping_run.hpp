@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/matching/matcher.hpp"
-#include "topogeo/localization/session/odometry_chain.hpp"
-#include "topogeo/localization/session/slam_session.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/scan/scan.hpp"
+#include "topogeo/session/odometry_chain.hpp"
+#include "topogeo/session/slam_session.hpp"
 #include "topogeo/storage/map_document.hpp"
 #include "topogeo/support/cpu_time.hpp"
 

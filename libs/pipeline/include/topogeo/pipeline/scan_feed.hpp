@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "topogeo/localization/tracking/laser_odometry.hpp"
+#include "topogeo/matching/laser_odometry.hpp"
 #include "topogeo/scan/scan.hpp"
 
 namespace topogeo::pipeline {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "topogeo/localization/mapping/localizer_config.hpp"
 #include "topogeo/pipeline/stop_search.hpp"
+#include "topogeo/slam/localizer_config.hpp"
 #include "topogeo/storage/map_document.hpp"
 
 namespace topogeo::pipeline {

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/matching/error_ellipse.hpp"
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/error_ellipse.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/slam/localizer_config.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::pipeline {

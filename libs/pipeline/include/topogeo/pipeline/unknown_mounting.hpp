@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "topogeo/localization/calibration/mounting_search.hpp"
+#include "topogeo/calibration/mounting_search.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/scan/scan.hpp"
 

@@ -9,9 +9,9 @@
 
 #include <optional>
 
-#include "topogeo/localization/matching/odometry_model.hpp"
-#include "topogeo/localization/tracking/drive_window.hpp"
-#include "topogeo/localization/tracking/global_localization.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/relocalization/drive_window.hpp"
+#include "topogeo/relocalization/global_localization.hpp"
 
 namespace topogeo::localization {
 

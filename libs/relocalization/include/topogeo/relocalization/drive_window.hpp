@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/mapping/match_requests.hpp"
-#include "topogeo/localization/mapping/odometry_monitor.hpp"
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
-#include "topogeo/localization/places/place_recognition.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/matching/odometry_monitor.hpp"
+#include "topogeo/slam/match_requests.hpp"
+#include "topogeo/slam/place_recognition.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {

@@ -18,11 +18,11 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
-#include "topogeo/localization/matching/refinement.hpp"
-#include "topogeo/localization/places/place_field.hpp"
-#include "topogeo/localization/tracking/map_field.hpp"
+#include "topogeo/matching/map_field.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/matching/match_features.hpp"
+#include "topogeo/matching/place_field.hpp"
+#include "topogeo/matching/refinement.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/odometry_model.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {

@@ -18,16 +18,16 @@
 
 #include <Eigen/Core>
 
-#include "topogeo/localization/mapping/localization_state.hpp"
-#include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/mapping/slam.hpp"
-#include "topogeo/localization/mapping/state_monitor.hpp"
-#include "topogeo/localization/mapping/stored_map.hpp"
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
-#include "topogeo/localization/tracking/continued_place.hpp"
-#include "topogeo/localization/tracking/place_search.hpp"
-#include "topogeo/localization/tracking/stored_map_matching.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/relocalization/continued_place.hpp"
+#include "topogeo/relocalization/place_search.hpp"
+#include "topogeo/relocalization/stored_map_matching.hpp"
+#include "topogeo/slam/localization_state.hpp"
+#include "topogeo/slam/localizer_config.hpp"
+#include "topogeo/slam/slam.hpp"
+#include "topogeo/slam/state_monitor.hpp"
+#include "topogeo/slam/stored_map.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
-#include "topogeo/localization/tracking/drive_agreement.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/relocalization/drive_agreement.hpp"
 
 namespace topogeo::localization {
 

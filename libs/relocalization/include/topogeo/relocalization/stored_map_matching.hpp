@@ -9,15 +9,15 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/mapping/candidate_choice.hpp"
-#include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/mapping/match_requests.hpp"
-#include "topogeo/localization/mapping/stored_map.hpp"
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
-#include "topogeo/localization/tracking/drive_window.hpp"
-#include "topogeo/localization/tracking/global_localization.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/matching/match_features.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/relocalization/drive_window.hpp"
+#include "topogeo/relocalization/global_localization.hpp"
+#include "topogeo/slam/candidate_choice.hpp"
+#include "topogeo/slam/localizer_config.hpp"
+#include "topogeo/slam/match_requests.hpp"
+#include "topogeo/slam/stored_map.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {

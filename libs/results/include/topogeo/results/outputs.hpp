@@ -5,10 +5,10 @@
 #include <span>
 #include <string>
 
-#include "topogeo/localization/loop/loop_decision.hpp"
-#include "topogeo/localization/mapping/slam.hpp"
 #include "topogeo/pipeline/stop_overlaps.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
+#include "topogeo/slam/loop/loop_decision.hpp"
+#include "topogeo/slam/slam.hpp"
 #include "topogeo/storage/map_document.hpp"
 #include "topogeo/storage/report.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/matching/match.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::search_pool {

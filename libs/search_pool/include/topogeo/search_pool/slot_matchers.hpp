@@ -5,7 +5,7 @@
 #include <list>
 #include <string>
 
-#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/matching/matcher.hpp"
 #include "topogeo/search_pool/match_job.hpp"
 
 namespace topogeo::search_pool {

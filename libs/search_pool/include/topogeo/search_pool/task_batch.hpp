@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/matching/match.hpp"
 #include "topogeo/search_pool/recovery.hpp"
 
 namespace topogeo::search_pool {

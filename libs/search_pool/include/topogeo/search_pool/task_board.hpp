@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/matching/match.hpp"
 #include "topogeo/search_pool/recovery.hpp"
 #include "topogeo/search_pool/reference_holders.hpp"
 #include "topogeo/search_pool/task_batch.hpp"

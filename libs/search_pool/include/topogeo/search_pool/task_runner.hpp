@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/matching/match.hpp"
 #include "topogeo/search_pool/fair_queue.hpp"
 #include "topogeo/search_pool/match_job.hpp"
 #include "topogeo/search_pool/slot_matchers.hpp"

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/localization/mapping/pose_graph.hpp"
-#include "topogeo/localization/mapping/stored_map.hpp"
-#include "topogeo/localization/session/map_part.hpp"
+#include "topogeo/session/map_part.hpp"
+#include "topogeo/slam/pose_graph.hpp"
+#include "topogeo/slam/stored_map.hpp"
 
 namespace topogeo::localization {
 

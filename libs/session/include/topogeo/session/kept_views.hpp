@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/localization/mapping/stored_map.hpp"
+#include "topogeo/slam/stored_map.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 

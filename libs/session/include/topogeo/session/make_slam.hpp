@@ -3,10 +3,10 @@
 
 #include <memory>
 
-#include "topogeo/localization/mapping/graph_optimization.hpp"
-#include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/mapping/slam.hpp"
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/slam/graph_optimization.hpp"
+#include "topogeo/slam/localizer_config.hpp"
+#include "topogeo/slam/slam.hpp"
 
 namespace topogeo::localization {
 

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "topogeo/localization/mapping/stored_map.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
-#include "topogeo/localization/session/mapping_session.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/session/mapping_session.hpp"
+#include "topogeo/slam/stored_map.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {

@@ -16,12 +16,12 @@
 #include <optional>
 #include <vector>
 
-#include "topogeo/localization/mapping/pose_graph_slam.hpp"
-#include "topogeo/localization/mapping/slam.hpp"
-#include "topogeo/localization/mapping/stored_map.hpp"
-#include "topogeo/localization/session/kept_views.hpp"
-#include "topogeo/localization/session/place_confirmation.hpp"
-#include "topogeo/localization/tracking/map_tracker.hpp"
+#include "topogeo/relocalization/map_tracker.hpp"
+#include "topogeo/session/kept_views.hpp"
+#include "topogeo/session/place_confirmation.hpp"
+#include "topogeo/slam/pose_graph_slam.hpp"
+#include "topogeo/slam/slam.hpp"
+#include "topogeo/slam/stored_map.hpp"
 
 namespace topogeo::localization {
 

@@ -11,9 +11,9 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/localization/mapping/stored_map.hpp"
-#include "topogeo/localization/session/place_confirmation.hpp"
-#include "topogeo/localization/tracking/map_tracker.hpp"
+#include "topogeo/relocalization/map_tracker.hpp"
+#include "topogeo/session/place_confirmation.hpp"
+#include "topogeo/slam/stored_map.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "topogeo/localization/session/meeting.hpp"
+#include "topogeo/session/meeting.hpp"
 
 namespace topogeo::localization {
 

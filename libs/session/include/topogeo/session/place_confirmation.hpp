@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "topogeo/localization/tracking/map_tracker.hpp"
+#include "topogeo/relocalization/map_tracker.hpp"
 
 namespace topogeo::localization {
 

@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include "topogeo/localization/session/joint_poses.hpp"
-#include "topogeo/localization/session/kept_views.hpp"
-#include "topogeo/localization/session/map_part.hpp"
-#include "topogeo/localization/session/meeting.hpp"
-#include "topogeo/localization/session/slam_counts.hpp"
+#include "topogeo/session/joint_poses.hpp"
+#include "topogeo/session/kept_views.hpp"
+#include "topogeo/session/map_part.hpp"
+#include "topogeo/session/meeting.hpp"
+#include "topogeo/session/slam_counts.hpp"
 
 namespace topogeo::localization {
 

@@ -18,11 +18,11 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/mapping/slam.hpp"
-#include "topogeo/localization/session/merge_proposals.hpp"
-#include "topogeo/localization/session/robot_parts.hpp"
-#include "topogeo/localization/session/shared_pool.hpp"
-#include "topogeo/localization/session/stop_numbers.hpp"
+#include "topogeo/session/merge_proposals.hpp"
+#include "topogeo/session/robot_parts.hpp"
+#include "topogeo/session/shared_pool.hpp"
+#include "topogeo/session/stop_numbers.hpp"
+#include "topogeo/slam/slam.hpp"
 
 namespace topogeo::localization {
 

@@ -8,7 +8,7 @@
 #include <map>
 #include <memory>
 
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/matching/match.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "topogeo/localization/mapping/slam.hpp"
+#include "topogeo/slam/slam.hpp"
 
 namespace topogeo::localization {
 

@@ -9,13 +9,13 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/mapping/graph_optimization.hpp"
-#include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/mapping/slam.hpp"
-#include "topogeo/localization/mapping/stored_map.hpp"
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/session/mapping_session.hpp"
-#include "topogeo/localization/tracking/map_tracker.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/relocalization/map_tracker.hpp"
+#include "topogeo/session/mapping_session.hpp"
+#include "topogeo/slam/graph_optimization.hpp"
+#include "topogeo/slam/localizer_config.hpp"
+#include "topogeo/slam/slam.hpp"
+#include "topogeo/slam/stored_map.hpp"
 
 namespace topogeo::localization {
 

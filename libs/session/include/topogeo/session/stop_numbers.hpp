@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "topogeo/localization/session/joint_poses.hpp"
+#include "topogeo/session/joint_poses.hpp"
 
 namespace topogeo::localization {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "topogeo/localization/loop/loop_config.hpp"
+#include "topogeo/slam/loop/loop_config.hpp"
 
 namespace topogeo::support {
 class ConfigSchema;

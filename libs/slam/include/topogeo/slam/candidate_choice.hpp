@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/localization/matching/expected_overlap.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/expected_overlap.hpp"
+#include "topogeo/matching/match_features.hpp"
+#include "topogeo/matching/odometry_model.hpp"
 
 namespace topogeo::localization {
 

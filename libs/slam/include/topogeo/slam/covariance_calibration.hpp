@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/odometry_model.hpp"
 
 namespace topogeo::localization {
 

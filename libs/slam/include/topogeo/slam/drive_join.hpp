@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/localization/mapping/pose_graph.hpp"
-#include "topogeo/localization/mapping/stored_map.hpp"
-#include "topogeo/localization/matching/odometry_config.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/odometry_config.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/slam/pose_graph.hpp"
+#include "topogeo/slam/stored_map.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include "topogeo/localization/matching/match_config.hpp"
-#include "topogeo/localization/matching/odometry_config.hpp"
-#include "topogeo/localization/thesis/thesis_config.hpp"
+#include "topogeo/matching/match_config.hpp"
+#include "topogeo/matching/odometry_config.hpp"
+#include "topogeo/slam/thesis_config.hpp"
 
 namespace topogeo::support {
 class ConfigSchema;

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/matching/match.hpp"
 
 namespace topogeo::localization {
 

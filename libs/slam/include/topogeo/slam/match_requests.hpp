@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/mapping/match_counts.hpp"
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/slam/localizer_config.hpp"
+#include "topogeo/slam/match_counts.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {

@@ -9,7 +9,7 @@
 #include <cstddef>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/odometry_model.hpp"
 
 namespace topogeo::localization {
 

@@ -9,10 +9,10 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/mapping/odometry_monitor.hpp"
-#include "topogeo/localization/mapping/odometry_scale.hpp"
-#include "topogeo/localization/mapping/pose_graph.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/matching/odometry_monitor.hpp"
+#include "topogeo/slam/odometry_scale.hpp"
+#include "topogeo/slam/pose_graph.hpp"
 
 namespace topogeo::localization {
 

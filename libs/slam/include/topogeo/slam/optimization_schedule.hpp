@@ -12,9 +12,9 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/localization/mapping/graph_optimization.hpp"
-#include "topogeo/localization/mapping/optimization_window.hpp"
-#include "topogeo/localization/mapping/pose_graph.hpp"
+#include "topogeo/slam/graph_optimization.hpp"
+#include "topogeo/slam/optimization_window.hpp"
+#include "topogeo/slam/pose_graph.hpp"
 
 namespace topogeo::localization {
 

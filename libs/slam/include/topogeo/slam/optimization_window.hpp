@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <span>
 
-#include "topogeo/localization/mapping/graph_optimization.hpp"
-#include "topogeo/localization/mapping/pose_graph.hpp"
+#include "topogeo/slam/graph_optimization.hpp"
+#include "topogeo/slam/pose_graph.hpp"
 
 namespace topogeo::localization {
 

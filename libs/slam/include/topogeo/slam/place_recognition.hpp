@@ -16,11 +16,11 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/mapping/pose_graph.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
-#include "topogeo/localization/places/coarse_search.hpp"
-#include "topogeo/localization/places/recently_used.hpp"
+#include "topogeo/matching/coarse_search.hpp"
+#include "topogeo/matching/match_features.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/matching/recently_used.hpp"
+#include "topogeo/slam/pose_graph.hpp"
 
 namespace topogeo::localization {
 

@@ -13,8 +13,8 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/mapping/relative_poses.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/slam/relative_poses.hpp"
 
 namespace topogeo::localization {
 

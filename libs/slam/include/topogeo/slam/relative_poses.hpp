@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/odometry_model.hpp"
 
 namespace topogeo::localization {
 

@@ -2,9 +2,9 @@
 // to be matched.
 #pragma once
 
-#include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/slam/localizer_config.hpp"
 
 namespace topogeo::localization {
 

@@ -9,10 +9,10 @@
 #include <optional>
 #include <vector>
 
-#include "topogeo/localization/loop/loop_decision.hpp"
-#include "topogeo/localization/mapping/localization_state.hpp"
-#include "topogeo/localization/mapping/match_counts.hpp"
-#include "topogeo/localization/mapping/pose_graph.hpp"
+#include "topogeo/slam/localization_state.hpp"
+#include "topogeo/slam/loop/loop_decision.hpp"
+#include "topogeo/slam/match_counts.hpp"
+#include "topogeo/slam/pose_graph.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 

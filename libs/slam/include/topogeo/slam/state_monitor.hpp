@@ -16,8 +16,8 @@
 
 #include <Eigen/Core>
 
-#include "topogeo/localization/mapping/localization_state.hpp"
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/slam/localization_state.hpp"
 
 namespace topogeo::localization {
 

@@ -14,16 +14,16 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/localization/loop/stop_match.hpp"
-#include "topogeo/localization/mapping/candidate_choice.hpp"
-#include "topogeo/localization/mapping/covariance_calibration.hpp"
-#include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/mapping/match_requests.hpp"
-#include "topogeo/localization/mapping/pose_graph.hpp"
-#include "topogeo/localization/mapping/stop_comparisons.hpp"
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
-#include "topogeo/localization/places/place_recognition.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/matching/match_features.hpp"
+#include "topogeo/slam/candidate_choice.hpp"
+#include "topogeo/slam/covariance_calibration.hpp"
+#include "topogeo/slam/localizer_config.hpp"
+#include "topogeo/slam/loop/stop_match.hpp"
+#include "topogeo/slam/match_requests.hpp"
+#include "topogeo/slam/place_recognition.hpp"
+#include "topogeo/slam/pose_graph.hpp"
+#include "topogeo/slam/stop_comparisons.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {

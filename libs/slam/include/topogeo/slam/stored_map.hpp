@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "topogeo/localization/mapping/pose_graph.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/slam/pose_graph.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 

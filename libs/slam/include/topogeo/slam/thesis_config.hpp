@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "topogeo/localization/thesis/backward_config.hpp"
+#include "topogeo/slam/backward_config.hpp"
 
 namespace topogeo::support {
 class ConfigSchema;

@@ -12,11 +12,11 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/loop/loop_search.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
-#include "topogeo/localization/thesis/backward_config.hpp"
-#include "topogeo/localization/thesis/solution_store.hpp"
-#include "topogeo/localization/thesis/visible_rectangle.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/slam/backward_config.hpp"
+#include "topogeo/slam/loop/loop_search.hpp"
+#include "topogeo/thesis/solution_store.hpp"
+#include "topogeo/thesis/visible_rectangle.hpp"
 
 namespace topogeo::localization {
 

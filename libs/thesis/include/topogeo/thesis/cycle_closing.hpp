@@ -14,12 +14,12 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/loop/loop_decision.hpp"
-#include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/thesis/backward_correction.hpp"
-#include "topogeo/localization/thesis/kept_solutions.hpp"
-#include "topogeo/localization/thesis/thesis_map.hpp"
-#include "topogeo/localization/thesis/thesis_matching.hpp"
+#include "topogeo/slam/localizer_config.hpp"
+#include "topogeo/slam/loop/loop_decision.hpp"
+#include "topogeo/thesis/backward_correction.hpp"
+#include "topogeo/thesis/kept_solutions.hpp"
+#include "topogeo/thesis/thesis_map.hpp"
+#include "topogeo/thesis/thesis_matching.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
 namespace topogeo::localization {

@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/matching/fitness_forms.hpp"
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
-#include "topogeo/localization/thesis/thesis_map.hpp"
+#include "topogeo/matching/fitness_forms.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/matching/match_features.hpp"
+#include "topogeo/slam/localizer_config.hpp"
+#include "topogeo/thesis/thesis_map.hpp"
 
 namespace topogeo::localization {
 

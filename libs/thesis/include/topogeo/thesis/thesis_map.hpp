@@ -10,13 +10,13 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/mapping/pose_graph.hpp"
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/matching/match_features.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
-#include "topogeo/localization/thesis/solution_store.hpp"
-#include "topogeo/localization/thesis/visible_rectangle.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/matching/match_features.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/slam/localizer_config.hpp"
+#include "topogeo/slam/pose_graph.hpp"
+#include "topogeo/thesis/solution_store.hpp"
+#include "topogeo/thesis/visible_rectangle.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 

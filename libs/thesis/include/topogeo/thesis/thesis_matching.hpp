@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/mapping/match_requests.hpp"
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/thesis/thesis_map.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/slam/localizer_config.hpp"
+#include "topogeo/slam/match_requests.hpp"
+#include "topogeo/thesis/thesis_map.hpp"
 
 namespace topogeo::localization {
 

@@ -18,13 +18,13 @@
 #include <optional>
 #include <vector>
 
-#include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/mapping/slam.hpp"
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/thesis/cycle_closing.hpp"
-#include "topogeo/localization/thesis/kept_solutions.hpp"
-#include "topogeo/localization/thesis/thesis_map.hpp"
-#include "topogeo/localization/thesis/thesis_matching.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/slam/localizer_config.hpp"
+#include "topogeo/slam/slam.hpp"
+#include "topogeo/thesis/cycle_closing.hpp"
+#include "topogeo/thesis/kept_solutions.hpp"
+#include "topogeo/thesis/thesis_map.hpp"
+#include "topogeo/thesis/thesis_matching.hpp"
 
 namespace topogeo::localization {
 

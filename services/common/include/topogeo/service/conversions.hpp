@@ -16,9 +16,7 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/loop/loop_decision.hpp"
-#include "topogeo/localization/mapping/localization_state.hpp"
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/matching/match.hpp"
 #include "topogeo/msg/local_map.h"
 #include "topogeo/msg/map_update.h"
 #include "topogeo/msg/match.h"
@@ -29,6 +27,8 @@
 #include "topogeo/planning/hybrid_map.hpp"
 #include "topogeo/planning/hybrid_planner.hpp"
 #include "topogeo/scan/scan.hpp"
+#include "topogeo/slam/localization_state.hpp"
+#include "topogeo/slam/loop/loop_decision.hpp"
 #include "topogeo/storage/map_document.hpp"
 #include "topogeo/topomap/global_map.hpp"
 #include "topogeo/topomap/local_map.hpp"

@@ -5,8 +5,8 @@
 #include <map>
 #include <vector>
 
-#include "topogeo/localization/loop/loop_decision.hpp"
 #include "topogeo/msg/trajectory.h"
+#include "topogeo/slam/loop/loop_decision.hpp"
 
 namespace topogeo::service {
 

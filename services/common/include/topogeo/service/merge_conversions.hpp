@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "topogeo/localization/session/merge_proposals.hpp"
 #include "topogeo/msg/merge.h"
+#include "topogeo/session/merge_proposals.hpp"
 
 namespace topogeo::service {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/loop/loop_search.hpp"
-#include "topogeo/localization/loop/relative_solution.hpp"
+#include "topogeo/slam/loop/loop_search.hpp"
+#include "topogeo/slam/loop/relative_solution.hpp"
 
 namespace topogeo::localization {
 

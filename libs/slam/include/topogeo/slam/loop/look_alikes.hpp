@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "topogeo/localization/loop/stop_match.hpp"
-#include "topogeo/localization/mapping/odometry_steps.hpp"
+#include "topogeo/slam/loop/stop_match.hpp"
+#include "topogeo/slam/odometry_steps.hpp"
 
 namespace topogeo::localization {
 

@@ -13,9 +13,9 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/localization/loop/stop_match.hpp"
-#include "topogeo/localization/mapping/pose_graph.hpp"
-#include "topogeo/localization/mapping/relative_poses.hpp"
+#include "topogeo/slam/loop/stop_match.hpp"
+#include "topogeo/slam/pose_graph.hpp"
+#include "topogeo/slam/relative_poses.hpp"
 
 namespace topogeo::localization {
 

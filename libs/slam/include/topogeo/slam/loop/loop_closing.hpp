@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/loop/loop_agreement.hpp"
-#include "topogeo/localization/loop/loop_decision.hpp"
-#include "topogeo/localization/loop/stop_match.hpp"
-#include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/mapping/pose_graph.hpp"
+#include "topogeo/slam/localizer_config.hpp"
+#include "topogeo/slam/loop/loop_agreement.hpp"
+#include "topogeo/slam/loop/loop_decision.hpp"
+#include "topogeo/slam/loop/stop_match.hpp"
+#include "topogeo/slam/pose_graph.hpp"
 
 namespace topogeo::localization {
 

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/loop/loop_probability.hpp"
-#include "topogeo/localization/matching/match.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/slam/loop/loop_probability.hpp"
 
 namespace topogeo::localization {
 

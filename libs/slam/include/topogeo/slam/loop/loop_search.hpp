@@ -21,9 +21,9 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/loop/loop_config.hpp"
-#include "topogeo/localization/loop/relative_solution.hpp"
-#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/matching/odometry_model.hpp"
+#include "topogeo/slam/loop/loop_config.hpp"
+#include "topogeo/slam/loop/relative_solution.hpp"
 
 namespace topogeo::localization {
 

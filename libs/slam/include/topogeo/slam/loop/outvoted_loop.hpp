@@ -4,7 +4,7 @@
 #include <span>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/mapping/pose_graph.hpp"
+#include "topogeo/slam/pose_graph.hpp"
 
 namespace topogeo::localization {
 

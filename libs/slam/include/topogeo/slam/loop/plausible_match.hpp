@@ -1,7 +1,7 @@
 // Whether a match may be right together with others that agree with it.
 #pragma once
 
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/matching/match.hpp"
 
 namespace topogeo::localization {
 

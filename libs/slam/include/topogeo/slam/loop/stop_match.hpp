@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/localization/loop/loop_decision.hpp"
-#include "topogeo/localization/loop/loop_probability.hpp"
-#include "topogeo/localization/loop/plausible_match.hpp"
-#include "topogeo/localization/mapping/pose_graph.hpp"
-#include "topogeo/localization/mapping/state_monitor.hpp"
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/matching/match.hpp"
+#include "topogeo/slam/loop/loop_decision.hpp"
+#include "topogeo/slam/loop/loop_probability.hpp"
+#include "topogeo/slam/loop/plausible_match.hpp"
+#include "topogeo/slam/pose_graph.hpp"
+#include "topogeo/slam/state_monitor.hpp"
 
 namespace topogeo::localization {
 
