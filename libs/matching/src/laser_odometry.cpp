@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "topogeo/matching/laser_track.hpp"
 #include "topogeo/matching/match_evidence.hpp"
 #include "topogeo/scan/deskew.hpp"
 #include "topogeo/topomap/local_map_builder.hpp"
@@ -22,9 +23,16 @@ constexpr std::ptrdiff_t kLostScans = 5;
 
 }  // namespace
 
+LaserOdometry::LaserOdometry(const Pose2& T_robot_laser, double points_range_m)
+    : T_robot_laser_(T_robot_laser), points_range_m_(points_range_m) {}
+
+LaserOdometry::LaserOdometry(LaserOdometry&&) noexcept = default;
+LaserOdometry& LaserOdometry::operator=(LaserOdometry&&) noexcept = default;
+LaserOdometry::~LaserOdometry() = default;
+
 const LaserTrack* LaserOdometry::moving_track() const {
-  if (second_) return &*second_;
-  return track_ ? &*track_ : nullptr;
+  if (second_) return second_.get();
+  return track_.get();
 }
 
 void LaserOdometry::take_out_motion(scan::Scan& scan) const {
@@ -56,7 +64,7 @@ void LaserOdometry::add(scan::Scan scan) {
       ++counts_.unplaced;
       return;
     }
-    track_.emplace(seen);
+    track_ = std::make_unique<LaserTrack>(seen);
     place(std::move(scan), {});
     return;
   }
@@ -81,7 +89,7 @@ void LaserOdometry::add(scan::Scan scan) {
   } else {
     return;
   }
-  track_ = std::exchange(second_, std::nullopt);
+  track_ = std::move(second_);
   T_track_second_.reset();
 }
 
@@ -105,7 +113,7 @@ void LaserOdometry::follow_second(scan::Scan scan, const TimedFeatures& seen) {
   if (!step && LaserTrack::can_begin(*seen.features)) {
     // The scans that the second track placed before fit nothing.
     for (Waiting& waiting : waiting_) waiting.T_second_robot.reset();
-    second_.emplace(seen);
+    second_ = std::make_unique<LaserTrack>(seen);
     T_track_second_.reset();
     step.emplace();
   }

@@ -10,6 +10,7 @@
 #include <Eigen/LU>
 
 #include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/matching/fitness_combined.hpp"
 #include "topogeo/matching/match_gate.hpp"
 #include "topogeo/matching/refinement.hpp"
 
@@ -104,14 +105,6 @@ void check(const MatchTask& task) {
   checker.range("evidence", static_cast<double>(task.evidence), 0.0,
                 static_cast<double>(MatchEvidence::kFitness));
   checker.range("solutions_wanted", task.solutions_wanted, 1.0, kMostSolutions);
-}
-
-bool same_place(const Pose2& a, const Pose2& b) {
-  // Fixed: verdicts depend on them, and tasks do not carry them.
-  constexpr double kApart_m = 0.30;
-  constexpr double kApart_rad = 0.15;
-  return (a.position_m() - b.position_m()).squaredNorm() <= kApart_m * kApart_m &&
-         std::fabs(geometry::wrap_angle(a.theta_rad - b.theta_rad)) <= kApart_rad;
 }
 
 void add_evidence(const MatchContext& context, MatchResult& result) {

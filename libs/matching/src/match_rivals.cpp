@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/matching/fitness_combined.hpp"
 #include "topogeo/matching/refinement.hpp"
 
 namespace topogeo::localization {

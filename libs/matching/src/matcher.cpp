@@ -10,12 +10,13 @@
 #include <Eigen/LU>
 
 #include "topogeo/matching/branch_walls.hpp"
-#include "topogeo/matching/genetic_search.hpp"
+#include "topogeo/matching/fitness_combined.hpp"
 #include "topogeo/matching/match_evidence.hpp"
 #include "topogeo/matching/place_field.hpp"
 #include "topogeo/matching/refinement.hpp"
 
 #include "match_rivals.hpp"
+#include "matcher_buffers.hpp"
 
 namespace topogeo::localization {
 namespace {
@@ -164,6 +165,11 @@ const PlaceField& Matcher::field(const PlaceQuestion& question) const {
   return *field_;
 }
 
+Matcher::Matcher() : buffers_(std::make_unique<Buffers>()) {}
+Matcher::Matcher(Matcher&&) noexcept = default;
+Matcher& Matcher::operator=(Matcher&&) noexcept = default;
+Matcher::~Matcher() = default;
+
 MatchResult Matcher::solve(const MatchTask& task) {
   if (task.places) {
     MatchResult result;
@@ -175,20 +181,20 @@ MatchResult Matcher::solve(const MatchTask& task) {
   check(task);
   const MatchFeatures& query = *features(task.query_map_id, task.query_hash, task.evidence);
   const Reference& against = reference(task);
-  forms_.bind(against, query, task);
+  buffers_->forms.bind(against, query, task);
 
   MatchResult result;
-  result.evaluations =
-      search_.run(task, forms_.chosen(), hypotheses_.find(task, *against.features, query));
+  result.evaluations = buffers_->search.run(
+      task, buffers_->forms.chosen(), buffers_->hypotheses.find(task, *against.features, query));
   result.solutions.reserve(task.solutions_wanted);
-  search_.best_distinct(
+  buffers_->search.best_distinct(
       task.solutions_wanted,
       [&](const Pose2& a, const Pose2& b) { return same_solution(task, a, b); }, result.solutions);
-  const MatchContext context{task, against, query, forms_};
+  const MatchContext context{task, against, query, buffers_->forms};
   if (!result.solutions.empty() && result.solutions.front().fitness > 0.0) {
-    search_.best_distinct(kRefined, same_place, starts_);
+    buffers_->search.best_distinct(kRefined, same_place, buffers_->starts);
     if (task.genetic.finer_resolution_m > 0.0) result.evaluations += search_finer(task);
-    choose(context, starts_, result);
+    choose(context, buffers_->starts, result);
   }
   add_evidence(context, result);
   return result;
@@ -197,9 +203,10 @@ MatchResult Matcher::solve(const MatchTask& task) {
 std::uint32_t Matcher::search_finer(const MatchTask& task) {
   std::uint32_t evaluations = 0;
   std::vector<MatchSolution> best;
-  for (MatchSolution& start : starts_) {
-    evaluations += search_.run(finer_task(task, start.T_reference_query), forms_.chosen(), {});
-    search_.best_distinct(1, same_place, best);
+  for (MatchSolution& start : buffers_->starts) {
+    evaluations += buffers_->search.run(finer_task(task, start.T_reference_query),
+                                        buffers_->forms.chosen(), {});
+    buffers_->search.best_distinct(1, same_place, best);
     if (!best.empty() && best.front().fitness > start.fitness) start = best.front();
   }
   return evaluations;

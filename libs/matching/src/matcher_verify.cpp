@@ -10,6 +10,8 @@
 #include "topogeo/matching/matcher.hpp"
 #include "topogeo/matching/place_field.hpp"
 
+#include "matcher_buffers.hpp"
+
 namespace topogeo::localization {
 namespace {
 
@@ -128,9 +130,9 @@ std::string Matcher::verify(const MatchTask& task, const MatchResult& result) {
   const Reference& against = reference(task);
   std::string fault = faults_of_form(task, result);
   if (!fault.empty()) return fault;
-  forms_.bind(against, query, task);
+  buffers_->forms.bind(against, query, task);
   MatchResult right = result;
-  add_evidence({task, against, query, forms_}, right);
+  add_evidence({task, against, query, buffers_->forms}, right);
   fault = difference(result, right);
   return fault.empty() ? faults_of_choice(right) : fault;
 }

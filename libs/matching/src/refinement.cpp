@@ -266,4 +266,12 @@ Refinement refine(const Reference& reference, const MatchFeatures& query,
           aligned.iterations, aligned.converged};
 }
 
+bool same_place(const Pose2& a, const Pose2& b) {
+  // Fixed: verdicts depend on them, and tasks do not carry them.
+  constexpr double kApart_m = 0.30;
+  constexpr double kApart_rad = 0.15;
+  return (a.position_m() - b.position_m()).squaredNorm() <= kApart_m * kApart_m &&
+         std::fabs(geometry::wrap_angle(a.theta_rad - b.theta_rad)) <= kApart_rad;
+}
+
 }  // namespace topogeo::localization

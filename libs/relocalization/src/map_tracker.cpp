@@ -9,7 +9,10 @@
 
 #include "topogeo/matching/match_gate.hpp"
 #include "topogeo/matching/refinement.hpp"
+#include "topogeo/relocalization/continued_place.hpp"
+#include "topogeo/relocalization/place_search.hpp"
 #include "topogeo/relocalization/pose_fusion.hpp"
+#include "topogeo/relocalization/stored_map_matching.hpp"
 #include "topogeo/slam/loop/plausible_match.hpp"
 
 namespace topogeo::localization {
@@ -37,9 +40,20 @@ topomap::StopPose pose_of(const LocalizedStop& stop, std::size_t index) {
 
 }  // namespace
 
+struct MapTracker::Parts {
+  StoredMapMatching matching;
+  PlaceSearch search{};
+  ContinuedPlace continued{};
+  DriveAgreement agreement{};  // of the tracked stops
+};
+
 MapTracker::MapTracker(const LocalizerConfig& config, std::shared_ptr<const StoredMap> map,
                        MatchPool& pool)
-    : config_(config), matching_(config, std::move(map), pool) {}
+    : config_(config),
+      first_id_(static_cast<std::uint32_t>(map->maps.size())),
+      parts_(new Parts{StoredMapMatching(config, std::move(map), pool)}) {}
+
+MapTracker::~MapTracker() = default;
 
 bool MapTracker::add(std::shared_ptr<const topomap::LocalMap> map) {
   const std::uint32_t number = added_++;
@@ -51,15 +65,15 @@ bool MapTracker::add(std::shared_ptr<const topomap::LocalMap> map) {
   last_id_ = map->stop;
   last_epoch_ = map->odometry_epoch;
   pose_is_given_ = false;
-  const DriveStop stop = matching_.add(*map, number, T_odom_last_);
-  if (stop.follows) continued_.move(stop.step);
+  const DriveStop stop = parts_->matching.add(*map, number, T_odom_last_);
+  if (stop.follows) parts_->continued.move(stop.step);
   T_odom_last_ = map->T_odom_robot;
   last_step_.reset();
   std::uint32_t accepted = 0;
   if (has_pose_) {
     accepted = track(stop);
   } else {
-    if (stop.follows) search_.move(stop.step.T_before_now, stop.step.distance_m);
+    if (stop.follows) parts_->search.move(stop.step.T_before_now, stop.step.distance_m);
     compare_continued(stop);
     look_around(stop);
     accepted = decide();
@@ -85,12 +99,13 @@ void MapTracker::begin_session(std::uint64_t odometry_epoch) {
 std::uint32_t MapTracker::track(const DriveStop& stop) {
   if (stop.follows) {
     pose_ = compose(pose_, stop.step.T_before_now);
-    agreement_.move(stop.step.distance_m);
-    if (!stop.step.matched) agreement_ = {};
+    parts_->agreement.move(stop.step.distance_m);
+    if (!stop.step.matched) parts_->agreement = {};
   }
-  const std::vector<MatchCandidate> stored = matching_.candidates(stop, pose_, kTrackingMatches);
+  const std::vector<MatchCandidate> stored =
+      parts_->matching.candidates(stop, pose_, kTrackingMatches);
   const std::vector<MatchTask> tasks = tracking_tasks(stop, stored);
-  const std::vector<MatchResult> results = matching_.run(tasks);
+  const std::vector<MatchResult> results = parts_->matching.run(tasks);
   TrackedStep& step = last_step_.emplace();
   step.predicted = pose_;
   step.evidence.points = stop.features.coarse.size();
@@ -102,7 +117,7 @@ std::uint32_t MapTracker::track(const DriveStop& stop) {
   }
   std::vector<UncertainPose> measured;
   for (std::size_t i = 0; i < results.size(); ++i) {
-    measured.push_back(matching_.measured(stored[i].id, results[i]));
+    measured.push_back(parts_->matching.measured(stored[i].id, results[i]));
   }
   // With a lost heading, a match alone proves nothing.
   const int fewest = heading_is_lost(pose_) ? 2 : 1;
@@ -150,7 +165,7 @@ std::uint32_t MapTracker::track(const DriveStop& stop) {
   status_ = monitor_.add(step.evidence);
   monitored_ = true;
   if (status_.state == LocalizationState::kTracking && !step.accepted.empty()) {
-    continued_.track(pose_, stop.step.distance_m);
+    parts_->continued.track(pose_, stop.step.distance_m);
   } else {
     compare_continued(stop);
   }
@@ -179,11 +194,11 @@ std::vector<bool> MapTracker::agreeing(std::span<const MatchTask> tasks,
     agreeing = std::max(agreeing, match_confidence(match));
   }
   if (agreeing > 0.0) {
-    agreement_.add(any_accepted, agreeing);
+    parts_->agreement.add(any_accepted, agreeing);
   } else if (!results.empty()) {
-    agreement_.contradict();
+    parts_->agreement.contradict();
   }
-  if (!agreement_.enough()) return right;
+  if (!parts_->agreement.enough()) return right;
   for (std::size_t i = 0; i < results.size(); ++i) right[i] = right[i] || agreed[i];
   return right;
 }
@@ -192,7 +207,7 @@ std::vector<MatchTask> MapTracker::tracking_tasks(const DriveStop& stop,
                                                   std::span<const MatchCandidate> stored) {
   std::vector<MatchTask> tasks;
   for (const MatchCandidate& candidate : stored) {
-    tasks.push_back(matching_.task(stop, candidate.id, pose_));
+    tasks.push_back(parts_->matching.task(stop, candidate.id, pose_));
   }
   return tasks;
 }
@@ -200,7 +215,7 @@ std::vector<MatchTask> MapTracker::tracking_tasks(const DriveStop& stop,
 // How much better the scan fits another acceptable place of the map. Comparing only the
 // surroundings of a wrong pose would not show it, because one corridor looks like another.
 double MapTracker::better_elsewhere(const DriveStop& stop) const {
-  const GlobalLocalizer& places = matching_.places();
+  const GlobalLocalizer& places = parts_->matching.places();
   const GlobalAnswer answer = places.find(stop.map->points, stop.map->T_robot_laser);
   if (answer.verdict != Verdict::kAccepted ||
       same_global_place(answer.poses.front().T_map_robot, pose_.T_a_b)) {
@@ -212,9 +227,10 @@ double MapTracker::better_elsewhere(const DriveStop& stop) const {
 
 // Compares the view of a stop that is not tracked with the place that the drive leads to.
 void MapTracker::compare_continued(const DriveStop& stop) {
-  if (!continued_.pose()) return;
-  continued_.compare(matching_.places().known_view(stop.features, continued_.pose()->T_a_b),
-                     stop.step.distance_m);
+  if (!parts_->continued.pose()) return;
+  parts_->continued.compare(
+      parts_->matching.places().known_view(stop.features, parts_->continued.pose()->T_a_b),
+      stop.step.distance_m);
 }
 
 // --- searching
@@ -222,66 +238,66 @@ void MapTracker::compare_continued(const DriveStop& stop) {
 void MapTracker::begin_search() {
   has_pose_ = false;
   monitored_ = false;
-  search_.begin();
+  parts_->search.begin();
   ++searches_;
 }
 
 void MapTracker::search() {
   begin_search();
   pose_is_given_ = false;
-  continued_.forget();
+  parts_->continued.forget();
   status_ = {LocalizationState::kSearching, 0.0};
 }
 
 // Adds the places of the whole map that fit the last metres, and weights all by this stop.
 void MapTracker::look_around(const DriveStop& stop) {
   if (stop.features.coarse.size() >= kFewestSearched) {
-    if (continued_.pose()) search_.expect(continued_.pose()->T_a_b);
+    if (parts_->continued.pose()) parts_->search.expect(parts_->continued.pose()->T_a_b);
     std::vector<Pose2> T_map_places;
-    for (const Climbed& place : matching_.search(stop, kPlaces)) {
+    for (const Climbed& place : parts_->matching.search(stop, kPlaces)) {
       T_map_places.push_back(place.T_map_robot);
     }
-    search_.propose(T_map_places);
-    if (!search_.hypotheses().empty()) match_hypotheses(stop);
+    parts_->search.propose(T_map_places);
+    if (!parts_->search.hypotheses().empty()) match_hypotheses(stop);
   }
-  search_.end_stop();
+  parts_->search.end_stop();
 }
 
 // Matches the stop at each hypothesis with the stored stop that sees it best.
 void MapTracker::match_hypotheses(const DriveStop& stop) {
-  const GlobalLocalizer& places = matching_.places();
+  const GlobalLocalizer& places = parts_->matching.places();
   std::vector<MatchTask> tasks;
   std::vector<std::size_t> stored;
-  for (const PlaceHypothesis& hypothesis : search_.hypotheses()) {
+  for (const PlaceHypothesis& hypothesis : parts_->search.hypotheses()) {
     double share = 0.0;
     stored.push_back(places.best_stop(stop.features, hypothesis.pose.T_a_b, share));
-    tasks.push_back(matching_.task(stop, stored.back(), hypothesis.pose));
+    tasks.push_back(parts_->matching.task(stop, stored.back(), hypothesis.pose));
   }
-  const std::vector<MatchResult> results = matching_.run(tasks);
+  const std::vector<MatchResult> results = parts_->matching.run(tasks);
   std::vector<double> fitness;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const MatchResult& result = results[i];
     const bool accepted =
         result.verdict == Verdict::kAccepted || result.reason == Reason::kSecondSolution;
-    const UncertainPose& predicted = search_.hypotheses()[i].pose;
+    const UncertainPose& predicted = parts_->search.hypotheses()[i].pose;
     std::optional<PlaceSearch::Observation> measured;
     if (accepted || plausible(tasks[i], result)) {
-      measured = {matching_.measured(stored[i], result), accepted,
+      measured = {parts_->matching.measured(stored[i], result), accepted,
                   match_confidence(step_match(tasks[i], result, 0.0, std::nullopt))};
       if (!agree(predicted, measured->T_map_robot)) measured.reset();
     }
-    search_.observe(i, measured);
-    fitness.push_back(places.fitness(stop.features, search_.hypotheses()[i].pose.T_a_b) *
+    parts_->search.observe(i, measured);
+    fitness.push_back(places.fitness(stop.features, parts_->search.hypotheses()[i].pose.T_a_b) *
                       std::max(kLeastConformity, 1.0 - result.violations));
   }
-  search_.weigh(fitness);
+  parts_->search.weigh(fitness);
 }
 
 // Takes the pose of the one place that is left, or the state of the search. Returns 1 if the best
 // place was seen at this stop.
 std::uint32_t MapTracker::decide() {
   status_ = {LocalizationState::kSearching, 0.0};
-  const std::optional<PlaceHypothesis> best = search_.best();
+  const std::optional<PlaceHypothesis> best = parts_->search.best();
   if (!best) return 0;
   pose_ = best->pose;
   status_.confidence = best->weight * covariance_confidence(pose_.covariance);
@@ -290,17 +306,18 @@ std::uint32_t MapTracker::decide() {
     status_.state = LocalizationState::kAmbiguous;
     accepted = best->missed == 0 ? 1 : 0;
   }
-  if (!PlaceSearch::found(*best, continued_.wanted_m(best->pose))) return accepted;
-  if (!continued_.pose() || !continued_.leads_to(best->pose)) continued_.forget();
+  if (!PlaceSearch::found(*best, parts_->continued.wanted_m(best->pose))) return accepted;
+  if (!parts_->continued.pose() || !parts_->continued.leads_to(best->pose))
+    parts_->continued.forget();
   has_pose_ = true;
   StepEvidence evidence;
   evidence.points = kFewestSearched;
   evidence.covariance = pose_.covariance;
-  agreement_ = best->agreement;
+  parts_->agreement = best->agreement;
   monitor_.restart(best->weight);
   status_ = monitor_.add(evidence);
   monitored_ = true;
-  search_.begin();
+  parts_->search.begin();
   return accepted;
 }
 
@@ -311,9 +328,9 @@ void MapTracker::set_pose(const Pose2& T_map_robot, const Eigen::Matrix3d& covar
   has_pose_ = true;
   pose_is_given_ = true;
   monitored_ = false;
-  search_.begin();
-  continued_.forget();
-  agreement_ = {};
+  parts_->search.begin();
+  parts_->continued.forget();
+  parts_->agreement = {};
   monitor_.restart(kGivenPoseRight);
   status_ = {LocalizationState::kAmbiguous,
              kGivenPoseRight * covariance_confidence(pose_.covariance)};
@@ -365,13 +382,16 @@ std::optional<topomap::StopPose> MapTracker::last_stop() const {
   return pose_of(stops_.back(), stops_.size() - 1);
 }
 
-const std::vector<LoopDecision>& MapTracker::loop_decisions() const {
-  static const std::vector<LoopDecision> kNone;
-  return kNone;
+void MapTracker::number_tasks_from(std::uint64_t next_task) {
+  parts_->matching.requests().number_from(next_task);
+}
+
+std::uint64_t MapTracker::next_task() const {
+  return parts_->matching.requests().next_task();
 }
 
 SlamCounts MapTracker::counts() const {
-  SlamCounts counts{matching_.requests().counts()};
+  SlamCounts counts{parts_->matching.requests().counts()};
   counts.steps_in_doubt = steps_in_doubt_;
   return counts;
 }

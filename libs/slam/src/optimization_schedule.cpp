@@ -29,15 +29,15 @@ void OptimizationSchedule::start(std::uint32_t step, const PoseGraph& graph,
   wanted_ = whole_ = false;
 }
 
-std::optional<OptimizationSchedule::Finished> OptimizationSchedule::fetch(std::uint32_t step) {
+std::optional<FinishedOptimization> OptimizationSchedule::fetch(std::uint32_t step) {
   if (!due_ || *due_ > step) return std::nullopt;
   return fetch_now();
 }
 
-std::optional<OptimizationSchedule::Finished> OptimizationSchedule::fetch_now() {
+std::optional<FinishedOptimization> OptimizationSchedule::fetch_now() {
   if (!due_) return std::nullopt;
   due_.reset();
-  Finished finished{optimizer().fetch(), std::exchange(started_loops_, 0)};
+  FinishedOptimization finished{optimizer().fetch(), std::exchange(started_loops_, 0)};
   if (finished.solution.strained) {
     wanted_ = true;
     least_stops_ = kGrowth * std::max(kLeastStops, finished.solution.stops.size());

@@ -8,7 +8,6 @@
 
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/matching/expected_overlap.hpp"
-#include "topogeo/matching/match_evidence.hpp"
 #include "topogeo/matching/match_gate.hpp"
 #include "topogeo/matching/refinement.hpp"
 

@@ -7,8 +7,12 @@
 #include <utility>
 
 #include "topogeo/slam/drive_join.hpp"
+#include "topogeo/slam/graph_optimization.hpp"
 #include "topogeo/slam/loop/look_alikes.hpp"
-#include "topogeo/slam/loop/loop_config.hpp"
+#include "topogeo/slam/loop/loop_closing.hpp"
+#include "topogeo/slam/odometry_steps.hpp"
+#include "topogeo/slam/optimization_schedule.hpp"
+#include "topogeo/slam/stop_matching.hpp"
 
 #include "link_covariances.hpp"
 
@@ -42,12 +46,21 @@ std::vector<std::uint32_t> moved_stops(std::span<const Pose2> before,
 
 }  // namespace
 
+struct PoseGraphSlam::Parts {
+  StopMatching matching;
+  LoopClosing loops;
+  OptimizationSchedule schedule;
+  OdometrySteps steps{};
+};
+
 PoseGraphSlam::PoseGraphSlam(const LocalizerConfig& config, MatchPool& pool,
                              GraphOptimizer* optimizer)
     : config_(config),
-      matching_(config, pool),
-      loops_(config),
-      schedule_(optimizer, config.optimization_delay) {}
+      parts_(std::in_place, StopMatching(config, pool), LoopClosing(config),
+             OptimizationSchedule(optimizer, config.optimization_delay)) {}
+
+PoseGraphSlam::PoseGraphSlam(const PoseGraphSlam&) = default;
+PoseGraphSlam::~PoseGraphSlam() = default;
 
 bool PoseGraphSlam::add(MapPointer map) {
   append(std::move(map));
@@ -57,48 +70,48 @@ bool PoseGraphSlam::add(MapPointer map) {
     judge_state({});
     return false;
   }
-  const bool moved = apply(schedule_.fetch(stop));
+  const bool moved = apply(parts_->schedule.fetch(stop));
   std::vector<StepMatch> evidence = place_last();
   const std::vector<StepMatch> of_loops = match_revisited({&stop, 1});
   evidence.insert(evidence.end(), of_loops.begin(), of_loops.end());
   judge_state(std::move(evidence));
-  schedule_.start(stop, graph_, loops_.waiting());
-  return apply(schedule_.fetch(stop)) || moved;
+  parts_->schedule.start(stop, graph_, parts_->loops.waiting());
+  return apply(parts_->schedule.fetch(stop)) || moved;
 }
 
 // --- stops
 
 std::uint32_t PoseGraphSlam::last() const {
-  return static_cast<std::uint32_t>(matching_.size() - 1);
+  return static_cast<std::uint32_t>(parts_->matching.size() - 1);
 }
 
 // Null if the first stop belongs to another session, which may be of another robot.
 const LocalMap* PoseGraphSlam::first_of_session(const LocalMap& map) const {
-  const LocalMap& first = matching_.map(0);
+  const LocalMap& first = parts_->matching.map(0);
   return first.stop.session == map.stop.session ? &first : nullptr;
 }
 
 void PoseGraphSlam::append(MapPointer map) {
-  const bool first = matching_.size() == 0;
-  check_next(*map, matching_.size(), first ? nullptr : first_of_session(*map));
+  const bool first = parts_->matching.size() == 0;
+  check_next(*map, parts_->matching.size(), first ? nullptr : first_of_session(*map));
   if (first) {
     graph_.add_pose(Pose2{});
-    steps_.add_none();
-    matching_.add(std::move(map), 0.0);
+    parts_->steps.add_none();
+    parts_->matching.add(std::move(map), 0.0);
   } else {
     const std::optional<UncertainPose> gap = std::exchange(gap_, std::nullopt);
     if (gap) {
-      steps_.add_gap(*gap);
+      parts_->steps.add_gap(*gap);
     } else {
-      steps_.add(
-          odometry_between_stops(matching_.map(last()).T_odom_robot, *map, config_.odometry));
+      parts_->steps.add(odometry_between_stops(parts_->matching.map(last()).T_odom_robot, *map,
+                                               config_.odometry));
     }
-    const Pose2& T_before_stop = steps_.last().T_a_b;
+    const Pose2& T_before_stop = parts_->steps.last().T_a_b;
     graph_.add_pose(graph_.poses().back() * T_before_stop);
-    graph_.add_edge(steps_.edge());
+    graph_.add_edge(parts_->steps.edge());
     // No stop from before a gap is a recent one.
-    matching_.add(std::move(map), gap ? 2.0 * config_.recent_way_m
-                                      : std::sqrt(T_before_stop.position_m().squaredNorm()));
+    parts_->matching.add(std::move(map), gap ? 2.0 * config_.recent_way_m
+                                             : std::sqrt(T_before_stop.position_m().squaredNorm()));
   }
   covariances_.emplace_back(Eigen::Matrix3d::Zero());
 }
@@ -112,25 +125,25 @@ std::vector<StepMatch> PoseGraphSlam::place_last() {
 }
 
 std::vector<StepMatch> PoseGraphSlam::match_recent() {
-  std::vector<StopMatch> matches = matching_.match_recent(graph_);
-  refuse_look_alikes(matches, steps_);
+  std::vector<StopMatch> matches = parts_->matching.match_recent(graph_);
+  refuse_look_alikes(matches, parts_->steps);
   const std::vector<StopMatch> further = match_further(matches);
   // Odometry alone can be tens of degrees off in one step. If no match is accepted, uncertain ones,
   // with their wide covariance, are still better.
   const bool any = any_accepted(matches);
   if (!any) {
     ++steps_in_doubt_;
-    graph_.add_edge(steps_.edge_without_match());
+    graph_.add_edge(parts_->steps.edge_without_match());
   }
   std::vector<StepMatch> evidence;
   for (const StopMatch& match : matches) {
     evidence.push_back(match.evidence);
     if (match.accepted() || (!any && match.uncertain() && match.violations < kLeastContradicted &&
-                             steps_.allow(match.edge, OdometryMonitor::kNear2))) {
+                             parts_->steps.allow(match.edge, OdometryMonitor::kNear2))) {
       graph_.add_edge(match.edge);
     }
     if (match.accepted() && match.edge.from + 1 == last()) {
-      steps_.learn({match.edge.T_from_to, match.edge.covariance});
+      parts_->steps.learn({match.edge.T_from_to, match.edge.covariance});
     }
   }
   for (const StopMatch& match : further) {
@@ -147,8 +160,8 @@ std::vector<StopMatch> PoseGraphSlam::match_further(std::vector<StopMatch>& matc
                   [](const StopMatch& match) { return match.accepted() && !match.widened; })) {
     return {};
   }
-  std::vector<StopMatch> further = matching_.match_unsearchable(graph_);
-  refuse_look_alikes(further, steps_);
+  std::vector<StopMatch> further = parts_->matching.match_unsearchable(graph_);
+  refuse_look_alikes(further, parts_->steps);
   std::erase_if(further, [](const StopMatch& match) { return !match.accepted(); });
   if (!further.empty()) {
     std::erase_if(matches, [](const StopMatch& match) { return match.widened; });
@@ -158,11 +171,11 @@ std::vector<StopMatch> PoseGraphSlam::match_further(std::vector<StopMatch>& matc
 
 // Closes loops between these stops and earlier places.
 std::vector<StepMatch> PoseGraphSlam::match_revisited(std::span<const std::uint32_t> stops) {
-  const std::vector<StopMatch> matches = matching_.match_revisited(graph_, stops);
-  const LoopClosing::Round round = loops_.judge(graph_, matches, matching_.path_m());
-  for (const PoseGraphEdge& pending : round.pending) matching_.reopen(pending);
-  for (const PoseGraphEdge& loop : round.added) schedule_.count_loop(loop);
-  if (round.moves) schedule_.want();
+  const std::vector<StopMatch> matches = parts_->matching.match_revisited(graph_, stops);
+  const LoopClosing::Round round = parts_->loops.judge(graph_, matches, parts_->matching.path_m());
+  for (const PoseGraphEdge& pending : round.pending) parts_->matching.reopen(pending);
+  for (const PoseGraphEdge& loop : round.added) parts_->schedule.count_loop(loop);
+  if (round.moves) parts_->schedule.want();
   std::vector<StepMatch> evidence;
   for (const StopMatch& match : matches) evidence.push_back(match.evidence);
   return evidence;
@@ -172,9 +185,9 @@ void PoseGraphSlam::judge_state(std::vector<StepMatch> matches) {
   const std::uint32_t stop = last();
   StepEvidence evidence;
   evidence.matches = std::move(matches);
-  evidence.points = matching_.map(stop).points.size();
+  evidence.points = parts_->matching.map(stop).points.size();
   if (stop > 0) {
-    evidence.distance_m = matching_.path_m(stop) - matching_.path_m(stop - 1);
+    evidence.distance_m = parts_->matching.path_m(stop) - parts_->matching.path_m(stop - 1);
     evidence.covariance = best_link_to(graph_, stop);
   }
   monitor_.add(evidence);
@@ -183,14 +196,14 @@ void PoseGraphSlam::judge_state(std::vector<StepMatch> matches) {
 // --- optimisation
 
 // True if there is a result, which may have moved earlier poses.
-bool PoseGraphSlam::apply(const std::optional<OptimizationSchedule::Finished>& finished) {
+bool PoseGraphSlam::apply(const std::optional<FinishedOptimization>& finished) {
   if (!finished) return false;
-  for (const PoseGraphEdge& loop : loops_.release(finished->loops)) graph_.add_edge(loop);
+  for (const PoseGraphEdge& loop : parts_->loops.release(finished->loops)) graph_.add_edge(loop);
   const GraphSolution& solution = finished->solution;
   if (!solution.summary.usable) return true;
   graph_.move(solution.stops, solution.T_map_robot);
   graph_.remove_edges(solution.outvoted);
-  loops_.outvote(graph_, solution.outvoted);
+  parts_->loops.outvote(graph_, solution.outvoted);
   update_covariances(solution);
   ++version_;
   return true;
@@ -214,16 +227,17 @@ void PoseGraphSlam::update_covariances(const GraphSolution& solution) {
 
 void PoseGraphSlam::rescale_steps() {
   for (std::uint32_t stop = 1; stop <= last(); ++stop) {
-    if (const std::optional<Pose2> step = steps_.rescaled(stop)) graph_.correct_step(stop, *step);
+    if (const std::optional<Pose2> step = parts_->steps.rescaled(stop))
+      graph_.correct_step(stop, *step);
   }
 }
 
 void PoseGraphSlam::optimize_now() {
-  apply(schedule_.fetch_now());
+  apply(parts_->schedule.fetch_now());
   rescale_steps();
-  schedule_.want_whole();
-  schedule_.start(last(), graph_, loops_.waiting());
-  apply(schedule_.fetch_now());
+  parts_->schedule.want_whole();
+  parts_->schedule.start(last(), graph_, parts_->loops.waiting());
+  apply(parts_->schedule.fetch_now());
 }
 
 void PoseGraphSlam::compare_stored(std::uint32_t first) {
@@ -231,17 +245,17 @@ void PoseGraphSlam::compare_stored(std::uint32_t first) {
 }
 
 void PoseGraphSlam::finish() {
-  if (matching_.size() < 2) return;
+  if (parts_->matching.size() < 2) return;
   optimize_now();
   // The stops of a stored map were compared with each other when it was made.
   const std::size_t first = std::max<std::size_t>(1, stored_stops_);
-  if (first >= matching_.size()) return;
+  if (first >= parts_->matching.size()) return;
   close_all_loops(static_cast<std::uint32_t>(first));
 }
 
 // Compares the stops from `first` on, and again all stops that this moves.
 void PoseGraphSlam::close_all_loops(std::uint32_t first) {
-  std::vector<std::uint32_t> again(matching_.size() - first);
+  std::vector<std::uint32_t> again(parts_->matching.size() - first);
   std::iota(again.begin(), again.end(), first);
   for (std::uint32_t pass = 0; pass < config_.final_passes; ++pass) {
     if (close_more_loops(again) == 0) break;
@@ -253,10 +267,10 @@ void PoseGraphSlam::close_all_loops(std::uint32_t first) {
 
 // Returns how many loops were closed.
 std::size_t PoseGraphSlam::close_more_loops(std::span<const std::uint32_t> stops) {
-  const std::size_t before = graph_.edges().size() + loops_.waiting().size();
-  loops_.drop_pending();
+  const std::size_t before = graph_.edges().size() + parts_->loops.waiting().size();
+  parts_->loops.drop_pending();
   match_revisited(stops);
-  return graph_.edges().size() + loops_.waiting().size() - before;
+  return graph_.edges().size() + parts_->loops.waiting().size() - before;
 }
 
 // --- stored maps and the drives that join them
@@ -271,16 +285,16 @@ PoseGraphSlam::PoseGraphSlam(const LocalizerConfig& config, MatchPool& pool,
   }
   for (const PoseGraphEdge& edge : edges_of(*stored)) {
     graph_.add_edge(edge);
-    matching_.skip(edge);
+    parts_->matching.skip(edge);
   }
   edges_known_ = !stored->edges.empty() || stored->maps.size() == 1;
   version_ = stored->trajectory.version;
-  stored_stops_ = matching_.size();
+  stored_stops_ = parts_->matching.size();
 }
 
 void PoseGraphSlam::restore(MapPointer map, const topomap::StopPose& pose) {
-  const bool first = matching_.size() == 0;
-  check_next(*map, matching_.size(), first ? nullptr : first_of_session(*map));
+  const bool first = parts_->matching.size() == 0;
+  check_next(*map, parts_->matching.size(), first ? nullptr : first_of_session(*map));
   StepEvidence known;  // the map is right by definition
   known.points = map->points.size();
   double distance_m = 0.0;
@@ -289,8 +303,8 @@ void PoseGraphSlam::restore(MapPointer map, const topomap::StopPose& pose) {
     distance_m = std::sqrt(step.position_m().squaredNorm());
     if (map->starts_drive) distance_m += 2.0 * config_.recent_way_m;  // as in append()
   }
-  matching_.add(std::move(map), distance_m);
-  steps_.add_none();
+  parts_->matching.add(std::move(map), distance_m);
+  parts_->steps.add_none();
   graph_.add_pose(pose.T_map_robot);
   covariances_.push_back(pose.covariance);
   monitor_.restart(1.0);
@@ -299,11 +313,11 @@ void PoseGraphSlam::restore(MapPointer map, const topomap::StopPose& pose) {
 
 void PoseGraphSlam::join(std::span<const MapPointer> drive,
                          std::span<const StoredMatch> matches_of_last, double confidence) {
-  apply(schedule_.fetch_now());
+  apply(parts_->schedule.fetch_now());
   gap_ = first_stop_of_drive(graph_, drive, matches_of_last, config_.odometry);
-  matching_.forget_solutions();
+  parts_->matching.forget_solutions();
   monitor_.restart(confidence);
-  const auto first = static_cast<std::uint32_t>(matching_.size());
+  const auto first = static_cast<std::uint32_t>(parts_->matching.size());
   // The drive is first placed alone: its odometry may put its first stops, far from the last one,
   // on top of other stops.
   for (const MapPointer& map : drive) {
@@ -314,15 +328,10 @@ void PoseGraphSlam::join(std::span<const MapPointer> drive,
   // The matches that located the drive, unless it was matched there again.
   for (const StoredMatch& match : matches_of_last) {
     const PoseGraphEdge loop = loop_of(match, last());
-    if (contains_like(graph_.edges(), loop) || contains_like(loops_.waiting(), loop)) continue;
-    StopMatch known;
-    known.edge = loop;
-    known.verdict = Verdict::kAccepted;
-    known.reason = Reason::kNone;
-    known.fitness = match.fitness;
-    known.agreement = AgreementWeights::kWantedAnywhere;  // with the previously tracked stops
-    loops_.accept(graph_, known);
-    matching_.skip(loop);
+    if (contains_like(graph_.edges(), loop) || contains_like(parts_->loops.waiting(), loop))
+      continue;
+    parts_->loops.accept_tracked(graph_, loop, match.fitness);
+    parts_->matching.skip(loop);
   }
   optimize_now();
   close_all_loops(first);  // now that the drive has its place
@@ -330,21 +339,37 @@ void PoseGraphSlam::join(std::span<const MapPointer> drive,
 
 // --- state
 
+void PoseGraphSlam::settle() {
+  apply(parts_->schedule.fetch_now());
+}
+
+void PoseGraphSlam::number_tasks_from(std::uint64_t next_task) {
+  parts_->matching.requests().number_from(next_task);
+}
+
+std::uint64_t PoseGraphSlam::next_task() const {
+  return parts_->matching.requests().next_task();
+}
+
+const std::vector<LoopDecision>& PoseGraphSlam::loop_decisions() const {
+  return parts_->loops.decisions();
+}
+
 topomap::Trajectory PoseGraphSlam::trajectory() const {
   topomap::Trajectory trajectory;
   trajectory.version = version_;
-  trajectory.stops.reserve(matching_.size());
-  for (std::size_t i = 0; i < matching_.size(); ++i) trajectory.stops.push_back(pose_of(i));
+  trajectory.stops.reserve(parts_->matching.size());
+  for (std::size_t i = 0; i < parts_->matching.size(); ++i) trajectory.stops.push_back(pose_of(i));
   return trajectory;
 }
 
 std::optional<topomap::StopPose> PoseGraphSlam::last_stop() const {
-  if (matching_.size() == 0) return std::nullopt;
+  if (parts_->matching.size() == 0) return std::nullopt;
   return pose_of(last());
 }
 
 topomap::StopPose PoseGraphSlam::pose_of(std::size_t stop) const {
-  const LocalMap& map = matching_.map(stop);
+  const LocalMap& map = parts_->matching.map(stop);
   return {map.id, map.stamp_ns, graph_.poses()[stop], covariances_[stop], map.id};
 }
 
@@ -357,12 +382,12 @@ std::vector<topomap::LoopClosure> PoseGraphSlam::loop_closures() const {
 }
 
 SlamCounts PoseGraphSlam::counts() const {
-  SlamCounts counts{matching_.requests().counts()};
+  SlamCounts counts{parts_->matching.requests().counts()};
   counts.steps_in_doubt = steps_in_doubt_;
-  counts.unconfirmed_loops = loops_.unconfirmed();
-  counts.optimizations = schedule_.optimizations();
-  counts.failed_optimizations = schedule_.failed();
-  counts.removed_loops = loops_.outvoted();
+  counts.unconfirmed_loops = parts_->loops.unconfirmed();
+  counts.optimizations = parts_->schedule.optimizations();
+  counts.failed_optimizations = parts_->schedule.failed();
+  counts.removed_loops = parts_->loops.outvoted();
   return counts;
 }
 

@@ -162,6 +162,17 @@ void LoopClosing::accept(const PoseGraph& graph, const StopMatch& loop) {
   waiting_.push_back(loop.edge);
 }
 
+void LoopClosing::accept_tracked(const PoseGraph& graph, const PoseGraphEdge& loop,
+                                 double fitness) {
+  StopMatch match;
+  match.edge = loop;
+  match.verdict = localization::Verdict::kAccepted;
+  match.reason = Reason::kNone;
+  match.fitness = fitness;
+  match.agreement = AgreementWeights::kWantedAnywhere;  // with the previously tracked stops
+  accept(graph, match);
+}
+
 void LoopClosing::outvote(const PoseGraph& graph, std::span<const PoseGraphEdge> loops) {
   for (const PoseGraphEdge& loop : loops) {
     const auto before =

@@ -5,14 +5,17 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/matching/laser_track.hpp"
 #include "topogeo/scan/scan.hpp"
 
 namespace topogeo::localization {
+
+class LaserTrack;
+struct TimedFeatures;
 
 struct LaserOdometryCounts {
   std::uint64_t scans = 0;
@@ -24,8 +27,10 @@ struct LaserOdometryCounts {
 class LaserOdometry {
  public:
   /// Mounting of the laser, and the range in metres up to which scans count.
-  LaserOdometry(const geometry::Pose2& T_robot_laser, double points_range_m)
-      : T_robot_laser_(T_robot_laser), points_range_m_(points_range_m) {}
+  LaserOdometry(const geometry::Pose2& T_robot_laser, double points_range_m);
+  LaserOdometry(LaserOdometry&&) noexcept;
+  LaserOdometry& operator=(LaserOdometry&&) noexcept;
+  ~LaserOdometry();
 
   /// Takes the next scan, in order of time; its odometry is ignored. Where the times of its beams
   /// are known, the motion during the scan is taken out by the velocity of the track.
@@ -57,8 +62,8 @@ class LaserOdometry {
 
   geometry::Pose2 T_robot_laser_;
   double points_range_m_;
-  std::optional<LaserTrack> track_;
-  std::optional<LaserTrack> second_;
+  std::unique_ptr<LaserTrack> track_;
+  std::unique_ptr<LaserTrack> second_;
   geometry::Pose2 T_odom_track_;                   // frame of the track
   std::vector<Waiting> waiting_;                   // since the first scan that did not match
   std::optional<geometry::Pose2> T_track_second_;  // by the last scan that the track found

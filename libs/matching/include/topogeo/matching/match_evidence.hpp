@@ -23,9 +23,6 @@ struct MatchContext {
 /// Number of places refined before the winner is chosen. Fixed: tasks do not carry it.
 inline constexpr std::size_t kRefined = 3;
 
-/// Whether two poses are so close that refinement merges them: within 0.3 m and 0.15 rad.
-bool same_place(const geometry::Pose2& a, const geometry::Pose2& b);
-
 /// Sets every field of `result` that follows from the task and the poses in it: the solutions, the
 /// refined pose and, if its fitness is above 0, `second`. The poses and `evaluations` do not
 /// change. Without a solution of fitness above 0, all other fields are cleared. The poses must be

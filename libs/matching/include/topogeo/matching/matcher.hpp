@@ -11,9 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "topogeo/matching/fitness_forms.hpp"
-#include "topogeo/matching/genetic_search.hpp"
-#include "topogeo/matching/genetic_search_hypotheses.hpp"
 #include "topogeo/matching/match.hpp"
 #include "topogeo/matching/match_features.hpp"
 #include "topogeo/topomap/local_map.hpp"
@@ -25,6 +22,11 @@ class Matcher {
   /// Number of references kept ready, the most recently searched ones, some 150 kB each. Answers do
   /// not depend on it.
   static constexpr std::size_t kKeptReferences = 16;
+
+  Matcher();
+  Matcher(Matcher&&) noexcept;
+  Matcher& operator=(Matcher&&) noexcept;
+  ~Matcher();
 
   /// Stores the features of the map (some 20 kB, twice that once tasks without scan points ask for
   /// them) under its id; a later map with the same id replaces it.
@@ -76,11 +78,8 @@ class Matcher {
   std::shared_ptr<const PlaceField> field_;
   std::list<CachedReference>
       references_;  // most recently used first; grids are large, so only a few
-  // Buffers of a match, kept to save allocations.
-  FitnessForms forms_;
-  BranchHypotheses hypotheses_;
-  GeneticSearch search_;
-  std::vector<MatchSolution> starts_;
+  struct Buffers;
+  std::unique_ptr<Buffers> buffers_;
 };
 
 /// Hash of the answer of solve() to a small built-in task. Programs with different fingerprints

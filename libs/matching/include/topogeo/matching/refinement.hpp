@@ -89,4 +89,7 @@ struct Refinement : PoseEvidence {
 Refinement refine(const Reference& reference, const MatchFeatures& query,
                   const geometry::Pose2& T_first_guess, const PosePrior& prior);
 
+/// Whether two poses are so close that refinement merges them: within 0.3 m and 0.15 rad.
+bool same_place(const geometry::Pose2& a, const geometry::Pose2& b);
+
 }  // namespace topogeo::localization

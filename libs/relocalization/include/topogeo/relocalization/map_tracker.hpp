@@ -20,9 +20,6 @@
 
 #include "topogeo/matching/match.hpp"
 #include "topogeo/matching/odometry_model.hpp"
-#include "topogeo/relocalization/continued_place.hpp"
-#include "topogeo/relocalization/place_search.hpp"
-#include "topogeo/relocalization/stored_map_matching.hpp"
 #include "topogeo/slam/localization_state.hpp"
 #include "topogeo/slam/localizer_config.hpp"
 #include "topogeo/slam/slam.hpp"
@@ -61,10 +58,14 @@ struct LastPlace {
   std::uint64_t odometry_epoch = 0;  ///< as in scan::Scan
 };
 
+struct DriveStop;
+struct MatchCandidate;
+
 class MapTracker : public Slam {
  public:
   /// Starts without a pose. The pool must outlive this. Throws like GlobalLocalizer.
   MapTracker(const LocalizerConfig& config, std::shared_ptr<const StoredMap> map, MatchPool& pool);
+  ~MapTracker() override;
 
   /// Adds the next stop of the drive. The numbers of a session must be consecutive from its first
   /// stop; throws std::invalid_argument otherwise. Another session continues where the previous one
@@ -85,8 +86,8 @@ class MapTracker : public Slam {
   void start_after(const LastPlace& place);
 
   /// Continues the numbering of tasks there; no number may occur twice in one pool.
-  void number_tasks_from(std::uint64_t next_task) { matching_.requests().number_from(next_task); }
-  [[nodiscard]] std::uint64_t next_task() const { return matching_.requests().next_task(); }
+  void number_tasks_from(std::uint64_t next_task);
+  [[nodiscard]] std::uint64_t next_task() const;
 
   /// Forgets the pose and searches the whole map, starting with the next stop.
   void search();
@@ -105,7 +106,9 @@ class MapTracker : public Slam {
   /// Empty: the map does not change.
   [[nodiscard]] std::vector<topomap::LoopClosure> loop_closures() const override { return {}; }
   /// Empty.
-  [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override;
+  [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override {
+    return no_decisions();
+  }
   [[nodiscard]] LocalizationStatus status() const override { return status_; }
   [[nodiscard]] SlamCounts counts() const override;
   /// Number of all stops by state, including forgotten ones.
@@ -117,9 +120,7 @@ class MapTracker : public Slam {
   [[nodiscard]] std::size_t searches() const { return searches_; }
   /// Id in the finished map after which the maps of the drive are numbered: the number of stored
   /// maps.
-  [[nodiscard]] std::uint32_t first_id() const {
-    return static_cast<std::uint32_t>(matching_.stored_stops());
-  }
+  [[nodiscard]] std::uint32_t first_id() const { return first_id_; }
 
  private:
   void begin_session(std::uint64_t odometry_epoch);
@@ -136,12 +137,11 @@ class MapTracker : public Slam {
   std::uint32_t decide();
 
   LocalizerConfig config_;
-  StoredMapMatching matching_;
-  PlaceSearch search_;
+  std::uint32_t first_id_;
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
   StateMonitor monitor_;
-  ContinuedPlace continued_;
-  DriveAgreement agreement_;  // of the tracked stops
-  UncertainPose pose_;        // T_map_robot at the last stop
+  UncertainPose pose_;  // T_map_robot at the last stop
   bool has_pose_ = false;
   bool monitored_ = false;                      // monitor_ has judged the last stop
   bool pose_is_given_ = false;                  // since the last stop

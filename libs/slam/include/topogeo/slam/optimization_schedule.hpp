@@ -18,6 +18,11 @@
 
 namespace topogeo::localization {
 
+struct FinishedOptimization {
+  GraphSolution solution;
+  std::size_t loops = 0;  ///< number of waiting loops included: the first ones
+};
+
 class OptimizationSchedule {
  public:
   /// The optimizer must outlive the schedule. Without one the work is done when its result is
@@ -37,14 +42,10 @@ class OptimizationSchedule {
   /// none is running.
   void start(std::uint32_t step, const PoseGraph& graph, std::span<const PoseGraphEdge> loops);
 
-  struct Finished {
-    GraphSolution solution;
-    std::size_t loops = 0;  ///< number of waiting loops included: the first ones
-  };
   /// The running optimisation, if it is due at this step or before.
-  std::optional<Finished> fetch(std::uint32_t step);
+  std::optional<FinishedOptimization> fetch(std::uint32_t step);
   /// The running optimisation, due or not.
-  std::optional<Finished> fetch_now();
+  std::optional<FinishedOptimization> fetch_now();
 
   [[nodiscard]] std::uint64_t optimizations() const { return optimizations_; }
   [[nodiscard]] std::uint64_t failed() const { return failed_; }

@@ -20,20 +20,21 @@
 
 #include "topogeo/matching/match.hpp"
 #include "topogeo/matching/odometry_model.hpp"
-#include "topogeo/slam/graph_optimization.hpp"
 #include "topogeo/slam/localizer_config.hpp"
-#include "topogeo/slam/loop/loop_closing.hpp"
-#include "topogeo/slam/odometry_steps.hpp"
-#include "topogeo/slam/optimization_schedule.hpp"
 #include "topogeo/slam/pose_graph.hpp"
 #include "topogeo/slam/slam.hpp"
 #include "topogeo/slam/state_monitor.hpp"
-#include "topogeo/slam/stop_matching.hpp"
 #include "topogeo/slam/stored_map.hpp"
+#include "topogeo/support/value_pointer.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
 namespace topogeo::localization {
+
+struct FinishedOptimization;
+class GraphOptimizer;
+struct GraphSolution;
+struct StopMatch;
 
 class PoseGraphSlam : public Slam {
  public:
@@ -49,6 +50,9 @@ class PoseGraphSlam : public Slam {
   /// local maps are not their indices.
   PoseGraphSlam(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer,
                 const std::shared_ptr<const StoredMap>& stored);
+  PoseGraphSlam(const PoseGraphSlam& other);
+  PoseGraphSlam& operator=(const PoseGraphSlam&) = delete;
+  ~PoseGraphSlam() override;
 
   /// Adds a drive that was localized in the map but is not connected to the last stop by odometry.
   /// `drive` holds its stops so far, numbered on from those of the map; `matches_of_last` are one
@@ -59,11 +63,11 @@ class PoseGraphSlam : public Slam {
             double confidence);
 
   /// Applies the optimisation that is still running, if any.
-  void settle() { apply(schedule_.fetch_now()); }
+  void settle();
 
   /// Continues the numbering of tasks there; no number may occur twice in one pool.
-  void number_tasks_from(std::uint64_t next_task) { matching_.requests().number_from(next_task); }
-  [[nodiscard]] std::uint64_t next_task() const { return matching_.requests().next_task(); }
+  void number_tasks_from(std::uint64_t next_task);
+  [[nodiscard]] std::uint64_t next_task() const;
 
   /// One forward step. Maps must come in order of their ids, from 0, of one robot; throws
   /// std::invalid_argument otherwise. True when earlier poses were moved too.
@@ -80,9 +84,7 @@ class PoseGraphSlam : public Slam {
   [[nodiscard]] topomap::Trajectory trajectory() const override;
   [[nodiscard]] std::optional<topomap::StopPose> last_stop() const override;
   [[nodiscard]] std::vector<topomap::LoopClosure> loop_closures() const override;
-  [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override {
-    return loops_.decisions();
-  }
+  [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override;
   /// Empty if it continues a stored map without edges.
   [[nodiscard]] const std::vector<PoseGraphEdge>& edges() const override {
     return edges_known_ ? graph_.edges() : no_edges();
@@ -105,7 +107,7 @@ class PoseGraphSlam : public Slam {
   std::vector<StepMatch> match_revisited(std::span<const std::uint32_t> stops);
   void judge_state(std::vector<StepMatch> evidence);
 
-  bool apply(const std::optional<OptimizationSchedule::Finished>& finished);
+  bool apply(const std::optional<FinishedOptimization>& finished);
   void update_covariances(const GraphSolution& solution);
   void rescale_steps();
   void optimize_now();
@@ -113,12 +115,10 @@ class PoseGraphSlam : public Slam {
   std::size_t close_more_loops(std::span<const std::uint32_t> stops);
 
   LocalizerConfig config_;
-  StopMatching matching_;
+  struct Parts;
+  support::ValuePointer<Parts> parts_;
   PoseGraph graph_;
   std::vector<Eigen::Matrix3d> covariances_;  // of the poses in the map frame
-  LoopClosing loops_;
-  OptimizationSchedule schedule_;
-  OdometrySteps steps_;
   StateMonitor monitor_;
   std::size_t stored_stops_ = 0;      // number of stops in the stored map
   std::optional<UncertainPose> gap_;  // T_last_next, when no odometry leads to the next stop

@@ -56,6 +56,10 @@ class Slam {
     static const std::vector<PoseGraphEdge> none;
     return none;
   }
+  static const std::vector<LoopDecision>& no_decisions() {
+    static const std::vector<LoopDecision> none;
+    return none;
+  }
   Slam() = default;
   Slam(const Slam&) = default;
   Slam& operator=(const Slam&) = default;

@@ -48,6 +48,8 @@ class LoopClosing {
 
   /// Accepts a loop that is known to be right, to wait for an optimisation.
   void accept(const PoseGraph& graph, const StopMatch& loop);
+  /// Accepts a match with a finished map that the robot was tracked in.
+  void accept_tracked(const PoseGraph& graph, const PoseGraphEdge& loop, double fitness);
   /// Records loops that an optimisation has left out.
   void outvote(const PoseGraph& graph, std::span<const PoseGraphEdge> loops);
 
