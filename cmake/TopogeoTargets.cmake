@@ -82,6 +82,13 @@ function(topogeo_add_library)
   endif()
 endfunction()
 
+# topogeo_use_internals(TARGET matching slam ...): lets a test include the private headers of these libraries.
+function(topogeo_use_internals target)
+  foreach(lib IN LISTS ARGN)
+    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/libs/${lib}/src)
+  endforeach()
+endfunction()
+
 # topogeo_add_service(NAME map_store SOURCES main.cpp ... DEPENDS targets...): an executable in bin/.
 function(topogeo_add_service)
   cmake_parse_arguments(ARG "" "NAME" "SOURCES;DEPENDS" ${ARGN})

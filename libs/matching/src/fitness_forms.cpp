@@ -1,8 +1,8 @@
 #include "topogeo/matching/fitness_forms.hpp"
 
-#include "topogeo/matching/fitness_combined.hpp"
-#include "topogeo/matching/fitness_printed.hpp"
-#include "topogeo/matching/fitness_weighted.hpp"
+#include "fitness_combined.hpp"
+#include "fitness_printed.hpp"
+#include "fitness_weighted.hpp"
 
 namespace topogeo::localization {
 

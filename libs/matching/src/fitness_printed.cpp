@@ -1,4 +1,4 @@
-#include "topogeo/matching/fitness_printed.hpp"
+#include "fitness_printed.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "topogeo/matching/fitness_topological.hpp"
+#include "fitness_topological.hpp"
 
 #include <algorithm>
 #include <array>

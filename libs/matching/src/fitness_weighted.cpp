@@ -1,4 +1,4 @@
-#include "topogeo/matching/fitness_weighted.hpp"
+#include "fitness_weighted.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "topogeo/matching/genetic_search.hpp"
+#include "genetic_search.hpp"
 
 #include <algorithm>
 #include <cmath>

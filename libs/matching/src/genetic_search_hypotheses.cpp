@@ -1,11 +1,12 @@
-#include "topogeo/matching/genetic_search_hypotheses.hpp"
+#include "genetic_search_hypotheses.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/matching/genetic_search.hpp"
+
+#include "genetic_search.hpp"
 
 namespace topogeo::localization {
 namespace {

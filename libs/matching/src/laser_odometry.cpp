@@ -5,10 +5,11 @@
 #include <memory>
 #include <utility>
 
-#include "topogeo/matching/laser_track.hpp"
-#include "topogeo/matching/match_evidence.hpp"
 #include "topogeo/scan/deskew.hpp"
 #include "topogeo/topomap/local_map_builder.hpp"
+
+#include "laser_track.hpp"
+#include "match_evidence.hpp"
 
 namespace topogeo::localization {
 

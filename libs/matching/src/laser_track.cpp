@@ -1,4 +1,4 @@
-#include "topogeo/matching/laser_track.hpp"
+#include "laser_track.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 
 #include <Eigen/LU>
 
-#include "topogeo/matching/match_evidence.hpp"
 #include "topogeo/matching/refinement.hpp"
 
+#include "match_evidence.hpp"
 #include "principal_axes.hpp"
 
 namespace topogeo::localization {

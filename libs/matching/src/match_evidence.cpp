@@ -1,4 +1,4 @@
-#include "topogeo/matching/match_evidence.hpp"
+#include "match_evidence.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,10 @@
 #include <Eigen/LU>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/matching/fitness_combined.hpp"
 #include "topogeo/matching/match_gate.hpp"
 #include "topogeo/matching/refinement.hpp"
+
+#include "fitness_combined.hpp"
 
 namespace topogeo::localization {
 namespace {

@@ -7,9 +7,9 @@
 #include <Eigen/LU>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/matching/fitness_combined.hpp"
 #include "topogeo/matching/refinement.hpp"
 
+#include "fitness_combined.hpp"
 #include "principal_axes.hpp"
 
 namespace topogeo::localization {

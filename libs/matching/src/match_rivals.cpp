@@ -4,8 +4,9 @@
 #include <numbers>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/matching/fitness_combined.hpp"
 #include "topogeo/matching/refinement.hpp"
+
+#include "fitness_combined.hpp"
 
 namespace topogeo::localization {
 namespace {

@@ -3,7 +3,8 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/matching/match.hpp"
-#include "topogeo/matching/match_evidence.hpp"
+
+#include "match_evidence.hpp"
 
 namespace topogeo::localization {
 

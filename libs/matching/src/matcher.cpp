@@ -10,11 +10,11 @@
 #include <Eigen/LU>
 
 #include "topogeo/matching/branch_walls.hpp"
-#include "topogeo/matching/fitness_combined.hpp"
-#include "topogeo/matching/match_evidence.hpp"
 #include "topogeo/matching/place_field.hpp"
 #include "topogeo/matching/refinement.hpp"
 
+#include "fitness_combined.hpp"
+#include "match_evidence.hpp"
 #include "match_rivals.hpp"
 #include "matcher_buffers.hpp"
 

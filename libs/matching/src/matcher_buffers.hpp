@@ -4,9 +4,10 @@
 #include <vector>
 
 #include "topogeo/matching/fitness_forms.hpp"
-#include "topogeo/matching/genetic_search.hpp"
-#include "topogeo/matching/genetic_search_hypotheses.hpp"
 #include "topogeo/matching/matcher.hpp"
+
+#include "genetic_search.hpp"
+#include "genetic_search_hypotheses.hpp"
 
 namespace topogeo::localization {
 

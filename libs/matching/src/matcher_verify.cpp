@@ -4,12 +4,12 @@
 #include <numbers>
 #include <string>
 
-#include "topogeo/matching/genetic_search.hpp"
 #include "topogeo/matching/identical.hpp"
-#include "topogeo/matching/match_evidence.hpp"
 #include "topogeo/matching/matcher.hpp"
 #include "topogeo/matching/place_field.hpp"
 
+#include "genetic_search.hpp"
+#include "match_evidence.hpp"
 #include "matcher_buffers.hpp"
 
 namespace topogeo::localization {

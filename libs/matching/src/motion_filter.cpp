@@ -1,4 +1,4 @@
-#include "topogeo/matching/motion_filter.hpp"
+#include "motion_filter.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "topogeo/matching/recent_scans.hpp"
+#include "recent_scans.hpp"
 
 #include <cmath>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "topogeo/relocalization/continued_place.hpp"
+#include "continued_place.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "topogeo/relocalization/drive_agreement.hpp"
+#include "drive_agreement.hpp"
 
 #include "topogeo/slam/loop/loop_config.hpp"
 

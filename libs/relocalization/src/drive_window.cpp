@@ -1,11 +1,12 @@
-#include "topogeo/relocalization/drive_window.hpp"
+#include "drive_window.hpp"
 
 #include <cmath>
 #include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/matching/match_gate.hpp"
-#include "topogeo/relocalization/pose_fusion.hpp"
+
+#include "pose_fusion.hpp"
 
 namespace topogeo::localization {
 

@@ -9,11 +9,12 @@
 
 #include "topogeo/matching/match_gate.hpp"
 #include "topogeo/matching/refinement.hpp"
-#include "topogeo/relocalization/continued_place.hpp"
-#include "topogeo/relocalization/place_search.hpp"
-#include "topogeo/relocalization/pose_fusion.hpp"
-#include "topogeo/relocalization/stored_map_matching.hpp"
 #include "topogeo/slam/loop/plausible_match.hpp"
+
+#include "continued_place.hpp"
+#include "place_search.hpp"
+#include "pose_fusion.hpp"
+#include "stored_map_matching.hpp"
 
 namespace topogeo::localization {
 

@@ -1,4 +1,4 @@
-#include "topogeo/relocalization/place_search.hpp"
+#include "place_search.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,8 @@
 #include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/relocalization/pose_fusion.hpp"
+
+#include "pose_fusion.hpp"
 
 namespace topogeo::localization {
 

@@ -1,4 +1,4 @@
-#include "topogeo/relocalization/pose_fusion.hpp"
+#include "pose_fusion.hpp"
 
 #include <algorithm>
 #include <numbers>

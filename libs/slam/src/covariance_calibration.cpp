@@ -1,4 +1,4 @@
-#include "topogeo/slam/covariance_calibration.hpp"
+#include "covariance_calibration.hpp"
 
 #include <algorithm>
 

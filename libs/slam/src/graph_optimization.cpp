@@ -5,9 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "topogeo/slam/loop/outvoted_loop.hpp"
-
 #include "least_squares.hpp"
+#include "loop/outvoted_loop.hpp"
 
 namespace topogeo::localization {
 

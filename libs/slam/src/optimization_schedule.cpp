@@ -1,4 +1,4 @@
-#include "topogeo/slam/optimization_schedule.hpp"
+#include "optimization_schedule.hpp"
 
 #include <algorithm>
 #include <utility>

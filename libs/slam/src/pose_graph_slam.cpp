@@ -8,13 +8,13 @@
 
 #include "topogeo/slam/drive_join.hpp"
 #include "topogeo/slam/graph_optimization.hpp"
-#include "topogeo/slam/loop/look_alikes.hpp"
-#include "topogeo/slam/loop/loop_closing.hpp"
-#include "topogeo/slam/odometry_steps.hpp"
-#include "topogeo/slam/optimization_schedule.hpp"
-#include "topogeo/slam/stop_matching.hpp"
 
 #include "link_covariances.hpp"
+#include "loop/look_alikes.hpp"
+#include "loop/loop_closing.hpp"
+#include "odometry_steps.hpp"
+#include "optimization_schedule.hpp"
+#include "stop_matching.hpp"
 
 namespace topogeo::localization {
 

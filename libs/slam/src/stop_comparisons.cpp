@@ -1,4 +1,4 @@
-#include "topogeo/slam/stop_comparisons.hpp"
+#include "stop_comparisons.hpp"
 
 #include <cmath>
 

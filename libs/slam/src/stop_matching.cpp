@@ -1,4 +1,4 @@
-#include "topogeo/slam/stop_matching.hpp"
+#include "stop_matching.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,10 +3,11 @@
 
 #include <cstdint>
 
-#include "topogeo/slam/covariance_calibration.hpp"
-#include "topogeo/slam/loop/stop_match.hpp"
 #include "topogeo/slam/place_recognition.hpp"
 #include "topogeo/slam/pose_graph.hpp"
+
+#include "covariance_calibration.hpp"
+#include "loop/stop_match.hpp"
 
 namespace topogeo::localization {
 

@@ -1,4 +1,4 @@
-#include "topogeo/slam/loop/look_alikes.hpp"
+#include "loop/look_alikes.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "topogeo/slam/loop/loop_agreement.hpp"
+#include "loop/loop_agreement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,11 @@
 #include <optional>
 #include <set>
 
-#include "topogeo/slam/covariance_calibration.hpp"
 #include "topogeo/slam/loop/loop_config.hpp"
 #include "topogeo/slam/loop/loop_probability.hpp"
 #include "topogeo/slam/place_recognition.hpp"
+
+#include "covariance_calibration.hpp"
 
 namespace topogeo::localization {
 

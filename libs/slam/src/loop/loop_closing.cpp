@@ -1,10 +1,11 @@
-#include "topogeo/slam/loop/loop_closing.hpp"
+#include "loop/loop_closing.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "topogeo/slam/loop/closing_check.hpp"
 #include "topogeo/slam/loop/loop_config.hpp"
+
+#include "loop/closing_check.hpp"
 
 namespace topogeo::localization {
 

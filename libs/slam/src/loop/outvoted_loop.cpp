@@ -1,4 +1,4 @@
-#include "topogeo/slam/loop/outvoted_loop.hpp"
+#include "loop/outvoted_loop.hpp"
 
 #include "topogeo/slam/loop/loop_config.hpp"
 

@@ -1,4 +1,4 @@
-#include "topogeo/slam/loop/stop_match.hpp"
+#include "loop/stop_match.hpp"
 
 #include <algorithm>
 

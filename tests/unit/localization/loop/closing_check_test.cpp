@@ -1,4 +1,4 @@
-#include "topogeo/slam/loop/closing_check.hpp"
+#include "loop/closing_check.hpp"
 
 #include <cmath>
 #include <stdexcept>

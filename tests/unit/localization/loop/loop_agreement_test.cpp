@@ -1,6 +1,6 @@
 // Straight stops 1 m apart. Matches of stops from 30 on with stops from 0 on: those that agree put
 // the robot at one place, those of a look-alike at another.
-#include "topogeo/slam/loop/loop_agreement.hpp"
+#include "loop/loop_agreement.hpp"
 
 #include <algorithm>
 #include <limits>

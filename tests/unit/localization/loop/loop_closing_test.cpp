@@ -1,6 +1,6 @@
 // A corridor driven along x and back: stops 0 to 5 out, 6 to 11 back over the same places. Odometry
 // drifts sideways, so the stops back lie beside those out.
-#include "topogeo/slam/loop/loop_closing.hpp"
+#include "loop/loop_closing.hpp"
 
 #include <numeric>
 #include <vector>

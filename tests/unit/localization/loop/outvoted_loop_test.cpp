@@ -1,5 +1,5 @@
 // Two stops 1 m apart by the optimised poses.
-#include "topogeo/slam/loop/outvoted_loop.hpp"
+#include "loop/outvoted_loop.hpp"
 
 #include <array>
 

@@ -1,5 +1,5 @@
 // Matches with errors of a known size, and the calibration from triangles of them.
-#include "topogeo/slam/covariance_calibration.hpp"
+#include "covariance_calibration.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "topogeo/slam/odometry_scale.hpp"
+#include "odometry_scale.hpp"
 
 #include <gtest/gtest.h>
 

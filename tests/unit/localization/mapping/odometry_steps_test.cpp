@@ -1,4 +1,4 @@
-#include "topogeo/slam/odometry_steps.hpp"
+#include "odometry_steps.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "topogeo/slam/optimization_window.hpp"
+#include "optimization_window.hpp"
 
 #include <algorithm>
 #include <random>

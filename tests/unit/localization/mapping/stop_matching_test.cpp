@@ -1,6 +1,6 @@
 // Stops without scans, so that no overlap is predicted; a pool with scripted answers shows the
 // tasks and the handling of their results. pose_graph_slam_test.cpp has drives with scans.
-#include "topogeo/slam/stop_matching.hpp"
+#include "stop_matching.hpp"
 
 #include <functional>
 #include <memory>

@@ -1,4 +1,4 @@
-#include "topogeo/matching/fitness_combined.hpp"
+#include "fitness_combined.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,11 @@
-#include "topogeo/matching/genetic_search_hypotheses.hpp"
+#include "genetic_search_hypotheses.hpp"
 
 #include <algorithm>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "topogeo/matching/genetic_search.hpp"
-
+#include "genetic_search.hpp"
 #include "localization/hand_scenes.hpp"
 #include "localization/simulated_maps.hpp"
 

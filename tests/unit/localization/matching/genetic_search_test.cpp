@@ -1,4 +1,4 @@
-#include "topogeo/matching/genetic_search.hpp"
+#include "genetic_search.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "topogeo/matching/fitness_combined.hpp"
-
+#include "fitness_combined.hpp"
 #include "localization/hand_scenes.hpp"
 
 namespace topogeo::localization {

@@ -5,11 +5,11 @@
 #include <gtest/gtest.h>
 
 #include "topogeo/matching/fitness_forms.hpp"
-#include "topogeo/matching/genetic_search.hpp"
-#include "topogeo/matching/genetic_search_hypotheses.hpp"
 #include "topogeo/matching/matcher.hpp"
 
 #include "counted_allocations.hpp"
+#include "genetic_search.hpp"
+#include "genetic_search_hypotheses.hpp"
 #include "localization/simulated_maps.hpp"
 
 namespace topogeo::localization {

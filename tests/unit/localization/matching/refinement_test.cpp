@@ -7,8 +7,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include "topogeo/matching/fitness_combined.hpp"
-
+#include "fitness_combined.hpp"
 #include "localization/hand_scenes.hpp"
 
 namespace topogeo::localization {

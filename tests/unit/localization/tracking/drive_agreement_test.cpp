@@ -1,4 +1,4 @@
-#include "topogeo/relocalization/drive_agreement.hpp"
+#include "drive_agreement.hpp"
 
 #include <gtest/gtest.h>
 

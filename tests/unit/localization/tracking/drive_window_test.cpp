@@ -1,4 +1,4 @@
-#include "topogeo/relocalization/drive_window.hpp"
+#include "drive_window.hpp"
 
 #include <cmath>
 #include <vector>

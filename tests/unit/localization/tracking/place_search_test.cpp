@@ -1,4 +1,4 @@
-#include "topogeo/relocalization/place_search.hpp"
+#include "place_search.hpp"
 
 #include <cmath>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "topogeo/relocalization/stored_map_matching.hpp"
+#include "stored_map_matching.hpp"
 
 #include <stdexcept>
 #include <vector>

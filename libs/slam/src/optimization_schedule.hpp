@@ -13,8 +13,9 @@
 #include <vector>
 
 #include "topogeo/slam/graph_optimization.hpp"
-#include "topogeo/slam/optimization_window.hpp"
 #include "topogeo/slam/pose_graph.hpp"
+
+#include "optimization_window.hpp"
 
 namespace topogeo::localization {
 

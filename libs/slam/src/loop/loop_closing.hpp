@@ -15,10 +15,11 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/slam/localizer_config.hpp"
-#include "topogeo/slam/loop/loop_agreement.hpp"
 #include "topogeo/slam/loop/loop_decision.hpp"
-#include "topogeo/slam/loop/stop_match.hpp"
 #include "topogeo/slam/pose_graph.hpp"
+
+#include "loop/loop_agreement.hpp"
+#include "loop/stop_match.hpp"
 
 namespace topogeo::localization {
 

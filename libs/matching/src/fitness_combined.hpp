@@ -10,8 +10,9 @@
 #include <Eigen/Core>
 
 #include "topogeo/matching/fitness.hpp"
-#include "topogeo/matching/fitness_points.hpp"
-#include "topogeo/matching/fitness_topological.hpp"
+
+#include "fitness_points.hpp"
+#include "fitness_topological.hpp"
 
 namespace topogeo::localization {
 

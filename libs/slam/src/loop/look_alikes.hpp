@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "topogeo/slam/loop/stop_match.hpp"
-#include "topogeo/slam/odometry_steps.hpp"
+#include "loop/stop_match.hpp"
+#include "odometry_steps.hpp"
 
 namespace topogeo::localization {
 

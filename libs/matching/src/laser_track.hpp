@@ -11,10 +11,11 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/matching/match_features.hpp"
-#include "topogeo/matching/motion_filter.hpp"
 #include "topogeo/matching/odometry_model.hpp"
-#include "topogeo/matching/recent_scans.hpp"
 #include "topogeo/matching/refinement.hpp"
+
+#include "motion_filter.hpp"
+#include "recent_scans.hpp"
 
 namespace topogeo::localization {
 

@@ -13,9 +13,10 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/slam/loop/stop_match.hpp"
 #include "topogeo/slam/pose_graph.hpp"
 #include "topogeo/slam/relative_poses.hpp"
+
+#include "loop/stop_match.hpp"
 
 namespace topogeo::localization {
 

@@ -13,7 +13,8 @@
 #include <vector>
 
 #include "topogeo/matching/fitness.hpp"
-#include "topogeo/matching/fitness_combined.hpp"
+
+#include "fitness_combined.hpp"
 
 namespace topogeo::localization {
 

@@ -10,8 +10,9 @@
 #include <optional>
 
 #include "topogeo/matching/odometry_model.hpp"
-#include "topogeo/relocalization/drive_window.hpp"
 #include "topogeo/relocalization/global_localization.hpp"
+
+#include "drive_window.hpp"
 
 namespace topogeo::localization {
 

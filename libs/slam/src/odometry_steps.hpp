@@ -11,8 +11,9 @@
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/matching/odometry_model.hpp"
 #include "topogeo/matching/odometry_monitor.hpp"
-#include "topogeo/slam/odometry_scale.hpp"
 #include "topogeo/slam/pose_graph.hpp"
+
+#include "odometry_scale.hpp"
 
 namespace topogeo::localization {
 

@@ -12,7 +12,8 @@
 #include <vector>
 
 #include "topogeo/matching/fitness.hpp"
-#include "topogeo/matching/fitness_points.hpp"
+
+#include "fitness_points.hpp"
 
 namespace topogeo::localization {
 

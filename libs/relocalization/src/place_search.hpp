@@ -14,7 +14,8 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/matching/odometry_model.hpp"
-#include "topogeo/relocalization/drive_agreement.hpp"
+
+#include "drive_agreement.hpp"
 
 namespace topogeo::localization {
 

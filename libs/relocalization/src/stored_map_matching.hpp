@@ -12,13 +12,14 @@
 #include "topogeo/matching/match.hpp"
 #include "topogeo/matching/match_features.hpp"
 #include "topogeo/matching/odometry_model.hpp"
-#include "topogeo/relocalization/drive_window.hpp"
 #include "topogeo/relocalization/global_localization.hpp"
 #include "topogeo/slam/candidate_choice.hpp"
 #include "topogeo/slam/localizer_config.hpp"
 #include "topogeo/slam/match_requests.hpp"
 #include "topogeo/slam/stored_map.hpp"
 #include "topogeo/topomap/local_map.hpp"
+
+#include "drive_window.hpp"
 
 namespace topogeo::localization {
 

@@ -17,14 +17,15 @@
 #include "topogeo/matching/match.hpp"
 #include "topogeo/matching/match_features.hpp"
 #include "topogeo/slam/candidate_choice.hpp"
-#include "topogeo/slam/covariance_calibration.hpp"
 #include "topogeo/slam/localizer_config.hpp"
-#include "topogeo/slam/loop/stop_match.hpp"
 #include "topogeo/slam/match_requests.hpp"
 #include "topogeo/slam/place_recognition.hpp"
 #include "topogeo/slam/pose_graph.hpp"
-#include "topogeo/slam/stop_comparisons.hpp"
 #include "topogeo/topomap/local_map.hpp"
+
+#include "covariance_calibration.hpp"
+#include "loop/stop_match.hpp"
+#include "stop_comparisons.hpp"
 
 namespace topogeo::localization {
 
