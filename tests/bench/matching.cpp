@@ -1,6 +1,6 @@
 // Accuracy of matches of two local maps, and whether their verdicts can be trusted.
 //
-//   topogeo_matching [--world FILE]... [--log FILE --reference FILE.tum]... [--config FILE]
+//   topogeo_match_quality [--world FILE]... [--log FILE --reference FILE.tum]... [--config FILE]
 //
 // First table: pairs of stops i,i+1 and i,i+3 against their true relative pose, by odometry, by the
 // scan tracker and by matching with every form of the fitness. Second table: how well matches of
@@ -38,7 +38,7 @@ struct Options {
 };
 
 void progress(const std::string& name, const char* work) {
-  std::fprintf(stderr, "topogeo_matching: %s: %s\n", name.c_str(), work);
+  std::fprintf(stderr, "topogeo_match_quality: %s: %s\n", name.c_str(), work);
 }
 
 std::vector<bench::MatchingRun> load(const Options& options, const pipeline::Config& config) {
@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
   app.add_flag("--look-alikes,!--no-look-alikes", options.look_alikes, "print the third table");
   if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   if (options.logs.size() != options.references.size()) {
-    std::fprintf(stderr, "topogeo_matching: every --log needs a --reference\n");
+    std::fprintf(stderr, "topogeo_match_quality: every --log needs a --reference\n");
     return 2;
   }
   try {
@@ -109,7 +109,7 @@ int main(int argc, char** argv) {
     std::vector<bench::MatchingRun> runs = load(options, config);
     print_tables(options, runs);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "topogeo_matching: %s\n", error.what());
+    std::fprintf(stderr, "topogeo_match_quality: %s\n", error.what());
     return 1;
   }
   return 0;

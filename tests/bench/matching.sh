@@ -5,11 +5,11 @@
 # Options go to the program: --quick, --no-accuracy, --no-look-alikes, --config FILE, --samples FILE.
 # Inputs are the simulated floor (share/worlds/floor.world.yaml) and each X.clf.gz with its X.ref.tum in
 # the folder that TOPOGEO_LOG_DIR names, default ../shared/data beside the project. MATCHING names the
-# program; default build/bin/topogeo_matching.
+# program; default build/bin/topogeo_match_quality.
 set -euo pipefail
 
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
-tool=${MATCHING:-$root/build/bin/topogeo_matching}
+tool=${MATCHING:-$root/build/bin/topogeo_match_quality}
 inputs=()
 # shellcheck disable=SC1091  # found by its full path
 source "$root/tests/bench/inputs.sh"

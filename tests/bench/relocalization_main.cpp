@@ -1,6 +1,6 @@
 // How often a scan is found again in a finished map without an initial pose.
 //
-//   topogeo_relocalization [--scans N] [--csv FILE] LOG...
+//   topogeo_global_localization [--scans N] [--csv FILE] LOG...
 //
 // "same drive": the map of the whole log, searched with scans that are no stops of it. "second
 // half": the map of the first half of the log, searched with scans of the second half at places
@@ -175,7 +175,7 @@ int main(int argc, char** argv) {
     for (const std::string& log : logs) evaluate(log, count, config.config, csv);
     if (csv != nullptr) std::fclose(csv);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "topogeo_relocalization: %s\n", error.what());
+    std::fprintf(stderr, "topogeo_global_localization: %s\n", error.what());
     return 1;
   }
   return 0;

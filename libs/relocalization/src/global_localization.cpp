@@ -30,7 +30,7 @@ constexpr double kKnownWithin_m = 0.20;
 constexpr double kSeenPast_m = 0.35;
 
 // The answer to one scan. The limits were chosen on logs with known poses (tests/bench,
-// topogeo_relocalization) so that no wrong place is accepted.
+// topogeo_global_localization) so that no wrong place is accepted.
 constexpr std::size_t kPosesWanted =
     5;  // distinct ones; the second shows whether the first is sure
 constexpr double kSmallestFitness = 0.60;  // a pose with less is rejected
