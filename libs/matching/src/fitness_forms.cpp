@@ -60,6 +60,11 @@ double FitnessForms::of_maps(const geometry::Pose2& T_reference_query,
   return chosen().at(T_reference_query, heading);
 }
 
+FitnessForms::Parts FitnessForms::parts(const geometry::Pose2& T) const {
+  const CombinedFitness& combined = forms_->combined;
+  return {combined.scan()(T), combined.topological()(T), combined.prior()(T)};
+}
+
 const CombinedFitness& FitnessForms::combined() const {
   return forms_->combined;
 }

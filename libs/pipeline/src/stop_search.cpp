@@ -77,9 +77,10 @@ StopSearch search_stop(const topomap::LocalMap& reference, const topomap::LocalM
   const localization::Reference features =
       localization::make_reference(features_for(reference, config.evidence));
   const localization::MatchFeatures query_features = features_for(query, config.evidence);
-  const localization::CombinedFitness fitness(features, query_features, search.task);
+  const localization::FitnessForms fitness(features, query_features, search.task);
   const auto parts_at = [&](const geometry::Pose2& T) {
-    return FitnessParts{fitness.scan()(T), fitness.topological()(T), fitness.prior()(T)};
+    const localization::FitnessForms::Parts parts = fitness.parts(T);
+    return FitnessParts{parts.scan, parts.topological, parts.prior};
   };
   for (const localization::MatchSolution& solution : search.result.solutions) {
     search.solutions.push_back(parts_at(solution.T_reference_query));

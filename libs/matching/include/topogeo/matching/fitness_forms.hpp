@@ -32,6 +32,14 @@ class FitnessForms {
   [[nodiscard]] double of_maps(const geometry::Pose2& T_reference_query,
                                const geometry::SinCos& heading) const;
 
+  /// Factors of the combined form.
+  struct Parts {
+    double scan = 0.0;
+    double topological = 0.0;
+    double prior = 0.0;
+  };
+  [[nodiscard]] Parts parts(const geometry::Pose2& T_reference_query) const;
+
   [[nodiscard]] const CombinedFitness& combined() const;
 
  private:
