@@ -97,6 +97,13 @@ TEST(Architecture, SettingsIncludeNoAlgorithm) {
   EXPECT_THAT(algorithms_in_settings(project_includes()), IsEmpty());
 }
 
+TEST(Architecture, PublicHeadersAreUsedByOthers) {
+  EXPECT_THAT(unused_public_headers(
+                  TOPOGEO_SOURCE_DIR, project_includes(),
+                  {"calibration", "matching", "relocalization", "session", "slam", "thesis"}),
+              IsEmpty());
+}
+
 TEST(Architecture, TestsSleepForAReason) {
   EXPECT_THAT(sleeps_without_reason(TOPOGEO_SOURCE_DIR, "tests"), IsEmpty());
 }

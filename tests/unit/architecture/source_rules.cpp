@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -190,6 +191,36 @@ std::vector<std::string> algorithms_in_settings(const std::vector<Include>& incl
     found.push_back(place(include) + ", expected settings alone");
   }
   return found;
+}
+
+std::vector<std::string> unused_public_headers(const std::filesystem::path& root,
+                                               const std::vector<Include>& includes,
+                                               const std::vector<std::string>& libraries) {
+  std::map<std::string, std::string> unused;  // file by the name that includes it
+  for (const std::string& library : libraries) {
+    const std::filesystem::path folder = root / "libs" / library / "include";
+    for (const std::filesystem::path& file : sources_below(folder)) {
+      unused[file.lexically_relative(folder).string()] = file.lexically_relative(root).string();
+    }
+  }
+  std::set<std::string> used;  // public headers, by file
+  for (bool found = true; found;) {
+    found = false;
+    for (const Include& include : includes) {
+      const auto header = unused.find(include.header);
+      if (header == unused.end()) continue;
+      const std::string library = part_after(header->second, "libs/");
+      if (part_after(include.file, "libs/") == library && !used.contains(include.file)) continue;
+      used.insert(header->second);
+      unused.erase(header);
+      found = true;
+    }
+  }
+  std::vector<std::string> lines;
+  for (const auto& [header, file] : unused) {
+    lines.push_back(file + ": only its library includes it, expected in src/");
+  }
+  return lines;
 }
 
 std::vector<std::string> sleeps_without_reason(const std::filesystem::path& root,

@@ -48,6 +48,12 @@ std::vector<std::string> between_services(const std::filesystem::path& root,
 /// declaration of settings.
 std::vector<std::string> algorithms_in_settings(const std::vector<Include>& includes);
 
+/// Public headers of these libraries that no other library and no service needs, neither directly
+/// nor through another public header: their place is in src/.
+std::vector<std::string> unused_public_headers(const std::filesystem::path& root,
+                                               const std::vector<Include>& includes,
+                                               const std::vector<std::string>& libraries);
+
 /// Lines of C++, Python, browser and shell sources below a folder that sleep for a time without a
 /// comment with the reason, beside it or in the line before: tests wait for events.
 std::vector<std::string> sleeps_without_reason(const std::filesystem::path& root,

@@ -160,5 +160,17 @@ TEST_F(SourceRules, FindsASleepOfEveryLanguageOfTheTests) {
                           HasSubstr("tests/bad.py:2:"), HasSubstr("tests/bad.sh:2:")));
 }
 
+TEST_F(SourceRules, FindsPublicHeadersThatOnlyTheirLibraryUses) {
+  write("libs/scan/include/topogeo/scan/scan.hpp", "#include \"topogeo/scan/beam.hpp\"\n");
+  write("libs/scan/include/topogeo/scan/beam.hpp", "#include <vector>\n");
+  write("libs/scan/include/topogeo/scan/inner.hpp", "#include \"topogeo/scan/deep.hpp\"\n");
+  write("libs/scan/include/topogeo/scan/deep.hpp", "#include <vector>\n");
+  write("libs/scan/src/scan.cpp", "#include \"topogeo/scan/inner.hpp\"\n");
+  write("services/web/main.cpp", "#include \"topogeo/scan/scan.hpp\"\n");
+  EXPECT_THAT(unused_public_headers(root_, includes(), {"scan"}),
+              ElementsAre(HasSubstr("include/topogeo/scan/deep.hpp"),
+                          HasSubstr("include/topogeo/scan/inner.hpp")));
+}
+
 }  // namespace
 }  // namespace topogeo::architecture
