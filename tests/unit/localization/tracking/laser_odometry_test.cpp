@@ -9,6 +9,7 @@
 #include "topogeo/simulation/random_floors.hpp"
 #include "topogeo/topomap/local_map_builder.hpp"
 
+#include "laser_track.hpp"
 #include "localization/hand_held.hpp"
 #include "localization/hand_scenes.hpp"
 
