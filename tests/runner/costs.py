@@ -1,13 +1,13 @@
 """What each test costs, by which ctest orders them and runs them in parallel: tests/costs.txt, which CMake reads."""
 
 HEADER = """# Cost of each test: seconds, cores, name. The longest start first, so that none runs alone at the end. A test with a
-# lock counts with all that wait for the same lock. Cores are the mean that a test keeps busy: many tests mostly wait,
-# and more of these run at once. A test that is missing here takes less than a second or is new: ctest orders it by its
-# own measurements. `./run test --save-costs` writes this file.
+# lock counts with all that wait for the same lock. Cores are the mean that a test would keep busy: many tests mostly
+# wait, and more of these run at once. A test that is missing here takes less than a second or is new: ctest orders it
+# by its own measurements. `./run test --save-costs` writes this file.
 """
 
 # Processes in containers belong to the engine: tests that start them are taken to keep at least so many cores busy.
-CORES_WITH_CONTAINERS = 0.6
+CORES_WITH_CONTAINERS = 0.8
 WITH_CONTAINERS = ("container.", "package.", "security.")
 
 
@@ -53,13 +53,13 @@ def costs_of(seconds, locks):
 
 
 def cores_of(name, seconds, cpu_seconds):
-    """Mean number of cores that a test keeps busy, in tenths, at least one tenth."""
+    """Mean number of cores that a test would keep busy, in tenths, at least one tenth."""
     cores = cpu_seconds.get(name, 0.0) / seconds
     return max(round(cores, 1), CORES_WITH_CONTAINERS if name.startswith(WITH_CONTAINERS) else 0.1)
 
 
 def save_costs(path, tests, listing, cpu_seconds):
-    """Writes costs of the tests that have run and passed; keeps those of others. cpu_seconds: CPU time by name."""
+    """Writes costs of the tests that have run and passed; keeps those of others. cpu_seconds: what each wanted."""
     table = read_costs(path)
     fixed = fixed_of(listing, table)
     there = {test["name"] for test in listing["tests"]}

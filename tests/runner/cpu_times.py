@@ -1,4 +1,5 @@
-"""CPU time of each test that ctest runs, sampled from /proc while it runs."""
+"""CPU time that each test of a ctest wants, sampled from /proc while it runs: what it gets, and what its threads wait
+for a CPU that others have."""
 
 import os
 import threading
@@ -23,17 +24,34 @@ def read_processes(folder="/proc"):
     return processes
 
 
-def seconds_below(root, processes):
-    """{child of root: CPU seconds of it and all its descendants}."""
+def read_queues(process, folder="/proc"):
+    """Seconds that the living threads of a process have run and that they have waited for a CPU."""
+    run, waited = 0, 0
+    tasks = os.path.join(folder, str(process), "task")
+    try:
+        for task in os.listdir(tasks):
+            with open(os.path.join(tasks, task, "schedstat"), encoding="utf-8") as file:
+                fields = file.read().split()
+            run += int(fields[0])
+            waited += int(fields[1])
+    except OSError:
+        pass  # the process or a thread has ended meanwhile
+    return 1e-9 * run, 1e-9 * waited
+
+
+def below(root, processes):
+    """{child of root: it and all its descendants}."""
     children = {}
     for process, (parent, _, _) in processes.items():
         children.setdefault(parent, []).append(process)
 
-    def total(process):
-        _, own, waited = processes[process]
-        return own + waited + sum(total(child) for child in children.get(process, ()))
+    def tree(process):
+        found = [process]
+        for child in children.get(process, ()):
+            found += tree(child)
+        return found
 
-    return {child: total(child) for child in children.get(root, ())}
+    return {child: tree(child) for child in children.get(root, ())}
 
 
 def command_of(process, folder="/proc"):
@@ -51,9 +69,10 @@ class Sampler:
     def __init__(self, listing):
         self._names = {tuple(test["command"]): test["name"] for test in listing["tests"] if test.get("command")}
         self._tests = {}  # names by process
+        self._queues = {}  # by name: seconds that threads have run and waited, when most were there
         self._end = threading.Event()
         self._thread = None
-        self.seconds = {}
+        self._seconds = {}
 
     def start(self, ctest):
         self._thread = threading.Thread(target=self._run, args=(ctest,), daemon=True)
@@ -63,17 +82,30 @@ class Sampler:
         self._end.set()
         self._thread.join()
 
+    def wanted_s(self):
+        """{test: CPU seconds that it would have had with enough CPUs in the time that it took}."""
+        return {name: seconds * self._queue_factor(name) for name, seconds in self._seconds.items()}
+
+    def _queue_factor(self, name):
+        run, waited = self._queues[name]
+        return 1.0 + waited / run if run > 0.0 else 1.0
+
     def _run(self, ctest):
         while not self._end.wait(PERIOD_S):
-            self.take(ctest, read_processes(), command_of)
+            self.take(ctest, read_processes(), command_of, read_queues)
 
-    def take(self, ctest, processes, command):
+    def take(self, ctest, processes, command, queues):
         """Adds a sample. A child that has not yet become its test is left to the next sample."""
-        found = seconds_below(ctest, processes)
+        found = below(ctest, processes)
         for process in set(self._tests) - set(found):
             del self._tests[process]
-        for process, seconds in found.items():
+        for process, tree in found.items():
             name = self._tests.get(process) or self._names.get(command(process))
-            if name:
-                self._tests[process] = name
-                self.seconds[name] = max(self.seconds.get(name, 0.0), seconds)
+            if not name:
+                continue
+            self._tests[process] = name
+            seconds = sum(processes[member][1] + processes[member][2] for member in tree)
+            self._seconds[name] = max(self._seconds.get(name, 0.0), seconds)
+            times = [queues(member) for member in tree]
+            queue = (sum(run for run, _ in times), sum(waited for _, waited in times))
+            self._queues[name] = max(self._queues.get(name, (0.0, 0.0)), queue)

@@ -222,7 +222,7 @@ class Runner:
         print("\n" + "\n".join(summary.summary_lines(tests, folders, stages, self._again(), ROOT)))
         if self._options.save_costs:
             path = os.path.join(ROOT, "tests", "costs.txt")
-            saved = costs.save_costs(path, tests, self._listing(), self._sampler.seconds)
+            saved = costs.save_costs(path, tests, self._listing(), self._sampler.wanted_s())
             print(f"costs of {saved} tests are in tests/costs.txt")
         with open(self._log, encoding="utf-8", errors="replace") as file:
             return status, summary.closing_line(file.read())

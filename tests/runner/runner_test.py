@@ -414,19 +414,29 @@ class CostsTest(RunnerTest):
 
 
 class CpuTimesTest(RunnerTest):
-    LISTING = {"tests": [{"name": "a", "command": ["/bin/test", "--filter=a"]}, {"name": "b", "command": ["/bin/test"]}]}
+    LISTING = {"tests": [{"name": "a", "command": ["/bin/test", "--filter=a"]},
+                         {"name": "b", "command": ["/bin/test"]}]}
 
     def test_a_test_has_the_time_of_all_its_descendants_and_keeps_it_when_they_end(self):
         sampler = cpu_times.Sampler(self.LISTING)
         commands = {10: ("/bin/test", "--filter=a"), 20: ("/bin/test",), 30: ("ctest",)}
+        nothing = {}
         # {process: (parent, own, waited for)}; 30 has not become its test yet, 99 belongs to somebody else.
         processes = {1: (0, 9.0, 9.0), 10: (1, 1.0, 0.5), 11: (10, 2.0, 0.0), 12: (11, 0.0, 4.0), 20: (1, 0.1, 0.0),
                      30: (1, 7.0, 0.0), 99: (0, 50.0, 0.0)}
-        sampler.take(1, processes, commands.get)
-        self.assertEqual(sampler.seconds, {"a": 7.5, "b": 0.1})
+        sampler.take(1, processes, commands.get, lambda process: nothing.get(process, (0.0, 0.0)))
+        self.assertEqual(sampler.wanted_s(), {"a": 7.5, "b": 0.1})
         # The descendants have ended, and nobody has waited for them.
-        sampler.take(1, {1: (0, 9.0, 9.0), 10: (1, 1.5, 0.5), 30: (1, 7.0, 0.0)}, commands.get)
-        self.assertEqual(sampler.seconds, {"a": 7.5, "b": 0.1})
+        sampler.take(1, {1: (0, 9.0, 9.0), 10: (1, 1.5, 0.5), 30: (1, 7.0, 0.0)}, commands.get,
+                     lambda process: (0.0, 0.0))
+        self.assertEqual(sampler.wanted_s(), {"a": 7.5, "b": 0.1})
+
+    def test_time_in_the_queue_for_a_cpu_counts_as_wanted(self):
+        sampler = cpu_times.Sampler(self.LISTING)
+        queues = {20: (1.0, 0.0), 21: (1.0, 4.0)}
+        sampler.take(1, {1: (0, 0.0, 0.0), 20: (1, 1.0, 2.0), 21: (20, 1.0, 0.0)}, lambda process: ("/bin/test",),
+                     queues.get)
+        self.assertEqual(sampler.wanted_s(), {"b": 12.0})
 
     def test_time_and_parent_are_read_from_proc(self):
         child = subprocess.Popen([sys.executable, "-c", "while True: pass"])
@@ -435,6 +445,7 @@ class CpuTimesTest(RunnerTest):
                 pass  # until the kernel has counted a tick
             self.assertEqual(cpu_times.read_processes()[child.pid][0], os.getpid())
             self.assertEqual(cpu_times.command_of(child.pid)[1:], ("-c", "while True: pass"))
+            self.assertGreater(cpu_times.read_queues(child.pid)[0], 0.0)
         finally:
             child.kill()
             child.wait()
