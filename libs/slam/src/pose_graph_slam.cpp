@@ -177,6 +177,7 @@ std::vector<StepMatch> PoseGraphSlam::match_revisited(std::span<const std::uint3
   for (const PoseGraphEdge& loop : round.added) parts_->schedule.count_loop(loop);
   if (round.moves) parts_->schedule.want();
   std::vector<StepMatch> evidence;
+  evidence.reserve(matches.size());
   for (const StopMatch& match : matches) evidence.push_back(match.evidence);
   return evidence;
 }
