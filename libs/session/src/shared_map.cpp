@@ -6,6 +6,9 @@
 #include <utility>
 
 #include "topogeo/session/kept_views.hpp"
+#include "topogeo/session/robot_parts.hpp"
+#include "topogeo/session/shared_pool.hpp"
+#include "topogeo/session/stop_numbers.hpp"
 #include "topogeo/slam/drive_join.hpp"
 #include "topogeo/slam/pose_graph_slam.hpp"
 
@@ -26,9 +29,22 @@ constexpr std::size_t kShareOfStops = 50;
 
 }  // namespace
 
+struct SharedMap::Own {
+  SharedPool pool;
+  RobotParts parts{};
+  StopNumbers numbers{};
+};
+
+SharedMap::~SharedMap() = default;
+
 SharedMap::SharedMap(const LocalizerConfig& config, MatchPool& pool,
                      const std::shared_ptr<const StoredMap>& stored, std::size_t most_apart)
-    : config_(config), most_apart_(most_apart), pool_(pool) {
+    : config_(config),
+      most_apart_(most_apart),
+      own_(new Own{SharedPool(pool)}),
+      pool_(own_->pool),
+      parts_(own_->parts),
+      numbers_(own_->numbers) {
   if (config.mode != SlamAlgorithm::kGraph) {
     throw std::invalid_argument("localizer.mode: several robots map in mode graph only");
   }

@@ -19,12 +19,14 @@
 #include <vector>
 
 #include "topogeo/session/merge_proposals.hpp"
-#include "topogeo/session/robot_parts.hpp"
-#include "topogeo/session/shared_pool.hpp"
-#include "topogeo/session/stop_numbers.hpp"
 #include "topogeo/slam/slam.hpp"
 
 namespace topogeo::localization {
+
+class RobotParts;
+class SharedPool;
+class StopNumbers;
+struct RobotPart;
 
 class SharedMap : public Slam {
  public:
@@ -37,6 +39,7 @@ class SharedMap : public Slam {
   SharedMap(const LocalizerConfig& config, MatchPool& pool,
             const std::shared_ptr<const StoredMap>& stored = nullptr,
             std::size_t most_apart = kMostApart);
+  ~SharedMap() override;
 
   /// Adds the next stop of a robot. A stop that follows one of the stored map continues from there;
   /// another session is another drive, whose pose is searched. Throws std::invalid_argument if a
@@ -101,11 +104,13 @@ class SharedMap : public Slam {
 
   LocalizerConfig config_;
   std::size_t most_apart_;
-  SharedPool pool_;
-  RobotParts parts_;
+  struct Own;
+  std::unique_ptr<Own> own_;  // the next three
+  SharedPool& pool_;
+  RobotParts& parts_;
+  StopNumbers& numbers_;
   std::map<std::uint32_t, Due> due_;  // by group
   MergeProposals proposals_;
-  StopNumbers numbers_;
   std::vector<PoseGraphEdge> edges_;
   std::string last_robot_;
   std::uint64_t version_ = 0;
