@@ -1,4 +1,4 @@
-#include "topogeo/session/joint_poses.hpp"
+#include "joint_poses.hpp"
 
 #include <map>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "topogeo/session/map_part.hpp"
+#include "map_part.hpp"
 
 #include <utility>
 

@@ -7,7 +7,8 @@
 #include <utility>
 
 #include "topogeo/session/make_slam.hpp"
-#include "topogeo/session/slam_counts.hpp"
+
+#include "slam_counts.hpp"
 
 namespace topogeo::localization {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "topogeo/session/slam_counts.hpp"
+#include "slam_counts.hpp"
 
 namespace topogeo::localization {
 

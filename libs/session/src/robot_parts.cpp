@@ -1,4 +1,4 @@
-#include "topogeo/session/robot_parts.hpp"
+#include "robot_parts.hpp"
 
 #include <algorithm>
 

@@ -6,11 +6,12 @@
 #include <utility>
 
 #include "topogeo/session/kept_views.hpp"
-#include "topogeo/session/robot_parts.hpp"
-#include "topogeo/session/shared_pool.hpp"
-#include "topogeo/session/stop_numbers.hpp"
 #include "topogeo/slam/drive_join.hpp"
 #include "topogeo/slam/pose_graph_slam.hpp"
+
+#include "robot_parts.hpp"
+#include "shared_pool.hpp"
+#include "stop_numbers.hpp"
 
 namespace topogeo::localization {
 

@@ -1,4 +1,4 @@
-#include "topogeo/session/shared_pool.hpp"
+#include "shared_pool.hpp"
 
 #include <utility>
 #include <vector>

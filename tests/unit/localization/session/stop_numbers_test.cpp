@@ -1,4 +1,4 @@
-#include "topogeo/session/stop_numbers.hpp"
+#include "stop_numbers.hpp"
 
 #include <memory>
 #include <utility>

@@ -13,11 +13,12 @@
 #include <utility>
 #include <vector>
 
-#include "topogeo/session/joint_poses.hpp"
 #include "topogeo/session/kept_views.hpp"
-#include "topogeo/session/map_part.hpp"
 #include "topogeo/session/meeting.hpp"
-#include "topogeo/session/slam_counts.hpp"
+
+#include "joint_poses.hpp"
+#include "map_part.hpp"
+#include "slam_counts.hpp"
 
 namespace topogeo::localization {
 

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "topogeo/session/joint_poses.hpp"
+#include "joint_poses.hpp"
 
 namespace topogeo::localization {
 

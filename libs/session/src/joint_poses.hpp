@@ -5,9 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/session/map_part.hpp"
 #include "topogeo/slam/pose_graph.hpp"
 #include "topogeo/slam/stored_map.hpp"
+
+#include "map_part.hpp"
 
 namespace topogeo::localization {
 
