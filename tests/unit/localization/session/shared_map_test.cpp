@@ -15,6 +15,7 @@
 
 #include "localization/session/remembering_pool.hpp"
 #include "localization/session/robot_drives.hpp"
+#include "stop_numbers.hpp"
 
 namespace topogeo::localization {
 namespace {
