@@ -1,6 +1,8 @@
 // Parts of the page that need no browser: the copy of the tables, the frame of the pictures, numbers of goals, units;
 // drawing_test.mjs tests those of the edit mode.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
 import { test } from "node:test";
 import { load } from "./load_module.mjs";
 
@@ -12,6 +14,8 @@ const { navigator_text, pose_of_now, robot_state } = await load("robot_state");
 const { agreement, apart, compose } = await load("map/match_layer");
 const { Film } = await load("map/film");
 const { Stopping } = await load("stopping");
+const { translated } = await load("reasons");
+const { spanish_reasons } = await load("spanish_reasons");
 const { english, languages, texts } = await load("texts");
 
 const delta = (from, version, set, gone = []) => ({ channel: "events", from, version, set, gone });
@@ -396,5 +400,67 @@ test("no language lacks a text, and none is English", () => {
     if (code === "en") continue;
     const sentences = new Set(all_texts(english).filter((text) => /[a-z] [a-z]+ [a-z]/.test(text)));
     assert.deepEqual(all_texts(language).filter((text) => sentences.has(text)), [], code);
+  }
+});
+
+// Sources of the reasons and events that reach the page. A new reason needs a line in spanish_reasons.ts.
+const kReasonSources = {
+  "libs/navigation/src": [
+    "arrival", "collision_guard", "exploration_tour", "guarded_base", "input_delays", "navigation_step", "navigator",
+    "navigator_inputs", "pose_keeper", "route_driver", "route_keeper",
+  ],
+  "libs/planning/src": ["drawn_obstructions", "goal_planner", "goal_target", "route_ends"],
+  "libs/devices/src": ["base_interlocks", "base_link", "base_status"],
+  "services/planner": ["answer"],
+  "services/localizer": ["localizer_commands"],
+  "services/map_store": ["archive_channel", "drawing_order"],
+  "services/web/channels": ["drive_view", "health_view", "protocol_names", "robot_view"],
+  "services/web/history": ["archive_requests", "history", "map_merge"],
+  "services/web/orders": [
+    "drawing_editor", "exploration", "exploration_sender", "goal_sender", "localizer_requests", "manual_drive_sender",
+    "manual_drive_thread",
+  ],
+  "services/web/server": ["controls", "viewer"],
+};
+// Names of faults in the status of a service, lines of logs, and parts of texts that are listed with their other parts.
+const kNoReasons = /^(stored |the uploaded map|refused: |base command|motion command|inside: expected|(base )?\w+ (command|off|expired)$)/;
+
+/** Texts of a C++ source, with {} for each part that varies; neighbouring literals are one text. */
+function texts_of_source(source) {
+  const code = source.replace(/^\s*(\/\/|#).*$/gm, "").replace(/ \/\/ .*$/gm, "");
+  const literal = /"(?:[^"\\\n]|\\.)*"/g;
+  return [...code.matchAll(/"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*/g)]
+    .map(([all]) => all.match(literal).map((part) => part.slice(1, -1)).join("").replace(/\{[^{}]*\}/g, "{}"))
+    .filter((text) => /[a-z]/.test(text) && text.trim().includes(" ") && !kNoReasons.test(text));
+}
+
+test("no reason of a service lacks its translation", () => {
+  const known = spanish_reasons.map(([from]) => from).join("\n");
+  const is_known = (text) => known.includes(text) || text.split("{}").every((part) => known.includes(part));
+  const missing = Object.entries(kReasonSources).flatMap(([folder, names]) =>
+    names.flatMap((name) => {
+      const source = readFileSync(join(process.env.TOPOGEO_SOURCE, folder, `${name}.cpp`), "utf8");
+      return texts_of_source(source).filter((text) => !is_known(text)).map((text) => `${name}.cpp: ${text}`);
+    }),
+  );
+  assert.deepEqual(missing, []);
+});
+
+test("a reason is translated with its parts, and one that is not known stays", () => {
+  const spanish = (text) => translated(text, "es");
+  assert.equal(translated("no goal"), "no goal"); // without a browser the page is English
+  assert.equal(spanish("no goal"), "sin destino");
+  assert.equal(
+    spanish("the drive unit takes no orders: held; release it to drive"),
+    "la tracción no acepta órdenes: retenido; libérelo para conducir",
+  );
+  assert.equal(
+    spanish("it is 0.20 m from the no-go zone 'no-go 1': too near"),
+    "el destino está a 0.20 m de la zona prohibida 'no-go 1': demasiado cerca",
+  );
+  assert.equal(spanish("navigator is out of its mind"), "navigator is out of its mind");
+  for (const [from, to] of spanish_reasons) {
+    const parts = from.split("{}").length - 1;
+    for (let part = 1; part <= parts; ++part) assert.ok(to.includes(`{${part}}`), `${from}: {${part}}`);
   }
 });

@@ -1,5 +1,6 @@
 // Orders to the service, with the operator's token.
 import { beside_page } from "./address";
+import { translated } from "./reasons";
 import { texts } from "./texts";
 
 const timeoutMs = 10000;
@@ -82,7 +83,7 @@ export class Api {
       const response = await fetch(beside_page(path), { method, headers, body, signal: abort.signal });
       if (response.ok) return response;
       const answer = await read_json<{ error?: string }>(response);
-      const message = answer.error || texts.errors.status(response.status);
+      const message = translated(answer.error ?? "") || texts.errors.status(response.status);
       throw new ApiError(message, response.status, answer);
     } catch (error) {
       if (error instanceof ApiError) throw error;

@@ -6,6 +6,7 @@ import { Connection } from "./connection";
 import { Identity } from "./identity";
 import { MapView } from "./map/map_view";
 import { Info } from "./protocol";
+import { reason } from "./reasons";
 import { Rights } from "./rights";
 import { texts } from "./texts";
 import { fill, h, icon, set_text, show } from "./ui/dom";
@@ -174,7 +175,7 @@ function start(): void {
       rights.set_connected(false, false);
       channels.forget_moment();
     },
-    refused: (_, error) => notices.show(error, "error"),
+    refused: (_, error) => notices.show(reason(error), "error"),
   });
   const map = new MapView(canvas, scale, channels, theme);
   const app: App = { channels, api, notices, rights, connection, identity, map, theme };

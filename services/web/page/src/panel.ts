@@ -4,6 +4,7 @@ import { Channels } from "./channels";
 import { Connection } from "./connection";
 import { Destination, destinations, numbered } from "./destinations";
 import { Identity } from "./identity";
+import { reason } from "./reasons";
 import { Rights } from "./rights";
 import { is_paused, navigator_text } from "./robot_state";
 import { texts } from "./texts";
@@ -193,7 +194,7 @@ function start(): void {
       rights.set_connected(false, false);
       channels.forget_moment();
     },
-    refused: (_, error) => notices.show(error, "error"),
+    refused: (_, error) => notices.show(reason(error), "error"),
   });
   header.on_stop = () => void connection.send({ op: "stop" });
 }

@@ -1,6 +1,6 @@
 // The robot's state as a word and a sentence.
 import { Channels } from "./channels";
-import { sentence } from "./format";
+import { reason } from "./reasons";
 import { Pose, ValueName } from "./protocol";
 import { Rights } from "./rights";
 import { texts } from "./texts";
@@ -113,7 +113,7 @@ export function navigator_text(channels: Channels, rights: Rights): string {
   const state = texts.navigator[navigator.state] ?? navigator.state;
   // These messages name the state themselves.
   const says_state = navigator.state === "idle" || navigator.state === "arrived";
-  if (says_state && navigator.message) return sentence(navigator.message);
+  if (says_state && navigator.message) return reason(navigator.message);
   // The distance is displayed next to it.
   if (navigator.state === "driving" && navigator.message.startsWith("drives")) return `${state}.`;
   const halted = navigator.state === "stopped" || navigator.state === "blocked";
@@ -125,8 +125,8 @@ export function navigator_text(channels: Channels, rights: Rights): string {
     return texts.unsure;
   }
   // A base that takes no commands reports that itself, with the reason.
-  const repeated = halt && sentence(navigator.message).startsWith(halt.slice(0, -1));
+  const repeated = halt && reason(navigator.message).startsWith(halt.slice(0, -1));
   const parts = [halt && !repeated ? `${state}. ${halt}` : `${state}.`];
-  if (navigator.message) parts.push(sentence(navigator.message));
+  if (navigator.message) parts.push(reason(navigator.message));
   return parts.join(" ");
 }

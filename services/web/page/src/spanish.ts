@@ -137,7 +137,7 @@ export const spanish: Texts = {
     route: (meters, seconds, clearance) =>
       `${length(meters)}, unos ${duration(seconds)}` +
       (typeof clearance === "number" ? `, paso más estrecho ${length(2 * clearance)}` : ""),
-    no_route: "No hay ruta.", no_route_to: (name, reason) => `No hay ruta a ${name}: ${reason}.`, it: "",
+    no_route: "No hay ruta.", no_route_to: (name, reason) => `No hay ruta a ${name}: ${reason}.`,
     nearest: "Ir al punto más cercano al que se llega", go: "Ir", go_all: (n) => `Ir a los ${n} en este orden`,
     heading_at_goal: "Rumbo en el destino (°), vacío: cualquiera", append: "Añadir a la lista", clear: "Borrar",
     remove: (name) => `Quitar ${name}`, list: "Destinos seguidos",

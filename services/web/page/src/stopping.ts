@@ -1,7 +1,7 @@
 // A stop order counts as pending until the base itself confirms it: it is held, and it stands.
 import { Api } from "./api";
 import { Channels } from "./channels";
-import { sentence } from "./format";
+import { reason } from "./reasons";
 import { Rights } from "./rights";
 import { hand_is_stopped, held_text } from "./robot_state";
 import { texts } from "./texts";
@@ -36,9 +36,9 @@ export class Stopping {
     send();
     try {
       const answer = await this.api.post<{ message?: string }>("stop");
-      this.kept = answer.message ? sentence(answer.message) : "";
+      this.kept = answer.message ? reason(answer.message) : "";
     } catch (error) {
-      this.refused = sentence(error instanceof Error ? error.message : String(error));
+      this.refused = reason(error instanceof Error ? error.message : String(error));
     }
     this.on_change();
   }

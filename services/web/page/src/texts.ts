@@ -193,7 +193,6 @@ export const english = {
       (typeof clearance === "number" ? `, narrowest ${length(2 * clearance)} wide` : ""),
     no_route: "There is no route.",
     no_route_to: (name: string, reason: string) => `No route to ${name}: ${reason}.`,
-    it: "it ",
     nearest: "Go to the nearest point that can be reached",
     go: "Go",
     go_all: (n: number) => `Go to all ${n} in this order`,

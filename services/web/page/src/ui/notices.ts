@@ -1,6 +1,6 @@
 // Short messages that disappear by themselves; errors stay longer.
 import { button, h } from "./dom";
-import { sentence } from "../format";
+import { reason } from "../reasons";
 import { texts } from "../texts";
 
 const shownMs = { info: 4000, error: 10000 };
@@ -23,7 +23,7 @@ export class Notices {
     const end_waiting = this.show_waiting();
     try {
       const answer = (await order) as { message?: string } | null;
-      this.show(answer?.message ? sentence(answer.message) : done);
+      this.show(answer?.message ? reason(answer.message) : done);
       return true;
     } catch (error) {
       this.fail(error);
@@ -35,7 +35,7 @@ export class Notices {
 
   /** Reports why something was not done. */
   fail(error: unknown): void {
-    this.show(sentence(error instanceof Error ? error.message : String(error)), "error");
+    this.show(reason(error instanceof Error ? error.message : String(error)), "error");
   }
 
   private add(text: string, kind: string): HTMLElement {

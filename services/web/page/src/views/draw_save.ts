@@ -3,7 +3,7 @@ import { ApiError } from "../api";
 import { App } from "../app";
 import { DrawingStore } from "../draw/drawing_store";
 import { Editor } from "../draw/editor";
-import { sentence } from "../format";
+import { reason } from "../reasons";
 import { texts } from "../texts";
 import { button, h, icon, IconName, set_text, show } from "../ui/dom";
 
@@ -84,7 +84,7 @@ export class DrawSave {
     try {
       const saved = await this.store.save(drawing, version);
       document.mark_saved(drawing, saved.version);
-      this.app.notices.show(saved.message ? sentence(saved.message) : words.saved);
+      this.app.notices.show(saved.message ? reason(saved.message) : words.saved);
     } catch (error) {
       if (error instanceof ApiError && error.status === 409) await this.store.read();
       this.app.notices.fail(error);

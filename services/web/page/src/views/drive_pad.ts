@@ -1,7 +1,7 @@
 // Driving by hand: sends an order every 100 ms while a button or a key is held; silence means stop.
 import { App } from "../app";
 import * as format from "../format";
-import { sentence } from "../format";
+import { reason } from "../reasons";
 import { texts } from "../texts";
 import { button, h, icon, IconName, set_text, show } from "../ui/dom";
 
@@ -206,6 +206,6 @@ export class DrivePad {
     const now = stands
       ? words.drive_stands
       : `${words.drive_state(linear_mps, linear_mps ? free_ahead_m : null, free_behind_m)}.`;
-    set_text(this.state, drive.message ? `${now} ${sentence(drive.message)}` : now);
+    set_text(this.state, drive.message ? `${now} ${reason(drive.message)}` : now);
   }
 }

@@ -1,7 +1,7 @@
 // Replays the drive behind the map: a slider, speeds, pause.
 import { App } from "../app";
 import * as format from "../format";
-import { sentence } from "../format";
+import { reason } from "../reasons";
 import { Film } from "../map/film";
 import { DrivePart, DriveStop } from "../protocol";
 import { texts } from "../texts";
@@ -99,7 +99,7 @@ export class FilmPlayer {
       this.open(film);
     } catch (error) {
       if (load !== this.loads) return;
-      set_text(this.status, sentence(error instanceof Error ? error.message : String(error)));
+      set_text(this.status, reason(error instanceof Error ? error.message : String(error)));
       show(this.start, true);
     }
   }

@@ -1,6 +1,6 @@
 // The chosen loop: both local maps overlaid on the map, and the evidence as text.
 import { App } from "../app";
-import { sentence } from "../format";
+import { reason } from "../reasons";
 import { agreement, apart, compose, draw_laid_maps, LaidMaps } from "../map/match_layer";
 import { LocalMap, Loop } from "../protocol";
 import { texts } from "../texts";
@@ -51,7 +51,7 @@ export class LoopDetail {
     show(this.element, loop !== null);
     if (!loop) return;
     set_text(this.title, words.loop(loop.later, loop.earlier));
-    set_text(this.why, sentence(loop.explanation || words.outcomes[loop.outcome]));
+    set_text(this.why, reason(loop.explanation || words.outcomes[loop.outcome]));
     const probable = !loop.accepted && (loop.probability ?? 0) > 0.5;
     const meaning = [meaning_of(loop.explanation), probable ? words.probable_but_rejected : ""];
     set_text(this.meaning, meaning.join(" ").trim());
@@ -70,7 +70,7 @@ export class LoopDetail {
       if (loop === this.chosen) this.show_maps(loop, earlier, later);
     } catch (error) {
       if (loop !== this.chosen) return;
-      set_text(this.status, sentence(error instanceof Error ? error.message : String(error)));
+      set_text(this.status, reason(error instanceof Error ? error.message : String(error)));
     }
   }
 

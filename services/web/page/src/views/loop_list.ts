@@ -1,6 +1,6 @@
 // Accepted and rejected loops with their reasons; the chosen one is shown on the map.
 import { App } from "../app";
-import { sentence } from "../format";
+import { reason } from "../reasons";
 import { Loop } from "../protocol";
 import { texts } from "../texts";
 import { button, h, set_attribute, set_text, show } from "../ui/dom";
@@ -122,5 +122,5 @@ export class LoopList {
 function reason_of(loop: Loop): string {
   if (loop.accepted && !loop.explanation) return words.accepted;
   const outcome = loop.explanation || words.outcomes[loop.outcome] || loop.outcome;
-  return meaning_of(loop.explanation) || sentence(outcome);
+  return meaning_of(loop.explanation) || reason(outcome);
 }

@@ -1,6 +1,6 @@
 // Merges another map file with the current map: upload, review, accept or refuse.
 import { App } from "../app";
-import { sentence } from "../format";
+import { reason } from "../reasons";
 import { MergedMap, Snapshots } from "../protocol";
 import { texts } from "../texts";
 import { button, fill, h, show } from "../ui/dom";
@@ -68,7 +68,7 @@ export class MapMerge {
       await this.show_result(file.name, made);
     } catch (error) {
       const why = error instanceof Error ? error.message : String(error);
-      this.say(h("strong", {}, words.not_merged(file.name)), ` ${sentence(why)}`);
+      this.say(h("strong", {}, words.not_merged(file.name)), ` ${reason(why)}`);
     } finally {
       this.file.disabled = false;
       this.file.value = ""; // allows choosing the same file again

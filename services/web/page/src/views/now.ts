@@ -2,7 +2,7 @@
 import { App, ViewPart } from "../app";
 import { Channels } from "../channels";
 import * as format from "../format";
-import { sentence } from "../format";
+import { reason } from "../reasons";
 import { ellipse_of } from "../map/robot_layer";
 import { Pose, ValueName } from "../protocol";
 import { is_silent, silenceTickMs, pose_of_now, robot_is_absent, with_age } from "../robot_state";
@@ -93,7 +93,7 @@ export class NowView implements ViewPart {
     this.show_pose(pose);
     this.show_bars(pose_of_now(channels, this.app.rights));
     const laser = channels.value("laser");
-    const because = (reason: string) => (reason ? `. ${sentence(reason)}` : "");
+    const because = (why: string) => (why ? `. ${reason(why)}` : "");
     this.show_device(
       words.laser,
       "laser",

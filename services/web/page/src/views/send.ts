@@ -3,6 +3,7 @@ import { App, ViewPart } from "../app";
 import { Destination, destinations } from "../destinations";
 import { Goal, Preview } from "../protocol";
 import { hand_is_stopped, held_text } from "../robot_state";
+import { translated } from "../reasons";
 import { texts } from "../texts";
 import { button, field, fill, h, set_text, show } from "../ui/dom";
 import { KeyedList } from "../ui/list";
@@ -238,10 +239,11 @@ export class SendView implements ViewPart {
 
   // An answer to a list names the goal that fails.
   private why_not(answer: Preview): string {
-    if (answer.goal === undefined || !answer.message) return answer.message || words.no_route;
+    if (!answer.message) return words.no_route;
+    if (answer.goal === undefined) return translated(answer.message);
     const failed = this.choices[answer.goal] ?? this.choices[0];
-    const reason = answer.message.replace(/^the goal \([^)]*\) /, words.it);
-    return words.no_route_to(failed.text, reason);
+    const why = answer.message.replace(/^the goal \([^)]*\) /, "it ");
+    return words.no_route_to(failed.text, translated(why));
   }
 
   private chosen_list(): HTMLElement {

@@ -1,7 +1,7 @@
 // Services with their health.
 import { App } from "../app";
 import * as format from "../format";
-import { sentence } from "../format";
+import { reason } from "../reasons";
 import { Service } from "../protocol";
 import { texts } from "../texts";
 import { h, set_attribute, set_text, show } from "../ui/dom";
@@ -60,7 +60,7 @@ function show_service(element: HTMLElement, service: Service): void {
   set_text(state, words.service_states[service.state] ?? service.state);
   set_attribute(element, "data-level", levelClasses[service.state] ?? "plain");
   const waits = service.waits_for ? words.waits_for(service.waits_for) : "";
-  const text = [sentence(service.message), waits].filter(Boolean).join(" ");
+  const text = [reason(service.message), waits].filter(Boolean).join(" ");
   set_text(message, text);
   show(message, text !== "");
   const parts = [service.host];
@@ -68,7 +68,7 @@ function show_service(element: HTMLElement, service: Service): void {
   if (service.memory_bytes) parts.push(format.memory(service.memory_bytes));
   if (service.cpu_s) parts.push(`CPU ${format.duration(service.cpu_s)}`);
   set_text(technical.lastElementChild as HTMLElement, parts.join(" · "));
-  const last = service.last_error ? ` ${words.last_error(sentence(service.last_error))}` : "";
+  const last = service.last_error ? ` ${words.last_error(reason(service.last_error))}` : "";
   set_text(faults, service.faults > 0 ? `${words.faults(service.faults)}.${last}` : "");
   show(faults, service.faults > 0);
 }

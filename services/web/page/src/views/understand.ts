@@ -2,6 +2,7 @@
 import { App, ViewPart } from "../app";
 import * as format from "../format";
 import { LogEvent, Worker } from "../protocol";
+import { translated } from "../reasons";
 import { silenceTickMs, pose_of_now, robot_state } from "../robot_state";
 import { texts } from "../texts";
 import { Bar } from "../ui/bar";
@@ -115,6 +116,6 @@ function show_event(element: HTMLElement, event: LogEvent): void {
   set_text(time, format.clock(event.time_s));
   set_text(source, event.source);
   const level = event.level === "info" ? "" : `${words.levels[event.level]}: `;
-  set_text(text, level + event.text);
+  set_text(text, level + translated(event.text));
   set_attribute(element, "data-level", event.level);
 }

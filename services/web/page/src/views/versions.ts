@@ -1,7 +1,7 @@
 // Snapshots of the map: make, restore, and compare them with each other and the current map.
 import { App } from "../app";
 import * as format from "../format";
-import { sentence } from "../format";
+import { reason } from "../reasons";
 import { Comparison, Snapshot, Snapshots } from "../protocol";
 import { texts } from "../texts";
 import { button, fill, h, set_text, show } from "../ui/dom";
@@ -85,7 +85,7 @@ export class Versions {
     } catch (error) {
       this.snapshots = [];
       this.available = false;
-      set_text(this.none, sentence(error instanceof Error ? error.message : String(error)));
+      set_text(this.none, reason(error instanceof Error ? error.message : String(error)));
     }
     this.show_all();
   }
