@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -53,9 +54,38 @@ std::uint32_t next_branch_id(const topomap::GlobalMap& map) {
   return next;
 }
 
+/// For each cell the number of the connected part of the free space that it lies in, from 1; 0: not
+/// passable. A diagonal step needs both cells beside it, so four neighbours decide.
+std::vector<std::uint32_t> connected_parts(const planning::FreeSpace& space) {
+  const planning::GridFrame& frame = space.frame();
+  std::vector<std::uint32_t> parts(frame.size(), 0);
+  std::vector<std::size_t> edge;
+  std::uint32_t last = 0;
+  for (std::size_t first = 0; first < frame.size(); ++first) {
+    if (parts[first] != 0 || !space.passable(first)) continue;
+    parts[first] = ++last;
+    edge.assign(1, first);
+    while (!edge.empty()) {
+      const Cell cell = frame.cell_at(edge.back());
+      edge.pop_back();
+      for (const Cell& beside :
+           {Cell{cell.column + 1, cell.row}, Cell{cell.column - 1, cell.row},
+            Cell{cell.column, cell.row + 1}, Cell{cell.column, cell.row - 1}}) {
+        if (!space.passable(beside)) continue;
+        std::uint32_t& part = parts[frame.index(beside)];
+        if (part != 0) continue;
+        part = last;
+        edge.push_back(frame.index(beside));
+      }
+    }
+  }
+  return parts;
+}
+
 class Linker {
  public:
-  Linker(topomap::GlobalMap& map, const planning::FreeSpace& space) : map_(map), space_(space) {
+  Linker(topomap::GlobalMap& map, const planning::FreeSpace& space)
+      : map_(map), space_(space), connected_(connected_parts(space)) {
     slowness_.resize(space.frame().size());
     for (std::size_t i = 0; i < slowness_.size(); ++i) {
       // So that a path keeps to the middle where the free space is narrower than this.
@@ -183,8 +213,13 @@ class Linker {
   /// Tries several cells, because a passage of the part may be too narrow for the robot.
   [[nodiscard]] std::optional<planning::CellPath> path_from_any(const PartCells& cells) const {
     constexpr std::size_t kTries = 8;
+    const auto connected = [&](const Cell& cell) { return connected_[space_.frame().index(cell)]; };
+    std::set<std::uint32_t> with_others;
+    for (const Cell& cell : cells.others) with_others.insert(connected(cell));
     const std::size_t step = std::max<std::size_t>(1, cells.own.size() / kTries);
     for (std::size_t i = 0; i < cells.own.size(); i += step) {
+      // A search in vain visits the whole grid.
+      if (!with_others.contains(connected(cells.own[i]))) continue;
       if (auto path = path_from_one(cells.own[i], cells)) return path;
     }
     return std::nullopt;
@@ -283,8 +318,9 @@ class Linker {
 
   topomap::GlobalMap& map_;
   const planning::FreeSpace& space_;
-  std::vector<float> slowness_;    // of each cell
-  std::vector<float> away_cells_;  // distance of each cell from the graph along the free space
+  std::vector<std::uint32_t> connected_;  // connected part of each cell
+  std::vector<float> slowness_{};         // of each cell
+  std::vector<float> away_cells_{};       // distance of each cell from the graph along the free space
 };
 
 }  // namespace
