@@ -1,4 +1,5 @@
 // topogeo store: contents of maps, and maps in the formats of other programs.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -14,6 +15,7 @@ namespace topogeo::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 struct StoreOutcome {
   int code = 0;
@@ -56,6 +58,18 @@ TEST_F(StoreTest, InfoCheckAndListAgreeOnAMap) {
   EXPECT_EQ(check.code, 0) << check.out;
   EXPECT_THAT(check.out, HasSubstr("no fault found"));
   EXPECT_THAT(store({"list", path("")}).out, HasSubstr("out/map.pb"));
+
+  const auto checked = nlohmann::json::parse(store({"check", map_, "--json"}).out);
+  EXPECT_EQ(checked.at("file"), map_);
+  EXPECT_EQ(checked.at("good"), true);
+  EXPECT_THAT(checked.at("contradictions"), IsEmpty());
+  const auto list = nlohmann::json::parse(store({"list", path(""), "--json"}).out);
+  const auto found = std::find_if(list.begin(), list.end(), [](const nlohmann::json& map) {
+    return map.at("file") == "out/map.pb";
+  });
+  ASSERT_NE(found, list.end()) << list;
+  EXPECT_EQ(found->at("stops"), read.at("stops"));
+  EXPECT_EQ(found->at("damage"), "");
 }
 
 TEST_F(StoreTest, EveryFormatIsWritten) {
@@ -94,6 +108,17 @@ TEST_F(StoreTest, WhatWasExportedIsImported) {
   EXPECT_GT(read.at("branches"), 0);
 }
 
+TEST_F(StoreTest, AnImportWithoutAFormatNamesTheOneThatItRecognized) {
+  EXPECT_EQ(store({"export", map_, "--format", "graphml", "--out", path("one.graphml")}).code, 0);
+  const StoreOutcome in = store({"import", path("one.graphml"), "--out", path("in.pb")});
+  EXPECT_EQ(in.code, 0) << in.err;
+  EXPECT_THAT(in.err, HasSubstr("read as 'graphml', because it is GraphML"));
+  std::ofstream(path("notes.txt")) << "nothing: here\n";
+  const StoreOutcome unknown = store({"import", path("notes.txt"), "--out", path("none.pb")});
+  EXPECT_EQ(unknown.code, 3);
+  EXPECT_THAT(unknown.err, HasSubstr("notes.txt: its content does not show the format"));
+}
+
 TEST_F(StoreTest, ZonesAreLaidOverAMap) {
   std::ofstream(path("zones.yaml"))
       << "zones:\n  - {name: ramp, kind: slow, value: 0.3, polygon: [[0, 0], [1, 0], [1, 1]]}\n";
@@ -114,6 +139,12 @@ TEST_F(StoreTest, DamageIsToldAndWhatIsLeftIsSaved) {
   EXPECT_EQ(check.code, 3);
   EXPECT_THAT(check.err, HasSubstr("cut.pb: cut short or damaged"));
   EXPECT_THAT(store({"list", path("")}).out, HasSubstr("cut short or damaged"));
+  const StoreOutcome for_programs = store({"check", path("cut.pb"), "--json"});
+  EXPECT_EQ(for_programs.code, 3);
+  const auto checked = nlohmann::json::parse(for_programs.out);
+  EXPECT_EQ(checked.at("good"), false);
+  EXPECT_THAT(checked.at("damage"), HasSubstr("cut short or damaged"));
+  EXPECT_THAT(store({"list", path(""), "--json"}).out, HasSubstr("cut short or damaged"));
   const StoreOutcome repair = store({"repair", path("cut.pb"), "--out", path("saved.pb")});
   EXPECT_EQ(repair.code, 0) << repair.err;
   EXPECT_THAT(repair.out, HasSubstr("cut short"));

@@ -141,6 +141,13 @@ Option* Option::check(const std::function<std::string(const std::string&)>& test
 
 Option* Option::named_values(const std::vector<std::pair<std::string, std::uint32_t>>& values) {
   option_->transform(CLI::CheckedTransformer(values).description(""));
+  words_.clear();
+  for (const auto& [name, number] : values) words_.push_back(name);
+  return this;
+}
+
+Option* Option::completed_by(std::vector<std::string> words) {
+  words_ = std::move(words);
   return this;
 }
 
@@ -290,7 +297,11 @@ std::optional<int> Command::parse(int argc, const char* const* argv) {
     return 0;
   }
   if (argc == 2 && argv[1] == std::string_view("--print-completion")) {
-    std::cout << bash_completion(*app_);
+    const auto words_of = [this](const CLI::Option& option) {
+      const Option* const found = find(&option);
+      return found == nullptr ? std::vector<std::string>{} : found->words_;
+    };
+    std::cout << bash_completion(*app_, words_of);
     return 0;
   }
   const std::vector<std::string> words = without_help_word({argv + 1, argv + argc});

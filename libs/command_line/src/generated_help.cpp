@@ -129,7 +129,8 @@ std::string page_head(const CLI::App& app, const std::string& title, const std::
   return page;
 }
 
-void append_case(std::string& script, const CLI::App& app, const std::string& path) {
+void append_case(std::string& script, const CLI::App& app, const std::string& path,
+                 const WordsOf& words_of) {
   std::string options;
   std::string commands;
   std::string values;
@@ -141,6 +142,7 @@ void append_case(std::string& script, const CLI::App& app, const std::string& pa
     }
     std::string list;
     for (const std::string& member : members_of(*option)) list += ' ' + member;
+    for (const std::string& word : words_of(*option)) list += ' ' + word;
     if (option->get_positional()) commands += list;
     if (names.empty()) continue;
     if (!list.empty()) values += "        " + names + ") values='" + list.substr(1) + "' ;;\n";
@@ -151,7 +153,7 @@ void append_case(std::string& script, const CLI::App& app, const std::string& pa
   if (!values.empty()) script += "      case $previous in\n" + values + "      esac\n";
   script += "      ;;\n";
   for (const CLI::App* command : parts) {
-    append_case(script, *command, path + ' ' + command->get_name());
+    append_case(script, *command, path + ' ' + command->get_name(), words_of);
   }
 }
 
@@ -196,7 +198,7 @@ std::string manual_page(const CLI::App& app, const std::string& command) {
   return page + ".SH SEE ALSO\n.BR " + escaped(app.get_name()) + " (1)\n";
 }
 
-std::string bash_completion(const CLI::App& app) {
+std::string bash_completion(const CLI::App& app, const WordsOf& words_of) {
   const std::string& name = app.get_name();
   std::string script = "# Completion of " + name + " in bash, made by " + name +
                        " --print-completion.\n_" + name + R"(() {
@@ -224,7 +226,7 @@ _)" + name + R"(_words() {
   options='' commands='' values=''
   case $1 in
 )";
-  append_case(script, app, "");
+  append_case(script, app, "", words_of);
   script += "  esac\n}\ncomplete -o default -F _" + name + ' ' + name + '\n';
   return script;
 }

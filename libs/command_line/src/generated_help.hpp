@@ -1,11 +1,13 @@
 // Manual page and shell completion of a program, generated from its declared options.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace CLI {  // NOLINT(readability-identifier-naming): not ours
 class App;
+class Option;
 }  // namespace CLI
 
 namespace topogeo::command_line {
@@ -20,8 +22,11 @@ std::string manual_page(const CLI::App& app);
 /// UsageError for an unknown command.
 std::string manual_page(const CLI::App& app, const std::string& command);
 
+/// Words that complete the value of an option, beside those that its check names.
+using WordsOf = std::function<std::vector<std::string>(const CLI::Option&)>;
+
 /// Functions for bash (4.0) that complete subcommands, options and values from a fixed set; other
 /// words are completed as files.
-std::string bash_completion(const CLI::App& app);
+std::string bash_completion(const CLI::App& app, const WordsOf& words_of);
 
 }  // namespace topogeo::command_line

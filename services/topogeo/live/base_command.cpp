@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <string>
 
+#include <nlohmann/json.hpp>
+
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/reader.hpp"
@@ -39,6 +41,7 @@ struct BaseRequest {
   DomainView view;
   std::string robot_id = "robot";
   double wait_s = 5.0;
+  bool json = false;
   msg::BaseCommand command;
 };
 
@@ -79,6 +82,20 @@ void print_base(const msg::BaseStatus& status) {
                                         : ", refuses motion commands\n");
 }
 
+void print_base_json(const msg::BaseStatus& status) {
+  nlohmann::ordered_json json = {{"robot_id", status.robot_id().c_str()},
+                                 {"state", name(status.state())},
+                                 {"reason", status.reason().c_str()},
+                                 {"commands_taken", status.commands_taken()},
+                                 {"stands", status.stands()},
+                                 {"battery_v", nullptr},
+                                 {"battery_low", status.battery_low()},
+                                 {"bumpers", status.bumpers()},
+                                 {"stop_count", std::to_string(status.stop_count())}};
+  if (status.battery_v() > 0.0F) json["battery_v"] = status.battery_v();
+  std::cout << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+}
+
 /// The next base status for which `wanted` holds; nothing when the patience ends first.
 std::optional<msg::BaseStatus> next_status(
     messaging::Reader<msg::BaseStatus>& reader, const BaseRequest& request,
@@ -103,7 +120,7 @@ int show(const BaseRequest& request) {
   const auto status =
       next_status(reader, request, patience, [](const msg::BaseStatus&) { return true; });
   if (!status) throw std::runtime_error(nothing_alive(request.view, "base") + patience.reason());
-  print_base(*status);
+  request.json ? print_base_json(*status) : print_base(*status);
   return service::kOk;
 }
 
@@ -241,6 +258,7 @@ void add_base_command(command_line::Command& app, int& exit_code) {
   auto request = std::make_shared<BaseRequest>();
   command_line::Command* status = group->add_subcommand("status", "Show its state");
   add_base_options(*status, *request);
+  status->add_flag("--json", request->json, "for programs: fields as in idl/sensor.idl");
   status->callback([request, &exit_code] { exit_code = show(*request); });
   command_line::Command* halt =
       group->add_subcommand("halt", "Stop it; it refuses to move until reset");

@@ -10,6 +10,7 @@
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/reader.hpp"
+#include "topogeo/service/service_names.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/host.hpp"
 
@@ -118,7 +119,10 @@ void add_status_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command =
       app.add_subcommand("status", "Show the services on the network: state, input, faults");
   auto options = std::make_shared<StatusOptions>();
+  const std::vector<std::string> services(service::kServiceNames.begin(),
+                                          service::kServiceNames.end());
   command->add_option("service", options->service, "only services of this name, with all details")
+      ->completed_by(services)
       ->type_name("SERVICE");
   add_view_options(*command, options->view);
   command
@@ -128,6 +132,7 @@ void add_status_command(command_line::Command& app, int& exit_code) {
       ->add_option("--expect", options->expected,
                    "services that must be there, separated by commas; one that is not there is "
                    "listed as missing")
+      ->completed_by(services)
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check([](const std::string& name) {

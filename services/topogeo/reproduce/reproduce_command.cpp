@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/atomic_file.hpp"
@@ -23,7 +25,25 @@ struct ReproduceOptions {
   std::vector<std::string> names;
   std::filesystem::path out;
   bool list = false;
+  bool json = false;
 };
+
+void print_experiments_json() {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const reproduce::Experiment& experiment : reproduce::experiments()) {
+    list.push_back({{"name", experiment.name},
+                    {"publication", experiment.publication},
+                    {"number", experiment.number},
+                    {"caption", experiment.caption}});
+  }
+  std::cout << list.dump(2) << '\n';
+}
+
+std::vector<std::string> names_of_experiments() {
+  std::vector<std::string> names = {"all"};
+  for (const reproduce::Experiment& one : reproduce::experiments()) names.emplace_back(one.name);
+  return names;
+}
 
 void print_experiments() {
   for (const reproduce::Experiment& experiment : reproduce::experiments()) {
@@ -55,7 +75,7 @@ std::vector<const reproduce::Experiment*> chosen_experiments(
 
 int reproduce_all(const ReproduceOptions& options) {
   if (options.list) {
-    print_experiments();
+    options.json ? print_experiments_json() : print_experiments();
     return service::kOk;
   }
   if (options.names.empty() || options.out.empty()) {
@@ -90,9 +110,12 @@ void add_reproduce_command(command_line::Command& app, int& exit_code) {
   command
       ->add_option("names", options->names,
                    "all, names of experiments, or the beginning of names followed by *")
+      ->completed_by(names_of_experiments())
       ->type_name("NAME");
   command->add_option("--out", options->out, "directory for the results")->type_name("DIR");
-  command->add_flag("--list", options->list, "print the names of all experiments");
+  command_line::Option* const list =
+      command->add_flag("--list", options->list, "print the names of all experiments");
+  command->add_flag("--json", options->json, "for programs: the list as JSON")->needs(list);
   command->footer(
       "DIR/index.html shows each figure or table made here beside the published values, with a\n"
       "verdict that is computed from them; DIR/index.json has the same for programs. The worlds\n"

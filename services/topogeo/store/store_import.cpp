@@ -97,14 +97,28 @@ void add_graph(storage::MapDocument& document, const ImportOptions& options,
   }
 }
 
+/// The given format, or the one that the file seems to have.
+const exchange::MapFormat& format_of(const ImportOptions& options) {
+  if (!options.format.empty()) {
+    return exchange::format_named(exchange::import_formats(), options.format);
+  }
+  try {
+    const exchange::FormatGuess guess = exchange::guess_import_format(options.file);
+    std::cerr << fmt::format("topogeo: {}: read as '{}', because {} (--format names another)\n",
+                             options.file.string(), guess.format, guess.reason);
+    return exchange::format_named(exchange::import_formats(), guess.format);
+  } catch (const std::runtime_error& error) {
+    throw service::BadInputError(error.what());
+  }
+}
+
 int store_import(const ImportOptions& options) {
   const geometry::Pose2 T_map_file = pose_of_file(options);
   const pipeline::Config config = read_config(options.config);
   storage::MapDocument document;
   document.robot_id = options.robot_id;
   if (options.into) document = read_any_map(*options.into);
-  const exchange::MapFormat& format =
-      exchange::format_named(exchange::import_formats(), options.format);
+  const exchange::MapFormat& format = format_of(options);
   try {
     exchange::MapGraph graph =
         format.read(options.file, {.resolution_m = config.hybrid_map.grid.resolution_m,
@@ -136,8 +150,9 @@ void add_store_import_command(command_line::Command& store, int& exit_code) {
   auto options = std::make_shared<ImportOptions>();
   command->add_option("file", options->file, "file to read")->required()->type_name("FILE");
   const std::span<const exchange::MapFormat> formats = exchange::import_formats();
-  command->add_option("--format", options->format, "format of the file, see below")
-      ->required()
+  command
+      ->add_option("--format", options->format,
+                   "format of the file, see below; default: by its content")
       ->check(command_line::one_of(names_of(formats)))
       ->type_name("FORMAT");
   command->add_option("--out", options->out, "map file to write (map.pb)")

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/exchange/inspect.hpp"
 #include "topogeo/exchange/read_text.hpp"
@@ -44,14 +46,48 @@ int store_info(const InspectOptions& options) {
   return service::kOk;
 }
 
+void print_json(const nlohmann::ordered_json& json) {
+  std::cout << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+}
+
+int print_check_json(const fs::path& file, const std::vector<std::string>& contradictions,
+                     const std::string& damage, int code) {
+  print_json({{"file", file.string()},
+              {"good", damage.empty() && contradictions.empty()},
+              {"damage", damage},
+              {"contradictions", contradictions}});
+  return code;
+}
+
 int store_check(const InspectOptions& options) {
   // Reading checks blobs, hashes and references.
-  const std::vector<std::string> found = exchange::contradictions(read_any_map(options.file));
+  std::vector<std::string> found;
+  try {
+    found = exchange::contradictions(read_any_map(options.file));
+  } catch (const service::BadInputError& error) {
+    if (!options.json) throw;
+    return print_check_json(options.file, {}, error.what(), service::kBadInput);
+  }
+  const int code = found.empty() ? service::kOk : service::kFailure;
+  if (options.json) return print_check_json(options.file, found, "", code);
   for (const std::string& line : found) {
     std::cout << options.file.string() << ": " << line << '\n';
   }
   if (found.empty()) std::cout << options.file.string() << ": no fault found\n";
-  return found.empty() ? service::kOk : service::kFailure;
+  return code;
+}
+
+/// A readable map as `store info --json` describes it, after its file; else the damage.
+nlohmann::ordered_json listed_map(const fs::path& file, const std::string& name) {
+  nlohmann::ordered_json map = {{"file", name}, {"damage", ""}};
+  try {
+    const exchange::MapSummary summary = exchange::summarize(read_any_map(file));
+    map.update(
+        nlohmann::ordered_json::parse(exchange::summary_json(summary, fs::file_size(file))));
+  } catch (const std::exception& error) {
+    map["damage"] = error.what();
+  }
+  return map;
 }
 
 std::string list_line(const fs::path& file) {
@@ -67,7 +103,7 @@ std::string list_line(const fs::path& file) {
   }
 }
 
-int store_list(const fs::path& directory) {
+int store_list(const fs::path& directory, bool as_json) {
   std::vector<fs::path> files;
   try {
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(directory)) {
@@ -77,6 +113,14 @@ int store_list(const fs::path& directory) {
     throw service::BadInputError(error.what());
   }
   std::ranges::sort(files);
+  if (as_json) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const fs::path& file : files) {
+      list.push_back(listed_map(file, fs::relative(file, directory).string()));
+    }
+    print_json(list);
+    return service::kOk;
+  }
   for (const fs::path& file : files) {
     std::cout << fmt::format("{:32} {}\n", fs::relative(file, directory).string(), list_line(file));
   }
@@ -129,6 +173,8 @@ void add_store_inspect_commands(command_line::Command& store, int& exit_code) {
       store.add_subcommand("check", "Find damage and contradictions in a map");
   auto checked = std::make_shared<InspectOptions>();
   check->add_option("file", checked->file, "map file or database")->required()->type_name("FILE");
+  check->add_flag("--json", checked->json,
+                  "for programs: file, good, damage (empty: it can be read), contradictions");
   check->footer(
       "Reads all of it: checksums and hashes, every element, every reference; then stamps, poses,\n"
       "covariances and the ends of branches.\n"
@@ -157,7 +203,12 @@ void add_store_inspect_commands(command_line::Command& store, int& exit_code) {
       store.add_subcommand("list", "List the maps in a folder and its subfolders");
   auto directory = std::make_shared<fs::path>(".");
   list->add_option("directory", *directory, "folder")->capture_default_str()->type_name("DIR");
-  list->callback([directory, &exit_code] { exit_code = store_list(*directory); });
+  auto as_json = std::make_shared<bool>(false);
+  list->add_flag("--json", *as_json,
+                 "for programs: each map with its file, damage (empty: it can be read) and the\n"
+                 "numbers of info --json");
+  list->callback(
+      [directory, as_json, &exit_code] { exit_code = store_list(*directory, *as_json); });
 }
 
 }  // namespace topogeo::cli

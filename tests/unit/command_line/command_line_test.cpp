@@ -344,10 +344,15 @@ struct ToolCommand {
     command.add_subcommand("break", "Break a part")
         ->add_option("part", part, "which part")
         ->check(one_of({"wheel", "laser"}));
+    Command* repair = command.add_subcommand("repair", "Repair a part");
+    repair->add_option("how", how, "how")->named_values({{"glue", 1U}, {"weld", 2U}});
+    repair->add_option("--by", by, "who")->completed_by({"anna", "ben"});
   }
   Command command{"Drives things. And more.", "tool"};
   std::string gear;
   std::string part;
+  std::uint32_t how = 0;
+  std::string by;
   bool all = false;
 };
 
@@ -362,7 +367,7 @@ TEST(CommandLine, PrintsAManualPageOfItsOptions) {
 
 TEST(CommandLine, PrintsAManualPageForEachCommand) {
   ToolCommand tool;
-  EXPECT_EQ(printed(tool.command, "--print-commands"), "drive\nbreak\n");
+  EXPECT_EQ(printed(tool.command, "--print-commands"), "drive\nbreak\nrepair\n");
   const std::string page = printed(tool.command, "--print-manual", "drive");
   EXPECT_THAT(page, HasSubstr(".TH TOOL\\-DRIVE 1"));
   EXPECT_THAT(page, HasSubstr("tool\\-drive \\- Drive somewhere\n"));
@@ -396,6 +401,9 @@ TEST(CommandLine, PrintsACompletionThatBashUnderstands) {
   EXPECT_EQ(completed(script, "tool drive h"), "home");
   EXPECT_EQ(completed(script, "tool drive home h"), "");
   EXPECT_EQ(completed(script, "tool break w"), "wheel");
+  EXPECT_EQ(completed(script, "tool repair g"), "glue") << "a name that stands for a number";
+  EXPECT_EQ(completed(script, "tool repair --by ''"), "anna ben");
+  EXPECT_EQ(parse(tool.command, {"repair", "weld", "--by", "carl"}), std::nullopt) << "a proposal";
 }
 
 }  // namespace

@@ -88,5 +88,25 @@ TEST(MapFormats, AnEmptyMapIsWrittenUnderTheChosenName) {
   }
 }
 
+TEST(MapFormats, AFormatIsRecognizedByContent) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "guess";
+  std::filesystem::create_directories(folder);
+  const auto guess = [&](const std::string& name, const std::string& content) {
+    std::ofstream(folder / name) << content;
+    return guess_import_format(folder / name).format;
+  };
+  EXPECT_EQ(guess("a.pgm", "P5\n1 1\n255\n0"), "pgm");
+  EXPECT_EQ(guess("a.yaml", "image: a.pgm\nresolution: 0.05\n"), "pgm");
+  EXPECT_EQ(guess("b.yaml", "zones:\n  - {name: ramp}\n"), "drawing");
+  EXPECT_EQ(guess("b.world.yaml", "name: floor\n"), "drawing");
+  EXPECT_EQ(guess("c.json", R"({"type": "FeatureCollection", "features": []})"), "geojson");
+  EXPECT_EQ(guess("d.json", R"({"metaInformation": {}, "layouts": []})"), "lif");
+  EXPECT_EQ(guess("e.json", R"({"zoneSet": {"zones": []}})"), "zones");
+  EXPECT_EQ(guess("f.xml", "<?xml version=\"1.0\"?>\n<graphml/>"), "graphml");
+  for (const char* text : {"", "levels: {}\n", "{}", "<svg/>", "[1, 2]", "a: b: c", "{\"a\""}) {
+    EXPECT_THROW(guess("g.txt", text), std::runtime_error) << text;
+  }
+}
+
 }  // namespace
 }  // namespace topogeo::exchange

@@ -72,8 +72,11 @@ class Option {
   Option* check(const Check& check);
   /// `test` returns the fault of a value, or an empty text for a good one.
   Option* check(const std::function<std::string(const std::string&)>& test);
-  /// The value is a number, given by name. Help does not list the names.
+  /// The value is a number, given by name. Help does not list the names, the completion does.
   Option* named_values(const std::vector<std::pair<std::string, std::uint32_t>>& values);
+  /// Words that the completion offers beside those of a check with one_of(); other values stay
+  /// allowed.
+  Option* completed_by(std::vector<std::string> words);
   Option* needs(const Option* other);
   Option* excludes(const Option* other);
   /// Sets the name of the value in help: FILE, X,Y.
@@ -95,6 +98,7 @@ class Option {
  private:
   friend class Command;
   CLI::Option* option_;
+  std::vector<std::string> words_{};  // of completed_by()
 };
 
 /// The command line of a program, one of its subcommands or a group of options. Variables that

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -41,6 +42,15 @@ struct MapFormat {
 std::span<const MapFormat> export_formats();
 /// The formats that can be read.
 std::span<const MapFormat> import_formats();
+
+struct FormatGuess {
+  std::string format;  ///< name of a format that can be read
+  std::string reason;  ///< for people: "it has features"
+};
+
+/// The format of a file by its content and its name. Throws std::runtime_error naming the file if
+/// it cannot be read or the content does not show the format.
+FormatGuess guess_import_format(const std::filesystem::path& file);
 
 /// The row of a format. Throws std::invalid_argument for a name that `formats` lacks.
 const MapFormat& format_named(std::span<const MapFormat> formats, std::string_view name);
