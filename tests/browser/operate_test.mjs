@@ -1,6 +1,7 @@
 // The page with a stub service: signs of waiting for an answer, texts without contradictions, the keyboard alone, the
 // panel on small screens.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { assert_accessible, close, kPictures, kSizes, launch, new_context, notice, open_page, text } from "./page.mjs";
@@ -324,6 +325,12 @@ test("a map without a robot says nothing of one", async () => {
   const quiet = { state: "running", host: "desk", message: "", waits_for: "", input: "", faults: 0, last_error: "" };
   service.table("services", { 1: { ...quiet, service: "web" }, 2: { ...quiet, service: "map_store" } });
   service.show("pose", null);
+  await text(page, ".state-word", /No robot/i);
+  assert.equal(await page.locator("#stop").isVisible(), true); // a robot was heard since the page was opened
+  service.show("navigator", null);
+  await wait_for("nothing offers to stop a robot", async () => !(await page.locator("#stop").isVisible()));
+  await page.keyboard.press("Space");
+  assert.deepEqual(service.orders, []);
   service.show("viewers", { viewers: 1, operators: 1 });
   await text(page, ".state-word", /No robot/i);
   await text(page, "p.quiet", /^1 page is open\.$/);
@@ -332,8 +339,65 @@ test("a map without a robot says nothing of one", async () => {
   Object.assign(loop, { correction_m: null, correction_rad: null, step: 9, earlier: 1, later: 8 });
   service.table("loops", { 0: { ...loop, accepted: true, explanation: "" } });
   await page.click("#tab-understand");
-  await text(page, ".section p", /^1 accepted\. The map file keeps no rejected ones\.$/);
-  await text(page, ".loops li", /Accepted\.[^]*The map file keeps no evidence of it/);
+  assert.equal(await page.getByText("Confidence of the position").last().isVisible(), false);
+  await text(page, ".section p", /^1 accepted\. Nothing is kept about rejected ones\.$/);
+  await text(page, ".loops li", /Accepted\.[^]*No evidence of it is kept with the map/);
+  await end(opened);
+});
+
+test("where the laser does not fit, the header says so, and driving asks first", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  service.show("navigator", { state: "idle", reason: "none", message: "" });
+  const scan = { points_robot_m: [1, 0], x_m: 1, y_m: 0, theta_rad: 0 };
+  await page.click("#tab-send");
+  await page.getByRole("button", { name: "right room" }).click();
+  await page.locator("#go:enabled").waitFor();
+  service.show("scan", { ...scan, fits: false });
+  await text(page, ".state", /Wrong position\s+The laser does not fit here\. Set the position/i);
+  await page.click("#go");
+  await text(page, "#misplaced", /probably elsewhere/);
+  assert.equal(service.goal, undefined);
+  await page.screenshot({ path: join(kPictures, "misplaced.png") });
+  await assert_accessible(page, "misplaced");
+  await page.locator("#misplaced").getByRole("button", { name: "Cancel" }).click();
+  assert.equal(await page.locator("#misplaced").isVisible(), false);
+  await page.click("#go");
+  await page.getByRole("button", { name: "Drive all the same" }).click();
+  await wait_for("the robot is sent", () => service.goal);
+  // A position that fits is driven from without a question.
+  service.goal = undefined;
+  service.show("scan", { ...scan, fits: true });
+  await text_of_fresh(page, service, "pose", kPose, ".state-word", /Position known/i);
+  await page.getByRole("button", { name: "right room" }).click();
+  await page.locator("#go:enabled").click();
+  await wait_for("the robot is sent at once", () => service.goal);
+  await end(opened);
+});
+
+test("events are filtered by level, and saved as a file", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await page.click("#tab-understand");
+  const event = (time_s, level, source, words) => ({ time_s, level, source, text: words });
+  service.table("events", {
+    1: event(1000, "info", "web", "goal: room 3"),
+    2: event(1001, "warning", "navigator", "blocked: something is in the way"),
+    3: event(1002, "error", "localizer", "is gone"),
+  });
+  const list = page.locator(".events li");
+  const filter = (name) => page.getByRole("group", { name: "Which events" }).getByRole("button", { name, exact: true });
+  await wait_for("all events", async () => (await list.count()) === 3);
+  await filter("Warnings and errors").click();
+  await wait_for("two events", async () => (await list.count()) === 2);
+  await filter("Errors").click();
+  await wait_for("one event", async () => (await list.allInnerTexts()).join().includes("is gone"));
+  await filter("All").click();
+  const [download] = await Promise.all([page.waitForEvent("download"), filter("Save as a file").click()]);
+  const lines = readFileSync(await download.path(), "utf8").split("\n");
+  assert.equal(lines[0], "1970-01-01T00:16:40.000Z\tinfo\tweb\tgoal: room 3");
+  assert.equal(lines.length, 4); // an empty one at the end
+  await assert_accessible(page, "events");
   await end(opened);
 });
 

@@ -108,6 +108,10 @@ export async function open_page(context, address) {
   await page.addInitScript(record_notices);
   page.faults = [];
   page.on("pageerror", (error) => page.faults.push(error.stack));
+  page.console_errors = []; // with the requests that the service refused
+  page.on("console", (line) => {
+    if (line.type() === "error") page.console_errors.push(`${line.text()} ${line.location().url}`);
+  });
   await page.goto(address);
   return page;
 }

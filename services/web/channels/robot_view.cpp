@@ -95,10 +95,24 @@ void RobotView::show_scan() {
   }
   json["points_robot_m"] = std::move(points);
   if (pose_ && is_located(pose_->state()) && support::monotonic_s() - pose_came_s_ < kPoseAge_s) {
-    set_pose(json, service::from_msg(pose_->T_map_robot()));
+    const geometry::Pose2 T_map_robot = service::from_msg(pose_->T_map_robot());
+    set_pose(json, T_map_robot);
+    if (const auto fit = fits(*scan_, T_map_robot)) json["fits"] = *fit;
+  } else {
+    fit_.forget();
   }
   hub_.set(Channel::kScan, text_of(json));
   scan_.reset();
+}
+
+// While the robot maps, new floor is not on the map.
+std::optional<bool> RobotView::fits(const navigation::ScanPoints& scan,
+                                    const geometry::Pose2& T_map_robot) {
+  const auto map = hooks_.map ? hooks_.map() : nullptr;
+  if (!map || pose_->mode() == msg::kModeMapping) return std::nullopt;
+  const auto fit = scan_fit(*map, T_map_robot, scan.points_m);
+  if (!fit) return std::nullopt;
+  return fit_.add(*fit);
 }
 
 void RobotView::on_navigator(const msg::NavigatorStatus& status,

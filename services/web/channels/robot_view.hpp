@@ -13,6 +13,8 @@
 #include "topogeo/navigation/navigator_inputs.hpp"
 #include "topogeo/service/service.hpp"
 
+#include "channels/map_picture.hpp"
+#include "channels/scan_fit.hpp"
 #include "server/channel_hub.hpp"
 
 namespace topogeo::web {
@@ -24,6 +26,8 @@ struct RobotHooks {
   std::function<void(const navigation::ScanPoints&)> on_scan;
   std::function<void(const msg::LivePose&)> on_pose;
   std::function<void(const msg::NavigatorStatus&, const messaging::SampleInfo&)> on_navigator;
+  /// The map that scans are compared with; null before the first one.
+  std::function<std::shared_ptr<const MapPicture>()> map;
 };
 
 /// Lives in the loop of its service.
@@ -40,6 +44,8 @@ class RobotView {
   void on_scan(const msg::Scan& message);
   /// Shows the scan with its own pose, or without one when none has arrived in time.
   void show_scan();
+  /// Whether the scan fits the finished map at the pose; nothing while that is not known.
+  std::optional<bool> fits(const navigation::ScanPoints& scan, const geometry::Pose2& T_map_robot);
   void on_navigator(const msg::NavigatorStatus& status, const messaging::SampleInfo& info);
   void on_route(const msg::Route& route);
   void on_base(const msg::BaseStatus& status);
@@ -54,6 +60,7 @@ class RobotView {
   double pose_came_s_ = 0.0;                    // by the steady clock
   std::optional<navigation::ScanPoints> scan_;  // not yet shown
   std::uint64_t scan_sequence_ = 0;
+  ScanFit fit_;
   std::optional<msg::NavigatorState> navigator_state_;
   std::optional<msg::BaseState> base_state_;
   std::optional<msg::LaserState> laser_state_;

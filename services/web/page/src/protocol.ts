@@ -18,6 +18,7 @@ export interface Scan {
   x_m?: number; // of the robot at that scan; missing if its pose is not known
   y_m?: number;
   theta_rad?: number;
+  fits?: boolean; // false: not on the walls of the finished map; missing if that is not known
 }
 
 export interface Navigator {
@@ -231,6 +232,8 @@ export interface Snapshot {
 }
 
 export interface Snapshots {
+  kept?: boolean; // false: the map store keeps none, for the reason of `message`
+  message?: string;
   snapshots: Snapshot[];
 }
 

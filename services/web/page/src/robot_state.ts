@@ -34,7 +34,15 @@ export function robot_state(channels: Channels, rights: Rights): RobotState {
     return named(name, texts.reasons[name]);
   }
   if (is_silent(channels, "pose")) return named("silent", texts.reasons.silent);
+  if (is_misplaced(channels)) return named("misplaced", texts.reasons.misplaced);
   return named(pose.state, with_age(channels, "pose", texts.reasons[pose.state] ?? pose.reason));
+}
+
+/** Whether the laser contradicts a position that the localizer still accepts, as one that was set 20 m off. */
+export function is_misplaced(channels: Channels): boolean {
+  const state = channels.value("pose")?.state;
+  const located = state === "TRACKING" || state === "AMBIGUOUS";
+  return located && channels.value("scan")?.fits === false && !is_silent(channels, "scan");
 }
 
 /** A text about a value, with the value's age if it is old. */
@@ -58,6 +66,12 @@ export function pose_of_now(channels: Channels, rights: Rights): Pose | null {
 export function robot_is_absent(channels: Channels): boolean {
   const live = [...channels.table("services").values()].filter(({ state }) => state !== "lost");
   return live.length > 0 && live.every(({ service }) => withoutRobot.has(service));
+}
+
+/** Whether there has been no robot since the page was opened: only a map is shown. */
+export function is_map_alone(channels: Channels): boolean {
+  const heard = (["pose", "base", "navigator", "laser"] as const).some((name) => channels.value(name));
+  return robot_is_absent(channels) && !heard;
 }
 
 /** Why the base does not move until it is released; null if it may move. */

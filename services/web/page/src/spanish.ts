@@ -9,7 +9,7 @@ const to = (goal: string) => (goal ? ` a ${goal}` : "");
 export const spanish: Texts = {
   title: "topogeo", language: "es", no_robot: "robot",
   states: {
-    TRACKING: "Posición conocida", AMBIGUOUS: "Posición dudosa", SEARCHING: "Buscando", LOST: "Posición perdida",
+    TRACKING: "Posición conocida", AMBIGUOUS: "Posición dudosa", SEARCHING: "Buscando", LOST: "Posición perdida", misplaced: "Posición errónea",
     none: "Sin posición", absent: "Sin robot", silent: "Sin posición", offline: "Sin conexión",
   },
   reasons: {
@@ -17,6 +17,7 @@ export const spanish: Texts = {
     AMBIGUOUS: "No sabe bien dónde está: el láser coincide con varios lugares, o con ninguno.",
     SEARCHING: "Busca su lugar en el mapa. Muévalo un poco, o fije su posición.",
     LOST: "El láser contradice este lugar. Fije la posición, o busque en todo el mapa.",
+    misplaced: "El láser no encaja aquí. Fije la posición, o busque en todo el mapa.",
     none: "El robot aún no ha comunicado su posición.", absent: "Ningún robot conectado. Solo el mapa.",
     silent: "Sin posición desde hace más de diez segundos. El mapa muestra la última.",
     offline: "No llega nada del robot. La página muestra su último estado.",
@@ -138,7 +139,9 @@ export const spanish: Texts = {
       `${length(meters)}, unos ${duration(seconds)}` +
       (typeof clearance === "number" ? `, paso más estrecho ${length(2 * clearance)}` : ""),
     no_route: "No hay ruta.", no_route_to: (name, reason) => `No hay ruta a ${name}: ${reason}.`,
-    nearest: "Ir al punto más cercano al que se llega", go: "Ir", go_all: (n) => `Ir a los ${n} en este orden`,
+    nearest: "Ir al punto más cercano al que se llega", go: "Ir",
+    misplaced: "El láser no encaja en esta posición: el robot está probablemente en otro lugar y conduciría mal.",
+    drive_misplaced: "Conducir de todos modos", go_all: (n) => `Ir a los ${n} en este orden`,
     heading_at_goal: "Rumbo en el destino (°), vacío: cualquiera", append: "Añadir a la lista", clear: "Borrar",
     remove: (name) => `Quitar ${name}`, list: "Destinos seguidos",
     list_length: (meters, seconds) => `En total ${length(meters)}, unos ${duration(seconds)}`,
@@ -213,7 +216,7 @@ export const spanish: Texts = {
   understand: {
     why: "Por qué este estado", loops: "Bucles",
     loops_hint: "Lugares a los que el robot quizá ha vuelto. Elija uno para ver ambos puntos de medida.",
-    loops_kept: (accepted) => `${count(accepted)} aceptados. El archivo del mapa no guarda los rechazados.`,
+    loops_kept: (accepted) => `${count(accepted)} aceptados. De los rechazados no se guarda nada.`,
     loops_count: (accepted, rejected) => `${count(accepted)} aceptados, ${count(rejected)} rechazados`,
     no_loops: "El robot aún no ha vuelto a un lugar anterior, así que no hay bucles.",
     filters: { all: "Todos", accepted: "Aceptados", rejected: "Rechazados" }, filter_label: "Qué bucles",
@@ -227,7 +230,7 @@ export const spanish: Texts = {
       place: "Comparados porque los últimos metros se parecen a ese lugar.",
       window: "Comparados porque los últimos metros, en conjunto, se parecen a ese lugar.",
     },
-    accepted: "Aceptado.", not_kept: "El archivo del mapa no guarda pruebas de él.",
+    accepted: "Aceptado.", not_kept: "No se guardan pruebas de él con el mapa.",
     meanings: {
       "nothing in common": "Los dos puntos de medida apenas ven la misma parte de la planta.",
       "little overlap": "Los dos puntos de medida ven muy poco de la misma planta.",
@@ -277,7 +280,9 @@ export const spanish: Texts = {
     },
     waits_for: (what) => `Espera ${what}.`, technical: "Detalles técnicos", input: (topic, rate) => `${topic} ${rate}`,
     faults: (n) => plural(n, "fallo", "fallos"), last_error: (text) => `Último: ${text}`, events: "Sucesos",
-    no_events: "Aún no ha pasado nada.", levels: { info: "Información", warning: "Aviso", error: "Error" },
+    no_events: "Aún no ha pasado nada.", no_such_events: "No hay sucesos de estos.",
+    event_filters: { all: "Todos", trouble: "Avisos y errores", errors: "Errores" },
+    event_filter_label: "Qué sucesos", save_events: "Guardar en un archivo", levels: { info: "Información", warning: "Aviso", error: "Error" },
   },
   draw: spanish_draw_texts,
   time: {

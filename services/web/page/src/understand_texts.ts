@@ -6,7 +6,7 @@ export const understand_texts = {
   loops: "Loops",
   loops_hint: "Places to which the robot may have come back. Choose one to see both scan points.",
   loops_kept: (accepted: number) =>
-    `${count(accepted)} accepted. The map file keeps no rejected ones.`,
+    `${count(accepted)} accepted. Nothing is kept about rejected ones.`,
   loops_count: (accepted: number, rejected: number) =>
     `${count(accepted)} accepted, ${count(rejected)} rejected`,
   no_loops: "The robot has not come back to an earlier place yet, so there is no loop.",
@@ -26,7 +26,7 @@ export const understand_texts = {
     window: "Compared because the last metres, matched as a whole, look like that place.",
   } as Record<string, string>,
   accepted: "Accepted.",
-  not_kept: "The map file keeps no evidence of it.",
+  not_kept: "No evidence of it is kept with the map.",
   // Keyed by the localizer's explanation of a loop.
   meanings: {
     "nothing in common": "The two scan points hardly see the same part of the floor.",
@@ -107,5 +107,9 @@ export const understand_texts = {
   last_error: (text: string) => `Last: ${text}`,
   events: "Events",
   no_events: "Nothing has happened yet.",
+  no_such_events: "There is no such event.",
+  event_filters: { all: "All", trouble: "Warnings and errors", errors: "Errors" },
+  event_filter_label: "Which events",
+  save_events: "Save as a file",
   levels: { info: "Info", warning: "Warning", error: "Error" },
 };

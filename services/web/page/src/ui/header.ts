@@ -3,7 +3,7 @@ import { activity } from "../activity";
 import { Api } from "../api";
 import { Channels } from "../channels";
 import { Rights } from "../rights";
-import { silenceTickMs, robot_state } from "../robot_state";
+import { is_map_alone, silenceTickMs, robot_state } from "../robot_state";
 import { Stopping } from "../stopping";
 import { texts } from "../texts";
 import { ControlsBanner } from "./controls_banner";
@@ -77,7 +77,7 @@ export class Header {
       this.controls.element,
       this.token,
     );
-    channels.on_value(["pose", "base", "drive", "goals", "navigator", "controls"], update);
+    channels.on_value(["pose", "scan", "base", "drive", "goals", "navigator", "controls"], update);
     channels.on_table("services", update);
     rights.on_change(update);
     setInterval(update, silenceTickMs);
@@ -90,9 +90,9 @@ export class Header {
     show(this.token, true);
   }
 
-  /** Stops the robot in any state. False: this page may not. */
+  /** Stops the robot in any state. False: this page may not, or there is no robot. */
   stop_now(): boolean {
-    if (!this.rights.may_write) return false;
+    if (!this.rights.may_write || is_map_alone(this.channels)) return false;
     void this.stopping.stop(() => this.on_stop());
     return true;
   }
@@ -106,8 +106,9 @@ export class Header {
     set_text(this.state, state.word);
     set_text(this.reason, state.reason);
     set_attribute(this.element, "data-state", state.name);
-    show(this.stop, this.rights.may_write);
-    show(this.view_only, !this.rights.may_write && this.rights.connected);
+    const alone = is_map_alone(this.channels);
+    show(this.stop, this.rights.may_write && !alone);
+    show(this.view_only, !this.rights.may_write && this.rights.connected && !alone);
     set_text(this.offline, texts.reconnecting);
     show(this.offline, !this.rights.connected);
     const unconfirmed = this.stopping.text();

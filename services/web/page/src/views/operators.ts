@@ -1,6 +1,7 @@
 // The operators: who has the controls, and the name of this page's one.
 import { App } from "../app";
 import { choose_language } from "../language";
+import { is_map_alone } from "../robot_state";
 import { languages, texts } from "../texts";
 import { Facts } from "../ui/bar";
 import { button, field, h, show } from "../ui/dom";
@@ -55,7 +56,7 @@ export class Operators {
     const { rights, channels } = this.app;
     const holder = channels.value("controls")?.holder ?? null;
     const mine = holder !== null && holder.page === rights.page;
-    show(this.own, rights.may_write && rights.page !== 0);
+    show(this.own, rights.may_write && rights.page !== 0 && !is_map_alone(channels));
     this.facts.set(words.holder, holder === null ? words.nobody : mine ? words.mine : holder.name);
     show(this.let_go, mine);
   }

@@ -2,7 +2,7 @@
 import { App, ViewPart } from "../app";
 import { Destination, destinations } from "../destinations";
 import { Goal, Preview } from "../protocol";
-import { hand_is_stopped, held_text } from "../robot_state";
+import { hand_is_stopped, held_text, is_misplaced } from "../robot_state";
 import { translated } from "../reasons";
 import { texts } from "../texts";
 import { button, field, fill, h, set_text, show } from "../ui/dom";
@@ -37,6 +37,7 @@ export class SendView implements ViewPart {
   private visible = false;
   private replan = 0; // timer
   private last: Preview | null = null; // null while planning
+  private readonly doubt = h("div", { class: "card", id: "misplaced", hidden: true });
   private asked = 0; // number of the last preview: answers to earlier ones are ignored
 
   constructor(private readonly app: App) {
@@ -58,11 +59,12 @@ export class SendView implements ViewPart {
         element.classList.toggle("is-place", entry.is_place);
       },
     );
-    const explore = button(words.explore, () => void this.order("explore"), {
+    const explore = button(words.explore, () => this.ask_if_misplaced(() => void this.order("explore")), {
       title: words.explore_title,
       "data-order": "explore",
     });
-    const back = button(words.return, () => void this.order("return"), { "data-order": "return" });
+    const go_back = () => this.ask_if_misplaced(() => void this.order("return"));
+    const back = button(words.return, go_back, { "data-order": "return" });
     this.orders = h(
       "div",
       {},
@@ -70,6 +72,7 @@ export class SendView implements ViewPart {
         words.heading,
         h("p", { class: "quiet" }, words.hint),
         this.card,
+        this.doubt,
         this.filter,
         this.names.element,
         this.no_names,
@@ -193,7 +196,7 @@ export class SendView implements ViewPart {
     const ready = answer?.found === true;
     const go = button(
       several ? words.go_all(this.choices.length) : words.go,
-      () => void this.go(),
+      () => this.ask_if_misplaced(() => void this.go()),
       { class: "button primary", disabled: !ready, id: "go" },
     );
     const near = answer?.nearest_reachable;
@@ -296,6 +299,27 @@ export class SendView implements ViewPart {
     const done = held ? texts.done.goal_held : on_the_way;
     const order = this.app.api.post("goal", goals.length === 1 ? goals[0] : { goals });
     if (await this.app.notices.report(order, done)) this.clear();
+  }
+
+  // A robot that stands elsewhere drives into what is there.
+  private ask_if_misplaced(drive: () => void): void {
+    show(this.doubt, false);
+    if (!is_misplaced(this.app.channels)) return drive();
+    const answer = (drives: boolean) => {
+      show(this.doubt, false);
+      if (drives) drive();
+    };
+    fill(
+      this.doubt,
+      h("p", { class: "bad-text", role: "alert" }, words.misplaced),
+      h(
+        "div",
+        { class: "buttons" },
+        button(words.drive_misplaced, () => answer(true)),
+        button(texts.correct.cancel, () => answer(false)),
+      ),
+    );
+    show(this.doubt, true);
   }
 
   private async order(what: "explore" | "return"): Promise<void> {

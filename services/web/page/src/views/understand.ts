@@ -1,21 +1,20 @@
 // Understand: causes of uncertainty, loop decisions, active services, events.
 import { App, ViewPart } from "../app";
 import * as format from "../format";
-import { LogEvent, Worker } from "../protocol";
-import { translated } from "../reasons";
-import { silenceTickMs, pose_of_now, robot_state } from "../robot_state";
+import { Worker } from "../protocol";
+import { is_map_alone, silenceTickMs, pose_of_now, robot_state } from "../robot_state";
 import { texts } from "../texts";
 import { Bar } from "../ui/bar";
-import { h, set_attribute, set_text, show } from "../ui/dom";
+import { h, set_text, show } from "../ui/dom";
 import { KeyedList } from "../ui/list";
 import { at_most_every } from "../ui/schedule";
 import { folded, section } from "../ui/section";
+import { EventList } from "./event_list";
 import { LoopList } from "./loop_list";
 import { SearchPart } from "./search_part";
 import { ServiceList } from "./service_list";
 
 const words = texts.understand;
-const shownEvents = 200;
 const periodMs = 300;
 
 export class UnderstandView implements ViewPart {
@@ -27,8 +26,7 @@ export class UnderstandView implements ViewPart {
   private readonly services: ServiceList;
   private readonly no_workers = h("p", { class: "quiet" }, words.no_workers);
   private readonly workers: KeyedList<Worker>;
-  private readonly no_events = h("p", { class: "quiet" }, words.no_events);
-  private readonly events: KeyedList<LogEvent>;
+  private readonly events: EventList;
   private visible = false;
 
   constructor(private readonly app: App) {
@@ -46,13 +44,7 @@ export class UnderstandView implements ViewPart {
       },
       (element, worker) => show_worker(element, bars.get(element), worker),
     );
-    this.events = new KeyedList<LogEvent>(
-      "events",
-      () => h("li", {}, h("time"), h("span", { class: "source" }), h("span", { class: "text" })),
-      show_event,
-    );
-    this.events.element.tabIndex = 0; // scrollable by keyboard
-    this.events.element.setAttribute("aria-label", words.events);
+    this.events = new EventList(app);
     this.element = h(
       "div",
       { class: "view" },
@@ -61,7 +53,7 @@ export class UnderstandView implements ViewPart {
       folded(words.search, true, this.search.element),
       folded(words.services, true, this.services.element),
       folded(words.workers, true, this.no_workers, this.workers.element),
-      folded(words.events, true, this.no_events, this.events.element),
+      folded(words.events, true, this.events.element),
     );
     const update = at_most_every(periodMs, () => this.update());
     app.channels.on_value(["pose"], update);
@@ -84,6 +76,7 @@ export class UnderstandView implements ViewPart {
     const { channels, rights } = this.app;
     const state = robot_state(channels, rights);
     set_text(this.reason, `${state.word}. ${state.reason}`);
+    show(this.confidence.element, !is_map_alone(channels));
     const confidence = pose_of_now(channels, rights)?.confidence;
     this.confidence.set(
       confidence ?? 0,
@@ -96,9 +89,7 @@ export class UnderstandView implements ViewPart {
     workers.sort((a, b) => a[1].name.localeCompare(b[1].name));
     show(this.no_workers, workers.length === 0);
     this.workers.show(workers);
-    const events = [...channels.table("events")].sort((a, b) => Number(b[0]) - Number(a[0]));
-    show(this.no_events, events.length === 0);
-    this.events.show(events.slice(0, shownEvents));
+    this.events.update();
   }
 }
 
@@ -109,13 +100,4 @@ function show_worker(element: HTMLElement, bar: Bar | undefined, worker: Worker)
   bar?.set(worker.load ?? 0, format.percent(worker.load));
   const rate = format.rate(worker.tasks_per_s);
   set_text(facts, words.worker_facts(worker.slots, worker.tasks_done, rate, worker.failures));
-}
-
-function show_event(element: HTMLElement, event: LogEvent): void {
-  const [time, source, text] = element.children as unknown as HTMLElement[];
-  set_text(time, format.clock(event.time_s));
-  set_text(source, event.source);
-  const level = event.level === "info" ? "" : `${words.levels[event.level]}: `;
-  set_text(text, level + translated(event.text));
-  set_attribute(element, "data-level", event.level);
 }

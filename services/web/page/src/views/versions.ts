@@ -79,9 +79,11 @@ export class Versions {
 
   async update(): Promise<void> {
     try {
-      this.snapshots = (await this.app.api.get<Snapshots>("/api/snapshots", patienceMs)).snapshots;
-      this.available = true;
-      set_text(this.none, words.no_snapshots);
+      const answer = await this.app.api.get<Snapshots>("/api/snapshots", patienceMs);
+      this.snapshots = answer.snapshots;
+      this.available = answer.kept !== false;
+      const why = this.available ? "" : reason(answer.message ?? "");
+      set_text(this.none, why || words.no_snapshots);
     } catch (error) {
       this.snapshots = [];
       this.available = false;
