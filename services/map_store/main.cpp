@@ -114,7 +114,10 @@ void serve(const service::Setup& setup, const StoreOptions& options) {
   storage::MapDocument document;
   const auto hybrid = [&] {
     try {
-      if (options.map) document = storage::read_map(*options.map);
+      if (options.map) {
+        document = storage::read_map(*options.map);
+        storage::add_verdicts_of_report(document, *options.map);
+      }
       pipeline::lay_over(document.drawing, std::move(drawing));
       return pipeline::make_hybrid_map(pipeline::parts_of(document), config);
     } catch (const std::exception& error) {

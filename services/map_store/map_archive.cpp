@@ -119,6 +119,11 @@ void MapArchive::put(const std::vector<storage::MapEdge>& edges) {
   database_.put_edges(edges);
 }
 
+void MapArchive::put(const std::vector<storage::LoopVerdict>& verdicts) {
+  check_file();
+  database_.put_loop_verdicts(verdicts);
+}
+
 void MapArchive::put(const topomap::GlobalMap& map) {
   check_file();
   database_.put_global_map(map);

@@ -51,6 +51,7 @@ class MapArchive {
   void put(const storage::MapDrawing& drawing);
   void put(const std::vector<storage::RefusedMerge>& refused);
   void put(const planning::RoomMemory& rooms);
+  void put(const std::vector<storage::LoopVerdict>& verdicts);
 
   [[nodiscard]] const storage::MapDatabase& database() const { return database_; }
 

@@ -46,6 +46,7 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
       options_(std::move(options)),
       archive_(std::move(database), options_.database),
       input_(stored_input(archive_.database(), options_.drawing, shown_, stored_rooms_)),
+      verdicts_(service, archive_.database(), [this](const auto& all) { return keep(all); }),
       live_map_(service.setup().config.config.global_map),
       elements_(service),
       hybrid_(service, stored_rooms_, std::exchange(shown_, std::nullopt)),
@@ -97,6 +98,7 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
       [this](const msg::SnapshotRequest& request) { snapshots_.add(request); }, {.team = true});
   service_.loop().add_timer(kStorePeriod, [this] {
     if (!finished_) store();
+    verdicts_.store(false);
     finish_if_complete();
     report_losses();
     count();
@@ -325,6 +327,7 @@ storage::MapDocument MapStoreService::final_document(const topomap::Trajectory& 
 }
 
 void MapStoreService::end() {
+  verdicts_.store(true);
   if ((finished_ && !drawn_since_) || input_.newest_trajectory().stops.empty()) return;
   next_store_ = {};
   live_map_ = LiveMap(service_.setup().config.config.global_map);  // frees its memory

@@ -27,6 +27,7 @@
 #include "map_input.hpp"
 #include "snapshot_queue.hpp"
 #include "stored_channel.hpp"
+#include "verdict_channel.hpp"
 
 namespace topogeo::map_store {
 
@@ -99,6 +100,7 @@ class MapStoreService {
   std::optional<topomap::GlobalMap> shown_;  // stored map, shown until the live map is made
   planning::RoomMemory stored_rooms_;
   MapInput input_;
+  VerdictChannel verdicts_;
   LiveMap live_map_;
   ElementPublisher elements_;
   LiveHybrid hybrid_;

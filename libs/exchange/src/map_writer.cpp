@@ -97,8 +97,12 @@ void MapWriter::carmen() {
                    log.angle_error_rad * 180.0 / std::numbers::pi, log.lost_points)});
 }
 
+// The same map gives the same bytes, whether its evidence is known or not.
 void MapWriter::pb() {
-  put(storage::map_file_bytes(map_));
+  if (map_.loop_verdicts.empty()) return put(storage::map_file_bytes(map_));
+  storage::MapDocument map = map_;
+  map.loop_verdicts.clear();
+  put(storage::map_file_bytes(map));
 }
 
 planning::HybridMap MapWriter::hybrid_map() const {

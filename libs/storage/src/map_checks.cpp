@@ -76,6 +76,7 @@ void check_document(const MapDocument& document) {
     }
   }
   check_edges(document.edges, map_count);
+  check_verdicts(document.loop_verdicts, map_count);
   check_sessions(document.local_maps);
   check_global_map(document.global_map);
   check(document.drawing);

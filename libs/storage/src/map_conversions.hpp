@@ -33,6 +33,7 @@ void to_proto(const RefusedMerge& refused, proto::RefusedMerge* out);
 void to_proto(const planning::RememberedRoom& room, proto::Room* out);
 void to_proto(const planning::RememberedPlace& place, proto::PlaceInRoom* out);
 void to_proto(const planning::RoomMemory& rooms, proto::Rooms* out);
+void to_proto(const LoopVerdict& verdict, proto::LoopVerdict* out);
 
 topomap::LocalMap from_proto(const proto::LocalMap& in);
 topomap::StopPose from_proto(const proto::StopPose& in);
@@ -49,13 +50,15 @@ planning::OccupancyGrid from_proto(const proto::DrawnGrid& in);
 planning::RememberedRoom from_proto(const proto::Room& in);
 planning::RememberedPlace from_proto(const proto::PlaceInRoom& in);
 planning::RoomMemory from_proto(const proto::Rooms& in);  ///< checked with check_rooms()
-MapDrawing from_proto(const proto::Drawing& in);          ///< checked with check(MapDrawing)
+LoopVerdict from_proto(const proto::LoopVerdict& in);
+MapDrawing from_proto(const proto::Drawing& in);  ///< checked with check(MapDrawing)
 
 /// Throws std::runtime_error unless ids, robot ids and references between the parts are consistent.
 void check_document(const MapDocument& document);
 void check_global_map(const topomap::GlobalMap& map);
 void check_rooms(const planning::RoomMemory& rooms);
 void check_edges(const std::vector<MapEdge>& edges, std::size_t map_count);
+void check_verdicts(const std::vector<LoopVerdict>& verdicts, std::size_t map_count);
 
 /// Turns the std::runtime_error of a check into a std::invalid_argument that names the file.
 template <typename Check>

@@ -230,6 +230,10 @@ void MapDatabase::put_rooms(const planning::RoomMemory& rooms) {
   change([&] { tables_->write_rooms(rooms); });
 }
 
+void MapDatabase::put_loop_verdicts(const std::vector<LoopVerdict>& verdicts) {
+  change([&] { tables_->write_loop_verdicts(verdicts, stops_->joined()); });
+}
+
 void MapDatabase::put_document(const MapDocument& document) {
   require_valid(name_, "map to be stored: ", [&] { check_document(document); });
   change([&] { write_document(identified(document)); });
@@ -256,6 +260,9 @@ void MapDatabase::write_document(const MapDocument& document) {
   tables_->write_drawing(document.drawing);
   if (!document.refused_merges.empty()) tables_->write_refused_merges(document.refused_merges);
   if (!document.rooms.empty()) tables_->write_rooms(document.rooms);
+  if (!document.loop_verdicts.empty()) {
+    tables_->write_loop_verdicts(document.loop_verdicts, stops_->joined());
+  }
 }
 
 MapDocument MapDatabase::load() const try {
@@ -300,6 +307,12 @@ std::size_t MapDatabase::write_local_maps(std::uint64_t session, std::uint32_t f
 
 std::optional<topomap::LocalMap> MapDatabase::stop(const topomap::StopId& stop) const try {
   return stops_->stop(stop);
+} catch (const SQLite::Exception& error) {
+  throw_named(name_, error);
+}
+
+std::vector<LoopVerdict> MapDatabase::loop_verdicts() const try {
+  return tables_->loop_verdicts();
 } catch (const SQLite::Exception& error) {
   throw_named(name_, error);
 }

@@ -88,6 +88,9 @@ MapDocument document_from_proto(const proto::MapFile& in) {
     document.refused_merges.push_back(from_proto(refused));
   }
   if (in.has_rooms()) document.rooms = from_proto(in.rooms());
+  for (const auto& verdict : in.loop_verdicts()) {
+    document.loop_verdicts.push_back(from_proto(verdict));
+  }
   check_document(document);
   name_stops(document);
   return document;

@@ -53,6 +53,9 @@ void MapFileWriter::finish(const MapDocument& rest) {
     to_proto(refused, fields.add_refused_merges());
   }
   if (!rest.rooms.empty()) to_proto(rest.rooms, fields.mutable_rooms());
+  for (const LoopVerdict& verdict : rest.loop_verdicts) {
+    to_proto(verdict, fields.add_loop_verdicts());
+  }
   write(fields);
   // The checksum has the largest number, so it comes last. It is written by hand because Protobuf
   // would leave out a checksum of zero.

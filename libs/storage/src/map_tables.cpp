@@ -16,6 +16,16 @@
 
 namespace topogeo::storage {
 
+namespace {
+
+// Made with the first verdict, so that older programs read the file.
+constexpr const char* kVerdictTable = R"(
+  CREATE TABLE IF NOT EXISTS loop_verdict(
+    id INTEGER PRIMARY KEY, blob_hash INTEGER NOT NULL, blob BLOB NOT NULL);
+)";
+
+}  // namespace
+
 MapTables::MapTables(SQLite::Database& database, std::string file)
     : database_(database), file_(std::move(file)) {}
 
@@ -29,6 +39,8 @@ void MapTables::read() {
   read_hashes("map_branch", branch_hashes_);
   read_hashes("room", room_hashes_);
   read_hashes("room_place", room_place_hashes_);
+  verdict_hashes_.clear();
+  if (database_.tableExists("loop_verdict")) read_hashes("loop_verdict", verdict_hashes_);
 }
 
 void MapTables::write_trajectory(std::uint64_t version, std::span<const topomap::StopPose> changed,
@@ -70,6 +82,8 @@ void MapTables::forget_stops() {
   for (const char* table : {"edge", "loop_closure", "stop_pose"}) {
     database_.exec(fmt::format("DELETE FROM {}", table));
   }
+  if (database_.tableExists("loop_verdict")) database_.exec("DELETE FROM loop_verdict");
+  verdict_hashes_.clear();
   edge_hashes_.clear();
   closure_hashes_.clear();
   pose_hashes_.clear();
@@ -165,6 +179,25 @@ void MapTables::write_rooms(const planning::RoomMemory& rooms) {
   write_meta(database_, "last_room", std::to_string(rooms.last));
 }
 
+void MapTables::write_loop_verdicts(const std::vector<LoopVerdict>& verdicts, std::uint32_t stops) {
+  require_valid(file_, "", [&] { check_verdicts(verdicts, stops); });
+  database_.exec(kVerdictTable);
+  TableWriter writer(database_, "loop_verdict");
+  for (std::size_t i = 0; i < verdicts.size(); ++i) {
+    writer.put(verdict_hashes_, static_cast<std::uint32_t>(i),
+               to_blob<proto::LoopVerdict>(verdicts[i]));
+  }
+  writer.remove_others(verdict_hashes_, [&](std::uint32_t id) { return id < verdicts.size(); });
+}
+
+std::vector<LoopVerdict> MapTables::loop_verdicts() const {
+  std::vector<LoopVerdict> verdicts;
+  if (database_.tableExists("loop_verdict")) {
+    read_table<proto::LoopVerdict>(database_, file_, "loop_verdict", verdicts);
+  }
+  return verdicts;
+}
+
 void MapTables::load(MapDocument& document) const {
   document.robot_id = read_meta(database_, "robot_id");
   document.seed = read_meta_number(database_, "seed");
@@ -188,6 +221,7 @@ void MapTables::load(MapDocument& document) const {
   read_table<proto::Room>(database_, file_, "room", document.rooms.rooms);
   read_table<proto::PlaceInRoom>(database_, file_, "room_place", document.rooms.places);
   document.rooms.last = static_cast<std::uint32_t>(read_meta_number_or(database_, "last_room", 0));
+  document.loop_verdicts = loop_verdicts();
 }
 
 // Few and short: stored as one value, so that older programs can still read the file.

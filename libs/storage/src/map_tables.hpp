@@ -26,7 +26,7 @@ class MapTables {
   /// Like MapDatabase::put_trajectory and so on, in a map with `stops` stops.
   void write_trajectory(std::uint64_t version, std::span<const topomap::StopPose> changed,
                         std::span<const topomap::LoopClosure> closures, std::uint32_t stops);
-  /// Deletes poses, closures and edges; call before the stops are renumbered.
+  /// Deletes poses, closures, edges and verdicts; call before the stops are renumbered.
   void forget_stops();
   void write_numbered_since(std::uint64_t version);
   void write_edges(const std::vector<MapEdge>& edges, std::uint32_t stops);
@@ -34,7 +34,9 @@ class MapTables {
   void write_drawing(const MapDrawing& drawing);
   void write_refused_merges(std::span<const RefusedMerge> refused);
   void write_rooms(const planning::RoomMemory& rooms);
+  void write_loop_verdicts(const std::vector<LoopVerdict>& verdicts, std::uint32_t stops);
 
+  [[nodiscard]] std::vector<LoopVerdict> loop_verdicts() const;
   /// Loads all of a map except its local maps, without a check of the whole.
   void load(MapDocument& document) const;
 
@@ -56,6 +58,7 @@ class MapTables {
   BlobHashes branch_hashes_;
   BlobHashes room_hashes_;
   BlobHashes room_place_hashes_;
+  BlobHashes verdict_hashes_;
 };
 
 }  // namespace topogeo::storage

@@ -1,7 +1,9 @@
 #include "channels/drive_view.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,6 +45,88 @@ Json decision_json(const msg::LoopDecision& decision) {
   json["fitness"] = rounded(decision.fitness());
   json["probability"] = rounded(decision.probability());
   return json;
+}
+
+/// One event for all loops that arrive together, as those of a long drive do for a new service.
+std::string loops_text(const std::vector<const msg::LoopDecision*>& closed) {
+  const msg::LoopDecision& first = *closed.front();
+  if (closed.size() == 1) {
+    return fmt::format("closed a loop between stops {} and {}: the place moves by {:.2f} m",
+                       first.earlier_id(), first.later_id(), first.correction_m());
+  }
+  std::uint32_t from = first.earlier_id();
+  std::uint32_t to = first.later_id();
+  double farthest_m = 0.0;
+  for (const msg::LoopDecision* decision : closed) {
+    from = std::min(from, decision->earlier_id());
+    to = std::max(to, decision->later_id());
+    farthest_m = std::max(farthest_m, decision->correction_m());
+  }
+  return fmt::format("closed {} loops between stops {} and {}: places move by up to {:.2f} m",
+                     closed.size(), from, to, farthest_m);
+}
+
+const char* outcome_name(storage::LoopVerdict::Outcome outcome) {
+  constexpr std::array<const char*, storage::LoopVerdict::kOutcomes> kNames = {
+      "accepted", "gate", "unconfirmed", "no_closing", "outvoted"};
+  return kNames.at(static_cast<std::size_t>(outcome));
+}
+
+Json verdict_json(const storage::LoopVerdict& verdict) {
+  Json json = {{"step", verdict.step},
+               {"earlier", verdict.earlier_id},
+               {"later", verdict.later_id},
+               {"accepted", verdict.outcome == storage::LoopVerdict::Outcome::kAccepted},
+               {"outcome", outcome_name(verdict.outcome)},
+               {"explanation", verdict.explanation},
+               {"source", verdict.source}};
+  set_pose(json, verdict.T_earlier_later);
+  Json predicted;
+  set_pose(predicted, verdict.T_predicted);
+  predicted["covariance"] = Json::array();
+  for (int i = 0; i < verdict.predicted_covariance.size(); ++i) {
+    predicted["covariance"].push_back(exact(verdict.predicted_covariance(i / 3, i % 3)));
+  }
+  json["predicted"] = std::move(predicted);
+  json["correction_m"] = rounded(verdict.correction_m);
+  json["correction_rad"] = rounded(verdict.correction_rad);
+  json["fitness"] = rounded(verdict.fitness);
+  json["probability"] = rounded(verdict.probability);
+  return json;
+}
+
+/// A loop of a map that keeps no evidence.
+Json closure_json(const topomap::LoopClosure& loop) {
+  Json json = {{"step", loop.later_id}, {"earlier", loop.earlier_id}, {"later", loop.later_id},
+               {"accepted", true},      {"outcome", "accepted"},      {"explanation", ""},
+               {"source", ""}};
+  set_pose(json, loop.T_earlier_later);
+  for (const char* unknown : {"correction_m", "correction_rad", "fitness", "probability"}) {
+    json[unknown] = nullptr;
+  }
+  return json;
+}
+
+/// The loops of a stored map by step.
+std::vector<Json> stored_loops(const storage::MapDocument& map) {
+  using Pair = std::pair<std::uint32_t, std::uint32_t>;
+  std::set<Pair> explained;
+  std::vector<std::pair<std::uint32_t, Json>> loops;
+  for (const storage::LoopVerdict& verdict : map.loop_verdicts) {
+    if (verdict.outcome == storage::LoopVerdict::Outcome::kAccepted) {
+      explained.insert({verdict.earlier_id, verdict.later_id});
+    }
+    loops.emplace_back(verdict.step, verdict_json(verdict));
+  }
+  for (const topomap::LoopClosure& loop : map.loop_closures) {
+    if (explained.contains({loop.earlier_id, loop.later_id})) continue;
+    loops.emplace_back(loop.later_id, closure_json(loop));
+  }
+  std::ranges::stable_sort(loops, {}, [](const auto& entry) { return entry.first; });
+  std::vector<Json> out;
+  out.reserve(loops.size());
+  for (auto& [step, json] : loops) out.push_back(std::move(json));
+  return out;
 }
 
 }  // namespace
@@ -118,15 +202,8 @@ void DriveView::show_stored(const storage::MapDocument& map) {
   if (trajectory_.version() != 0) return;
   show_stops(map.trajectory.stops);
   std::vector<Edit> edits;
-  for (const topomap::LoopClosure& loop : map.loop_closures) {
-    Json json = {{"step", loop.later_id}, {"earlier", loop.earlier_id}, {"later", loop.later_id},
-                 {"accepted", true},      {"outcome", "accepted"},      {"explanation", ""},
-                 {"source", ""}};
-    set_pose(json, loop.T_earlier_later);
-    for (const char* unknown : {"correction_m", "correction_rad", "fitness", "probability"}) {
-      json[unknown] = nullptr;
-    }
-    edits.push_back({std::to_string(edits.size()), text_of(json)});
+  for (const Json& loop : stored_loops(map)) {
+    edits.push_back({std::to_string(edits.size()), text_of(loop)});
   }
   hub_.edit(Channel::kLoops, std::move(edits), true);
 }
@@ -156,15 +233,13 @@ void DriveView::on_decisions(const msg::LoopDecisions& message) {
   }
   std::vector<Edit> edits;
   std::uint32_t number = message.segment() * msg::kSegmentDecisions;
+  std::vector<const msg::LoopDecision*> closed;
   for (const msg::LoopDecision& decision : message.decisions()) {
-    if (decision.outcome() == msg::kLoopAccepted && number >= loops_) {
-      events_.add(EventLog::Level::kInfo, "localizer",
-                  fmt::format("closed a loop between stops {} and {}: the place moves by {:.2f} m",
-                              decision.earlier_id(), decision.later_id(), decision.correction_m()));
-    }
+    if (decision.outcome() == msg::kLoopAccepted && number >= loops_) closed.push_back(&decision);
     edits.push_back({std::to_string(number), text_of(decision_json(decision))});
     ++number;
   }
+  if (!closed.empty()) events_.add(EventLog::Level::kInfo, "localizer", loops_text(closed));
   loops_ = std::max(loops_, number);
   hub_.edit(Channel::kLoops, std::move(edits));
 }

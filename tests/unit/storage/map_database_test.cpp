@@ -9,6 +9,7 @@
 
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/storage/read_map.hpp"
+#include "topogeo/storage/report.hpp"
 
 #include "sample_map.hpp"
 
@@ -64,6 +65,90 @@ TEST_F(MapDatabaseFile, KeepsRefusedMerges) {
             document.refused_merges);
   execute("UPDATE meta SET value = '12 seven' WHERE key = 'refused_merges'");
   EXPECT_THAT(opening_error(), HasSubstr("refused_merges is no list of pairs of stops"));
+}
+
+LoopVerdict sample_verdict(std::uint32_t earlier, std::uint32_t later) {
+  LoopVerdict verdict;
+  verdict.step = later;
+  verdict.earlier_id = earlier;
+  verdict.later_id = later;
+  verdict.explanation = "match not accepted: few inliers";
+  verdict.source = "place";
+  verdict.T_earlier_later = {0.1, -0.2, 0.3};
+  verdict.T_predicted = {0.4, 0.5, -0.6};
+  verdict.predicted_covariance << 1.0, 0.1, 0.2, 0.1, 2.0, 0.3, 0.2, 0.3, 3.0;
+  verdict.correction_m = 0.7;
+  verdict.correction_rad = -0.8;
+  verdict.fitness = 0.25;
+  verdict.probability = 0.5;
+  return verdict;
+}
+
+TEST_F(MapDatabaseFile, KeepsTheEvidenceOfLoops) {
+  MapDocument document = identified(sample_document(4));
+  document.loop_verdicts = {sample_verdict(0, 2), sample_verdict(1, 3)};
+  store(document);
+  EXPECT_EQ(open().load().loop_verdicts, document.loop_verdicts);
+  EXPECT_EQ(open().loop_verdicts(), document.loop_verdicts);
+  EXPECT_EQ(parse_map_file(map_file_bytes(document), "file").loop_verdicts, document.loop_verdicts);
+  document.loop_verdicts.front().outcome = LoopVerdict::Outcome::kOutvoted;
+  document.loop_verdicts.pop_back();
+  open().put_loop_verdicts(document.loop_verdicts);
+  EXPECT_EQ(read_map(path()).loop_verdicts, document.loop_verdicts);
+  EXPECT_THROW(open().put_loop_verdicts({sample_verdict(1, 4)}), std::invalid_argument);
+  document.loop_verdicts.front().later_id = 4;
+  EXPECT_THROW(map_file_bytes(document), std::invalid_argument);
+  execute("UPDATE loop_verdict SET blob = x'00'");
+  EXPECT_THAT(opening_error(), HasSubstr("loop_verdict 0 is damaged"));
+}
+
+TEST_F(MapDatabaseFile, HasNoEvidenceOfStopsWithOtherNumbers) {
+  MapDocument document = identified(sample_document(4));
+  document.loop_verdicts = {sample_verdict(0, 2)};
+  store(document);
+  topomap::Trajectory fewer = document.trajectory;
+  fewer.stops.resize(2);
+  ++fewer.version;
+  fewer.numbered_since = fewer.version;
+  open().renew(fewer, {},
+               std::vector<JoinedStop>{{document.local_maps[0].stop, false},
+                                       {document.local_maps[1].stop, false}});
+  EXPECT_THAT(open().loop_verdicts(), IsEmpty());
+}
+
+TEST_F(MapDatabaseFile, TakesTheEvidenceOfAMapFileFromTheReportBesideIt) {
+  MapDocument document = identified(sample_document(4));
+  const LoopVerdict rejected = sample_verdict(0, 3);
+  Report report;
+  for (const topomap::LoopClosure& loop : document.loop_closures) {
+    LoopCandidate accepted;
+    accepted.step = accepted.later_id = loop.later_id;
+    accepted.earlier_id = loop.earlier_id;
+    accepted.outcome = accepted.reason = "accepted";
+    accepted.T_earlier_later = loop.T_earlier_later;
+    report.loop_candidates.push_back(accepted);
+  }
+  LoopCandidate candidate;
+  candidate.step = candidate.later_id = 3;
+  candidate.outcome = "match not accepted";
+  candidate.reason = "few inliers";
+  candidate.T_earlier_later = rejected.T_earlier_later;
+  candidate.fitness = 0.25;
+  candidate.source = "place";
+  report.loop_candidates.push_back(candidate);
+  write_report(directory_ / "report.json", report);
+  MapDocument explained = document;
+  add_verdicts_of_report(explained, directory_ / "map.pb");
+  ASSERT_EQ(explained.loop_verdicts.size(), document.loop_closures.size() + 1);
+  EXPECT_EQ(explained.loop_verdicts.front().outcome, LoopVerdict::Outcome::kAccepted);
+  EXPECT_EQ(explained.loop_verdicts.back().explanation, rejected.explanation);
+  EXPECT_EQ(explained.loop_verdicts.back().fitness, 0.25);
+
+  report.loop_candidates.erase(report.loop_candidates.begin());
+  write_report(directory_ / "report.json", report);
+  MapDocument other = document;
+  add_verdicts_of_report(other, directory_ / "map.pb");
+  EXPECT_THAT(other.loop_verdicts, IsEmpty()) << "a loop of the map is not in that report";
 }
 
 TEST_F(MapDatabaseFile, KeepsTheNumbersOfRooms) {

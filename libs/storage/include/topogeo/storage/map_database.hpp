@@ -129,6 +129,10 @@ class MapDatabase {
   /// from 1 to at most `last`.
   void put_rooms(const planning::RoomMemory& rooms);
 
+  /// Replaces the evidence of the decisions about loops. Throws std::invalid_argument if a stop is
+  /// not in the map. renew() removes them, because it renumbers the stops.
+  void put_loop_verdicts(const std::vector<LoopVerdict>& verdicts);
+
   /// Stores a whole map in a database without stops, identified() first. Throws
   /// std::invalid_argument if there are stops or the map contradicts itself.
   void put_document(const MapDocument& document);
@@ -146,6 +150,8 @@ class MapDatabase {
 
   /// A stop as it was sent; empty if it is not stored.
   [[nodiscard]] std::optional<topomap::LocalMap> stop(const topomap::StopId& stop) const;
+  /// See put_loop_verdicts().
+  [[nodiscard]] std::vector<LoopVerdict> loop_verdicts() const;
   /// Stored stops that have not joined the map, by order of the sessions and number.
   [[nodiscard]] std::vector<topomap::StopId> waiting_stops() const;
   [[nodiscard]] std::size_t waiting_count() const;

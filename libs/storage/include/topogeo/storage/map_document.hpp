@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "topogeo/planning/room_memory.hpp"
+#include "topogeo/storage/loop_verdict.hpp"
 #include "topogeo/storage/map_drawing.hpp"
 #include "topogeo/topomap/global_map.hpp"
 #include "topogeo/topomap/local_map.hpp"
@@ -53,6 +54,9 @@ struct MapDocument {
   std::vector<MapEdge> edges;  ///< source of the trajectory; empty: unknown
   std::vector<RefusedMerge> refused_merges = {};
   planning::RoomMemory rooms = {};  ///< keeps their numbers; empty: none given yet
+  /// Evidence for the loops and against rejected ones, of the last drives; not part of the map
+  /// files of a run, whose report has it.
+  std::vector<LoopVerdict> loop_verdicts = {};
 };
 
 /// The document with a session for all its stops and a map id: missing ones are derived from its
