@@ -132,6 +132,18 @@ std::string ArchiveChannel::carry_out(const msg::ArchiveRequest& request) {
       return fmt::format("restoring snapshot {}; the current map is kept as snapshot before-{}",
                          name, name);
     }
+    case msg::kArchiveRemove:
+      storage::remove_snapshot(database_, name);
+      spdlog::info("deleted snapshot {}", name);
+      return fmt::format("snapshot {} is deleted", name);
+    case msg::kArchiveRename: {
+      const std::size_t slash = name.find('/');
+      if (slash == std::string::npos) throw std::runtime_error("expected two names");
+      const std::string new_name = name.substr(slash + 1);
+      storage::rename_snapshot(database_, name.substr(0, slash), new_name);
+      spdlog::info("renamed snapshot {}", name);
+      return fmt::format("the snapshot is now {}", new_name);
+    }
     default:
       throw std::runtime_error("unknown action");
   }

@@ -194,6 +194,18 @@ std::span<const ServiceRoute> service_routes() {
        [](Web& web, const Request& request, const Respond& respond) {
          web.history_.restore(request.body, respond);
        }},
+      {{kPost, "/api/snapshot_delete", kOperator, kMostBody_bytes, kInLoop, "deletes a snapshot"},
+       kAlways,
+       kObeyed,
+       [](Web& web, const Request& request, const Respond& respond) {
+         web.history_.remove_snapshot(request.body, respond);
+       }},
+      {{kPost, "/api/snapshot_rename", kOperator, kMostBody_bytes, kInLoop, "renames a snapshot"},
+       kAlways,
+       kObeyed,
+       [](Web& web, const Request& request, const Respond& respond) {
+         web.history_.rename_snapshot(request.body, respond);
+       }},
       {{kPost, "/api/merge_map", kOperator, kMostMapFile_bytes, kInLoop, "aligns another map"},
        kAlways,
        kObeyed,

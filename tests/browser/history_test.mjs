@@ -251,6 +251,28 @@ test("snapshots are made, compared and restored", async () => {
   assert.deepEqual(page.faults, []);
 });
 
+test("snapshots are renamed and deleted on the page", async () => {
+  const entry = (name) => page.locator(".snapshots li", { has: page.getByRole("heading", { name, exact: true }) });
+  await page.reload();
+  await page.click("#tab-time");
+  await entry("whole").getByRole("button", { name: "Rename", exact: true }).first().click();
+  await picture("time-rename");
+  await entry("whole").getByRole("textbox").fill("week-1");
+  await page.keyboard.press("Enter");
+  await text(".snapshots h3", /^week-1$/);
+  assert.equal(await entry("whole").count(), 0);
+  const names = async () => JSON.parse((await get("/api/snapshots")).bytes).snapshots.map(({ name }) => name);
+  assert.ok((await names()).includes("week-1"));
+  assert.equal(await robot.post("snapshot_rename", { name: "week-1", new_name: "half" }), 409);
+  assert.equal(await robot.post("snapshot_rename", { name: "week-1", new_name: "a/b" }), 400);
+  assert.equal(await robot.post("snapshot_delete", { name: "week-1" }, "wrong"), 401);
+  await entry("week-1").getByRole("button", { name: "Delete", exact: true }).click();
+  await entry("week-1").getByRole("button", { name: "Delete week-1 for good" }).click();
+  await wait_for("the snapshot is gone", async () => (await entry("week-1").count()) === 0);
+  assert.ok(!(await names()).includes("week-1"));
+  assert.deepEqual(page.faults, []);
+});
+
 /** Offers a map file on the page, and returns the page's answer. */
 async function offer(name, pattern) {
   await page.setInputFiles("#merge-file", name);

@@ -423,7 +423,7 @@ const kReasonSources = {
   "services/web/server": ["controls", "viewer"],
 };
 // Names of faults in the status of a service, lines of logs, and parts of texts that are listed with their other parts.
-const kNoReasons = /^(stored |the uploaded map|refused: |base command|motion command|inside: expected|(base )?\w+ (command|off|expired)$)/;
+const kNoReasons = /^(stored |deleted snapshot |renamed snapshot |the uploaded map|refused: |base command|motion command|inside: expected|(base )?\w+ (command|off|expired)$)/;
 
 /** Texts of a C++ source, with {} for each part that varies; neighbouring literals are one text. */
 function texts_of_source(source) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <memory>
 #include <stdexcept>
 #include <system_error>
@@ -37,6 +38,12 @@ fs::path snapshot_folder(const fs::path& database) {
 fs::path snapshot_path(const fs::path& database, const std::string& name) {
   check_snapshot_name(name);
   return snapshot_folder(database) / (name + std::string(kSnapshotSuffix));
+}
+
+fs::path existing_snapshot(const fs::path& database, const std::string& name) {
+  const fs::path path = snapshot_path(database, name);
+  if (!fs::exists(path)) throw std::runtime_error("there is no snapshot " + name);
+  return path;
 }
 
 /// Removes a file and those that SQLite may leave beside it.
@@ -272,6 +279,25 @@ MapSnapshot import_snapshot(const fs::path& database, const std::string& name,
   throw_named(database.string(), error);
 } catch (const fs::filesystem_error& error) {
   throw std::runtime_error(error.what());
+}
+
+void remove_snapshot(const fs::path& database, const std::string& name) {
+  const fs::path path = existing_snapshot(database, name);
+  remove_with_logs(path);
+  sync(path.parent_path());
+}
+
+void rename_snapshot(const fs::path& database, const std::string& name,
+                     const std::string& new_name) {
+  const fs::path path = existing_snapshot(database, name);
+  const fs::path wanted = snapshot_path(database, new_name);
+  // A link fails where there is a file of the name, a rename replaces it.
+  if (::link(path.c_str(), wanted.c_str()) != 0) {
+    throw std::runtime_error(errno == EEXIST ? "there is a snapshot " + new_name + " already"
+                                             : wanted.string() + ": " + std::strerror(errno));
+  }
+  remove_with_logs(path);
+  sync(path.parent_path());
 }
 
 std::optional<MapSnapshot> restore_snapshot(

@@ -81,6 +81,22 @@ void ArchiveRequests::restore(const std::string& name, Respond respond) {
   send(msg::kArchiveRestore, name, std::move(respond));
 }
 
+void ArchiveRequests::remove(const std::string& name, Respond respond) {
+  storage::check_snapshot_name(name);
+  send(msg::kArchiveRemove, name, std::move(respond));
+}
+
+void ArchiveRequests::rename(const std::string& name, const std::string& new_name,
+                             Respond respond) {
+  storage::check_snapshot_name(name);
+  storage::check_snapshot_name(new_name);
+  constexpr std::size_t kMost = 63;  // the message has room for both names and a slash
+  if (name.size() + new_name.size() > kMost) {
+    throw std::invalid_argument("new_name: both names together have more than 63 characters");
+  }
+  send(msg::kArchiveRename, name + '/' + new_name, std::move(respond));
+}
+
 void ArchiveRequests::import(const std::string& name, std::string map_file, Respond respond) {
   if (timer_) {
     respond(error_answer(503, "another upload to the map store is in progress, try again later"));

@@ -25,9 +25,12 @@ class ArchiveRequests {
   ~ArchiveRequests();
 
   void list(Respond respond);
-  /// Both throw std::invalid_argument for an invalid snapshot name.
+  /// These throw std::invalid_argument for an invalid snapshot name.
   void take(const std::string& name, Respond respond);
   void restore(const std::string& name, Respond respond);
+  void remove(const std::string& name, Respond respond);
+  /// Both names together have at most 63 characters.
+  void rename(const std::string& name, const std::string& new_name, Respond respond);
   /// Makes a snapshot from a map file. One at a time: 503 while another is being sent.
   void import(const std::string& name, std::string map_file, Respond respond);
 

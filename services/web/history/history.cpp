@@ -224,4 +224,15 @@ void History::restore(const std::string& body, const Respond& respond) {
   archive_.restore(parse_name(body), respond);
 }
 
+// A kept copy is found by the name of its snapshot.
+void History::remove_snapshot(const std::string& body, const Respond& respond) {
+  copies_->forget();
+  archive_.remove(parse_name(body), respond);
+}
+
+void History::rename_snapshot(const std::string& body, const Respond& respond) {
+  copies_->forget();
+  archive_.rename(parse_name(body), parse_name(body, "new_name"), respond);
+}
+
 }  // namespace topogeo::web

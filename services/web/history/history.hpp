@@ -41,6 +41,8 @@ class History {
   /// Body: {"name": "monday"}.
   void take_snapshot(const std::string& body, const Respond& respond);
   void restore(const std::string& body, const Respond& respond);
+  void remove_snapshot(const std::string& body, const Respond& respond);
+  void rename_snapshot(const std::string& body, const Respond& respond);
   /// See MapMerge.
   void offer_map(const std::string& map_file, const Respond& respond) {
     merge_->offer(map_file, respond);

@@ -92,11 +92,11 @@ bool parse_mapping_mode(const std::string& body) {
   throw std::invalid_argument("mode: expected mapping or localization");
 }
 
-std::string parse_name(const std::string& body) {
+std::string parse_name(const std::string& body, const char* key) {
   const Json json = object_of(body);
-  const auto name = json.find("name");
+  const auto name = json.find(key);
   if (name == json.end() || !name->is_string()) {
-    throw std::invalid_argument("name: expected a text");
+    throw std::invalid_argument(std::string(key) + ": expected a text");
   }
   return name->get<std::string>();
 }

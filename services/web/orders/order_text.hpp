@@ -42,7 +42,7 @@ MergeOrder parse_merge_order(const std::string& body);
 /// "mapping" (true) or "localization".
 bool parse_mapping_mode(const std::string& body);
 /// Returns the name in {"name": "monday"}.
-std::string parse_name(const std::string& body);
+std::string parse_name(const std::string& body, const char* key = "name");
 /// Whether a cancel keeps the goals for a resume: {"keep": true}.
 bool parse_keep(const std::string& body);
 struct ControlsOrder {

@@ -105,6 +105,27 @@ TEST_F(MapSnapshots, AMapFromElsewhereBecomesOne) {
   EXPECT_FALSE(fs::exists(folder() / ".imported.sqlite"));
 }
 
+TEST_F(MapSnapshots, AreRenamedAndDeleted) {
+  begin(5);
+  const MapSnapshot taken = take_snapshot(path(), "five");
+  static_cast<void>(take_snapshot(path(), "other"));
+  rename_snapshot(path(), "five", "monday");
+  EXPECT_FALSE(fs::exists(taken.path));
+  EXPECT_EQ(bytes(folder() / "monday.sqlite"), bytes(5));
+  EXPECT_THAT(error_of([&] { rename_snapshot(path(), "monday", "other"); }),
+              HasSubstr("there is a snapshot other already"));
+  EXPECT_THAT(error_of([&] { rename_snapshot(path(), "five", "six"); }),
+              HasSubstr("there is no snapshot five"));
+  EXPECT_THROW(rename_snapshot(path(), "monday", "../map"), std::invalid_argument);
+  remove_snapshot(path(), "other");
+  EXPECT_THAT(error_of([&] { remove_snapshot(path(), "other"); }),
+              HasSubstr("there is no snapshot other"));
+  EXPECT_THROW(remove_snapshot(path(), "../map"), std::invalid_argument);
+  ASSERT_EQ(snapshots_of(path()).size(), 1U);
+  EXPECT_EQ(snapshots_of(path()).front().name, "monday");
+  EXPECT_EQ(bytes(path()), bytes(5)) << "the map itself stays";
+}
+
 TEST_F(MapSnapshots, RefuseNamesThatAreWrongOrTaken) {
   begin(2);
   take_snapshot(path(), "a");

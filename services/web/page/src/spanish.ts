@@ -300,7 +300,8 @@ export const spanish: Texts = {
     name_rule: "Letras, cifras, '.', '-' y '_'; sin espacios, sin '.' al principio.", make: "Hacer una copia",
     made: "La copia está hecha.",
     snapshot_facts: (when, stops, bytes) => `${when}, ${count(stops)} puntos de medida, ${(bytes / 1e6).toFixed(1)} MB`,
-    restore: "Restaurar",
+    restore: "Restaurar", rename: "Cambiar el nombre", new_name: (name) => `Nombre nuevo de ${name}`,
+    delete: "Borrar", delete_sure: (name) => `Borrar ${name} para siempre`, changed: "Las copias han cambiado.",
     restore_warning:
       "La copia sustituye el mapa actual, que se guarda como otra copia. Lo medido desde entonces queda fuera. Un robot " +
       "en camino sigue en el mapa restaurado, así que anule antes su destino.",

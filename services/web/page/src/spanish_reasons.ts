@@ -275,6 +275,11 @@ export const spanish_reasons: [string, string][] = [
     "se restaura la copia {1}; el mapa actual se guarda como copia before-{2}",
   ],
   ["snapshot {} has {} stops", "la copia {1} tiene {2} puntos de medida"],
+  ["snapshot {} is deleted", "la copia {1} está borrada"],
+  ["the snapshot is now {}", "la copia es ahora {1}"],
+  ["there is a snapshot {} already", "ya hay una copia {1}"],
+  ["new_name: both names together have more than 63 characters", "los dos nombres juntos tienen más de 63 caracteres"],
+  ["expected two names", "se esperaban dos nombres"],
   ["unknown action", "acción desconocida"],
   [
     "another upload to the map store is in progress, try again later",

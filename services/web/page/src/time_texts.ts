@@ -29,6 +29,11 @@ export const time_texts = {
   snapshot_facts: (when: string, stops: number, bytes: number) =>
     `${when}, ${count(stops)} scan points, ${(bytes / 1e6).toFixed(1)} MB`,
   restore: "Restore",
+  rename: "Rename",
+  new_name: (name: string) => `New name of ${name}`,
+  delete: "Delete",
+  delete_sure: (name: string) => `Delete ${name} for good`,
+  changed: "The snapshots are changed.",
   restore_warning:
     "The snapshot replaces the present map, which is kept as another snapshot. Data mapped since is left " +
     "out. A robot under way continues in the restored map, so cancel its goal first.",

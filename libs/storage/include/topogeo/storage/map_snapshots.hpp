@@ -47,6 +47,14 @@ MapSnapshot take_snapshot(const std::filesystem::path& database, const std::stri
 MapSnapshot import_snapshot(const std::filesystem::path& database, const std::string& name,
                             const MapDocument& map);
 
+/// Deletes a snapshot. Throws std::invalid_argument for a wrong name, std::runtime_error if there
+/// is none of this name.
+void remove_snapshot(const std::filesystem::path& database, const std::string& name);
+
+/// Gives a snapshot another name. Throws like remove_snapshot(), and if the name is used.
+void rename_snapshot(const std::filesystem::path& database, const std::string& name,
+                     const std::string& new_name);
+
 /// Replaces the database by the snapshot. The former content becomes the returned snapshot
 /// (before-NAME, with a number if that is used); a damaged file is moved there unchanged. Throws
 /// like take_snapshot(), and if another program has the database open. `after` is called after each

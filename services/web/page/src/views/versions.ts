@@ -10,6 +10,7 @@ import { section } from "../ui/section";
 import { hide_difference, show_difference } from "./difference";
 
 const words = texts.time;
+const nameRule = "[A-Za-z0-9_\\-][A-Za-z0-9._\\-]*";
 const patienceMs = 60000; // for large maps
 
 export class Versions {
@@ -35,7 +36,7 @@ export class Versions {
       id: "snapshot-name",
       required: true,
       maxlength: 64,
-      pattern: "[A-Za-z0-9_\\-][A-Za-z0-9._\\-]*",
+      pattern: nameRule,
       title: words.name_rule,
       "aria-describedby": "snapshot-rule",
     });
@@ -146,17 +147,78 @@ export class Versions {
         button(texts.correct.cancel, () => ask(false)),
       ),
     );
-    return h("li", {}, h("h3", {}, name), h("p", { class: "quiet" }), restore, sure);
+    return h(
+      "li",
+      {},
+      h("h3", {}, name),
+      h("p", { class: "quiet" }),
+      h("div", { class: "buttons" }, restore, this.change_buttons(name)),
+      sure,
+    );
+  }
+
+  // Rename and delete; the deletion asks first.
+  private change_buttons(name: string): HTMLElement {
+    const input = h("input", {
+      class: "field",
+      required: true,
+      maxlength: 64,
+      pattern: nameRule,
+      value: name,
+      title: words.name_rule,
+      "aria-label": words.new_name(name),
+    });
+    const close = () => {
+      show(form, false);
+      show(sure, false);
+    };
+    const form = h(
+      "form",
+      { class: "field-row", hidden: true },
+      input,
+      h("button", { type: "submit", class: "button" }, words.rename),
+      button(texts.correct.cancel, close),
+    );
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      void this.change("snapshot_rename", { name, new_name: input.value }, close);
+    });
+    const sure = h(
+      "div",
+      { class: "buttons", hidden: true },
+      button(words.delete_sure(name), () => void this.change("snapshot_delete", { name }, close)),
+      button(texts.correct.cancel, close),
+    );
+    const open = (part: HTMLElement) => {
+      close();
+      show(part, true);
+    };
+    return h(
+      "div",
+      { class: "snapshot-changes" },
+      button(words.rename, () => open(form), { class: "button small" }),
+      button(words.delete, () => open(sure), { class: "button small" }),
+      form,
+      sure,
+    );
+  }
+
+  private async change(order: string, body: Record<string, string>, on_done: () => void): Promise<void> {
+    const answer = this.app.api.post(order, body, patienceMs);
+    if (!(await this.app.notices.report(answer, words.changed))) return;
+    on_done();
+    await this.update();
   }
 
   private show_entry(element: HTMLElement, snapshot: Snapshot): void {
-    const [, facts, restore] = element.children as unknown as HTMLElement[];
+    const [, facts, buttons, sure] = element.children as unknown as HTMLElement[];
+    const [restore, changes] = buttons.children as unknown as HTMLElement[];
     const when = format.moment(snapshot.time_s);
     set_text(
       facts,
       snapshot.damage ?? words.snapshot_facts(when, snapshot.stops ?? 0, snapshot.bytes),
     );
-    const sure = element.children[3] as HTMLElement;
+    show(changes, this.app.rights.can("snapshot_rename"));
     show(restore, this.app.rights.can("restore") && !snapshot.damage && sure.hidden);
   }
 
