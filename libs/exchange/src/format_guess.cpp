@@ -41,9 +41,8 @@ FormatGuess guess_json(const fs::path& file) {
 }
 
 FormatGuess guess_yaml(const fs::path& file) {
-  const support::YamlNode root =
-      support::parse_yaml(support::foreign_content(file, support::kMostYamlBytes), file.string(),
-                          "the file");
+  const support::YamlNode root = support::parse_yaml(
+      support::foreign_content(file, support::kMostYamlBytes), file.string(), "the file");
   const auto has = [&](const char* key) { return root.is_map() && root.at(key).exists(); };
   if (has("image")) return {"pgm", "it names an image"};
   for (const char* key : {"zones", "places", "walls", "doors", "openings"}) {
@@ -85,9 +84,9 @@ FormatGuess guess_import_format(const fs::path& file) {
   for (const MapFormat& format : import_formats()) {
     names += (names.empty() ? "" : ", ") + std::string(format.name);
   }
-  throw std::runtime_error(file.string() +
-                           ": its content does not show the format: expected --format with one of " +
-                           names);
+  throw std::runtime_error(
+      file.string() + ": its content does not show the format: expected --format with one of " +
+      names);
 }
 
 }  // namespace topogeo::exchange

@@ -320,7 +320,7 @@ class Linker {
   const planning::FreeSpace& space_;
   std::vector<std::uint32_t> connected_;  // connected part of each cell
   std::vector<float> slowness_{};         // of each cell
-  std::vector<float> away_cells_{};       // distance of each cell from the graph along the free space
+  std::vector<float> away_cells_{};  // distance of each cell from the graph along the free space
 };
 
 }  // namespace

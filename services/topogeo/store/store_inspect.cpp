@@ -82,8 +82,7 @@ nlohmann::ordered_json listed_map(const fs::path& file, const std::string& name)
   nlohmann::ordered_json map = {{"file", name}, {"damage", ""}};
   try {
     const exchange::MapSummary summary = exchange::summarize(read_any_map(file));
-    map.update(
-        nlohmann::ordered_json::parse(exchange::summary_json(summary, fs::file_size(file))));
+    map.update(nlohmann::ordered_json::parse(exchange::summary_json(summary, fs::file_size(file))));
   } catch (const std::exception& error) {
     map["damage"] = error.what();
   }

@@ -52,6 +52,11 @@ class MapView {
 
   /// Null before the first complete map. Thread-safe.
   [[nodiscard]] std::shared_ptr<const ShownMap> shown() const;
+  /// Its picture, likewise.
+  [[nodiscard]] std::shared_ptr<const MapPicture> picture() const {
+    const auto shown_now = shown();
+    return shown_now ? shown_now->picture : nullptr;
+  }
   /// For routes; null before the first map. Throws std::invalid_argument like HybridMapMirror::map.
   std::shared_ptr<const planning::HybridMap> map() { return mirror_.map(); }
   /// A place, or else a room; case (A to Z) matters only between names that differ in nothing else.

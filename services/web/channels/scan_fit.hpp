@@ -1,5 +1,5 @@
-// Whether a scan fits the grid of the map at the pose of the robot: of a wrong pose that somebody has set, the hits
-// lie in rooms, behind walls and outside, and not on walls.
+// Whether a scan fits the grid of the map at the pose of the robot: of a wrong pose that somebody
+// has set, the hits lie in rooms, behind walls and outside, and not on walls.
 #pragma once
 
 #include <cstddef>
