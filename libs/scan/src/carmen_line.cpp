@@ -224,9 +224,9 @@ void CarmenLineParser::parse_ranges(std::size_t first, std::size_t count, double
     if (!from_text(text, range_m)) {
       fail(SkipReason::kFields, "range " + std::to_string(i) + " in metres", quoted(text));
     }
-    if (!(range_m >= 0.0F) || std::isinf(range_m)) {
-      fail(SkipReason::kRange, "range " + std::to_string(i) + " finite and not negative",
-           quoted(text));
+    // Logs that were made of ROS scans have nan and inf for no echo.
+    if (range_m < 0.0F && std::isfinite(range_m)) {
+      fail(SkipReason::kRange, "range " + std::to_string(i) + " not negative", quoted(text));
     }
     scan.ranges_m.push_back(range_m > 0.0F && range_m < limit_m ? range_m : Scan::kNoReturn);
   }
