@@ -121,7 +121,8 @@ void BagSource::take_connection(const Fields& header, std::span<const std::byte>
   const RosDefinition* definition = find_definition(topic.type);
   const std::string md5 = text_of_field(facts, "md5sum");
   // Another version of a known message has other fields.
-  if (definition != nullptr && !definition->ros1_md5.empty() && md5 != definition->ros1_md5) {
+  if (definition != nullptr && !definition->ros1_md5.empty() && md5 != "*" &&
+      md5 != definition->ros1_md5) {
     topic.type += " (md5 " + md5 + ")";
     topic.encoding = Encoding::kOther;
   }
