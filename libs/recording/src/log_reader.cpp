@@ -114,9 +114,23 @@ struct LogReader::Opened {
          const TopicChoice& choice)
       : path(log), options(wanted), sweep(choice.sweep), upside_down(choice.upside_down) {
     check(options);
-    if (is_recording(path)) drive = std::make_shared<const Drive>(path, choice);
+    if (is_recording(path)) open_drive(choice);
     no_return = find_no_return(path, options, drive);
     if (no_return) options.range_max_m = std::min(options.range_max_m, no_return->least_m);
+  }
+
+  /// Odometry without a usable pose counts as none, where none is allowed.
+  void open_drive(const TopicChoice& choice) {
+    drive = std::make_shared<const Drive>(path, choice);
+    const Timeline& timeline = drive->timeline;
+    if (choice.odometry_use != OdometryUse::kIfRecorded || timeline.fault_count() == 0 ||
+        !timeline.odometry().empty()) {
+      return;
+    }
+    odometry_fault = timeline.faults().front();
+    TopicChoice without = choice;
+    without.odometry_use = OdometryUse::kIgnored;
+    drive = std::make_shared<const Drive>(path, without);
   }
 
   [[nodiscard]] std::unique_ptr<Source> source() const {
@@ -129,6 +143,7 @@ struct LogReader::Opened {
   ros::SweepOrder sweep;
   bool upside_down;
   std::shared_ptr<const Drive> drive{};  // of a recording
+  std::string odometry_fault{};
   std::optional<scan::NoReturn> no_return{};
 };
 
@@ -161,6 +176,10 @@ double LogReader::fraction_read() const {
 
 bool LogReader::has_odometry() const {
   return source_->has_odometry();
+}
+
+const std::string& LogReader::odometry_fault() const {
+  return opened_->odometry_fault;
 }
 
 std::uint64_t LogReader::scan_count() const {

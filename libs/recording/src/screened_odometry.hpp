@@ -26,6 +26,7 @@ class ScreenedOdometry {
   /// Like OdometryTrack: in the track of the latest epoch that covers that time or, if none does,
   /// has a pose near it.
   [[nodiscard]] std::optional<Answer> at(std::int64_t stamp_ns) const;
+  [[nodiscard]] bool empty() const { return epochs_.empty(); }
   /// Within one epoch if there is one on both sides, else between epochs.
   [[nodiscard]] OdometryTrack::Gap gap_at(std::int64_t stamp_ns) const;
 

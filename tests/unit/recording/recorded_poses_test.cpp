@@ -12,6 +12,7 @@
 #include "topogeo/recording/ros_codec.hpp"
 #include "topogeo/ros_conversions/laser_scan.hpp"
 
+#include "message_file.hpp"
 #include "message_sink.hpp"
 #include "odometry_message.hpp"
 #include "recorded_drive.hpp"
@@ -101,6 +102,22 @@ TEST_P(RecordedScans, AreRefusedWithoutOdometryUnlessItIsOptional) {
   EXPECT_FALSE(LogReader(file, {}, optional).has_odometry());
   optional.odometry = "/wheels";
   EXPECT_THAT(open_error(file, optional), HasSubstr("on /wheels"));
+}
+
+TEST_P(RecordedScans, HaveNoOdometryIfNoneOfItsPosesIsUsable) {
+  MessageFile file(path(GetParam()));
+  for (int i = 0; i < 20; ++i) {
+    file.odometry(i * kSecond_ns, i * kSecond_ns, {5e7, 0.0, 0.0});
+    file.scan(i * kSecond_ns, i * kSecond_ns, ranges_of(i));
+  }
+  file.close();
+  TopicChoice optional;
+  optional.odometry_use = OdometryUse::kIfRecorded;
+  LogReader reader(path(GetParam()), {}, optional);
+  EXPECT_FALSE(reader.has_odometry());
+  EXPECT_THAT(reader.odometry_fault(), HasSubstr("expected an odometry pose within 1e6 m"));
+  EXPECT_EQ(read_scans(path(GetParam()), optional).size(), 20U);
+  EXPECT_THAT(open_error(path(GetParam())), HasSubstr("none of 20 scans of /scan is usable"));
 }
 
 TEST_P(RecordedScans, HaveNoOdometryIfItIsIgnored) {

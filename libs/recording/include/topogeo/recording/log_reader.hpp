@@ -49,8 +49,11 @@ class LogReader {
   /// Share of the log read so far, in [0, 1].
   [[nodiscard]] double fraction_read() const;
 
-  /// False if the log is a recording without odometry, or TopicChoice ignores it.
+  /// False if the log is a recording without usable odometry, or TopicChoice ignores it.
   [[nodiscard]] bool has_odometry() const;
+  /// Why none of the odometry messages of a recording is usable; empty if some are, if there are
+  /// none, or if TopicChoice requires odometry.
+  [[nodiscard]] const std::string& odometry_fault() const;
 
   /// The range that this log has in place of an echo, found by reading the whole log; its scans
   /// have no return there. Empty if there is none below the range limit of the options.
