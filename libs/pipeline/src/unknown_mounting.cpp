@@ -70,6 +70,20 @@ std::string text_of(const FoundMounting& found) {
       why_open(found), found.upside_down ? ", upside down" : "");
 }
 
+std::string mirroring(const FoundMounting& found) {
+  constexpr double kLeastFitting = 0.8;
+  if (!found.upside_down ||
+      static_cast<double>(found.fitting) < kLeastFitting * static_cast<double>(found.motions)) {
+    return {};
+  }
+  return fmt::format(
+      "the scans are mirrored against the odometry ({} of {} motions fit), and cannot tell which "
+      "of the two is wrong: if the laser hangs upside down, or its driver reverses the beams, "
+      "expected --upside-down; if the odometry turns the wrong way, expected odometry: {{source: "
+      "laser}} in a file for --config",
+      found.fitting, found.motions);
+}
+
 std::string contradiction(const FoundMounting& found, const geometry::Pose2& T_robot_laser) {
   const double yaw_rad = found.T_robot_laser.theta_rad;
   const bool turned =

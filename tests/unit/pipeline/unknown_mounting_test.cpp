@@ -67,5 +67,16 @@ TEST(UnknownMounting, OnlyAClearContradictionIsAWarning) {
                         "right: --upside-down"));
 }
 
+TEST(UnknownMounting, MirroredScansAndMirroredOdometryLookAlike) {
+  FoundMounting found = backwards();
+  EXPECT_THAT(mirroring(found), IsEmpty());
+  found.upside_down = true;
+  EXPECT_THAT(mirroring(found), HasSubstr("(29 of 30 motions fit)"));
+  EXPECT_THAT(mirroring(found), HasSubstr("--upside-down"));
+  EXPECT_THAT(mirroring(found), HasSubstr("odometry: {source: laser}"));
+  found.fitting = 20;  // odometry with other faults: the scans go before it
+  EXPECT_THAT(mirroring(found), IsEmpty());
+}
+
 }  // namespace
 }  // namespace topogeo::pipeline

@@ -24,4 +24,10 @@ std::string text_of(const localization::FoundMounting& found);
 std::string contradiction(const localization::FoundMounting& found,
                           const geometry::Pose2& T_robot_laser);
 
+/// Why such a log cannot be mapped as stated, with the flags that decide, if the scans fit the
+/// odometry only as mirrored: a laser whose beams are reversed looks like odometry that turns the
+/// wrong way, and a map of the one would be the mirror image of a map of the other. Otherwise
+/// empty.
+std::string mirroring(const localization::FoundMounting& found);
+
 }  // namespace topogeo::pipeline
