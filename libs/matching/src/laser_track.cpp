@@ -60,9 +60,14 @@ constexpr double kNoiseOfNormals = 0.005;
 Eigen::Matrix3d honest(Eigen::Matrix3d information) {
   const double pretended = kNoiseOfNormals * (information(0, 0) + information(1, 1));
   constexpr double kLeast = 1e-2;  // 10 m, 6 rad: nothing
-  // Taken off in the direction that is known least, if only that remains.
-  const double smallest =
-      principal_axes(information(0, 0), information(0, 1), information(1, 1)).smallest;
+  // Taken off in the direction that is known least, if only that remains. A narrow view knows a
+  // shift and a turn together better than either, so the position counts as with unknown heading.
+  Eigen::Matrix2d position = information.topLeftCorner<2, 2>();
+  if (information(2, 2) > 0.0) {
+    const Eigen::Vector2d with_heading = information.topRightCorner<2, 1>();
+    position -= with_heading * with_heading.transpose() / information(2, 2);
+  }
+  const double smallest = principal_axes(position(0, 0), position(0, 1), position(1, 1)).smallest;
   const double taken = std::clamp(smallest - kLeast, 0.0, pretended);
   information(0, 0) -= taken;
   information(1, 1) -= taken;

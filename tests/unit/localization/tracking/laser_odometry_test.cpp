@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "topogeo/simulation/random_floors.hpp"
@@ -129,6 +130,33 @@ TEST(LaserTrackTest, AlongABareCorridorItIsAsUncertainAsThePrediction) {
     EXPECT_GT(std::sqrt(step->covariance(0, 0)), 0.05) << tenth;
     EXPECT_LT(std::sqrt(step->covariance(1, 1)), 0.03) << tenth;
   }
+}
+
+// A board of 20 cm to the side of a narrow view: a turn and a shift look nearly the same.
+TEST(LaserTrackTest, KeepsACovarianceInANarrowView) {
+  world::World board;
+  board.segments = {{{2.0, 1.0}, {2.0, 1.2}}};
+  const simulation::BeamPattern beams{0.4, 0.05 * kDegree, 200, 4.0};
+  support::Random random(5);
+  const auto seen_at = [&](int tenth) {
+    scan::Scan scan;
+    scan.angle_min_rad = beams.angle_min_rad;
+    scan.angle_step_rad = beams.angle_step_rad;
+    scan.ranges_m = simulation::measure(simulation::raycast(board, {}, beams), {}, random);
+    const auto points = topomap::scan_points(scan, {}, 50.0);
+    return TimedFeatures{100'000'000LL * tenth,
+                         std::make_shared<const MatchFeatures>(extract_scan_features(points, {}))};
+  };
+  LaserTrack track(seen_at(0));
+  int placed = 0;
+  for (int tenth = 1; tenth <= 40; ++tenth) {
+    const std::optional<LaserStep> step = track.add(seen_at(tenth));
+    if (!step) continue;
+    ++placed;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(step->covariance);
+    ASSERT_GT(axes.eigenvalues().minCoeff(), 0.0) << tenth;
+  }
+  EXPECT_GE(placed, 3);
 }
 
 TEST(LaserTrackTest, WaitsForAScanThatShowsEnough) {
