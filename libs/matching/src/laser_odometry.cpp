@@ -20,7 +20,7 @@ namespace {
 // The second track takes over once it is longer than the time for which something covers a laser
 // in passing, and has enough scans to make a place.
 constexpr std::int64_t kLost_ns = 2'000'000'000;
-constexpr std::ptrdiff_t kLostScans = 5;
+constexpr std::size_t kLostScans = 5;
 
 }  // namespace
 
@@ -56,6 +56,7 @@ void LaserOdometry::take_out_motion(scan::Scan& scan) const {
 
 void LaserOdometry::add(scan::Scan scan) {
   ++counts_.scans;
+  newest_ns_ = scan.stamp_ns;
   take_out_motion(scan);
   const auto points = topomap::scan_points(scan, T_robot_laser_, points_range_m_);
   const TimedFeatures seen{scan.stamp_ns, std::make_shared<const MatchFeatures>(
@@ -95,15 +96,14 @@ void LaserOdometry::add(scan::Scan scan) {
 }
 
 bool LaserOdometry::find_again(const TimedFeatures& seen) {
-  const std::optional<Pose2>& T_second_robot = waiting_.back().T_second_robot;
   LaserTrack trial = *track_;  // each scan is searched for by itself
   track_->skip();
-  if (!T_second_robot) return false;
+  if (!T_second_last_) return false;
   const std::optional<LaserStep> step = trial.add(seen);
   if (!step) return false;
-  const Pose2 T_track_second = step->T_track_robot * geometry::inverse(*T_second_robot);
+  const Pose2 T_track_second = step->T_track_robot * geometry::inverse(*T_second_last_);
   const bool again =
-      T_track_second_ && same_place(*T_track_second_ * *T_second_robot, step->T_track_robot);
+      T_track_second_ && same_place(*T_track_second_ * *T_second_last_, step->T_track_robot);
   T_track_second_ = T_track_second;
   return again;
 }
@@ -113,31 +113,28 @@ void LaserOdometry::follow_second(scan::Scan scan, const TimedFeatures& seen) {
   if (second_) step = second_->add(seen);
   if (!step && LaserTrack::can_begin(*seen.features)) {
     // The scans that the second track placed before fit nothing.
-    for (Waiting& waiting : waiting_) waiting.T_second_robot.reset();
+    counts_.unplaced += waiting_.size();
+    waiting_.clear();
     second_ = std::make_unique<LaserTrack>(seen);
     T_track_second_.reset();
     step.emplace();
   }
-  std::optional<Pose2> T_second_robot;
-  if (step) T_second_robot = step->T_track_robot;
-  waiting_.push_back({std::move(scan), T_second_robot});
+  T_second_last_.reset();
+  if (!step) {
+    ++counts_.unplaced;
+    return;
+  }
+  T_second_last_ = step->T_track_robot;
+  waiting_.push_back({std::move(scan), step->T_track_robot});
 }
 
 bool LaserOdometry::is_lost() const {
-  const auto placed = [](const Waiting& waiting) { return waiting.T_second_robot.has_value(); };
-  const auto first = std::ranges::find_if(waiting_, placed);
-  if (first == waiting_.end()) return false;
-  return std::ranges::count_if(waiting_, placed) >= kLostScans &&
-         waiting_.back().scan.stamp_ns - first->scan.stamp_ns >= kLost_ns;
+  return waiting_.size() >= kLostScans && newest_ns_ - waiting_.front().scan.stamp_ns >= kLost_ns;
 }
 
 void LaserOdometry::place_waiting(const Pose2& T_odom_second) {
   for (Waiting& waiting : waiting_) {
-    if (waiting.T_second_robot) {
-      place(std::move(waiting.scan), T_odom_second * *waiting.T_second_robot);
-    } else {
-      ++counts_.unplaced;
-    }
+    place(std::move(waiting.scan), T_odom_second * waiting.T_second_robot);
   }
   waiting_.clear();
 }

@@ -46,7 +46,7 @@ class LaserOdometry {
  private:
   struct Waiting {
     scan::Scan scan;
-    std::optional<geometry::Pose2> T_second_robot;  // by the second track
+    geometry::Pose2 T_second_robot;  // by the second track
   };
   /// The track that the newest scans follow; null before there is one.
   [[nodiscard]] const LaserTrack* moving_track() const;
@@ -64,8 +64,10 @@ class LaserOdometry {
   double points_range_m_;
   std::unique_ptr<LaserTrack> track_;
   std::unique_ptr<LaserTrack> second_;
-  geometry::Pose2 T_odom_track_;                   // frame of the track
-  std::vector<Waiting> waiting_;                   // since the first scan that did not match
+  geometry::Pose2 T_odom_track_;                  // frame of the track
+  std::vector<Waiting> waiting_;                  // that the second track has placed
+  std::optional<geometry::Pose2> T_second_last_;  // of the newest scan, if it is placed
+  std::int64_t newest_ns_ = 0;
   std::optional<geometry::Pose2> T_track_second_;  // by the last scan that the track found
   std::vector<scan::Scan> ready_;
   std::optional<geometry::Pose2> T_odom_last_;
