@@ -25,6 +25,10 @@ inline constexpr Colour kCorrected{0.80, 0.10, 0.10};
 inline constexpr Colour kOdometry{0.95, 0.60, 0.05};
 inline constexpr Colour kLoopClosure{0.55, 0.20, 0.65};
 inline constexpr Colour kDoor{0.00, 0.60, 0.40};
+inline constexpr Colour kNoGoZone{0.78, 0.16, 0.16};
+inline constexpr Colour kSlowZone{0.90, 0.55, 0.10};
+inline constexpr Colour kOneWayZone{0.16, 0.40, 0.70};
+inline constexpr Colour kDrawnRoom{0.40, 0.35, 0.70};
 inline constexpr Colour kWhite{1.0, 1.0, 1.0};
 // Colours of one scan; branches and nodes of the diagram as in the figures of the Thesis, chapter
 // 4.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "canvas.hpp"
+#include "labels.hpp"
 #include "legend.hpp"
 #include "point_raster.hpp"
 
@@ -114,6 +115,80 @@ void draw_nodes(cairo_t* cr, const topomap::GlobalMap& map, const Layout& layout
   }
 }
 
+Colour colour_of(planning::ZoneKind kind) {
+  switch (kind) {
+    case planning::ZoneKind::kNoGo:
+      return kNoGoZone;
+    case planning::ZoneKind::kSlow:
+      return kSlowZone;
+    case planning::ZoneKind::kOneWay:
+      return kOneWayZone;
+    case planning::ZoneKind::kRoom:
+      break;
+  }
+  return kDrawnRoom;
+}
+
+Eigen::Vector2d middle_of(const std::vector<Eigen::Vector2d>& points_m) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& point_m : points_m) sum += point_m;
+  return sum / static_cast<double>(std::max<std::size_t>(points_m.size(), 1));
+}
+
+/// The allowed direction, through the middle of the zone.
+void draw_direction(cairo_t* cr, const PictureZone& zone, const Layout& layout) {
+  constexpr double kArrowHalf_m = 0.6;
+  constexpr double kArrowHead_m = 0.35;
+  const auto along = [&](double turn_rad) {
+    const double angle_rad = zone.heading_rad + turn_rad;
+    return Eigen::Vector2d(std::cos(angle_rad), std::sin(angle_rad));
+  };
+  const Eigen::Vector2d middle_m = middle_of(zone.corners_m);
+  const Eigen::Vector2d tip_m = middle_m + kArrowHalf_m * along(0.0);
+  move_to(cr, layout.to_px(middle_m - kArrowHalf_m * along(0.0)));
+  line_to(cr, layout.to_px(tip_m));
+  for (const double turn_rad : {2.6, -2.6}) {
+    move_to(cr, layout.to_px(tip_m));
+    line_to(cr, layout.to_px(tip_m + kArrowHead_m * along(turn_rad)));
+  }
+  cairo_stroke(cr);
+}
+
+void draw_zones(cairo_t* cr, const std::vector<PictureZone>& zones, const Layout& layout) {
+  constexpr double kZonePaleness = 0.25;
+  for (const PictureZone& zone : zones) {
+    if (zone.corners_m.size() < 3) continue;
+    move_to(cr, layout.to_px(zone.corners_m.front()));
+    for (const Eigen::Vector2d& corner_m : zone.corners_m) line_to(cr, layout.to_px(corner_m));
+    cairo_close_path(cr);
+    if (zone.kind != planning::ZoneKind::kRoom) {
+      set_colour(cr, paled(colour_of(zone.kind), kZonePaleness));
+      cairo_fill_preserve(cr);
+    }
+    set_colour(cr, colour_of(zone.kind));
+    cairo_set_line_width(cr, 2.0);
+    cairo_stroke(cr);
+    if (zone.kind == planning::ZoneKind::kOneWay) draw_direction(cr, zone, layout);
+  }
+}
+
+void draw_names(cairo_t* cr, const std::vector<PictureName>& names, const Layout& layout) {
+  constexpr double kNameSize_px = 14.0;
+  constexpr double kPlaceDot_px = 4.0;
+  const Rect map{layout.map_left_px, layout.map_top_px, layout.map_width_px, layout.map_height_px};
+  Labels labels;
+  for (const PictureName& name : names) labels.block(layout.to_px(name.at_m), kPlaceDot_px);
+  for (const PictureName& name : names) {
+    const Eigen::Vector2d at_px = layout.to_px(name.at_m);
+    if (name.is_place) {
+      circle(cr, at_px, kPlaceDot_px);
+      fill_and_edge(cr, kDoor, kWhite, 1.5);
+    }
+    set_colour(cr, kInk);
+    labels.draw(cr, name.text, at_px, kPlaceDot_px + 2.0, kNameSize_px, map, true);
+  }
+}
+
 void draw_title(cairo_t* cr, const MapPicture& picture, const Layout& layout) {
   set_colour(cr, kInk);
   constexpr double kTitleSize_px = 18.0;
@@ -133,6 +208,7 @@ void draw_map(cairo_t* cr, const MapPicture& picture, const std::vector<ScanOutl
   cairo_rectangle(cr, layout.map_left_px, layout.map_top_px, layout.map_width_px,
                   layout.map_height_px);
   cairo_clip(cr);
+  draw_zones(cr, picture.zones, layout);
   draw_laser_points(cr, outlines, layout);
   draw_path(cr, picture.odometry, picture.drive_starts_ns, layout, kOdometry, 1.5);
   if (picture.global_map != nullptr) draw_branches(cr, *picture.global_map, false, layout);
@@ -147,6 +223,7 @@ void draw_map(cairo_t* cr, const MapPicture& picture, const std::vector<ScanOutl
   if (!picture.corrected.empty()) {
     draw_start_marker(cr, layout.to_px(picture.corrected.front().pose.position_m()));
   }
+  draw_names(cr, picture.names, layout);
   cairo_restore(cr);
 
   draw_title(cr, picture, layout);

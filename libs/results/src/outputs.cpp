@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,6 +12,7 @@
 #include "topogeo/render/map_picture.hpp"
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/storage/tum.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
 namespace topogeo::results {
@@ -81,6 +84,49 @@ std::vector<std::int64_t> drive_starts_ns(std::span<const topomap::LocalMap> map
   return starts;
 }
 
+std::vector<render::PictureZone> zones_of(const storage::MapDrawing& drawing) {
+  std::vector<render::PictureZone> zones;
+  for (const planning::DrawnZone& zone : drawing.zones) {
+    zones.push_back({zone.kind, zone.polygon_m, zone.value});
+  }
+  return zones;
+}
+
+/// The names of places, drawn zones and numbered rooms. A room lies where its first point does that
+/// a stop of the map or the floor itself fixes.
+std::vector<render::PictureName> names_of(const storage::MapDocument& document) {
+  std::vector<render::PictureName> names;
+  for (const planning::Place& place : document.drawing.places) {
+    names.push_back({place.name, place.position_m, true});
+  }
+  for (const planning::DrawnZone& zone : document.drawing.zones) {
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    for (const Eigen::Vector2d& corner_m : zone.polygon_m) sum += corner_m;
+    if (zone.polygon_m.empty()) continue;
+    names.push_back({zone.name, sum / static_cast<double>(zone.polygon_m.size()), false});
+  }
+  std::map<topomap::StopId, geometry::Pose2> T_map_stops;
+  for (const topomap::StopPose& stop : document.trajectory.stops) {
+    if (stop.located) T_map_stops.emplace(stop.stop, stop.T_map_robot);
+  }
+  const auto position_m = [&](const planning::RoomPoint& point) -> std::optional<Eigen::Vector2d> {
+    if (!point.stop) return point.position_m;
+    const auto stop = T_map_stops.find(*point.stop);
+    if (stop == T_map_stops.end()) return std::nullopt;
+    return stop->second * point.position_m;
+  };
+  for (const planning::RememberedRoom& room : document.rooms.rooms) {
+    const std::string name = room.name.empty() ? fmt::format("room {}", room.number) : room.name;
+    for (const planning::RoomPoint& point : room.points) {
+      const auto at_m = position_m(point);
+      if (!at_m) continue;
+      names.push_back({name, *at_m, false});
+      break;
+    }
+  }
+  return names;
+}
+
 /// Contents of a picture of the map.
 struct Drawn {
   explicit Drawn(const storage::MapDocument& map)
@@ -99,7 +145,9 @@ struct Drawn {
             .title = title,
             .unmatched_m = unmatched_parts_m(document),
             .walls_m = walls_m(document.drawing),
-            .drive_starts_ns = drive_starts_ns(document.local_maps)};
+            .drive_starts_ns = drive_starts_ns(document.local_maps),
+            .zones = zones_of(document.drawing),
+            .names = names_of(document)};
   }
 
   const storage::MapDocument& document;

@@ -71,6 +71,34 @@ TEST(MapPicture, ShowsTheWallsOfADrawnGrid) {
   EXPECT_THAT(map_svg(picture), Not(HasSubstr("nothing mapped yet")));
 }
 
+TEST(MapPicture, ShowsNamesPlacesAndZones) {
+  MapPicture picture;
+  for (int i = 0; i < 200; ++i) {
+    picture.walls_m.emplace_back(0.05 * i, 0.0);
+    picture.walls_m.emplace_back(0.05 * i, 5.0);
+  }
+  const auto box = [](double left_m) {
+    return std::vector<Eigen::Vector2d>{
+        {left_m, 1.0}, {left_m + 2.0, 1.0}, {left_m + 2.0, 3.0}, {left_m, 3.0}};
+  };
+  const std::string without = map_svg(picture);
+  picture.zones = {{planning::ZoneKind::kNoGo, box(0.5)},
+                   {planning::ZoneKind::kSlow, box(3.5)},
+                   {planning::ZoneKind::kOneWay, box(6.5), 0.5}};
+  picture.names = {{"kitchen", {5.0, 4.0}, true}, {"no-go 1", {1.5, 2.0}, false}};
+  const Pixels pixels(map_png(picture));
+  for (const Colour& colour : {kNoGoZone, kSlowZone, kOneWayZone}) {
+    EXPECT_GT(pixels.count(colour), 300);
+  }
+  EXPECT_GT(pixels.count(kDoor), 20) << "the dot of the place";
+  MapPicture nameless = picture;
+  nameless.names.clear();
+  EXPECT_GT(pixels.count(kInk), Pixels(map_png(nameless)).count(kInk));
+  picture.zones.clear();
+  picture.names.clear();
+  EXPECT_EQ(map_svg(picture), without);
+}
+
 TEST(MapPicture, LeavesOutWhatIsNotThere) {
   const SampleFloor floor = sample_floor();
   MapPicture picture = floor.picture();

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "topogeo/planning/drawn_zone.hpp"
 #include "topogeo/topomap/global_map.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
@@ -17,6 +18,20 @@ namespace topogeo::render {
 
 /// Contents of the picture, all in the map frame. Every part may be empty. The viewed data must
 /// live until the picture is drawn.
+/// A zone that people have drawn.
+struct PictureZone {
+  planning::ZoneKind kind = planning::ZoneKind::kRoom;
+  std::vector<Eigen::Vector2d> corners_m;
+  double heading_rad = 0.0;  ///< of a one-way zone
+};
+
+/// A name of a room, place or zone.
+struct PictureName {
+  std::string text;
+  Eigen::Vector2d at_m = Eigen::Vector2d::Zero();
+  bool is_place = false;  ///< marked by a dot
+};
+
 struct MapPicture {
   std::span<const topomap::LocalMap> local_maps;    ///< for their laser points
   std::span<const topomap::StopPose> stops;         ///< corrected; stops[i] is of local_maps[i]
@@ -30,6 +45,8 @@ struct MapPicture {
   std::vector<Eigen::Vector2d> walls_m = {};  ///< of a drawn grid: middles of its cells
   /// Stamps of poses to which nothing was driven, ascending: no line leads to them.
   std::vector<std::int64_t> drive_starts_ns = {};
+  std::vector<PictureZone> zones = {};
+  std::vector<PictureName> names = {};
 };
 
 struct PictureOptions {
