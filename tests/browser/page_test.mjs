@@ -210,7 +210,7 @@ test("the panel sends by number", async () => {
   await end(page);
 });
 
-// Last, because the standing robot then has a pose that is confirmed only at its next stop.
+// Near the end, because the standing robot then has a pose that is confirmed only at its next stop.
 test("the pose is set by dragging, in a map that stays as it is", async () => {
   const page = await open("correct");
   await wait_for("no pose is chosen while the robot maps", () =>
@@ -238,5 +238,22 @@ test("the pose is set by dragging, in a map that stays as it is", async () => {
   assert.equal(await page.getByRole("button", { name: "Apply" }).isVisible(), false);
   await page.getByRole("button", { name: "Start mapping" }).click();
   await text(page, "button", /Stop mapping/);
+  await end(page);
+});
+
+// The last of all, because the robot then has a wrong position.
+test("a position 20 m off is doubted at once, and driving from it asks first", async () => {
+  const page = await open("send");
+  assert.equal(await robot.post("mode", { mode: "localization" }), 200);
+  await wait_for("the map stays as it is", async () => (await run.newest("pose")).mode === "localization");
+  const { x_m, y_m, theta_rad } = await run.newest("pose");
+  assert.equal(await robot.post("pose", { x_m: x_m + 20, y_m, theta_rad, sigma_m: 0.1, sigma_rad: 0.05 }), 200);
+  const set_ms = Date.now();
+  await text(page, ".state", /Wrong position\s+The laser does not fit here/i);
+  console.log(`doubted ${Date.now() - set_ms} ms after it was set`);
+  await page.getByRole("button", { name: "Return home" }).click();
+  await text(page, "#misplaced", /probably elsewhere/);
+  await page.locator("#misplaced").getByRole("button", { name: "Cancel" }).click();
+  assert.notEqual((await run.newest("navigator")).state, "driving");
   await end(page);
 });
