@@ -48,10 +48,10 @@ msg::Odometry odometry_of(const scan::Scan& scan, const std::string& robot_id,
 }  // namespace
 
 LogGateway::LogGateway(service::Service& service, const GatewayOptions& options,
-                       recording::LogReader reader, std::uint64_t scans_total)
+                       service::LogFeed feed, std::uint64_t scans_total)
     : service_(service),
       options_(options),
-      reader_(std::move(reader)),
+      feed_(std::move(feed)),
       pace_(options.rate),
       scans_(service.advertise<msg::Scan>(messaging::kReplayRole)),
       odometry_(service.advertise<msg::Odometry>(messaging::kReplayRole)),
@@ -60,7 +60,9 @@ LogGateway::LogGateway(service::Service& service, const GatewayOptions& options,
           service.loop(),
           {{"scans", options.readers.value_or(1), messaging::ConnectedPrograms(scans_, odometry_)},
            {"odometry", options.odometry_readers, messaging::ConnectedPrograms(odometry_)}}) {
-  if (reader_.no_return()) spdlog::info("{}", text_of(*reader_.no_return()));
+  const auto& no_return = feed_.reader().no_return();
+  if (no_return) spdlog::info("{}", text_of(*no_return));
+  if (!feed_.why_laser().empty()) spdlog::info("odometry from the scans: {}", feed_.why_laser());
   service_.status().set_counter("scans_sent", 0.0);
   service_.status().set_counter("scans_total", static_cast<double>(scans_total));
   service_.subscribe<msg::ScanRequest>([this](const msg::ScanRequest& r) { on_request(r); });
@@ -87,12 +89,12 @@ void LogGateway::on_request(const msg::ScanRequest& request) {
 }
 
 void LogGateway::go_back_to(std::uint64_t number) {
-  recording::LogReader reader(options_.log, service_.setup().config.config.log, options_.topics);
+  service::LogFeed feed = feed_.from_start();
   ReplayPace pace(options_.rate);
   msg::Odometry last;
   double after_s = 0.0;
   for (std::uint64_t i = 0; i < number; ++i) {
-    const std::optional<scan::Scan> scan = reader.next();
+    const std::optional<scan::Scan> scan = feed.next();
     if (!scan) {
       throw std::runtime_error(options_.log.string() + ": fewer scans than at the first reading");
     }
@@ -100,7 +102,7 @@ void LogGateway::go_back_to(std::uint64_t number) {
     last = odometry_of(*scan, service_.robot_id(), last);
   }
   spdlog::info("resending the scans from number {}", number);
-  reader_ = std::move(reader);
+  feed_ = std::move(feed);
   pace_ = pace;
   last_odometry_ = last;
   start_ = Clock::now() - duration_of(after_s);
@@ -135,7 +137,7 @@ void LogGateway::replay() {
 }
 
 bool LogGateway::read_next() {
-  const std::optional<scan::Scan> scan = reader_.next();
+  const std::optional<scan::Scan> scan = feed_.next();
   count();
   if (!scan) return false;
   const ReplayPace::Due due = pace_.next(scan->stamp_ns);
@@ -171,7 +173,7 @@ bool LogGateway::send_pending() {
 void LogGateway::count() {
   messaging::StatusPublisher& status = service_.status();
   status.set_counter("scans_sent", static_cast<double>(sent_));
-  const scan::CarmenLogStatistics& log = reader_.statistics();
+  const scan::CarmenLogStatistics& log = feed_.reader().statistics();
   for (std::size_t i = 0; i < scan::kSkipReasonCount; ++i) {
     const auto reason = static_cast<scan::SkipReason>(i);
     status.set_drops(scan::describe(reason), log.skipped[i]);
@@ -197,10 +199,16 @@ void LogGateway::finish() {
     go_on_after({});
     return;
   }
-  const scan::CarmenLogStatistics& log = reader_.statistics();
+  const scan::CarmenLogStatistics& log = feed_.reader().statistics();
   for (const std::string& note : log.notes) spdlog::warn("{}", note);
   for (const std::string& message : log.messages) spdlog::warn("skipped {}", message);
   spdlog::info("{}", log.summary());
+  if (const localization::LaserOdometryCounts* counts = feed_.laser_counts()) {
+    spdlog::info("{} scans match no others, the track was lost {} times", counts->unplaced,
+                 counts->breaks);
+    const std::string sparse = pipeline::too_sparse(*counts);
+    if (!sparse.empty()) service_.status().fault("scans too sparse", sparse);
+  }
   service_.status().set_state(msg::kServiceFinished, log.summary());
   if (options_.exit_at_end) service_.loop().stop();
 }

@@ -10,6 +10,7 @@
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/stream.h"
 #include "topogeo/recording/log_reader.hpp"
+#include "topogeo/service/log_feed.hpp"
 #include "topogeo/service/service.hpp"
 
 #include "reader_wait.hpp"
@@ -34,7 +35,7 @@ struct GatewayOptions {
 class LogGateway {
  public:
   /// `scans_total` is shown to people.
-  LogGateway(service::Service& service, const GatewayOptions& options, recording::LogReader reader,
+  LogGateway(service::Service& service, const GatewayOptions& options, service::LogFeed feed,
              std::uint64_t scans_total);
 
  private:
@@ -58,7 +59,7 @@ class LogGateway {
 
   service::Service& service_;
   GatewayOptions options_;
-  recording::LogReader reader_;
+  service::LogFeed feed_;
   ReplayPace pace_;
   messaging::Writer<msg::Scan> scans_;
   messaging::Writer<msg::Odometry> odometry_;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "topogeo/command_line/command_line.hpp"
+#include "topogeo/service/log_feed.hpp"
 #include "topogeo/service/replay_rate.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
@@ -27,16 +28,15 @@ struct Options {
 };
 
 struct OpenLog {
-  recording::LogReader reader;
+  service::LogFeed feed;
   std::uint64_t scans_total;
 };
 
-OpenLog open_log(const sensor_gateway::GatewayOptions& replay,
-                 const scan::CarmenLogOptions& options) {
+OpenLog open_log(const sensor_gateway::GatewayOptions& replay, const pipeline::Config& config) {
   try {
-    recording::LogReader reader(replay.log, options, replay.topics);
+    recording::LogReader reader(replay.log, config.log, replay.topics);
     const std::uint64_t scans = reader.scan_count();
-    return {std::move(reader), scans};
+    return {service::LogFeed(std::move(reader), config), scans};
   } catch (const std::runtime_error& error) {
     throw service::BadInputError(error.what());
   }
@@ -108,10 +108,10 @@ void add_options_to(command_line::Command& app, Options& options) {
 
 void replay(const service::Setup& setup, sensor_gateway::GatewayOptions options) {
   options.topics.T_robot_laser = setup.config.config.local_mapper.T_robot_laser;
-  OpenLog log = open_log(options, setup.config.config.log);
+  options.topics.odometry_use = service::odometry_use(setup.config.config);
+  OpenLog log = open_log(options, setup.config.config);
   service::Service service(setup);
-  const sensor_gateway::LogGateway gateway(service, options, std::move(log.reader),
-                                           log.scans_total);
+  const sensor_gateway::LogGateway gateway(service, options, std::move(log.feed), log.scans_total);
   service.run();
 }
 

@@ -84,7 +84,22 @@ TEST_F(LaserOdometryMapTest, IsChosenByTheConfiguration) {
   EXPECT_LT(rms_m(), 0.05);
   std::ofstream(scratch_ / "recorded.yaml") << "odometry: {source: recorded}\n";
   map(log_, {"--config", scratch_ / "recorded.yaml"});
-  EXPECT_THAT(err_, Not(HasSubstr("odometry from the scans")));
+  EXPECT_THAT(err_, Not(HasSubstr("topogeo: odometry from the scans")));
+  EXPECT_THAT(report(), Not(HasSubstr("\"laser_odometry\"")));
+}
+
+TEST_F(LaserOdometryMapTest, ServicesMakeTheSame) {
+  drive("room");
+  ASSERT_EQ(map(log_), 0) << err_;
+  Program program(scratch_, "topogeo",
+                  {"run", "--log", log_, "--out", scratch_ / "run", "--workers", "0", "--domain",
+                   own_domain()});
+  ASSERT_EQ(program.wait(), 0) << program.err();
+  EXPECT_THAT(program.err(), HasSubstr("topogeo: odometry from the scans: the log's stays at one"));
+  for (const char* file : {"map.pb", "trajectory.tum"}) {
+    EXPECT_TRUE(read_file(scratch_ / "run" / file) == read_file(scratch_ / "map" / file)) << file;
+  }
+  EXPECT_THAT(read_file(scratch_ / "run" / "report.json"), HasSubstr("\"laser_odometry\""));
 }
 
 TEST_F(LaserOdometryMapTest, RefusesSparseScans) {

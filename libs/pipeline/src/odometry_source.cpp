@@ -7,9 +7,9 @@ void describe(OdometrySource& source, support::ConfigSchema& schema) {
              {{"auto", OdometrySource::kAuto},
               {"recorded", OdometrySource::kRecorded},
               {"laser", OdometrySource::kLaser}},
-             "odometry of a log that `topogeo map` and `topogeo localize` read. recorded: that of "
-             "the log; laser: from its scans alone; auto: from the scans if the log has no "
-             "odometry, or if that stays at one pose while the scans move");
+             "odometry of a log, or of a laser without a base. recorded: that of the log; laser: "
+             "from the scans alone; auto: from the scans if there is none, or if that of a log "
+             "stays at one pose while the scans move");
 }
 
 }  // namespace topogeo::pipeline

@@ -2,54 +2,19 @@
 
 #include <exception>
 #include <iostream>
-#include <memory>
 #include <string>
 
+#include "topogeo/service/log_feed.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/format.hpp"
 
 #include "common/configuration.hpp"
 
 namespace topogeo::cli {
-namespace {
-
-using pipeline::OdometrySource;
-
-localization::LaserOdometry laser_odometry(const pipeline::Config& config) {
-  return {config.local_mapper.T_robot_laser, config.local_mapper.local_map.points_range_m};
-}
-
-/// The log from its beginning, by another reader.
-pipeline::NextScan read_again(const Job& job) {
-  auto reader = std::make_shared<recording::LogReader>(job.reader.from_start());
-  return [reader] { return reader->next(); };
-}
-
-/// Why odometry is from the scans; empty if it is the log's.
-std::string why_laser(const Job& job) {
-  const pipeline::Config& config = job.inputs.config.config;
-  if (config.odometry_source == OdometrySource::kRecorded) return {};
-  if (config.odometry_source == OdometrySource::kLaser) return "odometry.source is laser";
-  if (!job.reader.has_odometry()) return "the log has none";
-  if (!pipeline::odometry_stands(read_again(job))) return {};
-  if (!pipeline::laser_moves(read_again(job), laser_odometry(config))) return {};
-  return "the log's stays at one pose while the scans move";
-}
-
-}  // namespace
 
 JobOptions without_odometry(const JobOptions& options) {
   JobOptions job = options;
-  switch (load(options.config).config.odometry_source) {
-    case OdometrySource::kRecorded:
-      break;
-    case OdometrySource::kAuto:
-      job.topics.odometry_use = recording::OdometryUse::kIfRecorded;
-      break;
-    case OdometrySource::kLaser:
-      job.topics.odometry_use = recording::OdometryUse::kIgnored;
-      break;
-  }
+  job.topics.odometry_use = service::odometry_use(load(options.config).config);
   return job;
 }
 
@@ -57,22 +22,23 @@ pipeline::ScanFeed open_feed(Job& job) {
   const pipeline::NextScan next = [&job] { return job.reader.next(); };
   std::string why;
   try {
-    why = why_laser(job);
+    why = service::why_laser_odometry(job.reader, job.inputs.config.config);
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }
   if (why.empty()) return pipeline::ScanFeed(next);
   std::cerr << "topogeo: odometry from the scans: " << why << '\n';
-  return {next, laser_odometry(job.inputs.config.config)};
+  return {next, service::laser_odometry(job.inputs.config.config)};
 }
 
 pipeline::ScanFeed open_feed_again(Job& job, const pipeline::ScanFeed& first) {
   const pipeline::NextScan next = [&job] { return job.reader.next(); };
   const pipeline::Config& config = job.inputs.config.config;
-  if (first.laser_counts() == nullptr && config.odometry_source != OdometrySource::kLaser) {
+  if (first.laser_counts() == nullptr &&
+      config.odometry_source != pipeline::OdometrySource::kLaser) {
     return pipeline::ScanFeed(next);
   }
-  return {next, laser_odometry(config)};
+  return {next, service::laser_odometry(config)};
 }
 
 void check_tracked(const JobOptions& options, const pipeline::ScanFeed& feed) {

@@ -15,6 +15,7 @@
 #include "topogeo/support/cpu_time.hpp"
 
 #include "commands.hpp"
+#include "common/log_odometry.hpp"
 #include "run/run_log.hpp"
 #include "run/run_supervisor.hpp"
 #include "web/web_run.hpp"
@@ -142,7 +143,8 @@ void add_run_options(command_line::Command& app, RunOptions& options) {
 
 int run_log(const RunOptions& options) {
   const double start_s = support::monotonic_s();
-  Job job = prepare(options.job);
+  Job job = prepare(without_odometry(options.job));
+  pipeline::ScanFeed feed = open_feed(job);
   RunOptions mounted = options;
   mounted.job = job.options;  // with what was found of the laser
   mounted.laser = job.inputs.config.config.local_mapper.T_robot_laser;
@@ -155,9 +157,10 @@ int run_log(const RunOptions& options) {
 
   storage::Report report = make_report(options, job.inputs.config.effective, result);
   add_overlaps(report, options.job, job.inputs.config.config);
-  while (job.reader.next()) {  // to count the lines that the gateway skipped
+  while (feed.next()) {  // to count the lines that the gateway skipped
   }
   results::add_log(report, job.reader.statistics());
+  add_odometry(report, feed);
   add_mounting(report, job.inputs);
   add_quality(report, job, storage::read_map_file(options.job.out / "map.pb"));
   report.wall_s = support::monotonic_s() - start_s - result.stayed_s;
@@ -169,6 +172,7 @@ int run_log(const RunOptions& options) {
     print_comparison(std::cout, compare(options.job.out, *options.job.reference));
   }
   check_usable(options.job, job.reader.statistics());
+  check_tracked(options.job, feed);
   check_useful(options.job, report);
   return service::kOk;
 }
