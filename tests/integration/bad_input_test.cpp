@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -9,6 +10,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+
+#include "topogeo/scan/carmen_log_reader.hpp"
+#include "topogeo/scan/carmen_log_writer.hpp"
 
 #include "program.hpp"
 
@@ -197,6 +201,35 @@ TEST_F(BadInputTest, ConfigurationFaultsNameTheLine) {
     EXPECT_THAT(of_value.err, AllOf(HasSubstr(range + ":2:"), HasSubstr("between 0.1 and 10 m")));
     EXPECT_FALSE(std::filesystem::exists(out_));
   }
+}
+
+TEST_F(BadInputTest, AReferenceWithOtherTimesIsNamedAfterMapping) {
+  static_cast<void>(good_lines());
+  const std::string reference =
+      file("other.tum", "90000 0 0 0 0 0 0 1\n90001 1 0 0 0 0 0 1\n90002 2 0 0 0 0 0 1\n");
+  const Outcome outcome = call("map", scratch_ / "good.clf", {"--reference", reference});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("the results are written, but " + reference + " cannot be compared"),
+                    HasSubstr("--max-dt SECONDS")));
+  EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(out_) / "map.pb"));
+}
+
+// The mirror image would be mapped as well as the room.
+TEST_F(BadInputTest, ScansThatAreMirroredAgainstTheOdometryAreRefused) {
+  write_log("floor", scratch_ / "floor.clf");
+  scan::CarmenLogReader reader(scratch_ / "floor.clf");
+  scan::CarmenLogWriter writer(scratch_ / "mirrored.clf");
+  while (std::optional<scan::Scan> scan = reader.next()) {
+    std::ranges::reverse(scan->ranges_m);
+    writer.write(*scan);
+  }
+  writer.close();
+  const Outcome outcome = call("map", scratch_ / "mirrored.clf");
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("the scans are mirrored against the odometry"),
+                                 HasSubstr("expected --upside-down")));
+  EXPECT_EQ(call("map", scratch_ / "mirrored.clf", {"--upside-down"}).code, 0);
 }
 
 // Nothing starts when inputs cannot be used, whatever the source of scans.

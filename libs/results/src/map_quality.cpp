@@ -5,8 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <numbers>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -29,6 +27,7 @@ constexpr double kUsualRecentMatches = 3.0;    // compared at each stop by defau
 constexpr double kOdometryDisagrees = 0.15;    // typical displacement per length
 constexpr double kOdometryContradicts = 0.33;  // the same, whatever the matches are
 constexpr double kGoodAcceptedShare = 0.7;
+constexpr double kMostContradicted = 0.3;  // of the steps
 constexpr double kMostSkipped = 0.5;
 constexpr double kMostUnmapped = 0.05;  // of the stops (own)
 constexpr double kLongDrive_m = 10.0;
@@ -46,13 +45,10 @@ constexpr const char* kCalibrateOdometry = "topogeo calibrate-odometry ";
 constexpr const char* kLaserOdometry =
     "odometry from the scans: odometry: {source: laser} in a file for --config";
 
-double degrees(double angle_rad) {
-  return angle_rad * 180.0 / std::numbers::pi;
-}
-
 struct Facts {
   std::uint64_t steps = 0;
-  double path_m = 0.0;  // by odometry, from stop to stop
+  double path_m = 0.0;       // by odometry that counts, from stop to stop
+  double corrected_m = 0.0;  // in the map
   double fewest_recent_matches = kFewestRecentMatches;
   double recent_matches = 0.0;  // per step
   double accepted_share = 0.0;
@@ -64,7 +60,23 @@ struct Facts {
   bool splits = false;  // an open step with stops on both sides
   bool jumps = false;
   bool other_length = false;
+  double contradicted_share = 0.0;      // of the steps: the scans contradict their odometry
+  double without_odometry_share = 0.0;  // of the scans
+
+  /// A shorter drive says little.
+  [[nodiscard]] bool is_long() const {
+    return steps >= kStopsOfLongDrive && std::max(path_m, corrected_m) >= kLongDrive_m;
+  }
+  /// Whether another odometry is wanted.
+  [[nodiscard]] bool odometry_useless() const {
+    return contradicted_share > kMostContradicted || without_odometry_share > kMostSkipped;
+  }
 };
+
+double accepted_share(const Report& report) {
+  return static_cast<double>(report.matches_accepted) /
+         static_cast<double>(std::max<std::uint64_t>(report.matches_tried, 1));
+}
 
 Facts facts_of(const Report& report, const storage::MapDocument& document) {
   using Kind = storage::MapEdge::Kind;
@@ -74,9 +86,14 @@ Facts facts_of(const Report& report, const storage::MapDocument& document) {
     if (edge.kind == Kind::kSequential) ++recent;
   }
   const auto& maps = document.local_maps;
+  const auto& stops = document.trajectory.stops;
   for (std::size_t i = 1; i < maps.size(); ++i) {
     if (maps[i].starts_drive) continue;
     ++facts.steps;
+    if (i < stops.size()) {
+      facts.corrected_m +=
+          geometry::between(stops[i - 1].T_map_robot, stops[i].T_map_robot).position_m().norm();
+    }
     if (!topomap::has_odometry_between(maps[i - 1], maps[i])) continue;
     facts.path_m += std::sqrt(geometry::between(maps[i - 1].T_odom_robot, maps[i].T_odom_robot)
                                   .position_m()
@@ -84,8 +101,7 @@ Facts facts_of(const Report& report, const storage::MapDocument& document) {
   }
   const auto share = [](double part, double whole) { return whole > 0.0 ? part / whole : 0.0; };
   facts.recent_matches = share(static_cast<double>(recent), static_cast<double>(facts.steps));
-  facts.accepted_share = share(static_cast<double>(report.matches_accepted),
-                               static_cast<double>(report.matches_tried));
+  facts.accepted_share = accepted_share(report);
   std::uint64_t skipped = 0;
   for (const auto& [reason, count] : report.skipped_lines) skipped += count;
   facts.skipped_share =
@@ -98,10 +114,14 @@ Facts facts_of(const Report& report, const storage::MapDocument& document) {
       facts.splits = true;
     }
   }
+  std::uint64_t contradicted = 0;
   for (const PathDisagreementEntry& d : report.quality.path_disagreements) {
     if (d.kind == "jump") facts.jumps = true;
     if (d.kind == "length") facts.other_length = true;
+    if (d.kind == "wheels") contradicted += d.last_stop - d.first_stop;
   }
+  facts.contradicted_share =
+      share(static_cast<double>(contradicted), static_cast<double>(facts.steps));
   return facts;
 }
 
@@ -113,18 +133,26 @@ class Judgement {
     reasons_.push_back(std::move(reason));
   }
   void poor(std::string reason) {
+    incomplete(std::move(reason));
+    unreliable_ = true;
+  }
+  /// Poor, but usually right as far as it goes.
+  void incomplete(std::string reason) {
     grade_ = kPoor;
     reasons_.push_back(std::move(reason));
   }
   void useless(std::string reason) {
     grade_ = kUseless;
+    unreliable_ = true;
     reasons_ = {std::move(reason)};
   }
   [[nodiscard]] const std::string& grade() const { return grade_; }
   [[nodiscard]] const std::vector<std::string>& reasons() const { return reasons_; }
+  [[nodiscard]] bool unreliable() const { return unreliable_; }
 
  private:
   std::string grade_ = kGood;
+  bool unreliable_ = false;
   std::vector<std::string> reasons_;
 };
 
@@ -136,6 +164,10 @@ void judge_odometry(const Facts& facts, Judgement& judgement) {
     judgement.poor(apart);
   } else if (facts.typical_share > kOdometryDisagrees) {
     judgement.fair(apart);
+  }
+  if (facts.contradicted_share > kMostContradicted) {
+    judgement.poor(fmt::format("the scans contradict the odometry in {:.0f} % of the steps",
+                               100.0 * facts.contradicted_share));
   }
   if (facts.jumps) judgement.poor("the path jumps where odometry does not");
   if (facts.other_length) judgement.fair("the path is much longer or shorter than by odometry");
@@ -163,10 +195,10 @@ Judgement judge(const Report& report, const Facts& facts) {
     share > kMostUnmapped ? judgement.poor(std::move(reason)) : judgement.fair(std::move(reason));
   }
   if (facts.skipped_share > kMostSkipped) {
-    judgement.poor(fmt::format("{:.0f} % of the scans were skipped", 100.0 * facts.skipped_share));
+    judgement.incomplete(
+        fmt::format("{:.0f} % of the scans were skipped", 100.0 * facts.skipped_share));
   }
-  if (report.matches_accepted == 0 && facts.steps >= kStopsOfLongDrive &&
-      facts.path_m >= kLongDrive_m) {
+  if (report.matches_accepted == 0 && facts.is_long()) {
     judgement.useless(
         fmt::format("no match was accepted over {:.1f} m, so the map shows odometry "
                     "alone",
@@ -182,6 +214,9 @@ std::string advice(const Facts& facts, const std::string& grade, const QualityIn
   if (grade == kUseless) {
     return "topogeo dvl --log " + inputs.log +
            " --scan 0 --out scan.png  # shows what the laser sees";
+  }
+  if (facts.odometry_useless() && !inputs.tried.contains(Remedy::kLaserOdometry)) {
+    return kLaserOdometry;
   }
   if (facts.skipped_share > kMostSkipped) return "topogeo check-log " + inputs.log;
   const bool disagrees = facts.typical_share > kOdometryDisagrees;
@@ -233,86 +268,6 @@ const char* name_of(PathDisagreement::Kind kind) {
   return "unknown";
 }
 
-std::string stretch_line(const OdometryStretchEntry& s) {
-  return fmt::format(
-      "  stops {} to {} at x {:.1f} m, y {:.1f} m: {:.1f} m long, may be off {:.2f} m and {:.0f} "
-      "deg\n",
-      s.first_stop, s.last_stop, s.x_m, s.y_m, s.length_m, s.off_m, degrees(s.off_rad));
-}
-
-std::string stretch_lines(const std::vector<OdometryStretchEntry>& all) {
-  std::vector<OdometryStretchEntry> open;
-  std::uint64_t open_steps = 0;
-  std::uint64_t held_steps = 0;
-  for (const OdometryStretchEntry& stretch : all) {
-    (stretch.held_by_loop ? held_steps : open_steps) += stretch.last_stop - stretch.first_stop;
-    if (!stretch.held_by_loop) open.push_back(stretch);
-  }
-  if (all.empty()) return {};
-  std::string text = fmt::format("steps without a match: {}", open_steps + held_steps);
-  if (held_steps > 0) text += fmt::format(", {} of them held by loops", held_steps);
-  text += '\n';
-  constexpr std::size_t kMostLines = 3;
-  std::ranges::stable_sort(open, std::greater<>{}, &OdometryStretchEntry::off_m);
-  for (std::size_t i = 0; i < std::min(open.size(), kMostLines); ++i) text += stretch_line(open[i]);
-  if (open.size() > kMostLines) {
-    text += fmt::format("  and {} more in report.json\n", open.size() - kMostLines);
-  }
-  return text;
-}
-
-/// A part whose odometry does not count.
-bool is_left_out(const PathDisagreementEntry& d) {
-  return d.kind == "wheels" || d.kind == "carried";
-}
-
-std::string left_out_line(const PathDisagreementEntry& d) {
-  if (d.kind == "carried") {
-    return fmt::format(
-        "odometry: stop {}: the scans show another place while the wheels stand: the robot was "
-        "carried, and the scans have found it again\n",
-        d.last_stop);
-  }
-  const char* cause =
-      d.corrected_m > d.odometry_m ? "the robot was carried or pushed" : "the wheels spun";
-  return fmt::format(
-      "odometry: stops {} to {}: {:.2f} m by the wheels, {:.2f} m by the scans, {:.0f} deg between "
-      "them: {}, and the scans count\n",
-      d.first_stop, d.last_stop, d.odometry_m, d.corrected_m, degrees(std::fabs(d.turn_rad)),
-      cause);
-}
-
-std::string disagreement_line(const PathDisagreementEntry& d) {
-  const std::string place = fmt::format("stops {} to {}", d.first_stop, d.last_stop);
-  if (d.kind == "turn") {
-    return fmt::format("warning: {}: the map turns by {:.0f} deg more than odometry\n", place,
-                       degrees(d.turn_rad));
-  }
-  return fmt::format("warning: {}: the robot {} {:.2f} m in the map, {:.2f} m by odometry\n", place,
-                     d.kind == "jump" ? "jumps" : "drives", d.corrected_m, d.odometry_m);
-}
-
-std::string disagreement_lines(const std::vector<PathDisagreementEntry>& all) {
-  constexpr std::size_t kMostLines = 3;  // of each sort
-  std::string text;
-  std::size_t left_out = 0;
-  std::size_t warnings = 0;
-  for (const PathDisagreementEntry& d : all) {
-    if (is_left_out(d)) {
-      if (++left_out <= kMostLines) text += left_out_line(d);
-    } else if (++warnings <= kMostLines) {
-      text += disagreement_line(d);
-    }
-  }
-  if (left_out > kMostLines) {
-    text += fmt::format("odometry: {} more such parts in report.json\n", left_out - kMostLines);
-  }
-  if (warnings > kMostLines) {
-    text += fmt::format("warning: {} more such parts in report.json\n", warnings - kMostLines);
-  }
-  return text;
-}
-
 }  // namespace
 
 void add_quality(Report& report, const storage::MapDocument& document,
@@ -334,24 +289,16 @@ void add_quality(Report& report, const storage::MapDocument& document,
   Facts facts = facts_of(report, document);
   facts.typical_share = comparison.typical_share;
   facts.unmapped_stops = inputs.unmapped_stops;
+  facts.without_odometry_share =
+      static_cast<double>(inputs.scans_without_odometry) /
+      static_cast<double>(std::max<std::uint64_t>(report.scans + inputs.scans_without_odometry, 1));
   facts.fewest_recent_matches = kFewestRecentMatches / kUsualRecentMatches * inputs.recent_matches;
   const Judgement judgement = judge(report, facts);
   report.quality.grade = judgement.grade();
   report.quality.reasons = judgement.reasons();
+  report.quality.unreliable =
+      judgement.unreliable() && (facts.is_long() || facts.unmapped_stops >= kStopsOfLongDrive);
   report.quality.advice = advice(facts, judgement.grade(), inputs);
-}
-
-std::string quality_text(const Report& report) {
-  const storage::QualityEntry& quality = report.quality;
-  if (quality.grade.empty()) return {};
-  std::string text = "quality: " + quality.grade;
-  for (std::size_t i = 0; i < quality.reasons.size(); ++i) {
-    text += (i == 0 ? ": " : "; ") + quality.reasons[i];
-  }
-  text += '\n';
-  if (!quality.advice.empty()) text += "try: " + quality.advice + '\n';
-  text += stretch_lines(quality.odometry_stretches);
-  return text + disagreement_lines(quality.path_disagreements);
 }
 
 std::optional<Remedy> advised_remedy(const Report& report) {
@@ -372,11 +319,17 @@ bool is_better(const Report& report, const Report& other) {
   const std::ptrdiff_t rank = rank_of(report.quality.grade);
   const std::ptrdiff_t other_rank = rank_of(other.quality.grade);
   if (rank != other_rank) return rank < other_rank;
-  return open_m(report) < 0.5 * open_m(other);
+  constexpr double kLess = 0.5;
+  if (open_m(report) < kLess * open_m(other)) return true;
+  if (open_m(other) < kLess * open_m(report)) return false;
+  // Odometry from the scans agrees with them by itself.
+  if (report.laser_odometry.has_value() != other.laser_odometry.has_value()) return false;
+  constexpr double kMoreAccepted = 1.25;
+  return accepted_share(report) > kMoreAccepted * accepted_share(other);
 }
 
-bool is_useless(const Report& report) {
-  return report.quality.grade == kUseless;
+bool is_unreliable(const Report& report) {
+  return report.quality.unreliable;
 }
 
 }  // namespace topogeo::results

@@ -4,6 +4,7 @@
 #include <exception>
 #include <iostream>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
 
 #include "topogeo/command_line/command_line.hpp"
@@ -47,7 +48,7 @@ MountingChoice take_found(const localization::FoundMounting& found, pipeline::Lo
   set_mounting(config, found.T_robot_laser);
   topics.T_robot_laser = found.T_robot_laser;
   topics.upside_down |= found.upside_down;
-  return {found.heading_known, found};
+  return {found.heading_known, found, {}};
 }
 
 /// A map is continued with the mounting that it was made with, which no search finds exactly.
@@ -81,6 +82,11 @@ std::string continuation_line(const storage::Report& report) {
     line += fmt::format("{} {} {}", line.back() == ':' ? "" : ",", count, words);
   }
   return line + "\n";
+}
+
+std::uint64_t scans_without_odometry(const scan::CarmenLogStatistics& statistics) {
+  return statistics.skipped_for(scan::SkipReason::kNoOdometry) +
+         statistics.skipped_for(scan::SkipReason::kOdometryEnds);
 }
 
 void print_error(std::ostream& out, const char* name, const pipeline::TrajectoryError& error) {
@@ -219,14 +225,14 @@ MountingChoice choose_mounting(pipeline::LoadedConfig& config, const std::filesy
     const std::string message = pipeline::choose_mounting(config, in_log.T_robot_laser);
     if (!message.empty()) std::cerr << "topogeo: " << message << '\n';
     const bool stated = config.laser_set || in_log.T_robot_laser.has_value();
-    if (config.laser_set) return {true, std::nullopt};
+    if (config.laser_set) return {true, std::nullopt, {}};
     const localization::FoundMounting found = search_mounting(config.config, log, topics);
     // A CARMEN log has the laser at its poses, if it states no other mounting.
     if (!stated && recording::is_recording(log)) return take_found(found, config, topics);
     const std::string warning =
         pipeline::contradiction(found, config.config.local_mapper.T_robot_laser);
     if (!warning.empty()) std::cerr << "topogeo: " << warning << '\n';
-    return {stated, std::nullopt};
+    return {stated, std::nullopt, pipeline::mirroring(found)};
   } catch (const std::runtime_error& error) {
     throw service::BadInputError(error.what());
   }
@@ -251,6 +257,9 @@ Inputs check_inputs(JobOptions& options) {
   Inputs inputs{load(options.config), nullptr, nullptr, {}};
   if (!options.log.empty()) {
     inputs.mounting = choose_mounting(inputs.config, options.log, options.topics);
+    if (!inputs.mounting.mirroring.empty()) {
+      throw service::BadInputError(options.log.string() + ": " + inputs.mounting.mirroring);
+    }
     if (inputs.mounting.found && options.continued) mount_as_in_map(inputs.config, options);
   }
   const pipeline::Config& config = inputs.config.config;
@@ -325,16 +334,10 @@ void add_mounting(storage::Report& report, const Inputs& inputs) {
 void add_quality(storage::Report& report, const Job& job, const storage::MapDocument& document,
                  const MappingFacts& facts) {
   if (job.options.map || job.options.continued) return;
-  results::add_quality(
-      report, document,
-      {job.options.log.string(), job.inputs.mounting.known,
-       job.inputs.config.config.localizer.recent_matches, facts.unmapped_stops, facts.tried});
-}
-
-void check_useful(const JobOptions& options, const storage::Report& report) {
-  if (!results::is_useless(report)) return;
-  throw service::BadInputError(fmt::format("{}: {}; see {}", options.log.string(),
-                                           report.quality.reasons.front(), report.quality.advice));
+  results::add_quality(report, document,
+                       {job.options.log.string(), job.inputs.mounting.known,
+                        job.inputs.config.config.localizer.recent_matches, facts.unmapped_stops,
+                        facts.tried, scans_without_odometry(job.reader.statistics())});
 }
 
 void print_summary(std::ostream& out, const storage::Report& report,
@@ -354,9 +357,17 @@ void print_summary(std::ostream& out, const storage::Report& report,
 Comparison compare(const std::filesystem::path& directory, const std::filesystem::path& reference) {
   const auto truth = storage::read_trajectory_tum(reference);
   const auto odometry = storage::read_trajectory_tum(directory / "odometry.tum");
-  const auto corrected = storage::read_trajectory_tum(directory / "trajectory.tum");
-  return {pipeline::trajectory_error(odometry, truth),
-          pipeline::trajectory_error(corrected, truth)};
+  const std::filesystem::path trajectory = directory / "trajectory.tum";
+  const auto corrected = storage::read_trajectory_tum(trajectory);
+  try {
+    return {pipeline::trajectory_error(odometry, truth),
+            pipeline::trajectory_error(corrected, truth)};
+  } catch (const std::invalid_argument& error) {  // other times
+    throw service::BadInputError(fmt::format(
+        "the results are written, but {} cannot be compared with them: {}; `topogeo compare {} {} "
+        "--max-dt SECONDS` pairs poses that are further apart in time",
+        reference.string(), error.what(), trajectory.string(), reference.string()));
+  }
 }
 
 void print_comparison(std::ostream& out, const Comparison& comparison) {

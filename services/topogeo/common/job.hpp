@@ -61,6 +61,7 @@ void add_map_options(command_line::Command& app, JobOptions& options, StoredMapU
 struct MountingChoice {
   bool known = false;  ///< stated by flag, configuration or log, or found with its heading
   std::optional<localization::FoundMounting> found;  ///< by a search, where nothing states it
+  std::string mirroring{};                           ///< pipeline::mirroring of a stated mounting
 };
 
 /// Takes the laser mounting from --laser, the configuration, the log or, where a recording does not
@@ -127,9 +128,6 @@ struct MappingFacts {
 /// Judges a new map, whose report has its counts, for print_summary.
 void add_quality(storage::Report& report, const Job& job, const storage::MapDocument& document,
                  const MappingFacts& facts = {});
-
-/// Throws service::BadInputError if the map that was made of the log is useless.
-void check_useful(const JobOptions& options, const storage::Report& report);
 
 /// A few lines for people: mapped stops, time taken, place of the results.
 void print_summary(std::ostream& out, const storage::Report& report,

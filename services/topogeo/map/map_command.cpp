@@ -16,6 +16,7 @@
 #include "commands.hpp"
 #include "common/job.hpp"
 #include "common/log_odometry.hpp"
+#include "common/reliability.hpp"
 #include "map/interruption.hpp"
 #include "map/mapped_log.hpp"
 
@@ -73,7 +74,7 @@ int map_log(const JobOptions& options, bool stages) {
   if (interruption.received() != 0)
     return kSignalBase + interruption.received();  // the signal came while writing
   if (options.reference) print_comparison(std::cout, compare(options.out, *options.reference));
-  check_useful(options, report);
+  check_reliable(options, report);
   return 0;
 }
 

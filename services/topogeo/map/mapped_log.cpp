@@ -94,12 +94,21 @@ void finish(MappedLog& mapped, Interruption& interruption) {
   mapped.report = make_report(mapped);
 }
 
-/// The same log from its beginning, to be mapped with a configuration of its own.
+/// The same log from its beginning, for a configuration. Scans without odometry at their time count
+/// if odometry comes from the scans.
+recording::LogReader read_again(const Job& job, const pipeline::Config& config) {
+  if (config.odometry_source != pipeline::OdometrySource::kLaser) return job.reader.from_start();
+  recording::TopicChoice topics = job.options.topics;
+  topics.odometry_use = recording::OdometryUse::kIgnored;
+  return recording::LogReader(job.options.log, config.log, topics);
+}
+
 std::unique_ptr<Job> job_again(const Job& job, pipeline::LoadedConfig config) {
+  recording::LogReader reader = read_again(job, config.config);
   Inputs inputs = job.inputs;
   inputs.config = std::move(config);
   return std::make_unique<Job>(
-      Job{job.options, std::move(inputs), job.reader.from_start(), job.laser_lines});
+      Job{job.options, std::move(inputs), std::move(reader), job.laser_lines});
 }
 
 std::optional<MappedLog> map_again(const MappedLog& first, pipeline::LoadedConfig config,
@@ -145,7 +154,8 @@ bool may_change(Remedy remedy, const MappedLog& mapped) {
 }
 
 /// The configuration with a remedy, after a line on stderr; empty if the log does not show it.
-std::optional<pipeline::LoadedConfig> with_remedy(Remedy remedy, const Job& job) {
+std::optional<pipeline::LoadedConfig> with_remedy(Remedy remedy, const Job& job,
+                                                  const std::string& reason) {
   pipeline::LoadedConfig config = job.inputs.config;
   if (remedy == Remedy::kMoreStops) {
     set_stop_distance(config, 0.5 * config.config.local_mapper.stop_distance_m);
@@ -155,7 +165,7 @@ std::optional<pipeline::LoadedConfig> with_remedy(Remedy remedy, const Job& job)
   }
   if (remedy == Remedy::kLaserOdometry) {
     use_laser_odometry(config);
-    std::cerr << "topogeo: few stops match: mapping again with odometry from the scans\n";
+    std::cerr << "topogeo: " << reason << ": mapping again with odometry from the scans\n";
     return config;
   }
   std::cerr << "topogeo: few stops match: measuring the noise of the odometry\n";
@@ -191,7 +201,8 @@ std::optional<MappedLog> improved(MappedLog mapped, Interruption& interruption) 
     const std::optional<Remedy> remedy = results::advised_remedy(mapped.report);
     if (!remedy || !may_change(*remedy, mapped)) return mapped;
     tried.insert(*remedy);
-    std::optional<pipeline::LoadedConfig> config = with_remedy(*remedy, *mapped.job);
+    std::optional<pipeline::LoadedConfig> config =
+        with_remedy(*remedy, *mapped.job, mapped.report.quality.reasons.front());
     if (config) {
       std::optional<MappedLog> again = map_again(mapped, std::move(*config), interruption);
       if (!again) return std::nullopt;

@@ -16,6 +16,7 @@
 
 #include "commands.hpp"
 #include "common/log_odometry.hpp"
+#include "common/reliability.hpp"
 #include "run/run_log.hpp"
 #include "run/run_supervisor.hpp"
 #include "web/web_run.hpp"
@@ -173,7 +174,7 @@ int run_log(const RunOptions& options) {
   }
   check_usable(options.job, job.reader.statistics());
   check_tracked(options.job, feed);
-  check_useful(options.job, report);
+  check_reliable(options.job, report);
   return service::kOk;
 }
 

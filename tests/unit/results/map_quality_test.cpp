@@ -53,7 +53,7 @@ TEST(MapQuality, AMapOfMatchedStepsIsGood) {
   const storage::Report report = judged(drive(0), 38);
   EXPECT_EQ(report.quality.grade, "good");
   EXPECT_EQ(quality_text(report), "quality: good\n");
-  EXPECT_FALSE(is_useless(report));
+  EXPECT_FALSE(is_unreliable(report));
 }
 
 TEST(MapQuality, AnOpenStepInTheMiddleMakesItPoorAndSaysWhere) {
@@ -93,12 +93,12 @@ TEST(MapQuality, AnUnknownMountingIsCalibratedFirst) {
 
 TEST(MapQuality, ALongDriveWithoutMatchesIsUselessAShortOneIsNot) {
   storage::MapDocument document = drive(0, 0);
-  EXPECT_TRUE(is_useless(judged(document, 0)));
+  EXPECT_TRUE(is_unreliable(judged(document, 0)));
   EXPECT_THAT(quality_text(judged(document, 0)), HasSubstr("no match was accepted over 19.0 m"));
   document.local_maps.resize(5);
   document.trajectory.stops.resize(5);
   std::erase_if(document.edges, [](const auto& edge) { return edge.later_id >= 5; });
-  EXPECT_FALSE(is_useless(judged(document, 0)));
+  EXPECT_FALSE(is_unreliable(judged(document, 0)));
 }
 
 TEST(MapQuality, ARestartOfTheOdometryIsNoWay) {
@@ -119,6 +119,39 @@ TEST(MapQuality, StopsThatAreNotInTheMapMakeItPoor) {
   EXPECT_THAT(quality_text(report), HasSubstr("10 of 100 stops are not in the map"));
   add_quality(report, drive(0), {"drive.clf.gz", true, 3, 2, {}});
   EXPECT_EQ(report.quality.grade, "fair");
+}
+
+TEST(MapQuality, OdometryThatTheScansContradictNearlyEverywhereIsReplaced) {
+  // By odometry a robot drives straight on that turns on the spot by the scans.
+  storage::MapDocument document = drive(0);
+  for (std::uint32_t id = 1; id < kStops; ++id) {
+    topomap::LocalMap& map = document.local_maps[id];
+    map.T_previous_robot = {0.0, 0.0, 0.7};
+    map.track = {{0, 0, document.local_maps[id - 1].T_odom_robot, {}, true},
+                 {1, 1, map.T_odom_robot, map.T_previous_robot, true}};
+    if (id != 5) continue;
+    EXPECT_EQ(judged(document, 38).quality.grade, "good");
+  }
+  const storage::Report report = judged(document, 38);
+  EXPECT_TRUE(is_unreliable(report));
+  EXPECT_THAT(quality_text(report), HasSubstr("the scans contradict the odometry in 100 % of"));
+  EXPECT_EQ(advised_remedy(report), Remedy::kLaserOdometry);
+}
+
+TEST(MapQuality, OdometryThatMostScansLackIsReplaced) {
+  storage::Report report;
+  report.scans = 100;
+  report.matches_tried = report.matches_accepted = 40;
+  report.skipped_lines = {{"no odometry at its time", 300}};
+  const auto judge = [&](std::uint64_t without_odometry) {
+    add_quality(report, drive(0), {"drive.clf.gz", true, 3, 0, {}, without_odometry});
+  };
+  judge(300);
+  EXPECT_EQ(report.quality.grade, "poor");
+  EXPECT_EQ(advised_remedy(report), Remedy::kLaserOdometry);
+  EXPECT_FALSE(is_unreliable(report));  // what is mapped is right
+  judge(0);
+  EXPECT_EQ(report.quality.advice, "topogeo check-log drive.clf.gz");
 }
 
 TEST(MapQuality, AdviceNamesNoRemedyThatWasTried) {
@@ -154,6 +187,16 @@ TEST(MapQuality, TheBetterMapHasMoreScansThenTheBetterGradeThenFewerOpenSteps) {
   short_one.scans = 150;
   EXPECT_TRUE(is_better(poor, short_one));
   EXPECT_FALSE(is_better(short_one, poor));
+}
+
+TEST(MapQuality, OfEquallyPoorMapsMoreAcceptedMatchesCountWithTheSameOdometry) {
+  const storage::Report few = judged(drive(10), 20);
+  storage::Report many = judged(drive(10), 30);
+  EXPECT_TRUE(is_better(many, few));
+  EXPECT_FALSE(is_better(few, many));
+  EXPECT_FALSE(is_better(judged(drive(10), 24), few));
+  many.laser_odometry.emplace();
+  EXPECT_FALSE(is_better(many, few));
 }
 
 TEST(MapQuality, AMapWithoutEdgesIsNotAssessed) {

@@ -22,9 +22,10 @@ enum class Remedy : std::uint8_t {
 struct QualityInputs {
   std::string log;           ///< as the user wrote it, for the suggested command
   bool laser_known = false;  ///< whether log or configuration state the mounting of the laser
-  std::uint32_t recent_matches = 3;  ///< localizer.recent_matches: most for each stop
-  std::uint64_t unmapped_stops = 0;  ///< of a robot that was not found again in its map
-  std::set<Remedy> tried{};          ///< these were tried already
+  std::uint32_t recent_matches = 3;          ///< localizer.recent_matches: most for each stop
+  std::uint64_t unmapped_stops = 0;          ///< of a robot that was not found again in its map
+  std::set<Remedy> tried{};                  ///< these were tried already
+  std::uint64_t scans_without_odometry = 0;  ///< left out, because the log has none at their time
 };
 
 /// Fills the quality of a report, whose counts and skipped lines must be filled. The thresholds and
@@ -37,14 +38,16 @@ void add_quality(storage::Report& report, const storage::MapDocument& document,
 std::optional<Remedy> advised_remedy(const storage::Report& report);
 
 /// Whether a map is better than another of the same log: by a tenth more scans in the map, else by
-/// its grade, else by half the length of path or less that rests on odometry alone.
+/// its grade, else by half the length of path or less that rests on odometry alone, else, with
+/// odometry of the same source, by a quarter more accepted matches of those tried.
 bool is_better(const storage::Report& report, const storage::Report& other);
 
 /// Lines for people: the grade with its reasons and the advice, the steps that rest on odometry
 /// alone, and where map and odometry differ. Empty if the map was not assessed.
 std::string quality_text(const storage::Report& report);
 
-/// Whether the map shows nothing but odometry over a long drive.
-bool is_useless(const storage::Report& report);
+/// Whether the map of a long drive is probably wrong: it shows nothing but odometry, or is poor for
+/// another reason than scans that were left out.
+bool is_unreliable(const storage::Report& report);
 
 }  // namespace topogeo::results

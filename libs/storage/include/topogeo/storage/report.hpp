@@ -100,6 +100,7 @@ struct QualityEntry {
   std::string grade;                 ///< "good", "fair", "poor" or "useless"; "": not assessed
   std::vector<std::string> reasons;  ///< against a better grade
   std::string advice;                ///< command or setting that may help; "": none
+  bool unreliable = false;           ///< probably wrong over a long drive
   std::vector<OdometryStretchEntry> odometry_stretches;
   std::vector<PathDisagreementEntry> path_disagreements;
 
