@@ -207,7 +207,7 @@ std::vector<CoarseMatch> search_coarsely(const CoarseMap& map,
                                          const CoarseWindow& window, double least,
                                          std::size_t count) {
   std::vector<CoarseMatch> found;
-  if (points_m.empty() || map.empty()) return found;
+  if (points_m.empty() || map.empty() || !window.half_width.allFinite()) return found;
   const auto points = static_cast<double>(points_m.size());
   std::vector<Node> leaves = Search(map, points_m, window, least).run();
   const double lowest = leaves.empty() ? 0.0 : kOfBest * leaves.front().bound;

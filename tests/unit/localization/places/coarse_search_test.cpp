@@ -103,6 +103,7 @@ TEST(CoarseSearchTest, FindsNothingThatIsTooUnlike) {
   const Points elsewhere{{0.0, 0.0}, {20.0, 0.0}, {0.0, 20.0}, {20.0, 20.0}};
   EXPECT_TRUE(search_coarsely(map, elsewhere, {{0.0, 0.0, 0.0}, {3.0, 3.0, 3.0}}, 0.5, 3).empty());
   EXPECT_TRUE(search_coarsely(map, {}, {{0.0, 0.0, 0.0}, {3.0, 3.0, 3.0}}, 0.5, 3).empty());
+  EXPECT_TRUE(search_coarsely(map, room(), {{}, {3.0, 3.0, std::nan("")}}, 0.5, 3).empty());
 }
 
 TEST(CoarseSearchTest, BothEndsOfASymmetricCorridorAreFound) {

@@ -62,7 +62,8 @@ struct CoarseWindow {
 };
 
 /// The best places whose score is at least `least` and 85 % of the best one's, best first, at least
-/// 0.75 m or 0.3 rad apart, at most `count`. The same input gives the same bits.
+/// 0.75 m or 0.3 rad apart, at most `count`; none in a window that is not finite. The same input
+/// gives the same bits.
 std::vector<CoarseMatch> search_coarsely(const CoarseMap& map,
                                          std::span<const Eigen::Vector2d> points_m,
                                          const CoarseWindow& window, double least,
