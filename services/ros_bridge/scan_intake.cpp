@@ -93,7 +93,8 @@ std::vector<ScanIntake::Leaving> ScanIntake::take(std::int64_t now_ns) {
   while (!waiting_.empty()) {
     const Waiting& first = waiting_.front();
     const std::int64_t stamp_ns = ros::stamp_ns_of(first.message.header_().stamp_());
-    const bool bracketed = track_.last_ns() && *track_.last_ns() >= stamp_ns;
+    const bool bracketed =
+        options_.without_odometry || (track_.last_ns() && *track_.last_ns() >= stamp_ns);
     if (!bracketed && now_ns < due_ns()) break;
     if (auto scan = finish(first.message)) scans.push_back({*std::move(scan), first.arrival_ns});
     waiting_.pop_front();
@@ -107,7 +108,7 @@ std::int64_t ScanIntake::due_ns() const {
 }
 
 bool ScanIntake::find_mounting(const std::string& laser_frame) {
-  if (!options_.mounting_from_tf) {
+  if (!options_.mounting_from_tf || (options_.without_odometry && robot_frame_.empty())) {
     mounting_ = ros::LaserMounting{options_.T_robot_laser};
     return true;
   }
@@ -154,13 +155,24 @@ std::optional<scan::Scan> ScanIntake::finish(const ros::LaserScan& message) {
   }
 }
 
+void ScanIntake::follow_clock(std::int64_t stamp_ns) {
+  if (!options_.without_odometry || next_sequence_ == 0 ||
+      stamp_ns >= last_stamp_ns_ - kTimeJump_ns) {
+    return;
+  }
+  last_stamp_ns_ = std::numeric_limits<std::int64_t>::min();
+  next_sequence_ = 0;
+  ++epochs_;
+}
+
 std::optional<scan::Scan> ScanIntake::finish(const ros::Sweep& sweep, std::int64_t stamp_ns) {
+  follow_clock(stamp_ns);
   if (stamp_ns <= last_stamp_ns_) {
     count(IntakeDrop::kOldScan, std::to_string(stamp_ns));
     return std::nullopt;
   }
   const auto odometry = track_.at(stamp_ns);
-  if (!odometry) {
+  if (!odometry && !options_.without_odometry) {
     count(IntakeDrop::kNoOdometry, "at the time " + std::to_string(stamp_ns));
     return std::nullopt;
   }
@@ -171,9 +183,13 @@ std::optional<scan::Scan> ScanIntake::finish(const ros::Sweep& sweep, std::int64
     return std::nullopt;
   }
   scan::Scan scan;
-  scan.ranges_m = ranges_of(sweep, stamp_ns, odometry->T_odom_robot);
+  if (odometry) scan.T_odom_robot = odometry->T_odom_robot;
+  scan.ranges_m = ranges_of(sweep, stamp_ns, scan.T_odom_robot);
   scan.stamp_ns = stamp_ns;
-  scan.T_odom_robot = odometry->T_odom_robot;
+  if (options_.without_odometry && ros::same_beams(sweep.pattern, *pattern_)) {
+    scan.first_beam_s = sweep.first_beam_s;
+    scan.beam_step_s = sweep.time_step_s;
+  }
   scan.sequence = next_sequence_++;
   scan.odometry_epoch = epochs_;
   // The configured laser frame may be rotated against that of /tf: only the positions must agree.
@@ -191,7 +207,7 @@ std::vector<float> ScanIntake::ranges_of(const ros::Sweep& sweep, std::int64_t s
   ros::limit_ranges(straight.ranges_m, options_.range_limit_m);
   if (options_.detect_no_return) no_return_.add(straight.ranges_m, T_odom_robot);
   if (no_return_.found()) ros::limit_ranges(straight.ranges_m, no_return_.found()->least_m);
-  if (sweep.time_step_s != 0.0) {
+  if (sweep.time_step_s != 0.0 && !options_.without_odometry) {
     straight.ranges_m =
         ros::deskewed(straight, [&](double after_s) -> std::optional<geometry::Pose2> {
           const auto odometry = track_.at(stamp_ns + std::llround(after_s * 1e9));

@@ -49,6 +49,9 @@ struct IntakeOptions {
   ros::SweepOrder sweep = ros::SweepOrder::kNone;
   double range_limit_m = 1e9;    ///< ranges at or above it are no echo
   bool detect_no_return = true;  ///< see CarmenLogOptions
+  /// Scans need no odometry, and have the times of their beams. Without a frame of the robot, the
+  /// laser is where it is configured.
+  bool without_odometry = false;
 };
 
 /// Arrival times are of a steady clock; stamps are those of the messages.
@@ -106,6 +109,8 @@ class ScanIntake {
   std::optional<scan::Scan> finish(const ros::Sweep& sweep, std::int64_t stamp_ns);
   std::vector<float> ranges_of(const ros::Sweep& sweep, std::int64_t stamp_ns,
                                const geometry::Pose2& T_odom_robot);
+  /// Begins another epoch for a scan without odometry whose clock was set back.
+  void follow_clock(std::int64_t stamp_ns);
 
   IntakeOptions options_;
   std::string robot_frame_;

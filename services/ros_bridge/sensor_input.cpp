@@ -32,6 +32,7 @@ IntakeOptions intake_options(const RosSide& ros) {
   options.longest_extrapolation_ns = std::llround(settings.longest_extrapolation_s * 1e9);
   options.most_beams = msg::kMaxBeams;
   options.sweep = settings.sweep;
+  options.without_odometry = settings.odometry_source == OdometrySource::kLaser;
   options.range_limit_m = ros.service().setup().config.config.log.range_max_m;
   options.detect_no_return = ros.service().setup().config.config.log.detect_no_return;
   return options;
@@ -73,7 +74,7 @@ SensorInput::SensorInput(RosSide& ros)
   for (const char* counter : {"scans_sent", "odometry_sent"}) {
     ros.service().status().set_counter(counter, 0.0);
   }
-  ros.service().status().wait_for("odometry and scans of ROS");
+  ros.service().status().wait_for(is_from_scans() ? "scans of ROS" : "odometry and scans of ROS");
   state_timer_ = ros.service().loop().add_timer(kStatePeriod, [this] { publish_state(); });
 }
 
@@ -184,7 +185,9 @@ void SensorInput::on_scan(const ros::LaserScan& message, const messaging::Sample
 
 void SensorInput::release(std::int64_t now_ns) {
   const bool known = intake_.no_return().has_value();
-  for (const ScanIntake::Leaving& leaving : intake_.take(now_ns)) publish(leaving);
+  for (ScanIntake::Leaving& leaving : intake_.take(now_ns)) {
+    is_from_scans() ? follow(std::move(leaving)) : publish(leaving);
+  }
   if (!known && intake_.no_return()) spdlog::info("{}", text_of(*intake_.no_return()));
   messaging::EventLoop& loop = ros_.service().loop();
   loop.cancel_timer(release_timer_);
@@ -194,11 +197,39 @@ void SensorInput::release(std::int64_t now_ns) {
       [this] { release(steady_now_ns()); });
 }
 
+bool SensorInput::is_from_scans() const {
+  return ros_.settings().odometry_source == OdometrySource::kLaser;
+}
+
+std::uint64_t SensorInput::epoch_of(const scan::Scan& scan) const {
+  if (!is_from_scans()) return epoch();
+  return epoch_salt_ + intake_epochs_ + laser_epochs_ + scan.odometry_epoch;
+}
+
+std::uint64_t SensorInput::numbered() const {
+  return is_from_scans() ? scans_placed_ : intake_.scans();
+}
+
+void SensorInput::follow(ScanIntake::Leaving leaving) {
+  if (!laser_odometry_ || intake_epochs_ != leaving.scan.odometry_epoch) {
+    const pipeline::Config& config = ros_.service().setup().config.config;
+    if (laser_odometry_) laser_epochs_ += laser_odometry_->counts().breaks;
+    laser_odometry_.emplace(config.local_mapper.T_robot_laser,
+                            config.local_mapper.local_map.points_range_m);
+    intake_epochs_ = leaving.scan.odometry_epoch;
+  }
+  laser_odometry_->add(std::move(leaving.scan));
+  for (scan::Scan& scan : laser_odometry_->take()) {
+    scans_placed_ = scan.sequence + 1;
+    publish({std::move(scan), leaving.arrival_ns});
+  }
+}
+
 void SensorInput::publish(const ScanIntake::Leaving& leaving) {
   const scan::Scan& scan = leaving.scan;
-  if (on_reading) on_reading(scan.stamp_ns, epoch(), scan.T_odom_robot);
+  if (on_reading) on_reading(scan.stamp_ns, epoch_of(scan), scan.T_odom_robot);
   msg::Scan message = service::to_msg(scan, ros_.service().robot_id());
-  message.odometry_epoch(epoch());
+  message.odometry_epoch(epoch_of(scan));
   if (!scans_.write(message)) {
     ros_.service().status().fault("send blocked", "scan " + std::to_string(scan.sequence));
     return;
@@ -215,6 +246,9 @@ void SensorInput::publish_state() {
   status.set_counter("odometry_sent", static_cast<double>(odometry_sent_));
   status.set_counter("scans_adapted", static_cast<double>(intake_.adapted()));
   status.set_counter("scan_latency_ms", static_cast<double>(latency_ns_) * 1e-6);
+  if (laser_odometry_) {
+    ros_.set_complaints("scan that matches no others", laser_odometry_->counts().unplaced, "");
+  }
   for (std::size_t i = 0; i < kIntakeDrops; ++i) {
     const auto drop = static_cast<IntakeDrop>(i);
     ros_.set_complaints(std::string(describe(drop)), intake_.dropped(drop), intake_.detail(drop));
@@ -222,7 +256,7 @@ void SensorInput::publish_state() {
   const bool flows = scans_sent_ > scans_at_state_;
   scans_at_state_ = scans_sent_;
   std::string missing;
-  if (odometry_sent_ == 0) missing = "odometry of ROS";
+  if (odometry_sent_ == 0 && !is_from_scans()) missing = "odometry of ROS";
   if (!flows) missing += missing.empty() ? "scans of ROS" : " and scans of ROS";
   const msg::ServiceState state = missing.empty() ? msg::kServiceRunning : msg::kServiceWaiting;
   const std::string text = ros_.recent_complaint();
@@ -240,8 +274,8 @@ void SensorInput::finish() {
   msg::StreamEnd end;
   messaging::set_header(end, ros_.service().robot_id(), last_scan_ns_, 0);
   end.stage(msg::kStageGateway);
-  end.count(intake_.scans());
-  end.last_id(intake_.scans() == 0 ? 0 : intake_.scans() - 1);
+  end.count(numbered());
+  end.last_id(numbered() == 0 ? 0 : numbered() - 1);
   if (!stream_end_.write(end) || !stream_end_.wait_for_acknowledgments(kLastDelivery)) {
     ros_.service().status().fault("readers missed the stream end", "at the end");
   }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "topogeo/localization/tracking/laser_odometry.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/stream.h"
@@ -45,9 +46,15 @@ class SensorInput {
   void on_scan(const ros::LaserScan& message, const messaging::SampleInfo& info);
   void add(const geometry::OdometrySample& sample);
   void release(std::int64_t now_ns);
+  /// Odometry from the scans places what has left the intake.
+  void follow(ScanIntake::Leaving leaving);
   void publish(const ScanIntake::Leaving& leaving);
   void publish_state();
+  [[nodiscard]] bool is_from_scans() const;
   [[nodiscard]] std::uint64_t epoch() const { return epoch_salt_ + intake_.epochs(); }
+  [[nodiscard]] std::uint64_t epoch_of(const scan::Scan& scan) const;
+  /// Scans to be published in this epoch of the intake, those before included.
+  [[nodiscard]] std::uint64_t numbered() const;
 
   RosSide& ros_;
   ScanIntake intake_;
@@ -59,6 +66,10 @@ class SensorInput {
   messaging::Writer<msg::Scan> scans_;
   messaging::Writer<msg::Odometry> odometry_;
   messaging::Writer<msg::StreamEnd> stream_end_;
+  std::optional<localization::LaserOdometry> laser_odometry_;
+  std::uint64_t laser_epochs_ = 0;   // breaks of its track
+  std::uint64_t intake_epochs_ = 0;  // in which it began
+  std::uint64_t scans_placed_ = 0;   // in this epoch of the intake
   std::uint64_t odometry_sent_ = 0;
   std::uint64_t scans_sent_ = 0;
   std::int64_t last_scan_ns_ = 0;

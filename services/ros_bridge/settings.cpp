@@ -156,8 +156,10 @@ ConfigSchema describe(Settings& settings) {
   describe_directions(schema, settings);
   describe_qos(schema, settings);
   schema.add("odometry.source", &settings.odometry_source,
-             {{"topic", OdometrySource::kTopic}, {"tf", OdometrySource::kTransforms}},
-             "the topic of the odometry, or odom -> robot of /tf");
+             {{"topic", OdometrySource::kTopic},
+              {"tf", OdometrySource::kTransforms},
+              {"laser", OdometrySource::kLaser}},
+             "the topic of the odometry, odom -> robot of /tf, or none: odometry from the scans");
   schema.add("odometry.wait_s", &settings.odometry_wait_s, 0.0, 1.0, "s",
              "longest time that a scan waits for the odometry after it; 0: the scan is published "
              "at once, with the last odometry extrapolated by its speeds");

@@ -14,7 +14,7 @@
 namespace topogeo::ros_bridge {
 
 enum class Direction { kIn, kOut, kOff };
-enum class OdometrySource { kTopic, kTransforms };
+enum class OdometrySource { kTopic, kTransforms, kLaser };
 
 /// The direction of each topic, in from ROS or out to it.
 struct Directions {

@@ -54,6 +54,38 @@ TEST_F(ScanIntakeTest, GivesAScanTheOdometryOfItsTime) {
   EXPECT_EQ(leaving[0].scan.stamp_ns, stamp(10.5));
 }
 
+class ScanIntakeWithoutOdometry : public ScanIntakeTest {
+ protected:
+  ScanIntakeWithoutOdometry() : ScanIntakeTest(without_odometry()) {}
+  static IntakeOptions without_odometry() {
+    IntakeOptions options = options_of();
+    options.without_odometry = true;
+    options.odometry_wait_ns = kSecond_ns;
+    return options;
+  }
+};
+
+TEST_F(ScanIntakeWithoutOdometry, PassesScansOnAtOnce) {
+  scan(10.0);
+  scan(10.1);
+  const auto leaving = intake_.take(0);
+  ASSERT_EQ(leaving.size(), 2U);
+  EXPECT_EQ(leaving[1].scan.sequence, 1U);
+  EXPECT_EQ(intake_.dropped(IntakeDrop::kNoOdometry), 0U);
+}
+
+TEST_F(ScanIntakeWithoutOdometry, BeginsAnewWhereTheClockIsSetBack) {
+  scan(10.0);
+  ASSERT_EQ(intake_.take(0).size(), 1U);
+  const std::uint64_t epochs = intake_.epochs();
+  scan(2.0);
+  scan(2.1);
+  const auto leaving = intake_.take(0);
+  ASSERT_EQ(leaving.size(), 2U);
+  EXPECT_EQ(leaving[0].scan.sequence, 0U);
+  EXPECT_EQ(leaving[0].scan.odometry_epoch, epochs + 1);
+}
+
 TEST_F(ScanIntakeTest, CarriesTheLastOdometryOnForAWhile) {
   odometry(10.0, 1.0);
   scan(10.2);
