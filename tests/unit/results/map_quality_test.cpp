@@ -122,7 +122,7 @@ TEST(MapQuality, StopsThatAreNotInTheMapMakeItPoor) {
 }
 
 TEST(MapQuality, OdometryThatTheScansContradictNearlyEverywhereIsReplaced) {
-  // By odometry a robot drives straight on that turns on the spot by the scans.
+  // A robot that drives straight on by its odometry turns on the spot by its scans.
   storage::MapDocument document = drive(0);
   for (std::uint32_t id = 1; id < kStops; ++id) {
     topomap::LocalMap& map = document.local_maps[id];
