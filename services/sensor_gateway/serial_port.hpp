@@ -1,10 +1,5 @@
-// A serial port in a thread of its own: retries until the port opens, reads, writes in order, and
-// detects its loss. Works with pseudo-terminals, too.
-//
-// Boost.Asio does the work: its header-only part is in use anyway, it supports 500,000 baud and
-// parity, reads and writes without blocking each other, and reports an unplugged adapter as an
-// error of the pending read. libserialport, the other candidate, queries modem lines when it opens
-// a port, which a pseudo-terminal does not have.
+// A port of a device in a thread of its own: retries until it opens, reads, writes in order, and
+// detects its loss. It is a serial port or, in its place, a network connection (port_stream.hpp).
 #pragma once
 
 #include <chrono>
@@ -22,7 +17,7 @@ namespace topogeo::sensor_gateway {
 std::int64_t steady_now_ns();
 
 struct PortOptions {
-  std::string path;  ///< of the device or of a link to it, for example /dev/ttyUSB0
+  std::string path;  ///< a device or a link to it, for example /dev/ttyUSB0; or tcp://HOST:PORT
   /// Wait before retrying a port that cannot be opened or was lost: doubled from try to try, up to
   /// the longest, and reset as soon as something is received.
   std::chrono::milliseconds first_wait{100};
@@ -43,8 +38,8 @@ struct PortEvent {
 class SerialPort {
  public:
   /// Starts the thread; `notify` is called in it. Throws std::invalid_argument when the path is
-  /// empty or a wait is not positive. Every other problem of a port comes as an event, because it
-  /// may pass.
+  /// empty or no address, or a wait is not positive. Every other problem of a port comes as an
+  /// event, because it may pass.
   SerialPort(const PortOptions& options, std::function<void(PortEvent)> notify);
   SerialPort(const SerialPort&) = delete;
   SerialPort& operator=(const SerialPort&) = delete;

@@ -110,7 +110,7 @@ void FaultInjector::tick() {
 
 void FaultInjector::set(const Fault& fault, bool on) {
   if (fault.kind == msg::kSimulatedUnplug) {
-    PseudoTerminal& port = devices_.port(fault.device);
+    DevicePort& port = devices_.port(fault.device);
     if (on) {
       port.unplug();
     } else {

@@ -51,7 +51,7 @@ void add_options(command_line::Command& app, Arguments& arguments) {
   simulation::RobotOptions& robot = arguments.options.devices.robot;
   app.add_option("--world", arguments.world, "world file")->required()->type_name("FILE");
   app.add_option("--laser-port", arguments.options.devices.laser_port,
-                 "path of the link to the laser's port")
+                 "path of the link to the laser's port, or tcp://ADDRESS:PORT")
       ->required();
   app.add_option("--base-port", arguments.options.devices.base_port,
                  "path of the link to the base's port")

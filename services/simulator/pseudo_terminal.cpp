@@ -77,7 +77,7 @@ devices::LineSettings PseudoTerminal::host(devices::Parity parity) const {
   return {support::line_rate(device_end_.get()), parity};
 }
 
-std::vector<std::uint8_t> PseudoTerminal::receive() const {
+std::vector<std::uint8_t> PseudoTerminal::receive() {
   // One read may end at the bytes of an earlier write. Linux delivers bytes still under way only to
   // a read that finds none.
   std::vector<std::uint8_t> bytes;
@@ -88,7 +88,7 @@ std::vector<std::uint8_t> PseudoTerminal::receive() const {
   return bytes;
 }
 
-std::size_t PseudoTerminal::send(std::span<const std::uint8_t> bytes) const {
+std::size_t PseudoTerminal::send(std::span<const std::uint8_t> bytes) {
   if (bytes.empty()) return 0;
   const ssize_t sent = ::write(device_end_.get(), bytes.data(), bytes.size());
   return bytes.size() - (sent > 0 ? static_cast<std::size_t>(sent) : 0);

@@ -9,34 +9,34 @@
 #include "topogeo/devices/serial_driver.hpp"
 #include "topogeo/support/file_descriptor.hpp"
 
+#include "device_port.hpp"
+
 namespace topogeo::simulator {
 
 /// A pseudo-terminal behind a link of a fixed name, like a device in /dev that keeps its name when
 /// it is plugged in again.
-class PseudoTerminal {
+class PseudoTerminal final : public DevicePort {
  public:
   /// Not yet plugged in.
   explicit PseudoTerminal(std::filesystem::path link);
-  PseudoTerminal(const PseudoTerminal&) = delete;
-  PseudoTerminal& operator=(const PseudoTerminal&) = delete;
   /// Removes the link.
-  ~PseudoTerminal();
+  ~PseudoTerminal() override;
 
   /// Makes the port appear, at 9600 baud. An existing link, left by a simulator that was killed, is
   /// replaced. Throws std::runtime_error naming the path when it is something else or no terminal
   /// is available.
-  void plug();
+  void plug() override;
   /// Makes the port disappear: programs that have it open read an error.
-  void unplug();
-  [[nodiscard]] bool plugged() const { return host_end_.is_open(); }
+  void unplug() override;
+  [[nodiscard]] bool plugged() const override { return host_end_.is_open(); }
 
   /// The rate set by the program at the other end. A Linux pseudo-terminal does not keep the
   /// parity, so the result has `parity`.
-  [[nodiscard]] devices::LineSettings host(devices::Parity parity) const;
+  [[nodiscard]] devices::LineSettings host(devices::Parity parity) const override;
   /// Everything that the program has written since the last call; empty when there is nothing.
-  [[nodiscard]] std::vector<std::uint8_t> receive() const;
+  [[nodiscard]] std::vector<std::uint8_t> receive() override;
   /// Bytes that do not fit, because no program reads, are lost as on a line. Returns their number.
-  std::size_t send(std::span<const std::uint8_t> bytes) const;
+  std::size_t send(std::span<const std::uint8_t> bytes) override;
 
   [[nodiscard]] const std::filesystem::path& link() const { return link_; }
 

@@ -39,21 +39,21 @@ SimulatedDevices::SimulatedDevices(world::World world, const DeviceOptions& opti
                                              [this](const simulation::BeamPattern& beams,
                                                     std::int64_t) { return robot_.scan(beams); })),
       base_(simulation::make_base_emulator(base_settings(options))),
-      laser_port_(options.laser_port),
-      base_port_(options.base_port) {
-  laser_port_.plug();
-  base_port_.plug();
+      laser_port_(make_device_port(options.laser_port)),
+      base_port_(make_device_port(options.base_port)) {
+  laser_port_->plug();
+  base_port_->plug();
 }
 
 void SimulatedDevices::run_until(std::int64_t now_ns) {
-  exchange(*laser_, laser_port_, laser_->parity());
-  exchange(*base_, base_port_, devices::Parity::kNone);
+  exchange(*laser_, *laser_port_, laser_->parity());
+  exchange(*base_, *base_port_, devices::Parity::kNone);
   while (now_ns_ < now_ns) {
     const std::int64_t due_ns = std::min(laser_->due_ns(), base_->due_ns());
     advance(std::min({now_ns, now_ns_ + kPiece_ns, std::max(due_ns, now_ns_ + 1)}));
   }
-  exchange(*laser_, laser_port_, laser_->parity());
-  exchange(*base_, base_port_, devices::Parity::kNone);
+  exchange(*laser_, *laser_port_, laser_->parity());
+  exchange(*base_, *base_port_, devices::Parity::kNone);
 }
 
 void SimulatedDevices::advance(std::int64_t to_ns) {
@@ -67,15 +67,18 @@ void SimulatedDevices::advance(std::int64_t to_ns) {
   laser_->tick(now_ns_);
 }
 
-void SimulatedDevices::exchange(simulation::SerialDevice& device, const PseudoTerminal& port,
+void SimulatedDevices::exchange(simulation::SerialDevice& device, DevicePort& port,
                                 devices::Parity parity) {
   if (!port.plugged()) {  // the device's output is lost
     static_cast<void>(device.take_output({}, now_ns_));
     return;
   }
-  const devices::LineSettings host = port.host(parity);
-  if (host.baud == 0) return;
   const std::vector<std::uint8_t> received = port.receive();
+  const devices::LineSettings host = port.host(parity);
+  if (host.baud == 0) {  // no program is there
+    static_cast<void>(device.take_output({}, now_ns_));
+    return;
+  }
   if (!received.empty()) device.receive(received, host, now_ns_);
   bytes_lost_ += port.send(device.take_output(host, now_ns_));
 }

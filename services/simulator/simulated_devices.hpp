@@ -12,14 +12,14 @@
 #include "topogeo/simulation/simulated_robot.hpp"
 #include "topogeo/world/world.hpp"
 
-#include "pseudo_terminal.hpp"
+#include "device_port.hpp"
 
 namespace topogeo::simulator {
 
 enum class Device { kLaser, kBase };
 
 struct DeviceOptions {
-  std::filesystem::path laser_port;  ///< link to create
+  std::filesystem::path laser_port;  ///< link to create, or tcp://ADDRESS:PORT
   std::filesystem::path base_port;
   simulation::BaseEmulatorSettings base;    ///< its seed is that of the robot
   simulation::LaserEmulatorSettings laser;  ///< its seed is that of the robot
@@ -30,7 +30,7 @@ struct DeviceOptions {
 class SimulatedDevices {
  public:
   /// The devices are switched on at time 0, with their ports plugged in. Throws like
-  /// SimulatedRobot, PseudoTerminal::plug and the emulators.
+  /// SimulatedRobot, make_device_port(), DevicePort::plug and the emulators.
   SimulatedDevices(world::World world, const DeviceOptions& options);
 
   /// Advances the world and the devices to `now_ns` and exchanges bytes with the ports.
@@ -46,8 +46,8 @@ class SimulatedDevices {
   [[nodiscard]] simulation::SimulatedRobot& robot() { return robot_; }
   [[nodiscard]] simulation::LaserEmulator& laser() { return *laser_; }
   [[nodiscard]] simulation::BaseEmulator& base() { return *base_; }
-  [[nodiscard]] PseudoTerminal& port(Device device) {
-    return device == Device::kLaser ? laser_port_ : base_port_;
+  [[nodiscard]] DevicePort& port(Device device) {
+    return device == Device::kLaser ? *laser_port_ : *base_port_;
   }
   [[nodiscard]] std::int64_t now_ns() const { return now_ns_; }
   /// Bytes from the devices that were not read in time.
@@ -55,14 +55,13 @@ class SimulatedDevices {
 
  private:
   void advance(std::int64_t to_ns);
-  void exchange(simulation::SerialDevice& device, const PseudoTerminal& port,
-                devices::Parity parity);
+  void exchange(simulation::SerialDevice& device, DevicePort& port, devices::Parity parity);
 
   simulation::SimulatedRobot robot_;
   std::unique_ptr<simulation::LaserEmulator> laser_;
   std::unique_ptr<simulation::BaseEmulator> base_;
-  PseudoTerminal laser_port_;
-  PseudoTerminal base_port_;
+  std::unique_ptr<DevicePort> laser_port_;
+  std::unique_ptr<DevicePort> base_port_;
   std::int64_t now_ns_ = 0;
   std::uint64_t bytes_lost_ = 0;
 };

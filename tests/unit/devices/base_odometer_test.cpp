@@ -15,34 +15,35 @@
 namespace topogeo::devices {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
-constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr std::int64_t kOdometerMs_ns = 1'000'000;
+constexpr std::int64_t kOdometerSecond_ns = 1'000'000'000;
 
 TEST(DeviceClock, FindsTheLeastDelayAndNeverJumps) {
-  DeviceClock clock(10 * kMs);
+  DeviceClock clock(10 * kOdometerMs_ns);
   support::Random random(1);
   std::int64_t last_ns = 0;
-  for (std::int64_t device_ns = 0; device_ns < 100 * kSecond; device_ns += 100 * kMs) {
+  for (std::int64_t device_ns = 0; device_ns < 100 * kOdometerSecond_ns;
+       device_ns += 100 * kOdometerMs_ns) {
     // The device is 3 s behind us and its clock slow by 100 ppm; messages take 10 to 60 ms.
-    const std::int64_t true_ns = 3 * kSecond + device_ns + device_ns / 10'000;
+    const std::int64_t true_ns = 3 * kOdometerSecond_ns + device_ns + device_ns / 10'000;
     const auto delay_ns = static_cast<std::int64_t>(random.below(50'000'000));
-    const std::int64_t stamp_ns = clock.map(device_ns, true_ns + 10 * kMs + delay_ns);
-    if (device_ns > 10 * kSecond) {
+    const std::int64_t stamp_ns = clock.map(device_ns, true_ns + 10 * kOdometerMs_ns + delay_ns);
+    if (device_ns > 10 * kOdometerSecond_ns) {
       EXPECT_NEAR(static_cast<double>(stamp_ns - true_ns), 0.0, 5e6) << device_ns;
       EXPECT_NEAR(static_cast<double>(stamp_ns - last_ns), 100e6, 2.1e6) << device_ns;
     }
     EXPECT_GT(stamp_ns, last_ns);
-    EXPECT_LE(stamp_ns, true_ns + 10 * kMs + delay_ns);
+    EXPECT_LE(stamp_ns, true_ns + 10 * kOdometerMs_ns + delay_ns);
     last_ns = stamp_ns;
   }
 }
 
 TEST(DeviceClock, StaysOrderedWhenTheDeviceStartsAnew) {
   DeviceClock clock(0);
-  EXPECT_EQ(clock.map(5 * kSecond, 7 * kSecond), 7 * kSecond);
+  EXPECT_EQ(clock.map(5 * kOdometerSecond_ns, 7 * kOdometerSecond_ns), 7 * kOdometerSecond_ns);
   clock.restart();
-  EXPECT_EQ(clock.map(0, 7 * kSecond), 7 * kSecond + 1);
-  EXPECT_EQ(clock.map(kSecond, 8 * kSecond), 8 * kSecond);
+  EXPECT_EQ(clock.map(0, 7 * kOdometerSecond_ns), 7 * kOdometerSecond_ns + 1);
+  EXPECT_EQ(clock.map(kOdometerSecond_ns, 8 * kOdometerSecond_ns), 8 * kOdometerSecond_ns);
 }
 
 /// A base at heading 0, `forward_m` ahead of its pose at power-on.
@@ -71,10 +72,11 @@ class BaseOdometerTest : public testing::Test {
 
 TEST_F(BaseOdometerTest, DropsOneReportThatJumpsAndKeepsThePose) {
   for (std::uint32_t i = 0; i < 30; ++i) {
-    EXPECT_EQ(take(1000 + 32 * i, 1.0, std::int64_t{i} * 125 * kMs).verdict, Verdict::kGood);
+    EXPECT_EQ(take(1000 + 32 * i, 1.0, std::int64_t{i} * 125 * kOdometerMs_ns).verdict,
+              Verdict::kGood);
   }
-  EXPECT_EQ(take(1960, 19.0, 3750 * kMs).verdict, Verdict::kImplausible);
-  const auto after = take(1992, 1.0, 3875 * kMs);
+  EXPECT_EQ(take(1960, 19.0, 3750 * kOdometerMs_ns).verdict, Verdict::kImplausible);
+  const auto after = take(1992, 1.0, 3875 * kOdometerMs_ns);
   EXPECT_EQ(after.verdict, Verdict::kGood);
   EXPECT_NEAR(after.odometry.T_odom_robot.x_m, 0.0, 0.01);
 }
@@ -84,26 +86,28 @@ class ResumedOdometerTest : public BaseOdometerTest {
  protected:
   ResumedOdometerTest() {
     for (std::uint32_t i = 0; i <= 30; ++i) {
-      (void)take(1000 + 32 * i, 0.02 * i, std::int64_t{i} * 125 * kMs);
+      (void)take(1000 + 32 * i, 0.02 * i, std::int64_t{i} * 125 * kOdometerMs_ns);
     }
     next_.resume(*odometer_.state());
   }
-  static constexpr std::int64_t kLast_ns = std::int64_t{30} * 125 * kMs;
+  static constexpr std::int64_t kLast_ns = std::int64_t{30} * 125 * kOdometerMs_ns;
   BaseOdometer next_{BaseSettings{}};
 };
 
 TEST_F(ResumedOdometerTest, GoesOnWhereTheBaseHasCountedTo) {
-  const auto result = next_.take(standing(1960 + 512, 1.1), kLast_ns + 2 * kSecond + 60 * kMs);
+  const auto result = next_.take(standing(1960 + 512, 1.1),
+                                 kLast_ns + 2 * kOdometerSecond_ns + 60 * kOdometerMs_ns);
   EXPECT_EQ(result.verdict, Verdict::kGood);
   EXPECT_TRUE(next_.has_resumed());
   EXPECT_NEAR(result.odometry.T_odom_robot.x_m, 1.1, 0.01) << "driven on meanwhile";
-  EXPECT_EQ(next_.take(standing(1960 + 544, 1.1), kLast_ns + 2185 * kMs).verdict, Verdict::kGood);
+  EXPECT_EQ(next_.take(standing(1960 + 544, 1.1), kLast_ns + 2185 * kOdometerMs_ns).verdict,
+            Verdict::kGood);
 }
 
 TEST_F(ResumedOdometerTest, OneWrongReportDoesNotCostIt) {
-  EXPECT_EQ(next_.take(standing(1960 + 512, 19.0), kLast_ns + 2 * kSecond).verdict,
+  EXPECT_EQ(next_.take(standing(1960 + 512, 19.0), kLast_ns + 2 * kOdometerSecond_ns).verdict,
             Verdict::kImplausible);
-  const auto result = next_.take(standing(1960 + 544, 0.7), kLast_ns + 2125 * kMs);
+  const auto result = next_.take(standing(1960 + 544, 0.7), kLast_ns + 2125 * kOdometerMs_ns);
   EXPECT_TRUE(next_.has_resumed());
   EXPECT_NEAR(result.odometry.T_odom_robot.x_m, 0.7, 0.01);
 }
@@ -114,9 +118,10 @@ TEST_F(ResumedOdometerTest, BeginsAnewWithABaseThatWasSwitchedOffOrAnotherOne) {
        std::vector<std::pair<std::uint32_t, double>>{{200, 0.0}, {1960 + 512, 12.0}}) {
     BaseOdometer other{BaseSettings{}};
     other.resume(*odometer_.state());
-    EXPECT_EQ(other.take(standing(ticks, forward_m), kLast_ns + 2 * kSecond).verdict,
+    EXPECT_EQ(other.take(standing(ticks, forward_m), kLast_ns + 2 * kOdometerSecond_ns).verdict,
               Verdict::kImplausible);
-    const auto result = other.take(standing(ticks + 32, forward_m), kLast_ns + 2125 * kMs);
+    const auto result =
+        other.take(standing(ticks + 32, forward_m), kLast_ns + 2125 * kOdometerMs_ns);
     EXPECT_EQ(result.verdict, Verdict::kGood);
     EXPECT_FALSE(other.has_resumed());
     EXPECT_EQ(result.odometry.T_odom_robot, geometry::Pose2{});
@@ -125,10 +130,10 @@ TEST_F(ResumedOdometerTest, BeginsAnewWithABaseThatWasSwitchedOffOrAnotherOne) {
 
 TEST_F(BaseOdometerTest, BelievesAPlaceThatStays) {
   for (std::uint32_t i = 0; i < 30; ++i)
-    (void)take(1000 + 32 * i, 1.0, std::int64_t{i} * 125 * kMs);
+    (void)take(1000 + 32 * i, 1.0, std::int64_t{i} * 125 * kOdometerMs_ns);
   std::vector<Verdict> verdicts;
   for (std::uint32_t i = 30; i < 34; ++i) {
-    verdicts.push_back(take(1000 + 32 * i, 2.0, std::int64_t{i} * 125 * kMs).verdict);
+    verdicts.push_back(take(1000 + 32 * i, 2.0, std::int64_t{i} * 125 * kOdometerMs_ns).verdict);
   }
   EXPECT_EQ(verdicts, (std::vector{Verdict::kImplausible, Verdict::kImplausible, Verdict::kGood,
                                    Verdict::kGood}));
@@ -136,18 +141,18 @@ TEST_F(BaseOdometerTest, BelievesAPlaceThatStays) {
 
 TEST_F(BaseOdometerTest, DropsReportsOfTheSameTimeAndOfTheFuture) {
   for (std::uint32_t i = 0; i < 30; ++i)
-    (void)take(1000 + 32 * i, 1.0, std::int64_t{i} * 125 * kMs);
-  EXPECT_EQ(take(1928, 1.0, 3750 * kMs).verdict, Verdict::kImplausible);
-  EXPECT_EQ(take(1960 + 64, 1.0, 3750 * kMs).verdict, Verdict::kImplausible);
-  EXPECT_EQ(take(1960, 1.0, 3750 * kMs).verdict, Verdict::kGood);
+    (void)take(1000 + 32 * i, 1.0, std::int64_t{i} * 125 * kOdometerMs_ns);
+  EXPECT_EQ(take(1928, 1.0, 3750 * kOdometerMs_ns).verdict, Verdict::kImplausible);
+  EXPECT_EQ(take(1960 + 64, 1.0, 3750 * kOdometerMs_ns).verdict, Verdict::kImplausible);
+  EXPECT_EQ(take(1960, 1.0, 3750 * kOdometerMs_ns).verdict, Verdict::kGood);
 }
 
 TEST_F(BaseOdometerTest, ALineThatWasSlowForLongMovesNothing) {
   const auto at = [](std::uint32_t i, std::int64_t late_ns) {
-    return std::int64_t{i} * 125 * kMs + late_ns;
+    return std::int64_t{i} * 125 * kOdometerMs_ns + late_ns;
   };
   for (std::uint32_t i = 0; i < 200; ++i) {
-    EXPECT_EQ(take(1000 + 32 * i, 1.0, at(i, 400 * kMs)).verdict, Verdict::kGood);
+    EXPECT_EQ(take(1000 + 32 * i, 1.0, at(i, 400 * kOdometerMs_ns)).verdict, Verdict::kGood);
   }
   std::vector<Verdict> verdicts;
   for (std::uint32_t i = 200; i < 204; ++i) {
@@ -163,12 +168,12 @@ TEST_F(BaseOdometerTest, ALineThatWasSlowForLongMovesNothing) {
 }
 
 TEST_F(BaseOdometerTest, GoesOnFromWhereItWasWhenTheBaseStartsAnew) {
-  (void)take(100'000, 2.0, kSecond);
-  (void)take(100'032, 2.5, 3 * kSecond);  // after a pause
-  EXPECT_EQ(take(512, 0.0, 5 * kSecond).verdict, Verdict::kImplausible);
-  const auto second = take(544, 0.0, 5 * kSecond + 125 * kMs);
+  (void)take(100'000, 2.0, kOdometerSecond_ns);
+  (void)take(100'032, 2.5, 3 * kOdometerSecond_ns);  // after a pause
+  EXPECT_EQ(take(512, 0.0, 5 * kOdometerSecond_ns).verdict, Verdict::kImplausible);
+  const auto second = take(544, 0.0, 5 * kOdometerSecond_ns + 125 * kOdometerMs_ns);
   EXPECT_EQ(second.verdict, Verdict::kRestarted);
-  const auto third = take(576, 0.01, 5 * kSecond + 250 * kMs);
+  const auto third = take(576, 0.01, 5 * kOdometerSecond_ns + 250 * kOdometerMs_ns);
   EXPECT_EQ(third.verdict, Verdict::kGood);
   EXPECT_GT(third.odometry.stamp_ns, second.odometry.stamp_ns);
   EXPECT_NEAR(third.odometry.T_odom_robot.x_m - second.odometry.T_odom_robot.x_m, 0.01, 0.005);

@@ -50,8 +50,8 @@ class SimulatedDevicesTest : public testing::Test {
 
   SimulatedDevices devices_{world::parse_world(kCorridor, "w"), options()};
   FaultInjector faults_{devices_};
-  HostPort laser_{devices_.port(Device::kLaser).link()};
-  HostPort base_{devices_.port(Device::kBase).link()};
+  HostPort laser_{options().laser_port};
+  HostPort base_{options().base_port};
 };
 
 TEST_F(SimulatedDevicesTest, TheBaseDrivesTheRobotAndReportsIt) {
