@@ -9,6 +9,7 @@
 
 #include "topogeo/devices/base_models.hpp"
 #include "topogeo/devices/laser_models.hpp"
+#include "topogeo/devices/network_address.hpp"
 
 #include "base_keys.hpp"
 
@@ -55,7 +56,8 @@ std::vector<std::uint32_t> parse_bauds(const std::string& text) {
 
 void describe_laser_line(ConfigSchema& schema, Laser& laser) {
   schema.add("laser.port", &laser.port,
-             "serial port of the laser, for example /dev/ttyUSB0; empty: no laser");
+             "port of the laser: a serial port, for example /dev/ttyUSB0, or tcp://HOST:PORT of a "
+             "laser on the network; empty: no laser");
   std::vector<std::pair<std::string, const devices::LaserModel*>> models;
   for (const devices::LaserModel& model : devices::laser_models()) {
     models.emplace_back(model.name, &model);
@@ -156,6 +158,47 @@ void describe_lds(ConfigSchema& schema, Laser& laser) {
              "with the right one, and checks none if 64 have another");
 }
 
+void describe_scip(ConfigSchema& schema, Laser& laser) {
+  devices::ScipSettings& s = laser.scip;
+  schema.add(
+      "laser.scip_scan", &s.kind,
+      {{"md", devices::ScipScanKind::kThreeCharacters},
+       {"ms", devices::ScipScanKind::kTwoCharacters},
+       {"me", devices::ScipScanKind::kIntensities}},
+      "scans of a Hokuyo; ms: two characters a reading, up to 4 m, for a slow line; me: with "
+      "intensities, of UTM and UST");
+  schema.add("laser.scip_least_intensity", &s.least_intensity, 0U, 262'143U, "",
+             "readings of a Hokuyo with less intensity are no return, with scip_scan: me");
+  schema.add("laser.scip_stamp", &s.stamp,
+             {{"step_0", devices::ScipStamp::kStepZero}, {"rear", devices::ScipStamp::kRear}},
+             "moment of a Hokuyo's time stamp; step_0: as the maker's document states; rear: when "
+             "the beam points backwards, as the ROS driver assumes");
+}
+
+void describe_cola(ConfigSchema& schema, Laser& laser) {
+  schema.add("laser.cola", &laser.cola.dialect,
+             {{"detect", devices::ColaChoice::kDetect},
+              {"a", devices::ColaChoice::kText},
+              {"b", devices::ColaChoice::kBinary}},
+             "telegrams of a SICK on the network; detect: CoLa A or B, whichever it answers");
+  schema.add("laser.cola_zero_to_first_s", &laser.cola_zero_to_first_s, 0.0, 0.1, "s",
+             "time from the zero index of a SICK, which a scan reports, to its first beam; no "
+             "document states it, so measure it by turning the robot on the spot");
+}
+
+/// The port of a laser on a network is that of its model, unless it is given.
+std::string laser_port(const Laser& laser) {
+  try {
+    const std::string port = devices::with_port(laser.port, laser.model->network_port);
+    if (devices::is_network_address(port) && !devices::network_address(port).port) {
+      throw std::invalid_argument("'" + port + "': expected a port after the host");
+    }
+    return port;
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("key 'laser.port' = " + std::string(error.what()));
+  }
+}
+
 void describe_rplidar(ConfigSchema& schema, Laser& laser) {
   devices::RpLidarSettings& s = laser.rplidar;
   schema.add("laser.scan_mode", &s.scan,
@@ -214,6 +257,8 @@ ConfigSchema describe(DeviceFile& file) {
   describe_turning_laser(schema, file.laser);
   describe_lds(schema, file.laser);
   describe_rplidar(schema, file.laser);
+  describe_scip(schema, file.laser);
+  describe_cola(schema, file.laser);
   describe_base(file.base, schema);
   schema.add("body.sensors", &file.body,
              {{"none", DeviceFile::Body::kNone}, {"b21", DeviceFile::Body::kB21}},
@@ -229,7 +274,7 @@ ConfigSchema describe(DeviceFile& file) {
 
 DeviceConfig to_config(const DeviceFile& file) {
   DeviceConfig config;
-  config.laser_port = file.laser.port;
+  config.laser_port = laser_port(file.laser);
   config.base_port = file.base.port;
   config.laser.model = file.laser.model;
   devices::PlsSettings& laser = config.laser.pls = file.laser.settings;
@@ -254,6 +299,9 @@ DeviceConfig to_config(const DeviceFile& file) {
   turning.silence_ns = laser.shortest_silence_ns;
   config.laser.lds = file.laser.lds;
   config.laser.rplidar = file.laser.rplidar;
+  config.laser.scip = file.laser.scip;
+  config.laser.cola = file.laser.cola;
+  config.laser.cola.zero_to_first_ns = nanoseconds(file.laser.cola_zero_to_first_s);
   config.laser.rplidar.express_mode = static_cast<std::uint8_t>(file.laser.express_mode);
   config.laser.rplidar.motor_value = static_cast<std::uint16_t>(file.laser.motor_value);
   devices::BaseSettings& base = config.base = file.base.settings;

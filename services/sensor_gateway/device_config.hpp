@@ -21,6 +21,9 @@ struct DeviceFile {
     devices::TurningLaserSettings turning;
     devices::LdsSettings lds;
     devices::RpLidarSettings rplidar;
+    devices::ScipSettings scip;
+    devices::ColaSettings cola;
+    double cola_zero_to_first_s = 0.0;  ///< as nanoseconds in `cola`
     std::uint32_t express_mode = 0;     ///< as `rplidar.express_mode`
     std::uint32_t motor_value = 0;      ///< as `rplidar.motor_value`
     std::uint32_t beams = 0;            ///< as `turning.beams`

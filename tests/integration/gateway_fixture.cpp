@@ -55,13 +55,14 @@ void GatewayOnDevices::start_simulator() {
       scratch_, "simulator",
       std::vector<std::string>{"--domain", domain_, "--partition", kPartition, "--world",
                                std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml",
-                               "--laser-port", (scratch_ / "laser.port").string(), "--base-port",
-                               (scratch_ / "base.port").string(), "--base-baud", "38400"});
+                               "--laser-port", laser_port_, "--laser-model", laser_model_,
+                               "--base-port", (scratch_ / "base.port").string(), "--base-baud",
+                               "38400"});
 }
 
 void GatewayOnDevices::start_gateway(const std::string& keys) {
   const std::filesystem::path file = scratch_ / "devices.yaml";
-  std::ofstream(file) << "laser.port: " << (scratch_ / "laser.port").string()
+  std::ofstream(file) << "laser.port: " << laser_port_ << "\nlaser.model: " << laser_model_
                       << "\nbase.port: " << (scratch_ / "base.port").string()
                       << "\nbase.baud: 38400\n"
                       << keys;

@@ -99,6 +99,8 @@ class GatewayOnDevices : public testing::Test {
   std::uint64_t commands_ = 0;
   std::optional<std::int64_t> command_stamp_ns_;  ///< empty: now
   int strikes_ = 0;
+  std::string laser_port_ = (scratch_ / "laser.port").string();
+  std::string laser_model_ = "sick_pls";
   std::filesystem::path memory_;  ///< of the gateway; empty: none
 
   std::unique_ptr<Program> simulator_;

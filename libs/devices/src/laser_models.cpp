@@ -5,10 +5,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "topogeo/devices/cola_driver.hpp"
 #include "topogeo/devices/ldrobot_driver.hpp"
 #include "topogeo/devices/lds_driver.hpp"
 #include "topogeo/devices/pls_driver.hpp"
 #include "topogeo/devices/rplidar_driver.hpp"
+#include "topogeo/devices/scip_driver.hpp"
 #include "topogeo/devices/ydlidar_driver.hpp"
 
 namespace topogeo::devices {
@@ -63,10 +65,19 @@ std::unique_ptr<LaserDriver> make_ydlidar_tof(const LaserModel& model,
   return make_ydlidar(model, settings);
 }
 
-#define TOPOGEO_LASER(family, name, title, baud, parity, beams, view_deg, turns_hz, range_max_m) \
-  LaserModel{#family,      name,     title,    LineSettings{baud, Parity::parity},               \
-             beams,        view_deg, turns_hz, range_max_m,                                      \
-             make_##family},
+std::unique_ptr<LaserDriver> make_scip(const LaserModel& model, const LaserSettings& settings) {
+  return std::make_unique<ScipDriver>(model, settings.turning, settings.scip);
+}
+
+std::unique_ptr<LaserDriver> make_cola(const LaserModel& model, const LaserSettings& settings) {
+  return std::make_unique<ColaDriver>(model, settings.turning, settings.cola);
+}
+
+#define TOPOGEO_LASER(family, name, title, baud, parity, beams, view_deg, turns_hz, range_max_m, \
+                      network_port)                                                              \
+  LaserModel{#family,      name,         title,    LineSettings{baud, Parity::parity},           \
+             beams,        view_deg,     turns_hz, range_max_m,                                  \
+             network_port, make_##family},
 constexpr std::array kLaserModels{
 #include "topogeo/devices/laser_models.def"
 };

@@ -1,12 +1,15 @@
+#include <cmath>
 #include <numbers>
 #include <string_view>
 #include <utility>
 
+#include "topogeo/simulation/cola_emulator.hpp"
 #include "topogeo/simulation/laser_emulator.hpp"
 #include "topogeo/simulation/ldrobot_emulator.hpp"
 #include "topogeo/simulation/lds_emulator.hpp"
 #include "topogeo/simulation/pls_emulator.hpp"
 #include "topogeo/simulation/rplidar_emulator.hpp"
+#include "topogeo/simulation/scip_emulator.hpp"
 #include "topogeo/simulation/ydlidar_emulator.hpp"
 
 namespace topogeo::simulation {
@@ -78,16 +81,22 @@ std::unique_ptr<LaserEmulator> emulate_lds01(const LaserEmulatorSettings& settin
   return emulate_lds(devices::kLds01, true, settings, model, std::move(ranges), now_ns);
 }
 
+/// Numbers of the models, as the maker's SDK has them.
+constexpr std::pair<std::string_view, std::uint8_t> kRpNumbers[] = {
+    {"rplidar_a1", 0x18}, {"rplidar_a2", 0x28}, {"rplidar_a3", 0x31},
+    {"rplidar_s1", 0x61}, {"rplidar_s2", 0x71}, {"rplidar_c1", 0x41}};
+
 std::unique_ptr<LaserEmulator> emulate_rplidar(const LaserEmulatorSettings& settings,
                                                const devices::LaserModel& model,
                                                LaserEmulator::Ranges ranges, std::int64_t now_ns) {
-  constexpr std::uint8_t kOfSpeedRequests = 0x61;
   RpLidarEmulatorSettings rplidar;
   rplidar.line = model.line;
   rplidar.turns_hz = model.turns_hz;
   rplidar.samples_hz = model.turns_hz * static_cast<double>(model.beams);
   rplidar.range_max_m = model.range_max_m;
-  if (model.line.baud > 115'200) rplidar.model = kOfSpeedRequests;
+  for (const auto& [name, number] : kRpNumbers) {
+    if (model.name == name) rplidar.model = number;
+  }
   rplidar.seed = settings.seed;
   return std::make_unique<RpLidarEmulator>(rplidar, std::move(ranges), now_ns);
 }
@@ -128,12 +137,46 @@ std::unique_ptr<LaserEmulator> emulate_ydlidar_tof(const LaserEmulatorSettings& 
   return emulate_ydlidar(settings, model, std::move(ranges), now_ns);
 }
 
+std::unique_ptr<LaserEmulator> emulate_scip(const LaserEmulatorSettings& settings,
+                                            const devices::LaserModel& model,
+                                            LaserEmulator::Ranges ranges, std::int64_t now_ns) {
+  constexpr double kSecondsPerMinute = 60.0;
+  constexpr double kMmPerM = 1000.0;
+  ScipEmulatorSettings scip;
+  scip.line = model.line;
+  if (model.name == "urg_04lx") scip.sweep = {"", 20, 0, 1024, 44, 725, 384, 0};
+  scip.sweep.model = model.title;
+  scip.sweep.range_max_mm = static_cast<unsigned>(std::lround(kMmPerM * model.range_max_m));
+  scip.sweep.rpm = static_cast<unsigned>(std::lround(kSecondsPerMinute * model.turns_hz));
+  scip.seed = settings.seed;
+  return std::make_unique<ScipEmulator>(scip, std::move(ranges), now_ns);
+}
+
+std::unique_ptr<LaserEmulator> emulate_cola(const LaserEmulatorSettings& settings,
+                                            const devices::LaserModel& model,
+                                            LaserEmulator::Ranges ranges, std::int64_t now_ns) {
+  constexpr double kAhead_deg = 90.0;
+  ColaEmulatorSettings cola;
+  cola.line = model.line;
+  // Newer lasers speak CoLa B unless they are told otherwise.
+  if (model.name == "sick_tim7xx") cola.dialect = devices::ColaDialect::kBinary;
+  cola.name = model.title;
+  cola.beams = model.beams;
+  cola.step_deg = model.view_deg / static_cast<double>(model.beams - 1);
+  cola.first_deg = kAhead_deg - 0.5 * model.view_deg;
+  cola.turns_hz = model.turns_hz;
+  cola.range_max_m = model.range_max_m;
+  cola.seed = settings.seed;
+  return std::make_unique<ColaEmulator>(cola, std::move(ranges), now_ns);
+}
+
 struct EmulatorRow {
   std::string_view name;
   MakeEmulator make;
 };
 
-#define TOPOGEO_LASER(family, name, title, baud, parity, beams, view_deg, turns_hz, range_max_m) \
+#define TOPOGEO_LASER(family, name, title, baud, parity, beams, view_deg, turns_hz, range_max_m, \
+                      network_port)                                                              \
   EmulatorRow{name, emulate_##family},
 constexpr EmulatorRow kEmulators[] = {
 #include "topogeo/devices/laser_models.def"

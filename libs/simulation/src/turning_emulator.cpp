@@ -27,10 +27,10 @@ TurningEmulator::TurningEmulator(const devices::LineSettings& line, const Motor&
       range_max_m_(range_max_m),
       ranges_(std::move(ranges)),
       faults_(seed) {
-  if (!(motor.turns_hz > 0.0 && motor.turns_hz <= 30.0) || !(motor.samples_hz > 0.0) ||
+  if (!(motor.turns_hz > 0.0 && motor.turns_hz <= 100.0) || !(motor.samples_hz > 0.0) ||
       !(motor.wobble >= 0.0 && motor.wobble < 1.0) || line.baud == 0 || !ranges_) {
     throw std::invalid_argument(
-        "an emulated laser that turns needs a speed of up to 30 turns a second, a wobble of at "
+        "an emulated laser that turns needs a speed of up to 100 turns a second, a wobble of at "
         "least 0 and below 1, samples, a rate of the line above 0, and ranges to measure");
   }
 }

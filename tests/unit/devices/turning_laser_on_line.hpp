@@ -15,7 +15,7 @@
 
 namespace topogeo::devices {
 
-template <class Driver, class Emulator>
+template <class Driver, class Emulator, class World = MeasuredBeams>
 class TurningLaserOnLine {
  public:
   /// `laser`: settings of the emulator; the others are the arguments of the driver.
@@ -54,7 +54,7 @@ class TurningLaserOnLine {
   Driver driver;
   Emulator emulator;
   SimulatedLine line;
-  MeasuredBeams world;
+  World world;
   std::vector<LaserScan> scans;
   std::size_t wrong_scans = 0;
 };

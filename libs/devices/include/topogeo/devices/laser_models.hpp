@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -21,6 +22,7 @@ struct LaserModel {
   double view_deg = 0.0;    ///< angle from the first beam to the last, or 360 for a full turn
   double turns_hz = 0.0;    ///< nominal turns of the mirror a second
   double range_max_m = 0.0;
+  std::uint16_t network_port = 0;  ///< TCP; 0: none
   std::unique_ptr<LaserDriver> (*make)(const LaserModel& model,
                                        const LaserSettings& settings) = nullptr;
 };

@@ -1,9 +1,11 @@
 // Settings of a laser of any model.
 #pragma once
 
+#include "topogeo/devices/cola_settings.hpp"
 #include "topogeo/devices/lds_settings.hpp"
 #include "topogeo/devices/pls_settings.hpp"
 #include "topogeo/devices/rplidar_settings.hpp"
+#include "topogeo/devices/scip_settings.hpp"
 #include "topogeo/devices/turning_laser_settings.hpp"
 
 namespace topogeo::devices {
@@ -16,7 +18,9 @@ struct LaserSettings {
   PlsSettings pls;
   LdsSettings lds;
   RpLidarSettings rplidar;
-  TurningLaserSettings turning;  ///< of a laser with a field of view of a full turn
+  ScipSettings scip;
+  ColaSettings cola;
+  TurningLaserSettings turning;  ///< of every laser but the PLS
 };
 
 }  // namespace topogeo::devices

@@ -13,7 +13,7 @@ namespace topogeo::simulation {
 
 struct LdRobotEmulatorSettings {
   devices::LineSettings line{230'400, devices::Parity::kNone};
-  double turns_hz = 10.0;      ///< mean; (0, 30]
+  double turns_hz = 10.0;      ///< mean; (0, 100]
   double samples_hz = 4500.0;  ///< measurements a second, > 0
   double wobble = 0.02;        ///< largest relative error of the speed; [0, 1)
   double range_max_m = 12.0;

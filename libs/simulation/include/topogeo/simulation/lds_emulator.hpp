@@ -15,7 +15,7 @@ struct LdsEmulatorSettings {
   devices::LdsFormat format = devices::kXv11;
   devices::LineSettings line{115'200, devices::Parity::kNone};
   bool waits_for_letter = false;  ///< it turns after b; otherwise as long as it has power
-  double turns_hz = 5.0;          ///< mean; (0, 30]
+  double turns_hz = 5.0;          ///< mean; (0, 100]
   double wobble = 0.02;           ///< largest relative error of the speed; [0, 1)
   double range_max_m = 6.0;
   std::int64_t start_up_ns = 1'000'000'000;  ///< from power or letter to the first packet

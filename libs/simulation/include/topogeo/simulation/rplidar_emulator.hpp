@@ -14,7 +14,7 @@ namespace topogeo::simulation {
 
 struct RpLidarEmulatorSettings {
   devices::LineSettings line{115'200, devices::Parity::kNone};
-  double turns_hz = 5.5;       ///< (0, 30]
+  double turns_hz = 5.5;       ///< (0, 100]
   double samples_hz = 3960.0;  ///< of packets; a standard scan has half of it
   double range_max_m = 12.0;
   std::uint8_t model = 0x18;  ///< that it reports

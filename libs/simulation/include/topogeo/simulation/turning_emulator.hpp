@@ -28,7 +28,7 @@ class TurningEmulator : public LaserEmulator {
   [[nodiscard]] std::uint64_t scans_sent() const override { return turns_; }
 
   [[nodiscard]] TelegramFaults& faults() { return faults_; }
-  /// Changes the mean speed, which the motor reaches after a while; (0, 30].
+  /// Changes the mean speed, which the motor reaches after a while; (0, 100].
   void set_turns_hz(double turns_hz) { motor_.turns_hz = turns_hz; }
 
  protected:
@@ -37,7 +37,7 @@ class TurningEmulator : public LaserEmulator {
   static constexpr std::int64_t kNever_ns = std::numeric_limits<std::int64_t>::max();
 
   struct Motor {
-    double turns_hz = 0.0;    ///< (0, 30]
+    double turns_hz = 0.0;    ///< (0, 100]
     double samples_hz = 0.0;  ///< measurements a second, > 0
     double wobble = 0.0;      ///< largest relative error of the speed; [0, 1)
     bool clockwise = true;

@@ -16,7 +16,7 @@ struct YdLidarEmulatorSettings {
   bool asked = true;          ///< it sends after a request; otherwise as long as it has power
   bool triangulates = false;  ///< quarters of a millimetre, with angles to correct
   bool reports_frequency = true;
-  double turns_hz = 10.0;  ///< mean; (0, 30]
+  double turns_hz = 10.0;  ///< mean; (0, 100]
   double samples_hz = 20'000.0;
   double wobble = 0.02;  ///< largest relative error of the speed; [0, 1)
   double range_max_m = 30.0;

@@ -1,0 +1,36 @@
+// Gateway and emulated lasers on a network: scans, a cable that comes out, and the end.
+#include <string>
+
+#include "gateway_fixture.hpp"
+#include "tcp_port.hpp"
+
+namespace topogeo::test {
+namespace {
+
+class EachNetworkLaser : public GatewayOnDevices, public testing::WithParamInterface<std::string> {
+ protected:
+  EachNetworkLaser() {
+    simulator::TcpPort port("127.0.0.1", 0);
+    port.plug();
+    laser_port_ = "tcp://127.0.0.1:" + std::to_string(port.port());
+    laser_model_ = GetParam();
+  }
+};
+
+TEST_P(EachNetworkLaser, SendsScansThroughTheGatewayAlsoAfterItsCableCameOut) {
+  start();
+  ASSERT_FALSE(HasFatalFailure());
+  EXPECT_GT(scans_.back().ranges_m().size(), 500U);
+  strike(msg::kSimulatedUnplug, msg::kSimulatedLaser, 0.5);
+  ASSERT_TRUE(wait_for([&] { return counter("laser_port_opened") >= 2.0; })) << gateway_->err();
+  const std::size_t before = scans_.size();
+  EXPECT_TRUE(wait_for([&] { return laser_is(msg::kLaserRunning) && scans_.size() > before + 5; }))
+      << gateway_->err();
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EachNetworkLaser,
+                         testing::Values("ust_20lx", "sick_tim5xx", "sick_tim7xx"),
+                         [](const auto& laser) { return laser.param; });
+
+}  // namespace
+}  // namespace topogeo::test
