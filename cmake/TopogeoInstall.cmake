@@ -61,6 +61,7 @@ set(data ${CMAKE_INSTALL_DATADIR}/topogeo)
 set(deploy ${PROJECT_SOURCE_DIR}/deploy)
 install(DIRECTORY ${deploy}/systemd/ DESTINATION lib/systemd/system COMPONENT topogeo
         FILES_MATCHING PATTERN "*.service" PATTERN "*.target" PATTERN "topogeo-*@*" EXCLUDE)
+install(FILES ${deploy}/udev/60-topogeo.rules DESTINATION lib/udev/rules.d COMPONENT topogeo)
 install(FILES ${deploy}/systemd/topogeo-worker@.service ${deploy}/systemd/system-topogeoworkers.slice
               ${deploy}/systemd/topogeo-discovery@.service
         DESTINATION lib/systemd/system COMPONENT topogeo-workers)

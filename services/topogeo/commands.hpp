@@ -25,6 +25,7 @@ void add_simulator_command(command_line::Command& app, int& exit_code);
 void add_status_command(command_line::Command& app, int& exit_code);
 void add_workers_command(command_line::Command& app, int& exit_code);
 void add_top_command(command_line::Command& app, int& exit_code);
+void add_devices_command(command_line::Command& app, int& exit_code);
 void add_doctor_command(command_line::Command& app, int& exit_code);
 void add_follow_command(command_line::Command& app, int& exit_code);
 void add_explore_command(command_line::Command& app, int& exit_code);

@@ -47,6 +47,7 @@ int run(int argc, const char* const* argv) {
   cli::add_status_command(app, exit_code);
   cli::add_workers_command(app, exit_code);
   cli::add_top_command(app, exit_code);
+  cli::add_devices_command(app, exit_code);
   cli::add_doctor_command(app, exit_code);
   cli::add_follow_command(app, exit_code);
   cli::add_goto_command(app, exit_code);
@@ -69,8 +70,8 @@ int run(int argc, const char* const* argv) {
   app.group_subcommands("Logs and recordings", {"check-log", "convert", "record", "compare",
                                                 "calibrate-laser", "calibrate-odometry"});
   app.group_subcommands("A running robot",
-                        {"status", "top", "workers", "doctor", "follow", "web", "goto", "explore",
-                         "localizer", "base", "simulator", "draw"});
+                        {"devices", "status", "top", "workers", "doctor", "follow", "web", "goto",
+                         "explore", "localizer", "base", "simulator", "draw"});
   app.group_subcommands("Places and routes", {"places", "plan", "simulate-route"});
   app.group_subcommands("How it works", {"config", "dvl", "match", "reproduce"});
   if (const auto exit_now = app.parse(argc, argv)) return *exit_now;

@@ -211,6 +211,10 @@ std::string good_shared_memory(const MachineFacts& facts) {
 
 // --- devices
 
+constexpr const char* kOrTheRule =
+    "; for the user at the machine, deploy/udev/60-topogeo.rules in /etc/udev/rules.d does the "
+    "same";
+
 Findings check_serial_ports(const MachineFacts& facts) {
   if (!facts.devices_error.empty()) {
     return {problem(facts.devices_error, "the sensor gateway would not start",
@@ -227,8 +231,9 @@ Findings check_serial_ports(const MachineFacts& facts) {
                        fmt::format("{} is closed to {}: it belongs to group {}", port.path,
                                    port.user.empty() ? facts.user : port.user, port.group),
                        "laser and base cannot be opened",
-                       fmt::format("`usermod -aG {} {}` as root, then log in again", port.group,
-                                   port.user.empty() ? facts.user : port.user)});
+                       fmt::format("`usermod -aG {} {}` as root, then log in again{}", port.group,
+                                   port.user.empty() ? facts.user : port.user,
+                                   facts.udev_rule ? "" : kOrTheRule)});
     }
   }
   return found;
@@ -239,6 +244,19 @@ std::string good_serial_ports(const MachineFacts& facts) {
   std::string paths;
   for (const SerialPortFacts& port : facts.serial_ports) paths += " " + port.path;
   return "can be opened:" + paths;
+}
+
+Findings check_udev_rule(const MachineFacts& facts) {
+  if (facts.serial_ports.empty() || facts.udev_rule || !facts.modem_manager) return {};
+  return {hint("ModemManager runs, and no rule keeps it from the serial ports",
+               "it sends its commands to lasers and bases when they are plugged in",
+               "install the package topogeo, or copy deploy/udev/60-topogeo.rules to "
+               "/etc/udev/rules.d, then plug the device in again")};
+}
+
+std::string good_udev_rule(const MachineFacts& facts) {
+  return facts.udev_rule ? "60-topogeo.rules is installed"
+                         : "not needed: ModemManager does not run";
 }
 
 // --- disk and memory
@@ -349,6 +367,7 @@ constexpr auto kMachineChecks = std::to_array<Check<MachineFacts>>({
     {"UDP buffers", check_buffers, good_buffers},
     {"shared memory", check_shared_memory, good_shared_memory},
     {"serial ports", check_serial_ports, good_serial_ports},
+    {"udev rule", check_udev_rule, good_udev_rule},
     {"disk", check_disk, good_disk},
     {"map folder", check_map_folder, good_map_folder},
     {"CPU", check_cpu_time, good_cpu_time},

@@ -17,11 +17,13 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include "topogeo/devices/network_address.hpp"
 #include "topogeo/messaging/shared_memory.hpp"
 #include "topogeo/support/atomic_file.hpp"
 
 #include "device_config.hpp"
 #include "diagnose/network_probe.hpp"
+#include "diagnose/port_names.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -156,26 +158,40 @@ SerialPortFacts serial_port(const fs::path& path, bool named) {
   return facts;
 }
 
+bool runs(std::string_view program, const fs::path& proc) {
+  std::error_code error;
+  for (fs::directory_iterator entry(proc, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (first_line(entry->path() / "comm") == program) return true;
+  }
+  return false;
+}
+
+void ask_for_udev(const FactSources& sources, MachineFacts& facts) {
+  std::error_code unknown;
+  facts.udev_rule = std::ranges::any_of(sources.udev_rules, [&](const fs::path& folder) {
+    return fs::exists(folder / "60-topogeo.rules", unknown);
+  });
+  facts.modem_manager = runs("ModemManager", sources.proc);
+}
+
 void ask_for_devices(const MachineQuestions& questions, MachineFacts& facts) {
+  ask_for_udev(questions.sources, facts);
   if (questions.devices) {
     try {
       const sensor_gateway::DeviceConfig config = sensor_gateway::load_devices(*questions.devices);
       for (const std::string& port : {config.laser_port, config.base_port}) {
-        if (!port.empty()) facts.serial_ports.push_back(serial_port(port, true));
+        if (port.empty() || devices::is_network_address(port)) continue;
+        facts.serial_ports.push_back(serial_port(port, true));
       }
     } catch (const std::exception& error) {
       facts.devices_error = error.what();
     }
     return;
   }
-  std::error_code error;
-  for (fs::directory_iterator entry(questions.sources.dev, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    if (!name.starts_with("ttyUSB") && !name.starts_with("ttyACM")) continue;
-    facts.serial_ports.push_back(serial_port(entry->path(), false));
+  for (const fs::path& port : serial_ports(questions.sources.dev)) {
+    facts.serial_ports.push_back(serial_port(port, false));
   }
-  std::ranges::sort(facts.serial_ports, {}, &SerialPortFacts::path);
 }
 
 /// A map folder is made on demand, so the nearest existing one above counts.

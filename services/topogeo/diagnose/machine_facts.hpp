@@ -57,6 +57,8 @@ struct MachineFacts {
   // devices
   std::string devices_error;  ///< why the named file cannot be used
   std::vector<SerialPortFacts> serial_ports;
+  bool udev_rule = false;      ///< the rule of the package is installed
+  bool modem_manager = false;  ///< a program that takes serial ports for modems runs
 
   // disk
   std::string map_folder;
@@ -78,6 +80,7 @@ struct FactSources {
   std::filesystem::path cgroup = "/sys/fs/cgroup";
   std::filesystem::path shared_memory = "/dev/shm";
   std::filesystem::path dev = "/dev";
+  std::vector<std::filesystem::path> udev_rules{"/etc/udev/rules.d", "/lib/udev/rules.d"};
 };
 
 struct MachineQuestions {

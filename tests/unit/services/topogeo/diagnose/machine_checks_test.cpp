@@ -123,6 +123,8 @@ const std::vector<MachineFault>& machine_faults() {
          f.serial_ports[0].accessible = false;
          f.serial_ports[0].named = false;
        }},
+      {"RuleMissing", "udev rule", Severity::kHint, "ModemManager runs", "60-topogeo.rules",
+       [](MachineFacts& f) { f.modem_manager = true; }},
       {"DiskFull", "disk", Severity::kProblem, "50 MB are free for /var/lib/topogeo/map",
        "make room", [](MachineFacts& f) { f.disk_free_bytes = 50'000'000; }},
       {"DiskShort", "disk", Severity::kHint, "900 MB are free", "make room",
@@ -156,6 +158,16 @@ const std::vector<MachineFault>& machine_faults() {
        [](MachineFacts& f) { f.open_files_limit = 64; }},
   };
   return kFaults;
+}
+
+TEST(MachineChecks, TheRuleMakesModemManagerHarmlessAndOpensPorts) {
+  MachineFacts facts = healthy();
+  facts.modem_manager = facts.udev_rule = true;
+  EXPECT_THAT(found_in(facts), IsEmpty());
+  facts.serial_ports[0].accessible = false;
+  EXPECT_THAT(found_in(facts)[0].remedy, Not(HasSubstr("60-topogeo.rules")));
+  facts.udev_rule = facts.modem_manager = false;
+  EXPECT_THAT(found_in(facts)[0].remedy, HasSubstr("60-topogeo.rules"));
 }
 
 TEST(MachineChecks, AHealthyMachineHasNoFinding) {

@@ -129,6 +129,18 @@ TEST_F(MachineFactsTest, WhatTheDeadLeftInSharedMemory) {
   EXPECT_THAT(facts().shared_memory_error, HasSubstr("is no folder"));
 }
 
+TEST_F(MachineFactsTest, UdevRuleAndModemManagerAreFound) {
+  questions_.sources.udev_rules = {folder_ / "none", folder_ / "rules.d"};
+  questions_.sources.proc = folder_ / "proc";
+  EXPECT_FALSE(facts().udev_rule);
+  EXPECT_FALSE(facts().modem_manager);
+  write("rules.d/60-topogeo.rules", "");
+  write("proc/12/comm", "sh\n");
+  write("proc/345/comm", "ModemManager\n");
+  EXPECT_TRUE(facts().udev_rule);
+  EXPECT_TRUE(facts().modem_manager);
+}
+
 TEST_F(MachineFactsTest, SerialPortsAreThoseOfTheFileOrThoseFound) {
   write("dev/ttyUSB1", "");
   write("dev/ttyACM0", "");
