@@ -49,6 +49,11 @@ std::size_t check_laser_driver(std::string_view bytes);
 /// Throws BrokenPromise.
 std::size_t check_mcp_decoder(std::string_view bytes);
 
+/// Passes `bytes` as received from a microcontroller with the line protocol through the reader,
+/// split in several ways, and through the driver. Returns the number of odometry reports that the
+/// driver makes of them. Throws BrokenPromise.
+std::size_t check_text_base(std::string_view bytes);
+
 /// Passes `bytes` as an RTPS packet, as a discovery payload and as a handshake payload through the
 /// filters in front of the middleware's parser. An accepted input must contain what it states,
 /// wherever the middleware follows it. Returns the submessages of an accepted packet plus one for

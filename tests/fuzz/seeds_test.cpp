@@ -63,6 +63,7 @@ TEST(FuzzSeeds, LaserBytesPass) {
 
 TEST(FuzzSeeds, BaseBytesPass) {
   expect_all_pass("mcp_decoder", [](const std::string& bytes) { check_mcp_decoder(bytes); });
+  expect_all_pass("text_base", [](const std::string& bytes) { check_text_base(bytes); });
 }
 
 TEST(FuzzSeeds, MessagesPass) {
@@ -108,6 +109,9 @@ TEST(FuzzSeeds, ReachTheReports) {
   EXPECT_EQ(messages("binary"), 7U);
   EXPECT_EQ(messages("ascii_bad"), 1U);
   EXPECT_EQ(messages("binary_bad"), 2U);
+  EXPECT_EQ(check_text_base(content(seeds("text_base") / "drive")), 10U);
+  EXPECT_GT(check_text_base(content(seeds("text_base") / "restart")), 10U);
+  EXPECT_EQ(check_text_base(content(seeds("text_base") / "damaged")), 0U);
 }
 
 TEST(FuzzSeeds, ReachTheTelegrams) {

@@ -1,0 +1,123 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "topogeo/devices/base_models.hpp"
+#include "topogeo/devices/text_base_protocol.hpp"
+
+#include "checks.hpp"
+
+namespace topogeo::fuzz {
+namespace {
+
+constexpr std::int64_t kTextRead_ns = 20'000'000;
+constexpr std::size_t kTextRead_bytes = 61;
+constexpr std::size_t kMostTextOrders = 5;  // per read
+
+std::vector<std::string> lines_in_parts(devices::TextBaseReader& reader,
+                                        std::span<const std::uint8_t> bytes, std::size_t part) {
+  std::vector<std::string> lines;
+  for (std::size_t at = 0; at < bytes.size(); at += part) {
+    for (std::string& line : reader.read(bytes.subspan(at, std::min(part, bytes.size() - at)))) {
+      lines.push_back(std::move(line));
+    }
+  }
+  return lines;
+}
+
+/// The body of a written line: between `$` and `*`.
+std::string body_of(const std::string& line) {
+  return line.substr(1, line.rfind('*') - 1);
+}
+
+void check_text_message(const std::string& body) {
+  const auto message = devices::text_base_message(body);
+  if (!message) return;
+  if (message->report) {
+    const std::string line = devices::to_line(*message->report);
+    const auto again = devices::text_base_message(body_of(line));
+    require(again && again->report && devices::to_line(*again->report) == line,
+            "a report that was read can be written and read");
+  }
+  if (message->battery) {
+    const auto again = devices::text_base_message(body_of(devices::to_line(*message->battery)));
+    require(again && again->battery && again->battery->millivolts == message->battery->millivolts,
+            "a voltage that was read can be written and read");
+  }
+}
+
+/// Pulls the speeds out of the orders for a microcontroller: it may get none beyond its limits.
+void check_orders(const std::vector<devices::LineOrder>& orders,
+                  const devices::BaseSettings& settings) {
+  require(orders.size() <= kMostTextOrders, "a driver does not flood the line");
+  devices::TextBaseReader reader;
+  for (const devices::LineOrder& order : orders) {
+    for (const std::string& body : reader.read(order.bytes)) {
+      if (body.empty() || body.front() != 'V') continue;
+      const auto numbers = devices::text_base_numbers(body);
+      require(numbers && numbers->size() == 3, "an order can be read");
+      const double most_mmps = 1000.0 * (settings.limits.linear_mps +
+                                         settings.limits.angular_radps * settings.text.track_m) +
+                               1.0;
+      require(std::fabs(static_cast<double>((*numbers)[0])) <= most_mmps &&
+                  std::fabs(static_cast<double>((*numbers)[1])) <= most_mmps,
+              "wheels turn within the limits");
+    }
+  }
+}
+
+std::size_t drive(std::span<const std::uint8_t> bytes) {
+  devices::BaseSettings settings;
+  settings.model = &devices::base_model("microcontroller");
+  const auto driver = devices::make_base_driver(settings);
+  std::int64_t now_ns = 0;
+  std::int64_t stamp_ns = std::numeric_limits<std::int64_t>::min();
+  std::size_t reports = 0;
+  driver->opened(now_ns);
+  for (std::size_t at = 0; at < bytes.size(); at += kTextRead_bytes) {
+    now_ns += kTextRead_ns;
+    driver->receive(bytes.subspan(at, std::min(kTextRead_bytes, bytes.size() - at)), now_ns);
+    driver->tick(now_ns);
+    (void)driver->command(0.1, 0.1, now_ns + kTextRead_ns, now_ns);
+    require(driver->due_ns() > now_ns, "a driver does not ask for the time that is");
+    check_orders(driver->take_orders(), settings);
+    for (const devices::BaseOdometry& odometry : driver->take_odometry()) {
+      require(odometry.stamp_ns > stamp_ns, "stamps increase");
+      stamp_ns = odometry.stamp_ns;
+      ++reports;
+      const geometry::Pose2& pose = odometry.T_odom_robot;
+      require(std::isfinite(pose.x_m) && std::isfinite(pose.y_m) && std::isfinite(pose.theta_rad),
+              "the odometry is finite");
+    }
+  }
+  return reports;
+}
+
+}  // namespace
+
+std::size_t check_text_base(std::string_view text) {
+  const std::vector<std::uint8_t> bytes(text.begin(), text.end());
+  devices::TextBaseReader reader;
+  const std::vector<std::string> whole =
+      lines_in_parts(reader, bytes, std::max<std::size_t>(1, bytes.size()));
+  for (const std::size_t part : {std::size_t{1}, std::size_t{7}}) {
+    devices::TextBaseReader other;
+    require(lines_in_parts(other, bytes, part) == whole,
+            "lines do not depend on how bytes are cut");
+    require(other.counters() == reader.counters(), "nor do the drops");
+  }
+  for (const std::string& body : whole) check_text_message(body);
+  const std::string next = devices::text_base_line("B,12000");
+  const std::vector<std::uint8_t> last(next.begin(), next.end());
+  const std::vector<std::string> lines = reader.read(last);
+  require(!lines.empty() && lines.back() == "B,12000",
+          "whatever came before, the next line is read");
+  return drive(bytes);
+}
+
+}  // namespace topogeo::fuzz
