@@ -23,6 +23,9 @@ constexpr std::int64_t kNetworkAnswer_ns = 1000 * kSearchMs_ns;
 constexpr std::int64_t kSickAnswer_ns = 600 * kSearchMs_ns;
 constexpr LineSettings kFirstLine{115'200, Parity::kNone};
 
+/// Longer than any question.
+constexpr std::size_t kLongestEcho = 64;
+
 /// Rates of devices that send by themselves, or of lasers that still scan.
 constexpr std::array<LineSettings, 15> kOtherLines{{{230'400, Parity::kNone},
                                                     {128'000, Parity::kNone},
@@ -123,6 +126,7 @@ void PortSearch::lost(std::int64_t /*now_ns*/) {
 void PortSearch::begin(std::int64_t now_ns) {
   const Stage& stage = stages_.front();
   recognizer_.emplace(stage.line, stage.question);
+  answer_.clear();
   orders_.push_back({stage.line, bytes_of(stage.question), {}});
   ends_ns_ = now_ns + stage.duration_ns;
 }
@@ -131,7 +135,9 @@ void PortSearch::receive(std::span<const std::uint8_t> bytes, std::int64_t now_n
   if (done_ || stages_.empty()) return;
   bytes_ += bytes.size();
   device_ = recognizer_->receive(bytes, now_ns);
-  if (!device_) return;
+  if (answer_.size() < kLongestEcho) answer_.insert(answer_.end(), bytes.begin(), bytes.end());
+  echoes_ = asking_ && answer_ == bytes_of(stages_.front().question);
+  if (!device_ && !echoes_) return;
   done_ = true;
   stages_.clear();
 }
@@ -168,6 +174,7 @@ std::vector<LineOrder> PortSearch::take_orders() {
 }
 
 std::string PortSearch::why_none() const {
+  if (echoes_) return "echoes what it receives, as an RWI B21 does (base.model: rwi_b21)";
   if (bytes_ > 0) {
     return (asking_ ? "answers " : "sends ") + std::to_string(bytes_) +
            " bytes that no driver knows";

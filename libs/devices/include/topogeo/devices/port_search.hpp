@@ -1,6 +1,7 @@
 // Finds out what is connected to a serial port, without moving it: listens first, and asks only a
 // port that is silent. The questions are requests of lasers that no base obeys as an order to move;
-// see kHarmless in the source for each. A device that sends something unknown is never asked.
+// the source has the reason for each. A device that sends something unknown is never asked, and one
+// that echoes a question gets no other: an RWI base may do so.
 #pragma once
 
 #include <cstddef>
@@ -61,6 +62,8 @@ class PortSearch final : public SerialDriver {
   std::int64_t ends_ns_ = 0;
   std::optional<PortRecognizer> recognizer_;
   std::size_t bytes_ = 0;
+  std::vector<std::uint8_t> answer_;  // bytes of the present stage
+  bool echoes_ = false;
   std::optional<RecognizedDevice> device_;
   std::vector<LineOrder> orders_;
 };
