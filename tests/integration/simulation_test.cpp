@@ -90,7 +90,7 @@ TEST_P(EachSimulatedLaser, DrivesTheTourThroughSerialPortsAndMapsIt) {
 
 INSTANTIATE_TEST_SUITE_P(OneOfEachFamily, EachSimulatedLaser,
                          testing::Values("sick_pls", "ld19", "ld08", "lds01", "xv11", "rplidar_a1",
-                                         "ydlidar_x2", "ydlidar_tg"),
+                                         "ydlidar_x2", "ydlidar_tg", "ust_20lx", "sick_tim7xx"),
                          [](const auto& laser) { return laser.param; });
 
 // Each service is killed in turn while the robot drives. The robot drives on until it has driven
