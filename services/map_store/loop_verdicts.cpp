@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "topogeo/localization/mapping/loop_decision.hpp"
+#include "topogeo/slam/loop/loop_decision.hpp"
 
 namespace topogeo::map_store {
 namespace {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "topogeo/localization/tracking/laser_odometry.hpp"
+#include "topogeo/matching/laser_odometry.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/stream.h"
