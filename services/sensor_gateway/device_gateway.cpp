@@ -54,7 +54,7 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
       stream_end_(service.advertise<msg::StreamEnd>()) {
   service_.status().set_counter("scans_sent", 0.0);
   if (config.base_port.empty()) {
-    spdlog::warn("no base configured: odometry reports a standing robot");
+    begin_without_base();
   } else {
     const std::optional<RememberedOdometry> remembered = memory_.load();
     BaseChannel::Hooks hooks;
@@ -110,18 +110,49 @@ void DeviceGateway::show_base(const devices::LaserScan& scan) {
 
 void DeviceGateway::release(std::int64_t now_ns) {
   if (ended_) return;  // the end of the stream gives the number of scans
-  for (const ScanGate::Leaving& leaving : gate_.take(now_ns)) {
-    if (!publish(leaving.scan)) continue;
-    wait_ns_ = now_ns - leaving.arrival_ns;
-    latency_ns_ = steady_now_ns() - leaving.arrival_ns;
-    largest_latency_ns_ = std::max(largest_latency_ns_, latency_ns_);
-    remember();
+  for (ScanGate::Leaving& leaving : gate_.take(now_ns)) {
+    for (const scan::Scan& scan : placed(std::move(leaving.scan))) {
+      if (!publish(scan)) continue;
+      wait_ns_ = now_ns - leaving.arrival_ns;
+      latency_ns_ = steady_now_ns() - leaving.arrival_ns;
+      largest_latency_ns_ = std::max(largest_latency_ns_, latency_ns_);
+      remember();
+    }
   }
   service_.loop().cancel_timer(release_timer_);
   if (gate_.due_ns() == std::numeric_limits<std::int64_t>::max()) return;
   release_timer_ = service_.loop().call_after(
       std::chrono::nanoseconds(std::max<std::int64_t>(0, gate_.due_ns() - now_ns)),
       [this] { release(steady_now_ns()); });
+}
+
+void DeviceGateway::begin_without_base() {
+  const pipeline::Config& config = service_.setup().config.config;
+  if (config.odometry_source == pipeline::OdometrySource::kRecorded) {
+    spdlog::warn("no base configured: odometry reports a standing robot");
+    return;
+  }
+  spdlog::info("no base configured: odometry from the scans");
+  laser_odometry_.emplace(config.local_mapper.T_robot_laser,
+                          config.local_mapper.local_map.points_range_m);
+}
+
+std::vector<scan::Scan> DeviceGateway::placed(scan::Scan scan) {
+  std::vector<scan::Scan> scans;
+  if (laser_odometry_) {
+    laser_odometry_->add(std::move(scan));
+    scans = laser_odometry_->take();
+    for (scan::Scan& ready : scans) ready.odometry_epoch += odometry_epoch_;
+    service_.status().set_drops("match no others", laser_odometry_->counts().unplaced);
+    if (laser_odometry_->counts().breaks > breaks_) {
+      breaks_ = laser_odometry_->counts().breaks;
+      service_.status().fault("track of the scans lost", "the place is found again by the scans");
+    }
+  } else {
+    scans.push_back(std::move(scan));
+  }
+  numbered_ = scans.empty() ? numbered_ : scans.back().sequence + 1;
+  return scans;
 }
 
 void DeviceGateway::compare_watchdog(double watchdog_s) {
@@ -213,8 +244,8 @@ void DeviceGateway::finish() {
   msg::StreamEnd end;
   messaging::set_header(end, service_.robot_id(), last_stamp_ns_, 0);
   end.stage(msg::kStageGateway);
-  end.count(gate_.scans());
-  end.last_id(gate_.scans() == 0 ? 0 : gate_.scans() - 1);
+  end.count(numbered_);
+  end.last_id(numbered_ == 0 ? 0 : numbered_ - 1);
   if (!stream_end_.write(end) || !deliver(stream_end_, kLastDelivery)) {
     service_.status().fault("readers missed the stream end", "at the end");
   }

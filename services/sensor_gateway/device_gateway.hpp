@@ -7,8 +7,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "topogeo/devices/body_sensors.hpp"
+#include "topogeo/localization/tracking/laser_odometry.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/stream.h"
@@ -46,12 +48,16 @@ class DeviceGateway {
 
  private:
   void remember();
+  /// Begins odometry from the scans, unless the configuration wants none.
+  void begin_without_base();
   /// Reports a fault if the base runs on for longer than the guards assume.
   void compare_watchdog(double watchdog_s);
   /// Shows the laser's view to the base at once, which stops before obstacles.
   void show_base(const devices::LaserScan& scan);
   /// Publishes the scans that are ready, until finish().
   void release(std::int64_t now_ns);
+  /// The scan with its odometry, or those that odometry from the scans has placed by now.
+  std::vector<scan::Scan> placed(scan::Scan scan);
   /// False, with a fault, when the scan cannot be sent.
   bool publish(const scan::Scan& scan);
   void publish_state();
@@ -69,7 +75,10 @@ class DeviceGateway {
   messaging::Writer<msg::StreamEnd> stream_end_;
   std::int64_t last_stamp_ns_ = 0;
   std::uint64_t sent_ = 0;
-  bool ended_ = false;  // by finish()
+  std::optional<localization::LaserOdometry> laser_odometry_;  // without a base
+  std::uint64_t breaks_ = 0;                                   // of its track, reported so far
+  std::uint64_t numbered_ = 0;                                 // scans for publication
+  bool ended_ = false;                                         // by finish()
   // Time between reading the last bytes of a scan from the port and publishing it.
   std::int64_t latency_ns_ = 0;          // of the last scan
   std::int64_t largest_latency_ns_ = 0;  // of all scans

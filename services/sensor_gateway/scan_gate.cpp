@@ -83,6 +83,11 @@ std::optional<scan::Scan> ScanGate::finish(devices::LaserScan&& scan) {
   out.stamp_ns = scan.stamp_ns;
   out.angle_min_rad = scan.angle_min_rad;
   out.angle_step_rad = scan.angle_step_rad;
+  if (!options_.has_base) {
+    // Odometry from the scans takes the motion out.
+    out.first_beam_s = scan.first_beam_s;
+    out.beam_step_s = scan.time_step_s;
+  }
   out.ranges_m = ranges_at_stamp(std::move(scan));
   const auto limit_m = static_cast<float>(options_.range_max_m);
   for (float& range_m : out.ranges_m) {

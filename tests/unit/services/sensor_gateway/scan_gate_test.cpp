@@ -40,6 +40,20 @@ TEST(ScanGate, ScansAreNumberedFromWhenSomebodyReads) {
   EXPECT_EQ(scans[1].scan.T_odom_robot, geometry::Pose2{});  // no base
 }
 
+TEST(ScanGate, WithoutABaseTheTimesOfTheBeamsStay) {
+  ScanGate gate({.has_base = false});
+  gate.open();
+  devices::LaserScan scan = scan_at(2);
+  scan.first_beam_s = 0.05;
+  scan.time_step_s = -0.001;
+  gate.add(scan, 2);
+  const auto scans = gate.take(2);
+  ASSERT_EQ(scans.size(), 1U);
+  EXPECT_EQ(scans[0].scan.first_beam_s, 0.05);
+  EXPECT_EQ(scans[0].scan.beam_step_s, -0.001);
+  EXPECT_EQ(scans[0].scan.ranges_m, scan.ranges_m);
+}
+
 TEST(ScanGate, TimeAndBeamsMustFit) {
   ScanGate gate({.has_base = false});
   gate.open();
