@@ -12,7 +12,7 @@ namespace {
 constexpr std::int64_t kColaAnswer_ns = 1'000'000'000;
 constexpr std::int64_t kColaUs_ns = 1000;
 /// The motor of an LMS1xx needs this long until scans come.
-constexpr std::int64_t kSpinUp_ns = 20'000'000'000;
+constexpr std::int64_t kColaSpinUp_ns = 20'000'000'000;
 constexpr std::uint32_t kLongestColaGap_us = 60'000'000;
 constexpr std::uint32_t kLongestSweep_us = 500'000;
 constexpr double kSlowestCola_hz = 1.0;
@@ -126,7 +126,7 @@ void ColaDriver::take(const ColaTelegram& telegram, std::int64_t now_ns) {
   }
   if (step_ == Step::kScans) {
     // The laser answers, but an LMS1xx needs time until it measures.
-    if (telegram.name == "sEA LMDscandata" && !running_) waits_since_ns_ = now_ns + kSpinUp_ns;
+    if (telegram.name == "sEA LMDscandata" && !running_) waits_since_ns_ = now_ns + kColaSpinUp_ns;
     return;
   }
   const std::string answered = "sAN" + command_of(step_).name.substr(3);

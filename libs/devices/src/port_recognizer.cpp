@@ -16,7 +16,7 @@ constexpr std::size_t kEnoughPackets = 8;
 /// second.
 constexpr double kStl19p_hz = 4750.0;
 constexpr std::size_t kRateNeeds = 40;
-constexpr std::uint32_t kLd08_baud = 115'200;
+constexpr std::uint32_t kLd08Baud = 115'200;
 constexpr std::uint32_t kFastBaud = 230'400;
 /// Samples of a standard scan in a row; three bits of each are a check.
 constexpr std::size_t kEnoughSamples = 40;
@@ -54,7 +54,7 @@ std::string_view model_at(const std::array<ModelAtRate, N>& models, std::uint32_
 std::string_view rplidar_model(std::uint32_t baud, std::uint8_t number) {
   constexpr unsigned kFirstOfA2 = 0x20;
   constexpr unsigned kFirstOfS = 0x60;
-  if (baud == kLd08_baud && number < kFirstOfA2) return "rplidar_a1";
+  if (baud == kLd08Baud && number < kFirstOfA2) return "rplidar_a1";
   if (baud == 256'000 && number >= kFirstOfS) return "rplidar_s1";
   return model_at(kRpModels, baud);
 }
@@ -149,7 +149,7 @@ PortRecognizer::Found PortRecognizer::base_line(std::span<const std::uint8_t> by
 PortRecognizer::Found PortRecognizer::ldrobot_packets(std::span<const std::uint8_t> bytes) {
   ldrobot_.push(bytes);
   while (const auto found = ldrobot_.next()) ld_packets_.push_back(found->packet);
-  if (line_.baud == kLd08_baud && ld_packets_.size() >= kEnoughPackets) return laser("ld08");
+  if (line_.baud == kLd08Baud && ld_packets_.size() >= kEnoughPackets) return laser("ld08");
   if (line_.baud != kFastBaud || ld_packets_.size() < kRateNeeds) return std::nullopt;
   if (samples_hz(ld_packets_) > kStl19p_hz) return laser("stl19p");
   RecognizedDevice ld19 = laser("ld19");
@@ -159,7 +159,7 @@ PortRecognizer::Found PortRecognizer::ldrobot_packets(std::span<const std::uint8
 
 PortRecognizer::Found PortRecognizer::lds_packets(std::span<const std::uint8_t> bytes) {
   constexpr auto kEnough = static_cast<int>(kEnoughPackets);
-  if (line_.baud == kLd08_baud) {
+  if (line_.baud == kLd08Baud) {
     xv11_.push(bytes);
     while (xv11_.next()) ++xv11_packets_;
   } else if (line_.baud == kFastBaud) {
@@ -199,7 +199,7 @@ PortRecognizer::Found PortRecognizer::rplidar_samples(std::span<const std::uint8
     const std::vector<std::uint8_t> window(rp_bytes_.begin(), rp_bytes_.begin() + kWindow_bytes);
     if (!are_samples(window) && !are_packets(window)) continue;
     RecognizedDevice sending = laser(model);
-    if (line_.baud == kLd08_baud) sending.note = "or a rplidar_a1: it does not answer now";
+    if (line_.baud == kLd08Baud) sending.note = "or a rplidar_a1: it does not answer now";
     if (line_.baud == 256'000) sending.note = "or a rplidar_s1: it does not answer now";
     return sending;
   }

@@ -53,7 +53,7 @@ constexpr std::array<LineSettings, 15> kOtherLines{{{230'400, Parity::kNone},
 ///   other commands have letters that drive such robots, and are sent to a Hokuyo only.
 /// - The status request of a SICK laser has no letter and no end of line.
 /// - The start letter of an LDS-01 is "backward" for many small robots, and is never sent.
-std::vector<std::uint8_t> bytes_of(Question question) {
+std::vector<std::uint8_t> question_bytes(Question question) {
   switch (question) {
     case Question::kRpLidarInfo:
       return rp_request(rp_command::kGetInfo);
@@ -80,9 +80,9 @@ std::vector<std::uint8_t> bytes_of(Question question) {
 
 std::deque<PortSearch::Stage> PortSearch::listening() {
   std::deque<Stage> stages;
-  constexpr std::uint32_t kSlow_baud = 38'400;
+  constexpr std::uint32_t kSlowBaud = 38'400;
   for (const LineSettings& line : kOtherLines) {
-    stages.push_back({line, line.baud < kSlow_baud ? kSlowListen_ns : kListen_ns});
+    stages.push_back({line, line.baud < kSlowBaud ? kSlowListen_ns : kListen_ns});
   }
   return stages;
 }
@@ -127,7 +127,7 @@ void PortSearch::begin(std::int64_t now_ns) {
   const Stage& stage = stages_.front();
   recognizer_.emplace(stage.line, stage.question);
   answer_.clear();
-  orders_.push_back({stage.line, bytes_of(stage.question), {}});
+  orders_.push_back({stage.line, question_bytes(stage.question), {}});
   ends_ns_ = now_ns + stage.duration_ns;
 }
 
@@ -136,7 +136,7 @@ void PortSearch::receive(std::span<const std::uint8_t> bytes, std::int64_t now_n
   bytes_ += bytes.size();
   device_ = recognizer_->receive(bytes, now_ns);
   if (answer_.size() < kLongestEcho) answer_.insert(answer_.end(), bytes.begin(), bytes.end());
-  echoes_ = asking_ && answer_ == bytes_of(stages_.front().question);
+  echoes_ = asking_ && answer_ == question_bytes(stages_.front().question);
   if (!device_ && !echoes_) return;
   done_ = true;
   stages_.clear();

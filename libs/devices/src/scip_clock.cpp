@@ -8,7 +8,7 @@ namespace topogeo::devices {
 namespace {
 
 constexpr std::int64_t kScipMs_ns = 1'000'000;
-constexpr std::uint32_t kLongestGap_ms = 60'000;
+constexpr std::uint32_t kLongestScipGap_ms = 60'000;
 /// Clocks drift by little in this time, and some scans in it arrive without delay.
 constexpr std::int64_t kLearning_ns = 30'000'000'000;
 
@@ -39,7 +39,7 @@ std::optional<std::int64_t> ScipClock::stamp_ns(std::uint32_t time_ms, std::int6
   const bool first = !last_ms_;
   if (first) {
     // An old scan that the laser repeats: older than its answer, or that of before the restart.
-    if (offset_ns_ && passed_ms(asked_ms_, time_ms) > kLongestGap_ms) return std::nullopt;
+    if (offset_ns_ && passed_ms(asked_ms_, time_ms) > kLongestScipGap_ms) return std::nullopt;
     if (time_ms == before_ms_) return std::nullopt;
     // Counts on from the answer to TM1, which may lie before a wrap.
     device_ns_ = kScipMs_ns * (offset_ns_ ? asked_ms_ + std::int64_t{passed_ms(asked_ms_, time_ms)}
@@ -48,7 +48,7 @@ std::optional<std::int64_t> ScipClock::stamp_ns(std::uint32_t time_ms, std::int6
     delay_ns_ = least_delay_ns;
   } else {
     const std::uint32_t step_ms = passed_ms(*last_ms_, time_ms);
-    if (step_ms == 0 || step_ms > kLongestGap_ms) return std::nullopt;
+    if (step_ms == 0 || step_ms > kLongestScipGap_ms) return std::nullopt;
     passed_ns_ = kScipMs_ns * step_ms;
     device_ns_ += passed_ns_;
   }

@@ -76,7 +76,11 @@ void ScipEmulator::say(const std::string& text, std::int64_t now_ns) {
 void ScipEmulator::say_fields(const std::string& command, const devices::ScipFields& fields,
                               std::int64_t now_ns) {
   ScipAnswer answer{"00", {}};
-  for (const auto& [name, value] : fields) answer.lines.push_back(name + ':' + value);
+  for (const auto& [name, value] : fields) {
+    std::string& line = answer.lines.emplace_back(name);
+    line += ':';
+    line += value;
+  }
   say(devices::scip_text_of_fields(command, answer), now_ns);
 }
 

@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace topogeo::devices {
@@ -61,7 +62,9 @@ class ColaWriter {
   ColaWriter& real(float value);
   ColaWriter& text(std::string_view value);
   ColaWriter& sized_text(std::string_view value);
-  [[nodiscard]] ColaTelegram telegram(std::string name) const { return {dialect_, name, fields_}; }
+  [[nodiscard]] ColaTelegram telegram(std::string name) const {
+    return {dialect_, std::move(name), fields_};
+  }
 
  private:
   void word(const std::string& text);
