@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "topogeo/devices/body_sensors.hpp"
-#include "topogeo/localization/tracking/laser_odometry.hpp"
+#include "topogeo/matching/laser_odometry.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/stream.h"
