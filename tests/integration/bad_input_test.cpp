@@ -131,7 +131,7 @@ TEST_F(BadInputTest, BadLinesAreToldCountedAndLeftOut) {
   lines.insert(lines.begin() + 15, lines[3]);                        // time goes backwards
   lines.insert(lines.begin() + 12, without_words(sample, 100, 50));  // too few ranges
   lines.insert(lines.begin() + 9, with_word(sample, 7, "-1.5"));
-  lines.insert(lines.begin() + 6, with_word(sample, 5, "nan"));
+  lines.insert(lines.begin() + 6, with_word(sample, 5, "1e99"));
   const std::string log = file("bad.clf", join(lines));
 
   const Outcome map = call("map", log);
