@@ -13,8 +13,8 @@ namespace {
 
 // Stored stops further away are not compared: in a finished map nearer ones see the same.
 constexpr double kFarthestStored_m = 12.0;
-// Number of ids for the stops of a drive, reused in turn: the pool keeps no more of them. Tasks refer
-// to the last three stops (DriveWindow); the others are a margin for answers that come late.
+// Number of ids for the stops of a drive, reused in turn: the pool keeps no more of them. Tasks
+// refer to the last three stops (DriveWindow); the others are a margin for answers that come late.
 constexpr std::uint32_t kDriveIds = 64;
 
 }  // namespace
