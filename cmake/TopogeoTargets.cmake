@@ -121,7 +121,7 @@ function(topogeo_add_test)
   topogeo_build_fast(${ARG_NAME} topogeo_precompiled_tests)
   if(ARG_PROCESSES)
     gtest_discover_tests(${ARG_NAME} TEST_PREFIX ${ARG_NAME}.
-                         PROPERTIES TIMEOUT ${TOPOGEO_TEST_LIMIT_S} LABELS "${ARG_LABELS}" PROCESSORS 2
+                         PROPERTIES TIMEOUT ${TOPOGEO_TEST_LIMIT_S} LABELS "${ARG_LABELS}"
                                     ENVIRONMENT TOPOGEO_TIME_FACTOR=${TOPOGEO_MACHINE_FACTOR}
                          DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT ${TOPOGEO_TEST_LIMIT_S})
   else()
@@ -139,7 +139,7 @@ function(topogeo_add_script_test name script)
   string(REGEX REPLACE "[.].*" "" label ${name})
   add_test(NAME ${name} COMMAND bash ${script} ${CMAKE_BINARY_DIR} ${ARGN})
   topogeo_set_limit(${name})
-  set_tests_properties(${name} PROPERTIES LABELS ${label} PROCESSORS 2 SKIP_RETURN_CODE 77)
+  set_tests_properties(${name} PROPERTIES LABELS ${label} SKIP_RETURN_CODE 77)
 endfunction()
 
 # topogeo_set_limit(NAME): sets the time limit of all tests (TopogeoTimeFactor.cmake) for a test of add_test(). Its
@@ -173,32 +173,24 @@ function(topogeo_discover_suites target labels)
 include([==[@list@]==] OPTIONAL)
 foreach(suite IN LISTS suites)
   set_tests_properties(@target@.\${suite} PROPERTIES TIMEOUT @TOPOGEO_TEST_LIMIT_S@ LABELS [==[@labels@]==]
-    PROCESSORS 2 ENVIRONMENT TOPOGEO_TIME_FACTOR=@TOPOGEO_MACHINE_FACTOR@)
+    ENVIRONMENT TOPOGEO_TIME_FACTOR=@TOPOGEO_MACHINE_FACTOR@)
 endforeach()
 ")
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${include_file})
 endfunction()
 
-# topogeo_set_costs(FILE): makes ctest start tests in the order of their durations in FILE ("seconds cores name" a line),
-# even before their first run, and run as many in parallel as the cores that they keep busy allow. A job of ctest is a
-# quarter of a core (JOBS_PER_CORE in tests/runner/run_tests.py). Call it in the folder that is added last, because ctest
-# must know the tests by then. Names of missing tests are harmless; a test that FILE lacks takes half a core.
+# topogeo_set_costs(FILE): makes ctest start tests in the order of their durations in FILE ("seconds name" a line), even
+# before their first run. Call it in the folder that is added last, because ctest must know the tests by then. Names of
+# missing tests are harmless.
 function(topogeo_set_costs file)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
   file(STRINGS ${file} lines REGEX "^[^#]")
   set(content "")
   foreach(line IN LISTS lines)
-    if(NOT line MATCHES "^([0-9]+) ([0-9]+)([.][0-9])? (.+)$")
-      message(FATAL_ERROR "${file}: expected a line 'seconds cores name', got '${line}'")
+    if(NOT line MATCHES "^([0-9]+) (.+)$")
+      message(FATAL_ERROR "${file}: expected a line 'seconds name', got '${line}'")
     endif()
-    set(seconds ${CMAKE_MATCH_1})
-    set(name ${CMAKE_MATCH_4})
-    string(REPLACE "." "" tenths "${CMAKE_MATCH_2}${CMAKE_MATCH_3}")
-    if(CMAKE_MATCH_3 STREQUAL "")
-      string(APPEND tenths 0)
-    endif()
-    math(EXPR quarters "(${tenths} * 4 + 9) / 10")
-    string(APPEND content "set_tests_properties([==[${name}]==] PROPERTIES COST ${seconds} PROCESSORS ${quarters})\n")
+    string(APPEND content "set_tests_properties([==[${CMAKE_MATCH_2}]==] PROPERTIES COST ${CMAKE_MATCH_1})\n")
   endforeach()
   set(include_file ${CMAKE_CURRENT_BINARY_DIR}/costs.cmake)
   file(CONFIGURE OUTPUT ${include_file} CONTENT "${content}" @ONLY)

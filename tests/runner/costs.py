@@ -1,14 +1,9 @@
-"""What each test costs, by which ctest orders them and runs them in parallel: tests/costs.txt, which CMake reads."""
+"""Durations of tests, by which ctest orders them: tests/costs.txt, which CMake reads."""
 
-HEADER = """# Cost of each test: seconds, cores, name. The longest start first, so that none runs alone at the end. A test with a
-# lock counts with all that wait for the same lock. Cores are the mean that a test would keep busy: many tests mostly
-# wait, and more of these run at once. A test that is missing here takes less than a second or is new: ctest orders it
-# by its own measurements. `./run test --save-costs` writes this file.
+HEADER = """# Duration of each test: seconds, name. The longest start first, so that none runs alone at the end. A test with a
+# lock counts with all that wait for the same lock. A test that is missing here takes less than a second or is new:
+# ctest orders it by its own measurements. `./run test --save-costs` writes this file.
 """
-
-# Processes in containers belong to the engine: tests that start them are taken to keep at least so many cores busy.
-CORES_WITH_CONTAINERS = 0.8
-WITH_CONTAINERS = ("container.", "package.", "security.")
 
 
 def locks_of(listing):
@@ -28,14 +23,13 @@ def fixed_of(listing, table):
 
 
 def read_costs(path):
-    """{name: (seconds, cores)}."""
     costs = {}
     try:
         with open(path, encoding="utf-8") as file:
             for line in file:
                 if line[:1].isdigit():
-                    seconds, cores, name = line.rstrip("\n").split(" ", 2)
-                    costs[name] = (int(seconds), float(cores))
+                    seconds, name = line.rstrip("\n").split(" ", 1)
+                    costs[name] = int(seconds)
     except FileNotFoundError:
         pass
     return costs
@@ -52,24 +46,16 @@ def costs_of(seconds, locks):
     return costs
 
 
-def cores_of(name, seconds, cpu_seconds):
-    """Mean number of cores that a test would keep busy, in tenths, at least one tenth."""
-    cores = cpu_seconds.get(name, 0.0) / seconds
-    return max(round(cores, 1), CORES_WITH_CONTAINERS if name.startswith(WITH_CONTAINERS) else 0.1)
-
-
-def save_costs(path, tests, listing, cpu_seconds):
-    """Writes costs of the tests that have run and passed; keeps those of others. cpu_seconds: what each wanted."""
+def save_costs(path, tests, listing):
+    """Those of the tests that have run and passed; of others what the file said."""
     table = read_costs(path)
     fixed = fixed_of(listing, table)
     there = {test["name"] for test in listing["tests"]}
-    seconds = {test.name: test.seconds for test in tests if test.state == "passed"}
-    costs = costs_of(seconds, locks_of(listing))
-    table = {name: cost for name, cost in table.items() if name in there and name not in costs}
-    table.update((name, (round(cost), cores_of(name, seconds[name], cpu_seconds)))
-                 for name, cost in costs.items() if name not in fixed and cost >= 1.0)
+    measured = costs_of({test.name: test.seconds for test in tests if test.state == "passed"}, locks_of(listing))
+    table = {name: cost for name, cost in table.items() if name in there and name not in measured}
+    table.update((name, round(cost)) for name, cost in measured.items() if name not in fixed and cost >= 1.0)
     with open(path, "w", encoding="utf-8") as file:
         file.write(HEADER)
-        for name, (cost, cores) in sorted(table.items(), key=lambda entry: (-entry[1][0], entry[0])):
-            file.write(f"{cost} {cores:g} {name}\n")
+        for name, cost in sorted(table.items(), key=lambda entry: (-entry[1], entry[0])):
+            file.write(f"{cost} {name}\n")
     return len(table)

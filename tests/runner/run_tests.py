@@ -13,7 +13,6 @@ import time
 
 import changed
 import costs
-import cpu_times
 import quota
 import summary
 
@@ -32,8 +31,7 @@ Runs all tests, or those whose name matches one of the regular expressions NAME.
   --repeat N           N times, whatever comes out; says how many were green
   --time-tests quick|all
                        those that once failed because a machine was slow (tests/runner/time_tests.txt)
-  --save-costs         writes the seconds and cores of each test into tests/costs.txt, by which ctest orders them
-                       and runs them in parallel
+  --save-costs         writes what each test took into tests/costs.txt, by which ctest orders them
   --sanitize address|thread [--short]
                        with a sanitizer compiled in, in build-asan or build-tsan; --short: what has threads and
                        parsers, two minutes. Must be first
@@ -121,13 +119,9 @@ def time_tests(which):
     return [pattern for speed, pattern in lines if which == "all" or speed == which]
 
 
-# Jobs of ctest for each core, of which a test takes as many as it keeps busy (topogeo_set_costs).
-JOBS_PER_CORE = 4
-
-
 def jobs(cpus):
-    """Half a core more than there is: a test does not use its share at each moment."""
-    return (os.cpu_count() if cpus is None else min(os.cpu_count(), math.ceil(cpus))) * JOBS_PER_CORE + 2
+    """Three for each core: many tests wait for devices, containers and services most of their time."""
+    return 3 * (os.cpu_count() if cpus is None else min(os.cpu_count(), math.ceil(cpus)))
 
 
 class Runner:
@@ -138,7 +132,6 @@ class Runner:
         self._junit = os.path.join(options.build, "Testing", "junit.xml")
         self._log = os.path.join(options.build, "Testing", "output.log")
         self._join = None
-        self._sampler = None  # only where costs are saved
 
     def _listing(self):
         command = ["ctest", *self._preset, "--show-only=json-v1"]
@@ -201,19 +194,14 @@ class Runner:
             with contextlib.suppress(FileNotFoundError):
                 os.remove(path)
         os.makedirs(os.path.dirname(self._junit), exist_ok=True)
-        self._sampler = cpu_times.Sampler(self._listing()) if self._options.save_costs else None
         # A process group of its own, so that stopping this program alone can stop all tests.
         with subprocess.Popen(command, cwd=ROOT, stdin=subprocess.DEVNULL, preexec_fn=self._join,
                               process_group=0) as ctest:
-            if self._sampler:
-                self._sampler.start(ctest.pid)
             try:
                 status = ctest.wait()
             except BaseException:
                 end_all(ctest)
                 raise
-        if self._sampler:
-            self._sampler.stop()
         if not os.path.exists(self._junit):
             return status or 1, ""
         tests = summary.read_junit(self._junit)
@@ -222,8 +210,7 @@ class Runner:
         print("\n" + "\n".join(summary.summary_lines(tests, folders, stages, self._again(), ROOT)))
         if self._options.save_costs:
             path = os.path.join(ROOT, "tests", "costs.txt")
-            saved = costs.save_costs(path, tests, self._listing(), self._sampler.wanted_s())
-            print(f"costs of {saved} tests are in tests/costs.txt")
+            print(f"costs of {costs.save_costs(path, tests, self._listing())} tests are in tests/costs.txt")
         with open(self._log, encoding="utf-8", errors="replace") as file:
             return status, summary.closing_line(file.read())
 
