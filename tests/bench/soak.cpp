@@ -6,13 +6,13 @@
 // the services follow R times faster: sensor gateway, local mapper, localizer, map store, planner,
 // navigator and N workers, as processes. Samples while they work: resident memory, open files and
 // threads of each, shared memory, and the disk space of the results. The first half is warm-up
-// (another share with --warm-up), because caches and histories fill. The last history to fill is
-// the localizer's: 1,024 stops of a drive with their maps and up to 4,096 with their poses. On a
-// machine too slow for the rate, this program, which reads the scans like the services, holds the
-// log up until the localizer has caught up, because a queue is no growth. After the warm-up the
-// memory of each service must stay within 5 % of its value at the end of the warm-up, plus 1 MB for
-// noise between samples; open files and shared memory must not grow at all; and after the end no
-// shared memory of the services may remain. Exits with 1 when something grew.
+// (another share with --warm-up), because caches and histories fill. The caches of the workers fill
+// last, sooner with less --worker-memory-mb. On a machine too slow for the rate, this program,
+// which reads the scans like the services, holds the log up until the localizer has caught up,
+// because a queue is no growth. After the warm-up the memory of each service must stay within 5 %
+// of its value at the end of the warm-up, plus 1 MB for noise between samples; open files and
+// shared memory must not grow at all; and after the end no shared memory of the services may
+// remain. Exits with 1 when something grew.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -55,6 +55,7 @@ struct SoakOptions {
   double hours = 1.0;
   std::string rate = "25";
   std::size_t workers = 2;
+  std::uint32_t worker_memory_mb = 64;
   double warm_up = 0.5;
   Path csv;
 };
@@ -408,6 +409,9 @@ int main(int argc, char** argv) {
   app.add_option("--workers", options.workers, "search workers")
       ->capture_default_str()
       ->check(command_line::range(0, 16));
+  app.add_option("--worker-memory-mb", options.worker_memory_mb, "for the maps of a worker")
+      ->capture_default_str()
+      ->check(command_line::range(std::uint32_t{4}, std::uint32_t{1024}));
   app.add_option("--warm-up", options.warm_up, "share of the run after which nothing may grow")
       ->capture_default_str()
       ->check(command_line::range(0.1, 0.9));
