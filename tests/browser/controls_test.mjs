@@ -1,5 +1,5 @@
 // Two operators at one robot: one has the controls, the other asks for them or takes them over; events and the audit
-// log name who ordered. The service runs without a robot, which orders do not need.
+// log name who ordered. The robot has a local mapper alone: orders need no more, and a page without a robot has no Stop.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -16,6 +16,7 @@ let browser;
 before(async () => {
   robot.web_options = ["--audit-log", audit];
   await robot.start_store("--out", join(work, "map"));
+  robot.run("local_mapper");
   browser = await launch();
 });
 

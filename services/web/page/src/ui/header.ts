@@ -90,9 +90,9 @@ export class Header {
     show(this.token, true);
   }
 
-  /** Stops the robot in any state. False: this page may not, or there is no robot. */
+  /** Stops the robot in any state, even one that was never heard. False: this page may not. */
   stop_now(): boolean {
-    if (!this.rights.may_write || is_map_alone(this.channels)) return false;
+    if (!this.rights.may_write) return false;
     void this.stopping.stop(() => this.on_stop());
     return true;
   }
