@@ -189,7 +189,7 @@ void describe_cola(ConfigSchema& schema, Laser& laser) {
 /// The port of a laser on a network is that of its model, unless it is given.
 std::string laser_port(const Laser& laser) {
   try {
-    const std::string port = devices::with_port(laser.port, laser.model->network_port);
+    std::string port = devices::with_port(laser.port, laser.model->network_port);
     if (devices::is_network_address(port) && !devices::network_address(port).port) {
       throw std::invalid_argument("'" + port + "': expected a port after the host");
     }

@@ -41,7 +41,7 @@ fs::path snapshot_path(const fs::path& database, const std::string& name) {
 }
 
 fs::path existing_snapshot(const fs::path& database, const std::string& name) {
-  const fs::path path = snapshot_path(database, name);
+  fs::path path = snapshot_path(database, name);
   if (!fs::exists(path)) throw std::runtime_error("there is no snapshot " + name);
   return path;
 }

@@ -82,6 +82,7 @@ std::vector<std::string> ports_of(const std::string& path) {
     if (model.network_port != 0) numbers.insert(model.network_port);
   }
   std::vector<std::string> ports;
+  ports.reserve(numbers.size());
   for (const std::uint16_t number : numbers) {
     ports.push_back(devices::with_port(path, number));
   }
@@ -103,6 +104,7 @@ std::vector<SearchedPort> search_all(const DevicesOptions& options) {
   const std::vector<std::string> paths = paths_of(options);
   messaging::EventLoop loop;
   std::vector<std::unique_ptr<OpenPort>> ports;
+  ports.reserve(paths.size());
   for (const std::string& path : paths) {
     ports.push_back(std::make_unique<OpenPort>(loop, path, !options.listen_only));
   }
@@ -110,6 +112,7 @@ std::vector<SearchedPort> search_all(const DevicesOptions& options) {
     while (!port->over()) static_cast<void>(loop.run_for(kPoll));
   }
   std::vector<SearchedPort> results;
+  results.reserve(ports.size());
   for (const auto& port : ports) results.push_back(port->result());
   return results;
 }

@@ -217,6 +217,7 @@ std::vector<std::string> unused_public_headers(const std::filesystem::path& root
     }
   }
   std::vector<std::string> lines;
+  lines.reserve(unused.size());
   for (const auto& [header, file] : unused) {
     lines.push_back(file + ": only its library includes it, expected in src/");
   }

@@ -27,15 +27,17 @@ MapPicture room() {
     square->zones.resize(square->states.size(), 65535);
     for (std::int32_t row = 0; row < kSide; ++row) {
       for (std::int32_t column = 0; column < kSide; ++column) {
-        const double x_m = 0.05 * (number % kSquares * kSide + column);
-        const double y_m = 0.05 * (number / kSquares * kSide + row);
+        const std::int32_t from_column = number % kSquares * kSide;
+        const std::int32_t from_row = number / kSquares * kSide;
+        const double x_m = 0.05 * (from_column + column);
+        const double y_m = 0.05 * (from_row + row);
         const bool inside = x_m > 2.0 && x_m < 8.0 && y_m > 2.0 && y_m < 6.0;
         const bool around = x_m > 1.9 && x_m < 8.1 && y_m > 1.9 && y_m < 6.1;
         const planning::CellState state =
             inside ? planning::CellState::kFree
                    : (around ? planning::CellState::kOccupied : planning::CellState::kUnknown);
-        square->states.at(static_cast<std::size_t>(row * kSide + column)) =
-            static_cast<std::uint8_t>(state);
+        const std::int32_t cell = row * kSide + column;
+        square->states.at(static_cast<std::size_t>(cell)) = static_cast<std::uint8_t>(state);
       }
     }
     squares.push_back(std::move(square));
