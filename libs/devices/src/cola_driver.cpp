@@ -1,10 +1,11 @@
 #include "topogeo/devices/cola_driver.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>
+
+#include "sweep_layout.hpp"
 
 namespace topogeo::devices {
 namespace {
@@ -195,22 +196,16 @@ LaserScan ColaDriver::to_scan(const ColaScan& scan, std::int64_t now_ns) {
   const auto gaps = static_cast<double>(scan.ranges_m.size() - 1);
   LaserScan result;
   result.stamp_ns = first_ns + std::llround(0.5 * gaps * step_s * kSecond_ns);
-  result.angle_step_rad = kRadOfDegree * scan.step_deg;
-  const double first_rad = kRadOfDegree * (scan.first_deg - kAhead_deg);
-  result.angle_min_rad =
-      turning_.upside_down ? -(first_rad + gaps * result.angle_step_rad) : first_rad;
-  result.time_step_s = turning_.upside_down ? -step_s : step_s;
-  result.first_beam_s = -0.5 * gaps * result.time_step_s;
-  for (const float measured_m : scan.ranges_m) result.ranges_m.push_back(range_m(measured_m));
-  if (turning_.upside_down) std::ranges::reverse(result.ranges_m);
+  Sweep sweep{
+      kRadOfDegree * (scan.first_deg - kAhead_deg), kRadOfDegree * scan.step_deg, step_s, {}};
+  for (const float measured_m : scan.ranges_m) sweep.ranges_m.push_back(range_m(measured_m));
+  lay_out(std::move(sweep), turning_.upside_down, result);
   result.contaminated = scan.status == kColaDirty || scan.status == kColaTooDirty;
   return result;
 }
 
 float ColaDriver::range_m(float measured_m) const {
-  const double largest_m = turning_.range_max_m > 0.0
-                               ? std::min(turning_.range_max_m, model_.range_max_m)
-                               : model_.range_max_m;
+  const double largest_m = turning_.largest_range_m(model_.range_max_m);
   const double range_m = measured_m;
   return range_m >= turning_.range_min_m && range_m < largest_m ? measured_m : 0.0F;
 }

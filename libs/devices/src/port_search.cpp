@@ -49,8 +49,7 @@ constexpr std::array<LineSettings, 15> kOtherLines{{{230'400, Parity::kNone},
 ///   Hour. "Get health" (A5 52) and "stop" (A5 25, A5 65) would press Spot, Clean or Dock, and are
 ///   never sent.
 /// - "VV" of a Hokuyo is no command of these bases; small robots sound their horn at V, if at all.
-/// The
-///   other commands have letters that drive such robots, and are sent to a Hokuyo only.
+///   The other commands have letters that drive such robots, and are sent to a Hokuyo only.
 /// - The status request of a SICK laser has no letter and no end of line.
 /// - The start letter of an LDS-01 is "backward" for many small robots, and is never sent.
 std::vector<std::uint8_t> question_bytes(Question question) {

@@ -1,10 +1,11 @@
 #include "topogeo/devices/scip_driver.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>
+
+#include "sweep_layout.hpp"
 
 namespace topogeo::devices {
 namespace {
@@ -247,25 +248,21 @@ std::optional<LaserScan> ScipDriver::to_scan(const ScipScan& scan, std::int64_t 
       *stamp_ns + std::llround((first_steps + 0.5 * beams) * step_ns) - turning_.packet_delay_ns;
   if (result.stamp_ns <= last_stamp_ns_) return std::nullopt;
   last_stamp_ns_ = result.stamp_ns;
-  result.angle_step_rad = 2.0 * std::numbers::pi / sweep_.steps_of_turn;
-  const double first_rad =
-      (static_cast<double>(sweep_.first_step) - sweep_.front_step) * result.angle_step_rad;
-  result.angle_min_rad =
-      turning_.upside_down ? -(first_rad + beams * result.angle_step_rad) : first_rad;
-  result.time_step_s = step_ns / kScipSecond_ns * (turning_.upside_down ? -1.0 : 1.0);
-  result.first_beam_s = -0.5 * beams * result.time_step_s;
+  const double step_rad = 2.0 * std::numbers::pi / sweep_.steps_of_turn;
+  Sweep sweep{(static_cast<double>(sweep_.first_step) - sweep_.front_step) * step_rad,
+              step_rad,
+              step_ns / kScipSecond_ns,
+              {}};
   for (std::size_t i = 0; i < scan.distances_mm.size(); ++i) {
-    result.ranges_m.push_back(range_m(scan, i));
+    sweep.ranges_m.push_back(range_m(scan, i));
   }
-  if (turning_.upside_down) std::ranges::reverse(result.ranges_m);
+  lay_out(std::move(sweep), turning_.upside_down, result);
   return result;
 }
 
 float ScipDriver::range_m(const ScipScan& scan, std::size_t beam) const {
   constexpr double kPerMm = 0.001;
-  const double largest_m = turning_.range_max_m > 0.0
-                               ? std::min(turning_.range_max_m, model_.range_max_m)
-                               : model_.range_max_m;
+  const double largest_m = turning_.largest_range_m(model_.range_max_m);
   const std::uint32_t distance_mm = scan.distances_mm[beam];
   const double range_m = kPerMm * distance_mm;
   const bool beyond =

@@ -33,8 +33,7 @@ TurnAssembler::TurnAssembler(const TurningLaserSettings& settings, std::size_t b
                              double range_max_m, bool clockwise)
     : settings_(settings),
       beams_(settings.beams > 0 ? settings.beams : beams),
-      range_max_m_(settings.range_max_m > 0.0 ? std::min(settings.range_max_m, range_max_m)
-                                              : range_max_m),
+      range_max_m_(settings.largest_range_m(range_max_m)),
       angle_step_rad_(kFullTurn_rad / static_cast<double>(beams_)),
       mirrored_(clockwise != settings.upside_down) {}
 

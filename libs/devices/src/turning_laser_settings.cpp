@@ -1,9 +1,14 @@
 #include "topogeo/devices/turning_laser_settings.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
 namespace topogeo::devices {
+
+double TurningLaserSettings::largest_range_m(double range_max_of_model_m) const {
+  return range_max_m > 0.0 ? std::min(range_max_m, range_max_of_model_m) : range_max_of_model_m;
+}
 
 void TurningLaserSettings::check() const {
   const auto require = [](bool holds, const char* name, double value, const char* expected) {

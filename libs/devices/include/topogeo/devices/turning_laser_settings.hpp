@@ -26,6 +26,9 @@ struct TurningLaserSettings {
   /// Time without a packet after which the laser counts as silent.
   std::int64_t silence_ns = 1'000'000'000;
 
+  /// Readings from here on are no return, for a model with this largest range, m.
+  [[nodiscard]] double largest_range_m(double range_max_of_model_m) const;
+
   /// Throws std::invalid_argument naming the first setting that is out of range.
   void check() const;
 };
