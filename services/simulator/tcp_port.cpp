@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
@@ -13,18 +12,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "topogeo/devices/network_address.hpp"
+
 #include "pseudo_terminal.hpp"
 
 namespace topogeo::simulator {
-namespace {
-
-constexpr std::string_view kTcpScheme = "tcp://";
-
-std::invalid_argument wrong_address(const std::string& text) {
-  return std::invalid_argument("'" + text + "': expected tcp://ADDRESS:PORT");
-}
-
-}  // namespace
 
 TcpPort::TcpPort(std::string address, std::uint16_t port)
     : address_(std::move(address)), port_(port) {}
@@ -88,16 +80,12 @@ std::size_t TcpPort::send(std::span<const std::uint8_t> bytes) {
 
 std::unique_ptr<DevicePort> make_device_port(const std::filesystem::path& port) {
   const std::string text = port.string();
-  if (!text.starts_with(kTcpScheme)) return std::make_unique<PseudoTerminal>(port);
-  const std::size_t colon = text.rfind(':');
-  std::uint16_t number = 0;
-  const char* const end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(text.data() + colon + 1, end, number);
-  if (colon < kTcpScheme.size() || error != std::errc() || at != end || number == 0) {
-    throw wrong_address(text);
+  if (!devices::is_network_address(text)) return std::make_unique<PseudoTerminal>(port);
+  const devices::NetworkAddress address = devices::network_address(text);
+  if (!address.port) {
+    throw std::invalid_argument("'" + text + "': expected tcp://ADDRESS:PORT");
   }
-  return std::make_unique<TcpPort>(text.substr(kTcpScheme.size(), colon - kTcpScheme.size()),
-                                   number);
+  return std::make_unique<TcpPort>(address.host, *address.port);
 }
 
 }  // namespace topogeo::simulator
