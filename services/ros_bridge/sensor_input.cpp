@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/pipeline/scan_feed.hpp"
 #include "topogeo/ros_conversions/geometry.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/support/format.hpp"
@@ -214,8 +215,7 @@ void SensorInput::follow(ScanIntake::Leaving leaving) {
   if (!laser_odometry_ || intake_epochs_ != leaving.scan.odometry_epoch) {
     const pipeline::Config& config = ros_.service().setup().config.config;
     if (laser_odometry_) laser_epochs_ += laser_odometry_->counts().breaks;
-    laser_odometry_.emplace(config.local_mapper.T_robot_laser,
-                            config.local_mapper.local_map.points_range_m);
+    laser_odometry_.emplace(pipeline::laser_odometry(config.local_mapper));
     intake_epochs_ = leaving.scan.odometry_epoch;
   }
   laser_odometry_->add(std::move(leaving.scan));

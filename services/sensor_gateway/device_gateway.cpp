@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/pipeline/scan_feed.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/navigation_conversions.hpp"
 #include "topogeo/support/format.hpp"
@@ -133,8 +134,7 @@ void DeviceGateway::begin_without_base() {
     return;
   }
   spdlog::info("no base configured: odometry from the scans");
-  laser_odometry_.emplace(config.local_mapper.T_robot_laser,
-                          config.local_mapper.local_map.points_range_m);
+  laser_odometry_.emplace(pipeline::laser_odometry(config.local_mapper));
 }
 
 std::vector<scan::Scan> DeviceGateway::placed(scan::Scan scan) {

@@ -20,6 +20,10 @@ bool apart(const Pose2& a, const Pose2& b, double distance_m, double angle_rad) 
 
 }  // namespace
 
+localization::LaserOdometry laser_odometry(const LocalMapperConfig& config) {
+  return {config.T_robot_laser, config.local_map.points_range_m};
+}
+
 std::optional<scan::Scan> ScanFeed::next() {
   if (!odometry_) return next_();
   while (ready_.empty() && !ended_) {

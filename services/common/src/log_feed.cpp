@@ -13,13 +13,6 @@ pipeline::NextScan read_again(const recording::LogReader& reader) {
   return [again] { return again->next(); };
 }
 
-pipeline::ScanFeed feed_of(recording::LogReader& reader, const pipeline::Config& config,
-                           bool from_scans) {
-  const pipeline::NextScan next = [&reader] { return reader.next(); };
-  if (!from_scans) return pipeline::ScanFeed(next);
-  return {next, laser_odometry(config)};
-}
-
 }  // namespace
 
 recording::OdometryUse odometry_use(const pipeline::Config& config) {
@@ -34,10 +27,6 @@ recording::OdometryUse odometry_use(const pipeline::Config& config) {
   return recording::OdometryUse::kRequired;
 }
 
-localization::LaserOdometry laser_odometry(const pipeline::Config& config) {
-  return {config.local_mapper.T_robot_laser, config.local_mapper.local_map.points_range_m};
-}
-
 std::string why_laser_odometry(const recording::LogReader& reader, const pipeline::Config& config) {
   if (config.odometry_source == OdometrySource::kRecorded) return {};
   if (config.odometry_source == OdometrySource::kLaser) return "odometry.source is laser";
@@ -46,21 +35,29 @@ std::string why_laser_odometry(const recording::LogReader& reader, const pipelin
   }
   if (!reader.has_odometry()) return "the log has none";
   if (!pipeline::odometry_stands(read_again(reader))) return {};
-  if (!pipeline::laser_moves(read_again(reader), laser_odometry(config))) return {};
+  if (!pipeline::laser_moves(read_again(reader), pipeline::laser_odometry(config.local_mapper)))
+    return {};
   return "the log's stays at one pose while the scans move";
+}
+
+pipeline::ScanFeed scan_feed(recording::LogReader& reader, const pipeline::Config& config,
+                             bool from_scans) {
+  const pipeline::NextScan next = [&reader] { return reader.next(); };
+  if (!from_scans) return pipeline::ScanFeed(next);
+  return {next, pipeline::laser_odometry(config.local_mapper)};
 }
 
 LogFeed::LogFeed(recording::LogReader reader, const pipeline::Config& config, std::string why_laser)
     : config_(config),
       reader_(std::make_unique<recording::LogReader>(std::move(reader))),
       why_laser_(std::move(why_laser)),
-      feed_(feed_of(*reader_, config_, !why_laser_.empty())) {}
+      feed_(scan_feed(*reader_, config_, !why_laser_.empty())) {}
 
 LogFeed::LogFeed(recording::LogReader reader, const pipeline::Config& config)
     : config_(config),
       reader_(std::make_unique<recording::LogReader>(std::move(reader))),
       why_laser_(why_laser_odometry(*reader_, config_)),
-      feed_(feed_of(*reader_, config_, !why_laser_.empty())) {}
+      feed_(scan_feed(*reader_, config_, !why_laser_.empty())) {}
 
 LogFeed LogFeed::from_start() const {
   return {reader_->from_start(), config_, why_laser_};

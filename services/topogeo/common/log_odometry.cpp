@@ -19,26 +19,22 @@ JobOptions without_odometry(const JobOptions& options) {
 }
 
 pipeline::ScanFeed open_feed(Job& job) {
-  const pipeline::NextScan next = [&job] { return job.reader.next(); };
+  const pipeline::Config& config = job.inputs.config.config;
   std::string why;
   try {
-    why = service::why_laser_odometry(job.reader, job.inputs.config.config);
+    why = service::why_laser_odometry(job.reader, config);
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }
-  if (why.empty()) return pipeline::ScanFeed(next);
-  std::cerr << "topogeo: odometry from the scans: " << why << '\n';
-  return {next, service::laser_odometry(job.inputs.config.config)};
+  if (!why.empty()) std::cerr << "topogeo: odometry from the scans: " << why << '\n';
+  return service::scan_feed(job.reader, config, !why.empty());
 }
 
 pipeline::ScanFeed open_feed_again(Job& job, const pipeline::ScanFeed& first) {
-  const pipeline::NextScan next = [&job] { return job.reader.next(); };
   const pipeline::Config& config = job.inputs.config.config;
-  if (first.laser_counts() == nullptr &&
-      config.odometry_source != pipeline::OdometrySource::kLaser) {
-    return pipeline::ScanFeed(next);
-  }
-  return {next, service::laser_odometry(config)};
+  const bool from_scans =
+      first.laser_counts() != nullptr || config.odometry_source == pipeline::OdometrySource::kLaser;
+  return service::scan_feed(job.reader, config, from_scans);
 }
 
 void check_tracked(const JobOptions& options, const pipeline::ScanFeed& feed) {

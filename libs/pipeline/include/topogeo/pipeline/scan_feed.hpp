@@ -7,12 +7,16 @@
 #include <string>
 
 #include "topogeo/matching/laser_odometry.hpp"
+#include "topogeo/pipeline/local_mapper_config.hpp"
 #include "topogeo/scan/scan.hpp"
 
 namespace topogeo::pipeline {
 
 /// Returns the next scan of a log, in order of time; empty at its end.
 using NextScan = std::function<std::optional<scan::Scan>()>;
+
+/// Odometry from the scans of the laser of a configuration.
+localization::LaserOdometry laser_odometry(const LocalMapperConfig& config);
 
 class ScanFeed {
  public:

@@ -15,12 +15,13 @@ namespace topogeo::service {
 /// Whether a reader needs the odometry of the log.
 recording::OdometryUse odometry_use(const pipeline::Config& config);
 
-/// Odometry from the scans for a configuration.
-localization::LaserOdometry laser_odometry(const pipeline::Config& config);
-
 /// Why the odometry of a log is made from its scans; empty if it is the log's. May read the log.
 /// Throws std::runtime_error if it cannot be read.
 std::string why_laser_odometry(const recording::LogReader& reader, const pipeline::Config& config);
+
+/// The scans of a log, whose reader must outlive the feed.
+pipeline::ScanFeed scan_feed(recording::LogReader& reader, const pipeline::Config& config,
+                             bool from_scans);
 
 class LogFeed {
  public:
