@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
+#include <optional>
 #include <tuple>
 
 namespace topogeo::planning {
@@ -12,15 +14,11 @@ ZoneId zone_at(const GridFrame& frame, const ZoneMap& zones, const Eigen::Vector
   return cell ? zones.zone_of_cell[frame.index(*cell)] : kNoZone;
 }
 
-std::string name_of(std::uint32_t room) {
-  return "room " + std::to_string(room);
-}
-
 }  // namespace
 
 void RoomNumbers::assign(const GridFrame& frame, std::span<const topomap::StopPose> stops,
                          ZoneMap& zones, std::vector<Place>& places) {
-  const Poses poses = poses_of(stops);
+  const StopPoses poses = poses_of(stops);
   find_again(frame, poses, zones);
   for (Zone& zone : zones.zones) {
     if (zone.room == 0) zone.room = ++memory_.last;
@@ -30,15 +28,7 @@ void RoomNumbers::assign(const GridFrame& frame, std::span<const topomap::StopPo
   remember(frame, poses, zones);
 }
 
-RoomNumbers::Poses RoomNumbers::poses_of(std::span<const topomap::StopPose> stops) {
-  Poses poses;
-  for (const topomap::StopPose& stop : stops) {
-    if (stop.located) poses.emplace(stop.stop, stop.T_map_robot);
-  }
-  return poses;
-}
-
-RoomPoint RoomNumbers::point_at(const Eigen::Vector2d& position_m, const Poses& poses) {
+RoomPoint RoomNumbers::point_at(const Eigen::Vector2d& position_m, const StopPoses& poses) {
   RoomPoint point{std::nullopt, position_m};
   double nearest_m = std::numeric_limits<double>::infinity();
   for (const auto& [key, T_map_stop] : poses) {
@@ -50,15 +40,7 @@ RoomPoint RoomNumbers::point_at(const Eigen::Vector2d& position_m, const Poses& 
   return point;
 }
 
-std::optional<Eigen::Vector2d> RoomNumbers::position_of(const RoomPoint& point,
-                                                        const Poses& poses) {
-  if (!point.stop) return point.position_m;
-  const auto found = poses.find(*point.stop);
-  if (found == poses.end()) return std::nullopt;
-  return found->second * point.position_m;
-}
-
-void RoomNumbers::find_again(const GridFrame& frame, const Poses& poses, ZoneMap& zones) const {
+void RoomNumbers::find_again(const GridFrame& frame, const StopPoses& poses, ZoneMap& zones) const {
   // Shared floor in cells, room, zone.
   std::vector<std::tuple<double, const RememberedRoom*, ZoneId>> common;
   for (const RememberedRoom& room : memory_.rooms) {
@@ -87,7 +69,7 @@ void RoomNumbers::find_again(const GridFrame& frame, const Poses& poses, ZoneMap
   }
 }
 
-void RoomNumbers::keep_places(const GridFrame& frame, const Poses& poses, const ZoneMap& zones,
+void RoomNumbers::keep_places(const GridFrame& frame, const StopPoses& poses, const ZoneMap& zones,
                               std::vector<Place>& places) {
   std::erase_if(memory_.places, [&](const RememberedPlace& kept) {
     return std::find(places.begin(), places.end(), kept.drawn) == places.end();
@@ -127,15 +109,15 @@ void RoomNumbers::name(const GridFrame& frame, const std::vector<Place>& places,
     const auto found = inside.find(zone.id);
     if (!zone.name.empty()) continue;
     const bool named = found != inside.end() && found->second.size() == 1;
-    zone.name = named ? found->second.front()->name : name_of(zone.room);
+    zone.name = named ? found->second.front()->name : room_name(zone.room);
   }
 }
 
-void RoomNumbers::remember(const GridFrame& frame, const Poses& poses, const ZoneMap& zones) {
+void RoomNumbers::remember(const GridFrame& frame, const StopPoses& poses, const ZoneMap& zones) {
   constexpr std::size_t kPoints = 64;  // gives shares an accuracy of some per cent
   memory_.rooms.clear();
   for (const Zone& zone : zones.zones) {
-    const bool named = zone.name != name_of(zone.room);
+    const bool named = zone.name != room_name(zone.room);
     memory_.rooms.push_back({zone.room, zone.cells, {}, named ? zone.name : ""});
   }
   std::vector<std::size_t> seen(zones.zones.size(), 0);

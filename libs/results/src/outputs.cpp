@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,7 +10,6 @@
 #include "topogeo/render/map_picture.hpp"
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/storage/tum.hpp"
-#include "topogeo/support/format.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
 namespace topogeo::results {
@@ -105,20 +102,11 @@ std::vector<render::PictureName> names_of(const storage::MapDocument& document) 
     if (zone.polygon_m.empty()) continue;
     names.push_back({zone.name, sum / static_cast<double>(zone.polygon_m.size()), false});
   }
-  std::map<topomap::StopId, geometry::Pose2> T_map_stops;
-  for (const topomap::StopPose& stop : document.trajectory.stops) {
-    if (stop.located) T_map_stops.emplace(stop.stop, stop.T_map_robot);
-  }
-  const auto position_m = [&](const planning::RoomPoint& point) -> std::optional<Eigen::Vector2d> {
-    if (!point.stop) return point.position_m;
-    const auto stop = T_map_stops.find(*point.stop);
-    if (stop == T_map_stops.end()) return std::nullopt;
-    return stop->second * point.position_m;
-  };
+  const planning::StopPoses T_map_stops = planning::poses_of(document.trajectory.stops);
   for (const planning::RememberedRoom& room : document.rooms.rooms) {
-    const std::string name = room.name.empty() ? fmt::format("room {}", room.number) : room.name;
+    const std::string name = room.name.empty() ? planning::room_name(room.number) : room.name;
     for (const planning::RoomPoint& point : room.points) {
-      const auto at_m = position_m(point);
+      const auto at_m = planning::position_of(point, T_map_stops);
       if (!at_m) continue;
       names.push_back({name, *at_m, false});
       break;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "topogeo/planning/room_memory.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/hybrid_map_messages.hpp"
 #include "topogeo/support/format.hpp"
@@ -217,7 +218,7 @@ std::string room_name(const msg::HybridZone& room, const msg::HybridMap& map) {
   const std::string name = text_of_message(room.name());
   const bool is_place = std::ranges::any_of(
       map.places(), [&](const msg::HybridPlace& place) { return place.name() == room.name(); });
-  return is_place && room.room() != 0 ? fmt::format("room {}", room.room()) : name;
+  return is_place && room.room() != 0 ? planning::room_name(room.room()) : name;
 }
 
 void MapView::show_rooms(const MapPicture& picture, const std::vector<std::uint8_t>& colors) {

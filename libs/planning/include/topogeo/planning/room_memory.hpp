@@ -4,14 +4,18 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "topogeo/geometry/pose2.hpp"
 #include "topogeo/planning/zones.hpp"
 #include "topogeo/topomap/local_map.hpp"
+#include "topogeo/topomap/trajectory.hpp"
 
 namespace topogeo::planning {
 
@@ -22,6 +26,18 @@ struct RoomPoint {
 
   friend bool operator==(const RoomPoint&, const RoomPoint&) = default;
 };
+
+/// Poses of stops in the map frame.
+using StopPoses = std::map<topomap::StopId, geometry::Pose2>;
+
+/// The poses of the located ones.
+StopPoses poses_of(std::span<const topomap::StopPose> stops);
+
+/// Where a point lies, map frame; nothing if its stop is not among them.
+std::optional<Eigen::Vector2d> position_of(const RoomPoint& point, const StopPoses& poses);
+
+/// The name of a room that has none of its own: "room 7".
+std::string room_name(std::uint32_t number);
 
 struct RememberedRoom {
   std::uint32_t number = 0;  ///< > 0

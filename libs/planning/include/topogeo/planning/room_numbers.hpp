@@ -8,8 +8,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -37,16 +35,12 @@ class RoomNumbers {
   [[nodiscard]] const RoomMemory& memory() const { return memory_; }
 
  private:
-  using Poses = std::map<topomap::StopId, geometry::Pose2>;
-
-  static Poses poses_of(std::span<const topomap::StopPose> stops);
-  static RoomPoint point_at(const Eigen::Vector2d& position_m, const Poses& poses);
-  static std::optional<Eigen::Vector2d> position_of(const RoomPoint& point, const Poses& poses);
-  void find_again(const GridFrame& frame, const Poses& poses, ZoneMap& zones) const;
-  void keep_places(const GridFrame& frame, const Poses& poses, const ZoneMap& zones,
+  static RoomPoint point_at(const Eigen::Vector2d& position_m, const StopPoses& poses);
+  void find_again(const GridFrame& frame, const StopPoses& poses, ZoneMap& zones) const;
+  void keep_places(const GridFrame& frame, const StopPoses& poses, const ZoneMap& zones,
                    std::vector<Place>& places);
   void name(const GridFrame& frame, const std::vector<Place>& places, ZoneMap& zones) const;
-  void remember(const GridFrame& frame, const Poses& poses, const ZoneMap& zones);
+  void remember(const GridFrame& frame, const StopPoses& poses, const ZoneMap& zones);
 
   RoomMemory memory_;
 };
