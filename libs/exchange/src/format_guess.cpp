@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <array>
-#include <cctype>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -8,26 +5,16 @@
 #include "topogeo/exchange/map_formats.hpp"
 #include "topogeo/exchange/read_text.hpp"
 #include "topogeo/support/foreign_file.hpp"
+#include "topogeo/support/lower_case.hpp"
 #include "topogeo/support/yaml_reader.hpp"
 
 #include "json_reader.hpp"
+#include "raster_image.hpp"
 
 namespace topogeo::exchange {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-bool is_image(std::string_view start) {
-  constexpr std::array<std::string_view, 4> kStarts = {"P2", "P5", "\x89PNG", "BM"};
-  return std::ranges::any_of(kStarts,
-                             [&](std::string_view sign) { return start.starts_with(sign); });
-}
 
 FormatGuess guess_json(const fs::path& file) {
   const nlohmann::ordered_json json = parse_json(read_text(file), file.string());
@@ -54,14 +41,14 @@ FormatGuess guess_yaml(const fs::path& file) {
 FormatGuess guess_by_content(const fs::path& file) {
   constexpr std::size_t kStart = 512;
   const std::string start = support::first_bytes(file, kStart);
-  if (is_image(start)) return {"pgm", "it is an image"};
+  if (is_raster_image(start)) return {"pgm", "it is an image"};
   const std::size_t first = start.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   if (first == std::string::npos) return {};
   if (start[first] == '<') {
     return start.find("graphml") == std::string::npos ? FormatGuess{}
                                                       : FormatGuess{"graphml", "it is GraphML"};
   }
-  const std::string ending = lower(file.extension().string());
+  const std::string ending = support::lower_case(file.extension().string());
   const bool is_json = ending == ".json" || ending == ".geojson";
   const bool is_yaml = ending == ".yaml" || ending == ".yml";
   try {
@@ -75,7 +62,7 @@ FormatGuess guess_by_content(const fs::path& file) {
 }  // namespace
 
 FormatGuess guess_import_format(const fs::path& file) {
-  if (lower(file.filename().string()).ends_with(".world.yaml")) {
+  if (support::lower_case(file.filename().string()).ends_with(".world.yaml")) {
     return {"drawing", "its name ends in .world.yaml"};
   }
   FormatGuess guess = guess_by_content(file);

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -8,6 +7,7 @@
 #include "topogeo/exchange/grid_image.hpp"
 #include "topogeo/support/foreign_file.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/lower_case.hpp"
 #include "topogeo/support/yaml_reader.hpp"
 
 #include "raster_image.hpp"
@@ -30,14 +30,8 @@ struct ImageYaml {
   ImageMode mode = ImageMode::kTrinary;
 };
 
-std::string lower_case(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 bool negate_of(const YamlNode& node) {
-  const std::string word = lower_case(node.text());
+  const std::string word = support::lower_case(node.text());
   if (word == "1" || word == "true") return true;
   if (word == "0" || word == "false") return false;
   node.fail("0, 1, true or false");
@@ -45,7 +39,7 @@ bool negate_of(const YamlNode& node) {
 
 ImageMode mode_of(const YamlNode& node) {
   if (!node.exists()) return ImageMode::kTrinary;
-  const std::string word = lower_case(node.text());
+  const std::string word = support::lower_case(node.text());
   if (word == "trinary") return ImageMode::kTrinary;
   if (word == "scale") return ImageMode::kScale;
   if (word == "raw") return ImageMode::kRaw;

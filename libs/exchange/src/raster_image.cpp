@@ -177,12 +177,26 @@ class BmpParser {
   const std::string& source_;
 };
 
+bool is_png(std::string_view start) {
+  return start.starts_with("\x89PNG");
+}
+bool is_bmp(std::string_view start) {
+  return start.starts_with("BM");
+}
+bool is_pgm(std::string_view start) {
+  return start.starts_with("P2") || start.starts_with("P5");
+}
+
 }  // namespace
 
+bool is_raster_image(std::string_view start) {
+  return is_png(start) || is_bmp(start) || is_pgm(start);
+}
+
 RasterImage parse_raster_image(std::string_view bytes, const std::string& source) {
-  if (bytes.starts_with("\x89PNG")) return raster_of_png(bytes, source);
-  if (bytes.starts_with("BM")) return BmpParser(bytes, source).parse();
-  if (bytes.starts_with("P2") || bytes.starts_with("P5")) return raster_of_pgm(bytes, source);
+  if (is_png(bytes)) return raster_of_png(bytes, source);
+  if (is_bmp(bytes)) return BmpParser(bytes, source).parse();
+  if (is_pgm(bytes)) return raster_of_pgm(bytes, source);
   fail_raster(source, "no image in PGM (P2, P5), PNG or BMP");
 }
 

@@ -16,6 +16,9 @@ struct RasterImage {
   std::vector<std::uint8_t> see_through;  ///< 1: not opaque; empty: all are opaque
 };
 
+/// Whether a file that begins so is an image of one of these formats, by its sign alone.
+bool is_raster_image(std::string_view start);
+
 /// Detects the format from the content. Throws std::runtime_error naming `source` and the fault.
 RasterImage parse_raster_image(std::string_view bytes, const std::string& source);
 

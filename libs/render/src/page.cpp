@@ -1,7 +1,5 @@
 #include "page.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <memory>
 #include <stdexcept>
 #include <string_view>
@@ -10,6 +8,7 @@
 #include <cairo-svg.h>
 
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/lower_case.hpp"
 
 namespace topogeo::render {
 namespace {
@@ -80,9 +79,7 @@ std::string draw_svg(std::uint32_t width_px, std::uint32_t height_px,
 }  // namespace
 
 PictureFormat picture_format(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = support::lower_case(path.extension().string());
   if (ending == ".png") return PictureFormat::kPng;
   if (ending == ".svg") return PictureFormat::kSvg;
   throw std::invalid_argument(

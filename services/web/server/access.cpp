@@ -1,20 +1,13 @@
 #include "server/access.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <random>
 
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/lower_case.hpp"
 
 namespace topogeo::web {
 namespace {
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  std::ranges::transform(out, out.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return out;
-}
 
 bool is_address(std::string_view host) {
   const auto all = [&](std::string_view allowed) {
@@ -82,10 +75,11 @@ std::string_view host_of(std::string_view authority) {
 }
 
 bool is_own_host(std::string_view authority, const std::vector<std::string>& names) {
-  const std::string host = lower(host_of(authority));
+  const std::string host = support::lower_case(host_of(authority));
   if (host.empty()) return false;
   if (is_address(host) || host == "localhost") return true;
-  return std::ranges::any_of(names, [&](const std::string& name) { return lower(name) == host; });
+  return std::ranges::any_of(
+      names, [&](const std::string& name) { return support::lower_case(name) == host; });
 }
 
 bool is_own_origin(std::string_view origin, std::string_view host,
@@ -93,7 +87,8 @@ bool is_own_origin(std::string_view origin, std::string_view host,
   if (origin.empty()) return true;
   if (std::ranges::find(allowed, origin) != allowed.end()) return true;
   for (const std::string_view scheme : {"http://", "https://"}) {
-    if (origin.starts_with(scheme) && lower(origin.substr(scheme.size())) == lower(host)) {
+    if (origin.starts_with(scheme) &&
+        support::lower_case(origin.substr(scheme.size())) == support::lower_case(host)) {
       return true;
     }
   }
