@@ -3,7 +3,7 @@ import { Api } from "./api";
 import { Channels } from "./channels";
 import { reason } from "./reasons";
 import { Rights } from "./rights";
-import { hand_is_stopped, held_text } from "./robot_state";
+import { hand_is_stopped, held_text, is_map_alone } from "./robot_state";
 import { texts } from "./texts";
 
 export class Stopping {
@@ -12,13 +12,17 @@ export class Stopping {
   private kept = ""; // how the stop is kept if no base hears it
   private hand_stopped = false;
 
-  /** on_change: text() may have changed; on_held: the base has confirmed a stop. */
+  /**
+   * on_change: text() may have changed; on_held: the base has confirmed a stop; on_unheard: nobody heard a stop on a page
+   * that has had no robot, where nothing would ever confirm it.
+   */
   constructor(
     private readonly channels: Channels,
     private readonly rights: Rights,
     private readonly api: Api,
     private readonly on_change: () => void,
     private readonly on_held: () => void,
+    private readonly on_unheard: (text: string) => void,
   ) {
     for (const name of ["base", "time"] as const) {
       channels.on_value([name], () => this.check());
@@ -39,6 +43,10 @@ export class Stopping {
       this.kept = answer.message ? reason(answer.message) : "";
     } catch (error) {
       this.refused = reason(error instanceof Error ? error.message : String(error));
+      if (is_map_alone(this.channels)) {
+        this.sent_ms = null;
+        this.on_unheard(texts.stop_failed(this.refused));
+      }
     }
     this.on_change();
   }

@@ -63,7 +63,8 @@ export class Header {
     );
     const update = once_a_frame(() => this.update());
     const on_held = () => notices.show(texts.done.stop);
-    this.stopping = new Stopping(channels, rights, api, update, on_held);
+    const on_unheard = (text: string) => notices.show(text, "error");
+    this.stopping = new Stopping(channels, rights, api, update, on_held, on_unheard);
     this.held = new HeldBanner(channels, rights, api, notices, () => this.stopping.forget());
     this.controls = new ControlsBanner(channels, rights, api, notices);
     this.resume = new ResumeBanner(channels, rights, api, notices);
