@@ -5,13 +5,13 @@
 #include <utility>
 
 #include "topogeo/session/slam_session.hpp"
-#include "topogeo/thesis/visible_rectangle.hpp"
+#include "topogeo/topomap/visible_rectangle.hpp"
 
 namespace topogeo::pipeline {
 namespace {
 
 using geometry::Pose2;
-using localization::VisibleRectangle;
+using topomap::VisibleRectangle;
 using MatchedPair = std::pair<std::uint32_t, std::uint32_t>;  // later, earlier
 
 std::set<MatchedPair> matched_pairs(const storage::MapDocument& map) {
@@ -39,7 +39,7 @@ std::vector<StopOverlaps> stop_overlaps(const storage::MapDocument& map,
   std::vector<VisibleRectangle> views;
   std::vector<StopOverlaps> found;
   for (std::uint32_t i = 0; i < stops; ++i) {
-    const VisibleRectangle view = localization::visible_rectangle(
+    const VisibleRectangle view = topomap::visible_rectangle(
         map.local_maps[i], config.evidence == localization::MatchEvidence::kScan);
     if (i > 0 && poses[i].located) {
       StopOverlaps& of_stop = found.emplace_back();

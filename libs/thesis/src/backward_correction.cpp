@@ -91,7 +91,7 @@ class OverlapConstraint : public LoopConstraint {
  private:
   [[nodiscard]] bool sees(std::uint32_t later, const Pose2& T_first_later, std::uint32_t earlier,
                           const Pose2& T_first_earlier) const {
-    const VisibleRectangle seen =
+    const topomap::VisibleRectangle seen =
         seen_from(problem_.poses[later].view, geometry::between(T_first_earlier, T_first_later),
                   Eigen::Vector3d::Zero());
     return overlap(seen, problem_.poses[earlier].view);

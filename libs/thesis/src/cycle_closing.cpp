@@ -17,7 +17,7 @@ std::uint32_t last_of(const ThesisMap& map) {
 // Proposition 7.3.2: maps that the last stop overlaps with and the previous stop did not.
 std::vector<std::uint32_t> fresh_overlaps(const ThesisMap& map) {
   const std::uint32_t stop = last_of(map);
-  return newly_seen(map.stop(stop).overlaps, map.stop(stop - 1).overlaps, stop - 1);
+  return topomap::newly_seen(map.stop(stop).overlaps, map.stop(stop - 1).overlaps, stop - 1);
 }
 
 // All solutions of the last map against the maps seen again, relative to the first pose.

@@ -100,7 +100,8 @@ void KeptSolutions::add_stop(const ThesisMap& map) {
 double KeptSolutions::fitness(const ThesisMap& map, const CycleSolution& solution, Pair pair) {
   const Pose2 T =
       geometry::between(solution.T_map_stop[pair.earlier], solution.T_map_stop[pair.later]);
-  const VisibleRectangle seen = seen_from(map.stop(pair.later).view, T, Eigen::Vector3d::Zero());
+  const topomap::VisibleRectangle seen =
+      seen_from(map.stop(pair.later).view, T, Eigen::Vector3d::Zero());
   if (!overlap(seen, map.stop(pair.earlier).view)) return 0.0;
   forms_.bind(references_[pair.earlier], *features_[pair.later], task_);
   return forms_.of_maps(T, geometry::sincos(T.theta_rad));
@@ -175,7 +176,7 @@ void KeptSolutions::refine_one(const ThesisMap& map, CycleSolution& solution,
       const double sigma_rad = std::sqrt(T_first_stop[earlier].covariance(2, 2));
       if (sigma_rad > config_.genetic.resolution_rad) continue;
       const Pose2 T = geometry::between(solution.T_map_stop[earlier], solution.T_map_stop[later]);
-      const VisibleRectangle seen = seen_from(map.stop(later).view, T, reach);
+      const topomap::VisibleRectangle seen = seen_from(map.stop(later).view, T, reach);
       if (overlap(seen, map.stop(earlier).view)) near.push_back({earlier, later});
     }
   }

@@ -78,7 +78,7 @@ std::vector<ThesisNeighbour> ThesisMap::neighbours(std::uint32_t stop, const Pos
     const Eigen::Vector3d half = search_half_width(pose.covariance, config_.search_probability,
                                                    config_.search_heading_sigmas);
     const Pose2 T_earlier_new = geometry::between(graph_.poses()[i], T_map_stop);
-    const VisibleRectangle seen = seen_from(now.view, T_earlier_new, half);
+    const topomap::VisibleRectangle seen = seen_from(now.view, T_earlier_new, half);
     if (!overlap(seen, before.view)) continue;
     const double share = expected_share(now, before, pose, seen);
     if (share >= config_.smallest_expected_overlap || i + 1 == stop) {
@@ -90,7 +90,7 @@ std::vector<ThesisNeighbour> ThesisMap::neighbours(std::uint32_t stop, const Pos
 
 double ThesisMap::expected_share(const ThesisStop& now, const ThesisStop& before,
                                  const UncertainPose& T_new_earlier,
-                                 const VisibleRectangle& seen_from_earlier) const {
+                                 const topomap::VisibleRectangle& seen_from_earlier) const {
   if (config_.evidence != MatchEvidence::kFitness) {
     return expected_overlap(now.profile, before.outline, T_new_earlier);
   }

@@ -108,7 +108,7 @@ std::vector<ThesisNeighbour> ThesisSlam::forward_neighbours() {
   overlaps.reserve(with.size());
   for (const ThesisNeighbour& neighbour : with) overlaps.push_back(neighbour.id);
   const std::vector<std::uint32_t> fresh =
-      newly_seen(overlaps, map_.stop(stop - 1).overlaps, stop - 1);
+      topomap::newly_seen(overlaps, map_.stop(stop - 1).overlaps, stop - 1);
   map_.set_overlaps(stop, std::move(overlaps));
   std::erase_if(with, [&](const ThesisNeighbour& n) {
     return !map_.recent(n.id, stop) &&

@@ -112,7 +112,7 @@ render::FigureLine ellipse_line(const UncertainPose& pose, FigureColour colour) 
   return line;
 }
 
-localization::VisibleRectangle rectangle_of(const UncertainPose& pose) {
+topomap::VisibleRectangle rectangle_of(const UncertainPose& pose) {
   const Eigen::Vector2d half_m =
       localization::search_half_width(pose.covariance, kSearchProbability, 1.0).head<2>();
   return {pose.T_a_b.position_m() - half_m, pose.T_a_b.position_m() + half_m};
@@ -153,7 +153,7 @@ void figure_6_4(Report& report) {
     ellipses.lines.push_back(line);
     rectangles.lines.push_back(line);
     rectangles.lines.back().colour = FigureColour::kSky;
-    const localization::VisibleRectangle rectangle = rectangle_of(poses[i]);
+    const topomap::VisibleRectangle rectangle = rectangle_of(poses[i]);
     add_rectangle(rectangles, rectangle, FigureColour::kRed);
     double ahead_m = -1e9;
     for (const Eigen::Vector2d& point : line.points) ahead_m = std::max(ahead_m, point.y());

@@ -344,10 +344,10 @@ void figure_7_30(Report& report) {
   report.draw({.title = "A candidate that is refused", .panels = {panel}},
               "The candidate is moved by 20 m; both maps red.");
   const auto& via = problem.poses[lost - problem.first_id];
-  const auto view = localization::seen_from(
+  const auto view = topomap::seen_from(
       last.view, geometry::between(via.T_first_this.T_a_b, T_first_last), Eigen::Vector3d::Zero());
   report.states("the maps of the moved candidate do not overlap",
-                !localization::overlap(view, via.view));
+                !topomap::overlap(view, via.view));
   report.states("it is refused", refused_alone(moved));
   report.show("candidates", size_as_number(problem.candidates.size()));
   report.show("of them refused when alone", size_as_number(refused));

@@ -16,10 +16,10 @@ namespace {
 
 using geometry::Pose2;
 using localization::UncertainPose;
-using localization::VisibleRectangle;
 using render::Figure;
 using render::FigureColour;
 using render::FigurePanel;
+using topomap::VisibleRectangle;
 
 constexpr const char* kPositions = "positions";
 
@@ -86,7 +86,7 @@ void figure_7_9(Report& report) {
   const UncertainPose predicted = by_odometry(correction, 0, 1);
   const Eigen::Vector3d half = half_width_of(predicted, correction);
   const VisibleRectangle view = correction.map().stop(1).view;
-  const VisibleRectangle total = localization::seen_from(view, predicted.T_a_b, half);
+  const VisibleRectangle total = topomap::seen_from(view, predicted.T_a_b, half);
   constexpr std::array<std::array<double, 2>, 4> kCorners{
       {{-1.0, 1.0}, {1.0, 1.0}, {1.0, -1.0}, {-1.0, -1.0}}};
   const std::array<const char*, 4> names{"lower left", "upper left", "upper right", "lower right"};
@@ -97,7 +97,7 @@ void figure_7_9(Report& report) {
     Pose2 corner = predicted.T_a_b;
     corner.x_m += kCorners[c][0] * half.x();
     corner.y_m += kCorners[c][1] * half.y();
-    const VisibleRectangle seen = localization::seen_from(view, corner, {0.0, 0.0, half.z()});
+    const VisibleRectangle seen = topomap::seen_from(view, corner, {0.0, 0.0, half.z()});
     sum = c == 0
               ? seen
               : VisibleRectangle{sum.low_m.cwiseMin(seen.low_m), sum.high_m.cwiseMax(seen.high_m)};
@@ -128,8 +128,8 @@ FigurePanel views_panel(const Drive& drive, const Correction& correction, std::s
   const UncertainPose predicted = by_odometry(correction, earlier, later);
   const Eigen::Vector3d half = half_width_of(predicted, correction);
   const VisibleRectangle seen =
-      localization::seen_from(correction.map().stop(later).view, predicted.T_a_b, half);
-  overlaps = localization::overlap(seen, correction.map().stop(earlier).view);
+      topomap::seen_from(correction.map().stop(later).view, predicted.T_a_b, half);
+  overlaps = topomap::overlap(seen, correction.map().stop(earlier).view);
   FigurePanel panel;
   panel.title = fmt::format("positions {} and {}", earlier + 1, later + 1);
   add_map(panel, *drive.stops[earlier], {}, FigureColour::kRed);
@@ -154,7 +154,7 @@ void figure_7_10(Report& report) {
   const Pose2 T_first_last =
       geometry::between(correction.final_poses()[0], correction.final_poses()[10]);
   const VisibleRectangle far =
-      localization::seen_from(stop.stop(10).view, T_first_last, Eigen::Vector3d::Zero());
+      topomap::seen_from(stop.stop(10).view, T_first_last, Eigen::Vector3d::Zero());
   bool near = false;
   Figure figure;
   figure.title = "Fields of view that do not overlap, and that do";
@@ -167,7 +167,7 @@ void figure_7_10(Report& report) {
   figure.panels = {apart, views_panel(drive, correction, 0, 1, near)};
   report.draw(figure, "Field of view of the earlier map blue, of the later one green.");
   report.states("(a) fields of view of positions 1 and 11 are apart",
-                !localization::overlap(far, stop.stop(0).view));
+                !topomap::overlap(far, stop.stop(0).view));
   report.states("(b) those of positions 1 and 2 overlap", near);
 }
 

@@ -271,11 +271,11 @@ void figure_8_23(Report& report) {
               "Virtual branches orange and dashed.");
   std::size_t without = 0;
   for (std::size_t k = 1; k < drive.stops.size(); ++k) {
-    const localization::VisibleRectangle later = localization::seen_from(
-        localization::visible_rectangle(*drive.stops[k], false),
+    const topomap::VisibleRectangle later = topomap::seen_from(
+        topomap::visible_rectangle(*drive.stops[k], false),
         geometry::between(drive.truth[k - 1], drive.truth[k]), Eigen::Vector3d::Zero());
-    const auto earlier = localization::visible_rectangle(*drive.stops[k - 1], false);
-    without += localization::overlap(later, earlier) ? 0U : 1U;
+    const auto earlier = topomap::visible_rectangle(*drive.stops[k - 1], false);
+    without += topomap::overlap(later, earlier) ? 0U : 1U;
   }
   report.states("two successive local maps have nothing in common", without > 0);
   report.states("a virtual branch joins the maps",

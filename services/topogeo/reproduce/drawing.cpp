@@ -171,7 +171,7 @@ void add_points(FigurePanel& panel, const topomap::LocalMap& map, const Pose2& T
   panel.dots.push_back(std::move(dots));
 }
 
-void add_rectangle(FigurePanel& panel, const localization::VisibleRectangle& rectangle,
+void add_rectangle(FigurePanel& panel, const topomap::VisibleRectangle& rectangle,
                    FigureColour colour, bool dashed) {
   render::FigureLine line{
       {on_page(rectangle.low_m), on_page({rectangle.high_m.x(), rectangle.low_m.y()}),

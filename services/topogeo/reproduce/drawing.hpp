@@ -9,9 +9,9 @@
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/render/figure.hpp"
 #include "topogeo/scan/scan.hpp"
-#include "topogeo/thesis/visible_rectangle.hpp"
 #include "topogeo/topomap/global_map.hpp"
 #include "topogeo/topomap/local_map.hpp"
+#include "topogeo/topomap/visible_rectangle.hpp"
 #include "topogeo/voronoi/local_voronoi.hpp"
 #include "topogeo/world/world.hpp"
 
@@ -48,7 +48,7 @@ void add_points(render::FigurePanel& panel, const topomap::LocalMap& map,
                 const geometry::Pose2& T_page_robot, render::FigureColour colour,
                 double radius_px = 1.0);
 /// A rectangle parallel to the axes of the frame.
-void add_rectangle(render::FigurePanel& panel, const localization::VisibleRectangle& rectangle,
+void add_rectangle(render::FigurePanel& panel, const topomap::VisibleRectangle& rectangle,
                    render::FigureColour colour, bool dashed = false);
 void add_path(render::FigurePanel& panel, const std::vector<geometry::Pose2>& poses,
               render::FigureColour colour, bool dashed = false, double dot_px = 2.0);

@@ -9,7 +9,7 @@
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/session/slam_session.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
-#include "topogeo/thesis/visible_rectangle.hpp"
+#include "topogeo/topomap/visible_rectangle.hpp"
 #include "topogeo/world/world.hpp"
 
 namespace topogeo::pipeline {
@@ -34,15 +34,14 @@ const storage::MapDocument& room_document() {
 // Uses the function of the thesis's definition 7.3.3.
 std::vector<std::uint32_t> overlap_set_of(const storage::MapDocument& map, std::uint32_t stop) {
   const auto& poses = map.trajectory.stops;
-  std::vector<localization::VisibleRectangle> views;
-  std::vector<localization::PlacedView> places;
+  std::vector<topomap::VisibleRectangle> views;
+  std::vector<topomap::PlacedView> places;
   for (std::uint32_t k = 0; k < stop; ++k) {
-    views.push_back(localization::visible_rectangle(map.local_maps[k]));
+    views.push_back(topomap::visible_rectangle(map.local_maps[k]));
     places.push_back({geometry::between(poses[k].T_map_robot, poses[stop].T_map_robot),
                       Eigen::Vector3d::Zero()});
   }
-  return localization::overlap_set(localization::visible_rectangle(map.local_maps[stop]), views,
-                                   places);
+  return topomap::overlap_set(topomap::visible_rectangle(map.local_maps[stop]), views, places);
 }
 
 TEST(StopOverlapsTest, AreThoseOfTheFieldsOfViewAndTheMatchesOfTheMap) {

@@ -1,34 +1,63 @@
 // All forms of the fitness for one pair of maps, reused from match to match to save allocations.
+//
+// The product has the combined and the topological form. A program may add others: `research/` has
+// those of the publications.
 #pragma once
+
+#include <memory>
+#include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/matching/fitness.hpp"
 #include "topogeo/matching/match.hpp"
 #include "topogeo/matching/match_features.hpp"
-#include "topogeo/support/value_pointer.hpp"
 
 namespace topogeo::localization {
 
 class CombinedFitness;
+
+/// A form that a program adds.
+class AddedFitness : public Fitness {
+ public:
+  /// The maps must outlive their use. Allocates only for a larger map than ever before.
+  virtual void bind(const Reference& reference, const MatchFeatures& query,
+                    const MatchTask& task) = 0;
+
+  /// Like at(), but by the maps alone, without the odometry.
+  [[nodiscard]] virtual double of_maps(const geometry::Pose2& T_reference_query,
+                                       const geometry::SinCos& heading) const = 0;
+};
+
+using MakeFitness = std::unique_ptr<AddedFitness> (*)();
+
+/// Adds a form to the program. Call it before the first match and before any threads start.
+void add_fitness_form(FitnessForm form, MakeFitness make);
+
+/// Whether the program has the form.
+bool has_fitness_form(FitnessForm form);
+/// The forms that the program has, ascending.
+std::vector<FitnessForm> fitness_forms();
+
+/// "combined", "topological", ...: the value of `match.fitness`.
+const char* to_string(FitnessForm form);
 
 class FitnessForms {
  public:
   /// bind() before use.
   FitnessForms();
   FitnessForms(const Reference& reference, const MatchFeatures& query, const MatchTask& task);
-  FitnessForms(const FitnessForms& other);
   FitnessForms(FitnessForms&& other) noexcept;
-  FitnessForms& operator=(const FitnessForms& other);
   FitnessForms& operator=(FitnessForms&& other) noexcept;
   ~FitnessForms();
 
-  /// The maps must outlive their use. Allocates only for a larger map than ever before.
+  /// The maps must outlive their use. Allocates only for a larger map than ever before, and for a
+  /// form that was not used before. Throws std::invalid_argument if the program lacks the form.
   void bind(const Reference& reference, const MatchFeatures& query, const MatchTask& task);
 
   /// The form that the task names.
   [[nodiscard]] const Fitness& chosen() const;
 
-  /// Fitness by the maps alone: without the odometry prior that two of the forms have.
+  /// Fitness by the maps alone, without an odometry prior.
   [[nodiscard]] double of_maps(const geometry::Pose2& T_reference_query,
                                const geometry::SinCos& heading) const;
 
@@ -44,7 +73,7 @@ class FitnessForms {
 
  private:
   struct Forms;
-  support::ValuePointer<Forms> forms_;
+  std::unique_ptr<Forms> forms_;
 };
 
 }  // namespace topogeo::localization

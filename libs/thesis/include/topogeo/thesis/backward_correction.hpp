@@ -16,16 +16,16 @@
 #include "topogeo/slam/backward_config.hpp"
 #include "topogeo/slam/loop/loop_search.hpp"
 #include "topogeo/thesis/solution_store.hpp"
-#include "topogeo/thesis/visible_rectangle.hpp"
+#include "topogeo/topomap/visible_rectangle.hpp"
 
 namespace topogeo::localization {
 
 /// Result of the forward correction for one pose of the loop.
 struct BackwardPose {
-  UncertainPose T_first_this;     ///< relative to the first pose of the loop; centre and extent of
-                                  ///< the region that the pose must lie in
-  UncertainPose T_previous_this;  ///< by odometry
-  VisibleRectangle view;          ///< of its map
+  UncertainPose T_first_this;      ///< relative to the first pose of the loop; centre and extent of
+                                   ///< the region that the pose must lie in
+  UncertainPose T_previous_this;   ///< by odometry
+  topomap::VisibleRectangle view;  ///< of its map
   std::vector<std::uint32_t> overlaps;  ///< ids of the earlier maps that overlap its map there
 };
 

@@ -16,16 +16,16 @@
 #include "topogeo/slam/localizer_config.hpp"
 #include "topogeo/slam/pose_graph.hpp"
 #include "topogeo/thesis/solution_store.hpp"
-#include "topogeo/thesis/visible_rectangle.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
+#include "topogeo/topomap/visible_rectangle.hpp"
 
 namespace topogeo::localization {
 
 struct ThesisStop {
   std::shared_ptr<const topomap::LocalMap> map;
   double path_m = 0.0;  ///< along the odometry from the first stop
-  VisibleRectangle view;
+  topomap::VisibleRectangle view;
   RangeProfile profile;
   std::vector<SurfacePoint> outline;
   std::vector<Eigen::Vector2d> landmarks_m;  ///< nodes and samples of branches, robot frame
@@ -104,7 +104,7 @@ class ThesisMap {
   // space, seen from the earlier one.
   [[nodiscard]] double expected_share(const ThesisStop& now, const ThesisStop& before,
                                       const UncertainPose& T_new_earlier,
-                                      const VisibleRectangle& seen_from_earlier) const;
+                                      const topomap::VisibleRectangle& seen_from_earlier) const;
 
   LocalizerConfig config_;
   PoseGraph graph_;  // poses and their matches, only for uncertainties

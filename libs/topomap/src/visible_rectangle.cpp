@@ -1,4 +1,4 @@
-#include "topogeo/thesis/visible_rectangle.hpp"
+#include "topogeo/topomap/visible_rectangle.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include "topogeo/geometry/portable_math.hpp"
 
-namespace topogeo::localization {
+namespace topogeo::topomap {
 
 using geometry::Pose2;
 
@@ -22,17 +22,17 @@ void include(VisibleRectangle& view, const Eigen::Vector2d& point_m) {
 
 }  // namespace
 
-VisibleRectangle visible_rectangle(const topomap::LocalMap& map, bool with_points) {
+VisibleRectangle visible_rectangle(const LocalMap& map, bool with_points) {
   VisibleRectangle view;  // starts with the robot at the origin
-  for (const topomap::LocalNode& node : map.nodes) {
-    if (node.kind != topomap::NodeKind::kVirtual) include(view, node.position_m);
+  for (const LocalNode& node : map.nodes) {
+    if (node.kind != NodeKind::kVirtual) include(view, node.position_m);
   }
-  for (const topomap::LocalBranch& branch : map.branches) {
+  for (const LocalBranch& branch : map.branches) {
     if (branch.is_virtual) continue;
-    for (const topomap::BranchPoint& point : branch.points) include(view, point.position_m);
+    for (const BranchPoint& point : branch.points) include(view, point.position_m);
   }
   if (!with_points) return view;
-  for (const topomap::ScanPoint& point : map.points) {
+  for (const ScanPoint& point : map.points) {
     include(view, {static_cast<double>(point.x_m), static_cast<double>(point.y_m)});
   }
   return view;
@@ -106,4 +106,4 @@ std::vector<std::uint32_t> newly_seen(std::span<const std::uint32_t> overlaps,
   return fresh;
 }
 
-}  // namespace topogeo::localization
+}  // namespace topogeo::topomap

@@ -11,7 +11,7 @@
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
-namespace topogeo::localization {
+namespace topogeo::topomap {
 
 /// Rectangle along the axes of its frame, borders included; metres, low <= high.
 struct VisibleRectangle {
@@ -22,7 +22,7 @@ struct VisibleRectangle {
 /// CV of a map in the frame of its robot: the rectangle around the robot and all elements that
 /// matching uses: the nodes and branches that are not virtual, as in the Thesis, and with
 /// `with_points` also the scan points, the only elements in a dead end.
-VisibleRectangle visible_rectangle(const topomap::LocalMap& map, bool with_points = true);
+VisibleRectangle visible_rectangle(const LocalMap& map, bool with_points = true);
 
 bool contains(const VisibleRectangle& view, const Eigen::Vector2d& point_m);
 
@@ -56,4 +56,4 @@ std::vector<std::uint32_t> newly_seen(std::span<const std::uint32_t> overlaps,
                                       std::span<const std::uint32_t> overlaps_before,
                                       std::uint32_t before);
 
-}  // namespace topogeo::localization
+}  // namespace topogeo::topomap

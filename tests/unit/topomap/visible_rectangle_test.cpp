@@ -1,4 +1,4 @@
-#include "topogeo/thesis/visible_rectangle.hpp"
+#include "topogeo/topomap/visible_rectangle.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include "topogeo/support/random.hpp"
 
-namespace topogeo::localization {
+namespace topogeo::topomap {
 namespace {
 
 using geometry::Pose2;
@@ -32,14 +32,14 @@ bool holds(const VisibleRectangle& view, const Eigen::Vector2d& point_m) {
 }
 
 TEST(VisibleRectangle, IsTheRectangleOfRobotNodesBranchesAndScan) {
-  topomap::LocalMap map;
-  topomap::LocalNode node;
+  LocalMap map;
+  LocalNode node;
   node.position_m = {3.0, 1.0};
   map.nodes.push_back(node);
-  node.kind = topomap::NodeKind::kVirtual;
+  node.kind = NodeKind::kVirtual;
   node.position_m = {50.0, 0.0};
   map.nodes.push_back(node);
-  topomap::LocalBranch branch;
+  LocalBranch branch;
   branch.points = {{{1.0, -2.0}, 0.5}, {{4.0, 0.0}, 0.5}};
   map.branches.push_back(branch);
   branch.is_virtual = true;
@@ -156,4 +156,4 @@ TEST(NewlySeen, AreTheMapsOutsideOfTheLastSetAndTheLastMap) {
 }
 
 }  // namespace
-}  // namespace topogeo::localization
+}  // namespace topogeo::topomap
