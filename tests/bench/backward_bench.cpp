@@ -6,7 +6,7 @@
 
 #include "topogeo/thesis/backward_correction.hpp"
 
-#include "localization/thesis/backward_problems.hpp"
+#include "thesis/backward_problems.hpp"
 
 namespace {
 

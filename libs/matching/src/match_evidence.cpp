@@ -51,7 +51,7 @@ class Checker {
                   name, T.x_m, T.y_m, T.theta_rad, kUnreachable_m, kMostTurned_rad);
     fail(text);
   }
-  [[noreturn]] void fail(const char* complaint) const {
+  [[noreturn]] void fail(const std::string& complaint) const {
     throw std::invalid_argument("match task " + std::to_string(task_.task_id) + ": " + complaint);
   }
 
@@ -103,6 +103,10 @@ void check(const MatchTask& task) {
   check_gate(checker, task.gate);
   checker.range("fitness_form", static_cast<double>(task.fitness_form), 0.0,
                 static_cast<double>(FitnessForm::kTopologicalWeighted));
+  if (!has_fitness_form(task.fitness_form)) {
+    checker.fail(std::string("the fitness form '") + to_string(task.fitness_form) +
+                 "' is not built into this program");
+  }
   checker.range("evidence", static_cast<double>(task.evidence), 0.0,
                 static_cast<double>(MatchEvidence::kFitness));
   checker.range("solutions_wanted", task.solutions_wanted, 1.0, kMostSolutions);

@@ -2,6 +2,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "topogeo/matching/fitness_forms.hpp"
 #include "topogeo/matching/matcher.hpp"
 #include "topogeo/support/seed.hpp"
 
@@ -101,8 +102,7 @@ std::uint64_t matcher_fingerprint() {
   task.genetic.generations = 8;
   task.seed = 5;
   Hash hash;
-  for (const FitnessForm form : {FitnessForm::kPrinted, FitnessForm::kTopological,
-                                 FitnessForm::kCombined, FitnessForm::kTopologicalWeighted}) {
+  for (const FitnessForm form : fitness_forms()) {
     task.fitness_form = form;
     const MatchResult result = matcher.solve(task);
     hash.add(result);

@@ -50,6 +50,7 @@ void check_values(const Config& c) {
   topomap::check(c.local_mapper.local_map);
   topomap::check(c.global_map);
   planning::check(c.planning);
+  localization::check(c.localizer);
   check(c.hybrid_map);
   planning::check(c.hybrid_planner);
   navigation::check(c.navigator);

@@ -1,15 +1,13 @@
 #include "topogeo/session/make_slam.hpp"
 
 #include "topogeo/slam/pose_graph_slam.hpp"
-#include "topogeo/thesis/thesis_slam.hpp"
 
 namespace topogeo::localization {
 
 std::unique_ptr<Slam> make_slam(const LocalizerConfig& config, MatchPool& pool,
                                 GraphOptimizer* optimizer) {
-  if (config.mode == SlamAlgorithm::kThesis) {
-    return std::make_unique<ThesisSlam>(config, pool);
-  }
+  check(config);
+  if (config.mode == SlamAlgorithm::kThesis) return config.added_mode.get()->make(config, pool);
   return std::make_unique<PoseGraphSlam>(config, pool, optimizer);
 }
 

@@ -1,10 +1,16 @@
 #include "topogeo/slam/localizer_config.hpp"
 
+#include <stdexcept>
+#include <string>
+
+#include "topogeo/matching/fitness_forms.hpp"
 #include "topogeo/support/config_schema.hpp"
 
 namespace topogeo::localization {
 
 namespace {
+
+constexpr const char* kNotBuilt = "is not built into this program (CMake option TOPOGEO_RESEARCH)";
 
 void describe_matches(LocalizerConfig& l, support::ConfigSchema& schema) {
   describe(l.genetic, schema);
@@ -78,7 +84,22 @@ void describe(LocalizerConfig& config, support::ConfigSchema& schema) {
       "localizer.seed", &config.seed, std::uint64_t{0}, ~std::uint64_t{0}, "",
       "seed of all random numbers; the same log, seed and configuration give the same bytes");
   describe_tasks(config, schema);
-  describe(config.thesis, schema);
+  if (AddedMode* const added = config.added_mode.get()) {
+    added->describe(schema);
+  } else {
+    for (const char* section : {"thesis", "backward"}) schema.refuse_section(section, kNotBuilt);
+  }
+}
+
+void check(const LocalizerConfig& config) {
+  if (config.mode == SlamAlgorithm::kThesis && config.added_mode.get() == nullptr) {
+    throw std::invalid_argument(std::string("localizer.mode: 'thesis' ") + kNotBuilt +
+                                ", expected 'graph'");
+  }
+  if (!has_fitness_form(config.fitness_form)) {
+    throw std::invalid_argument(std::string("match.fitness: '") + to_string(config.fitness_form) +
+                                "' " + kNotBuilt + ", expected 'combined' or 'topological'");
+  }
 }
 
 }  // namespace topogeo::localization

@@ -119,6 +119,18 @@ bool ConfigSchema::is_section(std::string_view path) const {
                              [&](const ConfigParameter& p) { return p.key.starts_with(prefix); });
 }
 
+void ConfigSchema::refuse_section(const std::string& section, const std::string& reason) {
+  if (is_section(section) || find(section) != nullptr) {
+    throw std::invalid_argument("configuration key '" + section + "': declared, cannot be refused");
+  }
+  refused_[section] = reason;
+}
+
+const std::string* ConfigSchema::refusal(std::string_view section) const {
+  const auto at = refused_.find(section);
+  return at == refused_.end() ? nullptr : &at->second;
+}
+
 void ConfigSchema::fix(std::initializer_list<std::string_view> keys) {
   for (const std::string_view key : keys) {
     const auto p = std::ranges::find(parameters_, key, &ConfigParameter::key);

@@ -48,7 +48,8 @@ class SchemaReader {
       const bool is_section = schema_.is_section(key);
       const std::string quoted = "key '" + shown(key) + "'";
       if (parameter == nullptr && !is_section) {
-        key_node.fail_with(quoted + ": " + known_keys(path));
+        const std::string* const refusal = schema_.refusal(key);
+        key_node.fail_with(quoted + (refusal ? " " + *refusal : ": " + known_keys(path)));
       }
       if (!seen_.insert(key).second) key_node.fail_with(quoted + ": given twice");
       if (parameter != nullptr) {

@@ -14,6 +14,7 @@
 #include "topogeo/simulation/thesis_experiments.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/thesis/thesis_mode.hpp"
 #include "topogeo/topomap/global_map_builder.hpp"
 
 #include "reproduce/worlds.hpp"
@@ -123,8 +124,8 @@ Drive make_drive(const DriveSetup& setup, std::uint64_t seed = 1) {
 }
 
 /// The parameters of the Thesis; matches of scan points keep the search of the product around them.
-localization::LocalizerConfig thesis_config(const CorrectionKind& kind, const DriveSetup& setup) {
-  localization::LocalizerConfig config = thesis_preset().localizer;
+localization::ThesisSlamConfig thesis_config(const CorrectionKind& kind, const DriveSetup& setup) {
+  localization::ThesisSlamConfig config = localization::thesis_config(thesis_preset().localizer);
   const bool preset = kind.evidence == localization::MatchEvidence::kFitness;
   if (!preset) {
     config = {};

@@ -36,7 +36,7 @@ struct Drive {
 
 /// The corrections of a drive by the Thesis's algorithm.
 struct Correction {
-  localization::LocalizerConfig config;
+  localization::ThesisSlamConfig config;
   std::unique_ptr<localization::MatchPool> pool;
   std::unique_ptr<localization::ThesisSlam> slam;
   std::vector<std::vector<geometry::Pose2>> poses_after;  ///< [k]: all poses after stop k

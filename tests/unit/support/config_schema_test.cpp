@@ -43,6 +43,7 @@ ConfigSchema declare(Values& v) {
   schema.add("mapping.frame", &v.frame, "Name of the frame.");
   schema.add("match.form", &v.form, {{"simple", Form::kSimple}, {"combined", Form::kCombined}},
              "How to score.");
+  schema.refuse_section("absent", "is not built into this program");
   return schema;
 }
 
@@ -113,6 +114,8 @@ TEST(ConfigSchema, RefusesUnknownAndRepeatedKeys) {
               StrEq("robot.yaml:2: key 'mapping.stop_distance': unknown, expected one of "
                     "stop_distance_m, frame"));
   EXPECT_THAT(error_of("sed: 1\n"), HasSubstr("unknown, expected one of mapping, match, seed"));
+  EXPECT_THAT(error_of("absent:\n  key: 1\n"),
+              StrEq("robot.yaml:1: key 'absent' is not built into this program"));
   EXPECT_THAT(error_of("seed: 1\nseed: 2\n"), StrEq("robot.yaml:2: key 'seed': given twice"));
   EXPECT_THAT(error_of("mapping: {frame: a}\nmapping: {stop_distance_m: 1}\n"),
               HasSubstr(":2: key 'mapping': given twice"));

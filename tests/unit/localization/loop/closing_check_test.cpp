@@ -1,38 +1,55 @@
 #include "loop/closing_check.hpp"
 
 #include <cmath>
+#include <cstdint>
+#include <numbers>
 #include <stdexcept>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "localization/thesis/backward_problems.hpp"
+#include "topogeo/support/random.hpp"
 
 namespace topogeo::localization {
 namespace {
 
 using geometry::Pose2;
-using test::covariance_of;
 
-std::vector<LoopStep> steps_of(const test::Loop& loop) {
-  std::vector<LoopStep> steps;
-  for (std::uint32_t k = 1; k < loop.problem.poses.size(); ++k) {
-    const auto found = loop.solutions.find(k - 1, k);
-    steps.emplace_back(found.begin(), found.begin() + 1);
-  }
-  return steps;
+constexpr std::uint32_t kPoses = 60;
+constexpr double kStepSigma_m = 0.05;
+constexpr double kStepSigma_rad = 0.01;
+
+Eigen::Matrix3d covariance_of(double sigma_m, double sigma_rad) {
+  return Eigen::Vector3d(sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad).asDiagonal();
 }
 
+/// A circle back to its first pose; each step has one solution, the truth with noise.
+struct Circle {
+  std::vector<LoopStep> steps;
+  Pose2 T_first_last;
+
+  Circle() {
+    support::Random random(8);
+    const Pose2 T_step{1.5, 0.0, 2.0 * std::numbers::pi / kPoses};
+    for (std::uint32_t k = 1; k < kPoses; ++k) {
+      T_first_last = T_first_last * T_step;
+      const Pose2 T_noisy{T_step.x_m + kStepSigma_m * random.normal(),
+                          T_step.y_m + kStepSigma_m * random.normal(),
+                          T_step.theta_rad + kStepSigma_rad * random.normal()};
+      steps.push_back({{T_noisy, covariance_of(kStepSigma_m, kStepSigma_rad), 0.8}});
+    }
+  }
+};
+
 TEST(CheckClosing, AcceptsAClosingThatFitsAndRefusesOneThatDoesNot) {
-  const test::Loop loop = test::circle({}, 8);
-  const std::vector<LoopStep> steps = steps_of(loop);
-  const Eigen::Matrix3d covariance = covariance_of(0.05, 0.01);
-  const ClosingCheck right = check_closing(steps, {loop.T_first_true.back(), covariance, 0.8});
+  const auto& [steps, T_first_last] = Circle();
+  const Eigen::Matrix3d covariance = covariance_of(kStepSigma_m, kStepSigma_rad);
+  const ClosingCheck right = check_closing(steps, {T_first_last, covariance, 0.8});
   ASSERT_TRUE(right.consistent);
-  EXPECT_NEAR(right.best_fitness, 60 * 0.8, 1e-9);
+  EXPECT_NEAR(right.best_fitness, kPoses * 0.8, 1e-9);
   EXPECT_GT(right.summed_fitness, 0.85 * right.best_fitness);
   EXPECT_LE(right.summed_fitness, right.best_fitness);
-  Pose2 wrong = loop.T_first_true.back();
+  Pose2 wrong = T_first_last;
   wrong.x_m += 30.0;
   const ClosingCheck refused = check_closing(steps, {wrong, covariance, 0.8});
   EXPECT_FALSE(refused.consistent);

@@ -24,8 +24,7 @@ class Allocations : public testing::Test {
     maps_ = {test::map_at(floor, {8.6, 1.2, 0.1}, 0), test::map_at(floor, {9.1, 1.2, 0.4}, 1)};
     task_ = test::task_between(maps_[0], maps_[1], {0.6, 0.05, 0.25}, 0.4, 0.3);
   }
-  static constexpr FitnessForm kForms[] = {FitnessForm::kPrinted, FitnessForm::kTopological,
-                                           FitnessForm::kCombined};
+  const std::vector<FitnessForm> forms_ = fitness_forms();
   std::vector<topomap::LocalMap> maps_;
   MatchTask task_;
 };
@@ -40,24 +39,24 @@ TEST_F(Allocations, AWarmSearchHasNone) {
     forms.bind(reference, query, task_);
     return search.run(task_, forms.chosen(), hypotheses.find(task_, *reference.features, query));
   };
-  for (const FitnessForm form : kForms) {
+  for (const FitnessForm form : forms_) {
     task_.fitness_form = form;
     run();
   }
   const std::size_t before = allocations;
   std::uint32_t evaluations = 0;
-  for (const FitnessForm form : kForms) {
+  for (const FitnessForm form : forms_) {
     task_.fitness_form = form;
     for (task_.seed = 0; task_.seed < 20; ++task_.seed) evaluations += run();
   }
   EXPECT_EQ(allocations - before, 0U);
-  EXPECT_EQ(evaluations, 3U * 20U * (50U + 29U * 48U));
+  EXPECT_EQ(evaluations, forms_.size() * 20U * (50U + 29U * 48U));
 }
 
 TEST_F(Allocations, AWarmMatchHasThoseOfItsResult) {
   Matcher matcher;
   for (const topomap::LocalMap& map : maps_) matcher.add_map(map);
-  for (const FitnessForm form : kForms) {
+  for (const FitnessForm form : forms_) {
     task_.fitness_form = form;
     matcher.solve(task_);
     const std::size_t before = allocations;

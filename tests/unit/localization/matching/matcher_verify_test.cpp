@@ -75,8 +75,7 @@ class MatcherVerifyTest : public testing::Test {
 
 TEST_F(MatcherVerifyTest, FindsNothingWrongWithRightResultsByOtherEvidence) {
   for (const MatchEvidence evidence : {MatchEvidence::kBranches, MatchEvidence::kFitness}) {
-    for (const FitnessForm form : {FitnessForm::kPrinted, FitnessForm::kTopological,
-                                   FitnessForm::kCombined, FitnessForm::kTopologicalWeighted}) {
+    for (const FitnessForm form : fitness_forms()) {
       for (const double finer_m : {0.0, 0.03}) {
         task_.evidence = evidence;
         task_.fitness_form = form;
@@ -93,8 +92,7 @@ TEST_F(MatcherVerifyTest, FindsNothingWrongWithRightResultsByOtherEvidence) {
 
 TEST_F(MatcherVerifyTest, FindsNothingWrongWithRightResults) {
   int with_second = 0;
-  for (const FitnessForm form :
-       {FitnessForm::kPrinted, FitnessForm::kTopological, FitnessForm::kCombined}) {
+  for (const FitnessForm form : fitness_forms()) {
     task_.fitness_form = form;
     for (task_.seed = 0; task_.seed < 40; ++task_.seed) {
       task_.solutions_wanted = 1 + static_cast<std::uint32_t>(task_.seed % 4) * 13;

@@ -1,20 +1,34 @@
 #include "topogeo/session/make_slam.hpp"
 
+#include <stdexcept>
+#include <utility>
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "topogeo/matching/matcher.hpp"
 #include "topogeo/slam/pose_graph_slam.hpp"
-#include "topogeo/thesis/thesis_slam.hpp"
 
 namespace topogeo::localization {
 namespace {
 
-TEST(MakeSlam, MakesTheAlgorithmThatTheModeNames) {
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+TEST(MakeSlam, MakesThePoseGraph) {
+  InProcessPool pool;
+  EXPECT_NE(dynamic_cast<PoseGraphSlam*>(make_slam({}, pool).get()), nullptr);
+}
+
+TEST(MakeSlam, RefusesAnAlgorithmThatTheProgramDoesNotHave) {
   InProcessPool pool;
   LocalizerConfig config;
-  EXPECT_NE(dynamic_cast<PoseGraphSlam*>(make_slam(config, pool).get()), nullptr);
   config.mode = SlamAlgorithm::kThesis;
-  EXPECT_NE(dynamic_cast<ThesisSlam*>(make_slam(config, pool).get()), nullptr);
+  const AddedModeConfig taken = std::move(config.added_mode);
+  EXPECT_THAT([&] { make_slam(config, pool); },
+              ThrowsMessage<std::invalid_argument>(
+                  HasSubstr("localizer.mode: 'thesis' is not built into this program (CMake option "
+                            "TOPOGEO_RESEARCH), expected 'graph'")));
 }
 
 }  // namespace

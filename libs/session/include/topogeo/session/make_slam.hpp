@@ -10,8 +10,9 @@
 
 namespace topogeo::localization {
 
-/// PoseGraphSlam or ThesisSlam, by `config.mode`. The pool and the optimizer (see
-/// PoseGraphSlam) must outlive it.
+/// PoseGraphSlam or the added mode, by `config.mode`. The pool and the optimizer (see
+/// PoseGraphSlam) must outlive it. Throws std::invalid_argument if the program does not have the
+/// mode.
 std::unique_ptr<Slam> make_slam(const LocalizerConfig& config, MatchPool& pool,
                                 GraphOptimizer* optimizer = nullptr);
 

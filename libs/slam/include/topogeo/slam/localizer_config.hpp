@@ -5,7 +5,7 @@
 
 #include "topogeo/matching/match_config.hpp"
 #include "topogeo/matching/odometry_config.hpp"
-#include "topogeo/slam/thesis_config.hpp"
+#include "topogeo/slam/added_mode_config.hpp"
 
 namespace topogeo::support {
 class ConfigSchema;
@@ -15,7 +15,7 @@ namespace topogeo::localization {
 
 enum class SlamAlgorithm : std::uint8_t {
   kGraph = 0,   ///< PoseGraphSlam: pose graph over all accepted matches
-  kThesis = 1,  ///< ThesisSlam: only the forward and backward correction of the thesis
+  kThesis = 1,  ///< only the forward and backward correction of the thesis (AddedMode)
 };
 
 /// Whether the maps of two robots that have seen the same place are merged (SharedMap).
@@ -46,10 +46,13 @@ struct LocalizerConfig {
   std::uint32_t final_passes = 3;
   MergePolicy merge = MergePolicy::kAuto;
   GateConfig gate;
-  ThesisConfig thesis;
+  AddedModeConfig added_mode;
 };
 
-/// Declares the sections `localizer`, `odometry`, `match`, `gate`, `thesis` and `backward`.
+/// Declares the sections `localizer`, `odometry`, `match` and `gate`, and those of the added mode.
 void describe(LocalizerConfig& config, support::ConfigSchema& schema);
+
+/// Throws std::invalid_argument if the program does not have the mode or the form of the fitness.
+void check(const LocalizerConfig& config);
 
 }  // namespace topogeo::localization

@@ -12,6 +12,7 @@
 #include <functional>
 #include <initializer_list>
 #include <iosfwd>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -76,6 +77,13 @@ class ConfigSchema {
   /// a key that is not declared.
   void fix(std::initializer_list<std::string_view> keys);
 
+  /// Refuses files that contain the section, with the error "key 'SECTION' `reason`". Throws
+  /// std::invalid_argument if it is declared.
+  void refuse_section(const std::string& section, const std::string& reason);
+
+  /// Why a section is refused; null if it is not.
+  [[nodiscard]] const std::string* refusal(std::string_view section) const;
+
   /// Excludes the keys of a section that no result depends on: configurations that differ only in
   /// these have the same fingerprint.
   void leave_out_of_fingerprint(std::string_view section);
@@ -103,6 +111,7 @@ class ConfigSchema {
   void insert(ConfigParameter parameter);
 
   std::vector<ConfigParameter> parameters_;
+  std::map<std::string, std::string, std::less<>> refused_;  // reason by section
 };
 
 /// Checks every value of a configuration against its declared range, by its library's `void

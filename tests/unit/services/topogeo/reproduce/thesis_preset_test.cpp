@@ -19,7 +19,7 @@ TEST(ThesisPreset, UsesNeitherScanPointsNorGate) {
   EXPECT_EQ(config.localizer.fitness_form, localization::FitnessForm::kTopological);
   EXPECT_EQ(config.localizer.genetic.individuals, 100U);
   EXPECT_EQ(config.localizer.genetic.generations, 50U);
-  EXPECT_GT(config.localizer.thesis.kept_solutions, 1U);
+  EXPECT_GT(localization::thesis_config(config.localizer).thesis.kept_solutions, 1U);
 }
 
 class PresetDrive : public testing::TestWithParam<std::uint64_t> {};
