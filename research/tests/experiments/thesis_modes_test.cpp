@@ -9,7 +9,7 @@
 
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/pipeline/trajectory_error.hpp"
-#include "topogeo/simulation/thesis_experiments.hpp"
+#include "topogeo/experiments/thesis_experiments.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 #include "topogeo/world/world.hpp"
 

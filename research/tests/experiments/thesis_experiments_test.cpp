@@ -1,5 +1,5 @@
 // The replicas of the thesis's experiments end with the printed errors (Thesis, 7.3.1.1 and 8.3).
-#include "topogeo/simulation/thesis_experiments.hpp"
+#include "topogeo/experiments/thesis_experiments.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "topogeo/simulation/thesis_experiments.hpp"
+#include "topogeo/experiments/thesis_experiments.hpp"
 
 namespace topogeo::simulation {
 

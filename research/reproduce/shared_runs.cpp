@@ -11,7 +11,7 @@
 #include "topogeo/matching/matcher.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
-#include "topogeo/simulation/thesis_experiments.hpp"
+#include "topogeo/experiments/thesis_experiments.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/thesis/thesis_mode.hpp"
