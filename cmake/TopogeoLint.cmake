@@ -10,8 +10,10 @@ set(TOPOGEO_LINT_CHANGED "" CACHE STRING "Files that the target lint_changed che
 
 # Units, each with a regular expression for the folders of its sources: the first match counts.
 set(TOPOGEO_LINT_UNITS
-  foundation  "^libs/(geometry|scan|support|voronoi|topomap|matching|calibration|slam|relocalization|thesis|session|search_pool)(/|$)"
+  foundation  "^libs/(geometry|scan|support|voronoi|topomap|matching|calibration|slam|relocalization|session|search_pool)(/|$)"
   libraries   "^libs/"
+  research_tests "^research/(tests|bench)"
+  research    "^research"
   services    "^services/"
   localizing  "^tests/unit/(geometry|scan|support|voronoi|topomap|localization|search_pool|pipeline)(/|$)"
   units       "^tests/unit/"
@@ -129,7 +131,7 @@ function(topogeo_add_lint_unit name result targets)
   # Puts the unit's command into compile_commands.json; produces no object.
   add_library(lint_${name} OBJECT EXCLUDE_FROM_ALL ${file})
   set(precompiled topogeo_precompiled)
-  if(name MATCHES "localizing|units|integration|bench")
+  if(name MATCHES "localizing|units|integration|bench|research_tests")
     set(precompiled topogeo_precompiled_tests)
   endif()
   target_precompile_headers(lint_${name} REUSE_FROM ${precompiled})

@@ -177,6 +177,22 @@ std::vector<std::string> between_services(const std::filesystem::path& root,
   return found;
 }
 
+std::vector<std::string> uses_of_research(const std::filesystem::path& root,
+                                          const std::vector<Include>& includes) {
+  std::set<std::string> headers;  // as #include lines name them
+  for (const std::filesystem::path& file : sources_below(root / "research")) {
+    const std::string name = file.lexically_relative(root / "research").string();
+    const std::size_t folder = name.find("/include/");
+    headers.insert(folder == std::string::npos ? name : name.substr(folder + 9));
+  }
+  std::vector<std::string> found;
+  for (const Include& include : includes) {
+    if (include.file.starts_with("research/") || !headers.contains(include.header)) continue;
+    found.push_back(place(include) + ", a header of research/");
+  }
+  return found;
+}
+
 std::vector<std::string> algorithms_in_settings(const std::vector<Include>& includes) {
   std::vector<std::string> found;
   for (const Include& include : includes) {

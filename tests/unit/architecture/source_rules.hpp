@@ -44,6 +44,10 @@ std::vector<std::string> between_services(const std::filesystem::path& root,
                                           const std::vector<Include>& includes,
                                           const std::vector<std::string_view>& shared);
 
+/// The product includes no header of research/.
+std::vector<std::string> uses_of_research(const std::filesystem::path& root,
+                                          const std::vector<Include>& includes);
+
 /// A header of settings, *_config.hpp, includes no algorithm: only settings, geometry and the
 /// declaration of settings.
 std::vector<std::string> algorithms_in_settings(const std::vector<Include>& includes);

@@ -122,6 +122,17 @@ TEST_F(SourceRules, FindsAServiceThatIncludesAnother) {
   EXPECT_THAT(between_services(root_, includes(), {"services/planner/answer.hpp"}), IsEmpty());
 }
 
+TEST_F(SourceRules, FindsTheProductThatIncludesResearch) {
+  write("research/thesis/include/topogeo/thesis/slam.hpp", "");
+  write("research/reproduce/report.hpp", "#include \"topogeo/thesis/slam.hpp\"\n");
+  write("libs/scan/src/a.cpp", "#include \"topogeo/thesis/slam.hpp\"\n#include \"scan.hpp\"\n");
+  write("services/web/main.cpp", "#include \"reproduce/report.hpp\"\n");
+  EXPECT_THAT(uses_of_research(root_, includes_below(root_, {"libs", "research", "services"})),
+              ElementsAre("libs/scan/src/a.cpp:1: includes topogeo/thesis/slam.hpp, a header of "
+                          "research/",
+                          HasSubstr("services/web/main.cpp:1: includes reproduce/report.hpp")));
+}
+
 TEST_F(SourceRules, FindsSettingsThatIncludeAnAlgorithm) {
   write("libs/scan/include/topogeo/scan/reader_config.hpp",
         "#include <cstdint>\n#include <Eigen/Core>\n#include \"topogeo/geometry/pose2.hpp\"\n"
