@@ -4,15 +4,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "topogeo/matching/error_ellipse.hpp"
 #include "topogeo/matching/fitness_forms.hpp"
-#include "topogeo/matching/genetic_search_parts.hpp"
 #include "topogeo/matching/odometry_model.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/random.hpp"
 #include "topogeo/topomap/thesis_local_map.hpp"
 #include "topogeo/voronoi/thesis_voronoi.hpp"
 
+#include "genetic_search_parts.hpp"
 #include "reproduce/drawing.hpp"
 #include "reproduce/experiment.hpp"
 #include "reproduce/scenes.hpp"

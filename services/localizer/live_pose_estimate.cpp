@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "topogeo/relocalization/live_pose.hpp"
+#include "topogeo/relocalization/map_tracker.hpp"
 
 namespace topogeo::localizer {
 

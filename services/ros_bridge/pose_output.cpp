@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "topogeo/ros_conversions/geometry.hpp"
-#include "topogeo/slam/localization_state.hpp"
+#include "topogeo/slam/state_monitor.hpp"
 
 #include "outputs.hpp"
 

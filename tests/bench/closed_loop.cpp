@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/relocalization/live_pose.hpp"
+#include "topogeo/relocalization/map_tracker.hpp"
 #include "topogeo/scan/scan.hpp"
 
 namespace topogeo::bench {

@@ -25,7 +25,7 @@
 #include "topogeo/matching/matcher.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
-#include "topogeo/relocalization/live_pose.hpp"
+#include "topogeo/relocalization/map_tracker.hpp"
 #include "topogeo/session/slam_session.hpp"
 #include "topogeo/simulation/random_floors.hpp"
 #include "topogeo/simulation/simulate_log.hpp"

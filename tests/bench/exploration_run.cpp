@@ -13,7 +13,7 @@
 #include "topogeo/planning/grid_sources.hpp"
 #include "topogeo/planning/hybrid_planner.hpp"
 #include "topogeo/planning/zones.hpp"
-#include "topogeo/session/make_slam.hpp"
+#include "topogeo/session/slam_session.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/random.hpp"
 #include "topogeo/support/seed.hpp"

@@ -29,7 +29,7 @@
 #include <fmt/format.h>
 
 #include "topogeo/command_line/command_line.hpp"
-#include "topogeo/matching/identical.hpp"
+#include "topogeo/matching/match.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/relocalization/map_tracker.hpp"

@@ -8,8 +8,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
-#include "topogeo/matching/error_ellipse.hpp"
 #include "topogeo/matching/match_gate.hpp"
+#include "topogeo/matching/odometry_model.hpp"
 #include "topogeo/support/seed.hpp"
 
 namespace topogeo::bench {

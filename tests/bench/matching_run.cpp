@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "topogeo/pipeline/local_mapper.hpp"
-#include "topogeo/slam/search_space.hpp"
+#include "topogeo/slam/match_requests.hpp"
 #include "topogeo/support/seed.hpp"
 
 namespace topogeo::bench {

@@ -8,7 +8,7 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/pipeline/config.hpp"
-#include "topogeo/slam/localization_state.hpp"
+#include "topogeo/slam/state_monitor.hpp"
 
 #include "recordings.hpp"
 

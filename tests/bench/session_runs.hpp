@@ -9,7 +9,7 @@
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/scan/scan.hpp"
-#include "topogeo/slam/localization_state.hpp"
+#include "topogeo/slam/state_monitor.hpp"
 #include "topogeo/storage/map_document.hpp"
 
 namespace topogeo::bench {

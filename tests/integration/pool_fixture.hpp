@@ -18,7 +18,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "topogeo/matching/identical.hpp"
+#include "topogeo/matching/match.hpp"
 #include "topogeo/matching/matcher.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/message.hpp"

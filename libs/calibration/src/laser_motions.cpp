@@ -1,11 +1,10 @@
-#include "topogeo/calibration/laser_motions.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "topogeo/calibration/mounting_search.hpp"
 #include "topogeo/matching/match_gate.hpp"
 
 namespace topogeo::localization {

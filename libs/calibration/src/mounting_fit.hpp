@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/calibration/laser_motions.hpp"
+#include "topogeo/calibration/mounting_search.hpp"
 
 namespace topogeo::localization {
 

@@ -1,5 +1,3 @@
-#include "topogeo/calibration/odometry_calibration_samples.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -7,7 +5,8 @@
 
 #include <Eigen/LU>
 
-#include "topogeo/matching/fitness.hpp"
+#include "topogeo/calibration/odometry_calibration.hpp"
+#include "topogeo/matching/fitness_forms.hpp"
 #include "topogeo/matching/match_features.hpp"
 #include "topogeo/matching/match_gate.hpp"
 #include "topogeo/matching/refinement.hpp"

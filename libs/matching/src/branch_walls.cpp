@@ -1,5 +1,3 @@
-#include "topogeo/matching/branch_walls.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -8,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/matching/match_features.hpp"
 
 namespace topogeo::localization {
 namespace {

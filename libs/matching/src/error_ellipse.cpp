@@ -1,10 +1,9 @@
-#include "topogeo/matching/error_ellipse.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/matching/odometry_model.hpp"
 
 namespace topogeo::localization {
 namespace {

@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "topogeo/matching/fitness.hpp"
+#include "topogeo/matching/fitness_forms.hpp"
 
 #include "fitness_points.hpp"
 #include "fitness_topological.hpp"

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "topogeo/matching/fitness.hpp"
+#include "topogeo/matching/fitness_forms.hpp"
 
 #include "fitness_points.hpp"
 

@@ -10,9 +10,10 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/matching/fitness.hpp"
-#include "topogeo/matching/genetic_search_parts.hpp"
+#include "topogeo/matching/fitness_forms.hpp"
 #include "topogeo/matching/match.hpp"
+
+#include "genetic_search_parts.hpp"
 
 namespace topogeo::localization {
 

@@ -1,8 +1,8 @@
-#include "topogeo/matching/identical.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+
+#include "topogeo/matching/match.hpp"
 
 namespace topogeo::localization {
 

@@ -1,10 +1,9 @@
-#include "topogeo/matching/map_field.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/matching/place_field.hpp"
 
 namespace topogeo::localization {
 

@@ -9,7 +9,7 @@
 
 #include <Eigen/LU>
 
-#include "topogeo/matching/branch_walls.hpp"
+#include "topogeo/matching/match_features.hpp"
 #include "topogeo/matching/place_field.hpp"
 #include "topogeo/matching/refinement.hpp"
 

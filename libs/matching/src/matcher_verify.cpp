@@ -4,7 +4,7 @@
 #include <numbers>
 #include <string>
 
-#include "topogeo/matching/identical.hpp"
+#include "topogeo/matching/match.hpp"
 #include "topogeo/matching/matcher.hpp"
 #include "topogeo/matching/place_field.hpp"
 

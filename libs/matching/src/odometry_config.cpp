@@ -1,5 +1,4 @@
-#include "topogeo/matching/odometry_config.hpp"
-
+#include "topogeo/matching/match_config.hpp"
 #include "topogeo/support/config_schema.hpp"
 
 namespace topogeo::localization {

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "topogeo/matching/error_ellipse.hpp"
-
 namespace topogeo::localization {
 
 using geometry::Pose2;

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/matching/identical.hpp"
+#include "topogeo/matching/match.hpp"
 #include "topogeo/support/hash.hpp"
 
 namespace topogeo::localization {

@@ -4,10 +4,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "topogeo/matching/branch_walls.hpp"
 #include "topogeo/matching/fitness_forms.hpp"
+#include "topogeo/matching/match_features.hpp"
 #include "topogeo/matching/matcher.hpp"
-#include "topogeo/slam/search_space.hpp"
+#include "topogeo/slam/match_requests.hpp"
 #include "topogeo/support/hash.hpp"
 
 namespace topogeo::pipeline {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "topogeo/calibration/laser_motions.hpp"
+#include "topogeo/calibration/mounting_search.hpp"
 #include "topogeo/pipeline/laser_mounting.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/topomap/local_map_builder.hpp"

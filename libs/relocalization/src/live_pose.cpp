@@ -1,4 +1,4 @@
-#include "topogeo/relocalization/live_pose.hpp"
+#include "topogeo/relocalization/map_tracker.hpp"
 
 namespace topogeo::localization {
 namespace {

@@ -6,7 +6,7 @@
 #include "topogeo/matching/matcher.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/render/map_picture.hpp"
-#include "topogeo/session/make_slam.hpp"
+#include "topogeo/session/slam_session.hpp"
 
 namespace topogeo::results {
 namespace {

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "topogeo/matching/identical.hpp"
+#include "topogeo/matching/match.hpp"
 #include "topogeo/support/hash.hpp"
 
 namespace topogeo::search_pool {

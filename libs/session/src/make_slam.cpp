@@ -1,5 +1,4 @@
-#include "topogeo/session/make_slam.hpp"
-
+#include "topogeo/session/slam_session.hpp"
 #include "topogeo/slam/pose_graph_slam.hpp"
 
 namespace topogeo::localization {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "topogeo/session/make_slam.hpp"
+#include "topogeo/session/slam_session.hpp"
 
 #include "slam_counts.hpp"
 

@@ -1,7 +1,7 @@
-#include "topogeo/session/meeting.hpp"
-
 #include <algorithm>
 #include <utility>
+
+#include "topogeo/session/merge_proposals.hpp"
 
 #include "slam_counts.hpp"
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "topogeo/session/kept_views.hpp"
-#include "topogeo/session/meeting.hpp"
+#include "topogeo/session/merge_proposals.hpp"
 
 #include "joint_poses.hpp"
 #include "map_part.hpp"

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "topogeo/session/kept_views.hpp"
-#include "topogeo/slam/drive_join.hpp"
 #include "topogeo/slam/pose_graph_slam.hpp"
+#include "topogeo/slam/stored_map.hpp"
 
 #include "robot_parts.hpp"
 #include "shared_pool.hpp"

@@ -1,8 +1,8 @@
-#include "topogeo/slam/drive_join.hpp"
-
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+
+#include "topogeo/slam/stored_map.hpp"
 
 namespace topogeo::localization {
 

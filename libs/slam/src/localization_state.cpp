@@ -1,6 +1,6 @@
-#include "topogeo/slam/localization_state.hpp"
-
 #include <array>
+
+#include "topogeo/slam/state_monitor.hpp"
 
 namespace topogeo::localization {
 

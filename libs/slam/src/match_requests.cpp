@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "topogeo/slam/search_space.hpp"
 #include "topogeo/support/seed.hpp"
 
 namespace topogeo::localization {

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "topogeo/slam/drive_join.hpp"
 #include "topogeo/slam/graph_optimization.hpp"
+#include "topogeo/slam/stored_map.hpp"
 
 #include "link_covariances.hpp"
 #include "loop/look_alikes.hpp"

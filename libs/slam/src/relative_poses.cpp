@@ -1,7 +1,7 @@
-#include "topogeo/slam/relative_poses.hpp"
-
 #include <stdexcept>
 #include <string>
+
+#include "topogeo/slam/pose_graph.hpp"
 
 namespace topogeo::localization {
 

@@ -1,7 +1,6 @@
-#include "topogeo/slam/search_space.hpp"
-
 #include <algorithm>
 
+#include "topogeo/slam/match_requests.hpp"
 #include "topogeo/slam/pose_graph.hpp"
 
 namespace topogeo::localization {

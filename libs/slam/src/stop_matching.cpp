@@ -8,11 +8,11 @@
 
 #include <Eigen/LU>
 
-#include "topogeo/matching/branch_walls.hpp"
 #include "topogeo/matching/expected_overlap.hpp"
+#include "topogeo/matching/match_features.hpp"
 #include "topogeo/matching/match_gate.hpp"
 #include "topogeo/matching/refinement.hpp"
-#include "topogeo/slam/search_space.hpp"
+#include "topogeo/slam/match_requests.hpp"
 
 #include "window_match.hpp"
 

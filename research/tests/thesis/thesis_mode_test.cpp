@@ -4,7 +4,7 @@
 
 #include "topogeo/matching/fitness_forms.hpp"
 #include "topogeo/matching/matcher.hpp"
-#include "topogeo/session/make_slam.hpp"
+#include "topogeo/session/slam_session.hpp"
 #include "topogeo/support/config_schema.hpp"
 #include "topogeo/thesis/thesis_slam.hpp"
 

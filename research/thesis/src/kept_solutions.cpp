@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "topogeo/matching/branch_walls.hpp"
+#include "topogeo/matching/match_features.hpp"
 
 namespace topogeo::localization {
 

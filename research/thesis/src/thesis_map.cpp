@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "topogeo/matching/branch_walls.hpp"
 #include "topogeo/matching/expected_overlap.hpp"
-#include "topogeo/slam/search_space.hpp"
+#include "topogeo/matching/match_features.hpp"
+#include "topogeo/slam/match_requests.hpp"
 #include "topogeo/slam/slam.hpp"
 
 namespace topogeo::localization {

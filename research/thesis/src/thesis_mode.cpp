@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "topogeo/slam/added_mode_config.hpp"
+#include "topogeo/slam/localizer_config.hpp"
 #include "topogeo/thesis/thesis_slam.hpp"
 
 namespace topogeo::localization {

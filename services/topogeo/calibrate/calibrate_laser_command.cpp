@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "topogeo/calibration/laser_calibration.hpp"
-#include "topogeo/calibration/odometry_calibration_samples.hpp"
+#include "topogeo/calibration/odometry_calibration.hpp"
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/laser_mounting.hpp"

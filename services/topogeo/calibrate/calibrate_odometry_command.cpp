@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "topogeo/calibration/odometry_calibration.hpp"
-#include "topogeo/calibration/odometry_calibration_samples.hpp"
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/service/service_options.hpp"

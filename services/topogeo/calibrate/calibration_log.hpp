@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "topogeo/calibration/odometry_calibration_samples.hpp"
+#include "topogeo/calibration/odometry_calibration.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/recording/log_reader.hpp"
 #include "topogeo/support/progress_bar.hpp"

@@ -4,7 +4,7 @@
 
 #include "topogeo/planning/place_names.hpp"
 #include "topogeo/service/conversions.hpp"
-#include "topogeo/slam/localization_state.hpp"
+#include "topogeo/slam/state_monitor.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/format.hpp"
 

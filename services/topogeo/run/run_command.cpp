@@ -10,7 +10,7 @@
 #include "topogeo/results/outputs.hpp"
 #include "topogeo/service/replay_rate.hpp"
 #include "topogeo/service/service_options.hpp"
-#include "topogeo/slam/localization_state.hpp"
+#include "topogeo/slam/state_monitor.hpp"
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/cpu_time.hpp"
 

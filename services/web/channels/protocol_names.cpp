@@ -3,7 +3,7 @@
 #include <array>
 
 #include "topogeo/navigation/navigator_inputs.hpp"
-#include "topogeo/slam/localization_state.hpp"
+#include "topogeo/slam/state_monitor.hpp"
 #include "topogeo/topomap/node_kind_name.hpp"
 
 namespace topogeo::web {

@@ -151,6 +151,9 @@ TEST_F(ConfigTest, WhereFiguresAreGivenDoesNotTurnWorkersAway) {
 
 TEST_F(ConfigTest, TheTablesOfTheDocumentationAreThoseOfTheDeclarations) {
   Config config;
+  if (config.localizer.added_mode.get() == nullptr) {
+    GTEST_SKIP() << "the pages describe programs with research/ (TOPOGEO_RESEARCH)";
+  }
   std::ostringstream tables;
   support::write_markdown(describe(config), tables);
   EXPECT_EQ(part_of(std::filesystem::path(TOPOGEO_SOURCE_DIR) / "docs/configuration.md",

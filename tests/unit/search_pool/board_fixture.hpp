@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "topogeo/matching/identical.hpp"
+#include "topogeo/matching/match.hpp"
 #include "topogeo/search_pool/task_board.hpp"
 
 namespace topogeo::search_pool {

@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/slam/loop/loop_search.hpp"
-#include "topogeo/slam/loop/relative_solution.hpp"
+
+#include "loop/loop_search.hpp"
+#include "loop/relative_solution.hpp"
 
 namespace topogeo::localization {
 

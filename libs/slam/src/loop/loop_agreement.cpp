@@ -8,7 +8,7 @@
 #include <set>
 
 #include "topogeo/slam/loop/loop_config.hpp"
-#include "topogeo/slam/loop/loop_probability.hpp"
+#include "topogeo/slam/loop/loop_decision.hpp"
 #include "topogeo/slam/place_recognition.hpp"
 
 #include "covariance_calibration.hpp"

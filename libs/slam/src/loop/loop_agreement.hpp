@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "topogeo/slam/pose_graph.hpp"
-#include "topogeo/slam/relative_poses.hpp"
 
 #include "loop/stop_match.hpp"
 

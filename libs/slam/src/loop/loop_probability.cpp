@@ -1,8 +1,7 @@
-#include "topogeo/slam/loop/loop_probability.hpp"
-
 #include <algorithm>
 
 #include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/slam/loop/loop_decision.hpp"
 
 namespace topogeo::localization {
 

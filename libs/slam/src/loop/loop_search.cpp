@@ -1,4 +1,4 @@
-#include "topogeo/slam/loop/loop_search.hpp"
+#include "loop/loop_search.hpp"
 
 #include <algorithm>
 #include <array>

@@ -7,7 +7,6 @@
 
 #include "topogeo/matching/match.hpp"
 #include "topogeo/slam/loop/loop_decision.hpp"
-#include "topogeo/slam/loop/loop_probability.hpp"
 #include "topogeo/slam/loop/plausible_match.hpp"
 #include "topogeo/slam/pose_graph.hpp"
 #include "topogeo/slam/state_monitor.hpp"

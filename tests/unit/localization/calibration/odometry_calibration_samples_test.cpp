@@ -1,6 +1,4 @@
 // The measured motions of a log, from matches and from a reference trajectory.
-#include "topogeo/calibration/odometry_calibration_samples.hpp"
-
 #include <algorithm>
 #include <memory>
 #include <set>
@@ -9,6 +7,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "topogeo/calibration/odometry_calibration.hpp"
 #include "topogeo/matching/matcher.hpp"
 #include "topogeo/slam/pose_graph_slam.hpp"
 

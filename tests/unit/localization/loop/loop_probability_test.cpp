@@ -1,8 +1,8 @@
-#include "topogeo/slam/loop/loop_probability.hpp"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
+
+#include "topogeo/slam/loop/loop_decision.hpp"
 
 namespace topogeo::localization {
 namespace {

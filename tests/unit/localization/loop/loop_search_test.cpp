@@ -1,6 +1,6 @@
 // The search on chains along x with results worked by hand. The backward correction of the thesis
 // tests it with constraints and against all combinations.
-#include "topogeo/slam/loop/loop_search.hpp"
+#include "loop/loop_search.hpp"
 
 #include <cmath>
 #include <stdexcept>

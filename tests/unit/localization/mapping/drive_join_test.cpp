@@ -1,9 +1,9 @@
-#include "topogeo/slam/drive_join.hpp"
-
 #include <stdexcept>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "topogeo/slam/stored_map.hpp"
 
 namespace topogeo::localization {
 namespace {

@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include "topogeo/slam/search_space.hpp"
 #include "topogeo/support/seed.hpp"
 
 namespace topogeo::localization {

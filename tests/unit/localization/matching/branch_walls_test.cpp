@@ -1,10 +1,10 @@
 // Hand-made branches between known walls.
-#include "topogeo/matching/branch_walls.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
+
+#include "topogeo/matching/match_features.hpp"
 
 #include "localization/simulated_maps.hpp"
 

@@ -1,5 +1,3 @@
-#include "topogeo/matching/error_ellipse.hpp"
-
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,6 +8,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "topogeo/matching/odometry_model.hpp"
 #include "topogeo/support/random.hpp"
 
 namespace topogeo::localization {

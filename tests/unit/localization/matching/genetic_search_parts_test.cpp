@@ -1,4 +1,4 @@
-#include "topogeo/matching/genetic_search_parts.hpp"
+#include "genetic_search_parts.hpp"
 
 #include <array>
 #include <bit>

@@ -1,6 +1,6 @@
-#include "topogeo/matching/identical.hpp"
-
 #include <gtest/gtest.h>
+
+#include "topogeo/matching/match.hpp"
 
 namespace topogeo::localization {
 namespace {

@@ -5,7 +5,6 @@
 #include <gmock/gmock.h>
 
 #include "topogeo/calibration/odometry_calibration.hpp"
-#include "topogeo/matching/scan_tracker_config.hpp"
 #include "topogeo/slam/localizer_config.hpp"
 #include "topogeo/support/config_schema.hpp"
 

@@ -9,7 +9,6 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include "topogeo/matching/error_ellipse.hpp"
 #include "topogeo/support/random.hpp"
 
 namespace topogeo::localization {

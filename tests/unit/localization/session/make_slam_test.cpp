@@ -1,5 +1,3 @@
-#include "topogeo/session/make_slam.hpp"
-
 #include <stdexcept>
 #include <utility>
 
@@ -7,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "topogeo/matching/matcher.hpp"
+#include "topogeo/session/slam_session.hpp"
 #include "topogeo/slam/pose_graph_slam.hpp"
 
 namespace topogeo::localization {

@@ -1,6 +1,6 @@
-#include "topogeo/relocalization/live_pose.hpp"
-
 #include <gtest/gtest.h>
+
+#include "topogeo/relocalization/map_tracker.hpp"
 
 namespace topogeo::localization {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "topogeo/matching/odometry_config.hpp"
+#include "topogeo/matching/match_config.hpp"
 
 namespace topogeo::support {
 class ConfigSchema;

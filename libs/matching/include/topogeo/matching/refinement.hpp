@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/matching/fitness.hpp"
+#include "topogeo/matching/fitness_forms.hpp"
 #include "topogeo/matching/match_features.hpp"
 
 namespace topogeo::localization {

@@ -10,11 +10,11 @@
 #include <optional>
 #include <span>
 
-#include "topogeo/matching/fitness.hpp"
+#include "topogeo/matching/fitness_forms.hpp"
+#include "topogeo/matching/match_config.hpp"
 #include "topogeo/matching/odometry_model.hpp"
 #include "topogeo/matching/odometry_monitor.hpp"
 #include "topogeo/matching/refinement.hpp"
-#include "topogeo/matching/scan_tracker_config.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {

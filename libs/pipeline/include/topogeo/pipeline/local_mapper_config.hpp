@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/matching/scan_tracker_config.hpp"
+#include "topogeo/matching/match_config.hpp"
 #include "topogeo/topomap/local_map_config.hpp"
 #include "topogeo/voronoi/voronoi_config.hpp"
 

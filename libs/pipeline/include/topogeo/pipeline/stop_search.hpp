@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "topogeo/matching/error_ellipse.hpp"
 #include "topogeo/matching/match.hpp"
 #include "topogeo/matching/odometry_model.hpp"
 #include "topogeo/slam/localizer_config.hpp"

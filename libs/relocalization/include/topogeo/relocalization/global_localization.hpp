@@ -18,7 +18,6 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/matching/map_field.hpp"
 #include "topogeo/matching/match.hpp"
 #include "topogeo/matching/match_features.hpp"
 #include "topogeo/matching/place_field.hpp"

@@ -18,9 +18,9 @@
 
 #include <Eigen/Core>
 
+#include "topogeo/geometry/pose2.hpp"
 #include "topogeo/matching/match.hpp"
 #include "topogeo/matching/odometry_model.hpp"
-#include "topogeo/slam/localization_state.hpp"
 #include "topogeo/slam/localizer_config.hpp"
 #include "topogeo/slam/slam.hpp"
 #include "topogeo/slam/state_monitor.hpp"
@@ -157,5 +157,12 @@ class MapTracker : public Slam {
   std::optional<topomap::StopId> last_id_;  // of the last stop
   std::uint64_t steps_in_doubt_ = 0;
 };
+
+/// Current T_map_robot: the pose of the last stop, then the relative pose of the newest scan that
+/// was matched with the scan of that stop, then the odometry since. Without such a scan (`tracked`
+/// null, or not matched) only the odometry since the stop. `T_odom_stop`: the odometry at the stop.
+UncertainPose live_pose(const UncertainPose& T_map_stop, const geometry::Pose2& T_odom_stop,
+                        const topomap::TrackedScan* tracked, const geometry::Pose2& T_odom_robot,
+                        const OdometryNoise& noise);
 
 }  // namespace topogeo::localization

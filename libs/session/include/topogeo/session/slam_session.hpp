@@ -19,6 +19,12 @@
 
 namespace topogeo::localization {
 
+/// PoseGraphSlam or the added mode, by `config.mode`. The pool and the optimizer (see
+/// PoseGraphSlam) must outlive it. Throws std::invalid_argument if the program does not have the
+/// mode.
+std::unique_ptr<Slam> make_slam(const LocalizerConfig& config, MatchPool& pool,
+                                GraphOptimizer* optimizer = nullptr);
+
 /// Uncertainty of a pose given by an operator: 0.3 m and 10 degrees.
 Eigen::Matrix3d given_pose_covariance();
 

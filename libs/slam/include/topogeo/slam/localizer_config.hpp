@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "topogeo/matching/match_config.hpp"
-#include "topogeo/matching/odometry_config.hpp"
 #include "topogeo/slam/added_mode_config.hpp"
 
 namespace topogeo::support {

@@ -19,8 +19,8 @@
 #include "topogeo/matching/coarse_search.hpp"
 #include "topogeo/matching/match_features.hpp"
 #include "topogeo/matching/odometry_model.hpp"
-#include "topogeo/matching/recently_used.hpp"
 #include "topogeo/slam/pose_graph.hpp"
+#include "topogeo/support/recently_used.hpp"
 
 namespace topogeo::localization {
 
@@ -114,9 +114,9 @@ class PlaceRecognition {
   std::vector<std::shared_ptr<const StopView>> views_;
   std::vector<double> path_m_;
   std::vector<Submap> submaps_;
-  std::uint32_t next_first_ = 0;            // of the next submap
-  RecentlyUsed<CoarseMap> maps_{64};        // of about 60 kB
-  RecentlyUsed<Reference> references_{32};  // of about 1 MB
+  std::uint32_t next_first_ = 0;                     // of the next submap
+  support::RecentlyUsed<CoarseMap> maps_{64};        // of about 60 kB
+  support::RecentlyUsed<Reference> references_{32};  // of about 1 MB
 };
 
 }  // namespace topogeo::localization

@@ -3,20 +3,27 @@
 // finished map (map_tracker.hpp), or a session of them (slam_session.hpp).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
-#include "topogeo/slam/localization_state.hpp"
+#include "topogeo/matching/match.hpp"
 #include "topogeo/slam/loop/loop_decision.hpp"
-#include "topogeo/slam/match_counts.hpp"
 #include "topogeo/slam/pose_graph.hpp"
+#include "topogeo/slam/state_monitor.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
 namespace topogeo::localization {
+
+struct MatchCounts {
+  std::uint64_t tasks = 0;
+  std::uint64_t evaluations = 0;
+  std::array<std::uint64_t, kReasons> reasons{};  ///< index: Reason; kNone: accepted
+};
 
 struct SlamCounts : MatchCounts {
   std::uint64_t steps_in_doubt =

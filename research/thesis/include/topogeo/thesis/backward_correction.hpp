@@ -13,10 +13,11 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/matching/odometry_model.hpp"
-#include "topogeo/slam/loop/loop_search.hpp"
 #include "topogeo/thesis/solution_store.hpp"
 #include "topogeo/thesis/thesis_config.hpp"
 #include "topogeo/topomap/visible_rectangle.hpp"
+
+#include "loop/loop_search.hpp"
 
 namespace topogeo::localization {
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "topogeo/slam/loop/relative_solution.hpp"
+#include "loop/relative_solution.hpp"
 
 namespace topogeo::localization {
 

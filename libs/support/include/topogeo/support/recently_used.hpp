@@ -6,7 +6,7 @@
 #include <list>
 #include <utility>
 
-namespace topogeo::localization {
+namespace topogeo::support {
 
 template <typename Value>
 class RecentlyUsed {
@@ -33,4 +33,4 @@ class RecentlyUsed {
   std::list<std::pair<std::size_t, Value>> values_;  // most recently used first
 };
 
-}  // namespace topogeo::localization
+}  // namespace topogeo::support

@@ -1,8 +1,8 @@
-#include "topogeo/matching/recently_used.hpp"
+#include "topogeo/support/recently_used.hpp"
 
 #include <gtest/gtest.h>
 
-namespace topogeo::localization {
+namespace topogeo::support {
 namespace {
 
 TEST(RecentlyUsed, MakesAValueOnceAndForgetsTheOneThatWasNotUsedForLongest) {
@@ -26,4 +26,4 @@ TEST(RecentlyUsed, MakesAValueOnceAndForgetsTheOneThatWasNotUsedForLongest) {
 }
 
 }  // namespace
-}  // namespace topogeo::localization
+}  // namespace topogeo::support

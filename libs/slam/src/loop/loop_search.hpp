@@ -23,7 +23,8 @@
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/matching/odometry_model.hpp"
 #include "topogeo/slam/loop/loop_config.hpp"
-#include "topogeo/slam/loop/relative_solution.hpp"
+
+#include "loop/relative_solution.hpp"
 
 namespace topogeo::localization {
 
