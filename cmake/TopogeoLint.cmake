@@ -3,8 +3,9 @@
 # checked again when a file that it includes changes, as in a compilation.
 #
 #   lint           all files of the project's targets
-#   lint_changed   files in TOPOGEO_LINT_CHANGED; a header is replaced by its source, if any. The compiler also checks
-#                  the whole unit of each file, where a name may be defined twice
+#   lint_changed   files in TOPOGEO_LINT_CHANGED; a header is replaced by its source, if any
+#
+# A unit is divided where its sources repeat names of anonymous namespaces (topogeo_divide()).
 
 set(TOPOGEO_LINT_CHANGED "" CACHE STRING "Files that the target lint_changed checks, relative to the source folder")
 
@@ -46,7 +47,6 @@ function(topogeo_add_lint)
   set(all_sources "")
   set(stamps "")
   set(changed_stamps "")
-  set(whole_units "")
   list(LENGTH TOPOGEO_LINT_UNITS last)
   math(EXPR last "${last} - 1")
   foreach(i RANGE 0 ${last} 2)
@@ -55,7 +55,7 @@ function(topogeo_add_lint)
       list(REMOVE_DUPLICATES sources_of_${unit})
       list(REMOVE_DUPLICATES targets_of_${unit})
       list(APPEND all_sources ${sources_of_${unit}})
-      topogeo_add_lint_unit(${unit} stamps "${targets_of_${unit}}" ${sources_of_${unit}})
+      topogeo_add_lint_units(${unit} stamps "${targets_of_${unit}}" ${sources_of_${unit}})
     endif()
   endforeach()
   foreach(file IN LISTS TOPOGEO_LINT_CHANGED)
@@ -78,15 +78,11 @@ function(topogeo_add_lint)
     list(GET TOPOGEO_LINT_UNITS ${i} unit)
     if(changed_of_${unit})
       list(REMOVE_DUPLICATES changed_of_${unit})
-      topogeo_add_lint_unit(changed_${unit} changed_stamps "${targets_of_${unit}}" ${changed_of_${unit}})
-      list(APPEND whole_units lint_names_${unit})
+      topogeo_add_lint_units(changed_${unit} changed_stamps "${targets_of_${unit}}" ${changed_of_${unit}})
     endif()
   endforeach()
   add_custom_target(lint DEPENDS ${stamps})
   add_custom_target(lint_changed DEPENDS ${changed_stamps})
-  if(whole_units)
-    add_dependencies(lint_changed ${whole_units})
-  endif()
 
   # A source without a target would be neither compiled nor checked.
   list(JOIN all_sources "\n" listing)
@@ -107,6 +103,34 @@ function(topogeo_find_lint_unit path result)
       return()
     endif()
   endforeach()
+endfunction()
+
+# Adds the check of sources, in as few units as their names allow, and appends the stamps to the list named `result`.
+function(topogeo_add_lint_units name result targets)
+  set(lines "")
+  foreach(source IN LISTS ARGN)
+    string(APPEND lines "${name}\t0\t${source}\n")
+  endforeach()
+  topogeo_divide("${lines}" divided lint_${name})
+  set(last 0)
+  foreach(line IN LISTS divided)
+    string(REPLACE "\t" ";" line "${line}")
+    list(GET line 1 unit)
+    list(GET line 2 source)
+    list(APPEND sources_${unit} ${source})
+    if(unit GREATER last)
+      set(last ${unit})
+    endif()
+  endforeach()
+  set(stamps ${${result}})
+  foreach(unit RANGE ${last})
+    set(suffix "")
+    if(unit GREATER 0)
+      set(suffix _${unit})
+    endif()
+    topogeo_add_lint_unit(${name}${suffix} stamps "${targets}" ${sources_${unit}})
+  endforeach()
+  set(${result} ${stamps} PARENT_SCOPE)
 endfunction()
 
 # Adds the check of sources as one unit, compiled like the targets, and appends its stamp to the list named `result`.
@@ -160,11 +184,6 @@ function(topogeo_add_lint_unit name result targets)
             $<TARGET_OBJECTS:${precompiled}>
     DEPFILE ${stamp}.d
     COMMENT "clang-tidy: ${name}"
-    COMMAND_EXPAND_LISTS VERBATIM)
-  # A name that stands twice in a unit is found by the compiler in a fraction of the time of clang-tidy.
-  add_custom_target(lint_names_${name}
-    COMMAND ${CMAKE_CXX_COMPILER} -std=c++20 -fsyntax-only -w "${includes}" "${definitions}" ${file}
-    COMMENT "names: ${name}"
     COMMAND_EXPAND_LISTS VERBATIM)
   set(${result} ${${result}} ${stamp} PARENT_SCOPE)
 endfunction()

@@ -52,14 +52,52 @@ function(topogeo_add_precompiled name)
 endfunction()
 
 # Speeds up the build of a target: precompiled headers of `precompiled`, and its sources in units of several files
-# (presets set how many; names in anonymous namespaces are therefore unique within a target).
+# (presets set how many), by topogeo_divide_targets().
 function(topogeo_build_fast target precompiled)
   target_precompile_headers(${target} REUSE_FROM ${precompiled})
   # Sources have their own names in messages and databases, but share included headers.
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${TOPOGEO_UNITY}
+                                             UNITY_BUILD_MODE GROUP
                                              UNITY_BUILD_BATCH_SIZE ${TOPOGEO_UNITY_FILES})
+  set_property(GLOBAL APPEND PROPERTY TOPOGEO_UNITY_TARGETS ${target})
   # GCC's warning about classes with parts in anonymous namespaces is meant for headers.
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endfunction()
+
+# topogeo_divide(LINES RESULT NAME): divides sources into units in which no name of an anonymous namespace is repeated
+# (unity_groups.py); `lines` are `target<TAB>largest<TAB>source`, the result `target<TAB>unit<TAB>source`.
+function(topogeo_divide lines result name)
+  set(file ${PROJECT_BINARY_DIR}/units/${name})
+  file(WRITE ${file}.txt "${lines}")
+  execute_process(COMMAND python3 ${PROJECT_SOURCE_DIR}/cmake/unity_groups.py ${file}.txt ${file}.json
+    OUTPUT_VARIABLE divided COMMAND_ERROR_IS_FATAL ANY)
+  string(STRIP "${divided}" divided)
+  string(REPLACE "\n" ";" divided "${divided}")
+  set(${result} "${divided}" PARENT_SCOPE)
+endfunction()
+
+# Divides the sources of all targets of topogeo_build_fast() into units. Call it when all targets exist.
+function(topogeo_divide_targets)
+  get_property(targets GLOBAL PROPERTY TOPOGEO_UNITY_TARGETS)
+  set(lines "")
+  foreach(target IN LISTS targets)
+    get_target_property(folder ${target} SOURCE_DIR)
+    get_target_property(sources ${target} SOURCES)
+    get_target_property(largest ${target} UNITY_BUILD_BATCH_SIZE)
+    list(FILTER sources INCLUDE REGEX "\\.cpp$")
+    foreach(source IN LISTS sources)
+      cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${folder} NORMALIZE)
+      string(APPEND lines "${target}\t${largest}\t${source}\n")
+    endforeach()
+  endforeach()
+  topogeo_divide("${lines}" divided targets)
+  foreach(line IN LISTS divided)
+    string(REPLACE "\t" ";" line "${line}")
+    list(GET line 0 target)
+    list(GET line 1 unit)
+    list(GET line 2 source)
+    set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${unit})
+  endforeach()
 endfunction()
 
 # topogeo_add_library(NAME geometry SOURCES a.cpp ... [DEPENDS targets...] [PRIVATE_DEPENDS targets...] [COLD])
