@@ -1,4 +1,4 @@
-// Takes an operator's stop of a base that reports none: the navigator then stands by itself.
+// Obeys an operator's stop for a base that reports no stop: the navigator itself holds the robot.
 #pragma once
 
 #include <cstdint>
@@ -20,23 +20,23 @@ namespace topogeo::navigator {
 /// Lives in the loop of its service.
 class OperatorStopInput {
  public:
-  /// Keeps the stop in the file `memory` (empty: none), and passes it to the navigator, which must
-  /// outlive this object. The navigator stands from `start_ns` of the steady clock until it can
-  /// have missed no stop, see StopWait. `on_change` is called when a message has begun or ended a
-  /// reason to stand. Throws like service::OperatorStop.
+  /// Stores the stop in the file `memory` (empty: none) and passes it to the navigator, which must
+  /// outlive this object. From `start_ns` of the steady clock the navigator holds the robot until a
+  /// stop can no longer have been missed (StopWait). `on_change` is called when a message has begun
+  /// or ended a reason to hold. Throws like service::OperatorStop.
   OperatorStopInput(service::Service& service, const std::filesystem::path& memory,
                     navigation::Navigator& navigator, std::int64_t start_ns,
                     std::function<void()> on_change);
   OperatorStopInput(const OperatorStopInput&) = delete;
   OperatorStopInput& operator=(const OperatorStopInput&) = delete;
 
-  /// Takes each status of the base: one that holds itself needs no other stop.
+  /// Reads a status of the base: a base that reports stops holds itself and needs no other stop.
   void take(const msg::BaseStatus& status);
-  /// Ends the wait for a stop once it is over at `now_ns` of the steady clock.
+  /// Ends the wait for a missed stop if its time is over at `now_ns` of the steady clock.
   void check(std::int64_t now_ns);
-  /// Passes the stop to a navigator that has begun anew.
+  /// Passes the stop to a navigator that was restarted.
   void apply() { navigator_.set_stopped(reason()); }
-  /// Why the navigator stands; empty: for no stop.
+  /// The reason why the navigator holds the robot; empty if it does not.
   [[nodiscard]] std::string reason() const;
 
  private:

@@ -1,5 +1,5 @@
-// Whether a navigator that has just started must stand, because it may have missed an operator's
-// stop.
+// Whether a navigator that has just started must hold the robot, because it may have missed an
+// operator's stop.
 #pragma once
 
 #include <cstdint>

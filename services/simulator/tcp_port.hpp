@@ -15,7 +15,8 @@ namespace topogeo::simulator {
 
 class TcpPort final : public DevicePort {
  public:
-  /// `address`: of this machine, dotted numbers; `port` 0: a free one. Not yet plugged in.
+  /// `address` is one of this machine, in dotted numbers; port 0 selects a free port. plug() opens
+  /// it.
   TcpPort(std::string address, std::uint16_t port);
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
@@ -23,9 +24,9 @@ class TcpPort final : public DevicePort {
   void plug() override;
   void unplug() override;
   [[nodiscard]] bool plugged() const override { return listener_.is_open(); }
-  /// A network has no rate: the largest one.
+  /// Returns the largest rate, because a network has none.
   [[nodiscard]] devices::LineSettings host(devices::Parity parity) const override;
-  /// Accepts a program, in place of the last one.
+  /// Accepts a program that connects; it replaces the previous one.
   [[nodiscard]] std::vector<std::uint8_t> receive() override;
   std::size_t send(std::span<const std::uint8_t> bytes) override;
 

@@ -47,7 +47,7 @@ function picture() {
   ]);
 }
 
-// A path in steps of 0.3 m from a point of a lattice; always the same.
+// A path in steps of 0.3 m from a lattice point; it is the same in each run.
 function branch(number) {
   const points = [];
   let x = (number % 45) * (kSide_m / 45);
@@ -157,7 +157,7 @@ try {
   ]) {
     for (let i = 0; i < zooms; ++i) {
       await page.getByRole("button", { name: "Zoom in" }).click();
-      await page.waitForTimeout(400); // the zoom is animated, and is not measured
+      await page.waitForTimeout(400); // the animation of the zoom is not measured
     }
     const { script_ms, layout_ms, median_ms, p95_ms } = await drag(page);
     console.log(

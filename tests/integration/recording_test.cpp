@@ -1,4 +1,4 @@
-// One drive in each format of logs: the maps are the same.
+// One drive, recorded in each format of logs, gives the same map.
 #include <cmath>
 #include <fstream>
 #include <sstream>

@@ -85,7 +85,7 @@ bool BaseOdometer::follows_doubted(const McpReport& report, std::int64_t arrival
          moved_plausibly(doubted_->report, report, elapsed_ns, doubts_ >= kManyDoubts);
 }
 
-/// The base's registers begin anew; the robot remains at its pose.
+/// The registers of the base have restarted; the robot keeps its pose.
 void BaseOdometer::start_from(const McpReport& report) {
   tracker_.restart();
   base_clock_.restart();

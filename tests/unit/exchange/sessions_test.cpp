@@ -65,7 +65,7 @@ TEST(Sessions, OneThatIsRemovedLeavesNoTrace) {
   ASSERT_EQ(map.loop_closures.size(), 1U);
   EXPECT_EQ(map.loop_closures[0].later_id, 3U);
   ASSERT_EQ(map.edges.size(), 3U);
-  // The pose returns to the one of the other measurements.
+  // The pose returns to the place that the other measurements give it.
   EXPECT_NEAR(map.trajectory.stops[3].T_map_robot.x_m, 5.0, 1e-3);
   EXPECT_EQ(map.trajectory.stops[0].T_map_robot, geometry::Pose2{});
   EXPECT_THAT(map.refused_merges,

@@ -1,4 +1,4 @@
-// The timers of the middleware stay in order, whichever of them have run.
+// The timers of the middleware stay in order, no matter which of them have run.
 #include <algorithm>
 #include <cstddef>
 #include <memory>
@@ -57,7 +57,7 @@ constexpr double kApart_ms = 300e3;
 /// Timers of a participant, run in the test's own thread.
 class Timers {
  public:
-  /// Each is due at once and then after one of the multiples of kApart_ms.
+  /// Each timer is due at once, and again after a multiple of kApart_ms.
   Timers() {
     std::vector<double> later_ms(kTimers);
     support::Random random(5);
@@ -115,7 +115,8 @@ class Timers {
 
 TEST(TimerOrder, IsThatOfTheirTimesWheneverSomeHaveWorked) {
   let_timers_end_alone();
-  // A separate thread, as in the library, so that the tests' thread stays one that runs no timers.
+  // Timers run in a separate thread, as in the library: the thread of the tests must not be one of
+  // those that run timers.
   std::thread([] {
     Timers timers;
     for (std::size_t n = 0; n < 4 * kTimers && timers.worked() < kTimers; ++n) {

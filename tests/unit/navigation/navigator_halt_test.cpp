@@ -260,7 +260,7 @@ TEST_F(NavigatorHalt, BaseNotReadyDrivesOnByItself) {
   expect_arrival();
 }
 
-// A base of ROS reports no stop, so the navigator stands by itself.
+// A base of ROS reports no stop, so the navigator itself holds the robot.
 TEST_F(NavigatorHalt, AnOperatorsStopHoldsOverResumesAndGoals) {
   drive_off();
   drive.navigator.set_stopped("stopped by an operator");

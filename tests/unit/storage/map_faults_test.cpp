@@ -19,8 +19,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Number of injected faults: all of them take minutes, and run only when the environment variable
-/// is set.
+/// Number of injected faults. Injecting all of them takes minutes, so it is done only if the
+/// environment variable is set.
 int fault_count(int usual, int all) {
   return std::getenv("TOPOGEO_ALL_FAULTS") != nullptr ? all : usual;
 }
@@ -44,7 +44,7 @@ topomap::LocalMap full_stop(std::uint32_t number) {
 
 struct Loss {
   PowerDisk::Files files;
-  std::uint32_t acknowledged = 0;  // stops, at the power failure
+  std::uint32_t acknowledged = 0;  // number of stops at the power failure
   std::uint64_t version = 0;       // of the trajectory
 };
 
@@ -56,7 +56,7 @@ TEST_F(MapFaults, PowerLossLeavesAnEarlierStateWithAllThatWasAcknowledged) {
   std::uint64_t version = 0;
   PowerDisk* disk = nullptr;
   const auto maybe_lose = [&] {
-    // In about one of thirty writes, until there are enough.
+    // About one write in thirty loses power, until there are enough losses.
     if (disk == nullptr || losses.size() >= losses_wanted || random.below(30) != 0) return;
     losses.push_back(
         {disk->after_power_loss(random, losses.size() % 2 == 1), acknowledged, version});
@@ -101,8 +101,8 @@ TEST_F(MapFaults, PowerLossLeavesAnEarlierStateWithAllThatWasAcknowledged) {
   }
 }
 
-/// Opens and reads a copy like a program that is given the file. A copy may still be valid as far
-/// as the file shows; otherwise an error must name it.
+/// Opens and reads a copy as any program does. A damaged copy may look valid; otherwise the error
+/// must name the file.
 void expect_map_or_error(const std::filesystem::path& path, const std::string& before) {
   const std::string error = error_of([&] { static_cast<void>(read_map(path)); });
   if (!error.empty()) {

@@ -1,5 +1,5 @@
-// A navigator with a goal stands for an operator's stop, and after its start until it can have
-// missed none.
+// A navigator with a goal holds the robot after an operator's stop, and after its start until no
+// stop can have been missed.
 #include "navigator/operator_stop_input.hpp"
 
 #include <cstdint>
@@ -43,7 +43,7 @@ class OperatorStopInputTest : public testing::Test {
     navigator_.set_goal({1, false});
     navigator_.add(navigation::OdometrySample{kNow_ns, geometry::Pose2{}});
   }
-  /// Why the navigator stands.
+  /// The reason why the navigator holds the robot.
   std::string reason() {
     navigator_.step(kNow_ns);
     return navigator_.status().message;

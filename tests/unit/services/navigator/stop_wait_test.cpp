@@ -1,4 +1,4 @@
-// How long a navigator that has just started stands for a stop that it may have missed.
+// How long a navigator that has just started holds the robot, because it may have missed a stop.
 #include "navigator/stop_wait.hpp"
 
 #include <gtest/gtest.h>

@@ -48,7 +48,7 @@ class BaseOdometer {
   /// kept pace with the host's, and it is no further than a base can have driven. Call before the
   /// first report.
   void resume(const OdometerState& state) { resumed_ = state; }
-  /// Whether it continued; false before the first odometry, and if it began anew.
+  /// Whether the odometry continued; false before its first pose, and if it restarted.
   [[nodiscard]] bool has_resumed() const { return has_resumed_; }
   /// Empty before the first odometry.
   [[nodiscard]] std::optional<OdometerState> state() const;

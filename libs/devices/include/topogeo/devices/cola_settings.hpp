@@ -1,4 +1,4 @@
-// Settings of SICK lasers on a network, besides those of all lasers that turn.
+// Settings that only SICK lasers on a network have.
 #pragma once
 
 #include <cstdint>
@@ -6,15 +6,15 @@
 namespace topogeo::devices {
 
 enum class ColaChoice : std::uint8_t {
-  kDetect,  ///< whichever the laser answers
+  kDetect,  ///< the one that the laser answers
   kText,    ///< CoLa A
   kBinary   ///< CoLa B
 };
 
 struct ColaSettings {
   ColaChoice dialect = ColaChoice::kDetect;
-  /// Time of the first beam after the zero index, whose time a scan carries. No document states the
-  /// place of the index.
+  /// Time from the zero index, which stamps the scan, to the first beam. No document states where
+  /// the index is.
   std::int64_t zero_to_first_ns = 0;
 };
 

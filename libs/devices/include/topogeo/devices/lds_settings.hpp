@@ -1,5 +1,4 @@
-// Settings of the ROBOTIS LDS-01 and the laser of the Neato XV-11, besides those of all lasers that
-// turn.
+// Settings that only the ROBOTIS LDS-01 and the laser of the Neato XV-11 have.
 #pragma once
 
 #include <cstdint>

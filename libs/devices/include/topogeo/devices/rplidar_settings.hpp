@@ -1,4 +1,4 @@
-// Settings of Slamtec RPLIDAR lasers, besides those of all lasers that turn.
+// Settings that only Slamtec RPLIDAR lasers have.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Settings of Hokuyo lasers, besides those of all lasers that turn.
+// Settings that only Hokuyo lasers have.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,4 @@
-// Settings of a base that speaks the line protocol (docs/base_protocol.md), besides those of all
-// bases.
+// Settings that only a base with the line protocol has (docs/base_protocol.md).
 #pragma once
 
 #include <cstdint>

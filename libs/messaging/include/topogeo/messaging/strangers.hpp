@@ -6,20 +6,20 @@
 namespace topogeo::messaging {
 
 struct StrangerCounts {
-  /// Packets kept from the middleware: not RTPS, or with contents that no honest peer sends.
+  /// Packets that are not RTPS, or have contents that no honest peer sends; dropped before the
+  /// middleware reads them.
   std::uint64_t invalid_packets = 0;
-  /// Messages that came plain although security wants them encrypted: a stranger in the name of a
-  /// peer. Kept from their reader or writer.
+  /// Plain messages in the name of a peer whose messages must be encrypted: a stranger sent them.
+  /// They do not reach their reader or writer.
   std::uint64_t unprotected_packets = 0;
-  /// Errors that the security plug-ins reported: messages that they could not decode, or not encode
-  /// for a peer that is gone, and faults of certificates.
+  /// Errors of the security plug-ins: messages that they could not decode, messages that they could
+  /// not encode because the peer has left, and invalid certificates.
   std::uint64_t security_errors = 0;
-  /// Messages of authenticated peers for robots that their permissions do not name. Discarded.
+  /// Discarded messages of authenticated peers, for robots that their permissions do not name.
   std::uint64_t denied_samples = 0;
   /// Announcements of readers and writers of topics that topogeo does not have.
   std::uint64_t unknown_topics = 0;
-  /// Forged messages in a peer's name that reported it as gone although it went on sending. They
-  /// had no effect.
+  /// Forged messages that reported a peer as gone while it went on sending; they had no effect.
   std::uint64_t forged_removals = 0;
 };
 

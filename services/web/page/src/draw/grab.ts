@@ -19,7 +19,7 @@ import { snap_heading } from "./snapping";
 
 export type Part =
   | { what: "corner"; index: number }
-  | { what: "middle"; index: number } // of the segment after this corner: becomes a new corner
+  | { what: "middle"; index: number } // of the segment after this corner; a drag makes it a corner
   | { what: "heading" }
   | { what: "whole" };
 
