@@ -22,7 +22,7 @@ class CommandChannel {
   /// Throws like Reader and Writer.
   CommandChannel(service::Service& service, std::function<void()> on_arrival);
 
-  /// Passes the commands that have come to the handler, in order, and sends its answers. `stamp_ns`
+  /// Passes arrived commands to the handler, in order, and sends its answers. `stamp_ns`
   /// is the stamp of the last stop.
   void carry_out(const Handler& handler, std::int64_t stamp_ns);
 

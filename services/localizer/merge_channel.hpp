@@ -26,7 +26,7 @@ class MergeChannel {
 
   /// Sends new and changed proposals. `stamp_ns` is the stamp of the last stop.
   void publish(const std::vector<localization::MergeProposal>& proposals, std::int64_t stamp_ns);
-  /// Passes the answers that have come to the handler, in order, and sends the outcomes.
+  /// Passes the answers that have arrived to the handler, in order, and sends the outcomes.
   void carry_out(const Handler& handler, std::int64_t stamp_ns);
 
  private:

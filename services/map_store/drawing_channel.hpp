@@ -16,11 +16,11 @@ namespace topogeo::map_store {
 /// Lives in the loop of its service.
 class DrawingChannel {
  public:
-  /// Makes a drawing the one of the map, and stores it where the map is stored. Throws
+  /// Makes a drawing part of the map, and stores it with the map. Throws
   /// std::runtime_error with the reason when it cannot.
   using Take = std::function<void(storage::MapDrawing)>;
 
-  /// `drawing` is the one of the map, read when an order arrives. `is_stored`: false for a map that
+  /// `drawing` is that of the map; each order reads it. `is_stored`: false for a map that
   /// is only shown. `resolution_m` is for floors turned into grids.
   DrawingChannel(service::Service& service, const storage::MapDrawing& drawing, bool is_stored,
                  double resolution_m, Take take);

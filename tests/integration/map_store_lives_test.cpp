@@ -112,7 +112,7 @@ TEST_F(MapStoreLives, StoppedItWritesTheMapAndGoesOnWithItLater) {
   EXPECT_TRUE(storage::map_file_bytes(storage::read_map(file("map.sqlite"))) ==
               read_file(file("map.pb")));
   Program store(scratch_, "map_store", words({"--new"}));
-  store.wait_for_error_text("local maps, ");  // what was sent comes to it, too
+  store.wait_for_error_text("local maps, ");  // it also receives the maps that were sent before
   EXPECT_EQ(storage::read_map(file("map.previous.sqlite")).local_maps.size(), drive_.stops());
 }
 

@@ -93,7 +93,7 @@ TEST_F(NavigatorOnRobot, IsPausedAtItsGoalWhenTheOdometryRestarts) {
   EXPECT_EQ(counter("arrivals"), 1.0) << "a pause and new odometry at the goal are no arrivals";
 }
 
-// The odometry of before is of the robot after all.
+// The earlier odometry turns out to be that of the robot.
 TEST_F(NavigatorOnRobot, OdometryOfAStrangerStopsItForMomentsOnly) {
   start();
   send_goal(1, {4.5, 1.0});

@@ -38,7 +38,7 @@ std::optional<std::int64_t> ScipClock::stamp_ns(std::uint32_t time_ms, std::int6
                                                 std::int64_t least_delay_ns) {
   const bool first = !last_ms_;
   if (first) {
-    // An old scan that the laser repeats: older than its answer, or that of before the restart.
+    // The laser repeats an old scan, which is older than its answer or from before the restart.
     if (offset_ns_ && passed_ms(asked_ms_, time_ms) > kLongestScipGap_ms) return std::nullopt;
     if (time_ms == before_ms_) return std::nullopt;
     // Counts on from the answer to TM1, which may lie before a wrap.

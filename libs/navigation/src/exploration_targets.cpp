@@ -96,8 +96,8 @@ std::vector<Eigen::Vector2d> Explorer::passage_sides(const topomap::GlobalMap& g
   return found_m;
 }
 
-// Squares of the floor with enough free cells beside unknown ones, each represented by the one of
-// these cells that is nearest to their middle.
+// Squares of the floor with enough free cells beside unknown ones. The cell nearest to the middle
+// of these cells represents the square.
 std::vector<Eigen::Vector2d> Explorer::gaps(const planning::HybridMap& map,
                                             const UnknownFloor& unknown) const {
   const planning::OccupancyGrid& grid = map.space().grid();

@@ -104,7 +104,7 @@ void add(std::vector<PathDisagreement>& found, Disagreement kind, const Part& pa
   last->last_id = part.last;
 }
 
-/// The steps between stops of which the scans contradict the odometry, successive ones as one.
+/// The steps between stops whose scans contradict the odometry; successive steps are joined.
 std::vector<PathDisagreement> contradicted_steps(std::span<const topomap::LocalMap> maps) {
   std::vector<PathDisagreement> found;
   for (std::uint32_t stop = 1; stop < maps.size(); ++stop) {
@@ -128,7 +128,7 @@ std::vector<PathDisagreement> contradicted_steps(std::span<const topomap::LocalM
   return found;
 }
 
-/// The stops at which a robot goes on elsewhere although its odometry has hardly moved.
+/// The stops after which a robot continues in another place although its odometry has hardly moved.
 std::vector<PathDisagreement> carried_stops(std::span<const topomap::LocalMap> maps) {
   constexpr double kHardly_m = 2.0;
   std::vector<PathDisagreement> found;

@@ -1,6 +1,6 @@
 // Reads a folder of rosbag2: metadata.yaml names its files, which are read one after the other.
-// Without it, because the recorder was killed, the files of one recording are read by their
-// numbers.
+// If a killed recorder left no metadata.yaml, the files of the recording are read in the order of
+// their numbers.
 #pragma once
 
 #include <filesystem>

@@ -6,8 +6,8 @@ namespace topogeo::localization {
 
 StopMatch window_match(const PoseGraph& graph, std::uint32_t stop, const PlaceProposal& place,
                        const CovarianceCalibration& calibration) {
-  // The whole window lies there, and the stop with it as well as it is known relative to the first
-  // stop of the window.
+  // The match places the whole window; the stop follows by its pose relative to the first stop of
+  // the window, with the uncertainty of that pose.
   const UncertainPose T_first_stop = graph.along_path(place.first_of_query, stop);
   const Eigen::Matrix3d within =
       compose({place.aligned.T_a_b * geometry::inverse(T_first_stop.T_a_b)}, T_first_stop)

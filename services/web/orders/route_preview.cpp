@@ -38,7 +38,7 @@ Answer preview_route(const planning::PlanningMaps& maps, const geometry::Pose2& 
     clearance_m = std::min(clearance_m, route.min_clearance_m);
     points_m.insert(points_m.end(), route.points_m.begin(), route.points_m.end());
     time_s += navigation::drive_time_s(route.points_m, heading_rad, space, follower);
-    heading_rad.reset();  // at a goal the robot looks wherever it has come to stand
+    heading_rad.reset();  // at a goal the robot may look in any direction
     start_m = goal_m;
   }
   Json points = Json::array();

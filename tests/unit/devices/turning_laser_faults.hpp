@@ -1,5 +1,5 @@
-// Faults of a laser that turns and of its line, a thousand times each: no beam that was not
-// measured, every drop counted, and scans again soon after.
+// Strikes a turning laser and its line with each fault a thousand times: every beam was measured,
+// every drop is counted, and scans arrive again soon.
 #pragma once
 
 #include <cstdint>
@@ -84,7 +84,7 @@ void freeze_host_for_a_while(Line& laser, support::Random& random) {
   laser.line.freeze_host(false);
 }
 
-/// The faults of each such laser. `other_bytes`: what another laser would have sent.
+/// The faults of each turning laser. `other_bytes` are those of another laser.
 template <class Line>
 std::vector<TurningLaserFault<Line>> turning_laser_faults(
     const std::function<std::vector<std::uint8_t>(support::Random&)>& other_bytes,
@@ -112,7 +112,7 @@ struct FaultTimes {
   std::int64_t settle_ns = 200 * kFaultMs_ns;  ///< after a fault, until its drops are counted
 };
 
-/// Strikes a laser that runs a thousand times.
+/// Strikes a running laser a thousand times.
 template <class Line>
 void expect_no_wrong_scan(Line& laser, const TurningLaserFault<Line>& fault,
                           const FaultTimes& times = {}) {

@@ -38,7 +38,7 @@ TEST_F(StopMemoryTest, ADamagedFileHalts) {
   const StopMemory memory(path_);
   EXPECT_TRUE(memory.damaged());
   EXPECT_EQ(memory.held(), (devices::HeldStops{false, true}));
-  // It holds over one more start.
+  // The stop survives another start, too.
   EXPECT_EQ(StopMemory(path_).held(), (devices::HeldStops{false, true}));
 }
 

@@ -1,4 +1,5 @@
-// Keeps an operator's stop of a base that does not report it, over restarts of the program.
+// Stores an operator's stop for a base that does not report stops, so that the stop survives
+// restarts of the program.
 //
 // A base that reports its state (BaseStatus) holds itself and decides about its release. Any other
 // base, for example one of ROS, obeys each motion command, so the programs that command it keep the
@@ -29,8 +30,9 @@ class OperatorStop {
   /// File of a service that was given none, see own_runtime_file().
   static std::filesystem::path place_of(const Setup& setup);
 
-  /// Resumes the stop that holds by the file; a damaged file counts as a stop. An empty path:
-  /// nothing is kept. Throws std::runtime_error naming the file if it cannot be opened or created.
+  /// Resumes the stop that the file records; a damaged file counts as a stop. With an empty path,
+  /// nothing is stored. Throws std::runtime_error naming the file if it cannot be opened or
+  /// created.
   explicit OperatorStop(const std::filesystem::path& file);
 
   /// The operator of this program stops the robot.
@@ -47,11 +49,11 @@ class OperatorStop {
   /// ended a stop.
   bool take(const msg::BaseCommand& command, const messaging::Handle& writer);
 
-  /// Time since the stop that this start has found in the file was written; empty: it found none,
-  /// or the file system has no time of it.
+  /// Age, at the start of the program, of the stop in the file; empty without a stop, or if the
+  /// file system has no time of it.
   [[nodiscard]] std::optional<std::chrono::seconds> age_at_start() const { return age_at_start_; }
   [[nodiscard]] bool holds() const { return record_.held != 0; }
-  /// The stop that holds, else the last one that was released; 0: none.
+  /// The stop in force, or the last one that was released; 0 without any.
   [[nodiscard]] std::uint64_t number() const { return holds() ? record_.number : record_.released; }
 
  private:
