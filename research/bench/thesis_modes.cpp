@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "topogeo/command_line/command_line.hpp"
+#include "topogeo/experiments/thesis_experiments.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/pipeline/trajectory_error.hpp"
-#include "topogeo/experiments/thesis_experiments.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 #include "topogeo/world/world.hpp"

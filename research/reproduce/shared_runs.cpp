@@ -8,10 +8,10 @@
 #include <string_view>
 #include <utility>
 
+#include "topogeo/experiments/thesis_experiments.hpp"
 #include "topogeo/matching/matcher.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
-#include "topogeo/experiments/thesis_experiments.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/thesis/thesis_mode.hpp"

@@ -21,9 +21,9 @@ namespace topogeo::navigator {
 class OperatorStopInput {
  public:
   /// Stores the stop in the file `memory` (empty: none) and passes it to the navigator, which must
-  /// outlive this object. From `start_ns` of the steady clock the navigator holds the robot until a
-  /// stop can no longer have been missed (StopWait). `on_change` is called when a message has begun
-  /// or ended a reason to hold. Throws like service::OperatorStop.
+  /// outlive this object. The navigator holds the robot after `start_ns` of the steady clock until
+  /// a stop can no longer have been missed (StopWait). `on_change` is called when a message has
+  /// begun or ended a reason to hold. Throws like service::OperatorStop.
   OperatorStopInput(service::Service& service, const std::filesystem::path& memory,
                     navigation::Navigator& navigator, std::int64_t start_ns,
                     std::function<void()> on_change);

@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include "topogeo/experiments/thesis_experiments.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/pipeline/trajectory_error.hpp"
-#include "topogeo/experiments/thesis_experiments.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 #include "topogeo/world/world.hpp"
 
