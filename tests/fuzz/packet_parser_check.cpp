@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "checks.hpp"
-#include "fast_dds/packet_check.hpp"
-#include "fast_dds/parameter_check.hpp"
+#include "packets/packet_check.hpp"
+#include "packets/parameter_check.hpp"
 
 namespace topogeo::fuzz {
 namespace {

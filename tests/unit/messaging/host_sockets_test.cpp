@@ -1,6 +1,6 @@
 // A host that accepts no packets does not delay others. Runs in a network of its own, where an
 // address at the far end of a cable never answers; skipped when none can be created.
-#include "fast_dds/host_sockets.hpp"
+#include "packets/host_sockets.hpp"
 
 #include <array>
 #include <cstdint>

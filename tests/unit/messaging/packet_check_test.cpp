@@ -1,6 +1,6 @@
 // RTPS packets built by hand after DDSI-RTPS 2.3, chapter 9.4: packets that are really sent pass,
 // and each way to mislead a parser is refused.
-#include "fast_dds/packet_check.hpp"
+#include "packets/packet_check.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fast_dds/parameter_check.hpp"
+#include "packets/parameter_check.hpp"
 
 namespace topogeo::messaging {
 namespace {

@@ -1,4 +1,4 @@
-#include "fast_dds/removal_log.hpp"
+#include "packets/removal_log.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -11,9 +11,9 @@ namespace {
 using std::chrono::milliseconds;
 
 RemovalLog::Peer peer(std::uint32_t number) {
-  RemovalLog::Peer peer;
-  peer.value[10] = static_cast<std::uint8_t>(number >> 8U);
-  peer.value[11] = static_cast<std::uint8_t>(number);
+  RemovalLog::Peer peer{};
+  peer[10] = static_cast<std::uint8_t>(number >> 8U);
+  peer[11] = static_cast<std::uint8_t>(number);
   return peer;
 }
 

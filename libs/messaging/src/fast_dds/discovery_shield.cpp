@@ -25,10 +25,10 @@
 #include <fastdds/rtps/security/accesscontrol/EndpointSecurityAttributes.h>
 #include <fastdds/rtps/security/accesscontrol/ParticipantSecurityAttributes.h>
 
+#include "../packets/removal_log.hpp"
 #include "../stranger_counts.hpp"
 #include "library_function.hpp"
 #include "packet_shield.hpp"
-#include "removal_log.hpp"
 
 namespace {
 
@@ -65,6 +65,12 @@ constexpr std::int32_t kLongestLease_s = 120;
 messaging::RemovalLog& removals() {
   static auto* const log = new messaging::RemovalLog;  // NOLINT(cppcoreguidelines-owning-memory)
   return *log;
+}
+
+messaging::RemovalLog::Peer peer_of(const rtps::GuidPrefix_t& prefix) {
+  messaging::RemovalLog::Peer peer{};
+  std::copy_n(prefix.value, peer.size(), peer.begin());
+  return peer;
 }
 
 /// Whether a plain packet is about an endpoint that is known, where security encrypts announcements
@@ -115,10 +121,10 @@ extern "C" bool topogeo_remove_participant(rtps::PDP* discovery, const rtps::GUI
   if (by_message && !own &&
       discovery->builtin_attributes().discovery_config.discoveryProtocol ==
           rtps::DiscoveryProtocol_t::SIMPLE) {
-    removals().removed(participant.guidPrefix, std::chrono::steady_clock::now());
+    removals().removed(peer_of(participant.guidPrefix), std::chrono::steady_clock::now());
     return false;
   }
-  removals().ended(participant.guidPrefix);
+  removals().ended(peer_of(participant.guidPrefix));
   return original(discovery, participant, reason);
 }
 
@@ -128,7 +134,8 @@ extern "C" void topogeo_hear_participant(rtps::PDP* discovery,
   using Function = void (*)(rtps::PDP*, const rtps::GuidPrefix_t&);
   static const auto original = messaging::library_function<Function>(kHearParticipant);
   original(discovery, participant);
-  messaging::count_forged_removals(removals().heard(participant, std::chrono::steady_clock::now()));
+  messaging::count_forged_removals(
+      removals().heard(peer_of(participant), std::chrono::steady_clock::now()));
 }
 
 extern "C" rtps::ReaderProxyData* topogeo_add_reader_data(rtps::PDP* discovery,

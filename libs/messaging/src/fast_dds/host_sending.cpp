@@ -15,7 +15,7 @@
 #include <fastdds/rtps/common/Locator.h>
 #include <fastrtps/utils/IPLocator.h>
 
-#include "host_sockets.hpp"
+#include "../packets/host_sockets.hpp"
 #include "library_function.hpp"
 
 namespace {

@@ -24,11 +24,11 @@
 
 #include "topogeo/messaging/topics.hpp"
 
+#include "../packets/packet_check.hpp"
+#include "../packets/parameter_check.hpp"
 #include "../stranger_counts.hpp"
 #include "discovery_shield.hpp"
 #include "library_function.hpp"
-#include "packet_check.hpp"
-#include "parameter_check.hpp"
 
 namespace {
 

@@ -25,9 +25,9 @@
 #include <fastdds/rtps/security/cryptography/CryptoTransform.h>
 #include <fastdds/rtps/security/exceptions/SecurityException.h>
 
+#include "../packets/packet_reader.hpp"
 #include "../stranger_counts.hpp"
 #include "library_function.hpp"
-#include "packet_reader.hpp"
 
 namespace {
 

@@ -1,14 +1,13 @@
 // Which removals of peers were forged: the peer goes on sending.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <mutex>
-
-#include <fastdds/rtps/common/GuidPrefix_t.hpp>
 
 namespace topogeo::messaging {
 
@@ -17,7 +16,7 @@ namespace topogeo::messaging {
 class RemovalLog {
  public:
   using Time = std::chrono::steady_clock::time_point;
-  using Peer = eprosima::fastrtps::rtps::GuidPrefix_t;
+  using Peer = std::array<std::uint8_t, 12>;  // the prefix of its identifiers
 
   static constexpr std::size_t kMostPeers = 1024;
   /// Packets that a peer sent before it left may come after its removal: on another socket, from
