@@ -8,8 +8,8 @@
 
 #include "topogeo/pipeline/laser_mounting.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
+#include "topogeo/recording/log_reader.hpp"
 #include "topogeo/results/outputs.hpp"
-#include "topogeo/scan/carmen_log_reader.hpp"
 #include "topogeo/scan/laser_mounting.hpp"
 
 namespace {
@@ -21,7 +21,9 @@ void map_log(const std::filesystem::path& log, const std::filesystem::path& dire
       topogeo::pipeline::choose_mounting(loaded, topogeo::scan::mounting_in_log(log));
   if (!note.empty()) std::cerr << note << '\n';
 
-  topogeo::scan::CarmenLogReader reader(log, loaded.config.log);
+  // Readings of the value that the laser reports for no echo are not walls.
+  topogeo::recording::LogReader reader(log, loaded.config.log);
+  if (reader.no_return()) std::cerr << text_of(*reader.no_return()) << '\n';
   topogeo::pipeline::MappingRun run(loaded.config, "robot");
   while (const std::optional<topogeo::scan::Scan> scan = reader.next()) run.add(*scan);
   const topogeo::storage::MapDocument map = run.finish();
