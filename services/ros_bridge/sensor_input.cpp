@@ -248,6 +248,8 @@ void SensorInput::publish_state() {
   status.set_counter("scan_latency_ms", static_cast<double>(latency_ns_) * 1e-6);
   if (laser_odometry_) {
     ros_.set_complaints("scan that matches no others", laser_odometry_->counts().unplaced, "");
+    ros_.set_complaints("scan between bare walls for too long", laser_odometry_->counts().unseen,
+                        "");
   }
   for (std::size_t i = 0; i < kIntakeDrops; ++i) {
     const auto drop = static_cast<IntakeDrop>(i);

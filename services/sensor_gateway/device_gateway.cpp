@@ -144,6 +144,7 @@ std::vector<scan::Scan> DeviceGateway::placed(scan::Scan scan) {
     scans = laser_odometry_->take();
     for (scan::Scan& ready : scans) ready.odometry_epoch += odometry_epoch_;
     service_.status().set_drops("match no others", laser_odometry_->counts().unplaced);
+    service_.status().set_drops("between bare walls", laser_odometry_->counts().unseen);
     if (laser_odometry_->counts().breaks > breaks_) {
       breaks_ = laser_odometry_->counts().breaks;
       service_.status().fault("track of the scans lost", "the place is found again by the scans");

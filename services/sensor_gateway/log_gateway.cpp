@@ -206,6 +206,9 @@ void LogGateway::finish() {
   if (const localization::LaserOdometryCounts* counts = feed_.laser_counts()) {
     spdlog::info("{} scans match no others, the track was lost {} times", counts->unplaced,
                  counts->breaks);
+    if (counts->unseen > 0) {
+      spdlog::info("{} scans are left out between bare walls", counts->unseen);
+    }
     const std::string sparse = pipeline::too_sparse(*counts);
     if (!sparse.empty()) service_.status().fault("scans too sparse", sparse);
   }

@@ -21,6 +21,9 @@ namespace {
 // in passing, and has enough scans to make a place.
 constexpr std::int64_t kLost_ns = 2'000'000'000;
 constexpr std::size_t kLostScans = 5;
+// Between bare walls for longer, a laser may have changed its speed
+// (docs/decisions/laser_odometry.md).
+constexpr double kMostUnseen_m = 3.4;
 
 }  // namespace
 
@@ -62,19 +65,19 @@ void LaserOdometry::add(scan::Scan scan) {
   const TimedFeatures seen{scan.stamp_ns, std::make_shared<const MatchFeatures>(
                                               extract_scan_features(points, T_robot_laser_))};
   if (!track_) {
-    if (!LaserTrack::can_begin(*seen.features)) {
-      ++counts_.unplaced;
-      return;
-    }
-    track_ = std::make_unique<LaserTrack>(seen);
-    place(std::move(scan), {});
+    begin(std::move(scan), seen);
     return;
   }
   if (!second_) {
     if (const std::optional<LaserStep> step = track_->add(seen)) {
       counts_.unplaced += waiting_.size();
       waiting_.clear();
-      place(std::move(scan), T_odom_track_ * step->T_track_robot);
+      follow_first(std::move(scan), seen, *step);
+      return;
+    }
+    if (!place_held()) {
+      begin_anew();
+      begin(std::move(scan), seen);
       return;
     }
   }
@@ -83,16 +86,59 @@ void LaserOdometry::add(scan::Scan scan) {
     place_waiting(T_odom_track_ * *T_track_second_);
     T_odom_track_ = T_odom_track_ * *T_track_second_;
   } else if (is_lost()) {
-    ++counts_.breaks;
-    ++epoch_;
-    T_odom_last_.reset();
+    begin_anew();
     place_waiting({});
-    T_odom_track_ = {};
   } else {
     return;
   }
   track_ = std::move(second_);
   T_track_second_.reset();
+}
+
+void LaserOdometry::begin(scan::Scan scan, const TimedFeatures& seen) {
+  track_.reset();
+  if (!LaserTrack::can_begin(*seen.features)) {
+    ++counts_.unplaced;
+    return;
+  }
+  track_ = std::make_unique<LaserTrack>(seen);
+  place(std::move(scan), {});
+}
+
+void LaserOdometry::begin_anew() {
+  ++counts_.breaks;
+  ++epoch_;
+  T_odom_last_.reset();
+  T_odom_track_ = {};
+}
+
+void LaserOdometry::follow_first(scan::Scan scan, const TimedFeatures& seen,
+                                 const LaserStep& step) {
+  scan.T_odom_robot = T_odom_track_ * step.T_track_robot;
+  if (step.unseen_m > 0.0) {
+    held_m_ = step.unseen_m;
+    held_.push_back(std::move(scan));
+    if (held_m_ <= kMostUnseen_m) return;
+    counts_.unseen += held_.size();
+    held_.clear();
+    return;
+  }
+  if (place_held()) {
+    const Pose2 T_odom_robot = scan.T_odom_robot;
+    place(std::move(scan), T_odom_robot);
+  } else {
+    begin_anew();
+    begin(std::move(scan), seen);
+  }
+}
+
+bool LaserOdometry::place_held() {
+  const bool known = std::exchange(held_m_, 0.0) <= kMostUnseen_m;
+  for (scan::Scan& scan : std::exchange(held_, {})) {
+    const Pose2 T_odom_robot = scan.T_odom_robot;
+    place(std::move(scan), T_odom_robot);
+  }
+  return known;
 }
 
 bool LaserOdometry::find_again(const TimedFeatures& seen) {
@@ -151,6 +197,7 @@ void LaserOdometry::place(scan::Scan scan, const Pose2& T_odom_robot) {
 }
 
 void LaserOdometry::finish() {
+  place_held();
   counts_.unplaced += waiting_.size();
   waiting_.clear();
 }

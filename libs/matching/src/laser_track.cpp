@@ -74,6 +74,14 @@ Eigen::Matrix3d honest(Eigen::Matrix3d information) {
   return information;
 }
 
+// Bare walls leave a position open by 10 m, any others fix it to half a metre.
+constexpr double kOpen_m = 1.0;
+
+bool fixes_position(const Eigen::Matrix3d& covariance) {
+  return principal_axes(covariance(0, 0), covariance(0, 1), covariance(1, 1)).largest <
+         kOpen_m * kOpen_m;
+}
+
 Eigen::Matrix3d turned(const Eigen::Matrix3d& covariance, double angle_rad) {
   return geometry::compose_covariance({0.0, 0.0, angle_rad}, Eigen::Matrix3d::Zero(), {},
                                       covariance);
@@ -165,9 +173,10 @@ LaserStep LaserTrack::accept(const TimedFeatures& scan, const Candidate& match,
   constexpr double kNothing = 1e-4;  // keeps it invertible
   const Eigen::Matrix3d measured = (seen + kNothing * Eigen::Matrix3d::Identity()).inverse();
   motion_.update(dt_s, {T_before_scan, turned(measured, back_rad)});
+  unseen_m_ = fixes_position(measured) ? 0.0 : unseen_m_ + dt_s * motion_.usual_speed();
   const Eigen::Matrix3d covariance = (seen + predicted.covariance.inverse()).inverse();
   LaserStep step{recent_.T_track_newest() * match.T_key_robot, turned(covariance, back_rad),
-                 match.overlap};
+                 match.overlap, unseen_m_};
   T_key_last_ = {match.T_key_robot, covariance};
   last_ns_ = scan.stamp_ns;
   scans_ = 0;

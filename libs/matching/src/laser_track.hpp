@@ -32,6 +32,9 @@ struct LaserStep {
   /// that of the prediction.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double overlap = 0.0;  ///< share of the scan in view of the recent ones, [0, 1]
+  /// How far a laser of this speed may have moved, m, since walls last fixed its position; 0 if
+  /// this scan fixes it. Between bare walls, the scans before and after fit anywhere along them.
+  double unseen_m = 0.0;
 };
 
 class LaserTrack {
@@ -72,6 +75,7 @@ class LaserTrack {
   MotionFilter motion_;
   std::int64_t last_ns_;
   int scans_ = 0;             // since then, that did not match
+  double unseen_m_ = 0.0;     // see LaserStep
   UncertainPose T_key_last_;  // last placed scan, relative to the newest key scan
 };
 

@@ -59,6 +59,10 @@ Eigen::Matrix3d MotionFilter::usual() const {
   return Eigen::Vector3d(speed2_.mean(), speed2_.mean(), turn_rate2_.mean()).asDiagonal();
 }
 
+double MotionFilter::usual_speed() const {
+  return std::sqrt(speed2_.mean());
+}
+
 MotionFilter::Velocity MotionFilter::after(double dt_s) const {
   const double kept = std::exp(-std::max(0.0, dt_s - kChange_s) / kMemory_s);
   const double changed = std::min(1.0, dt_s / kChange_s);

@@ -23,6 +23,9 @@ class MotionFilter {
   /// The last velocity, m/s forward and left and rad/s, in the frame of the last pose.
   [[nodiscard]] const Eigen::Vector3d& velocity() const { return velocity_.mean; }
 
+  /// The speed at which this laser usually moves, m/s.
+  [[nodiscard]] double usual_speed() const;
+
   /// The motion in the last `dt_s` > 0 seconds as the scans measured it, without the prediction. A
   /// direction that the scans did not measure has a large variance.
   void update(double dt_s, const UncertainPose& measured);

@@ -95,6 +95,13 @@ std::string too_sparse(const LaserOdometryCounts& counts) {
         "the scans are too sparse for odometry from them: {} of {} do not match those before them",
         counts.unplaced, counts.scans);
   }
+  const auto unseen = static_cast<double>(counts.unseen);
+  if (counts.scans >= kFewest && unseen > kMostUnplaced * static_cast<double>(counts.scans)) {
+    return fmt::format(
+        "the scans do not show how far the robot drives: {} of {} see only bare walls, expected "
+        "odometry of wheels, or a laser that sees farther",
+        counts.unseen, counts.scans);
+  }
   return {};
 }
 

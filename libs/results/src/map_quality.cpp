@@ -44,6 +44,8 @@ constexpr const char* kMoreStops = "more stops: stop: {distance_m: 0.5} in a fil
 constexpr const char* kCalibrateOdometry = "topogeo calibrate-odometry ";
 constexpr const char* kLaserOdometry =
     "odometry from the scans: odometry: {source: laser} in a file for --config";
+constexpr const char* kOtherRecording =
+    "a recording with odometry of wheels, or of a laser that sees farther";
 
 struct Facts {
   std::uint64_t steps = 0;
@@ -62,6 +64,7 @@ struct Facts {
   bool other_length = false;
   double contradicted_share = 0.0;      // of the steps: the scans contradict their odometry
   double without_odometry_share = 0.0;  // of the scans
+  bool from_scans = false;              // the odometry is made of the scans
 
   /// A shorter drive says little.
   [[nodiscard]] bool is_long() const {
@@ -102,6 +105,7 @@ Facts facts_of(const Report& report, const storage::MapDocument& document) {
   const auto share = [](double part, double whole) { return whole > 0.0 ? part / whole : 0.0; };
   facts.recent_matches = share(static_cast<double>(recent), static_cast<double>(facts.steps));
   facts.accepted_share = accepted_share(report);
+  facts.from_scans = report.laser_odometry.has_value();
   std::uint64_t skipped = 0;
   for (const auto& [reason, count] : report.skipped_lines) skipped += count;
   facts.skipped_share =
@@ -230,6 +234,7 @@ std::string advice(const Facts& facts, const std::string& grade, const QualityIn
       !inputs.tried.contains(Remedy::kMoreStops)) {
     return kMoreStops;
   }
+  if (facts.from_scans) return kOtherRecording;
   if (!inputs.tried.contains(Remedy::kOdometryNoise)) {
     return kCalibrateOdometry + inputs.log + " --out odometry.yaml";
   }

@@ -46,6 +46,12 @@ void check_tracked(const JobOptions& options, const pipeline::ScanFeed& feed) {
     std::cerr << fmt::format("topogeo: {} of {} scans are left out: they match no others\n",
                              counts->unplaced, counts->scans);
   }
+  if (counts->unseen > 0) {
+    std::cerr << fmt::format(
+        "topogeo: {} of {} scans are left out: for too long they see only bare walls, which do not "
+        "show how far the robot drives\n",
+        counts->unseen, counts->scans);
+  }
   if (counts->breaks > 0) {
     std::cerr << fmt::format(
         "topogeo: the scans lose their track {} times: the place is found again by the scans\n",
@@ -62,7 +68,8 @@ void check_tracked(const JobOptions& options, const pipeline::ScanFeed& feed) {
 void add_odometry(storage::Report& report, const pipeline::ScanFeed& feed) {
   const localization::LaserOdometryCounts* counts = feed.laser_counts();
   if (counts == nullptr) return;
-  report.laser_odometry = {counts->unplaced, counts->breaks, pipeline::usual_step_m(*counts)};
+  report.laser_odometry = {counts->unplaced + counts->unseen, counts->breaks,
+                           pipeline::usual_step_m(*counts)};
 }
 
 }  // namespace topogeo::cli

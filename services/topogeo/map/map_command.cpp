@@ -74,7 +74,7 @@ int map_log(const JobOptions& options, bool stages) {
   if (interruption.received() != 0)
     return kSignalBase + interruption.received();  // the signal came while writing
   if (options.reference) print_comparison(std::cout, compare(options.out, *options.reference));
-  check_reliable(options, report);
+  check_reliable(mapped->job->options, report);
   return 0;
 }
 

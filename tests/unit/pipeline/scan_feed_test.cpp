@@ -85,6 +85,9 @@ TEST(ScanFeedTest, SaysThatScansAreTooSparse) {
   counts.unplaced = 60;
   EXPECT_THAT(too_sparse(counts), HasSubstr("60 of 100 do not match"));
   counts.unplaced = 0;
+  counts.unseen = 60;
+  EXPECT_THAT(too_sparse(counts), HasSubstr("60 of 100 see only bare walls"));
+  counts.unseen = 0;
   counts.steps_m.assign(99, 0.96);
   EXPECT_THAT(too_sparse(counts), HasSubstr("0.96 m apart, expected at most 0.8 m"));
 }

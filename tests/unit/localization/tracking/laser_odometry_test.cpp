@@ -106,6 +106,52 @@ TEST(LaserOdometryTest, ALostTrackBeginsAnotherEpoch) {
   EXPECT_LT(errors_of(followed).step_m, 0.06);  // none within an epoch crosses the jump
 }
 
+// A drive from one room through a bare corridor to another. The laser stands at first, then drives
+// where it sees nothing that moves.
+Followed through_corridor(double length_m) {
+  const double end_m = 3.0 + length_m;
+  world::World floor;
+  for (const double side : {-1.0, 1.0}) {
+    floor.segments.push_back({{3.0, side * 0.9}, {end_m, side * 0.9}});
+    floor.segments.push_back({{3.0, side * 0.9}, {3.0, side * 2.0}});
+    floor.segments.push_back({{end_m, side * 0.9}, {end_m, side * 2.5}});
+    floor.segments.push_back({{0.0, side * 2.0}, {3.0, side * 2.0}});
+    floor.segments.push_back({{end_m, side * 2.5}, {end_m + 3.0, side * 2.5}});
+  }
+  floor.segments.push_back({{0.0, -2.0}, {0.0, 2.0}});
+  floor.segments.push_back({{end_m + 3.0, -2.5}, {end_m + 3.0, 2.5}});
+  const simulation::BeamPattern beams{-std::numbers::pi, kDegree, 360, 2.5};
+  support::Random random(5);
+  simulation::SimulatedLog log;
+  const int scans = static_cast<int>(end_m / 0.05);
+  for (int tenth = 0; tenth < scans; ++tenth) {
+    scan::Scan& scan = log.scans.emplace_back();
+    scan.stamp_ns = 100'000'000LL * tenth;
+    scan.angle_min_rad = beams.angle_min_rad;
+    scan.angle_step_rad = beams.angle_step_rad;
+    const Pose2 T{1.5 + 0.05 * tenth, 0.0, 0.0};
+    scan.ranges_m = simulation::measure(simulation::raycast(floor, T, beams), {}, random);
+    log.T_world_robot.push_back(T);
+  }
+  return test::follow(log);
+}
+
+TEST(LaserOdometryTest, ALongBareCorridorBeginsAnotherEpoch) {
+  const Followed followed = through_corridor(16.0);
+  EXPECT_EQ(followed.counts.breaks, 1U);
+  EXPECT_GT(followed.counts.unseen, 150U);  // 10 m without an end in view
+  EXPECT_EQ(followed.log.scans.back().odometry_epoch, 1U);
+  EXPECT_LT(errors_of(followed).step_m, 0.06);
+}
+
+TEST(LaserOdometryTest, AShortBareCorridorKeepsItsScans) {
+  const Followed followed = through_corridor(2.0);
+  EXPECT_EQ(followed.counts.breaks, 0U);
+  EXPECT_EQ(followed.counts.unseen, 0U);
+  EXPECT_EQ(followed.counts.unplaced, 0U);
+  EXPECT_LT(errors_of(followed).end_m, 0.3);
+}
+
 // Both ends of the corridor are out of range, so that only the prediction knows the way along it.
 TEST(LaserTrackTest, AlongABareCorridorItIsAsUncertainAsThePrediction) {
   world::World corridor;

@@ -1,7 +1,9 @@
 // Odometry from the scans alone, for lasers without wheels. A track follows the scans until one
 // does not match; then a second track begins there, while the first one waits for a scan that it
 // knows. The scans between get their poses by the second track if the first one finds such a scan;
-// otherwise the odometry begins anew, in another epoch, and the map finds the place again.
+// otherwise the odometry begins anew, in another epoch, and the map finds the place again. It also
+// does so behind bare walls that were in view for so long that their scans do not show the
+// distance.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +17,13 @@
 namespace topogeo::localization {
 
 class LaserTrack;
+struct LaserStep;
 struct TimedFeatures;
 
 struct LaserOdometryCounts {
   std::uint64_t scans = 0;
   std::uint64_t unplaced = 0;   ///< that match neither those before nor those after them
+  std::uint64_t unseen = 0;     ///< left out: between bare walls, for too long to know the place
   std::uint64_t breaks = 0;     ///< further epochs
   std::vector<double> steps_m;  ///< between successive placed scans of one epoch
 };
@@ -52,6 +56,14 @@ class LaserOdometry {
   [[nodiscard]] const LaserTrack* moving_track() const;
   void take_out_motion(scan::Scan& scan) const;
   void place(scan::Scan scan, const geometry::Pose2& T_odom_robot);
+  /// Begins the first track at a scan, if it shows enough.
+  void begin(scan::Scan scan, const TimedFeatures& seen);
+  /// Places a scan that the first track follows, or holds it back between bare walls.
+  void follow_first(scan::Scan scan, const TimedFeatures& seen, const LaserStep& step);
+  /// Places what was held back; false if its distance is not known, which it then forgets.
+  bool place_held();
+  /// Begins another epoch.
+  void begin_anew();
   void lose(scan::Scan scan, const TimedFeatures& seen);
   /// Whether the first track has found the last scan of the second, twice in the same place.
   bool find_again(const TimedFeatures& seen);
@@ -65,6 +77,8 @@ class LaserOdometry {
   std::unique_ptr<LaserTrack> track_;
   std::unique_ptr<LaserTrack> second_;
   geometry::Pose2 T_odom_track_;                  // frame of the track
+  std::vector<scan::Scan> held_;                  // placed between bare walls, not yet passed on
+  double held_m_ = 0.0;                           // that the robot may have driven meanwhile
   std::vector<Waiting> waiting_;                  // that the second track has placed
   std::optional<geometry::Pose2> T_second_last_;  // of the newest scan, if it is placed
   std::int64_t newest_ns_ = 0;
