@@ -53,10 +53,10 @@ void rooms_number(benchmark::State& state) {
   RoomNumbers numbers;
   std::vector<Place> places;
   ZoneMap first = found;
-  numbers.assign(floor_of_rooms().frame(), stops, first, places);
+  numbers.assign(floor_of_rooms(), stops, first, places);
   for (auto _ : state) {
     ZoneMap again = found;
-    numbers.assign(floor_of_rooms().frame(), stops, again, places);
+    numbers.assign(floor_of_rooms(), stops, again, places);
     if (again.zones.back().room != first.zones.back().room) {
       state.SkipWithError("a room has got another number");
       break;

@@ -1,10 +1,13 @@
 #include "topogeo/planning/room_numbers.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
 #include <tuple>
+
+#include "seen_rooms.hpp"
 
 namespace topogeo::planning {
 namespace {
@@ -16,16 +19,29 @@ ZoneId zone_at(const GridFrame& frame, const ZoneMap& zones, const Eigen::Vector
 
 }  // namespace
 
-void RoomNumbers::assign(const GridFrame& frame, std::span<const topomap::StopPose> stops,
+void RoomNumbers::assign(const FreeSpace& space, std::span<const topomap::StopPose> stops,
                          ZoneMap& zones, std::vector<Place>& places) {
+  const GridFrame& frame = space.frame();
   const StopPoses poses = poses_of(stops);
   find_again(frame, poses, zones);
-  for (Zone& zone : zones.zones) {
-    if (zone.room == 0) zone.room = ++memory_.last;
-  }
+  give_new_numbers(space, poses, places, zones);
   keep_places(frame, poses, zones, places);
   name(frame, places, zones);
   remember(frame, poses, zones);
+}
+
+void RoomNumbers::give_new_numbers(const FreeSpace& space, const StopPoses& poses,
+                                   const std::vector<Place>& places, ZoneMap& zones) {
+  std::vector<bool> wanted(zones.zones.size(), true);
+  if (!poses.empty()) wanted = zones_seen_well(space, poses, zones);
+  for (const Place& place : places) {
+    const ZoneId zone = zone_at(space.frame(), zones, place.position_m);
+    if (zone != kNoZone) wanted[zone] = true;
+  }
+  for (Zone& zone : zones.zones) {
+    const bool drawn = !zone.name.empty();
+    if (zone.room == 0 && (drawn || wanted[zone.id])) zone.room = ++memory_.last;
+  }
 }
 
 RoomPoint RoomNumbers::point_at(const Eigen::Vector2d& position_m, const StopPoses& poses) {
@@ -107,18 +123,28 @@ void RoomNumbers::name(const GridFrame& frame, const std::vector<Place>& places,
   }
   for (Zone& zone : zones.zones) {
     const auto found = inside.find(zone.id);
-    if (!zone.name.empty()) continue;
+    if (!zone.name.empty() || zone.room == 0) continue;
     const bool named = found != inside.end() && found->second.size() == 1;
     zone.name = named ? found->second.front()->name : room_name(zone.room);
   }
 }
 
+void RoomNumbers::forget_gone(const StopPoses& poses, std::span<const RememberedRoom> anew) {
+  std::erase_if(memory_.rooms, [&](const RememberedRoom& room) {
+    const auto is_same = [&](const RememberedRoom& other) { return other.number == room.number; };
+    const auto is_located = [&](const RoomPoint& point) {
+      return position_of(point, poses).has_value();
+    };
+    return std::ranges::any_of(anew, is_same) || std::ranges::none_of(room.points, is_located);
+  });
+}
+
 void RoomNumbers::remember(const GridFrame& frame, const StopPoses& poses, const ZoneMap& zones) {
   constexpr std::size_t kPoints = 64;  // gives shares an accuracy of some per cent
-  memory_.rooms.clear();
+  std::vector<RememberedRoom> rooms;   // by zone
   for (const Zone& zone : zones.zones) {
     const bool named = zone.name != room_name(zone.room);
-    memory_.rooms.push_back({zone.room, zone.cells, {}, named ? zone.name : ""});
+    rooms.push_back({zone.room, zone.cells, {}, named ? zone.name : ""});
   }
   std::vector<std::size_t> seen(zones.zones.size(), 0);
   for (std::size_t i = 0; i < zones.zone_of_cell.size(); ++i) {
@@ -130,8 +156,12 @@ void RoomNumbers::remember(const GridFrame& frame, const StopPoses& poses, const
     const std::size_t before = seen[zone] * wanted / cells;
     ++seen[zone];
     if (seen[zone] * wanted / cells == before) continue;
-    memory_.rooms[zone].points.push_back(point_at(frame.center_m(frame.cell_at(i)), poses));
+    if (rooms[zone].number == 0) continue;
+    rooms[zone].points.push_back(point_at(frame.center_m(frame.cell_at(i)), poses));
   }
+  std::erase_if(rooms, [](const RememberedRoom& room) { return room.number == 0; });
+  forget_gone(poses, rooms);
+  std::ranges::move(rooms, std::back_inserter(memory_.rooms));
   std::sort(memory_.rooms.begin(), memory_.rooms.end(),
             [](const auto& a, const auto& b) { return a.number < b.number; });
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "topogeo/planning/room_memory.hpp"
+#include "topogeo/planning/zone_middles.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/hybrid_map_messages.hpp"
 #include "topogeo/support/format.hpp"
@@ -44,44 +45,15 @@ std::vector<std::uint8_t> room_colors(const msg::HybridMap& map) {
   return colors;
 }
 
-/// For each zone, its cell nearest to the centroid of all its cells.
+/// For each zone, a cell of it away from walls.
 std::vector<std::optional<planning::Cell>> middles_of(const MapPicture& picture,
                                                       std::size_t zones) {
-  struct Sum {
-    double column = 0.0;
-    double row = 0.0;
-    double cells = 0.0;
-    double best2 = 0.0;
-    std::optional<planning::Cell> cell;
-  };
-  std::vector<Sum> sums(zones);
   const planning::GridFrame& frame = picture.frame();
-  const auto for_each_cell = [&](const auto& use) {
-    for (std::int32_t row = 0; row < frame.rows; ++row) {
-      for (std::int32_t column = 0; column < frame.columns; ++column) {
-        const planning::Cell cell{column, row};
-        const auto zone = picture.zone_at(cell);
-        if (zone && *zone < zones) use(cell, sums[*zone]);
-      }
-    }
-  };
-  for_each_cell([](const planning::Cell& cell, Sum& sum) {
-    sum.column += cell.column;
-    sum.row += cell.row;
-    sum.cells += 1.0;
-  });
-  for_each_cell([](const planning::Cell& cell, Sum& sum) {
-    const double dx = cell.column - sum.column / sum.cells;
-    const double dy = cell.row - sum.row / sum.cells;
-    const double distance2 = dx * dx + dy * dy;
-    if (sum.cell && distance2 >= sum.best2) return;
-    sum.best2 = distance2;
-    sum.cell = cell;
-  });
-  std::vector<std::optional<planning::Cell>> middles;
-  middles.reserve(sums.size());
-  for (const Sum& sum : sums) middles.push_back(sum.cell);
-  return middles;
+  std::vector<planning::ZoneId> zone_of_cell(frame.size(), planning::kNoZone);
+  for (std::size_t i = 0; i < zone_of_cell.size(); ++i) {
+    if (const auto zone = picture.zone_at(frame.cell_at(i))) zone_of_cell[i] = *zone;
+  }
+  return planning::middles_of_zones(frame, zone_of_cell, zones);
 }
 
 std::string rule_kind(std::uint8_t kind) {
