@@ -2,11 +2,14 @@
 import { Drawing, DrawnDoor, DrawnLine, DrawnPlace, DrawnZone, ItemRef } from "../draw/drawing";
 import { heading_of } from "../draw/grab";
 import { middle_of } from "../draw/geometry";
+import { Rule } from "../protocol";
 import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";
 import { to_pixels } from "./to_pixels";
 
 const hatchPx = 11;
+const noGoShade = 0.35;
+const otherShade = 0.15;
 /** Length of arrows at every zoom. */
 export const arrowPx = 30;
 const stationPx = 11;
@@ -63,6 +66,22 @@ export function draw_drawing(
   context.restore();
 }
 
+/** Zones with a rule that the robot obeys; never hidden. */
+export function draw_rules(
+  context: CanvasRenderingContext2D,
+  view: View,
+  rules: Iterable<Rule>,
+  palette: Palette,
+): void {
+  context.save();
+  context.lineJoin = "round";
+  context.lineCap = "round";
+  for (const rule of rules) {
+    draw_zone(context, view, { ...rule, name: "", value: rule.value ?? 0 }, palette, false);
+  }
+  context.restore();
+}
+
 function stroke(
   context: CanvasRenderingContext2D,
   view: View,
@@ -87,12 +106,19 @@ function draw_zone(
   trace_line(context, view, zone.corners_m, true);
   if (zone.kind !== "room") {
     context.fillStyle = color;
-    context.globalAlpha = selected ? 0.3 : 0.15;
+    // Stronger where the robot must not go, so that it stands out on coloured rooms.
+    const shade = zone.kind === "no_go" ? noGoShade : otherShade;
+    context.globalAlpha = shade + (selected ? 0.15 : 0);
     context.fill();
-    hatch(context, view, zone.corners_m, color);
+    hatch(context, view, zone.corners_m, color, zone.kind === "no_go" ? 0.9 : 0.5);
     context.globalAlpha = 1;
   }
   trace_line(context, view, zone.corners_m, true);
+  if (zone.kind !== "room") {
+    context.strokeStyle = palette.halo;
+    context.lineWidth = 5;
+    context.stroke();
+  }
   context.strokeStyle = color;
   context.lineWidth = selected ? 3 : 2;
   if (zone.kind === "room") context.setLineDash([10, 5, 2, 5]);
@@ -108,6 +134,7 @@ function hatch(
   view: View,
   corners: number[],
   color: string,
+  alpha: number,
 ): void {
   let [left, right, top, bottom] = [Infinity, -Infinity, Infinity, -Infinity];
   for (let i = 0; i + 1 < corners.length; i += 2) {
@@ -128,7 +155,7 @@ function hatch(
   }
   context.strokeStyle = color;
   context.lineWidth = 1.5;
-  context.globalAlpha = 0.5;
+  context.globalAlpha = alpha;
   context.stroke();
   context.restore();
 }

@@ -16,33 +16,6 @@ export interface Label {
   width: number;
 }
 
-export function draw_rules(
-  context: CanvasRenderingContext2D,
-  view: View,
-  rules: ReadonlyMap<string, Rule>,
-  palette: Palette,
-): void {
-  for (const rule of rules.values()) {
-    const corners = rule.corners_m;
-    context.beginPath();
-    for (let i = 0; i + 1 < corners.length; i += 2) {
-      context.lineTo(
-        view.scale * corners[i] + view.offset_x,
-        view.offset_y - view.scale * corners[i + 1],
-      );
-    }
-    context.closePath();
-    const color = { no_go: palette.no_go, slow: palette.slow, one_way: palette.one_way }[rule.kind];
-    context.fillStyle = color;
-    context.globalAlpha = 0.18;
-    context.fill();
-    context.globalAlpha = 1;
-    context.strokeStyle = color;
-    context.lineWidth = 1.5;
-    context.stroke();
-  }
-}
-
 /**
  * Places first, then zones, then large rooms. A name that would cover another is left out; one
  * under a goal moves above or below it.

@@ -5,9 +5,9 @@ import { Drawing, empty_drawing } from "../draw/drawing";
 import { recolor_grid, recolor_rooms, TileLayer } from "./tile_layer";
 import { Palette, Theme } from "../ui/theme";
 import { Box, box_of_cells, known_box, TileVersions } from "./grid_frame";
-import { draw_drawing } from "./drawing_layer";
+import { draw_drawing, draw_rules } from "./drawing_layer";
 import { GraphLayer } from "./graph_layer";
-import { draw_labels, draw_rules } from "./label_layer";
+import { draw_labels } from "./label_layer";
 import { View } from "./map_canvas";
 import {
   draw_body,
@@ -146,8 +146,9 @@ export class MapScene {
       }
     }
     const drawn = this.visible.drawing && !this.overlay;
-    const rules = drawn ? this.channels.table("rules") : new Map<string, Rule>();
-    draw_rules(context, view, rules, palette);
+    // In edit mode, the editor draws them.
+    const rules = this.overlay ? new Map<string, Rule>() : this.channels.table("rules");
+    draw_rules(context, view, rules.values(), palette);
     if (drawn) draw_drawing(context, view, this.drawn, palette, null, false);
     if (this.visible.trail) this.trail.draw(context, view, palette);
     if (this.visible.graph) this.graph.draw(context, view, palette);

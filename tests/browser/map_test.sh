@@ -1,0 +1,6 @@
+#!/usr/bin/env bash
+# What the map of the operator's page shows in Chromium, without a robot.
+source "$(dirname "${BASH_SOURCE[0]}")/browser.sh"
+
+need_browser
+run_browser_test map
