@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "topogeo/thesis/thesis_mode.hpp"
+
 #include "reproduce/shared_runs.hpp"
 #include "reproduce/worlds.hpp"
 

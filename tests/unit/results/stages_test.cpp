@@ -8,6 +8,7 @@
 
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
+#include "topogeo/slam/localizer_config.hpp"
 #include "topogeo/world/world.hpp"
 
 namespace topogeo::results {

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "topogeo/matching/fitness_forms.hpp"
 #include "topogeo/matching/matcher.hpp"
 #include "topogeo/support/random.hpp"
 
