@@ -6,6 +6,7 @@
 
 #include "checks.hpp"
 #include "packets/packet_check.hpp"
+#include "packets/packet_filter.hpp"
 #include "packets/parameter_check.hpp"
 
 namespace topogeo::fuzz {
@@ -53,7 +54,13 @@ void walk_parameters(const Bytes& payload) {
 std::size_t check_packet_parser(std::string_view text) {
   const Bytes bytes(text.begin(), text.end());
   std::size_t passed = 0;
-  if (messaging::check_packet(bytes).valid) passed += 1 + submessages(bytes);
+  for (const bool secured : {false, true}) {
+    if (messaging::check_packet(bytes, secured).valid) passed += 1 + submessages(bytes);
+    const messaging::PacketFilter filter({.secured = secured});
+    const auto admitted = filter.admit(bytes);
+    require(admitted.empty() || !filter.admit(Bytes(admitted.begin(), admitted.end())).empty(),
+            "what passed passes again");
+  }
   Bytes payload = bytes;
   if (messaging::check_parameters(payload)) {
     walk_parameters(payload);

@@ -13,7 +13,7 @@ namespace topogeo::messaging {
 void correct_fast_dds();
 
 /// The same for the corrections of security. Throws std::runtime_error with Fast DDS 3: the rules
-/// about robots and the checks of packets, which security needs, are corrections.
+/// about robots, which security needs, are corrections.
 void correct_security();
 
 /// Keeps packets within the largest message of the transports, as a participant with Fast DDS 2.9.1

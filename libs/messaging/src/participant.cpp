@@ -27,6 +27,7 @@
 #include "corrections.hpp"
 #include "endpoint_shared.hpp"
 #include "network_names.hpp"
+#include "packets/packet_transport.hpp"
 #include "participant_core.hpp"
 #include "profile_names.hpp"
 #include "robot_partitions.hpp"
@@ -150,6 +151,13 @@ void send_whole_certificates(dds::DomainParticipantQos& qos, bool rest_in_packet
   }
 }
 
+/// Whether a server tells the participant who has left.
+bool asks_discovery_server(const dds::DomainParticipantQos& qos) {
+  return !environment("ROS_DISCOVERY_SERVER").empty() ||
+         qos.wire_protocol().builtin.discovery_config.discoveryProtocol !=
+             rtps::DiscoveryProtocol::SIMPLE;
+}
+
 std::vector<std::string> secured_partitions(const ParticipantOptions& options,
                                             const std::filesystem::path& keys) {
   try {
@@ -198,6 +206,8 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
     send_whole_certificates(qos, profile == kBetweenSites);
     secured_ = true;
   }
+  filter_packets(qos, profile,
+                 {.secured = secured_, .believes_removals = asks_discovery_server(qos)});
   const auto& lease = qos.wire_protocol().builtin.discovery_config.leaseDuration;
   freeze_watch_.emplace(longest_freeze(std::chrono::nanoseconds(lease.to_ns()),
                                        environment("TOPOGEO_LONGEST_FREEZE_S")));

@@ -1,5 +1,6 @@
 #include "peer_listener.hpp"
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -18,7 +19,12 @@
 #include <fastdds/rtps/writer/WriterDiscoveryStatus.hpp>
 #endif
 
+#include "topogeo/messaging/topics.hpp"
+
 #include "endpoint_shared.hpp"
+#include "packets/packet_filter.hpp"
+#include "packets/proven_peers.hpp"
+#include "stranger_counts.hpp"
 
 namespace topogeo::messaging {
 
@@ -97,27 +103,31 @@ DiscoveredEndpoint to_endpoint(const Data& data, bool writer, bool gone) {
 
 #endif
 
+PeerPrefix prefix_of(const rtps::GUID_t& id) {
+  PeerPrefix prefix{};
+  std::copy_n(id.guidPrefix.value, prefix.size(), prefix.begin());
+  return prefix;
+}
+
 }  // namespace
 
 #if TOPOGEO_FAST_DDS == 2
 
 void PeerListener::on_participant_discovery(dds::DomainParticipant* /*participant*/,
                                             rtps::ParticipantDiscoveryInfo&& info) {
-  on_peer({info.info.m_guid, info.info.m_participantName.to_string(), announced_subject(info.info),
-           info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
-               info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT});
+  tell({info.info.m_guid, info.info.m_participantName.to_string(), announced_subject(info.info),
+        info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
+            info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT});
 }
 
 void PeerListener::on_publisher_discovery(dds::DomainParticipant* /*participant*/,
                                           rtps::WriterDiscoveryInfo&& info) {
-  on_peer_endpoint(
-      to_endpoint(info.info, true, info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER));
+  tell(to_endpoint(info.info, true, info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER));
 }
 
 void PeerListener::on_subscriber_discovery(dds::DomainParticipant* /*participant*/,
                                            rtps::ReaderDiscoveryInfo&& info) {
-  on_peer_endpoint(
-      to_endpoint(info.info, false, info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER));
+  tell(to_endpoint(info.info, false, info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER));
 }
 
 #else
@@ -127,9 +137,9 @@ void PeerListener::on_participant_discovery(dds::DomainParticipant* /*participan
                                             const dds::ParticipantBuiltinTopicData& info,
                                             bool& should_be_ignored) {
   should_be_ignored = false;
-  on_peer({info.guid, info.participant_name.to_string(), "",
-           status == rtps::ParticipantDiscoveryStatus::REMOVED_PARTICIPANT ||
-               status == rtps::ParticipantDiscoveryStatus::DROPPED_PARTICIPANT});
+  tell({info.guid, info.participant_name.to_string(), "",
+        status == rtps::ParticipantDiscoveryStatus::REMOVED_PARTICIPANT ||
+            status == rtps::ParticipantDiscoveryStatus::DROPPED_PARTICIPANT});
 }
 
 void PeerListener::on_data_writer_discovery(dds::DomainParticipant* /*participant*/,
@@ -137,7 +147,7 @@ void PeerListener::on_data_writer_discovery(dds::DomainParticipant* /*participan
                                             const dds::PublicationBuiltinTopicData& info,
                                             bool& should_be_ignored) {
   should_be_ignored = false;
-  on_peer_endpoint(to_endpoint(info, true, status == rtps::WriterDiscoveryStatus::REMOVED_WRITER));
+  tell(to_endpoint(info, true, status == rtps::WriterDiscoveryStatus::REMOVED_WRITER));
 }
 
 void PeerListener::on_data_reader_discovery(dds::DomainParticipant* /*participant*/,
@@ -145,15 +155,30 @@ void PeerListener::on_data_reader_discovery(dds::DomainParticipant* /*participan
                                             const dds::SubscriptionBuiltinTopicData& info,
                                             bool& should_be_ignored) {
   should_be_ignored = false;
-  on_peer_endpoint(to_endpoint(info, false, status == rtps::ReaderDiscoveryStatus::REMOVED_READER));
+  tell(to_endpoint(info, false, status == rtps::ReaderDiscoveryStatus::REMOVED_READER));
 }
 
 #endif
 
 void PeerListener::onParticipantAuthentication(dds::DomainParticipant* /*participant*/,
                                                rtps::ParticipantAuthenticationInfo&& info) {
-  on_authentication(info.guid.guidPrefix,
-                    info.status == rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
+  const bool authorized =
+      info.status == rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT;
+  if (authorized) proven_peers().add(prefix_of(info.guid));
+  on_authentication(info.guid.guidPrefix, authorized);
+}
+
+void PeerListener::tell(const DiscoveredPeer& peer) {
+  if (peer.gone) peer_ended(prefix_of(peer.id));
+  on_peer(peer);
+}
+
+void PeerListener::tell(const DiscoveredEndpoint& endpoint) {
+  const auto is_topic = [&](const TopicInfo* topic) {
+    return topic->name == endpoint.endpoint.topic;
+  };
+  if (!endpoint.gone && std::ranges::none_of(all_topics(), is_topic)) count_unknown_topic();
+  on_peer_endpoint(endpoint);
 }
 
 }  // namespace topogeo::messaging

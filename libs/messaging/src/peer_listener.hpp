@@ -59,6 +59,10 @@ class PeerListener : public eprosima::fastdds::dds::DomainParticipantListener {
 #endif
   void onParticipantAuthentication(eprosima::fastdds::dds::DomainParticipant* participant,
                                    rtps::ParticipantAuthenticationInfo&& info) final;
+
+ private:
+  void tell(const DiscoveredPeer& peer);
+  void tell(const DiscoveredEndpoint& endpoint);
 };
 
 }  // namespace topogeo::messaging

@@ -11,107 +11,17 @@
 #include <gtest/gtest.h>
 
 #include "packets/parameter_check.hpp"
+#include "rtps_bytes.hpp"
 
 namespace topogeo::messaging {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
-
-constexpr std::uint8_t kLittle = 1;
-constexpr std::uint32_t kNobody = 0;
-constexpr std::uint32_t kUserWriter = 0x00000102;
-constexpr std::uint32_t kSpdpWriter = 0x000100c2;
-
-Bytes& operator<<(Bytes& bytes, const Bytes& more) {
-  bytes.insert(bytes.end(), more.begin(), more.end());
-  return bytes;
-}
-
-Bytes joined(const std::vector<Bytes>& parts) {
-  Bytes bytes;
-  for (const Bytes& part : parts) bytes << part;
-  return bytes;
-}
-
-Bytes u16(std::uint32_t value) {
-  return {static_cast<std::uint8_t>(value), static_cast<std::uint8_t>(value >> 8U)};
-}
-
-Bytes u32(std::uint32_t value) {
-  return joined({u16(value), u16(value >> 16U)});
-}
-
-Bytes entity(std::uint32_t id) {
-  Bytes bytes = u32(id);
-  std::ranges::reverse(bytes);
-  return bytes;
-}
-
-/// A sequence number: the high half first.
-Bytes number(std::int64_t value) {
-  return joined(
-      {u32(static_cast<std::uint32_t>(value >> 32)), u32(static_cast<std::uint32_t>(value))});
-}
-
-Bytes submessage(std::uint8_t kind, std::uint8_t flags, const Bytes& body) {
-  return joined({{kind, flags}, u16(static_cast<std::uint32_t>(body.size())), body});
-}
-
-Bytes packet(const std::vector<Bytes>& submessages) {
-  const Bytes header = {'R', 'T', 'P', 'S', 2, 3, 1, 15, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
-  return joined({header, joined(submessages)});
-}
-
-Bytes parameter(std::uint32_t id, const Bytes& value) {
-  return joined({u16(id), u16(static_cast<std::uint32_t>(value.size())), value});
-}
-
-const Bytes kEndOfList = {1, 0, 0, 0};            // NOLINT(cert-err58-cpp): a test's constant
-const Bytes kPayload = {0, 1, 0, 0, 7, 0, 0, 0};  // NOLINT(cert-err58-cpp)
-
-Bytes data(std::uint8_t flags, const Bytes& rest, std::int64_t at = 1,
-           std::uint32_t writer = kUserWriter) {
-  return submessage(0x15, static_cast<std::uint8_t>(flags | kLittle),
-                    joined({u16(0), u16(16), entity(kNobody), entity(writer), number(at), rest}));
-}
-
-Bytes fragment(std::uint32_t first, std::uint32_t count, std::uint32_t size, std::uint32_t sample,
-               std::size_t payload) {
-  return submessage(0x16, kLittle,
-                    joined({u16(0), u16(28), entity(kNobody), entity(kUserWriter), number(1),
-                            u32(first), u16(count), u16(size), u32(sample), Bytes(payload, 7)}));
-}
-
-Bytes heartbeat(std::int64_t first, std::int64_t last) {
-  return submessage(
-      0x07, kLittle,
-      joined({entity(kNobody), entity(kUserWriter), number(first), number(last), u32(1)}));
-}
-
-Bytes gap(std::int64_t first, std::int64_t end, std::uint32_t bits, std::size_t words) {
-  return submessage(0x08, kLittle,
-                    joined({entity(kNobody), entity(kUserWriter), number(first), number(end),
-                            u32(bits), Bytes(4 * words, 0xff)}));
-}
-
-Bytes acknack(std::int64_t base, std::uint32_t bits, std::size_t words) {
-  return submessage(0x06, kLittle,
-                    joined({entity(kNobody), entity(kUserWriter), number(base), u32(bits),
-                            Bytes(4 * words, 0xff), u32(1)}));
-}
-
-Bytes nack_fragment(std::uint32_t base, std::uint32_t bits, std::size_t words) {
-  return submessage(0x12, kLittle,
-                    joined({entity(kNobody), entity(kUserWriter), number(1), u32(base), u32(bits),
-                            Bytes(4 * words, 0xff), u32(1)}));
-}
-
 bool valid(const std::vector<Bytes>& submessages) {
-  return check_packet(packet(submessages)).valid;
+  return check_packet(packet(submessages), true).valid;
 }
 
 bool unprotected(const std::vector<Bytes>& submessages) {
-  return check_packet(packet(submessages)).unprotected;
+  return check_packet(packet(submessages), true).unprotected;
 }
 
 TEST(PacketCheck, WhatIsSentPasses) {
@@ -143,14 +53,14 @@ TEST(PacketCheck, BigEndianIsReadAsSuch) {
 
 TEST(PacketCheck, HeadersOfOthersAreRefused) {
   const Bytes good = packet({heartbeat(1, 1)});
-  EXPECT_TRUE(check_packet(good).valid);
+  EXPECT_TRUE(check_packet(good, true).valid);
   for (const std::size_t at : {0U, 3U, 4U}) {
     Bytes bad = good;
     bad[at] = 1;
-    EXPECT_FALSE(check_packet(bad).valid) << at;
+    EXPECT_FALSE(check_packet(bad, true).valid) << at;
   }
-  EXPECT_FALSE(check_packet(Bytes(good.begin(), good.begin() + 19)).valid);
-  EXPECT_FALSE(check_packet({}).valid);
+  EXPECT_FALSE(check_packet(Bytes(good.begin(), good.begin() + 19), true).valid);
+  EXPECT_FALSE(check_packet({}, true).valid);
 }
 
 TEST(PacketCheck, EveryPacketThatEndsEarlyIsRefused) {
@@ -159,7 +69,8 @@ TEST(PacketCheck, EveryPacketThatEndsEarlyIsRefused) {
       packet({data(0x06, joined({parameter(0x70, Bytes(16, 1)), kEndOfList, kPayload}))});
   for (std::size_t size = 21; size < good.size(); ++size) {
     EXPECT_FALSE(
-        check_packet(Bytes(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size))).valid)
+        check_packet(Bytes(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)), true)
+            .valid)
         << size;
   }
 }
@@ -241,6 +152,18 @@ TEST(PacketCheck, EnvelopesAreWholeAndSealed) {
   EXPECT_TRUE(unprotected({data(0x04, kPayload), prefix, body, postfix}));
 }
 
+// A participant without security opens no envelope: it reads what stands between two unknown
+// submessages.
+TEST(PacketCheck, EnvelopesHideNothingFromAParticipantWithoutSecurity) {
+  const Bytes prefix = submessage(0x31, kLittle, Bytes(20, 0));
+  const Bytes postfix = submessage(0x32, kLittle, Bytes(20, 0));
+  const Bytes wrong = packet({prefix, gap(0, 4, 0, 0), postfix});
+  EXPECT_TRUE(check_packet(wrong, true).valid) << "nobody without keys can open it";
+  EXPECT_FALSE(check_packet(wrong, false).valid);
+  EXPECT_TRUE(check_packet(packet({prefix, gap(1, 4, 0, 0), postfix}), false).valid);
+  EXPECT_TRUE(check_packet(packet({prefix}), false).valid);
+}
+
 // An envelope around a whole packet needs no key, and Fast DDS still parses its contents.
 TEST(PacketCheck, AnEnvelopeAroundTheWholePacketProtectsNothing) {
   const Bytes timestamp = submessage(0x09, kLittle, Bytes(8, 0));
@@ -269,20 +192,13 @@ TEST(PacketCheck, OnlyDiscoveryAndHandshakesNeedNoProtection) {
         acknack(1, 0, 0), nack_fragment(1, 32, 1)}) {
     EXPECT_TRUE(unprotected({plain}));
   }
+  // Peers with security have a plain discovery as well, which has nothing to say.
+  EXPECT_FALSE(unprotected({heartbeat(1, 0, kSedpWriter)}));
+  EXPECT_TRUE(unprotected({data(0x04, kPayload, 1, kSedpWriter)}));
+  EXPECT_TRUE(unprotected({heartbeat(1, 0, 0xff0003c2)})) << "the encrypted one";
 }
 
 // ---- parameters of discovery
-
-Bytes text(const std::string& characters) {
-  Bytes bytes = u32(static_cast<std::uint32_t>(characters.size() + 1));
-  bytes.insert(bytes.end(), characters.begin(), characters.end());
-  bytes.resize(4 + (characters.size() + 4) / 4 * 4);
-  return bytes;
-}
-
-Bytes list(const std::vector<Bytes>& parameters) {
-  return joined({{0, 3, 0, 0}, joined(parameters), kEndOfList});
-}
 
 bool parameters_pass(const std::vector<Bytes>& parameters) {
   Bytes payload = list(parameters);

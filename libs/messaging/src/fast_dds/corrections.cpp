@@ -1,12 +1,10 @@
 #include "../corrections.hpp"
 
 #include "../security.hpp"
-#include "discovery_shield.hpp"
+#include "announcement_shield.hpp"
 #include "filter_info.hpp"
 #include "fragments.hpp"
 #include "handshake_certificates.hpp"
-#include "host_sending.hpp"
-#include "packet_shield.hpp"
 #include "reader_end.hpp"
 #include "reader_removal.hpp"
 #include "security_keys.hpp"
@@ -19,9 +17,6 @@ namespace topogeo::messaging {
 void correct_fast_dds() {
   correct_fragments();
   keep_filter_info_out();
-  send_to_each_host_apart();
-  shield_packets();
-  shield_discovery();
   let_timers_end_alone();
   let_readers_end_beside_peers();
   let_readers_leave_beside_sending();
@@ -31,6 +26,7 @@ void correct_fast_dds() {
 void fit_packets(eprosima::fastdds::dds::DomainParticipantQos& /*qos*/) {}  // fragments.cpp does
 
 void correct_security() {
+  check_encrypted_announcements();
   keep_security_races_away();
   keep_one_certificate_of_a_peer();
   keep_security_keys();

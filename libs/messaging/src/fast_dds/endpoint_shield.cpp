@@ -3,18 +3,13 @@
 // 1. A heartbeat or a gap up to a number far off makes a reader count there one by one, with its
 //    lock held: for hours.
 // 2. A fragment that is asked for beyond the last one makes a writer read beyond its sample.
-// 3. With encrypted submessages (governance: metadata_protection_kind) plain ones are taken, too:
-//    a stranger who takes the name of a peer writes what the peer may write.
-// Whoever takes the name of a peer without security still speaks for it.
 #include "endpoint_shield.hpp"
 
 #include <fastdds/rtps/history/WriterHistory.h>
-#include <fastdds/rtps/reader/StatelessReader.h>
 #include <fastdds/rtps/writer/StatefulWriter.h>
 
 #include "../stranger_counts.hpp"
 #include "library_function.hpp"
-#include "packet_shield.hpp"
 
 namespace {
 
@@ -28,18 +23,6 @@ constexpr const char* kStartAt =
     "_ZN8eprosima8fastrtps4rtps11WriterProxy19loaded_from_storageERKNS1_16SequenceNumber_tE";
 constexpr const char* kCompleteUpTo =
     "_ZNK8eprosima8fastrtps4rtps11WriterProxy21available_changes_maxEv";
-constexpr const char* kTakeHeartbeat =
-    "_ZN8eprosima8fastrtps4rtps14StatefulReader19processHeartbeatMsgERKNS1_6GUID_tEjRKNS1_"
-    "16SequenceNumber_tES8_bb";
-constexpr const char* kTakeData =
-    "_ZN8eprosima8fastrtps4rtps14StatefulReader14processDataMsgEPNS1_13CacheChange_tE";
-constexpr const char* kTakeDataStateless =
-    "_ZN8eprosima8fastrtps4rtps15StatelessReader14processDataMsgEPNS1_13CacheChange_tE";
-constexpr const char* kTakeFragmentsStateless =
-    "_ZN8eprosima8fastrtps4rtps15StatelessReader18processDataFragMsgEPNS1_13CacheChange_tEjjt";
-constexpr const char* kTakeAckNack =
-    "_ZN8eprosima8fastrtps4rtps14StatefulWriter15process_acknackERKNS1_6GUID_tES5_jRKNS0_"
-    "11BitmapRangeINS1_16SequenceNumber_tENS1_18SequenceNumberDiffELj256EEEbRb";
 constexpr const char* kTakeNackFragment =
     "_ZN8eprosima8fastrtps4rtps14StatefulWriter17process_nack_fragERKNS1_6GUID_tES5_jRKNS1_"
     "16SequenceNumber_tENS0_11BitmapRangeIjNS0_12DiffFunctionIjEELj256EEERb";
@@ -71,8 +54,6 @@ bool has_fragments(rtps::StatefulWriter& writer, const rtps::SequenceNumber_t& n
   return !fragments.empty() && fragments.min() > 0 && fragments.max() <= count;
 }
 
-using TakeChange = bool (*)(void*, rtps::CacheChange_t*);
-
 }  // namespace
 
 // NOLINTBEGIN: the names of member functions of the library
@@ -80,23 +61,6 @@ extern "C" bool
 topogeo_process_heartbeat(rtps::WriterProxy* writer, std::uint32_t count, const rtps::SequenceNumber_t& first, const rtps::SequenceNumber_t& last, bool is_final, bool liveliness, bool no_positive, bool& assert_liveliness, std::int32_t& lost) __asm__(
     "_ZN8eprosima8fastrtps4rtps11WriterProxy17process_heartbeatEjRKNS1_16SequenceNumber_tES5_"
     "bbbRbRi");
-extern "C" bool
-topogeo_take_heartbeat(rtps::StatefulReader* reader, const rtps::GUID_t& writer, std::uint32_t count, const rtps::SequenceNumber_t& first, const rtps::SequenceNumber_t& last, bool is_final, bool liveliness) __asm__(
-    "_ZN8eprosima8fastrtps4rtps14StatefulReader19processHeartbeatMsgERKNS1_6GUID_tEjRKNS1_"
-    "16SequenceNumber_tES8_bb");
-extern "C" bool
-topogeo_take_data(rtps::StatefulReader* reader, rtps::CacheChange_t* change) __asm__(
-    "_ZN8eprosima8fastrtps4rtps14StatefulReader14processDataMsgEPNS1_13CacheChange_tE");
-extern "C" bool
-topogeo_take_data_stateless(rtps::StatelessReader* reader, rtps::CacheChange_t* change) __asm__(
-    "_ZN8eprosima8fastrtps4rtps15StatelessReader14processDataMsgEPNS1_13CacheChange_tE");
-extern "C" bool
-topogeo_take_fragments_stateless(rtps::StatelessReader* reader, rtps::CacheChange_t* fragments, std::uint32_t sample_size, std::uint32_t first, std::uint16_t count) __asm__(
-    "_ZN8eprosima8fastrtps4rtps15StatelessReader18processDataFragMsgEPNS1_13CacheChange_tEjjt");
-extern "C" bool
-topogeo_take_acknack(rtps::StatefulWriter* writer, const rtps::GUID_t& addressee, const rtps::GUID_t& reader, std::uint32_t count, const rtps::SequenceNumberSet_t& numbers, bool is_final, bool& result) __asm__(
-    "_ZN8eprosima8fastrtps4rtps14StatefulWriter15process_acknackERKNS1_6GUID_tES5_jRKNS0_"
-    "11BitmapRangeINS1_16SequenceNumber_tENS1_18SequenceNumberDiffELj256EEEbRb");
 extern "C" bool
 topogeo_take_nack_fragment(rtps::StatefulWriter* writer, const rtps::GUID_t& addressee, const rtps::GUID_t& reader, std::uint32_t count, const rtps::SequenceNumber_t& number, rtps::FragmentNumberSet_t fragments, bool& result) __asm__(
     "_ZN8eprosima8fastrtps4rtps14StatefulWriter17process_nack_fragERKNS1_6GUID_tES5_jRKNS1_"
@@ -128,54 +92,6 @@ extern "C" bool topogeo_process_heartbeat(rtps::WriterProxy* writer, std::uint32
                   lost);
 }
 
-extern "C" bool topogeo_take_heartbeat(rtps::StatefulReader* reader, const rtps::GUID_t& writer,
-                                       std::uint32_t count, const rtps::SequenceNumber_t& first,
-                                       const rtps::SequenceNumber_t& last, bool is_final,
-                                       bool liveliness) {
-  using Function =
-      bool (*)(rtps::StatefulReader*, const rtps::GUID_t&, std::uint32_t,
-               const rtps::SequenceNumber_t&, const rtps::SequenceNumber_t&, bool, bool);
-  static const auto original = messaging::library_function<Function>(kTakeHeartbeat);
-  if (messaging::refuse_unprotected(*reader)) return false;
-  return original(reader, writer, count, first, last, is_final, liveliness);
-}
-
-extern "C" bool topogeo_take_data(rtps::StatefulReader* reader, rtps::CacheChange_t* change) {
-  static const auto original = messaging::library_function<TakeChange>(kTakeData);
-  return !messaging::refuse_unprotected(*reader) && original(reader, change);
-}
-
-extern "C" bool topogeo_take_data_stateless(rtps::StatelessReader* reader,
-                                            rtps::CacheChange_t* change) {
-  static const auto original = messaging::library_function<TakeChange>(kTakeDataStateless);
-  return !messaging::refuse_unprotected(*reader) && original(reader, change);
-}
-
-extern "C" bool topogeo_take_fragments_stateless(rtps::StatelessReader* reader,
-                                                 rtps::CacheChange_t* fragments,
-                                                 std::uint32_t sample_size, std::uint32_t first,
-                                                 std::uint16_t count) {
-  using Function = bool (*)(rtps::StatelessReader*, rtps::CacheChange_t*, std::uint32_t,
-                            std::uint32_t, std::uint16_t);
-  static const auto original = messaging::library_function<Function>(kTakeFragmentsStateless);
-  if (messaging::refuse_unprotected(*reader)) return false;
-  return original(reader, fragments, sample_size, first, count);
-}
-
-extern "C" bool topogeo_take_acknack(rtps::StatefulWriter* writer, const rtps::GUID_t& addressee,
-                                     const rtps::GUID_t& reader, std::uint32_t count,
-                                     const rtps::SequenceNumberSet_t& numbers, bool is_final,
-                                     bool& result) {
-  using Function = bool (*)(rtps::StatefulWriter*, const rtps::GUID_t&, const rtps::GUID_t&,
-                            std::uint32_t, const rtps::SequenceNumberSet_t&, bool, bool&);
-  static const auto original = messaging::library_function<Function>(kTakeAckNack);
-  if (addressee == writer->getGuid() && messaging::refuse_unprotected(*writer)) {
-    result = false;
-    return true;
-  }
-  return original(writer, addressee, reader, count, numbers, is_final, result);
-}
-
 extern "C" bool topogeo_take_nack_fragment(rtps::StatefulWriter* writer,
                                            const rtps::GUID_t& addressee,
                                            const rtps::GUID_t& reader, std::uint32_t count,
@@ -185,8 +101,7 @@ extern "C" bool topogeo_take_nack_fragment(rtps::StatefulWriter* writer,
       bool (*)(rtps::StatefulWriter*, const rtps::GUID_t&, const rtps::GUID_t&, std::uint32_t,
                const rtps::SequenceNumber_t&, const rtps::FragmentNumberSet_t, bool&);
   static const auto original = messaging::library_function<Function>(kTakeNackFragment);
-  if (addressee == writer->getGuid() &&
-      (messaging::refuse_unprotected(*writer) || !has_fragments(*writer, number, fragments))) {
+  if (addressee == writer->getGuid() && !has_fragments(*writer, number, fragments)) {
     result = false;
     return true;
   }
@@ -194,16 +109,6 @@ extern "C" bool topogeo_take_nack_fragment(rtps::StatefulWriter* writer,
 }
 
 namespace topogeo::messaging {
-
-bool refuse_unprotected(rtps::Endpoint& endpoint) {
-  static_assert(HAVE_SECURITY);
-  if (!in_unprotected_packet() ||
-      !endpoint.getAttributes().security_attributes().is_submessage_protected) {
-    return false;
-  }
-  count_unprotected_packet();
-  return true;
-}
 
 std::int64_t complete_up_to(rtps::StatefulReader& reader, const rtps::GUID_t& writer) {
   rtps::WriterProxy* proxy = nullptr;

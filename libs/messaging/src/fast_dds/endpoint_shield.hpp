@@ -3,15 +3,9 @@
 
 #include <cstdint>
 
-#include <fastdds/rtps/Endpoint.h>
-#include <fastdds/rtps/common/CacheChange.h>
 #include <fastdds/rtps/reader/StatefulReader.h>
 
 namespace topogeo::messaging {
-
-/// Whether this thread works on a plain packet for an endpoint whose submessages security wants to
-/// be encrypted; counts it. Fast DDS 2.9.1 takes them as if they had been.
-[[nodiscard]] bool refuse_unprotected(eprosima::fastrtps::rtps::Endpoint& endpoint);
 
 /// The last sample up to which a reader has all of a writer or has heard that they are gone; -1 for
 /// a writer that it is not matched with.

@@ -128,7 +128,7 @@ extern "C" bool topogeo_take_fragments(rtps::StatefulReader* reader, rtps::Cache
   using Function = bool (*)(rtps::StatefulReader*, rtps::CacheChange_t*, std::uint32_t,
                             std::uint32_t, std::uint16_t);
   static const auto original = topogeo::messaging::library_function<Function>(kTakeFragments);
-  if (sample_size > kMaxSample || topogeo::messaging::refuse_unprotected(*reader)) return false;
+  if (sample_size > kMaxSample) return false;
   const std::lock_guard turn(turn_of(reader));
   {
     const std::lock_guard lock(reader->getMutex());
@@ -157,7 +157,6 @@ extern "C" bool topogeo_take_gap(rtps::StatefulReader* reader, const rtps::GUID_
   using Function = bool (*)(rtps::StatefulReader*, const rtps::GUID_t&,
                             const rtps::SequenceNumber_t&, const rtps::SequenceNumberSet_t&);
   static const auto original = topogeo::messaging::library_function<Function>(kTakeGap);
-  if (topogeo::messaging::refuse_unprotected(*reader)) return false;
   const std::lock_guard turn(turn_of(reader));
   Gap gap;
   {

@@ -60,19 +60,21 @@ std::size_t HostSockets::hosts() const {
   return hosts_.size();
 }
 
-Sending HostSockets::send(std::span<const std::uint8_t> packet,
-                          const std::array<std::uint8_t, 4>& address, std::uint16_t port,
-                          std::chrono::nanoseconds patience) {
+Sending HostSockets::send(std::span<const iovec> parts, const std::array<std::uint8_t, 4>& address,
+                          std::uint16_t port, std::chrono::nanoseconds patience) {
   const std::shared_ptr<Host> to_host = host(address);
   sockaddr_in to{};
   to.sin_family = AF_INET;
   to.sin_port = htons(port);
   std::memcpy(&to.sin_addr, address.data(), address.size());
+  msghdr packet{};
+  packet.msg_name = &to;
+  packet.msg_namelen = sizeof to;
+  packet.msg_iov = const_cast<iovec*>(parts.data());  // NOLINT(*-const-cast): it is only read
+  packet.msg_iovlen = parts.size();
   const steady_clock::time_point end = steady_clock::now() + patience;
   while (true) {
-    // NOLINTNEXTLINE(*-reinterpret-cast): the interface of sockets
-    if (::sendto(to_host->socket.get(), packet.data(), packet.size(), MSG_DONTWAIT | MSG_NOSIGNAL,
-                 reinterpret_cast<const sockaddr*>(&to), sizeof to) >= 0) {
+    if (::sendmsg(to_host->socket.get(), &packet, MSG_DONTWAIT | MSG_NOSIGNAL) >= 0) {
       return Sending::kDone;
     }
     if (errno == EINTR) continue;

@@ -14,6 +14,8 @@
 #include <mutex>
 #include <span>
 
+#include <sys/uio.h>
+
 #include "topogeo/support/file_descriptor.hpp"
 
 namespace topogeo::messaging {
@@ -39,8 +41,9 @@ class HostSockets {
   explicit HostSockets(const Options& options) : options_(options) {}
 
   /// To a port of an IPv4 address, whose four bytes are in the order in which they are written.
-  /// While the queue is full waits for a host that takes something, up to `patience`.
-  Sending send(std::span<const std::uint8_t> packet, const std::array<std::uint8_t, 4>& address,
+  /// While the queue is full waits for a host that takes something, up to `patience`. `parts`: of
+  /// the packet, one after the other.
+  Sending send(std::span<const iovec> parts, const std::array<std::uint8_t, 4>& address,
                std::uint16_t port, std::chrono::nanoseconds patience);
   /// Hosts that have a socket.
   [[nodiscard]] std::size_t hosts() const;

@@ -12,13 +12,16 @@ namespace topogeo::messaging {
 
 struct PacketCheck {
   bool valid = false;
-  /// Has submessages about samples that no envelope of DDS security protects.
+  /// Has plain submessages that a participant with security gets encrypted alone.
   bool unprotected = false;
+  /// Has plain samples of discovery or of a handshake.
+  bool announces = false;
 };
 
 /// `packet` is what a socket received or shared memory held. A submessage of an unknown kind is
-/// skipped, as the standard wants. What is inside an envelope of DDS security is not looked at:
-/// only authenticated peers can make one that opens.
-[[nodiscard]] PacketCheck check_packet(std::span<const std::uint8_t> packet);
+/// skipped, as the standard wants. `secured`: whether the participant has security and opens
+/// envelopes. Then what is inside one is not looked at: only authenticated peers can make one that
+/// opens. Without security envelopes are unknown submessages, between which everything is read.
+[[nodiscard]] PacketCheck check_packet(std::span<const std::uint8_t> packet, bool secured);
 
 }  // namespace topogeo::messaging

@@ -170,24 +170,6 @@ bool check_parameters(std::span<std::uint8_t> payload) {
   }
 }
 
-std::string_view topic_of(Bytes payload) {
-  PacketReader reader(payload, (payload[1] & kLittleEndian) != 0);
-  reader.skip(kEncapsulation_bytes);
-  while (true) {
-    const std::uint16_t id = reader.u16();
-    const std::uint16_t size = reader.u16();
-    if (!reader.ok() || id == kSentinel) return {};
-    const Bytes value = reader.take(size);
-    reader.align();
-    if (id != kTopicName) continue;
-    PacketReader name(value, reader.little_endian());
-    const std::uint32_t name_size = name.u32();
-    const Bytes characters = name.take(name_size);
-    // NOLINTNEXTLINE(*-reinterpret-cast): bytes as characters
-    return {reinterpret_cast<const char*>(characters.data()), characters.size() - 1};
-  }
-}
-
 bool check_handshake(Bytes payload) {
   constexpr std::size_t kIdentities_bytes = 24 + 24;
   constexpr std::size_t kKeys_bytes = 16 + 16 + 16;

@@ -6,16 +6,12 @@
 
 #include <cstdint>
 #include <span>
-#include <string_view>
 
 namespace topogeo::messaging {
 
 /// `payload` with its encapsulation. Takes out descriptions of types: types are matched by their
 /// names here, and the middleware would read a description with memory for any count in it.
 [[nodiscard]] bool check_parameters(std::span<std::uint8_t> payload);
-
-/// The name of the topic in a payload that check_parameters() has passed; empty without one.
-[[nodiscard]] std::string_view topic_of(std::span<const std::uint8_t> payload);
 
 /// A message by which participants authenticate each other before anything is encrypted.
 [[nodiscard]] bool check_handshake(std::span<const std::uint8_t> payload);

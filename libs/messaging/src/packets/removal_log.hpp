@@ -1,13 +1,14 @@
 // Which removals of peers were forged: the peer goes on sending.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <mutex>
+
+#include "proven_peers.hpp"
 
 namespace topogeo::messaging {
 
@@ -16,7 +17,7 @@ namespace topogeo::messaging {
 class RemovalLog {
  public:
   using Time = std::chrono::steady_clock::time_point;
-  using Peer = std::array<std::uint8_t, 12>;  // the prefix of its identifiers
+  using Peer = PeerPrefix;
 
   static constexpr std::size_t kMostPeers = 1024;
   /// Packets that a peer sent before it left may come after its removal: on another socket, from
