@@ -1,4 +1,5 @@
-// What the map of the page shows with a stub service: zones with a rule in every view, and pictures to download.
+// What the map of the page shows with a stub service: zones with a rule in every view, pictures to download; and
+// missions, which the browser keeps.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
@@ -121,6 +122,41 @@ test("a picture of the map shows odometry and loops on demand", async () => {
   await download("map.png", "/api/export/png/map.png?odometry=1&loops=1");
   await download("map.pb", "/api/export/pb/map.pb");
   await page.screenshot({ path: join(kPictures, "export-light.png") });
+  assert.deepEqual(page.faults, []);
+  await page.context().close();
+});
+
+test("a mission is saved in the browser, put in another order, and loaded after a restart of the page", async () => {
+  const floor = new ZonedFloor();
+  const page = await floor.open("light");
+  await page.click("#tab-send");
+  const choose = (name) => page.getByRole("button", { name, exact: true }).click();
+  const route = async (goals) => {
+    await page.getByRole("button", { name: `Go to all ${goals.length} in this order` }).waitFor();
+    assert.deepEqual(await page.locator(".chosen li > span").allInnerTexts(), goals);
+  };
+  await choose("left room");
+  await page.getByRole("button", { name: "Add to the list" }).click();
+  await choose("right room");
+  await route(["left room", "right room"]);
+  await page.getByRole("button", { name: "Move right room one up" }).click();
+  await route(["right room", "left room"]);
+  await page.getByText("Missions", { exact: true }).click();
+  await page.getByLabel("Name of the mission").fill("evening round");
+  await page.getByRole("button", { name: "Save these goals" }).click();
+  await page.getByRole("button", { name: "evening round", exact: true }).waitFor();
+  await page.screenshot({ path: join(kPictures, "missions-light.png") });
+
+  await page.reload();
+  await page.click("#tab-send");
+  await page.getByText("Missions", { exact: true }).click();
+  await page.getByRole("button", { name: "evening round", exact: true }).click();
+  await route(["right room", "left room"]);
+  await page.click("#go");
+  await wait_for("the mission is sent", () => floor.goal);
+  assert.deepEqual(floor.goal, { goals: [{ place: "right room" }, { place: "left room" }] });
+  await page.getByRole("button", { name: "Remove the mission evening round" }).click();
+  await page.getByText("No mission is saved yet.").waitFor();
   assert.deepEqual(page.faults, []);
   await page.context().close();
 });

@@ -130,6 +130,11 @@ export const spanish: Texts = {
     real: "Cruce", door: "Puerta", narrowing: "Estrechamiento", hall_corridor: "Sala con pasillo",
     fictitious: "Nodo ficticio: fin de la vista",
   },
+  missions: {
+    title: "Misiones", none: "Aún no hay misiones. Elija destinos y guárdelos aquí para otro día.",
+    name: "Nombre de la misión", save: "Guardar estos destinos", goals: (n) => plural(n, "destino", "destinos"),
+    remove: (name) => `Quitar la misión ${name}`,
+  },
   send: {
     heading: "¿Adónde?", hint: "Toque el mapa, o elija un nombre.", search: "Buscar una sala o un lugar",
     no_names: "El mapa aún no tiene salas ni lugares. Toque un punto del mapa.", no_match: "Ningún nombre coincide.",
@@ -143,7 +148,7 @@ export const spanish: Texts = {
     misplaced: "El láser no encaja en esta posición: el robot está probablemente en otro lugar y conduciría mal.",
     drive_misplaced: "Conducir de todos modos", go_all: (n) => `Ir a los ${n} en este orden`,
     heading_at_goal: "Rumbo en el destino (°), vacío: cualquiera", append: "Añadir a la lista", clear: "Borrar",
-    remove: (name) => `Quitar ${name}`, list: "Destinos seguidos",
+    remove: (name) => `Quitar ${name}`, earlier: (name) => `Subir ${name} un puesto`, list: "Destinos seguidos",
     list_length: (meters, seconds) => `En total ${length(meters)}, unos ${duration(seconds)}`,
     explore: "Explorar", explore_title: "Va a todos los lugares que aún no están en el mapa",
     return: "Volver a casa", underway: "En curso", idle: "El robot no tiene destino.",
@@ -327,6 +332,7 @@ export const spanish: Texts = {
     stops_value: (before, after) => `${count(before)} antes, ${count(after)} después`,
     changes: { gone: "Desaparecido", new: "Nuevo", seen: "Visto desde entonces", lost: "Ya no conocido" },
     export: "Exportar", export_hint: "Guarda el mapa actual como archivo para otros programas.", download: "Descargar",
+    picture_shows: "Las imágenes muestran", picture_odometry: "odometría", picture_loops: "bucles",
     download_file: (file) => `Descargar ${file}`,
     formats: {
       pgm: "rejilla, para map_server de ROS", masks: "zonas como máscaras, para filtros de Nav2",

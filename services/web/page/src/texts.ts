@@ -180,6 +180,14 @@ export const english = {
     fictitious: "Fictitious node: end of the view",
   },
 
+  missions: {
+    title: "Missions",
+    none: "No mission is saved yet. Choose goals, then save them here for another day.",
+    name: "Name of the mission",
+    save: "Save these goals",
+    goals: (n: number) => counted(n, "goal", "goals"),
+    remove: (name: string) => `Remove the mission ${name}`,
+  },
   send: {
     heading: "Where to?",
     hint: "Tap the map, or choose a name.",
@@ -204,6 +212,7 @@ export const english = {
     append: "Add to the list",
     clear: "Clear",
     remove: (name: string) => `Remove ${name}`,
+    earlier: (name: string) => `Move ${name} one up`,
     list: "Goals in a row",
     list_length: (meters: Maybe, seconds: Maybe) =>
       `Together ${length(meters)}, about ${duration(seconds)}`,

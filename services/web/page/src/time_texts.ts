@@ -73,6 +73,9 @@ export const time_texts = {
   changes: { gone: "Gone", new: "New", seen: "Seen since", lost: "No longer known" },
   export: "Export",
   export_hint: "Saves the present map as a file for other programs.",
+  picture_shows: "Pictures show",
+  picture_odometry: "odometry",
+  picture_loops: "loops",
   download: "Download",
   download_file: (file: string) => `Download ${file}`,
   formats: {

@@ -1,4 +1,4 @@
-// Names of rooms and places, and zones with a rule, on the map.
+// Names of rooms, places and zones with a rule, on the map.
 import { PointM, Room, Rule } from "../protocol";
 import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";

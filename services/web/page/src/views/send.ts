@@ -1,7 +1,7 @@
 // Send: choose goals, see the route, go; the current goals; driving by hand.
 import { App, ViewPart } from "../app";
 import { Destination, destinations } from "../destinations";
-import { Goal, Preview } from "../protocol";
+import { Preview } from "../protocol";
 import { hand_is_stopped, held_text, is_misplaced } from "../robot_state";
 import { translated } from "../reasons";
 import { texts } from "../texts";
@@ -9,30 +9,29 @@ import { button, field, fill, h, set_text, show } from "../ui/dom";
 import { KeyedList } from "../ui/list";
 import { once_a_frame } from "../ui/schedule";
 import { folded, section } from "../ui/section";
+import { Choice, chosen_list } from "./chosen_list";
 import { DrivePad } from "./drive_pad";
+import { Missions } from "./missions";
 import { Underway } from "./underway";
 
 const words = texts.send;
 const plannerTimeMs = 1000; // time until the planner has a new drawing
 const namedPx = 18; // a tap this near to a place selects the place
 
-interface Choice {
-  goal: Goal;
-  text: string;
-  x_m: number;
-  y_m: number;
-}
-
 export class SendView implements ViewPart {
   readonly element: HTMLElement;
   private readonly drive: DrivePad;
   private readonly orders: HTMLElement;
   private readonly card = h("div", { class: "card", hidden: true });
+  private choices: Choice[] = [];
+  private readonly missions = new Missions(
+    () => this.choices,
+    (choices) => this.take(choices),
+  );
   private readonly names: KeyedList<Destination>;
   private readonly no_names = h("p", { class: "quiet" });
   private readonly filter: HTMLInputElement;
   private readonly note = h("p", { class: "note" });
-  private choices: Choice[] = [];
   private adding = false;
   private visible = false;
   private replan = 0; // timer
@@ -78,6 +77,7 @@ export class SendView implements ViewPart {
         this.no_names,
         h("div", { class: "buttons" }, explore, back),
       ),
+      this.missions.element,
       folded(words.drive, false, this.drive.element),
     );
     this.element = h("div", { class: "view" }, this.note, new Underway(app).element, this.orders);
@@ -156,6 +156,7 @@ export class SendView implements ViewPart {
   private async preview(): Promise<void> {
     const asked = ++this.asked;
     this.last = null;
+    this.missions.update();
     this.show_on_map(this.visible);
     this.show_card(null);
     if (this.choices.length === 0) return;
@@ -203,7 +204,7 @@ export class SendView implements ViewPart {
     fill(
       this.card,
       h("h3", {}, title),
-      several ? this.chosen_list() : null,
+      several ? chosen_list(this.choices, (i) => this.drop(i), (i) => this.move_up(i)) : null,
       h("p", { class: answer?.found === false ? "bad-text" : "", role: "status" }, text),
       ready ? this.heading_field() : null,
       near ? button(words.nearest, () => this.take_nearest(near.x_m, near.y_m)) : null,
@@ -249,20 +250,6 @@ export class SendView implements ViewPart {
     return words.no_route_to(failed.text, translated(why));
   }
 
-  private chosen_list(): HTMLElement {
-    const entry = (choice: Choice, index: number) =>
-      h(
-        "li",
-        {},
-        h("span", {}, choice.text),
-        button("×", () => this.drop(index), {
-          class: "button small",
-          "aria-label": words.remove(choice.text),
-        }),
-      );
-    return h("ol", { class: "chosen" }, ...this.choices.map(entry));
-  }
-
   private begin_list(): void {
     this.adding = true;
     this.show_card(this.last);
@@ -271,6 +258,24 @@ export class SendView implements ViewPart {
 
   private drop(index: number): void {
     this.choices = this.choices.filter((_, i) => i !== index);
+    void this.preview();
+  }
+
+  private move_up(index: number): void {
+    const choices = [...this.choices];
+    [choices[index - 1], choices[index]] = [choices[index], choices[index - 1]];
+    this.choices = choices;
+    void this.preview();
+  }
+
+  // A room or place lies where the map has it now.
+  private take(choices: readonly Choice[]): void {
+    const now = destinations(this.app.channels);
+    this.adding = false;
+    this.choices = choices.map((choice) => {
+      const entry = now.find((other) => "place" in choice.goal && other.name === choice.goal.place);
+      return entry ? { ...choice, x_m: entry.x_m, y_m: entry.y_m } : { ...choice };
+    });
     void this.preview();
   }
 

@@ -12,6 +12,8 @@ import { Versions } from "./versions";
 const words = texts.time;
 const patienceMs = 120000; // for large maps
 
+const pictures = ["svg", "png"];
+
 interface ExportFile {
   format: string;
   file: string;
@@ -23,6 +25,10 @@ export class TimeView implements ViewPart {
   private readonly versions: Versions;
   private readonly merge: MapMerge;
   private readonly files: KeyedList<ExportFile>;
+  private readonly picture_parts = {
+    odometry: h("input", { type: "checkbox" }),
+    loops: h("input", { type: "checkbox" }),
+  };
 
   constructor(private readonly app: App) {
     this.film = new FilmPlayer(app);
@@ -40,7 +46,7 @@ export class TimeView implements ViewPart {
       this.film.element,
       this.versions.element,
       this.merge.element,
-      section(words.export, hint, this.files.element),
+      section(words.export, hint, this.picture_choice(), this.files.element),
     );
   }
 
@@ -53,6 +59,25 @@ export class TimeView implements ViewPart {
       this.versions.close();
       this.merge.close();
     }
+  }
+
+  private picture_choice(): HTMLElement {
+    const { odometry, loops } = this.picture_parts;
+    return h(
+      "div",
+      { class: "picture-choice", role: "group", "aria-label": words.picture_shows },
+      h("span", {}, words.picture_shows),
+      h("label", {}, odometry, words.picture_odometry),
+      h("label", {}, loops, words.picture_loops),
+    );
+  }
+
+  /** The address of a file, for pictures with what they show. */
+  private address(key: string): string {
+    const path = `/api/export/${key}`;
+    if (!pictures.includes(key.split("/")[0])) return path;
+    const shown = Object.entries(this.picture_parts).filter(([, box]) => box.checked);
+    return shown.length === 0 ? path : `${path}?${shown.map(([part]) => `${part}=1`).join("&")}`;
   }
 
   private async list_files(): Promise<void> {
@@ -78,7 +103,7 @@ export class TimeView implements ViewPart {
   private async download(key: string, file: string, element: HTMLButtonElement): Promise<void> {
     element.disabled = true;
     try {
-      const blob = await this.app.api.download(`/api/export/${key}`, patienceMs);
+      const blob = await this.app.api.download(this.address(key), patienceMs);
       const link = h("a", { href: URL.createObjectURL(blob), download: file });
       link.click();
       window.setTimeout(() => URL.revokeObjectURL(link.href), 10000);
