@@ -68,14 +68,28 @@ class SchemaReader {
     const std::string expected = ": expected " + parameter.expected;
     // A missing value has the position of the next token.
     if (value.is_null()) key_node.fail_with(quoted + " without a value" + expected);
-    if (!value.is_scalar()) value.fail_with(quoted + " with a list or section" + expected);
-    const bool is_quoted = value.is_quoted();
-    auto assign = is_quoted && !parameter.is_text ? std::nullopt : parameter.parse(value.text());
+    const bool is_list = parameter.is_rows && value.is_list();
+    if (!value.is_scalar() && !is_list) {
+      value.fail_with(quoted + " with a list or section" + expected);
+    }
+    const bool is_quoted = !is_list && value.is_quoted();
+    const std::string text = is_list ? rows_of(value) : value.text();
+    auto assign = is_quoted && !parameter.is_text ? std::nullopt : parameter.parse(text);
     if (!assign) {
       const std::string mark = is_quoted ? "\"" : "'";
-      value.fail_with(quoted + " = " + mark + shown(value.text()) + mark + expected);
+      value.fail_with(quoted + " = " + mark + shown(text) + mark + expected);
     }
     assignments_.push_back(std::move(*assign));
+  }
+
+  /// The text of a list of lists: "0.9 0.1; 0.1 0.9".
+  static std::string rows_of(const YamlNode& list) {
+    std::string text;
+    for (const YamlNode& row : list.items()) {
+      if (!text.empty()) text += "; ";
+      for (const YamlNode& number : row.items()) text += number.text() + ' ';
+    }
+    return text;
   }
 
   [[nodiscard]] std::string known_keys(const std::string& path) const {

@@ -348,5 +348,21 @@ TEST(ConfigSchema, RefusesDeclarationsThatContradictEachOther) {
   EXPECT_EQ(schema.parameters().size(), 1U);
 }
 
+TEST(ConfigSchema, ReadsRowsAsAListOfLists) {
+  NumberRows rows;
+  ConfigSchema schema;
+  schema.add_rows<NumberRows>(
+      "outline", &rows, [](const NumberRows& r) { return r; },
+      [](const NumberRows& r) { return std::optional(r); }, "corners", "its outline, if any");
+  load_yaml_text("outline: [[0.5, -1], [2, 3e-1]]", "f.yaml", schema);
+  EXPECT_EQ(rows, (NumberRows{{0.5, -1.0}, {2.0, 0.3}}));
+  load_yaml_text("outline: 1 2; 3 4", "f.yaml", schema);
+  EXPECT_EQ(rows, (NumberRows{{1.0, 2.0}, {3.0, 4.0}}));
+  load_yaml_text("outline: []", "f.yaml", schema);
+  EXPECT_TRUE(rows.empty());
+  EXPECT_THROW(load_yaml_text("outline: [[a, 1]]", "f.yaml", schema), std::runtime_error);
+  EXPECT_THROW(load_yaml_text("outline: [1, 2]", "f.yaml", schema), std::runtime_error);
+}
+
 }  // namespace
 }  // namespace topogeo::support

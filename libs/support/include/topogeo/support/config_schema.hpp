@@ -32,6 +32,7 @@ struct ConfigParameter {
   std::string expected;  ///< "number between 0.1 and 5 m", for messages and the example file
   std::string default_text;
   bool is_text = false;  ///< strings: quoted in YAML
+  bool is_rows = false;  ///< a list of lists of numbers in YAML, or its text
   bool in_fingerprint = true;
   bool fixed = false;  ///< no setting: checked in memory and accepted in files that repeat it
 
@@ -64,7 +65,8 @@ class ConfigSchema {
   void add(const std::string& key, Enum* value,
            const std::vector<std::pair<std::string, Enum>>& names, const std::string& why);
 
-  /// A matrix or a list of tuples, written by rows: "0.9 0.1; 0.1 0.9". `value_of` returns nothing
+  /// A matrix or a list of tuples, written by rows: "0.9 0.1; 0.1 0.9", in YAML also as [[0.9, 0.1],
+  /// [0.1, 0.9]]. It may be empty if its default is. `value_of` returns nothing
   /// for rows of another form; `expected` describes the form.
   template <typename Value>
   void add_rows(const std::string& key, Value* value, NumberRows (*rows_of)(const Value&),
