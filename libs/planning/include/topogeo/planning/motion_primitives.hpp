@@ -54,6 +54,7 @@ struct PathSample {
   double distance_m = 0.0;        ///< along the path from its start
   double curvature_per_m = 0.0;   ///< of the path from here on, positive to the left
   double turn_on_spot_rad = 0.0;  ///< turn here before going on; 0 nearly everywhere
+  bool backward = false;          ///< the robot faces the other way and reverses from here on
 };
 
 /// Straight lines joined by tangential arcs, sampled. Arcs stay in passable cells; the curvature
