@@ -109,6 +109,51 @@ FreePath free_path(const world::World& scene, const Eigen::Vector2d& from_m,
   return path.free();
 }
 
+namespace {
+
+/// Point of a segment inside of the outline; both in the robot's frame.
+std::optional<Eigen::Vector2d> inside_m(const geometry::Footprint& footprint,
+                                        const Eigen::Vector2d& a_m, const Eigen::Vector2d& b_m) {
+  if (geometry::signed_distance_m(footprint, a_m) < 0.0) return a_m;
+  if (geometry::signed_distance_m(footprint, b_m) < 0.0) return b_m;
+  const auto cross = [](const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
+    return p.x() * q.y() - p.y() * q.x();
+  };
+  const Eigen::Vector2d wall_m = b_m - a_m;
+  const auto& corners_m = footprint.corners_m;
+  for (std::size_t i = 0; i < corners_m.size(); ++i) {
+    const Eigen::Vector2d edge_m = corners_m[(i + 1) % corners_m.size()] - corners_m[i];
+    const double across = cross(wall_m, edge_m);
+    if (across == 0.0) continue;
+    const Eigen::Vector2d to_m = corners_m[i] - a_m;
+    const double on_wall = cross(to_m, edge_m) / across;
+    const double on_edge = cross(to_m, wall_m) / across;
+    if (on_wall >= 0.0 && on_wall <= 1.0 && on_edge >= 0.0 && on_edge <= 1.0) {
+      return a_m + on_wall * wall_m;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Eigen::Vector2d> overlap_m(const world::World& scene, const geometry::Pose2& pose,
+                                         const geometry::Footprint& footprint) {
+  const double around_m = geometry::circumscribed_radius_m(footprint);
+  const geometry::Pose2 T_robot_world = geometry::inverse(pose);
+  for (const world::Segment& segment : scene.segments) {
+    if ((nearest_m(segment, pose.position_m()) - pose.position_m()).norm() > around_m) continue;
+    const auto point_m =
+        inside_m(footprint, T_robot_world * segment.a_m, T_robot_world * segment.b_m);
+    if (point_m) return pose * *point_m;
+  }
+  for (const world::Circle& circle : scene.circles) {
+    const double apart_m = geometry::signed_distance_m(footprint, T_robot_world * circle.center_m);
+    if (apart_m < circle.radius_m) return circle.center_m;
+  }
+  return std::nullopt;
+}
+
 std::optional<Eigen::Vector2d> overlap_m(const world::World& scene, const Eigen::Vector2d& center_m,
                                          double radius_m) {
   std::optional<Eigen::Vector2d> found;

@@ -23,6 +23,8 @@ void check_robot(bool ok, const char* name, const char* expected) {
 
 RobotOptions checked(const world::World& world, RobotOptions o) {
   check_robot(o.radius_m > 0.0 && o.radius_m <= 5.0, "radius_m", "(0, 5] m");
+  const std::string fault = geometry::fault_of(o.footprint);
+  if (!fault.empty()) throw std::invalid_argument("footprint " + fault);
   check_robot(o.acceleration_m_per_s2 > 0.0, "acceleration_m_per_s2", "a number > 0");
   check_robot(o.angular_acceleration_rad_per_s2 > 0.0, "angular_acceleration_rad_per_s2",
               "a number > 0");
@@ -117,14 +119,20 @@ EncoderStep SimulatedRobot::advance(const Velocity& command, double dt_s) {
   const double hold = 1.0 - lost_share(std::fabs(rolled_m));
   const geometry::Pose2 wanted = with_errors(arc(hold * rolled_m, turned_rad));
   const geometry::SinCos heading = geometry::sincos(T_world_robot_.theta_rad);
-  const double share = go({heading.cos * wanted.x_m - heading.sin * wanted.y_m,
-                           heading.sin * wanted.x_m + heading.cos * wanted.y_m});
-  T_world_robot_.theta_rad = geometry::wrap_angle(T_world_robot_.theta_rad + wanted.theta_rad);
+  const Eigen::Vector2d displacement_m(heading.cos * wanted.x_m - heading.sin * wanted.y_m,
+                                       heading.sin * wanted.x_m + heading.cos * wanted.y_m);
+  const bool outlined = !options_.footprint.empty();
+  const double share =
+      outlined ? go_outlined(displacement_m, wanted.theta_rad) : go(displacement_m);
+  const double turned = outlined ? share : 1.0;
+  T_world_robot_.theta_rad =
+      geometry::wrap_angle(T_world_robot_.theta_rad + turned * wanted.theta_rad);
   if (share < 1.0) velocity_.linear_m_per_s = 0.0;
+  if (turned < 1.0) velocity_.angular_rad_per_s = 0.0;
   path_m_ += std::fabs(rolled_m) * share;
   time_s_ += dt_s;
   change_world();
-  const EncoderStep counted{rolled_m * share, turned_rad};
+  const EncoderStep counted{rolled_m * share, turned_rad * turned};
   T_odom_robot_ = T_odom_robot_ * arc(counted.forward_m, counted.turn_rad);
   return counted;
 }
@@ -158,6 +166,33 @@ double SimulatedRobot::go(const Eigen::Vector2d& displacement_m) {
   contact_m_ = path.contact_m;
   stopped_ = path.contact_m.has_value();
   return path.contact_m ? path.distance_m / length_m : 1.0;
+}
+
+double SimulatedRobot::go_outlined(const Eigen::Vector2d& displacement_m, double turn_rad) {
+  const geometry::Pose2 from = T_world_robot_;
+  const auto moved = [&](double share) {
+    return geometry::Pose2{from.x_m + share * displacement_m.x(),
+                           from.y_m + share * displacement_m.y(),
+                           from.theta_rad + share * turn_rad};
+  };
+  double share = 1.0;
+  std::optional<Eigen::Vector2d> contact_m;
+  // A body that already overlaps something may leave it.
+  if (!overlap_at(from)) {
+    contact_m = overlap_at(moved(1.0));
+    if (contact_m) share = 0.0;
+  }
+  if (contact_m && !stopped_) ++collisions_;
+  contact_m_ = contact_m;
+  stopped_ = contact_m.has_value();
+  T_world_robot_.x_m = moved(share).x_m;
+  T_world_robot_.y_m = moved(share).y_m;
+  return share;
+}
+
+std::optional<Eigen::Vector2d> SimulatedRobot::overlap_at(const geometry::Pose2& pose) const {
+  const auto among_people = overlap_m(people_scene_, pose, options_.footprint);
+  return among_people ? among_people : overlap_m(scene_, pose, options_.footprint);
 }
 
 double SimulatedRobot::lost_share(double rolled_m) {
@@ -198,8 +233,10 @@ void SimulatedRobot::change_world() {
 
 void SimulatedRobot::look_for_overlap() {
   const Eigen::Vector2d here_m = T_world_robot_.position_m();
-  std::optional<Eigen::Vector2d> contact_m = overlap_m(people_scene_, here_m, options_.radius_m);
-  if (!contact_m && surely_free_m_ <= 0.0) {
+  const bool outlined = !options_.footprint.empty();
+  std::optional<Eigen::Vector2d> contact_m =
+      outlined ? overlap_at(T_world_robot_) : overlap_m(people_scene_, here_m, options_.radius_m);
+  if (!outlined && !contact_m && surely_free_m_ <= 0.0) {
     contact_m = overlap_m(scene_, here_m, options_.radius_m);
   }
   if (contact_m && !overlapped_) ++run_into_;

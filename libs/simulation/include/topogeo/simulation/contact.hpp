@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include "topogeo/geometry/footprint.hpp"
+#include "topogeo/geometry/pose2.hpp"
 #include "topogeo/world/world.hpp"
 
 namespace topogeo::simulation {
@@ -26,5 +28,9 @@ FreePath free_path(const world::World& scene, const Eigen::Vector2d& from_m,
 /// nothing if there is none.
 std::optional<Eigen::Vector2d> overlap_m(const world::World& scene, const Eigen::Vector2d& center_m,
                                          double radius_m);
+
+/// A place where a wall, column or person reaches into an outline at a pose; nothing if none does.
+std::optional<Eigen::Vector2d> overlap_m(const world::World& scene, const geometry::Pose2& pose,
+                                         const geometry::Footprint& footprint);
 
 }  // namespace topogeo::simulation

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "topogeo/devices/sonar_ring.hpp"
+#include "topogeo/geometry/footprint.hpp"
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/simulation/laser.hpp"
 #include "topogeo/simulation/odometry.hpp"
@@ -33,6 +34,7 @@ struct RobotOptions {
   /// None: at the start of the world's tour, heading along it.
   std::optional<geometry::Pose2> T_world_start{};
   double radius_m = devices::kB21Radius_m;  ///< of its round body; (0, 5]
+  geometry::Footprint footprint{};          ///< of a body that is not round
   double acceleration_m_per_s2 = std::numeric_limits<double>::infinity();            ///< > 0
   double angular_acceleration_rad_per_s2 = std::numeric_limits<double>::infinity();  ///< > 0
   /// Difference between the distance that its wheels count and the one that it drives. They count
@@ -62,7 +64,8 @@ class SimulatedRobot {
   SimulatedRobot& operator=(const SimulatedRobot&) = delete;
 
   /// Drives for `dt_s` (>= 0, in pieces of at most 20 ms) as commanded. A contact stops motion
-  /// towards it, but neither a turn nor motion away from it. Throws std::invalid_argument for a
+  /// towards it, but neither a turn nor motion away from it; a body that is not round also ends a
+  /// turn at a contact. Throws std::invalid_argument for a
   /// velocity or time that is not finite.
   EncoderStep step(const Velocity& command, double dt_s);
 
@@ -106,6 +109,10 @@ class SimulatedRobot {
   EncoderStep advance(const Velocity& command, double dt_s);
   /// Moves up to `displacement_m`; returns the free share of it.
   double go(const Eigen::Vector2d& displacement_m);
+  /// The same for a body with an outline, which may also not turn into things.
+  double go_outlined(const Eigen::Vector2d& displacement_m, double turn_rad);
+  /// The point that overlaps the body at a pose.
+  [[nodiscard]] std::optional<Eigen::Vector2d> overlap_at(const geometry::Pose2& pose) const;
   double lost_share(double rolled_m);
   geometry::Pose2 with_errors(const geometry::Pose2& step);
   void change_world();
