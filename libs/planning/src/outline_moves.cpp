@@ -44,8 +44,7 @@ OutlineMoves::OutlineMoves(const FreeSpace& space, const OutlineField& field,
 
 bool OutlineMoves::free(const geometry::Pose2& pose, double clearance_m) const {
   constexpr double kCloser_m = 0.01;
-  constexpr double kLeastAtGoal_m =
-      0.03;  // at the goal: the outline would touch the wall in the cell
+  constexpr double kLeastAtGoal_m = 0.07;  // from any cell that the outline covers
   if (clearance_m >= margin_m_) return true;
   if ((pose.position_m() - start_m_).norm() < kAroundEnds_m &&
       clearance_m >= start_clearance_m_ - kCloser_m) {

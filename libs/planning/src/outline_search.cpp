@@ -17,7 +17,7 @@ constexpr double kTurn_rad = 2.0 * std::numbers::pi / kHeadings;
 constexpr double kCell_m = 0.1;              // of positions that count as one
 constexpr double kPiece_m = 0.15;            // of a straight motion: always leaves its cell
 constexpr double kEager = 1.3;               // weight of the estimate
-constexpr std::size_t kMostPoses = 400'000;  // a few seconds, and 50 MB
+constexpr std::size_t kMostPoses = 200'000;  // a second or two, and 30 MB
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 /// Length of the shortest path of the centre from every cell to the goal, metres.
