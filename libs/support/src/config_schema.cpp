@@ -68,12 +68,12 @@ class SchemaReader {
     const std::string expected = ": expected " + parameter.expected;
     // A missing value has the position of the next token.
     if (value.is_null()) key_node.fail_with(quoted + " without a value" + expected);
-    const bool is_list = parameter.is_rows && value.is_list();
-    if (!value.is_scalar() && !is_list) {
+    const std::optional<std::string> rows = parameter.is_rows ? rows_of(value) : std::nullopt;
+    if (!value.is_scalar() && !rows) {
       value.fail_with(quoted + " with a list or section" + expected);
     }
-    const bool is_quoted = !is_list && value.is_quoted();
-    const std::string text = is_list ? rows_of(value) : value.text();
+    const bool is_quoted = !rows && value.is_quoted();
+    const std::string text = rows ? *rows : value.text();
     auto assign = is_quoted && !parameter.is_text ? std::nullopt : parameter.parse(text);
     if (!assign) {
       const std::string mark = is_quoted ? "\"" : "'";
@@ -82,12 +82,17 @@ class SchemaReader {
     assignments_.push_back(std::move(*assign));
   }
 
-  /// The text of a list of lists: "0.9 0.1; 0.1 0.9".
-  static std::string rows_of(const YamlNode& list) {
+  /// The text of a list of lists: "0.9 0.1; 0.1 0.9"; nothing for another value.
+  static std::optional<std::string> rows_of(const YamlNode& list) {
+    if (!list.is_list()) return std::nullopt;
     std::string text;
     for (const YamlNode& row : list.items()) {
+      if (!row.is_list()) return std::nullopt;
       if (!text.empty()) text += "; ";
-      for (const YamlNode& number : row.items()) text += number.text() + ' ';
+      for (const YamlNode& number : row.items()) {
+        if (!number.is_scalar()) return std::nullopt;
+        text += number.text() + ' ';
+      }
     }
     return text;
   }
