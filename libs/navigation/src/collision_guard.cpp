@@ -6,6 +6,7 @@
 
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/navigation/arc_sweep.hpp"
+#include "topogeo/navigation/outline_sweep.hpp"
 #include "topogeo/scan/scan.hpp"
 #include "topogeo/support/format.hpp"
 
@@ -237,6 +238,10 @@ GuardVerdict CollisionGuard::judge_by_distances(const geometry::Velocity& wanted
     verdict.limited = wanted != geometry::Velocity{};
     return verdict;
   }
+  if (!config_.footprint.empty()) {
+    judge_outline(wanted, now_ns, verdict);
+    return verdict;
+  }
   std::vector<Eigen::Vector2d> points_m = obstacles_m(now_ns);
   const std::size_t standing = points_m.size();
   add_drawn(points_m);
@@ -276,6 +281,54 @@ GuardVerdict CollisionGuard::judge_by_distances(const geometry::Velocity& wanted
   }
   verdict.message = describe_contact(is_drawn, arc.length_m, wanted.linear_m_per_s > 0.0);
   return verdict;
+}
+
+void CollisionGuard::judge_outline(const geometry::Velocity& wanted, std::int64_t now_ns,
+                                   GuardVerdict& verdict) const {
+  const geometry::Footprint& body = config_.footprint;
+  std::vector<Eigen::Vector2d> points_m = obstacles_m(now_ns);
+  const std::size_t standing = points_m.size();
+  add_drawn(points_m);
+  const double margin_m = std::min(config_.margin_m, config_.side_margin_m);
+  const double asked = outline_speed(wanted, body);
+  const bool still = std::fabs(wanted.linear_m_per_s) < kStanding_m_s;
+  const OutlineSweep swept = sweep(wanted, points_m, body, margin_m, kFarthest_m);
+  verdict.free_m =
+      still ? sweep({1.0, 0.0}, points_m, body, margin_m, kFarthest_m).length_m : swept.length_m;
+  const bool is_drawn = swept.contact && *swept.contact >= standing;
+  if (swept.contact && !is_drawn) verdict.contact_m = points_m[*swept.contact];
+  verdict.allowed = wanted;
+  if (asked < kStanding_m_s) return;
+  if (wanted.linear_m_per_s < -kStanding_m_s && (!sonar_ || !fresh(sonar_->stamp_ns, now_ns))) {
+    verdict.allowed = {};
+    verdict.limited = true;
+    verdict.reason = HaltReason::kSonarSilent;
+    verdict.message = "backward motion needs a fresh sonar reading";
+    return;
+  }
+  const double late_s = reaction_s(now_ns);
+  double speed = speed_for(swept.reach_m, late_s);
+  const geometry::Velocity now = driven();
+  constexpr double kRolls_m_per_s = 0.05;  // below this it stops at once
+  const double arm_m = geometry::circumscribed_radius_m(body);
+  const bool goes_on = now.linear_m_per_s * wanted.linear_m_per_s +
+                           arm_m * arm_m * now.angular_rad_per_s * wanted.angular_rad_per_s >
+                       0.0;
+  if (goes_on && outline_speed(now, body) > kRolls_m_per_s) {
+    speed = std::min(speed,
+                     speed_for(sweep(now, points_m, body, margin_m, kFarthest_m).reach_m, late_s));
+  }
+  if (speed >= asked) return;
+  verdict.limited = true;
+  verdict.allowed.linear_m_per_s *= speed / asked;
+  verdict.allowed.angular_rad_per_s *= speed / asked;
+  constexpr double kCreep_m_per_s = 0.01;  // bases do not go slower
+  if (speed < kCreep_m_per_s) {
+    verdict.allowed = {};
+    verdict.reason = HaltReason::kObstacle;
+  }
+  verdict.message = still ? "no room to turn on the spot"
+                          : describe_contact(is_drawn, swept.length_m, wanted.linear_m_per_s > 0.0);
 }
 
 }  // namespace topogeo::navigation

@@ -62,7 +62,9 @@ std::vector<double> rest_times_s(std::span<const planning::PathSample> path,
   if (path.size() < 2) return rest_s;
   std::vector<double> speed(path.size(), 0.0);
   for (std::size_t i = 1; i + 1 < path.size(); ++i) {
-    if (std::fabs(path[i].turn_on_spot_rad) > kLeastTurn_rad) continue;  // it stands there
+    const bool stands = std::fabs(path[i].turn_on_spot_rad) > kLeastTurn_rad ||
+                        path[i].backward != path[i - 1].backward;
+    if (stands) continue;
     const double limit = limits_m_per_s.empty() ? config.speed_m_per_s : limits_m_per_s[i];
     speed[i] = fastest_at(path[i], limit, config);
   }

@@ -1,12 +1,40 @@
 #include "topogeo/navigation/guard_config.hpp"
 
+#include <stdexcept>
+
 #include "topogeo/support/config_schema.hpp"
 
 namespace topogeo::navigation {
+namespace {
+
+support::NumberRows rows_of(const geometry::Footprint& footprint) {
+  support::NumberRows rows;
+  for (const Eigen::Vector2d& corner_m : footprint.corners_m) {
+    rows.push_back({corner_m.x(), corner_m.y()});
+  }
+  return rows;
+}
+
+std::optional<geometry::Footprint> footprint_of(const support::NumberRows& rows) {
+  geometry::Footprint footprint;
+  for (const std::vector<double>& row : rows) {
+    if (row.size() != 2) return std::nullopt;
+    footprint.corners_m.emplace_back(row[0], row[1]);
+  }
+  return footprint;
+}
+
+}  // namespace
 
 void describe(GuardConfig& config, support::ConfigSchema& schema) {
+  schema.add_rows("robot.footprint", &config.footprint, rows_of, footprint_of,
+                  "corners [[x, y], ...] in m, 3 to 32 within 3 m of the origin, of a simple "
+                  "polygon around it",
+                  "outline of a body that is not round, in the robot's frame (x ahead, y to the "
+                  "left, the origin between the driven wheels); empty: round, guard.radius_m");
+  schema.leave_out_of_fingerprint("robot");
   schema.add("guard.radius_m", &config.radius_m, 0.05, 2.0, "m",
-             "radius of the robot's round body");
+             "radius of the robot's round body; unused with robot.footprint");
   schema.add("guard.margin_m", &config.margin_m, 0.0, 1.0, "m",
              "smallest distance between the body and obstacles while the robot drives");
   schema.add("guard.side_margin_m", &config.side_margin_m, 0.0, 1.0, "m",
@@ -42,6 +70,8 @@ void describe(GuardConfig& config, support::ConfigSchema& schema) {
 
 void check(const GuardConfig& config) {
   support::check_ranges(config);
+  const std::string fault = geometry::fault_of(config.footprint);
+  if (!fault.empty()) throw std::invalid_argument("key 'robot.footprint' " + fault);
 }
 
 }  // namespace topogeo::navigation

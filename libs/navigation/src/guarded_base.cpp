@@ -7,7 +7,11 @@
 namespace topogeo::navigation {
 
 GuardedBase::GuardedBase(const GuardConfig& guard, double stuck_s)
-    : stuck_s_(stuck_s), guard_(guard), near_(guard), watch_(stuck_s) {}
+    : stuck_s_(stuck_s),
+      outlined_(!guard.footprint.empty()),
+      guard_(guard),
+      near_(guard),
+      watch_(stuck_s) {}
 
 void GuardedBase::add(const OdometrySample& odometry) {
   guard_.add(odometry);
@@ -57,7 +61,8 @@ GuardedBase::Command GuardedBase::command(const geometry::Velocity& wanted,
   if (command.verdict.allowed == geometry::Velocity{})
     command.verdict = guard_.judge(wanted, now_ns);
   const geometry::Velocity& allowed = command.verdict.allowed;
-  command.stopped = wanted.linear_m_per_s > 0.0 && allowed == geometry::Velocity{};
+  const bool moves = outlined_ ? wanted != geometry::Velocity{} : wanted.linear_m_per_s > 0.0;
+  command.stopped = moves && allowed == geometry::Velocity{};
   if (command.stopped && !stopped_ns_) {
     stopped_ns_ = now_ns;
     command.newly_stopped = true;

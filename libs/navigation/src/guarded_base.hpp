@@ -76,6 +76,7 @@ class GuardedBase {
   void retry_now();
 
   double stuck_s_;
+  bool outlined_;  ///< an obstacle can also stop a turn and motion back
   CollisionGuard guard_;
   NearEchoes near_;
   BaseWatch watch_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "topogeo/navigation/arc_sweep.hpp"
+#include "topogeo/navigation/outline_sweep.hpp"
 
 #include "scan_smoothing.hpp"
 
@@ -68,21 +69,33 @@ std::vector<Eigen::Vector2d> LastGuard::points_now_m() const {
   return points_m;
 }
 
+double LastGuard::swept_m(const geometry::Velocity& motion,
+                          const std::vector<Eigen::Vector2d>& points_m) const {
+  const double margin_m = std::min(kNoise_m, config_.side_margin_m);
+  if (config_.footprint.empty()) {
+    return sweep(motion, points_m, config_.radius_m + margin_m, kSight_m).length_m;
+  }
+  return sweep(motion, points_m, config_.footprint, margin_m, kSight_m).reach_m;
+}
+
 LastGuard::Judgement LastGuard::judge(const geometry::Velocity& wanted, double brake_m_per_s2,
                                       std::int64_t now_ns) const {
-  const double asked = std::fabs(wanted.linear_m_per_s);
+  const double asked = config_.footprint.empty() ? std::fabs(wanted.linear_m_per_s)
+                                                 : outline_speed(wanted, config_.footprint);
   if (asked < kStandingSpeed) return {wanted, Verdict::kAsWanted, kSight_m};
   if (!sees(now_ns)) {
     if (!config_.needs_scan) return {wanted, Verdict::kAsWanted, kSight_m};
     return {{}, Verdict::kBlind, 0.0};
   }
   const std::vector<Eigen::Vector2d> points_m = points_now_m();
-  const double body_m = config_.radius_m + std::min(kNoise_m, config_.side_margin_m);
-  double free_m = sweep(wanted, points_m, body_m, kSight_m).length_m;
+  double free_m = swept_m(wanted, points_m);
   // While changing to another arc, the robot is still on the present one.
-  if (std::fabs(last_->linear_mps) > kRolls && last_->linear_mps * wanted.linear_m_per_s > 0.0) {
-    const geometry::Velocity driven{last_->linear_mps, last_->angular_radps};
-    free_m = std::min(free_m, sweep(driven, points_m, body_m, kSight_m).length_m);
+  const geometry::Velocity driven{last_->linear_mps, last_->angular_radps};
+  const bool turns_on = !config_.footprint.empty() && wanted.linear_m_per_s == 0.0 &&
+                        last_->angular_radps * wanted.angular_rad_per_s > 0.0;
+  if (turns_on ||
+      (std::fabs(last_->linear_mps) > kRolls && last_->linear_mps * wanted.linear_m_per_s > 0.0)) {
+    free_m = std::min(free_m, swept_m(driven, points_m));
   }
   const double age_s = std::max(0.0, static_cast<double>(now_ns - last_->stamp_ns) * kSecondsPerNs);
   const double speed = stopping_speed(free_m, age_s + kDelay_s + runs_on_s_,

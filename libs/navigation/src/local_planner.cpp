@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "topogeo/navigation/path_follower.hpp"
+#include "topogeo/planning/outline_planner.hpp"
 
 #include "path_band.hpp"
 
@@ -91,6 +93,27 @@ LocalPath LocalPlanner::plan(const RouteKeeper& route, const Eigen::Vector2d& ro
   if (!on_grid.path.empty() || !scan) return on_grid;
   LocalPath on_branches = plan_on_branches(*scan, route, robot_m, obstacles_m);
   return on_branches.path.empty() ? on_grid : on_branches;
+}
+
+LocalPath LocalPlanner::plan_outline(const RouteKeeper& route, const geometry::Pose2& T_map_robot,
+                                     std::span<const Eigen::Vector2d> obstacles_m) const {
+  planning::OutlineConfig config;
+  config.footprint = config_.guard.footprint;
+  const planning::PoseGoal goal{route.goal_m(), route.route().heading_rad};
+  planning::OutlinePath path =
+      planning::plan_outline(*route.space(), T_map_robot, goal, obstacles_m, config);
+  LocalPath local;
+  if (path.found()) {
+    local.status = planning::DetourStatus::kClear;
+    local.path = std::move(path.samples);
+    return local;
+  }
+  local.status = planning::DetourStatus::kBlocked;
+  if (!obstacles_m.empty()) {
+    path = planning::plan_outline(*route.space(), T_map_robot, goal, {}, config);
+  }
+  local.refused = path.reason;
+  return local;
 }
 
 LocalPath LocalPlanner::plan_on_branches(const SeenScan& scan, const RouteKeeper& route,

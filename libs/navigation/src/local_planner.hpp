@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -23,6 +24,8 @@ struct LocalPath {
   std::vector<planning::PathSample> path;  ///< if clear or found
   bool on_branches = false;                ///< found along branches of the scan
   bool on_virtual = false;                 ///< along virtual ones
+  /// Why the outline fits along no path even without obstacles; empty if that is not so.
+  std::string refused;
 };
 
 /// The first place on a path where the robot would touch an obstacle.
@@ -40,6 +43,10 @@ class LocalPlanner {
   [[nodiscard]] LocalPath plan(const RouteKeeper& route, const Eigen::Vector2d& robot_m,
                                std::span<const Eigen::Vector2d> obstacles_m,
                                const std::optional<SeenScan>& scan = {}) const;
+
+  /// The same for a robot that is not round: a path along which its whole outline is free.
+  [[nodiscard]] LocalPath plan_outline(const RouteKeeper& route, const geometry::Pose2& T_map_robot,
+                                       std::span<const Eigen::Vector2d> obstacles_m) const;
 
   /// The first place after `from_m` along a path where the body would come too near to an obstacle;
   /// nothing if there is none within `reach_m`. An obstacle near the robot blocks only motion that

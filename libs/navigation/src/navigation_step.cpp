@@ -179,9 +179,13 @@ geometry::Velocity NavigationStep::follow(const geometry::Pose2& T_map_robot) {
   constexpr double kNearEnough_m = 0.08;  // for goals too narrow for the last centimetres
   constexpr double kStays_s = 15.0;       // longer than the last centimetres and a turn
   const SeenObstacles obstacles = surroundings.seen(now_ns);
-  const RouteDriver::Scene scene{routes, T_map_robot, obstacles, wait.over(now_ns), now_ns};
+  const RouteDriver::Scene scene{
+      routes, T_map_robot, obstacles, wait.over(now_ns), now_ns, surroundings.blockages().points_m};
   if (driver.needs_path() || !driver.follower().has_path()) {
     if ((wait.waits() && driver.just_planned(now_ns)) || !find_path(scene)) {
+      if (!driver.refused().empty()) {
+        return stop(NavigatorState::kStopped, HaltReason::kNoRoute, driver.refused());
+      }
       return wait_for_obstacle();
     }
   }
@@ -271,9 +275,18 @@ geometry::Velocity NavigationStep::settle(const geometry::Pose2& T_map_robot) {
     return stop(NavigatorState::kArrived, HaltReason::kNone, std::move(next.message));
   }
   if (next.kind == ArrivalStep::Kind::kMoves) {
-    driver.follower().follow(std::move(next.path), next.heading_rad);
+    correct(T_map_robot, std::move(next));
   }
   return stop(NavigatorState::kDriving, HaltReason::kNone, std::move(next.message));
+}
+
+// A robot that is not round may have no room to turn to the goal.
+void NavigationStep::correct(const geometry::Pose2& T_map_robot, ArrivalStep next) {
+  if (!config.guard.footprint.empty() && !next.path.empty()) {
+    const SeenObstacles obstacles = surroundings.seen(now_ns);
+    if (find_path({routes, T_map_robot, obstacles, true, now_ns})) return;
+  }
+  driver.follower().follow(std::move(next.path), next.heading_rad);
 }
 
 // An obstacle blocks the last centimetres.

@@ -44,6 +44,7 @@ struct NavigationStep {
   geometry::Velocity wait_for_obstacle();
   void describe_wait();
   geometry::Velocity settle(const geometry::Pose2& T_map_robot);
+  void correct(const geometry::Pose2& T_map_robot, ArrivalStep next);
   geometry::Velocity settle_here();
   bool find_path(const RouteDriver::Scene& scene);
   void begin_path();

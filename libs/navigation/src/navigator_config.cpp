@@ -76,6 +76,7 @@ void describe(NavigatorConfig& config, support::ConfigSchema& schema) {
 
 void check(const NavigatorConfig& config) {
   support::check_ranges(config);
+  check(config.guard);
   markov::check(config.markov.markov);
   markov::check(config.markov.poses);
   planning::check(config.detour);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
@@ -59,7 +60,11 @@ PathFollower::PathFollower(const FollowerConfig& config)
 
 std::size_t PathFollower::leg_end(std::size_t from) const {
   std::size_t end = from + 1;
-  while (end + 1 < path_.size() && std::fabs(path_[end].turn_on_spot_rad) < kCorner_rad) ++end;
+  const auto goes_on = [this](std::size_t i) {
+    return std::fabs(path_[i].turn_on_spot_rad) < kCorner_rad &&
+           path_[i].backward == path_[i - 1].backward;
+  };
+  while (end + 1 < path_.size() && goes_on(end)) ++end;
   return std::min(end, path_.size() - 1);
 }
 
@@ -219,7 +224,9 @@ void PathFollower::finish_turn(double heading_rad) {
 void PathFollower::finish_leg(const Eigen::Vector2d& at_m) {
   if (leg_from_m_) {
     const double advance_m = (at_m - *leg_from_m_).norm();
-    if (advance_m > 1e-3) finished_.push_back({planning::MotionKind::kAdvance, advance_m});
+    // There is no primitive for a leg back.
+    if (advance_m > 1e-3 && !backs_up())
+      finished_.push_back({planning::MotionKind::kAdvance, advance_m});
   }
   leg_from_m_.reset();
   if (leg_end_ + 1 < path_.size()) {
@@ -228,6 +235,21 @@ void PathFollower::finish_leg(const Eigen::Vector2d& at_m) {
     progress_m_ = path_.back().distance_m;
     phase_ = Phase::kFinalTurn;
   }
+}
+
+bool PathFollower::backs_up() const {
+  return !path_.empty() && phase_ != Phase::kFinalTurn && path_[leg_begin_].backward;
+}
+
+// A leg back is one ahead of a robot that faces the other way.
+geometry::Velocity PathFollower::control_either_way(const geometry::Pose2& T_map_robot,
+                                                    double limit_m_per_s) {
+  if (!backs_up()) return control(T_map_robot, limit_m_per_s);
+  geometry::Pose2 reversed = T_map_robot;
+  reversed.theta_rad = geometry::wrap_angle(T_map_robot.theta_rad + std::numbers::pi);
+  geometry::Velocity velocity = control(reversed, limit_m_per_s);
+  velocity.linear_m_per_s = -velocity.linear_m_per_s;
+  return velocity;
 }
 
 geometry::Velocity PathFollower::control(const geometry::Pose2& T_map_robot, double limit_m_per_s) {
@@ -291,8 +313,8 @@ FollowerStep PathFollower::step(const geometry::Pose2& T_map_robot, std::int64_t
                                 double speed_limit_m_per_s) {
   FollowerStep result;
   if (!active_) return result;
-  const geometry::Velocity wanted =
-      control(commands_.predicted(T_map_robot, now_ns), std::max(0.0, speed_limit_m_per_s));
+  const geometry::Velocity wanted = control_either_way(commands_.predicted(T_map_robot, now_ns),
+                                                       std::max(0.0, speed_limit_m_per_s));
   result.command = ramped(wanted, now_ns);
   result.done = phase_ == Phase::kDone;
   result.rest_m = rest_m();

@@ -9,6 +9,7 @@
 #include "topogeo/support/format.hpp"
 
 #include "elapsed.hpp"
+#include "outline_block.hpp"
 #include "path_distance.hpp"
 
 namespace topogeo::navigation {
@@ -25,7 +26,8 @@ constexpr double kSeeing_s = 0.15;      // between a measurement and its command
 
 FollowerConfig follower_config(const NavigatorConfig& config) {
   FollowerConfig follower = config.follower;
-  if (config.motion == MotionStyle::kPrimitives) follower.begin_turn_rad = 0.05;
+  const bool exact = config.motion == MotionStyle::kPrimitives || !config.guard.footprint.empty();
+  if (exact) follower.begin_turn_rad = 0.05;
   return follower;
 }
 
@@ -46,9 +48,23 @@ bool RouteDriver::just_planned(std::int64_t now_ns) const {
   return elapsed_s(planned_ns_, now_ns) < kPlanEvery_s;
 }
 
+LocalPath RouteDriver::plan(const Scene& scene) const {
+  const auto standing_m = scene.obstacles.standing_m();
+  if (config_.guard.footprint.empty()) {
+    return planner_.plan(scene.route, scene.T_map_robot.position_m(), standing_m,
+                         scene.obstacles.scan);
+  }
+  // The route avoids what is reported, but the outline may need another way.
+  std::vector<Eigen::Vector2d> obstacles_m(standing_m.begin(), standing_m.end());
+  obstacles_m.insert(obstacles_m.end(), scene.reported_m.begin(), scene.reported_m.end());
+  return planner_.plan_outline(scene.route, scene.T_map_robot, obstacles_m);
+}
+
 bool RouteDriver::find_path(const Scene& scene) {
-  LocalPath local = planner_.plan(scene.route, scene.T_map_robot.position_m(),
-                                  scene.obstacles.standing_m(), scene.obstacles.scan);
+  constexpr double kRefusedFor_s = 3.0;  // a search for an outline without a path takes long
+  if (!refused_.empty() && elapsed_s(planned_ns_, scene.now_ns) < kRefusedFor_s) return false;
+  LocalPath local = plan(scene);
+  refused_ = std::move(local.refused);
   planned_ns_ = scene.now_ns;
   cut_off_ = local.status == planning::DetourStatus::kLost;
   if (local.path.empty()) return false;
@@ -75,6 +91,10 @@ bool RouteDriver::go_round(const Scene& scene) {
 double RouteDriver::speed_past_obstacles(const Scene& scene, bool& another_path) {
   block_.reset();
   const auto first_of = [&](std::span<const Eigen::Vector2d> points_m) {
+    if (!config_.guard.footprint.empty()) {
+      return outline_block(config_.guard.footprint, follower_.path(), follower_.progress_m(),
+                           scene.T_map_robot, points_m, kSees_m);
+    }
     return planner_.blocked(follower_.path(), follower_.progress_m(),
                             scene.T_map_robot.position_m(), points_m, kSees_m);
   };

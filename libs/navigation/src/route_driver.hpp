@@ -35,6 +35,8 @@ class RouteDriver {
     const SeenObstacles& obstacles;
     bool waited = false;  ///< the obstacle has had its time to move away
     std::int64_t now_ns = 0;
+    std::span<const Eigen::Vector2d>
+        reported_m{};  ///< obstacles reported to the planner, map frame
   };
 
   /// Requests another path from the robot's place.
@@ -42,7 +44,10 @@ class RouteDriver {
   /// The pose was lost or has jumped: the route may be useless from the robot's place.
   void doubt_route() { doubts_route_ = true; }
   void trust_route() { doubts_route_ = false; }
-  void forget() { follower_.forget(); }
+  void forget() {
+    follower_.forget();
+    refused_.clear();
+  }
 
   [[nodiscard]] bool needs_path() const { return needs_path_; }
   [[nodiscard]] bool doubts_route() const { return doubts_route_; }
@@ -79,7 +84,11 @@ class RouteDriver {
   /// The same as text.
   [[nodiscard]] std::string describe_block() const;
 
+  /// Why no path is wide enough for the outline of the robot; empty if that is not known.
+  [[nodiscard]] const std::string& refused() const { return refused_; }
+
  private:
+  [[nodiscard]] LocalPath plan(const Scene& scene) const;
   bool go_round(const Scene& scene);
   double speed_past_obstacles(const Scene& scene, bool& another_path);
   /// The speed that slow zones allow here and within the braking distance.
@@ -92,6 +101,7 @@ class RouteDriver {
   bool doubts_route_ = false;
   bool cut_off_ = false;         ///< the last search for a path could not begin
   std::int64_t planned_ns_ = 0;  ///< time of the last search for a path
+  std::string refused_;
   std::optional<PathBlock> block_;
   Detours detours_;
 };

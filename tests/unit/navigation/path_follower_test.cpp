@@ -157,5 +157,26 @@ TEST(PathFollower, SettingsOutOfRangeAreRefused) {
   EXPECT_THROW(PathFollower{config}, std::invalid_argument);
 }
 
+TEST(PathFollower, ReversesALegAndGoesOn) {
+  // Back for a metre, then ahead to the left.
+  std::vector<planning::PathSample> path;
+  for (int i = 0; i < 10; ++i) {
+    path.push_back({{-0.1 * i, 0.0, std::numbers::pi}, 0.1 * i, 0.0, 0.0, true});
+  }
+  for (int i = 0; i <= 10; ++i) {
+    const double turn_rad = i == 0 ? 0.5 * std::numbers::pi : 0.0;
+    path.push_back({{-1.0, 0.1 * i, 0.5 * std::numbers::pi}, 1.0 + 0.1 * i, 0.0, turn_rad});
+  }
+  PathFollower follower{FollowerConfig{}};
+  follower.follow(path, 0.5 * std::numbers::pi);
+  Base base({0.0, 0.02, 0.03});
+  ASSERT_TRUE(base.follow(follower, 30.0));
+  EXPECT_NEAR(base.T_map_robot.x_m, -1.0, 0.03);
+  EXPECT_NEAR(base.T_map_robot.y_m, 1.0, 0.03);
+  EXPECT_NEAR(base.T_map_robot.theta_rad, 0.5 * std::numbers::pi, 0.03);
+  EXPECT_LT(base.least_speed, -0.2);
+  EXPECT_LT(base.largest_off_m, 0.05);
+}
+
 }  // namespace
 }  // namespace topogeo::navigation

@@ -16,6 +16,7 @@ simulation::RobotOptions options_of(const DriveSettings& settings) {
   options.T_world_start = settings.T_world_start;
   options.acceleration_m_per_s2 = 1.0;
   options.angular_acceleration_rad_per_s2 = 3.0;
+  options.footprint = settings.navigator.guard.footprint;
   if (!settings.noise) {
     options.odometry = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     options.laser = {0.0, 0.0, 0.0, 0.0};

@@ -8,7 +8,8 @@
 // arc nor on the present one. The free distance limits the speed to one from which the robot still
 // stops in time in any case: the age of its data, its delay and the time that the base runs on
 // without its gateway count (geometry/reaction_times.hpp). Laser noise is smoothed over
-// neighbouring beams by at most the side margin, so a measured point itself is never touched.
+// neighbouring beams by at most the side margin, so a measured point itself is never touched. A
+// body that is not round counts with its outline, also while it turns (outline_sweep.hpp).
 //
 // The fields that the laser itself watches are a second line of defence, independent of odometry,
 // body and mounting (Thesis, appendix B.1).
@@ -57,7 +58,8 @@ class CollisionGuard {
   void keep_off(std::int64_t stamp_ns, std::vector<Eigen::Vector2d> points_m);
 
   /// Returns the safe part of a wanted velocity. A round body may always turn on the spot while the
-  /// sensors work. It moves backwards only with fresh sonars.
+  /// sensors work, another one only where its corners touch nothing. It moves backwards only with
+  /// fresh sonars.
   [[nodiscard]] GuardVerdict judge(const geometry::Velocity& wanted, std::int64_t now_ns) const;
 
   /// Why no motion at all is allowed; kNone when the sensors work. `message` may be null.
@@ -79,6 +81,10 @@ class CollisionGuard {
   void obey_fields(GuardVerdict& verdict) const;
   [[nodiscard]] GuardVerdict judge_by_distances(const geometry::Velocity& wanted,
                                                 std::int64_t now_ns) const;
+  /// The same for a body with an outline: also a turn on the spot has its free distance, that of
+  /// the farthest corner.
+  void judge_outline(const geometry::Velocity& wanted, std::int64_t now_ns,
+                     GuardVerdict& verdict) const;
   void compare_echoes();
   void watch_silence(const SonarRound& sonar);
 

@@ -1,6 +1,7 @@
 // Settings of the collision guard.
 #pragma once
 
+#include "topogeo/geometry/footprint.hpp"
 #include "topogeo/geometry/reaction_times.hpp"
 
 namespace topogeo::support {
@@ -10,7 +11,8 @@ class ConfigSchema;
 namespace topogeo::navigation {
 
 struct GuardConfig {
-  double radius_m = 0.267;
+  geometry::Footprint footprint;  ///< of a body that is not round; without corners: it is round
+  double radius_m = 0.267;        ///< of a round body
   double margin_m = 0.05;
   double side_margin_m = 0.02;
   double deceleration_m_per_s2 = 0.5;
@@ -29,7 +31,7 @@ struct GuardConfig {
 /// Declares the section `guard`.
 void describe(GuardConfig& config, support::ConfigSchema& schema);
 
-/// Throws std::invalid_argument naming key, value and range.
+/// Throws std::invalid_argument naming key, value and range, or the fault of the footprint.
 void check(const GuardConfig& config);
 
 }  // namespace topogeo::navigation

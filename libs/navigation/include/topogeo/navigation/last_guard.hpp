@@ -48,13 +48,17 @@ class LastGuard {
     double free_m = 0.0;  ///< along the wanted motion before the body touches anything; <= 5
   };
   /// The part of a velocity that the base may get now, if it brakes with `brake_m_per_s2` (> 0;
-  /// counted up to guard.deceleration_m_per_s2). A round body may always turn on the spot.
+  /// counted up to guard.deceleration_m_per_s2). A round body may always turn on the spot, another
+  /// one only where its corners touch nothing.
   [[nodiscard]] Judgement judge(const geometry::Velocity& wanted, double brake_m_per_s2,
                                 std::int64_t now_ns) const;
 
  private:
   [[nodiscard]] std::vector<Eigen::Vector2d> points_now_m() const;
   [[nodiscard]] bool sees(std::int64_t now_ns) const;
+  /// Free distance of the body at a motion; of an outline, that of its farthest corner.
+  [[nodiscard]] double swept_m(const geometry::Velocity& motion,
+                               const std::vector<Eigen::Vector2d>& points_m) const;
   [[nodiscard]] bool repeats(const ScanPoints& scan);
 
   GuardConfig config_;

@@ -83,6 +83,8 @@ class PathFollower {
   [[nodiscard]] geometry::Velocity turn(double error_rad) const;
   [[nodiscard]] geometry::Velocity advance(const geometry::Pose2& T_map_robot, const Place& place,
                                            double limit_m_per_s) const;
+  [[nodiscard]] bool backs_up() const;
+  geometry::Velocity control_either_way(const geometry::Pose2& T_map_robot, double limit_m_per_s);
   geometry::Velocity control(const geometry::Pose2& T_map_robot, double limit_m_per_s);
   [[nodiscard]] geometry::Velocity ramped(const geometry::Velocity& wanted,
                                           std::int64_t now_ns) const;
