@@ -9,12 +9,23 @@
 namespace topogeo::pipeline {
 namespace {
 
+// With an outline the centre keeps the inscribed radius from obstacles; the planner of outlines
+// checks the rest of the body.
+void size_by_outline(Config& c) {
+  const geometry::Footprint& body = c.navigator.guard.footprint;
+  if (body.empty()) return;
+  const double centre_m = geometry::inscribed_radius_m(body);
+  c.hybrid_map.inflation.forbidden_cells = centre_m / c.hybrid_map.grid.resolution_m;
+  c.planning.min_clearance_m = centre_m + c.navigator.guard.side_margin_m;
+}
+
 // Copies keys that stand for several variables.
 void share_values(Config& c) {
   mount_laser(c, c.local_mapper.T_robot_laser);
   c.local_mapper.tracker.odometry = c.localizer.odometry;
   c.navigator.voronoi = c.local_mapper.voronoi;
   c.navigator.local_map = c.local_mapper.local_map;
+  size_by_outline(c);
   c.calibration.fallback = c.localizer.odometry;
   c.calibration.seed = c.localizer.seed;
 }

@@ -241,5 +241,20 @@ TEST_F(ConfigTest, MissingFileIsNamed) {
   }
 }
 
+TEST_F(ConfigTest, AnOutlineSizesTheForbiddenCells) {
+  std::ofstream(file_)
+      << "robot:\n  footprint: [[0.6, 0.4], [0.6, -0.4], [-0.6, -0.4], [-0.6, 0.4]]\n";
+  const Config config = load_config(file_).config;
+  EXPECT_EQ(config.navigator.guard.footprint.corners_m.size(), 4U);
+  EXPECT_NEAR(config.hybrid_map.inflation.forbidden_cells, 4.0, 1e-9);
+  EXPECT_NEAR(config.planning.min_clearance_m, 0.42, 1e-9);
+  EXPECT_TRUE(load_config({}).config.navigator.guard.footprint.empty());
+  EXPECT_EQ(load_config({}).config.hybrid_map.inflation.forbidden_cells, 3.0);
+  EXPECT_THAT(complaint("robot: {footprint: [[1.6, 0.4], [1.6, -0.4], [0.6, 0]]}"),
+              HasSubstr("origin"));
+  EXPECT_THAT(complaint("robot: {footprint: [[0.6, 0.4], [0.6, -0.4, 1]]}"),
+              HasSubstr("robot.footprint"));
+}
+
 }  // namespace
 }  // namespace topogeo::pipeline
