@@ -66,6 +66,11 @@ void RobotView::on_pose(const msg::LivePose& pose, std::int64_t sent_ns) {
   for (const double value : pose.covariance()) covariance.push_back(exact(value));
   json["covariance"] = std::move(covariance);
   json["reason"] = reason_of(pose.state());
+  Json outline = Json::array();
+  for (const auto& corner_m : service_.setup().config.config.navigator.guard.footprint.corners_m) {
+    outline.push_back({corner_m.x(), corner_m.y()});
+  }
+  if (!outline.empty()) json["footprint_m"] = std::move(outline);
   json["sent_s"] = seconds(sent_ns);
   json["heard_s"] = seconds(support::wall_clock_ns());
   hub_.set(Channel::kPose, text_of(json));

@@ -11,6 +11,7 @@ export interface Pose {
   theta_rad: number;
   covariance: (number | null)[]; // 3 x 3, row-major
   reason: string;
+  footprint_m?: [number, number][]; // corners, robot frame; missing: a round robot
 }
 
 export interface Scan {

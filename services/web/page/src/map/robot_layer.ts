@@ -52,16 +52,18 @@ export function draw_robot(
     context.lineWidth = 1.5;
     context.stroke();
   }
-  draw_body(context, view, { x: pose.x_m, y: pose.y_m, theta: pose.theta_rad }, color, palette);
+  const at = { x: pose.x_m, y: pose.y_m, theta: pose.theta_rad };
+  draw_body(context, view, at, color, palette, pose.footprint_m);
 }
 
-/** A round body with its heading. */
+/** A body with its heading: round, or with an outline (robot frame, metres). */
 export function draw_body(
   context: CanvasRenderingContext2D,
   view: View,
   at: PoseMark,
   color: string,
   palette: Palette,
+  footprint_m: [number, number][] = [],
 ): void {
   const [x, y] = to_pixels(view, at.x, at.y);
   const radius = Math.max(smallestBodyPx, bodyRadiusM * view.scale);
@@ -69,7 +71,12 @@ export function draw_body(
   context.translate(x, y);
   context.rotate(-at.theta);
   context.beginPath();
-  context.arc(0, 0, radius, 0, 2 * Math.PI);
+  if (footprint_m.length > 2 && bodyRadiusM * view.scale >= smallestBodyPx) {
+    for (const [ahead, left] of footprint_m) context.lineTo(ahead * view.scale, -left * view.scale);
+    context.closePath();
+  } else {
+    context.arc(0, 0, radius, 0, 2 * Math.PI);
+  }
   context.fillStyle = color;
   context.fill();
   context.strokeStyle = palette.robot_edge;
