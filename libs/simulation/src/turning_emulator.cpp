@@ -89,20 +89,23 @@ std::vector<double> TurningEmulator::measure_mm(double first_deg, double step_de
   return readings_mm;
 }
 
-/// The direction of a beam depends on its reading, so it is found by steps.
+/// The direction of a beam depends on its reading, so it is found by steps, from the reading of the
+/// beam before.
 std::vector<double> TurningEmulator::measure_aside_mm(double first_deg, double step_deg,
                                                       std::size_t count,
                                                       const BesideAxis& geometry) const {
   constexpr int kSteps = 3;
   const double far_mm = 1000.0 * range_max_m_;
   std::vector<double> readings_mm;
+  double reading_mm = far_mm;
   for (std::size_t i = 0; i < count; ++i) {
     const double stated_deg = first_deg + static_cast<double>(i) * step_deg;
-    double reading_mm = far_mm;
     for (int step = 0; step < kSteps; ++step) {
-      const double aside_deg = geometry.aside_deg(reading_mm > 0.0 ? reading_mm : far_mm);
+      const double guess_mm = reading_mm;
+      const double aside_deg = geometry.aside_deg(guess_mm > 0.0 ? guess_mm : far_mm);
       const double range_mm = measure_mm(stated_deg + aside_deg, step_deg, 1).front();
       reading_mm = range_mm > 0.0 ? std::round(geometry.reading_mm(range_mm)) : 0.0;
+      if (reading_mm == guess_mm) break;
     }
     readings_mm.push_back(reading_mm);
   }

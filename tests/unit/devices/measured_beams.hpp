@@ -27,7 +27,7 @@ class MeasuredBeams {
       const auto code = random_.below(10) == 0 ? 0 : 300 + random_.below(9700);
       ranges_m.push_back(static_cast<float>(code) * 0.001F);
       const double angle_rad = beams.angle_min_rad + static_cast<double>(i) * beams.angle_step_rad;
-      beams_.push_back({angle_rad, ranges_m.back(), now_ns});
+      beams_.push_back({wrapped(angle_rad), ranges_m.back(), now_ns});
     }
     while (beams_.front().time_ns < now_ns - kRemembered_ns) beams_.pop_front();
     return ranges_m;
@@ -48,32 +48,34 @@ class MeasuredBeams {
 
  private:
   struct Measured {
-    double angle_rad;
+    double angle_rad;  // -pi to pi
     float range_m;
     std::int64_t time_ns;
   };
   static constexpr std::int64_t kRemembered_ns = 3'000'000'000;
+  static constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+
+  static double wrapped(double angle_rad) { return std::remainder(angle_rad, kTurn_rad); }
 
   [[nodiscard]] bool has(const LaserScan& scan, std::size_t beam) const {
     constexpr float kSame_m = 0.005F;
     constexpr float kOneSurface_m = 0.2F;
     const auto place = static_cast<double>(beam);
-    const double angle_rad = scan.angle_min_rad + place * scan.angle_step_rad;
+    const double angle_rad = wrapped(scan.angle_min_rad + place * scan.angle_step_rad);
     const std::int64_t time_ns =
         scan.stamp_ns + std::llround(1e9 * (scan.first_beam_s + place * scan.time_step_s));
     const auto from =
         std::ranges::lower_bound(beams_, time_ns - time_error_ns, {}, &Measured::time_ns);
+    const float range_m = scan.ranges_m[beam];
     std::vector<float> near_m;
     for (auto it = from; it != beams_.end() && it->time_ns <= time_ns + time_error_ns; ++it) {
-      const double apart_rad =
-          std::fabs(std::remainder(it->angle_rad - angle_rad, 2.0 * std::numbers::pi));
-      if (apart_rad <= 1.55 * scan.angle_step_rad && it->range_m > 0.0F) {
-        near_m.push_back(it->range_m);
-      }
+      const double apart_rad = std::fabs(it->angle_rad - angle_rad);
+      const double shorter_way_rad = std::min(apart_rad, kTurn_rad - apart_rad);
+      if (shorter_way_rad > 1.55 * scan.angle_step_rad || it->range_m <= 0.0F) continue;
+      if (std::fabs(range_m - it->range_m) <= kSame_m) return true;
+      near_m.push_back(it->range_m);
     }
-    const float range_m = scan.ranges_m[beam];
     for (const float a_m : near_m) {
-      if (std::fabs(range_m - a_m) <= kSame_m) return true;
       for (const float b_m : near_m) {
         const bool between =
             range_m >= std::min(a_m, b_m) - kSame_m && range_m <= std::max(a_m, b_m) + kSame_m;

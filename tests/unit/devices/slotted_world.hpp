@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -23,7 +24,7 @@ class SlottedWorld {
     std::vector<float> ranges_m;
     for (std::size_t i = 0; i < beams.count; ++i) {
       const double angle_rad = beams.angle_min_rad + static_cast<double>(i) * beams.angle_step_rad;
-      ranges_m.push_back(static_cast<float>(range_m(angle_rad, now_ns)));
+      ranges_m.push_back(static_cast<float>(middle_m(now_ns) + wave_m(angle_rad)));
     }
     return ranges_m;
   }
@@ -43,25 +44,26 @@ class SlottedWorld {
   static constexpr std::int64_t kSlot_ns = 60'000'000;
   static constexpr double kSame_m = 0.03;
 
-  [[nodiscard]] double range_m(double angle_rad, std::int64_t now_ns) const {
+  /// Mean range of the slot.
+  [[nodiscard]] double middle_m(std::int64_t now_ns) const {
     // SplitMix64 of the slot, as metres.
     std::uint64_t x = seed_ + 0x9E3779B97F4A7C15U * static_cast<std::uint64_t>(now_ns / kSlot_ns);
     x = (x ^ x >> 30U) * 0xBF58476D1CE4E5B9U;
     x = (x ^ x >> 27U) * 0x94D049BB133111EBU;
-    const double middle_m = 1.0 + 3.0 * std::ldexp(static_cast<double>(x >> 11U), -53);
-    return middle_m + 0.3 * std::sin(3.0 * angle_rad);
+    return 1.0 + 3.0 * std::ldexp(static_cast<double>(x >> 11U), -53);
   }
+
+  static double wave_m(double angle_rad) { return 0.3 * std::sin(3.0 * angle_rad); }
 
   [[nodiscard]] bool has(const LaserScan& scan, std::size_t beam) const {
     const auto place = static_cast<double>(beam);
     const double angle_rad = scan.angle_min_rad + place * scan.angle_step_rad;
     const std::int64_t time_ns =
         scan.stamp_ns + std::llround(1e9 * (scan.first_beam_s + place * scan.time_step_s));
-    std::vector<double> walls_m;
-    for (std::int64_t at_ns = time_ns - time_error_ns; at_ns <= time_ns + time_error_ns;
-         at_ns += time_error_ns) {
-      walls_m.push_back(range_m(angle_rad, at_ns));
-    }
+    const double at_angle_m = wave_m(angle_rad);
+    const std::array walls_m = {middle_m(time_ns - time_error_ns) + at_angle_m,
+                                middle_m(time_ns) + at_angle_m,
+                                middle_m(time_ns + time_error_ns) + at_angle_m};
     const double range_m = scan.ranges_m[beam];
     if (std::ranges::any_of(
             walls_m, [&](double wall_m) { return std::fabs(wall_m - range_m) <= kSame_m; })) {
