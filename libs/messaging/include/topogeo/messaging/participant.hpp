@@ -44,8 +44,9 @@ class ParticipantCore;
 class Participant {
  public:
   /// Joins the domain. Throws std::runtime_error when the profiles cannot be loaded, the profile is
-  /// unknown, the transport cannot be opened, the security material is refused or its keys do not
-  /// name one of the robots; std::invalid_argument for a domain over 232.
+  /// unknown, a transport is neither UDP nor shared memory or cannot be opened, the security
+  /// material is refused or its keys do not name one of the robots; std::invalid_argument for a
+  /// domain over 232.
   explicit Participant(const ParticipantOptions& options = {});
 
   /// With security: a line for each peer that was refused since the last call and for each access
