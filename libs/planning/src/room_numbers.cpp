@@ -59,7 +59,7 @@ RoomPoint RoomNumbers::point_at(const Eigen::Vector2d& position_m, const StopPos
 void RoomNumbers::find_again(const GridFrame& frame, const StopPoses& poses, ZoneMap& zones) const {
   // Shared floor in cells, room, zone.
   std::vector<std::tuple<double, const RememberedRoom*, ZoneId>> common;
-  for (const RememberedRoom& room : memory_.rooms) {
+  const auto compare = [&](const RememberedRoom& room) {
     std::map<ZoneId, std::size_t> votes;
     for (const RoomPoint& point : room.points) {
       const auto at_m = position_of(point, poses);
@@ -70,7 +70,9 @@ void RoomNumbers::find_again(const GridFrame& frame, const StopPoses& poses, Zon
       const double share = static_cast<double>(count) / static_cast<double>(room.points.size());
       common.emplace_back(share * static_cast<double>(room.cells), &room, zone);
     }
-  }
+  };
+  std::ranges::for_each(memory_.rooms, compare);
+  std::ranges::for_each(gone_, compare);
   std::stable_sort(common.begin(), common.end(),
                    [](const auto& a, const auto& b) { return std::get<0>(a) > std::get<0>(b); });
   constexpr double kSame = 0.5;  // of the smaller of the two
@@ -129,8 +131,10 @@ void RoomNumbers::name(const GridFrame& frame, const std::vector<Place>& places,
   }
 }
 
-void RoomNumbers::forget_gone(const StopPoses& poses, std::span<const RememberedRoom> anew) {
-  std::erase_if(memory_.rooms, [&](const RememberedRoom& room) {
+void RoomNumbers::keep_gone(const StopPoses& poses, std::span<const RememberedRoom> anew) {
+  std::ranges::move(memory_.rooms, std::back_inserter(gone_));
+  memory_.rooms.clear();
+  std::erase_if(gone_, [&](const RememberedRoom& room) {
     const auto is_same = [&](const RememberedRoom& other) { return other.number == room.number; };
     const auto is_located = [&](const RoomPoint& point) {
       return position_of(point, poses).has_value();
@@ -160,8 +164,8 @@ void RoomNumbers::remember(const GridFrame& frame, const StopPoses& poses, const
     rooms[zone].points.push_back(point_at(frame.center_m(frame.cell_at(i)), poses));
   }
   std::erase_if(rooms, [](const RememberedRoom& room) { return room.number == 0; });
-  forget_gone(poses, rooms);
-  std::ranges::move(rooms, std::back_inserter(memory_.rooms));
+  keep_gone(poses, rooms);
+  memory_.rooms = std::move(rooms);
   std::sort(memory_.rooms.begin(), memory_.rooms.end(),
             [](const auto& a, const auto& b) { return a.number < b.number; });
 }

@@ -45,10 +45,11 @@ class RoomNumbers {
   void keep_places(const GridFrame& frame, const StopPoses& poses, const ZoneMap& zones,
                    std::vector<Place>& places);
   void name(const GridFrame& frame, const std::vector<Place>& places, ZoneMap& zones) const;
-  void forget_gone(const StopPoses& poses, std::span<const RememberedRoom> anew);
+  void keep_gone(const StopPoses& poses, std::span<const RememberedRoom> anew);
   void remember(const GridFrame& frame, const StopPoses& poses, const ZoneMap& zones);
 
   RoomMemory memory_;
+  std::vector<RememberedRoom> gone_;  // not in the last map, not stored
 };
 
 }  // namespace topogeo::planning
