@@ -89,7 +89,7 @@ std::span<const ServiceRoute> service_routes() {
        kNever,
        kObeyed,
        [](Web& web, const Request& request, const Respond& respond) {
-         web.history_.export_file(request.path.substr(kExportPath.size()), respond);
+         web.history_.export_file(request.path.substr(kExportPath.size()), request.query, respond);
        }},
 
       {{kPost, "/api/goal", kOperator, kMostBody_bytes, kInLoop, "sends the robot to goals", true},

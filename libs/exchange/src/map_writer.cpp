@@ -71,11 +71,11 @@ void MapWriter::g2o() {
 }
 
 void MapWriter::svg() {
-  put(results::map_svg(map_, settings_.title));
+  put(results::map_svg(map_, settings_.title, {settings_.odometry, settings_.loops}));
 }
 
 void MapWriter::png() {
-  put(results::map_png(map_, settings_.title));
+  put(results::map_png(map_, settings_.title, {settings_.odometry, settings_.loops}));
 }
 
 void MapWriter::tum() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -89,8 +90,25 @@ std::vector<render::PictureZone> zones_of(const storage::MapDrawing& drawing) {
   return zones;
 }
 
-/// The names of places, drawn zones and numbered rooms. A room lies where its first point does that
-/// a stop of the map or the floor itself fixes.
+/// The point of a room nearest to the mean of those that a stop of the map or the floor itself
+/// fixes; nothing without one.
+std::optional<Eigen::Vector2d> middle_of(const planning::RememberedRoom& room,
+                                         const planning::StopPoses& T_map_stops) {
+  std::vector<Eigen::Vector2d> points_m;
+  Eigen::Vector2d sum_m = Eigen::Vector2d::Zero();
+  for (const planning::RoomPoint& point : room.points) {
+    const auto at_m = planning::position_of(point, T_map_stops);
+    if (!at_m) continue;
+    points_m.push_back(*at_m);
+    sum_m += *at_m;
+  }
+  if (points_m.empty()) return std::nullopt;
+  const Eigen::Vector2d mean_m = sum_m / static_cast<double>(points_m.size());
+  return *std::ranges::min_element(
+      points_m, {}, [&](const Eigen::Vector2d& at_m) { return (at_m - mean_m).squaredNorm(); });
+}
+
+/// The names of places, drawn zones and numbered rooms.
 std::vector<render::PictureName> names_of(const storage::MapDocument& document) {
   std::vector<render::PictureName> names;
   for (const planning::Place& place : document.drawing.places) {
@@ -105,12 +123,7 @@ std::vector<render::PictureName> names_of(const storage::MapDocument& document) 
   const planning::StopPoses T_map_stops = planning::poses_of(document.trajectory.stops);
   for (const planning::RememberedRoom& room : document.rooms.rooms) {
     const std::string name = room.name.empty() ? planning::room_name(room.number) : room.name;
-    for (const planning::RoomPoint& point : room.points) {
-      const auto at_m = planning::position_of(point, T_map_stops);
-      if (!at_m) continue;
-      names.push_back({name, *at_m, false});
-      break;
-    }
+    if (const auto at_m = middle_of(room, T_map_stops)) names.push_back({name, *at_m, false});
   }
   return names;
 }
@@ -123,7 +136,15 @@ struct Drawn {
         odometry(topomap::expand_odometry(map.trajectory, map.local_maps)),
         corrected(topomap::expand_trajectory(map.trajectory, map.local_maps)) {}
 
-  [[nodiscard]] render::MapPicture picture(const std::string& title) const {
+  [[nodiscard]] render::MapPicture picture(const std::string& title,
+                                           const PictureParts& parts = {}) const {
+    render::MapPicture picture = whole_picture(title);
+    if (!parts.odometry) picture.odometry = {};
+    if (!parts.loops) picture.loop_closures = {};
+    return picture;
+  }
+
+  [[nodiscard]] render::MapPicture whole_picture(const std::string& title) const {
     return {.local_maps = located.maps,
             .stops = located.stops,
             .odometry = odometry,
@@ -157,12 +178,14 @@ void write_map_outputs(const std::filesystem::path& directory, const storage::Ma
   render::draw_map_png(directory / "map.png", picture);
 }
 
-std::string map_svg(const storage::MapDocument& document, const std::string& title) {
-  return render::map_svg(Drawn(document).picture(title));
+std::string map_svg(const storage::MapDocument& document, const std::string& title,
+                    const PictureParts& parts) {
+  return render::map_svg(Drawn(document).picture(title, parts));
 }
 
-std::string map_png(const storage::MapDocument& document, const std::string& title) {
-  return render::map_png(Drawn(document).picture(title));
+std::string map_png(const storage::MapDocument& document, const std::string& title,
+                    const PictureParts& parts) {
+  return render::map_png(Drawn(document).picture(title, parts));
 }
 
 void add_map(storage::Report& report, const storage::MapDocument& document) {

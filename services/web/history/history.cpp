@@ -189,7 +189,8 @@ void History::picture(const std::string& query, const Respond& respond) const {
   respond(answer);
 }
 
-void History::export_file(const std::string& path, const Respond& respond) {
+void History::export_file(const std::string& path, const std::string& query,
+                          const Respond& respond) {
   const std::size_t slash = path.find('/');
   const std::string name = path.substr(0, slash);
   const std::string file = slash == std::string::npos ? "" : path.substr(slash + 1);
@@ -203,6 +204,8 @@ void History::export_file(const std::string& path, const Respond& respond) {
   exchange::ExportSettings settings;
   settings.hybrid_map = service_.setup().config.config.hybrid_map;
   settings.title = service_.robot_id();
+  settings.odometry = query_value(query, "odometry") == "1";
+  settings.loops = query_value(query, "loops") == "1";
   settings.header.stamp_ns = support::wall_clock_ns();
   copies_->get(
       {}, [this](const storage::MapDocument& map) { return is_of_now(map); },

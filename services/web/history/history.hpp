@@ -37,7 +37,7 @@ class History {
   /// The picture of the last comparison.
   void picture(const std::string& query, const Respond& respond) const;
   /// `path`: "{format}/{file}".
-  void export_file(const std::string& path, const Respond& respond);
+  void export_file(const std::string& path, const std::string& query, const Respond& respond);
   /// Body: {"name": "monday"}.
   void take_snapshot(const std::string& body, const Respond& respond);
   void restore(const std::string& body, const Respond& respond);

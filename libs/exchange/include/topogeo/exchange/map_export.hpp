@@ -24,6 +24,8 @@ struct ExportSettings {
   NetworkSettings network;               ///< without its robot_radius_m
   ExportHeader header;                   ///< with the robot_id of the map
   std::string title;                     ///< of the picture
+  bool odometry = true;                  ///< in the picture: the drive by odometry alone
+  bool loops = true;                     ///< in the picture: the loop closures
 };
 
 struct ExportedMap {

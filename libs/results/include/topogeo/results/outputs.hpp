@@ -21,9 +21,17 @@ namespace topogeo::results {
 void write_map_outputs(const std::filesystem::path& directory, const storage::MapDocument& document,
                        const std::string& title);
 
+/// Lines of the drive that a picture may leave out.
+struct PictureParts {
+  bool odometry = true;
+  bool loops = true;
+};
+
 /// The picture of a map as in these files, without unlocated stops.
-std::string map_svg(const storage::MapDocument& document, const std::string& title);
-std::string map_png(const storage::MapDocument& document, const std::string& title);
+std::string map_svg(const storage::MapDocument& document, const std::string& title,
+                    const PictureParts& parts = {});
+std::string map_png(const storage::MapDocument& document, const std::string& title,
+                    const PictureParts& parts = {});
 
 /// Fills robot, seed, scans, stops, nodes, branches, loop closures and distance of a report.
 void add_map(storage::Report& report, const storage::MapDocument& document);
