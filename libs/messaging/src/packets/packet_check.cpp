@@ -181,13 +181,6 @@ bool whole_envelope(const Submessage& submessage) {
          submessage.kind == Submessage::kSecureMessagePostfix;
 }
 
-bool is_announcement(const Submessage& submessage) {
-  if (!submessage.is_sample()) return false;
-  const std::uint32_t writer = endpoints_of(submessage).writer;
-  return writer == builtin::kParticipants || writer == builtin::kWriters ||
-         writer == builtin::kReaders || writer == builtin::kHandshakes;
-}
-
 }  // namespace
 
 PacketCheck check_packet(Bytes packet, bool secured) {

@@ -60,17 +60,10 @@ Announcement read_announcement(std::span<const std::uint8_t> packet, const Subme
   return announcement;
 }
 
-bool of_discovery(std::uint32_t writer) {
-  return writer == builtin::kParticipants || writer == builtin::kWriters ||
-         writer == builtin::kReaders || writer == builtin::kHandshakes;
-}
-
 std::vector<Announcement> announcements_in(std::span<const std::uint8_t> packet, bool secured) {
   std::vector<Announcement> found;
   visit_submessages(packet, secured, [&](const Submessage& submessage) {
-    if (submessage.is_sample() && of_discovery(endpoints_of(submessage).writer)) {
-      found.push_back(read_announcement(packet, submessage));
-    }
+    if (is_announcement(submessage)) found.push_back(read_announcement(packet, submessage));
     return true;
   });
   return found;

@@ -94,4 +94,11 @@ Endpoints endpoints_of(const Submessage& submessage) {
   return reader.ok() ? Endpoints{.reader = addressed, .writer = writer} : Endpoints{};
 }
 
+bool is_announcement(const Submessage& submessage) {
+  if (!submessage.is_sample()) return false;
+  const std::uint32_t writer = endpoints_of(submessage).writer;
+  return writer == builtin::kParticipants || writer == builtin::kWriters ||
+         writer == builtin::kReaders || writer == builtin::kHandshakes;
+}
+
 }  // namespace topogeo::messaging

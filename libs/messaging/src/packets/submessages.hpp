@@ -98,4 +98,7 @@ struct Endpoints {
 };
 [[nodiscard]] Endpoints endpoints_of(const Submessage& submessage);
 
+/// Whether it is a sample of discovery or of a handshake, or a part of one.
+[[nodiscard]] bool is_announcement(const Submessage& submessage);
+
 }  // namespace topogeo::messaging
