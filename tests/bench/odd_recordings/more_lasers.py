@@ -246,3 +246,12 @@ def laser_feet():
         m['rmax'] = 40.0
         return m
     return with_scans(change).db3('laser_feet')
+
+
+@case
+def laser_ranges_long():
+    """Each range is 8 % too long, and odometry is right."""
+    def change(i, t, m):
+        m['ranges'] = [1.08 * r for r in m['ranges']]
+        return m
+    return with_scans(change).db3('laser_ranges_long')
