@@ -28,6 +28,11 @@ constexpr double kOdometryDisagrees = 0.15;    // typical displacement per lengt
 constexpr double kOdometryContradicts = 0.33;  // the same, whatever the matches are
 constexpr double kGoodAcceptedShare = 0.7;
 constexpr double kMostContradicted = 0.3;  // of the steps
+constexpr std::size_t kPartsOfScale = 5;   // fewer are alike by chance
+constexpr double kSameScale = 1.15;
+constexpr double kOtherScale = 1.35;
+constexpr double kFeetOfMetre = 1.0 / 0.3048;
+constexpr double kNearUnit = 1.05;
 constexpr double kMostSkipped = 0.5;
 constexpr double kMostUnmapped = 0.05;  // of the stops (own)
 constexpr double kLongDrive_m = 10.0;
@@ -44,6 +49,7 @@ constexpr const char* kMoreStops = "more stops: stop: {distance_m: 0.5} in a fil
 constexpr const char* kCalibrateOdometry = "topogeo calibrate-odometry ";
 constexpr const char* kLaserOdometry =
     "odometry from the scans: odometry: {source: laser} in a file for --config";
+constexpr const char* kInMetres = "the ranges in metres: divide them by 3.281";
 constexpr const char* kOtherRecording =
     "a recording with odometry of wheels, or of a laser that sees farther";
 
@@ -64,21 +70,41 @@ struct Facts {
   bool other_length = false;
   double contradicted_share = 0.0;      // of the steps: the scans contradict their odometry
   double without_odometry_share = 0.0;  // of the scans
+  double scale = 1.0;                   // of the scans over the odometry, if it is another one
   bool from_scans = false;              // the odometry is made of the scans
 
   /// A shorter drive says little.
   [[nodiscard]] bool is_long() const {
     return steps >= kStopsOfLongDrive && std::max(path_m, corrected_m) >= kLongDrive_m;
   }
+  [[nodiscard]] bool ranges_in_feet() const {
+    return scale > kFeetOfMetre / kNearUnit && scale < kFeetOfMetre * kNearUnit;
+  }
   /// Whether another odometry is wanted.
   [[nodiscard]] bool odometry_useless() const {
-    return contradicted_share > kMostContradicted || without_odometry_share > kMostSkipped;
+    return scale != 1.0 || contradicted_share > kMostContradicted ||
+           without_odometry_share > kMostSkipped;
   }
 };
 
 double accepted_share(const Report& report) {
   return static_cast<double>(report.matches_accepted) /
          static_cast<double>(std::max<std::uint64_t>(report.matches_tried, 1));
+}
+
+/// The scale of the scans over the odometry, if it is the same, and far from 1, in all parts that
+/// they contradict; else 1. A wheel that spins has another scale each time.
+double other_scale(const std::vector<PathDisagreementEntry>& disagreements) {
+  std::vector<double> scales;
+  for (const PathDisagreementEntry& d : disagreements) {
+    if (d.kind == "wheels" && d.odometry_m > 0.0) scales.push_back(d.corrected_m / d.odometry_m);
+  }
+  if (scales.size() < kPartsOfScale) return 1.0;
+  std::ranges::sort(scales);
+  const double middle = scales[scales.size() / 2];
+  const bool alike = scales.front() > middle / kSameScale && scales.back() < middle * kSameScale;
+  const bool other = middle > kOtherScale || middle < 1.0 / kOtherScale;
+  return alike && other ? middle : 1.0;
 }
 
 Facts facts_of(const Report& report, const storage::MapDocument& document) {
@@ -124,6 +150,7 @@ Facts facts_of(const Report& report, const storage::MapDocument& document) {
     if (d.kind == "length") facts.other_length = true;
     if (d.kind == "wheels") contradicted += d.last_stop - d.first_stop;
   }
+  facts.scale = other_scale(report.quality.path_disagreements);
   facts.contradicted_share =
       share(static_cast<double>(contradicted), static_cast<double>(facts.steps));
   return facts;
@@ -173,6 +200,11 @@ void judge_odometry(const Facts& facts, Judgement& judgement) {
     judgement.poor(fmt::format("the scans contradict the odometry in {:.0f} % of the steps",
                                100.0 * facts.contradicted_share));
   }
+  if (facts.scale != 1.0) {
+    judgement.poor(fmt::format("the robot drives {:.2f} m by the scans for each metre of odometry",
+                               facts.scale));
+  }
+  if (facts.ranges_in_feet()) judgement.poor("the ranges of the laser are probably in feet");
   if (facts.jumps) judgement.poor("the path jumps where odometry does not");
   if (facts.other_length) judgement.fair("the path is much longer or shorter than by odometry");
 }
@@ -219,6 +251,7 @@ std::string advice(const Facts& facts, const std::string& grade, const QualityIn
     return "topogeo dvl --log " + inputs.log +
            " --scan 0 --out scan.png  # shows what the laser sees";
   }
+  if (facts.ranges_in_feet()) return kInMetres;
   if (facts.odometry_useless() && !inputs.tried.contains(Remedy::kLaserOdometry)) {
     return kLaserOdometry;
   }

@@ -138,6 +138,27 @@ TEST(MapQuality, OdometryThatTheScansContradictNearlyEverywhereIsReplaced) {
   EXPECT_EQ(advised_remedy(report), Remedy::kLaserOdometry);
 }
 
+TEST(MapQuality, OdometryOfAnotherScaleIsReplaced) {
+  // Where a step is long enough, the scans see twice of it; a wheel that spins has other ratios.
+  const auto judge = [](double growth, double ratio = 2.0) {
+    storage::MapDocument document = drive(0);
+    for (std::uint32_t id = 2; id < 16; id += 3) {
+      topomap::LocalMap& map = document.local_maps[id];
+      map.T_previous_robot = {ratio, 0.0, 0.0};
+      map.track = {{0, 0, document.local_maps[id - 1].T_odom_robot, {}, true},
+                   {1, 1, map.T_odom_robot, map.T_previous_robot, true}};
+      ratio *= growth;
+    }
+    return judged(document, 38);
+  };
+  EXPECT_THAT(quality_text(judge(1.0)), HasSubstr("2.00 m by the scans for each metre"));
+  EXPECT_EQ(advised_remedy(judge(1.0)), Remedy::kLaserOdometry);
+  EXPECT_EQ(judge(1.2).quality.grade, "good");
+  // Odometry of the scans would be wrong as well.
+  EXPECT_THAT(quality_text(judge(1.0, 3.28)), HasSubstr("probably in feet"));
+  EXPECT_EQ(advised_remedy(judge(1.0, 3.28)), std::nullopt);
+}
+
 TEST(MapQuality, OdometryThatMostScansLackIsReplaced) {
   storage::Report report;
   report.scans = 100;
