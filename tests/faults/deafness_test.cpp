@@ -87,6 +87,21 @@ extern "C" ssize_t sendto(int socket, const void* packet, std::size_t size, int 
   return original(socket, packet, size, flags, address, address_size);
 }
 
+// The same for packets in parts.
+extern "C" ssize_t sendmsg(int socket, const msghdr* message, int flags) {
+  using Function = ssize_t (*)(int, const msghdr*, int);
+  static const auto original = reinterpret_cast<Function>(::dlsym(RTLD_NEXT, "sendmsg"));
+  std::vector<std::uint8_t> packet;
+  for (const iovec& part : std::span(message->msg_iov, message->msg_iovlen)) {
+    const auto* const first = static_cast<const std::uint8_t*>(part.iov_base);
+    packet.insert(packet.end(), first, first + part.iov_len);
+  }
+  if (losses().take(packet, static_cast<const sockaddr*>(message->msg_name))) {
+    return static_cast<ssize_t>(packet.size());
+  }
+  return original(socket, message, flags);
+}
+
 namespace topogeo::test {
 namespace {
 

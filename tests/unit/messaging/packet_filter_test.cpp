@@ -136,14 +136,16 @@ TEST(PacketFilter, WithSecurityOnlyAnnouncementsAndHandshakesArePlain) {
   };
   const Bytes sample = packet({data(kWithPayload, kPayload)});
   const Bytes writer = packet({announced({}, kSedpWriter)});
-  EXPECT_EQ(refused(sample) + refused(writer), 0U) << "in the own name of somebody without keys";
+  EXPECT_EQ(refused(writer), 0U) << "in the own name of somebody without keys";
+  EXPECT_EQ(refused(sample), 1U) << "nobody sends it to whom he does not know";
+  EXPECT_EQ(refused(packet({heartbeat(1, 0)})), 1U);
   proven_peers().add(sender());
   EXPECT_EQ(refused(sample), 1U);
   EXPECT_EQ(refused(writer), 1U);
   EXPECT_EQ(refused(packet({prefix, body, postfix, data(kWithPayload, kPayload)})), 1U);
   const PeerPrefix gone = sender();
   peer_ended(gone);
-  EXPECT_EQ(refused(sample), 0U);
+  EXPECT_EQ(refused(writer), 0U);
 }
 
 }  // namespace

@@ -145,12 +145,17 @@ bool body_valid(const Submessage& submessage) {
   }
 }
 
+/// Whether an endpoint is one of a topic, and not of the middleware itself.
+bool is_of_topic(std::uint32_t entity) {
+  constexpr std::uint32_t kOwner = 0xc0;  // bits of who made it: 0xc0 is the middleware
+  return entity != 0 && (entity & kOwner) != kOwner;
+}
+
 /// Whether security encrypts what an endpoint sends and gets: all but what plain discovery and
 /// authentication are made of (deploy/security/make_keys, governance).
 bool is_protected(std::uint32_t entity) {
-  constexpr std::uint32_t kOwner = 0xc0;  // bits of who made it: 0xc0 is the middleware
   constexpr std::uint32_t kSecure = 0xff000000;
-  return entity != 0 && ((entity & kOwner) != kOwner || (entity & kSecure) == kSecure);
+  return is_of_topic(entity) || (entity & kSecure) == kSecure;
 }
 
 /// Whether a plain submessage is about samples that security protects. Of plain discovery, a
@@ -191,8 +196,10 @@ PacketCheck check_packet(Bytes packet, bool secured) {
   }
   PacketCheck check;
   check.valid = visit_submessages(packet, secured, [&](const Submessage& submessage) {
-    check.unprotected =
-        check.unprotected || about_protected_samples(submessage) || whole_envelope(submessage);
+    const bool protected_samples = about_protected_samples(submessage);
+    check.unprotected = check.unprotected || protected_samples || whole_envelope(submessage);
+    check.unprotected_topic = check.unprotected_topic ||
+                              (protected_samples && is_of_topic(endpoints_of(submessage).writer));
     check.announces = check.announces || is_announcement(submessage);
     return body_valid(submessage);
   });

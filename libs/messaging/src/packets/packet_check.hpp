@@ -14,6 +14,8 @@ struct PacketCheck {
   bool valid = false;
   /// Has plain submessages that a participant with security gets encrypted alone.
   bool unprotected = false;
+  /// Some of those are about samples of a topic, which go to matched readers and writers only.
+  bool unprotected_topic = false;
   /// Has plain samples of discovery or of a handshake.
   bool announces = false;
 };

@@ -106,8 +106,9 @@ std::span<const std::uint8_t> PacketFilter::admit(std::span<const std::uint8_t> 
   }
   const PeerPrefix sender = prefix_at(packet.subspan(kSender_at));
   if (options_.secured && check.unprotected) {
-    // Whoever has no keys sends plain messages in his own name as well.
-    if (proven_peers().contains(sender)) count_unprotected_packet();
+    // Whoever has no keys sends plain messages of discovery in his own name as well, but none of a
+    // topic, as no reader or writer here matches his.
+    if (check.unprotected_topic || proven_peers().contains(sender)) count_unprotected_packet();
     return {};
   }
   if (check.announces) {
