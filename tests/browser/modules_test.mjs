@@ -409,7 +409,7 @@ const kReasonSources = {
     "arrival", "collision_guard", "exploration_tour", "guarded_base", "input_delays", "navigation_step", "navigator",
     "navigator_inputs", "pose_keeper", "route_driver", "route_keeper",
   ],
-  "libs/planning/src": ["drawn_obstructions", "goal_planner", "goal_target", "route_ends"],
+  "libs/planning/src": ["drawn_obstructions", "goal_planner", "goal_target", "outline_planner", "route_ends"],
   "libs/devices/src": ["base_interlocks", "base_link", "base_status"],
   "services/planner": ["answer"],
   "services/localizer": ["localizer_commands"],

@@ -108,7 +108,16 @@ export const spanish_reasons: [string, string][] = [
   ],
   ["something is {} m ahead of the body", "hay algo a {1} m por delante"],
   ["something is {} m behind the body", "hay algo a {1} m por detrás"],
+  ["no room to turn on the spot", "no hay sitio para girar sobre sí mismo"],
   // The planner.
+  [
+    "the outline of the robot does not fit at {} in this heading",
+    "el contorno del robot no cabe en {1} con esta orientación",
+  ],
+  [
+    "no path from {} to {} is wide enough for the outline of the robot",
+    "ningún camino de {1} a {2} es bastante ancho para el contorno del robot",
+  ],
   ["start or goal is not finite", "la salida o el destino no es finito"],
   ["the map has neither zones nor branches", "el mapa no tiene ni zonas ni ramas"],
   ["no path leads there past what is closed now", "ningún camino lleva allí entre lo que está cerrado ahora"],
