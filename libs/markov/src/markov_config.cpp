@@ -33,6 +33,7 @@ support::NumberRows rows_of_bands(const std::vector<ReliabilityBand>& bands) {
 }
 
 std::optional<std::vector<ReliabilityBand>> bands_of(const support::NumberRows& rows) {
+  if (rows.empty()) return std::nullopt;
   std::vector<ReliabilityBand> bands;
   for (const std::vector<double>& row : rows) {
     if (row.size() != 2) return std::nullopt;
@@ -53,6 +54,7 @@ support::NumberRows rows_of_matrix(const TransitionMatrix& matrix) {
 }
 
 std::optional<TransitionMatrix> matrix_of(const support::NumberRows& rows) {
+  if (rows.empty()) return std::nullopt;
   TransitionMatrix matrix;
   matrix.rows = static_cast<int>(rows.size());
   matrix.columns = static_cast<int>(rows.front().size());

@@ -49,8 +49,8 @@ Rooms find_rooms(const HybridMapParts& parts, const HybridMapConfig& config,
   planning::ZoneMap zones = make_zones(space, parts, config.zones);
   std::vector<planning::Place> places = drawing.places;
   const bool drawn_grid = drawing.grid.has_value();
-  numbers.assign(space, drawn_grid ? std::span<const topomap::StopPose>{} : parts.stops,
-                 zones, places);
+  numbers.assign(space, drawn_grid ? std::span<const topomap::StopPose>{} : parts.stops, zones,
+                 places);
   return {std::move(space), std::move(zones), std::move(places)};
 }
 

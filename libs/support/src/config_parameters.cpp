@@ -251,11 +251,9 @@ void ConfigSchema::add_number_rows(std::string key, std::function<NumberRows()> 
   p.expected = std::move(expected);
   p.is_text = true;
   p.is_rows = true;
-  const bool may_be_empty = get().empty();
   p.text = [get = std::move(get)] { return rows_text(get()); };
-  p.parse = [set = std::move(set),
-             may_be_empty](const std::string& text) -> std::optional<Assignment> {
-    if (may_be_empty && text.find_first_not_of(" \t") == std::string::npos) return set({});
+  p.parse = [set = std::move(set)](const std::string& text) -> std::optional<Assignment> {
+    if (text.find_first_not_of(" \t") == std::string::npos) return set({});
     const auto rows = parse_rows(text);
     return rows ? set(*rows) : std::nullopt;
   };

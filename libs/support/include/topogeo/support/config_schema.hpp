@@ -65,9 +65,9 @@ class ConfigSchema {
   void add(const std::string& key, Enum* value,
            const std::vector<std::pair<std::string, Enum>>& names, const std::string& why);
 
-  /// A matrix or a list of tuples, written by rows: "0.9 0.1; 0.1 0.9", in YAML also as [[0.9, 0.1],
-  /// [0.1, 0.9]]. It may be empty if its default is. `value_of` returns nothing
-  /// for rows of another form; `expected` describes the form.
+  /// A matrix or a list of tuples, written by rows: "0.9 0.1; 0.1 0.9", in YAML also as [[0.9,
+  /// 0.1], [0.1, 0.9]]. `value_of` returns nothing for rows of another form, or for no rows where
+  /// the value must not be empty; `expected` describes the form.
   template <typename Value>
   void add_rows(const std::string& key, Value* value, NumberRows (*rows_of)(const Value&),
                 std::optional<Value> (*value_of)(const NumberRows&), const std::string& expected,
