@@ -274,10 +274,9 @@ geometry::Velocity NavigationStep::settle(const geometry::Pose2& T_map_robot) {
     status.rest_s = 0.0;
     return stop(NavigatorState::kArrived, HaltReason::kNone, std::move(next.message));
   }
-  if (next.kind == ArrivalStep::Kind::kMoves) {
-    correct(T_map_robot, std::move(next));
-  }
-  return stop(NavigatorState::kDriving, HaltReason::kNone, std::move(next.message));
+  std::string message = next.message;
+  if (next.kind == ArrivalStep::Kind::kMoves) correct(T_map_robot, std::move(next));
+  return stop(NavigatorState::kDriving, HaltReason::kNone, std::move(message));
 }
 
 // A robot that is not round may have no room to turn to the goal.

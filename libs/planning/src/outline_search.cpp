@@ -118,8 +118,9 @@ class Search {
     const auto bin = [](double value) {
       return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value)) + (1 << 26));
     };
-    const auto turns = static_cast<std::uint64_t>(
-        static_cast<int>(std::floor(pose.theta_rad / kTurn_rad + 0.5)) + kHeadings);
+    const std::int64_t turn =
+        static_cast<std::int64_t>(std::floor(pose.theta_rad / kTurn_rad + 0.5)) + kHeadings;
+    const auto turns = static_cast<std::uint64_t>(turn);
     return (bin(pose.x_m / kCell_m) << 34U) | (bin(pose.y_m / kCell_m) << 6U) | (turns % kHeadings);
   }
 

@@ -160,6 +160,7 @@ TEST(PathFollower, SettingsOutOfRangeAreRefused) {
 TEST(PathFollower, ReversesALegAndGoesOn) {
   // Back for a metre, then ahead to the left.
   std::vector<planning::PathSample> path;
+  path.reserve(21);
   for (int i = 0; i < 10; ++i) {
     path.push_back({{-0.1 * i, 0.0, std::numbers::pi}, 0.1 * i, 0.0, 0.0, true});
   }

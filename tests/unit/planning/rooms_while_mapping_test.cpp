@@ -18,7 +18,7 @@
 namespace topogeo::planning {
 namespace {
 
-constexpr std::int32_t kCorridor_cells = 22;  // width in cells of 0.1 m
+constexpr std::int32_t kCorridorWidth = 22;  // width in cells of 0.1 m
 
 /// Rooms on both sides of a corridor, each with a door to it.
 BlockFloor corridor_floor(std::int32_t rooms_on_a_side, std::uint64_t seed) {
@@ -28,13 +28,13 @@ BlockFloor corridor_floor(std::int32_t rooms_on_a_side, std::uint64_t seed) {
   constexpr std::int32_t kDoor = 10;
   GridFrame frame;
   frame.columns = rooms_on_a_side * kWidth + 1;
-  frame.rows = 2 * kDepth + kCorridor_cells + 2;
+  frame.rows = 2 * kDepth + kCorridorWidth + 2;
   BlockFloor floor{OccupancyGrid(frame, CellState::kOccupied), {}};
   const std::int32_t low = kDepth + 1;
-  fill_box(floor.grid, {1, low}, {frame.columns - 2, low + kCorridor_cells - 1}, CellState::kFree);
+  fill_box(floor.grid, {1, low}, {frame.columns - 2, low + kCorridorWidth - 1}, CellState::kFree);
   for (std::int32_t side = 0; side < 2; ++side) {
-    const std::int32_t from = side == 0 ? 1 : low + kCorridor_cells + 1;
-    const std::int32_t wall = side == 0 ? low - 1 : low + kCorridor_cells;
+    const std::int32_t from = side == 0 ? 1 : low + kCorridorWidth + 1;
+    const std::int32_t wall = side == 0 ? low - 1 : low + kCorridorWidth;
     for (std::int32_t i = 0; i < rooms_on_a_side; ++i) {
       const Cell corner{i * kWidth + 1, from};
       const Cell opposite{corner.column + kWidth - 2, from + kDepth - 2};

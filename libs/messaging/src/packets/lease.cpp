@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kListHeader_bytes = 4;
 constexpr std::uint16_t kEndOfList = 0x0001;
-constexpr std::uint16_t kLease = 0x0002;
+constexpr std::uint16_t kLeaseParameter = 0x0002;
 constexpr std::uint16_t kLease_bytes = 8;
 
 template <class Number>
@@ -41,7 +41,7 @@ bool bound_all(std::span<std::uint8_t> list, bool little_endian) {
     const std::size_t at = reader.position();
     reader.skip(size);
     reader.align();
-    if (id != kLease || size < kLease_bytes) continue;
+    if (id != kLeaseParameter || size < kLease_bytes) continue;
     bound_value(list.subspan(at, kLease_bytes), little_endian);
     found = true;
   }
@@ -56,7 +56,7 @@ bool bound_lease(std::vector<std::uint8_t>& packet, std::size_t submessage_at,
   if (bound_all(bytes.subspan(payload_at, payload_end - payload_at), list_little)) return true;
 
   std::array<std::uint8_t, 4 + kLease_bytes> lease{};
-  write_number(std::span(lease).subspan(0, 2), kLease, list_little);
+  write_number(std::span(lease).subspan(0, 2), kLeaseParameter, list_little);
   write_number(std::span(lease).subspan(2, 2), kLease_bytes, list_little);
   write_number(std::span(lease).subspan(4, 4), kShortestLease_s, list_little);
   const bool little = (bytes[submessage_at + 1] & 1U) != 0;

@@ -78,7 +78,7 @@ Ruling judge(const Announcement& announcement, std::vector<std::uint8_t>& packet
   if (of_participant && !believes_removals &&
       (announcement.parameters.removal || !announcement.has_payload)) {
     const std::span<const std::uint8_t> key = announcement.parameters.key_hash;
-    const std::span<const std::uint8_t> sender = std::span(packet).subspan(kSender_at);
+    const std::span<const std::uint8_t> sender = std::span(packet).subspan(kSenderOffset_bytes);
     removals().removed(prefix_at(key.empty() ? sender : key), std::chrono::steady_clock::now());
     return Ruling::kRemoval;
   }
@@ -104,7 +104,7 @@ std::span<const std::uint8_t> PacketFilter::admit(std::span<const std::uint8_t> 
     count_invalid_packet();
     return {};
   }
-  const PeerPrefix sender = prefix_at(packet.subspan(kSender_at));
+  const PeerPrefix sender = prefix_at(packet.subspan(kSenderOffset_bytes));
   if (options_.secured && check.unprotected) {
     // Whoever has no keys sends plain messages of discovery in his own name as well, but none of a
     // topic, as no reader or writer here matches his.

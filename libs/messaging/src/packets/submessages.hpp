@@ -11,7 +11,7 @@ namespace topogeo::messaging {
 
 constexpr std::size_t kRtpsHeader_bytes = 20;
 /// Of the identifiers of a participant's readers and writers, at this place of the header.
-constexpr std::size_t kSender_at = 8;
+constexpr std::size_t kSenderOffset_bytes = 8;
 
 /// Entity ids of writers that the middleware itself has.
 namespace builtin {
