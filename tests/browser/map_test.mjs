@@ -1,4 +1,4 @@
-// What the map of the page shows with a stub service: zones with a rule in every view, pictures to download; and
+// The map of the page with a stub service: zones with a rule in every view, pictures to download; and
 // missions, which the browser keeps.
 import assert from "node:assert/strict";
 import { join } from "node:path";

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What the map of the operator's page shows in Chromium, without a robot.
+# The map of the operator's page in Chromium, without a robot.
 source "$(dirname "${BASH_SOURCE[0]}")/browser.sh"
 
 need_browser

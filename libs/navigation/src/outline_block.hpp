@@ -14,8 +14,8 @@
 
 namespace topogeo::navigation {
 
-/// As LocalPlanner::blocked, for an outline with its headings along the path and its turns on the
-/// spot.
+/// Does the same as LocalPlanner::blocked for an outline with its headings along the path and its
+/// turns on the spot.
 std::optional<PathBlock> outline_block(const geometry::Footprint& footprint,
                                        std::span<const planning::PathSample> path, double from_m,
                                        const geometry::Pose2& T_map_robot,

@@ -8,8 +8,9 @@
 namespace topogeo::planning {
 namespace {
 
-// Of the outline of a zone; a wedge that is seen through a door has more than half next to unknown
-// cells, a room seen from inside less than a third (tests/unit/planning/rooms_while_mapping_test).
+// Shares of the outline of a zone: a wedge that is seen through a door has more than half next to
+// unknown cells, a room seen from inside less than a third
+// (tests/unit/planning/rooms_while_mapping_test).
 constexpr double kOpenIfEntered = 0.35;
 constexpr double kOpenIfSeen = 0.15;
 constexpr double kSlits_m2 = 0.25;  // unknown cells between beams and behind legs of furniture

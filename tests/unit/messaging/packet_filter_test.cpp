@@ -1,4 +1,4 @@
-// What a participant lets in, packet by packet; what reaches a running one is tested in
+// The packets that a participant lets in, one by one; those that reach a running one are tested in
 // tests/faults.
 #include "packets/packet_filter.hpp"
 

@@ -33,16 +33,16 @@ class HostSockets {
     /// More hosts than a robot talks to; a socket for another one takes the place of the one that
     /// was used longest ago.
     std::size_t most_hosts = 128;
-    /// What may wait for one host; 0: what the system gives.
+    /// Bytes that may wait for one host; 0: as many as the system gives.
     int queue_bytes = 0;
   };
 
   HostSockets() : HostSockets(Options{}) {}
   explicit HostSockets(const Options& options) : options_(options) {}
 
-  /// To a port of an IPv4 address, whose four bytes are in the order in which they are written.
-  /// While the queue is full waits for a host that takes something, up to `patience`. `parts`: of
-  /// the packet, one after the other.
+  /// Sends to a port of an IPv4 address, whose four bytes are in the order in which they are
+  /// written. While the queue is full waits for a host that takes something, up to `patience`.
+  /// `parts`: of the packet, one after the other.
   Sending send(std::span<const iovec> parts, const std::array<std::uint8_t, 4>& address,
                std::uint16_t port, std::chrono::nanoseconds patience);
   /// Hosts that have a socket.

@@ -9,7 +9,7 @@
 
 namespace topogeo::messaging {
 
-/// Of all services.
+/// Bounds for the leases of all services.
 constexpr std::uint32_t kShortestLease_s = 10;
 constexpr std::uint32_t kLongestLease_s = 120;
 

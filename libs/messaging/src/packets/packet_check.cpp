@@ -33,7 +33,7 @@ bool skip_set(PacketReader& reader) {
   return reader.ok();
 }
 
-/// What DATA and DATA_FRAG begin with.
+/// The beginning of DATA and DATA_FRAG.
 struct SampleHeader {
   bool valid = false;
   std::uint32_t writer = 0;
@@ -158,8 +158,8 @@ bool is_protected(std::uint32_t entity) {
   return is_of_topic(entity) || (entity & kSecure) == kSecure;
 }
 
-/// Whether a plain submessage is about samples that security protects. Of plain discovery, a
-/// participant with security needs only the announcements of participants.
+/// Whether a plain submessage is about samples that security protects. A participant with
+/// security needs only the announcements of participants from plain discovery.
 bool about_protected_samples(const Submessage& submessage) {
   const Endpoints ends = endpoints_of(submessage);
   switch (submessage.kind) {

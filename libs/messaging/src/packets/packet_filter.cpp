@@ -19,8 +19,8 @@ namespace {
 
 enum class Ruling : std::uint8_t { kRead, kInvalid, kRemoval };
 
-/// Of all participants of this process. Never destroyed: the threads of the middleware may outlive
-/// static objects.
+/// Shared by all participants of this process. Never destroyed: the threads of the middleware may
+/// outlive static objects.
 RemovalLog& removals() {
   static auto* const log = new RemovalLog;  // NOLINT(cppcoreguidelines-owning-memory)
   return *log;
@@ -106,8 +106,8 @@ std::span<const std::uint8_t> PacketFilter::admit(std::span<const std::uint8_t> 
   }
   const PeerPrefix sender = prefix_at(packet.subspan(kSenderOffset_bytes));
   if (options_.secured && check.unprotected) {
-    // Whoever has no keys sends plain messages of discovery in his own name as well, but none of a
-    // topic, as no reader or writer here matches his.
+    // A peer without keys also sends plain messages of discovery in its own name, but none of a
+    // topic, as no reader or writer here matches its own.
     if (check.unprotected_topic || proven_peers().contains(sender)) count_unprotected_packet();
     return {};
   }
@@ -115,7 +115,7 @@ std::span<const std::uint8_t> PacketFilter::admit(std::span<const std::uint8_t> 
     thread_local std::vector<std::uint8_t> copy;
     copy.assign(packet.begin(), packet.end());
     std::vector<Announcement> announcements = announcements_in(copy, options_.secured);
-    // From the last one, as a lease that is added moves what is behind it.
+    // The last one comes first, as a lease that is added moves what is behind it.
     std::ranges::reverse(announcements);
     for (const Announcement& announcement : announcements) {
       const Ruling ruling = judge(announcement, copy, options_.believes_removals);

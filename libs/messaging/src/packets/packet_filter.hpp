@@ -1,4 +1,4 @@
-// What a participant lets in of the packets that come. Fast DDS 2.9.1
+// Decides which of the packets that come a participant lets in. Fast DDS 2.9.1
 // 1. reads a partition of any length, so a text at any address, and takes memory for the counts of
 //    data representations, properties and tokens as a packet states them (packet_check.hpp,
 //    parameter_check.hpp);
@@ -27,8 +27,8 @@ class PacketFilter {
 
   explicit PacketFilter(const Options& options) : options_(options) {}
 
-  /// What the middleware may read: the packet, a corrected copy that lasts until this thread's next
-  /// call, or nothing. Counts what it refuses (topogeo/messaging/strangers.hpp).
+  /// Returns the bytes that the middleware may read: the packet, a corrected copy that lasts until
+  /// this thread's next call, or nothing. Counts what it refuses (topogeo/messaging/strangers.hpp).
   [[nodiscard]] std::span<const std::uint8_t> admit(std::span<const std::uint8_t> packet) const;
 
  private:

@@ -19,7 +19,7 @@ class PacketReader {
   [[nodiscard]] bool little_endian() const { return little_endian_; }
 
   void skip(std::size_t size) { static_cast<void>(take(size)); }
-  /// To a multiple of four, or to the end where that comes first.
+  /// Skips to a multiple of four, or to the end where that comes first.
   void align() {
     const std::size_t padding = (4 - position_ % 4) % 4;
     position_ += padding < left() ? padding : left();
@@ -36,7 +36,7 @@ class PacketReader {
   std::uint8_t u8() { return number<std::uint8_t>(); }
   std::uint16_t u16() { return number<std::uint16_t>(); }
   std::uint32_t u32() { return number<std::uint32_t>(); }
-  /// As RTPS has them: the high half first, whatever the byte order.
+  /// Reads a number as RTPS has it: the high half first, whatever the byte order.
   std::int64_t sequence_number() {
     const std::uint64_t high = u32();
     return static_cast<std::int64_t>(high << 32U | u32());

@@ -41,7 +41,7 @@ namespace transports = eprosima::fastdds::rtps;
 using std::chrono::steady_clock;
 using LocatorsIterator = transports::LocatorsIterator;
 
-/// Of a host that takes what it gets, but slowly: as long as a writer may block.
+/// Longest wait for a host that takes packets slowly: as long as a writer may block.
 constexpr std::chrono::milliseconds kLongestWait{100};
 
 HostSockets& host_sockets() {
@@ -171,8 +171,8 @@ class PacketTransport : public transports::ChainingTransport {
     return packet.send_by(sender, &others_begin, &others_end, latest) && sent;
   }
 
-  /// Of the senders of UDP without chosen interfaces the first one sends to any host, and is asked
-  /// first; the others only by multicast through one interface each.
+  /// The first sender of UDP without chosen interfaces sends to any host, and is asked first; the
+  /// others send only by multicast through one interface each.
   bool carries_unicast(const rtps::SenderResource& sender) {
     const rtps::SenderResource* first = nullptr;
     return first_sender_.compare_exchange_strong(first, &sender) || first == &sender;
@@ -224,7 +224,7 @@ bool any_interface(const Transport& transport) {
 #endif
 }
 
-/// What the middleware uses where a profile names nothing.
+/// Names the transports that the middleware uses where a profile names none.
 void name_builtin_transports(eprosima::fastdds::dds::DomainParticipantQos& qos) {
   if (!qos.transport().use_builtin_transports) return;
   auto udp = std::make_shared<UDPv4TransportDescriptor>();

@@ -26,7 +26,7 @@ class ProvenPeers {
   std::set<PeerPrefix> peers_;
 };
 
-/// Of this process.
+/// The proven peers of this process.
 ProvenPeers& proven_peers();
 
 }  // namespace topogeo::messaging

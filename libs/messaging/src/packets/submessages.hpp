@@ -10,7 +10,7 @@
 namespace topogeo::messaging {
 
 constexpr std::size_t kRtpsHeader_bytes = 20;
-/// Of the identifiers of a participant's readers and writers, at this place of the header.
+/// Place in the header of the prefix that the identifiers of the sender's endpoints share.
 constexpr std::size_t kSenderOffset_bytes = 8;
 
 /// Entity ids of writers that the middleware itself has.
@@ -80,7 +80,7 @@ bool visit_submessages(std::span<const std::uint8_t> packet, bool skip_envelopes
   return true;
 }
 
-/// What a list of inline parameters says.
+/// The statements of a list of inline parameters.
 struct InlineParameters {
   bool valid = false;
   bool removal = false;                    // the instance is disposed of or unregistered

@@ -34,7 +34,7 @@ double inscribed_radius_m(const Footprint& footprint);
 double circumscribed_radius_m(const Footprint& footprint);
 
 /// Points that cover the body so that none of its places is farther than `spacing_m` (> 0) from
-/// one: the corners, points along the edges, and a grid inside. Those along the outline first.
+/// one: the corners, points along the edges, and a grid inside. The outline comes first.
 std::vector<Eigen::Vector2d> covering_points_m(const Footprint& footprint, double spacing_m);
 
 /// Why the footprint is unusable: fewer than 3 or more than kMostCorners corners, a corner that is
