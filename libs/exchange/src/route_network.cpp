@@ -8,6 +8,7 @@
 #include <span>
 
 #include "topogeo/exchange/place_graph.hpp"
+#include "topogeo/geometry/segment.hpp"
 #include "topogeo/support/check_range.hpp"
 #include "topogeo/support/format.hpp"
 
@@ -115,10 +116,9 @@ class Builder {
   static std::pair<std::size_t, double> deviation(std::span<const BranchPoint> points) {
     std::pair<std::size_t, double> farthest{0, 0.0};
     for (std::size_t i = 1; i + 1 < points.size(); ++i) {
-      double t = 0.0;
-      const Eigen::Vector2d on_line = nearest_on_segment(
-          points.front().position_m, points.back().position_m, points[i].position_m, t);
-      const double away_m = distance(on_line, points[i].position_m);
+      const auto on_line = geometry::nearest_on_segment(
+          points.front().position_m, points.back().position_m, points[i].position_m);
+      const double away_m = distance(on_line.point_m, points[i].position_m);
       if (away_m > farthest.second) farthest = {i, away_m};
     }
     return farthest;
@@ -156,10 +156,9 @@ class Builder {
     };
     std::vector<Access> nearest;
     for (std::size_t i = 0; i < network_.pieces.size(); ++i) {
-      double t = 0.0;
-      const Eigen::Vector2d at =
-          nearest_on_segment(end_of(i, true), end_of(i, false), place.position_m, t);
-      nearest.push_back({distance(at, place.position_m), i, t});
+      const auto at =
+          geometry::nearest_on_segment(end_of(i, true), end_of(i, false), place.position_m);
+      nearest.push_back({distance(at.point_m, place.position_m), i, at.share});
     }
     std::ranges::stable_sort(nearest, {}, &Access::away_m);
     for (const Access& access : nearest) {

@@ -1,6 +1,5 @@
 #include "segments.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace topogeo::exchange {
@@ -23,14 +22,6 @@ bool cross_inside(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eige
 }
 
 }  // namespace
-
-Eigen::Vector2d nearest_on_segment(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
-                                   const Eigen::Vector2d& p, double& t) {
-  const Eigen::Vector2d along = b - a;
-  const double squared = along.squaredNorm();
-  t = squared > 0.0 ? std::clamp((p - a).dot(along) / squared, 0.0, 1.0) : 0.0;
-  return a + t * along;
-}
 
 bool segments_meet(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
                    const Eigen::Vector2d& d) {

@@ -15,10 +15,6 @@ inline double distance(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return std::sqrt((a - b).squaredNorm());
 }
 
-/// The point of the segment nearest to `p`; `t` in [0, 1] is its position along the segment.
-Eigen::Vector2d nearest_on_segment(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
-                                   const Eigen::Vector2d& p, double& t);
-
 /// Whether two segments have a point in common.
 bool segments_meet(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
                    const Eigen::Vector2d& d);

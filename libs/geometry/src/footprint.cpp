@@ -4,17 +4,15 @@
 #include <cmath>
 #include <limits>
 
+#include "topogeo/geometry/segment.hpp"
+
 namespace topogeo::geometry {
 namespace {
 
 using Point = Eigen::Vector2d;
 
 double distance_to_edge_m(const Point& a_m, const Point& b_m, const Point& point_m) {
-  const Point edge_m = b_m - a_m;
-  const double length2 = edge_m.squaredNorm();
-  const double share =
-      length2 > 0.0 ? std::clamp((point_m - a_m).dot(edge_m) / length2, 0.0, 1.0) : 0.0;
-  return (a_m + share * edge_m - point_m).norm();
+  return (nearest_on_segment(a_m, b_m, point_m).point_m - point_m).norm();
 }
 
 double cross(const Point& a, const Point& b) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "topogeo/geometry/segment.hpp"
 #include "topogeo/planning/route_planner.hpp"
 #include "topogeo/topomap/local_map_builder.hpp"
 #include "topogeo/voronoi/local_voronoi.hpp"
@@ -59,15 +60,6 @@ std::span<const RoutePlace> behind_obstacles(std::span<const RoutePlace> places,
     if (touches) behind = end + 1;
   }
   return places.subspan(behind, end - behind);
-}
-
-double distance_to_line_m(const Eigen::Vector2d& a_m, const Eigen::Vector2d& b_m,
-                          const Eigen::Vector2d& point_m) {
-  const Eigen::Vector2d line_m = b_m - a_m;
-  const double length2 = line_m.squaredNorm();
-  const double share =
-      length2 > 0.0 ? std::clamp((point_m - a_m).dot(line_m) / length2, 0.0, 1.0) : 0.0;
-  return (a_m + share * line_m - point_m).norm();
 }
 
 // Points near by that a path must keep off: the obstacles, the whole scan, and the cells of no-go
@@ -143,7 +135,8 @@ class DetourSearch {
   [[nodiscard]] bool is_clear(const Eigen::Vector2d& a_m, const Eigen::Vector2d& b_m) const {
     return obeys_rules(a_m, b_m) &&
            std::ranges::none_of(seen_m_, [&](const Eigen::Vector2d& point_m) {
-             return distance_to_line_m(a_m, b_m, point_m) < body_m_;
+             const auto place = geometry::nearest_on_segment(a_m, b_m, point_m);
+             return (place.point_m - point_m).norm() < body_m_;
            });
   }
 

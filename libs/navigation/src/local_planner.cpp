@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "topogeo/geometry/segment.hpp"
 #include "topogeo/navigation/path_follower.hpp"
 #include "topogeo/planning/outline_planner.hpp"
 
@@ -40,10 +41,9 @@ std::vector<Eigen::Vector2d> rest_of(std::span<const Eigen::Vector2d> points_m,
   double at_m = 0.0;
   for (std::size_t i = 0; i + 1 < points_m.size(); ++i) {
     const Eigen::Vector2d line_m = points_m[i + 1] - points_m[i];
-    const double length2 = line_m.squaredNorm();
-    const double share =
-        length2 > 0.0 ? std::clamp((robot_m - points_m[i]).dot(line_m) / length2, 0.0, 1.0) : 0.0;
-    const double off_m = (points_m[i] + share * line_m - robot_m).norm();
+    const auto [place_m, share] =
+        geometry::nearest_on_segment(points_m[i], points_m[i + 1], robot_m);
+    const double off_m = (place_m - robot_m).norm();
     if (off_m < nearest_m) {
       nearest_m = off_m;
       at_m = passed_m + share * line_m.norm();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "topogeo/geometry/segment.hpp"
+
 #include "cell_line.hpp"
 
 namespace topogeo::planning {
@@ -19,14 +21,13 @@ BranchPlace nearest_on(const topomap::GlobalMap& map, std::size_t branch, std::s
                        const Eigen::Vector2d& point_m) {
   const topomap::BranchPoint& a = map.branches[branch].points[segment];
   const topomap::BranchPoint& b = map.branches[branch].points[segment + 1];
-  const Eigen::Vector2d along = b.position_m - a.position_m;
-  const double length2 = along.squaredNorm();
+  const geometry::SegmentPlace nearest =
+      geometry::nearest_on_segment(a.position_m, b.position_m, point_m);
   BranchPlace place;
   place.branch = branch;
   place.segment = segment;
-  place.along =
-      length2 > 0.0 ? std::clamp((point_m - a.position_m).dot(along) / length2, 0.0, 1.0) : 0.0;
-  place.at.position_m = a.position_m + place.along * along;
+  place.along = nearest.share;
+  place.at.position_m = nearest.point_m;
   place.at.clearance_m = a.clearance_m + place.along * (b.clearance_m - a.clearance_m);
   place.distance_m = (point_m - place.at.position_m).norm();
   return place;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "topogeo/geometry/segment.hpp"
+
 namespace topogeo::simulation {
 namespace {
 
@@ -14,11 +16,7 @@ constexpr double kOverlap_m = 1e-4;  // less is a touch with rounding errors
 constexpr double kSidelong = 1e-6;
 
 Eigen::Vector2d nearest_m(const world::Segment& segment, const Eigen::Vector2d& point_m) {
-  const Eigen::Vector2d along = segment.b_m - segment.a_m;
-  const double length2 = along.squaredNorm();
-  const double share =
-      length2 > 0.0 ? std::clamp((point_m - segment.a_m).dot(along) / length2, 0.0, 1.0) : 0.0;
-  return segment.a_m + share * along;
+  return geometry::nearest_on_segment(segment.a_m, segment.b_m, point_m).point_m;
 }
 
 // Distance until a point that moves along `direction` is `radius_m` away from `center_m`, starting

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "topogeo/geometry/segment.hpp"
 #include "topogeo/support/random.hpp"
 
 namespace topogeo::exchange {
@@ -56,8 +57,8 @@ TEST(Segments, TouchingAgreesWithSamplesOfTheSegment) {
     if (touches && !sampled) {
       bool near = false;
       for (std::size_t j = 0; j < shape.size(); ++j) {
-        double t = 0.0;
-        near = near || distance(nearest_on_segment(a, b, shape[j], t), shape[j]) < 0.1;
+        near =
+            near || distance(geometry::nearest_on_segment(a, b, shape[j]).point_m, shape[j]) < 0.1;
       }
       EXPECT_TRUE(near) << a << b;
     }
