@@ -17,7 +17,8 @@ namespace {
 
 constexpr double kStanding_m_s = 1e-6;  // slower motion counts as none
 constexpr double kNsToSeconds = 1e-9;
-constexpr double kLargestLead_s = 1.0;  // of a stamp: more than clocks of one robot differ
+constexpr double kRolls_m_per_s = 0.05;  // below this it stops at once
+constexpr double kLargestLead_s = 1.0;   // of a stamp: more than clocks of one robot differ
 
 bool has_echo(const SonarReading& reading) {
   return reading.range_m > scan::Scan::kNoReturn;
@@ -30,6 +31,34 @@ std::string describe_contact(bool is_drawn, double free_m, bool ahead) {
     return fmt::format("{} is right {} the body", what, ahead ? "in front of" : "behind");
   }
   return fmt::format("{} is {:.2f} m {} the body", what, free_m, ahead ? "ahead of" : "behind");
+}
+
+/// Notes where the body touches something, the contact being an index of `points_m`; returns
+/// whether it is a drawn place, which those from `standing` on are.
+bool note_contact(GuardVerdict& verdict, const std::optional<std::size_t>& contact,
+                  const std::vector<Eigen::Vector2d>& points_m, std::size_t standing) {
+  const bool is_drawn = contact && *contact >= standing;
+  if (contact && !is_drawn) verdict.contact_m = points_m[*contact];
+  return is_drawn;
+}
+
+void refuse_backward(GuardVerdict& verdict) {
+  verdict.allowed = {};
+  verdict.limited = true;
+  verdict.reason = HaltReason::kSonarSilent;
+  verdict.message = "backward motion needs a fresh sonar reading";
+}
+
+/// Allows a speed below the wanted one, or none where it is less than bases go.
+void slow_down(GuardVerdict& verdict, double speed, double asked) {
+  constexpr double kCreep_m_per_s = 0.01;
+  verdict.limited = true;
+  verdict.allowed.linear_m_per_s *= speed / asked;
+  verdict.allowed.angular_rad_per_s *= speed / asked;
+  if (speed < kCreep_m_per_s) {
+    verdict.allowed = {};
+    verdict.reason = HaltReason::kObstacle;
+  }
 }
 
 }  // namespace
@@ -250,35 +279,23 @@ GuardVerdict CollisionGuard::judge_by_distances(const geometry::Velocity& wanted
   const SweptArc arc =
       sweep(still ? geometry::Velocity{1.0, 0.0} : wanted, points_m, body_m, kFarthest_m);
   verdict.free_m = arc.length_m;
-  const bool is_drawn = arc.contact && *arc.contact >= standing;
-  if (arc.contact && !is_drawn) verdict.contact_m = points_m[*arc.contact];
+  const bool is_drawn = note_contact(verdict, arc.contact, points_m, standing);
   verdict.allowed = wanted;
   if (still) return verdict;
   if (wanted.linear_m_per_s < 0.0 && (!sonar_ || !fresh(sonar_->stamp_ns, now_ns))) {
-    verdict.allowed = {};
-    verdict.limited = true;
-    verdict.reason = HaltReason::kSonarSilent;
-    verdict.message = "backward motion needs a fresh sonar reading";
+    refuse_backward(verdict);
     return verdict;
   }
   const double late_s = reaction_s(now_ns);
   double speed = speed_for(arc.length_m, late_s);
   const geometry::Velocity now = driven();
-  constexpr double kRolls_m_per_s = 0.05;  // below this it stops at once
   if (std::fabs(now.linear_m_per_s) > kRolls_m_per_s &&
       (now.linear_m_per_s > 0.0) == (wanted.linear_m_per_s > 0.0)) {
     speed = std::min(speed, speed_for(sweep(now, points_m, body_m, kFarthest_m).length_m, late_s));
   }
   const double asked = std::fabs(wanted.linear_m_per_s);
   if (speed >= asked) return verdict;
-  verdict.limited = true;
-  verdict.allowed.linear_m_per_s *= speed / asked;
-  verdict.allowed.angular_rad_per_s *= speed / asked;
-  constexpr double kCreep_m_per_s = 0.01;  // bases do not go slower
-  if (speed < kCreep_m_per_s) {
-    verdict.allowed = {};
-    verdict.reason = HaltReason::kObstacle;
-  }
+  slow_down(verdict, speed, asked);
   verdict.message = describe_contact(is_drawn, arc.length_m, wanted.linear_m_per_s > 0.0);
   return verdict;
 }
@@ -295,21 +312,16 @@ void CollisionGuard::judge_outline(const geometry::Velocity& wanted, std::int64_
   const OutlineSweep swept = sweep(wanted, points_m, body, margin_m, kFarthest_m);
   verdict.free_m =
       still ? sweep({1.0, 0.0}, points_m, body, margin_m, kFarthest_m).length_m : swept.length_m;
-  const bool is_drawn = swept.contact && *swept.contact >= standing;
-  if (swept.contact && !is_drawn) verdict.contact_m = points_m[*swept.contact];
+  const bool is_drawn = note_contact(verdict, swept.contact, points_m, standing);
   verdict.allowed = wanted;
   if (asked < kStanding_m_s) return;
   if (wanted.linear_m_per_s < -kStanding_m_s && (!sonar_ || !fresh(sonar_->stamp_ns, now_ns))) {
-    verdict.allowed = {};
-    verdict.limited = true;
-    verdict.reason = HaltReason::kSonarSilent;
-    verdict.message = "backward motion needs a fresh sonar reading";
+    refuse_backward(verdict);
     return;
   }
   const double late_s = reaction_s(now_ns);
   double speed = speed_for(swept.reach_m, late_s);
   const geometry::Velocity now = driven();
-  constexpr double kRolls_m_per_s = 0.05;  // below this it stops at once
   const double arm_m = geometry::circumscribed_radius_m(body);
   const bool goes_on = now.linear_m_per_s * wanted.linear_m_per_s +
                            arm_m * arm_m * now.angular_rad_per_s * wanted.angular_rad_per_s >
@@ -319,14 +331,7 @@ void CollisionGuard::judge_outline(const geometry::Velocity& wanted, std::int64_
                      speed_for(sweep(now, points_m, body, margin_m, kFarthest_m).reach_m, late_s));
   }
   if (speed >= asked) return;
-  verdict.limited = true;
-  verdict.allowed.linear_m_per_s *= speed / asked;
-  verdict.allowed.angular_rad_per_s *= speed / asked;
-  constexpr double kCreep_m_per_s = 0.01;  // bases do not go slower
-  if (speed < kCreep_m_per_s) {
-    verdict.allowed = {};
-    verdict.reason = HaltReason::kObstacle;
-  }
+  slow_down(verdict, speed, asked);
   verdict.message = still ? "no room to turn on the spot"
                           : describe_contact(is_drawn, swept.length_m, wanted.linear_m_per_s > 0.0);
 }
