@@ -169,25 +169,18 @@ double SimulatedRobot::go(const Eigen::Vector2d& displacement_m) {
 }
 
 double SimulatedRobot::go_outlined(const Eigen::Vector2d& displacement_m, double turn_rad) {
-  const geometry::Pose2 from = T_world_robot_;
-  const auto moved = [&](double share) {
-    return geometry::Pose2{from.x_m + share * displacement_m.x(),
-                           from.y_m + share * displacement_m.y(),
-                           from.theta_rad + share * turn_rad};
-  };
-  double share = 1.0;
-  std::optional<Eigen::Vector2d> contact_m;
+  geometry::Pose2 there = T_world_robot_;
+  there.x_m += displacement_m.x();
+  there.y_m += displacement_m.y();
+  there.theta_rad += turn_rad;
   // A body that already overlaps something may leave it.
-  if (!overlap_at(from)) {
-    contact_m = overlap_at(moved(1.0));
-    if (contact_m) share = 0.0;
-  }
-  if (contact_m && !stopped_) ++collisions_;
-  contact_m_ = contact_m;
-  stopped_ = contact_m.has_value();
-  T_world_robot_.x_m = moved(share).x_m;
-  T_world_robot_.y_m = moved(share).y_m;
-  return share;
+  contact_m_ = overlap_at(T_world_robot_) ? std::nullopt : overlap_at(there);
+  if (contact_m_ && !stopped_) ++collisions_;
+  stopped_ = contact_m_.has_value();
+  if (stopped_) return 0.0;
+  T_world_robot_.x_m = there.x_m;
+  T_world_robot_.y_m = there.y_m;
+  return 1.0;
 }
 
 std::optional<Eigen::Vector2d> SimulatedRobot::overlap_at(const geometry::Pose2& pose) const {

@@ -109,7 +109,8 @@ class SimulatedRobot {
   EncoderStep advance(const Velocity& command, double dt_s);
   /// Moves up to `displacement_m`; returns the free share of it.
   double go(const Eigen::Vector2d& displacement_m);
-  /// The same for a body with an outline, which may also not turn into things.
+  /// The same for a body with an outline, which may also not turn into things: it moves the whole
+  /// step or not at all.
   double go_outlined(const Eigen::Vector2d& displacement_m, double turn_rad);
   /// The point that overlaps the body at a pose.
   [[nodiscard]] std::optional<Eigen::Vector2d> overlap_at(const geometry::Pose2& pose) const;
