@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kStanding_m_s = 1e-6;  // slower motion counts as none
 constexpr double kNsToSeconds = 1e-9;
-constexpr double kRolls_m_per_s = 0.05;  // below this it stops at once
+constexpr double kRolls_m_s = 0.05;  // below this it stops at once
 constexpr double kLargestLead_s = 1.0;   // of a stamp: more than clocks of one robot differ
 
 bool has_echo(const SonarReading& reading) {
@@ -289,7 +289,7 @@ GuardVerdict CollisionGuard::judge_by_distances(const geometry::Velocity& wanted
   const double late_s = reaction_s(now_ns);
   double speed = speed_for(arc.length_m, late_s);
   const geometry::Velocity now = driven();
-  if (std::fabs(now.linear_m_per_s) > kRolls_m_per_s &&
+  if (std::fabs(now.linear_m_per_s) > kRolls_m_s &&
       (now.linear_m_per_s > 0.0) == (wanted.linear_m_per_s > 0.0)) {
     speed = std::min(speed, speed_for(sweep(now, points_m, body_m, kFarthest_m).length_m, late_s));
   }
@@ -326,7 +326,7 @@ void CollisionGuard::judge_outline(const geometry::Velocity& wanted, std::int64_
   const bool goes_on = now.linear_m_per_s * wanted.linear_m_per_s +
                            arm_m * arm_m * now.angular_rad_per_s * wanted.angular_rad_per_s >
                        0.0;
-  if (goes_on && outline_speed(now, body) > kRolls_m_per_s) {
+  if (goes_on && outline_speed(now, body) > kRolls_m_s) {
     speed = std::min(speed,
                      speed_for(sweep(now, points_m, body, margin_m, kFarthest_m).reach_m, late_s));
   }
