@@ -10,6 +10,7 @@ import sys
 KEYWORDS = {"alignas", "const", "constexpr", "consteval", "constinit", "decltype", "explicit", "extern", "if", "inline",
             "namespace", "noexcept", "operator", "requires", "return", "sizeof", "static", "static_assert", "template",
             "typename", "using", "virtual", "void", "volatile", "while"}
+MOST_ARGUMENTS = 99  # of a function with a parameter pack
 # Comments, raw strings, strings and characters; a digit separator is no character.
 NO_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"([^\s()\\]*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<![0-9a-fA-F])\'(?:\\.|[^\'\\\n])+\'',
                      re.DOTALL)
@@ -28,7 +29,7 @@ def without(tokens, opening, closing):
 
 def declared(tokens):
     """(name, detail) that a declaration at namespace scope introduces, None for one without a name of its own. The
-    detail is "(types)" of a function, which others may overload, and "=type" of an alias, which may be repeated."""
+    detail is "(least,most)" of a function that takes so many arguments, "=type" of an alias, "" of anything else."""
     while tokens[:1] == ["template"]:
         depth, end = 0, 1
         for end in range(1, len(tokens)):
@@ -54,7 +55,7 @@ def declared(tokens):
             return None
         elif depth == 0 and token in ("(", "=", "["):
             if name and token == "(" and not re.fullmatch("[A-Z][A-Z0-9_]+", name):  # which would be a macro
-                return name, parameter_types(tokens[i:])
+                return name, counts_of_arguments(tokens[i:])
             return (name, "") if name and token != "(" else None
         elif depth == 0 and re.match(r"[A-Za-z_]", token) and token not in KEYWORDS:
             name = None if before == "::" else token  # a member of a class, or the rest of the name of a type
@@ -62,23 +63,22 @@ def declared(tokens):
     return (name, "") if name else None
 
 
-def parameter_types(tokens):
-    """"(int,double)" of the tokens "( int a , double b = 1 ) const"."""
-    depth, types, current = 0, [], []
+def counts_of_arguments(tokens):
+    """"(1,2)", the least and most arguments that a function takes, of the tokens "( int a , double b = 1 ) const"."""
+    depth, parameters = 0, [[]]
     for token in tokens:
-        depth += (token in "(<[") - (token in ")>]")
-        if depth == 0 or (token == "," and depth == 1):
-            if "=" in current:
-                current = current[:current.index("=")]
-            if len(current) > 1 and re.match(r"[A-Za-z_]", current[-1]) and current[-2] != "::":
-                current = current[:-1]
-            types.append(" ".join(current))
-            current = []
-            if depth == 0:
-                break
+        depth += (token in "(<[{") - (token in ")>]}")
+        if depth == 0:
+            break
+        if token == "," and depth == 1:
+            parameters.append([])
         elif token != "(" or depth > 1:
-            current.append(token)
-    return f"({','.join(types)})"
+            parameters[-1].append(token)
+    if parameters in ([[]], [["void"]]):
+        return "(0,0)"
+    packs = sum("." in parameter for parameter in parameters)  # "..." is three tokens
+    least = sum("=" not in parameter and "." not in parameter for parameter in parameters)
+    return f"({least},{MOST_ARGUMENTS if packs else len(parameters)})"
 
 
 def names_in(text):
@@ -123,12 +123,15 @@ def note(found, scopes, tokens):
 
 
 def clash(own, others):
-    """Whether one unit cannot have both sets of details of a name."""
+    """Whether one unit cannot have both sets of details of a name. Two functions are apart only by the number of their
+    arguments: a conversion could let a call meant for one choose the other, or neither."""
     for mine in own:
         for other in others:
-            functions = mine.startswith("(") and other.startswith("(")
-            aliases = mine.startswith("=") and other.startswith("=")
-            if (functions and mine == other) or (aliases and mine != other) or not (functions or aliases):
+            if mine.startswith("(") and other.startswith("("):
+                (least, most), (other_least, other_most) = (map(int, x[1:-1].split(",")) for x in (mine, other))
+                if least <= other_most and other_least <= most:
+                    return True
+            elif not mine.startswith("=") or mine != other:
                 return True
     return False
 

@@ -29,7 +29,7 @@ class NamesTest(unittest.TestCase):
             using geometry::Pose2;
             auto kCall = [](int x) { return x; }(3);
             """), {("kStep_m", ""), ("kPairs", ""), ("Row", ""), ("Kind", ""), ("kCall", ""), ("Json", "=nlohmann::json"),
-                   ("doubled", "(const T &,int)"), ("is_right", "(const std :: string &)")})
+                   ("doubled", "(1,2)"), ("is_right", "(1,1)")})
 
     def test_leaves_out_what_others_may_define(self):
         self.assertEqual(in_anonymous("""
@@ -42,7 +42,7 @@ class NamesTest(unittest.TestCase):
     def test_finds_static_functions_and_nested_namespaces(self):
         self.assertEqual(unity_groups.names_in("static int a(int x) { return x; }\n"
                                                "namespace t::u { namespace { int b = 1'000U; } }"),
-                         [("", "a", "(int)"), ("t::u", "b", "")])
+                         [("", "a", "(1,1)"), ("t::u", "b", "")])
 
 
 class DivisionTest(unittest.TestCase):
@@ -60,8 +60,15 @@ class DivisionTest(unittest.TestCase):
         self.assertEqual(self.divided("using J = int;", "using J = long;"), [0, 1])
         self.assertEqual(self.divided("struct f {};", "int f(int y) {}"), [0, 1])
 
-    def test_keeps_overloads_and_equal_aliases_together(self):
-        self.assertEqual(self.divided("int f(int x) {}", "int f(double x) {}"), [0, 0])
+    def test_separates_functions_that_one_call_may_mean(self):
+        self.assertEqual(self.divided("int f(int x) {}", "int f(double x) {}"), [0, 1])
+        self.assertEqual(self.divided("int f() {}", "int f(int x = 1) {}"), [0, 1])
+        self.assertEqual(self.divided("int f() {}", "int f(std::array<int, 2> x = {1, 2}) {}"), [0, 1])
+        self.assertEqual(self.divided("template <class... T> int f(T... x) {}", "int f(int a, int b) {}"), [0, 1])
+
+    def test_keeps_functions_of_other_counts_and_equal_aliases_together(self):
+        self.assertEqual(self.divided("int f() {}", "int f(int x) {}", "int f(std::map<int, int> x, int y) {}"), [0, 0, 0])
+        self.assertEqual(self.divided("int f(void) {}", "int f(const std::string& x) {}"), [0, 0])
         self.assertEqual(self.divided("using J = int;", "using J = int;"), [0, 0])
 
     def test_notices_a_changed_file(self):
