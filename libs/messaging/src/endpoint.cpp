@@ -19,10 +19,6 @@ const char* to_string(EventKind kind) {
       return "unmatched";
     case EventKind::kIncompatibleQos:
       return "incompatible_qos";
-    case EventKind::kLivelinessGained:
-      return "liveliness_gained";
-    case EventKind::kLivelinessLost:
-      return "liveliness_lost";
     case EventKind::kDeadlineMissed:
       return "deadline_missed";
     case EventKind::kSampleLost:

@@ -66,18 +66,6 @@ void ReaderListener::on_requested_incompatible_qos(
   shared_->push_incompatible(status);
 }
 
-void ReaderListener::on_liveliness_changed(dds::DataReader* /*reader*/,
-                                           const dds::LivelinessChangedStatus& status) {
-  // A writer that leaves in order also lowers alive_count; it is reported as unmatched.
-  if (status.alive_count_change <= 0 && status.not_alive_count_change <= 0) return;
-  Event event;
-  event.kind =
-      status.not_alive_count_change > 0 ? EventKind::kLivelinessLost : EventKind::kLivelinessGained;
-  event.peer = to_handle(status.last_publication_handle);
-  event.count = status.alive_count;
-  shared_->push(std::move(event));
-}
-
 void ReaderListener::on_requested_deadline_missed(
     dds::DataReader* /*reader*/, const dds::RequestedDeadlineMissedStatus& status) {
   shared_->push(make_event(EventKind::kDeadlineMissed, status.total_count));
@@ -354,10 +342,10 @@ std::uint64_t ReaderCore::waiting() const {
 
 void ReaderCore::take_events(const EventHandler& handler) {
   Endpoint::take_events([&](const Event& event) {
-    if (event.kind == EventKind::kUnmatched || event.kind == EventKind::kLivelinessLost) {
+    if (event.kind == EventKind::kUnmatched) {
       impl_->lost.insert(event.peer);
       impl_->lose(event.peer);
-    } else if (event.kind == EventKind::kMatched || event.kind == EventKind::kLivelinessGained) {
+    } else if (event.kind == EventKind::kMatched) {
       impl_->lost.erase(event.peer);
     }
     handler(event);

@@ -62,9 +62,6 @@ class ReaderListener final : public eprosima::fastdds::dds::DataReaderListener {
   void on_requested_incompatible_qos(
       eprosima::fastdds::dds::DataReader* reader,
       const eprosima::fastdds::dds::RequestedIncompatibleQosStatus& status) override;
-  void on_liveliness_changed(
-      eprosima::fastdds::dds::DataReader* reader,
-      const eprosima::fastdds::dds::LivelinessChangedStatus& status) override;
   void on_requested_deadline_missed(
       eprosima::fastdds::dds::DataReader* reader,
       const eprosima::fastdds::dds::RequestedDeadlineMissedStatus& status) override;

@@ -191,8 +191,6 @@ void StatusPublisher::on_event(const Event& event) {
       return;
     case EventKind::kMatched:
     case EventKind::kUnmatched:
-    case EventKind::kLivelinessGained:
-    case EventKind::kLivelinessLost:
     case EventKind::kSampleRejected:  // normal in a replay with a slow reader
       return;
   }

@@ -19,7 +19,7 @@ struct Handle {
 enum class InstanceState : std::uint8_t {
   kAlive = 0,
   kDisposed = 1,   ///< the writer disposed the instance
-  kNoWriters = 2,  ///< the instance's last writer left, died or lost its liveliness
+  kNoWriters = 2,  ///< the instance's last writer left or died
 };
 
 struct SampleInfo {
@@ -36,10 +36,8 @@ struct Refused final : std::exception {};
 
 enum class EventKind : std::uint8_t {
   kMatched,
-  kUnmatched,         ///< a matched peer left or its process is gone
-  kIncompatibleQos,   ///< a peer of the topic exists but cannot connect
-  kLivelinessGained,  ///< a writer is alive (again)
-  kLivelinessLost,    ///< a writer showed no life within its lease
+  kUnmatched,        ///< a matched peer left or its process is gone
+  kIncompatibleQos,  ///< a peer of the topic exists but cannot connect
   kDeadlineMissed,
   kSampleLost,      ///< samples that will never arrive
   kSampleRejected,  ///< the reader's history was full; a reliable writer sends again
