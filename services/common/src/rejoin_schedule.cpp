@@ -35,9 +35,13 @@ RejoinStep RejoinSchedule::step(const InputState& input, double now_s) {
   if (input.silence_s < DeafnessWatch::kSilence_s) {
     if (input.ever_came) deaf_lives_ = 0;
     probes_ = false;
-    probe_due_s_ = kFirstProbe_s;
+    listens_ = false;
     deaf_ = false;
     return {};
+  }
+  if (!listens_) {
+    listens_ = true;
+    probe_due_s_ = input.silence_s + kListen_s;
   }
   decide_probe(input);
   RejoinStep step{.listen = true, .probe = probes_, .report = false, .end = false};

@@ -43,6 +43,20 @@ TEST_F(RejoinScheduleTest, AsksOthersWhenTheInputIsSilentForFiveSeconds) {
   }
 }
 
+// The silence of a service that begins to work counts from its start.
+TEST_F(RejoinScheduleTest, ListensBeforeItProbes) {
+  input_ = {.silence_s = 10.0, .ever_came = true, .hears_sender = false, .deaf = false};
+  const double heard_s = 10.0 + RejoinSchedule::kListen_s / 2;
+  silence_until(
+      [&](const RejoinStep& step) {
+        EXPECT_TRUE(step.listen);
+        EXPECT_FALSE(step.probe) << input_.silence_s;
+        input_.hears_sender = input_.silence_s > heard_s;
+        return false;
+      },
+      100.0);
+}
+
 TEST_F(RejoinScheduleTest, EndsAtOnceWhenItsInputHasCeased) {
   input_.silence_s = 8.0;
   input_.deaf = true;

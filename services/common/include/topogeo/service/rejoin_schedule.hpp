@@ -49,16 +49,15 @@ class RejoinSchedule {
   [[nodiscard]] std::uint32_t deaf_lives() const { return deaf_lives_; }
 
  private:
-  static constexpr double kFirstProbe_s = messaging::DeafnessWatch::kSilence_s + kListen_s;
-
   [[nodiscard]] std::uint32_t lives_before(const InputState& input) const;
   [[nodiscard]] double wait_s(const InputState& input) const;
   void decide_probe(const InputState& input);
 
   std::uint32_t deaf_lives_;
+  bool listens_ = false;
   bool probes_ = false;
-  double probe_since_s_ = 0.0;          // silence when the probe began
-  double probe_due_s_ = kFirstProbe_s;  // silence when the next one begins
+  double probe_since_s_ = 0.0;  // silence when the probe began
+  double probe_due_s_ = 0.0;    // silence when the next one begins
   bool deaf_ = false;
   double deaf_since_s_ = 0.0;
   double report_due_s_ = 0.0;
