@@ -11,8 +11,9 @@
 namespace topogeo::simulator {
 namespace {
 
-/// About the time of one byte at 9600 baud, so that ports deliver as smoothly as real ones.
-constexpr std::chrono::milliseconds kTick{1};
+/// Ports deliver more often than a USB adapter with its usual latency timer; each delivery wakes
+/// the gateway.
+constexpr std::chrono::milliseconds kTick{2};
 /// Period of the true pose: often enough to judge every scan by it.
 constexpr std::int64_t kTruthPeriod_ns = 20'000'000;
 /// Period of a ring of sonars that fire in turns.
