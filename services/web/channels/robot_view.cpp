@@ -23,6 +23,20 @@ using Level = EventLog::Level;
 
 constexpr double kPoseAge_s = 0.5;  // keeps a scan from being drawn at a former pose
 
+std::string scan_text(const navigation::ScanPoints& scan, std::uint64_t sequence,
+                      const std::optional<geometry::Pose2>& T_map_robot, std::optional<bool> fits) {
+  Json json = {{"stamp_s", seconds(scan.stamp_ns)}, {"sequence", sequence}};
+  Json points = Json::array();
+  for (const Eigen::Vector2d& point_m : scan.points_m) {
+    points.push_back(rounded(point_m.x()));
+    points.push_back(rounded(point_m.y()));
+  }
+  json["points_robot_m"] = std::move(points);
+  if (T_map_robot) set_pose(json, *T_map_robot);
+  if (fits) json["fits"] = *fits;
+  return text_of(json);
+}
+
 Level level_of(msg::LocalizationState state) {
   if (state == msg::kStateTracking) return Level::kInfo;
   return state == msg::kStateLost ? Level::kError : Level::kWarning;
@@ -92,21 +106,18 @@ void RobotView::on_scan(const msg::Scan& message) {
 // waits, and the next one replaces it.
 void RobotView::show_scan() {
   if (!scan_) return;
-  Json json = {{"stamp_s", seconds(scan_->stamp_ns)}, {"sequence", scan_sequence_}};
-  Json points = Json::array();
-  for (const Eigen::Vector2d& point_m : scan_->points_m) {
-    points.push_back(rounded(point_m.x()));
-    points.push_back(rounded(point_m.y()));
-  }
-  json["points_robot_m"] = std::move(points);
-  if (pose_ && is_located(pose_->state()) && support::monotonic_s() - pose_came_s_ < kPoseAge_s) {
-    const geometry::Pose2 T_map_robot = service::from_msg(pose_->T_map_robot());
-    set_pose(json, T_map_robot);
-    if (const auto fit = fits(*scan_, T_map_robot)) json["fits"] = *fit;
-  } else {
+  std::optional<geometry::Pose2> T_map_robot;
+  std::optional<bool> fit;
+  if (!pose_ || !is_located(pose_->state())) {
     fit_.forget();
+  } else if (support::monotonic_s() - pose_came_s_ < kPoseAge_s) {
+    T_map_robot = service::from_msg(pose_->T_map_robot());
+    fit = fits(*scan_, *T_map_robot);
+  } else {
+    fit = fit_.last();  // a scan without its pose proves nothing new
   }
-  hub_.set(Channel::kScan, text_of(json));
+  hub_.set_later(Channel::kScan, [scan = std::move(*scan_), sequence = scan_sequence_, T_map_robot,
+                                  fit] { return scan_text(scan, sequence, T_map_robot, fit); });
   scan_.reset();
 }
 
@@ -114,10 +125,12 @@ void RobotView::show_scan() {
 std::optional<bool> RobotView::fits(const navigation::ScanPoints& scan,
                                     const geometry::Pose2& T_map_robot) {
   const auto map = hooks_.map ? hooks_.map() : nullptr;
-  if (!map || pose_->mode() == msg::kModeMapping) return std::nullopt;
-  const auto fit = scan_fit(*map, T_map_robot, scan.points_m);
-  if (!fit) return std::nullopt;
-  return fit_.add(*fit);
+  if (!map || pose_->mode() == msg::kModeMapping) {
+    fit_.forget();
+    return std::nullopt;
+  }
+  if (const auto fit = scan_fit(*map, T_map_robot, scan.points_m)) fit_.add(*fit);
+  return fit_.last();
 }
 
 void RobotView::on_navigator(const msg::NavigatorStatus& status,

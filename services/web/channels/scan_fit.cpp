@@ -39,9 +39,9 @@ std::optional<double> scan_fit(const MapPicture& map, const geometry::Pose2& T_m
   return static_cast<double>(near) / static_cast<double>(all);
 }
 
-bool ScanFit::add(double fit) {
+void ScanFit::add(double fit) {
   misfits_ = fit < kLeast ? misfits_ + 1 : 0;
-  return misfits_ < kScans;
+  last_ = misfits_ < kScans;
 }
 
 }  // namespace topogeo::web

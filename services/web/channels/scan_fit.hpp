@@ -28,12 +28,15 @@ class ScanFit {
   /// people and moved furniture have more.
   static constexpr double kLeast = 0.3;
 
-  /// False: the laser does not fit there.
-  bool add(double fit);
-  void forget() { misfits_ = 0; }
+  /// `fit`: share of the scan's hits that lie on walls.
+  void add(double fit);
+  /// False: the laser does not fit there. Nothing before the first scan.
+  [[nodiscard]] std::optional<bool> last() const { return last_; }
+  void forget() { *this = {}; }
 
  private:
   std::size_t misfits_ = 0;
+  std::optional<bool> last_;
 };
 
 }  // namespace topogeo::web

@@ -4,6 +4,7 @@
 #include <array>
 #include <iterator>
 #include <set>
+#include <utility>
 
 #include "server/json_values.hpp"
 
@@ -69,8 +70,22 @@ void ChannelHub::set(Channel channel, std::string json) {
     const std::scoped_lock lock(mutex_);
     State& now = state(channel);
     now.set_s = clock_s_();
-    if (now.version > 0 && now.value == json) return;
+    if (now.version > 0 && !now.make_value && now.value == json) return;
     now.value = std::move(json);
+    now.make_value = nullptr;
+    ++now.version;
+    now.texts.clear();
+    show_version(channel);
+  }
+  report(channel);
+}
+
+void ChannelHub::set_later(Channel channel, std::function<std::string()> make) {
+  {
+    const std::scoped_lock lock(mutex_);
+    State& now = state(channel);
+    now.set_s = clock_s_();
+    now.make_value = std::move(make);
     ++now.version;
     now.texts.clear();
     show_version(channel);
@@ -159,6 +174,7 @@ Update ChannelHub::update(Channel channel, std::uint64_t held) const {
 std::string ChannelHub::text(Channel channel, const State& state, std::uint64_t from) {
   std::string out = head(channel);
   if (!is_table(channel)) {
+    if (state.make_value) state.value = std::exchange(state.make_value, nullptr)();
     return out + R"(,"version":)" + std::to_string(state.version) + R"(,"value":)" + state.value +
            '}';
   }

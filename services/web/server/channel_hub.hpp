@@ -91,6 +91,10 @@ class ChannelHub {
 
   /// Replaces a value, as JSON. An equal value is no change, but counts as heard anew.
   void set(Channel channel, std::string json);
+  /// The same with a value that is made when a viewer first asks for it: for what changes often and
+  /// takes time to make. `make` owns its data, for it may be called from any thread, and must not
+  /// call the hub. Each call is a change.
+  void set_later(Channel channel, std::function<std::string()> make);
   /// Age of each value in seconds, as JSON: {"pose":0.1,...}.
   [[nodiscard]] std::string ages_s() const;
   /// Viewers get all edits of one call together. Equal objects are no change. `anew` removes all
@@ -110,7 +114,8 @@ class ChannelHub {
   };
   struct State {
     std::uint64_t version = 0;
-    std::string value;
+    mutable std::string value;
+    mutable std::function<std::string()> make_value;  // empty: `value` is up to date
     double set_s = 0.0;
     std::map<std::string, Object> objects;
     std::deque<std::pair<std::uint64_t, std::string>> gone;  // version and key, ascending

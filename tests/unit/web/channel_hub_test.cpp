@@ -40,6 +40,32 @@ TEST(ChannelHub, AValueThatIsSetAgainIsNewThoughItIsEqual) {
   EXPECT_EQ(hub.version(Channel::kBase), 1U);
 }
 
+TEST(ChannelHub, AValueForLaterIsMadeOnceAndOnlyWhenItIsAskedFor) {
+  double now_s = 100.0;
+  ChannelHub hub([&] { return now_s; });
+  int made = 0;
+  int changes = 0;
+  hub.on_change([&](Channel) { ++changes; });
+  for (int i = 0; i < 3; ++i) {
+    hub.set_later(Channel::kScan, [&made, i] {
+      ++made;
+      return std::to_string(i);
+    });
+  }
+  now_s += 2.0;
+  EXPECT_EQ(made, 0);
+  EXPECT_EQ(changes, 3);
+  EXPECT_EQ(json::parse(hub.ages_s()), json::parse(R"({"scan":2.0})"));
+  for (const std::uint64_t held : {0U, 2U}) {
+    EXPECT_EQ(message(hub, Channel::kScan, held),
+              json::parse(R"({"channel":"scan","version":3,"value":2})"));
+  }
+  EXPECT_EQ(made, 1);
+  hub.set_later(Channel::kScan, [] { return std::string("7"); });
+  hub.set(Channel::kScan, "2");
+  EXPECT_EQ(message(hub, Channel::kScan, 0)["value"], 2);
+}
+
 TEST(ChannelHub, WhatIsEqualIsNoChange) {
   ChannelHub hub;
   int changes = 0;

@@ -69,12 +69,26 @@ TEST(ScanFit, AScanFitsWhereItWasTakenAndNotElsewhere) {
 
 TEST(ScanFit, OneScanProvesNothing) {
   ScanFit fit;
-  EXPECT_TRUE(fit.add(0.0));
-  EXPECT_TRUE(fit.add(0.0));
-  EXPECT_FALSE(fit.add(0.1));
-  EXPECT_FALSE(fit.add(0.1));
-  EXPECT_TRUE(fit.add(0.8));
-  EXPECT_TRUE(fit.add(0.0));
+  EXPECT_EQ(fit.last(), std::nullopt);
+  const auto after = [&](double share) {
+    fit.add(share);
+    return fit.last().value();
+  };
+  EXPECT_TRUE(after(0.0));
+  EXPECT_TRUE(after(0.0));
+  EXPECT_FALSE(after(0.1));
+  EXPECT_FALSE(after(0.1));
+  EXPECT_TRUE(after(0.8));
+  EXPECT_TRUE(after(0.0));
+}
+
+TEST(ScanFit, AVerdictStaysUntilAnotherOneOrUntilItIsForgotten) {
+  ScanFit fit;
+  for (int i = 0; i < 3; ++i) fit.add(0.0);
+  EXPECT_EQ(fit.last(), false);
+  EXPECT_EQ(fit.last(), false);
+  fit.forget();
+  EXPECT_EQ(fit.last(), std::nullopt);
 }
 
 }  // namespace

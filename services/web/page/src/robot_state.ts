@@ -42,7 +42,7 @@ export function robot_state(channels: Channels, rights: Rights): RobotState {
 export function is_misplaced(channels: Channels): boolean {
   const state = channels.value("pose")?.state;
   const located = state === "TRACKING" || state === "AMBIGUOUS";
-  return located && channels.value("scan")?.fits === false && !is_silent(channels, "scan");
+  return located && channels.value("scan")?.fits === false;
 }
 
 /** A text about a value, with the value's age if it is old. */
