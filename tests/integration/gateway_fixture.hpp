@@ -21,6 +21,7 @@
 #include "topogeo/msg/simulation.h"
 #include "topogeo/msg/status.h"
 #include "topogeo/msg/stream.h"
+#include "topogeo/support/process_priority.hpp"
 
 #include "program.hpp"
 
@@ -86,6 +87,9 @@ class GatewayOnDevices : public testing::Test {
   [[nodiscard]] double counter(std::string_view name) const;
   [[nodiscard]] std::uint64_t drops(std::string_view reason) const;
 
+  // Devices and their commands are in real time. This test, simulator and gateway take few per cent
+  // of a core.
+  const bool goes_first_ = support::go_first();
   // A killed program leaves segments in /dev/shm that others may still wait at.
   const bool udp_only_ = (use_udp_only(), true);
   Scratch scratch_;
