@@ -20,7 +20,8 @@ namespace {
 
 enum class Format : std::uint8_t { kFolder, kSqlite, kMcap, kBag, kPacked, kUnknown };
 
-constexpr std::size_t kFirstBytes = 16;
+constexpr std::size_t kFirstBytes = 512;  // with the mark of a tar archive
+constexpr std::size_t kTarMark = 257;     // its place there
 constexpr std::string_view kSqliteStart = "SQLite format 3";
 constexpr std::string_view kMcapStart = "\x89MCAP";
 constexpr std::string_view kBagStart = "#ROSBAG";
@@ -30,6 +31,7 @@ struct Packing {
   std::string_view start;  ///< its first bytes
   std::string_view name;
   std::string_view command;
+  std::string_view result = "";  ///< what the command leaves to give in its place
 };
 
 constexpr std::array<Packing, 7> kPackings = {Packing{"\x28\xB5\x2F\xFD", "zstd", "zstd -d"},
@@ -42,6 +44,10 @@ constexpr std::array<Packing, 7> kPackings = {Packing{"\x28\xB5\x2F\xFD", "zstd"
                                               Packing{"7z\xBC\xAF\x27\x1C", "7-Zip", "7z x"},
                                               Packing{"Rar!", "rar", "unrar x"}};
 constexpr Packing kGzip{"\x1F\x8B", "gzip", "gunzip"};
+constexpr Packing kGzipTwice{"\x1F\x8B", "gzip twice", "gunzip"};
+constexpr std::string_view kInside = ", then give the file or folder that was in it";
+constexpr Packing kTar{"", "tar", "tar xf", kInside};
+constexpr Packing kTarGzip{"\x1F\x8B", "tar and gzip", "tar xzf", kInside};
 
 /// The first unpacked bytes of a file of gzip.
 std::string first_unpacked_bytes(const std::filesystem::path& path) {
@@ -60,15 +66,22 @@ Format format_of_start(std::string_view start) {
   return Format::kUnknown;
 }
 
+bool is_tar(std::string_view start) {
+  return start.size() > kTarMark && start.substr(kTarMark).starts_with("ustar");
+}
+
 /// Null for a file that is not packed. CARMEN logs of gzip are read as they are.
 const Packing* packing_of(const std::filesystem::path& path, std::string_view start) {
+  if (is_tar(start)) return &kTar;
   const auto* found = std::ranges::find_if(
       kPackings, [&](const Packing& packing) { return start.starts_with(packing.start); });
   if (found != kPackings.end()) return found;
   if (!start.starts_with(kGzip.start)) return nullptr;
   const std::string unpacked = first_unpacked_bytes(path);
-  const bool is_tar = path.extension() == ".tgz" || path.stem().extension() == ".tar";
-  return is_tar || format_of_start(unpacked) != Format::kUnknown ? &kGzip : nullptr;
+  const bool is_named_tar = path.extension() == ".tgz" || path.stem().extension() == ".tar";
+  if (is_named_tar || is_tar(unpacked)) return &kTarGzip;
+  if (unpacked.starts_with(kGzip.start)) return &kGzipTwice;
+  return format_of_start(unpacked) != Format::kUnknown ? &kGzip : nullptr;
 }
 
 Format format_of(const std::filesystem::path& path) {
@@ -84,7 +97,8 @@ Format format_of(const std::filesystem::path& path) {
   if (packing == nullptr) throw std::runtime_error(path.string() + ": has changed meanwhile");
   throw std::runtime_error(path.string() + ": expected a log or a recording, got one packed with " +
                            std::string(packing->name) + "; unpack it first with `" +
-                           std::string(packing->command) + "`");
+                           std::string(packing->command) + " " + path.string() + "`" +
+                           std::string(packing->result));
 }
 
 }  // namespace

@@ -95,6 +95,11 @@ std::vector<const TopicFacts*> RecordingFacts::of_type(std::string_view type) co
   return found;
 }
 
+std::optional<Topic> RecordingFacts::any_of_type(std::string_view type) const {
+  const auto found = std::ranges::find(all_topics_, type, &Topic::type);
+  return found == all_topics_.end() ? std::nullopt : std::optional(*found);
+}
+
 const TopicFacts* RecordingFacts::find(const std::string& name) const {
   const auto found = topics_.find(name);
   return found == topics_.end() ? nullptr : &found->second;

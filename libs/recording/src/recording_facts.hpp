@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,6 +49,8 @@ class RecordingFacts {
 
   /// The topics of one type, most messages first.
   [[nodiscard]] std::vector<const TopicFacts*> of_type(std::string_view type) const;
+  /// A topic of a type, of which no message need be usable.
+  [[nodiscard]] std::optional<Topic> any_of_type(std::string_view type) const;
   /// Null if no message of a topic with this name can be used.
   [[nodiscard]] const TopicFacts* find(const std::string& name) const;
   /// All topics with their types, for error messages.

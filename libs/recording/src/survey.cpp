@@ -1,9 +1,11 @@
 #include "topogeo/recording/survey.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "recording_facts.hpp"
@@ -29,6 +31,20 @@ std::string laser_topics_text(const RecordingFacts& facts) {
             std::to_string(topic->messages) + ")";
   }
   return text;
+}
+
+/// The node that turns other data of a laser into scans, for a recording without these.
+std::string converter_text(const RecordingFacts& facts) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 2> kConverters = {
+      std::pair{"sensor_msgs/msg/MultiEchoLaserScan", "laser_proc"},
+      std::pair{"sensor_msgs/msg/PointCloud2", "pointcloud_to_laserscan"}};
+  for (const auto& [type, node] : kConverters) {
+    const std::optional<Topic> topic = facts.any_of_type(type);
+    if (!topic) continue;
+    return "; play it with the node " + std::string(node) + ", which makes scans of " +
+           topic->name + ", and record these with odometry, /tf and /tf_static";
+  }
+  return {};
 }
 
 class Surveyor {
@@ -71,7 +87,8 @@ void Surveyor::choose_scans() {
   if (!used) {
     throw std::runtime_error(name_ + ": expected laser scans (sensor_msgs/LaserScan)" +
                              (choice_.scan ? " on " + *choice_.scan : "") + ", got " +
-                             facts_.topics_text() + laser_topics_text(facts_));
+                             facts_.topics_text() + laser_topics_text(facts_) +
+                             converter_text(facts_));
   }
   scans_ = *used;
   transforms_ = transforms_for(facts_, scans_);

@@ -20,6 +20,14 @@ bool has_binary_bytes(std::string_view line) {
                      [](char c) { return support::is_control(c) && c != '\t'; });
 }
 
+/// Whether a text begins with the mark of UTF-16, as a redirection of PowerShell writes it.
+bool is_utf16(const std::filesystem::path& path) {
+  GzLines lines(path);
+  GzLines::Line line;
+  return lines.next(line) &&
+         (line.text.starts_with("\xFF\xFE") || line.text.starts_with("\xFE\xFF"));
+}
+
 }  // namespace
 
 std::string_view describe(SkipReason reason) {
@@ -147,6 +155,11 @@ void CarmenLogReader::Impl::throw_unusable() const {
     throw std::runtime_error(path + ": " + expected + "an empty file");
   }
   if (statistics.laser_lines == 0) {
+    if (is_utf16(path)) {
+      throw std::runtime_error(path + ": " + expected +
+                               "text in UTF-16; convert it with `iconv -f " + "UTF-16 -t UTF-8 " +
+                               path + " > utf8.clf` and give utf8.clf");
+    }
     const std::string damage = lines.damage().empty() ? "" : "; compressed data: " + lines.damage();
     if (statistics.skipped_for(SkipReason::kText) > 0) {
       throw std::runtime_error(path + ": " + expected + "binary data" + damage);

@@ -15,7 +15,17 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 class DamagedRecording : public RecordingFiles,
-                         public testing::WithParamInterface<std::pair<const char*, const char*>> {};
+                         public testing::WithParamInterface<std::pair<const char*, const char*>> {
+ protected:
+  [[nodiscard]] std::filesystem::path gzip(const std::string& name,
+                                           const std::string& bytes) const {
+    gzFile file = gzopen(path(name).c_str(), "wb");
+    EXPECT_EQ(gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size())),
+              static_cast<int>(bytes.size()));
+    gzclose(file);
+    return path(name);
+  }
+};
 
 INSTANTIATE_TEST_SUITE_P(Formats, DamagedRecording,
                          testing::Values(std::pair{"a.mcap", "none"}, std::pair{"a.mcap", "zstd"},
@@ -135,7 +145,7 @@ TEST_F(DamagedRecording, IsNamedForWhatItIsPackedWith) {
   for (const auto& [bytes, named] :
        {std::pair{"\xFD"
                   "7zXZ\0"s,
-                  "packed with xz; unpack it first with `unxz`"},
+                  "packed with xz; unpack it first with `unxz /"},
         std::pair{"BZh91AY"s, "bunzip2"}, std::pair{"PK\x03\x04"s, "unzip"},
         std::pair{"\x04\x22\x4D\x18"s, "unlz4"}, std::pair{"7z\xBC\xAF\x27\x1C"s, "7-Zip"}}) {
     put_bytes(path("a.bag.packed"), bytes + "123456789");
@@ -143,14 +153,21 @@ TEST_F(DamagedRecording, IsNamedForWhatItIsPackedWith) {
   }
   for (const char* name : {"a.bag", "a.mcap", "a.db3"}) {
     const std::string bytes = bytes_of(write_drive(path(name)));
-    const std::filesystem::path packed = path(std::string(name) + ".gz");
-    gzFile file = gzopen(packed.c_str(), "wb");
-    ASSERT_EQ(gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size())),
-              static_cast<int>(bytes.size()));
-    gzclose(file);
-    EXPECT_THAT(open_error(packed), HasSubstr("packed with gzip; unpack it first with `gunzip`"));
+    const std::filesystem::path packed = gzip(std::string(name) + ".gz", bytes);
+    EXPECT_THAT(open_error(packed), HasSubstr("packed with gzip; unpack it first with `gunzip /"));
   }
-  EXPECT_THAT(open_error(write_drive(path("a.clf.gz"))), IsEmpty());  // read as it is
+  const std::filesystem::path log = write_drive(path("a.clf.gz"));
+  EXPECT_THAT(open_error(log), IsEmpty());  // read as it is
+  EXPECT_THAT(open_error(gzip("twice.clf.gz", bytes_of(log))),
+              HasSubstr("packed with gzip twice; unpack it first with `gunzip /"));
+  std::string archive(512, '\0');
+  archive.replace(0, 9, "drive.bag");
+  archive.replace(257, 5, "ustar");
+  put_bytes(path("drive.tar"), archive);
+  EXPECT_THAT(open_error(path("drive.tar")),
+              AllOf(HasSubstr("packed with tar; unpack it first with `tar xf /"),
+                    HasSubstr("then give the file or folder that was in it")));
+  EXPECT_THAT(open_error(gzip("drive.gz", archive)), HasSubstr("`tar xzf /"));
 }
 
 // A recorder that was killed leaves the last messages in the write-ahead log.

@@ -129,6 +129,27 @@ TEST_F(TopicSelection, TakesTheFrameOfMostScans) {
   EXPECT_EQ(read_scans(path("a.mcap")).size(), 36U);
 }
 
+TEST_F(TopicSelection, NamesTheNodeThatMakesScansOfOtherData) {
+  const auto error_with = [&](const std::string& type) -> std::string {
+    const std::filesystem::path file = path("a.db3");
+    std::filesystem::remove(file);
+    const std::unique_ptr<MessageSink> sink = create_sink(file, "none");
+    const std::vector<std::byte> content(8);
+    sink->write({"/echoes", type, kSecond_ns, content});
+    sink->close();
+    try {
+      (void)survey(file, {});
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_THAT(error_with("sensor_msgs/msg/MultiEchoLaserScan"),
+              HasSubstr("play it with the node laser_proc, which makes scans of /echoes"));
+  EXPECT_THAT(error_with("sensor_msgs/msg/PointCloud2"), HasSubstr("pointcloud_to_laserscan"));
+  EXPECT_THAT(error_with("sensor_msgs/msg/Imu"), testing::Not(HasSubstr("play it")));
+}
+
 TEST_F(TopicSelection, NamesTheTopicsOfLasersInAnError) {
   const auto drive = [](MessageFile& file, int i, std::int64_t stamp_ns) {
     file.scan(stamp_ns, stamp_ns, ranges_of(i), "/base_scan");

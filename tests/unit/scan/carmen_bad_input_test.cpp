@@ -109,6 +109,12 @@ TEST_F(LogFiles, UnusableFilesAreErrorsThatNameTheFileAndTheReason) {
                                            9))),
               HasSubstr("binary data"));
   EXPECT_THAT(open_error(plain(std::string(5U << 20U, '\0'))), HasSubstr("binary data"));
+  const std::string utf16(
+      "\xFF\xFE"
+      "F\0L\0A\0S\0E\0R\0 \0001\0\n\0",
+      20);
+  EXPECT_THAT(open_error(plain(utf16)),
+              AllOf(HasSubstr("text in UTF-16"), HasSubstr("`iconv -f UTF-16 -t UTF-8 /")));
   EXPECT_THAT(open_error(plain(flaser("1.0", "1 -2 3 4") + flaser("2.0", "1 2 3 -4"))),
               AllOf(HasSubstr("none of 2 laser lines"), HasSubstr("a.clf:1: expected")));
   EXPECT_THROW(count_scans(path("none.clf")), std::runtime_error);
