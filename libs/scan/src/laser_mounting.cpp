@@ -7,6 +7,7 @@
 
 #include "carmen_line.hpp"
 #include "gz_lines.hpp"
+#include "motion_mounting.hpp"
 
 namespace topogeo::scan {
 namespace {
@@ -70,6 +71,7 @@ std::optional<Pose2> mounting_in_log(const std::filesystem::path& log) {
   GzLines::Line line;
   CarmenLineParser parser(kFarthest_m);  // reads no ranges
   std::vector<Pose2> mountings;
+  MotionMounting motions;
   std::optional<Pose2> last;  // of the robot
   while (lines.next(line)) {
     if (line.too_long || line_kind(line.text) != LineKind::kLaser) continue;
@@ -77,8 +79,12 @@ std::optional<Pose2> mounting_in_log(const std::filesystem::path& log) {
     if (!poses || (last && near(poses->T_odom_robot, *last, kMoved_m, kMoved_rad))) continue;
     last = poses->T_odom_robot;
     mountings.push_back(between(poses->T_odom_robot, poses->T_odom_laser));
+    motions.add(*poses);
   }
-  return common_mounting(mountings);
+  if (const std::optional<Pose2> common = common_mounting(mountings)) return common;
+  const std::optional<Pose2> found = motions.find();
+  if (!found || std::hypot(found->x_m, found->y_m) > kFarthest_m) return std::nullopt;
+  return Pose2{rounded(found->x_m, 1e3), rounded(found->y_m, 1e3), rounded(found->theta_rad, 1e3)};
 }
 
 }  // namespace topogeo::scan

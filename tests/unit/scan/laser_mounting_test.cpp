@@ -102,6 +102,35 @@ TEST_F(LogFiles, PosesThatDifferByNoConstantStateNothing) {
   EXPECT_FALSE(mounting_in_log(plain(circle_log(100, [](int) { return Pose2{}; }))));
 }
 
+/// A log of a drive along squares of 3 m with turns at their corners. The poses of the laser are
+/// true, odometry has its own frame and lengths, and drifts to one side.
+std::string corrected_log(const Pose2& T_robot_laser, double length) {
+  std::string text;
+  Pose2 T_map_robot;
+  Pose2 T_odom_robot{5.0, 1.0, 0.8};
+  for (int i = 0; i < 200; ++i) {
+    const bool turns = i % 20 >= 15;
+    T_map_robot = T_map_robot * (turns ? Pose2{0.0, 0.0, 0.3} : Pose2{0.2, 0.0, 0.0});
+    T_odom_robot =
+        T_odom_robot * (turns ? Pose2{0.0, 0.0, 0.301} : Pose2{0.2 * length, 0.0, 0.001});
+    text += "FLASER 2 1.00 2.00" + pose_text(T_map_robot * T_robot_laser, 6) +
+            pose_text(T_odom_robot, 6) + " " + std::to_string(i + 1) + ".0 host 1.0\n";
+  }
+  return text;
+}
+
+TEST_F(LogFiles, ACorrectedTrajectoryOfTheLaserStatesTheMountingByItsMotions) {
+  for (const Pose2& T_robot_laser : {Pose2{0.15, 0.0, 0.0}, Pose2{-0.2, 0.1, 3.14159}}) {
+    const auto mounting = mounting_in_log(plain(corrected_log(T_robot_laser, 1.03)));
+    ASSERT_TRUE(mounting);
+    const Eigen::Vector3d apart = difference(*mounting, T_robot_laser);
+    EXPECT_LT(apart.head<2>().norm(), 0.01);
+    EXPECT_NEAR(apart.z(), 0.0, 0.01);
+  }
+  EXPECT_FALSE(mounting_in_log(plain(corrected_log({}, 1.03)))) << "nothing to correct";
+  EXPECT_FALSE(mounting_in_log(plain(corrected_log({0.15, 0.0, 0.0}, 2.0)))) << "another robot";
+}
+
 TEST_F(LogFiles, ARobotThatStandsStatesNothing) {
   std::string log;
   for (int i = 0; i < 300; ++i) log += "FLASER 2 1 2 1.5 2 0 1 1 0 " + std::to_string(i) + " h 1\n";

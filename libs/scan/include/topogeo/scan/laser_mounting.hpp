@@ -10,10 +10,11 @@
 
 namespace topogeo::scan {
 
-/// T_robot_laser of a log; all zeros if its lines repeat one pose. Empty if the log does not state
-/// it: fewer than ten scans of a moving robot, damaged poses, or two poses without a constant
-/// difference, as when the first is that of a corrected trajectory. Reads the whole log. Throws
-/// std::runtime_error if the file cannot be opened.
+/// T_robot_laser of a log; all zeros if its lines repeat one pose. If the difference of both poses
+/// is not constant, as when the first is that of a corrected trajectory, the motions between the
+/// lines show it, to about a centimetre. Empty if the log does not state it: fewer than ten scans
+/// of a moving robot, damaged poses, or two poses that have nothing to do with each other. Reads
+/// the whole log. Throws std::runtime_error if the file cannot be opened.
 std::optional<geometry::Pose2> mounting_in_log(const std::filesystem::path& log);
 
 /// The pose that nine in ten of the given poses agree with, to 1 cm and 0.5 degrees: their median,
