@@ -114,6 +114,7 @@ Facts facts_of(const Report& report, const storage::MapDocument& document) {
   for (const storage::MapEdge& edge : document.edges) {
     if (edge.kind == Kind::kSequential) ++recent;
   }
+  std::uint64_t seeing = 0;  // stops after the first one that can match at all
   const auto& maps = document.local_maps;
   const auto& stops = document.trajectory.stops;
   for (std::size_t i = 1; i < maps.size(); ++i) {
@@ -122,6 +123,7 @@ Facts facts_of(const Report& report, const storage::MapDocument& document) {
     if (i < stops.size()) {
       facts.corrected_m +=
           geometry::between(stops[i - 1].T_map_robot, stops[i].T_map_robot).position_m().norm();
+    if (!maps[i].points.empty()) ++seeing;
     }
     if (!topomap::has_odometry_between(maps[i - 1], maps[i])) continue;
     facts.path_m += std::sqrt(geometry::between(maps[i - 1].T_odom_robot, maps[i].T_odom_robot)
@@ -129,7 +131,7 @@ Facts facts_of(const Report& report, const storage::MapDocument& document) {
                                   .squaredNorm());
   }
   const auto share = [](double part, double whole) { return whole > 0.0 ? part / whole : 0.0; };
-  facts.recent_matches = share(static_cast<double>(recent), static_cast<double>(facts.steps));
+  facts.recent_matches = share(static_cast<double>(recent), static_cast<double>(seeing));
   facts.accepted_share = accepted_share(report);
   facts.from_scans = report.laser_odometry.has_value();
   std::uint64_t skipped = 0;

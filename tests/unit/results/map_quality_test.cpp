@@ -23,6 +23,7 @@ storage::MapDocument drive(std::uint32_t open, std::uint32_t matches = 2) {
   for (std::uint32_t id = 0; id < kStops; ++id) {
     topomap::LocalMap map;
     map.T_odom_robot = {1.0 * id, 0.0, 0.0};
+    map.points = {{1.0F, 0.0F}};
     document.local_maps.push_back(map);
     topomap::StopPose stop;
     stop.T_map_robot = map.T_odom_robot;
@@ -227,4 +228,14 @@ TEST(MapQuality, AMapWithoutEdgesIsNotAssessed) {
 }
 
 }  // namespace
+TEST(MapQuality, StopsWithoutAnEchoNeedNoMatch) {
+  storage::MapDocument document = drive(0, 3);
+  for (std::uint32_t id = 2; id < kStops; id += 3) document.local_maps[id].points.clear();
+  std::erase_if(document.edges, [&](const storage::MapEdge& edge) {
+    return edge.kind == Kind::kSequential && (document.local_maps[edge.later_id].points.empty() ||
+                                              document.local_maps[edge.earlier_id].points.empty());
+  });
+  EXPECT_THAT(quality_text(judged(document, 38)), testing::Not(HasSubstr("a stop matches only")));
+}
+
 }  // namespace topogeo::results
