@@ -127,6 +127,45 @@ TEST_F(UnknownMountingTest, ScansThatContradictTheStatedOneAreReported) {
   EXPECT_LT(rms_m(), 0.1);
 }
 
+TEST_F(UnknownMountingTest, AStatedHeadingThatTheScansContradictIsRefused) {
+  simulation::SimulationOptions options;
+  options.T_robot_laser = {-0.2, 0.0, std::numbers::pi};
+  recording_ = log_;
+  write_log("floor", log_, truth_, options, {0.15, 0.0, 0.0});
+  map("wrong", {}, 3);
+  EXPECT_THAT(err_, HasSubstr("the laser is stated at 0 deg, but the scans show it at 180 deg"));
+  EXPECT_THAT(err_, HasSubstr("if they are right, expected --laser -0."));
+  EXPECT_FALSE(std::filesystem::exists(scratch_ / "wrong" / "map.pb"));
+  map("right", {"--laser", "-0.2,0,3.14159"});
+  EXPECT_LT(rms_m(), 0.1);
+}
+
+TEST_F(UnknownMountingTest, ALaserThatIsTurnedDuringTheDriveIsRefused) {
+  const std::filesystem::path ahead = scratch_ / "ahead.clf";
+  const std::filesystem::path back = scratch_ / "back.clf";
+  simulation::SimulationOptions options;
+  write_log("floor", ahead, truth_, options, {});
+  options.T_robot_laser = {0.0, 0.0, std::numbers::pi};
+  write_log("floor", back, truth_, options, {});
+  std::ifstream first(ahead);
+  std::ifstream second(back);
+  std::vector<std::string> lines;
+  std::vector<std::string> others;
+  for (std::string line; std::getline(first, line);) lines.push_back(line);
+  for (std::string line; std::getline(second, line);) others.push_back(line);
+  ASSERT_EQ(lines.size(), others.size());
+  recording_ = scratch_ / "turned.clf";
+  std::ofstream file(recording_);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    file << (i < lines.size() / 2 ? lines : others)[i] << '\n';
+  }
+  file.close();
+  map("turned", {}, 3);
+  EXPECT_THAT(err_, HasSubstr("the laser does not stay where it is on the robot: until about "));
+  EXPECT_THAT(err_, HasSubstr("add the second with --continue and --laser "));
+  EXPECT_FALSE(std::filesystem::exists(scratch_ / "turned" / "map.pb"));
+}
+
 TEST_F(UnknownMountingTest, CalibrationStartsThere) {
   forget_mounting();
   ASSERT_EQ(run({"calibrate-laser", recording_}), 0) << err_;

@@ -82,29 +82,31 @@ LaserMotion mirrored(const LaserMotion& motion) {
   return seen;
 }
 
-void LaserMotions::add(std::span<const topomap::ScanPoint> points, const Pose2& T_odom_robot,
-                       std::uint64_t odometry_epoch) {
+void LaserMotions::add(std::span<const topomap::ScanPoint> points, std::int64_t stamp_ns,
+                       const Pose2& T_odom_robot, std::uint64_t odometry_epoch) {
   const bool follows = first_ && odometry_epoch == epoch_;
   epoch_ = odometry_epoch;
   const Pose2 step = geometry::between(T_odom_last_, T_odom_robot);
   if (follows && !is_motion(step, kScanStep_m, kScanStep_rad)) return;
   MatchFeatures features = extract_scan_features(points, Pose2{});
   const std::optional<Refinement> fit = follows ? best_fit(features, step) : std::nullopt;
-  if (!fit) return begin(std::move(features), T_odom_robot);
+  if (!fit) return begin(std::move(features), stamp_ns, T_odom_robot);
   T_odom_last_ = T_odom_robot;
   motion_.odometry.push_back(step);
   motion_.T_odometry = motion_.T_odometry * step;
   motion_.T_laser = fit->T_reference_query;
   if (!is_motion(motion_.T_odometry, kMotion_m, kMotion_rad)) return;
   motion_.covariance = covariance_of(*fit);
+  motion_.last_ns = stamp_ns;
   motions_.push_back(motion_);
-  begin(std::move(features), T_odom_robot);
+  begin(std::move(features), stamp_ns, T_odom_robot);
 }
 
-void LaserMotions::begin(MatchFeatures features, const Pose2& T_odom_robot) {
+void LaserMotions::begin(MatchFeatures features, std::int64_t stamp_ns, const Pose2& T_odom_robot) {
   first_ = make_reference(std::move(features));
   T_odom_last_ = T_odom_robot;
   motion_ = {};
+  motion_.first_ns = stamp_ns;
 }
 
 std::optional<Refinement> LaserMotions::best_fit(const MatchFeatures& features,

@@ -44,19 +44,6 @@ Eigen::Matrix3d weight(const LaserMotion& motion, const Pose2& T_robot_laser) {
   return (of_odometry + motion.covariance).inverse();
 }
 
-MountingFit evaluated(std::span<const LaserMotion> motions, const Pose2& T_robot_laser) {
-  MountingFit fit;
-  fit.T_robot_laser = T_robot_laser;
-  fit.squared_mahalanobis.reserve(motions.size());
-  for (const LaserMotion& motion : motions) {
-    const Eigen::Vector3d error =
-        geometry::difference(motion.T_laser, predicted(motion.T_odometry, T_robot_laser));
-    fit.squared_mahalanobis.push_back(error.dot(weight(motion, T_robot_laser) * error));
-    fit.cost += std::min(fit.squared_mahalanobis.back(), MountingFit::kOutlying);
-  }
-  return fit;
-}
-
 /// Derivative of the predicted motion by the mounting (x, y, yaw).
 Eigen::Matrix3d jacobian(const Pose2& T_odometry, const Pose2& T) {
   constexpr double kStep = 1e-6;
@@ -123,6 +110,19 @@ double scatter(const MountingFit& fit) {
 }
 
 }  // namespace
+
+MountingFit evaluated(std::span<const LaserMotion> motions, const Pose2& T_robot_laser) {
+  MountingFit fit;
+  fit.T_robot_laser = T_robot_laser;
+  fit.squared_mahalanobis.reserve(motions.size());
+  for (const LaserMotion& motion : motions) {
+    const Eigen::Vector3d error =
+        geometry::difference(motion.T_laser, predicted(motion.T_odometry, T_robot_laser));
+    fit.squared_mahalanobis.push_back(error.dot(weight(motion, T_robot_laser) * error));
+    fit.cost += std::min(fit.squared_mahalanobis.back(), MountingFit::kOutlying);
+  }
+  return fit;
+}
 
 MountingFit fit_position(std::span<const LaserMotion> motions, double yaw_rad) {
   constexpr int kRounds = 4;  // linear, but for the weights

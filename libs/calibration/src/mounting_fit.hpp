@@ -22,6 +22,9 @@ struct MountingFit {
   static constexpr double kOutlying = 16.3;
 };
 
+/// How well a mounting fits; without its covariance.
+MountingFit evaluated(std::span<const LaserMotion> motions, const geometry::Pose2& T_robot_laser);
+
 /// The best position of a laser that faces `yaw_rad`. Turns show it; without them it stays at the
 /// centre of the robot.
 MountingFit fit_position(std::span<const LaserMotion> motions, double yaw_rad);

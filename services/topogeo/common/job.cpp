@@ -36,21 +36,6 @@ Job open_log(const JobOptions& options, Inputs inputs) {
   }
 }
 
-void set_mounting(pipeline::LoadedConfig& config, const geometry::Pose2& T_robot_laser) {
-  pipeline::mount_laser(config.config, T_robot_laser);
-  config.effective = support::effective(pipeline::describe(config.config));
-}
-
-/// Where nothing states it.
-MountingChoice take_found(const localization::FoundMounting& found, pipeline::LoadedConfig& config,
-                          recording::TopicChoice& topics) {
-  std::cerr << "topogeo: " << pipeline::text_of(found) << '\n';
-  set_mounting(config, found.T_robot_laser);
-  topics.T_robot_laser = found.T_robot_laser;
-  topics.upside_down |= found.upside_down;
-  return {found.heading_known, found, {}};
-}
-
 /// A map is continued with the mounting that it was made with, which no search finds exactly.
 void mount_as_in_map(pipeline::LoadedConfig& config, JobOptions& options) {
   const storage::MapDocument map = storage::read_map_file(*options.continued);
@@ -215,41 +200,6 @@ void add_map_options(command_line::Command& app, JobOptions& options, StoredMapU
       ->type_name("X,Y,DEG");
 }
 
-MountingChoice choose_mounting(pipeline::LoadedConfig& config, const std::filesystem::path& log,
-                               recording::TopicChoice& topics) {
-  if (topics.T_robot_laser) set_mounting(config, *topics.T_robot_laser);
-  config.laser_set |= topics.T_robot_laser.has_value();
-  try {
-    const recording::LogMounting in_log = recording::mounting_in_log(log, topics);
-    print_notes(in_log.notes);
-    const std::string message = pipeline::choose_mounting(config, in_log.T_robot_laser);
-    if (!message.empty()) std::cerr << "topogeo: " << message << '\n';
-    const bool stated = config.laser_set || in_log.T_robot_laser.has_value();
-    if (config.laser_set) return {true, std::nullopt, {}};
-    const localization::FoundMounting found = search_mounting(config.config, log, topics);
-    // A CARMEN log has the laser at its poses, if it states no other mounting.
-    if (!stated && recording::is_recording(log)) return take_found(found, config, topics);
-    const std::string warning =
-        pipeline::contradiction(found, config.config.local_mapper.T_robot_laser);
-    if (!warning.empty()) std::cerr << "topogeo: " << warning << '\n';
-    return {stated, std::nullopt, pipeline::mirroring(found)};
-  } catch (const std::runtime_error& error) {
-    throw service::BadInputError(error.what());
-  }
-}
-
-localization::FoundMounting search_mounting(const pipeline::Config& config,
-                                            const std::filesystem::path& log,
-                                            const recording::TopicChoice& topics) {
-  try {
-    recording::LogReader reader(log, config.log, topics);
-    if (!reader.has_odometry()) return {};
-    return pipeline::find_mounting([&reader] { return reader.next(); }, config);
-  } catch (const std::runtime_error& error) {
-    throw service::BadInputError(error.what());
-  }
-}
-
 Inputs check_inputs(JobOptions& options) {
   if (options.initial_pose && !options.map && !options.continued) {
     throw service::UsageError("--initial-pose: expected with a stored map, --map or --continue");
@@ -257,8 +207,8 @@ Inputs check_inputs(JobOptions& options) {
   Inputs inputs{load(options.config), nullptr, nullptr, {}};
   if (!options.log.empty()) {
     inputs.mounting = choose_mounting(inputs.config, options.log, options.topics);
-    if (!inputs.mounting.mirroring.empty()) {
-      throw service::BadInputError(options.log.string() + ": " + inputs.mounting.mirroring);
+    if (!inputs.mounting.refusal.empty()) {
+      throw service::BadInputError(options.log.string() + ": " + inputs.mounting.refusal);
     }
     if (inputs.mounting.found && options.continued) mount_as_in_map(inputs.config, options);
   }

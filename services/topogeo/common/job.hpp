@@ -13,10 +13,11 @@
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/pipeline/trajectory_error.hpp"
-#include "topogeo/pipeline/unknown_mounting.hpp"
 #include "topogeo/recording/log_reader.hpp"
 #include "topogeo/results/map_quality.hpp"
 #include "topogeo/storage/report.hpp"
+
+#include "common/log_mounting.hpp"
 
 namespace topogeo::cli {
 
@@ -56,26 +57,6 @@ enum class StoredMapUse : std::uint8_t {
 
 /// Adds those options and --initial-pose.
 void add_map_options(command_line::Command& app, JobOptions& options, StoredMapUse use);
-
-/// Where the laser is, and how that is known.
-struct MountingChoice {
-  bool known = false;  ///< stated by flag, configuration or log, or found with its heading
-  std::optional<localization::FoundMounting> found;  ///< by a search, where nothing states it
-  std::string mirroring{};                           ///< pipeline::mirroring of a stated mounting
-};
-
-/// Takes the laser mounting from --laser, the configuration, the log or, where a recording does not
-/// state it, from its scans. Reports that, scans that contradict the log, and the chosen topics of
-/// a recording on stderr. `topics` get what else reading the log needs to know of the mounting.
-/// Throws service::BadInputError when the log cannot be read.
-MountingChoice choose_mounting(pipeline::LoadedConfig& config, const std::filesystem::path& log,
-                               recording::TopicChoice& topics);
-
-/// The mounting by the scans and the odometry of a log; unknown without odometry. Throws
-/// service::BadInputError when it cannot be read.
-localization::FoundMounting search_mounting(const pipeline::Config& config,
-                                            const std::filesystem::path& log,
-                                            const recording::TopicChoice& topics);
 
 /// Inputs of mapping besides scans.
 struct Inputs {

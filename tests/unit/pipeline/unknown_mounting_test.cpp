@@ -67,6 +67,20 @@ TEST(UnknownMounting, OnlyAClearContradictionIsAWarning) {
                         "right: --upside-down"));
 }
 
+TEST(UnknownMounting, AHeadingThatNearlyAllMotionsContradictIsNotUsed) {
+  FoundMounting found = backwards();
+  EXPECT_THAT(other_heading(found, {0.3, 0.0, -3.0}), IsEmpty());  // 9 degrees
+  EXPECT_EQ(other_heading(found, {0.1, 0.0, 0.0}),
+            "the laser is stated at 0 deg, but the scans show it at 180 deg (29 of 30 motions "
+            "fit): if they are right, expected --laser -0.2,0.05,3.1416; if the stated "
+            "mounting is, expected --laser 0.1,0,0");
+  found.fitting = 20;  // a warning must do
+  EXPECT_THAT(other_heading(found, {0.1, 0.0, 0.0}), IsEmpty());
+  found = backwards();
+  found.heading_known = false;
+  EXPECT_THAT(other_heading(found, {0.1, 0.0, 0.0}), IsEmpty());
+}
+
 TEST(UnknownMounting, MirroredScansAndMirroredOdometryLookAlike) {
   FoundMounting found = backwards();
   EXPECT_THAT(mirroring(found), IsEmpty());

@@ -36,6 +36,8 @@ struct LaserMotion {
   geometry::Pose2 T_odometry;  ///< the steps together
   geometry::Pose2 T_laser;     ///< last pose of the laser in its first; x along the beam at angle 0
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< of T_laser, in the first frame
+  std::int64_t first_ns = 0;                                 ///< stamps of the two scans
+  std::int64_t last_ns = 0;
 };
 
 /// The same motion for a laser that is upside down: seen from above, its scans are mirrored.
@@ -43,16 +45,16 @@ LaserMotion mirrored(const LaserMotion& motion);
 
 class LaserMotions {
  public:
-  /// The next scan in time order: its points in the frame of the laser, m, and the odometry. Poses
-  /// of different epochs are unrelated.
-  void add(std::span<const topomap::ScanPoint> points, const geometry::Pose2& T_odom_robot,
-           std::uint64_t odometry_epoch);
+  /// The next scan in time order: its points in the frame of the laser, m, its stamp and the
+  /// odometry. Poses of different epochs are unrelated.
+  void add(std::span<const topomap::ScanPoint> points, std::int64_t stamp_ns,
+           const geometry::Pose2& T_odom_robot, std::uint64_t odometry_epoch);
 
   /// Motions one after the other, without overlap.
   [[nodiscard]] const std::vector<LaserMotion>& motions() const { return motions_; }
 
  private:
-  void begin(MatchFeatures features, const geometry::Pose2& T_odom_robot);
+  void begin(MatchFeatures features, std::int64_t stamp_ns, const geometry::Pose2& T_odom_robot);
   [[nodiscard]] std::optional<Refinement> best_fit(const MatchFeatures& features,
                                                    const geometry::Pose2& step) const;
 
