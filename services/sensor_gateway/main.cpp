@@ -81,6 +81,11 @@ void add_options_to(command_line::Command& app, Options& options) {
                  "topic of the odometry or transforms in a ROS recording")
       ->needs(log)
       ->type_name("TOPIC");
+  app.add_option("--scan-delay", options.replay.topics.scan_delay_s,
+                 "time by which the stamps of scans in a ROS recording are late, s")
+      ->needs(log)
+      ->check(command_line::range(-10.0, 10.0))
+      ->type_name("S");
   app.add_flag("--upside-down", options.replay.topics.upside_down,
                "the laser of the log hangs upside down");
   app.add_option("--readers", options.replay.readers,

@@ -36,6 +36,7 @@ void note_set_keys(const std::filesystem::path& file, LoadedConfig& loaded) {
   Config other;
   other.local_mapper.T_robot_laser = {1.0, 1.0, 1.0};
   other.local_mapper.stop_distance_m *= 2.0;
+  other.log.range_scale = 0.5;
   localization::OdometryNoise& noise = other.localizer.odometry;
   for (const localization::NoiseParameter& parameter : localization::kOdometryParameters) {
     noise.*parameter.field *= 0.5;
@@ -48,6 +49,7 @@ void note_set_keys(const std::filesystem::path& file, LoadedConfig& loaded) {
                      laser.theta_rad == other_laser.theta_rad;
   loaded.stop_distance_set =
       read.local_mapper.stop_distance_m == other.local_mapper.stop_distance_m;
+  loaded.range_scale_set = read.log.range_scale == other.log.range_scale;
   loaded.odometry_noise_set =
       std::ranges::any_of(localization::kOdometryParameters, [&](const auto& parameter) {
         return read.localizer.odometry.*parameter.field == noise.*parameter.field;

@@ -1,6 +1,7 @@
 #include "topogeo/recording/log_reader.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -35,14 +36,22 @@ void mirror(scan::Scan& scan) {
   std::ranges::reverse(scan.ranges_m);
 }
 
+std::int64_t delay_ns(const TopicChoice& choice) {
+  return std::llround(1e9 * choice.scan_delay_s.value_or(0.0));
+}
+
 class CarmenScans final : public LogReader::Source {
  public:
   CarmenScans(const std::filesystem::path& path, const scan::CarmenLogOptions& options,
               bool upside_down)
-      : reader_(path, options), upside_down_(upside_down) {}
+      : reader_(path, options),
+        range_scale_(static_cast<float>(options.range_scale)),
+        upside_down_(upside_down) {}
   std::optional<scan::Scan> next() override {
     std::optional<scan::Scan> scan = reader_.next();
-    if (scan && upside_down_) mirror(*scan);
+    if (!scan) return scan;
+    for (float& range_m : scan->ranges_m) range_m *= range_scale_;
+    if (upside_down_) mirror(*scan);
     return scan;
   }
   [[nodiscard]] const scan::CarmenLogStatistics& statistics() const override {
@@ -52,16 +61,18 @@ class CarmenScans final : public LogReader::Source {
 
  private:
   scan::CarmenLogReader reader_;
+  float range_scale_;
   bool upside_down_;
 };
 
 class RecordedScans final : public LogReader::Source {
  public:
   RecordedScans(const std::filesystem::path& path, const scan::CarmenLogOptions& options,
-                std::shared_ptr<const Drive> drive, ros::SweepOrder sweep)
+                std::shared_ptr<const Drive> drive, const TopicChoice& choice)
       : name_(path.string()),
-        scans_(path, std::move(drive), sweep, options.range_max_m, RosScans::Beams::kOnePattern,
-               skip()),
+        scans_(path, std::move(drive), choice.sweep,
+               {options.range_max_m, options.range_scale, delay_ns(choice)},
+               RosScans::Beams::kOnePattern, skip()),
         sequence_(
             options.jump_s, [this] { return scans_.next(); }, skip()) {
     ready_ = sequence_.next();
@@ -112,36 +123,35 @@ class RecordedScans final : public LogReader::Source {
 struct LogReader::Opened {
   Opened(const std::filesystem::path& log, const scan::CarmenLogOptions& wanted,
          const TopicChoice& choice)
-      : path(log), options(wanted), sweep(choice.sweep), upside_down(choice.upside_down) {
+      : path(log), options(wanted), topics(choice) {
     check(options);
-    if (is_recording(path)) open_drive(choice);
+    if (is_recording(path)) open_drive();
     no_return = find_no_return(path, options, drive);
     if (no_return) options.range_max_m = std::min(options.range_max_m, no_return->least_m);
   }
 
   /// Odometry without a usable pose counts as none, where none is allowed.
-  void open_drive(const TopicChoice& choice) {
-    drive = std::make_shared<const Drive>(path, choice);
+  void open_drive() {
+    drive = std::make_shared<const Drive>(path, topics);
     const Timeline& timeline = drive->timeline;
-    if (choice.odometry_use != OdometryUse::kIfRecorded || timeline.fault_count() == 0 ||
+    if (topics.odometry_use != OdometryUse::kIfRecorded || timeline.fault_count() == 0 ||
         !timeline.odometry().empty()) {
       return;
     }
     odometry_fault = timeline.faults().front();
-    TopicChoice without = choice;
+    TopicChoice without = topics;
     without.odometry_use = OdometryUse::kIgnored;
     drive = std::make_shared<const Drive>(path, without);
   }
 
   [[nodiscard]] std::unique_ptr<Source> source() const {
-    if (drive) return std::make_unique<RecordedScans>(path, options, drive, sweep);
-    return std::make_unique<CarmenScans>(path, options, upside_down);
+    if (drive) return std::make_unique<RecordedScans>(path, options, drive, topics);
+    return std::make_unique<CarmenScans>(path, options, topics.upside_down);
   }
 
   std::filesystem::path path;
   scan::CarmenLogOptions options;
-  ros::SweepOrder sweep;
-  bool upside_down;
+  TopicChoice topics;
   std::shared_ptr<const Drive> drive{};  // of a recording
   std::string odometry_fault{};
   std::optional<scan::NoReturn> no_return{};
@@ -178,6 +188,13 @@ bool LogReader::has_odometry() const {
   return source_->has_odometry();
 }
 
+std::optional<LogReader::OdometryPose> LogReader::odometry_at(std::int64_t stamp_ns) const {
+  if (!opened_->drive || opened_->drive->survey.odometry_topic.empty()) return std::nullopt;
+  const auto found = opened_->drive->timeline.odometry().at(stamp_ns);
+  if (!found) return std::nullopt;
+  return OdometryPose{found->T_odom_robot, found->epoch};
+}
+
 const std::string& LogReader::odometry_fault() const {
   return opened_->odometry_fault;
 }
@@ -208,7 +225,7 @@ scan::LogCheck check_log(const std::filesystem::path& path, const scan::LogCheck
   constexpr double kNoLimit_m = 1e9;
   scan::ScanCheck check(options);
   RosScans scans(path, std::make_shared<const Drive>(path, topics), ros::SweepOrder::kNone,
-                 kNoLimit_m, RosScans::Beams::kAsMeasured,
+                 {kNoLimit_m, 1.0, delay_ns(topics)}, RosScans::Beams::kAsMeasured,
                  [&](scan::SkipReason reason, std::uint64_t scan, const std::string& text) {
                    // Drivers start and end one after the other.
                    if (reason == scan::SkipReason::kOdometryEnds) return;

@@ -22,7 +22,7 @@ void read_carmen(const std::filesystem::path& path, const scan::CarmenLogOptions
 /// Uses the readings as they were measured: a correction of motion would change the value.
 void read_recording(const std::filesystem::path& path, const scan::CarmenLogOptions& options,
                     const std::shared_ptr<const Drive>& drive, scan::NoReturnSearch& search) {
-  RosScans scans(path, drive, ros::SweepOrder::kNone, options.range_max_m,
+  RosScans scans(path, drive, ros::SweepOrder::kNone, {options.range_max_m},
                  RosScans::Beams::kAsMeasured,
                  [](scan::SkipReason, std::uint64_t, const std::string&) {});
   while (const std::optional<scan::ScanSequence::Candidate> candidate = scans.next()) {

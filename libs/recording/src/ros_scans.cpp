@@ -30,11 +30,11 @@ std::string seconds_text_of(double seconds) {
 }  // namespace
 
 RosScans::RosScans(const std::filesystem::path& path, std::shared_ptr<const Drive> drive,
-                   ros::SweepOrder sweep, double range_limit_m, Beams beams,
+                   ros::SweepOrder sweep, const Correction& correction, Beams beams,
                    scan::ScanSequence::Skip skip)
     : drive_(std::move(drive)),
       sweep_(beams == Beams::kOnePattern ? sweep : ros::SweepOrder::kNone),
-      range_limit_m_(range_limit_m),
+      correction_(correction),
       beams_(beams),
       skip_(std::move(skip)),
       source_(open_messages(
@@ -78,7 +78,8 @@ ros::Sweep RosScans::read_sweep(const RawMessage& message) const {
 
 std::optional<RosScans::Candidate> RosScans::take(const RawMessage& message) {
   const std::size_t number = scans_++;
-  const std::optional<std::int64_t> stamp_ns = drive_->timeline.scan_ns(number);
+  std::optional<std::int64_t> stamp_ns = drive_->timeline.scan_ns(number);
+  if (stamp_ns) *stamp_ns -= correction_.delay_ns;
   try {
     ros::Sweep sweep = read_sweep(message);
     if (drive_->timeline.is_repeated(number)) return std::nullopt;
@@ -97,7 +98,8 @@ std::optional<RosScans::Candidate> RosScans::take(const RawMessage& message) {
       return std::nullopt;
     }
     // No echo has no place that a correction of motion could move.
-    ros::limit_ranges(sweep.ranges_m, range_limit_m_);
+    ros::limit_ranges(sweep.ranges_m, correction_.range_limit_m);
+    for (float& range_m : sweep.ranges_m) range_m *= static_cast<float>(correction_.range_scale);
     if (is_repeated(sweep, *pose)) {
       skip_(SkipReason::kRepeated, scans_, std::string(scan::kRepeatedText));
       return std::nullopt;
@@ -170,7 +172,7 @@ void RosScans::put_beams(ros::Sweep sweep, scan::Scan& scan) const {
     }
     sweep.pattern = *survey.beams;
   }
-  ros::limit_ranges(sweep.ranges_m, range_limit_m_);
+  ros::limit_ranges(sweep.ranges_m, correction_.range_limit_m * correction_.range_scale);
   scan.angle_min_rad = sweep.pattern.angle_min_rad;
   scan.angle_step_rad = sweep.pattern.angle_step_rad;
   scan.ranges_m = std::move(sweep.ranges_m);

@@ -25,9 +25,17 @@ class RosScans {
     kAsMeasured
   };
 
-  /// Ranges at or above `range_limit_m` are no echo. `drive` is of the same file.
+  /// How the numbers of a scan are to be taken.
+  struct Correction {
+    double range_limit_m = 0.0;  ///< ranges at or above it, as they are recorded, are no echo
+    double range_scale = 1.0;    ///< in metres, of a recorded range of 1
+    std::int64_t delay_ns = 0;   ///< of the stamps of scans after those of odometry
+  };
+
+  /// `drive` is of the same file.
   RosScans(const std::filesystem::path& path, std::shared_ptr<const Drive> drive,
-           ros::SweepOrder sweep, double range_limit_m, Beams beams, scan::ScanSequence::Skip skip);
+           ros::SweepOrder sweep, const Correction& correction, Beams beams,
+           scan::ScanSequence::Skip skip);
 
   /// Its odometry epoch counts from 0.
   std::optional<scan::ScanSequence::Candidate> next();
@@ -57,7 +65,7 @@ class RosScans {
 
   std::shared_ptr<const Drive> drive_;
   ros::SweepOrder sweep_;
-  double range_limit_m_;
+  Correction correction_;
   Beams beams_;
   scan::ScanSequence::Skip skip_;
   scan::RepeatedReadings repeated_;

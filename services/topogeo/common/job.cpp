@@ -137,6 +137,11 @@ void add_topic_options(command_line::Command& app, recording::TopicChoice& topic
         }
       })
       ->type_name("X,Y,YAW");
+  app.add_option("--scan-delay", topics.scan_delay_s,
+                 "time by which the stamps of the scans in a recording are later than those of the "
+                 "odometry (default: 0.1 s or more are found from turns, else 0)")
+      ->check(command_line::range(-10.0, 10.0))
+      ->type_name("S");
   app.add_flag("--upside-down", topics.upside_down,
                "the laser hangs upside down, or its driver mirrors the scans; for a log that does "
                "not state it");

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "topogeo/pipeline/laser_mounting.hpp"
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -96,6 +97,9 @@ void start_source(ProcessGroup& processes, const RunOptions& options, const std:
   }
   if (topics.scan) source.insert(source.end(), {"--scan-topic", *topics.scan});
   if (topics.upside_down) source.emplace_back("--upside-down");
+  if (topics.scan_delay_s) {
+    source.push_back(fmt::format("--scan-delay={}", *topics.scan_delay_s));
+  }
   if (topics.odometry) source.insert(source.end(), {"--odometry-topic", *topics.odometry});
   if (!options.devices.empty()) {
     source = {"--devices", options.devices.string()};

@@ -58,6 +58,8 @@ TEST_F(ConfigTest, KnowsWhatTheFileSets) {
   };
   EXPECT_FALSE(load_config({}).stop_distance_set);
   EXPECT_FALSE(load_config({}).odometry_noise_set);
+  EXPECT_FALSE(load_config({}).range_scale_set);
+  EXPECT_TRUE(load("scan: {range_scale: 1}\n").range_scale_set);
   EXPECT_TRUE(load("stop: {distance_m: 1.0}\n").stop_distance_set) << "the default, but set";
   EXPECT_FALSE(load("stop: {distance_m: 1.0}\n").odometry_noise_set);
   EXPECT_TRUE(load("odometry.heading_rad2_per_m: 0.01\n").odometry_noise_set);

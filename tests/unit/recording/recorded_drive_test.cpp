@@ -263,5 +263,38 @@ TEST_F(RecordedDrive, OfABagWithoutSumsOfMessagesIsRead) {
   expect_same_scans(read_scans(path("b.bag")), read_scans(path("a.bag")));
 }
 
+TEST_F(RecordedDrive, TakesOutADelayOfTheScans) {
+  const auto file = write_drive(path("a.mcap"));
+  const std::vector<scan::Scan> as_stated = read_scans(file);
+  TopicChoice late;
+  late.scan_delay_s = 0.05;
+  const std::vector<scan::Scan> corrected = read_scans(file, late);
+  ASSERT_EQ(corrected.size(), as_stated.size());
+  for (std::size_t i = 1; i < corrected.size(); ++i) {
+    EXPECT_EQ(corrected[i].stamp_ns, as_stated[i].stamp_ns - 50'000'000);
+    const double halfway_rad =
+        0.5 * (as_stated[i - 1].T_odom_robot.theta_rad + as_stated[i].T_odom_robot.theta_rad);
+    EXPECT_NEAR(corrected[i].T_odom_robot.theta_rad, halfway_rad, 1e-6);
+    EXPECT_EQ(corrected[i].ranges_m, as_stated[i].ranges_m);
+  }
+}
+
+TEST_F(RecordedDrive, ConvertsRangesOfAnotherScale) {
+  for (const char* name : {"a.mcap", "a.clf.gz"}) {
+    const auto file = write_drive(path(name));
+    scan::CarmenLogOptions half;
+    half.range_scale = 0.5;
+    LogReader reader(file, half);
+    for (const scan::Scan& as_recorded : read_scans(file)) {
+      const std::optional<scan::Scan> scan = reader.next();
+      ASSERT_TRUE(scan) << name;
+      for (std::size_t beam = 0; beam < scan->ranges_m.size(); ++beam) {
+        EXPECT_EQ(scan->ranges_m[beam], 0.5F * as_recorded.ranges_m[beam]);
+      }
+      EXPECT_EQ(scan->T_odom_robot, as_recorded.T_odom_robot);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace topogeo::recording

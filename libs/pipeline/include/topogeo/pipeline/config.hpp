@@ -48,6 +48,7 @@ struct LoadedConfig {
   support::EffectiveConfig effective;
   bool laser_set = false;           ///< the file sets at least one key of section `laser`
   bool stop_distance_set = false;   ///< ... stop.distance_m
+  bool range_scale_set = false;     ///< ... scan.range_scale
   bool odometry_noise_set = false;  ///< ... at least one noise parameter of section `odometry`
 };
 LoadedConfig load_config(const std::optional<std::filesystem::path>& file);

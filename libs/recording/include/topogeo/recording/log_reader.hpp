@@ -51,6 +51,14 @@ class LogReader {
 
   /// False if the log is a recording without usable odometry, or TopicChoice ignores it.
   [[nodiscard]] bool has_odometry() const;
+  /// Odometry of a recording at a time of its clock.
+  struct OdometryPose {
+    geometry::Pose2 T_odom_robot;
+    std::uint64_t epoch = 0;  ///< from 0; poses of different epochs are unrelated
+  };
+  /// Interpolated; empty where none is near, and for a CARMEN log, whose scans have their odometry
+  /// beside them.
+  [[nodiscard]] std::optional<OdometryPose> odometry_at(std::int64_t stamp_ns) const;
   /// Why none of the odometry messages of a recording is usable; empty if some are, if there are
   /// none, or if TopicChoice requires odometry.
   [[nodiscard]] const std::string& odometry_fault() const;

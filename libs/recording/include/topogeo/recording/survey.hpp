@@ -35,6 +35,8 @@ struct TopicChoice {
   std::optional<geometry::Pose2> T_robot_laser =
       std::nullopt;          ///< mounting where the log states none
   bool upside_down = false;  ///< the laser is, whatever transforms state; also for a CARMEN log
+  /// Time by which the stamps of scans are later than those of odometry, s; none: as stated.
+  std::optional<double> scan_delay_s = std::nullopt;
 };
 
 struct Survey {

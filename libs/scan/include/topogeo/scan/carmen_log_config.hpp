@@ -10,7 +10,8 @@ namespace topogeo::scan {
 struct CarmenLogOptions {
   double range_max_m = 49.9;
   bool detect_no_return = true;
-  double jump_s = 60.0;  ///< longest step of the stamps that needs no confirmation
+  double jump_s = 60.0;      ///< longest step of the stamps that needs no confirmation
+  double range_scale = 1.0;  ///< metres of a recorded range of 1
 };
 
 /// Declares the section `scan`.
