@@ -154,6 +154,14 @@ std::string changing(const DriveMotions& drive, const FoundMounting& found) {
       heading(change->after), argument_of(change->after));
 }
 
+std::string text_of(const localization::ScanDelay& delay) {
+  return fmt::format(
+      "the stamps of the scans are {:.2f} s {} than those of the odometry ({} turns fit that, {} "
+      "equal clocks): it is taken out; --scan-delay 0 keeps them",
+      std::fabs(delay.delay_s), delay.delay_s > 0.0 ? "later" : "earlier", delay.votes.for_it,
+      delay.votes.against);
+}
+
 std::string contradiction(const FoundMounting& found, const geometry::Pose2& T_robot_laser) {
   const double yaw_rad = found.T_robot_laser.theta_rad;
   const bool turned = is_turned(found, T_robot_laser);

@@ -1,5 +1,6 @@
 #include "common/log_mounting.hpp"
 
+#include <cstdint>
 #include <iostream>
 #include <stdexcept>
 #include <utility>
@@ -24,20 +25,41 @@ MountingChoice take_found(const localization::FoundMounting& found, pipeline::Lo
   return {found.heading_known, found, {}};
 }
 
+/// The time by which the stamps of scans are later than those of odometry, where the motions of a
+/// recording show one.
+std::optional<localization::ScanDelay> scan_delay(const recording::LogReader& reader,
+                                                  const pipeline::DriveMotions& drive,
+                                                  bool upside_down) {
+  const auto turn_rad = [&reader](std::int64_t first_ns,
+                                  std::int64_t last_ns) -> std::optional<double> {
+    const auto first = reader.odometry_at(first_ns);
+    const auto last = reader.odometry_at(last_ns);
+    if (!first || !last || first->epoch != last->epoch) return std::nullopt;
+    return geometry::wrap_angle(last->T_odom_robot.theta_rad - first->T_odom_robot.theta_rad);
+  };
+  return localization::find_scan_delay(drive.motions, turn_rad, upside_down);
+}
+
 struct SearchedMotions {
   pipeline::DriveMotions drive;
   localization::FoundMounting mounting;
 };
 
-/// The motions of a log and their mounting; none without odometry.
+/// The motions of a log and their mounting; none without odometry. A delay of the scans that no
+/// flag states is reported, and goes to `topics`.
 SearchedMotions search_motions(const pipeline::Config& config, const std::filesystem::path& log,
-                               const recording::TopicChoice& topics) {
+                               recording::TopicChoice& topics) {
   recording::LogReader reader(log, config.log, topics);
   if (!reader.has_odometry()) return {};
   SearchedMotions found;
   found.drive = pipeline::laser_motions([&reader] { return reader.next(); }, config);
   found.mounting = pipeline::find_mounting(found.drive);
-  return found;
+  if (!recording::is_recording(log) || topics.scan_delay_s) return found;
+  const auto delay = scan_delay(reader, found.drive, found.mounting.upside_down);
+  if (!delay) return found;
+  std::cerr << "topogeo: " << pipeline::text_of(*delay) << '\n';
+  topics.scan_delay_s = delay->delay_s;
+  return search_motions(config, log, topics);
 }
 
 }  // namespace
@@ -57,8 +79,9 @@ MountingChoice choose_mounting(pipeline::LoadedConfig& config, const std::filesy
     const std::string message = pipeline::choose_mounting(config, in_log.T_robot_laser);
     if (!message.empty()) std::cerr << "topogeo: " << message << '\n';
     const bool stated = config.laser_set || in_log.T_robot_laser.has_value();
-    if (config.laser_set) return {true, std::nullopt, {}};
+    if (config.laser_set && !recording::is_recording(log)) return {true, std::nullopt, {}};
     const SearchedMotions searched = search_motions(config.config, log, topics);
+    if (config.laser_set) return {true, std::nullopt, {}};
     const localization::FoundMounting& found = searched.mounting;
     std::string refusal = pipeline::changing(searched.drive, found);
     // A CARMEN log has the laser at its poses, if it states no other mounting.

@@ -81,6 +81,13 @@ TEST(UnknownMounting, AHeadingThatNearlyAllMotionsContradictIsNotUsed) {
   EXPECT_THAT(other_heading(found, {0.1, 0.0, 0.0}), IsEmpty());
 }
 
+TEST(UnknownMounting, ADelayIsSaidInOneLine) {
+  EXPECT_EQ(text_of(localization::ScanDelay{0.25, {34, 1}}),
+            "the stamps of the scans are 0.25 s later than those of the odometry (34 turns fit "
+            "that, 1 equal clocks): it is taken out; --scan-delay 0 keeps them");
+  EXPECT_THAT(text_of(localization::ScanDelay{-0.1, {5, 0}}), HasSubstr("0.10 s earlier than"));
+}
+
 TEST(UnknownMounting, MirroredScansAndMirroredOdometryLookAlike) {
   FoundMounting found = backwards();
   EXPECT_THAT(mirroring(found), IsEmpty());

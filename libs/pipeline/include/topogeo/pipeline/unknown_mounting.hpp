@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "topogeo/calibration/mounting_search.hpp"
+#include "topogeo/calibration/scan_delay.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/scan_feed.hpp"
 
@@ -26,6 +27,9 @@ localization::FoundMounting find_mounting(const DriveMotions& drive);
 
 /// One line for the user: what was found, how surely, and the flag for what was not.
 std::string text_of(const localization::FoundMounting& found);
+
+/// One line for the user about a delay that is taken out.
+std::string text_of(const localization::ScanDelay& delay);
 
 /// A warning for the user if the scans clearly show another heading than the stated mounting, or a
 /// laser upside down; otherwise empty. `found` is by scans that were read as stated.
