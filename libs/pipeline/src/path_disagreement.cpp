@@ -7,6 +7,8 @@
 #include <numbers>
 #include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/topomap/odometry_contradiction.hpp"
@@ -170,6 +172,23 @@ std::optional<PathDisagreement> jump_before(const Path& path, std::uint32_t stop
   return worst;
 }
 
+double median_of(std::vector<double> values) {
+  const auto middle = std::next(values.begin(), static_cast<std::ptrdiff_t>(values.size() / 2));
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+/// The scale that parts with these ratios have in common; 1 if they have none.
+double common_scale(const std::vector<double>& ratios) {
+  constexpr double kMost = 0.9;
+  const double scale = median_of(ratios);
+  const double least = 0.5 * std::log(scale);
+  const auto alike = std::ranges::count_if(ratios, [&](double ratio) {
+    return least > 0.0 ? std::log(ratio) > least : std::log(ratio) < least;
+  });
+  return static_cast<double>(alike) >= kMost * static_cast<double>(ratios.size()) ? scale : 1.0;
+}
+
 }  // namespace
 
 PathComparison compare_with_odometry(const storage::MapDocument& document) {
@@ -177,11 +196,13 @@ PathComparison compare_with_odometry(const storage::MapDocument& document) {
   PathComparison comparison;
   std::vector<PathDisagreement>& found = comparison.disagreements;
   std::vector<double> shares;
+  std::vector<double> ratios;
   for (std::uint32_t first = 0; first < path.size(); ++first) {
     const std::optional<Part> part = path.part_from(first);
     if (!part) continue;
     shares.push_back(part->apart_m / part->odometry_m);
     const double ratio = part->ratio();
+    ratios.push_back(ratio);
     if (ratio > kLargestLengthRatio || ratio < 1.0 / kLargestLengthRatio) {
       add(found, Disagreement::kLength, *part);
     }
@@ -195,9 +216,8 @@ PathComparison compare_with_odometry(const storage::MapDocument& document) {
   for (const auto& part : carried_stops(document.local_maps)) found.push_back(part);
   std::ranges::stable_sort(found, {}, &PathDisagreement::kind);
   if (!shares.empty()) {
-    const auto middle = std::next(shares.begin(), static_cast<std::ptrdiff_t>(shares.size() / 2));
-    std::ranges::nth_element(shares, middle);
-    comparison.typical_share = *middle;
+    comparison.typical_share = median_of(std::move(shares));
+    comparison.scale = common_scale(ratios);
   }
   return comparison;
 }

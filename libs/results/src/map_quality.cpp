@@ -13,6 +13,8 @@
 #include "topogeo/pipeline/path_disagreement.hpp"
 #include "topogeo/support/format.hpp"
 
+#include "judgement.hpp"
+
 namespace topogeo::results {
 namespace {
 
@@ -31,6 +33,7 @@ constexpr double kMostContradicted = 0.3;  // of the steps
 constexpr std::size_t kPartsOfScale = 5;   // fewer are alike by chance
 constexpr double kSameScale = 1.15;
 constexpr double kOtherScale = 1.35;
+constexpr double kOtherLengths = 1.045;  // of the path, all along
 constexpr double kFeetOfMetre = 1.0 / 0.3048;
 constexpr double kNearUnit = 1.05;
 constexpr double kMostSkipped = 0.5;
@@ -40,16 +43,12 @@ constexpr std::uint64_t kStopsOfLongDrive = 10;
 constexpr std::uint32_t kStopsOfEnd = 3;  // an open step there moves hardly anything
 constexpr double kLongStep_m = 0.4;
 
-constexpr const char* kGood = "good";
-constexpr const char* kFair = "fair";
-constexpr const char* kPoor = "poor";
-constexpr const char* kUseless = "useless";
-
 constexpr const char* kMoreStops = "more stops: stop: {distance_m: 0.5} in a file for --config";
 constexpr const char* kCalibrateOdometry = "topogeo calibrate-odometry ";
 constexpr const char* kLaserOdometry =
     "odometry from the scans: odometry: {source: laser} in a file for --config";
-constexpr const char* kInMetres = "the ranges in metres: divide them by 3.281";
+constexpr const char* kInMetres =
+    "the ranges in metres: scan: {range_scale: 0.3048} in a file for --config";
 constexpr const char* kOtherRecording =
     "a recording with odometry of wheels, or of a laser that sees farther";
 
@@ -71,6 +70,7 @@ struct Facts {
   double contradicted_share = 0.0;      // of the steps: the scans contradict their odometry
   double without_odometry_share = 0.0;  // of the scans
   double scale = 1.0;                   // of the scans over the odometry, if it is another one
+  double length_scale = 1.0;            // of the path over the odometry, all along
   bool from_scans = false;              // the odometry is made of the scans
 
   /// A shorter drive says little.
@@ -79,6 +79,9 @@ struct Facts {
   }
   [[nodiscard]] bool ranges_in_feet() const {
     return scale > kFeetOfMetre / kNearUnit && scale < kFeetOfMetre * kNearUnit;
+  }
+  [[nodiscard]] bool other_lengths() const {
+    return length_scale > kOtherLengths || length_scale < 1.0 / kOtherLengths;
   }
   /// Whether another odometry is wanted.
   [[nodiscard]] bool odometry_useless() const {
@@ -111,19 +114,19 @@ Facts facts_of(const Report& report, const storage::MapDocument& document) {
   using Kind = storage::MapEdge::Kind;
   Facts facts;
   std::uint64_t recent = 0;
+  std::uint64_t seeing = 0;  // stops after the first one that can match at all
   for (const storage::MapEdge& edge : document.edges) {
     if (edge.kind == Kind::kSequential) ++recent;
   }
-  std::uint64_t seeing = 0;  // stops after the first one that can match at all
   const auto& maps = document.local_maps;
   const auto& stops = document.trajectory.stops;
   for (std::size_t i = 1; i < maps.size(); ++i) {
     if (maps[i].starts_drive) continue;
     ++facts.steps;
+    if (!maps[i].points.empty()) ++seeing;
     if (i < stops.size()) {
       facts.corrected_m +=
           geometry::between(stops[i - 1].T_map_robot, stops[i].T_map_robot).position_m().norm();
-    if (!maps[i].points.empty()) ++seeing;
     }
     if (!topomap::has_odometry_between(maps[i - 1], maps[i])) continue;
     facts.path_m += std::sqrt(geometry::between(maps[i - 1].T_odom_robot, maps[i].T_odom_robot)
@@ -158,37 +161,6 @@ Facts facts_of(const Report& report, const storage::MapDocument& document) {
   return facts;
 }
 
-/// Lowers a grade and notes the reason.
-class Judgement {
- public:
-  void fair(std::string reason) {
-    if (grade_ == kGood) grade_ = kFair;
-    reasons_.push_back(std::move(reason));
-  }
-  void poor(std::string reason) {
-    incomplete(std::move(reason));
-    unreliable_ = true;
-  }
-  /// Poor, but usually right as far as it goes.
-  void incomplete(std::string reason) {
-    grade_ = kPoor;
-    reasons_.push_back(std::move(reason));
-  }
-  void useless(std::string reason) {
-    grade_ = kUseless;
-    unreliable_ = true;
-    reasons_ = {std::move(reason)};
-  }
-  [[nodiscard]] const std::string& grade() const { return grade_; }
-  [[nodiscard]] const std::vector<std::string>& reasons() const { return reasons_; }
-  [[nodiscard]] bool unreliable() const { return unreliable_; }
-
- private:
-  std::string grade_ = kGood;
-  bool unreliable_ = false;
-  std::vector<std::string> reasons_;
-};
-
 void judge_odometry(const Facts& facts, Judgement& judgement) {
   const std::string apart = fmt::format(
       "scans and odometry are typically {:.2f} m apart after a metre", facts.typical_share);
@@ -209,6 +181,17 @@ void judge_odometry(const Facts& facts, Judgement& judgement) {
   if (facts.ranges_in_feet()) judgement.poor("the ranges of the laser are probably in feet");
   if (facts.jumps) judgement.poor("the path jumps where odometry does not");
   if (facts.other_length) judgement.fair("the path is much longer or shorter than by odometry");
+}
+
+/// After all other reasons.
+void judge_scale(const Facts& facts, Judgement& judgement) {
+  if (facts.scale != 1.0 || !facts.other_lengths()) return;
+  const bool longer = facts.length_scale > 1.0;
+  judgement.of_unknown_scale(fmt::format(
+      "the path is {:.1f} % {} by the scans than by the odometry all along: either the ranges of "
+      "the laser are too {} or the odometry is too {}, and a log cannot tell which",
+      100.0 * std::fabs(facts.length_scale - 1.0), longer ? "longer" : "shorter",
+      longer ? "long" : "short", longer ? "short" : "long"));
 }
 
 Judgement judge(const Report& report, const Facts& facts) {
@@ -242,7 +225,15 @@ Judgement judge(const Report& report, const Facts& facts) {
                     "alone",
                     facts.path_m));
   }
+  judge_scale(facts, judgement);
   return judgement;
+}
+
+std::string range_scale(const Facts& facts) {
+  return fmt::format(
+      "scan: {{range_scale: {:.3g}}} in a file for --config if the odometry is right, 1 in its "
+      "place if the ranges are",
+      1.0 / facts.length_scale);
 }
 
 /// The one thing that helps most. A calibration that the program makes by itself belongs before
@@ -254,6 +245,7 @@ std::string advice(const Facts& facts, const std::string& grade, const QualityIn
            " --scan 0 --out scan.png  # shows what the laser sees";
   }
   if (facts.ranges_in_feet()) return kInMetres;
+  if (grade == kFair && facts.other_lengths()) return range_scale(facts);
   if (facts.odometry_useless() && !inputs.tried.contains(Remedy::kLaserOdometry)) {
     return kLaserOdometry;
   }
@@ -274,6 +266,7 @@ std::string advice(const Facts& facts, const std::string& grade, const QualityIn
     return kCalibrateOdometry + inputs.log + " --out odometry.yaml";
   }
   if (!inputs.tried.contains(Remedy::kLaserOdometry)) return kLaserOdometry;
+  if (facts.other_lengths()) return range_scale(facts);
   return "topogeo check-log " + inputs.log;
 }
 
@@ -328,6 +321,7 @@ void add_quality(Report& report, const storage::MapDocument& document,
   }
   Facts facts = facts_of(report, document);
   facts.typical_share = comparison.typical_share;
+  if (!inputs.range_scale_known && !facts.from_scans) facts.length_scale = comparison.scale;
   facts.unmapped_stops = inputs.unmapped_stops;
   facts.without_odometry_share =
       static_cast<double>(inputs.scans_without_odometry) /

@@ -289,10 +289,11 @@ void add_mounting(storage::Report& report, const Inputs& inputs) {
 void add_quality(storage::Report& report, const Job& job, const storage::MapDocument& document,
                  const MappingFacts& facts) {
   if (job.options.map || job.options.continued) return;
-  results::add_quality(report, document,
-                       {job.options.log.string(), job.inputs.mounting.known,
-                        job.inputs.config.config.localizer.recent_matches, facts.unmapped_stops,
-                        facts.tried, scans_without_odometry(job.reader.statistics())});
+  results::add_quality(
+      report, document,
+      {job.options.log.string(), job.inputs.mounting.known,
+       job.inputs.config.config.localizer.recent_matches, facts.unmapped_stops, facts.tried,
+       scans_without_odometry(job.reader.statistics()), job.inputs.config.range_scale_set});
 }
 
 void print_summary(std::ostream& out, const storage::Report& report,

@@ -46,6 +46,15 @@ TEST(PathDisagreement, NamesAPathThatIsTooLong) {
   EXPECT_EQ(found.last_id, 11U);
   EXPECT_NEAR(found.corrected_m / found.odometry_m, 1.4, 1e-9);
   EXPECT_NEAR(comparison.typical_share, 0.4, 1e-9);
+  EXPECT_NEAR(comparison.scale, 1.4, 1e-9);
+}
+
+TEST(PathDisagreement, AScaleIsThatOfNearlyAllParts) {
+  const auto half = compare_with_odometry(drive([](std::uint32_t id) {
+    return Pose2{0.5 * id + (id > 6 ? 0.05 * (id - 6) : 0.0), 0.0, 0.0};
+  }));
+  EXPECT_EQ(half.scale, 1.0);
+  EXPECT_EQ(compare_with_odometry({}).scale, 1.0);
 }
 
 TEST(PathDisagreement, NamesATurnThatOdometryDoesNotMake) {

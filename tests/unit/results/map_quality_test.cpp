@@ -160,6 +160,38 @@ TEST(MapQuality, OdometryOfAnotherScaleIsReplaced) {
   EXPECT_EQ(advised_remedy(judge(1.0, 3.28)), std::nullopt);
 }
 
+/// A map whose path is longer or shorter than by odometry.
+storage::MapDocument stretched(double scale, double scale_at_end) {
+  storage::MapDocument document = drive(0);
+  double x_m = 0.0;
+  for (std::uint32_t id = 0; id < kStops; ++id) {
+    document.trajectory.stops[id].T_map_robot.x_m = x_m;
+    x_m += id < kStops / 2 ? scale : scale_at_end;
+  }
+  return document;
+}
+
+TEST(MapQuality, RangesOfAnotherScaleLookLikeOdometryOfAnotherScale) {
+  EXPECT_EQ(judged(stretched(1.03, 1.03), 38).quality.grade, "good");
+  EXPECT_EQ(judged(stretched(1.08, 1.0), 38).quality.grade, "good") << "a floor that slips";
+  const storage::Report long_ranges = judged(stretched(1.08, 1.07), 38);
+  EXPECT_TRUE(is_unreliable(long_ranges));
+  EXPECT_EQ(long_ranges.quality.grade, "fair") << "another map may be better";
+  EXPECT_THAT(quality_text(long_ranges), HasSubstr("longer by the scans than by the odometry"));
+  EXPECT_THAT(long_ranges.quality.advice, HasSubstr("scan: {range_scale: 0.929}"));
+  EXPECT_EQ(advised_remedy(long_ranges), std::nullopt);
+  EXPECT_THAT(judged(stretched(0.9, 0.9), 38).quality.advice, HasSubstr("range_scale: 1.11}"));
+  storage::Report stated;
+  stated.matches_tried = stated.matches_accepted = 40;
+  add_quality(stated, stretched(1.08, 1.07), {"drive.clf.gz", true, 3, 0, {}, 0, true});
+  EXPECT_EQ(stated.quality.grade, "good");
+  storage::Report from_scans;
+  from_scans.laser_odometry.emplace();
+  from_scans.matches_tried = from_scans.matches_accepted = 40;
+  add_quality(from_scans, stretched(1.08, 1.07), {"drive.clf.gz", true});
+  EXPECT_EQ(from_scans.quality.grade, "good");
+}
+
 TEST(MapQuality, OdometryThatMostScansLackIsReplaced) {
   storage::Report report;
   report.scans = 100;
@@ -196,6 +228,16 @@ TEST(MapQuality, AGoodOrFairMapNeedsNoRemedy) {
   EXPECT_EQ(advised_remedy(judged(drive(kStops - 1), 34)), std::nullopt);
 }
 
+TEST(MapQuality, StopsWithoutAnEchoNeedNoMatch) {
+  storage::MapDocument document = drive(0, 3);
+  for (std::uint32_t id = 2; id < kStops; id += 3) document.local_maps[id].points.clear();
+  std::erase_if(document.edges, [&](const storage::MapEdge& edge) {
+    return edge.kind == Kind::kSequential && (document.local_maps[edge.later_id].points.empty() ||
+                                              document.local_maps[edge.earlier_id].points.empty());
+  });
+  EXPECT_THAT(quality_text(judged(document, 38)), testing::Not(HasSubstr("a stop matches only")));
+}
+
 TEST(MapQuality, TheBetterMapHasMoreScansThenTheBetterGradeThenFewerOpenSteps) {
   const storage::Report good = judged(drive(0), 38);
   const storage::Report poor = judged(drive(10), 34);
@@ -228,14 +270,4 @@ TEST(MapQuality, AMapWithoutEdgesIsNotAssessed) {
 }
 
 }  // namespace
-TEST(MapQuality, StopsWithoutAnEchoNeedNoMatch) {
-  storage::MapDocument document = drive(0, 3);
-  for (std::uint32_t id = 2; id < kStops; id += 3) document.local_maps[id].points.clear();
-  std::erase_if(document.edges, [&](const storage::MapEdge& edge) {
-    return edge.kind == Kind::kSequential && (document.local_maps[edge.later_id].points.empty() ||
-                                              document.local_maps[edge.earlier_id].points.empty());
-  });
-  EXPECT_THAT(quality_text(judged(document, 38)), testing::Not(HasSubstr("a stop matches only")));
-}
-
 }  // namespace topogeo::results

@@ -30,6 +30,9 @@ struct PathComparison {
   std::vector<PathDisagreement> disagreements;  ///< in the order of the path, by kind
   /// Median displacement between both over 3 m of odometry, divided by 3 m; 0: shorter drives.
   double typical_share = 0.0;
+  /// Median length of those parts in the map over that by odometry, if nine of ten of them differ
+  /// by half as much or more to the same side; else 1.
+  double scale = 1.0;
 };
 
 /// Compares all parts of 3 m, and all pairs of consecutive scans; stops of different drives or with

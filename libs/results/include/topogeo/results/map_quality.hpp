@@ -26,6 +26,7 @@ struct QualityInputs {
   std::uint64_t unmapped_stops = 0;          ///< of a robot that was not found again in its map
   std::set<Remedy> tried{};                  ///< these were tried already
   std::uint64_t scans_without_odometry = 0;  ///< left out, because the log has none at their time
+  bool range_scale_known = false;            ///< whether the configuration states scan.range_scale
 };
 
 /// Fills the quality of a report, whose counts and skipped lines must be filled. The thresholds and
@@ -46,8 +47,8 @@ bool is_better(const storage::Report& report, const storage::Report& other);
 /// alone, and where map and odometry differ. Empty if the map was not assessed.
 std::string quality_text(const storage::Report& report);
 
-/// Whether the map of a long drive is probably wrong: it shows nothing but odometry, or is poor for
-/// another reason than scans that were left out.
+/// Whether the map of a long drive is probably wrong: it shows nothing but odometry, is poor for
+/// another reason than scans that were left out, or has another scale than odometry.
 bool is_unreliable(const storage::Report& report);
 
 }  // namespace topogeo::results
