@@ -81,6 +81,7 @@ TEST_F(LaserOdometryMapTest, IsChosenByTheConfiguration) {
   std::ofstream(scratch_ / "laser.yaml") << "odometry: {source: laser}\n";
   ASSERT_EQ(map(recorded_, {"--config", scratch_ / "laser.yaml"}), 0) << err_;
   EXPECT_THAT(err_, HasSubstr("topogeo: odometry from the scans: odometry.source is laser\n"));
+  EXPECT_THAT(err_, HasSubstr("if the map is a mirror image of the building, expected --upside-"));
   EXPECT_LT(rms_m(), 0.05);
   std::ofstream(scratch_ / "recorded.yaml") << "odometry: {source: recorded}\n";
   map(log_, {"--config", scratch_ / "recorded.yaml"});

@@ -26,7 +26,14 @@ pipeline::ScanFeed open_feed(Job& job) {
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }
-  if (!why.empty()) std::cerr << "topogeo: odometry from the scans: " << why << '\n';
+  if (!why.empty()) {
+    std::cerr << "topogeo: odometry from the scans: " << why << '\n';
+    if (!job.options.topics.upside_down) {
+      std::cerr
+          << "topogeo: scans alone do not show whether their beams are reversed: if the map is "
+             "a mirror image of the building, expected --upside-down\n";
+    }
+  }
   return service::scan_feed(job.reader, config, !why.empty());
 }
 
