@@ -7,6 +7,8 @@
 
 #include "topogeo/geometry/portable_math.hpp"
 
+#include "arc_paths.hpp"
+
 namespace topogeo::planning {
 namespace {
 
@@ -17,14 +19,39 @@ constexpr double kBack = 2.0;          // reversing costs as much as this many m
 constexpr double kBesideWall = 2.0;    // added at the least margin
 constexpr double kAroundEnds_m = 0.7;  // around start and goal
 constexpr double kLeastTurn_rad = 1e-6;
+constexpr double kPiece_m = 0.15;  // of a search: always leaves its cell of 0.1 m
+constexpr double kPieceTurn_rad = 2.0 * std::numbers::pi / 24.0;
+constexpr double kPerBend = 0.1;     // metres for a radian of an arc
+constexpr double kArcReserve = 1.1;  // of the smallest radius, for corrections of the follower
+
+double length_of(const OutlineMove& move) {
+  return std::fabs(move.length_m) * (move.length_m > 0.0 ? 1.0 : kBack) +
+         kPerBend * std::fabs(move.curvature_per_m * move.length_m);
+}
+
+/// Moves along a path, and their cost without obstacles, which no cost with obstacles is below.
+struct FreeLink {
+  std::vector<OutlineMove> moves;
+  double cost = 0.0;
+};
+
+FreeLink free_link(const ArcPath& path) {
+  FreeLink link;
+  for (const ArcPiece& piece : path) {
+    const OutlineMove move{0.0, piece.length_m, piece.curvature_per_m};
+    const bool reverses = !link.moves.empty() && link.moves.back().length_m * move.length_m < 0.0;
+    link.cost += length_of(move) + (reverses ? OutlineMoves::kStop : 0.0);
+    link.moves.push_back(move);
+  }
+  return link;
+}
 
 }  // namespace
 
 geometry::Pose2 after(const geometry::Pose2& T_map_robot, const OutlineMove& move) {
   const double heading_rad = geometry::wrap_angle(T_map_robot.theta_rad + move.turn_rad);
-  const geometry::SinCos heading = geometry::sincos(heading_rad);
-  return {T_map_robot.x_m + move.straight_m * heading.cos,
-          T_map_robot.y_m + move.straight_m * heading.sin, heading_rad};
+  return after({T_map_robot.x_m, T_map_robot.y_m, heading_rad},
+               ArcPiece{move.length_m, move.curvature_per_m});
 }
 
 OutlineMoves::OutlineMoves(const FreeSpace& space, const OutlineField& field,
@@ -34,6 +61,7 @@ OutlineMoves::OutlineMoves(const FreeSpace& space, const OutlineField& field,
       field_(field),
       margin_m_(config.margin_m),
       wished_m_(config.wished_m),
+      arc_radius_m_(kArcReserve * config.minimum_radius_m),
       start_m_(start.position_m()),
       goal_m_(goal.position_m),
       start_clearance_m_(field.clearance_m(start)),
@@ -78,19 +106,20 @@ double OutlineMoves::cost(const geometry::Pose2& from, const OutlineMove& move) 
   if (turn_rad > kLeastTurn_rad) {
     const int steps = static_cast<int>(std::ceil(turn_rad / kChecked_rad));
     for (int k = 1; k <= steps; ++k) {
-      const double here = cost_at(after(from, {move.turn_rad * k / steps, 0.0}));
+      const double here = cost_at(after(from, OutlineMove{move.turn_rad * k / steps}));
       if (here == kNever) return kNever;
       sum += kPerTurn * turn_rad / steps * here;
     }
   }
-  const double length_m = std::fabs(move.straight_m);
+  const double length_m = std::fabs(move.length_m);
   if (length_m == 0.0) return sum;
-  const double each = move.straight_m > 0.0 ? 1.0 : kBack;
+  const double each = move.length_m > 0.0 ? 1.0 : kBack;
   const int steps = static_cast<int>(std::ceil(length_m / kChecked_m));
   for (int k = 1; k <= steps; ++k) {
-    const geometry::Pose2 pose = after(from, {move.turn_rad, move.straight_m * k / steps});
+    const geometry::Pose2 pose =
+        after(from, OutlineMove{move.turn_rad, move.length_m * k / steps, move.curvature_per_m});
     const double here = cost_at(pose);
-    if (here == kNever || !obeys(pose, move.straight_m > 0.0)) return kNever;
+    if (here == kNever || !obeys(pose, move.length_m > 0.0)) return kNever;
     double slowness = 1.0;
     if (space_.rules().guides()) {
       const auto cell = space_.frame().cell_of(pose.position_m());
@@ -98,12 +127,70 @@ double OutlineMoves::cost(const geometry::Pose2& from, const OutlineMove& move) 
     }
     sum += each * slowness * length_m / steps * here;
   }
-  return sum;
+  return sum + kPerBend * std::fabs(move.curvature_per_m) * length_m;
+}
+
+std::vector<OutlineMove> OutlineMoves::pieces() const {
+  if (arc_radius_m_ == 0.0) {
+    return {{0.0, kPiece_m}, {0.0, -kPiece_m}, {kPieceTurn_rad, 0.0}, {-kPieceTurn_rad, 0.0}};
+  }
+  std::vector<OutlineMove> pieces;
+  for (const double length_m : {kPiece_m, -kPiece_m}) {
+    for (const double side : {0.0, 1.0, -1.0}) {
+      pieces.push_back({0.0, length_m, side / arc_radius_m_});
+    }
+  }
+  return pieces;
 }
 
 std::optional<OutlineMoves::Link> OutlineMoves::link(const geometry::Pose2& from,
                                                      const Eigen::Vector2d& to_m,
                                                      std::optional<double> heading_rad) const {
+  return arc_radius_m_ > 0.0 ? link_by_arcs(from, to_m, heading_rad)
+                             : link_by_turns(from, to_m, heading_rad);
+}
+
+std::optional<OutlineMoves::Link> OutlineMoves::link_by_arcs(
+    const geometry::Pose2& from, const Eigen::Vector2d& to_m,
+    std::optional<double> heading_rad) const {
+  constexpr int kHeadings = 16;       // tried at a goal without one
+  constexpr std::size_t kTried = 12;  // words whose outline is checked
+  std::vector<FreeLink> words;
+  const auto add_words = [&](double end_rad) {
+    const geometry::Pose2 end{to_m.x(), to_m.y(), end_rad};
+    if (!free(end, field_.clearance_m(end))) return;
+    for (const ArcPath& path : arc_paths(from, end, arc_radius_m_)) {
+      words.push_back(free_link(path));
+    }
+  };
+  if (heading_rad) {
+    add_words(*heading_rad);
+  } else {
+    for (int k = 0; k < kHeadings; ++k) {
+      add_words(geometry::wrap_angle(from.theta_rad + 2.0 * std::numbers::pi * k / kHeadings));
+    }
+  }
+  const std::size_t tried = std::min(kTried, words.size());
+  std::ranges::partial_sort(words, words.begin() + static_cast<std::ptrdiff_t>(tried), {},
+                            &FreeLink::cost);
+  Link best;
+  for (std::size_t i = 0; i < tried && words[i].cost < best.cost; ++i) {
+    Link link{std::move(words[i].moves), 0.0};
+    geometry::Pose2 pose = from;
+    for (std::size_t k = 0; k < link.moves.size() && link.cost < best.cost; ++k) {
+      link.cost += cost(pose, link.moves[k]);
+      if (k > 0) link.cost += reversal(link.moves[k - 1], link.moves[k]);
+      pose = after(pose, link.moves[k]);
+    }
+    if (link.cost < best.cost) best = std::move(link);
+  }
+  if (best.cost == kNever) return std::nullopt;
+  return best;
+}
+
+std::optional<OutlineMoves::Link> OutlineMoves::link_by_turns(
+    const geometry::Pose2& from, const Eigen::Vector2d& to_m,
+    std::optional<double> heading_rad) const {
   constexpr double kThere_m = 0.005;
   constexpr double kTurnRound_rad = 2.0 * std::numbers::pi;
   const Eigen::Vector2d line_m = to_m - from.position_m();
@@ -121,7 +208,7 @@ std::optional<OutlineMoves::Link> OutlineMoves::link(const geometry::Pose2& from
     OutlineMove found;
     double least = kNever;
     for (const double turn_rad : turns(pose.theta_rad, to_rad)) {
-      const double price = cost(pose, {turn_rad, 0.0});
+      const double price = cost(pose, OutlineMove{turn_rad});
       if (price == kNever) continue;
       least = price + (std::fabs(turn_rad) > kLeastTurn_rad ? kStop : 0.0);
       found.turn_rad = turn_rad;
@@ -141,9 +228,9 @@ std::optional<OutlineMoves::Link> OutlineMoves::link(const geometry::Pose2& from
       auto [move, price] = cheapest_turn(pose, drive_rad);
       if (price == kNever) continue;
       const geometry::Pose2 turned = after(pose, move);
-      const double straight = cost(turned, {0.0, direction * length_m});
+      const double straight = cost(turned, OutlineMove{0.0, direction * length_m});
       if (straight == kNever) continue;
-      move.straight_m = direction * length_m;
+      move.length_m = direction * length_m;
       pose = after(pose, move);
       link.cost += price + straight;
       link.moves.push_back(move);

@@ -11,10 +11,11 @@
 
 namespace topogeo::planning {
 
-/// A turn on the spot and then a straight piece; either may be nothing.
+/// A turn on the spot and then a straight piece or an arc; either may be nothing.
 struct OutlineMove {
-  double turn_rad = 0.0;    ///< any number of turns
-  double straight_m = 0.0;  ///< negative: back
+  double turn_rad = 0.0;         ///< any number of turns
+  double length_m = 0.0;         ///< negative: back
+  double curvature_per_m = 0.0;  ///< positive: turns left while it drives ahead
 };
 
 /// The pose after a move.
@@ -34,8 +35,8 @@ class OutlineMoves {
   /// Cost of starting to turn, or to drive in the other direction.
   static constexpr double kStop = 0.4;
 
-  /// Moves from a pose straight to another: turn, drive ahead or back, turn. The cheapest, or
-  /// nothing if none is free.
+  /// Moves from a pose straight to another: turn, drive ahead or back, turn; or the arcs and lines
+  /// of a base that cannot turn on the spot. The cheapest, or nothing if none is free.
   struct Link {
     std::vector<OutlineMove> moves;
     double cost = kNever;
@@ -43,11 +44,26 @@ class OutlineMoves {
   [[nodiscard]] std::optional<Link> link(const geometry::Pose2& from, const Eigen::Vector2d& to_m,
                                          std::optional<double> heading_rad) const;
 
+  /// The shortest moves of a search, which lead to other positions or headings.
+  [[nodiscard]] std::vector<OutlineMove> pieces() const;
+  /// The radius of arcs, metres; 0 for a base that turns on the spot.
+  [[nodiscard]] double arc_radius_m() const { return arc_radius_m_; }
+  /// Cost of the stop between two moves of a base that drives arcs; 0 for any other.
+  [[nodiscard]] double reversal(const OutlineMove& before, const OutlineMove& next) const {
+    return arc_radius_m_ > 0.0 && before.length_m * next.length_m < 0.0 ? kStop : 0.0;
+  }
+
   /// Whether the outline is free at a pose. Near the start and the goal it may be as near to an
   /// obstacle as there.
   [[nodiscard]] bool free(const geometry::Pose2& pose, double clearance_m) const;
 
  private:
+  [[nodiscard]] std::optional<Link> link_by_turns(const geometry::Pose2& from,
+                                                  const Eigen::Vector2d& to_m,
+                                                  std::optional<double> heading_rad) const;
+  [[nodiscard]] std::optional<Link> link_by_arcs(const geometry::Pose2& from,
+                                                 const Eigen::Vector2d& to_m,
+                                                 std::optional<double> heading_rad) const;
   [[nodiscard]] double cost_at(const geometry::Pose2& pose) const;
   [[nodiscard]] bool obeys(const geometry::Pose2& pose, bool ahead) const;
 
@@ -55,6 +71,7 @@ class OutlineMoves {
   const OutlineField& field_;
   double margin_m_;
   double wished_m_;
+  double arc_radius_m_;
   Eigen::Vector2d start_m_;
   Eigen::Vector2d goal_m_;
   double start_clearance_m_;

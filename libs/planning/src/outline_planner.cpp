@@ -24,12 +24,12 @@ class SampledMoves {
     constexpr double kMost_rad = 2.0;
     const int parts =
         std::max(1, static_cast<int>(std::ceil(std::fabs(move.turn_rad) / kMost_rad)));
-    const bool back = move.straight_m < 0.0;
+    const bool back = move.length_m < 0.0;
     for (int k = 1; k <= parts; ++k) {
-      pose_ = after(pose_, {move.turn_rad / parts, 0.0});
+      pose_ = after(pose_, OutlineMove{move.turn_rad / parts});
       if (k < parts) push(0.0, move.turn_rad / parts, back);
     }
-    drive(move.straight_m, move.turn_rad / parts);
+    drive(move.length_m, move.turn_rad / parts, move.curvature_per_m);
   }
 
   std::vector<PathSample> finish() {
@@ -38,19 +38,21 @@ class SampledMoves {
   }
 
  private:
-  void drive(double straight_m, double turn_rad) {
+  void drive(double signed_m, double turn_rad, double curvature_per_m) {
     constexpr double kStep_m = 0.1;
-    const double length_m = std::fabs(straight_m);
+    const double length_m = std::fabs(signed_m);
     if (length_m == 0.0) return;
     const int steps = std::max(1, static_cast<int>(std::ceil(length_m / kStep_m)));
     for (int k = 0; k < steps; ++k) {
-      push(length_m / steps, k == 0 ? turn_rad : 0.0, straight_m < 0.0);
-      pose_ = after(pose_, {0.0, straight_m / steps});
+      push(length_m / steps, k == 0 ? turn_rad : 0.0, signed_m < 0.0, curvature_per_m);
+      pose_ = after(pose_, OutlineMove{0.0, signed_m / steps, curvature_per_m});
     }
   }
 
-  void push(double on_m, double turn_rad, bool back) {
+  // Left is to the right of a robot that reverses.
+  void push(double on_m, double turn_rad, bool back, double curvature_per_m = 0.0) {
     PathSample sample;
+    sample.curvature_per_m = back ? -curvature_per_m : curvature_per_m;
     sample.T_map_robot = pose_;
     if (back)
       sample.T_map_robot.theta_rad = geometry::wrap_angle(pose_.theta_rad + std::numbers::pi);
@@ -90,9 +92,13 @@ OutlinePath plan_outline(const FreeSpace& space, const geometry::Pose2& T_map_ro
   }
   auto path = search_moves(field, moves, config, T_map_robot, goal);
   if (!path) {
-    return failure(OutlineStatus::kUnreachable,
-                   fmt::format("no path from {} to {} is wide enough for the outline of the robot",
-                               shown(T_map_robot.position_m()), shown(goal.position_m)));
+    std::string reason =
+        fmt::format("no path from {} to {} is wide enough for the outline of the robot",
+                    shown(T_map_robot.position_m()), shown(goal.position_m));
+    if (config.minimum_radius_m > 0.0) {
+      reason += fmt::format(", which cannot turn within {:.2f} m", config.minimum_radius_m);
+    }
+    return failure(OutlineStatus::kUnreachable, std::move(reason));
   }
   OutlinePath result;
   result.status = OutlineStatus::kFound;

@@ -1,7 +1,6 @@
 #include "outline_search.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -9,13 +8,14 @@
 #include <unordered_map>
 #include <utility>
 
+#include "arc_paths.hpp"
+
 namespace topogeo::planning {
 namespace {
 
-constexpr int kHeadings = 24;
-constexpr double kTurn_rad = 2.0 * std::numbers::pi / kHeadings;
+constexpr int kTurns = 24;                   // headings of a base that turns on the spot
+constexpr int kBends = 48;                   // and of one that drives arcs; less than 64
 constexpr double kCell_m = 0.1;              // of positions that count as one
-constexpr double kPiece_m = 0.15;            // of a straight motion: always leaves its cell
 constexpr double kEager = 1.3;               // weight of the estimate
 constexpr std::size_t kMostPoses = 200'000;  // a second or two, and 30 MB
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -82,6 +82,8 @@ class Search {
          const geometry::Pose2& start, const PoseGoal& goal)
       : field_(field),
         moves_(moves),
+        pieces_(moves.pieces()),
+        headings_(moves.arc_radius_m() > 0.0 ? kBends : kTurns),
         goal_(goal),
         rest_(field,
               geometry::inscribed_radius_m(config.footprint) + config.margin_m -
@@ -114,14 +116,24 @@ class Search {
     return rest_.from_m(pose.position_m()) < CentreDistance::kFar_m;
   }
 
-  [[nodiscard]] static std::uint64_t key_of(const geometry::Pose2& pose) {
+  /// Estimate of the rest of the path, metres. Near a goal with a heading the bends count.
+  [[nodiscard]] double estimate_m(const geometry::Pose2& pose) const {
+    constexpr double kNear_m = 5.0;  // farther away, bends at the end hardly matter
+    const double middle_m = rest_.from_m(pose.position_m());
+    if (moves_.arc_radius_m() == 0.0 || !goal_.heading_rad || middle_m > kNear_m) return middle_m;
+    const geometry::Pose2 end{goal_.position_m.x(), goal_.position_m.y(), *goal_.heading_rad};
+    return std::max(middle_m, shortest_arcs_m(pose, end, moves_.arc_radius_m()));
+  }
+
+  [[nodiscard]] std::uint64_t key_of(const geometry::Pose2& pose) {
     const auto bin = [](double value) {
       return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value)) + (1 << 26));
     };
+    const double step_rad = 2.0 * std::numbers::pi / headings_;
     const std::int64_t turn =
-        static_cast<std::int64_t>(std::floor(pose.theta_rad / kTurn_rad + 0.5)) + kHeadings;
-    const auto turns = static_cast<std::uint64_t>(turn);
-    return (bin(pose.x_m / kCell_m) << 34U) | (bin(pose.y_m / kCell_m) << 6U) | (turns % kHeadings);
+        static_cast<std::int64_t>(std::floor(pose.theta_rad / step_rad + 0.5)) + headings_;
+    const auto turns = static_cast<std::uint64_t>(turn % headings_);
+    return (bin(pose.x_m / kCell_m) << 34U) | (bin(pose.y_m / kCell_m) << 6U) | turns;
   }
 
   void push(const Visit& visit) {
@@ -133,13 +145,11 @@ class Search {
     }
     const auto index = static_cast<std::uint32_t>(visits_.size());
     visits_.push_back(visit);
-    queue_.emplace(visit.cost + kEager * rest_.from_m(visit.pose.position_m()), index);
+    queue_.emplace(visit.cost + kEager * estimate_m(visit.pose), index);
   }
 
   void expand(std::uint32_t index, const Visit& here) {
-    constexpr std::array<OutlineMove, 4> kMoves{
-        {{0.0, kPiece_m}, {0.0, -kPiece_m}, {kTurn_rad, 0.0}, {-kTurn_rad, 0.0}}};
-    for (const OutlineMove& move : kMoves) {
+    for (const OutlineMove& move : pieces_) {
       const geometry::Pose2 next = after(here.pose, move);
       if (!reaches(next)) continue;
       const auto closed = closed_.find(key_of(next));
@@ -157,7 +167,7 @@ class Search {
     if (turns) {
       return here.move.turn_rad * move.turn_rad > 0.0 ? 0.0 : OutlineMoves::kStop;
     }
-    return here.move.straight_m * move.straight_m < 0.0 ? OutlineMoves::kStop : 0.0;
+    return here.move.length_m * move.length_m < 0.0 ? OutlineMoves::kStop : 0.0;
   }
 
   void try_link(std::uint32_t index, const Visit& here) {
@@ -171,7 +181,10 @@ class Search {
     if (away_m > kNear_m && tried_++ % kEvery != 0) return;
     auto link = moves_.link(here.pose, goal_.position_m, goal_.heading_rad);
     if (!link) return;
-    const double rank = here.cost + link->cost;
+    double rank = here.cost + link->cost;
+    if (here.before != kNone && !link->moves.empty()) {
+      rank += moves_.reversal(here.move, link->moves.front());
+    }
     links_.emplace(index, std::pair(rank, std::move(link->moves)));
     queue_.emplace(rank, index);
   }
@@ -188,6 +201,8 @@ class Search {
 
   const OutlineField& field_;
   const OutlineMoves& moves_;
+  std::vector<OutlineMove> pieces_;
+  int headings_;
   const PoseGoal& goal_;
   CentreDistance rest_;
   std::vector<Visit> visits_;
@@ -198,7 +213,7 @@ class Search {
   std::uint64_t tried_ = 0;
 };
 
-/// Joins successive turns, and successive straight pieces in one direction.
+/// Joins successive turns, and successive pieces in one direction with one curvature.
 std::vector<OutlineMove> joined(const std::vector<OutlineMove>& path) {
   std::vector<OutlineMove> joined;
   for (const OutlineMove& move : path) {
@@ -207,11 +222,13 @@ std::vector<OutlineMove> joined(const std::vector<OutlineMove>& path) {
       continue;
     }
     OutlineMove& last = joined.back();
-    if (last.straight_m == 0.0) {
+    if (last.length_m == 0.0) {
       last.turn_rad += move.turn_rad;
-      last.straight_m = move.straight_m;
-    } else if (move.turn_rad == 0.0 && last.straight_m * move.straight_m > 0.0) {
-      last.straight_m += move.straight_m;
+      last.length_m = move.length_m;
+      last.curvature_per_m = move.curvature_per_m;
+    } else if (move.turn_rad == 0.0 && last.length_m * move.length_m > 0.0 &&
+               last.curvature_per_m == move.curvature_per_m) {
+      last.length_m += move.length_m;
     } else {
       joined.push_back(move);
     }
@@ -244,12 +261,24 @@ std::vector<OutlineMove> shortened(const OutlineMoves& moves, const geometry::Po
     std::size_t next = i + 1;
     std::vector<OutlineMove> chosen{path[i]};
     double replaced = price_of(moves, poses[i], path[i]);
+    const auto stops_around = [&](const std::vector<OutlineMove>& part, std::size_t then) {
+      double stops = 0.0;
+      if (!shorter.empty()) stops += moves.reversal(shorter.back(), part.front());
+      if (then < path.size()) stops += moves.reversal(part.back(), path[then]);
+      return stops;
+    };
     for (std::size_t j = i + 1; j < std::min(path.size(), i + kAhead); ++j) {
-      replaced += price_of(moves, poses[j], path[j]);
+      replaced += price_of(moves, poses[j], path[j]) + moves.reversal(path[j - 1], path[j]);
       const bool last = j + 1 == path.size();
       const auto heading_rad = last ? goal.heading_rad : std::optional(poses[j + 1].theta_rad);
       const auto link = moves.link(poses[i], poses[j + 1].position_m(), heading_rad);
-      if (!link || link->cost > replaced) continue;
+      if (!link) continue;
+      if (!link->moves.empty()) {
+        const double stops = stops_around({path[i], path[j]}, j + 1);
+        if (link->cost + stops_around(link->moves, j + 1) > replaced + stops) continue;
+      } else if (link->cost > replaced) {
+        continue;
+      }
       chosen = link->moves;
       next = j + 1;
     }

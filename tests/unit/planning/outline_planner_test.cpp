@@ -123,6 +123,89 @@ TEST(OutlinePlanner, RefusesWithAReason) {
   EXPECT_NE(wide.reason.find("wide enough"), std::string::npos);
 }
 
+OutlineConfig car() {
+  OutlineConfig config = rectangle();
+  config.minimum_radius_m = 0.8;
+  return config;
+}
+
+/// No sample turns on the spot or more tightly than the radius, each follows from the one before,
+/// and where the robot changes its direction the body does not turn.
+void expect_drivable(const OutlinePath& path, double minimum_radius_m) {
+  for (std::size_t i = 0; i < path.samples.size(); ++i) {
+    const PathSample& sample = path.samples[i];
+    EXPECT_EQ(sample.turn_on_spot_rad, 0.0);
+    EXPECT_LE(std::fabs(sample.curvature_per_m), 1.0 / minimum_radius_m);
+    if (i + 1 == path.samples.size()) break;
+    const PathSample& next = path.samples[i + 1];
+    const double step_m = next.distance_m - sample.distance_m;
+    const double turned_rad =
+        geometry::wrap_angle(robot_at(next).theta_rad - robot_at(sample).theta_rad);
+    // Left of the travel is the left turn of the body, ahead as well as back.
+    EXPECT_NEAR(turned_rad, sample.curvature_per_m * step_m, 1e-9);
+    EXPECT_NEAR((next.T_map_robot.position_m() - sample.T_map_robot.position_m()).norm(), step_m,
+                2e-4);
+  }
+}
+
+TEST(OutlinePlanner, ACarTurnsInThreePoints) {
+  const FreeSpace space(two_rooms());
+  const OutlineConfig config = car();
+  const OutlinePath path =
+      plan_outline(space, {2.0, 2.0, 0.0}, {{2.0, 2.0}, std::numbers::pi}, {}, config);
+  ASSERT_TRUE(path.found()) << path.reason;
+  expect_drivable(path, config.minimum_radius_m);
+  int reversals = 0;
+  for (std::size_t i = 1; i < path.samples.size(); ++i) {
+    reversals += path.samples[i].backward != path.samples[i - 1].backward ? 1 : 0;
+  }
+  EXPECT_GE(reversals, 1);
+  EXPECT_GT(least_clearance_m(space.grid(), path, config.footprint), config.margin_m - 0.03);
+  const PathSample& end = path.samples.back();
+  EXPECT_NEAR((end.T_map_robot.position_m() - Eigen::Vector2d(2.0, 2.0)).norm(), 0.0, 0.01);
+  EXPECT_NEAR(std::fabs(robot_at(end).theta_rad), std::numbers::pi, 0.01);
+}
+
+TEST(OutlinePlanner, ACarGoesThroughANarrowDoor) {
+  const FreeSpace space(two_rooms());
+  const OutlineConfig config = car();
+  for (const double start_rad : {kQuarter, -kQuarter, std::numbers::pi}) {
+    const OutlinePath path =
+        plan_outline(space, {1.2, 1.2, start_rad}, {{7.0, 3.0}, -kQuarter}, {}, config);
+    ASSERT_TRUE(path.found()) << path.reason;
+    expect_drivable(path, config.minimum_radius_m);
+    EXPECT_GT(least_clearance_m(space.grid(), path, config.footprint), config.margin_m - 0.03);
+    EXPECT_NEAR(robot_at(path.samples.back()).theta_rad, -kQuarter, 0.01);
+  }
+}
+
+TEST(OutlinePlanner, ACarIsRefusedWhereOnlyATurnOnTheSpotLeads) {
+  // At the end of a passage it turns in the room and comes back.
+  OccupancyGrid grid = two_rooms(30);
+  fill_box(grid, {72, 15}, {72, 25}, CellState::kOccupied);
+  const FreeSpace space(std::move(grid));
+  const PoseGoal goal{{6.0, 2.05}, std::numbers::pi};
+  const OutlinePath path = plan_outline(space, {6.0, 2.05, 0.0}, goal, {}, car());
+  ASSERT_TRUE(path.found()) << path.reason;
+  expect_drivable(path, 0.8);
+  // A closed room of 1.4 x 1.4 m, in which the rectangle has room to turn and none to drive.
+  OccupancyGrid cell = grid_of_text(std::vector<std::string>(16, std::string(16, '.')), 0.1);
+  fill_box(cell, {0, 0}, {15, 0}, CellState::kOccupied);
+  fill_box(cell, {0, 15}, {15, 15}, CellState::kOccupied);
+  fill_box(cell, {0, 0}, {0, 15}, CellState::kOccupied);
+  fill_box(cell, {15, 0}, {15, 15}, CellState::kOccupied);
+  const FreeSpace closed(std::move(cell));
+  const geometry::Pose2 start{0.8, 0.8, 0.0};
+  const PoseGoal across{{0.8, 0.8}, kQuarter};
+  OutlineConfig turning = rectangle();
+  OutlineConfig driving = car();
+  turning.margin_m = driving.margin_m = 0.06;
+  EXPECT_TRUE(plan_outline(closed, start, across, {}, turning).found());
+  const OutlinePath refused = plan_outline(closed, start, across, {}, driving);
+  EXPECT_EQ(refused.status, OutlineStatus::kUnreachable);
+  EXPECT_NE(refused.reason.find("cannot turn within 0.80 m"), std::string::npos) << refused.reason;
+}
+
 TEST(OutlinePlanner, OnlyTurnsWhereItIsAtTheGoal) {
   const FreeSpace space(two_rooms());
   const OutlinePath path = plan_outline(space, {2.0, 2.0, 0.0}, {{2.0, 2.0}, 3.0}, {}, rectangle());

@@ -5,7 +5,9 @@
 // of the shortest path of the centre as its estimate. Motions are straight pieces ahead and back
 // and turns on the spot. Near the goal the search tries to turn, drive straight and turn; at the
 // end the same shortens the path. Turns happen only where the swept outline is free, so a long
-// robot enters a narrow door straight.
+// robot enters a narrow door straight. A base that cannot turn on the spot gets arcs instead, ahead
+// and back, with a tenth more than its radius; near the goal the search tries the shortest words of
+// arcs and lines (src/arc_paths.hpp).
 #pragma once
 
 #include <cstdint>
@@ -29,6 +31,8 @@ struct OutlineConfig {
   /// error of pose and follower.
   double margin_m = 0.08;
   double wished_m = 0.25;  ///< the same where there is room, metres
+  /// Of a base that cannot turn on the spot, metres; 0: it can.
+  double minimum_radius_m = 0.0;
 };
 
 struct PoseGoal {
