@@ -25,6 +25,8 @@ RobotOptions checked(const world::World& world, RobotOptions o) {
   check_robot(o.radius_m > 0.0 && o.radius_m <= 5.0, "radius_m", "(0, 5] m");
   const std::string fault = geometry::fault_of(o.footprint);
   if (!fault.empty()) throw std::invalid_argument("footprint " + fault);
+  check_robot(o.minimum_turning_radius_m >= 0.0 && o.minimum_turning_radius_m <= 10.0,
+              "minimum_turning_radius_m", "[0, 10] m");
   check_robot(o.acceleration_m_per_s2 > 0.0, "acceleration_m_per_s2", "a number > 0");
   check_robot(o.angular_acceleration_rad_per_s2 > 0.0, "angular_acceleration_rad_per_s2",
               "a number > 0");
@@ -114,6 +116,7 @@ EncoderStep SimulatedRobot::advance(const Velocity& command, double dt_s) {
                                      options_.acceleration_m_per_s2 * dt_s);
   velocity_.angular_rad_per_s = towards(velocity_.angular_rad_per_s, command.angular_rad_per_s,
                                         options_.angular_acceleration_rad_per_s2 * dt_s);
+  velocity_ = geometry::drivable(velocity_, options_.minimum_turning_radius_m);
   const double rolled_m = velocity_.linear_m_per_s * dt_s;
   const double turned_rad = velocity_.angular_rad_per_s * dt_s;
   const double hold = 1.0 - lost_share(std::fabs(rolled_m));
@@ -124,7 +127,7 @@ EncoderStep SimulatedRobot::advance(const Velocity& command, double dt_s) {
   const bool outlined = !options_.footprint.empty();
   const double share =
       outlined ? go_outlined(displacement_m, wanted.theta_rad) : go(displacement_m);
-  const double turned = outlined ? share : 1.0;
+  const double turned = outlined || options_.minimum_turning_radius_m > 0.0 ? share : 1.0;
   T_world_robot_.theta_rad =
       geometry::wrap_angle(T_world_robot_.theta_rad + turned * wanted.theta_rad);
   if (share < 1.0) velocity_.linear_m_per_s = 0.0;

@@ -45,6 +45,25 @@ TEST(SimulatedRobot, DrivesAsTold) {
   EXPECT_FALSE(robot.bumped_rad());
 }
 
+TEST(SimulatedRobot, ABaseThatSteersDoesNotTurnOnTheSpot) {
+  SimulatedRobot robot(world::parse_world(kRoom, "w"),
+                       {.minimum_turning_radius_m = 0.8, .odometry = kPerfectRobot});
+  robot.step({0.0, 1.0}, 1.0);
+  EXPECT_EQ(robot.T_world_robot(), (geometry::Pose2{1, 2, 0}));
+  EXPECT_EQ(robot.velocity(), Velocity{});
+  // A tighter turn becomes one of 0.8 m, ahead and back.
+  robot.step({0.4, 2.0}, 1.0);
+  EXPECT_NEAR(robot.T_world_robot().theta_rad, 0.5, 1e-9);
+  robot.step({-0.4, -2.0}, 1.0);
+  EXPECT_NEAR(robot.T_world_robot().theta_rad, 0.0, 1e-9);
+  EXPECT_NEAR(robot.T_world_robot().x_m, 1.0, 1e-4);
+  // A wall ends the turn, too.
+  for (int i = 0; i < 200; ++i) robot.step({0.5, 0.0}, 0.1);
+  const double heading_rad = robot.T_world_robot().theta_rad;
+  robot.step({0.5, 0.5}, 1.0);
+  EXPECT_LT(std::fabs(robot.T_world_robot().theta_rad - heading_rad), 0.1);
+}
+
 TEST(SimulatedRobot, GainsSpeedWithItsAcceleration) {
   SimulatedRobot robot(world::parse_world(kRoom, "w"),
                        {.acceleration_m_per_s2 = 0.5, .odometry = kPerfectRobot});

@@ -35,6 +35,7 @@ struct RobotOptions {
   std::optional<geometry::Pose2> T_world_start{};
   double radius_m = devices::kB21Radius_m;  ///< of its round body; (0, 5]
   geometry::Footprint footprint{};          ///< of a body that is not round
+  double minimum_turning_radius_m = 0.0;    ///< above 0 it cannot turn on the spot; [0, 10]
   double acceleration_m_per_s2 = std::numeric_limits<double>::infinity();            ///< > 0
   double angular_acceleration_rad_per_s2 = std::numeric_limits<double>::infinity();  ///< > 0
   /// Difference between the distance that its wheels count and the one that it drives. They count
@@ -64,8 +65,8 @@ class SimulatedRobot {
   SimulatedRobot& operator=(const SimulatedRobot&) = delete;
 
   /// Drives for `dt_s` (>= 0, in pieces of at most 20 ms) as commanded. A contact stops motion
-  /// towards it, but neither a turn nor motion away from it; a body that is not round also ends a
-  /// turn at a contact. Throws std::invalid_argument for a
+  /// towards it, but neither a turn nor motion away from it; a body that is not round and a base
+  /// that cannot turn on the spot also end a turn at a contact. Throws std::invalid_argument for a
   /// velocity or time that is not finite.
   EncoderStep step(const Velocity& command, double dt_s);
 
