@@ -1,5 +1,6 @@
 #include "arrival.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -16,6 +17,9 @@ namespace {
 constexpr int kCorrections = 5;       // a remaining error is one of the pose,
 constexpr int kMostCorrections = 12;  // or of wheels that cannot get nearer than this
 constexpr double kPoor_m = 0.05;
+constexpr int kManoeuvres = 3;  // of a base that cannot turn on the spot: each takes metres,
+constexpr double kManoeuvred_m = 0.05;  // so it makes none for less
+constexpr double kManoeuvred_rad = 0.06;
 constexpr int kLooks = 3;              // a third of a circle each
 constexpr double kLookTurn_rad = 2.1;  // three of them are a whole turn
 
@@ -45,14 +49,18 @@ ArrivalStep Arrival::step(const ArrivalView& view, std::int64_t now_ns) {
   if (stood_s < config_.settle_s || (!seen && stood_s < kLongest * config_.settle_s)) {
     return {ArrivalStep::Kind::kStands, {}, {}, "at the goal, checking its position"};
   }
-  if (!view.tracking && looks_ < kLooks) return look_around(view);
+  const bool steers = config_.guard.minimum_turning_radius_m > 0.0;
+  if (!view.tracking && looks_ < kLooks && !steers) return look_around(view);
   const double off_m = (view.goal_m - view.T_map_robot.position_m()).norm();
   const double off_rad =
       view.heading_rad
           ? std::fabs(geometry::wrap_angle(*view.heading_rad - view.T_map_robot.theta_rad))
           : 0.0;
-  const bool there = off_m <= config_.follower.arrival_m && off_rad <= config_.follower.arrival_rad;
-  const int tries = off_m > kPoor_m ? kMostCorrections : kCorrections;
+  const double near_m = std::max(config_.follower.arrival_m, steers ? kManoeuvred_m : 0.0);
+  const double near_rad = std::max(config_.follower.arrival_rad, steers ? kManoeuvred_rad : 0.0);
+  const bool there = off_m <= near_m && off_rad <= near_rad;
+  const int turning_tries = off_m > kPoor_m ? kMostCorrections : kCorrections;
+  const int tries = steers ? kManoeuvres : turning_tries;
   if (!there && corrections_ < tries) return correct(view, off_m);
   std::string message = fmt::format("arrived (estimated error {:.0f} cm", 100.0 * off_m);
   if (view.heading_rad) {

@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kStanding_m_s = 1e-6;  // slower motion counts as none
 constexpr double kNsToSeconds = 1e-9;
-constexpr double kRolls_m_s = 0.05;  // below this it stops at once
-constexpr double kLargestLead_s = 1.0;   // of a stamp: more than clocks of one robot differ
+constexpr double kRolls_m_s = 0.05;     // below this it stops at once
+constexpr double kLargestLead_s = 1.0;  // of a stamp: more than clocks of one robot differ
 
 bool has_echo(const SonarReading& reading) {
   return reading.range_m > scan::Scan::kNoReturn;
@@ -240,8 +240,17 @@ double CollisionGuard::speed_for(double free_m, double reaction_s) const {
 }
 
 GuardVerdict CollisionGuard::judge(const geometry::Velocity& wanted, std::int64_t now_ns) const {
-  GuardVerdict verdict = judge_by_distances(wanted, now_ns);
+  const geometry::Velocity possible = geometry::drivable(wanted, config_.minimum_turning_radius_m);
+  GuardVerdict verdict = judge_by_distances(possible, now_ns);
   if (config_.laser_fields && fields_) obey_fields(verdict);
+  if (possible == wanted || verdict.reason != HaltReason::kNone) return verdict;
+  verdict.limited = true;
+  if (possible == geometry::Velocity{}) {
+    verdict.reason = HaltReason::kBaseNotReady;
+    verdict.message = fmt::format(
+        "the drive unit cannot turn on the spot: its smallest turning radius is {:.2f} m",
+        config_.minimum_turning_radius_m);
+  }
   return verdict;
 }
 

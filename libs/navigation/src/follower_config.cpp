@@ -26,6 +26,7 @@ void describe(FollowerConfig& config, support::ConfigSchema& schema) {
 void check(const FollowerConfig& config) {
   support::check_ranges(config);
   support::require_between("begin_turn_rad", config.begin_turn_rad, 0.0, 1.0, "rad");
+  support::require_between("minimum_radius_m", config.minimum_radius_m, 0.0, 10.0, "m");
 }
 
 }  // namespace topogeo::navigation

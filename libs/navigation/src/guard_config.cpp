@@ -1,7 +1,9 @@
 #include "topogeo/navigation/guard_config.hpp"
 
+#include <numbers>
 #include <stdexcept>
 
+#include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/support/config_schema.hpp"
 
 namespace topogeo::navigation {
@@ -26,6 +28,23 @@ std::optional<geometry::Footprint> footprint_of(const support::NumberRows& rows)
 
 }  // namespace
 
+bool plans_poses(const GuardConfig& config) {
+  return !config.footprint.empty() || config.minimum_turning_radius_m > 0.0;
+}
+
+geometry::Footprint outline_of(const GuardConfig& config) {
+  if (!config.footprint.empty()) return config.footprint;
+  constexpr int kCorners = 16;
+  constexpr double kCorner_rad = 2.0 * std::numbers::pi / kCorners;
+  const double corner_m = config.radius_m / geometry::sincos(0.5 * kCorner_rad).cos;
+  geometry::Footprint disc;
+  for (int k = 0; k < kCorners; ++k) {
+    const geometry::SinCos at = geometry::sincos(k * kCorner_rad);
+    disc.corners_m.emplace_back(corner_m * at.cos, corner_m * at.sin);
+  }
+  return disc;
+}
+
 void describe(GuardConfig& config, support::ConfigSchema& schema) {
   schema.add_rows("robot.footprint", &config.footprint, rows_of, footprint_of,
                   "corners [[x, y], ...] in m, 3 to 32 within 3 m of the origin, of a simple "
@@ -33,6 +52,11 @@ void describe(GuardConfig& config, support::ConfigSchema& schema) {
                   "outline of a body that is not round, in the robot's frame (x ahead, y to the "
                   "left, the origin between the driven wheels); empty: round, guard.radius_m");
   schema.leave_out_of_fingerprint("robot");
+  schema.add(
+      "base.minimum_turning_radius_m", &config.minimum_turning_radius_m, 0.0, 10.0, "m",
+      "smallest radius of a turn of the robot's origin; 0: the base turns on the spot, above: "
+      "a tricycle or car, whose origin is in the middle of the axle that does not steer");
+  schema.leave_out_of_fingerprint("base");
   schema.add("guard.radius_m", &config.radius_m, 0.05, 2.0, "m",
              "radius of the robot's round body; unused with robot.footprint");
   schema.add("guard.margin_m", &config.margin_m, 0.0, 1.0, "m",

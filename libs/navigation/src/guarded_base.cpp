@@ -8,7 +8,7 @@ namespace topogeo::navigation {
 
 GuardedBase::GuardedBase(const GuardConfig& guard, double stuck_s)
     : stuck_s_(stuck_s),
-      outlined_(!guard.footprint.empty()),
+      outlined_(plans_poses(guard)),
       guard_(guard),
       near_(guard),
       watch_(stuck_s) {}

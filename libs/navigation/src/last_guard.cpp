@@ -78,8 +78,9 @@ double LastGuard::swept_m(const geometry::Velocity& motion,
   return sweep(motion, points_m, config_.footprint, margin_m, kSight_m).reach_m;
 }
 
-LastGuard::Judgement LastGuard::judge(const geometry::Velocity& wanted, double brake_m_per_s2,
+LastGuard::Judgement LastGuard::judge(const geometry::Velocity& asked_for, double brake_m_per_s2,
                                       std::int64_t now_ns) const {
+  const geometry::Velocity wanted = geometry::drivable(asked_for, config_.minimum_turning_radius_m);
   const double asked = config_.footprint.empty() ? std::fabs(wanted.linear_m_per_s)
                                                  : outline_speed(wanted, config_.footprint);
   if (asked < kStandingSpeed) return {wanted, Verdict::kAsWanted, kSight_m};

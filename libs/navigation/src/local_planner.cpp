@@ -98,7 +98,8 @@ LocalPath LocalPlanner::plan(const RouteKeeper& route, const Eigen::Vector2d& ro
 LocalPath LocalPlanner::plan_outline(const RouteKeeper& route, const geometry::Pose2& T_map_robot,
                                      std::span<const Eigen::Vector2d> obstacles_m) const {
   planning::OutlineConfig config;
-  config.footprint = config_.guard.footprint;
+  config.footprint = outline_of(config_.guard);
+  config.minimum_radius_m = config_.guard.minimum_turning_radius_m;
   const planning::PoseGoal goal{route.goal_m(), route.route().heading_rad};
   planning::OutlinePath path =
       planning::plan_outline(*route.space(), T_map_robot, goal, obstacles_m, config);

@@ -21,14 +21,13 @@ geometry::Velocity LookAround::step(const geometry::Pose2& T_odom_robot,
   if (T_odom_last_) {
     const geometry::Pose2 moved = between(*T_odom_last_, T_odom_robot);
     turned_rad_ += std::fabs(moved.theta_rad);
-    if (phase_ == Phase::kGo) {
-      gone_m_ += moved.position_m().norm();
-      leg_m_ += moved.position_m().norm();
-    }
+    if (phase_ == Phase::kGo || minimum_radius_m_ > 0.0) gone_m_ += moved.position_m().norm();
+    if (phase_ == Phase::kGo) leg_m_ += moved.position_m().norm();
   }
   T_odom_last_ = T_odom_robot;
   switch (phase_) {
     case Phase::kRound:
+      if (minimum_radius_m_ > 0.0) return round_on_arcs(guard, now_ns);
       return round(T_odom_robot, free_m);
     case Phase::kFace:
       return face(T_odom_robot);
@@ -46,8 +45,28 @@ geometry::Velocity LookAround::round(const geometry::Pose2& T_odom_robot, double
     best_heading_rad_ = T_odom_robot.theta_rad;
   }
   if (turned_rad_ < 2.0 * std::numbers::pi) return {0.0, kTurn_rad_s};
+  been_round_ = true;
   const bool may_go = gone_m_ + kStops_m < farthest_m_ && best_free_m_ > 2.0 * kRoomLeft_m;
   phase_ = may_go ? Phase::kFace : Phase::kFinished;
+  return {};
+}
+
+geometry::Velocity LookAround::round_on_arcs(const CollisionGuard& guard, std::int64_t now_ns) {
+  const bool far = gone_m_ + kStops_m >= farthest_m_;
+  if (turned_rad_ < 2.0 * std::numbers::pi && !far) {
+    // The turn goes on to the left: back with the wheels to the right.
+    for (const double ahead : {ahead_, -ahead_}) {
+      const geometry::Velocity arc{ahead * kSpeed_m_s, kSpeed_m_s / minimum_radius_m_};
+      const GuardVerdict verdict = guard.judge(arc, now_ns);
+      if (verdict.free_m <= kRoomLeft_m || verdict.allowed == geometry::Velocity{}) continue;
+      ahead_ = ahead;
+      return arc;
+    }
+  }
+  const bool turned = turned_rad_ >= 2.0 * std::numbers::pi;
+  been_round_ = true;
+  phase_ = turned && !far ? Phase::kGo : Phase::kFinished;
+  leg_m_ = 0.0;
   return {};
 }
 

@@ -1,5 +1,6 @@
 // Moves that let a localizer find an unknown pose: a full turn on the spot, a short distance
-// towards the most room, and so on.
+// towards the most room, and so on. A base that cannot turn on the spot turns on arcs, ahead and
+// back by turns where there is no room for a circle, and goes on straight ahead.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +14,10 @@ namespace topogeo::navigation {
 
 class LookAround {
  public:
-  explicit LookAround(double farthest_m) : farthest_m_(farthest_m) {}
+  explicit LookAround(double farthest_m, double minimum_radius_m = 0.0)
+      : farthest_m_(farthest_m), minimum_radius_m_(minimum_radius_m) {}
 
-  void reset() { *this = LookAround(farthest_m_); }
+  void reset() { *this = LookAround(farthest_m_, minimum_radius_m_); }
 
   /// The next velocity, not yet checked by the guard.
   geometry::Velocity step(const geometry::Pose2& T_odom_robot, const CollisionGuard& guard,
@@ -23,17 +25,22 @@ class LookAround {
 
   /// It has gone its full distance and has turned round there.
   [[nodiscard]] bool finished() const { return phase_ == Phase::kFinished; }
-  /// It has completed its first turn on the spot.
-  [[nodiscard]] bool been_round() const { return phase_ != Phase::kRound || gone_m_ > 0.0; }
+  /// It has completed its first full turn, or has no room for it.
+  [[nodiscard]] bool been_round() const { return been_round_; }
   [[nodiscard]] double gone_m() const { return gone_m_; }
 
  private:
   enum class Phase { kRound, kFace, kGo, kFinished };
   geometry::Velocity round(const geometry::Pose2& T_odom_robot, double free_m);
+  /// The same turn on arcs.
+  geometry::Velocity round_on_arcs(const CollisionGuard& guard, std::int64_t now_ns);
   geometry::Velocity face(const geometry::Pose2& T_odom_robot);
   geometry::Velocity go(double free_m);
 
   double farthest_m_;
+  double minimum_radius_m_;
+  double ahead_ = 1.0;  ///< of arcs; -1: back
+  bool been_round_ = false;
   Phase phase_ = Phase::kRound;
   std::optional<geometry::Pose2> T_odom_last_;
   double turned_rad_ = 0.0;

@@ -27,7 +27,7 @@ NavigationStep::NavigationStep(const NavigatorConfig& settings)
       wait({config.obstacle_wait_s, config.obstacle_wait_s + RouteDriver::kPlanEvery_s,
             config.route_wait_s}),
       arrival(config),
-      relocalization(config.look_around_m) {}
+      relocalization(config.look_around_m, config.guard.minimum_turning_radius_m) {}
 
 geometry::Velocity NavigationStep::step(std::int64_t at_ns) {
   now_ns = std::max(now_ns, at_ns);
@@ -196,7 +196,8 @@ geometry::Velocity NavigationStep::follow(const geometry::Pose2& T_map_robot) {
     begin_path();
   }
   const bool hindered = driven.before_block || (held && !driven.another_path);
-  const bool near = (routes.goal_m() - T_map_robot.position_m()).norm() < kNearEnough_m;
+  const bool near = (routes.goal_m() - T_map_robot.position_m()).norm() < kNearEnough_m &&
+                    may_end_in(T_map_robot.theta_rad);
   if (!near) near_since_ns.reset();
   if (near && !near_since_ns) near_since_ns = now_ns;
   // Repeated paths round obstacles that only a sonar hears bring it no nearer either.
@@ -279,11 +280,24 @@ geometry::Velocity NavigationStep::settle(const geometry::Pose2& T_map_robot) {
   return stop(NavigatorState::kDriving, HaltReason::kNone, std::move(message));
 }
 
+// A base that cannot turn on the spot needs a manoeuvre to another heading.
+bool NavigationStep::may_end_in(double heading_rad) const {
+  constexpr double kNearEnough_rad = 0.15;
+  const std::optional<double>& wanted_rad = routes.route().heading_rad;
+  if (config.guard.minimum_turning_radius_m == 0.0 || !wanted_rad) return true;
+  return std::fabs(geometry::wrap_angle(*wanted_rad - heading_rad)) < kNearEnough_rad;
+}
+
 // A robot that is not round may have no room to turn to the goal.
 void NavigationStep::correct(const geometry::Pose2& T_map_robot, ArrivalStep next) {
-  if (!config.guard.footprint.empty() && !next.path.empty()) {
+  const bool steers = config.guard.minimum_turning_radius_m > 0.0;
+  if (steers || (!config.guard.footprint.empty() && !next.path.empty())) {
     const SeenObstacles obstacles = surroundings.seen(now_ns);
     if (find_path({routes, T_map_robot, obstacles, true, now_ns})) return;
+  }
+  if (steers) {
+    arrival.accept_position();
+    next = {};
   }
   driver.follower().follow(std::move(next.path), next.heading_rad);
 }
@@ -295,7 +309,9 @@ geometry::Velocity NavigationStep::settle_here() {
   wait.end();
   driver.follower().follow({}, routes.route().heading_rad);
   return stop(NavigatorState::kDriving, HaltReason::kNone,
-              "cannot get nearer to the goal; turns to the goal heading");
+              config.guard.minimum_turning_radius_m > 0.0
+                  ? "cannot get nearer to the goal"
+                  : "cannot get nearer to the goal; turns to the goal heading");
 }
 
 geometry::Velocity NavigationStep::stop(NavigatorState state, HaltReason reason,

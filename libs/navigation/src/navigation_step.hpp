@@ -46,6 +46,7 @@ struct NavigationStep {
   geometry::Velocity settle(const geometry::Pose2& T_map_robot);
   void correct(const geometry::Pose2& T_map_robot, ArrivalStep next);
   geometry::Velocity settle_here();
+  [[nodiscard]] bool may_end_in(double heading_rad) const;
   bool find_path(const RouteDriver::Scene& scene);
   void begin_path();
 

@@ -1,5 +1,7 @@
 #include "topogeo/navigation/navigator_config.hpp"
 
+#include <stdexcept>
+
 #include "topogeo/support/config_schema.hpp"
 
 namespace topogeo::navigation {
@@ -77,6 +79,11 @@ void describe(NavigatorConfig& config, support::ConfigSchema& schema) {
 void check(const NavigatorConfig& config) {
   support::check_ranges(config);
   check(config.guard);
+  if (config.motion == MotionStyle::kPrimitives && config.guard.minimum_turning_radius_m > 0.0) {
+    throw std::invalid_argument(
+        "key 'navigator.motion' = 'primitives': expected 'smooth' with "
+        "base.minimum_turning_radius_m, because primitives turn on the spot");
+  }
   markov::check(config.markov.markov);
   markov::check(config.markov.poses);
   planning::check(config.detour);

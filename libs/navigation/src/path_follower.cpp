@@ -18,6 +18,7 @@ constexpr double kSlowest_m_s = 0.03;    // bases do not move slower
 constexpr double kSlowest_rad_s = 0.06;  // the same
 constexpr double kLost_rad = 0.9;        // larger heading errors need a turn on the spot
 constexpr double kCorner_rad = 0.02;     // less is no turn on the spot
+constexpr double kSteers_m = 0.12;       // before and after a change of the curvature
 
 }  // namespace
 
@@ -77,6 +78,7 @@ void PathFollower::follow(std::vector<planning::PathSample> path,
   active_ = true;
   progress_m_ = 0.0;
   off_m_ = 0.0;
+  strayed_ = false;
   segment_ = 0;
   turn_from_rad_.reset();
   leg_from_m_.reset();
@@ -186,6 +188,38 @@ double PathFollower::curve_speed(double to_go_m) const {
   return speed;
 }
 
+double PathFollower::mean_curvature_per_m() const {
+  double sum = 0.0;
+  double length_m = 0.0;
+  for (std::size_t i = leg_begin_; i < leg_end_; ++i) {
+    const double on_m = std::min(path_[i + 1].distance_m, progress_m_ + kSteers_m) -
+                        std::max(path_[i].distance_m, progress_m_ - kSteers_m);
+    if (on_m <= 0.0) continue;
+    sum += on_m * path_[i].curvature_per_m;
+    length_m += on_m;
+  }
+  return length_m > 0.0 ? sum / length_m : path_[segment_].curvature_per_m;
+}
+
+double PathFollower::steering_speed() const {
+  constexpr double kAhead_m = 1.0;
+  constexpr double kShare = 0.8;  // the rest is for corrections
+  double speed = config_.speed_m_per_s;
+  for (std::size_t i = leg_begin_ + 1; i < leg_end_; ++i) {
+    const double ahead_m = path_[i].distance_m - progress_m_;
+    if (ahead_m < -kSteers_m) continue;
+    if (ahead_m > kAhead_m) break;
+    const double change = std::fabs(path_[i].curvature_per_m - path_[i - 1].curvature_per_m);
+    if (change < 1e-3) continue;
+    const double here =
+        kShare * std::sqrt(2.0 * config_.turn_acceleration_rad_per_s2 * kSteers_m / change);
+    const double until_m = std::max(0.0, ahead_m - kSteers_m);
+    speed = std::min(
+        speed, std::sqrt(here * here + 2.0 * kBrake * config_.acceleration_m_per_s2 * until_m));
+  }
+  return speed;
+}
+
 geometry::Velocity PathFollower::turn(double error_rad) const {
   const double most = std::min(
       config_.turn_rad_per_s,
@@ -201,8 +235,14 @@ geometry::Velocity PathFollower::advance(const geometry::Pose2& T_map_robot, con
   const double heading_error_rad = geometry::wrap_angle(T_map_robot.theta_rad - place.heading_rad);
   const double steepest = place.to_go_m < kSettle_m ? kSteepestAtEnd_rad : kSteepest_rad;
   const double back_rad = std::clamp(-place.left_m / (2.0 * kSettle_m), -steepest, steepest);
-  const double curvature = place.curvature_per_m + 2.0 / kSettle_m * (back_rad - heading_error_rad);
+  const double along = steers() ? mean_curvature_per_m() : place.curvature_per_m;
+  double curvature = along + 2.0 / kSettle_m * (back_rad - heading_error_rad);
   double speed = std::min({limit_m_per_s, config_.speed_m_per_s, curve_speed(place.to_go_m)});
+  if (steers()) {
+    const double most = 1.0 / config_.minimum_radius_m;
+    curvature = std::clamp(curvature, -most, most);
+    speed = std::min(speed, steering_speed());
+  }
   speed *= std::max(0.1, 1.0 - std::fabs(heading_error_rad) / kLost_rad);
   speed = std::max(speed, std::min(kSlowest_m_s, limit_m_per_s));
   if (std::fabs(curvature) * speed > config_.turn_rad_per_s) {
@@ -253,6 +293,10 @@ geometry::Velocity PathFollower::control_either_way(const geometry::Pose2& T_map
 }
 
 geometry::Velocity PathFollower::control(const geometry::Pose2& T_map_robot, double limit_m_per_s) {
+  if (phase_ == Phase::kTurn && steers()) {
+    leg_from_m_ = T_map_robot.position_m();
+    phase_ = Phase::kAdvance;
+  }
   if (phase_ == Phase::kTurn) {
     const Place place = locate(T_map_robot);
     const double error_rad = geometry::wrap_angle(place.heading_rad - T_map_robot.theta_rad);
@@ -276,6 +320,8 @@ geometry::Velocity PathFollower::control(const geometry::Pose2& T_map_robot, dou
     }
     const double error_rad = geometry::wrap_angle(place.heading_rad - T_map_robot.theta_rad);
     if (std::fabs(error_rad) < kLost_rad) return advance(T_map_robot, place, limit_m_per_s);
+    strayed_ = steers();
+    if (strayed_) return {};
     phase_ = Phase::kTurn;
     turn_from_rad_ = T_map_robot.theta_rad;
     return turn(error_rad);
@@ -284,7 +330,7 @@ geometry::Velocity PathFollower::control(const geometry::Pose2& T_map_robot, dou
     const double error_rad = final_heading_rad_
                                  ? geometry::wrap_angle(*final_heading_rad_ - T_map_robot.theta_rad)
                                  : 0.0;
-    if (std::fabs(error_rad) > 0.5 * config_.arrival_rad) {
+    if (!steers() && std::fabs(error_rad) > 0.5 * config_.arrival_rad) {
       if (!turn_from_rad_) turn_from_rad_ = T_map_robot.theta_rad;
       return turn(error_rad);
     }
@@ -303,10 +349,11 @@ geometry::Velocity PathFollower::ramped(const geometry::Velocity& wanted,
   const double time_s = std::clamp(commands_.since_last_s(now_ns, kUsual_s), 0.0, kLongest_s);
   const double up = config_.acceleration_m_per_s2 * time_s;
   const double turn = config_.turn_acceleration_rad_per_s2 * time_s;
-  return {
+  const geometry::Velocity next{
       std::clamp(wanted.linear_m_per_s, last.linear_m_per_s - kDown * up, last.linear_m_per_s + up),
       std::clamp(wanted.angular_rad_per_s, last.angular_rad_per_s - turn,
                  last.angular_rad_per_s + turn)};
+  return geometry::drivable(next, config_.minimum_radius_m);
 }
 
 FollowerStep PathFollower::step(const geometry::Pose2& T_map_robot, std::int64_t now_ns,
@@ -317,6 +364,7 @@ FollowerStep PathFollower::step(const geometry::Pose2& T_map_robot, std::int64_t
                                                        std::max(0.0, speed_limit_m_per_s));
   result.command = ramped(wanted, now_ns);
   result.done = phase_ == Phase::kDone;
+  result.strayed = strayed_;
   result.rest_m = rest_m();
   result.off_m = off_m_;
   result.rest_s = rest_s();

@@ -16,8 +16,10 @@ namespace topogeo::navigation {
 
 class Relocalization {
  public:
-  /// `farthest_m`: largest distance without a pose; 0: it stands.
-  explicit Relocalization(double farthest_m) : farthest_m_(farthest_m), look_around_(farthest_m) {}
+  /// `farthest_m`: largest distance without a pose; 0: it stands. `minimum_radius_m`: of the base,
+  /// which turns on the spot for 0.
+  explicit Relocalization(double farthest_m, double minimum_radius_m = 0.0)
+      : farthest_m_(farthest_m), look_around_(farthest_m, minimum_radius_m) {}
 
   /// The pose has been lost.
   void begin(std::int64_t now_ns);

@@ -26,13 +26,17 @@ constexpr double kSeeing_s = 0.15;      // between a measurement and its command
 
 FollowerConfig follower_config(const NavigatorConfig& config) {
   FollowerConfig follower = config.follower;
-  const bool exact = config.motion == MotionStyle::kPrimitives || !config.guard.footprint.empty();
+  const bool exact = config.motion == MotionStyle::kPrimitives || plans_poses(config.guard);
   if (exact) follower.begin_turn_rad = 0.05;
+  follower.minimum_radius_m = config.guard.minimum_turning_radius_m;
   return follower;
 }
 
 RouteDriver::RouteDriver(const NavigatorConfig& config)
-    : config_(config), planner_(config), follower_(follower_config(config)) {}
+    : config_(config),
+      outline_(plans_poses(config.guard) ? outline_of(config.guard) : geometry::Footprint{}),
+      planner_(config),
+      follower_(follower_config(config)) {}
 
 bool RouteDriver::astray(const Eigen::Vector2d& robot_m) {
   constexpr double kStray_m = 0.5;  // a follower always stays closer to its path
@@ -50,7 +54,7 @@ bool RouteDriver::just_planned(std::int64_t now_ns) const {
 
 LocalPath RouteDriver::plan(const Scene& scene) const {
   const auto standing_m = scene.obstacles.standing_m();
-  if (config_.guard.footprint.empty()) {
+  if (outline_.empty()) {
     return planner_.plan(scene.route, scene.T_map_robot.position_m(), standing_m,
                          scene.obstacles.scan);
   }
@@ -91,9 +95,9 @@ bool RouteDriver::go_round(const Scene& scene) {
 double RouteDriver::speed_past_obstacles(const Scene& scene, bool& another_path) {
   block_.reset();
   const auto first_of = [&](std::span<const Eigen::Vector2d> points_m) {
-    if (!config_.guard.footprint.empty()) {
-      return outline_block(config_.guard.footprint, follower_.path(), follower_.progress_m(),
-                           scene.T_map_robot, points_m, kSees_m);
+    if (!outline_.empty()) {
+      return outline_block(outline_, follower_.path(), follower_.progress_m(), scene.T_map_robot,
+                           points_m, kSees_m);
     }
     return planner_.blocked(follower_.path(), follower_.progress_m(),
                             scene.T_map_robot.position_m(), points_m, kSees_m);
@@ -139,6 +143,7 @@ RouteDriver::Step RouteDriver::follow(const Scene& scene, bool held) {
       std::min(speed_past_obstacles(scene, step.another_path), speed_in_zones(scene));
   if (held && !step.another_path) step.another_path = go_round(scene);
   step.follower = follower_.step(scene.T_map_robot, scene.now_ns, limit);
+  if (step.follower.strayed) need_path();
   const geometry::Velocity& command = step.follower.command;
   step.before_block = block_ && limit < kWaiting_m_s && step.follower.rest_m > 0.0 &&
                       command.linear_m_per_s < kWaiting_m_s &&

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "topogeo/geometry/footprint.hpp"
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/navigation/navigator_config.hpp"
 #include "topogeo/navigation/path_follower.hpp"
@@ -95,6 +96,7 @@ class RouteDriver {
   [[nodiscard]] double speed_in_zones(const Scene& scene) const;
 
   const NavigatorConfig& config_;
+  geometry::Footprint outline_;  ///< empty: paths of the centre are enough
   LocalPlanner planner_;
   PathFollower follower_;
   bool needs_path_ = false;

@@ -12,12 +12,19 @@
 
 namespace topogeo::navigation {
 
-/// A rectangle around the origin.
-inline geometry::Footprint rectangle(double length_m, double width_m) {
-  const double x_m = 0.5 * length_m;
+/// A rectangle around the origin, which is `behind_m` behind its middle.
+inline geometry::Footprint rectangle(double length_m, double width_m, double behind_m = 0.0) {
+  const double front_m = 0.5 * length_m + behind_m;
+  const double back_m = -0.5 * length_m + behind_m;
   const double y_m = 0.5 * width_m;
-  return {{{x_m, y_m}, {x_m, -y_m}, {-x_m, -y_m}, {-x_m, y_m}}};
+  return {{{front_m, y_m}, {front_m, -y_m}, {back_m, -y_m}, {back_m, y_m}}};
 }
+
+/// How the robot of the drives turns.
+struct OutlineBase {
+  double radius_m = 0.0;  ///< smallest of its turns; 0: on the spot
+  double axle_m = 0.0;    ///< of the axle that does not steer, behind the middle of the body
+};
 
 inline constexpr double kLength_m = 1.2;
 inline constexpr double kWidth_m = 0.6;
@@ -27,13 +34,15 @@ struct OutlineTask {
   geometry::Pose2 T_goal;
   double route_m = 0.0;  ///< length of the route of the planner
   std::uint64_t seed = 0;
+  OutlineBase base{};
 };
 
 /// Start and goal at least 3 m apart, in any headings, with 0.15 m free around the outline.
-inline OutlineTask draw_outline_task(const world::World& floor, std::uint64_t seed) {
+inline OutlineTask draw_outline_task(const world::World& floor, std::uint64_t seed,
+                                     const OutlineBase& base = {}) {
   constexpr double kLeast_m = 3.0;
   constexpr double kBeside_m = 0.15;
-  const auto room = rectangle(kLength_m + 2.0 * kBeside_m, kWidth_m + 2.0 * kBeside_m);
+  const auto room = rectangle(kLength_m + 2.0 * kBeside_m, kWidth_m + 2.0 * kBeside_m, base.axle_m);
   const auto map = map_of(floor);
   const planning::FreeSpace& space = map->space();
   const planning::HybridPlanner planner(*map);
@@ -49,7 +58,7 @@ inline OutlineTask draw_outline_task(const world::World& floor, std::uint64_t se
     }
   };
   while (true) {
-    OutlineTask task{draw(), draw(), 0.0, seed};
+    OutlineTask task{draw(), draw(), 0.0, seed, base};
     const auto route = planner.plan(task.T_start.position_m(), task.T_goal.position_m());
     task.route_m = route.length_m;
     if (route.found() && route.length_m >= kLeast_m) return task;
@@ -59,7 +68,8 @@ inline OutlineTask draw_outline_task(const world::World& floor, std::uint64_t se
 inline DriveSettings settings_of(const OutlineTask& task) {
   DriveSettings settings;
   settings.T_world_start = task.T_start;
-  settings.navigator.guard.footprint = rectangle(kLength_m, kWidth_m);
+  settings.navigator.guard.footprint = rectangle(kLength_m, kWidth_m, task.base.axle_m);
+  settings.navigator.guard.minimum_turning_radius_m = task.base.radius_m;
   settings.noise = true;
   settings.seed = task.seed;
   return settings;

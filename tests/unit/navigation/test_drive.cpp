@@ -17,6 +17,7 @@ simulation::RobotOptions options_of(const DriveSettings& settings) {
   options.acceleration_m_per_s2 = 1.0;
   options.angular_acceleration_rad_per_s2 = 3.0;
   options.footprint = settings.navigator.guard.footprint;
+  options.minimum_turning_radius_m = settings.navigator.guard.minimum_turning_radius_m;
   if (!settings.noise) {
     options.odometry = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     options.laser = {0.0, 0.0, 0.0, 0.0};

@@ -57,9 +57,9 @@ class CollisionGuard {
   /// place is too uncertain and they no longer count.
   void keep_off(std::int64_t stamp_ns, std::vector<Eigen::Vector2d> points_m);
 
-  /// Returns the safe part of a wanted velocity. A round body may always turn on the spot while the
-  /// sensors work, another one only where its corners touch nothing. It moves backwards only with
-  /// fresh sonars.
+  /// Returns the safe part of a wanted velocity, with no tighter turn than the base can drive. A
+  /// round body may always turn on the spot while the sensors work, if the base can, and another
+  /// one only where its corners touch nothing. It moves backwards only with fresh sonars.
   [[nodiscard]] GuardVerdict judge(const geometry::Velocity& wanted, std::int64_t now_ns) const;
 
   /// Why no motion at all is allowed; kNone when the sensors work. `message` may be null.

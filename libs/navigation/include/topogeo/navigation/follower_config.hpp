@@ -18,6 +18,9 @@ struct FollowerConfig {
   /// Heading errors up to this are corrected while driving, [0, 1]. Not in the configuration file,
   /// because the style of motion decides it.
   double begin_turn_rad = 0.4;
+  /// Smallest turning radius of the base, metres; 0: it turns on the spot. Not in this section of
+  /// the configuration file.
+  double minimum_radius_m = 0.0;
 };
 
 /// Declares the speeds of the section `navigator`.

@@ -13,6 +13,7 @@ namespace topogeo::navigation {
 struct GuardConfig {
   geometry::Footprint footprint;  ///< of a body that is not round; without corners: it is round
   double radius_m = 0.267;        ///< of a round body
+  double minimum_turning_radius_m = 0.0;  ///< of the base; 0: it turns on the spot
   double margin_m = 0.05;
   double side_margin_m = 0.02;
   double deceleration_m_per_s2 = 0.5;
@@ -28,7 +29,14 @@ struct GuardConfig {
   double warning_field_m_per_s = 0.2;
 };
 
-/// Declares the section `guard`.
+/// Whether paths must fit the outline in every pose: the body is not round, or the base cannot turn
+/// on the spot.
+bool plans_poses(const GuardConfig& config);
+
+/// The outline of the body; of a round one, a polygon around it.
+geometry::Footprint outline_of(const GuardConfig& config);
+
+/// Declares the section `guard`, `robot.footprint` and `base.minimum_turning_radius_m`.
 void describe(GuardConfig& config, support::ConfigSchema& schema);
 
 /// Throws std::invalid_argument naming key, value and range, or the fault of the footprint.

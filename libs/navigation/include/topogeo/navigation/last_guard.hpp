@@ -48,9 +48,10 @@ class LastGuard {
     double free_m = 0.0;  ///< along the wanted motion before the body touches anything; <= 5
   };
   /// The part of a velocity that the base may get now, if it brakes with `brake_m_per_s2` (> 0;
-  /// counted up to guard.deceleration_m_per_s2). A round body may always turn on the spot, another
-  /// one only where its corners touch nothing.
-  [[nodiscard]] Judgement judge(const geometry::Velocity& wanted, double brake_m_per_s2,
+  /// counted up to guard.deceleration_m_per_s2). A turn that is tighter than the base can drive is
+  /// driven as tightly as it can, and none on the spot. Otherwise a round body may always turn on
+  /// the spot, another one only where its corners touch nothing.
+  [[nodiscard]] Judgement judge(const geometry::Velocity& asked_for, double brake_m_per_s2,
                                 std::int64_t now_ns) const;
 
  private:

@@ -5,7 +5,8 @@
 // the heading error so that both vanish over a distance of `kSettle_m`, at any speed. All control
 // uses the pose at which the base will obey (command_history.hpp). Paths of smooth_path() have few
 // legs; paths of straight_path() have one for every advance primitive, so that these are executed
-// one after the other.
+// one after the other. A base with a smallest turning radius begins each leg as it stands, and gets
+// no final turn: its paths end in the wanted heading.
 #pragma once
 
 #include <cstdint>
@@ -29,10 +30,11 @@ std::vector<planning::PathSample> straight_path(std::span<const Eigen::Vector2d>
 
 struct FollowerStep {
   geometry::Velocity command;
-  bool done = false;    ///< stands at the end of the path, in its final heading
-  double rest_m = 0.0;  ///< of the path
-  double rest_s = 0.0;  ///< approximately
-  double off_m = 0.0;   ///< distance from the path
+  bool done = false;     ///< stands at the end of the path, in its final heading
+  bool strayed = false;  ///< a base that cannot turn on the spot does not get back to the path
+  double rest_m = 0.0;   ///< of the path
+  double rest_s = 0.0;   ///< approximately
+  double off_m = 0.0;    ///< distance from the path
 };
 
 class PathFollower {
@@ -79,6 +81,11 @@ class PathFollower {
   [[nodiscard]] double rest_s() const;
   [[nodiscard]] std::size_t leg_end(std::size_t from) const;
   [[nodiscard]] Place locate(const geometry::Pose2& T_map_robot);
+  [[nodiscard]] bool steers() const { return config_.minimum_radius_m > 0.0; }
+  /// Curvature that a base that steers follows: the change to another takes it some distance.
+  [[nodiscard]] double mean_curvature_per_m() const;
+  /// The speed at which it can change the curvature within that distance.
+  [[nodiscard]] double steering_speed() const;
   [[nodiscard]] double curve_speed(double to_go_m) const;
   [[nodiscard]] geometry::Velocity turn(double error_rad) const;
   [[nodiscard]] geometry::Velocity advance(const geometry::Pose2& T_map_robot, const Place& place,
@@ -103,6 +110,7 @@ class PathFollower {
   std::size_t segment_ = 0;  ///< of the path, containing the robot
   double progress_m_ = 0.0;
   double off_m_ = 0.0;
+  bool strayed_ = false;
 
   CommandHistory commands_;
 
