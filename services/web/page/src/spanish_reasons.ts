@@ -20,6 +20,7 @@ export const spanish_reasons: [string, string][] = [
   ["stops to check its position", "se detiene a comprobar su posición"],
   ["off its route; waits for a new one", "se ha salido de su ruta; espera otra"],
   ["drives, {} m to go", "en marcha, quedan {1} m"],
+  ["cannot get nearer to the goal", "no puede acercarse más al destino"],
   ["cannot get nearer to the goal; turns to the goal heading", "no puede acercarse más al destino; gira a su rumbo"],
   ["at the goal, checking its position", "en el destino, comprobando su posición"],
   ["at the goal, position unsure; turns to look around", "en el destino, posición dudosa; gira para mirar"],
@@ -109,10 +110,18 @@ export const spanish_reasons: [string, string][] = [
   ["something is {} m ahead of the body", "hay algo a {1} m por delante"],
   ["something is {} m behind the body", "hay algo a {1} m por detrás"],
   ["no room to turn on the spot", "no hay sitio para girar sobre sí mismo"],
+  [
+    "the drive unit cannot turn on the spot: its smallest turning radius is {} m",
+    "la unidad de tracción no puede girar sobre sí misma: su radio de giro mínimo es de {1} m",
+  ],
   // The planner.
   [
     "the outline of the robot does not fit at {} in this heading",
     "el contorno del robot no cabe en {1} con esta orientación",
+  ],
+  [
+    "no path from {} to {} is wide enough for the outline of the robot, which cannot turn within {} m",
+    "ningún camino de {1} a {2} es bastante ancho para el contorno del robot, que no puede girar en menos de {3} m",
   ],
   [
     "no path from {} to {} is wide enough for the outline of the robot",
