@@ -252,6 +252,12 @@ TEST_F(ConfigTest, AnOutlineSizesTheForbiddenCells) {
   EXPECT_NEAR(config.planning.min_clearance_m, 0.42, 1e-9);
   EXPECT_TRUE(load_config({}).config.navigator.guard.footprint.empty());
   EXPECT_EQ(load_config({}).config.hybrid_map.inflation.forbidden_cells, 3.0);
+  std::ofstream(file_) << "base: {minimum_turning_radius_m: 0.8}\n";
+  EXPECT_EQ(load_config(file_).config.navigator.guard.minimum_turning_radius_m, 0.8);
+  EXPECT_THAT(complaint("base: {minimum_turning_radius_m: -1}"),
+              HasSubstr("base.minimum_turning_radius_m"));
+  EXPECT_THAT(complaint("{base: {minimum_turning_radius_m: 1}, navigator: {motion: primitives}}"),
+              HasSubstr("turn on the spot"));
   EXPECT_THAT(complaint("robot: {footprint: [[1.6, 0.4], [1.6, -0.4], [0.6, 0]]}"),
               HasSubstr("origin"));
   EXPECT_THAT(complaint("robot: {footprint: [[0.6, 0.4], [0.6, -0.4, 1]]}"),
