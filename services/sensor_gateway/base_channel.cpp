@@ -66,6 +66,7 @@ BaseChannel::BaseChannel(service::Service& service, const DeviceConfig& config,
       driver_(devices::make_base_driver(config.base)),
       stop_memory_(stop_memory),
       stop_count_(1 + support::unrepeatable_u64() / 2),
+      minimum_radius_m_(service.setup().config.config.navigator.guard.minimum_turning_radius_m),
       odometry_(service.advertise<msg::Odometry>()),
       statuses_(service.advertise<msg::BaseStatus>()),
       line_(service.loop(), *driver_, PortOptions{config.base_port},
@@ -74,6 +75,8 @@ BaseChannel::BaseChannel(service::Service& service, const DeviceConfig& config,
   resume_stops();
   if (!config.laser_port.empty()) {
     guard_.emplace(service.setup().config.config.navigator.guard, config.base.watchdog_s);
+  }
+  if (guard_ || minimum_radius_m_ > 0.0) {
     driver_->guard_velocities([this](const devices::BaseVelocity& wanted,
                                      std::int64_t now_ns) { return guarded(wanted, now_ns); },
                               navigation::LastGuard::kPeriod_ns);
@@ -157,8 +160,11 @@ void BaseChannel::see(const navigation::ScanPoints& scan) {
 devices::BaseVelocity BaseChannel::guarded(const devices::BaseVelocity& wanted,
                                            std::int64_t now_ns) {
   using Verdict = navigation::LastGuard::Verdict;
-  const navigation::LastGuard::Judgement judgement = guard_->judge(
-      {wanted.linear_mps, wanted.angular_radps}, driver_->limits().linear_mps2, now_ns);
+  const geometry::Velocity asked{wanted.linear_mps, wanted.angular_radps};
+  const geometry::Velocity possible = drivable(asked);
+  if (!guard_) return {possible.linear_m_per_s, possible.angular_rad_per_s};
+  const navigation::LastGuard::Judgement judgement =
+      guard_->judge(possible, driver_->limits().linear_mps2, now_ns);
   const bool stops =
       judgement.verdict == Verdict::kObstacle || judgement.verdict == Verdict::kBlind;
   if (stops && judgement.verdict != verdict_) {
@@ -169,6 +175,25 @@ devices::BaseVelocity BaseChannel::guarded(const devices::BaseVelocity& wanted,
   }
   verdict_ = judgement.verdict;
   return {judgement.allowed.linear_m_per_s, judgement.allowed.angular_rad_per_s};
+}
+
+geometry::Velocity BaseChannel::drivable(const geometry::Velocity& asked) {
+  if (minimum_radius_m_ == 0.0) return asked;
+  // The driver keeps the largest speed, which would make an arc tighter.
+  const double fastest = driver_->limits().linear_mps;
+  const geometry::Velocity possible = geometry::drivable(
+      {std::clamp(asked.linear_m_per_s, -fastest, fastest), asked.angular_rad_per_s},
+      minimum_radius_m_);
+  constexpr double kRounding_rad_s = 0.01;
+  const bool too_tight =
+      std::fabs(possible.angular_rad_per_s - asked.angular_rad_per_s) > kRounding_rad_s;
+  if (too_tight && !too_tight_) {
+    ++tight_turns_;
+    spdlog::warn("a turn of less than {} m is commanded: the base {}", minimum_radius_m_,
+                 possible.linear_m_per_s == 0.0 ? "stands" : "turns as tightly as it can");
+  }
+  too_tight_ = too_tight;
+  return possible;
 }
 
 std::optional<std::int64_t> BaseChannel::age_of(const msg::MotionCommand& command,
@@ -283,6 +308,7 @@ void BaseChannel::count() {
   set("motion_commands", commands_);
   set("motion_commands_refused", refused_);
   set("last_guard_stops", guard_stops_);
+  set("too_tight_turns", tight_turns_);
   set("base_port_opened", line_.statistics().opened);
   set("base_starts", base.starts);
   set("base_restarts", base.restarts);

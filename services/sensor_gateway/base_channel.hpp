@@ -81,6 +81,8 @@ class BaseChannel {
                                      const messaging::SampleInfo& info, std::int64_t now_ns);
   [[nodiscard]] devices::BaseVelocity guarded(const devices::BaseVelocity& wanted,
                                               std::int64_t now_ns);
+  /// The part of a velocity that the base can drive; counts turns that are too tight for it.
+  [[nodiscard]] geometry::Velocity drivable(const geometry::Velocity& asked);
   void on_command(const msg::BaseCommand& command, const messaging::SampleInfo& info);
   void reset_stop(const msg::BaseCommand& command, const messaging::Handle& writer,
                   std::int64_t now_ns);
@@ -109,6 +111,9 @@ class BaseChannel {
   std::optional<navigation::LastGuard> guard_;  ///< only with a laser
   navigation::LastGuard::Verdict verdict_ = navigation::LastGuard::Verdict::kAsWanted;
   std::uint64_t guard_stops_ = 0;
+  double minimum_radius_m_;  ///< 0: the base turns on the spot
+  bool too_tight_ = false;   ///< the last command turned too tightly
+  std::uint64_t tight_turns_ = 0;
   service::CommandAges ages_;
   messaging::Writer<msg::Odometry> odometry_;
   messaging::Writer<msg::BaseStatus> statuses_;

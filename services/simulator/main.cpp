@@ -143,6 +143,8 @@ int main(int argc, char** argv) {
       [&](const service::Setup& setup) {
         simulation::RobotOptions& robot = arguments.options.devices.robot;
         robot.T_robot_laser = setup.config.config.local_mapper.T_robot_laser;
+        robot.minimum_turning_radius_m =
+            setup.config.config.navigator.guard.minimum_turning_radius_m;
         robot.odometry = drift(arguments.odometry, robot.seed);
         if (arguments.sonars == 6) robot.sonars = devices::macondo_sonars();
         if (arguments.sonar_noise == "macondo") robot.sonar = simulation::macondo_sonar_noise();

@@ -51,13 +51,14 @@ GatewayOnDevices::GatewayOnDevices()
 }
 
 void GatewayOnDevices::start_simulator() {
-  simulator_ = std::make_unique<Program>(
-      scratch_, "simulator",
-      std::vector<std::string>{"--domain", domain_, "--partition", kPartition, "--world",
-                               std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml",
-                               "--laser-port", laser_port_, "--laser-model", laser_model_,
-                               "--base-port", (scratch_ / "base.port").string(), "--base-baud",
-                               "38400"});
+  std::vector<std::string> words{
+      "--domain",     domain_,       "--partition",
+      kPartition,     "--world",     std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml",
+      "--laser-port", laser_port_,   "--laser-model",
+      laser_model_,   "--base-port", (scratch_ / "base.port").string(),
+      "--base-baud",  "38400"};
+  if (!config_.empty()) words.insert(words.end(), {"--config", config_.string()});
+  simulator_ = std::make_unique<Program>(scratch_, "simulator", words);
 }
 
 void GatewayOnDevices::start_gateway(const std::string& keys) {
@@ -69,6 +70,7 @@ void GatewayOnDevices::start_gateway(const std::string& keys) {
   std::vector<std::string> words{"--domain",  domain_,       "--partition", kPartition,
                                  "--devices", file.string(), "--readers",   "1"};
   if (!memory_.empty()) words.insert(words.end(), {"--memory", memory_.string()});
+  if (!config_.empty()) words.insert(words.end(), {"--config", config_.string()});
   gateway_ = std::make_unique<Program>(scratch_, "sensor_gateway", words);
 }
 

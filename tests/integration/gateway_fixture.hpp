@@ -120,6 +120,7 @@ class GatewayOnDevices : public testing::Test {
   std::string laser_port_ = (scratch_ / "laser.port").string();
   std::string laser_model_ = "sick_pls";
   std::filesystem::path memory_;  ///< of the gateway; empty: none
+  std::filesystem::path config_;  ///< of gateway and simulator; empty: none
 
   std::unique_ptr<Program> simulator_;
   std::unique_ptr<Program> gateway_;

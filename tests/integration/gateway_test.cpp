@@ -204,6 +204,22 @@ TEST_F(GatewayOnDevices, NoProgramDrivesIntoWhatTheLaserSees) {
   EXPECT_TRUE(drive_until(0.0, 0.5, [&] { return truth_->angular_radps() > 0.3; }));
 }
 
+TEST_F(GatewayOnDevices, NoProgramTurnsABaseMoreTightlyThanItCan) {
+  constexpr double kRadius_m = 0.8;
+  config_ = scratch_ / "car.yaml";
+  std::ofstream(config_) << "base.minimum_turning_radius_m: " << kRadius_m << '\n';
+  start();
+  ASSERT_TRUE(drive_until(0.0, 0.5, [&] { return counter("too_tight_turns") > 0.0; }))
+      << gateway_->err();
+  EXPECT_EQ(truth_->angular_radps(), 0.0);
+  bool drivable = true;
+  ASSERT_TRUE(drive_until(0.2, 1.0, [&] {
+    drivable = drivable && truth_->angular_radps() * kRadius_m <= truth_->linear_mps() + 1e-6;
+    return truth_->linear_mps() > 0.15 && truth_->angular_radps() > 0.15;
+  })) << gateway_->err();
+  EXPECT_TRUE(drivable);
+}
+
 TEST_F(GatewayOnDevices, ACommandThatIsOldByItsStampMovesNothing) {
   start();
   command_stamp_ns_ = support::wall_clock_ns() - 10'000'000'000;

@@ -48,6 +48,8 @@ constexpr auto kCounterMetrics = std::to_array<CounterMetric>({
      "motion commands of clients", "result=refused"},
     {"last_guard_stops", "topogeo_last_guard_stops_total", kTotal,
      "commanded motions that the gateway stopped"},
+    {"too_tight_turns", "topogeo_too_tight_turns_total", kTotal,
+     "commanded turns below the turning radius of the base"},
     {"base_starts", "topogeo_base_starts_total", kTotal, "times the base was started"},
     {"base_restarts", "topogeo_base_restarts_total", kTotal, "times the base restarted by itself"},
     {"base_watchdog_expirations", "topogeo_base_watchdog_expirations_total", kTotal,
