@@ -308,6 +308,30 @@ TEST_F(CommandsTest, SimulateRouteShowsStepsAndPictureOrSaysWhyThereIsNone) {
   }
 }
 
+TEST_F(CommandsTest, SimulateRouteAsksWhetherTheOutlineFits) {
+  const std::string world = std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml";
+  const std::filesystem::path config = scratch_ / "car.yaml";
+  std::ofstream(config)
+      << "base.minimum_turning_radius_m: 0.8\n"
+         "robot.footprint: [[0.6, 0.3], [0.6, -0.3], [-0.6, -0.3], [-0.6, 0.3]]\n";
+  const auto route_to = [&](const std::string& to) {
+    return Program(
+        scratch_, "topogeo",
+        {"simulate-route", world, "--from", "1,1", "--to", to, "--config", config.string()});
+  };
+  Program fits = route_to("1,3");
+  ASSERT_EQ(fits.wait(), 0) << fits.err();
+  EXPECT_THAT(fits.out(), HasSubstr("path of the outline "));
+  Program tour(scratch_, "topogeo",
+               {"run", "--sim", world, "--out", scratch_ / "tour", "--config", config.string()});
+  EXPECT_EQ(tour.wait(), 2);
+  EXPECT_THAT(tour.err(), HasSubstr("turns on the spot"));
+  // A corner where only the disc inside the outline has room.
+  Program none = route_to("0.45,0.45");
+  EXPECT_EQ(none.wait(), 1);
+  EXPECT_THAT(none.err(), HasSubstr("wide enough for the outline of the robot"));
+}
+
 TEST_F(CommandsTest, SimulateRouteGoesRoundWhatIsSaidToStandInTheWay) {
   const std::string world = std::string(TOPOGEO_SHARE) + "/worlds/room.world.yaml";
   const auto length_m = [&](const std::vector<std::string>& more) {

@@ -14,6 +14,7 @@
 #include "topogeo/pipeline/hybrid_map_source.hpp"
 #include "topogeo/planning/goal_planner.hpp"
 #include "topogeo/planning/motion_primitives.hpp"
+#include "topogeo/planning/outline_planner.hpp"
 #include "topogeo/render/route_picture.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/atomic_file.hpp"
@@ -107,6 +108,32 @@ void print_steps(const planning::HybridRoute& route, double heading_rad) {
   }
 }
 
+/// The path of a robot that is not round or cannot turn on the spot, which a route for its largest
+/// disc may not have. Prints its length, or why there is none.
+bool print_path_of_outline(const SimulateRouteOptions& options, const planning::HybridMap& map,
+                           const planning::HybridRoute& route, const Blocks& blocks,
+                           const navigation::GuardConfig& guard) {
+  planning::OutlineConfig config;
+  config.footprint = navigation::outline_of(guard);
+  config.minimum_radius_m = guard.minimum_turning_radius_m;
+  const Eigen::Vector2d from_m = route.points_m.front();
+  const geometry::Pose2 start{from_m.x(), from_m.y(),
+                              options.heading_deg * std::numbers::pi / 180.0};
+  const planning::OutlinePath path = planning::plan_outline(
+      map.space(), start, {route.points_m.back(), std::nullopt}, blocks.points_m, config);
+  if (!path.found()) {
+    std::cerr << "topogeo: " << path.reason << '\n';
+    return false;
+  }
+  int reversals = 0;
+  for (std::size_t i = 1; i < path.samples.size(); ++i) {
+    reversals += path.samples[i].backward != path.samples[i - 1].backward ? 1 : 0;
+  }
+  std::cout << fmt::format("path of the outline {:.2f} m, {} changes between ahead and back\n",
+                           path.samples.back().distance_m, reversals);
+  return true;
+}
+
 int simulate_route(const SimulateRouteOptions& options) {
   const Eigen::Vector2d from_m = point_for("--from", options.from);
   std::optional<render::PictureFormat> format;
@@ -140,7 +167,10 @@ int simulate_route(const SimulateRouteOptions& options) {
   }
   print_parts(route);
   print_steps(route, options.heading_deg * std::numbers::pi / 180.0);
-  return service::kOk;
+  const navigation::GuardConfig& guard = config.navigator.guard;
+  const bool goes = !navigation::plans_poses(guard) ||
+                    print_path_of_outline(options, floor.map, route, blocks, guard);
+  return goes ? service::kOk : service::kFailure;
 }
 
 }  // namespace
@@ -169,7 +199,8 @@ void add_simulate_route_command(command_line::Command& app, int& exit_code) {
       ->allow_extra_args(false);
   command
       ->add_option("--config", options->config,
-                   "configuration (YAML), for its hybrid_map, hybrid_planner, planning and planner")
+                   "configuration (YAML), for its hybrid_map, hybrid_planner, planning, planner, "
+                   "robot and base.minimum_turning_radius_m")
       ->type_name("FILE");
   command->add_option("--zones", options->zones, "drawn zones and places (YAML)")
       ->type_name("FILE");

@@ -128,6 +128,14 @@ void check_world(const SimulatorOptions& simulation) {
   }
 }
 
+/// The tour of a world has turns on the spot.
+void refuse_tour_with_arcs(const RunOptions& options, const navigation::GuardConfig& guard) {
+  if (options.explore || guard.minimum_turning_radius_m == 0.0) return;
+  throw service::UsageError(
+      "run: the tour of --sim turns on the spot, which base.minimum_turning_radius_m excludes: "
+      "expected --explore or --goto");
+}
+
 void prepare_simulation(RunOptions& options) {
   check_world(*options.simulation);
   support::check_writable_directory(options.job.out);
@@ -166,6 +174,7 @@ int run_devices(RunOptions options) {
   const Inputs inputs = check_inputs(options.job);
   options.laser = inputs.config.config.local_mapper.T_robot_laser;  // for a recording
   if (options.simulation) {
+    refuse_tour_with_arcs(options, inputs.config.config.navigator.guard);
     prepare_simulation(options);
   } else if (!from_ros(options)) {
     check_devices(options);

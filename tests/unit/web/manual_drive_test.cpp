@@ -8,8 +8,9 @@ namespace {
 constexpr std::int64_t kMs = 1'000'000;
 
 /// A guard that sees a free floor at this time.
-navigation::CollisionGuard guard_at(std::int64_t now_ns) {
-  navigation::CollisionGuard guard{navigation::GuardConfig{}};
+navigation::CollisionGuard guard_at(std::int64_t now_ns,
+                                    const navigation::GuardConfig& config = {}) {
+  navigation::CollisionGuard guard{config};
   guard.add(navigation::OdometrySample{now_ns, {}});
   navigation::ScanPoints scan;
   scan.stamp_ns = now_ns;
@@ -39,6 +40,20 @@ TEST_F(Hand, DrivesWhileHeldAndStopsWhenTheMessagesEnd) {
   EXPECT_EQ(after->allowed, geometry::Velocity{}) << "dead man";
   ASSERT_TRUE(step(2200 * kMs)) << "zeros go on for a second";
   EXPECT_FALSE(step(2400 * kMs));
+}
+
+TEST_F(Hand, TurnsNoMoreTightlyThanTheBaseCan) {
+  navigation::GuardConfig car;
+  car.minimum_turning_radius_m = 0.8;
+  const auto driven = [&](const geometry::Velocity& wanted) {
+    drive_.hold(1, wanted, 1000 * kMs);
+    return drive_.step(guard_at(1010 * kMs, car), 1010 * kMs, 1010 * kMs).value();
+  };
+  EXPECT_EQ(driven({0.2, 1.0}).allowed, (geometry::Velocity{0.2, 0.25}));
+  EXPECT_EQ(driven({0.2, -0.1}).allowed, (geometry::Velocity{0.2, -0.1}));
+  const navigation::GuardVerdict turn = driven({0.0, 1.0});
+  EXPECT_EQ(turn.allowed, geometry::Velocity{});
+  EXPECT_NE(turn.message.find("cannot turn on the spot"), std::string::npos);
 }
 
 TEST_F(Hand, LettingGoStopsAtOnce) {
