@@ -1,6 +1,7 @@
 // Interface of the driver of a base: bytes and the time go in; odometry, the state of the base and
 // orders for the line come out. No port and no clock, see serial_driver.hpp. Each driver stops its
-// base when motion commands cease, and arms what the base has to stop itself when the driver does.
+// base when motion commands cease, and arms what the base has to stop itself when the driver does;
+// a base that has nothing is stopped by others with stop_bytes().
 #pragma once
 
 #include <cstdint>
@@ -35,6 +36,9 @@ class BaseDriver : public SerialDriver {
   /// Stops for good, because the program ends: no command moves the base any more. That is no halt:
   /// held_stops() has only stops by others, also those that come later.
   virtual void end(std::int64_t now_ns) = 0;
+  /// Bytes that stop a base which does not stop by itself when no speeds come, for who watches over
+  /// a driver that hangs. Empty: the base has a watchdog of its own.
+  [[nodiscard]] virtual std::vector<std::uint8_t> stop_bytes() const { return {}; }
   /// The base was told to halt, and has since reported standstill.
   [[nodiscard]] virtual bool stands() const = 0;
   /// An operator permits motion again after halt() or an emergency stop. The base does not move
