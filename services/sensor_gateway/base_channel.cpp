@@ -54,6 +54,14 @@ msg::BaseState to_msg(devices::BaseState state) {
   return msg::kBaseOffline;
 }
 
+/// A base without a watchdog gets a process that stops it after the same time.
+PortOptions port_of(const DeviceConfig& config, const devices::BaseDriver& driver) {
+  PortOptions port{config.base_port};
+  port.stop_bytes = driver.stop_bytes();
+  port.stop_after = milliseconds(std::llround(1e3 * config.base.watchdog_s));
+  return port;
+}
+
 }  // namespace
 
 BaseChannel::BaseChannel(service::Service& service, const DeviceConfig& config,
@@ -69,7 +77,7 @@ BaseChannel::BaseChannel(service::Service& service, const DeviceConfig& config,
       minimum_radius_m_(service.setup().config.config.navigator.guard.minimum_turning_radius_m),
       odometry_(service.advertise<msg::Odometry>()),
       statuses_(service.advertise<msg::BaseStatus>()),
-      line_(service.loop(), *driver_, PortOptions{config.base_port},
+      line_(service.loop(), *driver_, port_of(config, *driver_),
             [this](std::int64_t now_ns) { after_driver(now_ns); }) {
   if (remembered_) driver_->resume_odometry(remembered_->state);
   resume_stops();

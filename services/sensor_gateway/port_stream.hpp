@@ -32,6 +32,8 @@ class PortStream {
   /// Opens and configures it. Calls `done` once, at once or later.
   virtual void open(Opened done) = 0;
   [[nodiscard]] virtual bool is_open() const = 0;
+  /// The open port's.
+  [[nodiscard]] virtual int descriptor() = 0;
   /// Drops bytes that were not sent.
   virtual void close() = 0;
   virtual void read(boost::asio::mutable_buffer buffer, Moved done) = 0;

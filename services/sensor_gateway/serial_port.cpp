@@ -5,7 +5,9 @@
 #include <atomic>
 #include <deque>
 #include <future>
+#include <optional>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -13,6 +15,7 @@
 
 #include "port_stream.hpp"
 #include "serial_stream.hpp"
+#include "stop_sentry.hpp"
 #include "tcp_stream.hpp"
 
 namespace topogeo::sensor_gateway {
@@ -83,6 +86,7 @@ class SerialPort::Impl {
   asio::io_context context_;
   asio::executor_work_guard<asio::io_context::executor_type> work_{context_.get_executor()};
   std::unique_ptr<PortStream> stream_;
+  std::optional<StopSentry> sentry_;  // ends before the stream
   asio::steady_timer retry_{context_};
   milliseconds wait_;
   std::atomic<std::uint64_t> epoch_ = 0;
@@ -109,6 +113,14 @@ void SerialPort::Impl::opened(const error_code& error) {
   epoch_opened_ = ++epoch_;
   finished_ = 0;
   notify(PortEvent::Kind::kOpened);
+  if (!options_.stop_bytes.empty()) {
+    try {
+      sentry_.emplace(stream_->descriptor(), options_.stop_bytes, options_.stop_after);
+    } catch (const std::system_error& no_process) {
+      lose(no_process.what());
+      return;
+    }
+  }
   read();
 }
 
@@ -142,6 +154,7 @@ void SerialPort::Impl::carry_out() {
       continue;
     }
     writing_ = true;
+    if (sentry_) sentry_->alive();
     stream_->write(asio::buffer(queue_.front().bytes),
                    [this, opened = epoch_opened_](const error_code& error, std::size_t) {
                      if (opened != epoch_opened_ || !stream_->is_open()) return;
@@ -179,6 +192,7 @@ void SerialPort::Impl::change(const devices::LineSettings& settings) {
 }
 
 void SerialPort::Impl::lose(const std::string& why) {
+  sentry_.reset();
   stream_->close();
   queue_.clear();
   writing_ = false;

@@ -22,6 +22,10 @@ struct PortOptions {
   /// the longest, and reset as soon as something is received.
   std::chrono::milliseconds first_wait{100};
   std::chrono::milliseconds longest_wait{5000};
+  /// If not empty, a StopSentry writes them when the program is killed, or writes nothing for
+  /// `stop_after`.
+  std::vector<std::uint8_t> stop_bytes{};
+  std::chrono::milliseconds stop_after{};
 };
 
 /// An event of a port.

@@ -22,6 +22,7 @@ class SerialStream final : public PortStream {
 
   void open(Opened done) override;
   [[nodiscard]] bool is_open() const override { return port_.is_open(); }
+  [[nodiscard]] int descriptor() override { return port_.native_handle(); }
   void close() override;
   void read(boost::asio::mutable_buffer buffer, Moved done) override;
   void write(boost::asio::const_buffer bytes, Moved done) override;

@@ -21,6 +21,7 @@ class TcpStream final : public PortStream {
 
   void open(Opened done) override;
   [[nodiscard]] bool is_open() const override { return open_; }
+  [[nodiscard]] int descriptor() override { return socket_.native_handle(); }
   void close() override;
   void read(boost::asio::mutable_buffer buffer, Moved done) override;
   void write(boost::asio::const_buffer bytes, Moved done) override;
