@@ -25,8 +25,9 @@ void describe_base_line(ConfigSchema& schema, DeviceFile::Base& base) {
     models.emplace_back(model.name, &model);
   }
   schema.add("base.model", &s.model, models, "what the base is (docs/devices.md has the table)");
-  schema.add("base.baud", &s.line.baud, 1200U, 500'000U, "baud",
-             "rate of the line; 9600 in most sources, 38400 for one B21");
+  schema.add("base.baud", &base.baud, 0U, 500'000U, "baud",
+             "rate of the line; 0: that of the model: 9600 for a B21, although one uses 38400, and "
+             "115200 for the others");
   schema.add("base.parity", &s.line.parity,
              {{"none", Parity::kNone}, {"even", Parity::kEven}, {"odd", Parity::kOdd}},
              "parity of the line");
@@ -80,6 +81,15 @@ void describe_text_base(ConfigSchema& schema, DeviceFile::Base& base) {
              "wheels");
 }
 
+void describe_create(ConfigSchema& schema, DeviceFile::Base& base) {
+  devices::CreateSettings& c = base.settings.create;
+  schema.add("base.create_ticks_per_m", &c.ticks_per_m, 1.0, 1e7, "1/m",
+             "encoder counts of a wheel of a create2 per metre, as its specification states; "
+             "another driver takes wheels of 78 mm, which gives 2076");
+  schema.add("base.create_track_m", &c.track_m, 0.01, 10.0, "m",
+             "distance between the wheels of a create2, as its specification states");
+}
+
 void describe_base_motion(ConfigSchema& schema, DeviceFile::Base& base) {
   devices::BaseSettings& s = base.settings;
   schema.add("base.largest_linear_mps", &s.limits.linear_mps, 0.01, 2.0, "m/s",
@@ -128,8 +138,9 @@ void describe_base_states(ConfigSchema& schema, DeviceFile::Base& base) {
              "the same for rotation");
   schema.add("base.battery_period_s", &s.battery_period_s, 1.0, 3600.0, "s",
              "time between two requests for the voltage");
-  schema.add("base.battery_low_v", &s.battery_low_v, 0.0, 100.0, "V",
-             "the battery is low below this voltage; 44 for a B21");
+  schema.add("base.battery_low_v", &base.battery_low_v, 0.0, 100.0, "V",
+             "the battery is low below this voltage; 0: that of the model: 44 for a B21, 13 for a "
+             "create2 (a guess), never for a microcontroller");
 }
 
 }  // namespace
@@ -138,6 +149,7 @@ void describe_base(DeviceFile::Base& base, ConfigSchema& schema) {
   describe_base_line(schema, base);
   describe_base_units(schema, base);
   describe_text_base(schema, base);
+  describe_create(schema, base);
   describe_base_motion(schema, base);
   describe_base_states(schema, base);
 }

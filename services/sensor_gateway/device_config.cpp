@@ -305,6 +305,9 @@ DeviceConfig to_config(const DeviceFile& file) {
   config.laser.rplidar.express_mode = static_cast<std::uint8_t>(file.laser.express_mode);
   config.laser.rplidar.motor_value = static_cast<std::uint16_t>(file.laser.motor_value);
   devices::BaseSettings& base = config.base = file.base.settings;
+  base.line.baud = file.base.baud != 0 ? file.base.baud : base.model->baud;
+  base.battery_low_v =
+      file.base.battery_low_v != 0.0 ? file.base.battery_low_v : base.model->battery_low_v;
   base.report_mask = file.base.report_mask;
   base.error_delay_ticks = static_cast<std::uint16_t>(file.base.error_delay_ticks);
   base.torque.reset();

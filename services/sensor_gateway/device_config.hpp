@@ -45,6 +45,8 @@ struct DeviceFile {
   struct Base {
     std::string port;
     devices::BaseSettings settings;
+    std::uint32_t baud = 0;      ///< 0: that of the model
+    double battery_low_v = 0.0;  ///< 0: that of the model
     std::uint32_t report_mask = 0;
     std::uint32_t error_delay_ticks = 0;
     std::int32_t torque = -1;  ///< negative: left unchanged

@@ -54,6 +54,11 @@ std::size_t check_mcp_decoder(std::string_view bytes);
 /// driver makes of them. Throws BrokenPromise.
 std::size_t check_text_base(std::string_view bytes);
 
+/// Passes `bytes` after the first, which chooses a base that counts the ticks of two wheels, as
+/// received from it through its decoder, split in several ways, and through its driver. Returns the
+/// number of odometry reports that the driver makes of them. Throws BrokenPromise.
+std::size_t check_base_driver(std::string_view bytes);
+
 /// Passes `bytes` as an RTPS packet, as a discovery payload and as a handshake payload through the
 /// filters in front of the middleware's parser. An accepted input must contain what it states,
 /// wherever the middleware follows it. Returns the submessages of an accepted packet plus one for

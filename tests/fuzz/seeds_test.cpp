@@ -63,6 +63,7 @@ TEST(FuzzSeeds, LaserBytesPass) {
 
 TEST(FuzzSeeds, BaseBytesPass) {
   expect_all_pass("mcp_decoder", [](const std::string& bytes) { check_mcp_decoder(bytes); });
+  expect_all_pass("base_driver", [](const std::string& bytes) { check_base_driver(bytes); });
   expect_all_pass("text_base", [](const std::string& bytes) { check_text_base(bytes); });
 }
 
@@ -112,6 +113,9 @@ TEST(FuzzSeeds, ReachTheReports) {
   EXPECT_EQ(check_text_base(content(seeds("text_base") / "drive")), 10U);
   EXPECT_GT(check_text_base(content(seeds("text_base") / "restart")), 10U);
   EXPECT_EQ(check_text_base(content(seeds("text_base") / "damaged")), 0U);
+  EXPECT_EQ(check_base_driver(content(seeds("base_driver") / "create_drive")), 54U);
+  EXPECT_GT(check_base_driver(content(seeds("base_driver") / "create_falls")), 20U);
+  EXPECT_EQ(check_base_driver(content(seeds("base_driver") / "create_damaged")), 0U);
 }
 
 TEST(FuzzSeeds, ReachTheTelegrams) {

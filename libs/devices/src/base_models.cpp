@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "topogeo/devices/create_driver.hpp"
 #include "topogeo/devices/rwi_driver.hpp"
 #include "topogeo/devices/text_base_driver.hpp"
 
@@ -19,7 +20,12 @@ std::unique_ptr<BaseDriver> make_text(const BaseSettings& settings) {
   return std::make_unique<TextBaseDriver>(settings);
 }
 
-#define TOPOGEO_BASE(family, name, title) BaseModel{#family, name, title, make_##family},
+std::unique_ptr<BaseDriver> make_create(const BaseSettings& settings) {
+  return std::make_unique<CreateDriver>(settings);
+}
+
+#define TOPOGEO_BASE(family, name, baud, battery_low_v, title) \
+  BaseModel{#family, name, baud, battery_low_v, title, make_##family},
 constexpr std::array kBaseModels{
 #include "topogeo/devices/base_models.def"
 };

@@ -124,6 +124,7 @@ PortRecognizer::Found PortRecognizer::receive(std::span<const std::uint8_t> byte
                                               std::int64_t now_ns) {
   if (bytes.empty()) return std::nullopt;
   Found found = base_line(bytes);
+  if (!found) found = create_frames(bytes);
   if (!found) found = ldrobot_packets(bytes);
   if (!found) found = lds_packets(bytes);
   if (!found) found = ydlidar_packets(bytes);
@@ -144,6 +145,14 @@ PortRecognizer::Found PortRecognizer::base_line(std::span<const std::uint8_t> by
     return base;
   }
   return std::nullopt;
+}
+
+/// A Create whose last program was killed still sends the stream of our driver, and may move.
+PortRecognizer::Found PortRecognizer::create_frames(std::span<const std::uint8_t> bytes) {
+  create_.push(bytes);
+  while (create_.next()) ++create_frames_;
+  if (create_frames_ < static_cast<int>(kEnoughPackets)) return std::nullopt;
+  return RecognizedDevice{DeviceKind::kBase, "create2", line_};
 }
 
 PortRecognizer::Found PortRecognizer::ldrobot_packets(std::span<const std::uint8_t> bytes) {

@@ -1,6 +1,7 @@
 #include <string_view>
 
 #include "topogeo/simulation/base_emulator.hpp"
+#include "topogeo/simulation/create_emulator.hpp"
 #include "topogeo/simulation/mcp_emulator.hpp"
 #include "topogeo/simulation/text_base_emulator.hpp"
 
@@ -26,10 +27,18 @@ std::unique_ptr<BaseEmulator> emulate_text(const BaseEmulatorSettings& settings,
   return std::make_unique<TextBaseEmulator>(text, now_ns);
 }
 
+std::unique_ptr<BaseEmulator> emulate_create(const BaseEmulatorSettings& settings,
+                                             std::int64_t now_ns) {
+  CreateEmulatorSettings create;
+  create.line = {settings.baud, devices::Parity::kNone};
+  create.seed = settings.seed;
+  return std::make_unique<CreateEmulator>(create, now_ns);
+}
+
 using MakeBaseEmulator = std::unique_ptr<BaseEmulator> (*)(const BaseEmulatorSettings&,
                                                            std::int64_t);
 
-#define TOPOGEO_BASE(family, name, title) emulate_##family,
+#define TOPOGEO_BASE(family, name, baud, battery_low_v, title) emulate_##family,
 constexpr MakeBaseEmulator kBaseEmulators[] = {
 #include "topogeo/devices/base_models.def"
 };

@@ -38,7 +38,7 @@ void write_devices(const RunOptions& options) {
   file.base.port = simulated_port(options, "base").string();
   devices::BaseSettings& base = file.base.settings;
   base.model = &devices::base_model(simulation.base_model);
-  base.line.baud = kSimulatedBaseBaud;
+  file.base.baud = kSimulatedBaseBaud;
   base.dialect = devices::BaseDialect::kBinary;
   base.limits.linear_mps = simulation.speed_m_per_s;
   base.limits.angular_radps = kSimulatedTurn_rad_s;

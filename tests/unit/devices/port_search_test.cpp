@@ -146,9 +146,9 @@ TEST_P(EachBaseOnAPort, NeverMoves) {
     ASSERT_TRUE(over);
     ASSERT_EQ(port.device().has_value(), speaks) << baud << ": " << port.why_none();
     if (!speaks) {
-      // It obeys no question at any rate, and shows its own rate by its echo.
+      // It obeys no question at any rate. An RWI base shows its own rate by its echo.
       EXPECT_EQ(port.why_none(),
-                baud == 57'600
+                model.family == "create" || baud == 57'600
                     ? "sends nothing and answers no question"
                     : "echoes what it receives, as an RWI B21 does (base.model: rwi_b21)");
       continue;
@@ -158,6 +158,32 @@ TEST_P(EachBaseOnAPort, NeverMoves) {
     EXPECT_EQ(port.device()->model, model.name);
     EXPECT_EQ(port.device()->line.baud, baud);
   }
+}
+
+// It may move, and is not asked.
+TEST(PortSearch, HearsACreateWhoseProgramWasKilled) {
+  simulation::BaseEmulatorSettings emulated_base;
+  emulated_base.model = &base_model("create2");
+  emulated_base.baud = 115'200;
+  const auto base = simulation::make_base_emulator(emulated_base);
+  BaseSettings settings;
+  settings.model = emulated_base.model;
+  settings.line.baud = emulated_base.baud;
+  const auto driver = make_base_driver(settings);
+  SimulatedLine line(*driver, *base);
+  line.plug_in();
+  ASSERT_TRUE(
+      line.run_until(30 * kSearchSecond_ns, [&] { return driver->status().commands_taken; }));
+  PortSearch port;
+  SimulatedLine later(port, *base, line.now_ns());
+  std::size_t written = 0;
+  later.set_host_filter([&](std::vector<std::uint8_t>& bytes) { written += bytes.size(); });
+  later.plug_in();
+  ASSERT_TRUE(later.run_until(kLongestSearch_ns, [&] { return port.done(); }));
+  ASSERT_TRUE(port.device()) << port.why_none();
+  EXPECT_EQ(port.device()->model, "create2");
+  EXPECT_FALSE(port.asked());
+  EXPECT_EQ(written, 0U);
 }
 
 std::vector<std::string> names_of_bases() {

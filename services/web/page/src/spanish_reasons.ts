@@ -233,6 +233,24 @@ export const spanish_reasons: [string, string][] = [
   ["translation motor: current", "motor de traslación: corriente"],
   ["rotation motor: servo error", "motor de rotación: error del servo"],
   ["rotation motor: current", "motor de rotación: corriente"],
+  [
+    "a wheel hangs: put the robot on the floor and release it",
+    "una rueda cuelga: ponga el robot en el suelo y libérelo",
+  ],
+  [
+    "a cliff sensor sees no floor: move the robot away and release it",
+    "un sensor de desnivel no ve el suelo: aparte el robot y libérelo",
+  ],
+  [
+    "the drive unit is on its charger: take it off and release it",
+    "la tracción está en su cargador: retírela y libérela",
+  ],
+  ["the drive unit is on its charger: take it off", "la tracción está en su cargador: retírela"],
+  ["the drive unit has left its safe mode; release it", "la tracción ha dejado su modo seguro; libérela"],
+  ["the drive unit does not go to its safe mode", "la tracción no pasa a su modo seguro"],
+  ["the port is closed", "el puerto está cerrado"],
+  ["no answer yet", "aún sin respuesta"],
+  ["no report for {} ms", "sin informes desde hace {1} ms"],
   // Orders of the page.
   ["the robot does not know its position", "el robot no conoce su posición"],
   [

@@ -10,6 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "topogeo/devices/base_models.hpp"
 #include "topogeo/devices/laser_models.hpp"
 
 namespace topogeo::sensor_gateway {
@@ -94,6 +95,26 @@ laser:
   EXPECT_EQ(turning.packet_delay_ns, 2'000'000);
 }
 
+TEST(DeviceConfig, TheModelOfTheBaseChoosesItsLineAndBattery) {
+  const DeviceConfig b21 = config_of("base.port: /dev/b\n");
+  EXPECT_EQ(b21.base.line.baud, 9600U);
+  EXPECT_EQ(b21.base.battery_low_v, 44.0);
+  const DeviceConfig create = config_of("base.port: /dev/b\nbase.model: create2\n");
+  EXPECT_EQ(create.base.line.baud, 115'200U);
+  EXPECT_EQ(create.base.battery_low_v, 13.0);
+  const DeviceConfig given = config_of(R"(
+base:
+  port: /dev/b
+  model: create2
+  baud: 19200
+  battery_low_v: 12.5
+  create_track_m: 0.233
+)");
+  EXPECT_EQ(given.base.line.baud, 19'200U);
+  EXPECT_EQ(given.base.battery_low_v, 12.5);
+  EXPECT_EQ(given.base.create.track_m, 0.233);
+}
+
 TEST(DeviceConfig, BodySensorsAreThereWhereTheFileSaysSo) {
   EXPECT_FALSE(config_of("base.port: /dev/b\n").body_sensors);
   EXPECT_TRUE(config_of("base.port: /dev/b\nbody.sensors: b21\n").body_sensors);
@@ -135,6 +156,14 @@ TEST(DeviceConfig, ThePageOfDevicesHasARowForEachLaser) {
     const auto at = text.find(row);
     ASSERT_NE(at, std::string::npos) << row;
     EXPECT_THAT(text.substr(at, text.find('\n', at) - at), HasSubstr(beams));
+  }
+}
+
+TEST(DeviceConfig, ThePageOfDevicesHasARowForEachBase) {
+  std::ifstream page(std::filesystem::path(TOPOGEO_SOURCE_DIR) / "docs/devices.md");
+  const std::string text((std::istreambuf_iterator<char>(page)), {});
+  for (const devices::BaseModel& model : devices::base_models()) {
+    EXPECT_THAT(text, HasSubstr("\n| `" + std::string(model.name) + "` | "));
   }
 }
 

@@ -1,6 +1,7 @@
 // The bases that have a driver: one row each in base_models.def.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -11,9 +12,11 @@
 namespace topogeo::devices {
 
 struct BaseModel {
-  std::string_view family;  ///< bases with the same protocol
-  std::string_view name;    ///< value of base.model
-  std::string_view title;   ///< maker and models
+  std::string_view family;     ///< bases with the same protocol
+  std::string_view name;       ///< value of base.model
+  std::uint32_t baud = 0;      ///< usual rate of the line
+  double battery_low_v = 0.0;  ///< usual voltage of a low battery; 0: differs
+  std::string_view title;      ///< maker and models
   std::unique_ptr<BaseDriver> (*make)(const BaseSettings& settings) = nullptr;
 };
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "topogeo/devices/create_settings.hpp"
 #include "topogeo/devices/mcp_binary.hpp"
 #include "topogeo/devices/mcp_units.hpp"
 #include "topogeo/devices/serial_driver.hpp"
@@ -38,6 +39,7 @@ struct BaseSettings {
   LineSettings line{};
   McpCalibration calibration{};
   TextBaseSettings text{};  ///< of a microcontroller
+  CreateSettings create{};  ///< of a Create 2
   /// BaseDriver::set_limits cannot exceed them.
   BaseLimits limits{};
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "topogeo/devices/cola_protocol.hpp"
+#include "topogeo/devices/create_protocol.hpp"
 #include "topogeo/devices/ldrobot_packet.hpp"
 #include "topogeo/devices/lds_packet.hpp"
 #include "topogeo/devices/rplidar_decoder.hpp"
@@ -56,6 +57,7 @@ class PortRecognizer {
  private:
   using Found = std::optional<RecognizedDevice>;
   [[nodiscard]] Found base_line(std::span<const std::uint8_t> bytes);
+  [[nodiscard]] Found create_frames(std::span<const std::uint8_t> bytes);
   [[nodiscard]] Found ldrobot_packets(std::span<const std::uint8_t> bytes);
   [[nodiscard]] Found lds_packets(std::span<const std::uint8_t> bytes);
   [[nodiscard]] Found ydlidar_packets(std::span<const std::uint8_t> bytes);
@@ -69,6 +71,8 @@ class PortRecognizer {
   LineSettings line_;
   Question asked_;
   TextBaseReader text_;
+  CreateDecoder create_;
+  int create_frames_ = 0;
   LdDecoder ldrobot_;
   std::vector<LdPacket> ld_packets_;
   LdsDecoder xv11_{kXv11, LdsChecksum::kDrop};

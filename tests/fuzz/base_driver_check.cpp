@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "topogeo/devices/base_models.hpp"
+#include "topogeo/devices/create_protocol.hpp"
+
+#include "checks.hpp"
+
+namespace topogeo::fuzz {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+constexpr std::int64_t kBaseRead_ns = 20'000'000;
+constexpr std::size_t kBaseRead_bytes = 61;
+constexpr std::size_t kMostBaseOrders = 12;  // per read
+
+/// The reports that a decoder finds if it gets `part` bytes at a time.
+template <typename Decoder>
+auto found_in_parts(Decoder& decoder, Bytes bytes, std::size_t part) {
+  std::vector<typename decltype(decoder.next())::value_type> all;
+  for (std::size_t at = 0; at < bytes.size(); at += part) {
+    decoder.push(bytes.subspan(at, std::min(part, bytes.size() - at)));
+    while (const auto found = decoder.next()) all.push_back(*found);
+  }
+  return all;
+}
+
+template <typename Decoder>
+void check_decoder(Bytes bytes) {
+  Decoder decoder;
+  const auto whole = found_in_parts(decoder, bytes, std::max<std::size_t>(1, bytes.size()));
+  for (const std::size_t part : {std::size_t{1}, std::size_t{7}}) {
+    Decoder other;
+    require(found_in_parts(other, bytes, part) == whole,
+            "reports do not depend on how bytes are cut");
+    require(other.counters() == decoder.counters(), "nor do the drops");
+  }
+  for (const auto& report : whole) {
+    Decoder again;
+    again.push(to_bytes(report));
+    require(again.next() == report, "a report that was read can be written and read");
+  }
+}
+
+std::int16_t big_endian(Bytes data) {
+  return static_cast<std::int16_t>(data[0] << 8 | data[1]);
+}
+
+/// Orders for a Create: it may get none but these, and no speed beyond its own limit.
+void check_create_order(Bytes bytes) {
+  namespace order = devices::create_order;
+  while (!bytes.empty()) {
+    std::size_t size = 1;
+    if (bytes[0] == order::kStream) {
+      size = devices::create_stream_request().size();
+    } else if (bytes[0] == order::kDriveDirect) {
+      size = 5;
+      require(bytes.size() >= size, "an order is whole");
+      for (const std::size_t at : {std::size_t{1}, std::size_t{3}}) {
+        require(std::abs(big_endian(bytes.subspan(at))) <= devices::kCreateFastest,
+                "wheels turn within the limits");
+      }
+    } else {
+      require(bytes[0] == order::kStart || bytes[0] == order::kSafe, "an order is known");
+    }
+    require(bytes.size() >= size, "an order is whole");
+    bytes = bytes.subspan(size);
+  }
+}
+
+struct FuzzedBase {
+  std::string_view model;
+  void (*check_bytes)(Bytes bytes);
+  void (*check_order)(Bytes order);
+};
+constexpr std::array<FuzzedBase, 1> kFuzzedBases{
+    {{"create2", check_decoder<devices::CreateDecoder>, check_create_order}}};
+
+std::size_t drive(const FuzzedBase& base, Bytes bytes) {
+  devices::BaseSettings settings;
+  settings.model = &devices::base_model(base.model);
+  settings.line.baud = settings.model->baud;
+  const auto driver = devices::make_base_driver(settings);
+  std::int64_t now_ns = 0;
+  std::int64_t stamp_ns = std::numeric_limits<std::int64_t>::min();
+  std::size_t reports = 0;
+  driver->opened(now_ns);
+  for (std::size_t at = 0; at < bytes.size(); at += kBaseRead_bytes) {
+    now_ns += kBaseRead_ns;
+    driver->receive(bytes.subspan(at, std::min(kBaseRead_bytes, bytes.size() - at)), now_ns);
+    driver->tick(now_ns);
+    (void)driver->command(0.1, 0.1, now_ns + kBaseRead_ns, now_ns);
+    require(driver->due_ns() > now_ns, "a driver does not ask for the time that is");
+    const std::vector<devices::LineOrder> orders = driver->take_orders();
+    require(orders.size() <= kMostBaseOrders, "a driver does not flood the line");
+    for (const devices::LineOrder& order : orders) base.check_order(order.bytes);
+    for (const devices::BaseOdometry& odometry : driver->take_odometry()) {
+      require(odometry.stamp_ns > stamp_ns, "stamps increase");
+      stamp_ns = odometry.stamp_ns;
+      ++reports;
+      const geometry::Pose2& pose = odometry.T_odom_robot;
+      require(std::isfinite(pose.x_m) && std::isfinite(pose.y_m) && std::isfinite(pose.theta_rad),
+              "the odometry is finite");
+    }
+  }
+  return reports;
+}
+
+}  // namespace
+
+std::size_t check_base_driver(std::string_view text) {
+  if (text.empty()) return 0;
+  const std::vector<std::uint8_t> all(text.begin(), text.end());
+  const FuzzedBase& base = kFuzzedBases[all.front() % kFuzzedBases.size()];
+  const Bytes bytes = Bytes(all).subspan(1);
+  base.check_bytes(bytes);
+  return drive(base, bytes);
+}
+
+}  // namespace topogeo::fuzz
