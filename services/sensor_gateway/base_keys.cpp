@@ -90,6 +90,16 @@ void describe_create(ConfigSchema& schema, DeviceFile::Base& base) {
              "distance between the wheels of a create2, as its specification states");
 }
 
+void describe_kobuki(ConfigSchema& schema, DeviceFile::Base& base) {
+  devices::KobukiSettings& k = base.settings.kobuki;
+  schema.add("base.kobuki_ticks_per_m", &k.ticks_per_m, 1.0, 1e7, "1/m",
+             "encoder ticks of a wheel of a kobuki per metre, of its maker's driver");
+  schema.add("base.kobuki_track_m", &k.track_m, 0.01, 10.0, "m",
+             "distance between the wheels of a kobuki, of its maker's driver");
+  schema.add("base.kobuki_gyro", &k.gyro,
+             "the heading of a kobuki follows its gyro; false: its wheels");
+}
+
 void describe_base_motion(ConfigSchema& schema, DeviceFile::Base& base) {
   devices::BaseSettings& s = base.settings;
   schema.add("base.largest_linear_mps", &s.limits.linear_mps, 0.01, 2.0, "m/s",
@@ -140,7 +150,7 @@ void describe_base_states(ConfigSchema& schema, DeviceFile::Base& base) {
              "time between two requests for the voltage");
   schema.add("base.battery_low_v", &base.battery_low_v, 0.0, 100.0, "V",
              "the battery is low below this voltage; 0: that of the model: 44 for a B21, 13 for a "
-             "create2 (a guess), never for a microcontroller");
+             "create2 (a guess), 14 for a kobuki, never for a microcontroller");
 }
 
 }  // namespace
@@ -150,6 +160,7 @@ void describe_base(DeviceFile::Base& base, ConfigSchema& schema) {
   describe_base_units(schema, base);
   describe_text_base(schema, base);
   describe_create(schema, base);
+  describe_kobuki(schema, base);
   describe_base_motion(schema, base);
   describe_base_states(schema, base);
 }

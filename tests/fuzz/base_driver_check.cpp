@@ -11,6 +11,7 @@
 
 #include "topogeo/devices/base_models.hpp"
 #include "topogeo/devices/create_protocol.hpp"
+#include "topogeo/devices/kobuki_protocol.hpp"
 
 #include "checks.hpp"
 
@@ -77,13 +78,26 @@ void check_create_order(Bytes bytes) {
   }
 }
 
+void check_kobuki_order(Bytes bytes) {
+  devices::KobukiReader reader;
+  reader.push(bytes);
+  while (const auto payload = reader.next()) {
+    const auto motion = devices::kobuki_motion(*payload);
+    require(motion.has_value(), "an order is known");
+    require(std::abs(motion->speed_mmps) <= devices::kKobukiFastest,
+            "wheels turn within the limits");
+  }
+  require(reader.counters() == devices::KobukiCounters(), "an order is whole");
+}
+
 struct FuzzedBase {
   std::string_view model;
   void (*check_bytes)(Bytes bytes);
   void (*check_order)(Bytes order);
 };
-constexpr std::array<FuzzedBase, 1> kFuzzedBases{
-    {{"create2", check_decoder<devices::CreateDecoder>, check_create_order}}};
+constexpr std::array<FuzzedBase, 2> kFuzzedBases{
+    {{"create2", check_decoder<devices::CreateDecoder>, check_create_order},
+     {"kobuki", check_decoder<devices::KobukiDecoder>, check_kobuki_order}}};
 
 std::size_t drive(const FuzzedBase& base, Bytes bytes) {
   devices::BaseSettings settings;

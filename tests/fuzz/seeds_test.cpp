@@ -116,6 +116,9 @@ TEST(FuzzSeeds, ReachTheReports) {
   EXPECT_EQ(check_base_driver(content(seeds("base_driver") / "create_drive")), 54U);
   EXPECT_GT(check_base_driver(content(seeds("base_driver") / "create_falls")), 20U);
   EXPECT_EQ(check_base_driver(content(seeds("base_driver") / "create_damaged")), 0U);
+  EXPECT_EQ(check_base_driver(content(seeds("base_driver") / "kobuki_drive")), 39U);
+  EXPECT_GT(check_base_driver(content(seeds("base_driver") / "kobuki_stops")), 20U);
+  EXPECT_EQ(check_base_driver(content(seeds("base_driver") / "kobuki_damaged")), 0U);
 }
 
 TEST(FuzzSeeds, ReachTheTelegrams) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "topogeo/devices/create_driver.hpp"
+#include "topogeo/devices/kobuki_driver.hpp"
 #include "topogeo/devices/rwi_driver.hpp"
 #include "topogeo/devices/text_base_driver.hpp"
 
@@ -22,6 +23,10 @@ std::unique_ptr<BaseDriver> make_text(const BaseSettings& settings) {
 
 std::unique_ptr<BaseDriver> make_create(const BaseSettings& settings) {
   return std::make_unique<CreateDriver>(settings);
+}
+
+std::unique_ptr<BaseDriver> make_kobuki(const BaseSettings& settings) {
+  return std::make_unique<KobukiDriver>(settings);
 }
 
 #define TOPOGEO_BASE(family, name, baud, battery_low_v, title) \

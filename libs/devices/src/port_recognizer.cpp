@@ -125,6 +125,7 @@ PortRecognizer::Found PortRecognizer::receive(std::span<const std::uint8_t> byte
   if (bytes.empty()) return std::nullopt;
   Found found = base_line(bytes);
   if (!found) found = create_frames(bytes);
+  if (!found) found = kobuki_frames(bytes);
   if (!found) found = ldrobot_packets(bytes);
   if (!found) found = lds_packets(bytes);
   if (!found) found = ydlidar_packets(bytes);
@@ -153,6 +154,13 @@ PortRecognizer::Found PortRecognizer::create_frames(std::span<const std::uint8_t
   while (create_.next()) ++create_frames_;
   if (create_frames_ < static_cast<int>(kEnoughPackets)) return std::nullopt;
   return RecognizedDevice{DeviceKind::kBase, "create2", line_};
+}
+
+PortRecognizer::Found PortRecognizer::kobuki_frames(std::span<const std::uint8_t> bytes) {
+  kobuki_.push(bytes);
+  while (kobuki_.next()) ++kobuki_frames_;
+  if (kobuki_frames_ < static_cast<int>(kEnoughPackets)) return std::nullopt;
+  return RecognizedDevice{DeviceKind::kBase, "kobuki", line_};
 }
 
 PortRecognizer::Found PortRecognizer::ldrobot_packets(std::span<const std::uint8_t> bytes) {

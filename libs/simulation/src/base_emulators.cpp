@@ -2,6 +2,7 @@
 
 #include "topogeo/simulation/base_emulator.hpp"
 #include "topogeo/simulation/create_emulator.hpp"
+#include "topogeo/simulation/kobuki_emulator.hpp"
 #include "topogeo/simulation/mcp_emulator.hpp"
 #include "topogeo/simulation/text_base_emulator.hpp"
 
@@ -33,6 +34,14 @@ std::unique_ptr<BaseEmulator> emulate_create(const BaseEmulatorSettings& setting
   create.line = {settings.baud, devices::Parity::kNone};
   create.seed = settings.seed;
   return std::make_unique<CreateEmulator>(create, now_ns);
+}
+
+std::unique_ptr<BaseEmulator> emulate_kobuki(const BaseEmulatorSettings& settings,
+                                             std::int64_t now_ns) {
+  KobukiEmulatorSettings kobuki;
+  kobuki.line = {settings.baud, devices::Parity::kNone};
+  kobuki.seed = settings.seed;
+  return std::make_unique<KobukiEmulator>(kobuki, now_ns);
 }
 
 using MakeBaseEmulator = std::unique_ptr<BaseEmulator> (*)(const BaseEmulatorSettings&,

@@ -242,6 +242,11 @@ export const spanish_reasons: [string, string][] = [
     "un sensor de desnivel no ve el suelo: aparte el robot y libérelo",
   ],
   [
+    "the motor of a wheel takes too much current: free it and release it",
+    "el motor de una rueda consume demasiada corriente: desbloquéelo y libérelo",
+  ],
+  ["the cable of the charger is plugged in", "el cable del cargador está enchufado"],
+  [
     "the drive unit is on its charger: take it off and release it",
     "la tracción está en su cargador: retírela y libérela",
   ],

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "topogeo/devices/create_settings.hpp"
+#include "topogeo/devices/kobuki_settings.hpp"
 #include "topogeo/devices/mcp_binary.hpp"
 #include "topogeo/devices/mcp_units.hpp"
 #include "topogeo/devices/serial_driver.hpp"
@@ -40,6 +41,7 @@ struct BaseSettings {
   McpCalibration calibration{};
   TextBaseSettings text{};  ///< of a microcontroller
   CreateSettings create{};  ///< of a Create 2
+  KobukiSettings kobuki{};
   /// BaseDriver::set_limits cannot exceed them.
   BaseLimits limits{};
 

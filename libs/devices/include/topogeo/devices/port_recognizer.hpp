@@ -13,6 +13,7 @@
 
 #include "topogeo/devices/cola_protocol.hpp"
 #include "topogeo/devices/create_protocol.hpp"
+#include "topogeo/devices/kobuki_protocol.hpp"
 #include "topogeo/devices/ldrobot_packet.hpp"
 #include "topogeo/devices/lds_packet.hpp"
 #include "topogeo/devices/rplidar_decoder.hpp"
@@ -57,6 +58,7 @@ class PortRecognizer {
  private:
   using Found = std::optional<RecognizedDevice>;
   [[nodiscard]] Found base_line(std::span<const std::uint8_t> bytes);
+  [[nodiscard]] Found kobuki_frames(std::span<const std::uint8_t> bytes);
   [[nodiscard]] Found create_frames(std::span<const std::uint8_t> bytes);
   [[nodiscard]] Found ldrobot_packets(std::span<const std::uint8_t> bytes);
   [[nodiscard]] Found lds_packets(std::span<const std::uint8_t> bytes);
@@ -73,6 +75,8 @@ class PortRecognizer {
   TextBaseReader text_;
   CreateDecoder create_;
   int create_frames_ = 0;
+  KobukiDecoder kobuki_;
+  int kobuki_frames_ = 0;
   LdDecoder ldrobot_;
   std::vector<LdPacket> ld_packets_;
   LdsDecoder xv11_{kXv11, LdsChecksum::kDrop};

@@ -1,0 +1,195 @@
+// The driver of a Kobuki against its emulator.
+#include "topogeo/devices/kobuki_driver.hpp"
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+#include <gmock/gmock.h>
+
+#include "topogeo/simulation/kobuki_emulator.hpp"
+
+#include "two_wheels_on_line.hpp"
+
+namespace topogeo::devices {
+namespace {
+
+using simulation::KobukiEmulatorSettings;
+using testing::HasSubstr;
+
+BaseSettings kobuki_settings() {
+  BaseSettings settings;
+  settings.line.baud = 115'200;
+  settings.battery_low_v = 14.0;
+  return settings;
+}
+
+struct KobukiOnLine : TwoWheelsOnLine<KobukiDriver, simulation::KobukiEmulator> {
+  explicit KobukiOnLine(const BaseSettings& settings = kobuki_settings(),
+                        const KobukiEmulatorSettings& base = {})
+      : TwoWheelsOnLine(settings, base) {}
+};
+
+TEST(KobukiDriver, DrivesASquareAndKnowsWhereItIs) {
+  KobukiOnLine base;
+  ASSERT_TRUE(base.start()) << base.driver.status().reason;
+  for (int side = 0; side < 4; ++side) {
+    base.drive(0.3, 0.0, 3 * kWheelsSecond_ns);
+    base.drive(0.0, 0.5, 3 * kWheelsSecond_ns);
+  }
+  base.drive(0.0, 0.0, 2 * kWheelsSecond_ns);
+  base.expect_pose(0.02);
+  EXPECT_LE(base.fastest_mps, 0.31);
+  EXPECT_TRUE(base.driver.stands());
+  EXPECT_NEAR(base.driver.status().battery_v, 16.2, 1e-9);
+  EXPECT_FALSE(base.driver.status().battery_low);
+  for (const std::uint64_t drops : base.driver.status().drops) EXPECT_EQ(drops, 0U);
+}
+
+TEST(KobukiDriver, CountsWrapManyTimes) {
+  KobukiOnLine base;
+  ASSERT_TRUE(base.start());
+  base.drive(0.45, 0.0, 90 * kWheelsSecond_ns);  // 40 m; counts wrap after 5.6 m, time after 66 s
+  base.drive(0.0, 0.0, kWheelsSecond_ns);
+  EXPECT_GT(base.truth.x_m, 35.0);
+  base.expect_pose(0.02);
+  EXPECT_EQ(base.driver.status().restarts, 0U);
+}
+
+TEST(KobukiDriver, TheHeadingFollowsTheGyro) {
+  BaseSettings wide = kobuki_settings();
+  wide.kobuki.track_m = 0.46;  // twice the true one: the wheels would show half the turn
+  KobukiOnLine base(wide);
+  ASSERT_TRUE(base.start());
+  base.drive(0.0, 0.3, 4 * kWheelsSecond_ns);
+  base.drive(0.0, 0.0, kWheelsSecond_ns);
+  EXPECT_GT(base.truth.theta_rad, 1.0);
+  EXPECT_NEAR(base.last.T_odom_robot.theta_rad, base.truth.theta_rad, 0.01);
+}
+
+struct KobukiSign {
+  const char* name;
+  void (simulation::KobukiEmulator::*set)(bool);
+  const char* reason;
+};
+
+class KobukiSigns : public testing::TestWithParam<KobukiSign> {};
+
+// The firmware goes on driving; the driver stops it and holds it.
+TEST_P(KobukiSigns, HoldLikeAnEmergencyStopUntilAReset) {
+  KobukiOnLine base;
+  ASSERT_TRUE(base.start());
+  base.drive(0.3, 0.0, kWheelsSecond_ns);
+  (base.emulator.*GetParam().set)(true);
+  base.drive(0.3, 0.0, 500 * kWheelsMs_ns);
+  EXPECT_FALSE(base.taken);
+  EXPECT_EQ(base.speed_mps(), 0.0);
+  EXPECT_EQ(base.driver.status().state, BaseState::kEmergencyStop);
+  EXPECT_THAT(base.driver.status().reason, HasSubstr(GetParam().reason));
+  EXPECT_TRUE(base.driver.held_stops().emergency_stop);
+  base.driver.reset_stop(base.line.now_ns());
+  base.pass(200 * kWheelsMs_ns);
+  EXPECT_EQ(base.driver.status().state, BaseState::kEmergencyStop) << "the reason goes on";
+  (base.emulator.*GetParam().set)(false);
+  base.drive(0.3, 0.0, 2 * kWheelsSecond_ns);
+  EXPECT_EQ(base.speed_mps(), 0.0) << "a command alone moves nothing";
+  base.driver.reset_stop(base.line.now_ns());
+  base.pass(kWheelsSecond_ns);
+  EXPECT_EQ(base.speed_mps(), 0.0);
+  base.drive(0.3, 0.0, kWheelsSecond_ns);
+  EXPECT_GT(base.speed_mps(), 0.1);
+}
+
+const std::vector<KobukiSign> kKobukiSigns{
+    {"WheelDrop", &simulation::KobukiEmulator::hang_wheels, "a wheel hangs"},
+    {"Cliff", &simulation::KobukiEmulator::set_cliff, "sees no floor"},
+    {"Overcurrent", &simulation::KobukiEmulator::set_overcurrent, "too much current"}};
+
+INSTANTIATE_TEST_SUITE_P(All, KobukiSigns, testing::ValuesIn(kKobukiSigns),
+                         [](const auto& sign) { return std::string(sign.param.name); });
+
+TEST(KobukiDriver, ARobotOnTheCableOfItsChargerWaits) {
+  KobukiOnLine base;
+  base.emulator.set_cable(true);
+  EXPECT_FALSE(base.start());
+  EXPECT_EQ(base.driver.status().state, BaseState::kStarting);
+  EXPECT_THAT(base.driver.status().reason, HasSubstr("cable"));
+  base.emulator.set_cable(false);
+  EXPECT_TRUE(base.wait_for_commands());
+}
+
+TEST(KobukiDriver, ABumperStopsTheBaseAndLetsItBackOff) {
+  KobukiOnLine base;
+  ASSERT_TRUE(base.start());
+  base.drive(0.3, 0.0, kWheelsSecond_ns);
+  base.emulator.press_bumpers(1, base.line.now_ns());
+  base.drive(0.3, 0.0, 500 * kWheelsMs_ns);
+  EXPECT_EQ(base.speed_mps(), 0.0);
+  EXPECT_EQ(base.driver.status().state, BaseState::kBumped);
+  EXPECT_EQ(base.driver.status().bumpers, 2U) << "the central one";
+  base.pass(kWheelsSecond_ns);
+  base.drive(0.3, 0.0, 300 * kWheelsMs_ns);
+  EXPECT_FALSE(base.taken) << "not further into the obstacle";
+  base.pass(kWheelsSecond_ns);
+  base.drive(-0.2, 0.0, 500 * kWheelsMs_ns);
+  EXPECT_TRUE(base.taken);
+}
+
+TEST(KobukiDriver, ABaseThatRunsOnFromAKilledProgramIsStoppedFirst) {
+  KobukiOnLine base;
+  ASSERT_TRUE(base.start());
+  base.drive(0.3, 0.0, kWheelsSecond_ns);
+  base.line.unplug();
+  base.pass(2 * kWheelsSecond_ns);
+  EXPECT_GT(base.speed_mps(), 0.2) << "it obeys its last speeds";
+  base.line.plug_in();
+  base.pass(300 * kWheelsMs_ns);
+  EXPECT_EQ(base.speed_mps(), 0.0);
+  EXPECT_TRUE(base.driver.status().commands_taken);
+  EXPECT_EQ(base.driver.status().restarts, 0U);
+  base.expect_pose(0.02);
+}
+
+TEST(KobukiDriver, ALowBatteryIsReported) {
+  KobukiOnLine base(kobuki_settings(), {.battery_v = 13.5});
+  ASSERT_TRUE(base.start());
+  EXPECT_TRUE(base.driver.status().battery_low);
+}
+
+TEST(KobukiDriver, ThePoseGoesOnWhenTheBaseRestarts) {
+  KobukiOnLine base;
+  ASSERT_TRUE(base.start());
+  base.drive(0.3, 0.0, 3 * kWheelsSecond_ns);
+  base.drive(0.0, 0.0, kWheelsSecond_ns);
+  base.emulator.switch_on(base.line.now_ns());
+  base.pass(4 * kWheelsSecond_ns);
+  ASSERT_TRUE(base.driver.status().commands_taken) << base.driver.status().reason;
+  EXPECT_EQ(base.driver.status().restarts, 1U);
+  base.drive(0.3, 0.0, kWheelsSecond_ns);
+  base.drive(0.0, 0.0, kWheelsSecond_ns);
+  base.expect_pose(0.03);
+}
+
+TEST(KobukiDriver, RefusesSettingsOutOfRange) {
+  for (const auto& change : std::vector<std::function<void(BaseSettings&)>>{
+           [](BaseSettings& s) { s.kobuki.ticks_per_m = 0.0; },
+           [](BaseSettings& s) { s.kobuki.track_m = 20.0; },
+           [](BaseSettings& s) { s.line.baud = 0; }}) {
+    BaseSettings settings = kobuki_settings();
+    change(settings);
+    EXPECT_THROW(KobukiDriver{settings}, std::invalid_argument);
+  }
+}
+
+class KobukiFaults : public testing::TestWithParam<TwoWheelFault<KobukiOnLine>> {};
+
+TEST_P(KobukiFaults, AThousandTimes) {
+  KobukiOnLine base;
+  strike_a_thousand_times(base, GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, KobukiFaults, testing::ValuesIn(two_wheel_faults<KobukiOnLine>()),
+                         [](const auto& fault) { return std::string(fault.param.name); });
+
+}  // namespace
+}  // namespace topogeo::devices
