@@ -18,6 +18,7 @@ using std::chrono::milliseconds;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::UnorderedElementsAre;
 using Bytes = std::vector<std::uint8_t>;
 
 /// Keeps received bytes and sends those that the test queues.
@@ -67,10 +68,11 @@ class SerialLineTest : public testing::Test {
  protected:
   ~SerialLineTest() override { EXPECT_FALSE(driver_.time_went_back_); }
 
-  void start() {
-    line_.emplace(loop_, driver_,
-                  PortOptions{terminal_.link().string(), milliseconds(5), milliseconds(20)},
-                  [this](std::int64_t) { ++calls_; });
+  void start(const Bytes& stop_bytes = {}) {
+    PortOptions options{terminal_.link().string(), milliseconds(5), milliseconds(20)};
+    options.stop_bytes = stop_bytes;
+    options.stop_after = milliseconds(1);
+    line_.emplace(loop_, driver_, options, [this](std::int64_t) { ++calls_; });
   }
 
   template <class Condition>
@@ -126,6 +128,17 @@ TEST_F(SerialLineTest, OrdersAreCarriedOutInTheirOrder) {
   EXPECT_EQ(arriving(expected.size()), expected);
   EXPECT_TRUE(line_->wait_written(test::hang_limit()));
   EXPECT_EQ(terminal_.speed(), speed_t{B500000});  // of order 198
+}
+
+// The program is not killed here, but gives no more orders, like one that is frozen.
+TEST_F(SerialLineTest, APortWithoutOrdersGetsTheOrderToStop) {
+  terminal_.plug();
+  start({'s'});
+  EXPECT_THAT(arriving(3), UnorderedElementsAre('h', 'i', 's'));
+  terminal_.unplug();
+  EXPECT_TRUE(wait_for("the loss", [&] { return driver_.lost_ == 1; }));
+  terminal_.plug();
+  EXPECT_THAT(arriving(3), UnorderedElementsAre('h', 'i', 's')) << "a new process for a new port";
 }
 
 // Otherwise a device would be reported silent only because the gateway got no CPU time.
