@@ -134,7 +134,8 @@ void describe_turning_laser(ConfigSchema& schema, Laser& laser) {
   schema.add(
       "laser.beams", &laser.beams, 0U, 2048U, "",
       "beams of a scan of a laser that turns all the way round, to which all beams of a turn "
-      "are mapped; 0: those of the model, otherwise at least 90");
+      "are mapped, or those that a SICK on the network is set to; 0: those of the model, otherwise "
+      "at least 90");
   schema.add("laser.range_min_m", &s.range_min_m, 0.0, 100.0, "m",
              "shorter readings of such a laser are no return: the robot itself, for example");
   schema.add("laser.upside_down", &s.upside_down,

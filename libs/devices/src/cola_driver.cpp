@@ -157,12 +157,13 @@ void ColaDriver::take_scan(const ColaTelegram& telegram, std::int64_t now_ns) {
     ++repeated_;
     return;
   }
-  if (scan->ranges_m.size() != model_.beams) {
+  const std::size_t beams = turning_.beams != 0 ? turning_.beams : model_.beams;
+  if (scan->ranges_m.size() != beams) {
     ++other_beams_;
     state_ = LaserState::kFailed;
     reason_ = "it sends " + std::to_string(scan->ranges_m.size()) + " beams, expected " +
-              std::to_string(model_.beams) + " of a " + std::string(model_.title) +
-              " (laser.model, or the settings of the laser)";
+              std::to_string(beams) + " of a " + std::string(model_.title) +
+              " (laser.model, laser.beams, or the settings of the laser)";
     waits_since_ns_ = now_ns;
     return;
   }

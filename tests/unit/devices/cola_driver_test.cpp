@@ -93,8 +93,8 @@ TEST(ColaDriver, ALaserWithOtherBeamsIsNamed) {
   EXPECT_TRUE(laser.scans.empty());
   EXPECT_EQ(laser.driver.health().state, LaserState::kFailed);
   EXPECT_EQ(laser.driver.health().reason,
-            "it sends 811 beams, expected 271 of a SICK TiM551 (laser.model, or the settings of "
-            "the laser)");
+            "it sends 811 beams, expected 271 of a SICK TiM551 (laser.model, laser.beams, or the "
+            "settings of the laser)");
 }
 
 TEST(ColaDriver, StatusOfTheLaserIsReported) {
@@ -132,6 +132,17 @@ TEST(ColaDriver, TheEndOfTheProgramStopsTheScans) {
   const std::uint64_t sent = laser.emulator.scans_sent();
   laser.run_for(kColaSecond_ns);
   EXPECT_EQ(laser.emulator.scans_sent(), sent);
+}
+
+TEST(ColaDriver, BeamsOfTheFileAreExpected) {
+  simulation::ColaEmulatorSettings emulated = a_tim551();
+  emulated.beams = 541;
+  emulated.step_deg = 0.5;
+  ColaOnLine laser(emulated, {.beams = 541});
+  laser.line.plug_in();
+  ASSERT_TRUE(laser.run_for_scans(10, 8 * kColaSecond_ns)) << laser.driver.health().reason;
+  EXPECT_EQ(laser.wrong_scans, 0U);
+  EXPECT_EQ(laser.scans.back().ranges_m.size(), 541U);
 }
 
 /// A scan of a laser with other beams.
