@@ -12,7 +12,7 @@ namespace {
 namespace order = devices::create_order;
 using devices::CreateMode;
 
-constexpr double kCleaning_mmps = 200.0;
+constexpr double kCleaning_m_s = 0.2;
 constexpr std::int64_t kCreateMs_ns = 1'000'000;
 /// A Roomba 690 sends 129 frames in 2 s, not 133.
 constexpr std::int64_t kSlower = 133;
@@ -164,7 +164,7 @@ void CreateEmulator::become(CreateMode mode) {
 
 void CreateEmulator::clean() {
   become(CreateMode::kPassive);
-  drive(kCleaning_mmps, kCleaning_mmps);
+  want({kCleaning_m_s, kCleaning_m_s});
 }
 
 void CreateEmulator::check_safety() {
