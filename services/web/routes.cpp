@@ -238,6 +238,14 @@ std::span<const ServiceRoute> service_routes() {
        [](Web& web, const Request& request, const Respond& respond) {
          respond(web.change_controls(request));
        }},
+      {{kPost, "/api/alarms", kOperator, kMostBody_bytes, kInLoop, "acknowledges alarms"},
+       kAlways,
+       kObeyed,
+       [](Web& web, const Request& request, const Respond& respond) {
+         web.events_.acknowledge(parse_alarm_numbers(request.body),
+                                 web.controls_.name_of(request.page));
+         respond(accepted());
+       }},
       {{kPost, "/api/floor", kOperator, kMostDrawing_bytes, kInLoop, "loads a drawn floor", true},
        kWithSimulator,
        kObeyed,

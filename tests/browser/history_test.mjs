@@ -169,6 +169,31 @@ test("every format of the store is a download, with the bytes that the command w
   assert.ok(readFileSync(await download.path()).equals(readFileSync(file("map.pb"))));
 });
 
+test("the report of the drive is one page that needs no other file", async () => {
+  await page.click("#tab-time");
+  const [download] = await Promise.all([
+    page.waitForEvent("download"),
+    page.getByRole("button", { name: "Save the report" }).click(),
+  ]);
+  const report = readFileSync(await download.path(), "utf8");
+  assert.equal(download.suggestedFilename(), "report.html");
+  const has = (pattern) => assert.ok(pattern.test(report), `${pattern}: ${report.replace(/base64,[^"]*/, "")}`);
+  has(/<img src="data:image\/png;base64,/);
+  has(/^(?![^]*(src|href)="(?!data:))/);
+  const { stops, loops } = facts("round");
+  has(new RegExp(`<dt>Scan points</dt><dd>${stops}</dd>`));
+  has(new RegExp(`${loops} accepted`));
+  has(/<dd>[\d.]+ m in [^<]*without the pauses<\/dd>/);
+  const printed = await page.context().newPage();
+  await printed.setContent(report);
+  const pages = (await printed.pdf({ format: "A4" })).toString("latin1").match(/\/Type\s*\/Page\b/g);
+  assert.equal(pages.length, 1);
+  await picture("report", printed);
+  await printed.setViewportSize({ width: 390, height: 844 });
+  await printed.screenshot({ path: join(kPictures, "report-phone.png") });
+  await printed.close();
+});
+
 test("a map that is only shown has no snapshots, and says so", async () => {
   assert.equal(await robot.post("snapshot", { name: "one" }), 409);
   await text(".section p", /A map that is only shown has no snapshots/);

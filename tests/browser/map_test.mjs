@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { close, kPictures, kSizes, launch, new_context, open_page } from "./page.mjs";
+import { assert_accessible, close, kPictures, kSizes, launch, new_context, open_page } from "./page.mjs";
 import { wait_for } from "./robot.mjs";
 import { kAddress, StandIn } from "./stand_in.mjs";
 
@@ -49,7 +49,7 @@ class ZonedFloor extends StandIn {
   }
 
   async open(scheme) {
-    const context = await new_context(browser, { viewport: kSizes.desk, colorScheme: scheme });
+    const context = await new_context(browser, { viewport: kSizes.desk, colorScheme: scheme, bypassCSP: true });
     await this.serve(context);
     return open_page(context, `${kAddress}/#token=${"t".repeat(16)}`);
   }
@@ -141,11 +141,23 @@ test("a mission is saved in the browser, put in another order, and loaded after 
   await route(["left room", "right room"]);
   await page.getByRole("button", { name: "Move right room one up" }).click();
   await route(["right room", "left room"]);
+  await page.getByRole("button", { name: "Move right room one down" }).click();
+  await route(["left room", "right room"]);
+  await page.getByRole("button", { name: "Move right room one up" }).click();
+  await route(["right room", "left room"]);
+  await page.getByLabel("Seconds to stay at right room").fill("30");
+  await page.locator(".card p", { hasText: "about 39 s" }).waitFor(); // 9 s of the stub's route
+  await page.getByLabel("Drive this list").selectOption("3 times");
   await page.getByText("Missions", { exact: true }).click();
   await page.getByLabel("Name of the mission").fill("evening round");
   await page.getByRole("button", { name: "Save these goals" }).click();
   await page.getByRole("button", { name: "evening round", exact: true }).waitFor();
   await page.screenshot({ path: join(kPictures, "missions-light.png") });
+  await assert_accessible(page, "missions");
+  await page.setViewportSize(kSizes.phone);
+  await page.locator(".chosen").scrollIntoViewIfNeeded();
+  await page.screenshot({ path: join(kPictures, "missions-phone.png") });
+  await page.setViewportSize(kSizes.desk);
 
   await page.reload();
   await page.click("#tab-send");
@@ -154,7 +166,7 @@ test("a mission is saved in the browser, put in another order, and loaded after 
   await route(["right room", "left room"]);
   await page.click("#go");
   await wait_for("the mission is sent", () => floor.goal);
-  assert.deepEqual(floor.goal, { goals: [{ place: "right room" }, { place: "left room" }] });
+  assert.deepEqual(floor.goal, { goals: [{ place: "right room", wait_s: 30 }, { place: "left room" }], repeat: 3 });
   await page.getByRole("button", { name: "Remove the mission evening round" }).click();
   await page.getByText("No mission is saved yet.").waitFor();
   assert.deepEqual(page.faults, []);

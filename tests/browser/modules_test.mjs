@@ -14,6 +14,11 @@ const { navigator_text, pose_of_now, robot_state } = await load("robot_state");
 const { agreement, apart, compose } = await load("map/match_layer");
 const { Film } = await load("map/film");
 const { Stopping } = await load("stopping");
+const { drive_facts, goal_facts, report_page } = await load("report");
+const { moved } = await load("views/chosen_list");
+const { stick_order } = await load("views/drive_stick");
+const { with_stays } = await load("views/rounds");
+const { pending_alarms } = await load("alarms");
 const { translated } = await load("reasons");
 const { spanish_reasons } = await load("spanish_reasons");
 const { english, languages, texts } = await load("texts");
@@ -350,6 +355,77 @@ test("a map that is shown alone has no robot, one whose localizer has not spoken
   assert.equal(named(["web", "running"], ["sensor_gateway", "lost"]), "absent");
 });
 
+test("alarms that nobody has acknowledged come newest first", () => {
+  const channels = new Channels();
+  const alarm = (time_s, acknowledged_by) => ({ time_s, first_s: 1, count: 1, source: "base", text: "", acknowledged_by });
+  const set = { 1: alarm(30, ""), 2: alarm(10, ""), 3: alarm(40, "Anna"), 11: alarm(30, "") };
+  channels.apply({ channel: "alarms", from: 0, version: 1, set, gone: [] });
+  assert.deepEqual(pending_alarms(channels).map(([number]) => number), ["11", "1", "2"]);
+});
+
+test("a thumb on the stick drives ahead and to the left, the faster the farther, and stands in the middle", () => {
+  const close_to = (order, ahead, left) =>
+    assert.ok(Math.hypot(order.ahead - ahead, order.left - left) < 1e-9, JSON.stringify(order));
+  close_to(stick_order(0, 0, 80), 0, 0);
+  close_to(stick_order(8, -8, 80), 0, 0);
+  close_to(stick_order(0, -80, 80), 1, 0);
+  close_to(stick_order(0, -400, 80), 1, 0);
+  close_to(stick_order(0, 80, 80), -1, 0);
+  close_to(stick_order(80, 0, 80), 0, -1);
+  const half = stick_order(-30, -30, 80);
+  assert.ok(half.ahead > 0.2 && half.ahead < 0.5 && Math.abs(half.ahead - half.left) < 1e-9, JSON.stringify(half));
+  let before = 0;
+  for (let far = 12; far <= 80; ++far) {
+    const { ahead } = stick_order(0, -far, 80);
+    assert.ok(ahead >= before && ahead - before < 0.03, "no jump");
+    before = ahead;
+  }
+});
+
+test("goals move in their list, and the times at them count but at the last one", () => {
+  assert.deepEqual(moved(["a", "b", "c"], 2, -1), ["a", "c", "b"]);
+  assert.deepEqual(moved(["a", "b", "c"], 0, 1), ["b", "a", "c"]);
+  assert.deepEqual(moved(["a", "b", "c"], 0, -1), ["a", "b", "c"]);
+  assert.deepEqual(moved(["a", "b", "c"], 2, 1), ["a", "b", "c"]);
+  const choices = [{ goal: { wait_s: 30 } }, { goal: {} }, { goal: { wait_s: 5 } }];
+  assert.equal(with_stays(choices, 1, 60), 90);
+  assert.equal(with_stays(choices, 0, 60), 95);
+  assert.equal(with_stays(choices, 1, null), null);
+});
+
+test("a report counts the drive without its pauses and jumps", () => {
+  assert.equal(drive_facts([]), null);
+  const stop = (stamp_s, x_m, more = {}) => ({ stamp_s, x_m, y_m: 0, theta_rad: 0, ...more });
+  const stops = [
+    stop(100, 0), stop(102, 3), stop(200, 3), { stamp_s: 201 }, stop(202, 4), stop(5000, 50, { starts_drive: true }),
+    stop(5001, 51),
+  ];
+  assert.deepEqual(drive_facts(stops), { length_m: 4, time_s: 10, first_s: 100, last_s: 5001 });
+  const event = (text, level = "info") => ({ time_s: 1000, level, source: "web", text });
+  const events = [
+    event("goal: room 1"), event("arrived: room 1"), event("goal: room 2"),
+    event("Anna: stops and holds the robot", "warning"), event("stopped by the operator", "warning"),
+  ];
+  assert.deepEqual(goal_facts(events), { sent: 2, reached: 1, stopped: 1 });
+});
+
+test("a report is one page whose texts are texts, and keeps the newest lines", () => {
+  const event = (text, level) => ({ time_s: 1000, level, source: "web", text });
+  const many = Array.from({ length: 30 }, (_, i) => event(`trouble ${i}`, "error"));
+  const data = {
+    robot: "<script>robot</script>", made_s: 2e9, stops: [], floor_m2: 20, rooms: 1, loops: [], picture: "data:,",
+    events: [event('goal: a "b" <i>', "info"), ...many],
+    alarms: [{ ...event("is gone", "error"), source: "localizer", first_s: 1, count: 1, acknowledged_by: "Anna & Ben", acknowledged_s: 9 }],
+  };
+  const page = report_page(data);
+  assert.doesNotMatch(page, /<script|<i>/);
+  assert.match(page, /Goal: a &#34;b&#34; &#60;i&#62;/);
+  assert.match(page, /Localizer: is gone\. Acknowledged by Anna &#38; Ben at /);
+  assert.match(page, /Trouble 29\./);
+  assert.doesNotMatch(page, /Trouble 1\./);
+  assert.match(page, /20 earlier ones are not listed/);
+});
+
 /** All texts of an object; functions are called with arguments that any of them can show. */
 function all_texts(value) {
   if (typeof value === "string") return [value];
@@ -414,7 +490,7 @@ const kReasonSources = {
   "services/planner": ["answer"],
   "services/localizer": ["localizer_commands"],
   "services/map_store": ["archive_channel", "drawing_order"],
-  "services/web/channels": ["drive_view", "health_view", "protocol_names", "robot_view"],
+  "services/web/channels": ["drive_view", "event_log", "health_view", "protocol_names", "robot_view"],
   "services/web/history": ["archive_requests", "history", "map_merge"],
   "services/web/orders": [
     "drawing_editor", "exploration", "exploration_sender", "goal_sender", "localizer_requests", "manual_drive_sender",

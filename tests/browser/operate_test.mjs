@@ -202,6 +202,14 @@ test("the header says what the robot does, or what it waits for", async () => {
   await activity(/^Waiting for a free path to room 3$/);
   service.show("navigator", { ...navigator, state: "stopped", reason: "paused" });
   await activity(/^Paused on the way to room 3$/);
+  service.show("navigator", { ...navigator, state: "arrived", message: "arrived" });
+  service.show("goals", { ...goals, waiting: [{ text: "room 4" }], waits_s: 30_000, round: { now: 2, of: 3 } });
+  await activity(/^Stays at room 3 \(8 h \d+ min left\)$/);
+  await page.click("#tab-send");
+  await text(page, ".section h3", /^Stays at room 3/);
+  await text(page, ".section p", /^Round 2 of 3\. Then: room 4$/);
+  await page.getByRole("button", { name: "Drive on now" }).click();
+  await wait_for("the order", () => service.orders.includes("resume"));
   service.show("goals", { current: { text: "a gap" }, waiting: [], exploring: true });
   service.show("navigator", navigator);
   await activity(/^Exploring$/);
@@ -398,6 +406,44 @@ test("events are filtered by level, and saved as a file", async () => {
   assert.equal(lines[0], "1970-01-01T00:16:40.000Z\tinfo\tweb\tgoal: room 3");
   assert.equal(lines.length, 4); // an empty one at the end
   await assert_accessible(page, "events");
+  await end(opened);
+});
+
+test("an alarm stays in view until an operator acknowledges it, and then names who did", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await show_banners(page);
+  const alarm = { level: "error", source: "base", text: "emergency_stop", first_s: 1000, time_s: 1000, count: 1 };
+  const other = { ...alarm, level: "warning", source: "laser", text: "offline", time_s: 900, count: 3 };
+  const pending = { acknowledged_by: "" };
+  service.table("alarms", { 1: { ...other, ...pending }, 2: { ...alarm, ...pending } });
+  await text(page, ".banner.alarm", /Drive unit: emergency.stop\./i);
+  for (const [name, size] of Object.entries(kSizes)) {
+    await page.setViewportSize(size);
+    await page.screenshot({ path: join(kPictures, `alarm-${name}.png`) });
+  }
+  await page.setViewportSize(kSizes.desk);
+  await page.getByRole("button", { name: "Show all 2 alarms" }).click();
+  const list = page.locator(".alarms > li");
+  await wait_for("both in the list", async () => (await list.count()) === 2);
+  assert.match((await list.allInnerTexts())[1], /Laser: offline\.[^]*3 times, last at/i);
+  await assert_accessible(page, "alarms");
+  await page.locator(".banner.alarm").getByRole("button", { name: "Acknowledge", exact: true }).click();
+  await wait_for("the order", () => service.acknowledged.length === 1);
+  assert.deepEqual(service.acknowledged, [2]);
+  await notice(page, /The alarm is acknowledged/);
+  const done = { acknowledged_by: "Anna", acknowledged_s: 1010 };
+  service.table("alarms", { 1: { ...other, ...pending }, 2: { ...alarm, ...done } });
+  await text(page, ".banner.alarm", /Laser: offline/);
+  assert.equal(await page.getByRole("button", { name: /^Show .*alarm/ }).count(), 0);
+  await text(page, ".alarms > li", /Drive unit: emergency.stop\.[^]*Acknowledged by Anna at/i);
+  assert.match((await list.allInnerTexts())[0], /Laser/, "the one that waits is on top");
+  await page.locator(".alarms").getByRole("button", { name: /^Acknowledge: Laser/ }).click();
+  await wait_for("the other order", () => service.acknowledged.length === 2);
+  service.table("alarms", { 1: { ...other, ...done }, 2: { ...alarm, ...done } });
+  await wait_for("the banner goes", async () => !(await page.locator(".banner.alarm").isVisible()));
+  await page.locator(".alarms").scrollIntoViewIfNeeded();
+  await page.screenshot({ path: join(kPictures, "alarms-acknowledged.png") });
   await end(opened);
 });
 

@@ -22,10 +22,11 @@ export class StandIn {
   ops = []; // of messages that pages sent
   messages = []; // the same messages, whole
   controls = []; // orders about the controls
+  acknowledged = []; // alarms
   orders = []; // sent by pages by POST and only recorded
   reachable = true; // through the WebSocket
   ages_s = undefined; // time since each value was received
-  offers = ["goal", "preview", "drawing", "room_shapes", "floor", "explore", "cancel", "resume", "stop", "release"];
+  offers = ["goal", "preview", "drawing", "room_shapes", "floor", "explore", "cancel", "resume", "stop", "release", "alarms"];
   /** Two rooms of 4 x 4 m that meet at x = 0; zone 0 lies left. */
   rooms = {
     0: { name: "left room", area_m2: 16, x_m: -2, y_m: 0, color: 0 },
@@ -144,6 +145,9 @@ export class StandIn {
       case "/api/resume":
       case "/api/release":
         this.orders.push(pathname.slice("/api/".length));
+        return json(202, {});
+      case "/api/alarms":
+        this.acknowledged.push(...body.acknowledge);
         return json(202, {});
       case "/api/controls":
         this.controls.push(body.do);

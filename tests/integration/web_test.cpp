@@ -92,6 +92,18 @@ TEST_F(WebOnMap, APageHasTheMapThroughRestartsOfBothSides) {
   EXPECT_EQ(store_row().size(), row.size()) << store_row();
   EXPECT_EQ(store_row()["version"], row["version"]);
 
+  // That is an alarm until somebody acknowledges it.
+  ASSERT_TRUE(page.wait_for(
+      *socket, [&] { return page.tables["alarms"].size() == 1; }, kPagePatience));
+  const std::string number = page.tables["alarms"].begin()->first;
+  const std::string acknowledged = R"({"acknowledge":[)" + number + "]}";
+  EXPECT_EQ(http_post(port_, "/api/alarms", "", acknowledged).status, 401);
+  EXPECT_EQ(page.tables["alarms"][number]["acknowledged_by"], "");
+  EXPECT_EQ(http_post(port_, "/api/alarms", kToken, acknowledged).status, 202);
+  ASSERT_TRUE(page.wait_for(
+      *socket, [&] { return page.tables["alarms"][number]["acknowledged_by"] == "a program"; },
+      kPagePatience));
+
   // It restarts with the same map.
   start_store();
   ASSERT_TRUE(page.wait_for(

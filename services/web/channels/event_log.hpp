@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <mutex>
+#include <span>
 #include <string>
 
+#include "channels/alarm_list.hpp"
 #include "server/channel_hub.hpp"
 
 namespace topogeo::web {
@@ -15,13 +17,18 @@ class EventLog {
   enum class Level : std::uint8_t { kInfo, kWarning, kError };
   static constexpr std::uint64_t kKept = 500;
 
-  explicit EventLog(ChannelHub& hub) : hub_(hub) {}
+  explicit EventLog(ChannelHub& hub) : hub_(hub), alarms_(hub) {}
 
   /// `source`: service or part of the robot.
   void add(Level level, const std::string& source, const std::string& sentence);
+  /// The same for an event that also stays as an alarm until somebody acknowledges it.
+  void alarm(Level level, const std::string& source, const std::string& sentence);
+  /// `who`: name of the operator; it stands in the events, too.
+  void acknowledge(std::span<const std::uint64_t> alarms, const std::string& who);
 
  private:
   ChannelHub& hub_;
+  AlarmList alarms_;
   std::mutex mutex_;
   std::uint64_t last_ = 0;
 };

@@ -75,10 +75,14 @@ void HealthView::on_service(const msg::ServiceStatus& status, const SampleInfo& 
 void HealthView::note(Row& row, const msg::ServiceStatus& status) {
   const std::string service = text_of_message(status.service());
   if (row.service.empty() || row.state != status.state() || row.lost) {
-    const bool failed = status.state() == msg::kServiceFailed;
     const std::string message = text_of_message(status.message());
-    events_.add(failed ? Level::kError : Level::kInfo, service,
-                std::string(name_of(status.state())) + (message.empty() ? "" : ": " + message));
+    const std::string text =
+        std::string(name_of(status.state())) + (message.empty() ? "" : ": " + message);
+    if (status.state() == msg::kServiceFailed) {
+      events_.alarm(Level::kError, service, text);
+    } else {
+      events_.add(Level::kInfo, service, text);
+    }
   }
   if (status.fault_count() > row.faults && !row.service.empty()) {
     events_.add(Level::kWarning, service, text_of_message(status.last_error()));
@@ -99,7 +103,7 @@ void HealthView::on_service_gone(const SampleInfo& info) {
     rows_.erase(row);
   } else if (row != rows_.end()) {
     row->second.lost = true;
-    events_.add(Level::kError, row->second.service, "is gone");
+    events_.alarm(Level::kError, row->second.service, "is gone");
     // Includes all fields that pages expect.
     Json lost = service_json(row->second.last);
     lost["state"] = "lost";

@@ -37,9 +37,19 @@ std::string scan_text(const navigation::ScanPoints& scan, std::uint64_t sequence
   return text_of(json);
 }
 
-Level level_of(msg::LocalizationState state) {
-  if (state == msg::kStateTracking) return Level::kInfo;
-  return state == msg::kStateLost ? Level::kError : Level::kWarning;
+/// Whether a person must go to the robot, or find out why. A halt is an operator's own order.
+bool is_alarming(msg::BaseState state, const std::optional<msg::BaseState>& before) {
+  switch (state) {
+    case msg::kBaseEmergencyStop:
+    case msg::kBaseWatchdogExpired:
+    case msg::kBaseBumped:
+    case msg::kBaseMotorsOff:
+      return true;
+    case msg::kBaseOffline:
+      return before && *before != msg::kBaseStarting;
+    default:
+      return false;
+  }
 }
 
 }  // namespace
@@ -65,8 +75,13 @@ RobotView::RobotView(service::Service& service, ChannelHub& hub, EventLog& event
 void RobotView::on_pose(const msg::LivePose& pose, std::int64_t sent_ns) {
   if (hooks_.on_pose) hooks_.on_pose(pose);
   if (!pose_ || pose_->state() != pose.state()) {
-    events_.add(level_of(pose.state()), "localizer",
-                std::string(name_of(pose.state())) + ": " + reason_of(pose.state()));
+    const std::string text = std::string(name_of(pose.state())) + ": " + reason_of(pose.state());
+    if (pose.state() == msg::kStateLost) {
+      events_.alarm(Level::kError, "localizer", text);
+    } else {
+      events_.add(pose.state() == msg::kStateTracking ? Level::kInfo : Level::kWarning, "localizer",
+                  text);
+    }
   }
   pose_ = pose;
   pose_came_s_ = support::monotonic_s();
@@ -146,8 +161,13 @@ void RobotView::on_navigator(const msg::NavigatorStatus& status,
       const bool trouble = !wanted && (status.state() == msg::kNavigatorBlocked ||
                                        status.state() == msg::kNavigatorStopped ||
                                        status.state() == msg::kNavigatorRelocalizing);
-      events_.add(trouble ? Level::kWarning : Level::kInfo, "navigator",
-                  std::string(name_of(status.state())) + (message.empty() ? "" : ": " + message));
+      const std::string text =
+          std::string(name_of(status.state())) + (message.empty() ? "" : ": " + message);
+      if (trouble && status.reason() == msg::kHaltBaseStuck) {
+        events_.alarm(Level::kWarning, "navigator", text);
+      } else {
+        events_.add(trouble ? Level::kWarning : Level::kInfo, "navigator", text);
+      }
     }
     navigator_state_ = status.state();
   }
@@ -197,10 +217,18 @@ void RobotView::on_base(const msg::BaseStatus& status) {
   const bool moved =
       base_state_ && (*base_state_ == msg::kBaseReady || *base_state_ == msg::kBaseMoving);
   if (base_state_ != status.state() && !(moves && moved)) {
-    events_.add(moves ? Level::kInfo : Level::kWarning, "base",
-                std::string(name_of(status.state())) + (reason.empty() ? "" : ": " + reason));
+    const std::string text =
+        std::string(name_of(status.state())) + (reason.empty() ? "" : ": " + reason);
+    if (is_alarming(status.state(), base_state_)) {
+      events_.alarm(Level::kError, "base", text);
+    } else {
+      events_.add(moves ? Level::kInfo : Level::kWarning, "base", text);
+    }
   }
   base_state_ = status.state();
+  if (!std::exchange(battery_low_, status.battery_low()) && battery_low_) {
+    events_.alarm(Level::kWarning, "base", "the battery is low");
+  }
   hub_.set(Channel::kBase, text_of(Json{{"state", name_of(status.state())},
                                         {"reason", reason},
                                         {"commands_taken", status.commands_taken()},
@@ -213,8 +241,14 @@ void RobotView::on_laser(const msg::LaserStatus& status) {
   const std::string reason = text_of_message(status.reason());
   if (laser_state_ != status.state()) {
     const bool runs = status.state() == msg::kLaserRunning;
-    events_.add(runs ? Level::kInfo : Level::kWarning, "laser",
-                std::string(name_of(status.state())) + (reason.empty() ? "" : ": " + reason));
+    const bool lost = status.state() == msg::kLaserFault || laser_state_ == msg::kLaserRunning;
+    const std::string text =
+        std::string(name_of(status.state())) + (reason.empty() ? "" : ": " + reason);
+    if (!runs && lost) {
+      events_.alarm(Level::kError, "laser", text);
+    } else {
+      events_.add(runs ? Level::kInfo : Level::kWarning, "laser", text);
+    }
   }
   laser_state_ = status.state();
   hub_.set(Channel::kLaser, text_of(Json{{"state", name_of(status.state())},

@@ -64,6 +64,7 @@ class RobotView {
   std::optional<msg::NavigatorState> navigator_state_;
   std::optional<msg::BaseState> base_state_;
   std::optional<msg::LaserState> laser_state_;
+  bool battery_low_ = false;
 };
 
 }  // namespace topogeo::web

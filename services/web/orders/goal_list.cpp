@@ -21,7 +21,7 @@ void GoalList::clear() {
   taken_ = false;
 }
 
-std::optional<GoalList::End> GoalList::take(const msg::NavigatorStatus& status, bool pausing) {
+std::optional<GoalList::End> GoalList::take(const msg::NavigatorStatus& status, bool held) {
   if (!current_) return std::nullopt;
   if (status.goal_id() == current_->id) {
     taken_ = true;
@@ -30,8 +30,8 @@ std::optional<GoalList::End> GoalList::take(const msg::NavigatorStatus& status, 
       return End::kTakenOver;
     }
     if (status.state() != msg::kNavigatorArrived) return std::nullopt;
-    const bool paused = pausing || status.reason() == msg::kHaltPaused;
-    if (paused && !waiting_.empty()) return std::nullopt;
+    const bool waits = held || status.reason() == msg::kHaltPaused;
+    if (waits && !waiting_.empty()) return std::nullopt;
     current_.reset();
     taken_ = false;
     static_cast<void>(add({}, true));

@@ -15,6 +15,8 @@ struct Goal {
   std::uint64_t id = 0;  ///< never 0
   std::string text;      ///< for people
   msg::Goal message;     ///< without header
+  double wait_s = 0.0;   ///< that the robot stays there before the next one
+  std::uint32_t round = 1;
 };
 
 class GoalList {
@@ -32,9 +34,9 @@ class GoalList {
   /// gave or cancelled a goal, and after kNotTaken, because many statuses did not name it: the
   /// navigator, or its connection, began just when the goal was sent.
   ///
-  /// A pause holds the next goal back, also one that the status does not show yet (`pausing`): the
-  /// goal reached stays current() until a resume.
-  std::optional<End> take(const msg::NavigatorStatus& status, bool pausing = false);
+  /// A pause holds the next goal back: the goal reached stays current() until a resume. `held`: so
+  /// does a pause that the status does not show yet, or the time that the robot stays there.
+  std::optional<End> take(const msg::NavigatorStatus& status, bool held = false);
 
   [[nodiscard]] const std::optional<Goal>& current() const { return current_; }
   [[nodiscard]] const std::deque<Goal>& waiting() const { return waiting_; }

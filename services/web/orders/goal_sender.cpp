@@ -1,11 +1,13 @@
 #include "orders/goal_sender.hpp"
 
+#include <chrono>
 #include <random>
 #include <stdexcept>
 #include <utility>
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
 
 #include "channels/event_log.hpp"
@@ -26,7 +28,20 @@ Json goal_json(const Goal& goal) {
     json["x_m"] = rounded(goal.message.target().x_m());
     json["y_m"] = rounded(goal.message.target().y_m());
   }
+  if (goal.wait_s > 0.0) json["wait_s"] = rounded(goal.wait_s);
   return json;
+}
+
+/// The navigator does not take an id twice.
+void renumber(std::deque<Goal>& goals) {
+  for (Goal& goal : goals) {
+    goal.id = random_goal_id();
+    goal.message.goal_id(goal.id);
+  }
+}
+
+std::int64_t now_ns() {
+  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 }  // namespace
@@ -66,6 +81,7 @@ Goal GoalSender::make(const WantedGoal& wanted) {
   goal.id = order.goal_id;
   goal.text = named ? named->name : describe(wanted);
   goal.message = service::to_msg(order, service_.robot_id(), 0, 0);
+  goal.wait_s = wanted.wait_s;
   return goal;
 }
 
@@ -76,10 +92,12 @@ std::uint64_t GoalSender::add(const GoalOrders& orders) {
   const std::uint64_t first = goals.front().id;
   forget_interrupted();
   exploration_ = "null";
+  if (!orders.append) rounds_.begin(goals, orders.rounds);
   if (list_.add(std::move(goals), orders.append)) {
     unconfirmed_.end();
     send_current();
   }
+  begin_next_round();
   show();
   return first;
 }
@@ -102,6 +120,7 @@ void GoalSender::set_exploring(bool exploring) {
   if (exploring && is_pausing()) unconfirmed_.end();
   if (exploring) {
     forget_interrupted();
+    rounds_.end();
     exploration_ = "null";
   }
   exploring_ = exploring;
@@ -119,6 +138,13 @@ void GoalSender::send_current() {
   const Goal& goal = *list_.current();
   events_.add(EventLog::Level::kInfo, "web", "goal: " + goal.text);
   send(goal.message);
+}
+
+void GoalSender::begin_next_round() {
+  if (!list_.current() || !list_.waiting().empty()) return;
+  std::deque<Goal> goals = rounds_.next();
+  renumber(goals);
+  list_.add(std::move(goals), true);
 }
 
 void GoalSender::order(msg::GoalKind kind, std::uint64_t goal_id) {
@@ -146,12 +172,14 @@ void GoalSender::pause() {
 
 void GoalSender::resume() {
   unconfirmed_.end();
+  wait_.skip();
   order(msg::kGoalResume);
   show();
 }
 
 void GoalSender::cancel() {
   forget_interrupted();
+  rounds_.end();
   exploration_ = "null";
   cancel_all();
 }
@@ -180,19 +208,31 @@ void GoalSender::forget_interrupted() {
   was_exploring_ = false;
 }
 
-// The navigator does not take a cancelled goal again, so each gets another id.
 void GoalSender::resume_interrupted() {
   if (!goals_.has_navigator()) throw std::invalid_argument("no navigator is connected");
   std::deque<Goal> goals = std::exchange(interrupted_, {});
-  for (Goal& goal : goals) {
-    goal.id = random_goal_id();
-    goal.message.goal_id(goal.id);
-  }
+  renumber(goals);
   if (list_.add(std::move(goals), false)) {
     unconfirmed_.end();
     send_current();
   }
+  begin_next_round();
   show();
+}
+
+bool GoalSender::waits_at_goal(const msg::NavigatorStatus& status) {
+  const auto& goal = list_.current();
+  const bool arrived = goal && status.goal_id() == goal->id &&
+                       status.state() == msg::kNavigatorArrived && !list_.waiting().empty();
+  if (!arrived) return false;
+  const bool begins = wait_.goal() != goal->id;
+  if (!wait_.holds(*goal, now_ns())) return false;
+  if (begins) {
+    events_.add(EventLog::Level::kInfo, "web",
+                fmt::format("waits {:.0f} s at {}", goal->wait_s, goal->text));
+    show();
+  }
+  return true;
 }
 
 std::optional<GoalList::End> GoalSender::take(const msg::NavigatorStatus& status,
@@ -202,7 +242,8 @@ std::optional<GoalList::End> GoalSender::take(const msg::NavigatorStatus& status
   if (const auto repeat = unconfirmed_.take(status)) order(repeat->kind, repeat->goal_id);
   const std::string text = list_.current() ? list_.current()->text : std::string();
   const std::uint64_t id = list_.current() ? list_.current()->id : 0;
-  const auto end = list_.take(status, is_pausing());
+  const bool waits = waits_at_goal(status);
+  const auto end = list_.take(status, is_pausing() || waits);
   if (!end) {
     if (is_pausing() != pausing) show();
     return std::nullopt;
@@ -210,7 +251,9 @@ std::optional<GoalList::End> GoalSender::take(const msg::NavigatorStatus& status
   if (*end == GoalList::End::kArrived) {
     events_.add(EventLog::Level::kInfo, "web", "arrived: " + text);
     if (list_.current()) send_current();
+    begin_next_round();
   } else {
+    rounds_.end();
     // It may still be on its way.
     if (*end == GoalList::End::kNotTaken) order(msg::kGoalCancel, id);
     events_.add(EventLog::Level::kWarning, "web",
@@ -227,6 +270,8 @@ void GoalSender::show() {
   for (const Goal& goal : list_.waiting()) waiting.push_back(goal_json(goal));
   Json json = {{"current", nullptr},
                {"waiting", std::move(waiting)},
+               {"waits_s", nullptr},
+               {"round", nullptr},
                {"exploring", exploring_},
                {"pausing", is_pausing()},
                {"exploration", Json::parse(exploration_)},
@@ -237,7 +282,13 @@ void GoalSender::show() {
         {"waiting", interrupted_.empty() ? 0 : interrupted_.size() - 1},
         {"exploring", was_exploring_}};
   }
-  if (list_.current()) json["current"] = goal_json(*list_.current());
+  if (list_.current()) {
+    const Goal& goal = *list_.current();
+    json["current"] = goal_json(goal);
+    const double rest_s = wait_.goal() == goal.id ? wait_.rest_s(now_ns()) : 0.0;
+    if (rest_s > 0.0) json["waits_s"] = rounded(rest_s);
+    if (rounds_.repeats()) json["round"] = {{"now", goal.round}, {"of", rounds_.rounds()}};
+  }
   hub_.set(Channel::kGoals, text_of(json));
 }
 

@@ -14,6 +14,7 @@
 
 #include "channels/map_view.hpp"
 #include "orders/goal_list.hpp"
+#include "orders/goal_rounds.hpp"
 #include "orders/order_text.hpp"
 #include "orders/unconfirmed_order.hpp"
 #include "server/channel_hub.hpp"
@@ -35,6 +36,7 @@ class GoalSender {
   /// would undo the pause.
   std::uint64_t send_to(const geometry::Pose2& T_map_goal, const std::string& text);
   void pause();
+  /// Ends a pause, or the time that the robot stays at a goal.
   void resume();
   void cancel();
   /// Cancels all goals, because the robot is stopped, and keeps them, or the exploration, until
@@ -69,6 +71,10 @@ class GoalSender {
  private:
   [[nodiscard]] Goal make(const WantedGoal& wanted);
   void send_current();
+  /// The next round waits behind the last goal of this one, so that a pause holds it back, too.
+  void begin_next_round();
+  /// Whether the robot stays at its goal before it drives to the next one.
+  [[nodiscard]] bool waits_at_goal(const msg::NavigatorStatus& status);
   void order(msg::GoalKind kind, std::uint64_t goal_id = 0);
   /// Orders a cancel or a pause, and repeats it until the navigator has carried it out.
   void insist(msg::GoalKind kind);
@@ -83,6 +89,8 @@ class GoalSender {
   EventLog& events_;
   std::string client_id_;
   GoalList list_;
+  GoalRounds rounds_;
+  GoalWait wait_;
   UnconfirmedOrder unconfirmed_;
   bool exploring_ = false;
   std::deque<Goal> interrupted_;

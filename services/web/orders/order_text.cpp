@@ -1,5 +1,6 @@
 #include "orders/order_text.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -15,8 +16,11 @@ namespace topogeo::web {
 namespace {
 
 constexpr std::size_t kMostGoals = 50;
+constexpr std::size_t kMostAlarms = 200;
 constexpr std::size_t kLongestName = 64;  // limit of the messages
 constexpr double kFarthest_m = 1e5;
+constexpr double kLongestWait_s = 86400.0;
+constexpr double kMostRounds = 1000.0;
 
 bool flag(const Json& json, const char* key, bool otherwise) {
   const auto found = json.find(key);
@@ -41,6 +45,7 @@ WantedGoal goal_of(const Json& json) {
   }
   constexpr double kTurn_rad = 2.0 * std::numbers::pi;
   goal.heading_rad = number(json, "heading_rad", -kTurn_rad, kTurn_rad);
+  goal.wait_s = number(json, "wait_s", 0.0, kLongestWait_s).value_or(0.0);
   return goal;
 }
 
@@ -50,8 +55,11 @@ GoalOrders parse_goals(const std::string& body) {
   const Json json = object_of(body);
   GoalOrders orders;
   orders.append = flag(json, "append", false);
+  orders.rounds =
+      static_cast<std::uint32_t>(number(json, "repeat", 0.0, kMostRounds).value_or(1.0));
   const auto list = json.find("goals");
   if (list == json.end()) {
+    if (orders.rounds != 1) throw std::invalid_argument("repeat: expected a list of goals");
     orders.goals.push_back(goal_of(json));
     return orders;
   }
@@ -59,6 +67,9 @@ GoalOrders parse_goals(const std::string& body) {
     throw std::invalid_argument("goals: expected a list of 1 to 50");
   }
   for (const Json& goal : *list) orders.goals.push_back(goal_of(goal));
+  if (orders.rounds != 1 && (orders.append || orders.goals.size() < 2)) {
+    throw std::invalid_argument("repeat: expected two goals or more, without append");
+  }
   return orders;
 }
 
@@ -121,6 +132,16 @@ ControlsOrder parse_controls_order(const std::string& body) {
     return {kind, kind == Kind::kRename ? parse_name(body) : std::string()};
   }
   throw std::invalid_argument("do: expected ask, take, give, keep, let_go or rename");
+}
+
+std::vector<std::uint64_t> parse_alarm_numbers(const std::string& body) {
+  const Json json = object_of(body);
+  const auto list = json.find("acknowledge");
+  if (list == json.end() || !list->is_array() || list->empty() || list->size() > kMostAlarms ||
+      !std::ranges::all_of(*list, [](const Json& one) { return one.is_number_unsigned(); })) {
+    throw std::invalid_argument("acknowledge: expected a list of 1 to 200 numbers");
+  }
+  return list->get<std::vector<std::uint64_t>>();
 }
 
 void check_plain(const std::string& body) {

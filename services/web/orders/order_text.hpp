@@ -17,11 +17,13 @@ struct WantedGoal {
   std::string name;                        ///< empty: a point
   std::optional<Eigen::Vector2d> point_m;  ///< map frame
   std::optional<double> heading_rad;       ///< map frame
+  double wait_s = 0.0;                     ///< that the robot stays there before the next one
 };
 
 struct GoalOrders {
   std::vector<WantedGoal> goals;  ///< 1 to 50, in sequence
   bool append = false;            ///< after the waiting ones
+  std::uint32_t rounds = 1;       ///< 0: until they are cancelled
 };
 
 struct PoseOrder {
@@ -53,6 +55,8 @@ struct ControlsOrder {
 
 /// {"do": "ask", "take", "give", "keep", "let_go" or "rename"}, the last one with "name".
 ControlsOrder parse_controls_order(const std::string& body);
+/// Returns the numbers in {"acknowledge": [1, 2]}, 1 to 200.
+std::vector<std::uint64_t> parse_alarm_numbers(const std::string& body);
 /// Accepts only a body without content: empty, or an object.
 void check_plain(const std::string& body);
 

@@ -17,13 +17,13 @@ struct ChannelInfo {
 };
 
 constexpr std::array<ChannelInfo, kChannels> kInfo = {{
-    {"time", false},  {"pose", false},      {"drive", false},    {"navigator", false},
-    {"base", false},  {"goals", false},     {"map", false},      {"tiles", true},
-    {"rooms", true},  {"places", true},     {"rules", true},     {"drawing", false},
-    {"scan", false},  {"route", false},     {"truth", false},    {"laser", false},
-    {"trail", true},  {"graph", true},      {"services", true},  {"workers", true},
-    {"merges", true}, {"local_map", false}, {"search", false},   {"loops", true},
-    {"events", true}, {"viewers", false},   {"controls", false},
+    {"time", false},  {"pose", false},      {"drive", false},   {"navigator", false},
+    {"base", false},  {"goals", false},     {"map", false},     {"tiles", true},
+    {"rooms", true},  {"places", true},     {"rules", true},    {"drawing", false},
+    {"scan", false},  {"route", false},     {"truth", false},   {"laser", false},
+    {"trail", true},  {"graph", true},      {"services", true}, {"workers", true},
+    {"merges", true}, {"local_map", false}, {"search", false},  {"loops", true},
+    {"events", true}, {"alarms", true},     {"viewers", false}, {"controls", false},
 }};
 
 /// A text in quotes.

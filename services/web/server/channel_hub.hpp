@@ -52,6 +52,7 @@ enum class Channel : std::uint8_t {
   kSearch,
   kLoops,
   kEvents,
+  kAlarms,
   kViewers,
   kControls,
 };

@@ -16,6 +16,7 @@
 #include "channels/event_log.hpp"
 #include "messaging/fixture.hpp"
 #include "orders/exploration_sender.hpp"
+#include "server/json_values.hpp"
 #include "waiting.hpp"
 
 namespace topogeo::web {
@@ -114,15 +115,20 @@ class GoalSenderTest : public testing::Test {
     return run_until("a status", [&] { return taken_ == sent; });
   }
   /// Two points in a row; the robot drives to the first, whose id is returned.
-  std::uint64_t drive_to_first_of_two() {
+  std::uint64_t drive_to_first_of_two(double wait_s = 0.0, std::uint32_t rounds = 1) {
     WantedGoal first;
     first.point_m = Eigen::Vector2d(1.0, 0.0);
+    first.wait_s = wait_s;
     WantedGoal second;
     second.point_m = Eigen::Vector2d(2.0, 0.0);
-    const std::uint64_t id = goals_.add({{first, second}, false});
+    const std::uint64_t id = goals_.add({{first, second}, false, rounds});
     EXPECT_TRUE(run_until("the first goal", [&] { return navigator_.has_goal(id); }));
     EXPECT_TRUE(report(id, msg::kNavigatorDriving));
     return id;
+  }
+
+  [[nodiscard]] Json shown_goals() const {
+    return Json::parse(*hub_.update(Channel::kGoals, 0).text)["value"];
   }
 
   std::string partition_ = messaging::random_partition();
@@ -178,6 +184,55 @@ TEST_F(GoalSenderTest, AnOperatorsGoalOrAResumeEndsAPause) {
   EXPECT_TRUE(goals_.is_pausing());
   static_cast<void>(drive_to_first_of_two());
   EXPECT_FALSE(goals_.is_pausing());
+}
+
+TEST_F(GoalSenderTest, TheRobotStaysAtAGoalForItsTimeOrUntilAResume) {
+  const std::uint64_t first = drive_to_first_of_two(3600.0);
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(report(first, msg::kNavigatorArrived));
+  EXPECT_EQ(goals_.waiting(), 1U);
+  const Json waits = shown_goals();
+  EXPECT_EQ(waits["current"]["wait_s"], 3600.0);
+  EXPECT_GT(waits["waits_s"].get<double>(), 0.0);
+  goals_.resume();
+  ASSERT_TRUE(report(first, msg::kNavigatorArrived));
+  EXPECT_EQ(goals_.waiting(), 0U) << "the second goal is sent";
+  EXPECT_TRUE(shown_goals()["waits_s"].is_null());
+}
+
+TEST_F(GoalSenderTest, AListIsRepeatedWithOtherIdsAsOftenAsOrdered) {
+  const std::uint64_t first = drive_to_first_of_two(0.0, 2);
+  EXPECT_EQ(goals_.waiting(), 1U);
+  std::set<std::string> ids = {std::to_string(first)};
+  std::uint64_t current = first;
+  for (const int round : {1, 2, 2}) {
+    ASSERT_TRUE(report(current, msg::kNavigatorArrived));
+    const Json goals = shown_goals();
+    EXPECT_EQ(goals["round"]["now"], round);
+    EXPECT_EQ(goals["round"]["of"], 2);
+    const std::string id = goals["current"]["goal_id"];
+    EXPECT_TRUE(ids.insert(id).second) << id;
+    current = std::stoull(id);
+    ASSERT_TRUE(run_until("the next goal", [&] { return navigator_.has_goal(current); }));
+    ASSERT_TRUE(report(current, msg::kNavigatorDriving));
+  }
+  EXPECT_EQ(goals_.waiting(), 0U);
+  ASSERT_TRUE(report(current, msg::kNavigatorArrived));
+  EXPECT_FALSE(goals_.under_way());
+}
+
+TEST_F(GoalSenderTest, EndlessRoundsGoOnAfterAStopAndEndByACancel) {
+  const std::uint64_t first = drive_to_first_of_two(0.0, 0);
+  ASSERT_TRUE(report(first, msg::kNavigatorArrived));
+  EXPECT_EQ(goals_.waiting(), 2U) << "the next round";
+  goals_.interrupt();
+  EXPECT_FALSE(goals_.under_way());
+  goals_.resume_interrupted();
+  EXPECT_EQ(goals_.waiting(), 2U);
+  goals_.cancel();
+  const std::uint64_t again = drive_to_first_of_two();
+  ASSERT_TRUE(report(again, msg::kNavigatorArrived));
+  EXPECT_EQ(goals_.waiting(), 0U);
+  EXPECT_TRUE(shown_goals()["round"].is_null());
 }
 
 TEST_F(GoalSenderTest, WhatAStopInterruptsIsKeptUntilAnotherOrder) {

@@ -88,6 +88,36 @@ TEST(OrderText, GoalsArePlacesAndPoints) {
   EXPECT_EQ(*many.goals[0].point_m, Eigen::Vector2d(1.0, -2.5));
   EXPECT_TRUE(many.append);
   EXPECT_EQ(describe(many.goals[0]), "1.00, -2.50");
+  EXPECT_EQ(many.rounds, 1U);
+}
+
+TEST(OrderText, GoalsHaveTimesToStayAndRounds) {
+  const GoalOrders round =
+      parse_goals(R"({"goals":[{"place":"a","wait_s":30},{"place":"b"}],"repeat":3})");
+  EXPECT_EQ(round.goals[0].wait_s, 30.0);
+  EXPECT_EQ(round.goals[1].wait_s, 0.0);
+  EXPECT_EQ(round.rounds, 3U);
+  EXPECT_EQ(parse_goals(R"({"goals":[{"place":"a"},{"place":"b"}],"repeat":0})").rounds, 0U);
+  for (const char* wrong :
+       {R"({"place":"a","repeat":2})", R"({"goals":[{"place":"a"}],"repeat":2})",
+        R"({"goals":[{"place":"a"},{"place":"b"}],"repeat":2,"append":true})",
+        R"({"goals":[{"place":"a"},{"place":"b"}],"repeat":-1})"}) {
+    EXPECT_THAT([&] { parse_goals(wrong); },
+                ThrowsMessage<std::invalid_argument>(HasSubstr("repeat")))
+        << wrong;
+  }
+  EXPECT_THAT([] { parse_goals(R"({"place":"a","wait_s":-1})"); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("wait_s")));
+}
+
+TEST(OrderText, AlarmsAreNumbers) {
+  EXPECT_EQ(parse_alarm_numbers(R"({"acknowledge":[3,1]})"), (std::vector<std::uint64_t>{3, 1}));
+  for (const char* wrong : {"{}", R"({"acknowledge":[]})", R"({"acknowledge":["1"]})",
+                            R"({"acknowledge":[-1]})", R"({"acknowledge":1})"}) {
+    EXPECT_THAT([&] { static_cast<void>(parse_alarm_numbers(wrong)); },
+                ThrowsMessage<std::invalid_argument>(HasSubstr("acknowledge")))
+        << wrong;
+  }
 }
 
 TEST(OrderText, WhatCannotBeIsNamed) {

@@ -7,6 +7,7 @@ import {
   has_foreign_goal,
   is_paused,
   is_silent,
+  rest_of_wait,
   robot_is_absent,
 } from "./robot_state";
 import { texts } from "./texts";
@@ -35,6 +36,10 @@ export function activity(channels: Channels, rights: Rights): Activity | null {
   const navigator = channels.value("navigator");
   if (!navigator) return { text: words.no_navigator, level: "plain" };
   if (is_silent(channels, "navigator")) return null;
+  const wait_s = rest_of_wait(channels);
+  if (wait_s > 0 && goals?.current && !is_paused(channels)) {
+    return { text: texts.missions.stays(goals.current.text, wait_s), level: "waits" };
+  }
   return on_the_way(navigator, goals, has_foreign_goal(channels), is_paused(channels));
 }
 

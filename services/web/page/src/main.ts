@@ -193,6 +193,10 @@ function start(): void {
     time: new TimeView(app),
   };
   const tabs = new Tabs(views);
+  header.on_show_alarms = () => {
+    tabs.open("understand");
+    views.understand.show_alarms();
+  };
   stage.append(map_controls(map));
   tabs.listen();
   root.append(tabs.element, notices.element);

@@ -59,6 +59,8 @@ export interface Preview extends Partial<Route> {
 export interface Goals {
   current: { goal_id: string; text: string; x_m?: number; y_m?: number } | null;
   waiting: { text: string }[];
+  waits_s?: number | null; // left at the current goal when this was sent
+  round?: { now: number; of: number } | null; // of: 0 until it is cancelled
   exploring: boolean;
   pausing?: boolean; // ordered, and not reported by the navigator
   exploration?: { visited: number; given_up: number; ended: boolean } | null;
@@ -319,6 +321,15 @@ export interface LogEvent {
   text: string;
 }
 
+/** A trouble that stays until somebody acknowledges it. */
+export interface Alarm extends Omit<LogEvent, "time_s"> {
+  first_s: number;
+  time_s: number; // of the last time
+  count: number;
+  acknowledged_by: string; // empty: nobody yet
+  acknowledged_s?: number;
+}
+
 export interface Tables {
   tiles: number;
   rooms: Room;
@@ -331,6 +342,7 @@ export interface Tables {
   workers: Worker;
   merges: Merge;
   events: LogEvent;
+  alarms: Alarm;
 }
 
 export type ValueName = keyof Values;
@@ -348,6 +360,7 @@ export const tableNames: readonly TableName[] = [
   "workers",
   "merges",
   "events",
+  "alarms",
 ];
 
 export interface ValueMessage {
@@ -373,4 +386,4 @@ export interface Info {
   offers?: string[];
 }
 
-export type Goal = ({ place: string } | PointM) & { heading_rad?: number };
+export type Goal = ({ place: string } | PointM) & { heading_rad?: number; wait_s?: number };

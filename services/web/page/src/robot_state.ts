@@ -116,6 +116,12 @@ export function is_paused(channels: Channels): boolean {
   return channels.value("navigator")?.reason === "paused" || channels.value("goals")?.pausing === true;
 }
 
+/** Seconds that the robot still stays at its goal; 0: it does not. */
+export function rest_of_wait(channels: Channels): number {
+  const waits_s = channels.value("goals")?.waits_s ?? 0;
+  return Math.max(0, waits_s - (channels.age_ms("goals") ?? 0) / 1000);
+}
+
 // Reasons of a base, or of a navigator without one, that an operator holds.
 const holds = /: (held|stopped by an operator)/;
 

@@ -1,6 +1,7 @@
 // All texts of the page, in Spanish. modules_test.mjs compares its keys with those of the English texts.
 import { area, count, degrees, duration, length, Maybe, percent, point, speed } from "./format";
 import { spanish_draw_texts } from "./spanish_draw";
+import { spanish_alarm_texts, spanish_mission_texts, spanish_report_texts } from "./spanish_shift";
 import type { Texts } from "./texts";
 
 const plural = (n: Maybe, one: string, several: string) => `${count(n)} ${n === 1 ? one : several}`;
@@ -130,11 +131,9 @@ export const spanish: Texts = {
     real: "Cruce", door: "Puerta", narrowing: "Estrechamiento", hall_corridor: "Sala con pasillo",
     fictitious: "Nodo ficticio: fin de la vista",
   },
-  missions: {
-    title: "Misiones", none: "Aún no hay misiones. Elija destinos y guárdelos aquí para otro día.",
-    name: "Nombre de la misión", save: "Guardar estos destinos", goals: (n) => plural(n, "destino", "destinos"),
-    remove: (name) => `Quitar la misión ${name}`,
-  },
+  alarms: spanish_alarm_texts,
+  missions: spanish_mission_texts,
+  report: spanish_report_texts,
   send: {
     heading: "¿Adónde?", hint: "Toque el mapa, o elija un nombre.", search: "Buscar una sala o un lugar",
     no_names: "El mapa aún no tiene salas ni lugares. Toque un punto del mapa.", no_match: "Ningún nombre coincide.",
@@ -148,7 +147,7 @@ export const spanish: Texts = {
     misplaced: "El láser no encaja en esta posición: el robot está probablemente en otro lugar y conduciría mal.",
     drive_misplaced: "Conducir de todos modos", go_all: (n) => `Ir a los ${n} en este orden`,
     heading_at_goal: "Rumbo en el destino (°), vacío: cualquiera", append: "Añadir a la lista", clear: "Borrar",
-    remove: (name) => `Quitar ${name}`, earlier: (name) => `Subir ${name} un puesto`, list: "Destinos seguidos",
+    remove: (name) => `Quitar ${name}`, list: "Destinos seguidos",
     list_length: (meters, seconds) => `En total ${length(meters)}, unos ${duration(seconds)}`,
     explore: "Explorar", explore_title: "Va a todos los lugares que aún no están en el mapa",
     return: "Volver a casa", underway: "En curso", idle: "El robot no tiene destino.",
@@ -166,8 +165,8 @@ export const spanish: Texts = {
     spectator: "Usted mira. Con el enlace del operador puede enviar al robot desde aquí.",
     no_navigator: "No se puede enviar al robot: su navegador no está en marcha.", drive: "Conducir a mano",
     drive_hint:
-      "Mantenga pulsado un botón, W A S D o una flecha. El robot para cuando lo suelta, deja la página o se corta " +
-      "la conexión. La barra espaciadora lo para y lo retiene.",
+      "Mantenga pulsado un botón, W A S D, una flecha o la palanca de una pantalla táctil. El robot para cuando la " +
+      "suelta, deja la página o se corta la conexión. La barra espaciadora lo para y lo retiene.",
     drive_on: "Tomar los controles", drive_off: "Soltar los controles", drive_speed: "Velocidad",
     forward: "Adelante", backward: "Atrás", turn_left: "Girar a la izquierda", turn_right: "Girar a la derecha",
     drive_idle: "Nadie conduce.", drive_stands: "Parado.",

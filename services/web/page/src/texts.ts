@@ -2,6 +2,7 @@
 import { activity_texts, controls_texts } from "./header_texts";
 import { draw_texts } from "./draw_texts";
 import { area, counted, degrees, duration, length, Maybe, percent, point, speed } from "./format";
+import { alarm_texts, mission_texts, report_texts } from "./shift_texts";
 import { spanish } from "./spanish";
 import { stored_language } from "./language";
 import { time_texts } from "./time_texts";
@@ -180,14 +181,9 @@ export const english = {
     fictitious: "Fictitious node: end of the view",
   },
 
-  missions: {
-    title: "Missions",
-    none: "No mission is saved yet. Choose goals, then save them here for another day.",
-    name: "Name of the mission",
-    save: "Save these goals",
-    goals: (n: number) => counted(n, "goal", "goals"),
-    remove: (name: string) => `Remove the mission ${name}`,
-  },
+  alarms: alarm_texts,
+  missions: mission_texts,
+  report: report_texts,
   send: {
     heading: "Where to?",
     hint: "Tap the map, or choose a name.",
@@ -212,7 +208,6 @@ export const english = {
     append: "Add to the list",
     clear: "Clear",
     remove: (name: string) => `Remove ${name}`,
-    earlier: (name: string) => `Move ${name} one up`,
     list: "Goals in a row",
     list_length: (meters: Maybe, seconds: Maybe) =>
       `Together ${length(meters)}, about ${duration(seconds)}`,
@@ -245,8 +240,8 @@ export const english = {
     no_navigator: "The robot cannot be sent: its navigator is not running.",
     drive: "Drive by hand",
     drive_hint:
-      "Hold a button, W A S D or an arrow key. The robot stops when you let go, when you leave the " +
-      "page or when the connection drops. Space stops and holds it.",
+      "Hold a button, W A S D, an arrow key or the stick of a touch screen. The robot stops when you let go, " +
+      "when you leave the page or when the connection drops. Space stops and holds it.",
     drive_on: "Take the controls",
     drive_off: "Let go of the controls",
     drive_speed: "Speed",

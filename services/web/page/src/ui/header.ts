@@ -6,6 +6,7 @@ import { Rights } from "../rights";
 import { is_map_alone, silenceTickMs, robot_state } from "../robot_state";
 import { Stopping } from "../stopping";
 import { texts } from "../texts";
+import { AlarmBanner } from "./alarm_banner";
 import { ControlsBanner } from "./controls_banner";
 import { button, h, set_attribute, set_text, show } from "./dom";
 import { HeldBanner } from "./held_banner";
@@ -33,10 +34,13 @@ export class Header {
   private readonly held: HeldBanner;
   private readonly resume: ResumeBanner;
   private readonly controls: ControlsBanner;
+  private readonly alarms: AlarmBanner;
   private readonly token = h("div", { class: "banner fair", role: "alert", hidden: true });
 
   /** Called by Stop in addition to its order. */
   on_stop: () => void = () => undefined;
+  /** The operator wants to see all alarms. */
+  on_show_alarms: () => void = () => undefined;
 
   constructor(
     private readonly channels: Channels,
@@ -68,18 +72,21 @@ export class Header {
     this.held = new HeldBanner(channels, rights, api, notices, () => this.stopping.forget());
     this.controls = new ControlsBanner(channels, rights, api, notices);
     this.resume = new ResumeBanner(channels, rights, api, notices);
+    this.alarms = new AlarmBanner(channels, rights, api, notices, () => this.on_show_alarms());
     this.banners = h(
       "div",
       { class: "banners" },
       this.offline,
       this.stop_sent,
       this.held.element,
+      this.alarms.element,
       this.resume.element,
       this.controls.element,
       this.token,
     );
     channels.on_value(["pose", "scan", "base", "drive", "goals", "navigator", "controls"], update);
     channels.on_table("services", update);
+    channels.on_table("alarms", update);
     rights.on_change(update);
     setInterval(update, silenceTickMs);
     listen_for_stop_key(() => this.stop_now());
@@ -116,6 +123,7 @@ export class Header {
     set_text(this.stop_sent, unconfirmed ?? "");
     show(this.stop_sent, unconfirmed !== null);
     this.held.update();
+    this.alarms.update();
     this.resume.update();
     this.controls.update();
   }

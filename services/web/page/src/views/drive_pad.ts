@@ -4,6 +4,7 @@ import * as format from "../format";
 import { reason } from "../reasons";
 import { texts } from "../texts";
 import { button, h, icon, IconName, set_text, show } from "../ui/dom";
+import { DriveStick } from "./drive_stick";
 
 const periodMs = 100;
 const lateMs = 300; // an order or a key press older than this is ignored
@@ -32,9 +33,14 @@ function is_late(event: Event): boolean {
 
 export class DrivePad {
   readonly element: HTMLElement;
-  // Held pointers and keys, each with its direction.
+  // Held pointers and keys, each with its direction, and the stick.
   private readonly held = new Set<string>();
   private readonly pad: HTMLElement;
+  private readonly stick = new DriveStick(
+    () => this.hold("stick"),
+    () => this.let_go("stick"),
+    (event) => !is_late(event),
+  );
   private readonly state = h("p", { class: "quiet", role: "status" });
   private readonly toggle: HTMLButtonElement;
   private readonly speed: HTMLInputElement;
@@ -60,11 +66,16 @@ export class DrivePad {
     });
     this.pad = h(
       "div",
-      { class: "drive-pad", hidden: true },
-      this.direction("forward", "up"),
-      this.direction("turn_left", "left"),
-      this.direction("turn_right", "right"),
-      this.direction("backward", "down"),
+      { class: "drive-hands", hidden: true },
+      h(
+        "div",
+        { class: "drive-pad" },
+        this.direction("forward", "up"),
+        this.direction("turn_left", "left"),
+        this.direction("turn_right", "right"),
+        this.direction("backward", "down"),
+      ),
+      this.stick.element,
     );
     this.element = h(
       "div",
@@ -173,6 +184,7 @@ export class DrivePad {
 
   private release(): void {
     this.held.clear();
+    this.stick.reset();
     if (this.timer === 0) return;
     window.clearInterval(this.timer);
     this.timer = 0;
@@ -192,9 +204,11 @@ export class DrivePad {
   private send(): void {
     const wants = (direction: Direction) =>
       [...this.held].some((name) => name.startsWith(`${direction}:`)) ? 1 : 0;
-    const speed = Number(this.speed.value) * (wants("forward") - wants("backward"));
+    const within = (share: number) => Math.max(-1, Math.min(1, share));
+    const { ahead, left } = this.stick.order;
+    const speed = Number(this.speed.value) * within(ahead + wants("forward") - wants("backward"));
     // Also when driving backwards, a key to the left turns the robot's front to the left.
-    const turn = turnRadps * (wants("turn_left") - wants("turn_right"));
+    const turn = turnRadps * within(left + wants("turn_left") - wants("turn_right"));
     this.app.connection.drive(speed, turn);
   }
 

@@ -10,16 +10,18 @@ const words = texts.missions;
 interface Mission {
   name: string;
   choices: Choice[];
+  rounds?: number; // missing: once
 }
 
 function is_mission(value: unknown): value is Mission {
-  const { name, choices } = (value ?? {}) as Partial<Mission>;
+  const { name, choices, rounds } = (value ?? {}) as Partial<Mission>;
   const is_choice = (choice: Partial<Choice> | null) =>
     typeof choice?.goal === "object" &&
     typeof choice.text === "string" &&
     Number.isFinite(choice.x_m) &&
     Number.isFinite(choice.y_m);
-  return typeof name === "string" && Array.isArray(choices) && choices.every(is_choice);
+  const of_rounds = rounds === undefined || Number.isInteger(rounds);
+  return of_rounds && typeof name === "string" && Array.isArray(choices) && choices.every(is_choice);
 }
 
 function stored(): Mission[] {
@@ -39,10 +41,11 @@ export class Missions {
   private readonly save_button = button(words.save, () => this.save());
   private readonly form: HTMLElement;
 
-  /** choices: the present list; on_load: shows the goals of a mission as the present list. */
+  /** choices, rounds: of the present list; on_load: shows a mission as the present list. */
   constructor(
     private readonly choices: () => readonly Choice[],
-    private readonly on_load: (choices: Choice[]) => void,
+    private readonly rounds: () => number,
+    private readonly on_load: (choices: Choice[], rounds: number) => void,
   ) {
     this.form = h("div", {}, field(words.name, this.name), this.save_button);
     this.element = folded(words.title, false, this.none, this.list, this.form);
@@ -57,10 +60,11 @@ export class Missions {
     fill(this.list, ...missions.map((mission) => this.entry(mission)));
   }
 
-  private entry({ name, choices }: Mission): HTMLElement {
-    const load = button(name, () => this.on_load(choices), { class: "button small" });
+  private entry({ name, choices, rounds = 1 }: Mission): HTMLElement {
+    const load = button(name, () => this.on_load(choices, rounds), { class: "button small" });
     const facts = h("span", { class: "quiet" });
-    set_text(facts, ` ${words.goals(choices.length)} `);
+    const often = rounds === 1 ? "" : `, ${words.rounds(rounds)}`;
+    set_text(facts, ` ${words.goals(choices.length)}${often} `);
     const remove = button("×", () => this.keep(stored().filter((other) => other.name !== name)), {
       class: "button small",
       "aria-label": words.remove(name),
@@ -72,7 +76,8 @@ export class Missions {
   private save(): void {
     const choices = [...this.choices()];
     const name = this.name.value.trim() || choices.map((choice) => choice.text).join(", ").slice(0, 64);
-    this.keep([...stored().filter((other) => other.name !== name), { name, choices }]);
+    const mission = { name, choices, rounds: this.rounds() };
+    this.keep([...stored().filter((other) => other.name !== name), mission]);
     this.name.value = "";
   }
 

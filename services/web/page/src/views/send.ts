@@ -9,9 +9,10 @@ import { button, field, fill, h, set_text, show } from "../ui/dom";
 import { KeyedList } from "../ui/list";
 import { once_a_frame } from "../ui/schedule";
 import { folded, section } from "../ui/section";
-import { Choice, chosen_list } from "./chosen_list";
+import { Choice, chosen_list, moved } from "./chosen_list";
 import { DrivePad } from "./drive_pad";
 import { Missions } from "./missions";
+import { rounds_field, with_stays } from "./rounds";
 import { Underway } from "./underway";
 
 const words = texts.send;
@@ -26,12 +27,14 @@ export class SendView implements ViewPart {
   private choices: Choice[] = [];
   private readonly missions = new Missions(
     () => this.choices,
-    (choices) => this.take(choices),
+    () => this.rounds,
+    (choices, rounds) => this.take(choices, rounds),
   );
   private readonly names: KeyedList<Destination>;
   private readonly no_names = h("p", { class: "quiet" });
   private readonly filter: HTMLInputElement;
   private readonly note = h("p", { class: "note" });
+  private rounds = 1; // of the list; 0: until it is cancelled
   private adding = false;
   private visible = false;
   private replan = 0; // timer
@@ -162,6 +165,7 @@ export class SendView implements ViewPart {
     if (this.choices.length === 0) return;
     const goals = this.choices.map((choice) => choice.goal);
     const body = goals.length === 1 ? goals[0] : { goals };
+    if (goals.length === 1) this.rounds = 1;
     let answer: Preview;
     try {
       answer = await this.app.api.post<Preview>("preview", body);
@@ -191,7 +195,7 @@ export class SendView implements ViewPart {
       ? words.planning
       : answer.found
         ? several
-          ? words.list_length(answer.length_m, answer.time_s)
+          ? this.list_text(answer)
           : words.route(answer.length_m, answer.time_s, answer.min_clearance_m)
         : this.why_not(answer);
     const ready = answer?.found === true;
@@ -204,8 +208,9 @@ export class SendView implements ViewPart {
     fill(
       this.card,
       h("h3", {}, title),
-      several ? chosen_list(this.choices, (i) => this.drop(i), (i) => this.move_up(i)) : null,
+      several ? this.list() : null,
       h("p", { class: answer?.found === false ? "bad-text" : "", role: "status" }, text),
+      several ? rounds_field(this.rounds, (n) => this.show_time(n)) : null,
       ready ? this.heading_field() : null,
       near ? button(words.nearest, () => this.take_nearest(near.x_m, near.y_m)) : null,
       h(
@@ -261,21 +266,41 @@ export class SendView implements ViewPart {
     void this.preview();
   }
 
-  private move_up(index: number): void {
-    const choices = [...this.choices];
-    [choices[index - 1], choices[index]] = [choices[index], choices[index - 1]];
-    this.choices = choices;
-    void this.preview();
+  private list(): HTMLElement {
+    return chosen_list(
+      this.choices,
+      (index) => this.drop(index),
+      (index, steps) => {
+        this.choices = moved(this.choices, index, steps);
+        void this.preview();
+      },
+      () => this.show_time(),
+    );
+  }
+
+  private list_text({ length_m, time_s }: Preview): string {
+    return words.list_length(length_m, with_stays(this.choices, this.rounds, time_s));
+  }
+
+  // Only the text, because the card has the focus.
+  private show_time(rounds = this.rounds): void {
+    this.rounds = rounds;
+    const text = this.card.querySelector<HTMLElement>("p[role=status]");
+    const answer = this.last;
+    if (!text || !answer?.found) return;
+    set_text(text, this.list_text(answer));
   }
 
   // A room or place lies where the map has it now.
-  private take(choices: readonly Choice[]): void {
+  private take(choices: readonly Choice[], rounds: number): void {
     const now = destinations(this.app.channels);
     this.adding = false;
     this.choices = choices.map((choice) => {
       const entry = now.find((other) => "place" in choice.goal && other.name === choice.goal.place);
-      return entry ? { ...choice, x_m: entry.x_m, y_m: entry.y_m } : { ...choice };
+      const copy = { ...choice, goal: { ...choice.goal } };
+      return entry ? { ...copy, x_m: entry.x_m, y_m: entry.y_m } : copy;
     });
+    this.rounds = rounds;
     void this.preview();
   }
 
@@ -291,6 +316,7 @@ export class SendView implements ViewPart {
 
   private clear(): void {
     this.choices = [];
+    this.rounds = 1;
     this.adding = false;
     void this.preview();
   }
@@ -302,7 +328,8 @@ export class SendView implements ViewPart {
     const { channels } = this.app;
     const held = held_text(channels) !== null || hand_is_stopped(channels);
     const done = held ? texts.done.goal_held : on_the_way;
-    const order = this.app.api.post("goal", goals.length === 1 ? goals[0] : { goals });
+    const list = this.rounds === 1 ? { goals } : { goals, repeat: this.rounds };
+    const order = this.app.api.post("goal", goals.length === 1 ? goals[0] : list);
     if (await this.app.notices.report(order, done)) this.clear();
   }
 

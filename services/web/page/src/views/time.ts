@@ -7,6 +7,7 @@ import { KeyedList } from "../ui/list";
 import { section } from "../ui/section";
 import { FilmPlayer } from "./film_player";
 import { MapMerge } from "./map_merge";
+import { ReportPart } from "./report_part";
 import { Versions } from "./versions";
 
 const words = texts.time;
@@ -46,6 +47,7 @@ export class TimeView implements ViewPart {
       this.film.element,
       this.versions.element,
       this.merge.element,
+      new ReportPart(app).element,
       section(words.export, hint, this.picture_choice(), this.files.element),
     );
   }

@@ -9,6 +9,7 @@ import { h, set_text, show } from "../ui/dom";
 import { KeyedList } from "../ui/list";
 import { at_most_every } from "../ui/schedule";
 import { folded, section } from "../ui/section";
+import { AlarmList } from "./alarm_list";
 import { EventList } from "./event_list";
 import { LoopList } from "./loop_list";
 import { SearchPart } from "./search_part";
@@ -27,6 +28,7 @@ export class UnderstandView implements ViewPart {
   private readonly no_workers = h("p", { class: "quiet" }, words.no_workers);
   private readonly workers: KeyedList<Worker>;
   private readonly events: EventList;
+  private readonly alarms: AlarmList;
   private visible = false;
 
   constructor(private readonly app: App) {
@@ -45,10 +47,12 @@ export class UnderstandView implements ViewPart {
       (element, worker) => show_worker(element, bars.get(element), worker),
     );
     this.events = new EventList(app);
+    this.alarms = new AlarmList(app);
     this.element = h(
       "div",
       { class: "view" },
       section(words.why, this.reason, this.confidence.element),
+      folded(texts.alarms.title, true, this.alarms.element),
       folded(words.loops, true, this.loops.element),
       folded(words.search, true, this.search.element),
       folded(words.services, true, this.services.element),
@@ -57,7 +61,7 @@ export class UnderstandView implements ViewPart {
     );
     const update = at_most_every(periodMs, () => this.update());
     app.channels.on_value(["pose"], update);
-    for (const table of ["loops", "services", "workers", "events"] as const) {
+    for (const table of ["loops", "services", "workers", "events", "alarms"] as const) {
       app.channels.on_table(table, update);
     }
     app.rights.on_change(update);
@@ -69,6 +73,10 @@ export class UnderstandView implements ViewPart {
     this.search.set_visible(visible);
     if (visible) this.update();
     else this.loops.choose(null);
+  }
+
+  show_alarms(): void {
+    this.alarms.element.parentElement?.scrollIntoView({ block: "start" });
   }
 
   private update(): void {
@@ -90,6 +98,7 @@ export class UnderstandView implements ViewPart {
     show(this.no_workers, workers.length === 0);
     this.workers.show(workers);
     this.events.update();
+    this.alarms.update();
   }
 }
 

@@ -1,13 +1,14 @@
 // The robot's goal, its progress and obstacles; pause, resume, cancel.
 import { App } from "../app";
 import { Maybe } from "../format";
-import { has_foreign_goal, is_paused, navigator_text } from "../robot_state";
+import { has_foreign_goal, is_paused, navigator_text, rest_of_wait, silenceTickMs } from "../robot_state";
 import { texts } from "../texts";
 import { button, h, set_attribute, set_text, show } from "../ui/dom";
 import { once_a_frame } from "../ui/schedule";
 import { section } from "../ui/section";
 
 const words = texts.send;
+const of_missions = texts.missions;
 const nearM = 0.05; // a nearer point is reached
 type Order = "pause" | "resume" | "cancel";
 
@@ -47,6 +48,7 @@ export class Underway {
     app.channels.on_value(["navigator", "goals"], update);
     app.channels.on_table("rooms", update);
     app.rights.on_change(update);
+    setInterval(update, silenceTickMs);
     this.update();
   }
 
@@ -65,6 +67,8 @@ export class Underway {
     if (!rights.connected) return words.not_heard;
     if (goals?.exploring) return words.exploring;
     if (goals?.exploration?.ended && !goals.current) return words.explored;
+    const wait_s = rest_of_wait(channels);
+    if (goals?.current && wait_s > 0) return of_missions.stays(goals.current.text, wait_s);
     if (goals?.current) return words.to(goals.current.text);
     return has_foreign_goal(channels) ? words.foreign : words.idle;
   }
@@ -112,15 +116,19 @@ export class Underway {
     show(this.rest, text !== "");
     set_text(this.rest, text);
     const waiting = (goals?.waiting ?? []).map((entry) => entry.text);
-    show(this.waiting, waiting.length > 0);
-    set_text(this.waiting, waiting.length > 0 ? words.waiting(waiting.join(", ")) : "");
+    const round = goals?.round ? `${of_missions.round(goals.round.now, goals.round.of)}. ` : "";
+    const then = waiting.length > 0 ? words.waiting(waiting.join(", ")) : "";
+    show(this.waiting, round + then !== "");
+    set_text(this.waiting, round + then);
 
     // Also at a goal that was reached: the next one waits for a resume.
     const paused = is_paused(channels);
     const driving = moving && !arrived && navigator.reason !== "cancelled";
     const under_way = exploring || driving;
     show(this.buttons.pause, rights.can("pause") && driving && !paused);
-    show(this.buttons.resume, rights.can("resume") && moving && paused);
+    const stays = !paused && rest_of_wait(channels) > 0;
+    set_text(this.buttons.resume, stays ? of_missions.drive_on : words.resume);
+    show(this.buttons.resume, rights.can("resume") && moving && (paused || stays));
     show(this.buttons.cancel, rights.can("cancel") && (under_way || waiting.length > 0));
   }
 }
