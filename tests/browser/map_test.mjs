@@ -100,6 +100,9 @@ for (const scheme of ["light", "dark"]) {
     }
     await page.click("#tab-now");
     await page.getByRole("button", { name: "Layers" }).click();
+    await page.getByRole("button", { name: "Turn the map" }).click();
+    await all_seen("a turned map");
+    await page.screenshot({ path: join(kPictures, `zones-turned-${scheme}.png`) });
     for (const box of await page.locator(".layer-menu input").all()) await box.uncheck();
     await all_seen("a map without layers");
     assert.deepEqual(page.faults, []);

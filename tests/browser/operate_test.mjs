@@ -467,7 +467,7 @@ test("a goal gets the heading that is typed", async () => {
   await end(opened);
 });
 
-test("a distance is measured by two taps or a drag, and the pointer's coordinates show", async () => {
+test("a distance is measured by two taps or a drag, the pointer's coordinates show, and the map turns", async () => {
   const opened = await open();
   const { page } = opened;
   const map = await page.locator("#map").boundingBox();
@@ -497,6 +497,28 @@ test("a distance is measured by two taps or a drag, and the pointer's coordinate
   await assert_accessible(page, "a measured distance");
   await measure.click();
   assert.equal(await page.locator(".map-note").isVisible(), false);
+
+  // Turned by a quarter, the same way on the screen leads down the map's y axis; the fourth quarter is the first.
+  const turn = page.getByRole("button", { name: "Turn the map by 90°" });
+  const way = async () => {
+    await page.mouse.move(x, y);
+    const [x0, y0] = await shown();
+    await page.mouse.move(x + 100, y);
+    const [x1, y1] = await shown();
+    return [x1 - x0, y1 - y0];
+  };
+  for (const [right, up] of [[0, -meters], [-meters, 0], [0, meters], [meters, 0]]) {
+    await turn.click();
+    const [dx, dy] = await way();
+    assert.ok(Math.hypot(dx - right, dy - up) < 0.03 * meters, `${dx} ${dy}`);
+  }
+  await turn.click();
+  await page.reload();
+  await wait_for("the map is turned as before", async () => {
+    const [dx, dy] = await way().catch(() => [0, 0]);
+    return Math.hypot(dx, dy + meters) < 0.03 * meters;
+  });
+  for (let i = 0; i < 3; ++i) await turn.click();
   await page.mouse.click(x, y);
   await text(page, ".card h3", /Point/); // a tap chooses a goal again
   await end(opened);

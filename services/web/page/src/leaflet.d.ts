@@ -17,6 +17,7 @@ declare module "leaflet" {
     lat: number;
     lng: number;
   }
+  export function latLng(lat: number, lng: number): LatLng;
   export type LatLngTuple = [number, number];
   export interface LatLngBounds {
     isValid(): boolean;
@@ -75,7 +76,7 @@ declare module "leaflet" {
     containerPointToLatLng(at: Point): LatLng;
     latLngToContainerPoint(at: LatLng | LatLngTuple): Point;
     mouseEventToLatLng(event: MouseEvent): LatLng;
-    setView(center: LatLngTuple, zoom?: number, options?: { animate?: boolean }): this;
+    setView(center: LatLngTuple, zoom?: number, options?: { animate?: boolean; reset?: boolean }): this;
     panTo(center: LatLngTuple, options?: { animate?: boolean; duration?: number }): this;
     fitBounds(
       bounds: LatLngBounds,

@@ -82,7 +82,7 @@ export const spanish: Texts = {
   },
   controls: {
     zoom_in: "Acercar", zoom_out: "Alejar", fit: "Mostrar todo el mapa (F)", follow: "Seguir al robot (R)",
-    layers: "Capas del mapa", measure: "Medir una distancia", measuring: "Arrastre, o toque dos puntos.",
+    layers: "Capas del mapa", turn: "Girar el mapa 90°", measure: "Medir una distancia", measuring: "Arrastre, o toque dos puntos.",
     measured: (meters) => length(meters), theme: "Oscuro o claro",
   },
   layers: {

@@ -87,6 +87,7 @@ export const english = {
     fit: "Show the whole map (F)",
     follow: "Follow the robot (R)",
     layers: "Layers of the map",
+    turn: "Turn the map by 90°",
     measure: "Measure a distance",
     measuring: "Drag, or tap two points.",
     measured: (meters: number) => length(meters),

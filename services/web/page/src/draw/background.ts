@@ -1,6 +1,7 @@
 // The picture of a plan behind the drawing, placed by two points of known distance. It stays in the
 // page.
 import { View } from "../map/map_canvas";
+import { rotation, to_pixels } from "../map/to_pixels";
 import { distance, heading, Point } from "./geometry";
 
 /** Placement of a picture: its upper left corner, and the size of its pixels. */
@@ -59,8 +60,8 @@ export class Background {
     const { x_m, y_m, metres_per_pixel, angle_rad } = this.placement;
     context.save();
     context.globalAlpha = this.opacity;
-    context.translate(view.scale * x_m + view.offset_x, view.offset_y - view.scale * y_m);
-    context.rotate(-angle_rad);
+    context.translate(...to_pixels(view, x_m, y_m));
+    context.rotate(rotation(view, angle_rad));
     context.scale(view.scale * metres_per_pixel, view.scale * metres_per_pixel);
     context.drawImage(this.picture, 0, 0);
     context.restore();

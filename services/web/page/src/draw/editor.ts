@@ -43,6 +43,8 @@ export interface EditorHooks {
   asked(tool: OtherTool, drawn: Finished): void;
   /** The point in the middle of the map. */
   middle(): MapPointer;
+  /** A step on the screen, to the right and up, in the map frame. */
+  on_map(right: number, up: number): [number, number];
 }
 
 interface Drag {
@@ -203,7 +205,7 @@ export class Editor implements MapTool, Overlay {
     const at = this.cursor ?? this.snapped(middle);
     if (steps[key]) {
       const step_m = this.settings.grid_m || keyStepM;
-      const [dx, dy] = steps[key];
+      const [dx, dy] = this.hooks.on_map(...steps[key]);
       this.cursor = { x: at.x + step_m * dx, y: at.y + step_m * dy, to: "grid" };
       this.sketch.move(this.cursor);
     } else if (key === "Enter") {

@@ -5,7 +5,7 @@ import { middle_of } from "../draw/geometry";
 import { Rule } from "../protocol";
 import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";
-import { to_pixels } from "./to_pixels";
+import { rotation, to_pixels } from "./to_pixels";
 
 const hatchPx = 11;
 const noGoShade = 0.35;
@@ -170,7 +170,7 @@ export function draw_arrow(
 ): void {
   context.save();
   context.translate(...to_pixels(view, at.x, at.y));
-  context.rotate(-angle);
+  context.rotate(rotation(view, angle));
   context.beginPath();
   context.moveTo(0, 0);
   context.lineTo(arrowPx, 0);

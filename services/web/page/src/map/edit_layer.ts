@@ -7,7 +7,7 @@ import * as format from "../format";
 import { Palette } from "../ui/theme";
 import { draw_arrow, trace_line } from "./drawing_layer";
 import { View } from "./map_canvas";
-import { to_pixels } from "./to_pixels";
+import { pixel_x, pixel_y, to_pixels } from "./to_pixels";
 
 const labelFont = "600 13px system-ui, sans-serif";
 const fewestGridPx = 9;
@@ -28,14 +28,12 @@ export function draw_grid(
   if (!step || (view.max_x - view.min_x) / step > mostGridLines) return;
   context.beginPath();
   for (let x = step * Math.ceil(view.min_x / step); x <= view.max_x; x += step) {
-    const [px] = to_pixels(view, x, 0);
-    context.moveTo(px, 0);
-    context.lineTo(px, view.height);
+    context.moveTo(...to_pixels(view, x, view.min_y));
+    context.lineTo(...to_pixels(view, x, view.max_y));
   }
   for (let y = step * Math.ceil(view.min_y / step); y <= view.max_y; y += step) {
-    const [, py] = to_pixels(view, 0, y);
-    context.moveTo(0, py);
-    context.lineTo(view.width, py);
+    context.moveTo(...to_pixels(view, view.min_x, y));
+    context.lineTo(...to_pixels(view, view.max_x, y));
   }
   context.strokeStyle = palette.grid;
   context.lineWidth = 1;
@@ -158,8 +156,11 @@ function draw_lengths(
     const at = { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 };
     if (closed) {
       // Beside vertical sides, so that the inside stays free for the name.
-      const upright = Math.abs(b.y - a.y) / meters;
-      at.x += (Math.sign(at.x - middle.x) * upright * besidePx) / view.scale;
+      const upright = Math.abs(pixel_y(view, b.x, b.y) - pixel_y(view, a.x, a.y)) / (meters * view.scale);
+      const side = Math.sign(pixel_x(view, at.x, at.y) - pixel_x(view, middle.x, middle.y));
+      const shift = (side * upright * besidePx) / view.scale;
+      at.x += shift * view.cos;
+      at.y -= shift * view.sin;
     }
     draw_text(context, view, at, format.length(meters), palette);
   }

@@ -5,6 +5,7 @@ import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";
 import { compose } from "./match_layer";
 import { draw_body, draw_points } from "./robot_layer";
+import { draw_picture, to_pixels } from "./to_pixels";
 
 const finestM = 0.1; // side of a cell
 const mostCells = 4e6;
@@ -84,15 +85,9 @@ export class Film {
     const stop = this.stop_at(time_s);
     this.paint(stop, palette);
     const { min_x, max_y } = this.box();
-    const size = view.scale * this.resolution_m;
+    const [width, height] = [this.resolution_m * this.columns, this.resolution_m * this.rows];
     context.imageSmoothingEnabled = false;
-    context.drawImage(
-      this.picture,
-      view.scale * min_x + view.offset_x,
-      view.offset_y - view.scale * max_y,
-      size * this.columns,
-      size * this.rows,
-    );
+    draw_picture(context, view, this.picture, { x: min_x, y: max_y, width, height });
     context.imageSmoothingEnabled = true;
     const pose = this.pose_at(time_s);
     this.draw_trail(context, view, stop, pose, palette);
@@ -229,8 +224,7 @@ export class Film {
     context.beginPath();
     let pen_down = false;
     const go_to = (at: Pose2) => {
-      const x = view.scale * at.x_m + view.offset_x;
-      const y = view.offset_y - view.scale * at.y_m;
+      const [x, y] = to_pixels(view, at.x_m, at.y_m);
       if (pen_down) context.lineTo(x, y);
       else context.moveTo(x, y);
       pen_down = true;

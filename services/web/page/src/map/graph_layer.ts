@@ -3,6 +3,7 @@
 import { NodeKind } from "../protocol";
 import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";
+import { pixel_x, pixel_y, to_pixels } from "./to_pixels";
 
 export interface GraphNode {
   id: number;
@@ -90,8 +91,7 @@ export class GraphLayer {
   private draw_nodes(context: CanvasRenderingContext2D, view: View, palette: Palette): void {
     const size = Math.max(2.5, Math.min(6, view.scale / 8));
     for (const node of this.nodes.values()) {
-      const x = view.scale * node.x + view.offset_x;
-      const y = view.offset_y - view.scale * node.y;
+      const [x, y] = to_pixels(view, node.x, node.y);
       if (x < -10 || y < -10 || x > view.width + 10 || y > view.height + 10) continue;
       draw_node(context, node.kind, x, y, size, palette);
     }
@@ -103,8 +103,8 @@ function trace(context: CanvasRenderingContext2D, view: View, points: Float32Arr
   let last_x = 0;
   let last_y = 0;
   for (let i = 0; i <= last; i += 2) {
-    const x = view.scale * points[i] + view.offset_x;
-    const y = view.offset_y - view.scale * points[i + 1];
+    const x = pixel_x(view, points[i], points[i + 1]);
+    const y = pixel_y(view, points[i], points[i + 1]);
     if (i === 0) {
       context.moveTo(x, y);
     } else {

@@ -1,15 +1,18 @@
 // A canvas on the map that is redrawn only when the view leaves it or the zoom changes: during a
 // drag of the map, the browser shifts the drawn picture, whatever its content.
 import * as L from "leaflet";
+import { Turn } from "./turn";
 
 /**
- * Conversion from metres of the map frame to pixels of a canvas: X = scale x + offset_x, Y =
- * offset_y - scale y.
+ * Conversion from metres of the map frame to pixels of a canvas, see to_pixels().
  */
 export interface View {
   scale: number; // pixels per metre
   offset_x: number;
   offset_y: number;
+  turn_rad: number; // of the map, counter-clockwise: a multiple of 90 degrees
+  cos: number;
+  sin: number;
   width: number; // pixels
   height: number;
   // The visible part, metres.
@@ -25,7 +28,7 @@ export class MapCanvas {
   private readonly canvas = document.createElement("canvas");
   private readonly context: CanvasRenderingContext2D;
   private top_left: L.LatLng = { lat: 0, lng: 0 };
-  private bottom_right: L.LatLng = { lat: 0, lng: 0 };
+  private painted = { min_x: 0, max_x: 0, min_y: 0, max_y: 0 };
   private zoom = Number.NaN;
   private frame = 0;
   private zooming = false; // animated: the picture is scaled until the end
@@ -33,6 +36,7 @@ export class MapCanvas {
   /** padding: margin of the canvas beyond the view on each side, as a share of the view. */
   constructor(
     private readonly map: L.Map,
+    private readonly turn: Turn,
     z_index: number,
     private readonly padding: number,
     private readonly draw: Draw,
@@ -73,10 +77,10 @@ export class MapCanvas {
     const low = bounds.getSouthWest();
     const high = bounds.getNorthEast();
     const inside =
-      low.lng >= this.top_left.lng &&
-      high.lng <= this.bottom_right.lng &&
-      low.lat >= this.bottom_right.lat &&
-      high.lat <= this.top_left.lat;
+      low.lng >= this.painted.min_x &&
+      high.lng <= this.painted.max_x &&
+      low.lat >= this.painted.min_y &&
+      high.lat <= this.painted.max_y;
     if (!inside) this.redraw();
   }
 
@@ -90,19 +94,25 @@ export class MapCanvas {
     this.zoom = this.map.getZoom();
     const origin = this.map.getPixelOrigin().add(corner);
     const scale = 2 ** this.zoom;
+    const { turn } = this;
+    const [x0, y0] = turn.back(origin.x / scale, -origin.y / scale); // upper left
+    const [x1, y1] = turn.back((origin.x + width) / scale, -(origin.y + height) / scale);
     const view: View = {
       scale,
       offset_x: -origin.x,
       offset_y: -origin.y,
+      turn_rad: turn.angle_rad,
+      cos: turn.cos,
+      sin: turn.sin,
       width,
       height,
-      min_x: origin.x / scale,
-      max_x: (origin.x + width) / scale,
-      min_y: -(origin.y + height) / scale,
-      max_y: -origin.y / scale,
+      min_x: Math.min(x0, x1),
+      max_x: Math.max(x0, x1),
+      min_y: Math.min(y0, y1),
+      max_y: Math.max(y0, y1),
     };
-    this.top_left = { lat: view.max_y, lng: view.min_x };
-    this.bottom_right = { lat: view.min_y, lng: view.max_x };
+    this.top_left = { lat: y0, lng: x0 };
+    this.painted = view;
 
     const ratio = Math.min(window.devicePixelRatio || 1, 2);
     const columns = Math.round(width * ratio);

@@ -9,7 +9,9 @@ import { MapPointer, MapTool, ToolListener } from "./map_tool";
 import { MeasureTool } from "./measure_tool";
 import { PoseTool } from "./pose_tool";
 import { PoseMark } from "./robot_layer";
+import { Turn } from "./turn";
 
+const turnKey = "topogeo-turn";
 const measureAbove = "measure";
 const firstZoom = 4; // 16 pixels per metre
 const largestFitZoom = 6;
@@ -18,6 +20,7 @@ export class MapView {
   readonly scene: MapScene;
   readonly stage: HTMLElement; // around the map, holds notes on it
   private readonly map: L.Map;
+  private readonly turn = new Turn();
   private readonly still: MapCanvas;
   private readonly moving: MapCanvas;
   private readonly scale_bar: HTMLElement;
@@ -43,8 +46,9 @@ export class MapView {
   ) {
     this.scale_bar = scale_bar;
     this.stage = scale_bar.parentElement ?? container;
+    this.turn.quarter = Number(localStorage.getItem(turnKey) ?? 0) || 0;
     this.map = L.map(container, {
-      crs: L.CRS.Simple,
+      crs: this.turn.crs,
       center: [0, 0],
       zoom: firstZoom,
       minZoom: -5,
@@ -62,8 +66,8 @@ export class MapView {
       () => this.on_still_change(),
       () => this.on_moving_change(),
     );
-    this.still = new MapCanvas(this.map, 1, 0.25, (c, view) => this.scene.draw_still(c, view));
-    this.moving = new MapCanvas(this.map, 2, 0.1, (c, view) => this.scene.draw_moving(c, view));
+    this.still = new MapCanvas(this.map, this.turn, 1, 0.25, (c, view) => this.scene.draw_still(c, view));
+    this.moving = new MapCanvas(this.map, this.turn, 2, 0.1, (c, view) => this.scene.draw_moving(c, view));
     this.map.on("click", (event) => {
       if (this.tools.active) return;
       this.on_tap(event.latlng.lng, event.latlng.lat, 2 ** this.map.getZoom());
@@ -106,6 +110,21 @@ export class MapView {
   zoom_out(): void {
     this.moved = true;
     this.map.zoomOut();
+  }
+
+  /** Turns the map by a quarter, counter-clockwise. This browser keeps it. */
+  turn_on(): void {
+    const { lat, lng } = this.map.getCenter();
+    this.turn.quarter += 1;
+    localStorage.setItem(turnKey, String(this.turn.quarter));
+    this.map.setView([lat, lng], this.map.getZoom(), { reset: true });
+    this.fitted = "";
+    this.on_still_change();
+  }
+
+  /** A step on the screen (to the right, up) in the map frame. */
+  on_map(right: number, up: number): [number, number] {
+    return this.turn.back(right, up);
   }
 
   /** Shows the whole known floor, also while it grows. */

@@ -3,6 +3,7 @@ import { LocalMap, Loop, Pose2 } from "../protocol";
 import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";
 import { draw_body, draw_local_map, draw_points, ellipse_of } from "./robot_layer";
+import { rotation, to_pixels } from "./to_pixels";
 
 const nearM = 0.1; // between points of both maps on one wall
 
@@ -105,7 +106,7 @@ function draw_prediction(
   const { x_m, y_m, theta_rad } = predicted;
   draw_points(context, view, later.points_m, x_m, y_m, theta_rad, palette.label);
   context.globalAlpha = 1;
-  const [x, y] = [view.scale * x_m + view.offset_x, view.offset_y - view.scale * y_m];
+  const [x, y] = to_pixels(view, x_m, y_m);
   context.strokeStyle = palette.label;
   context.lineWidth = 1.5;
   context.setLineDash([5, 4]);
@@ -113,13 +114,13 @@ function draw_prediction(
   if (ellipse) {
     const [a, b] = [2 * ellipse[0] * view.scale, 2 * ellipse[1] * view.scale];
     context.beginPath();
-    const turn = -(ellipse[2] + T_map_earlier.theta_rad);
+    const turn = rotation(view, ellipse[2] + T_map_earlier.theta_rad);
     context.ellipse(x, y, Math.max(1, a), Math.max(1, b), turn, 0, 2 * Math.PI);
     context.stroke();
   }
   context.beginPath();
   context.moveTo(x, y);
-  context.lineTo(view.scale * matched.x_m + view.offset_x, view.offset_y - view.scale * matched.y_m);
+  context.lineTo(...to_pixels(view, matched.x_m, matched.y_m));
   context.stroke();
   context.setLineDash([]);
 }

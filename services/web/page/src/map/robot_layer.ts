@@ -2,7 +2,7 @@
 import { LocalMap, Pose, Scan } from "../protocol";
 import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";
-import { to_pixels } from "./to_pixels";
+import { rotation, to_pixels } from "./to_pixels";
 
 const bodyRadiusM = 0.27;
 const smallestBodyPx = 9;
@@ -43,7 +43,7 @@ export function draw_robot(
   if (ellipse) {
     context.beginPath();
     const [a, b] = [sigmas * ellipse[0] * view.scale, sigmas * ellipse[1] * view.scale];
-    context.ellipse(x, y, Math.max(1, a), Math.max(1, b), -ellipse[2], 0, 2 * Math.PI);
+    context.ellipse(x, y, Math.max(1, a), Math.max(1, b), rotation(view, ellipse[2]), 0, 2 * Math.PI);
     context.globalAlpha = 0.22;
     context.fillStyle = color;
     context.fill();
@@ -69,7 +69,7 @@ export function draw_body(
   const radius = Math.max(smallestBodyPx, bodyRadiusM * view.scale);
   context.save();
   context.translate(x, y);
-  context.rotate(-at.theta);
+  context.rotate(rotation(view, at.theta));
   context.beginPath();
   if (footprint_m.length > 2 && bodyRadiusM * view.scale >= smallestBodyPx) {
     for (const [ahead, left] of footprint_m) context.lineTo(ahead * view.scale, -left * view.scale);
@@ -161,9 +161,10 @@ export function draw_heading(
   palette: Palette,
 ): void {
   const [x, y] = to_pixels(view, x_m, y_m);
+  const angle = theta + view.turn_rad;
   const at = (along: number, left: number): [number, number] => [
-    x + along * Math.cos(theta) - left * Math.sin(theta),
-    y - along * Math.sin(theta) - left * Math.cos(theta),
+    x + along * Math.cos(angle) - left * Math.sin(angle),
+    y - along * Math.sin(angle) - left * Math.cos(angle),
   ];
   context.beginPath();
   context.moveTo(...at(26, 0));

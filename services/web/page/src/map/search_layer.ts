@@ -5,7 +5,7 @@ import { Palette } from "../ui/theme";
 import { draw_label, Label } from "./label_layer";
 import { View } from "./map_canvas";
 import { ellipse_of } from "./robot_layer";
-import { to_pixels } from "./to_pixels";
+import { rotation, to_pixels } from "./to_pixels";
 
 const sigmas = 2;
 const arrowPx = 16;
@@ -31,7 +31,7 @@ function draw_match(
   const [x, y] = to_pixels(view, match.x_m, match.y_m);
   context.save();
   context.translate(x, y);
-  context.rotate(-match.base_theta_rad);
+  context.rotate(rotation(view, match.base_theta_rad));
   context.strokeStyle = palette.search;
   context.lineWidth = 1.5;
   context.setLineDash([6, 4]);
@@ -70,7 +70,8 @@ function draw_hypotheses(
     context.fill();
     context.beginPath();
     context.moveTo(x, y);
-    context.lineTo(x + arrowPx * Math.cos(theta), y - arrowPx * Math.sin(theta));
+    const angle = rotation(view, theta);
+    context.lineTo(x + arrowPx * Math.cos(angle), y + arrowPx * Math.sin(angle));
     context.stroke();
   }
   context.globalAlpha = 1;

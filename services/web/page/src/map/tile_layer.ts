@@ -13,6 +13,7 @@ import {
   to_map,
 } from "./grid_frame";
 import { View } from "./map_canvas";
+import { to_pixels } from "./to_pixels";
 
 const retryMs = 2000;
 const keptTiles = 220;
@@ -60,7 +61,8 @@ export class TileLayer {
     const complete = this.load(view, info, versions, level, extra);
     context.save();
     // Maps grid cells, rows upwards, to pixels.
-    const [cos, sin] = [Math.cos(info.theta_rad), Math.sin(info.theta_rad)];
+    const angle = info.theta_rad + view.turn_rad;
+    const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
     const cell = view.scale * info.resolution_m;
     const [x, y] = to_map(info, 0, 0);
     context.transform(
@@ -68,8 +70,7 @@ export class TileLayer {
       -cell * sin,
       -cell * sin,
       -cell * cos,
-      view.scale * x + view.offset_x,
-      view.offset_y - view.scale * y,
+      ...to_pixels(view, x, y),
     );
     context.imageSmoothingEnabled = cell * 2 ** level < 1;
     if (complete) {

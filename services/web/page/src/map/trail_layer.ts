@@ -2,6 +2,7 @@
 import { Loop, Tables } from "../protocol";
 import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";
+import { to_pixels } from "./to_pixels";
 
 const chunkStops = 32;
 
@@ -47,8 +48,7 @@ export class TrailLayer {
           pen_down = false;
           continue;
         }
-        const x = view.scale * stop[0] + view.offset_x;
-        const y = view.offset_y - view.scale * stop[1];
+        const [x, y] = to_pixels(view, stop[0], stop[1]);
         if (pen_down) context.lineTo(x, y);
         else context.moveTo(x, y);
         pen_down = true;
@@ -85,13 +85,7 @@ export class TrailLayer {
       const stop = this.stop(number);
       if (!stop) continue;
       context.beginPath();
-      context.arc(
-        view.scale * stop[0] + view.offset_x,
-        view.offset_y - view.scale * stop[1],
-        7,
-        0,
-        2 * Math.PI,
-      );
+      context.arc(...to_pixels(view, stop[0], stop[1]), 7, 0, 2 * Math.PI);
       context.fillStyle = palette.loop;
       context.fill();
       context.strokeStyle = palette.halo;
@@ -104,7 +98,7 @@ export class TrailLayer {
   private trace_loop(context: CanvasRenderingContext2D, view: View, loop: Loop): void {
     const [from, to] = [this.stop(loop.earlier), this.stop(loop.later)];
     if (!from || !to) return;
-    context.moveTo(view.scale * from[0] + view.offset_x, view.offset_y - view.scale * from[1]);
-    context.lineTo(view.scale * to[0] + view.offset_x, view.offset_y - view.scale * to[1]);
+    context.moveTo(...to_pixels(view, from[0], from[1]));
+    context.lineTo(...to_pixels(view, to[0], to[1]));
   }
 }

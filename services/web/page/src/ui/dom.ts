@@ -64,6 +64,7 @@ export function field(label: string, input: HTMLElement, wide = ""): HTMLElement
 const icons = {
   fit: "M4 9V4h5M20 9V4h-5M4 15v5h5M20 15v5h-5",
   follow: "M12 3v3M12 18v3M3 12h3M18 12h3M12 7a5 5 0 1 0 0 10 5 5 0 0 0 0-10z",
+  turn: "M4 12a8 8 0 1 0 3-6.2M7 2v4h4",
   measure: "M3 15 15 3l6 6L9 21zM7 11l2 2M10 8l2 2M13 5l2 2",
   layers: "M12 3 3 8l9 5 9-5-9-5zM3 12l9 5 9-5M3 16l9 5 9-5",
   plus: "M12 5v14M5 12h14",

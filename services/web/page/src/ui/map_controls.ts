@@ -63,6 +63,7 @@ export function map_controls(map: MapView): HTMLElement {
       { class: "control-group" },
       control(words.fit, "fit", () => map.fit()),
       follow,
+      control(words.turn, "turn", () => map.turn_on()),
       measure,
       layers,
     ),

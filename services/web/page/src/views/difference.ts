@@ -2,6 +2,7 @@
 import { beside_page } from "../address";
 import * as format from "../format";
 import { MapScene } from "../map/map_scene";
+import { draw_picture } from "../map/to_pixels";
 import { Comparison } from "../protocol";
 import { texts } from "../texts";
 import { Facts } from "../ui/bar";
@@ -27,13 +28,7 @@ export async function show_difference(scene: MapScene, made: Comparison): Promis
   const [width, height] = [made.columns * made.resolution_m, made.rows * made.resolution_m];
   scene.above.set(layerAbove, (context, view) => {
     context.imageSmoothingEnabled = false;
-    context.drawImage(
-      picture,
-      view.scale * made.x_m + view.offset_x,
-      view.offset_y - view.scale * (made.y_m + height),
-      view.scale * width,
-      view.scale * height,
-    );
+    draw_picture(context, view, picture, { x: made.x_m, y: made.y_m + height, width, height });
     context.imageSmoothingEnabled = true;
   });
   scene.refresh();

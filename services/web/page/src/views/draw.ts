@@ -47,6 +47,7 @@ export class DrawView implements ViewPart {
       drawn: (item) => this.say_drawn(item),
       asked: (tool, drawn) => void this.on_asked(tool, drawn),
       middle: () => app.map.middle(),
+      on_map: (right, up) => app.map.on_map(right, up),
     });
     const choose = (tool: ToolName) => this.choose(tool);
     const redraw_all = () => app.map.scene.refresh();
