@@ -38,7 +38,7 @@ export const report_texts = {
   hint: "One page to print or to send: map, distance, time, goals, alarms and events.",
   make: "Save the report",
   making: "Making the report …",
-  made_at: (when: string) => `Made at ${when}`,
+  made_at: (when: string) => `Made on ${when}`,
   from_to: "From, to",
   driven: "Driven",
   distance: (meters: Maybe, seconds: Maybe) => `${length(meters)} in ${duration(seconds)} without the pauses`,
