@@ -17,7 +17,7 @@ constexpr int kTurns = 24;                   // headings of a base that turns on
 constexpr int kBends = 48;                   // and of one that drives arcs; less than 64
 constexpr double kCell_m = 0.1;              // of positions that count as one
 constexpr double kEager = 1.3;               // weight of the estimate
-constexpr std::size_t kMostPoses = 200'000;  // a second or two, and 30 MB
+constexpr std::size_t kMostPoses = 500'000;  // some seconds, and 80 MB
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 /// Length of the shortest path of the centre from every cell to the goal, metres.
