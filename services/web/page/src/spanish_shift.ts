@@ -5,7 +5,7 @@ import type { Texts } from "./texts";
 export const spanish_alarm_texts: Texts["alarms"] = {
   title: "Alarmas", none: "No ha habido alarmas.", acknowledge: "Confirmar",
   acknowledge_all: (n) => `Confirmar las ${n}`, acknowledge_one: (text) => `Confirmar: ${text}`,
-  show: (n) => (n === 1 ? "Ver la alarma" : `Ver las ${n} alarmas`),
+  all: (n) => `Las ${n}`, show: (n) => `Ver las ${n} alarmas`,
   repeated: (times, last) => `${times} veces, la última a las ${last}`,
   acknowledged: (who, when) => `Confirmada por ${who} a las ${when}`, done: "La alarma está confirmada.",
   sources: { base: "tracción", laser: "láser", navigator: "navegador", localizer: "localizador" },

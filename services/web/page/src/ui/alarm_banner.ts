@@ -5,7 +5,7 @@ import { Channels } from "../channels";
 import { clock } from "../format";
 import { Rights } from "../rights";
 import { texts } from "../texts";
-import { button, h, set_text, show } from "./dom";
+import { button, h, set_attribute, set_text, show } from "./dom";
 import { Notices } from "./notices";
 
 const words = texts.alarms;
@@ -38,7 +38,8 @@ export class AlarmBanner {
     if (pending.length === 0) return;
     const [, newest] = pending[0];
     set_text(this.words, `${clock(newest.time_s)} ${alarm_text(newest)}`);
-    set_text(this.all, words.show(pending.length));
+    set_text(this.all, words.all(pending.length));
+    set_attribute(this.all, "aria-label", words.show(pending.length));
     show(this.all, pending.length > 1);
     show(this.acknowledge, this.rights.can("alarms"));
   }
