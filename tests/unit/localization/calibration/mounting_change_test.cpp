@@ -18,7 +18,7 @@ using test::kRound_m;
 const Pose2 kAhead{0.15, 0.0, 0.0};
 const Pose2 kBack{-0.2, 0.0, std::numbers::pi};
 
-/// To and fro along a corridor, with a turn each two or three metres.
+/// A drive to and fro along a corridor, with a turn each two or three metres.
 const test::Points_m kWinding_m = {{1.3, 1.2}, {5.0, 1.2}, {3.0, 1.2},  {7.0, 1.2}, {5.0, 1.2},
                                    {9.0, 1.2}, {7.0, 1.2}, {11.0, 1.2}, {9.0, 1.2}, {13.0, 1.2}};
 
