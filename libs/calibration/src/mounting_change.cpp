@@ -52,6 +52,21 @@ bool agree(const Stretch& a, const Stretch& b) {
          std::fabs(geometry::wrap_angle(apart_rad)) < FoundMounting::kOtherHeading_rad;
 }
 
+/// Whether odometry turns between two stretches as the mounting seems to, in a motion over which
+/// the scans do not: then it is the heading of the odometry that begins anew.
+bool odometry_turns(std::span<const LaserMotion> motions, const Stretch& before,
+                    const Stretch& after) {
+  constexpr double kSameTurn_rad = 0.2;
+  const double change_rad =
+      after.mounting.T_robot_laser.theta_rad - before.mounting.T_robot_laser.theta_rad;
+  const std::int64_t last_ns = after.first_ns + (after.first_ns - before.first_ns);
+  return std::ranges::any_of(motions, [&](const LaserMotion& motion) {
+    if (motion.last_ns < before.first_ns || motion.first_ns > last_ns) return false;
+    const double apart_rad = motion.T_odometry.theta_rad - motion.T_laser.theta_rad;
+    return std::fabs(geometry::wrap_angle(apart_rad + change_rad)) < kSameTurn_rad;
+  });
+}
+
 }  // namespace
 
 std::optional<MountingChange> find_mounting_change(std::span<const LaserMotion> motions,
@@ -68,7 +83,7 @@ std::optional<MountingChange> find_mounting_change(std::span<const LaserMotion> 
     const Stretch& before = stretches[i - 1];
     const Stretch& after = stretches[i];
     if (agree(before, after) || !agree(stretches[i - 2], before)) continue;
-    if (!agree(after, stretches[i + 1])) continue;
+    if (!agree(after, stretches[i + 1]) || odometry_turns(seen, before, after)) continue;
     return MountingChange{before.mounting, after.mounting, after.first_ns};
   }
   return std::nullopt;

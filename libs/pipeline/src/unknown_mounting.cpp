@@ -131,6 +131,14 @@ std::string mirroring(const FoundMounting& found) {
 
 std::string other_heading(const FoundMounting& found, const geometry::Pose2& T_robot_laser) {
   if (found.upside_down || !is_turned(found, T_robot_laser) || !surely_fits(found)) return {};
+  // If the odometry has another heading than the robot, the stated mounting is turned about the
+  // robot's centre, whose path and map are the same by either.
+  constexpr double kSame_m = 0.1;
+  const geometry::Pose2 turned =
+      geometry::Pose2{0.0, 0.0, found.T_robot_laser.theta_rad - T_robot_laser.theta_rad} *
+      T_robot_laser;
+  const double apart_m = (turned.position_m() - found.T_robot_laser.position_m()).norm();
+  if (!found.position_known || apart_m <= kSame_m) return {};
   return fmt::format(
       "the laser is stated at {} deg, but the scans show it at {} deg ({} of {} motions "
       "fit): if they are right, expected --laser {}; if the stated mounting is, expected --laser "

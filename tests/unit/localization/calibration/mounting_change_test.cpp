@@ -61,6 +61,15 @@ TEST(MountingChangeTest, ALaserThatStaysDoesNotChange) {
   EXPECT_FALSE(find_mounting_change({}, {}));
 }
 
+TEST(MountingChangeTest, AHeadingOfOdometryThatBeginsAnewIsNoChange) {
+  std::vector<scan::Scan> scans = test::drive("floor", kRound_m, kAhead);
+  for (std::size_t i = scans.size() / 2; i < scans.size(); ++i) {
+    double& heading_rad = scans[i].T_odom_robot.theta_rad;
+    heading_rad = geometry::wrap_angle(heading_rad - 1.2);
+  }
+  EXPECT_FALSE(change_of(scans));
+}
+
 TEST(MountingChangeTest, OdometryThatIsWrongForAWhileIsNoChange) {
   std::vector<scan::Scan> scans = test::drive("floor", kRound_m, kAhead);
   // Stretches without a mounting that explains them decide for none.

@@ -43,8 +43,8 @@ std::string contradiction(const localization::FoundMounting& found,
 std::string mirroring(const localization::FoundMounting& found);
 
 /// Why such a log cannot be mapped as stated, with the flags that decide, if the scans fit the
-/// odometry only with another heading of the laser; otherwise empty. `found` is by scans that were
-/// read as stated. A laser beside the centre would otherwise swing about it the wrong way.
+/// odometry only with another heading of the laser, which puts it elsewhere by more than 0.1 m;
+/// otherwise empty. `found` is by scans that were read as stated.
 std::string other_heading(const localization::FoundMounting& found,
                           const geometry::Pose2& T_robot_laser);
 
