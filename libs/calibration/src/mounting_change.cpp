@@ -57,6 +57,7 @@ bool agree(const Stretch& a, const Stretch& b) {
 bool odometry_turns(std::span<const LaserMotion> motions, const Stretch& before,
                     const Stretch& after) {
   constexpr double kSameTurn_rad = 0.2;
+  if (before.mounting.upside_down != after.mounting.upside_down) return false;
   const double change_rad =
       after.mounting.T_robot_laser.theta_rad - before.mounting.T_robot_laser.theta_rad;
   const std::int64_t last_ns = after.first_ns + (after.first_ns - before.first_ns);
