@@ -30,7 +30,6 @@ class Judgement {
   }
   /// Right in its shape, but perhaps not in its size: the first reason of a map that is fair.
   void of_unknown_scale(std::string reason) {
-    unreliable_ = true;
     if (grade_ == kGood) grade_ = kFair;
     reasons_.insert(grade_ == kFair ? reasons_.begin() : reasons_.end(), std::move(reason));
   }

@@ -175,7 +175,7 @@ TEST(MapQuality, RangesOfAnotherScaleLookLikeOdometryOfAnotherScale) {
   EXPECT_EQ(judged(stretched(1.03, 1.03), 38).quality.grade, "good");
   EXPECT_EQ(judged(stretched(1.08, 1.0), 38).quality.grade, "good") << "a floor that slips";
   const storage::Report long_ranges = judged(stretched(1.08, 1.07), 38);
-  EXPECT_TRUE(is_unreliable(long_ranges));
+  EXPECT_FALSE(is_unreliable(long_ranges)) << "most robots with such a ratio have wrong wheels";
   EXPECT_EQ(long_ranges.quality.grade, "fair") << "another map may be better";
   EXPECT_THAT(quality_text(long_ranges), HasSubstr("longer by the scans than by the odometry"));
   EXPECT_THAT(long_ranges.quality.advice, HasSubstr("scan: {range_scale: 0.929}"));
