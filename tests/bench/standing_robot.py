@@ -85,7 +85,7 @@ def main():
                 pids = [run.pid, *children(run.pid)]
                 names = {pid: os.path.basename(os.readlink(f"/proc/{pid}/exe")) for pid in pids}
                 before, sent = sample(pids), datagrams()
-                time.sleep(options.seconds)
+                time.sleep(options.seconds)  # the time over which it measures
                 for line in table(names, before, sample(pids), datagrams() - sent, options.seconds):
                     print(line)
             finally:
