@@ -139,6 +139,12 @@ PlsSetup::Result PlsSetup::after_install(std::int64_t now_ns) {
 PlsSetup::Result PlsSetup::after_rate(std::int64_t now_ns) {
   const bool refused = exchange_.result() == SickExchange::Result::kRefused ||
                        (replied() && exchange_.mode_reply() != PlsModeReply::kDone);
+  if (refused && ++refused_rates_ < settings_.baud_switch_tries) {
+    // A late answer to a repeated request may have counted as that to the request for installation
+    // mode, which the sensor ignored while it gave it.
+    begin(line_.lms() ? Step::kRate : Step::kInstall, now_ns);
+    return Result::kGoesOn;
+  }
   if (refused) {
     return fall_back("the sensor refuses " + std::to_string(settings_.baud) + " baud", now_ns);
   }
@@ -159,6 +165,7 @@ PlsSetup::Result PlsSetup::after_prove(std::int64_t now_ns) {
   }
   line_.heard();
   retry_rate();
+  refused_rates_ = 0;
   fallbacks_ = 0;
   begin(Step::kStatus, now_ns);
   return Result::kGoesOn;
@@ -174,6 +181,7 @@ PlsSetup::Result PlsSetup::fall_back(const std::string& why, std::int64_t now_ns
   fallback_ = "runs at " + std::to_string(line_.settings().baud) + " baud: " + why;
   retry_at_ns_ = fallbacks_ < kMostRetries ? now_ns + (kFirstUse_ns << fallbacks_) : kNever;
   ++fallbacks_;
+  refused_rates_ = 0;
   begin(Step::kStatus, now_ns);
   return Result::kGoesOn;
 }

@@ -74,6 +74,19 @@ TEST_F(PlsSetupTest, RunsAtTheRateThatItHasWhenThePasswordIsRefused) {
   EXPECT_EQ(setup_.fallback(), "runs at 9600 baud: the password is refused");
 }
 
+// The request for installation mode was lost, and a late answer to another one counted for it.
+TEST_F(PlsSetupTest, AsksForInstallationModeAgainWhenTheRateIsRefused) {
+  setup_.start_stopped(0);
+  EXPECT_EQ(reply(), SetupResult::kGoesOn);  // installation mode
+  EXPECT_EQ(reply(PlsModeReply::kRefused), SetupResult::kGoesOn);
+  EXPECT_EQ(written(), pls_mode_command(PlsMode::kInstallation, "SICK_PLS"));
+  EXPECT_EQ(reply(), SetupResult::kGoesOn);
+  EXPECT_EQ(written(), pls_baud_command(500'000).value());
+  EXPECT_EQ(reply(PlsModeReply::kRefused), SetupResult::kGoesOn);
+  EXPECT_EQ(written(), sick_command(pls_command::kRequestStatus));
+  EXPECT_EQ(setup_.fallback(), "runs at 9600 baud: the sensor refuses 500000 baud");
+}
+
 TEST_F(PlsSetupTest, GivesTheRateUpWhenTheSensorDoesNotFollowTwice) {
   for (int i = 0; i < 2; ++i) {
     line_.set({9600, Parity::kEven});

@@ -88,6 +88,7 @@ class PlsSetup {
   std::int64_t settled_ns_ = 0;
   int failures_ = 0;
   int failed_switches_ = 0;
+  int refused_rates_ = 0;  // in a row
 };
 
 }  // namespace topogeo::devices
