@@ -40,7 +40,9 @@ void EventLog::alarm(Level level, const std::string& source, const std::string& 
 
 void EventLog::acknowledge(std::span<const std::uint64_t> alarms, const std::string& who) {
   for (const std::string& text : alarms_.acknowledge(support::wall_clock_ns(), alarms, who)) {
-    add(Level::kInfo, "operator", who + ": acknowledges the alarm " + text);
+    std::string event = who;
+    event.append(": acknowledges the alarm ").append(text);
+    add(Level::kInfo, "operator", event);
   }
 }
 

@@ -1,5 +1,6 @@
 // A base with a smallest turning radius: no part of the navigator commands a tighter turn.
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <vector>
 
@@ -175,7 +176,7 @@ TEST_F(Steered, ReportsThatItDoesNotGetBackToThePath) {
 TEST_F(Steered, StandsWhereOnlyAHeadingIsWanted) {
   PathFollower follower(config);
   follower.follow({}, 1.5);
-  for (int i = 0; i < 20; ++i) {
+  for (std::int64_t i = 0; i < 20; ++i) {
     EXPECT_EQ(follower.step({}, i * 50'000'000, 10.0).command, geometry::Velocity{});
     follower.commanded({}, i * 50'000'000);
   }

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "topogeo/matching/matcher.hpp"
+#include "topogeo/slam/graph_optimization.hpp"
 
 #include "localization/hand_scenes.hpp"
 #include "localization/simulated_maps.hpp"
