@@ -26,6 +26,7 @@ std::unique_ptr<LaserEmulator> emulate_pls(const LaserEmulatorSettings& settings
   pls.power_on.parity = model.line.parity;
   pls.protective_field_m = settings.protective_field_m;
   pls.warning_field_m = settings.warning_field_m;
+  pls.rate_in_any_mode = true;
   pls.seed = settings.seed;
   return std::make_unique<PlsEmulator>(
       pls,

@@ -233,7 +233,7 @@ PlsEmulator::Reply PlsEmulator::change_mode(std::span<const std::uint8_t> data) 
 
 PlsEmulator::Reply PlsEmulator::change_rate(std::uint32_t baud) {
   const bool lms = settings_.power_on.parity == devices::Parity::kNone;
-  const bool allowed = lms || mode_ == Mode::kInstallation;
+  const bool allowed = lms || settings_.rate_in_any_mode || mode_ == Mode::kInstallation;
   Reply reply{devices::pls_reply::kMode, {}, {}};
   reply.data.push_back(static_cast<std::uint8_t>(allowed ? devices::PlsModeReply::kDone
                                                          : devices::PlsModeReply::kRefused));

@@ -11,6 +11,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "topogeo/simulation/laser_emulator.hpp"
+
 #include "pls_on_line.hpp"
 #include "sick_streams.hpp"
 
@@ -355,6 +357,22 @@ TEST(PlsDriver, RepeatsACommandThatTheSensorHeardWrongly) {
   EXPECT_GE(status.counters.refusals, 3U) << "NAK";
   EXPECT_GE(status.counters.repeats, 3U);
   EXPECT_GE(status.counters.line.naks, 3U);
+}
+
+// The emulator of a simulation is behind a pseudo-terminal.
+TEST(PlsDriver, ChangesTheRateOfAnEmulatorThatItTakesForAnLms) {
+  simulation::LaserEmulatorSettings settings;
+  const auto emulator = simulation::make_laser_emulator(
+      settings, [](const simulation::BeamPattern& beams, std::int64_t) {
+        return std::vector<float>(beams.count, 2.0F);
+      });
+  const LineSettings host{9600, Parity::kEven};
+  emulator->receive(pls_baud_command(500'000).value(), host, 0);
+  emulator->tick(kSecond_ns);
+  static_cast<void>(emulator->take_output(host, kSecond_ns));
+  const LineSettings fast{500'000, Parity::kEven};
+  emulator->receive(pls_mode_command(PlsMode::kOnRequest), fast, kSecond_ns);
+  EXPECT_FALSE(emulator->take_output(fast, 2 * kSecond_ns).empty());
 }
 
 TEST(PlsDriver, StaysAtTheRateWhenTheSensorNeverTakesTheCommand) {
