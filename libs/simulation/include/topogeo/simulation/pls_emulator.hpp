@@ -38,8 +38,9 @@ struct PlsEmulatorSettings {
   /// protective field and about 15 m for a warning field (Thesis, B.3 and table B.3).
   double protective_field_m = 0.0;
   double warning_field_m = 0.0;
-  /// Obeys a change of its rate outside of installation mode, too, as an LMS does. A pseudo-terminal
-  /// hides the parity of the host, which may then find a PLS without parity and take it for an LMS.
+  /// Obeys a change of its rate outside of installation mode, too, as an LMS does. A
+  /// pseudo-terminal hides the parity of the host, which may then find a PLS without parity and
+  /// take it for an LMS.
   bool rate_in_any_mode = false;
   std::uint64_t seed = 1;  ///< of the places of faults
 };
