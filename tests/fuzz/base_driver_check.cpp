@@ -1,10 +1,8 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -13,6 +11,7 @@
 #include "topogeo/devices/create_protocol.hpp"
 #include "topogeo/devices/kobuki_protocol.hpp"
 
+#include "base_drive.hpp"
 #include "checks.hpp"
 
 namespace topogeo::fuzz {
@@ -20,8 +19,6 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-constexpr std::int64_t kBaseRead_ns = 20'000'000;
-constexpr std::size_t kBaseRead_bytes = 61;
 constexpr std::size_t kMostBaseOrders = 12;  // per read
 
 /// The reports that a decoder finds if it gets `part` bytes at a time.
@@ -103,30 +100,10 @@ std::size_t drive(const FuzzedBase& base, Bytes bytes) {
   devices::BaseSettings settings;
   settings.model = &devices::base_model(base.model);
   settings.line.baud = settings.model->baud;
-  const auto driver = devices::make_base_driver(settings);
-  std::int64_t now_ns = 0;
-  std::int64_t stamp_ns = std::numeric_limits<std::int64_t>::min();
-  std::size_t reports = 0;
-  driver->opened(now_ns);
-  for (std::size_t at = 0; at < bytes.size(); at += kBaseRead_bytes) {
-    now_ns += kBaseRead_ns;
-    driver->receive(bytes.subspan(at, std::min(kBaseRead_bytes, bytes.size() - at)), now_ns);
-    driver->tick(now_ns);
-    (void)driver->command(0.1, 0.1, now_ns + kBaseRead_ns, now_ns);
-    require(driver->due_ns() > now_ns, "a driver does not ask for the time that is");
-    const std::vector<devices::LineOrder> orders = driver->take_orders();
+  return drive_base(settings, bytes, [&](const std::vector<devices::LineOrder>& orders) {
     require(orders.size() <= kMostBaseOrders, "a driver does not flood the line");
     for (const devices::LineOrder& order : orders) base.check_order(order.bytes);
-    for (const devices::BaseOdometry& odometry : driver->take_odometry()) {
-      require(odometry.stamp_ns > stamp_ns, "stamps increase");
-      stamp_ns = odometry.stamp_ns;
-      ++reports;
-      const geometry::Pose2& pose = odometry.T_odom_robot;
-      require(std::isfinite(pose.x_m) && std::isfinite(pose.y_m) && std::isfinite(pose.theta_rad),
-              "the odometry is finite");
-    }
-  }
-  return reports;
+  });
 }
 
 }  // namespace

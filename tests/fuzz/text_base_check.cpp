@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,13 +9,12 @@
 #include "topogeo/devices/base_models.hpp"
 #include "topogeo/devices/text_base_protocol.hpp"
 
+#include "base_drive.hpp"
 #include "checks.hpp"
 
 namespace topogeo::fuzz {
 namespace {
 
-constexpr std::int64_t kTextRead_ns = 20'000'000;
-constexpr std::size_t kTextRead_bytes = 61;
 constexpr std::size_t kMostTextOrders = 5;  // per read
 
 std::vector<std::string> lines_in_parts(devices::TextBaseReader& reader,
@@ -74,28 +72,9 @@ void check_orders(const std::vector<devices::LineOrder>& orders,
 std::size_t drive(std::span<const std::uint8_t> bytes) {
   devices::BaseSettings settings;
   settings.model = &devices::base_model("microcontroller");
-  const auto driver = devices::make_base_driver(settings);
-  std::int64_t now_ns = 0;
-  std::int64_t stamp_ns = std::numeric_limits<std::int64_t>::min();
-  std::size_t reports = 0;
-  driver->opened(now_ns);
-  for (std::size_t at = 0; at < bytes.size(); at += kTextRead_bytes) {
-    now_ns += kTextRead_ns;
-    driver->receive(bytes.subspan(at, std::min(kTextRead_bytes, bytes.size() - at)), now_ns);
-    driver->tick(now_ns);
-    (void)driver->command(0.1, 0.1, now_ns + kTextRead_ns, now_ns);
-    require(driver->due_ns() > now_ns, "a driver does not ask for the time that is");
-    check_orders(driver->take_orders(), settings);
-    for (const devices::BaseOdometry& odometry : driver->take_odometry()) {
-      require(odometry.stamp_ns > stamp_ns, "stamps increase");
-      stamp_ns = odometry.stamp_ns;
-      ++reports;
-      const geometry::Pose2& pose = odometry.T_odom_robot;
-      require(std::isfinite(pose.x_m) && std::isfinite(pose.y_m) && std::isfinite(pose.theta_rad),
-              "the odometry is finite");
-    }
-  }
-  return reports;
+  return drive_base(settings, bytes, [&](const std::vector<devices::LineOrder>& orders) {
+    check_orders(orders, settings);
+  });
 }
 
 }  // namespace
