@@ -2,7 +2,6 @@
 #include "topogeo/devices/create_driver.hpp"
 
 #include <functional>
-#include <stdexcept>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -32,19 +31,8 @@ struct CreateOnLine : TwoWheelsOnLine<CreateDriver, simulation::CreateEmulator> 
 
 TEST(CreateDriver, DrivesASquareAndKnowsWhereItIs) {
   CreateOnLine base;
-  ASSERT_TRUE(base.start()) << base.driver.status().reason;
+  drive_a_square(base, 15.5);
   EXPECT_EQ(base.emulator.mode(), CreateMode::kSafe);
-  for (int side = 0; side < 4; ++side) {
-    base.drive(0.3, 0.0, 3 * kWheelsSecond_ns);
-    base.drive(0.0, 0.5, 3 * kWheelsSecond_ns);
-  }
-  base.drive(0.0, 0.0, 2 * kWheelsSecond_ns);
-  base.expect_pose(0.02);
-  EXPECT_LE(base.fastest_mps, 0.31);
-  EXPECT_TRUE(base.driver.stands());
-  EXPECT_NEAR(base.driver.status().battery_v, 15.5, 1e-9);
-  EXPECT_FALSE(base.driver.status().battery_low);
-  for (const std::uint64_t drops : base.driver.status().drops) EXPECT_EQ(drops, 0U);
 }
 
 TEST(CreateDriver, CountsWrapManyTimes) {
@@ -181,34 +169,12 @@ TEST(CreateDriver, ARobotOnItsDockWaitsWithoutAnEmergencyStop) {
 
 TEST(CreateDriver, ABumperStopsTheBaseAndLetsItBackOff) {
   CreateOnLine base;
-  ASSERT_TRUE(base.start());
-  base.drive(0.3, 0.0, kWheelsSecond_ns);
-  base.emulator.press_bumpers(1, base.line.now_ns());
-  base.drive(0.3, 0.0, 500 * kWheelsMs_ns);
-  EXPECT_EQ(base.speed_mps(), 0.0);
-  EXPECT_EQ(base.driver.status().state, BaseState::kBumped);
-  EXPECT_EQ(base.driver.status().bumpers, 3U) << "right and left";
-  base.pass(kWheelsSecond_ns);
-  base.drive(0.3, 0.0, 300 * kWheelsMs_ns);
-  EXPECT_FALSE(base.taken) << "not further into the obstacle";
-  base.pass(kWheelsSecond_ns);
-  base.drive(-0.2, 0.0, 500 * kWheelsMs_ns);
-  EXPECT_TRUE(base.taken);
+  back_off_from_a_bump(base, 3U);  // right and left
 }
 
 TEST(CreateDriver, ADeviceThatRunsOnFromAKilledProgramIsStoppedFirst) {
   CreateOnLine base;
-  ASSERT_TRUE(base.start());
-  base.drive(0.3, 0.0, kWheelsSecond_ns);
-  base.line.unplug();
-  base.pass(2 * kWheelsSecond_ns);
-  EXPECT_GT(base.speed_mps(), 0.2) << "it obeys its last speeds for ever";
-  base.line.plug_in();
-  base.pass(300 * kWheelsMs_ns);
-  EXPECT_EQ(base.speed_mps(), 0.0);
-  EXPECT_TRUE(base.driver.status().commands_taken);
-  EXPECT_EQ(base.driver.status().restarts, 0U);
-  base.expect_pose(0.02);
+  run_on_from_a_killed_program(base);
 }
 
 TEST(CreateDriver, StopBytesStopEvenBehindAnOrderThatWasCut) {
@@ -235,27 +201,15 @@ TEST(CreateDriver, ALowBatteryIsReported) {
 
 TEST(CreateDriver, ThePoseGoesOnWhenTheBaseRestarts) {
   CreateOnLine base;
-  ASSERT_TRUE(base.start());
-  base.drive(0.3, 0.0, 3 * kWheelsSecond_ns);
-  base.drive(0.0, 0.0, kWheelsSecond_ns);
-  base.emulator.switch_on(base.line.now_ns());
-  base.pass(4 * kWheelsSecond_ns);
-  ASSERT_TRUE(base.driver.status().commands_taken) << base.driver.status().reason;
+  restart_on_the_way(base, 4 * kWheelsSecond_ns);
   EXPECT_EQ(base.driver.status().restarts, 1U);
-  base.drive(0.3, 0.0, kWheelsSecond_ns);
-  base.drive(0.0, 0.0, kWheelsSecond_ns);
-  base.expect_pose(0.03);
 }
 
 TEST(CreateDriver, RefusesSettingsOutOfRange) {
-  for (const auto& change : std::vector<std::function<void(BaseSettings&)>>{
-           [](BaseSettings& s) { s.create.ticks_per_m = 0.0; },
-           [](BaseSettings& s) { s.create.track_m = 20.0; },
-           [](BaseSettings& s) { s.line.baud = 0; }}) {
-    BaseSettings settings = create_settings();
-    change(settings);
-    EXPECT_THROW(CreateDriver{settings}, std::invalid_argument);
-  }
+  expect_settings_refused<CreateDriver>(
+      create_settings(),
+      {[](BaseSettings& s) { s.create.ticks_per_m = 0.0; },
+       [](BaseSettings& s) { s.create.track_m = 20.0; }, [](BaseSettings& s) { s.line.baud = 0; }});
 }
 
 class CreateFaults : public testing::TestWithParam<TwoWheelFault<CreateOnLine>> {};

@@ -1,8 +1,6 @@
 // The driver of a Kobuki against its emulator.
 #include "topogeo/devices/kobuki_driver.hpp"
 
-#include <functional>
-#include <stdexcept>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -32,18 +30,7 @@ struct KobukiOnLine : TwoWheelsOnLine<KobukiDriver, simulation::KobukiEmulator> 
 
 TEST(KobukiDriver, DrivesASquareAndKnowsWhereItIs) {
   KobukiOnLine base;
-  ASSERT_TRUE(base.start()) << base.driver.status().reason;
-  for (int side = 0; side < 4; ++side) {
-    base.drive(0.3, 0.0, 3 * kWheelsSecond_ns);
-    base.drive(0.0, 0.5, 3 * kWheelsSecond_ns);
-  }
-  base.drive(0.0, 0.0, 2 * kWheelsSecond_ns);
-  base.expect_pose(0.02);
-  EXPECT_LE(base.fastest_mps, 0.31);
-  EXPECT_TRUE(base.driver.stands());
-  EXPECT_NEAR(base.driver.status().battery_v, 16.2, 1e-9);
-  EXPECT_FALSE(base.driver.status().battery_low);
-  for (const std::uint64_t drops : base.driver.status().drops) EXPECT_EQ(drops, 0U);
+  drive_a_square(base, 16.2);
 }
 
 TEST(KobukiDriver, CountsWrapManyTimes) {
@@ -92,12 +79,7 @@ TEST_P(KobukiSigns, HoldLikeAnEmergencyStopUntilAReset) {
   EXPECT_EQ(base.driver.status().state, BaseState::kEmergencyStop) << "the reason goes on";
   (base.emulator.*GetParam().set)(false);
   base.drive(0.3, 0.0, 2 * kWheelsSecond_ns);
-  EXPECT_EQ(base.speed_mps(), 0.0) << "a command alone moves nothing";
-  base.driver.reset_stop(base.line.now_ns());
-  base.pass(kWheelsSecond_ns);
-  EXPECT_EQ(base.speed_mps(), 0.0);
-  base.drive(0.3, 0.0, kWheelsSecond_ns);
-  EXPECT_GT(base.speed_mps(), 0.1);
+  expect_reset_before_motion(base);
 }
 
 const std::vector<KobukiSign> kKobukiSigns{
@@ -120,34 +102,12 @@ TEST(KobukiDriver, ARobotOnTheCableOfItsChargerWaits) {
 
 TEST(KobukiDriver, ABumperStopsTheBaseAndLetsItBackOff) {
   KobukiOnLine base;
-  ASSERT_TRUE(base.start());
-  base.drive(0.3, 0.0, kWheelsSecond_ns);
-  base.emulator.press_bumpers(1, base.line.now_ns());
-  base.drive(0.3, 0.0, 500 * kWheelsMs_ns);
-  EXPECT_EQ(base.speed_mps(), 0.0);
-  EXPECT_EQ(base.driver.status().state, BaseState::kBumped);
-  EXPECT_EQ(base.driver.status().bumpers, 2U) << "the central one";
-  base.pass(kWheelsSecond_ns);
-  base.drive(0.3, 0.0, 300 * kWheelsMs_ns);
-  EXPECT_FALSE(base.taken) << "not further into the obstacle";
-  base.pass(kWheelsSecond_ns);
-  base.drive(-0.2, 0.0, 500 * kWheelsMs_ns);
-  EXPECT_TRUE(base.taken);
+  back_off_from_a_bump(base, 2U);  // the central one
 }
 
 TEST(KobukiDriver, ABaseThatRunsOnFromAKilledProgramIsStoppedFirst) {
   KobukiOnLine base;
-  ASSERT_TRUE(base.start());
-  base.drive(0.3, 0.0, kWheelsSecond_ns);
-  base.line.unplug();
-  base.pass(2 * kWheelsSecond_ns);
-  EXPECT_GT(base.speed_mps(), 0.2) << "it obeys its last speeds";
-  base.line.plug_in();
-  base.pass(300 * kWheelsMs_ns);
-  EXPECT_EQ(base.speed_mps(), 0.0);
-  EXPECT_TRUE(base.driver.status().commands_taken);
-  EXPECT_EQ(base.driver.status().restarts, 0U);
-  base.expect_pose(0.02);
+  run_on_from_a_killed_program(base);
 }
 
 TEST(KobukiDriver, ALowBatteryIsReported) {
@@ -158,27 +118,15 @@ TEST(KobukiDriver, ALowBatteryIsReported) {
 
 TEST(KobukiDriver, ThePoseGoesOnWhenTheBaseRestarts) {
   KobukiOnLine base;
-  ASSERT_TRUE(base.start());
-  base.drive(0.3, 0.0, 3 * kWheelsSecond_ns);
-  base.drive(0.0, 0.0, kWheelsSecond_ns);
-  base.emulator.switch_on(base.line.now_ns());
-  base.pass(4 * kWheelsSecond_ns);
-  ASSERT_TRUE(base.driver.status().commands_taken) << base.driver.status().reason;
+  restart_on_the_way(base, 4 * kWheelsSecond_ns);
   EXPECT_EQ(base.driver.status().restarts, 1U);
-  base.drive(0.3, 0.0, kWheelsSecond_ns);
-  base.drive(0.0, 0.0, kWheelsSecond_ns);
-  base.expect_pose(0.03);
 }
 
 TEST(KobukiDriver, RefusesSettingsOutOfRange) {
-  for (const auto& change : std::vector<std::function<void(BaseSettings&)>>{
-           [](BaseSettings& s) { s.kobuki.ticks_per_m = 0.0; },
-           [](BaseSettings& s) { s.kobuki.track_m = 20.0; },
-           [](BaseSettings& s) { s.line.baud = 0; }}) {
-    BaseSettings settings = kobuki_settings();
-    change(settings);
-    EXPECT_THROW(KobukiDriver{settings}, std::invalid_argument);
-  }
+  expect_settings_refused<KobukiDriver>(
+      kobuki_settings(),
+      {[](BaseSettings& s) { s.kobuki.ticks_per_m = 0.0; },
+       [](BaseSettings& s) { s.kobuki.track_m = 20.0; }, [](BaseSettings& s) { s.line.baud = 0; }});
 }
 
 class KobukiFaults : public testing::TestWithParam<TwoWheelFault<KobukiOnLine>> {};

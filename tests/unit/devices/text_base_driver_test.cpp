@@ -1,7 +1,5 @@
 #include "topogeo/devices/text_base_driver.hpp"
 
-#include <functional>
-#include <stdexcept>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -31,18 +29,7 @@ struct TextBaseOnLine : TwoWheelsOnLine<TextBaseDriver, simulation::TextBaseEmul
 
 TEST(TextBaseDriver, DrivesASquareAndKnowsWhereItIs) {
   TextBaseOnLine base;
-  ASSERT_TRUE(base.start()) << base.driver.status().reason;
-  for (int side = 0; side < 4; ++side) {
-    base.drive(0.3, 0.0, 3 * kWheelsSecond_ns);
-    base.drive(0.0, 0.5, 3 * kWheelsSecond_ns);
-  }
-  base.drive(0.0, 0.0, 2 * kWheelsSecond_ns);
-  base.expect_pose(0.02);
-  EXPECT_LE(base.fastest_mps, 0.31);
-  EXPECT_TRUE(base.driver.stands());
-  EXPECT_NEAR(base.driver.status().battery_v, 12.3, 1e-9);
-  EXPECT_FALSE(base.driver.status().battery_low);
-  for (const std::uint64_t drops : base.driver.status().drops) EXPECT_EQ(drops, 0U);
+  drive_a_square(base, 12.3);
 }
 
 TEST(TextBaseDriver, ABaseThatMixesGetsTheSameMotion) {
@@ -83,28 +70,12 @@ TEST(TextBaseDriver, AnEmergencyStopHoldsUntilAReset) {
   EXPECT_EQ(base.driver.status().state, BaseState::kEmergencyStop);
   base.emulator.release_emergency_stop();
   base.drive(0.3, 0.0, kWheelsSecond_ns);
-  EXPECT_EQ(base.speed_mps(), 0.0) << "a command alone moves nothing";
-  base.driver.reset_stop(base.line.now_ns());
-  base.pass(kWheelsSecond_ns);
-  EXPECT_EQ(base.speed_mps(), 0.0);
-  base.drive(0.3, 0.0, kWheelsSecond_ns);
-  EXPECT_GT(base.speed_mps(), 0.1);
+  expect_reset_before_motion(base);
 }
 
 TEST(TextBaseDriver, ABumperStopsTheBaseAndLetsItBackOff) {
   TextBaseOnLine base;
-  ASSERT_TRUE(base.start());
-  base.drive(0.3, 0.0, kWheelsSecond_ns);
-  base.emulator.press_bumpers(1, base.line.now_ns());
-  base.drive(0.3, 0.0, 500 * kWheelsMs_ns);
-  EXPECT_EQ(base.speed_mps(), 0.0);
-  EXPECT_EQ(base.driver.status().state, BaseState::kBumped);
-  base.pass(kWheelsSecond_ns);
-  base.drive(0.3, 0.0, 300 * kWheelsMs_ns);
-  EXPECT_FALSE(base.taken) << "not further into the obstacle";
-  base.pass(kWheelsSecond_ns);
-  base.drive(-0.2, 0.0, 500 * kWheelsMs_ns);
-  EXPECT_TRUE(base.taken);
+  back_off_from_a_bump(base, 1U);
 }
 
 TEST(TextBaseDriver, ALowBatteryIsReported) {
@@ -116,15 +87,7 @@ TEST(TextBaseDriver, ALowBatteryIsReported) {
 
 TEST(TextBaseDriver, ThePoseGoesOnWhenTheBaseRestarts) {
   TextBaseOnLine base;
-  ASSERT_TRUE(base.start());
-  base.drive(0.3, 0.0, 3 * kWheelsSecond_ns);
-  base.drive(0.0, 0.0, kWheelsSecond_ns);
-  base.emulator.switch_on(base.line.now_ns());
-  base.pass(3 * kWheelsSecond_ns);
-  ASSERT_TRUE(base.driver.status().commands_taken) << base.driver.status().reason;
-  base.drive(0.3, 0.0, kWheelsSecond_ns);
-  base.drive(0.0, 0.0, kWheelsSecond_ns);
-  base.expect_pose(0.03);
+  restart_on_the_way(base, 3 * kWheelsSecond_ns);
 }
 
 TEST(TextBaseDriver, WhatWasDrivenUnheardIsInThePose) {
@@ -142,14 +105,10 @@ TEST(TextBaseDriver, WhatWasDrivenUnheardIsInThePose) {
 }
 
 TEST(TextBaseDriver, RefusesSettingsOutOfRange) {
-  for (const auto& change : std::vector<std::function<void(BaseSettings&)>>{
-           [](BaseSettings& s) { s.text.ticks_per_m = 0.0; },
-           [](BaseSettings& s) { s.text.track_m = 20.0; },
-           [](BaseSettings& s) { s.watchdog_s = 0.0; }}) {
-    BaseSettings settings = text_settings();
-    change(settings);
-    EXPECT_THROW(TextBaseDriver{settings}, std::invalid_argument);
-  }
+  expect_settings_refused<TextBaseDriver>(text_settings(),
+                                          {[](BaseSettings& s) { s.text.ticks_per_m = 0.0; },
+                                           [](BaseSettings& s) { s.text.track_m = 20.0; },
+                                           [](BaseSettings& s) { s.watchdog_s = 0.0; }});
 }
 
 class TextBaseFaults : public testing::TestWithParam<TwoWheelFault<TextBaseOnLine>> {};

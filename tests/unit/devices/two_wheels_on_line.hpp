@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -84,6 +85,93 @@ struct TwoWheelsOnLine {
   double fastest_mps = 0.0;
   bool taken = false;
 };
+
+/// Its last pose, speed, battery and drops are those of a base that drove as told.
+template <typename OnLine>
+void drive_a_square(OnLine& base, double battery_v) {
+  ASSERT_TRUE(base.start()) << base.driver.status().reason;
+  for (int side = 0; side < 4; ++side) {
+    base.drive(0.3, 0.0, 3 * kWheelsSecond_ns);
+    base.drive(0.0, 0.5, 3 * kWheelsSecond_ns);
+  }
+  base.drive(0.0, 0.0, 2 * kWheelsSecond_ns);
+  base.expect_pose(0.02);
+  EXPECT_LE(base.fastest_mps, 0.31);
+  EXPECT_TRUE(base.driver.stands());
+  EXPECT_NEAR(base.driver.status().battery_v, battery_v, 1e-9);
+  EXPECT_FALSE(base.driver.status().battery_low);
+  for (const std::uint64_t drops : base.driver.status().drops) EXPECT_EQ(drops, 0U);
+}
+
+/// A press straight ahead, which its `bumpers` show, stops the base: it may drive back but not on.
+template <typename OnLine>
+void back_off_from_a_bump(OnLine& base, unsigned bumpers) {
+  ASSERT_TRUE(base.start());
+  base.drive(0.3, 0.0, kWheelsSecond_ns);
+  base.emulator.press_bumpers(1, base.line.now_ns());
+  base.drive(0.3, 0.0, 500 * kWheelsMs_ns);
+  EXPECT_EQ(base.speed_mps(), 0.0);
+  EXPECT_EQ(base.driver.status().state, BaseState::kBumped);
+  EXPECT_EQ(base.driver.status().bumpers, bumpers);
+  base.pass(kWheelsSecond_ns);
+  base.drive(0.3, 0.0, 300 * kWheelsMs_ns);
+  EXPECT_FALSE(base.taken) << "not further into the obstacle";
+  base.pass(kWheelsSecond_ns);
+  base.drive(-0.2, 0.0, 500 * kWheelsMs_ns);
+  EXPECT_TRUE(base.taken);
+}
+
+/// Its power goes and comes back between two drives.
+template <typename OnLine>
+void restart_on_the_way(OnLine& base, std::int64_t back_after_ns) {
+  ASSERT_TRUE(base.start());
+  base.drive(0.3, 0.0, 3 * kWheelsSecond_ns);
+  base.drive(0.0, 0.0, kWheelsSecond_ns);
+  base.emulator.switch_on(base.line.now_ns());
+  base.pass(back_after_ns);
+  ASSERT_TRUE(base.driver.status().commands_taken) << base.driver.status().reason;
+  base.drive(0.3, 0.0, kWheelsSecond_ns);
+  base.drive(0.0, 0.0, kWheelsSecond_ns);
+  base.expect_pose(0.03);
+}
+
+/// A base without a watchdog, whose program was killed and started again.
+template <typename OnLine>
+void run_on_from_a_killed_program(OnLine& base) {
+  ASSERT_TRUE(base.start());
+  base.drive(0.3, 0.0, kWheelsSecond_ns);
+  base.line.unplug();
+  base.pass(2 * kWheelsSecond_ns);
+  EXPECT_GT(base.speed_mps(), 0.2) << "it obeys its last speeds for ever";
+  base.line.plug_in();
+  base.pass(300 * kWheelsMs_ns);
+  EXPECT_EQ(base.speed_mps(), 0.0);
+  EXPECT_TRUE(base.driver.status().commands_taken);
+  EXPECT_EQ(base.driver.status().restarts, 0U);
+  base.expect_pose(0.02);
+}
+
+/// A command alone moves nothing once the reason of an emergency stop has gone, only one after a
+/// reset does.
+template <typename OnLine>
+void expect_reset_before_motion(OnLine& base) {
+  EXPECT_EQ(base.speed_mps(), 0.0) << "a command alone moves nothing";
+  base.driver.reset_stop(base.line.now_ns());
+  base.pass(kWheelsSecond_ns);
+  EXPECT_EQ(base.speed_mps(), 0.0);
+  base.drive(0.3, 0.0, kWheelsSecond_ns);
+  EXPECT_GT(base.speed_mps(), 0.1);
+}
+
+template <typename Driver>
+void expect_settings_refused(const BaseSettings& good,
+                             const std::vector<std::function<void(BaseSettings&)>>& changes) {
+  for (const auto& change : changes) {
+    BaseSettings settings = good;
+    change(settings);
+    EXPECT_THROW(Driver{settings}, std::invalid_argument);
+  }
+}
 
 template <typename OnLine>
 struct TwoWheelFault {
