@@ -9,39 +9,37 @@
 namespace topogeo::simulation {
 namespace {
 
+/// The settings of a family for a line and a seed, otherwise the defaults.
+template <class FamilySettings>
+FamilySettings on_line(const BaseEmulatorSettings& settings) {
+  FamilySettings family;
+  family.line = {settings.baud, devices::Parity::kNone};
+  family.seed = settings.seed;
+  return family;
+}
+
 std::unique_ptr<BaseEmulator> emulate_rwi(const BaseEmulatorSettings& settings,
                                           std::int64_t now_ns) {
-  McpEmulatorSettings mcp;
-  mcp.line = {settings.baud, devices::Parity::kNone};
-  mcp.seed = settings.seed;
-  return std::make_unique<McpEmulator>(mcp, now_ns);
+  return std::make_unique<McpEmulator>(on_line<McpEmulatorSettings>(settings), now_ns);
 }
 
 std::unique_ptr<BaseEmulator> emulate_text(const BaseEmulatorSettings& settings,
                                            std::int64_t now_ns) {
   constexpr std::uint32_t kFastLine = 38'400;
   constexpr std::int64_t kSlowReports_ns = 100'000'000;
-  TextBaseEmulatorSettings text;
-  text.line = {settings.baud, devices::Parity::kNone};
+  auto text = on_line<TextBaseEmulatorSettings>(settings);
   if (settings.baud < kFastLine) text.report_ns = kSlowReports_ns;
-  text.seed = settings.seed;
   return std::make_unique<TextBaseEmulator>(text, now_ns);
 }
 
 std::unique_ptr<BaseEmulator> emulate_create(const BaseEmulatorSettings& settings,
                                              std::int64_t now_ns) {
-  CreateEmulatorSettings create;
-  create.line = {settings.baud, devices::Parity::kNone};
-  create.seed = settings.seed;
-  return std::make_unique<CreateEmulator>(create, now_ns);
+  return std::make_unique<CreateEmulator>(on_line<CreateEmulatorSettings>(settings), now_ns);
 }
 
 std::unique_ptr<BaseEmulator> emulate_kobuki(const BaseEmulatorSettings& settings,
                                              std::int64_t now_ns) {
-  KobukiEmulatorSettings kobuki;
-  kobuki.line = {settings.baud, devices::Parity::kNone};
-  kobuki.seed = settings.seed;
-  return std::make_unique<KobukiEmulator>(kobuki, now_ns);
+  return std::make_unique<KobukiEmulator>(on_line<KobukiEmulatorSettings>(settings), now_ns);
 }
 
 using MakeBaseEmulator = std::unique_ptr<BaseEmulator> (*)(const BaseEmulatorSettings&,

@@ -72,7 +72,7 @@ void KobukiEmulator::report(std::int64_t now_ns) {
     add(16, 16);
     frame = devices::kobuki_frame(payload);
   }
-  say(std::move(frame), now_ns);
+  say_report(std::move(frame), now_ns);
 }
 
 void KobukiEmulator::hang_wheels(bool hang) {

@@ -42,14 +42,19 @@ void TwoWheelEmulator::set_fault(BaseFault fault, bool on) {
 void TwoWheelEmulator::receive(std::span<const std::uint8_t> bytes,
                                const devices::LineSettings& host, std::int64_t now_ns) {
   tick(now_ns);
-  if (on_ && now_ns >= ready_ns_ && host == settings_.line) obey(bytes, now_ns);
+  if (has_started(now_ns) && host == settings_.line) obey(bytes, now_ns);
+}
+
+void TwoWheelEmulator::say_report(std::vector<std::uint8_t> message, std::int64_t now_ns) {
+  ++reports_;
+  say(std::move(message), now_ns);
 }
 
 void TwoWheelEmulator::say(std::vector<std::uint8_t> message, std::int64_t now_ns) {
-  ++reports_;
   if (silent_) return;
   if (corrupts_) {
-    message[random_.below(message.size())] ^= static_cast<std::uint8_t>(1U << random_.below(8));
+    message[random_.below(message.size())] ^=
+        static_cast<std::uint8_t>(1U << random_.below(settings_.corrupted_bits));
   }
   if (truncates_) message.resize(random_.below(message.size()));
   if (!message.empty()) output_.send(std::move(message), settings_.line, now_ns);
@@ -80,7 +85,7 @@ std::int64_t TwoWheelEmulator::ticks(std::size_t wheel) const {
 }
 
 geometry::Velocity TwoWheelEmulator::commanded_velocity() const {
-  if (!on_) return {};
+  if (!on_ || !motors_on()) return {};
   return {0.5 * (wheels_mps_[0] + wheels_mps_[1]),
           (wheels_mps_[1] - wheels_mps_[0]) / settings_.track_m};
 }
@@ -93,7 +98,8 @@ void TwoWheelEmulator::moved(double forward_m, double turn_rad, double time_s) {
   if (time_s > 0.0) turn_radps_ = turn_rad / time_s;
   const double most_mps = settings_.acceleration_mps2 * time_s;
   for (std::size_t i = 0; i < 2; ++i) {
-    wheels_mps_[i] += std::clamp(wanted_mps_[i] - wheels_mps_[i], -most_mps, most_mps);
+    const double wanted_mps = motors_on() ? wanted_mps_[i] : 0.0;
+    wheels_mps_[i] += std::clamp(wanted_mps - wheels_mps_[i], -most_mps, most_mps);
   }
 }
 

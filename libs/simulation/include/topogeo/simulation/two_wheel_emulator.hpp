@@ -23,6 +23,7 @@ struct TwoWheelEmulatorSettings {
   std::int64_t report_ns = 20'000'000;       ///< from report to report
   std::int64_t start_up_ns = 1'000'000'000;  ///< after power-on
   std::uint64_t seed = 1;                    ///< of the places of faults
+  unsigned corrupted_bits = 8;               ///< low bits of a byte that a fault may change
 };
 
 class TwoWheelEmulator : public BaseEmulator {
@@ -30,13 +31,13 @@ class TwoWheelEmulator : public BaseEmulator {
   // Interface of SerialDevice.
   void receive(std::span<const std::uint8_t> bytes, const devices::LineSettings& host,
                std::int64_t now_ns) final;
-  void tick(std::int64_t now_ns) final;
-  [[nodiscard]] std::int64_t due_ns() const final;
+  void tick(std::int64_t now_ns) override;
+  [[nodiscard]] std::int64_t due_ns() const override;
   [[nodiscard]] std::vector<std::uint8_t> take_output(const devices::LineSettings& host,
                                                       std::int64_t now_ns) final;
 
   // Interface of BaseEmulator.
-  void stand_still(std::int64_t duration_ns) final { next_ns_ += duration_ns; }
+  void stand_still(std::int64_t duration_ns) override { next_ns_ += duration_ns; }
   [[nodiscard]] geometry::Velocity commanded_velocity() const final;
   void moved(double forward_m, double turn_rad, double time_s) final;
   void take_joystick(const geometry::Velocity& /*velocity*/) final {}
@@ -57,7 +58,12 @@ class TwoWheelEmulator : public BaseEmulator {
   /// Its power went: all that it was told is lost.
   virtual void forget() = 0;
 
-  /// Sends a message, with the faults that are on.
+  /// Whether the motors have power; without it the wheels brake.
+  [[nodiscard]] virtual bool motors_on() const { return true; }
+
+  /// Sends a report, with the faults that are on.
+  void say_report(std::vector<std::uint8_t> message, std::int64_t now_ns);
+  /// The same for any other message.
   void say(std::vector<std::uint8_t> message, std::int64_t now_ns);
   /// The motors drive the wheels to these speeds; left and right.
   void want(const std::array<double, 2>& wheels_mps) { wanted_mps_ = wheels_mps; }
@@ -67,6 +73,7 @@ class TwoWheelEmulator : public BaseEmulator {
   [[nodiscard]] double heading_rad() const { return heading_rad_; }
   [[nodiscard]] double turn_radps() const { return turn_radps_; }
   [[nodiscard]] std::int64_t began_ns() const { return began_ns_; }
+  [[nodiscard]] bool has_started(std::int64_t now_ns) const { return on_ && now_ns >= ready_ns_; }
 
  private:
   TwoWheelEmulatorSettings settings_;
