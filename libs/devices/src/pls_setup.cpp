@@ -121,10 +121,14 @@ PlsSetup::Result PlsSetup::after_stop(std::int64_t now_ns) {
     return fall_back("the sensor does not switch to " + std::to_string(settings_.baud) + " baud",
                      now_ns);
   } else {
-    // An LMS changes its rate in any mode.
-    begin(line_.lms() ? Step::kRate : Step::kInstall, now_ns);
+    ask_for_rate(now_ns);
   }
   return Result::kGoesOn;
+}
+
+/// An LMS changes its rate in any mode.
+void PlsSetup::ask_for_rate(std::int64_t now_ns) {
+  begin(line_.lms() ? Step::kRate : Step::kInstall, now_ns);
 }
 
 PlsSetup::Result PlsSetup::after_install(std::int64_t now_ns) {
@@ -142,7 +146,7 @@ PlsSetup::Result PlsSetup::after_rate(std::int64_t now_ns) {
   if (refused && ++refused_rates_ < settings_.baud_switch_tries) {
     // A late answer to a repeated request may have counted as that to the request for installation
     // mode, which the sensor ignored while it gave it.
-    begin(line_.lms() ? Step::kRate : Step::kInstall, now_ns);
+    ask_for_rate(now_ns);
     return Result::kGoesOn;
   }
   if (refused) {

@@ -65,6 +65,7 @@ class PlsSetup {
   };
 
   void begin(Step step, std::int64_t now_ns);
+  void ask_for_rate(std::int64_t now_ns);
   [[nodiscard]] std::string name(Step step) const;
   [[nodiscard]] std::vector<std::uint8_t> command(Step step) const;
   [[nodiscard]] SickExchange::Limits limits(Step step) const;
