@@ -45,15 +45,20 @@ struct SearchedMotions {
   localization::FoundMounting mounting;
 };
 
-/// The motions of a log and their mounting; none without odometry. A delay of the scans that no
-/// flag states is reported, and goes to `topics`.
-SearchedMotions search_motions(const pipeline::Config& config, const std::filesystem::path& log,
-                               recording::TopicChoice& topics) {
-  recording::LogReader reader(log, config.log, topics);
+/// The motions of a log and their mounting; none without odometry.
+SearchedMotions searched(recording::LogReader& reader, const pipeline::Config& config) {
   if (!reader.has_odometry()) return {};
   SearchedMotions found;
   found.drive = pipeline::laser_motions([&reader] { return reader.next(); }, config);
   found.mounting = pipeline::find_mounting(found.drive);
+  return found;
+}
+
+/// The same. A delay of the scans that no flag states is reported, and goes to `topics`.
+SearchedMotions search_motions(const pipeline::Config& config, const std::filesystem::path& log,
+                               recording::TopicChoice& topics) {
+  recording::LogReader reader(log, config.log, topics);
+  SearchedMotions found = searched(reader, config);
   if (!recording::is_recording(log) || topics.scan_delay_s) return found;
   const auto delay = scan_delay(reader, found.drive, found.mounting.upside_down);
   if (!delay) return found;
@@ -106,9 +111,7 @@ localization::FoundMounting search_mounting(const pipeline::Config& config,
                                             const recording::TopicChoice& topics) {
   try {
     recording::LogReader reader(log, config.log, topics);
-    if (!reader.has_odometry()) return {};
-    return pipeline::find_mounting(
-        pipeline::laser_motions([&reader] { return reader.next(); }, config));
+    return searched(reader, config).mounting;
   } catch (const std::runtime_error& error) {
     throw service::BadInputError(error.what());
   }
