@@ -75,9 +75,8 @@ void HealthView::on_service(const msg::ServiceStatus& status, const SampleInfo& 
 void HealthView::note(Row& row, const msg::ServiceStatus& status) {
   const std::string service = text_of_message(status.service());
   if (row.service.empty() || row.state != status.state() || row.lost) {
-    const std::string message = text_of_message(status.message());
     const std::string text =
-        std::string(name_of(status.state())) + (message.empty() ? "" : ": " + message);
+        with_reason(name_of(status.state()), text_of_message(status.message()));
     if (status.state() == msg::kServiceFailed) {
       events_.alarm(Level::kError, service, text);
     } else {

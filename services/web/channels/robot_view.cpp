@@ -161,8 +161,7 @@ void RobotView::on_navigator(const msg::NavigatorStatus& status,
       const bool trouble = !wanted && (status.state() == msg::kNavigatorBlocked ||
                                        status.state() == msg::kNavigatorStopped ||
                                        status.state() == msg::kNavigatorRelocalizing);
-      const std::string text =
-          std::string(name_of(status.state())) + (message.empty() ? "" : ": " + message);
+      const std::string text = with_reason(name_of(status.state()), message);
       if (trouble && status.reason() == msg::kHaltBaseStuck) {
         events_.alarm(Level::kWarning, "navigator", text);
       } else {
@@ -217,8 +216,7 @@ void RobotView::on_base(const msg::BaseStatus& status) {
   const bool moved =
       base_state_ && (*base_state_ == msg::kBaseReady || *base_state_ == msg::kBaseMoving);
   if (base_state_ != status.state() && !(moves && moved)) {
-    const std::string text =
-        std::string(name_of(status.state())) + (reason.empty() ? "" : ": " + reason);
+    const std::string text = with_reason(name_of(status.state()), reason);
     if (is_alarming(status.state(), base_state_)) {
       events_.alarm(Level::kError, "base", text);
     } else {
@@ -242,8 +240,7 @@ void RobotView::on_laser(const msg::LaserStatus& status) {
   if (laser_state_ != status.state()) {
     const bool runs = status.state() == msg::kLaserRunning;
     const bool lost = status.state() == msg::kLaserFault || laser_state_ == msg::kLaserRunning;
-    const std::string text =
-        std::string(name_of(status.state())) + (reason.empty() ? "" : ": " + reason);
+    const std::string text = with_reason(name_of(status.state()), reason);
     if (!runs && lost) {
       events_.alarm(Level::kError, "laser", text);
     } else {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
@@ -38,6 +39,11 @@ inline Json seconds(std::int64_t stamp_ns) {
 template <class Text>
 std::string text_of_message(const Text& text) {
   return text.c_str();
+}
+
+/// "name", or "name: reason" where there is one.
+inline std::string with_reason(std::string_view name, const std::string& reason) {
+  return std::string(name) + (reason.empty() ? "" : ": " + reason);
 }
 
 /// Sets x_m, y_m and theta_rad.
