@@ -31,7 +31,7 @@ struct OutlineConfig {
   /// error of pose and follower.
   double margin_m = 0.08;
   double wished_m = 0.25;  ///< the same where there is room, metres
-  /// Of a base that cannot turn on the spot, metres; 0: it can.
+  /// Smallest turning radius of the base, metres; 0: it turns on the spot.
   double minimum_radius_m = 0.0;
 };
 
