@@ -10,6 +10,7 @@
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/navigation_conversions.hpp"
+#include "topogeo/support/host.hpp"
 #include "topogeo/support/log.hpp"
 
 namespace topogeo::navigator {
@@ -27,19 +28,6 @@ constexpr std::int64_t kStopTail_ns = 1'000'000'000;       // repeats zeros: one
 constexpr std::int64_t kStatusPeriod_ns = 200'000'000;     // as fast as a person reads it
 constexpr std::int64_t kBlockagesPeriod_ns = 200'000'000;  // planning takes some milliseconds
 
-std::int64_t nanoseconds(std::chrono::nanoseconds duration) {
-  return duration.count();
-}
-
-std::int64_t steady_now_ns() {
-  return nanoseconds(std::chrono::steady_clock::now().time_since_epoch());
-}
-
-/// Used until the first stamp of a sensor.
-std::int64_t host_offset_ns() {
-  return nanoseconds(std::chrono::system_clock::now().time_since_epoch()) - steady_now_ns();
-}
-
 /// Whether the navigator owns the base in this state, even at a standstill.
 bool holds_the_base(NavigatorState state) {
   return state == NavigatorState::kDriving || state == NavigatorState::kRelocalizing ||
@@ -56,10 +44,10 @@ bool differs(const navigation::NavigatorStatus& a, const navigation::NavigatorSt
 NavigatorService::NavigatorService(service::Service& service, const std::filesystem::path& memory,
                                    const std::filesystem::path& stop_memory)
     : service_(service),
-      clock_(host_offset_ns()),
+      clock_(support::wall_clock_ns() - support::monotonic_ns()),
       navigator_(service.setup().config.config.navigator),
       memory_(memory),
-      stop_(service, stop_memory, navigator_, steady_now_ns(), [this] { tick(); }),
+      stop_(service, stop_memory, navigator_, support::monotonic_ns(), [this] { tick(); }),
       live_map_(service),
       commands_(service.advertise<msg::MotionCommand>()),
       statuses_(service.advertise<msg::NavigatorStatus>()),
@@ -81,9 +69,9 @@ NavigatorService::NavigatorService(service::Service& service, const std::filesys
 }
 
 NavigatorService::~NavigatorService() {
-  if (!moving_ && steady_now_ns() > command_until_ns_) return;
+  if (!moving_ && support::monotonic_ns() > command_until_ns_) return;
   try {
-    send_command({}, clock_.now_ns(steady_now_ns()));
+    send_command({}, clock_.now_ns(support::monotonic_ns()));
     static_cast<void>(commands_.wait_for_acknowledgments(kLastCommand));
   } catch (const std::exception& error) {
     spdlog::error("the last command was not sent: {}", error.what());
@@ -149,7 +137,7 @@ bool NavigatorService::is_of_epoch(std::uint64_t epoch) {
   // a stranger.
   constexpr std::int64_t kLate_ns = 2'000'000'000;
   if (epoch == epoch_) return true;
-  const std::int64_t now_ns = steady_now_ns();
+  const std::int64_t now_ns = support::monotonic_ns();
   if (epoch == previous_epoch_ && now_ns - epoch_since_ns_ < kLate_ns) {
     service_.status().add_drops("odometry of before");
     return false;
@@ -166,7 +154,7 @@ bool NavigatorService::is_newer(Source source, std::int64_t stamp_ns) {
   constexpr std::int64_t kAhead_ns = 1'000'000'000;
   const bool sets_clock = source == Source::kScan || source == Source::kOdometry;
   if (!sets_clock) {
-    const std::int64_t now_ns = clock_.now_ns(steady_now_ns());
+    const std::int64_t now_ns = clock_.now_ns(support::monotonic_ns());
     if (stamp_ns > kAhead_ns && stamp_ns - kAhead_ns > now_ns) {
       service_.status().add_drops("from the future");
       return false;
@@ -183,11 +171,11 @@ bool NavigatorService::is_newer(Source source, std::int64_t stamp_ns) {
 }
 
 void NavigatorService::note_stamp(std::int64_t stamp_ns) {
-  clock_.observe(stamp_ns, steady_now_ns());
+  clock_.observe(stamp_ns, support::monotonic_ns());
 }
 
 void NavigatorService::note_arrival(navigation::TimedInput input, std::int64_t stamp_ns) {
-  navigator_.note_arrival(input, stamp_ns, clock_.now_ns(steady_now_ns()));
+  navigator_.note_arrival(input, stamp_ns, clock_.now_ns(support::monotonic_ns()));
 }
 
 void NavigatorService::on_scan(const msg::Scan& message) {
@@ -271,11 +259,11 @@ void NavigatorService::take_map() {
 }
 
 void NavigatorService::tick() {
-  const std::int64_t now_ns = clock_.now_ns(steady_now_ns());
+  const std::int64_t now_ns = clock_.now_ns(support::monotonic_ns());
   if (clock_.take_set_back()) {
     begin_again("time set back", "the sensors' stamps are older than before");
   }
-  stop_.check(steady_now_ns());
+  stop_.check(support::monotonic_ns());
   navigator_.set_machine({service_.cpu().is_short_now(), service_.cpu().timer_delay_s()});
   const geometry::Velocity velocity = navigator_.step(now_ns);
   command(velocity, now_ns);
@@ -330,7 +318,7 @@ void NavigatorService::stay_arrived(const navigation::NavigatorStatus& before) {
 }
 
 void NavigatorService::command(const geometry::Velocity& velocity, std::int64_t now_ns) {
-  const std::int64_t steady_ns = steady_now_ns();
+  const std::int64_t steady_ns = support::monotonic_ns();
   if (velocity != geometry::Velocity{} || holds_the_base(navigator_.status().state)) {
     command_until_ns_ = steady_ns + kStopTail_ns;
   }
@@ -354,7 +342,7 @@ void NavigatorService::send_command(const geometry::Velocity& velocity, std::int
 
 void NavigatorService::publish_status(std::int64_t now_ns) {
   const navigation::NavigatorStatus& status = navigator_.status();
-  const std::int64_t steady_ns = steady_now_ns();
+  const std::int64_t steady_ns = support::monotonic_ns();
   const std::string stop = status.reason == HaltReason::kBaseNotReady ? "" : stop_.reason();
   const bool changed = !published_ || differs(status, *published_) || stop != shown_stop_;
   if (!changed && steady_ns < status_due_ns_) return;
@@ -382,7 +370,7 @@ void NavigatorService::publish_status(std::int64_t now_ns) {
 
 void NavigatorService::publish_blockages(std::int64_t now_ns) {
   const navigation::BlockageReport& report = navigator_.blockages();
-  const std::int64_t steady_ns = steady_now_ns();
+  const std::int64_t steady_ns = support::monotonic_ns();
   if (published_blockages_ == report.version || steady_ns < blockages_due_ns_) return;
   blockages_due_ns_ = steady_ns + kBlockagesPeriod_ns;
   published_blockages_ = report.version;

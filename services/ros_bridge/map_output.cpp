@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "topogeo/support/host.hpp"
+
 #include "outputs.hpp"
 
 namespace topogeo::ros_bridge {
@@ -63,7 +65,7 @@ void MapOutput::publish_grid() {
     whole_is_old_ = true;
   }
   const auto period_ns = std::llround(ros_.settings().map_period_s * 1e9);
-  const bool due = whole_is_old_ && steady_now_ns() - whole_ns_ >= period_ns;
+  const bool due = whole_is_old_ && support::monotonic_ns() - whole_ns_ >= period_ns;
   // A new reader would get an outdated map, because earlier updates are not repeated for it.
   const bool newcomer = whole_is_old_ && grids_->matched() > readers_;
   readers_ = grids_->matched();
@@ -74,7 +76,7 @@ void MapOutput::publish_whole() {
   ros_.send(*grids_, mirror_.grid(ros_.settings().frames.map, ros_.now_ns()));
   ros_.service().status().add_to_counter("ros_maps_sent");
   whole_is_old_ = false;
-  whole_ns_ = steady_now_ns();
+  whole_ns_ = support::monotonic_ns();
 }
 
 void MapOutput::publish_graph() {

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "topogeo/messaging/plain_participant.hpp"
+#include "topogeo/support/host.hpp"
 #include "topogeo/support/log.hpp"
 
 namespace topogeo::ros_bridge {
@@ -29,7 +30,7 @@ RosSide::RosSide(service::Service& service, Settings settings, std::uint32_t dom
 void RosSide::say_once(const std::string& reason, const std::string& detail) {
   constexpr std::size_t kLongestDetail = 512;  // the names in it are as long as a peer chooses
   const std::string text = reason + (detail.empty() ? "" : ": " + detail.substr(0, kLongestDetail));
-  complaint_.add(text, steady_now_ns());
+  complaint_.add(text, support::monotonic_ns());
   if (said_.insert(reason).second) {
     spdlog::warn("{} (logged once, counted in the status)", text);
   }
@@ -48,11 +49,7 @@ void RosSide::set_complaints(const std::string& reason, std::uint64_t count,
 }
 
 std::string RosSide::recent_complaint() const {
-  return complaint_.text(steady_now_ns());
-}
-
-std::int64_t steady_now_ns() {
-  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return complaint_.text(support::monotonic_ns());
 }
 
 }  // namespace topogeo::ros_bridge

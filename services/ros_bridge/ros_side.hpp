@@ -97,7 +97,4 @@ class SoleWriter {
   std::int64_t last_ns_ = 0;
 };
 
-/// Nanoseconds of a steady clock.
-std::int64_t steady_now_ns();
-
 }  // namespace topogeo::ros_bridge

@@ -11,6 +11,7 @@
 #include "topogeo/ros_conversions/geometry.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/host.hpp"
 #include "topogeo/support/log.hpp"
 #include "topogeo/support/random.hpp"
 
@@ -85,7 +86,7 @@ SensorInput::~SensorInput() {
 }
 
 void SensorInput::on_odometry(const ros::Odometry& message, const messaging::SampleInfo& info) {
-  if (!odometry_writer_.accept(info.writer, steady_now_ns())) {
+  if (!odometry_writer_.accept(info.writer, support::monotonic_ns())) {
     ros_.complain("second publisher of odometry", ros_.settings().topics.odometry);
     return;
   }
@@ -143,7 +144,7 @@ void SensorInput::on_transforms(const ros::TFMessage& message, const messaging::
 void SensorInput::on_odometry_transform(const ros::TransformStamped& message,
                                         const messaging::SampleInfo& info) {
   if (ros_.settings().odometry_source != OdometrySource::kTransforms) return;
-  if (!odometry_writer_.accept(info.writer, steady_now_ns())) {
+  if (!odometry_writer_.accept(info.writer, support::monotonic_ns())) {
     ros_.complain("second publisher of odometry", "odom -> " + robot_frame_);
     return;
   }
@@ -170,11 +171,11 @@ void SensorInput::add(const geometry::OdometrySample& sample) {
     ros_.service().status().fault("send blocked", "odometry");
   }
   ros_.set_now(std::max(ros_.now_ns(), sample.stamp_ns));
-  release(steady_now_ns());
+  release(support::monotonic_ns());
 }
 
 void SensorInput::on_scan(const ros::LaserScan& message, const messaging::SampleInfo& info) {
-  const std::int64_t now_ns = steady_now_ns();
+  const std::int64_t now_ns = support::monotonic_ns();
   if (!scan_writer_.accept(info.writer, now_ns)) {
     ros_.complain("second publisher of scans", ros_.settings().topics.scan);
     return;
@@ -195,7 +196,7 @@ void SensorInput::release(std::int64_t now_ns) {
   if (intake_.due_ns() == std::numeric_limits<std::int64_t>::max()) return;
   release_timer_ = loop.call_after(
       std::chrono::nanoseconds(std::max<std::int64_t>(0, intake_.due_ns() - now_ns)),
-      [this] { release(steady_now_ns()); });
+      [this] { release(support::monotonic_ns()); });
 }
 
 bool SensorInput::is_from_scans() const {
@@ -236,7 +237,7 @@ void SensorInput::publish(const ScanIntake::Leaving& leaving) {
   }
   ++scans_sent_;
   last_scan_ns_ = scan.stamp_ns;
-  latency_ns_ = steady_now_ns() - leaving.arrival_ns;
+  latency_ns_ = support::monotonic_ns() - leaving.arrival_ns;
   ros_.set_now(std::max(ros_.now_ns(), scan.stamp_ns));
 }
 

@@ -26,7 +26,7 @@ constexpr std::uint64_t kVelocityFormat =
 }  // namespace
 
 VelocityBridge::VelocityBridge(RosSide& ros)
-    : ros_(ros), clock_(support::wall_clock_ns() - steady_now_ns()) {
+    : ros_(ros), clock_(support::wall_clock_ns() - support::monotonic_ns()) {
   ros.service().status().set_counter("velocities", 0.0);
   if (ros.settings().directions.velocity == Direction::kOut) give();
   if (ros.settings().directions.velocity == Direction::kIn) take();
@@ -88,7 +88,7 @@ void VelocityBridge::take() {
   const Settings& settings = ros_.settings();
   commands_ = ros_.service().advertise<msg::MotionCommand>();
   ros_.service().subscribe<msg::Odometry>([this](const msg::Odometry& odometry) {
-    clock_.observe(odometry.stamp_ns(), steady_now_ns());
+    clock_.observe(odometry.stamp_ns(), support::monotonic_ns());
   });
   if (settings.stamped_velocity) {
     ros_.subscribe<ros::TwistStamped>(
@@ -147,7 +147,7 @@ void VelocityBridge::remember(bool moving) {
 bool VelocityBridge::is_of_the_moment(const messaging::SampleInfo& info) {
   if (info.stamp_ns <= 0) return true;  // this implementation of DDS sends no time
   const auto age_ns =
-      ages_.age_ns(info.writer, info.stamp_ns, steady_now_ns(), support::wall_clock_ns());
+      ages_.age_ns(info.writer, info.stamp_ns, support::monotonic_ns(), support::wall_clock_ns());
   if (age_ns && *age_ns <= service::CommandAges::kOldest_ns) return true;
   ros_.complain(age_ns ? "old velocity" : "velocity of unknown age",
                 age_ns ? "the base does not move by it"
@@ -162,7 +162,8 @@ void VelocityBridge::on_twist(const ros::Twist& twist, const messaging::SampleIn
   const bool stands = command.linear_mps() == 0.0 && command.angular_radps() == 0.0;
   if (!of_the_moment && !stands) return;
   // Stamped when made, not with the last sensor time: the gateway rejects old commands.
-  messaging::set_header(command, ros_.service().robot_id(), clock_.now_ns(steady_now_ns()), sent_);
+  messaging::set_header(command, ros_.service().robot_id(), clock_.now_ns(support::monotonic_ns()),
+                        sent_);
   if (!commands_->write(command)) {
     ros_.service().status().fault("send blocked", "motion command");
     return;

@@ -12,6 +12,7 @@
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/navigation_conversions.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/host.hpp"
 #include "topogeo/support/log.hpp"
 #include "topogeo/support/random.hpp"
 
@@ -65,7 +66,7 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
     };
     hooks.on_odometry = [this](const geometry::OdometrySample& sample) {
       gate_.add(sample);
-      release(steady_now_ns());
+      release(support::monotonic_ns());
       remember();
     };
     base_.emplace(service_, config, time_, remembered, beside(memory, ".stops"), std::move(hooks));
@@ -115,7 +116,7 @@ void DeviceGateway::release(std::int64_t now_ns) {
     for (const scan::Scan& scan : placed(std::move(leaving.scan))) {
       if (!publish(scan)) continue;
       wait_ns_ = now_ns - leaving.arrival_ns;
-      latency_ns_ = steady_now_ns() - leaving.arrival_ns;
+      latency_ns_ = support::monotonic_ns() - leaving.arrival_ns;
       largest_latency_ns_ = std::max(largest_latency_ns_, latency_ns_);
       remember();
     }
@@ -124,7 +125,7 @@ void DeviceGateway::release(std::int64_t now_ns) {
   if (gate_.due_ns() == std::numeric_limits<std::int64_t>::max()) return;
   release_timer_ = service_.loop().call_after(
       std::chrono::nanoseconds(std::max<std::int64_t>(0, gate_.due_ns() - now_ns)),
-      [this] { release(steady_now_ns()); });
+      [this] { release(support::monotonic_ns()); });
 }
 
 void DeviceGateway::begin_without_base() {
@@ -169,7 +170,7 @@ void DeviceGateway::remember() {
   if (!base_) return;  // while it is being made
   const std::optional<devices::OdometerState> state = base_->odometer_state();
   if (!state) return;
-  memory_.store({*state, odometry_epoch_, gate_.scans(), time_.stamp_ns(steady_now_ns())});
+  memory_.store({*state, odometry_epoch_, gate_.scans(), time_.stamp_ns(support::monotonic_ns())});
 }
 
 bool DeviceGateway::publish(const scan::Scan& scan) {
@@ -186,7 +187,7 @@ bool DeviceGateway::publish(const scan::Scan& scan) {
 }
 
 void DeviceGateway::read_body() {
-  const std::int64_t now_ns = steady_now_ns();
+  const std::int64_t now_ns = support::monotonic_ns();
   body_->publish(now_ns, time_.stamp_ns(now_ns));
 }
 
@@ -234,11 +235,11 @@ void DeviceGateway::finish() {
   if (laser_) laser_->finish();
   ended_ = true;
   publish_state();
-  const auto end_ns = steady_now_ns() + std::chrono::nanoseconds(kLastDelivery).count();
+  const auto end_ns = support::monotonic_ns() + std::chrono::nanoseconds(kLastDelivery).count();
   if (!deliver(scans_, kLastDelivery)) {
     service_.status().fault("readers missed scans", "at the end");
   }
-  const std::chrono::nanoseconds left(std::max<std::int64_t>(0, end_ns - steady_now_ns()));
+  const std::chrono::nanoseconds left(std::max<std::int64_t>(0, end_ns - support::monotonic_ns()));
   if (base_ && !deliver(base_->odometry(), left)) {
     service_.status().fault("readers missed odometry", "at the end");
   }

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cstdint>
 
+#include "topogeo/support/host.hpp"
+
 #include "serial_port.hpp"
 
 namespace topogeo::sensor_gateway {
@@ -16,7 +18,7 @@ class HostTime {
       : offset_ns_(std::chrono::duration_cast<std::chrono::nanoseconds>(
                        std::chrono::system_clock::now().time_since_epoch())
                        .count() -
-                   steady_now_ns()) {}
+                   support::monotonic_ns()) {}
 
   [[nodiscard]] std::int64_t stamp_ns(std::int64_t steady_ns) const {
     return steady_ns + offset_ns_;

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "topogeo/support/host.hpp"
+
 namespace topogeo::sensor_gateway {
 
 namespace {
@@ -38,7 +40,7 @@ SerialLine::~SerialLine() {
 }
 
 std::int64_t SerialLine::now_ns() {
-  last_ns_ = std::max(last_ns_, steady_now_ns());
+  last_ns_ = std::max(last_ns_, support::monotonic_ns());
   return last_ns_;
 }
 

@@ -13,6 +13,8 @@
 
 #include <boost/asio.hpp>
 
+#include "topogeo/support/host.hpp"
+
 #include "port_stream.hpp"
 #include "serial_stream.hpp"
 #include "stop_sentry.hpp"
@@ -24,12 +26,6 @@ namespace asio = boost::asio;
 using boost::system::error_code;
 using devices::LineOrder;
 using std::chrono::milliseconds;
-
-std::int64_t steady_now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 /// All members except `epoch_` belong to the thread.
 class SerialPort::Impl {
@@ -212,7 +208,7 @@ void SerialPort::Impl::try_later() {
 
 void SerialPort::Impl::notify(PortEvent::Kind kind, std::string why,
                               std::vector<std::uint8_t> bytes) {
-  notify_({kind, steady_now_ns(), epoch_, std::move(why), std::move(bytes), finished_});
+  notify_({kind, support::monotonic_ns(), epoch_, std::move(why), std::move(bytes), finished_});
 }
 
 SerialPort::SerialPort(const PortOptions& options, std::function<void(PortEvent)> notify) {

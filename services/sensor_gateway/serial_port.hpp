@@ -13,9 +13,6 @@
 
 namespace topogeo::sensor_gateway {
 
-/// The clock of all stamps in this folder: nanoseconds of the steady clock.
-std::int64_t steady_now_ns();
-
 struct PortOptions {
   std::string path;  ///< a device or a link to it, for example /dev/ttyUSB0; or tcp://HOST:PORT
   /// Wait before retrying a port that cannot be opened or was lost: doubled from try to try, up to

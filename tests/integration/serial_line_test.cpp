@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "topogeo/support/host.hpp"
+
 #include "program.hpp"
 #include "test_port.hpp"
 
@@ -146,10 +148,10 @@ TEST_F(SerialLineTest, AfterStandingStillReadsBeforeTimeIsUp) {
   terminal_.plug();
   start();
   ASSERT_EQ(arriving(2).size(), 2U);
-  driver_.due_ns_ = steady_now_ns() + 10'000'000;
+  driver_.due_ns_ = support::monotonic_ns() + 10'000'000;
   line_->carry_out();
   std::this_thread::sleep_for(milliseconds(100));  // blocks the loop, as on a busy machine
-  const std::int64_t back_ns = steady_now_ns();
+  const std::int64_t back_ns = support::monotonic_ns();
   ASSERT_TRUE(wait_for("the tick", [&] { return driver_.ticks_ > 0; }));
   EXPECT_GE(driver_.last_ns_ - back_ns, 10'000'000);
 }
@@ -181,12 +183,12 @@ TEST_F(SerialLineTest, UnpluggedAndPluggedInAgainFiveTimes) {
 
 TEST_F(SerialLineTest, DriverIsCalledWhenItIsDue) {
   start();
-  driver_.due_ns_ = steady_now_ns() + 3'000'000;
+  driver_.due_ns_ = support::monotonic_ns() + 3'000'000;
   line_->carry_out();
   EXPECT_TRUE(wait_for("the first tick", [&] { return driver_.ticks_ == 1; }));
-  driver_.due_ns_ = steady_now_ns() + 3'600'000'000'000;  // first in an hour, then sooner
+  driver_.due_ns_ = support::monotonic_ns() + 3'600'000'000'000;  // first in an hour, then sooner
   line_->carry_out();
-  driver_.due_ns_ = steady_now_ns();
+  driver_.due_ns_ = support::monotonic_ns();
   line_->carry_out();
   EXPECT_TRUE(wait_for("the second tick", [&] { return driver_.ticks_ == 2; }));
 }

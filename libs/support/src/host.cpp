@@ -47,4 +47,8 @@ std::int64_t wall_clock_ns() {
       .count();
 }
 
+std::int64_t monotonic_ns() {
+  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 }  // namespace topogeo::support

@@ -1,6 +1,5 @@
 #include "orders/goal_sender.hpp"
 
-#include <chrono>
 #include <random>
 #include <stdexcept>
 #include <utility>
@@ -38,10 +37,6 @@ void renumber(std::deque<Goal>& goals) {
     goal.id = random_goal_id();
     goal.message.goal_id(goal.id);
   }
-}
-
-std::int64_t now_ns() {
-  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 }  // namespace
@@ -226,7 +221,7 @@ bool GoalSender::waits_at_goal(const msg::NavigatorStatus& status) {
                        status.state() == msg::kNavigatorArrived && !list_.waiting().empty();
   if (!arrived) return false;
   const bool begins = wait_.goal() != goal->id;
-  if (!wait_.holds(*goal, now_ns())) return false;
+  if (!wait_.holds(*goal, support::monotonic_ns())) return false;
   if (begins) {
     events_.add(EventLog::Level::kInfo, "web",
                 fmt::format("waits {:.0f} s at {}", goal->wait_s, goal->text));
@@ -285,7 +280,7 @@ void GoalSender::show() {
   if (list_.current()) {
     const Goal& goal = *list_.current();
     json["current"] = goal_json(goal);
-    const double rest_s = wait_.goal() == goal.id ? wait_.rest_s(now_ns()) : 0.0;
+    const double rest_s = wait_.goal() == goal.id ? wait_.rest_s(support::monotonic_ns()) : 0.0;
     if (rest_s > 0.0) json["waits_s"] = rounded(rest_s);
     if (rounds_.repeats()) json["round"] = {{"now", goal.round}, {"of", rounds_.rounds()}};
   }

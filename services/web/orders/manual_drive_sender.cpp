@@ -26,10 +26,6 @@ constexpr std::int64_t kZeroPeriod_ns = 500'000'000;        // during a stop tha
 
 }  // namespace
 
-std::int64_t steady_ns() {
-  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 ManualDriveSender::ManualDriveSender(messaging::EventLoop& loop, const service::Service& service,
                                      ChannelHub& hub, EventLog& events, Tally& tally, Hooks hooks,
                                      const std::filesystem::path& memory)
@@ -40,7 +36,7 @@ ManualDriveSender::ManualDriveSender(messaging::EventLoop& loop, const service::
       tally_(tally),
       hooks_(std::move(hooks)),
       client_id_(support::process_name()),
-      clock_(support::wall_clock_ns() - steady_ns()),
+      clock_(support::wall_clock_ns() - support::monotonic_ns()),
       guard_(service.setup().config.config.navigator.guard),
       drive_(service.setup().config.config.navigator.follower),
       commands_(service.participant()),
@@ -87,7 +83,7 @@ void ManualDriveSender::listen() {
 ManualDriveSender::~ManualDriveSender() {
   if (!commanding_) return;
   try {
-    command({}, clock_.now_ns(steady_ns()));
+    command({}, clock_.now_ns(support::monotonic_ns()));
     static_cast<void>(commands_.wait_for_acknowledgments(kLastHandCommand));
   } catch (const std::exception& error) {
     spdlog::error("the last command was not sent: {}", error.what());
@@ -95,7 +91,7 @@ ManualDriveSender::~ManualDriveSender() {
 }
 
 void ManualDriveSender::on_odometry(const msg::Odometry& odometry) {
-  clock_.observe(odometry.stamp_ns(), steady_ns());
+  clock_.observe(odometry.stamp_ns(), support::monotonic_ns());
   guard_.add(service::odometry_from_msg(odometry));
 }
 
@@ -109,7 +105,7 @@ void ManualDriveSender::on_pose(const msg::LivePose& pose) {
 void ManualDriveSender::on_scan(const msg::Scan& message) {
   const navigation::ScanPoints scan = service::to_scan_points(
       service::from_msg(message), service_.setup().config.config.local_mapper.T_robot_laser);
-  clock_.observe(scan.stamp_ns, steady_ns());
+  clock_.observe(scan.stamp_ns, support::monotonic_ns());
   guard_.add(navigation::OdometrySample{scan.stamp_ns, scan.T_odom_robot});
   guard_.add(scan);
 }
@@ -128,7 +124,7 @@ void ManualDriveSender::on_base(const msg::BaseStatus& base, const messaging::Ha
   if (was_held && !base_held_ && !hides_stop(base) && !releasing_.empty()) {
     events_.add(EventLog::Level::kInfo, "web", "released by " + std::exchange(releasing_, {}));
   }
-  end_release(release_.take(base, steady_ns()));
+  end_release(release_.take(base, support::monotonic_ns()));
   if (!stop_wanted_) return;
   if (base_held_) {
     stopped_base_ = writer;
@@ -153,7 +149,7 @@ void ManualDriveSender::on_order(const msg::BaseCommand& message, const messagin
     return;
   }
   if (kept_stop_.holds()) {
-    drive_.let_go(steady_ns());
+    drive_.let_go(support::monotonic_ns());
     events_.add(EventLog::Level::kWarning, "web", "stopped by " + client);
     tick();
   } else {
@@ -184,7 +180,7 @@ void ManualDriveSender::keep_off_drawn() {
 
 void ManualDriveSender::drive(std::uint64_t viewer, const geometry::Velocity& wanted,
                               std::int64_t came_ns) {
-  const std::int64_t now_ns = steady_ns();
+  const std::int64_t now_ns = support::monotonic_ns();
   if (now_ns - came_ns > ManualDrive::kPatience_ns) {
     tally_.add("refused: late");
     return;
@@ -207,14 +203,14 @@ void ManualDriveSender::drive(std::uint64_t viewer, const geometry::Velocity& wa
 }
 
 void ManualDriveSender::release(std::uint64_t viewer) {
-  drive_.release(viewer, steady_ns());
+  drive_.release(viewer, support::monotonic_ns());
   tick();
 }
 
 void ManualDriveSender::tick() {
   if (stop_unheard_ && base_hears()) stop_unheard_ = !order(msg::kBaseHalt, stop_number_);
   if (navigator_ && !orders_.connected_with(*navigator_)) navigator_.reset();
-  const std::int64_t now_ns = steady_ns();
+  const std::int64_t now_ns = support::monotonic_ns();
   end_release(release_.check(now_ns));
   const std::int64_t stamp_ns = clock_.now_ns(now_ns);
   // Earlier measurements would count as fresh until the clock reaches their stamps again.
@@ -260,7 +256,7 @@ bool ManualDriveSender::base_hears() const {
 }
 
 bool ManualDriveSender::stop() {
-  drive_.let_go(steady_ns());
+  drive_.let_go(support::monotonic_ns());
   release_.end();
   if (on_release_) std::exchange(on_release_, nullptr)(UnconfirmedRelease::Outcome::kRefused);
   stop_number_ = service::OperatorStop::new_number();
@@ -296,7 +292,7 @@ ManualDriveSender::Release ManualDriveSender::release_stop(OnRelease done) {
   if (!heard) return Release::kUnheard;
   if (on_release_) std::exchange(on_release_, nullptr)(Outcome::kUnconfirmed);
   on_release_ = std::move(done);
-  release_.begin(stop_count_, base_held_, steady_ns());
+  release_.begin(stop_count_, base_held_, support::monotonic_ns());
   return Release::kSent;
 }
 

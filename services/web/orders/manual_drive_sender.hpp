@@ -33,9 +33,6 @@
 
 namespace topogeo::web {
 
-/// Time of the steady clock.
-std::int64_t steady_ns();
-
 class EventLog;
 
 /// Lives in a loop of its own, so that orders are carried out at once, whatever the other threads

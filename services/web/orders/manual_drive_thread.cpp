@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "topogeo/support/host.hpp"
+
 #include "server/json_values.hpp"
 
 namespace topogeo::web {
@@ -76,8 +78,9 @@ void ManualDriveThread::run() {
 }
 
 void ManualDriveThread::drive(std::uint64_t viewer, const geometry::Velocity& wanted) {
-  loop_.post(
-      [this, viewer, wanted, came_ns = steady_ns()] { hand_.drive(viewer, wanted, came_ns); });
+  loop_.post([this, viewer, wanted, came_ns = support::monotonic_ns()] {
+    hand_.drive(viewer, wanted, came_ns);
+  });
 }
 
 void ManualDriveThread::release(std::uint64_t viewer) {

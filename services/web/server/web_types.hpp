@@ -1,13 +1,14 @@
 // Interface from the server to the service behind it: answers to requests, and driving by hand.
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "topogeo/support/cpu_time.hpp"
 
 #include "server/route.hpp"
 
@@ -74,10 +75,6 @@ class Backend {
   virtual void release(std::uint64_t viewer) = 0;
 };
 
-inline double steady_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 struct ServerConfig {
   std::string address = "127.0.0.1";
   std::uint32_t port = 0;  ///< 0: any free port
@@ -90,7 +87,7 @@ struct ServerConfig {
   std::string key_file;              ///< PEM
   std::uint32_t most_viewers = 64;
   /// Seconds from any start, never going back; used by the rate limits.
-  std::function<double()> clock_s = steady_s;
+  std::function<double()> clock_s = support::monotonic_s;
 };
 
 }  // namespace topogeo::web

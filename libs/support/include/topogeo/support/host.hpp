@@ -20,4 +20,8 @@ std::uint64_t this_boot();
 /// Time since 1970. For display only: no result may depend on it.
 std::int64_t wall_clock_ns();
 
+/// Time of the steady clock, which never goes back, since any moment; that of all stamps of
+/// arrivals.
+std::int64_t monotonic_ns();
+
 }  // namespace topogeo::support
