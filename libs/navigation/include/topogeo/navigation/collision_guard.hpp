@@ -18,12 +18,12 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "topogeo/geometry/odometry_track.hpp"
-#include "topogeo/geometry/pose2.hpp"
 #include "topogeo/geometry/velocity.hpp"
 #include "topogeo/navigation/guard_config.hpp"
+#include "topogeo/navigation/guard_inputs.hpp"
 #include "topogeo/navigation/navigator_inputs.hpp"
 
 namespace topogeo::navigation {
@@ -46,16 +46,14 @@ class CollisionGuard {
   /// Throws std::invalid_argument like `check`.
   explicit CollisionGuard(const GuardConfig& config);
 
-  // Each in time order; data that is not newer than the previous is ignored.
-  void add(const OdometrySample& odometry);
-  void add(const ScanPoints& scan);
-  void add(const SonarRound& sonar);
+  // As those of GuardInputs.
+  void add(const OdometrySample& odometry) { inputs_.add(odometry); }
+  void add(const ScanPoints& scan) { inputs_.add(scan); }
+  void add(const SonarRound& sonar) { inputs_.add(sonar); }
   void add(const LaserFields& fields);
-
-  /// Sets points (robot frame at that time) without a real obstacle that must not be touched.
-  /// Replaces earlier ones. Odometry carries them on for 3 m; after that, without newer ones, their
-  /// place is too uncertain and they no longer count.
-  void keep_off(std::int64_t stamp_ns, std::vector<Eigen::Vector2d> points_m);
+  void keep_off(std::int64_t stamp_ns, std::vector<Eigen::Vector2d> points_m) {
+    inputs_.keep_off(stamp_ns, std::move(points_m));
+  }
 
   /// Returns the safe part of a wanted velocity, with no tighter turn than the base can drive. A
   /// round body may always turn on the spot while the sensors work, if the base can, and another
@@ -63,46 +61,23 @@ class CollisionGuard {
   [[nodiscard]] GuardVerdict judge(const geometry::Velocity& wanted, std::int64_t now_ns) const;
 
   /// Why no motion at all is allowed; kNone when the sensors work. `message` may be null.
-  [[nodiscard]] HaltReason health(std::int64_t now_ns, std::string* message = nullptr) const;
+  [[nodiscard]] HaltReason health(std::int64_t now_ns, std::string* message = nullptr) const {
+    return inputs_.health(now_ns, message);
+  }
 
  private:
-  [[nodiscard]] bool fresh(std::int64_t stamp_ns, std::int64_t now_ns) const;
-  [[nodiscard]] std::vector<Eigen::Vector2d> obstacles_m(std::int64_t now_ns) const;
-  /// Adds the points of keep_off(), in the current robot frame.
-  void add_drawn(std::vector<Eigen::Vector2d>& points_m) const;
-  [[nodiscard]] geometry::Velocity driven() const;
   /// s; from the measurement until the base surely brakes.
   [[nodiscard]] double reaction_s(std::int64_t now_ns) const;
   /// m/s; the speed from which it stops within a free distance.
   [[nodiscard]] double speed_for(double free_m, double reaction_s) const;
-  /// Whether the scan has a point in the sonar's cone within this distance.
-  [[nodiscard]] bool laser_sees(const SonarReading& reading, double up_to_m) const;
   /// Reduces a verdict by the fields of the laser.
   void obey_fields(GuardVerdict& verdict) const;
   [[nodiscard]] GuardVerdict judge_by_distances(const geometry::Velocity& wanted,
                                                 std::int64_t now_ns) const;
-  /// The same for a body with an outline: also a turn on the spot has its free distance, that of
-  /// the farthest corner.
-  void judge_outline(const geometry::Velocity& wanted, std::int64_t now_ns,
-                     GuardVerdict& verdict) const;
-  void compare_echoes();
-  void watch_silence(const SonarRound& sonar);
 
   GuardConfig config_;
-  geometry::OdometryTrack odometry_{0};
-  std::optional<OdometrySample> last_;
-  std::optional<ScanPoints> scan_;  ///< smoothed
-  std::optional<SonarRound> sonar_;
-  struct Echo {
-    Eigen::Vector2d point_m;  ///< robot frame at that time
-    bool laser_sees;          ///< in the last scan, of any age
-  };
-  std::vector<Echo> echoes_;  ///< of the last round
-  std::optional<geometry::Pose2> T_odom_sonar_round_;
-  std::optional<std::int64_t> silent_since_ns_;
+  GuardInputs inputs_;
   std::optional<LaserFields> fields_;
-  std::vector<Eigen::Vector2d> drawn_m_;  ///< robot frame at T_odom_drawn_
-  geometry::Pose2 T_odom_drawn_;
 };
 
 }  // namespace topogeo::navigation
