@@ -46,7 +46,7 @@ class CollisionGuard {
   /// Throws std::invalid_argument like `check`.
   explicit CollisionGuard(const GuardConfig& config);
 
-  // As those of GuardInputs.
+  // The overloads do what those of GuardInputs do.
   void add(const OdometrySample& odometry) { inputs_.add(odometry); }
   void add(const ScanPoints& scan) { inputs_.add(scan); }
   void add(const SonarRound& sonar) { inputs_.add(sonar); }

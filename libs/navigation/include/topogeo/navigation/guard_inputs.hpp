@@ -39,7 +39,7 @@ class GuardInputs {
   [[nodiscard]] HaltReason health(std::int64_t now_ns, std::string* message) const;
   [[nodiscard]] bool has_fresh_sonar(std::int64_t now_ns) const;
   [[nodiscard]] Obstacles obstacles(std::int64_t now_ns) const;
-  /// By odometry.
+  /// The velocity that odometry measured.
   [[nodiscard]] geometry::Velocity driven() const;
   /// s; age of the place to which obstacles() carries the obstacles; >= 0.
   [[nodiscard]] double age_s(std::int64_t now_ns) const;
