@@ -1,5 +1,4 @@
 // Serves a robot's state to pages and programs, by HTTP and WebSocket.
-#include <filesystem>
 #include <iostream>
 #include <optional>
 #include <string>
@@ -7,7 +6,6 @@
 #include <vector>
 
 #include "topogeo/command_line/secret_arguments.hpp"
-#include "topogeo/service/operator_stop.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/service/web_access.hpp"
@@ -30,10 +28,8 @@ int main(int argc, char** argv) {
         if (arguments.had_secret()) service::warn_of_shown_token();
         const web::ServerConfig config = web::server_config(options, setup.options.robot_id);
         service::Service service(service::with_map_of(setup, options.map_robot));
-        const std::filesystem::path memory =
-            options.memory.empty() ? service::OperatorStop::place_of(setup) : options.memory;
-        const web::WebService web(service, config, web::page_files(options), memory,
-                                  options.audit_log);
+        const web::WebService web(service, config, web::page_files(options),
+                                  web::kept_files(options, setup));
         std::cout << web::links(config, web.port(), options.link_file) << std::flush;
         service.run();
       });

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <stdexcept>
 
+#include "topogeo/service/operator_stop.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/service/web_access.hpp"
 #include "topogeo/support/format.hpp"
@@ -59,6 +60,10 @@ void add_web_options(command_line::Command& app, WebOptions& options) {
   app.add_option("--audit-log", options.audit_log,
                  "append a line for each order to this file: when, who, what")
       ->type_name("FILE");
+  app.add_option("--alarms", options.alarms,
+                 "file with the newest 200 alarms and who acknowledged them, which a restarted "
+                 "service goes on with (default: beside the audit log, none without one)")
+      ->type_name("FILE");
   app.add_option("--certificate", options.certificate,
                  "certificate of the server with its chain (PEM)")
       ->type_name("FILE");
@@ -109,6 +114,16 @@ ServerConfig server_config(const WebOptions& options, const std::string& robot_i
   service::check_web_address(options.bind, !config.certificate_file.empty(),
                              !config.key_file.empty(), options.without_tls);
   return config;
+}
+
+KeptFiles kept_files(const WebOptions& options, const service::Setup& setup) {
+  KeptFiles kept{options.memory, options.audit_log, options.alarms};
+  if (kept.memory.empty()) kept.memory = service::OperatorStop::place_of(setup);
+  if (kept.alarms.empty() && !kept.audit.empty()) {
+    kept.alarms = kept.audit;
+    kept.alarms.replace_extension(".alarms.jsonl");
+  }
+  return kept;
 }
 
 PageFiles page_files(const WebOptions& options) {

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "topogeo/command_line/command_line.hpp"
+#include "topogeo/service/service_options.hpp"
 
+#include "kept_files.hpp"
 #include "server/page_files.hpp"
 #include "server/web_types.hpp"
 
@@ -22,6 +24,7 @@ struct WebOptions {
   std::filesystem::path link_file;  ///< gets the operator's link; empty: it is printed
   std::filesystem::path memory;     ///< of an operator's stop; empty: its usual place
   std::filesystem::path audit_log;  ///< gets each order; empty: none is kept
+  std::filesystem::path alarms;     ///< empty: beside the audit log
   std::filesystem::path certificate;
   std::filesystem::path key;
   std::vector<std::string> hosts;
@@ -37,6 +40,9 @@ void add_web_options(command_line::Command& app, WebOptions& options);
 /// Makes a token if none is given. Throws service::UsageError for options that do not go together,
 /// and service::BadInputError for an unreadable token file.
 ServerConfig server_config(const WebOptions& options, const std::string& robot_id);
+
+/// The files that are given, and the usual places of others.
+KeptFiles kept_files(const WebOptions& options, const service::Setup& setup);
 
 /// Throws std::runtime_error for a given folder that cannot be used.
 PageFiles page_files(const WebOptions& options);

@@ -40,16 +40,20 @@ void WebService::post(Work work) {
 }
 
 WebService::WebService(service::Service& service, const ServerConfig& config, PageFiles files,
-                       const std::filesystem::path& memory, const std::filesystem::path& audit)
+                       const KeptFiles& kept)
     : service_(service),
       config_(config),
       files_(std::move(files)),
-      audit_(audit),
+      events_(hub_, kept.alarms,
+              [this] {
+                service_.status().fault("alarms", "an alarm could not be written to its file");
+              }),
+      audit_(kept.audit),
       foxglove_(feed_, service.setup().config.config.local_mapper.T_robot_laser),
       controls_([this](const std::string& json) {
         post([this, json] { hub_.set(Channel::kControls, json); });
       }),
-      hand_(service, hub_, events_, tally_, hand_hooks(), memory),
+      hand_(service, hub_, events_, tally_, hand_hooks(), kept.memory),
       map_(service, hub_,
            [this](const std::shared_ptr<const MapPicture>& picture) { foxglove_.take(picture); }),
       graph_(service, hub_),

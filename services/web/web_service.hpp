@@ -7,7 +7,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -26,6 +25,7 @@
 #include "foxglove/foxglove_feed.hpp"
 #include "foxglove/foxglove_view.hpp"
 #include "history/history.hpp"
+#include "kept_files.hpp"
 #include "orders/audit_log.hpp"
 #include "orders/drawing_editor.hpp"
 #include "orders/exploration_sender.hpp"
@@ -46,11 +46,9 @@ namespace topogeo::web {
 /// Lives in the loop of its service.
 class WebService : private Backend {
  public:
-  /// Starts listening. Keeps an operator's stop that no base reports in the file `memory` (empty:
-  /// none), and appends each order to the file `audit` (empty: none). Throws like Server,
-  /// service::OperatorStop and AuditLog.
+  /// Starts listening. Throws like Server, service::OperatorStop, AuditLog and AlarmFile.
   WebService(service::Service& service, const ServerConfig& config, PageFiles files,
-             const std::filesystem::path& memory = {}, const std::filesystem::path& audit = {});
+             const KeptFiles& kept = {});
   WebService(const WebService&) = delete;
   WebService& operator=(const WebService&) = delete;
   ~WebService() override;
@@ -105,7 +103,7 @@ class WebService : private Backend {
   Tally tally_;
   ChannelHub hub_;
   FoxgloveFeed feed_;
-  EventLog events_{hub_};
+  EventLog events_;
   AuditLog audit_;
   FoxgloveView foxglove_;
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // for posted work

@@ -7,6 +7,20 @@
 
 namespace topogeo::web {
 
+AlarmList::AlarmList(ChannelHub& hub, const std::filesystem::path& file,
+                     std::function<void()> not_kept)
+    : hub_(hub), not_kept_(std::move(not_kept)), file_(file, kKept), alarms_(file_.open()) {
+  if (alarms_.empty()) return;
+  last_ = alarms_.rbegin()->first;
+  std::vector<Edit> edits;
+  for (const auto& [number, alarm] : alarms_) edits.push_back(shown(number, alarm));
+  hub_.edit(Channel::kAlarms, std::move(edits));
+}
+
+void AlarmList::keep(std::uint64_t number) {
+  if (!file_.keep(number, alarms_)) not_kept_();
+}
+
 Edit AlarmList::shown(std::uint64_t number, const Alarm& alarm) {
   Json json = {{"level", alarm.level},
                {"source", alarm.source},
@@ -31,6 +45,7 @@ void AlarmList::raise(std::int64_t wall_ns, const std::string& level, const std:
   }
   found->second.last_ns = wall_ns;
   ++found->second.count;
+  keep(found->first);
   std::vector<Edit> edits = {shown(found->first, found->second)};
   forget_one(edits);
   hub_.edit(Channel::kAlarms, std::move(edits));
@@ -41,8 +56,10 @@ void AlarmList::forget_one(std::vector<Edit>& edits) {
   const auto acknowledged = std::ranges::find_if(
       alarms_, [](const auto& entry) { return !entry.second.acknowledged_by.empty(); });
   const auto oldest = acknowledged != alarms_.end() ? acknowledged : alarms_.begin();
-  edits.push_back({std::to_string(oldest->first), {}});
+  const std::uint64_t number = oldest->first;
+  edits.push_back({std::to_string(number), {}});
   alarms_.erase(oldest);
+  keep(number);
 }
 
 std::vector<std::string> AlarmList::acknowledge(std::int64_t wall_ns,
@@ -56,6 +73,7 @@ std::vector<std::string> AlarmList::acknowledge(std::int64_t wall_ns,
     if (found == alarms_.end() || !found->second.acknowledged_by.empty()) continue;
     found->second.acknowledged_by = who;
     found->second.acknowledged_ns = wall_ns;
+    keep(number);
     texts.push_back(found->second.source + ": " + found->second.text);
     edits.push_back(shown(number, found->second));
   }

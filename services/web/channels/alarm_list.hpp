@@ -1,15 +1,19 @@
 // Troubles that a person must see: channel `alarms`. An alarm stays until an operator acknowledges
-// it; the newest ones remain with who acknowledged them, and when.
+// it; the newest ones remain with who acknowledged them, and when. A file keeps them for the next
+// service.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
+#include <filesystem>
+#include <functional>
 #include <mutex>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "channels/alarm.hpp"
+#include "channels/alarm_file.hpp"
 #include "server/channel_hub.hpp"
 
 namespace topogeo::web {
@@ -20,7 +24,11 @@ class AlarmList {
   /// With more alarms the oldest acknowledged ones go first.
   static constexpr std::size_t kKept = 200;
 
-  explicit AlarmList(ChannelHub& hub) : hub_(hub) {}
+  /// `file` keeps the alarms; empty: none does. `not_kept` is called when they could not be written
+  /// there. Throws like AlarmFile::open().
+  explicit AlarmList(
+      ChannelHub& hub, const std::filesystem::path& file = {},
+      std::function<void()> not_kept = [] {});
 
   /// `level`: "warning" or "error". The same trouble again, before it is acknowledged, counts with
   /// the first one.
@@ -32,23 +40,16 @@ class AlarmList {
                                        const std::string& who);
 
  private:
-  struct Alarm {
-    std::string level;
-    std::string source;
-    std::string text;
-    std::int64_t first_ns = 0;
-    std::int64_t last_ns = 0;
-    std::uint64_t count = 0;
-    std::string acknowledged_by{};  // empty: nobody yet
-    std::int64_t acknowledged_ns = 0;
-  };
   [[nodiscard]] static Edit shown(std::uint64_t number, const Alarm& alarm);
   /// Removes an alarm if there are too many.
   void forget_one(std::vector<Edit>& edits);
+  void keep(std::uint64_t number);
 
   ChannelHub& hub_;
+  std::function<void()> not_kept_;
   std::mutex mutex_;
-  std::map<std::uint64_t, Alarm> alarms_;  // by number
+  AlarmFile file_;
+  Alarms alarms_;
   std::uint64_t last_ = 0;
 };
 

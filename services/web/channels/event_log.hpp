@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <mutex>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "channels/alarm_list.hpp"
 #include "server/channel_hub.hpp"
@@ -18,6 +21,9 @@ class EventLog {
   static constexpr std::uint64_t kKept = 500;
 
   explicit EventLog(ChannelHub& hub) : hub_(hub), alarms_(hub) {}
+  /// Keeps the alarms in a file; see AlarmList.
+  EventLog(ChannelHub& hub, const std::filesystem::path& alarms, std::function<void()> not_kept)
+      : hub_(hub), alarms_(hub, alarms, std::move(not_kept)) {}
 
   /// `source`: service or part of the robot.
   void add(Level level, const std::string& source, const std::string& sentence);

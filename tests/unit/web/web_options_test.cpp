@@ -50,5 +50,14 @@ TEST(WebOptions, LinkFileKeepsTheTokenFromWhatIsPrinted) {
   EXPECT_THROW(links(config, 8080, folder.path() / "none/link"), service::BadInputError);
 }
 
+TEST(WebOptions, AlarmsAreKeptBesideTheAuditLog) {
+  WebOptions options;
+  EXPECT_EQ(kept_files(options, {}).alarms, "");
+  options.audit_log = "logs/orders.jsonl";
+  EXPECT_EQ(kept_files(options, {}).alarms, "logs/orders.alarms.jsonl");
+  options.alarms = "alarms.jsonl";
+  EXPECT_EQ(kept_files(options, {}).alarms, "alarms.jsonl");
+}
+
 }  // namespace
 }  // namespace topogeo::web
