@@ -321,6 +321,8 @@ void BaseChannel::count() {
   set("base_starts", base.starts);
   set("base_restarts", base.restarts);
   set("base_watchdog_expirations", base.watchdog_expirations);
+  // A counter, because a new field of BaseStatus would be another wire contract.
+  if (base.battery_percent) status.set_counter("battery_percent", *base.battery_percent);
   for (std::size_t i = 0; i < devices::kMcpDropKinds; ++i) {
     status.set_drops("base " + std::string(devices::drop_name(static_cast<devices::McpDrop>(i))),
                      base.drops[i]);

@@ -64,7 +64,7 @@ WebService::WebService(service::Service& service, const ServerConfig& config, Pa
               [this](const msg::NavigatorStatus& status, const messaging::SampleInfo& info) {
                 exploration_.take(status, goals_.take(status, info));
               },
-              [this] { return map_.picture(); }}),
+              [this] { return map_.picture(); }, [this] { return health_.battery_percent(); }}),
       drive_(service, hub_, events_),
       exploration_(service, goals_, events_, robot_, [this] { return explored_floor(); }),
       health_(service, hub_, events_),

@@ -44,8 +44,9 @@ void check_text_message(const std::string& body) {
   }
   if (message->battery) {
     const auto again = devices::text_base_message(body_of(devices::to_line(*message->battery)));
-    require(again && again->battery && again->battery->millivolts == message->battery->millivolts,
-            "a voltage that was read can be written and read");
+    require(again && again->battery && again->battery->millivolts == message->battery->millivolts &&
+                again->battery->percent == message->battery->percent,
+            "a battery that was read can be written and read");
   }
 }
 

@@ -23,6 +23,12 @@ WheelUnits create_units(const CreateSettings& create) {
           .time_unit_ns = kCreateTimeUnit_ns};
 }
 
+/// A battery may hold more than its stated capacity.
+std::optional<double> percent_of(const CreateReport& report) {
+  if (report.capacity_mah == 0) return std::nullopt;
+  return std::min(100.0, 100.0 * report.charge_mah / report.capacity_mah);
+}
+
 }  // namespace
 
 CreateDriver::CreateDriver(const BaseSettings& settings)
@@ -90,7 +96,7 @@ void CreateDriver::obey(const CreateReport& report, std::int64_t time_ns, std::i
   if (!runs()) greet(now_ns);
   mode_ = report.mode;
   charger_ = report.charger || report.dock;
-  set_battery(1e-3 * report.millivolts);
+  set_battery(1e-3 * report.millivolts, percent_of(report));
   const Signs signs = signs_of(report);
   was_safe_ = (was_safe_ || obeys_speeds()) && !signs.emergency_stop;
   take({.time = static_cast<std::uint32_t>(time_ns / kCreateTimeUnit_ns),

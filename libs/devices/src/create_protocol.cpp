@@ -16,14 +16,16 @@ struct CreatePacket {
 };
 
 /// Bumps and wheel drops, cliffs (left, front left, front right, right), charging state, voltage,
-/// charging sources, mode, encoder counts (left, right). Fits 19,200 baud.
-constexpr std::array<CreatePacket, 11> kCreatePackets{{{7, 1},
+/// charge and capacity of the battery, charging sources, mode, encoder counts (left, right).
+constexpr std::array<CreatePacket, 13> kCreatePackets{{{7, 1},
                                                        {9, 1},
                                                        {10, 1},
                                                        {11, 1},
                                                        {12, 1},
                                                        {21, 1},
                                                        {22, 2},
+                                                       {25, 2},
+                                                       {26, 2},
                                                        {34, 1},
                                                        {35, 1},
                                                        {43, 2},
@@ -73,8 +75,8 @@ Values values_of(std::span<const std::uint8_t> frame) {
 
 /// Empty if a value is none that a device sends.
 std::optional<CreateReport> report_of(const Values& values) {
-  const auto& [bumps, left, front_left, front_right, right, charging, millivolts, sources, mode,
-               left_ticks, right_ticks] = values;
+  const auto& [bumps, left, front_left, front_right, right, charging, millivolts, charge_mah,
+               capacity_mah, sources, mode, left_ticks, right_ticks] = values;
   if (bumps > kAllBumps || left > 1 || front_left > 1 || front_right > 1 || right > 1 ||
       charging > kMostCharging || sources > (kCharger | kDock) || mode > kMostCreateMode) {
     return std::nullopt;
@@ -87,6 +89,8 @@ std::optional<CreateReport> report_of(const Values& values) {
   report.cliffs = {left != 0, front_left != 0, front_right != 0, right != 0};
   report.charging = static_cast<std::uint8_t>(charging);
   report.millivolts = millivolts;
+  report.charge_mah = charge_mah;
+  report.capacity_mah = capacity_mah;
   report.charger = (sources & kCharger) != 0;
   report.dock = (sources & kDock) != 0;
   report.mode = static_cast<std::uint8_t>(mode);
@@ -134,9 +138,14 @@ std::vector<std::uint8_t> to_bytes(const CreateReport& report) {
   Values values{static_cast<std::uint16_t>(bumps)};
   for (std::size_t i = 0; i < report.cliffs.size(); ++i) values[1 + i] = report.cliffs[i] ? 1 : 0;
   constexpr std::size_t kAfterCliffs = 5;
-  const std::array<std::uint16_t, 6> rest{
-      report.charging, report.millivolts, static_cast<std::uint16_t>(sources),
-      report.mode,     report.ticks[0],   report.ticks[1]};
+  const std::array<std::uint16_t, 8> rest{report.charging,
+                                          report.millivolts,
+                                          report.charge_mah,
+                                          report.capacity_mah,
+                                          static_cast<std::uint16_t>(sources),
+                                          report.mode,
+                                          report.ticks[0],
+                                          report.ticks[1]};
   std::ranges::copy(rest, values.begin() + kAfterCliffs);
   std::vector<std::uint8_t> frame{kCreateStreamHeader, kFrameLength};
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -40,7 +40,9 @@ void TextBaseDriver::obey(const TextBaseMessage& message, std::int64_t now_ns) {
     }
     greet(now_ns);
   }
-  if (message.battery && runs()) set_battery(1e-3 * message.battery->millivolts);
+  if (message.battery && runs()) {
+    set_battery(1e-3 * message.battery->millivolts, message.battery->percent);
+  }
   if (!message.report) return;
   const TextBaseReport& report = *message.report;
   WheelReport wheels{.time = report.time_ms};

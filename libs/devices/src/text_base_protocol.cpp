@@ -13,6 +13,7 @@ constexpr unsigned kEmergencyStopFlag = 1;
 constexpr unsigned kWatchdogFlag = 2;
 constexpr unsigned kBumperFlag = 4;
 constexpr std::int64_t kMostNumbers = 8;
+constexpr std::int64_t kMostPercent = 100;
 
 std::string hexadecimal(std::uint16_t value) {
   constexpr std::string_view kDigits = "0123456789ABCDEF";
@@ -58,10 +59,15 @@ std::optional<TextBaseMessage> report_of(std::string_view body) {
 
 std::optional<TextBaseMessage> battery_of(std::string_view body) {
   const auto numbers = text_base_numbers(body);
-  if (!numbers || numbers->size() != 1 || !fits<std::uint32_t>(numbers->front())) {
-    return std::nullopt;
+  if (!numbers || numbers->empty() || numbers->size() > 2) return std::nullopt;
+  const std::vector<std::int64_t>& n = *numbers;
+  if (!fits<std::uint32_t>(n[0])) return std::nullopt;
+  TextBaseBattery battery{static_cast<std::uint32_t>(n[0])};
+  if (n.size() == 2) {
+    if (n[1] < 0 || n[1] > kMostPercent) return std::nullopt;
+    battery.percent = static_cast<std::uint8_t>(n[1]);
   }
-  return TextBaseMessage{{}, {}, TextBaseBattery{static_cast<std::uint32_t>(numbers->front())}};
+  return TextBaseMessage{{}, {}, battery};
 }
 
 }  // namespace
@@ -97,7 +103,9 @@ std::string to_line(const TextBaseReport& report) {
 }
 
 std::string to_line(const TextBaseBattery& battery) {
-  return text_base_line("B," + std::to_string(battery.millivolts));
+  std::string body = "B," + std::to_string(battery.millivolts);
+  if (battery.percent) body += "," + std::to_string(*battery.percent);
+  return text_base_line(body);
 }
 
 std::optional<std::vector<std::int64_t>> text_base_numbers(std::string_view body) {

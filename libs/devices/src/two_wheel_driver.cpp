@@ -86,8 +86,9 @@ void TwoWheelDriver::receive(std::span<const std::uint8_t> bytes, std::int64_t n
   tick(now_ns);
 }
 
-void TwoWheelDriver::set_battery(double volts) {
+void TwoWheelDriver::set_battery(double volts, std::optional<double> percent) {
   status_.battery_v = volts;
+  status_.battery_percent = percent;
   status_.battery_low = volts < settings_.battery_low_v;
 }
 

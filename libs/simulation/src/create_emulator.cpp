@@ -210,6 +210,8 @@ void CreateEmulator::report(std::int64_t now_ns) {
   if (!streams_) return;
   seen_.mode = static_cast<std::uint8_t>(static_cast<unsigned>(mode_) + create_.mode_offset);
   seen_.millivolts = static_cast<std::uint16_t>(std::lround(1e3 * create_.battery_v));
+  seen_.charge_mah = create_.charge_mah;
+  seen_.capacity_mah = create_.capacity_mah;
   for (std::size_t i = 0; i < 2; ++i) seen_.ticks[i] = static_cast<std::uint16_t>(ticks(i));
   say_report(devices::to_bytes(seen_), now_ns);
 }

@@ -90,7 +90,9 @@ void TextBaseEmulator::report(std::int64_t now_ns) {
   say_report(bytes_of(report), now_ns);
   if (!with_battery) return;
   const long millivolts = std::lround(1e3 * text_.battery_v);
-  say(bytes_of(devices::TextBaseBattery{static_cast<std::uint32_t>(millivolts)}), now_ns);
+  say(bytes_of(
+          devices::TextBaseBattery{static_cast<std::uint32_t>(millivolts), text_.battery_percent}),
+      now_ns);
 }
 
 std::int64_t TextBaseEmulator::due_ns() const {

@@ -9,6 +9,7 @@ namespace {
 using enum MetricKind;
 
 constexpr double kMilli = 1e-3;
+constexpr double kPercent = 1e-2;
 
 constexpr auto kCounterMetrics = std::to_array<CounterMetric>({
     // every service
@@ -54,6 +55,8 @@ constexpr auto kCounterMetrics = std::to_array<CounterMetric>({
     {"base_restarts", "topogeo_base_restarts_total", kTotal, "times the base restarted by itself"},
     {"base_watchdog_expirations", "topogeo_base_watchdog_expirations_total", kTotal,
      "times the base stopped because no command came"},
+    {"battery_percent", "topogeo_battery_charge_ratio", kGauge,
+     "charge of the battery as the base measures it", "", kPercent},
     // local mapper
     {"scans", "topogeo_scans_total", kTotal, "scans processed"},
     {"local_maps", "topogeo_local_maps", kGauge, "local maps made, received or held"},

@@ -16,11 +16,11 @@ namespace {
 using messaging::SampleInfo;
 using Level = EventLog::Level;
 
-double counter(const msg::ServiceStatus& status, std::string_view name) {
+std::optional<double> counter(const msg::ServiceStatus& status, std::string_view name) {
   for (const msg::Counter& one : status.counters()) {
     if (name == one.name().c_str()) return one.value();
   }
-  return 0.0;
+  return std::nullopt;
 }
 
 Json service_json(const msg::ServiceStatus& status) {
@@ -34,8 +34,8 @@ Json service_json(const msg::ServiceStatus& status) {
           {"input_age_s", rounded(status.input_age_s())},
           {"faults", status.fault_count()},
           {"last_error", text_of_message(status.last_error())},
-          {"cpu_s", rounded(counter(status, "cpu_s"))},
-          {"memory_bytes", counter(status, "resident_bytes")},
+          {"cpu_s", rounded(counter(status, "cpu_s").value_or(0.0))},
+          {"memory_bytes", counter(status, "resident_bytes").value_or(0.0)},
           {"version", text_of_message(status.version())}};
 }
 
@@ -109,6 +109,14 @@ void HealthView::on_service_gone(const SampleInfo& info) {
     hub_.edit(Channel::kServices, {{key->second, text_of(lost)}});
   }
   keys_.erase(key);
+}
+
+std::optional<double> HealthView::battery_percent() const {
+  const auto gateway = std::ranges::find_if(rows_, [](const auto& row) {
+    return row.second.service == "sensor_gateway" && !row.second.lost;
+  });
+  if (gateway == rows_.end()) return std::nullopt;
+  return counter(gateway->second.last, "battery_percent");
 }
 
 bool HealthView::runs(const std::string& service) const {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "topogeo/msg/status.h"
@@ -19,6 +20,9 @@ class HealthView {
  public:
   HealthView(service::Service& service, ChannelHub& hub, EventLog& events);
 
+  /// Charge of the battery in [0, 100] as the gateway reports it; empty unless the base measures
+  /// it.
+  [[nodiscard]] std::optional<double> battery_percent() const;
   /// Whether a service of that name runs for the robot.
   [[nodiscard]] bool runs(const std::string& service) const;
 

@@ -227,12 +227,15 @@ void RobotView::on_base(const msg::BaseStatus& status) {
   if (!std::exchange(battery_low_, status.battery_low()) && battery_low_) {
     events_.alarm(Level::kWarning, "base", "the battery is low");
   }
-  hub_.set(Channel::kBase, text_of(Json{{"state", name_of(status.state())},
-                                        {"reason", reason},
-                                        {"commands_taken", status.commands_taken()},
-                                        {"stands", status.stands()},
-                                        {"battery_v", rounded(status.battery_v())},
-                                        {"battery_low", status.battery_low()}}));
+  const auto percent = hooks_.battery_percent ? hooks_.battery_percent() : std::optional<double>();
+  hub_.set(Channel::kBase,
+           text_of(Json{{"state", name_of(status.state())},
+                        {"reason", reason},
+                        {"commands_taken", status.commands_taken()},
+                        {"stands", status.stands()},
+                        {"battery_v", rounded(status.battery_v())},
+                        {"battery_low", status.battery_low()},
+                        {"battery_percent", percent ? rounded(*percent) : nullptr}}));
 }
 
 void RobotView::on_laser(const msg::LaserStatus& status) {

@@ -28,6 +28,8 @@ struct RobotHooks {
   std::function<void(const msg::NavigatorStatus&, const messaging::SampleInfo&)> on_navigator;
   /// The map that scans are compared with; null before the first one.
   std::function<std::shared_ptr<const MapPicture>()> map;
+  /// Charge of the battery in [0, 100]; empty unless the base measures it.
+  std::function<std::optional<double>()> battery_percent;
 };
 
 /// Lives in the loop of its service.

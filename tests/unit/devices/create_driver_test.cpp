@@ -199,6 +199,17 @@ TEST(CreateDriver, ALowBatteryIsReported) {
   EXPECT_TRUE(base.driver.status().battery_low);
 }
 
+TEST(CreateDriver, TheChargeOfTheBatteryIsReportedIfItsCapacityIsKnown) {
+  const auto percent = [](std::uint16_t charge_mah, std::uint16_t capacity_mah) {
+    CreateOnLine base(create_settings(), {.charge_mah = charge_mah, .capacity_mah = capacity_mah});
+    EXPECT_TRUE(base.start());
+    return base.driver.status().battery_percent;
+  };
+  EXPECT_EQ(percent(1'300, 2'600), 50.0);
+  EXPECT_EQ(percent(2'700, 2'600), 100.0) << "more than the stated capacity";
+  EXPECT_FALSE(percent(1'300, 0));
+}
+
 TEST(CreateDriver, ThePoseGoesOnWhenTheBaseRestarts) {
   CreateOnLine base;
   restart_on_the_way(base, 4 * kWheelsSecond_ns);

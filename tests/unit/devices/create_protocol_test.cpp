@@ -14,10 +14,12 @@ using testing::ElementsAre;
 
 using Bytes = std::vector<std::uint8_t>;
 
-// header, 25 bytes; left bump and right wheel drop; front left cliff; full charging; 14,512 mV;
-// home base; safe mode; left encoder 65,530, right encoder 258; the sum is 3 * 256 with it.
-const Bytes kFrameByHand{19, 25,   7,    6,  9, 0,  10, 1,  11,   0,    12, 0, 21, 2,
-                         22, 0x38, 0xB0, 34, 2, 35, 2,  43, 0xFF, 0xFA, 44, 1, 2,  0};
+// header, 31 bytes; left bump and right wheel drop; front left cliff; full charging; 14,512 mV;
+// 2,000 of 3,000 mAh; home base; safe mode; left encoder 65,530, right encoder 258; the sum is 3 *
+// 256 with it.
+const Bytes kFrameByHand{19, 31, 7,  6,    9,    0,    10,   1,    11, 0,    12,   0,
+                         21, 2,  22, 0x38, 0xB0, 25,   0x07, 0xD0, 26, 0x0B, 0xB8, 34,
+                         2,  35, 2,  43,   0xFF, 0xFA, 44,   1,    2,  0};
 
 Bytes with_checksum(Bytes frame) {
   frame.back() = 0;
@@ -32,7 +34,7 @@ TEST(CreateProtocol, TheExampleOfTheSpecificationHasItsChecksum) {
 
 TEST(CreateProtocol, OrdersAreThoseOfTheSpecification) {
   EXPECT_THAT(create_stream_request(),
-              ElementsAre(148, 11, 7, 9, 10, 11, 12, 21, 22, 34, 35, 43, 44));
+              ElementsAre(148, 13, 7, 9, 10, 11, 12, 21, 22, 25, 26, 34, 35, 43, 44));
   // Right wheel first, high byte first: -200 mm/s is 0xFF38, 500 mm/s is 0x01F4.
   EXPECT_THAT(create_drive(500.0, -200.0), ElementsAre(145, 0xFF, 0x38, 0x01, 0xF4));
   EXPECT_THAT(create_drive(0.0, 0.0), ElementsAre(145, 0, 0, 0, 0));
@@ -56,6 +58,8 @@ TEST(CreateProtocol, AFrameIsReadAsWorkedByHand) {
   EXPECT_THAT(report->cliffs, ElementsAre(false, true, false, false));
   EXPECT_EQ(report->charging, 2);
   EXPECT_EQ(report->millivolts, 14'512);
+  EXPECT_EQ(report->charge_mah, 2'000);
+  EXPECT_EQ(report->capacity_mah, 3'000);
   EXPECT_TRUE(report->dock);
   EXPECT_FALSE(report->charger);
   EXPECT_EQ(report->mode, 2) << "safe";
@@ -67,7 +71,7 @@ TEST(CreateProtocol, AFrameIsReadAsWorkedByHand) {
 
 TEST(CreateProtocol, FramesAreFoundBehindNoiseAndCutFrames) {
   const Bytes frame = with_checksum(kFrameByHand);
-  Bytes stream{1, 19, 19, 25, 7};
+  Bytes stream{1, 19, 19, 31, 7};
   stream.insert(stream.end(), frame.begin(), frame.end());
   stream.insert(stream.end(), frame.begin(), frame.begin() + 12);
   stream.insert(stream.end(), frame.begin(), frame.end());
@@ -103,14 +107,14 @@ TEST(CreateProtocol, ValuesThatNoDeviceSendsAreDropped) {
   EXPECT_TRUE(refused(3, 16));  // bumps
   EXPECT_TRUE(refused(5, 2));   // cliff
   EXPECT_TRUE(refused(13, 6));  // charging
-  EXPECT_TRUE(refused(18, 4));  // sources
-  EXPECT_TRUE(refused(20, 5));  // mode
+  EXPECT_TRUE(refused(24, 4));  // sources
+  EXPECT_TRUE(refused(26, 5));  // mode
 }
 
 TEST(CreateProtocol, ASlowLineGetsFewerFrames) {
   EXPECT_EQ(create_period_ms({115'200, Parity::kNone}), 15U);
-  EXPECT_EQ(create_period_ms({19'200, Parity::kNone}), 15U);  // 28 bytes in 14.6 ms
-  EXPECT_EQ(create_period_ms({9'600, Parity::kNone}), 30U);
+  EXPECT_EQ(create_period_ms({19'200, Parity::kNone}), 30U);  // 34 bytes in 17.7 ms
+  EXPECT_EQ(create_period_ms({9'600, Parity::kNone}), 45U);
 }
 
 }  // namespace

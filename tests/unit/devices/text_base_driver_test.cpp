@@ -83,6 +83,14 @@ TEST(TextBaseDriver, ALowBatteryIsReported) {
   ASSERT_TRUE(base.start());
   base.pass(2 * kWheelsSecond_ns);
   EXPECT_TRUE(base.driver.status().battery_low);
+  EXPECT_FALSE(base.driver.status().battery_percent);
+}
+
+TEST(TextBaseDriver, TheChargeOfABaseThatMeasuresItIsReported) {
+  TextBaseOnLine base(text_settings(), {.battery_percent = 64});
+  ASSERT_TRUE(base.start());
+  base.pass(2 * kWheelsSecond_ns);
+  EXPECT_EQ(base.driver.status().battery_percent, 64.0);
 }
 
 TEST(TextBaseDriver, ThePoseGoesOnWhenTheBaseRestarts) {

@@ -47,12 +47,18 @@ TEST(TextBase, HelloHasAVersionAndAName) {
   const auto battery = text_base_message("B,12300");
   ASSERT_TRUE(battery && battery->battery);
   EXPECT_EQ(battery->battery->millivolts, 12'300U);
+  EXPECT_FALSE(battery->battery->percent);
+  const auto measured = text_base_message("B,12300,64");
+  ASSERT_TRUE(measured && measured->battery);
+  EXPECT_EQ(measured->battery->percent, 64);
+  EXPECT_EQ(to_line(*measured->battery), text_base_line("B,12300,64"));
 }
 
 TEST(TextBase, RefusesFieldsThatAreMissingOrOutOfRange) {
-  for (const char* body : {"", "T", "T,1,2,3", "T,1,2,3,4,5,6", "T,-1,0,0,0", "T,1,2147483648,0,0",
-                           "T,1,2,x,0", "T,1,2,,0", "T,1,2,3,256", "T1,2,3,4", "H", "H,1",
-                           "H,x,name", "B", "B,-1", "B,1,2", "T,99999999999999999999,0,0,0"}) {
+  for (const char* body :
+       {"", "T", "T,1,2,3", "T,1,2,3,4,5,6", "T,-1,0,0,0", "T,1,2147483648,0,0", "T,1,2,x,0",
+        "T,1,2,,0", "T,1,2,3,256", "T1,2,3,4", "H", "H,1", "H,x,name", "B", "B,-1", "B,1,101",
+        "B,1,-1", "B,1,2,3", "T,99999999999999999999,0,0,0"}) {
     EXPECT_FALSE(text_base_message(body)) << body;
   }
   const auto unknown = text_base_message("Q,1,2");

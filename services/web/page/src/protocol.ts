@@ -89,6 +89,7 @@ export interface Base {
   stands: boolean;
   battery_v: number | null;
   battery_low: boolean;
+  battery_percent: number | null; // null: the base does not measure it
 }
 
 export interface Laser {

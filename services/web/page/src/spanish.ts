@@ -110,7 +110,9 @@ export const spanish: Texts = {
     loop_value: (ago) =>
       ago === 0 ? "en este punto de medida" : `hace ${plural(ago, "punto de medida", "puntos de medida")}`,
     no_loop: "aún ninguno", battery: "Batería",
-    battery_value: (volts, low) => `${typeof volts === "number" ? `${volts.toFixed(1)} V` : "–"}${low ? ", baja" : ""}`,
+    battery_value: (volts, low, percent) =>
+      (typeof percent === "number" ? `${Math.round(percent)} %, ` : "") +
+      `${typeof volts === "number" ? `${volts.toFixed(1)} V` : "–"}${low ? ", baja" : ""}`,
     devices: "Láser y tracción", laser: "Láser", base: "Tracción",
     base_states: {
       ready: "lista", moving: "en movimiento", offline: "no conectada", starting: "arranca",

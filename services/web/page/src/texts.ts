@@ -139,7 +139,8 @@ export const english = {
         : `${counted(points_ago, "scan point", "scan points")} ago`,
     no_loop: "none yet",
     battery: "Battery",
-    battery_value: (volts: Maybe, low: boolean) =>
+    battery_value: (volts: Maybe, low: boolean, percent: Maybe) =>
+      (typeof percent === "number" ? `${Math.round(percent)} %, ` : "") +
       `${typeof volts === "number" ? `${volts.toFixed(1)} V` : "–"}${low ? ", low" : ""}`,
     devices: "Laser and drive unit",
     laser: "Laser",

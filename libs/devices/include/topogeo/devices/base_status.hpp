@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -33,7 +34,8 @@ struct BaseStatus {
   bool stands = false;          ///< see BaseDriver::stands(); false while the base is not heard
   double battery_v = 0.0;       ///< 0 until the base reports it
   bool battery_low = false;
-  std::uint16_t bumpers = 0;  ///< a bit for each switch that is pressed
+  std::optional<double> battery_percent{};  ///< [0, 100]; empty unless the base measures it
+  std::uint16_t bumpers = 0;                ///< a bit for each switch that is pressed
   // Counts since the driver was made:
   std::uint64_t reports = 0;            ///< accepted ones
   std::uint64_t echoes = 0;             ///< lines that repeated one of our commands

@@ -40,6 +40,8 @@ struct CreateReport {
   std::uint8_t charging =
       0;  ///< 0: not, 1: reconditioning, 2: full, 3: trickle, 4: waits, 5: fault
   std::uint16_t millivolts = 0;
+  std::uint16_t charge_mah = 0;          ///< of the battery, mAh
+  std::uint16_t capacity_mah = 0;        ///< of the battery when it is full; 0: not known
   bool charger = false;                  ///< is plugged in
   bool dock = false;                     ///< stands on it
   std::uint8_t mode = 0;                 ///< of CreateMode, or one more; at most kMostCreateMode
@@ -49,7 +51,7 @@ struct CreateReport {
 
 inline constexpr std::uint8_t kCreateStreamHeader = 19;
 /// Bytes of a frame of the stream, with header, length and checksum.
-inline constexpr std::size_t kCreateFrame_bytes = 28;
+inline constexpr std::size_t kCreateFrame_bytes = 34;
 /// mm/s of a wheel.
 inline constexpr int kCreateFastest = 500;
 

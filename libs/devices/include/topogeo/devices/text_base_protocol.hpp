@@ -39,6 +39,7 @@ struct TextBaseReport {
 /// B: the battery.
 struct TextBaseBattery {
   std::uint32_t millivolts = 0;
+  std::optional<std::uint8_t> percent{};  ///< [0, 100], of a base that measures its charge
 };
 
 [[nodiscard]] std::string to_line(const TextBaseHello& hello);

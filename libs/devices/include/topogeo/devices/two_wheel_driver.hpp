@@ -81,7 +81,8 @@ class TwoWheelDriver : public BaseDriver {
   /// The base answers, but cannot be used.
   void refuse(const std::string& reason) { disconnect(reason); }
   void take(const WheelReport& report, const Signs& signs, std::int64_t now_ns);
-  void set_battery(double volts);
+  /// `percent`: of a base that measures its charge, in [0, 100].
+  void set_battery(double volts, std::optional<double> percent = std::nullopt);
   void write(std::vector<std::uint8_t> bytes);
   [[nodiscard]] bool runs() const { return link_ == Link::kRunning; }
   [[nodiscard]] bool stopped() const { return interlocks_.engaged(); }

@@ -16,7 +16,9 @@ struct CreateEmulatorSettings {
   devices::LineSettings line{115'200, devices::Parity::kNone};
   devices::CreateSettings wheels{};
   double battery_v = 15.5;
-  unsigned mode_offset = 0;  ///< a Roomba 690 counts its modes from one more
+  std::uint16_t charge_mah = 1'950;
+  std::uint16_t capacity_mah = 2'600;  ///< 0: the battery does not know it
+  unsigned mode_offset = 0;            ///< a Roomba 690 counts its modes from one more
   std::uint64_t seed = 1;
 };
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -21,10 +22,11 @@ struct TextBaseEmulatorSettings {
   bool gyro = false;  ///< it reports a rate of turn
   int version = devices::kTextBaseVersion;
   double battery_v = 12.3;
-  double acceleration_mps2 = 2.0;            ///< of each wheel
-  std::int64_t report_ns = 20'000'000;       ///< from report to report
-  std::int64_t start_up_ns = 1'000'000'000;  ///< after power-on
-  std::uint64_t seed = 1;                    ///< of the places of faults
+  std::optional<std::uint8_t> battery_percent{};  ///< it measures its charge
+  double acceleration_mps2 = 2.0;                 ///< of each wheel
+  std::int64_t report_ns = 20'000'000;            ///< from report to report
+  std::int64_t start_up_ns = 1'000'000'000;       ///< after power-on
+  std::uint64_t seed = 1;                         ///< of the places of faults
 };
 
 class TextBaseEmulator final : public TwoWheelEmulator {

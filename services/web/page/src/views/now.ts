@@ -191,11 +191,13 @@ export class NowView implements ViewPart {
     const base = channels.value("base");
     show(this.battery.element, typeof base?.battery_v === "number");
     if (base) {
-      // The base reports only whether the battery is low; its charge does not follow from the
-      // voltage alone.
+      // The charge does not follow from the voltage alone.
+      const unmeasured = base.battery_low ? 0.15 : 1;
+      const percent = base.battery_percent;
+      const value = words.battery_value(base.battery_v, base.battery_low, percent);
       this.battery.set(
-        base.battery_low ? 0.15 : 1,
-        with_age(channels, "base", words.battery_value(base.battery_v, base.battery_low)),
+        typeof percent === "number" ? percent / 100 : unmeasured,
+        with_age(channels, "base", value),
         base.battery_low ? "bad" : "good",
       );
     }
