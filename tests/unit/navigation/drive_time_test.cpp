@@ -1,10 +1,8 @@
 #include "topogeo/navigation/drive_time.hpp"
 
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -19,13 +17,6 @@ namespace {
 
 using planning::DrawnZone;
 using planning::ZoneKind;
-
-std::shared_ptr<const planning::HybridMap> with_zones(const planning::HybridMap& map,
-                                                      const std::vector<DrawnZone>& zones) {
-  planning::FreeSpace space(map.space().grid(), map.space().inflation(), zones);
-  planning::ZoneMap parts = planning::zones_by_width(space);
-  return std::make_shared<const planning::HybridMap>(std::move(space), std::move(parts));
-}
 
 struct Times {
   double estimated_s = 0.0;
@@ -49,8 +40,7 @@ Times drive_through_a_zone(std::uint64_t seed) {
                                          {{from_m, -1.0}, {to_m, -1.0}, {to_m, 7.0}, {from_m, 7.0}},
                                          ZoneKind::kSlow,
                                          number(0.1, 0.4)}};
-  drive.map = with_zones(*drive.map, zones);
-  drive.navigator.set_map(drive.map, ++drive.map_version);
+  drive.draw(zones);
   const Eigen::Vector2d goal_m(number(6.0, doors ? 9.0 : 7.2), number(0.8, 5.2));
   const auto route =
       planning::HybridPlanner(*drive.map).plan(settings.T_world_start.position_m(), goal_m);

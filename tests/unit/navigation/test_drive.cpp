@@ -62,6 +62,13 @@ TestDrive::TestDrive(world::World floor, const DriveSettings& drive)
   if (settings.map_comes) navigator.set_map(map, map_version);
 }
 
+void TestDrive::draw(const std::vector<planning::DrawnZone>& zones) {
+  planning::FreeSpace space(map->space().grid(), map->space().inflation(), zones);
+  planning::ZoneMap parts = planning::zones_by_width(space);
+  map = std::make_shared<const planning::HybridMap>(std::move(space), std::move(parts));
+  navigator.set_map(map, ++map_version);
+}
+
 void TestDrive::go_to(const Eigen::Vector2d& to_m, std::optional<double> looking_rad) {
   goal_m = to_m;
   heading_rad = looking_rad;

@@ -46,6 +46,8 @@ class TestDrive {
   bool run_until(const std::function<bool()>& condition, double longest_s);
   bool arrives(double longest_s);
 
+  /// The map gets these zones, and no others.
+  void draw(const std::vector<planning::DrawnZone>& zones);
   void go_to(const Eigen::Vector2d& goal_m, std::optional<double> heading_rad = {});
 
   [[nodiscard]] const NavigatorStatus& status() const { return navigator.status(); }
