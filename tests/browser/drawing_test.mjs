@@ -89,6 +89,8 @@ test("names are free or get a number", () => {
   assert.equal(drawing.name_is_free(edited, "zones", "no-go 2", { list: "zones", index: 1 }), true);
   const oneway = tools.make_item("one_way", { points: [0, 0, 1, 0, 1, 3, 0, 3], heading_rad: 0 }, edited);
   assert.equal(oneway.item.value, 1.571); // along its longer side
+  const lane = tools.make_item("preferred", { points: kSquare, heading_rad: 0 }, edited);
+  assert.deepEqual([lane.item.kind, lane.item.value, lane.item.name], ["preferred", 0, "lane 1"]);
 });
 
 test("a drawing goes to JSON and back, and a wrong one is refused by the item's number", () => {

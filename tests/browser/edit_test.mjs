@@ -86,18 +86,21 @@ async function saved({ page, service }) {
   return service.drawing;
 }
 
-test("a rectangle becomes a no-go zone, with names of their own", async () => {
+test("a rectangle becomes a no-go zone or a preferred lane, with names of their own", async () => {
   const opened = await open();
   const { page } = opened;
   await choose(page, "no_go");
   await drag(page, [-3, 2], [1, -1]);
   await drag(page, [3, 2], [5, 1]);
+  await choose(page, "preferred");
+  await drag(page, [-3, -2], [5, -3]);
   const { zones } = await saved(opened);
   assert.deepEqual(
     zones.map(({ name, kind, value }) => [name, kind, value]),
     [
       ["no-go 1", "no_go", 0],
       ["no-go 2", "no_go", 0],
+      ["lane 1", "preferred", 0],
     ],
   );
   assert.deepEqual(zones[0].corners_m, [-3, 2, 1, 2, 1, -1, -3, -1]);

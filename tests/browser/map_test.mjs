@@ -15,6 +15,7 @@ const kZones = [
   { name: "wet floor", kind: "no_go", value: 0, corners_m: kBox(-3, 0) },
   { name: "ramp", kind: "slow", value: 0.3, corners_m: kBox(0, 0) },
   { name: "aisle", kind: "one_way", value: 0, corners_m: kBox(3, 0) },
+  { name: "main road", kind: "preferred", value: 0, corners_m: kBox(0, 3) },
 ];
 
 let browser;
@@ -60,12 +61,12 @@ function zone_pixels(page) {
   return page.evaluate(() => {
     const style = getComputedStyle(document.documentElement);
     const wanted = Object.fromEntries(
-      ["no-go", "slow", "one-way"].map((kind) => {
+      ["no-go", "slow", "one-way", "preferred"].map((kind) => {
         const hex = style.getPropertyValue(`--map-${kind}`).trim();
         return [kind, [1, 3, 5].map((at) => Number.parseInt(hex.slice(at, at + 2), 16))];
       }),
     );
-    const found = { "no-go": 0, slow: 0, "one-way": 0 };
+    const found = { "no-go": 0, slow: 0, "one-way": 0, preferred: 0 };
     for (const canvas of document.querySelectorAll("#map canvas")) {
       const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
       for (let i = 0; i < data.length; i += 4) {

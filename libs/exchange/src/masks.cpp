@@ -81,6 +81,8 @@ MaskFiles mask_files(const std::filesystem::path& path, const GridFrame& turned,
       }
     } else if (zone.kind == ZoneKind::kOneWay) {
       out.notes.push_back(fmt::format("zone '{}': masks have no directions", zone.name));
+    } else if (zone.kind == ZoneKind::kPreferred) {
+      out.notes.push_back(fmt::format("zone '{}': masks have no preferred lanes", zone.name));
     }
   }
   // A value is a whole number of up to 100: steps of 1 cm/s up to 1 m/s, else of 1 % of the

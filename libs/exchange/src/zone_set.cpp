@@ -41,6 +41,10 @@ void add_fields(const planning::DrawnZone& zone, Json& out) {
       out["directedLimitation"] = "RESTRICTED";
       out["limitation"] = "RESTRICTED";
       break;
+    case ZoneKind::kPreferred:
+      out["zoneType"] = "PRIORITY";
+      out["priorityFactor"] = 1.0;
+      break;
     case ZoneKind::kRoom:
       out["zoneType"] = "ACTION";
       for (const char* when : {"entryActions", "duringActions", "exitActions"}) {
@@ -99,6 +103,13 @@ class ZoneSetReader {
       zone.kind = ZoneKind::kOneWay;
       zone.value =
           in.required("direction").number_between(-std::numbers::pi, std::numbers::pi, "rad");
+    } else if (type == "PRIORITY") {
+      zone.kind = ZoneKind::kPreferred;
+      const double factor = in.required("priorityFactor").number_between(0.0, 1.0, "");
+      if (factor != 1.0) {
+        set_.notes.push_back(
+            fmt::format("zone '{}': its priority {} counts as 1", zone.name, factor));
+      }
     } else if (type != "ACTION") {
       set_.notes.push_back(
           fmt::format("zone '{}' left out: no zone kind corresponds to {}", zone.name, type));

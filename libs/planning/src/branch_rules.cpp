@@ -54,12 +54,13 @@ BranchRules::Passage BranchRules::along(const Eigen::Vector2d& a_m,
   if (!frame_) return passage;
   const Eigen::Vector2d a = frame_->in_cells(a_m);
   const Eigen::Vector2d b = frame_->in_cells(b_m);
+  const auto usual = static_cast<double>(rules_.usual_slowness());
   double slowness = 0.0;
   double cells = 0.0;
   visit_line(a, b, [&](const Cell& cell) {
     cells += 1.0;
     if (!frame_->contains(cell)) {
-      slowness += 1.0;
+      slowness += usual;
       return true;
     }
     const std::size_t index = frame_->index(cell);
@@ -67,7 +68,7 @@ BranchRules::Passage BranchRules::along(const Eigen::Vector2d& a_m,
       passage.forth = passage.back = false;
       return false;
     }
-    slowness += rules_.guides() ? static_cast<double>(rules_.slowness(index)) : 1.0;
+    slowness += rules_.guides() ? static_cast<double>(rules_.slowness(index)) : usual;
     if (rules_.guides() && a != b) {
       passage.forth = passage.forth && rules_.allows(index, b - a);
       passage.back = passage.back && rules_.allows(index, a - b);

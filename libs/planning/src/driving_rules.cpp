@@ -19,6 +19,11 @@ constexpr double kUsualSpeed_m_s = 0.6;
 /// Lower limits count as this one, because a detour is never a hundred times longer.
 constexpr double kLeastSpeed_m_s = 0.006;
 
+/// Factor by which a step beside the preferred lanes costs more: a lane is taken if the route along
+/// it is at most so many times as long. The lanes do not cost less instead, because the estimate of
+/// the search must stay a lower bound.
+constexpr float kBesideLanes = 1.5F;
+
 constexpr double kCosOf120Degrees = -0.5;
 
 /// Same order as CellGraph.
@@ -56,7 +61,7 @@ DrivingRules::DrivingRules(const GridFrame& frame, std::span<const DrawnZone> zo
   for (const DrawnZone& zone : zones) {
     if (zone.kind != ZoneKind::kRoom && zone.polygon_m.size() >= 3) zones_.push_back(zone);
   }
-  std::map<std::size_t, std::vector<std::size_t>> zones_of_cell;  // slow and one-way ones
+  std::map<std::size_t, std::vector<std::size_t>> zones_of_cell;  // all kinds but no-go
   for (std::size_t i = 0; i < zones_.size(); ++i) {
     visit_cells_in(frame, zones_[i].polygon_m, [&](const Cell& cell) {
       if (zones_[i].kind == ZoneKind::kNoGo) {
@@ -78,6 +83,15 @@ DrivingRules::DrivingRules(const GridFrame& frame, std::span<const DrawnZone> zo
     areas_.emplace_back();
     for (const std::size_t zone : of_cell) add(zones_[zone], frame, areas_.back());
   }
+  prefer_lanes();
+}
+
+void DrivingRules::prefer_lanes() {
+  prefers_ = std::ranges::any_of(areas_, [](const Area& area) { return area.is_lane; });
+  if (!prefers_) return;
+  for (Area& area : areas_) {
+    if (!area.is_lane) area.slowness *= kBesideLanes;
+  }
 }
 
 void DrivingRules::add(const DrawnZone& zone, const GridFrame& frame, Area& area) {
@@ -85,6 +99,10 @@ void DrivingRules::add(const DrawnZone& zone, const GridFrame& frame, Area& area
     area.speed_mps = std::min(area.speed_mps.value_or(zone.value), zone.value);
     const double slowness = kUsualSpeed_m_s / std::max(*area.speed_mps, kLeastSpeed_m_s);
     area.slowness = static_cast<float>(std::max(1.0, slowness));
+    return;
+  }
+  if (zone.kind == ZoneKind::kPreferred) {
+    area.is_lane = true;
     return;
   }
   const auto [sin, cos] = geometry::sincos(zone.value - frame.T_map_grid.theta_rad);

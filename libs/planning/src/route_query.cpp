@@ -222,7 +222,8 @@ bool RouteQuery::uses_closed_edge(std::span<const Cell> cells) const {
 
 bool RouteQuery::needs_rules(std::span<const Cell> cells) const {
   const DrivingRules& rules = map_.space().rules();
-  return rules.guides() && std::ranges::any_of(cells, [&](const Cell& cell) {
+  if (!rules.guides() || cells.empty()) return false;
+  return rules.prefers() || std::ranges::any_of(cells, [&](const Cell& cell) {
            return rules.area(map_.frame().index(cell)) != 0;
          });
 }

@@ -42,12 +42,13 @@ std::vector<Eigen::Vector2d> polygon_of(const YamlNode& node) {
   return corners;
 }
 
-constexpr std::array<const char*, kZoneKinds> kKindNames{"room", "no_go", "slow", "one_way"};
+constexpr std::array<const char*, kZoneKinds> kKindNames{"room", "no_go", "slow", "one_way",
+                                                         "preferred"};
 
 ZoneKind kind_of(const YamlNode& node) {
   if (!node.exists()) return ZoneKind::kRoom;
   const std::optional<ZoneKind> kind = zone_kind_of(node.text());
-  if (!kind) node.fail("room, no_go, slow or one_way");
+  if (!kind) node.fail("room, no_go, slow, one_way or preferred");
   return *kind;
 }
 

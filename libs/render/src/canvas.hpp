@@ -28,6 +28,7 @@ inline constexpr Colour kDoor{0.00, 0.60, 0.40};
 inline constexpr Colour kNoGoZone{0.78, 0.16, 0.16};
 inline constexpr Colour kSlowZone{0.90, 0.55, 0.10};
 inline constexpr Colour kOneWayZone{0.16, 0.40, 0.70};
+inline constexpr Colour kPreferredLane{0.06, 0.46, 0.43};
 inline constexpr Colour kDrawnRoom{0.40, 0.35, 0.70};
 inline constexpr Colour kWhite{1.0, 1.0, 1.0};
 // Colours of one scan; branches and nodes of the diagram as in the figures of the Thesis, chapter

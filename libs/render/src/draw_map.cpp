@@ -123,6 +123,8 @@ Colour colour_of(planning::ZoneKind kind) {
       return kSlowZone;
     case planning::ZoneKind::kOneWay:
       return kOneWayZone;
+    case planning::ZoneKind::kPreferred:
+      return kPreferredLane;
     case planning::ZoneKind::kRoom:
       break;
   }

@@ -113,7 +113,7 @@ storage::MapDrawing from_msg(const msg::DrawingContent& content) {
     if (entry.is_station()) place.station_heading_rad = entry.heading_rad();
   }
   for (const msg::DrawnArea& entry : content.zones()) {
-    detail::check(entry.kind() < planning::kZoneKinds, "kind of a zone", "0 to 3");
+    detail::check(entry.kind() < planning::kZoneKinds, "kind of a zone", "0 to 4");
     drawing.zones.push_back({entry.name().to_string(), from_points(entry.corners()),
                              static_cast<planning::ZoneKind>(entry.kind()), entry.value()});
   }
@@ -150,7 +150,7 @@ void check_rules(const storage::MapDrawing& drawing) {
   const std::size_t rules = drawing.lines.size() + static_cast<std::size_t>(zones);
   if (rules <= msg::kMaxRules) return;
   throw std::invalid_argument(fmt::format(
-      "{} no-go, slow and one-way zones, walls, openings and doors over a map, expected at most {}",
+      "{} zones with a rule, walls, openings and doors over a map, expected at most {}",
       rules, msg::kMaxRules));
 }
 

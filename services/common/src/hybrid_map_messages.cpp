@@ -82,7 +82,7 @@ void add_zones_and_places(const planning::HybridMap& map, msg::HybridMap& out) {
   const planning::DrivingRules& rules = map.space().rules();
   check_bound("rules", rules.zones().size() + rules.lines().size(), msg::kMaxRules);
   for (const planning::DrawnZone& zone : rules.zones()) {
-    add_rule(zone.name, static_cast<std::uint8_t>(zone.kind), zone.value, zone.polygon_m, out);
+    add_rule(zone.name, rule_kind_of(zone.kind), zone.value, zone.polygon_m, out);
   }
   for (const planning::DrawnLine& line : rules.lines()) {
     add_rule(line.name, rule_kind_of(line.kind), 0.0, line.points_m, out);

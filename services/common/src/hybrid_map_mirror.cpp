@@ -27,7 +27,7 @@ planning::InflationConfig inflation_of(const msg::HybridMap& summary) {
 }
 
 bool is_line(const msg::HybridRule& rule) {
-  return rule.kind() >= planning::kZoneKinds;
+  return !zone_of_rule(rule.kind());
 }
 
 void check_zones_and_places(const msg::HybridMap& summary) {
@@ -35,7 +35,7 @@ void check_zones_and_places(const msg::HybridMap& summary) {
   for (const msg::HybridZone& zone : summary.zones()) finite(zone.area_m2(), "area of a zone");
   check_bound("rules", summary.rules().size(), msg::kMaxRules);
   for (const msg::HybridRule& rule : summary.rules()) {
-    check(rule.kind() > 0 && rule.kind() < kRuleKinds, "kind of a rule", "1 to 6");
+    check(rule.kind() > 0 && rule.kind() < kRuleKinds, "kind of a rule", "1 to 7");
     const std::size_t least = is_line(rule) ? 2 : 3;
     check(rule.corners().size() >= least, "corners of a rule", "at least " + std::to_string(least));
     check_bound("corners of a rule", rule.corners().size(), msg::kMaxRuleCorners);
@@ -71,11 +71,10 @@ DrawnRules rules_of(const msg::HybridMap& summary) {
     }
     const std::string name = rule.name().to_string();
     if (is_line(rule)) {
-      const auto kind = static_cast<planning::LineKind>(rule.kind() - planning::kZoneKinds);
+      const auto kind = static_cast<planning::LineKind>(rule.kind() - kFirstLineRule);
       rules.lines.push_back({kind, std::move(corners_m), name});
     } else {
-      const auto kind = static_cast<planning::ZoneKind>(rule.kind());
-      rules.zones.push_back({name, std::move(corners_m), kind, rule.value()});
+      rules.zones.push_back({name, std::move(corners_m), *zone_of_rule(rule.kind()), rule.value()});
     }
   }
   return rules;

@@ -7,6 +7,7 @@
 
 #include "topogeo/planning/room_memory.hpp"
 #include "topogeo/planning/zone_middles.hpp"
+#include "topogeo/planning/zones.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/hybrid_map_messages.hpp"
 #include "topogeo/support/format.hpp"
@@ -54,11 +55,6 @@ std::vector<std::optional<planning::Cell>> middles_of(const MapPicture& picture,
     if (const auto zone = picture.zone_at(frame.cell_at(i))) zone_of_cell[i] = *zone;
   }
   return planning::middles_of_zones(frame, zone_of_cell, zones);
-}
-
-std::string rule_kind(std::uint8_t kind) {
-  constexpr std::array<const char*, 4> kKinds = {"room", "no_go", "slow", "one_way"};
-  return kind < kKinds.size() ? kKinds.at(kind) : "unknown";
 }
 
 std::string without_capitals(std::string_view text) {
@@ -223,14 +219,15 @@ void MapView::show_drawing() {
   hub_.edit(Channel::kPlaces, std::move(places), true);
   std::vector<Edit> rules;
   for (const msg::HybridRule& rule : summary_->rules()) {
-    if (rule.kind() >= planning::kZoneKinds) continue;  // walls and the like are in the drawing
+    const std::optional<planning::ZoneKind> kind = service::zone_of_rule(rule.kind());
+    if (!kind) continue;  // walls and the like are in the drawing
     Json corners = Json::array();
     for (const msg::Point2& corner : rule.corners()) {
       corners.push_back(rounded(corner.x_m()));
       corners.push_back(rounded(corner.y_m()));
     }
     rules.push_back(
-        {text_of_message(rule.name()), text_of(Json{{"kind", rule_kind(rule.kind())},
+        {text_of_message(rule.name()), text_of(Json{{"kind", planning::to_string(*kind)},
                                                     {"value", exact(rule.value())},
                                                     {"corners_m", std::move(corners)}})});
   }

@@ -57,6 +57,7 @@ SceneColor color_of_node(const std::string& kind) {
 
 SceneColor color_of_rule(const std::string& kind) {
   if (kind == "no_go") return kRed;
+  if (kind == "preferred") return kGreen;
   return kind == "slow" ? kOrange : kPurple;
 }
 

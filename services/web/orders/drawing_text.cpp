@@ -88,7 +88,9 @@ planning::Place place_of(const Json& json) {
 
 planning::DrawnZone zone_of(const Json& json) {
   const auto kind = planning::zone_kind_of(text_in(json, "kind"));
-  if (!kind) throw std::invalid_argument("kind: expected room, no_go, slow or one_way");
+  if (!kind) {
+    throw std::invalid_argument("kind: expected room, no_go, slow, one_way or preferred");
+  }
   planning::DrawnZone zone{text_in(json, "name"), points_of(json, "corners_m"), *kind};
   if (*kind == planning::ZoneKind::kSlow) {
     zone.value = needed(json, "value", 0.0, std::numeric_limits<double>::max());

@@ -41,6 +41,21 @@ TEST_F(ZoneFiles, AZoneSetKeepsTheRulesOfVda5050) {
             "floor_1 BLOCKED ACTION SPEED_LIMIT DIRECTED\n");
 }
 
+TEST_F(ZoneFiles, APreferredLaneIsAZoneOfPriority) {
+  const std::vector<planning::DrawnZone> lane = {
+      {"lane", {{0, 0}, {4, 0}, {4, 1}}, ZoneKind::kPreferred, 0.0}};
+  std::string text = zone_set_text(lane, {});
+  EXPECT_THAT(text, HasSubstr("\"PRIORITY\""));
+  const ZoneSet same = parse_zone_set(text, "f");
+  ASSERT_EQ(same.zones.size(), 1U);
+  EXPECT_EQ(same.zones[0].kind, ZoneKind::kPreferred);
+  EXPECT_THAT(same.notes, IsEmpty());
+  const std::size_t factor = text.find("1.0", text.find("priorityFactor"));
+  text.replace(factor, 3, "0.5");
+  EXPECT_THAT(parse_zone_set(text, "f").notes,
+              Contains("zone 'lane': its priority 0.5 counts as 1"));
+}
+
 TEST_F(ZoneFiles, TheIdOfASetFollowsFromItsContentAlone) {
   const auto id = [](const std::string& text) {
     const std::size_t at = text.find("zoneSetId");

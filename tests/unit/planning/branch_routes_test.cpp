@@ -92,6 +92,15 @@ TEST(BranchRoutes, TakeASlowZoneOnlyWhereItIsFaster) {
   EXPECT_NEAR(plan(map, {5, 0}, {15, 0}, {}, with_zones(ramp)).route.length_m, 50.0, 1e-9);
 }
 
+TEST(BranchRoutes, TakeAPreferredLaneThatIsNotMuchLonger) {
+  const GlobalMap map = square();
+  std::vector<DrawnZone> lanes{rectangle(-1, 9, 21, 11, ZoneKind::kPreferred)};
+  EXPECT_NEAR(plan(map, {0, 3}, {20, 3}, {}, with_zones(lanes)).route.length_m, 26.0, 1e-9);
+  lanes.push_back(rectangle(-1, 3, 1, 9, ZoneKind::kPreferred));
+  lanes.push_back(rectangle(19, 3, 21, 9, ZoneKind::kPreferred));
+  EXPECT_NEAR(plan(map, {0, 3}, {20, 3}, {}, with_zones(lanes)).route.length_m, 34.0, 1e-9);
+}
+
 TEST(BranchRoutes, PassAOneWayZoneAlongItsHeadingAndAcrossIt) {
   const GlobalMap map = square();
   const std::vector<DrawnZone> aisle{rectangle(8, -1, 12, 1, ZoneKind::kOneWay, 0.0)};

@@ -48,13 +48,17 @@ double ruled_cost(const GridFrame& frame, const std::vector<DrawnZone>& zones,
   const auto slowness = [&](const Cell& cell) {
     const Eigen::Vector2d at = frame.center_m(cell);
     double most = 1.0;
+    bool lanes = false;
+    bool on_lane = false;
     for (const DrawnZone& zone : zones) {
       const Polygon& p = zone.polygon_m;  // boxes
       const bool in =
           at.x() > p[0].x() && at.x() < p[2].x() && at.y() > p[0].y() && at.y() < p[2].y();
       if (in && zone.kind == ZoneKind::kSlow) most = std::max(most, 0.6 / zone.value);
+      lanes = lanes || zone.kind == ZoneKind::kPreferred;
+      on_lane = on_lane || (in && zone.kind == ZoneKind::kPreferred);
     }
-    return most;
+    return lanes && !on_lane ? 1.5 * most : most;
   };
   const auto forbidden = [&](const Cell& cell, const Eigen::Vector2d& step) {
     const Eigen::Vector2d at = frame.center_m(cell);
@@ -137,6 +141,21 @@ TEST(DrivingRules, ASlowZoneIsGoneRoundWhereThatIsFaster) {
   EXPECT_LT(planned(0.6).length_m, 11.0);
   EXPECT_LT(planned(0.4).length_m, 11.0) << "12.5 cells' worth of time against 18";
   EXPECT_GT(planned(0.2).length_m, 17.0) << "20 cells' worth";
+}
+
+TEST(DrivingRules, APreferredLaneIsTakenIfItIsNotMuchLonger) {
+  const std::vector<DrawnZone> lanes = {
+      {"left", ruled_box(1, 1, 2, 5), ZoneKind::kPreferred, 0.0},
+      {"below", ruled_box(1, 1, 12, 2), ZoneKind::kPreferred, 0.0},
+      {"right", ruled_box(11, 1, 12, 5), ZoneKind::kPreferred, 0.0}};
+  const auto length_m = [&](const std::vector<DrawnZone>& zones, double y_m) {
+    return HybridPlanner(map_with(zones, kRing))
+        .plan({1.5, y_m}, Eigen::Vector2d(11.5, y_m))
+        .length_m;
+  };
+  EXPECT_LT(length_m({}, 4.5), 13.0) << "above the block";
+  EXPECT_GT(length_m(lanes, 4.5), 14.0) << "16 cells on lanes against 12 beside them";
+  EXPECT_LT(length_m(lanes, 5.5), 11.0) << "18 cells on lanes against 10 beside them";
 }
 
 TEST(DrivingRules, AOneWayZoneIsDrivenInItsDirectionAlone) {
@@ -223,6 +242,9 @@ TEST(DrivingRules, RoutesAreTheCheapestOfAllThatAreAllowed) {
       if (random.below(2) == 0) {
         zone.kind = ZoneKind::kOneWay;
         zone.value = number(-kHalfTurn_rad, kHalfTurn_rad);
+      } else if (random.below(3) == 0) {
+        zone.kind = ZoneKind::kPreferred;
+        zone.value = 0.0;
       }
       zones.push_back(zone);
     }

@@ -179,7 +179,7 @@ export interface Room extends PointM {
 }
 
 export interface Rule {
-  kind: "no_go" | "slow" | "one_way";
+  kind: "no_go" | "slow" | "one_way" | "preferred";
   value: number | null;
   corners_m: number[];
 }

@@ -15,7 +15,7 @@ export const spanish_draw_texts: Texts["draw"] = {
   tools: "Herramientas", groups: { names: "Nombres", walls: "Paredes", zones: "Zonas", rooms: "Salas" },
   tool: {
     select: "Elegir", place: "Lugar", base: "Casa", wall: "Pared", opening: "Abertura", door: "Puerta",
-    no_go: "Prohibida", slow: "Lenta", one_way: "Dirección única", split: "Dividir", join: "Unir",
+    no_go: "Prohibida", slow: "Lenta", one_way: "Dirección única", preferred: "Preferente", split: "Dividir", join: "Unir",
     rename: "Renombrar", measure: "Medir", shift: "Mover",
   },
   how: {
@@ -26,6 +26,7 @@ export const spanish_draw_texts: Texts["draw"] = {
     no_go: "Arrastre un rectángulo, o toque cada esquina y luego otra vez la primera.",
     slow: "Arrastre un rectángulo, o toque cada esquina y luego otra vez la primera.",
     one_way: "Arrastre un rectángulo, o toque cada esquina y luego otra vez la primera. Después gire su flecha.",
+    preferred: "Arrastre un rectángulo a lo largo del carril, o toque cada esquina y luego otra vez la primera.",
     split: "Arrastre una línea por la sala, de pared a pared.", join: "Toque una sala y luego la otra.",
     rename: "Toque la sala.", measure: "Toque dos puntos de la imagen cuya distancia conoce.", shift: "Arrastre la imagen.",
   },
@@ -36,11 +37,11 @@ export const spanish_draw_texts: Texts["draw"] = {
   to_corners: "A esquinas", to_angles: "A ángulos rectos",
   kinds: {
     place: "lugar", base: "casa", wall: "pared", opening: "abertura", door: "puerta", room: "sala",
-    no_go: "prohibida", slow: "lenta", one_way: "dirección única",
+    no_go: "prohibida", slow: "lenta", one_way: "dirección única", preferred: "carril",
   },
   titles: {
     place: "Lugar", base: "Casa", wall: "Pared", opening: "Abertura", door: "Puerta", room: "Sala",
-    no_go: "Zona prohibida", slow: "Zona lenta", one_way: "Zona de dirección única",
+    no_go: "Zona prohibida", slow: "Zona lenta", one_way: "Zona de dirección única", preferred: "Carril preferente",
   },
   item: "Elegido", name: "Nombre", name_taken: "Otro elemento tiene este nombre.",
   no_name: "El elemento necesita un nombre.", speed: "Límite de velocidad (m/s)", heading: "Rumbo (°)",

@@ -123,7 +123,8 @@ TEST(HybridMapConversion, RulesOfZonesComeAlong) {
       {"office", {{0, 0}, {1, 0}, {1, 4}, {0, 4}}, ZoneKind::kRoom, 0.0},
       {"wet", {{1.0, 1.0}, {2, 1}, {2, 2}}, ZoneKind::kNoGo, 0.0},
       {"ramp", {{2, 0}, {3, 0}, {3, 4}, {2, 4}}, ZoneKind::kSlow, 0.25},
-      {"aisle", {{3, 0}, {4, 0}, {4, 4}, {3, 4}}, ZoneKind::kOneWay, -1.5}};
+      {"aisle", {{3, 0}, {4, 0}, {4, 4}, {3, 4}}, ZoneKind::kOneWay, -1.5},
+      {"lane", {{0, 3}, {4, 3}, {4, 4}, {0, 4}}, ZoneKind::kPreferred, 0.0}};
   planning::FreeSpace space(planning::OccupancyGrid(frame, planning::CellState::kFree), {}, drawn);
   planning::ZoneMap parts = planning::zones_by_width(space);
   const planning::HybridMap map(std::move(space), std::move(parts));
@@ -137,8 +138,8 @@ TEST(HybridMapConversion, RulesOfZonesComeAlong) {
   mirror.put(messages.summary);
   ASSERT_TRUE(mirror.map());
   const planning::FreeSpace& got = mirror.map()->space();
-  ASSERT_THAT(got.rules().zones(), SizeIs(3));
-  for (std::size_t i = 0; i < 3; ++i) {
+  ASSERT_THAT(got.rules().zones(), SizeIs(4));
+  for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(got.rules().zones()[i].name, drawn[i + 1].name);
     EXPECT_EQ(got.rules().zones()[i].kind, drawn[i + 1].kind);
     EXPECT_EQ(got.rules().zones()[i].value, drawn[i + 1].value);
@@ -148,7 +149,12 @@ TEST(HybridMapConversion, RulesOfZonesComeAlong) {
     EXPECT_EQ(got.passable(i), map.space().passable(i));
     EXPECT_EQ(got.rules().directions(i), map.space().rules().directions(i));
     EXPECT_EQ(got.rules().speed_mps(i), map.space().rules().speed_mps(i));
+    EXPECT_EQ(got.rules().slowness(i), map.space().rules().slowness(i));
   }
+  // Numbers on the wire keep their meaning when a kind of zone is added.
+  EXPECT_EQ(messages.summary.rules()[2].kind(), 3);
+  EXPECT_EQ(messages.summary.rules()[3].kind(), 7);
+  EXPECT_EQ(rule_kind_of(planning::LineKind::kWall), 4);
   messages.summary.rules()[0].kind(0);
   EXPECT_THROW(mirror.put(messages.summary), std::invalid_argument);
   messages.summary.rules()[0].kind(1);

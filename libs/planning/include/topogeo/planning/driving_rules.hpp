@@ -22,15 +22,20 @@ class DrivingRules {
  public:
   /// No rules.
   DrivingRules() = default;
-  /// Rules of no-go, slow and one-way zones, walls, openings and doors; rooms have none.
+  /// Rules of no-go, slow and one-way zones, preferred lanes, walls, openings and doors; rooms have
+  /// none.
   DrivingRules(const GridFrame& frame, std::span<const DrawnZone> zones,
                std::span<const DrawnLine> lines = {});
 
   /// The zones with rules, in their order.
   [[nodiscard]] const std::vector<DrawnZone>& zones() const { return zones_; }
   [[nodiscard]] const std::vector<DrawnLine>& lines() const { return lines_; }
-  /// Whether any cell has a speed limit or forbidden directions.
+  /// Whether any cell has a speed limit, forbidden directions or a preferred lane.
   [[nodiscard]] bool guides() const { return !area_.empty(); }
+  /// Whether there is a preferred lane, so that steps beside it cost more.
+  [[nodiscard]] bool prefers() const { return prefers_; }
+  /// slowness() of cells outside of all zones and of the frame.
+  [[nodiscard]] float usual_slowness() const { return areas_.empty() ? 1.0F : areas_[0].slowness; }
 
   /// Cells whose middle lies in a no-go zone, and those of walls.
   [[nodiscard]] const std::vector<Cell>& no_go() const { return no_go_; }
@@ -40,9 +45,9 @@ class DrivingRules {
   [[nodiscard]] const std::vector<Cell>& open() const { return open_; }
 
   // Properties of a cell by its index; valid only if guides().
-  /// Equal for cells in the same slow and one-way zones; 0 outside of them.
+  /// Equal for cells in the same slow and one-way zones and preferred lanes; 0 outside of them.
   [[nodiscard]] std::uint32_t area(std::size_t index) const { return area_[index]; }
-  /// Factor by which a step takes longer here than elsewhere; >= 1.
+  /// Factor by which a step costs more here, because it takes longer or is beside the lanes; >= 1.
   [[nodiscard]] float slowness(std::size_t index) const { return areas_[area_[index]].slowness; }
   /// The allowed ones of the eight directions: bit k is direction k of CellGraph.
   [[nodiscard]] std::uint8_t directions(std::size_t index) const {
@@ -61,9 +66,11 @@ class DrivingRules {
     float slowness = 1.0F;
     std::uint8_t directions = 0xFF;
     std::optional<double> speed_mps{};
+    bool is_lane = false;
     std::vector<Eigen::Vector2d> headings{};  // of one-way zones, in the grid frame
   };
   static void add(const DrawnZone& zone, const GridFrame& frame, Area& area);
+  void prefer_lanes();
 
   std::vector<DrawnZone> zones_;
   std::vector<DrawnLine> lines_;
@@ -72,6 +79,7 @@ class DrivingRules {
   std::vector<Cell> open_;
   std::vector<std::uint32_t> area_;  // by cell
   std::vector<Area> areas_;
+  bool prefers_ = false;
 };
 
 }  // namespace topogeo::planning

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -11,11 +12,28 @@
 
 namespace topogeo::service {
 
-/// HybridRule::kind of a drawn line: the kinds of zones come first.
-constexpr std::uint8_t rule_kind_of(planning::LineKind kind) {
-  return static_cast<std::uint8_t>(planning::kZoneKinds + static_cast<std::size_t>(kind));
-}
+/// HybridRule::kind of the first kind of drawn lines.
+inline constexpr std::size_t kFirstLineRule = 4;
 inline constexpr std::size_t kRuleKinds = planning::kZoneKinds + planning::kLineKinds;
+/// HybridRule::kind of a drawn line.
+constexpr std::uint8_t rule_kind_of(planning::LineKind kind) {
+  return static_cast<std::uint8_t>(kFirstLineRule + static_cast<std::size_t>(kind));
+}
+/// HybridRule::kind of a drawn zone. Kinds of zones that are newer than those of lines follow them,
+/// so that no number changes its meaning.
+constexpr std::uint8_t rule_kind_of(planning::ZoneKind kind) {
+  const auto number = static_cast<std::size_t>(kind);
+  return static_cast<std::uint8_t>(number < kFirstLineRule ? number
+                                                           : number + planning::kLineKinds);
+}
+/// The zone of a HybridRule::kind; empty for a line and for unknown numbers.
+constexpr std::optional<planning::ZoneKind> zone_of_rule(std::uint8_t kind) {
+  for (std::size_t zone = 0; zone < planning::kZoneKinds; ++zone) {
+    const auto found = static_cast<planning::ZoneKind>(zone);
+    if (rule_kind_of(found) == kind) return found;
+  }
+  return std::nullopt;
+}
 
 /// Size of a grid in tiles.
 struct TileLayout {

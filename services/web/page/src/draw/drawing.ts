@@ -10,7 +10,7 @@ export interface DrawnPlace {
   heading_rad?: number; // a base station: heading of the robot that stands there
 }
 
-export type ZoneKind = "room" | "no_go" | "slow" | "one_way";
+export type ZoneKind = "room" | "no_go" | "slow" | "one_way" | "preferred";
 
 export interface DrawnZone {
   name: string;
@@ -49,7 +49,7 @@ export interface ItemRef {
 
 // Upper layers first.
 export const listNames: readonly ListName[] = ["places", "doors", "openings", "walls", "zones"];
-const zoneKinds: readonly ZoneKind[] = ["room", "no_go", "slow", "one_way"];
+const zoneKinds: readonly ZoneKind[] = ["room", "no_go", "slow", "one_way", "preferred"];
 
 /** Limits of the service, per list and for the corners of an item. */
 export const mostItems = 4096;

@@ -244,7 +244,8 @@ export class Editor implements MapTool, Overlay {
     }
     if (!this.sketch) return;
     const { name } = this;
-    const zone = name === "no_go" || name === "slow" || name === "one_way";
+    const zone =
+      name === "no_go" || name === "slow" || name === "one_way" || name === "preferred";
     const color = zone ? zone_color(name, palette) : palette.drawn;
     draw_sketch(context, view, this.sketch, color, palette);
     if (this.cursor) draw_cursor(context, view, this.cursor, this.cursor.to === "corner", palette);

@@ -19,6 +19,7 @@ const toolShapes: Record<Exclude<ToolName, "select">, Shape> = {
   no_go: "polygon",
   slow: "polygon",
   one_way: "polygon",
+  preferred: "polygon",
   split: "segment",
   join: "segment",
   rename: "point",
@@ -35,6 +36,7 @@ const itemTools: readonly ItemTool[] = [
   "no_go",
   "slow",
   "one_way",
+  "preferred",
 ];
 const slowMps = 0.2;
 
@@ -91,7 +93,7 @@ function make_place(
 
 function make_zone(kind: ZoneKind, corners_m: number[], drawing: Drawing): Item {
   const name = free_name(drawing, "zones", texts.draw.kinds[kind]);
-  const value = { room: 0, no_go: 0, slow: slowMps, one_way: to_mm(along(corners_m)) }[kind];
+  const value = { room: 0, no_go: 0, slow: slowMps, one_way: to_mm(along(corners_m)), preferred: 0 }[kind];
   return { name, kind, value, corners_m };
 }
 

@@ -28,8 +28,8 @@ export function trace_line(
 }
 
 export function zone_color(kind: DrawnZone["kind"], palette: Palette): string {
-  const { no_go, slow, one_way, drawn } = palette;
-  return { no_go, slow, one_way, room: drawn }[kind];
+  const { no_go, slow, one_way, preferred, drawn } = palette;
+  return { no_go, slow, one_way, preferred, room: drawn }[kind];
 }
 
 /** selected: drawn stronger. zones: whether to draw zones with a rule, too. */

@@ -23,6 +23,7 @@ export interface Palette {
   no_go: string;
   slow: string;
   one_way: string;
+  preferred: string;
   drawn: string; // by people
   selected: string;
   grid: string;
@@ -103,6 +104,7 @@ function read_palette(): Palette {
     no_go: color("map-no-go"),
     slow: color("map-slow"),
     one_way: color("map-one-way"),
+    preferred: color("map-preferred"),
     drawn: color("map-drawn"),
     selected: color("map-selected"),
     grid: color("map-grid"),

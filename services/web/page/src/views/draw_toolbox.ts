@@ -11,7 +11,7 @@ const toolGroups: [string, ToolName[]][] = [
   ["", ["select"]],
   [words.groups.names, ["place", "base"]],
   [words.groups.walls, ["wall", "opening", "door"]],
-  [words.groups.zones, ["no_go", "slow", "one_way"]],
+  [words.groups.zones, ["no_go", "slow", "one_way", "preferred"]],
   [words.groups.rooms, ["split", "join", "rename"]],
 ];
 const gridsM = [0, 0.05, 0.1, 0.25, 0.5, 1];
