@@ -357,7 +357,7 @@ Answer WebService::preview(const std::string& body) {
   const pipeline::Config& config = service_.setup().config.config;
   return preview_route(maps, service::from_msg(pose->T_map_robot()), goals_m,
                        {config.planner, config.hybrid_planner, config.planning},
-                       config.navigator.follower);
+                       config.navigator);
 }
 
 // Goals on another floor are meaningless.

@@ -109,7 +109,7 @@ Times drive(const world::World& world, const Task& task, std::uint64_t seed, Row
   const auto estimate_s = [&] {
     const auto route = planning::HybridPlanner(*drive.map).plan(start_m, task.goal_m);
     return navigation::drive_time_s(route.points_m, task.T_world_start.theta_rad,
-                                    &drive.map->space(), settings.navigator.follower);
+                                    &drive.map->space(), settings.navigator);
   };
   const double without_s = estimate_s();
   drive.draw(task.zones);

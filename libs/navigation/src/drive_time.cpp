@@ -5,7 +5,10 @@
 #include <limits>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/navigation/arc_sweep.hpp"
 #include "topogeo/navigation/path_follower.hpp"
+
+#include "path_band.hpp"
 
 namespace topogeo::navigation {
 namespace {
@@ -39,6 +42,25 @@ double fastest_at(const planning::PathSample& sample, double limit_m_per_s,
                       std::sqrt(kSidewaysAcceleration / curvature)});
   }
   return std::max(speed, std::min(kLeastSpeed_m_s, limit_m_per_s));
+}
+
+/// The path that the navigator makes of a route: it cuts corners, into slow zones too, and keeps
+/// off walls.
+std::vector<planning::PathSample> driven_path(std::span<const Eigen::Vector2d> points_m,
+                                              const planning::FreeSpace* space,
+                                              const NavigatorConfig& config) {
+  const bool smooth = config.motion == MotionStyle::kSmooth && !plans_poses(config.guard);
+  if (space != nullptr && smooth && points_m.size() > 1) {
+    const auto banded_m = band(*space, points_m, {}, band_of(config.guard));
+    if (!banded_m.empty()) return samples_of(banded_m, kSharpCorner_rad);
+  }
+  std::vector<planning::PathSample> path = straight_path(points_m);
+  for (planning::PathSample& sample : path) {
+    if (std::fabs(sample.turn_on_spot_rad) >= kSharpCorner_rad) continue;
+    sample.curvature_per_m = sample.turn_on_spot_rad / kRounding_m;
+    sample.turn_on_spot_rad = 0.0;
+  }
+  return path;
 }
 
 }  // namespace
@@ -92,22 +114,18 @@ std::vector<double> rest_times_s(std::span<const planning::PathSample> path,
 }
 
 double drive_time_s(std::span<const Eigen::Vector2d> points_m, std::optional<double> heading_rad,
-                    const planning::FreeSpace* space, const FollowerConfig& config) {
-  std::vector<planning::PathSample> path = straight_path(points_m);
+                    const planning::FreeSpace* space, const NavigatorConfig& config) {
+  const std::vector<planning::PathSample> path = driven_path(points_m, space, config);
   if (path.size() < 2) return 0.0;
-  for (planning::PathSample& sample : path) {
-    if (std::fabs(sample.turn_on_spot_rad) >= kSharpCorner_rad) continue;
-    sample.curvature_per_m = sample.turn_on_spot_rad / kRounding_m;
-    sample.turn_on_spot_rad = 0.0;
-  }
-  double time_s = kArrival_s + config.delay_s;
+  const FollowerConfig& follower = config.follower;
+  double time_s = kArrival_s + follower.delay_s;
   if (heading_rad) {
     const double turn_rad = geometry::wrap_angle(path.front().T_map_robot.theta_rad - *heading_rad);
-    if (std::fabs(turn_rad) > config.begin_turn_rad) time_s += turn_time_s(turn_rad, config);
+    if (std::fabs(turn_rad) > follower.begin_turn_rad) time_s += turn_time_s(turn_rad, follower);
   }
   std::vector<double> limits;
   if (space != nullptr) limits = limits_along(*space, path);
-  return time_s + rest_times_s(path, limits, config).front();
+  return time_s + rest_times_s(path, limits, follower).front();
 }
 
 }  // namespace topogeo::navigation

@@ -15,8 +15,6 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kWishedBeside_m = 0.3;  // free beside the body, if there is room
-constexpr double kLeastBeside_m = 0.07;  // the same in tight bends
 constexpr double kNear_m = 0.3;          // this near to the goal the path is straight
 constexpr double kReach_m = 10.0;        // along a path: the range of a scan
 
@@ -67,8 +65,7 @@ std::vector<planning::PathSample> LocalPlanner::shape(
     std::span<const Eigen::Vector2d> obstacles_m) const {
   if (config_.motion == MotionStyle::kPrimitives) return straight_path(points_m);
   constexpr double kCorner_rad = 0.9;  // sharper corners are turned on the spot
-  const double radius_m = config_.guard.radius_m;
-  const BandConfig wished{radius_m + kWishedBeside_m, radius_m + kLeastBeside_m};
+  const BandConfig wished = band_of(config_.guard);
   auto banded_m = band(space, points_m, obstacles_m, wished);
   if (banded_m.empty()) banded_m = band(space, points_m, {}, wished);
   if (!banded_m.empty()) return samples_of(banded_m, kCorner_rad);

@@ -131,6 +131,12 @@ bool stays_in(const planning::FreeSpace& space, const std::vector<Eigen::Vector2
   });
 }
 
+BandConfig band_of(const GuardConfig& guard) {
+  constexpr double kWishedBeside_m = 0.3;  // free beside the body, if there is room
+  constexpr double kLeastBeside_m = 0.07;  // the same in tight bends
+  return {guard.radius_m + kWishedBeside_m, guard.radius_m + kLeastBeside_m};
+}
+
 std::vector<Eigen::Vector2d> band(const planning::FreeSpace& space,
                                   std::span<const Eigen::Vector2d> points_m,
                                   std::span<const Eigen::Vector2d> obstacles_m,

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "topogeo/navigation/guard_config.hpp"
 #include "topogeo/planning/free_space.hpp"
 #include "topogeo/planning/motion_primitives.hpp"
 
@@ -16,6 +17,9 @@ struct BandConfig {
   double wished_m = 0.57;  ///< between the path and any obstacle, if there is room
   double least_m = 0.33;   ///< the same in tight bends, at least
 };
+
+/// What the paths of a robot with this guard keep free beside its body.
+BandConfig band_of(const GuardConfig& guard);
 
 /// An elastic band (Quinlan and Khatib 1993) from the first to the last point: pulled straight, and
 /// pushed off obstacles within the wished distance. Empty if a part of it would leave the passable

@@ -13,7 +13,7 @@ namespace topogeo::web {
 Answer preview_route(const planning::PlanningMaps& maps, const geometry::Pose2& T_map_robot,
                      const std::vector<Eigen::Vector2d>& goals_m,
                      const planning::GoalPlannerConfig& config,
-                     const navigation::FollowerConfig& follower) {
+                     const navigation::NavigatorConfig& navigator) {
   Answer answer;
   std::vector<Eigen::Vector2d> points_m;
   double length_m = 0.0;
@@ -37,7 +37,7 @@ Answer preview_route(const planning::PlanningMaps& maps, const geometry::Pose2& 
     length_m += route.length_m;
     clearance_m = std::min(clearance_m, route.min_clearance_m);
     points_m.insert(points_m.end(), route.points_m.begin(), route.points_m.end());
-    time_s += navigation::drive_time_s(route.points_m, heading_rad, space, follower);
+    time_s += navigation::drive_time_s(route.points_m, heading_rad, space, navigator);
     heading_rad.reset();  // at a goal the robot may look in any direction
     start_m = goal_m;
   }

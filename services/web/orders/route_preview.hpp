@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/navigation/follower_config.hpp"
+#include "topogeo/navigation/navigator_config.hpp"
 #include "topogeo/planning/goal_planner.hpp"
 
 #include "server/web_types.hpp"
@@ -15,11 +15,11 @@
 namespace topogeo::web {
 
 /// Route from the robot through all `goals_m` in order (map frame; at least one): length, time at
-/// the speeds of `follower` and of slow zones, smallest clearance; or the reason why there is none.
+/// the speeds of `navigator` and of slow zones, smallest clearance; or the reason why there is none.
 /// Throws std::invalid_argument like `check` of the settings.
 Answer preview_route(const planning::PlanningMaps& maps, const geometry::Pose2& T_map_robot,
                      const std::vector<Eigen::Vector2d>& goals_m,
                      const planning::GoalPlannerConfig& config,
-                     const navigation::FollowerConfig& follower);
+                     const navigation::NavigatorConfig& navigator);
 
 }  // namespace topogeo::web

@@ -47,7 +47,7 @@ Times drive_through_a_zone(std::uint64_t seed) {
   EXPECT_TRUE(route.found()) << route.reason;
   Times times;
   times.estimated_s = drive_time_s(route.points_m, settings.T_world_start.theta_rad,
-                                   &drive.map->space(), settings.navigator.follower);
+                                   &drive.map->space(), settings.navigator);
   drive.go_to(goal_m);
   const double begin_s = drive.time_s();
   // The last centimetres, which depend on the noise, are not foreseen.
@@ -68,9 +68,15 @@ FollowerConfig follower() {
   return config;
 }
 
+NavigatorConfig with(const FollowerConfig& follower) {
+  NavigatorConfig config;
+  config.follower = follower;
+  return config;
+}
+
 TEST(DriveTime, GrowsByLengthTurnsAndSlowZones) {
   const auto time_s = [](const std::vector<Eigen::Vector2d>& points_m) {
-    return drive_time_s(points_m, {}, nullptr, follower());
+    return drive_time_s(points_m, {}, nullptr, with(follower()));
   };
   EXPECT_EQ(time_s({}), 0.0);
   EXPECT_EQ(time_s({{1.0, 1.0}}), 0.0);
@@ -82,7 +88,7 @@ TEST(DriveTime, GrowsByLengthTurnsAndSlowZones) {
   EXPECT_GT(corner_s, straight_s + 4.0 + std::numbers::pi / 2.0);
   EXPECT_LT(corner_s, straight_s + 4.0 + std::numbers::pi / 2.0 + 3.0);
   const double turned_s = drive_time_s(std::vector<Eigen::Vector2d>{{0.0, 0.0}, {3.0, 0.0}},
-                                       std::numbers::pi, nullptr, follower());
+                                       std::numbers::pi, nullptr, with(follower()));
   EXPECT_GT(turned_s, straight_s + std::numbers::pi);
 }
 

@@ -3,7 +3,7 @@
 // A speed profile along the path: each sample has a largest speed, by the follower, the curve and
 // the speed limit there; between samples the base speeds up and brakes. Turns on the spot are
 // added. Obstacles, the guard and corrections at the goal are not foreseen.
-// `unit_navigation` (DriveTime) drives through slow zones and compares.
+// `unit_navigation` (DriveTime) and topogeo_drive_times drive through slow zones and compare.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 #include <Eigen/Core>
 
-#include "topogeo/navigation/follower_config.hpp"
+#include "topogeo/navigation/navigator_config.hpp"
 #include "topogeo/planning/free_space.hpp"
 #include "topogeo/planning/motion_primitives.hpp"
 
@@ -29,8 +29,8 @@ std::vector<double> rest_times_s(std::span<const planning::PathSample> path,
                                  const FollowerConfig& config);
 
 /// Seconds for a route along its points until the robot stands at the last one. `heading_rad`:
-/// of the robot at the start, if known. `space` has the slow zones, null: there are none.
+/// of the robot at the start, if known. `space` has the walls and slow zones, null: there are none.
 double drive_time_s(std::span<const Eigen::Vector2d> points_m, std::optional<double> heading_rad,
-                    const planning::FreeSpace* space, const FollowerConfig& config);
+                    const planning::FreeSpace* space, const NavigatorConfig& config);
 
 }  // namespace topogeo::navigation
