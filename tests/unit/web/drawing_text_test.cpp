@@ -86,7 +86,7 @@ TEST(DrawingText, HasNoMoreThanMapsHaveRoomFor) {
       [&] {
         parse_drawing(text_of(Json{{"version", "0"}, {"walls", walls}}));
       },
-      ThrowsMessage<std::invalid_argument>(HasSubstr("257 no-go")));
+      ThrowsMessage<std::invalid_argument>(HasSubstr("257 zones")));
   const auto floor_of = [&walls] {
     return parse_floor(text_of(
         Json{{"target", "robot"}, {"start", {{"x_m", 0.5}, {"y_m", 0.5}}}, {"walls", walls}}));

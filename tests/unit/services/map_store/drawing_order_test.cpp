@@ -165,7 +165,7 @@ TEST(DrawingOrder, AFloorHasNoMoreDoorsThanAMapHasRules) {
   order.inside().y_m(2.0);
   const DrawingOutcome outcome = carry_out(order, with_grid(7), 0.2);
   EXPECT_EQ(outcome.result, msg::kDrawingInvalid);
-  EXPECT_THAT(outcome.message, HasSubstr("257 no-go"));
+  EXPECT_THAT(outcome.message, HasSubstr("257 zones"));
 }
 
 }  // namespace
