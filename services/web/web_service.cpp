@@ -44,10 +44,7 @@ WebService::WebService(service::Service& service, const ServerConfig& config, Pa
     : service_(service),
       config_(config),
       files_(std::move(files)),
-      events_(hub_, kept.alarms,
-              [this] {
-                service_.status().fault("alarms", "an alarm could not be written to its file");
-              }),
+      events_(hub_, kept.alarms, [this] { service_.status().fault("alarms", "not written"); }),
       audit_(kept.audit),
       foxglove_(feed_, service.setup().config.config.local_mapper.T_robot_laser),
       controls_([this](const std::string& json) {
@@ -356,8 +353,7 @@ Answer WebService::preview(const std::string& body) {
   if (!maps.any()) return error_answer(409, "there is no map to plan on yet");
   const pipeline::Config& config = service_.setup().config.config;
   return preview_route(maps, service::from_msg(pose->T_map_robot()), goals_m,
-                       {config.planner, config.hybrid_planner, config.planning},
-                       config.navigator);
+                       {config.planner, config.hybrid_planner, config.planning}, config.navigator);
 }
 
 // Goals on another floor are meaningless.

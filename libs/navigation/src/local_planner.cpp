@@ -15,8 +15,8 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kNear_m = 0.3;          // this near to the goal the path is straight
-constexpr double kReach_m = 10.0;        // along a path: the range of a scan
+constexpr double kNear_m = 0.3;    // this near to the goal the path is straight
+constexpr double kReach_m = 10.0;  // along a path: the range of a scan
 
 /// Each obstacle, surrounded by four points.
 std::vector<Eigen::Vector2d> widened(std::span<const Eigen::Vector2d> obstacles_m, double by_m) {

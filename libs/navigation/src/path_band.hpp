@@ -18,7 +18,7 @@ struct BandConfig {
   double least_m = 0.33;   ///< the same in tight bends, at least
 };
 
-/// What the paths of a robot with this guard keep free beside its body.
+/// The room that paths of a robot with this guard keep beside its body.
 BandConfig band_of(const GuardConfig& guard);
 
 /// An elastic band (Quinlan and Khatib 1993) from the first to the last point: pulled straight, and

@@ -32,7 +32,7 @@ export const draw_texts = {
     no_go: "No-go",
     slow: "Slow",
     one_way: "One-way",
-    preferred: "Preferred",
+    preferred: "Lane",
     split: "Split",
     join: "Join",
     rename: "Rename",

@@ -15,7 +15,7 @@ export const spanish_draw_texts: Texts["draw"] = {
   tools: "Herramientas", groups: { names: "Nombres", walls: "Paredes", zones: "Zonas", rooms: "Salas" },
   tool: {
     select: "Elegir", place: "Lugar", base: "Casa", wall: "Pared", opening: "Abertura", door: "Puerta",
-    no_go: "Prohibida", slow: "Lenta", one_way: "Dirección única", preferred: "Preferente", split: "Dividir", join: "Unir",
+    no_go: "Prohibida", slow: "Lenta", one_way: "Dirección única", preferred: "Carril", split: "Dividir", join: "Unir",
     rename: "Renombrar", measure: "Medir", shift: "Mover",
   },
   how: {
