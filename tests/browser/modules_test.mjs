@@ -426,6 +426,12 @@ test("a report is one page whose texts are texts, and keeps the newest lines", (
   assert.match(page, /20 earlier ones are not listed/);
 });
 
+test("a battery shows per cent only where the base measures its charge", () => {
+  const { battery_value } = texts.now;
+  assert.equal(battery_value(15.1, false, 64.4), "64 %, 15.1 V");
+  assert.equal(battery_value(15.1, true, null), "15.1 V, low");
+});
+
 /** All texts of an object; functions are called with arguments that any of them can show. */
 function all_texts(value) {
   if (typeof value === "string") return [value];
