@@ -5,7 +5,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../container/common.sh"
 
 # Skips where there is no browser, page or playwright-core.
 need_browser() {
-  need chromium
+  need chromium-headless-shell
   [ -e "$build/share/topogeo/web/app.js" ] || skip "the page is not built" "./run build"
   need_node_packages
 }
@@ -39,9 +39,9 @@ need_node_packages() {
 # run_browser_test NAME: tests of NAME_test.mjs.
 run_browser_test() {
   local chromium
-  chromium=$(command -v chromium) || true
+  chromium=$(command -v chromium-headless-shell) || true
   if [ -n "$chromium" ]; then
-    step "tests in $(chromium --version --no-sandbox)"
+    step "tests in $("$chromium" --version --no-sandbox)"
     # Chromium renders without a graphics card, on the robot's cores: a low priority keeps it out of the robot's way.
     printf '#!/bin/sh\nexec nice -n 10 %s "$@"\n' "$chromium" > "$work/chromium"
     chmod +x "$work/chromium"

@@ -7,7 +7,7 @@ import { createRequire } from "node:module";
 import { join } from "node:path";
 import { kAddress, StandIn } from "./stand_in.mjs";
 
-const { TOPOGEO_BUILD: build, TOPOGEO_CHROMIUM: chromium = "/usr/bin/chromium" } = process.env;
+const { TOPOGEO_BUILD: build, TOPOGEO_CHROMIUM: chromium = "/usr/bin/chromium-headless-shell" } = process.env;
 const count = Number(process.argv[2] ?? 2000);
 const { chromium: browsers } = createRequire(join(build, "tests/browser/"))("playwright-core");
 const kRow = 100;

@@ -144,7 +144,7 @@ async function drag(page) {
 }
 
 const browser = await chromium.launch({
-  executablePath: process.env.TOPOGEO_CHROMIUM ?? "/usr/bin/chromium",
+  executablePath: process.env.TOPOGEO_CHROMIUM ?? "/usr/bin/chromium-headless-shell",
   args: ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"],
 });
 try {

@@ -12,7 +12,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { wait_for, Robot } from "./robot.mjs";
 
-const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source, TOPOGEO_CHROMIUM: chromium = "/usr/bin/chromium" } = process.env;
+const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source, TOPOGEO_CHROMIUM: chromium = "/usr/bin/chromium-headless-shell" } = process.env;
 const seconds = Number(process.argv[2] ?? 20);
 const viewers = Number(process.argv[3] ?? 20);
 const { chromium: browsers } = createRequire(join(build, "tests/browser/"))("playwright-core");

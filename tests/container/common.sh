@@ -53,7 +53,7 @@ installs() {
   local program stage stages=''
   for program in "$@"; do
     case $program in
-      chromium | node | npm) stage=browser ;;
+      chromium-headless-shell | node | npm) stage=browser ;;
       tsc | lintian | systemd-analyze | git) stage=check ;;
       esbuild | dpkg-shlibdeps) stage=build ;;
       curl | setpriv | unshare | nsenter) echo "apt-get install curl util-linux"; return ;;

@@ -275,7 +275,7 @@ class PackagesTest(unittest.TestCase):
 
 class SummaryTest(unittest.TestCase):
     def test_each_missing_thing_has_the_command_that_installs_it(self):
-        self.assertEqual(summary.cure("chromium is not installed", STAGES), "tests/browser/install")
+        self.assertEqual(summary.cure("chromium-headless-shell is not installed", STAGES), "tests/browser/install")
         self.assertEqual(summary.cure("tsc is not installed", STAGES), "./run packages --install check")
         self.assertEqual(summary.cure("faketime is not installed", STAGES), "./run packages --install container")
         self.assertEqual(summary.cure("no container engine runs (tests/container/start_engine starts one)", STAGES),

@@ -83,7 +83,7 @@ def cure(reason, stages):
     if not missing:
         return ""
     package = PACKAGE_OF.get(missing[1], missing[1])
-    if package in ("nodejs", "npm", "chromium"):
+    if package in ("nodejs", "npm", "chromium-headless-shell"):
         return "tests/browser/install"
     if package in stages:
         return f"./run packages --install {stages[package]}"
