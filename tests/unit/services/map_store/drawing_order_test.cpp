@@ -59,7 +59,7 @@ TEST(DrawingMessages, WhatCannotBeIsRefused) {
     change(content);
     EXPECT_ANY_THROW(service::from_msg(content));
   };
-  refused([](auto& c) { c.zones()[0].kind(4); });
+  refused([](auto& c) { c.zones()[0].kind(5); });
   refused([](auto& c) { c.lines()[0].kind(3); });
   refused([](auto& c) { c.zones()[1].value(0.0); });
   refused([](auto& c) { c.zones()[0].corners().resize(2); });
@@ -144,7 +144,7 @@ TEST(DrawingOrder, AFloorOfThousandsOfWallsBecomesTheGrid) {
   msg::DrawingOrder order = order_of(office(50, 96), 7);
   const DrawingOutcome over = carry_out(order, with_grid(7), 0.2);
   EXPECT_EQ(over.result, msg::kDrawingInvalid) << "as walls over a map they are rules of it";
-  EXPECT_THAT(over.message, HasSubstr("4096 no-go"));
+  EXPECT_THAT(over.message, HasSubstr("4096 zones with a rule"));
   order.kind(msg::kDrawingFloor);
   order.inside().x_m(2.0);
   order.inside().y_m(2.0);
