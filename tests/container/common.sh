@@ -230,7 +230,7 @@ make_log() {
 map_alone() {
   local kept
   make_log "$1" "$work/log.clf"
-  kept=$build/tests/alone-$(sha256sum "$bin/topogeo" "$work/log.clf" | sha256sum | cut -c1-16)
+  kept=$build/tests/alone-$(cat "$bin/topogeo" "$work/log.clf" | sha256sum | cut -c1-16)
   exec 5>> "$build/.alone.lock"
   flock 5
   if [ ! -e "$kept" ]; then
