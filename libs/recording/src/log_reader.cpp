@@ -102,11 +102,10 @@ class RecordedScans final : public LogReader::Source {
  private:
   scan::ScanSequence::Skip skip() {
     return [this](scan::SkipReason reason, std::uint64_t scan, const std::string& text) {
-      ++statistics_.skipped[static_cast<std::size_t>(reason)];
-      if (statistics_.messages.size() >= scan::CarmenLogStatistics::kMaxMessages) return;
-      statistics_.messages.push_back(reason == scan::SkipReason::kTruncated
-                                         ? text
-                                         : name_ + ": scan " + std::to_string(scan) + ": " + text);
+      // Messages of odometry belong to no scan.
+      const std::string place = scan == 0 ? "" : "scan " + std::to_string(scan) + ": ";
+      statistics_.skip(reason,
+                       reason == scan::SkipReason::kTruncated ? text : name_ + ": " + place + text);
     };
   }
 

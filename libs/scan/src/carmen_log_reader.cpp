@@ -58,6 +58,10 @@ std::string_view describe(SkipReason reason) {
   return "unknown";
 }
 
+void CarmenLogStatistics::skip(SkipReason reason, std::string message) {
+  if (skipped[static_cast<std::size_t>(reason)]++ == 0) messages.push_back(std::move(message));
+}
+
 std::uint64_t CarmenLogStatistics::skipped_total() const {
   return std::accumulate(skipped.begin(), skipped.end(), std::uint64_t{0});
 }
@@ -106,10 +110,7 @@ struct CarmenLogReader::Impl {
 };
 
 void CarmenLogReader::Impl::skip(SkipReason reason, std::uint64_t line, const std::string& text) {
-  ++statistics.skipped[static_cast<std::size_t>(reason)];
-  if (statistics.messages.size() < CarmenLogStatistics::kMaxMessages) {
-    statistics.messages.push_back(path + ":" + std::to_string(line) + ": " + text);
-  }
+  statistics.skip(reason, path + ":" + std::to_string(line) + ": " + text);
 }
 
 // The next individually readable laser line, without a check of its time.

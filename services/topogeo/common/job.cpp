@@ -253,10 +253,6 @@ void report_skipped(const scan::CarmenLogStatistics& statistics) {
   print_notes(statistics.notes);
   if (statistics.skipped_total() == 0) return;
   for (const std::string& message : statistics.messages) std::cerr << message << '\n';
-  if (statistics.skipped_total() > statistics.messages.size()) {
-    std::cerr << "... and " << statistics.skipped_total() - statistics.messages.size()
-              << " more lines like these\n";
-  }
   std::cerr << statistics.summary() << '\n';
 }
 

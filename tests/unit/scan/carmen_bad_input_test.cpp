@@ -141,13 +141,17 @@ TEST_F(LogFiles, ALongPauseIsNoError) {
   EXPECT_EQ(reader.statistics().skipped_total(), 0U);
 }
 
-TEST_F(LogFiles, MessagesAreBoundedButAllSkipsAreCounted) {
+TEST_F(LogFiles, EachReasonHasOneMessageButAllSkipsAreCounted) {
   std::string text = flaser("1.0");
   for (int i = 0; i < 100; ++i) text += flaser("1.0");
+  for (int i = 0; i < 20; ++i) text += flaser("2.0", "1 2", 2);
   CarmenLogReader reader(plain(text));
   EXPECT_EQ(read_all(reader).size(), 1U);
-  EXPECT_EQ(reader.statistics().skipped_for(SkipReason::kTime), 100U);
-  EXPECT_EQ(reader.statistics().messages.size(), CarmenLogStatistics::kMaxMessages);
+  const CarmenLogStatistics& statistics = reader.statistics();
+  EXPECT_EQ(statistics.summary(),
+            "1 scans; skipped 120: 100 time not increasing, 20 other beam geometry");
+  EXPECT_THAT(statistics.messages,
+              testing::ElementsAre(testing::HasSubstr(":2: "), testing::HasSubstr(":102: ")));
 }
 
 // Lines that compress badly, so that a cut leaves many whole ones.

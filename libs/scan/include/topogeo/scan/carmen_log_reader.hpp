@@ -54,12 +54,13 @@ struct CarmenLogStatistics {
   std::uint64_t odometry_lines = 0;
   std::uint64_t other_lines = 0;                          ///< other kinds of message
   std::array<std::uint64_t, kSkipReasonCount> skipped{};  ///< by SkipReason
-  /// "FILE:LINE: expected ..., got ..." of the first kMaxMessages skipped lines.
+  /// "FILE:LINE: expected ..., got ..." of the first skipped line for each reason, in their order.
   std::vector<std::string> messages;
-  static constexpr std::size_t kMaxMessages = 10;
   /// For people, about the odometry that was read so far: poses left out, restarts.
   std::vector<std::string> notes;
 
+  /// Counts a skipped line; keeps the message of the first one for this reason.
+  void skip(SkipReason reason, std::string message);
   [[nodiscard]] std::uint64_t skipped_for(SkipReason reason) const {
     return skipped[static_cast<std::size_t>(reason)];
   }
