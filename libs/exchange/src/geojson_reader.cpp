@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cstddef>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -157,14 +159,18 @@ class GeojsonReader {
     graph_.drawing.zones.push_back(std::move(zone));
   }
 
+  /// Names of the file, and the last number that a repeated one got.
+  using TakenNames = std::map<std::string, std::size_t>;
+
   /// The name, with a number if the file has it twice.
-  std::string new_name(const std::string& name, std::set<std::string>& taken) {
-    std::string free = name;
-    for (int number = 2; !taken.insert(free).second; ++number) {
-      free = fmt::format("{} {}", name, number);
-    }
-    if (free != name)
-      graph_.notes.push_back(fmt::format("a second '{}' is named '{}'", name, free));
+  std::string new_name(const std::string& name, TakenNames& taken) {
+    const auto [entry, is_new] = taken.try_emplace(name, 1);
+    if (is_new) return name;
+    std::string free;
+    do {
+      free = fmt::format("{} {}", name, ++entry->second);
+    } while (!taken.try_emplace(free, 1).second);
+    graph_.notes.push_back(fmt::format("a second '{}' is named '{}'", name, free));
     return free;
   }
 
@@ -205,8 +211,8 @@ class GeojsonReader {
   bool own_ = false;  // geojson_text wrote the file
   MapGraph graph_;
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges_;  // ascending pairs of node ids
-  std::set<std::string> place_names_;
-  std::set<std::string> zone_names_;
+  TakenNames place_names_;
+  TakenNames zone_names_;
 };
 
 }  // namespace

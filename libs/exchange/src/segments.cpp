@@ -1,6 +1,12 @@
 #include "segments.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Geometry>
 
 namespace topogeo::exchange {
 namespace {
@@ -19,6 +25,55 @@ bool between_ends(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eige
 bool cross_inside(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
                   const Eigen::Vector2d& d) {
   return side(a, b, c) * side(a, b, d) < 0 && side(c, d, a) * side(c, d, b) < 0;
+}
+
+Eigen::AlignedBox2d box_of(std::span<const Eigen::Vector2d> points) {
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& point : points) box.extend(point);
+  return box;
+}
+
+/// An edge of a polygon from one corner to the next, with its box.
+struct Edge {
+  std::size_t start = 0;  ///< index of the corner
+  std::size_t end = 0;
+  double low = 0.0;  ///< of the box along the axis of the order
+  double high = 0.0;
+  double side_low = 0.0;  ///< along the other axis
+  double side_high = 0.0;
+};
+
+/// The edges by their lower ends along the axis on which the edges are shorter, so that few of
+/// their boxes overlap.
+std::vector<Edge> edges_in_order(std::span<const Eigen::Vector2d> corners) {
+  Eigen::Vector2d lengths = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    lengths += (corners[(i + 1) % corners.size()] - corners[i]).cwiseAbs();
+  }
+  const Eigen::Index axis = lengths.x() <= lengths.y() ? 0 : 1;
+  std::vector<Edge> edges(corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const std::size_t next = (i + 1) % corners.size();
+    const Eigen::Vector2d low = corners[i].cwiseMin(corners[next]);
+    const Eigen::Vector2d high = corners[i].cwiseMax(corners[next]);
+    edges[i] = {i, next, low[axis], high[axis], low[1 - axis], high[1 - axis]};
+  }
+  std::ranges::sort(edges, {}, &Edge::low);
+  return edges;
+}
+
+/// Whether two edges share a point that is no common corner, or overlap at it.
+bool conflict(std::span<const Eigen::Vector2d> corners, const Edge& one, const Edge& two) {
+  const bool follows = one.end == two.start;
+  if (!follows && two.end != one.start) {
+    return segments_meet(corners[one.start], corners[one.end], corners[two.start],
+                         corners[two.end]);
+  }
+  if (corners.size() == 2) return false;
+  const Eigen::Vector2d& shared = corners[follows ? one.end : one.start];
+  const Eigen::Vector2d& mine = corners[follows ? one.start : one.end];
+  const Eigen::Vector2d& other = corners[follows ? two.end : two.start];
+  return side(mine, shared, other) == 0 && (mine - shared).dot(other - shared) > 0.0;
 }
 
 }  // namespace
@@ -63,36 +118,26 @@ bool segment_touches(std::span<const Eigen::Vector2d> corners, const Eigen::Vect
 }
 
 bool is_simple(std::span<const Eigen::Vector2d> corners) {
-  const std::size_t n = corners.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::Vector2d& a = corners[i];
-    const Eigen::Vector2d& b = corners[(i + 1) % n];
-    if (a == b) return false;
-    for (std::size_t j = i + 1; j < n; ++j) {
-      const Eigen::Vector2d& c = corners[j];
-      const Eigen::Vector2d& d = corners[(j + 1) % n];
-      const bool follows = j == i + 1;
-      const bool precedes = (j + 1) % n == i;
-      if (!follows && !precedes) {
-        if (segments_meet(a, b, c, d)) return false;
-      } else if (n > 2) {
-        // Neighbours share a corner; they must not overlap.
-        const Eigen::Vector2d& shared = follows ? b : a;
-        const Eigen::Vector2d& mine = follows ? a : b;
-        const Eigen::Vector2d& other = follows ? d : c;
-        if (side(mine, shared, other) == 0 && (mine - shared).dot(other - shared) > 0.0) {
-          return false;
-        }
-      }
+  const std::vector<Edge> edges = edges_in_order(corners);
+  for (auto edge = edges.begin(); edge != edges.end(); ++edge) {
+    if (corners[edge->start] == corners[edge->end]) return false;
+    // The boxes of edges that meet overlap.
+    for (auto other = edge + 1; other != edges.end() && other->low <= edge->high; ++other) {
+      if (other->side_low > edge->side_high || other->side_high < edge->side_low) continue;
+      if (conflict(corners, *edge, *other)) return false;
     }
   }
   return true;
 }
 
 bool polygons_overlap(std::span<const Eigen::Vector2d> a, std::span<const Eigen::Vector2d> b) {
+  const Eigen::AlignedBox2d box_b = box_of(b);
+  if (!box_of(a).intersects(box_b)) return false;
   for (std::size_t i = 0; i < a.size(); ++i) {
+    const Eigen::Vector2d& end = a[(i + 1) % a.size()];
+    if (!box_of(std::array{a[i], end}).intersects(box_b)) continue;
     for (std::size_t j = 0; j < b.size(); ++j) {
-      if (cross_inside(a[i], a[(i + 1) % a.size()], b[j], b[(j + 1) % b.size()])) return true;
+      if (cross_inside(a[i], end, b[j], b[(j + 1) % b.size()])) return true;
     }
   }
   // Without crossing edges, one polygon contains the other, or they are apart or touch. The mean of

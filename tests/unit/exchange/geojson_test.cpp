@@ -117,6 +117,18 @@ TEST_F(Geojson, ARepeatedNameGetsANumber) {
   EXPECT_THAT(graph.notes, Contains("a second 'dock' is named 'dock 2'"));
 }
 
+TEST_F(Geojson, RepeatedNamesSkipNumbersThatTheFileHas) {
+  std::string list = polygon(R"({"name":"lawn 3"})", kTriangle);
+  for (int i = 0; i < 4096; ++i) list += "," + polygon(R"({"name":"lawn"})", kTriangle);
+  EXPECT_THROW(features(list), std::runtime_error);  // a zone more than a map may have
+  list.erase(list.rfind(",{\"type\":\"Feature\""));
+  const std::vector<planning::DrawnZone> zones = features(list).drawing.zones;
+  ASSERT_EQ(zones.size(), 4096U);
+  EXPECT_EQ(zones[2].name, "lawn 2");
+  EXPECT_EQ(zones[3].name, "lawn 4");
+  EXPECT_EQ(zones.back().name, "lawn 4096");
+}
+
 TEST_F(Geojson, DegreesBecomeMetres) {
   const std::string nodes =
       point(R"({"id":1})", "[8.41,49.01]") + "," + point(R"({"id":2})", "[8.4105,49.01]") + "," +

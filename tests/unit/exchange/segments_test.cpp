@@ -1,6 +1,9 @@
 #include "segments.hpp"
 
+#include <array>
 #include <cmath>
+#include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -27,6 +30,45 @@ TEST(Segments, PolygonsAreSimpleOrNot) {
   EXPECT_FALSE(is_simple(Polygon{{0, 0}, {4, 0}, {4, 0}, {4, 4}}));          // a repeated corner
   EXPECT_FALSE(is_simple(Polygon{{0, 0}, {4, 0}, {2, 0}, {2, 4}}));          // back on itself
   EXPECT_FALSE(is_simple(Polygon{{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}}));  // touches itself
+}
+
+/// Polygons whose corners are on a coarse lattice, so that many touch, overlap or repeat.
+TEST(Segments, SimplePolygonsAreThoseWithoutAPairOfEdgesThatMeet) {
+  support::Random random(11);
+  std::array<int, 2> seen{};
+  for (int i = 0; i < 3000; ++i) {
+    Polygon shape(3 + i % 5);
+    for (Eigen::Vector2d& corner : shape) {
+      corner = {std::floor(5.0 * random.uniform()), std::floor(5.0 * random.uniform())};
+    }
+    const std::size_t n = shape.size();
+    bool simple = true;
+    for (std::size_t a = 0; a < n; ++a) {
+      const Eigen::Vector2d& end = shape[(a + 1) % n];
+      const Eigen::Vector2d back = shape[a] - end;
+      const Eigen::Vector2d ahead = shape[(a + 2) % n] - end;
+      simple = simple && shape[a] != end && !(cross(back, ahead) == 0.0 && back.dot(ahead) > 0.0);
+      for (std::size_t b = a + 2; b < n && (a > 0 || b + 1 < n); ++b) {
+        simple = simple && !segments_meet(shape[a], end, shape[b], shape[(b + 1) % n]);
+      }
+    }
+    ASSERT_EQ(is_simple(shape), simple) << "polygon " << i;
+    ++seen.at(simple ? 1 : 0);
+  }
+  EXPECT_GT(seen[0], 300);
+  EXPECT_GT(seen[1], 300);
+}
+
+TEST(Segments, APolygonOfManyCornersIsCheckedToo) {
+  constexpr std::size_t kCorners = 60'000;
+  Polygon ring(kCorners);
+  for (std::size_t i = 0; i < kCorners; ++i) {
+    const double angle_rad = 2.0 * std::numbers::pi * static_cast<double>(i) / kCorners;
+    ring[i] = 50.0 * Eigen::Vector2d(std::cos(angle_rad), std::sin(angle_rad));
+  }
+  EXPECT_TRUE(is_simple(ring));
+  ring[kCorners / 2] = {60.0, 1.0};  // across the other side
+  EXPECT_FALSE(is_simple(ring));
 }
 
 TEST(Segments, AreaTellsTheSenseOfRotation) {
