@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/support/alike_lines.hpp"
 
 namespace topogeo::cli {
 
@@ -20,7 +21,9 @@ pipeline::Config read_config(const std::optional<std::filesystem::path>& file) {
 }
 
 void print_notes(const std::vector<std::string>& notes) {
-  for (const std::string& note : notes) std::cerr << "topogeo: " << note << '\n';
+  for (const std::string& note : support::merge_alike_lines(notes)) {
+    std::cerr << "topogeo: " << note << '\n';
+  }
 }
 
 }  // namespace topogeo::cli

@@ -15,7 +15,7 @@ pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file);
 /// The same without where its values come from.
 pipeline::Config read_config(const std::optional<std::filesystem::path>& file);
 
-/// Prints a line each on stderr.
+/// Prints a line each on stderr; many that are alike become one.
 void print_notes(const std::vector<std::string>& notes);
 
 }  // namespace topogeo::cli
