@@ -246,7 +246,8 @@ std::string advice(const Facts& facts, const std::string& grade, const QualityIn
   }
   if (facts.ranges_in_feet()) return kInMetres;
   if (grade == kFair && facts.other_lengths()) return range_scale(facts);
-  if (facts.odometry_useless() && !inputs.tried.contains(Remedy::kLaserOdometry)) {
+  const bool slips = grade == kFair && facts.other_length && !facts.from_scans;
+  if ((facts.odometry_useless() || slips) && !inputs.tried.contains(Remedy::kLaserOdometry)) {
     return kLaserOdometry;
   }
   if (facts.skipped_share > kMostSkipped) return "topogeo check-log " + inputs.log;
@@ -336,8 +337,10 @@ void add_quality(Report& report, const storage::MapDocument& document,
 }
 
 std::optional<Remedy> advised_remedy(const Report& report) {
-  if (report.quality.grade != kPoor) return std::nullopt;
   const std::string& advice = report.quality.advice;
+  // Wheels that slip bend a map whose matches are good.
+  const bool slips = report.quality.grade == kFair && advice == kLaserOdometry;
+  if (report.quality.grade != kPoor && !slips) return std::nullopt;
   if (advice == kMoreStops) return Remedy::kMoreStops;
   if (advice.starts_with(kCalibrateOdometry)) return Remedy::kOdometryNoise;
   if (advice == kLaserOdometry) return Remedy::kLaserOdometry;

@@ -223,7 +223,23 @@ TEST(MapQuality, AdviceNamesNoRemedyThatWasTried) {
   EXPECT_EQ(report.quality.advice, "topogeo check-log drive.clf.gz");
 }
 
-TEST(MapQuality, AGoodOrFairMapNeedsNoRemedy) {
+TEST(MapQuality, OdometryWithWheelsThatSlipInPlacesIsReplaced) {
+  // From stop 8 to 11 the odometry counts half as much again as the map.
+  storage::MapDocument document = drive(0);
+  double ahead_m = 0.0;
+  for (std::uint32_t id = 1; id < kStops; ++id) {
+    if (id > 8 && id <= 11) ahead_m += 0.5;
+    document.local_maps[id].T_odom_robot.x_m += ahead_m;
+  }
+  storage::Report report = judged(document, 38);
+  EXPECT_EQ(report.quality.grade, "fair");
+  EXPECT_EQ(advised_remedy(report), Remedy::kLaserOdometry);
+  add_quality(report, document, {"drive.clf.gz", true, 3, 0, {Remedy::kLaserOdometry}});
+  EXPECT_EQ(advised_remedy(report), std::nullopt);
+  EXPECT_THAT(report.quality.advice, HasSubstr("calibrate-odometry"));
+}
+
+TEST(MapQuality, AGoodOrOtherwiseFairMapNeedsNoRemedy) {
   EXPECT_EQ(advised_remedy(judged(drive(0), 38)), std::nullopt);
   EXPECT_EQ(advised_remedy(judged(drive(kStops - 1), 34)), std::nullopt);
 }

@@ -35,7 +35,8 @@ struct QualityInputs {
 void add_quality(storage::Report& report, const storage::MapDocument& document,
                  const QualityInputs& inputs);
 
-/// The remedy that the advice for a poor map names; empty if there is none.
+/// The remedy that the advice names for a poor map, or for a fair one whose wheels slip; empty if
+/// there is none.
 std::optional<Remedy> advised_remedy(const storage::Report& report);
 
 /// Whether a map is better than another of the same log: by a tenth more scans in the map, else by
