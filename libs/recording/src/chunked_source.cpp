@@ -16,8 +16,9 @@ ChunkedSource::ChunkedSource(const std::filesystem::path& path, TopicFilter want
 
 bool ChunkedSource::next(RawMessage& message) {
   while (!ended_) {
+    const bool in_chunk = chunk_at_ < chunk_.size();
     try {
-      if (chunk_at_ < chunk_.size()) {
+      if (in_chunk) {
         Cursor cursor(std::span<const std::byte>(chunk_).subspan(chunk_at_));
         const bool found = read_record_of_chunk(cursor, message);
         chunk_at_ += cursor.at();
@@ -27,10 +28,13 @@ bool ChunkedSource::next(RawMessage& message) {
         if (read_record(message)) return true;
       }
     } catch (const FormatError& error) {
+      if (damage_.empty()) {
+        damage_ = file_.name() + ": byte " + std::to_string(record_) + ": " + error.what();
+      }
       // Inside a chunk the length of each record leads to the next one, so nothing after a damaged
-      // record can be trusted.
-      damage_ = file_.name() + ": byte " + std::to_string(record_) + ": " + error.what();
-      ended_ = true;
+      // record can be trusted. The length of the chunk leads to the next chunk.
+      begin_chunk();
+      if (!in_chunk && at_ == record_) ended_ = true;
     }
   }
   return false;

@@ -73,6 +73,28 @@ TEST_P(DamagedRecording, GivesWhatIsWholeWhenCutOff) {
               AllOf(HasSubstr(cut.string() + ": byte "), HasSubstr("expected")));
 }
 
+TEST_P(DamagedRecording, LosesOneChunkByDamageInsideIt) {
+  const std::filesystem::path file = long_drive(path(GetParam().first), GetParam().second);
+  const std::vector<scan::Scan> all = read_scans(file);
+  std::string bytes = bytes_of(file);
+  // No field and no length of a record is like this.
+  std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2), 64, '\xff');
+  const std::size_t field = bytes.find("conn=", bytes.size() / 2);
+  if (GetParam().second == std::string("none") && field != std::string::npos) bytes[field] = 'x';
+  put_bytes(path(std::string("holed_") + GetParam().first), bytes);
+  LogReader reader(path(std::string("holed_") + GetParam().first));
+  std::size_t scans = 0;
+  std::int64_t last_ns = 0;
+  while (const std::optional<scan::Scan> scan = reader.next()) {
+    last_ns = scan->stamp_ns;
+    ++scans;
+  }
+  EXPECT_GT(scans, std::size_t{kLongDrive} / 2);
+  EXPECT_LT(scans, std::size_t{kLongDrive});
+  EXPECT_EQ(last_ns, all.back().stamp_ns);
+  EXPECT_EQ(reader.statistics().skipped_for(scan::SkipReason::kTruncated), 1U);
+}
+
 TEST_P(DamagedRecording, IsNeverReadAsSomethingElse) {
   const std::string whole = bytes_of(write_drive(path(GetParam().first), GetParam().second));
   const std::vector<scan::Scan> drive = read_scans(path(GetParam().first));
