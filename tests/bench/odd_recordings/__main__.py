@@ -12,7 +12,7 @@ import subprocess
 
 from common import *  # noqa: F403
 import carmen_logs, carmen_variants, containers, files, frames, lasers, more_lasers  # noqa: E401, F401
-import more_odometry, odometry, pose_messages, stamps  # noqa: E401, F401
+import more_odometry, odometry, pose_messages, stamps, unusual  # noqa: E401, F401
 
 
 def mapped(name):
