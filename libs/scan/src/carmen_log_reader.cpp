@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "topogeo/scan/scan_sequence.hpp"
@@ -97,6 +98,7 @@ struct CarmenLogReader::Impl {
 
   void skip(SkipReason reason, std::uint64_t line, const std::string& text);
   std::optional<ScanSequence::Candidate> next_readable();
+  void note_first_word(std::string_view line);
   [[noreturn]] void throw_unusable() const;
 
   std::string path;
@@ -106,11 +108,25 @@ struct CarmenLogReader::Impl {
   ScanSequence sequence;
   CarmenLogStatistics statistics;
   bool damage_reported = false;
-  std::optional<Scan> ready;  // accepted, not yet returned
+  std::vector<std::string> first_words;  // of the first lines that have no scan
+  std::optional<Scan> ready;             // accepted, not yet returned
 };
 
 void CarmenLogReader::Impl::skip(SkipReason reason, std::uint64_t line, const std::string& text) {
   statistics.skip(reason, path + ":" + std::to_string(line) + ": " + text);
+}
+
+void CarmenLogReader::Impl::note_first_word(std::string_view line) {
+  constexpr std::size_t kMostWords = 2;
+  constexpr std::size_t kMostBytes = 24;
+  if (first_words.size() == kMostWords || statistics.laser_lines > 0) return;
+  const std::size_t begin = line.find_first_not_of(" \t");
+  if (begin == std::string_view::npos) return;
+  const std::size_t end = std::min(line.find_first_of(" \t\r", begin), begin + kMostBytes);
+  std::string word = support::printable(line.substr(begin, end - begin));
+  if (std::ranges::find(first_words, word) == first_words.end()) {
+    first_words.push_back(std::move(word));
+  }
 }
 
 // The next individually readable laser line, without a check of its time.
@@ -131,6 +147,7 @@ std::optional<ScanSequence::Candidate> CarmenLogReader::Impl::next_readable() {
         ++(kind == LineKind::kComment    ? statistics.comments
            : kind == LineKind::kOdometry ? statistics.odometry_lines
                                          : statistics.other_lines);
+        if (kind != LineKind::kComment) note_first_word(line.text);
       }
       continue;
     }
@@ -162,11 +179,16 @@ void CarmenLogReader::Impl::throw_unusable() const {
                                path + " > utf8.clf` and give utf8.clf");
     }
     const std::string damage = lines.damage().empty() ? "" : "; compressed data: " + lines.damage();
+    const std::string others = "; recordings of ROS (.bag, .db3, .mcap) are read, too";
     if (statistics.skipped_for(SkipReason::kText) > 0) {
-      throw std::runtime_error(path + ": " + expected + "binary data" + damage);
+      throw std::runtime_error(path + ": " + expected + "binary data" + damage + others);
+    }
+    std::string words;
+    for (const std::string& word : first_words) {
+      words += (words.empty() ? "; they begin with '" : ", '") + word + "'";
     }
     throw std::runtime_error(path + ": " + expected + std::to_string(statistics.lines) +
-                             " lines without one" + damage);
+                             " lines without one" + words + damage + others);
   }
   throw std::runtime_error(path + ": none of " + std::to_string(statistics.laser_lines) +
                            " laser lines is usable; the first: " +

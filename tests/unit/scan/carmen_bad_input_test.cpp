@@ -141,6 +141,14 @@ TEST_F(LogFiles, ALongPauseIsNoError) {
   EXPECT_EQ(reader.statistics().skipped_total(), 0U);
 }
 
+TEST_F(LogFiles, OtherFilesAreRefusedWithWhatTheyHold) {
+  EXPECT_THAT(open_error(plain("# log\nODOM 1 2 3\nRAWLASER1 0 -1.57\nODOM 2 2 3\nSYNC 1\n")),
+              testing::HasSubstr("got 5 lines without one; they begin with 'ODOM', 'RAWLASER1'; "
+                                 "recordings of ROS (.bag, .db3, .mcap) are read, too"));
+  EXPECT_THAT(open_error(plain("time,x,y,theta,ranges_of_all_beams\n1,2,3,4,5\n")),
+              testing::HasSubstr("they begin with 'time,x,y,theta,ranges_of', '1,2,3,4,5';"));
+}
+
 TEST_F(LogFiles, EachReasonHasOneMessageButAllSkipsAreCounted) {
   std::string text = flaser("1.0");
   for (int i = 0; i < 100; ++i) text += flaser("1.0");
