@@ -227,14 +227,16 @@ class Linker {
 
   /// Searches around the part before it searches the whole grid, which takes long. All cells of
   /// the part lie in the box, and every step beyond them costs its length or more. So a path that
-  /// leaves a box with this margin costs more than one that is shorter than the margin.
+  /// leaves a box with this margin costs more than one that is shorter than the margin, and the
+  /// cost of a path that was found is margin enough.
   [[nodiscard]] std::optional<planning::CellPath> path_from_one(const Cell& start,
                                                                 const PartCells& cells) const {
     constexpr std::int32_t kFirstMargin = 100;
+    constexpr std::int32_t kGrowth = 4;
     constexpr double kFirstStep = 1.0;  // from a cell of the part, where half a step is free
     const planning::GridFrame& frame = space_.frame();
     const planning::CellBox part = box_around(cells.own);
-    for (std::int32_t margin = kFirstMargin;; margin *= 4) {
+    for (std::int32_t margin = kFirstMargin;;) {
       const planning::CellBox box = planning::grown(part, margin, frame);
       const bool is_whole = box.low.column == 0 && box.low.row == 0 &&
                             box.high.column == frame.columns - 1 && box.high.row == frame.rows - 1;
@@ -242,6 +244,8 @@ class Linker {
       window.set_slowness(frame, slowness_);
       auto path = planning::path_to_nearest(window, start, cells.others);
       if (is_whole || (path && path->cost_cells < margin - kFirstStep)) return path;
+      margin *= kGrowth;
+      if (path) margin = std::min(margin, static_cast<std::int32_t>(path->cost_cells) + 2);
     }
   }
 
