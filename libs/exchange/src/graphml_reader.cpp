@@ -18,6 +18,15 @@
 namespace topogeo::exchange {
 namespace {
 
+/// The digits of a number in XML, which may have blanks around it and a plus.
+std::string_view numeral(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r\n";
+  const std::size_t begin = std::min(text.find_first_not_of(kBlanks), text.size());
+  text = text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
+  if (text.size() > 1 && text.starts_with('+') && text[1] != '-') text.remove_prefix(1);
+  return text;
+}
+
 // A larger number is damaged, as in drawings.
 constexpr double kMostCoordinate = 1e6;
 
@@ -99,7 +108,7 @@ class GraphmlReader {
     return checked(found->second, key);
   }
   double checked(std::string_view text, const std::string& key) const {
-    const std::optional<double> value = number_of(text);
+    const std::optional<double> value = number_of(numeral(text));
     if (!value || std::fabs(*value) > kMostCoordinate) {
       fail(fmt::format("{}: {}: expected a number from -1e6 to 1e6, got '{}'", here(), key, text));
     }
@@ -108,7 +117,7 @@ class GraphmlReader {
   std::uint64_t whole(const Data& data, const std::string& key, std::uint64_t otherwise) const {
     const auto found = data.find(key);
     if (found == data.end()) return otherwise;
-    const std::optional<std::uint64_t> value = whole_number_of(found->second);
+    const std::optional<std::uint64_t> value = whole_number_of(numeral(found->second));
     if (!value) {
       fail(fmt::format("{}: {}: expected a whole number of 0 or more, got '{}'", here(), key,
                        found->second));

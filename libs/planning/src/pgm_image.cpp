@@ -86,6 +86,10 @@ class PgmParser {
       fail("expected a blank between the maximum value and the pixels");
     }
     ++at_;
+    // A header with the line ends of Windows has a blank too many. In a file without a byte to
+    // spare it is the first pixel.
+    const bool other_end = bytes_[at_ - 1] == '\r' && bytes_.substr(at_).starts_with('\n');
+    if (other_end && bytes_.size() - at_ > count) ++at_;
     if (bytes_.size() - at_ < count) fail_short(count);
     image.pixels.assign(bytes_.begin() + static_cast<std::ptrdiff_t>(at_),
                         bytes_.begin() + static_cast<std::ptrdiff_t>(at_ + count));

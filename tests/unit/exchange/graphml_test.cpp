@@ -41,6 +41,18 @@ TEST_F(Graphml, ForeignFilesNeedOnlyPositions) {
   EXPECT_EQ(graph.map.branches[0].points.back().position_m, Eigen::Vector2d(4.0, -2.0));
 }
 
+TEST_F(Graphml, NumbersMayHaveBlanksAndAPlus) {
+  const MapGraph graph = parse_graphml(
+      "<graphml><key id='x' for='node' attr.name='x'/><key id='y' for='node' attr.name='y'/>"
+      "<key id='o' for='node' attr.name='observations'/><graph><node id='a'>"
+      "<data key='x'>\n  0.5\n </data><data key='y'>+2</data><data key='o'> 3 </data></node>"
+      "</graph></graphml>",
+      "f");
+  ASSERT_EQ(graph.map.nodes.size(), 1U);
+  EXPECT_EQ(graph.map.nodes[0].position_m, Eigen::Vector2d(0.5, 2.0));
+  EXPECT_EQ(graph.map.nodes[0].observations, 3U);
+}
+
 TEST_F(Graphml, NamesWhatIsWrong) {
   const auto error = [](const std::string& graph) {
     return error_of([&] {

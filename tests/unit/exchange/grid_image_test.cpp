@@ -198,6 +198,17 @@ std::string bmp_bytes(std::int32_t width, std::int32_t height, std::uint32_t bit
          little_endian(bits, 2) + std::string(24, '\0') + palette + rows;
 }
 
+TEST_F(GridImageFiles, AHeaderWithLineEndsOfWindowsMovesNoPixel) {
+  const std::string yaml = std::string(kHead) + "negate: 0\n" + kTail;
+  const auto values = read(yaml).values;  // 254 0 / 205 100
+  const std::string pixels("\xfe\x00\xcd\x64", 4);
+  EXPECT_EQ(read(yaml, "P5\n2 2\n255\n" + pixels).values, values);
+  EXPECT_EQ(read(yaml, "P5\r\n2 2\r\n255\r\n" + pixels).values, values);
+  // The blank after the maximum value is \r, the first pixel is 10.
+  EXPECT_EQ(read(yaml, "P5\n2 2\n255\r\n" + pixels.substr(1)).values,
+            read(yaml, "P2 2 2 255 10 0 205 100").values);
+}
+
 TEST_F(GridImageFiles, PngAndBmpAreReadAsPgmIs) {
   const std::string yaml = std::string(kHead) + "negate: 0\n" + kTail;
   const GridImage pgm = read(yaml);  // 254 0 / 205 100
