@@ -116,7 +116,7 @@ class Linker {
       MapNode node;
       node.id = next_node_id(map_);
       node.position_m = frame.center_m(*cell);
-      node.clearance_m = space_.clearance_m(*cell);
+      node.clearance_m = clearance_m(*cell);
       map_.nodes.push_back(node);
       spread({*cell});
     }
@@ -249,6 +249,13 @@ class Linker {
     }
   }
 
+  /// A grid without an obstacle is as wide as it is large.
+  [[nodiscard]] double clearance_m(const Cell& cell) const {
+    const planning::GridFrame& frame = space_.frame();
+    return std::min(space_.clearance_m(cell),
+                    frame.resolution_m * std::hypot(frame.columns, frame.rows));
+  }
+
   static planning::CellBox box_around(std::span<const Cell> cells) {
     planning::CellBox box{cells.front(), cells.front()};
     for (const Cell& cell : cells) {
@@ -265,7 +272,7 @@ class Linker {
     branch.node_b = node_at(frame.center_m(path.back()));
     branch.id = next_branch_id(map_);
     for (const Cell& cell : path) {
-      branch.points.push_back({frame.center_m(cell), space_.clearance_m(cell)});
+      branch.points.push_back({frame.center_m(cell), clearance_m(cell)});
     }
     if (branch.points.size() < 2) branch.points.push_back(branch.points.front());
     branch.points.front().position_m = position_of(branch.node_a);

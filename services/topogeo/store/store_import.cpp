@@ -59,6 +59,18 @@ geometry::Pose2 pose_of_file(const ImportOptions& options) {
   }
 }
 
+void report_graph(const topomap::GlobalMap& map) {
+  if (map.nodes.empty()) {
+    std::cerr << "topogeo: the grid has no free place as wide as the robot: the map has no graph\n";
+    return;
+  }
+  const std::size_t parts = exchange::parts_of_graph(map);
+  std::cerr << fmt::format(
+      "topogeo: {} nodes and {} branches made of the grid, {}\n", map.nodes.size(),
+      map.branches.size(),
+      parts == 1 ? "all connected" : fmt::format("in {} parts that no free path joins", parts));
+}
+
 /// Makes nodes and branches from a grid alone and, if wanted, the stops behind them.
 void add_graph(storage::MapDocument& document, const ImportOptions& options,
                const pipeline::Config& config) {
@@ -83,11 +95,7 @@ void add_graph(storage::MapDocument& document, const ImportOptions& options,
       throw service::BadInputError(options.file.string() + ": " + error.what());
     }
   }();
-  const std::size_t parts = exchange::parts_of_graph(made.global_map);
-  std::cerr << fmt::format(
-      "topogeo: {} nodes and {} branches made of the grid, {}\n", made.global_map.nodes.size(),
-      made.global_map.branches.size(),
-      parts <= 1 ? "all connected" : fmt::format("in {} parts that no free path joins", parts));
+  report_graph(made.global_map);
   if (options.with_stops) {
     made.drawing = std::move(document.drawing);
     document = std::move(made);

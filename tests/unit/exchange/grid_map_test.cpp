@@ -221,6 +221,17 @@ TEST(GridMap, RoomsWithoutADoorStayApart) {
   EXPECT_EQ(parts_of_graph(map_of_grid(planning::FreeSpace(grid), {}, {}, "plan").global_map), 2U);
 }
 
+TEST(GridMap, AGridWithoutAnObstacleIsAsWideAsItIsLarge) {
+  planning::GridFrame frame;
+  frame.columns = 60;
+  frame.rows = 80;
+  frame.resolution_m = 0.1;
+  const planning::FreeSpace space(planning::OccupancyGrid(frame, CellState::kFree));
+  const storage::MapDocument map = map_of_grid(space, {}, {}, "plan");
+  ASSERT_FALSE(map.global_map.nodes.empty());
+  for (const topomap::MapNode& node : map.global_map.nodes) EXPECT_LE(node.clearance_m, 10.0);
+}
+
 TEST(GridMap, AClosedGridHasNoStops) {
   planning::GridFrame frame;
   frame.columns = 30;
