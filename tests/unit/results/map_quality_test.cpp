@@ -224,7 +224,7 @@ TEST(MapQuality, AdviceNamesNoRemedyThatWasTried) {
 }
 
 TEST(MapQuality, OdometryWithWheelsThatSlipInPlacesIsReplaced) {
-  // From stop 8 to 11 the odometry counts half as much again as the map.
+  // The odometry counts half as much again as the map from stop 8 to 11.
   storage::MapDocument document = drive(0);
   double ahead_m = 0.0;
   for (std::uint32_t id = 1; id < kStops; ++id) {
