@@ -57,7 +57,7 @@ std::vector<std::uint32_t> parse_bauds(const std::string& text) {
 void describe_laser_line(ConfigSchema& schema, Laser& laser) {
   schema.add("laser.port", &laser.port,
              "port of the laser: a serial port, for example /dev/ttyUSB0, or tcp://HOST:PORT of a "
-             "laser on the network; empty: no laser");
+             "laser on the network, udp://HOST:PORT of one that sends datagrams; empty: no laser");
   std::vector<std::pair<std::string, const devices::LaserModel*>> models;
   for (const devices::LaserModel& model : devices::laser_models()) {
     models.emplace_back(model.name, &model);
@@ -187,12 +187,39 @@ void describe_cola(ConfigSchema& schema, Laser& laser) {
              "document states it, so measure it by turning the robot on the spot");
 }
 
+void describe_safety(ConfigSchema& schema, Laser& laser) {
+  using devices::SafetyInterface;
+  schema.add("laser.data_port", &laser.data_port, 0U, 65'535U, "",
+             "UDP port of this computer to which a laser at udp://HOST sends its data; 0: any free "
+             "one, so set it if a firewall has to let it pass");
+  schema.add("laser.safety_channel", &laser.safety_channel, 0U, 3U, "",
+             "data output of a SICK safety scanner that the gateway sets up for itself");
+  schema.add("laser.safety_interface", &laser.safety.interface,
+             {{"ethernet", SafetyInterface::kEthernet},
+              {"efi_pro", SafetyInterface::kEfiPro},
+              {"ethernet_ip", SafetyInterface::kEthernetIp},
+              {"profinet", SafetyInterface::kProfinet}},
+             "network interface of a SICK safety scanner, by its variant");
+  schema.add(
+      "laser.protective_path", &laser.protective_path, 0U, 20U, "",
+      "cut-off path of a SICK safety scanner whose field stops the robot, as Safety Designer "
+      "numbers it; 0: none");
+  schema.add("laser.warning_path", &laser.warning_path, 0U, 20U, "",
+             "cut-off path whose field slows the robot; 0: none");
+}
+
 /// The port of a laser on a network is that of its model, unless it is given.
 std::string laser_port(const Laser& laser) {
   try {
     std::string port = devices::with_port(laser.port, laser.model->network_port);
     if (devices::is_network_address(port) && !devices::network_address(port).port) {
       throw std::invalid_argument("'" + port + "': expected a port after the host");
+    }
+    const bool datagrams = devices::sends_datagrams(*laser.model);
+    if (devices::is_network_address(port) &&
+        devices::network_address(port).datagrams != datagrams) {
+      throw std::invalid_argument("'" + port + "': expected " + (datagrams ? "udp" : "tcp") +
+                                  "://HOST of a " + std::string(laser.model->title));
     }
     return port;
   } catch (const std::invalid_argument& error) {
@@ -245,6 +272,7 @@ DeviceFile::DeviceFile() {
   laser.sweep_to_send_s = seconds(l.sweep_to_send_ns);
   laser.first_no_return_code = l.first_no_return_code;
   laser.stuck_returns = static_cast<std::uint32_t>(l.stuck_returns);
+  laser.protective_path = laser.safety.protective_path;
   base.report_mask = base.settings.report_mask;
   base.error_delay_ticks = base.settings.error_delay_ticks;
   if (base.settings.torque) base.torque = *base.settings.torque;
@@ -260,6 +288,7 @@ ConfigSchema describe(DeviceFile& file) {
   describe_rplidar(schema, file.laser);
   describe_scip(schema, file.laser);
   describe_cola(schema, file.laser);
+  describe_safety(schema, file.laser);
   describe_base(file.base, schema);
   schema.add("body.sensors", &file.body,
              {{"none", DeviceFile::Body::kNone}, {"b21", DeviceFile::Body::kB21}},
@@ -303,6 +332,11 @@ DeviceConfig to_config(const DeviceFile& file) {
   config.laser.scip = file.laser.scip;
   config.laser.cola = file.laser.cola;
   config.laser.cola.zero_to_first_ns = nanoseconds(file.laser.cola_zero_to_first_s);
+  config.laser_data_port = static_cast<std::uint16_t>(file.laser.data_port);
+  config.laser.safety = file.laser.safety;
+  config.laser.safety.channel = static_cast<std::uint8_t>(file.laser.safety_channel);
+  config.laser.safety.protective_path = static_cast<std::uint8_t>(file.laser.protective_path);
+  config.laser.safety.warning_path = static_cast<std::uint8_t>(file.laser.warning_path);
   config.laser.rplidar.express_mode = static_cast<std::uint8_t>(file.laser.express_mode);
   config.laser.rplidar.motor_value = static_cast<std::uint16_t>(file.laser.motor_value);
   devices::BaseSettings& base = config.base = file.base.settings;

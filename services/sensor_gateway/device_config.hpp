@@ -24,6 +24,11 @@ struct DeviceFile {
     devices::ScipSettings scip;
     devices::ColaSettings cola;
     double cola_zero_to_first_s = 0.0;  ///< as nanoseconds in `cola`
+    devices::SafetySettings safety;
+    std::uint32_t safety_channel = 0;  ///< this and the paths: as in `safety`
+    std::uint32_t protective_path = 0;
+    std::uint32_t warning_path = 0;
+    std::uint32_t data_port = 0;        ///< as DeviceConfig::laser_data_port
     std::uint32_t express_mode = 0;     ///< as `rplidar.express_mode`
     std::uint32_t motor_value = 0;      ///< as `rplidar.motor_value`
     std::uint32_t beams = 0;            ///< as `turning.beams`
@@ -63,7 +68,8 @@ support::ConfigSchema describe(DeviceFile& file);
 
 /// Configuration that the gateway uses.
 struct DeviceConfig {
-  std::string laser_port;  ///< empty: no laser
+  std::string laser_port;             ///< empty: no laser
+  std::uint16_t laser_data_port = 0;  ///< see PortOptions::data_port
   devices::LaserSettings laser;
   std::string base_port;  ///< empty: no base
   devices::BaseSettings base;

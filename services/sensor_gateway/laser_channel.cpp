@@ -31,6 +31,12 @@ std::vector<std::pair<std::string, std::uint64_t>> drops_of(const devices::Laser
   return drops;
 }
 
+PortOptions port_options(const DeviceConfig& config) {
+  PortOptions options{config.laser_port};
+  options.data_port = config.laser_data_port;
+  return options;
+}
+
 std::string_view name(msg::LaserState state) {
   switch (state) {
     case msg::kLaserRunning:
@@ -60,7 +66,7 @@ LaserChannel::LaserChannel(service::Service& service, const DeviceConfig& config
       on_scans_(std::move(on_scans)),
       driver_(devices::make_laser_driver(config.laser)),
       statuses_(service.advertise<msg::LaserStatus>()),
-      line_(service.loop(), *driver_, PortOptions{config.laser_port},
+      line_(service.loop(), *driver_, port_options(config),
             [this](std::int64_t now_ns) { after_driver(now_ns); }) {
   if (const auto remembered = memory_.load()) driver_->resume(*remembered);
   timer_ = service_.loop().add_timer(kLaserStatusPeriod, [this] { publish_status(); });

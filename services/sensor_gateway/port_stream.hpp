@@ -1,8 +1,9 @@
-// A connection to a device, which moves bytes: a serial port, or a TCP connection
-// ("tcp://host:port").
+// A connection to a device, which moves bytes: a serial port, a TCP connection ("tcp://host:port"),
+// or a TCP connection for commands with datagrams for data ("udp://host:port").
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -49,9 +50,10 @@ class PortStream {
   [[nodiscard]] virtual std::string explain(const boost::system::error_code& error) const = 0;
 };
 
-/// A TCP connection for a path that begins with "tcp://", else a serial port. Throws
-/// std::invalid_argument like devices::network_address().
+/// The connection for a path that begins with "tcp://" or "udp://", else a serial port.
+/// `data_port`: this host's port for datagrams; 0: any free one. Throws std::invalid_argument like
+/// devices::network_address().
 std::unique_ptr<PortStream> make_port_stream(boost::asio::io_context& context,
-                                             const std::string& path);
+                                             const std::string& path, std::uint16_t data_port);
 
 }  // namespace topogeo::sensor_gateway

@@ -15,6 +15,7 @@
 
 #include "topogeo/support/host.hpp"
 
+#include "datagram_stream.hpp"
 #include "port_stream.hpp"
 #include "serial_stream.hpp"
 #include "stop_sentry.hpp"
@@ -33,7 +34,7 @@ class SerialPort::Impl {
   Impl(PortOptions options, std::function<void(PortEvent)> notify)
       : options_(std::move(options)),
         notify_(std::move(notify)),
-        stream_(make_port_stream(context_, options_.path)),
+        stream_(make_port_stream(context_, options_.path, options_.data_port)),
         wait_(options_.first_wait) {
     asio::post(context_, [this] { open(); });
     thread_ = std::thread([this] { context_.run(); });
@@ -221,10 +222,14 @@ SerialPort::SerialPort(const PortOptions& options, std::function<void(PortEvent)
   impl_ = std::make_unique<Impl>(options, std::move(notify));
 }
 
-std::unique_ptr<PortStream> make_port_stream(asio::io_context& context, const std::string& path) {
+std::unique_ptr<PortStream> make_port_stream(asio::io_context& context, const std::string& path,
+                                             std::uint16_t data_port) {
   if (!devices::is_network_address(path)) return std::make_unique<SerialStream>(context, path);
   devices::NetworkAddress address = devices::network_address(path);
   if (!address.port) throw std::invalid_argument("'" + path + "': expected a port after the host");
+  if (address.datagrams) {
+    return std::make_unique<DatagramStream>(context, std::move(address), data_port);
+  }
   return std::make_unique<TcpStream>(context, std::move(address));
 }
 

@@ -23,6 +23,8 @@ struct PortOptions {
   /// `stop_after`.
   std::vector<std::uint8_t> stop_bytes{};
   std::chrono::milliseconds stop_after{};
+  /// This host's port for the datagrams of a path udp://HOST:PORT; 0: any free one.
+  std::uint16_t data_port = 0;
 };
 
 /// An event of a port.

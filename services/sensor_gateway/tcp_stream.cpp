@@ -67,6 +67,16 @@ void TcpStream::open(Opened done) {
       });
 }
 
+asio::ip::address TcpStream::local_address() const {
+  error_code ignored;
+  return socket_.local_endpoint(ignored).address();
+}
+
+asio::ip::address TcpStream::remote_address() const {
+  error_code ignored;
+  return socket_.remote_endpoint(ignored).address();
+}
+
 void TcpStream::watch_link() {
   const int socket = socket_.native_handle();
   set_option(socket, IPPROTO_TCP, TCP_NODELAY, 1);

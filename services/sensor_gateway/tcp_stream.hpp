@@ -19,6 +19,10 @@ class TcpStream final : public PortStream {
   TcpStream(boost::asio::io_context& context, devices::NetworkAddress address);
   ~TcpStream() override;
 
+  /// This host's end and the device's end of the open connection.
+  [[nodiscard]] boost::asio::ip::address local_address() const;
+  [[nodiscard]] boost::asio::ip::address remote_address() const;
+
   void open(Opened done) override;
   [[nodiscard]] bool is_open() const override { return open_; }
   [[nodiscard]] int descriptor() override { return socket_.native_handle(); }

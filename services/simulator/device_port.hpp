@@ -34,8 +34,8 @@ class DevicePort {
   virtual std::size_t send(std::span<const std::uint8_t> bytes) = 0;
 };
 
-/// "tcp://ADDRESS:PORT", at which one program at a time may connect, or the link of a
-/// pseudo-terminal. Throws std::invalid_argument for an address of another form.
+/// "tcp://ADDRESS:PORT" or "udp://ADDRESS:PORT", at which one program at a time may connect, or the
+/// link of a pseudo-terminal. Throws std::invalid_argument for an address of another form.
 std::unique_ptr<DevicePort> make_device_port(const std::filesystem::path& port);
 
 }  // namespace topogeo::simulator

@@ -14,6 +14,7 @@
 
 #include "topogeo/devices/network_address.hpp"
 
+#include "datagram_port.hpp"
 #include "pseudo_terminal.hpp"
 
 namespace topogeo::simulator {
@@ -83,8 +84,10 @@ std::unique_ptr<DevicePort> make_device_port(const std::filesystem::path& port) 
   if (!devices::is_network_address(text)) return std::make_unique<PseudoTerminal>(port);
   const devices::NetworkAddress address = devices::network_address(text);
   if (!address.port) {
-    throw std::invalid_argument("'" + text + "': expected tcp://ADDRESS:PORT");
+    throw std::invalid_argument("'" + text +
+                                "': expected tcp://ADDRESS:PORT or udp://ADDRESS:PORT");
   }
+  if (address.datagrams) return std::make_unique<DatagramPort>(address.host, *address.port);
   return std::make_unique<TcpPort>(address.host, *address.port);
 }
 

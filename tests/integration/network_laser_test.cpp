@@ -1,6 +1,8 @@
 // Gateway and emulated lasers on a network: scans, a cable that comes out, and the end.
 #include <string>
 
+#include "topogeo/devices/laser_models.hpp"
+
 #include "gateway_fixture.hpp"
 #include "tcp_port.hpp"
 
@@ -12,8 +14,10 @@ class EachNetworkLaser : public GatewayOnDevices, public testing::WithParamInter
   EachNetworkLaser() {
     simulator::TcpPort port("127.0.0.1", 0);
     port.plug();
-    laser_port_ = "tcp://127.0.0.1:" + std::to_string(port.port());
     laser_model_ = GetParam();
+    const bool datagrams = devices::sends_datagrams(devices::laser_model(laser_model_));
+    laser_port_ =
+        (datagrams ? "udp://127.0.0.1:" : "tcp://127.0.0.1:") + std::to_string(port.port());
   }
 };
 
@@ -29,7 +33,8 @@ TEST_P(EachNetworkLaser, SendsScansThroughTheGatewayAlsoAfterItsCableCameOut) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EachNetworkLaser,
-                         testing::Values("ust_20lx", "sick_tim5xx", "sick_tim7xx"),
+                         testing::Values("ust_20lx", "sick_tim5xx", "sick_tim7xx",
+                                         "sick_nanoscan3"),
                          [](const auto& laser) { return laser.param; });
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "topogeo/devices/lds_driver.hpp"
 #include "topogeo/devices/pls_driver.hpp"
 #include "topogeo/devices/rplidar_driver.hpp"
+#include "topogeo/devices/safety_driver.hpp"
 #include "topogeo/devices/scip_driver.hpp"
 #include "topogeo/devices/ydlidar_driver.hpp"
 
@@ -73,6 +74,11 @@ std::unique_ptr<LaserDriver> make_cola(const LaserModel& model, const LaserSetti
   return std::make_unique<ColaDriver>(model, settings.turning, settings.cola);
 }
 
+std::unique_ptr<LaserDriver> make_sick_safety(const LaserModel& model,
+                                              const LaserSettings& settings) {
+  return std::make_unique<SafetyDriver>(model, settings.turning, settings.safety);
+}
+
 #define TOPOGEO_LASER(family, name, title, baud, parity, beams, view_deg, turns_hz, range_max_m, \
                       network_port)                                                              \
   LaserModel{#family,      name,         title,    LineSettings{baud, Parity::parity},           \
@@ -94,6 +100,10 @@ const LaserModel& laser_model(std::string_view name) {
     throw std::invalid_argument("laser model '" + std::string(name) + "': not known");
   }
   return *model;
+}
+
+bool sends_datagrams(const LaserModel& model) {
+  return model.family == "sick_safety";
 }
 
 LineSettings line_of(const LaserModel& model, const TurningLaserSettings& settings) {

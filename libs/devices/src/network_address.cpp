@@ -7,22 +7,25 @@ namespace topogeo::devices {
 namespace {
 
 constexpr std::string_view kScheme = "tcp://";
+constexpr std::string_view kDatagramScheme = "udp://";
 
 std::invalid_argument wrong(std::string_view path) {
-  return std::invalid_argument("'" + std::string(path) +
-                               "': expected tcp://HOST:PORT, with a port from 1 to 65535");
+  return std::invalid_argument(
+      "'" + std::string(path) +
+      "': expected tcp://HOST:PORT or udp://HOST:PORT, with a port from 1 to 65535");
 }
 
 }  // namespace
 
 bool is_network_address(std::string_view path) {
-  return path.starts_with(kScheme);
+  return path.starts_with(kScheme) || path.starts_with(kDatagramScheme);
 }
 
 NetworkAddress network_address(std::string_view path) {
   if (!is_network_address(path)) throw wrong(path);
   std::string_view rest = path.substr(kScheme.size());
   NetworkAddress address;
+  address.datagrams = path.starts_with(kDatagramScheme);
   const bool bracketed = rest.starts_with('[');
   const std::size_t end = bracketed ? rest.find(']') : rest.find(':');
   if (bracketed && end == std::string_view::npos) throw wrong(path);

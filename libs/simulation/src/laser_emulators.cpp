@@ -9,6 +9,7 @@
 #include "topogeo/simulation/lds_emulator.hpp"
 #include "topogeo/simulation/pls_emulator.hpp"
 #include "topogeo/simulation/rplidar_emulator.hpp"
+#include "topogeo/simulation/safety_emulator.hpp"
 #include "topogeo/simulation/scip_emulator.hpp"
 #include "topogeo/simulation/ydlidar_emulator.hpp"
 
@@ -169,6 +170,24 @@ std::unique_ptr<LaserEmulator> emulate_cola(const LaserEmulatorSettings& setting
   cola.range_max_m = model.range_max_m;
   cola.seed = settings.seed;
   return std::make_unique<ColaEmulator>(cola, std::move(ranges), now_ns);
+}
+
+std::unique_ptr<LaserEmulator> emulate_sick_safety(const LaserEmulatorSettings& settings,
+                                                   const devices::LaserModel& model,
+                                                   LaserEmulator::Ranges ranges,
+                                                   std::int64_t now_ns) {
+  constexpr double kAhead_deg = 90.0;
+  SafetyEmulatorSettings safety;
+  safety.line = model.line;
+  safety.beams = model.beams;
+  safety.view_deg = model.view_deg;
+  safety.first_deg = kAhead_deg - 0.5 * model.view_deg;
+  safety.turns_hz = model.turns_hz;
+  safety.range_max_m = model.range_max_m;
+  safety.protective_field_m = settings.protective_field_m;
+  safety.warning_field_m = settings.warning_field_m;
+  safety.seed = settings.seed;
+  return std::make_unique<SafetyEmulator>(safety, std::move(ranges), now_ns);
 }
 
 struct EmulatorRow {

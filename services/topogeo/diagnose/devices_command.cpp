@@ -71,6 +71,11 @@ class OpenPort {
 /// A host without a port has those of the lasers in the table.
 std::vector<std::string> ports_of(const std::string& path) {
   try {
+    if (devices::is_network_address(path) && devices::network_address(path).datagrams) {
+      throw service::UsageError("'" + path +
+                                "': a laser that sends datagrams is not searched for; set "
+                                "laser.port and laser.model");
+    }
     if (!devices::is_network_address(path) || devices::network_address(path).port) {
       return {path};
     }
@@ -79,7 +84,8 @@ std::vector<std::string> ports_of(const std::string& path) {
   }
   std::set<std::uint16_t> numbers;
   for (const devices::LaserModel& model : devices::laser_models()) {
-    if (model.network_port != 0) numbers.insert(model.network_port);
+    if (model.network_port == 0 || devices::sends_datagrams(model)) continue;
+    numbers.insert(model.network_port);
   }
   std::vector<std::string> ports;
   ports.reserve(numbers.size());

@@ -14,10 +14,16 @@ TEST(NetworkAddress, HasAHostAndMayHaveAPort) {
   EXPECT_EQ(network_address("tcp://[::1]"), (NetworkAddress{"::1", {}}));
 }
 
+TEST(NetworkAddress, ADeviceThatSendsDatagramsHasItsPortForCommands) {
+  EXPECT_EQ(network_address("udp://10.0.0.1:2122"), (NetworkAddress{"10.0.0.1", 2122, true}));
+  EXPECT_TRUE(is_network_address("udp://10.0.0.1"));
+  EXPECT_EQ(with_port("udp://10.0.0.1", 2122), "udp://10.0.0.1:2122");
+}
+
 TEST(NetworkAddress, OtherPathsAreRefused) {
   for (const char* path :
        {"/dev/ttyUSB0", "tcp://", "tcp://:1", "tcp://host:", "tcp://host:0", "tcp://host:65536",
-        "tcp://host:1x", "tcp://[::1", "tcp://a/b:1", "tcp://[::1]2", "udp://host:1"}) {
+        "tcp://host:1x", "tcp://[::1", "tcp://a/b:1", "tcp://[::1]2", "udp://", "udp://:1"}) {
     EXPECT_THROW((void)network_address(path), std::invalid_argument) << path;
   }
   EXPECT_FALSE(is_network_address("/dev/ttyUSB0"));

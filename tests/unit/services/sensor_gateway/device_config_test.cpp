@@ -95,6 +95,25 @@ laser:
   EXPECT_EQ(turning.packet_delay_ns, 2'000'000);
 }
 
+TEST(DeviceConfig, ASafetyScannerSendsDatagrams) {
+  const DeviceConfig config = config_of(R"(
+laser:
+  port: udp://10.0.0.2
+  model: sick_nanoscan3
+  data_port: 6060
+  safety_channel: 3
+  safety_interface: profinet
+  protective_path: 4
+  warning_path: 5
+)");
+  EXPECT_EQ(config.laser_port, "udp://10.0.0.2:2122");
+  EXPECT_EQ(config.laser_data_port, 6060);
+  EXPECT_EQ(config.laser.safety.channel, 3);
+  EXPECT_EQ(config.laser.safety.interface, devices::SafetyInterface::kProfinet);
+  EXPECT_EQ(config.laser.safety.protective_path, 4);
+  EXPECT_EQ(config.laser.safety.warning_path, 5);
+}
+
 TEST(DeviceConfig, TheModelOfTheBaseChoosesItsLineAndBattery) {
   const DeviceConfig b21 = config_of("base.port: /dev/b\n");
   EXPECT_EQ(b21.base.line.baud, 9600U);
@@ -183,6 +202,8 @@ TEST(DeviceConfig, MistakesNameTheKey) {
   EXPECT_THAT(why("laser.port: /dev/a\nlaser.password: short\n"), HasSubstr("password"));
   EXPECT_THAT(why("laser.port: /dev/a\nlaser.model: ld20\n"), HasSubstr("ld19"));
   EXPECT_THAT(why("laser.port: /dev/a\nlaser.model: ld19\nlaser.beams: 10\n"), HasSubstr("beams"));
+  EXPECT_THAT(why("laser.port: tcp://host\nlaser.model: sick_nanoscan3\n"), HasSubstr("udp://"));
+  EXPECT_THAT(why("laser.port: udp://host\nlaser.model: ust_20lx\n"), HasSubstr("tcp://"));
   EXPECT_THAT(why("base.port: /dev/b\nbase.counts_per_m: -1\n"), HasSubstr("base.counts_per_m"));
   EXPECT_THAT(why("base.port: /dev/b\nbase.command_timeout_s: 2\n"),
               HasSubstr("base.command_timeout_s"));

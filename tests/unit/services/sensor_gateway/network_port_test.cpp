@@ -6,7 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "topogeo/devices/envelope.hpp"
+
 #include "serial_port.hpp"
+#include "simulator/datagram_port.hpp"
 #include "simulator/tcp_port.hpp"
 #include "waiting.hpp"
 
@@ -100,6 +103,91 @@ TEST_F(NetworkPortTest, ADeviceThatGoesAndReturnsIsConnectedAgain) {
 
 TEST_F(NetworkPortTest, AnAddressWithoutAPortIsAMistake) {
   EXPECT_THROW(SerialPort({"tcp://127.0.0.1"}, [](const PortEvent&) {}), std::invalid_argument);
+}
+
+/// A port with datagrams, and the simulated device behind it.
+class DatagramPortTest : public testing::Test {
+ protected:
+  DatagramPortTest() {
+    device_.plug();
+    port_ = std::make_unique<SerialPort>(
+        PortOptions{"udp://127.0.0.1:" + std::to_string(device_.port()), milliseconds(5),
+                    milliseconds(20)},
+        [this](const PortEvent& event) {
+          const std::scoped_lock lock(mutex_);
+          if (event.kind == Kind::kOpened) epoch_ = event.epoch;
+          if (event.kind != Kind::kBytes) return;
+          for (devices::Envelope& envelope : reader_.read(event.bytes)) {
+            envelopes_.push_back(std::move(envelope));
+          }
+        });
+  }
+
+  void say(devices::EnvelopeKind kind, const std::string& text) {
+    std::vector<std::uint8_t> bytes;
+    devices::put_envelope(bytes, kind, std::vector<std::uint8_t>(text.begin(), text.end()));
+    EXPECT_EQ(device_.send(bytes), 0U);
+  }
+
+  /// Contents of the envelopes of a kind.
+  [[nodiscard]] std::vector<std::string> received(devices::EnvelopeKind kind) {
+    const std::scoped_lock lock(mutex_);
+    std::vector<std::string> texts;
+    for (const devices::Envelope& envelope : envelopes_) {
+      if (envelope.kind != kind) continue;
+      texts.emplace_back(envelope.contents.begin(), envelope.contents.end());
+    }
+    return texts;
+  }
+
+  void command() {
+    const std::scoped_lock lock(mutex_);
+    port_->write({{{}, {'g', 'o'}, {}}}, epoch_);
+  }
+
+  [[nodiscard]] bool command_arrives() {
+    command();
+    return test::wait_for("the command", [this] { return !device_.receive().empty(); });
+  }
+
+  simulator::DatagramPort device_{"127.0.0.1", 0};
+  std::mutex mutex_;
+  devices::EnvelopeReader reader_;
+  std::vector<devices::Envelope> envelopes_;
+  std::uint64_t epoch_ = 0;
+  std::unique_ptr<SerialPort> port_;
+};
+
+TEST_F(DatagramPortTest, TheAddressComesFirstThenRepliesAndWholeDatagrams) {
+  using devices::EnvelopeKind;
+  ASSERT_TRUE(
+      test::wait_for("the address", [this] { return received(EnvelopeKind::kHost).size() == 1; }));
+  const std::string host = received(EnvelopeKind::kHost).front();
+  EXPECT_THAT(host, HasSubstr("127.0.0.1:"));
+  ASSERT_TRUE(command_arrives());
+  say(EnvelopeKind::kHost, host);
+  say(EnvelopeKind::kReply, "ok");
+  const std::string large(9000, 'x');
+  say(EnvelopeKind::kDatagram, large);
+  say(EnvelopeKind::kDatagram, "small");
+  ASSERT_TRUE(test::wait_for("the data", [this] {
+    return received(EnvelopeKind::kDatagram).size() == 2 && !received(EnvelopeKind::kReply).empty();
+  }));
+  EXPECT_THAT(received(EnvelopeKind::kDatagram), ElementsAre(large, "small"));
+  EXPECT_THAT(received(EnvelopeKind::kReply), ElementsAre("ok"));
+}
+
+TEST_F(DatagramPortTest, AConnectionThatTheDeviceClosesIsOpenedForTheNextCommand) {
+  using devices::EnvelopeKind;
+  ASSERT_TRUE(
+      test::wait_for("the address", [this] { return received(EnvelopeKind::kHost).size() == 1; }));
+  ASSERT_TRUE(command_arrives());
+  device_.unplug();
+  device_.plug();
+  EXPECT_TRUE(test::wait_for("a command over a new connection", [this] {
+    command();
+    return !device_.receive().empty();
+  }));
 }
 
 }  // namespace

@@ -32,6 +32,9 @@ struct LaserModel {
 /// Throws std::invalid_argument for a name that no model has.
 [[nodiscard]] const LaserModel& laser_model(std::string_view name);
 
+/// Whether the model sends its scans as datagrams: its port is udp://HOST.
+[[nodiscard]] bool sends_datagrams(const LaserModel& model);
+
 /// The line of a model at the rate of the settings, or at its own.
 [[nodiscard]] LineSettings line_of(const LaserModel& model, const TurningLaserSettings& settings);
 

@@ -5,6 +5,7 @@
 #include "topogeo/devices/lds_settings.hpp"
 #include "topogeo/devices/pls_settings.hpp"
 #include "topogeo/devices/rplidar_settings.hpp"
+#include "topogeo/devices/safety_settings.hpp"
 #include "topogeo/devices/scip_settings.hpp"
 #include "topogeo/devices/turning_laser_settings.hpp"
 
@@ -20,6 +21,7 @@ struct LaserSettings {
   RpLidarSettings rplidar;
   ScipSettings scip;
   ColaSettings cola;
+  SafetySettings safety;
   TurningLaserSettings turning;  ///< of every laser but the PLS
 };
 

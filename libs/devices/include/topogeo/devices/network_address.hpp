@@ -1,4 +1,5 @@
-// Addresses of devices on a network: "tcp://host:port", "tcp://[::1]:port".
+// Addresses of devices on a network: "tcp://host:port", "tcp://[::1]:port", and "udp://host:port"
+// of a device that takes commands over TCP at that port and sends its data as datagrams.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +12,7 @@ namespace topogeo::devices {
 struct NetworkAddress {
   std::string host;
   std::optional<std::uint16_t> port{};
+  bool datagrams = false;  ///< udp://
   bool operator==(const NetworkAddress&) const = default;
 };
 
