@@ -50,8 +50,10 @@ struct Arguments {
 void add_options(command_line::Command& app, Arguments& arguments) {
   simulation::RobotOptions& robot = arguments.options.devices.robot;
   app.add_option("--world", arguments.world, "world file")->required()->type_name("FILE");
-  app.add_option("--laser-port", arguments.options.devices.laser_port,
-                 "path of the link to the laser's port, or tcp://ADDRESS:PORT")
+  app.add_option(
+         "--laser-port", arguments.options.devices.laser_port,
+         "path of the link to the laser's port, or tcp://ADDRESS:PORT, or udp://ADDRESS:PORT for a "
+         "laser that sends datagrams")
       ->required();
   app.add_option("--base-port", arguments.options.devices.base_port,
                  "path of the link to the base's port")
