@@ -161,11 +161,14 @@ std::unique_ptr<LaserEmulator> emulate_cola(const LaserEmulatorSettings& setting
   ColaEmulatorSettings cola;
   cola.line = model.line;
   // Newer lasers speak CoLa B unless they are told otherwise.
-  if (model.name == "sick_tim7xx") cola.dialect = devices::ColaDialect::kBinary;
+  if (model.name == "sick_tim7xx" || model.name == "sick_lrs4xxx")
+    cola.dialect = devices::ColaDialect::kBinary;
   cola.name = model.title;
   cola.beams = model.beams;
-  cola.step_deg = model.view_deg / static_cast<double>(model.beams - 1);
-  cola.first_deg = kAhead_deg - 0.5 * model.view_deg;
+  constexpr double kDegree = 180.0 / std::numbers::pi;
+  const BeamPattern beams = beams_of(model);
+  cola.step_deg = kDegree * beams.angle_step_rad;
+  cola.first_deg = kAhead_deg + kDegree * beams.angle_min_rad;
   cola.turns_hz = model.turns_hz;
   cola.range_max_m = model.range_max_m;
   cola.seed = settings.seed;
