@@ -25,6 +25,7 @@ constexpr std::size_t kTarMark = 257;     // its place there
 constexpr std::string_view kSqliteStart = "SQLite format 3";
 constexpr std::string_view kMcapStart = "\x89MCAP";
 constexpr std::string_view kBagStart = "#ROSBAG";
+constexpr std::string_view kOldBagStart = "#ROSRECORD";
 
 /// A file that must be unpacked first.
 struct Packing {
@@ -129,6 +130,12 @@ std::unique_ptr<MessageSource> open_messages(const std::filesystem::path& path,
     throw std::runtime_error(path.string() + ": expected a file, found none");
   }
   support::refuse_irregular(path);
+  if (support::first_bytes(path, kFirstBytes).starts_with(kOldBagStart)) {
+    throw std::runtime_error(path.string() +
+                             ": a bag of version 1, expected version 2.0; ROS 1 converts it with "
+                             "`rosbag filter " +
+                             path.string() + " new.bag True`");
+  }
   throw std::runtime_error(
       path.string() + ": byte 0: expected the first bytes of a .db3, .mcap or .bag, got others");
 }

@@ -156,6 +156,9 @@ TEST_F(DamagedRecording, IsNoneByItsFirstBytes) {
   }
   put_bytes(path("v1.bag"), "#ROSBAG V1.2\n");
   EXPECT_THAT(open_error(path("v1.bag")), HasSubstr("version 2.0"));
+  put_bytes(path("v1.bag"), "#ROSRECORD V1.2\n");
+  EXPECT_THAT(open_error(path("v1.bag")),
+              AllOf(HasSubstr("version 1"), HasSubstr("rosbag filter")));
   put_bytes(path("whole.db3.zstd"), "\x28\xB5\x2F\xFD\x24");
   EXPECT_THAT(open_error(path("whole.db3.zstd")), HasSubstr("zstd -d"));
   put_bytes(path("text.clf"), "FLASER 2 1 1 0 0 0 0 0 0 1.0 h 1.0\n");
